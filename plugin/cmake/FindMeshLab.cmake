@@ -1,0 +1,62 @@
+# FindMeshLab: the headers and the core library of MeshLab 2025.07, for which there is no
+# development package.
+#
+# Variables that may be set:
+#   MESHLAB_SOURCE_DIR   a checkout of MeshLab 2025.07 with its submodules (the folder that holds
+#                        src/common). Unset: taken from Debian's source package, checked by hash,
+#                        into build/meshlab-source of this project.
+#   MESHLAB_LIBRARY_DIR  the folder of libmeshlab-common.so. Unset: that of the Python package
+#                        pymeshlab in the interpreter Python3_EXECUTABLE.
+#
+# Target: MeshLab::common, with the definitions of the double-precision build (version 2025.07d).
+find_package(Qt5 5.15 REQUIRED COMPONENTS Core Gui Widgets Xml OpenGL)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+
+if(NOT MESHLAB_SOURCE_DIR)
+  set(_meshlab_fetched ${PROJECT_SOURCE_DIR}/build/meshlab-source)
+  execute_process(
+    COMMAND ${CMAKE_CURRENT_LIST_DIR}/fetch_meshlab_source.sh ${_meshlab_fetched}
+    RESULT_VARIABLE _meshlab_fetch_result)
+  if(_meshlab_fetch_result)
+    message(FATAL_ERROR
+      "MeshLab's headers could not be fetched from Debian's source package (see above). "
+      "Give a checkout of MeshLab 2025.07 with its submodules: -DMESHLAB_SOURCE_DIR=<folder>.")
+  endif()
+  set(MESHLAB_SOURCE_DIR ${_meshlab_fetched} CACHE PATH
+      "Checkout of MeshLab 2025.07 (the folder that holds src/common)" FORCE)
+endif()
+
+if(NOT MESHLAB_LIBRARY_DIR)
+  find_package(Python3 3.10 REQUIRED COMPONENTS Interpreter)
+  execute_process(
+    COMMAND ${Python3_EXECUTABLE} -c
+            "import importlib.util as u, pathlib as p; print(p.Path(u.find_spec('pymeshlab').origin).parent / 'lib')"
+    OUTPUT_VARIABLE _meshlab_library_dir OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+  set(MESHLAB_LIBRARY_DIR "${_meshlab_library_dir}" CACHE PATH
+      "Folder of MeshLab's core library" FORCE)
+endif()
+
+find_path(MeshLab_INCLUDE_DIR common/plugins/interfaces/filter_plugin.h
+          PATHS ${MESHLAB_SOURCE_DIR}/src NO_DEFAULT_PATH)
+find_path(MeshLab_VCG_INCLUDE_DIR vcg/complex/complex.h
+          PATHS ${MESHLAB_SOURCE_DIR}/src/vcglib NO_DEFAULT_PATH)
+find_library(MeshLab_LIBRARY meshlab-common PATHS ${MESHLAB_LIBRARY_DIR} NO_DEFAULT_PATH)
+
+include(FindPackageHandleStandardArgs)
+find_package_handle_standard_args(MeshLab
+  REQUIRED_VARS MeshLab_LIBRARY MeshLab_INCLUDE_DIR MeshLab_VCG_INCLUDE_DIR
+  FAIL_MESSAGE "MeshLab 2025.07 not found: set MESHLAB_SOURCE_DIR (checkout with submodules) and \
+MESHLAB_LIBRARY_DIR (folder of libmeshlab-common.so, or install pymeshlab==2025.7.post1)")
+
+if(MeshLab_FOUND AND NOT TARGET MeshLab::common)
+  add_library(MeshLab::common SHARED IMPORTED)
+  set_target_properties(MeshLab::common PROPERTIES IMPORTED_LOCATION ${MeshLab_LIBRARY})
+  # As SYSTEM headers: their warnings are not ours to mend.
+  target_include_directories(MeshLab::common SYSTEM INTERFACE
+    ${MeshLab_INCLUDE_DIR} ${MeshLab_VCG_INCLUDE_DIR}
+    ${MESHLAB_SOURCE_DIR}/src/external/easyexif-1.0)
+  target_compile_definitions(MeshLab::common INTERFACE
+    MESHLAB_VERSION=2025.07d MESHLAB_SCALAR=double)
+  target_link_libraries(MeshLab::common INTERFACE
+    Qt5::Core Qt5::Gui Qt5::Widgets Qt5::Xml Qt5::OpenGL Eigen3::Eigen)
+endif()

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "types.h"
+
+namespace spectral {
+
+/// The connected components of a surface; triangles that share a vertex belong together.
+struct Components {
+    Eigen::VectorXi label;  ///< n labels, 0 <= label < count.
+    int count = 0;
+};
+
+/// @param F  m x 3 indices in [0, vertexCount); every vertex is in some triangle.
+Components connectedComponents(const Faces& F, Index vertexCount);
+
+/// The constant modes of a Laplacian: its null space, one constant function for each component.
+///
+/// A filter changes shape, not place, so the gain of these modes is 1 whatever F(0) is. They are
+/// taken out of a signal exactly before F is applied and put back afterwards; no eigenvalue of 1e-12
+/// in the place of 0 can then drag a mesh that lies far from the origin.
+class ConstantModes {
+  public:
+    /// @param D  n lumped masses, > 0.
+    ConstantModes(const Components& components, const Eigen::VectorXd& D);
+
+    int count() const { return static_cast<int>(mass_.size()); }
+
+    /// D-weighted mean of every column of X (n x c) on every component: count x c.
+    Eigen::MatrixXd means(const Eigen::MatrixXd& X) const;
+
+    /// Adds row label(i) of `means` (count x c) to row i of X.
+    void add(const Eigen::MatrixXd& means, Eigen::MatrixXd& X) const;
+
+    /// D-orthogonal projection of X onto the complement of the constants, in place.
+    void remove(Eigen::MatrixXd& X) const { add(-means(X), X); }
+
+    /// The modes themselves, n x count, D-orthonormal: 1/sqrt(mass) on one component, 0 elsewhere.
+    Eigen::MatrixXd orthonormal() const;
+
+  private:
+    Eigen::VectorXi label_;
+    Eigen::VectorXd D_;
+    Eigen::VectorXd mass_;
+};
+
+}  // namespace spectral

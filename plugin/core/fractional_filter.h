@@ -1,0 +1,67 @@
+#pragma once
+
+#include <vector>
+
+#include "progress.h"
+#include "transfer_function.h"
+#include "types.h"
+
+namespace spectral {
+
+/// What a step takes from the current shape.
+enum class BasisUpdate {
+    Full,       ///< W and D: the paper's scheme.
+    Conformal,  ///< D only, W stays that of the input (Kazhdan, Solomon, Ben-Chen 2012).
+    None        ///< Neither: one basis for all steps (Vallet and Levy 2008).
+};
+
+/// How F(sqrt(A)) X is evaluated.
+enum class Spectrum {
+    Full,      ///< All n harmonics, by a rational Krylov method that computes none of them.
+    Truncated  ///< The k lowest harmonics, and one gain for the rest.
+};
+
+struct FilterOptions {
+    TransferFunctionOptions transferFunction;
+    double featureSize = 0.0;  ///< Wavelength of the cutoff, 2 pi / omega_c, length units, > 0.
+    int steps = 10;            ///< K >= 1: the filter is applied as K steps of F^(1/K).
+    BasisUpdate basisUpdate = BasisUpdate::Full;
+    Spectrum spectrum = Spectrum::Full;
+    int basisSize = 300;           ///< k, for Spectrum::Truncated: below the number of vertices.
+    bool reinjectResidual = true;  ///< For Spectrum::Truncated: keep what is beyond k (Eq. 8).
+    double accuracy = 1e-6;  ///< For Spectrum::Full: error of the result, relative to the shape's
+                             ///< own size (see full_spectrum.h).
+};
+
+struct FilterResult {
+    Vertices V;  ///< The filtered positions; unreferenced vertices stay where they are.
+
+    int steps = 0;
+    double cutoffFrequency = 0.0;   ///< omega_c, radians per length unit.
+    double featureSize = 0.0;       ///< 2 pi / omega_c, length units.
+    double maxDisplacement = 0.0;   ///< Longest way of a vertex, length units.
+    double rmsDisplacement = 0.0;   ///< Root mean square over the surface of the input.
+    double areaBefore = 0.0, areaAfter = 0.0;
+    double volumeBefore = 0.0, volumeAfter = 0.0;  ///< Signed; a volume for closed meshes only.
+    int components = 0;             ///< Connected components of the surface.
+    int unreferencedVertices = 0;   ///< Vertices of no triangle; they were left alone.
+    int factorizations = 0;         ///< Sparse Cholesky or LDL^T factorizations.
+    int solves = 0;                 ///< Solves with one right-hand side.
+    double errorEstimate = 0.0;     ///< Estimated error of the evaluation, relative, all steps.
+    std::vector<double> stepSizes;  ///< The fractional powers alpha, in their order; sum 1.
+    Eigen::VectorXd eigenvalues;    ///< Of the last step's basis, ascending; empty without one.
+};
+
+/// Filters the geometry of a mesh: K steps X <- F^(1/K)(sqrt(A)) X, the Laplacian A taken anew from
+/// the current shape after every step (Kovnatsky et al. 2012, Eq. 11).
+///
+/// The result is exact to round-off under translation: every connected component keeps its centroid
+/// (area-weighted, of the shape that a step starts from).
+///
+/// @param V  n x 3 positions, finite.
+/// @param F  m x 3 vertex indices, m >= 1; any topology, unreferenced vertices allowed.
+/// @throws InvalidMesh, InvalidOption, SolverFailure, Cancelled
+FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOptions& options,
+                              const Progress& progress = {});
+
+}  // namespace spectral

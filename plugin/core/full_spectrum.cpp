@@ -1,0 +1,214 @@
+#include "full_spectrum.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <vector>
+
+#include "errors.h"
+
+namespace spectral {
+
+namespace {
+
+/// Dimensions between the two approximations whose difference estimates the error. The error shrinks
+/// by a factor of three to ten over this many, so the difference is, but for that factor, the error
+/// of the older approximation, and bounds that of the newer one.
+constexpr int kLag = 4;
+
+/// Below this dimension a difference says nothing: a narrow band has not been seen yet.
+constexpr int kFirstCheck = 8;
+
+/// Norm below which a new direction is round-off: the space is invariant, the result exact.
+constexpr double kBreakdown = 1e-13;
+
+/// Lanczos recurrence of one column for M = D^1/2 (W + lambda_p D)^-1 D^1/2, the symmetric form of
+/// S, with full reorthogonalization. Columns of the basis are D^1/2 times those of U.
+class LanczosColumn {
+  public:
+    LanczosColumn(const Eigen::VectorXd& start, Index capacity)
+        : basis_(start.size(), std::min(capacity, start.size())), norm_(start.norm()) {
+        exhausted_ = !(norm_ > 0.0);
+        if (!exhausted_) basis_.col(0) = start / norm_;
+    }
+
+    bool exhausted() const { return exhausted_; }
+    int dimension() const { return static_cast<int>(alpha_.size()); }
+    double norm() const { return norm_; }
+    auto current() const { return basis_.col(dimension()); }
+
+    /// Takes w = M current() and makes the next basis vector of it.
+    void extend(Eigen::VectorXd w) {
+        const Index j = dimension();
+        const double scale = w.norm();
+        const auto Q = basis_.leftCols(j + 1);
+        Eigen::VectorXd overlap = Q.transpose() * w;
+        alpha_.push_back(overlap[j]);
+        w.noalias() -= Q * overlap;
+        // Once more: the first pass leaves round-off of the size of what it took away.
+        overlap.noalias() = Q.transpose() * w;
+        w.noalias() -= Q * overlap;
+        const double beta = w.norm();
+        if (!(beta > kBreakdown * scale) || j + 1 == basis_.rows()) {
+            exhausted_ = true;
+            return;
+        }
+        beta_.push_back(beta);
+        if (j + 1 == basis_.cols())
+            basis_.conservativeResize(Eigen::NoChange,
+                                      std::min(basis_.rows(), basis_.cols() + basis_.cols() / 2 + 1));
+        basis_.col(j + 1) = w / beta;
+    }
+
+    /// Coefficients |x| F(sqrt(T^-1 - pole)) e_1 of the present approximation in the basis.
+    Eigen::VectorXd coefficients(const Gain& gain, double pole) const {
+        const Index m = dimension();
+        if (m == 0) return Eigen::VectorXd();
+        const Eigen::VectorXd diagonal = Eigen::Map<const Eigen::VectorXd>(alpha_.data(), m);
+        const Eigen::VectorXd off = Eigen::Map<const Eigen::VectorXd>(beta_.data(), m - 1);
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz;
+        ritz.computeFromTridiagonal(diagonal, off);
+        if (ritz.info() != Eigen::Success)
+            throw SolverFailure("the tridiagonal eigenproblem of the Krylov space did not converge");
+        Eigen::VectorXd gains(m);
+        for (Index i = 0; i < m; ++i) {
+            // theta = 1/(lambda + pole); round-off may push it out of (0, 1/pole].
+            const double theta = ritz.eigenvalues()[i];
+            const double lambda = theta > 0.0 ? std::max(0.0, 1.0 / theta - pole)
+                                              : std::numeric_limits<double>::infinity();
+            gains[i] = gain(std::sqrt(lambda));
+        }
+        const Eigen::MatrixXd& Q = ritz.eigenvectors();
+        return norm_ * (Q * gains.cwiseProduct(Q.row(0).transpose()));
+    }
+
+    /// The signal (times D^1/2) with these coefficients in the basis.
+    Eigen::VectorXd combine(const Eigen::VectorXd& coefficients) const {
+        return basis_.leftCols(coefficients.size()) * coefficients;
+    }
+
+  private:
+    Eigen::MatrixXd basis_;
+    std::vector<double> alpha_, beta_;
+    double norm_ = 0.0;
+    bool exhausted_ = false;
+};
+
+/// The change of the coefficients of a column since `kLag` dimensions ago.
+struct Change {
+    Eigen::VectorXd newest;
+    Eigen::VectorXd difference;
+};
+
+Change changeOf(const std::vector<Eigen::VectorXd>& history) {
+    Change change{history.back(), history.back()};
+    if (history.size() > kLag) {
+        const Eigen::VectorXd& older = history[history.size() - 1 - kLag];
+        change.difference.head(older.size()) -= older;
+    }
+    return change;
+}
+
+}  // namespace
+
+FullSpectrumResult applyFullSpectrum(const Eigen::VectorXd& D, const ConstantModes& constants,
+                                     const ShiftedCholesky& cholesky, const Gain& gain,
+                                     const Eigen::MatrixXd& X, const FullSpectrumOptions& options,
+                                     const Progress& progress) {
+    const Index n = X.rows(), columns = X.cols();
+    const double pole = cholesky.shift();
+    const Eigen::MatrixXd means = constants.means(X);
+    Eigen::MatrixXd centred = X;
+    constants.add(-means, centred);
+    const Eigen::VectorXd sqrtD = D.cwiseSqrt();
+    const double normX = (sqrtD.asDiagonal() * centred).norm();
+    const double maxX = centred.cwiseAbs().maxCoeff();
+
+    FullSpectrumResult result;
+    if (!(normX > 0.0)) {
+        result.Y = X;
+        return result;
+    }
+
+    constexpr int kInitialCapacity = 32;
+    std::vector<LanczosColumn> lanczos;
+    for (Index c = 0; c < columns; ++c)
+        lanczos.emplace_back(sqrtD.cwiseProduct(centred.col(c)), kInitialCapacity);
+    std::vector<std::vector<Eigen::VectorXd>> history(columns);
+
+    // Whether the change since kLag dimensions ago is below the accuracy, in both norms.
+    const auto converged = [&] {
+        double squares = 0.0, largest = 0.0;
+        std::vector<Change> changes(columns);
+        for (Index c = 0; c < columns; ++c) {
+            if (lanczos[c].exhausted()) continue;
+            changes[c] = changeOf(history[c]);
+            squares += changes[c].difference.squaredNorm();
+        }
+        result.errorEstimate = std::sqrt(squares) / normX;
+        if (result.errorEstimate > options.accuracy) return false;
+        for (Index c = 0; c < columns; ++c) {
+            if (lanczos[c].exhausted()) continue;
+            const Eigen::VectorXd difference = lanczos[c].combine(changes[c].difference);
+            largest = std::max(largest, difference.cwiseQuotient(sqrtD).cwiseAbs().maxCoeff());
+        }
+        result.errorEstimate = std::max(result.errorEstimate, largest / maxX);
+        return result.errorEstimate <= options.accuracy;
+    };
+
+    double firstError = 0.0;
+    for (int m = 1;; ++m) {
+        std::vector<Index> active;
+        for (Index c = 0; c < columns; ++c)
+            if (!lanczos[c].exhausted()) active.push_back(c);
+        if (active.empty()) {
+            result.errorEstimate = std::numeric_limits<double>::epsilon();
+            break;
+        }
+        if (m > options.maxDimension) {
+            std::ostringstream text;
+            text << "the full-spectrum evaluation reached a relative error of "
+                 << result.errorEstimate << " after " << options.maxDimension
+                 << " solves, not the requested " << options.accuracy
+                 << ": the transfer function is too steep for it. Choose a lower order or a wider "
+                    "band, response = gaussian, or spectrum = truncated";
+            throw SolverFailure(text.str());
+        }
+
+        Eigen::MatrixXd block(n, static_cast<Index>(active.size()));
+        for (std::size_t a = 0; a < active.size(); ++a)
+            block.col(a) = sqrtD.cwiseProduct(lanczos[active[a]].current());
+        block = cholesky.solve(block);
+        // S keeps the complement of the constants; round-off does not, and S amplifies it most there.
+        constants.remove(block);
+        block = sqrtD.asDiagonal() * block;
+        for (std::size_t a = 0; a < active.size(); ++a) {
+            lanczos[active[a]].extend(block.col(a));
+            history[active[a]].push_back(lanczos[active[a]].coefficients(gain, pole));
+        }
+        result.dimension = m;
+        if (m < kFirstCheck) continue;
+        if (converged()) break;
+
+        // Convergence is geometric: the logarithm of the error tells how far it is.
+        if (firstError <= 0.0) firstError = std::max(result.errorEstimate, options.accuracy * 10);
+        const double done = std::log(firstError / result.errorEstimate) /
+                            std::log(firstError / options.accuracy);
+        progress.report(std::clamp(done, 0.0, 1.0), "filtering");
+    }
+
+    result.Y.resize(n, columns);
+    for (Index c = 0; c < columns; ++c) {
+        if (history[c].empty())
+            result.Y.col(c).setZero();
+        else
+            result.Y.col(c) = lanczos[c].combine(history[c].back()).cwiseQuotient(sqrtD);
+    }
+    constants.remove(result.Y);
+    constants.add(means, result.Y);
+    return result;
+}
+
+}  // namespace spectral

@@ -1,0 +1,47 @@
+#pragma once
+
+#include "cholesky.h"
+#include "components.h"
+#include "progress.h"
+#include "transfer_function.h"
+
+namespace spectral {
+
+struct FullSpectrumOptions {
+    double accuracy = 1e-6;  ///< Requested error of Y, relative as in FullSpectrumResult.
+    int maxDimension = 300;  ///< Largest Krylov dimension of a column before giving up.
+};
+
+struct FullSpectrumResult {
+    Eigen::MatrixXd Y;  ///< n x c, the filtered signals.
+
+    /// Estimated error of Y, relative to the part of X that is not constant: the larger of
+    /// |dY|_D / |X|_D and max|dY| / max|X| over all columns together.
+    double errorEstimate = 0.0;
+    int dimension = 0;  ///< Krylov dimension reached: solves per column.
+};
+
+/// Y = F(sqrt(A)) X over the whole spectrum, without computing an eigenvector.
+///
+/// The same as with all n harmonics, Y = Phi F(Lambda^1/2) Phi^T D X (Kovnatsky et al. 2012, Eq. 6),
+/// as the action of a function of a matrix: a shift-invert Lanczos method with one repeated real
+/// pole, S = (W + lambda_p D)^-1 D. S is self-adjoint in the D-inner product and has the
+/// eigenvectors of A with eigenvalues theta = 1/(lambda + lambda_p). In the Krylov space of S and x,
+/// with D-orthonormal basis U and T = U^T D S U,
+///     F(sqrt(A)) x ~ |x|_D U F(sqrt(T^-1 - lambda_p)) e_1.
+/// The columns of X run in step, so that one pass over the Cholesky factor serves all of them.
+///
+/// The stopping rule is a posteriori: the coefficients in U of two approximations, a few dimensions
+/// apart, differ by less than the accuracy, and so do the signals at every vertex.
+///
+/// @param D         lumped masses of the Laplacian.
+/// @param cholesky  factorization of W + lambda_p D; lambda_p near the cutoff's lambda serves best.
+/// @param gain      continuous, finite and >= 0 on [0, infinity]; constant modes keep gain 1.
+/// @param X         n x c signals, e.g. the three coordinates.
+/// @throws SolverFailure  when maxDimension does not suffice.
+FullSpectrumResult applyFullSpectrum(const Eigen::VectorXd& D, const ConstantModes& constants,
+                                     const ShiftedCholesky& cholesky, const Gain& gain,
+                                     const Eigen::MatrixXd& X, const FullSpectrumOptions& options,
+                                     const Progress& progress = {});
+
+}  // namespace spectral

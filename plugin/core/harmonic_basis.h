@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "cholesky.h"
+#include "components.h"
+#include "laplacian.h"
+#include "progress.h"
+#include "transfer_function.h"
+
+namespace spectral {
+
+/// Manifold harmonics: the k lowest eigenpairs of W phi = lambda D phi.
+struct HarmonicBasis {
+    Eigen::MatrixXd Phi;     ///< n x k, D-orthonormal: Phi^T D Phi = I.
+    Eigen::VectorXd lambda;  ///< k eigenvalues, ascending; exactly 0 for the constant modes.
+
+    Index size() const { return lambda.size(); }
+};
+
+/// All n eigenpairs by a dense solver: O(n^3) time, 3 n^2 numbers of memory. The yardstick of the
+/// tests, and what is quickest for a few hundred vertices.
+/// @throws SolverFailure  when the solver does not converge.
+HarmonicBasis denseBasis(const Laplacian& laplacian, const ConstantModes& constants);
+
+/// At least the k lowest eigenpairs, by shift-invert Lanczos (Spectra).
+///
+/// The shift lies below zero by a fraction of the first eigenvalues' scale 4 pi / area, so that
+/// W - sigma D is positive definite and a Cholesky factorization serves. The constant modes are not
+/// computed but known: they are projected out of the iteration and set in front exactly.
+///
+/// The cut is never inside a cluster of equal eigenvalues: a few pairs more than k are taken where
+/// lambda_k and lambda_k+1 are equal or nearly so. The count of eigenvalues below the cut is checked
+/// against the inertia of W - sigma D, and missing copies of a multiple eigenvalue are sought again.
+///
+/// @param k  constants.count() < k < n.
+/// @param cholesky  factorized here; counts the work.
+/// @throws InvalidOption  when k is out of range; SolverFailure when the iteration fails.
+HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& constants, Index k,
+                             ShiftedCholesky& cholesky, const Progress& progress = {});
+
+/// Largest eigenvalue of W phi = lambda D phi, to about 1e-8 relative.
+double largestEigenvalue(const Laplacian& laplacian);
+
+/// Y = Phi F(Lambda^1/2) Phi^T D X + residualGain (X - Phi Phi^T D X)
+/// (Vallet and Levy 2008; Kovnatsky et al. 2012, Eqs. 6 to 8).
+///
+/// @param residualGain  gain of all that is beyond the basis (Eq. 9); 0 drops it (Eq. 6).
+/// The constant modes keep gain 1.
+Eigen::MatrixXd applyInBasis(const HarmonicBasis& basis, const Eigen::VectorXd& D,
+                             const ConstantModes& constants, const Gain& gain, double residualGain,
+                             const Eigen::MatrixXd& X);
+
+}  // namespace spectral

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "types.h"
+
+namespace spectral {
+
+/// Length of the diagonal of the axis-parallel bounding box.
+double boundingBoxDiagonal(const Vertices& V);
+
+/// Area of all triangles.
+double surfaceArea(const Vertices& V, const Faces& F);
+
+/// Signed volume by the divergence theorem, positive for outward orientation. A volume only where
+/// the surface is closed; taken about the middle of the bounding box otherwise.
+double signedVolume(const Vertices& V, const Faces& F);
+
+}  // namespace spectral

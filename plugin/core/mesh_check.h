@@ -1,0 +1,15 @@
+#pragma once
+
+#include "types.h"
+
+namespace spectral {
+
+/// Refuses what no Laplacian can be made of.
+///
+/// @throws InvalidMesh  when there is no vertex or no triangle, an index is out of range, a
+///                      coordinate is not finite, or a triangle is degenerate (two equal corners,
+///                      or an area that is zero beside its longest edge). The text counts them and
+///                      names the MeshLab filter that mends it.
+void checkMesh(const Vertices& V, const Faces& F);
+
+}  // namespace spectral

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "errors.h"
+
+namespace spectral {
+
+/// Tells the caller how far a computation is, and lets the caller stop it.
+///
+/// A default-constructed object reports to nobody and never stops.
+class Progress {
+  public:
+    /// Called with the part done, in [0, 1], and the present stage; returns false to stop.
+    using Callback = std::function<bool(double fraction, const std::string& stage)>;
+
+    Progress() = default;
+    explicit Progress(Callback callback) : callback_(std::move(callback)) {}
+
+    /// Reports `fraction` in [0, 1] of this object's own range.
+    /// @throws Cancelled  when the caller wants to stop.
+    void report(double fraction, const std::string& stage) const {
+        if (callback_ && !callback_(begin_ + (end_ - begin_) * fraction, prefix_ + stage))
+            throw Cancelled();
+    }
+
+    /// A progress whose [0, 1] is [begin, end] of this one; `prefix` goes before its stages.
+    Progress part(double begin, double end, const std::string& prefix = {}) const {
+        Progress sub(*this);
+        sub.begin_ = begin_ + (end_ - begin_) * begin;
+        sub.end_ = begin_ + (end_ - begin_) * end;
+        sub.prefix_ = prefix_ + prefix;
+        return sub;
+    }
+
+  private:
+    Callback callback_;
+    double begin_ = 0.0;
+    double end_ = 1.0;
+    std::string prefix_;
+};
+
+}  // namespace spectral

@@ -1,0 +1,106 @@
+#include "filter_parameters.h"
+
+#include <common/parameters/rich_parameters.h>
+
+using spectral::FilterOptions;
+
+namespace {
+
+/// Defaults of lengths, in parts of the diagonal of the bounding box.
+constexpr double kDefaultFeatureSize = 0.05;
+
+}  // namespace
+
+RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
+    const FilterOptions defaults;
+    const spectral::TransferFunctionOptions& transfer = defaults.transferFunction;
+    const Scalarm diagonal = mesh.cm.bbox.Diag();
+    RichParameterList list;
+
+    // The order of the entries is that of the core's enumerations.
+    list.addParam(RichEnum(
+        "filter_type", static_cast<int>(transfer.type),
+        {"low-pass", "high-pass", "band-pass", "band-stop"}, "Filter type",
+        "What to do with details, by their size. <b>low-pass</b> keeps what is larger than the "
+        "feature size and removes the rest (smoothing, denoising). <b>high-pass</b> acts on what is "
+        "smaller: with stop gain 1 and pass gain 2 it sharpens. <b>band-pass</b> acts on details of "
+        "about the feature size: with stop gain 1 and pass gain above 1 it enhances just them. "
+        "<b>band-stop</b> removes just them."));
+    list.addParam(RichPercentage(
+        "feature_size", static_cast<Scalarm>(kDefaultFeatureSize) * diagonal, 0, diagonal,
+        "Feature size",
+        "Size of the details where the filter turns over, as the wavelength of a wave along the "
+        "surface: a bump and the hollow beside it. Low-pass with 5 % of the diagonal wipes out "
+        "bumps that are clearly narrower than 2.5 % of the model. Larger values filter more "
+        "strongly. Try twice the width of what you want to remove."));
+    list.addParam(RichEnum(
+        "response", static_cast<int>(transfer.response), {"gaussian", "butterworth", "ideal"},
+        "Response",
+        "How sharply the filter tells sizes apart. <b>gaussian</b> changes over gently and never "
+        "rings; <b>butterworth</b> is sharper the higher its order; <b>ideal</b> cuts at once and "
+        "may leave ripples, like the rings around edges in a picture that was compressed too "
+        "much."));
+    list.addParam(RichInt(
+        "order", transfer.order, "Butterworth order",
+        "Steepness of the butterworth response, from 1 (gentle) to 64 (nearly ideal). 2 is a good "
+        "start. Not used by the other responses."));
+    list.addParam(RichFloat(
+        "band_width", static_cast<Scalarm>(transfer.bandWidth), "Band width (octaves)",
+        "Width of the band of band-pass and band-stop, in octaves: 1 means that its largest "
+        "details are twice as large as its smallest. Not used by low-pass and high-pass."));
+    list.addParam(RichFloat(
+        "pass_gain", static_cast<Scalarm>(transfer.passGain), "Pass gain",
+        "Factor for the details that the filter passes: 1 keeps them, 2 doubles their height, 0 "
+        "removes them. Not negative."));
+    list.addParam(RichFloat(
+        "stop_gain", static_cast<Scalarm>(transfer.stopGain), "Stop gain",
+        "Factor for all other details: 0 removes them, 0.5 halves their height, 1 keeps them. Not "
+        "negative."));
+    list.addParam(RichInt(
+        "steps", defaults.steps, "Steps",
+        "The filter is applied as this many weak steps, because a single strong one damages the "
+        "shape: thin parts turn into spikes or balloons. 10 is good; 1 is the classical one-shot "
+        "filter; more is slower and closer to the ideal."));
+    list.addParam(RichEnum(
+        "basis_update", static_cast<int>(defaults.basisUpdate), {"full", "conformal", "none"},
+        "Basis update",
+        "What every step learns from the shape that the step before has made. <b>full</b> takes "
+        "its own frequencies anew. <b>conformal</b> takes only its areas anew: the best choice for "
+        "strong smoothing, thin parts shrink instead of turning into spikes. <b>none</b> keeps the "
+        "frequencies of the input; then the number of steps does not matter."));
+    list.addParam(RichEnum(
+        "spectrum", static_cast<int>(defaults.spectrum), {"full", "truncated"}, "Spectrum",
+        "<b>full</b> filters all frequencies that the mesh can carry, and is fast. "
+        "<b>truncated</b> computes only the lowest frequencies (as many as the basis size) and "
+        "treats all the others alike, as older methods do.",
+        true));
+    list.addParam(RichInt(
+        "basis_size", defaults.basisSize, "Basis size",
+        "How many frequencies (manifold harmonics) a truncated spectrum has, e.g. 300. Must be "
+        "below the number of vertices; time and memory grow with it.",
+        true));
+    list.addParam(RichBool(
+        "reinject_residual", defaults.reinjectResidual, "Reinject residual",
+        "For a truncated spectrum: keep the details beyond the basis, with the mean gain of their "
+        "frequencies. Off: drop them.",
+        true));
+    return list;
+}
+
+FilterOptions fractionalFilterOptions(const RichParameterList& parameters) {
+    FilterOptions options;
+    spectral::TransferFunctionOptions& transfer = options.transferFunction;
+    transfer.type = static_cast<spectral::FilterType>(parameters.getEnum("filter_type"));
+    transfer.response = static_cast<spectral::Response>(parameters.getEnum("response"));
+    transfer.order = parameters.getInt("order");
+    transfer.bandWidth = parameters.getFloat("band_width");
+    transfer.passGain = parameters.getFloat("pass_gain");
+    transfer.stopGain = parameters.getFloat("stop_gain");
+    options.featureSize = parameters.getAbsPerc("feature_size");
+    options.steps = parameters.getInt("steps");
+    options.basisUpdate = static_cast<spectral::BasisUpdate>(parameters.getEnum("basis_update"));
+    options.spectrum = static_cast<spectral::Spectrum>(parameters.getEnum("spectrum"));
+    options.basisSize = parameters.getInt("basis_size");
+    options.reinjectResidual = parameters.getBool("reinject_residual");
+    return options;
+}

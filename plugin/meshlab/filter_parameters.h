@@ -1,0 +1,12 @@
+#pragma once
+
+#include <common/ml_document/mesh_model.h>
+#include <common/parameters/rich_parameter_list.h>
+
+#include "core/fractional_filter.h"
+
+/// The dialog's parameters, in the order in which one thinks: what, how big, how strong, how.
+RichParameterList fractionalFilterParameters(const MeshModel& mesh);
+
+/// The values of the dialog, or of a script, as the core's options.
+spectral::FilterOptions fractionalFilterOptions(const RichParameterList& parameters);

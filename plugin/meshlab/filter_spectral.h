@@ -1,0 +1,37 @@
+#pragma once
+
+#include <common/plugins/interfaces/filter_plugin.h>
+
+/// MeshLab's view of the project: one plugin with the filter "Spectral Filter (Fractional)".
+///
+/// An adapter: it reads parameters and mesh, calls the core, and writes the result back only after
+/// the whole computation has succeeded.
+class FilterSpectralPlugin : public QObject, public FilterPlugin {
+    Q_OBJECT
+    MESHLAB_PLUGIN_IID_EXPORTER(FILTER_PLUGIN_IID)
+    Q_INTERFACES(FilterPlugin)
+
+  public:
+    enum { SpectralFilterFractional };
+
+    FilterSpectralPlugin();
+
+    QString pluginName() const override;
+    QString vendor() const override;
+    QString filterName(ActionIDType filter) const override;
+    QString pythonFilterName(ActionIDType filter) const override;
+    QString filterInfo(ActionIDType filter) const override;
+    FilterClass getClass(const QAction* action) const override;
+    int getRequirements(const QAction* action) override;
+    int getPreConditions(const QAction* action) const override;
+    int postCondition(const QAction* action) const override;
+    FilterArity filterArity(const QAction* action) const override;
+    RichParameterList initParameterList(const QAction* action, const MeshModel& mesh) override;
+
+    /// @throws MLException  saying what is wrong and what to do; the mesh is then as it was.
+    std::map<std::string, QVariant> applyFilter(const QAction* action,
+                                                const RichParameterList& parameters,
+                                                MeshDocument& document,
+                                                unsigned int& postConditionMask,
+                                                vcg::CallBackPos* callback) override;
+};

@@ -1,0 +1,35 @@
+#include "mesh_conversion.h"
+
+MeshMatrices toMatrices(const CMeshO& mesh) {
+    MeshMatrices matrices;
+    matrices.vertexIndex.reserve(mesh.vn);
+    std::vector<int> row(mesh.vert.size(), -1);
+    for (std::size_t i = 0; i < mesh.vert.size(); ++i) {
+        if (mesh.vert[i].IsD()) continue;
+        row[i] = static_cast<int>(matrices.vertexIndex.size());
+        matrices.vertexIndex.push_back(i);
+    }
+    matrices.V.resize(mesh.vn, 3);
+    for (int i = 0; i < mesh.vn; ++i) {
+        const Point3m& p = mesh.vert[matrices.vertexIndex[i]].cP();
+        matrices.V.row(i) << p[0], p[1], p[2];
+    }
+
+    matrices.F.resize(mesh.fn, 3);
+    int t = 0;
+    for (const CFaceO& face : mesh.face) {
+        if (face.IsD()) continue;
+        for (int c = 0; c < 3; ++c) matrices.F(t, c) = row[vcg::tri::Index(mesh, face.cV(c))];
+        ++t;
+    }
+    return matrices;
+}
+
+void setPositions(const std::vector<std::size_t>& vertexIndex, const spectral::Vertices& V,
+                  MeshModel& mesh) {
+    for (std::size_t i = 0; i < vertexIndex.size(); ++i)
+        for (int c = 0; c < 3; ++c)
+            mesh.cm.vert[vertexIndex[i]].P()[c] =
+                static_cast<Scalarm>(V(static_cast<Eigen::Index>(i), c));
+    mesh.updateBoxAndNormals();
+}

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <common/ml_document/mesh_model.h>
+
+#include <vector>
+
+#include "core/types.h"
+
+/// A mesh of MeshLab's as matrices, without the deleted elements that stay in its containers.
+struct MeshMatrices {
+    spectral::Vertices V;
+    spectral::Faces F;
+    std::vector<std::size_t> vertexIndex;  ///< Index in the container of every row of V.
+};
+
+MeshMatrices toMatrices(const CMeshO& mesh);
+
+/// Moves the vertices to the rows of V and updates bounding box and normals; all else is kept.
+void setPositions(const std::vector<std::size_t>& vertexIndex, const spectral::Vertices& V,
+                  MeshModel& mesh);
