@@ -18,22 +18,25 @@ command -v apt-get >/dev/null || {
     echo "$0: no apt-get here: this is no Debian system." >&2; exit 1; }
 
 mkdir -p "$(dirname "$folder")"
-work=$(mktemp -d "$(dirname "$folder")/meshlab-source.XXXXXX")
+# Absolute, as apt takes a relative path to be one below its own folders.
+work=$(mktemp -d "$(cd "$(dirname "$folder")" && pwd)/meshlab-source.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 trap 'exit 130' INT TERM
 
 # The address of the first Debian mirror among the configured sources, of either format.
 mirror=$(cat /etc/apt/sources.list /etc/apt/sources.list.d/* 2>/dev/null |
-    sed -n -e 's/^deb \(\[[^]]*\] \)\{0,1\}\([^ ]*debian\/\{0,1\}\) .*/\2/p' \
-           -e 's/^URIs: *\([^ ]*debian\/\{0,1\}\)\( .*\)\{0,1\}$/\1/p' | head -n 1)
+    sed -nE -e 's/^deb[[:space:]]+(\[[^]]*\][[:space:]]+)?([^[:space:]]*debian\/?)[[:space:]].*/\2/p' \
+            -e 's/^URIs:[[:space:]]*([^[:space:]]*debian\/?)([[:space:]].*)?$/\1/p' | sed -n 1p)
 [ -n "$mirror" ] || { echo "$0: no Debian mirror among the apt sources." >&2; exit 1; }
 
 mkdir -p "$work/lists/partial" "$work/tree"
 echo "deb-src $mirror forky main" > "$work/sources.list"
 (
     cd "$work"
-    set -- -o "Dir::Etc::SourceList=$work/sources.list" -o Dir::Etc::SourceParts=- \
-           -o "Dir::State::Lists=$work/lists" -o APT::Sandbox::User=root -qq
+    # No package caches: they would be the machine's, which a user who is not root cannot write.
+    set -- -o "Dir::Etc::SourceList=$work/sources.list" -o Dir::Etc::SourceParts=/dev/null \
+           -o "Dir::State::Lists=$work/lists" -o APT::Sandbox::User=root \
+           -o Dir::Cache::pkgcache= -o Dir::Cache::srcpkgcache= -qq
     apt-get "$@" update
     # --tar-only: the .dsc and the packaging are missing on some mirrors, and not needed.
     apt-get "$@" source --download-only --tar-only "meshlab=$version"

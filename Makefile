@@ -1,0 +1,91 @@
+# The commands of this project; `make help` lists them. The building itself is CMake's: this file
+# sets the machine up, once, and calls it. Variables, given as `make test PYTHON=python3.11`:
+#   PYTHON              the Python >= 3.11 that makes .venv
+#   MESHLAB_SOURCE_DIR  a checkout of MeshLab 2025.07 with its submodules; else Debian's source
+#                       package is fetched into build/
+#   WARNINGS_AS_ERRORS  ON: a compiler warning fails the build
+#   BENCH_MESH          the mesh of the C++ benchmark, skipped when there is no such file
+PYTHON ?= python3
+MESHLAB_SOURCE_DIR ?=
+WARNINGS_AS_ERRORS ?= OFF
+BENCH_MESH ?= ../shared/data/dragon_40k.ply
+
+# Pictures are drawn off-screen; otherwise VTK first tries, and warns, where there is no X server.
+export VTK_DEFAULT_OPENGL_WINDOW ?= vtkEGLRenderWindow
+
+BENCHMARKS := OFF
+BIN := .venv/bin
+CMAKE_OPTIONS := $(if $(MESHLAB_SOURCE_DIR),-DMESHLAB_SOURCE_DIR=$(abspath $(MESHLAB_SOURCE_DIR)))
+
+# A stamp lies in the folder whose state it tells, so that deleting .venv or build/ is enough to
+# have it set up again.
+PACKAGES := build/.packages
+VENV := .venv/.requirements
+PACKAGE := .venv/.package
+
+CPP_FILES = $(shell find plugin tests -name '*.h' -o -name '*.cpp')
+PYTHON_FILES = python tests
+# With the folders themselves, whose time changes when a file in them goes.
+PACKAGE_SOURCES := CMakeLists.txt $(shell find plugin python -not -path '*/__pycache__*')
+
+# Two targets at once would fetch MeshLab's headers twice; ninja uses every core anyway.
+.NOTPARALLEL:
+.DELETE_ON_ERROR:
+.PHONY: help demo test setup build bench lint format clean
+
+help:  ## list these commands
+	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 15
+
+demo: $(PACKAGE)  ## filter the Stanford bunny: report, mesh and picture in build/demo
+	@mkdir -p build/demo
+	$(BIN)/python -m meshlab_spectral.demo build/demo
+
+test: build $(PACKAGE)  ## run every test, C++ and Python
+	ctest --test-dir build --output-on-failure --no-tests=error --parallel $$(nproc)
+	$(BIN)/python -m pytest -c python/pyproject.toml --rootdir . tests/python
+
+setup: $(PACKAGES) $(VENV)  ## install what is missing: Debian packages, .venv
+
+build: setup  ## compile the plugin and the C++ tests, in build/
+	cmake -S . -B build -G Ninja -DPython3_EXECUTABLE=$(CURDIR)/$(BIN)/python \
+	  -DSPECTRAL_WARNINGS_AS_ERRORS=$(WARNINGS_AS_ERRORS) \
+	  -DSPECTRAL_BUILD_BENCHMARKS=$(BENCHMARKS) $(CMAKE_OPTIONS)
+	cmake --build build
+
+bench: BENCHMARKS := ON
+bench: build $(PACKAGE)  ## measure time and memory
+	@if [ -f $(BENCH_MESH) ]; then set -x; build/tests/benchmarks/bench_dragon $(BENCH_MESH); \
+	else echo "bench_dragon skipped: no $(BENCH_MESH)"; fi
+	$(BIN)/python tests/benchmarks/bench_pymeshlab.py
+
+lint: setup  ## check style and types, change nothing
+	$(BIN)/clang-format --dry-run -Werror $(CPP_FILES)
+	$(BIN)/ruff check --config python/pyproject.toml $(PYTHON_FILES)
+	$(BIN)/ruff format --check --config python/pyproject.toml $(PYTHON_FILES)
+	$(BIN)/mypy --strict --config-file python/pyproject.toml python/src
+
+format: setup  ## rewrite the sources in the project's style
+	$(BIN)/clang-format -i $(CPP_FILES)
+	$(BIN)/ruff check --fix --config python/pyproject.toml $(PYTHON_FILES)
+	$(BIN)/ruff format --config python/pyproject.toml $(PYTHON_FILES)
+
+clean:  ## delete what was built, and .venv
+	rm -rf build .venv
+
+$(PACKAGES): plugin/cmake/debian_packages.txt plugin/cmake/install_debian_packages.sh
+	plugin/cmake/install_debian_packages.sh $<
+	@mkdir -p $(@D) && touch $@
+
+# Wheels only: no package gets to run a set-up script, and none needs a compiler.
+$(VENV): python/requirements.txt | $(PACKAGES)
+	$(PYTHON) -m venv .venv
+	$(BIN)/pip install --quiet --disable-pip-version-check --only-binary :all: --require-hashes -r $<
+	@touch $@
+
+# The package holds a plugin of its own, built by scikit-build-core in a folder that is kept, so
+# that a changed file costs its own compilation only. --force-reinstall: the version is the same.
+$(PACKAGE): $(VENV) $(PACKAGE_SOURCES)
+	CMAKE_ARGS="$(CMAKE_OPTIONS)" $(BIN)/pip install --quiet --disable-pip-version-check --no-index \
+	  --no-build-isolation --no-deps --force-reinstall \
+	  --config-settings=build-dir=$(CURDIR)/build/python ./python
+	@touch $@

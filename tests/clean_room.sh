@@ -1,0 +1,108 @@
+#!/usr/bin/env bash
+# Tries `make demo` and `make test` where nothing was installed before: in a bare Debian 12 with only
+# ca-certificates, git and make, on a clone of this repository's HEAD.
+#
+# usage: clean_room.sh [--user] [--ci] [--shared FOLDER] [ROOT]
+#
+#   --user           as a user with sudo, not as root
+#   --ci             then .ci/run too, in a second clone
+#   --shared FOLDER  shown beside the clone as ../shared, read-only (meshes of the benchmarks)
+#   ROOT             new folder for the Debian system, kept for a look; without it a temporary one,
+#                    deleted afterwards (4 GB either way)
+#
+# Needs root and debootstrap. What the network needs (mirror, apt and pip settings, certificates,
+# name servers) is taken from this machine.
+set -euo pipefail
+
+usage() { sed -n '2,/^set /{s/^# \{0,1\}//p}' "$0" >&2; exit 2; }
+
+user=root ci=false shared='' root=''
+while [ $# -gt 0 ]; do
+    case $1 in
+        --user) user=tester ;;
+        --ci) ci=true ;;
+        --shared) [ $# -gt 1 ] || usage; shared=$(realpath "$2"); shift ;;
+        -*) usage ;;
+        *) [ -z "$root" ] || usage; root=$(realpath -m "$1") ;;
+    esac
+    shift
+done
+[ "$(id -u)" -eq 0 ] || { echo "$0: needs root, for debootstrap and chroot" >&2; exit 2; }
+repository=$(git -C "$(dirname "$0")" rev-parse --show-toplevel)
+
+if [ -z "$root" ]; then
+    root=$(mktemp -d)
+    chmod 755 "$root"
+    trap 'rm -rf --one-file-system "$root"' EXIT
+    trap 'exit 130' INT TERM
+elif [ -n "$(ls -A "$root" 2>/dev/null)" ]; then
+    echo "$0: $root is not empty, so it would be no clean room" >&2
+    exit 2
+fi
+
+# The first Debian mirror among the configured sources, of either format.
+mirror=$(cat /etc/apt/sources.list /etc/apt/sources.list.d/* 2>/dev/null |
+    sed -nE -e 's/^deb[[:space:]]+(\[[^]]*\][[:space:]]+)?([^[:space:]]*debian\/?)[[:space:]].*/\2/p' \
+            -e 's/^URIs:[[:space:]]*([^[:space:]]*debian\/?)([[:space:]].*)?$/\1/p' | sed -n 1p)
+[ -n "$mirror" ] || { echo "$0: no Debian mirror among the apt sources" >&2; exit 1; }
+
+include=ca-certificates,git,make
+[ "$user" = root ] || include=$include,sudo
+echo "=== debootstrap into $root"
+debootstrap --variant=minbase --include="$include" bookworm "$root" "$mirror" >"$root.log" 2>&1 || {
+    tail -n 20 "$root.log" >&2; exit 1; }
+rm -f "$root.log"
+
+# What this machine's network needs. Of apt's settings only those about fetching: the others may
+# call programs that are not there.
+cp -L /etc/resolv.conf /etc/hosts "$root/etc/"
+for file in /etc/apt/apt.conf.d/*; do
+    if grep -q '^Acquire::' "$file" && ! grep -q 'Invoke' "$file"; then
+        cp "$file" "$root/etc/apt/apt.conf.d/"
+    fi
+done
+for file in /etc/pip.conf ~/.pip/pip.conf ~/.config/pip/pip.conf; do
+    [ ! -f "$file" ] || cp "$file" "$root/etc/pip.conf"
+done
+cp -r /usr/local/share/ca-certificates/. "$root/usr/local/share/ca-certificates/"
+chroot "$root" update-ca-certificates >/dev/null 2>&1
+
+home=/root
+if [ "$user" != root ]; then
+    home=/home/$user
+    chroot "$root" useradd --create-home --shell /bin/bash "$user"
+    echo "$user ALL=(ALL) NOPASSWD: ALL" >"$root/etc/sudoers.d/$user"
+fi
+git clone --quiet "$repository" "$root$home/project"
+git clone --quiet "$repository" "$root$home/ci"
+chroot "$root" chown -R "$user:" "$home"
+[ -z "$shared" ] || mkdir "$root$home/shared"
+
+# The environment of the trial: nothing of this shell's but what pip needs to reach its index.
+settings=(HOME="$home" USER="$user" PATH=/usr/local/bin:/usr/bin:/bin:/usr/sbin:/sbin LC_ALL=C.UTF-8)
+for name in $(compgen -e | grep -E '^(PIP_(CERT|INDEX_URL|EXTRA_INDEX_URL|TRUSTED_HOST|PROXY|DEFAULT_TIMEOUT)|(https?|no|HTTPS?|NO)_(proxy|PROXY)|SSL_CERT_FILE)$'); do
+    settings+=("$name=${!name}")
+done
+
+# In namespaces of its own, so that the mounts and whatever still runs go when it ends, in any way.
+inside() {
+    mount -t proc proc "$root/proc"
+    mkdir -p "$root/dev/shm"
+    mount -t tmpfs tmpfs "$root/dev/shm"
+    [ -z "$shared" ] || mount --bind -o ro "$shared" "$root$home/shared"
+    run() {
+        echo "=== $1: $2"
+        time env -i "${settings[@]}" chroot --userspec="$user:" "$root" \
+            bash -c "cd $home/$1 && $2" </dev/null
+    }
+    run project 'make demo'
+    run project 'ls -l build/demo'
+    run project 'make test'
+    run project 'make demo  # again: no set-up work'
+    if "$ci"; then run ci 'bash .ci/run'; fi
+    echo '=== clean room: all passed'
+}
+export root home user shared ci
+# Arrays and functions do not pass through the environment: they go as text.
+unshare --mount --pid --fork --kill-child \
+    bash -c "set -euo pipefail; $(declare -p settings); $(declare -f inside); inside"
