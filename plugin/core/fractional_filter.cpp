@@ -12,6 +12,7 @@
 #include "laplacian.h"
 #include "measures.h"
 #include "mesh_check.h"
+#include "pole_selection.h"
 
 namespace spectral {
 
@@ -21,6 +22,9 @@ constexpr double kPi = 3.14159265358979323846;
 
 /// More harmonics than this for a discontinuous gain are a mistake of the user's: minutes of time.
 constexpr Index kMaxExactBasis = 1000;
+
+/// Relative accuracy of a step that round-off still allows.
+constexpr double kFinestAccuracy = 1e-13;
 
 /// Up to this many vertices the dense solver computes all harmonics in about a second.
 constexpr Index kDenseVertices = 600;
@@ -72,7 +76,8 @@ class StepEvaluator {
           components_(components),
           F_(F),
           alpha_(1.0 / options.steps),
-          gain_(fractionalPower(F, alpha_)) {}
+          gain_(fractionalPower(F, alpha_)),
+          accuracy_(std::max(options.accuracy / options.steps, kFinestAccuracy)) {}
 
     /// Takes the Laplacian of the following evaluations.
     void setLaplacian(Laplacian laplacian, const Progress& progress) {
@@ -85,17 +90,17 @@ class StepEvaluator {
             basis_ = options_.spectrum == Spectrum::Truncated ? truncated(rest) : exact(rest);
         } else {
             progress.report(0.0, "factorizing");
-            cholesky_.factorize(laplacian_, F_.cutoff() * F_.cutoff());
+            cholesky_.factorize(laplacian_, selectPole(gain_, F_.cutoff(),
+                                                       bulkSpectrumEnd(laplacian_), accuracy_));
         }
     }
 
     Eigen::MatrixXd operator()(const Eigen::MatrixXd& X, const Progress& progress) {
         if (usesBasis())
             return applyInBasis(basis_, laplacian_.D, *constants_, gain_, residualGain_, X);
-        // The errors of K steps add up.
         const FullSpectrumResult step =
             applyFullSpectrum(laplacian_.D, *constants_, cholesky_, gain_, X,
-                              {std::max(options_.accuracy * alpha_, 1e-13)}, progress);
+                              {accuracy_}, progress);
         errorEstimate_ += step.errorEstimate;
         return step.Y;
     }
@@ -145,6 +150,7 @@ class StepEvaluator {
     const TransferFunction& F_;
     double alpha_;
     Gain gain_;
+    double accuracy_;  // of one step: the errors of K steps add up
     Laplacian laplacian_;
     std::optional<ConstantModes> constants_;
     ShiftedCholesky cholesky_;

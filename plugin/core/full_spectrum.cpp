@@ -13,13 +13,13 @@ namespace spectral {
 
 namespace {
 
-/// Dimensions between the two approximations whose difference estimates the error. The error shrinks
-/// by a factor of three to ten over this many, so the difference is, but for that factor, the error
-/// of the older approximation, and bounds that of the newer one.
-constexpr int kLag = 4;
+/// Dimensions from one check of the error to the next. The difference of two approximations so far
+/// apart is, but for the factor of two to ten by which the error has shrunk meanwhile, the error of
+/// the older one, and bounds that of the newer one.
+constexpr int kCheckInterval = 3;
 
 /// Below this dimension a difference says nothing: a narrow band has not been seen yet.
-constexpr int kFirstCheck = 8;
+constexpr int kFirstCheck = 6;
 
 /// Norm below which a new direction is round-off: the space is invariant, the result exact.
 constexpr double kBreakdown = 1e-13;
@@ -28,8 +28,8 @@ constexpr double kBreakdown = 1e-13;
 /// S, with full reorthogonalization. Columns of the basis are D^1/2 times those of U.
 class LanczosColumn {
   public:
-    LanczosColumn(const Eigen::VectorXd& start, Index capacity)
-        : basis_(start.size(), std::min(capacity, start.size())), norm_(start.norm()) {
+    explicit LanczosColumn(const Eigen::VectorXd& start)
+        : basis_(start.size(), std::min(kCapacity, start.size())), norm_(start.norm()) {
         exhausted_ = !(norm_ > 0.0);
         if (!exhausted_) basis_.col(0) = start / norm_;
     }
@@ -43,14 +43,18 @@ class LanczosColumn {
     void extend(Eigen::VectorXd w) {
         const Index j = dimension();
         const double scale = w.norm();
-        const auto Q = basis_.leftCols(j + 1);
-        Eigen::VectorXd overlap = Q.transpose() * w;
-        alpha_.push_back(overlap[j]);
-        w.noalias() -= Q * overlap;
-        // Once more: the first pass leaves round-off of the size of what it took away.
-        overlap.noalias() = Q.transpose() * w;
-        w.noalias() -= Q * overlap;
-        const double beta = w.norm();
+        // The three-term recurrence first, so that the pass over the whole basis finds next to
+        // nothing and is needed only once: it is memory traffic, the dearest part after the solves.
+        alpha_.push_back(basis_.col(j).dot(w));
+        w -= alpha_.back() * basis_.col(j);
+        if (j > 0) w -= beta_.back() * basis_.col(j - 1);
+        const double before = w.norm();
+        reorthogonalize(w);
+        double beta = w.norm();
+        if (beta < 0.5 * before) {  // much was found: what round-off left of it goes now
+            reorthogonalize(w);
+            beta = w.norm();
+        }
         if (!(beta > kBreakdown * scale) || j + 1 == basis_.rows()) {
             exhausted_ = true;
             return;
@@ -58,7 +62,7 @@ class LanczosColumn {
         beta_.push_back(beta);
         if (j + 1 == basis_.cols())
             basis_.conservativeResize(Eigen::NoChange,
-                                      std::min(basis_.rows(), basis_.cols() + basis_.cols() / 2 + 1));
+                                      std::min(basis_.rows(), basis_.cols() + kCapacity));
         basis_.col(j + 1) = w / beta;
     }
 
@@ -90,26 +94,19 @@ class LanczosColumn {
     }
 
   private:
+    void reorthogonalize(Eigen::VectorXd& w) const {
+        const auto Q = basis_.leftCols(dimension());
+        const Eigen::VectorXd overlap = Q.transpose() * w;
+        w.noalias() -= Q * overlap;
+    }
+
+    static constexpr Index kCapacity = 32;  // columns by which the basis grows
+
     Eigen::MatrixXd basis_;
     std::vector<double> alpha_, beta_;
     double norm_ = 0.0;
     bool exhausted_ = false;
 };
-
-/// The change of the coefficients of a column since `kLag` dimensions ago.
-struct Change {
-    Eigen::VectorXd newest;
-    Eigen::VectorXd difference;
-};
-
-Change changeOf(const std::vector<Eigen::VectorXd>& history) {
-    Change change{history.back(), history.back()};
-    if (history.size() > kLag) {
-        const Eigen::VectorXd& older = history[history.size() - 1 - kLag];
-        change.difference.head(older.size()) -= older;
-    }
-    return change;
-}
 
 }  // namespace
 
@@ -132,30 +129,31 @@ FullSpectrumResult applyFullSpectrum(const Eigen::VectorXd& D, const ConstantMod
         return result;
     }
 
-    constexpr int kInitialCapacity = 32;
     std::vector<LanczosColumn> lanczos;
     for (Index c = 0; c < columns; ++c)
-        lanczos.emplace_back(sqrtD.cwiseProduct(centred.col(c)), kInitialCapacity);
-    std::vector<std::vector<Eigen::VectorXd>> history(columns);
+        lanczos.emplace_back(sqrtD.cwiseProduct(centred.col(c)));
+    std::vector<Eigen::VectorXd> coefficients(columns);
 
-    // Whether the change since kLag dimensions ago is below the accuracy, in both norms.
-    const auto converged = [&] {
-        double squares = 0.0, largest = 0.0;
-        std::vector<Change> changes(columns);
+    // Renews the coefficients of all columns; returns the error of the older ones, in both norms.
+    const auto renew = [&] {
+        std::vector<Eigen::VectorXd> change(columns);
+        double squares = 0.0;
         for (Index c = 0; c < columns; ++c) {
-            if (lanczos[c].exhausted()) continue;
-            changes[c] = changeOf(history[c]);
-            squares += changes[c].difference.squaredNorm();
+            const Eigen::VectorXd older = std::move(coefficients[c]);
+            coefficients[c] = lanczos[c].coefficients(gain, pole);
+            change[c] = coefficients[c];
+            change[c].head(older.size()) -= older;
+            squares += change[c].squaredNorm();
         }
-        result.errorEstimate = std::sqrt(squares) / normX;
-        if (result.errorEstimate > options.accuracy) return false;
-        for (Index c = 0; c < columns; ++c) {
-            if (lanczos[c].exhausted()) continue;
-            const Eigen::VectorXd difference = lanczos[c].combine(changes[c].difference);
-            largest = std::max(largest, difference.cwiseQuotient(sqrtD).cwiseAbs().maxCoeff());
-        }
-        result.errorEstimate = std::max(result.errorEstimate, largest / maxX);
-        return result.errorEstimate <= options.accuracy;
+        const double error = std::sqrt(squares) / normX;
+        if (error > options.accuracy) return error;
+        double largest = 0.0;
+        for (Index c = 0; c < columns; ++c)
+            if (change[c].size() > 0)
+                largest = std::max(
+                    largest,
+                    lanczos[c].combine(change[c]).cwiseQuotient(sqrtD).cwiseAbs().maxCoeff());
+        return std::max(error, largest / maxX);
     };
 
     double firstError = 0.0;
@@ -163,7 +161,8 @@ FullSpectrumResult applyFullSpectrum(const Eigen::VectorXd& D, const ConstantMod
         std::vector<Index> active;
         for (Index c = 0; c < columns; ++c)
             if (!lanczos[c].exhausted()) active.push_back(c);
-        if (active.empty()) {
+        if (active.empty()) {  // the Krylov spaces are invariant: no error but round-off
+            renew();
             result.errorEstimate = std::numeric_limits<double>::epsilon();
             break;
         }
@@ -184,13 +183,11 @@ FullSpectrumResult applyFullSpectrum(const Eigen::VectorXd& D, const ConstantMod
         // S keeps the complement of the constants; round-off does not, and S amplifies it most there.
         constants.remove(block);
         block = sqrtD.asDiagonal() * block;
-        for (std::size_t a = 0; a < active.size(); ++a) {
-            lanczos[active[a]].extend(block.col(a));
-            history[active[a]].push_back(lanczos[active[a]].coefficients(gain, pole));
-        }
+        for (std::size_t a = 0; a < active.size(); ++a) lanczos[active[a]].extend(block.col(a));
         result.dimension = m;
-        if (m < kFirstCheck) continue;
-        if (converged()) break;
+        if (m % kCheckInterval != 0) continue;
+        result.errorEstimate = renew();
+        if (m >= kFirstCheck && result.errorEstimate <= options.accuracy) break;
 
         // Convergence is geometric: the logarithm of the error tells how far it is.
         if (firstError <= 0.0) firstError = std::max(result.errorEstimate, options.accuracy * 10);
@@ -200,12 +197,8 @@ FullSpectrumResult applyFullSpectrum(const Eigen::VectorXd& D, const ConstantMod
     }
 
     result.Y.resize(n, columns);
-    for (Index c = 0; c < columns; ++c) {
-        if (history[c].empty())
-            result.Y.col(c).setZero();
-        else
-            result.Y.col(c) = lanczos[c].combine(history[c].back()).cwiseQuotient(sqrtD);
-    }
+    for (Index c = 0; c < columns; ++c)
+        result.Y.col(c) = lanczos[c].combine(coefficients[c]).cwiseQuotient(sqrtD);
     constants.remove(result.Y);
     constants.add(means, result.Y);
     return result;

@@ -31,11 +31,11 @@ struct FullSpectrumResult {
 ///     F(sqrt(A)) x ~ |x|_D U F(sqrt(T^-1 - lambda_p)) e_1.
 /// The columns of X run in step, so that one pass over the Cholesky factor serves all of them.
 ///
-/// The stopping rule is a posteriori: the coefficients in U of two approximations, a few dimensions
-/// apart, differ by less than the accuracy, and so do the signals at every vertex.
+/// The stopping rule is a posteriori: two approximations, a few dimensions apart, differ by less than
+/// the accuracy, over the surface and at every vertex.
 ///
 /// @param D         lumped masses of the Laplacian.
-/// @param cholesky  factorization of W + lambda_p D; lambda_p near the cutoff's lambda serves best.
+/// @param cholesky  factorization of W + lambda_p D; see selectPole for lambda_p.
 /// @param gain      continuous, finite and >= 0 on [0, infinity]; constant modes keep gain 1.
 /// @param X         n x c signals, e.g. the three coordinates.
 /// @throws SolverFailure  when maxDimension does not suffice.
