@@ -23,7 +23,7 @@ PACKAGES := build/.packages
 VENV := .venv/.requirements
 PACKAGE := .venv/.package
 
-CPP_FILES = $(shell find plugin tests -name '*.h' -o -name '*.cpp')
+CPP_FILES = find plugin tests -name '*.h' -o -name '*.cpp'
 PYTHON_FILES = python tests
 # With the folders themselves, whose time changes when a file in them goes.
 PACKAGE_SOURCES := CMakeLists.txt $(shell find plugin python -not -path '*/__pycache__*')
@@ -59,13 +59,13 @@ bench: build $(PACKAGE)  ## measure time and memory
 	$(BIN)/python tests/benchmarks/bench_pymeshlab.py
 
 lint: setup  ## check style and types, change nothing
-	$(BIN)/clang-format --dry-run -Werror $(CPP_FILES)
+	$(CPP_FILES) | xargs $(BIN)/clang-format --dry-run -Werror
 	$(BIN)/ruff check --config python/pyproject.toml $(PYTHON_FILES)
 	$(BIN)/ruff format --check --config python/pyproject.toml $(PYTHON_FILES)
 	$(BIN)/mypy --strict --config-file python/pyproject.toml python/src
 
 format: setup  ## rewrite the sources in the project's style
-	$(BIN)/clang-format -i $(CPP_FILES)
+	$(CPP_FILES) | xargs $(BIN)/clang-format -i
 	$(BIN)/ruff check --fix --config python/pyproject.toml $(PYTHON_FILES)
 	$(BIN)/ruff format --config python/pyproject.toml $(PYTHON_FILES)
 
@@ -85,6 +85,7 @@ $(VENV): python/requirements.txt | $(PACKAGES)
 # The package holds a plugin of its own, built by scikit-build-core in a folder that is kept, so
 # that a changed file costs its own compilation only. --force-reinstall: the version is the same.
 $(PACKAGE): $(VENV) $(PACKAGE_SOURCES)
+	@echo 'Building the plugin and installing the package: about a minute at first'
 	CMAKE_ARGS="$(CMAKE_OPTIONS)" $(BIN)/pip install --quiet --disable-pip-version-check --no-index \
 	  --no-build-isolation --no-deps --force-reinstall \
 	  --config-settings=build-dir=$(CURDIR)/build/python ./python

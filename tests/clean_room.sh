@@ -41,7 +41,7 @@ elif [ -n "$(ls -A "$root" 2>/dev/null)" ]; then
 fi
 
 # The first Debian mirror among the configured sources, of either format.
-mirror=$(cat /etc/apt/sources.list /etc/apt/sources.list.d/* 2>/dev/null |
+mirror=$({ cat /etc/apt/sources.list /etc/apt/sources.list.d/*.{list,sources} 2>/dev/null || true; } |
     sed -nE -e 's/^deb[[:space:]]+(\[[^]]*\][[:space:]]+)?([^[:space:]]*debian\/?)[[:space:]].*/\2/p' \
             -e 's/^URIs:[[:space:]]*([^[:space:]]*debian\/?)([[:space:]].*)?$/\1/p' | sed -n 1p)
 [ -n "$mirror" ] || { echo "$0: no Debian mirror among the apt sources" >&2; exit 1; }
@@ -49,9 +49,10 @@ mirror=$(cat /etc/apt/sources.list /etc/apt/sources.list.d/* 2>/dev/null |
 include=ca-certificates,git,make
 [ "$user" = root ] || include=$include,sudo
 echo "=== debootstrap into $root"
-debootstrap --variant=minbase --include="$include" bookworm "$root" "$mirror" >"$root.log" 2>&1 || {
-    tail -n 20 "$root.log" >&2; exit 1; }
-rm -f "$root.log"
+log=$(debootstrap --variant=minbase --include="$include" bookworm "$root" "$mirror" 2>&1) || {
+    tail -n 20 <<<"$log" >&2
+    exit 1
+}
 
 # What this machine's network needs. Of apt's settings only those about fetching: the others may
 # call programs that are not there.

@@ -38,10 +38,10 @@ if [ "$(id -u)" -ne 0 ]; then
     as_root='sudo'
 fi
 echo "Installing Debian packages:$missing"
-# `env` inside sudo, because sudo drops the variable otherwise.
+# `env` inside sudo, because sudo drops the variable otherwise. Errors come on standard error.
 # shellcheck disable=SC2086  # the lists are meant to be split
 {
-    $as_root env DEBIAN_FRONTEND=noninteractive apt-get -q update
+    $as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq update
     $as_root env DEBIAN_FRONTEND=noninteractive \
-        apt-get -q install --yes --no-install-recommends $missing
-}
+        apt-get -qq install --yes --no-install-recommends $missing
+} >/dev/null
