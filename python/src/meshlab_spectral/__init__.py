@@ -1,0 +1,17 @@
+"""Spectral Filter (Fractional) for MeshLab 2025.07: the plugin, for pymeshlab and for the shell.
+
+>>> import pymeshlab, meshlab_spectral
+>>> meshlab_spectral.load()
+>>> ms = pymeshlab.MeshSet()
+>>> ms.load_new_mesh("scan.ply")
+>>> ms.apply_coord_spectral_filter_fractional(feature_size=pymeshlab.PercentageValue(5))
+"""
+
+from importlib.metadata import version
+
+from meshlab_spectral.errors import FilterError, MeshFileError, OptionError, PluginError
+from meshlab_spectral.options import FilterOptions
+from meshlab_spectral.plugin import load
+
+__all__ = ["FilterError", "FilterOptions", "MeshFileError", "OptionError", "PluginError", "load"]
+__version__ = version("meshlab-spectral")

@@ -1,0 +1,215 @@
+"""The command `meshlab-spectral`."""
+
+from __future__ import annotations
+
+import contextlib
+import inspect
+import json
+import platform
+import signal
+import sys
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import fields
+from importlib.metadata import version
+from pathlib import Path
+from typing import Annotated, Any, get_type_hints
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+from meshlab_spectral import __version__
+from meshlab_spectral.errors import FormatError, OptionError, SpectralError
+from meshlab_spectral.options import FeatureSize, FilterOptions
+from meshlab_spectral.report import report_table
+from meshlab_spectral.worker import ProgressCallback, filter_file_in_child
+
+EXIT_FAILED, EXIT_USAGE, EXIT_INTERRUPTED = 1, 2, 130
+
+_EXIT_CODES = (
+    "Exit codes: 0 all done; 1 a file could not be read, filtered or written; 2 the command line "
+    "is wrong; 130 interrupted."
+)
+
+app = typer.Typer(
+    help="Smooth, sharpen and band-filter meshes by the size of their details.",
+    epilog=_EXIT_CODES,
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+_messages = Console(stderr=True)
+
+
+def main() -> None:
+    """Run the command line; ends the process with the exit code."""
+    # A polite end (kill, a shutdown) tidies up like Ctrl-C does.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        app()
+    except KeyboardInterrupt:
+        _messages.print("Interrupted; no output was written.")
+        sys.exit(EXIT_INTERRUPTED)
+
+
+def with_filter_options(command: Callable[..., None]) -> Callable[..., None]:
+    """Give a command one option per field of FilterOptions, handed to it as `options`."""
+    types = get_type_hints(FilterOptions)
+    own = [
+        parameter
+        for parameter in inspect.signature(command, eval_str=True).parameters.values()
+        if parameter.name != "options"
+    ]
+    added = []
+    for option in fields(FilterOptions):
+        settings: dict[str, Any] = {"help": option.metadata["help"], "rich_help_panel": "Filter"}
+        type_, default = types[option.name], option.default
+        if type_ is FeatureSize:
+            settings |= {"parser": _feature_size, "metavar": "SIZE"}
+            default = str(default)
+        added.append(
+            inspect.Parameter(
+                option.name,
+                inspect.Parameter.KEYWORD_ONLY,
+                default=default,
+                annotation=Annotated[type_, typer.Option(**settings)],
+            )
+        )
+
+    def run(**arguments: Any) -> None:
+        given = {parameter.name: arguments.pop(parameter.name) for parameter in added}
+        try:
+            options = FilterOptions(**given)
+        except OptionError as error:
+            raise typer.BadParameter(str(error)) from error
+        command(options=options, **arguments)
+
+    parameters = [p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in [*own, *added]]
+    run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    run.__annotations__ = {p.name: p.annotation for p in parameters}
+    run.__doc__ = command.__doc__
+    run.__name__ = command.__name__
+    return run
+
+
+def _feature_size(text: str | FeatureSize) -> FeatureSize:
+    try:
+        return text if isinstance(text, FeatureSize) else FeatureSize.parse(text)
+    except OptionError as error:
+        raise typer.BadParameter(str(error)) from error
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        typer.echo(f"meshlab-spectral {__version__}, pymeshlab {version('pymeshlab')}")
+        raise typer.Exit
+
+
+@app.callback()
+def _common(
+    version: Annotated[
+        bool,
+        typer.Option("--version", callback=_print_version, is_eager=True, help="Tell the version."),
+    ] = False,
+) -> None:
+    """Smooth, sharpen and band-filter meshes by the size of their details."""
+
+
+@app.command("filter", epilog=_EXIT_CODES)
+@with_filter_options
+def filter_command(
+    options: FilterOptions,
+    source: Annotated[
+        Path, typer.Argument(metavar="INPUT", help="Mesh to read: .ply, .obj, .stl, .off, ...")
+    ],
+    target: Annotated[
+        Path,
+        typer.Argument(
+            metavar="OUTPUT", help="Mesh to write; its ending says the format. Replaces a file."
+        ),
+    ],
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print the report as one JSON object.")
+    ] = False,
+    debug: Annotated[bool, typer.Option("--debug", hidden=True)] = False,
+) -> None:
+    """Filter one mesh by the size of its details.
+
+    Smooth a scan: meshlab-spectral filter scan.ply smooth.ply --feature-size 2%
+
+    Sharpen it: meshlab-spectral filter scan.ply sharp.ply --filter-type high-pass --stop-gain 1
+    --pass-gain 2
+    """
+    if target.exists() and source.exists() and target.samefile(source):
+        raise typer.BadParameter(
+            f"{target} is INPUT itself, and would be lost: choose another name", param_hint="OUTPUT"
+        )
+    begin = time.monotonic()
+    with _errors_reported(debug), _progress_shown() as on_progress:
+        report = filter_file_in_child(source, target, options, on_progress)
+    if as_json:
+        typer.echo(json.dumps(_record(source, target, options, report, time.monotonic() - begin)))
+    else:
+        Console().print(report_table(report, f"{source.name} -> {target.name}"))
+
+
+def _record(
+    source: Path, target: Path, options: FilterOptions, report: dict[str, Any], seconds: float
+) -> dict[str, Any]:
+    return {
+        "input": str(source),
+        "output": str(target),
+        "options": options.as_dict(),
+        "report": report,
+        "seconds": round(seconds, 3),
+        "versions": {
+            "meshlab_spectral": __version__,
+            "pymeshlab": version("pymeshlab"),
+            "python": platform.python_version(),
+        },
+    }
+
+
+@contextlib.contextmanager
+def _errors_reported(debug: bool) -> Iterator[None]:
+    """Turn every error of this package into one message and an exit code."""
+    try:
+        yield
+    except SpectralError as error:
+        if debug:
+            _messages.print_exception()
+        # No markup, no wrapping: file names hold brackets, and scripts search for messages.
+        _messages.print(f"Error: {error}", markup=False, highlight=False, soft_wrap=True)
+        usage = isinstance(error, OptionError | FormatError)
+        raise typer.Exit(EXIT_USAGE if usage else EXIT_FAILED) from error
+
+
+@contextlib.contextmanager
+def _progress_shown() -> Iterator[ProgressCallback]:
+    """Show on a terminal what MeshLab reports of its progress; elsewhere nothing."""
+    with Progress(
+        SpinnerColumn(),
+        BarColumn(),
+        TextColumn("{task.description}", markup=False),
+        TimeElapsedColumn(),
+        console=_messages,
+        transient=True,
+        disable=not _messages.is_terminal,
+    ) as progress:
+        task = progress.add_task("starting", total=None)
+
+        def update(stage: str, fraction: float | None) -> None:
+            if fraction is None:
+                progress.reset(task, start=False, total=None, description=stage)
+                progress.start_task(task)
+            else:
+                # MeshLab's figure may fall back a little when a step turns out to need more work.
+                done = max(fraction, progress.tasks[0].completed)
+                progress.update(task, total=1.0, completed=done, description=stage)
+
+        yield update
+
+
+if __name__ == "__main__":
+    main()

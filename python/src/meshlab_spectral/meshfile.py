@@ -1,0 +1,238 @@
+"""Mesh files: read one, filter it, write one; an output file is whole or absent."""
+
+from __future__ import annotations
+
+import contextlib
+import filecmp
+import os
+import shutil
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+from meshlab_spectral.errors import FilterError, FormatError, MeshFileError
+from meshlab_spectral.options import FilterOptions
+from meshlab_spectral.plugin import FILTER_NAME, load
+
+StageCallback = Callable[[str], None]
+
+_USUAL_FORMATS = ".ply, .obj, .stl or .off"
+
+# After a filter has thrown, destroying its MeshSet makes pymeshlab 2025.7 crash at the next one
+# (MeshLab's own filters do the same). Such a MeshSet is therefore kept until the process ends.
+_failed_mesh_sets: list[Any] = []
+
+
+def filter_file(
+    source: Path,
+    target: Path,
+    options: FilterOptions,
+    on_stage: StageCallback = lambda stage: None,
+) -> dict[str, Any]:
+    """Filter the mesh of one file into another.
+
+    Parameters
+    ----------
+    source
+        A file that pymeshlab reads, with one mesh in it.
+    target
+        The file to write. It appears whole, in place of an existing one, or not at all.
+    options
+        Options of the filter.
+    on_stage
+        Called with "reading", "filtering" and "writing" when these begin.
+
+    Returns
+    -------
+    dict
+        The filter's report: numbers, and lists for vectors; lengths in the units of the mesh.
+
+    Raises
+    ------
+    MeshFileError
+        When `source` cannot be read or `target` cannot be written.
+    FormatError
+        When pymeshlab has no writer for the ending of `target`.
+    FilterError
+        When the filter refuses the mesh or the options.
+    """
+    check_source(source)
+    with writing_whole(target) as scratch:
+        return filter_to_scratch(source, scratch, options, on_stage)
+
+
+def filter_to_scratch(
+    source: Path, scratch: Path, options: FilterOptions, on_stage: StageCallback
+) -> dict[str, Any]:
+    """Filter `source` into the file `scratch`, which may be left half-written after an error."""
+    import pymeshlab
+
+    load()
+    on_stage("reading")
+    _check_writable_format(scratch)
+    mesh_set = pymeshlab.MeshSet(verbose=True)  # its log is the only source of progress
+    _read(mesh_set, source)
+    on_stage("filtering")
+    try:
+        report = mesh_set.apply_filter(FILTER_NAME, **options.pymeshlab_parameters())
+    except pymeshlab.PyMeshLabException as error:
+        _failed_mesh_sets.append(mesh_set)
+        raise FilterError(_reason(error)) from error
+    on_stage("writing")
+    _write(mesh_set, scratch)
+    return {name: _plain(value) for name, value in report.items()}
+
+
+def check_source(source: Path) -> None:
+    """Raise MeshFileError unless `source` is a file that can be read."""
+    if source.is_dir():
+        raise MeshFileError(f"{source} is a folder: name a mesh file")
+    try:
+        with source.open("rb"):
+            pass
+    except FileNotFoundError:
+        raise MeshFileError(f"{source} does not exist: check the name and the folder") from None
+    except OSError as error:
+        raise MeshFileError(f"{source} cannot be read ({error.strerror})") from error
+
+
+@contextlib.contextmanager
+def writing_whole(target: Path) -> Iterator[Path]:
+    """Give a scratch file to write instead of `target`; put it in place when all went well.
+
+    The scratch file has the name of `target` and lies in a hidden folder beside it, so that files
+    that a format keeps beside the mesh (materials, textures) are caught, too, and refer to each
+    other by their final names. After an error, nothing of all this remains.
+
+    Yields
+    ------
+    Path
+        The scratch file; it does not exist yet.
+
+    Raises
+    ------
+    MeshFileError
+        When the folder of `target` is missing or takes no files (before anything is yielded), or
+        when the scratch file is not there at the end.
+    """
+    folder = target.parent
+    if target.is_dir():
+        raise MeshFileError(f"{target} is a folder: name a file for the output")
+    if not folder.is_dir():
+        raise MeshFileError(f"the folder {folder} of the output does not exist: create it first")
+    try:
+        scratch_folder = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=folder))
+    except OSError as error:
+        raise MeshFileError(
+            f"the folder {folder} of the output cannot be written to ({error.strerror}): choose "
+            "another folder"
+        ) from error
+    try:
+        scratch = scratch_folder / target.name
+        yield scratch
+        _put_in_place(scratch, target)
+    finally:
+        shutil.rmtree(scratch_folder, ignore_errors=True)
+
+
+def _put_in_place(scratch: Path, target: Path) -> None:
+    if not scratch.is_file() or scratch.stat().st_size == 0:
+        raise MeshFileError(
+            f"MeshLab wrote nothing for {target.name}: choose another format, {_USUAL_FORMATS}"
+        )
+    folder = target.parent
+    side_files = [path for path in sorted(scratch.parent.iterdir()) if path != scratch]
+    for path in side_files:
+        _check_side_file(path, folder / path.name, target)
+    try:
+        # The mesh last: what it refers to is there when it appears.
+        for path in [*side_files, scratch]:
+            _sync(path)
+            path.replace(folder / path.name)
+        _sync(folder)
+    except OSError as error:
+        raise MeshFileError(f"{target} cannot be written ({error.strerror})") from error
+
+
+def _check_side_file(path: Path, place: Path, target: Path) -> None:
+    """Refuse to replace a file that the user did not name, such as another model's texture."""
+    ours = place.name.startswith(target.name)  # out.obj.mtl of out.obj
+    if place.exists() and not ours and not filecmp.cmp(path, place, shallow=False):
+        raise MeshFileError(
+            f"{target.name} needs a file {place.name} beside it, and another file has that name: "
+            "write the output to a folder of its own"
+        )
+
+
+def _sync(path: Path) -> None:
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def _check_writable_format(path: Path) -> None:
+    """Find out before the long computation; pymeshlab offers no list of the formats it writes."""
+    import pymeshlab
+
+    mesh_set = pymeshlab.MeshSet()
+    corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
+    mesh_set.add_mesh(pymeshlab.Mesh(corners, [[0, 1, 2]]))
+    with tempfile.TemporaryDirectory() as folder:
+        try:
+            mesh_set.save_current_mesh(str(Path(folder) / f"probe{path.suffix}"))
+        except pymeshlab.PyMeshLabException as error:
+            ending = f"ends in {path.suffix}" if path.suffix else "has no ending"
+            raise FormatError(
+                f"{path.name} {ending}, which MeshLab cannot write: end the name of the output in "
+                f"{_USUAL_FORMATS}"
+            ) from error
+
+
+def _read(mesh_set: Any, source: Path) -> None:
+    import pymeshlab
+
+    try:
+        mesh_set.load_new_mesh(str(source))
+    except pymeshlab.PyMeshLabException as error:
+        reason = _reason(error)
+        if reason.startswith("Unknown format"):
+            raise MeshFileError(
+                f"{source} ends in {source.suffix or 'nothing'}, which MeshLab cannot read as a "
+                f"mesh: convert it to {_USUAL_FORMATS}"
+            ) from error
+        raise MeshFileError(
+            f"{source} cannot be read as a mesh ({reason}): the file is damaged, or is not what "
+            "its ending says; export it again from the program that made it"
+        ) from error
+    if mesh_set.mesh_number() > 1:
+        raise MeshFileError(
+            f"{source} holds {mesh_set.mesh_number()} meshes: merge them in MeshLab with 'Flatten "
+            "Visible Layers', or save them one by one"
+        )
+
+
+def _write(mesh_set: Any, scratch: Path) -> None:
+    import pymeshlab
+
+    try:
+        mesh_set.save_current_mesh(str(scratch))
+    except pymeshlab.PyMeshLabException as error:
+        raise MeshFileError(f"{scratch.name} cannot be written ({_reason(error)})") from error
+
+
+def _reason(error: Exception) -> str:
+    """Take what matters of pymeshlab's message, on one line."""
+    lines = [line.strip() for line in str(error).splitlines() if line.strip()]
+    for start in ("Details: ", "Error details: "):
+        for number, line in enumerate(lines):
+            if line.startswith(start):
+                return " ".join([line.removeprefix(start), *lines[number + 1 :]])
+    return " ".join(lines)
+
+
+def _plain(value: Any) -> Any:
+    """Turn a number or an array of a report into what JSON can hold."""
+    return value.tolist() if hasattr(value, "tolist") else value

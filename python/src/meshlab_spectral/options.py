@@ -1,0 +1,192 @@
+"""The one table of the filter's options: names, defaults, limits, help.
+
+The command line, batch recipes and calls of pymeshlab all take theirs from `FilterOptions`; a test
+asserts that its names, choices and defaults are those of the plugin.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, fields
+from typing import Any, Literal, get_args, get_type_hints
+
+from meshlab_spectral.errors import OptionError
+
+FilterType = Literal["low-pass", "high-pass", "band-pass", "band-stop"]
+Response = Literal["gaussian", "butterworth", "ideal"]
+BasisUpdate = Literal["full", "conformal", "none"]
+Spectrum = Literal["full", "truncated"]
+
+
+@dataclass(frozen=True)
+class FeatureSize:
+    """A size of details: a length, or a percentage of the diagonal of the bounding box.
+
+    Attributes
+    ----------
+    value
+        Percent where `relative`, else a length in the units of the mesh; above 0, finite.
+    relative
+        Whether `value` is a percentage.
+    """
+
+    value: float
+    relative: bool = False
+
+    def __post_init__(self) -> None:
+        if not (math.isfinite(self.value) and self.value > 0):
+            raise OptionError(
+                f"feature_size = {self}: must be above zero, a percentage of the diagonal of the "
+                "bounding box such as 5%, or a length such as 0.02"
+            )
+        if self.relative and self.value > 100:
+            raise OptionError(
+                f"feature_size = {self}: a percentage of the diagonal goes up to 100%; give a "
+                "length for more"
+            )
+
+    @classmethod
+    def parse(cls, text: str) -> FeatureSize:
+        """Read `5%` as a percentage of the diagonal, `0.02` as a length.
+
+        Raises
+        ------
+        OptionError
+            When `text` is neither, or not above zero.
+        """
+        number = text.strip()
+        relative = number.endswith("%")
+        try:
+            value = float(number.removesuffix("%"))
+        except ValueError:
+            raise OptionError(
+                f"feature_size = {text!r}: give a percentage of the diagonal of the bounding box "
+                "such as 5%, or a length such as 0.02"
+            ) from None
+        return cls(value, relative)
+
+    def __str__(self) -> str:
+        return f"{self.value:.12g}{'%' if self.relative else ''}"
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Numbers that an option may have: `low <= x <= high`, or `low < x` where `low_open`."""
+
+    low: float
+    high: float = math.inf
+    low_open: bool = False
+
+    def contain(self, value: float) -> bool:
+        """Whether a value lies within; never for NaN and infinities."""
+        above = value > self.low if self.low_open else value >= self.low
+        return math.isfinite(value) and above and value <= self.high
+
+    def __str__(self) -> str:
+        if math.isfinite(self.high):
+            return f"from {self.low:g} to {self.high:g}"
+        return f"{'above' if self.low_open else 'at least'} {self.low:g}"
+
+
+def _option(default: Any, explanation: str, limits: Limits | None = None) -> Any:
+    return field(default=default, metadata={"help": explanation, "limits": limits})
+
+
+@dataclass(frozen=True, kw_only=True)
+class FilterOptions:
+    """Options of the filter, under the names and with the defaults that it has in MeshLab.
+
+    Raises
+    ------
+    OptionError
+        When a value cannot be what its option takes: it names the option, the value and what is
+        allowed.
+    """
+
+    filter_type: FilterType = _option(
+        "low-pass",
+        "What to do with details: low-pass keeps the large ones and smooths the rest away; "
+        "high-pass acts on the small ones (sharpen with --stop-gain 1 --pass-gain 2); band-pass "
+        "and band-stop act on details of about the feature size.",
+    )
+    feature_size: FeatureSize = _option(
+        FeatureSize(5, relative=True),
+        "Size of the details where the filter turns over: 5% of the model's diagonal, or a length "
+        "in the model's units such as 0.02. Try twice the width of what you want to remove.",
+    )
+    response: Response = _option(
+        "gaussian",
+        "How sharply sizes are told apart: gaussian is gentle, butterworth sharper with --order, "
+        "ideal cuts at once and may leave ripples.",
+    )
+    order: int = _option(
+        2, "Steepness of the butterworth response: 1 is gentle, 8 is steep.", Limits(1, 64)
+    )
+    band_width: float = _option(
+        1.0,
+        "Width of a band in octaves: 1 means that its largest details are twice as large as its "
+        "smallest.",
+        Limits(0, low_open=True),
+    )
+    pass_gain: float = _option(
+        1.0, "Factor for the details that pass: 1 keeps them, 2 doubles their height.", Limits(0)
+    )
+    stop_gain: float = _option(
+        0.0, "Factor for all other details: 0 removes them, 0.5 halves their height.", Limits(0)
+    )
+    steps: int = _option(
+        10,
+        "Apply the filter as this many weak steps, so that thin parts survive: 10 is good, 1 is "
+        "the classical one-shot filter.",
+        Limits(1),
+    )
+    basis_update: BasisUpdate = _option(
+        "full",
+        "What a step learns from the one before: full, conformal (best for strong smoothing) or "
+        "none.",
+    )
+    spectrum: Spectrum = _option(
+        "full", "full filters every detail; truncated only the largest, as older methods do."
+    )
+    basis_size: int = _option(
+        300, "How many frequencies a truncated spectrum has, e.g. 300.", Limits(1)
+    )
+    reinject_residual: bool = _option(
+        True, "Keep the details beyond a truncated spectrum, or drop them."
+    )
+
+    def __post_init__(self) -> None:
+        types = get_type_hints(FilterOptions)
+        for option in fields(self):
+            value = getattr(self, option.name)
+            choices = get_args(types[option.name])
+            if choices and value not in choices:
+                raise OptionError(f"{option.name} = {value}: choose {', '.join(choices)}")
+            limits: Limits | None = option.metadata["limits"]
+            if limits is not None and not limits.contain(value):
+                raise OptionError(f"{option.name} = {value}: must be {limits}")
+
+    def as_dict(self) -> dict[str, Any]:
+        """All options as plain values: text, numbers, truth values."""
+        plain = {option.name: getattr(self, option.name) for option in fields(self)}
+        plain["feature_size"] = str(self.feature_size)
+        return plain
+
+    @classmethod
+    def from_dict(cls, plain: dict[str, Any]) -> FilterOptions:
+        """Make options from plain values, as `as_dict` gives them; the rest have their default."""
+        values = dict(plain)
+        if "feature_size" in values:
+            values["feature_size"] = FeatureSize.parse(str(values["feature_size"]))
+        unknown = values.keys() - {option.name for option in fields(cls)}
+        if unknown:
+            raise OptionError(f"unknown options: {', '.join(sorted(unknown))}")
+        return cls(**values)
+
+    def pymeshlab_parameters(self) -> dict[str, Any]:
+        """All options as keyword arguments of pymeshlab's filter."""
+        import pymeshlab
+
+        size = self.feature_size
+        length = pymeshlab.PercentageValue if size.relative else pymeshlab.PureValue
+        return {**self.as_dict(), "feature_size": length(size.value)}
