@@ -47,7 +47,7 @@ test: build $(PACKAGE)  ## run every test, C++ and Python
 setup: $(PACKAGES) $(VENV)  ## install what is missing: Debian packages, .venv
 
 build: setup  ## compile the plugin and the C++ tests, in build/
-	cmake -S . -B build -G Ninja -DPython3_EXECUTABLE=$(CURDIR)/$(BIN)/python \
+	cmake -S . -B build -G Ninja -DPython3_EXECUTABLE="$(CURDIR)/$(BIN)/python" \
 	  -DSPECTRAL_WARNINGS_AS_ERRORS=$(WARNINGS_AS_ERRORS) \
 	  -DSPECTRAL_BUILD_BENCHMARKS=$(BENCHMARKS) $(CMAKE_OPTIONS)
 	cmake --build build
@@ -88,5 +88,5 @@ $(PACKAGE): $(VENV) $(PACKAGE_SOURCES)
 	@echo 'Building the plugin and installing the package: about a minute at first'
 	CMAKE_ARGS="$(CMAKE_OPTIONS)" $(BIN)/pip install --quiet --disable-pip-version-check --no-index \
 	  --no-build-isolation --no-deps --force-reinstall \
-	  --config-settings=build-dir=$(CURDIR)/build/python ./python
+	  --config-settings=build-dir="$(CURDIR)/build/python" ./python
 	@touch $@

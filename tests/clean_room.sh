@@ -88,7 +88,8 @@ done
 # In namespaces of its own, so that the mounts and whatever still runs go when it ends, in any way.
 inside() {
     mount -t proc proc "$root/proc"
-    mkdir -p "$root/dev/shm"
+    mkdir -p "$root/dev/pts" "$root/dev/shm"
+    mount -t devpts -o newinstance devpts "$root/dev/pts"
     mount -t tmpfs tmpfs "$root/dev/shm"
     [ -z "$shared" ] || mount --bind -o ro "$shared" "$root$home/shared"
     run() {
