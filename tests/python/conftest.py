@@ -1,0 +1,79 @@
+"""Fixtures: pymeshlab with the plugin, its sample meshes, and the real meshes beside the project."""
+
+from __future__ import annotations
+
+import functools
+import os
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+# Before NumPy is loaded: with as many threads as cores, the many middling eigenproblems of the tests
+# take ten times as long as soon as another program wants a core.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import meshlab_spectral
+import pymeshlab
+import pytest
+from numpy.typing import NDArray
+
+SAMPLES = Path(pymeshlab.__file__).parent / "tests" / "sample_meshes"
+SAMPLE_NAMES = ("bunny.obj", "bone.ply", "cow.obj")
+DATA_VARIABLE = "MESHLAB_SPECTRAL_DATA"
+
+Arrays = tuple[NDArray[Any], NDArray[Any]]
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _plugin_loaded() -> None:
+    meshlab_spectral.load()
+
+
+@pytest.fixture(scope="session")
+def samples() -> Path:
+    """Folder of the meshes that come with pymeshlab."""
+    return SAMPLES
+
+
+@pytest.fixture(params=SAMPLE_NAMES)
+def sample_name(request: pytest.FixtureRequest) -> str:
+    """Name of one of pymeshlab's meshes: every test that asks for it runs for each."""
+    return str(request.param)
+
+
+@functools.cache
+def _decimated(name: str, faces: int) -> Arrays:
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.load_new_mesh(str(SAMPLES / name))
+    mesh_set.meshing_decimation_quadric_edge_collapse(
+        targetfacenum=faces, qualitythr=0.5, preservetopology=True
+    )
+    mesh = mesh_set.current_mesh()
+    V, F = mesh.vertex_matrix(), mesh.face_matrix()
+    V.flags.writeable = F.flags.writeable = False  # shared between tests
+    return V, F
+
+
+@pytest.fixture(scope="session")
+def decimated() -> Callable[..., Arrays]:
+    """Give n x 3 coordinates and triangles of a sample, decimated: decimated("cow.obj", 2000)."""
+
+    def get(name: str, faces: int = 2400) -> Arrays:
+        return _decimated(name, faces)
+
+    return get
+
+
+@pytest.fixture
+def shared_mesh() -> Callable[[str], Path]:
+    """Give the path of a mesh of the project's collection; skip the test where it is absent."""
+    repository = Path(__file__).resolve().parents[2]
+    folder = Path(os.environ.get(DATA_VARIABLE) or repository.parent / "shared" / "data")
+
+    def get(name: str) -> Path:
+        path = folder / name
+        if not path.is_file():
+            pytest.skip(f"no {name} in the collection of meshes (set {DATA_VARIABLE})")
+        return path
+
+    return get

@@ -1,0 +1,89 @@
+"""What several tests need: calling the filter, catching its refusals, comparing meshes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pymeshlab
+import pytest
+from numpy.typing import NDArray
+
+FILTER = "apply_coord_spectral_filter_fractional"
+
+_refusing_mesh_sets: list[pymeshlab.MeshSet] = []
+
+
+def mesh_set_of(V: NDArray[Any], F: NDArray[Any]) -> pymeshlab.MeshSet:
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.add_mesh(pymeshlab.Mesh(V, F))
+    return mesh_set
+
+
+def filter_arrays(
+    V: NDArray[Any], F: NDArray[Any], **parameters: Any
+) -> tuple[NDArray[np.float64], dict[str, Any]]:
+    """Filter a mesh from arrays; the new coordinates and the report."""
+    mesh_set = mesh_set_of(V, F)
+    report = mesh_set.apply_filter(FILTER, **parameters)
+    return mesh_set.current_mesh().vertex_matrix().copy(), report
+
+
+def refusal(mesh_set: pymeshlab.MeshSet, **parameters: Any) -> str:
+    """Call the filter, which must refuse; its message."""
+    # pymeshlab 2025.7 crashes when a MeshSet is destroyed in which a filter, any filter, has
+    # failed: such a MeshSet lives until the end of the tests.
+    _refusing_mesh_sets.append(mesh_set)
+    with pytest.raises(pymeshlab.PyMeshLabException) as error:
+        mesh_set.apply_filter(FILTER, **parameters)
+    return str(error.value)
+
+
+def percent(value: float) -> pymeshlab.PercentageValue:
+    return pymeshlab.PercentageValue(value)
+
+
+def length(value: float) -> pymeshlab.PureValue:
+    return pymeshlab.PureValue(value)
+
+
+def diagonal(V: NDArray[Any]) -> float:
+    return float(np.linalg.norm(np.ptp(V, axis=0)))
+
+
+def largest_distance(A: NDArray[Any], B: NDArray[Any]) -> float:
+    """Largest distance between vertices of the same number."""
+    return float(np.linalg.norm(A - B, axis=1).max())
+
+
+def snapshot(mesh: pymeshlab.Mesh) -> dict[str, NDArray[Any]]:
+    """Everything of a mesh that pymeshlab shows as arrays, by name."""
+    arrays = {
+        name: getattr(mesh, name)()
+        for name in (
+            "vertex_matrix",
+            "face_matrix",
+            "vertex_normal_matrix",
+            "face_normal_matrix",
+            "vertex_selection_array",
+            "face_selection_array",
+        )
+    }
+    for present, name in {
+        "has_vertex_color": "vertex_color_matrix",
+        "has_face_color": "face_color_matrix",
+        "has_vertex_scalar": "vertex_scalar_array",
+        "has_face_scalar": "face_scalar_array",
+        "has_vertex_tex_coord": "vertex_tex_coord_matrix",
+        "has_wedge_tex_coord": "wedge_tex_coord_matrix",
+    }.items():
+        if getattr(mesh, present)():
+            arrays[name] = getattr(mesh, name)()
+    return {name: np.array(array) for name, array in arrays.items()}
+
+
+def assert_same(before: dict[str, NDArray[Any]], after: dict[str, NDArray[Any]]) -> None:
+    """Assert bitwise equality; NaN equals NaN."""
+    assert before.keys() == after.keys()
+    for name, array in before.items():
+        np.testing.assert_array_equal(array, after[name], err_msg=name)

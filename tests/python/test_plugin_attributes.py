@@ -1,0 +1,148 @@
+"""The filter moves vertices and leaves everything else of a mesh as it was."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pymeshlab
+import pytest
+from helpers import FILTER, assert_same, filter_arrays, mesh_set_of, percent, snapshot
+from numpy.typing import NDArray
+
+MOVED = ("vertex_matrix", "vertex_normal_matrix", "face_normal_matrix")
+
+
+def decorated(V: NDArray[Any], F: NDArray[Any]) -> pymeshlab.MeshSet:
+    """Make a mesh with one of every attribute that pymeshlab shows."""
+    rng = np.random.default_rng(1)
+    n, m = len(V), len(F)
+    mesh = pymeshlab.Mesh(
+        V,
+        F,
+        v_scalar_array=rng.random(n),
+        f_scalar_array=rng.random(m),
+        v_color_matrix=rng.random((n, 4)),
+        f_color_matrix=rng.random((m, 4)),
+        v_tex_coords_matrix=rng.random((n, 2)),
+        w_tex_coords_matrix=rng.random((3 * m, 2)),
+    )
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.add_mesh(mesh)
+    mesh = mesh_set.current_mesh()
+    mesh.add_vertex_custom_scalar_attribute(rng.random(n), "age")
+    mesh.add_vertex_custom_point_attribute(rng.random((n, 3)), "wind")
+    mesh.add_face_custom_scalar_attribute(rng.random(m), "part")
+    mesh.add_face_custom_point_attribute(rng.random((m, 3)), "grain")
+    mesh_set.compute_selection_by_condition_per_vertex(condselect="(x > 0)")
+    mesh_set.compute_selection_by_condition_per_face(condselect="(y0 > 0)")
+    return mesh_set
+
+
+def test_every_attribute_is_kept(decimated: Callable[..., Any]) -> None:
+    mesh_set = decorated(*decimated("cow.obj"))
+    mesh = mesh_set.current_mesh()
+    before = snapshot(mesh)
+    assert 0 < mesh.selected_vertex_number() < mesh.vertex_number()
+    assert 0 < mesh.selected_face_number() < mesh.face_number()
+    custom = [
+        ("vertex_custom_scalar_attribute_array", "age"),
+        ("vertex_custom_point_attribute_matrix", "wind"),
+        ("face_custom_scalar_attribute_array", "part"),
+        ("face_custom_point_attribute_matrix", "grain"),
+    ]
+    custom_before = [np.array(getattr(mesh, method)(name)) for method, name in custom]
+
+    mesh_set.apply_filter(FILTER, steps=2)
+
+    after = snapshot(mesh)
+    assert not np.array_equal(before["vertex_matrix"], after["vertex_matrix"])
+    for name in MOVED:
+        del before[name], after[name]
+    assert len(before) == 9
+    assert_same(before, after)
+    for (method, name), array in zip(custom, custom_before, strict=True):
+        np.testing.assert_array_equal(getattr(mesh, method)(name), array, err_msg=name)
+
+
+def test_textures_are_kept(samples: Path) -> None:
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.load_new_mesh(str(samples / "bunny10k_textured.obj"))
+    mesh = mesh_set.current_mesh()
+    textures, coordinates = list(mesh.textures()), mesh.wedge_tex_coord_matrix()
+    assert textures == ["TextureDouble_A.png"]
+    mesh_set.apply_filter(FILTER, steps=1)
+    assert list(mesh.textures()) == textures
+    np.testing.assert_array_equal(mesh.wedge_tex_coord_matrix(), coordinates)
+
+
+def test_normals_and_bounding_box_are_those_of_the_new_shape(
+    decimated: Callable[..., Any],
+) -> None:
+    mesh_set = mesh_set_of(*decimated("bunny.obj"))
+    mesh_set.apply_filter(FILTER, feature_size=percent(20), steps=2, basis_update="conformal")
+    mesh = mesh_set.current_mesh()
+    V, F = mesh.vertex_matrix(), mesh.face_matrix()
+    np.testing.assert_allclose(mesh.bounding_box().min(), V.min(axis=0), rtol=0, atol=1e-15)
+    np.testing.assert_allclose(mesh.bounding_box().max(), V.max(axis=0), rtol=0, atol=1e-15)
+    N = np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]])
+    N /= np.linalg.norm(N, axis=1, keepdims=True)
+    found = mesh.face_normal_matrix()
+    found = found / np.linalg.norm(found, axis=1, keepdims=True)
+    np.testing.assert_allclose(found, N, rtol=0, atol=1e-9)
+    at_corners = np.einsum("fj,fcj->fc", N, mesh.vertex_normal_matrix()[F])
+    assert np.median(at_corners) > 0.9
+
+
+def test_other_meshes_of_the_set_are_left_alone(decimated: Callable[..., Any]) -> None:
+    mesh_set = mesh_set_of(*decimated("bone.ply"))
+    mesh_set.add_mesh(pymeshlab.Mesh(*decimated("cow.obj")))
+    before = snapshot(mesh_set.mesh(0))
+    mesh_set.apply_filter(FILTER, steps=1)
+    assert_same(before, snapshot(mesh_set.mesh(0)))
+
+
+def test_vertices_without_faces_stay_where_they_are(samples: Path) -> None:
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.load_new_mesh(str(samples / "bone.ply"))
+    mesh = mesh_set.current_mesh()
+    V, F = mesh.vertex_matrix().copy(), mesh.face_matrix()
+    lonely = np.setdiff1d(np.arange(len(V)), F)
+    assert len(lonely) > 100
+    report = mesh_set.apply_filter(FILTER, steps=2)
+    np.testing.assert_array_equal(mesh.vertex_matrix()[lonely], V[lonely])
+    assert report["unreferenced_vertices"] == len(lonely)
+
+
+@pytest.mark.parametrize("what", ["vertices", "faces"])
+def test_after_a_deletion_only_what_is_left_counts(
+    what: str, decimated: Callable[..., Any], tmp_path: Path
+) -> None:
+    """Deletion and filter run as one script, so that pymeshlab touches nothing in between."""
+    V, F = decimated("cow.obj")
+    script = pymeshlab.MeshSet()
+    script.add_mesh(pymeshlab.Mesh(V, F))
+    script.compute_selection_by_condition_per_vertex(condselect="(z > 0.4)")
+    if what == "vertices":
+        script.meshing_remove_selected_vertices()
+    else:
+        script.compute_selection_transfer_vertex_to_face()
+        script.meshing_remove_selected_faces()
+    clean = script.current_mesh()
+    assert 0 < clean.face_number() < len(F)
+    expected, _ = filter_arrays(
+        clean.vertex_matrix(), clean.face_matrix(), feature_size=pymeshlab.PureValue(0.25), steps=2
+    )
+    script.apply_filter(FILTER, feature_size=pymeshlab.PureValue(0.25), steps=2)
+    script.save_filter_script(str(tmp_path / "script.mlx"))
+
+    replay = mesh_set_of(V, F)
+    replay.load_filter_script(str(tmp_path / "script.mlx"))
+    replay.apply_filter_script()
+
+    for mesh_set in (script, replay):
+        np.testing.assert_allclose(
+            mesh_set.current_mesh().vertex_matrix(), expected, rtol=0, atol=1e-14
+        )

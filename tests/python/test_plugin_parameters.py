@@ -1,0 +1,141 @@
+"""The package's table of options is the plugin's own table of parameters."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any, get_args, get_type_hints
+from xml.etree import ElementTree
+
+import pymeshlab
+import pytest
+from helpers import FILTER, mesh_set_of, refusal
+from meshlab_spectral import FilterOptions, OptionError
+from meshlab_spectral.options import FeatureSize
+
+CHOICES = {
+    name: get_args(type_)
+    for name, type_ in get_type_hints(FilterOptions).items()
+    if get_args(type_)
+}
+
+
+@pytest.fixture
+def tetrahedron() -> pymeshlab.MeshSet:
+    return mesh_set_of(
+        [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+    )
+
+
+def test_names_order_and_defaults_are_those_of_the_plugin(tetrahedron: pymeshlab.MeshSet) -> None:
+    parameters = tetrahedron.filter_parameter_values(FILTER)
+    expected: dict[str, Any] = FilterOptions().as_dict()
+    assert list(parameters) == list(expected)
+    for name, value in parameters.items():
+        default = expected[name]
+        if name in CHOICES:
+            assert CHOICES[name][value] == default, name
+        elif name == "feature_size":
+            diagonal = tetrahedron.current_mesh().bounding_box().diagonal()
+            assert f"{100 * value / diagonal:g}%" == default
+        else:
+            assert value == default, name
+            assert type(value) is type(default), name
+
+
+@pytest.mark.parametrize("name", CHOICES)
+def test_choices_and_their_order_are_those_of_the_plugin(
+    name: str, tetrahedron: pymeshlab.MeshSet
+) -> None:
+    with pytest.raises(pymeshlab.InvalidEnumException) as error:
+        tetrahedron.apply_filter(FILTER, **{name: "no such choice"})
+    offered = str(error.value).split("Possible values are")[1]
+    assert tuple(re.findall(r"'([^']*)'", offered)) == CHOICES[name]
+
+
+OUT_OF_RANGE = [
+    ("order", 0, {"response": "butterworth"}),
+    ("order", 65, {"response": "butterworth"}),
+    ("band_width", 0.0, {"filter_type": "band-pass"}),
+    ("band_width", -1.0, {"filter_type": "band-pass"}),
+    ("pass_gain", -0.5, {}),
+    ("pass_gain", float("inf"), {}),
+    ("stop_gain", -0.5, {}),
+    ("stop_gain", float("nan"), {}),
+    ("steps", 0, {}),
+    ("steps", -3, {}),
+    ("basis_size", 0, {"spectrum": "truncated"}),
+]
+
+
+@pytest.mark.parametrize(("name", "value", "where"), OUT_OF_RANGE)
+def test_table_and_plugin_refuse_the_same_values_and_name_the_option(
+    name: str, value: float, where: dict[str, Any], tetrahedron: pymeshlab.MeshSet
+) -> None:
+    with pytest.raises(OptionError, match=name):
+        FilterOptions(**{name: value})
+    assert name in refusal(tetrahedron, **where, **{name: value})
+
+
+@pytest.mark.parametrize("name", CHOICES)
+def test_an_unknown_choice_is_refused_with_the_choices(name: str) -> None:
+    with pytest.raises(OptionError, match=CHOICES[name][0]):
+        FilterOptions(**{name: "no such choice"})  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("text", "value", "relative"),
+    [("5%", 5, True), (" 2.5 % ", 2.5, True), ("0.02", 0.02, False), ("1e3", 1000, False)],
+)
+def test_a_feature_size_is_a_percentage_or_a_length(
+    text: str, value: float, relative: bool
+) -> None:
+    assert FeatureSize.parse(text) == FeatureSize(value, relative)
+
+
+@pytest.mark.parametrize("text", ["", "%", "five", "0", "0%", "-3%", "nan", "inf", "120%", "5 mm"])
+def test_another_feature_size_is_refused_with_an_example(text: str) -> None:
+    with pytest.raises(OptionError, match="feature_size = "):
+        FeatureSize.parse(text)
+
+
+def test_options_survive_the_way_through_plain_values() -> None:
+    options = FilterOptions(
+        filter_type="band-pass", feature_size=FeatureSize(0.3), pass_gain=2.5, stop_gain=1.0
+    )
+    assert FilterOptions.from_dict(options.as_dict()) == options
+
+
+def test_an_unknown_option_is_refused_by_name() -> None:
+    with pytest.raises(OptionError, match="feature_sise"):
+        FilterOptions.from_dict({"feature_sise": "5%"})
+
+
+def test_options_given_to_pymeshlab_reach_the_filter(
+    tetrahedron: pymeshlab.MeshSet, tmp_path: Path
+) -> None:
+    options = FilterOptions(
+        filter_type="band-stop",
+        feature_size=FeatureSize(0.75),
+        response="butterworth",
+        order=3,
+        band_width=2.0,
+        pass_gain=0.5,
+        stop_gain=0.25,
+        steps=2,
+        basis_update="conformal",
+    )
+    tetrahedron.apply_filter(FILTER, **options.pymeshlab_parameters())
+    script = tmp_path / "script.mlx"
+    tetrahedron.save_filter_script(str(script))
+    stored = {
+        element.attrib["name"]: element.attrib["value"]
+        for element in ElementTree.parse(script).iter("Param")
+    }
+    for name, value in options.as_dict().items():
+        if name in CHOICES:
+            assert stored[name] == str(CHOICES[name].index(value)), name
+        elif isinstance(value, bool):
+            assert stored[name] == str(value).lower(), name
+        else:
+            assert float(stored[name]) == pytest.approx(float(value)), name
