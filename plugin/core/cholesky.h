@@ -9,8 +9,8 @@ namespace spectral {
 
 /// Sparse Cholesky factorization of W + s D, s > 0, with blocked solves; counts its own work.
 ///
-/// The fill-reducing order and the symbolic analysis are made once for each pattern of W: a filter's
-/// steps change the numbers, not the connectivity.
+/// The fill-reducing order and the symbolic analysis are made once for each pattern of W: a
+/// filter's steps change the numbers, not the connectivity.
 class ShiftedCholesky {
   public:
     /// @param shift  s > 0, in units of lambda (1 / length^2).

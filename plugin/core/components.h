@@ -18,8 +18,8 @@ Components connectedComponents(const Faces& F, Index vertexCount);
 /// The constant modes of a Laplacian: its null space, one constant function for each component.
 ///
 /// A filter changes shape, not place, so the gain of these modes is 1 whatever F(0) is. They are
-/// taken out of a signal exactly before F is applied and put back afterwards; no eigenvalue of 1e-12
-/// in the place of 0 can then drag a mesh that lies far from the origin.
+/// taken out of a signal exactly before F is applied and put back afterwards; no eigenvalue of
+/// 1e-12 in the place of 0 can then drag a mesh that lies far from the origin.
 class ConstantModes {
   public:
     /// @param D  n lumped masses, > 0.

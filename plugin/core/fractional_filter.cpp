@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <optional>
+#include <sstream>
 #include <string>
 
 #include "cholesky.h"
@@ -26,12 +28,16 @@ constexpr Index kMaxExactBasis = 1000;
 /// Relative accuracy of a step that round-off still allows.
 constexpr double kFinestAccuracy = 1e-13;
 
+/// Relative error, all steps together, beyond which a result is not worth having.
+constexpr double kUselessError = 0.1;
+
 /// Up to this many vertices the dense solver computes all harmonics in about a second.
 constexpr Index kDenseVertices = 600;
 
 /// The vertices that triangles use, packed; a Laplacian has no entry for the others.
 struct Surface {
-    Vertices X;  ///< n x 3, about the middle of the bounding box: no digits lost far from the origin
+    Vertices
+        X;  ///< n x 3, about the middle of the bounding box: no digits lost far from the origin
     Faces F;
     std::vector<Index> vertex;  ///< Row of the input for each row of X.
 };
@@ -53,6 +59,17 @@ Surface packedSurface(const Vertices& V, const Faces& F) {
     surface.X.rowwise() -= middle;
     surface.F = F.unaryExpr([&](int i) { return packed[i]; });
     return surface;
+}
+
+std::string inWords(double number) {
+    std::ostringstream text;
+    text << std::setprecision(2) << number;
+    return text.str();
+}
+
+std::string remedyForSteepGains() {
+    return ". Choose a stop_gain of 0.05 instead of 0, a lower order or a wider band, response = "
+           "gaussian, fewer steps, or spectrum = truncated";
 }
 
 void checkOptions(const FilterOptions& options) {
@@ -90,18 +107,23 @@ class StepEvaluator {
             basis_ = options_.spectrum == Spectrum::Truncated ? truncated(rest) : exact(rest);
         } else {
             progress.report(0.0, "factorizing");
-            cholesky_.factorize(laplacian_, selectPole(gain_, F_.cutoff(),
-                                                       bulkSpectrumEnd(laplacian_), accuracy_));
+            cholesky_.factorize(
+                laplacian_, selectPole(gain_, F_.cutoff(), bulkSpectrum(laplacian_), accuracy_));
         }
     }
 
     Eigen::MatrixXd operator()(const Eigen::MatrixXd& X, const Progress& progress) {
         if (usesBasis())
             return applyInBasis(basis_, laplacian_.D, *constants_, gain_, residualGain_, X);
-        const FullSpectrumResult step =
-            applyFullSpectrum(laplacian_.D, *constants_, cholesky_, gain_, X,
-                              {accuracy_}, progress);
+        const FullSpectrumResult step = applyFullSpectrum(laplacian_.D, *constants_, cholesky_,
+                                                          gain_, X, {accuracy_}, progress);
         errorEstimate_ += step.errorEstimate;
+        converged_ = converged_ && step.converged;
+        if (errorEstimate_ > kUselessError)
+            throw SolverFailure(
+                "the transfer function is too steep for spectrum = full: the relative error is "
+                "about " +
+                inWords(errorEstimate_) + remedyForSteepGains());
         return step.Y;
     }
 
@@ -109,6 +131,7 @@ class StepEvaluator {
     const ShiftedCholesky& cholesky() const { return cholesky_; }
     const HarmonicBasis& basis() const { return basis_; }
     double errorEstimate() const { return errorEstimate_; }
+    bool converged() const { return converged_; }
 
   private:
     /// A rational Krylov space approximates smooth gains; a jump needs the eigenvectors below it.
@@ -121,7 +144,8 @@ class StepEvaluator {
             truncatedBasis(laplacian_, *constants_, options_.basisSize, cholesky_, progress);
         residualGain_ = 0.0;
         if (options_.reinjectResidual) {
-            // Eq. 9. The power of the mean, not the mean of the power: K steps then make one filter.
+            // Eq. 9. The power of the mean, not the mean of the power: K steps then make one
+            // filter.
             const double from = std::sqrt(basis.lambda[basis.size() - 1]);
             const double to = std::sqrt(largestEigenvalue(laplacian_));
             residualGain_ = std::pow(from < to ? meanGain(F_, from, to) : F_(to), alpha_);
@@ -157,7 +181,17 @@ class StepEvaluator {
     HarmonicBasis basis_;
     double residualGain_ = 0.0;
     double errorEstimate_ = 0.0;
+    bool converged_ = true;
 };
+
+/// Masses of a shape whose thin parts may have shrunk to a line or a point. A mass this far below
+/// the others no longer moves anything (its vertex is the harmonic mean of its neighbours), but the
+/// D-inner product needs it positive.
+Eigen::VectorXd flooredMass(const Vertices& X, const Faces& F) {
+    constexpr double kFloor = 1e-12;
+    const Eigen::VectorXd D = lumpedMass(X, F);
+    return D.cwiseMax(kFloor * D.mean());
+}
 
 /// Length of every row of `displacement`, as their maximum and their D-weighted root mean square.
 void measureDisplacement(const Vertices& displacement, const Eigen::VectorXd& D,
@@ -192,20 +226,20 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
             if (step == 0 || options.basisUpdate == BasisUpdate::Full)
                 evaluate.setLaplacian(cotangentLaplacian(X, surface.F), stage);
             else if (options.basisUpdate == BasisUpdate::Conformal)
-                evaluate.setLaplacian(
-                    {evaluate.laplacian().W, lumpedMass(X, surface.F)}, stage);
+                evaluate.setLaplacian({evaluate.laplacian().W, flooredMass(X, surface.F)}, stage);
             X = evaluate(X, stage);
+            stage.report(1.0, "done");
         } catch (const SolverFailure& failure) {
-            throw SolverFailure(name + failure.what() +
-                                (step == 0 || options.basisUpdate != BasisUpdate::Full
-                                     ? ""
-                                     : ". A strong filter with basis_update = full pinches thin "
-                                       "parts off: basis_update = conformal is the stabler choice"));
+            throw SolverFailure(
+                name + failure.what() +
+                (step == 0 || options.basisUpdate != BasisUpdate::Full
+                     ? ""
+                     : ". A strong filter with basis_update = full pinches thin "
+                       "parts off: basis_update = conformal is the stabler choice"));
         }
         result.stepSizes.push_back(1.0 / options.steps);
     }
-    if (!X.allFinite())
-        throw SolverFailure("the filtered coordinates are not finite numbers");
+    if (!X.allFinite()) throw SolverFailure("the filtered coordinates are not finite numbers");
 
     // The displacement is added to the input: what does not move keeps its coordinates to the bit.
     const Vertices displacement = X - surface.X;
@@ -225,6 +259,11 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     result.factorizations = evaluate.cholesky().factorizations();
     result.solves = evaluate.cholesky().solves();
     result.errorEstimate = evaluate.errorEstimate();
+    if (!evaluate.converged())
+        result.warnings.push_back("the requested relative accuracy of " +
+                                  inWords(options.accuracy) +
+                                  " was not reached, the estimated error is " +
+                                  inWords(result.errorEstimate) + remedyForSteepGains());
     result.eigenvalues = evaluate.basis().lambda;
     return result;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "progress.h"
@@ -29,27 +30,28 @@ struct FilterOptions {
     Spectrum spectrum = Spectrum::Full;
     int basisSize = 300;           ///< k, for Spectrum::Truncated: below the number of vertices.
     bool reinjectResidual = true;  ///< For Spectrum::Truncated: keep what is beyond k (Eq. 8).
-    double accuracy = 1e-6;  ///< For Spectrum::Full: error of the result, relative to the shape's
-                             ///< own size (see full_spectrum.h).
+    double accuracy = 1e-6;  ///< For Spectrum::Full: error of the evaluation, all steps together,
+                             ///< relative to the shape's own size (see full_spectrum.h).
 };
 
 struct FilterResult {
     Vertices V;  ///< The filtered positions; unreferenced vertices stay where they are.
 
     int steps = 0;
-    double cutoffFrequency = 0.0;   ///< omega_c, radians per length unit.
-    double featureSize = 0.0;       ///< 2 pi / omega_c, length units.
-    double maxDisplacement = 0.0;   ///< Longest way of a vertex, length units.
-    double rmsDisplacement = 0.0;   ///< Root mean square over the surface of the input.
+    double cutoffFrequency = 0.0;  ///< omega_c, radians per length unit.
+    double featureSize = 0.0;      ///< 2 pi / omega_c, length units.
+    double maxDisplacement = 0.0;  ///< Longest way of a vertex, length units.
+    double rmsDisplacement = 0.0;  ///< Root mean square over the surface of the input.
     double areaBefore = 0.0, areaAfter = 0.0;
     double volumeBefore = 0.0, volumeAfter = 0.0;  ///< Signed; a volume for closed meshes only.
-    int components = 0;             ///< Connected components of the surface.
-    int unreferencedVertices = 0;   ///< Vertices of no triangle; they were left alone.
-    int factorizations = 0;         ///< Sparse Cholesky or LDL^T factorizations.
-    int solves = 0;                 ///< Solves with one right-hand side.
-    double errorEstimate = 0.0;     ///< Estimated error of the evaluation, relative, all steps.
-    std::vector<double> stepSizes;  ///< The fractional powers alpha, in their order; sum 1.
-    Eigen::VectorXd eigenvalues;    ///< Of the last step's basis, ascending; empty without one.
+    int components = 0;                            ///< Connected components of the surface.
+    int unreferencedVertices = 0;       ///< Vertices of no triangle; they were left alone.
+    int factorizations = 0;             ///< Sparse Cholesky or LDL^T factorizations.
+    int solves = 0;                     ///< Solves with one right-hand side.
+    double errorEstimate = 0.0;         ///< Estimated error of the evaluation, relative, all steps.
+    std::vector<double> stepSizes;      ///< The fractional powers alpha, in their order; sum 1.
+    std::vector<std::string> warnings;  ///< What fell short without being an error; sentences.
+    Eigen::VectorXd eigenvalues;        ///< Of the last step's basis, ascending; empty without one.
 };
 
 /// Filters the geometry of a mesh: K steps X <- F^(1/K)(sqrt(A)) X, the Laplacian A taken anew from

@@ -53,8 +53,7 @@ class ShiftInvert {
     void set_shift(double) {}  // the factorization is made before
 
     void perform_op(const double* in, double* out) const {
-        Eigen::MatrixXd u =
-            Eigen::Map<const Eigen::VectorXd>(in, rows()).cwiseQuotient(sqrtD_);
+        Eigen::MatrixXd u = Eigen::Map<const Eigen::VectorXd>(in, rows()).cwiseQuotient(sqrtD_);
         project(u);
         u = cholesky_.solve(D_.asDiagonal() * u);
         project(u);
@@ -90,7 +89,8 @@ class ScaledStiffness {
     Index rows() const { return W_.rows(); }
     Index cols() const { return W_.cols(); }
     void perform_op(const double* in, double* out) const {
-        const Eigen::VectorXd u = invSqrtD_.cwiseProduct(Eigen::Map<const Eigen::VectorXd>(in, rows()));
+        const Eigen::VectorXd u =
+            invSqrtD_.cwiseProduct(Eigen::Map<const Eigen::VectorXd>(in, rows()));
         Eigen::Map<Eigen::VectorXd>(out, rows()) = invSqrtD_.cwiseProduct(W_ * u);
     }
 

@@ -30,8 +30,9 @@ HarmonicBasis denseBasis(const Laplacian& laplacian, const ConstantModes& consta
 /// computed but known: they are projected out of the iteration and set in front exactly.
 ///
 /// The cut is never inside a cluster of equal eigenvalues: a few pairs more than k are taken where
-/// lambda_k and lambda_k+1 are equal or nearly so. The count of eigenvalues below the cut is checked
-/// against the inertia of W - sigma D, and missing copies of a multiple eigenvalue are sought again.
+/// lambda_k and lambda_k+1 are equal or nearly so. The count of eigenvalues below the cut is
+/// checked against the inertia of W - sigma D, and missing copies of a multiple eigenvalue are
+/// sought again.
 ///
 /// @param k  constants.count() < k < n.
 /// @param cholesky  factorized here; counts the work.

@@ -5,26 +5,36 @@
 
 namespace spectral {
 
+/// An interval of eigenvalues.
+struct SpectrumRange {
+    double lowest;   ///< About the first eigenvalue that is not zero, units of lambda, > 0.
+    double highest;  ///< Upper end of the bulk, > lowest.
+};
+
 /// The pole lambda_p for which a rational Krylov space resolves a gain with the fewest dimensions.
 ///
 /// In the variable theta = lambda_p / (lambda + lambda_p) the Krylov method with the repeated pole
-/// -lambda_p approximates F by polynomials on (0, 1]. For each of a range of poles the degree that F
-/// needs there is read off its Chebyshev coefficients, and the pole with the lowest degree is taken.
-/// A steep cutoff wants the pole at the cutoff; a Gaussian, which is smooth there and falls off
-/// exponentially, one far above it (half the solves); a weak fractional power of a slowly falling
-/// gain one in between.
+/// -lambda_p approximates F by polynomials on (0, 1]. For each of a range of poles the degree that
+/// F needs there is read off its Chebyshev coefficients, and the pole with the lowest degree is
+/// taken. A steep cutoff wants the pole at the cutoff; a Gaussian, which is smooth there and falls
+/// off exponentially, one far above it (half the solves); a weak fractional power of a slowly
+/// falling gain one in between.
 ///
-/// @param gain      continuous on [0, lambdaMax].
+/// A gain that no such polynomial resolves (with a cusp where it vanishes, say) gets the pole that
+/// comes nearest.
+///
+/// @param gain      continuous on the range.
 /// @param cutoff    omega_c > 0, around which poles are tried.
-/// @param lambdaMax end of the part of the spectrum that matters; see `bulkSpectrumEnd`.
+/// @param range     the part of the spectrum that matters; see `bulkSpectrum`.
 /// @param accuracy  absolute error of the gain, > 0.
 /// @return          lambda_p > 0, in units of lambda.
-double selectPole(const Gain& gain, double cutoff, double lambdaMax, double accuracy);
+double selectPole(const Gain& gain, double cutoff, const SpectrumRange& range, double accuracy);
 
-/// Upper end of the bulk of the spectrum of W phi = lambda D phi.
+/// The range of the bulk of the eigenvalues of W phi = lambda D phi.
 ///
-/// The largest eigenvalue belongs to the worst sliver of the mesh and to nothing else; the 99th
-/// percentile of 2 W_ii / D_ii (Gershgorin's bound, vertex by vertex) bounds what the rest holds.
-double bulkSpectrumEnd(const Laplacian& laplacian);
+/// Below: a tenth of the scale 4 pi / area of the first ones (Weyl's law). Above: the largest
+/// eigenvalue belongs to the worst sliver of the mesh and to nothing else; the 99th percentile of
+/// 2 W_ii / D_ii (Gershgorin's bound, vertex by vertex) bounds what the rest holds.
+SpectrumRange bulkSpectrum(const Laplacian& laplacian);
 
 }  // namespace spectral

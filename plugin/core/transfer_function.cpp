@@ -39,8 +39,7 @@ TransferFunction::TransferFunction(const TransferFunctionOptions& options, doubl
 }
 
 double TransferFunction::operator()(double omega) const {
-    return options_.stopGain +
-           (options_.passGain - options_.stopGain) * prototype(omega / cutoff_);
+    return options_.stopGain + (options_.passGain - options_.stopGain) * prototype(omega / cutoff_);
 }
 
 double TransferFunction::prototype(double x) const {
@@ -108,9 +107,9 @@ double meanGain(const TransferFunction& F, double from, double to) {
         // A hair inside the panel: at a jump each side has its own value.
         const double width = cuts[i + 1] - cuts[i];
         const double inset = 1e-9 * width;
-        integral += width / 6.0 *
-                    (F(cuts[i] + inset) + 4.0 * F(0.5 * (cuts[i] + cuts[i + 1])) +
-                     F(cuts[i + 1] - inset));
+        integral +=
+            width / 6.0 *
+            (F(cuts[i] + inset) + 4.0 * F(0.5 * (cuts[i] + cuts[i + 1])) + F(cuts[i + 1] - inset));
     }
     return integral / (to - from);
 }

@@ -22,8 +22,10 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "filter_type", static_cast<int>(transfer.type),
         {"low-pass", "high-pass", "band-pass", "band-stop"}, "Filter type",
         "What to do with details, by their size. <b>low-pass</b> keeps what is larger than the "
-        "feature size and removes the rest (smoothing, denoising). <b>high-pass</b> acts on what is "
-        "smaller: with stop gain 1 and pass gain 2 it sharpens. <b>band-pass</b> acts on details of "
+        "feature size and removes the rest (smoothing, denoising). <b>high-pass</b> acts on what "
+        "is "
+        "smaller: with stop gain 1 and pass gain 2 it sharpens. <b>band-pass</b> acts on details "
+        "of "
         "about the feature size: with stop gain 1 and pass gain above 1 it enhances just them. "
         "<b>band-stop</b> removes just them."));
     list.addParam(RichPercentage(

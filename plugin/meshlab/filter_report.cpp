@@ -27,9 +27,9 @@ std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& r
         {"factorizations", result.factorizations},
         {"solves", result.solves},
         {"error_estimate", result.errorEstimate},
-        {"step_sizes", vectorVariant(Eigen::Map<const Eigen::VectorXd>(
-                           result.stepSizes.data(),
-                           static_cast<Eigen::Index>(result.stepSizes.size())))},
+        {"step_sizes",
+         vectorVariant(Eigen::Map<const Eigen::VectorXd>(
+             result.stepSizes.data(), static_cast<Eigen::Index>(result.stepSizes.size())))},
     };
     if (result.eigenvalues.size() > 0) report["eigenvalues"] = vectorVariant(result.eigenvalues);
     return report;

@@ -67,9 +67,8 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
     try {
         MeshModel& mesh = *document.mm();
         const MeshMatrices input = toMatrices(mesh.cm);
-        const spectral::FilterResult result =
-            spectral::fractionalFilter(input.V, input.F, fractionalFilterOptions(parameters),
-                                       meshlabProgress(callback));
+        const spectral::FilterResult result = spectral::fractionalFilter(
+            input.V, input.F, fractionalFilterOptions(parameters), meshlabProgress(callback));
         setPositions(input.vertexIndex, result.V, mesh);
         log(reportText(result));
         return reportDictionary(result);

@@ -1,0 +1,105 @@
+// The evaluations against each other on real meshes: decimated samples of pymeshlab, written by
+// export_sample_meshes.py before these tests run.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include "core/fractional_filter.h"
+#include "core/measures.h"
+#include "support/evaluation.h"
+
+namespace spectral {
+namespace {
+
+using testing::Mesh;
+using testing::Operator;
+
+const double kPi = std::acos(-1.0);
+
+class RealMesh : public ::testing::TestWithParam<const char*> {
+  protected:
+    void SetUp() override {
+        const std::string path = std::string(SPECTRAL_TEST_MESHES) + "/" + GetParam() + ".ply";
+        if (!std::filesystem::exists(path))
+            GTEST_SKIP() << path << " is missing: it is exported by a Python with pymeshlab";
+        mesh_ = testing::readPly(path);
+        diagonal_ = boundingBoxDiagonal(mesh_.V);
+    }
+
+    double largestDifference(const Vertices& A, const Vertices& B) const {
+        return (A - B).rowwise().norm().maxCoeff() / diagonal_;
+    }
+
+    Mesh mesh_;
+    double diagonal_ = 0.0;
+};
+
+TEST_P(RealMesh, FullSpectrumEqualsDenseForEverySmoothTransferFunction) {
+    const Operator A(mesh_);
+    ASSERT_LE(mesh_.V.rows(), 3000);
+    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    for (const double feature : {0.1, 0.3})
+        for (const auto& options : testing::smoothTransferFunctions()) {
+            const TransferFunction F(options, 2.0 * kPi / (feature * diagonal_));
+            const Gain gain = fractionalPower(F, 1.0);
+            const FullSpectrumResult result =
+                testing::filteredFullSpectrum(A, gain, F.cutoff(), 1e-6);
+            const Vertices expected = testing::filteredDense(A, dense, gain);
+            EXPECT_TRUE(result.converged) << testing::describe(options);
+            EXPECT_LE(testing::relativeError(A, result.Y - expected), 1e-6)
+                << testing::describe(options);
+            EXPECT_LE(largestDifference(result.Y, expected), 1e-6) << testing::describe(options);
+        }
+}
+
+TEST_P(RealMesh, TruncatedWithAllHarmonicsEqualsDense) {
+    const Operator A(mesh_);
+    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    const TransferFunction F({}, 2.0 * kPi / (0.2 * diagonal_));
+    const Gain gain = fractionalPower(F, 1.0);
+    // All n as eigenvectors: no residual is left for the residual's gain to act on.
+    EXPECT_LT(largestDifference(applyInBasis(dense, A.laplacian.D, A.constants, gain, 0.5, mesh_.V),
+                                testing::filteredDense(A, dense, gain)),
+              1e-12);
+
+    // All but the last from the iteration: the residual is then that last harmonic alone.
+    ShiftedCholesky cholesky;
+    const Index n = mesh_.V.rows();
+    const HarmonicBasis basis = truncatedBasis(A.laplacian, A.constants, n - 1, cholesky);
+    const double last = gain(std::sqrt(dense.lambda[n - 1]));
+    EXPECT_LT(
+        largestDifference(applyInBasis(basis, A.laplacian.D, A.constants, gain, last, mesh_.V),
+                          testing::filteredDense(A, dense, gain)),
+        1e-8);
+}
+
+TEST_P(RealMesh, TruncatedBasisEqualsTheLowestOfTheDenseOne) {
+    const Operator A(mesh_);
+    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    ShiftedCholesky cholesky;
+    const HarmonicBasis basis = truncatedBasis(A.laplacian, A.constants, 200, cholesky);
+    EXPECT_LT((basis.lambda - dense.lambda.head(basis.size())).cwiseAbs().maxCoeff(),
+              1e-9 * dense.lambda[basis.size() - 1]);
+}
+
+TEST_P(RealMesh, FullSpectrumAndTruncatedAgreeWhereTheGainVanishesBeyondTheBasis) {
+    FilterOptions options;
+    options.featureSize = 0.5 * diagonal_;
+    options.steps = 1;
+    options.accuracy = 1e-9;
+    const Vertices full = fractionalFilter(mesh_.V, mesh_.F, options).V;
+    options.spectrum = Spectrum::Truncated;
+    options.basisSize = 500;
+    options.reinjectResidual = false;
+    const Vertices truncated = fractionalFilter(mesh_.V, mesh_.F, options).V;
+    EXPECT_LT(largestDifference(full, truncated), 1e-7);
+}
+
+INSTANTIATE_TEST_SUITE_P(Samples, RealMesh, ::testing::Values("bunny", "bone", "cow"),
+                         [](const auto& test) { return std::string(test.param); });
+
+}  // namespace
+}  // namespace spectral

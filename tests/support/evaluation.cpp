@@ -1,0 +1,58 @@
+#include "support/evaluation.h"
+
+#include <sstream>
+
+#include "core/pole_selection.h"
+
+namespace spectral::testing {
+
+Vertices filteredDense(const Operator& A, const HarmonicBasis& dense, const Gain& gain) {
+    return applyInBasis(dense, A.laplacian.D, A.constants, gain, 0.0, A.mesh.V);
+}
+
+FullSpectrumResult filteredFullSpectrum(const Operator& A, const Gain& gain, double cutoff,
+                                        double accuracy) {
+    ShiftedCholesky cholesky;
+    cholesky.factorize(A.laplacian, selectPole(gain, cutoff, bulkSpectrum(A.laplacian), accuracy));
+    FullSpectrumOptions options;
+    options.accuracy = accuracy;
+    return applyFullSpectrum(A.laplacian.D, A.constants, cholesky, gain, A.mesh.V, options);
+}
+
+double relativeError(const Operator& A, const Eigen::MatrixXd& difference) {
+    Eigen::MatrixXd centred = A.mesh.V;
+    A.constants.remove(centred);
+    const Eigen::VectorXd sqrtD = A.laplacian.D.cwiseSqrt();
+    return (sqrtD.asDiagonal() * difference).norm() / (sqrtD.asDiagonal() * centred).norm();
+}
+
+std::vector<TransferFunctionOptions> smoothTransferFunctions() {
+    std::vector<TransferFunctionOptions> all;
+    for (const FilterType type :
+         {FilterType::LowPass, FilterType::HighPass, FilterType::BandPass, FilterType::BandStop})
+        for (const Response response : {Response::Gaussian, Response::Butterworth})
+            for (const int order : {1, 2, 4})
+                for (const auto& [pass, stop] : {std::pair{1.0, 0.0}, {2.5, 1.0}}) {
+                    if (response == Response::Gaussian && order != 2) continue;
+                    TransferFunctionOptions options;
+                    options.type = type;
+                    options.response = response;
+                    options.order = order;
+                    options.passGain = pass;
+                    options.stopGain = stop;
+                    all.push_back(options);
+                }
+    return all;
+}
+
+std::string describe(const TransferFunctionOptions& options) {
+    const char* types[] = {"low-pass", "high-pass", "band-pass", "band-stop"};
+    const char* responses[] = {"gaussian", "butterworth", "ideal"};
+    std::ostringstream text;
+    text << types[static_cast<int>(options.type)] << " "
+         << responses[static_cast<int>(options.response)] << " order " << options.order << " width "
+         << options.bandWidth << " gains " << options.passGain << "/" << options.stopGain;
+    return text.str();
+}
+
+}  // namespace spectral::testing

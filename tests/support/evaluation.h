@@ -1,0 +1,42 @@
+#pragma once
+
+#include "core/components.h"
+#include "core/full_spectrum.h"
+#include "core/harmonic_basis.h"
+#include "core/laplacian.h"
+#include "support/shapes.h"
+
+namespace spectral::testing {
+
+/// A mesh's Laplacian with what every evaluation needs.
+struct Operator {
+    Mesh mesh;
+    Laplacian laplacian;
+    ConstantModes constants;
+
+    explicit Operator(const Mesh& m)
+        : mesh(m),
+          laplacian(cotangentLaplacian(m.V, m.F)),
+          constants(connectedComponents(m.F, m.V.rows()), laplacian.D) {}
+
+    double area() const { return laplacian.D.sum(); }
+};
+
+/// Y = F(sqrt(A)) V by all eigenvectors: the yardstick.
+Vertices filteredDense(const Operator& A, const HarmonicBasis& dense, const Gain& gain);
+
+/// The same by the rational Krylov method, with a pole as the filter chooses it.
+FullSpectrumResult filteredFullSpectrum(const Operator& A, const Gain& gain, double cutoff,
+                                        double accuracy);
+
+/// |difference|_D / |V - mean|_D over all columns together, as FullSpectrumResult measures it.
+double relativeError(const Operator& A, const Eigen::MatrixXd& difference);
+
+/// The transfer functions that a rational Krylov method can evaluate, each type and response, with
+/// some orders, widths and gains.
+std::vector<TransferFunctionOptions> smoothTransferFunctions();
+
+/// A legible name of a transfer function, for messages of failed tests.
+std::string describe(const TransferFunctionOptions& options);
+
+}  // namespace spectral::testing
