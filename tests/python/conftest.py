@@ -1,4 +1,4 @@
-"""Fixtures: pymeshlab with the plugin, its sample meshes, and the real meshes beside the project."""
+"""Fixtures: pymeshlab with the plugin, its sample meshes, the real meshes beside the project."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-# Before NumPy is loaded: with as many threads as cores, the many middling eigenproblems of the tests
-# take ten times as long as soon as another program wants a core.
+# Before NumPy is loaded: with as many threads as cores, the many middling eigenproblems of the
+# tests take ten times as long as soon as another program wants a core.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import meshlab_spectral

@@ -7,7 +7,6 @@ import inspect
 import json
 import platform
 import signal
-import sys
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import fields
@@ -32,12 +31,24 @@ _EXIT_CODES = (
     "is wrong; 130 interrupted."
 )
 
+# "\b" keeps a paragraph's lines as they are.
+_FILTER_HELP = """Filter one mesh by the size of its details.
+
+\b
+Smooth a scan, away with what is smaller than 1 % of it:
+  meshlab-spectral filter scan.ply smooth.ply --feature-size 2%
+Sharpen it:
+  meshlab-spectral filter scan.ply sharp.ply --filter-type high-pass \\
+    --stop-gain 1 --pass-gain 2
+"""
+
 app = typer.Typer(
     help="Smooth, sharpen and band-filter meshes by the size of their details.",
     epilog=_EXIT_CODES,
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
+    rich_markup_mode=None,
 )
 _messages = Console(stderr=True)
 
@@ -46,11 +57,7 @@ def main() -> None:
     """Run the command line; ends the process with the exit code."""
     # A polite end (kill, a shutdown) tidies up like Ctrl-C does.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    try:
-        app()
-    except KeyboardInterrupt:
-        _messages.print("Interrupted; no output was written.")
-        sys.exit(EXIT_INTERRUPTED)
+    app()
 
 
 def with_filter_options(command: Callable[..., None]) -> Callable[..., None]:
@@ -63,7 +70,7 @@ def with_filter_options(command: Callable[..., None]) -> Callable[..., None]:
     ]
     added = []
     for option in fields(FilterOptions):
-        settings: dict[str, Any] = {"help": option.metadata["help"], "rich_help_panel": "Filter"}
+        settings: dict[str, Any] = {"help": option.metadata["help"]}
         type_, default = types[option.name], option.default
         if type_ is FeatureSize:
             settings |= {"parser": _feature_size, "metavar": "SIZE"}
@@ -116,7 +123,7 @@ def _common(
     """Smooth, sharpen and band-filter meshes by the size of their details."""
 
 
-@app.command("filter", epilog=_EXIT_CODES)
+@app.command("filter", help=_FILTER_HELP, epilog=_EXIT_CODES)
 @with_filter_options
 def filter_command(
     options: FilterOptions,
@@ -134,13 +141,7 @@ def filter_command(
     ] = False,
     debug: Annotated[bool, typer.Option("--debug", hidden=True)] = False,
 ) -> None:
-    """Filter one mesh by the size of its details.
-
-    Smooth a scan: meshlab-spectral filter scan.ply smooth.ply --feature-size 2%
-
-    Sharpen it: meshlab-spectral filter scan.ply sharp.ply --filter-type high-pass --stop-gain 1
-    --pass-gain 2
-    """
+    """Filter one mesh: `meshlab-spectral filter --help` tells how."""
     if target.exists() and source.exists() and target.samefile(source):
         raise typer.BadParameter(
             f"{target} is INPUT itself, and would be lost: choose another name", param_hint="OUTPUT"
@@ -176,6 +177,9 @@ def _errors_reported(debug: bool) -> Iterator[None]:
     """Turn every error of this package into one message and an exit code."""
     try:
         yield
+    except KeyboardInterrupt:
+        _messages.print("Interrupted: no output was written.")
+        raise typer.Exit(EXIT_INTERRUPTED) from None
     except SpectralError as error:
         if debug:
             _messages.print_exception()

@@ -65,7 +65,10 @@ def filter_file(
 def filter_to_scratch(
     source: Path, scratch: Path, options: FilterOptions, on_stage: StageCallback
 ) -> dict[str, Any]:
-    """Filter `source` into the file `scratch`, which may be left half-written after an error."""
+    """Filter `source` into `scratch`, a file from `writing_whole`.
+
+    Parameters and errors are those of `filter_file`; after an error `scratch` may be half-written.
+    """
     import pymeshlab
 
     load()
@@ -80,7 +83,7 @@ def filter_to_scratch(
         _failed_mesh_sets.append(mesh_set)
         raise FilterError(_reason(error)) from error
     on_stage("writing")
-    _write(mesh_set, scratch)
+    _write(mesh_set, scratch, source)
     return {name: _plain(value) for name, value in report.items()}
 
 
@@ -116,51 +119,62 @@ def writing_whole(target: Path) -> Iterator[Path]:
         When the folder of `target` is missing or takes no files (before anything is yielded), or
         when the scratch file is not there at the end.
     """
-    folder = target.parent
-    if target.is_dir():
-        raise MeshFileError(f"{target} is a folder: name a file for the output")
+    place = target.resolve()  # through a symbolic link, as cp does
+    folder = place.parent
+    if place.exists() and not place.is_file():
+        raise MeshFileError(f"{target} is no file but a folder or a device: name a file to write")
     if not folder.is_dir():
-        raise MeshFileError(f"the folder {folder} of the output does not exist: create it first")
+        raise MeshFileError(
+            f"the folder {target.parent} of the output does not exist: create it first"
+        )
     try:
         scratch_folder = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=folder))
     except OSError as error:
         raise MeshFileError(
-            f"the folder {folder} of the output cannot be written to ({error.strerror}): choose "
-            "another folder"
+            f"the folder {target.parent} of the output cannot be written to ({error.strerror}): "
+            "choose another folder"
         ) from error
     try:
         scratch = scratch_folder / target.name
         yield scratch
-        _put_in_place(scratch, target)
+        try:
+            _put_in_place(scratch, place)
+        except OSError as error:
+            raise MeshFileError(f"{target} cannot be written ({error.strerror})") from error
     finally:
         shutil.rmtree(scratch_folder, ignore_errors=True)
 
 
-def _put_in_place(scratch: Path, target: Path) -> None:
+def _put_in_place(scratch: Path, place: Path) -> None:
     if not scratch.is_file() or scratch.stat().st_size == 0:
         raise MeshFileError(
-            f"MeshLab wrote nothing for {target.name}: choose another format, {_USUAL_FORMATS}"
+            f"MeshLab wrote nothing for {scratch.name}: choose another format, {_USUAL_FORMATS}"
         )
-    folder = target.parent
-    side_files = [path for path in sorted(scratch.parent.iterdir()) if path != scratch]
-    for path in side_files:
-        _check_side_file(path, folder / path.name, target)
-    try:
-        # The mesh last: what it refers to is there when it appears.
-        for path in [*side_files, scratch]:
-            _sync(path)
-            path.replace(folder / path.name)
-        _sync(folder)
-    except OSError as error:
-        raise MeshFileError(f"{target} cannot be written ({error.strerror})") from error
+    moves = {
+        path: place.parent / path.relative_to(scratch.parent)
+        for path in sorted(scratch.parent.rglob("*"))
+        if path.is_file() and path != scratch
+    }
+    for path, side_place in moves.items():
+        _check_side_file(path, side_place, scratch.name)
+    if place.exists():
+        shutil.copymode(place, scratch)
+    moves[scratch] = place  # last: what the mesh refers to is there when it appears
+    for path, final in moves.items():
+        final.parent.mkdir(parents=True, exist_ok=True)
+        _sync(path)
+        path.replace(final)
+    _sync(place.parent)
 
 
-def _check_side_file(path: Path, place: Path, target: Path) -> None:
+def _check_side_file(path: Path, place: Path, mesh_name: str) -> None:
     """Refuse to replace a file that the user did not name, such as another model's texture."""
-    ours = place.name.startswith(target.name)  # out.obj.mtl of out.obj
-    if place.exists() and not ours and not filecmp.cmp(path, place, shallow=False):
+    ours = place.name.startswith(mesh_name)  # out.obj.mtl of out.obj
+    if ours or not place.exists():
+        return
+    if not (place.is_file() and filecmp.cmp(path, place, shallow=False)):
         raise MeshFileError(
-            f"{target.name} needs a file {place.name} beside it, and another file has that name: "
+            f"{mesh_name} needs a file {place.name} beside it, and another file has that name: "
             "write the output to a folder of its own"
         )
 
@@ -214,13 +228,30 @@ def _read(mesh_set: Any, source: Path) -> None:
         )
 
 
-def _write(mesh_set: Any, scratch: Path) -> None:
+def _write(mesh_set: Any, scratch: Path, source: Path) -> None:
     import pymeshlab
 
     try:
-        mesh_set.save_current_mesh(str(scratch))
+        mesh_set.save_current_mesh(
+            str(scratch), save_textures=_textures_to_be_saved(mesh_set, scratch, source)
+        )
     except pymeshlab.PyMeshLabException as error:
-        raise MeshFileError(f"{scratch.name} cannot be written ({_reason(error)})") from error
+        reason = _reason(error).rsplit(": ", 1)[-1]  # without the scratch file's name
+        raise MeshFileError(
+            f"{scratch.name} cannot be written ({reason}): is the disk full?"
+        ) from error
+
+
+def _textures_to_be_saved(mesh_set: Any, scratch: Path, source: Path) -> bool:
+    """Whether copies of the texture images belong beside the output.
+
+    Beside the input they are there already. And an image that the mesh refers to outside of its own
+    folder would be written outside of the scratch folder, over whatever has its name there.
+    """
+    names = [Path(name) for name in mesh_set.current_mesh().textures()]
+    beside_input = scratch.parent.parent.samefile(source.resolve().parent)
+    within = all(not name.is_absolute() and ".." not in name.parts for name in names)
+    return within and not beside_input
 
 
 def _reason(error: Exception) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from rich.table import Table
+from rich.text import Text
 
 
 def report_table(report: dict[str, Any], title: str) -> Table:
@@ -17,7 +18,8 @@ def report_table(report: dict[str, Any], title: str) -> Table:
     title
         Heading of the table, plain text.
     """
-    table = Table(title=title, show_header=False, title_justify="left", title_style="bold")
+    # As Text: a name such as "[red].ply" is no markup.
+    table = Table(title=Text(title), show_header=False, title_justify="left", title_style="bold")
     table.add_column(style="cyan", no_wrap=True)
     table.add_column(justify="right")
     for label, value in _rows(report):
