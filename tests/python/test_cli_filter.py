@@ -285,6 +285,14 @@ def test_a_symbolic_link_as_output_stays_a_link(cow: Path, tmp_path: Path) -> No
     assert real.is_file()
 
 
+def test_pip_installs_the_command_under_its_name() -> None:
+    installed = Path(sys.executable).with_name("meshlab-spectral")
+    done = subprocess.run(
+        [installed, "--version"], capture_output=True, text=True, timeout=60, check=True
+    )
+    assert done.stdout.startswith("meshlab-spectral ")
+
+
 def test_help_names_every_option_and_the_exit_codes() -> None:
     done = command("filter", "--help")
     assert done.returncode == 0

@@ -84,6 +84,26 @@ def test_an_unknown_choice_is_refused_with_the_choices(name: str) -> None:
 
 
 @pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("steps", 2.5),
+        ("steps", "ten"),
+        ("steps", True),
+        ("order", None),
+        ("pass_gain", "2"),
+        ("band_width", True),
+        ("reinject_residual", 1),
+        ("feature_size", "5%"),
+    ],
+)
+def test_a_value_of_another_type_is_refused_by_the_name_of_the_option(
+    name: str, value: Any
+) -> None:
+    with pytest.raises(OptionError, match=name):
+        FilterOptions(**{name: value})
+
+
+@pytest.mark.parametrize(
     ("text", "value", "relative"),
     [("5%", 5, True), (" 2.5 % ", 2.5, True), ("0.02", 0.02, False), ("1e3", 1000, False)],
 )

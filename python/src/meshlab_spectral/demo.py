@@ -6,10 +6,12 @@ It leaves bunny_filtered.ply and before_after.png in DIR, and prints the filter'
 from __future__ import annotations
 
 import argparse
+import sys
 from pathlib import Path
 
 from rich.console import Console
 
+from meshlab_spectral.errors import SpectralError
 from meshlab_spectral.meshfile import writing_whole
 from meshlab_spectral.options import FeatureSize, FilterOptions
 from meshlab_spectral.pictures import Panel, View, draw_side_by_side
@@ -51,7 +53,11 @@ def demonstrate(folder: Path) -> None:
 def _main() -> None:
     parser = argparse.ArgumentParser(prog="python -m meshlab_spectral.demo", description=__doc__)
     parser.add_argument("folder", metavar="DIR", type=Path, help="where to put the results")
-    demonstrate(parser.parse_args().folder)
+    folder = parser.parse_args().folder
+    try:
+        demonstrate(folder)
+    except SpectralError as error:
+        sys.exit(f"Error: {error}")
 
 
 if __name__ == "__main__":

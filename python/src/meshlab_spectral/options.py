@@ -92,6 +92,13 @@ def _option(default: Any, explanation: str, limits: Limits | None = None) -> Any
     return field(default=default, metadata={"help": explanation, "limits": limits})
 
 
+def _is_of(value: Any, wanted: type) -> bool:
+    """Whether a value, perhaps of a recipe, has a type; whole numbers pass as floats."""
+    if wanted is float:
+        return isinstance(value, int | float) and not isinstance(value, bool)
+    return type(value) is wanted
+
+
 @dataclass(frozen=True, kw_only=True)
 class FilterOptions:
     """Options of the filter, under the names and with the defaults that it has in MeshLab.
@@ -162,6 +169,9 @@ class FilterOptions:
             choices = get_args(types[option.name])
             if choices and value not in choices:
                 raise OptionError(f"{option.name} = {value}: choose {', '.join(choices)}")
+            wanted = types[option.name]
+            if not choices and not _is_of(value, wanted):
+                raise OptionError(f"{option.name} = {value!r}: must be a {wanted.__name__}")
             limits: Limits | None = option.metadata["limits"]
             if limits is not None and not limits.contain(value):
                 raise OptionError(f"{option.name} = {value}: must be {limits}")

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from meshlab_spectral.errors import SpectralError
+
 if TYPE_CHECKING:
     import pymeshlab
 
@@ -76,8 +78,18 @@ def draw_side_by_side(
         Where the camera stands; by default in front of the xy plane.
     panel_size
         Width and height of one panel in pixels.
+
+    Raises
+    ------
+    SpectralError
+        When PyVista is not installed.
     """
-    import pyvista
+    try:
+        import pyvista
+    except ModuleNotFoundError as error:
+        raise SpectralError(
+            f"pictures need PyVista ({error}): pip install 'meshlab-spectral[pictures]'"
+        ) from error
 
     view = view or View()
     width, height = panel_size
@@ -136,6 +148,6 @@ def _lights(pyvista: Any) -> list[Any]:
 
     Together they stay below full white, so that no relief is lost in the brightest parts.
     """
-    key = pyvista.Light(position=(-0.9, 0.9, 0.6), light_type="camera light", intensity=0.68)
-    fill = pyvista.Light(position=(1.0, 0.0, 0.7), light_type="camera light", intensity=0.38)
+    key = pyvista.Light(position=(-0.9, 0.9, 0.6), light_type="camera light", intensity=0.62)
+    fill = pyvista.Light(position=(1.0, 0.0, 0.7), light_type="camera light", intensity=0.32)
     return [key, fill]
