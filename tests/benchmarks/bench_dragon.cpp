@@ -1,0 +1,109 @@
+// What a whole filter costs beside its factorizations and solves alone, in one run of the program:
+//   bench_dragon MESH.ply [FEATURE_SIZE as part of the diagonal, default 0.15]
+// Times are medians of several runs; compare the ratios, the machine's speed cancels out of them.
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/cholesky.h"
+#include "core/fractional_filter.h"
+#include "core/laplacian.h"
+#include "core/measures.h"
+#include "core/pole_selection.h"
+#include "support/ply.h"
+
+using namespace spectral;
+
+namespace {
+
+double medianSeconds(const std::function<void()>& work) {
+    constexpr int kRuns = 5;
+    std::vector<double> seconds;
+    for (int run = 0; run < kRuns; ++run) {
+        const auto start = std::chrono::steady_clock::now();
+        work();
+        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+        seconds.push_back(took.count());
+    }
+    std::sort(seconds.begin(), seconds.end());
+    return seconds[kRuns / 2];
+}
+
+struct Case {
+    const char* name;
+    FilterType type;
+    Response response;
+    int steps;
+    BasisUpdate update;
+};
+
+FilterOptions optionsOf(const Case& c, double featureSize) {
+    FilterOptions options;
+    options.transferFunction.type = c.type;
+    options.transferFunction.response = c.response;
+    if (c.type == FilterType::BandPass) {
+        options.transferFunction.stopGain = 1.0;
+        options.transferFunction.passGain = 2.5;
+    }
+    options.featureSize = featureSize;
+    options.steps = c.steps;
+    options.basisUpdate = c.update;
+    return options;
+}
+
+/// The same number of factorizations and of solves, three columns at a time, and nothing else.
+double secondsOfWorkAlone(const testing::Mesh& mesh, const FilterResult& result) {
+    const Laplacian laplacian = cotangentLaplacian(mesh.V, mesh.F);
+    const double shift = result.cutoffFrequency * result.cutoffFrequency;
+    return medianSeconds([&] {
+        ShiftedCholesky cholesky;
+        for (int i = 0; i < result.factorizations; ++i) cholesky.factorize(laplacian, shift);
+        Eigen::MatrixXd X = mesh.V;
+        for (int i = 0; i < result.solves / 3; ++i)
+            X = shift * cholesky.solve(laplacian.D.asDiagonal() * X);
+    });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc < 2) {
+        std::fprintf(stderr, "usage: %s MESH.ply [FEATURE_SIZE as part of the diagonal]\n",
+                     argv[0]);
+        return 2;
+    }
+    const testing::Mesh mesh = testing::readPly(argv[1]);
+    const double part = argc > 2 ? std::atof(argv[2]) : 0.15;
+    const double featureSize = part * boundingBoxDiagonal(mesh.V);
+    std::printf("%s: %ld vertices, feature size %g of the diagonal, accuracy %g\n", argv[1],
+                static_cast<long>(mesh.V.rows()), part, FilterOptions().accuracy);
+    std::printf("%-34s %14s %14s %10s %10s %8s %6s\n", "filter", "factorizations", "solves/coord.",
+                "error", "filter s", "alone s", "ratio");
+
+    const Case cases[] = {
+        {"gaussian low-pass, K = 1", FilterType::LowPass, Response::Gaussian, 1, BasisUpdate::None},
+        {"butterworth low-pass, K = 1", FilterType::LowPass, Response::Butterworth, 1,
+         BasisUpdate::None},
+        {"gaussian band boost, K = 1", FilterType::BandPass, Response::Gaussian, 1,
+         BasisUpdate::None},
+        {"gaussian low-pass, conformal K = 10", FilterType::LowPass, Response::Gaussian, 10,
+         BasisUpdate::Conformal},
+        {"gaussian band boost, full K = 10", FilterType::BandPass, Response::Gaussian, 10,
+         BasisUpdate::Full},
+    };
+    for (const Case& c : cases) {
+        const FilterOptions options = optionsOf(c, featureSize);
+        FilterResult result;
+        const double whole =
+            medianSeconds([&] { result = fractionalFilter(mesh.V, mesh.F, options); });
+        const double alone = secondsOfWorkAlone(mesh, result);
+        std::printf("%-34s %14d %14d %10.1e %10.3f %8.3f %6.2f\n", c.name, result.factorizations,
+                    result.solves / 3, result.errorEstimate, whole, alone, whole / alone);
+    }
+    return EXIT_SUCCESS;
+}
