@@ -205,8 +205,8 @@ void measureDisplacement(const Vertices& displacement, const Eigen::VectorXd& D,
 
 FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOptions& options,
                               const Progress& progress) {
+    checkMesh(V, F);  // first: a feature size that is a part of an infinite diagonal is its fault
     checkOptions(options);
-    checkMesh(V, F);
     const Surface surface = packedSurface(V, F);
     const TransferFunction transfer(options.transferFunction, 2.0 * kPi / options.featureSize);
     const Components components = connectedComponents(surface.F, surface.X.rows());
