@@ -259,7 +259,8 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     result.factorizations = evaluate.cholesky().factorizations();
     result.solves = evaluate.cholesky().solves();
     result.errorEstimate = evaluate.errorEstimate();
-    if (!evaluate.converged())
+    result.accuracyReached = evaluate.converged();
+    if (!result.accuracyReached)
         result.warnings.push_back("the requested relative accuracy of " +
                                   inWords(options.accuracy) +
                                   " was not reached, the estimated error is " +

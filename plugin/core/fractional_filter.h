@@ -48,6 +48,7 @@ struct FilterResult {
     int unreferencedVertices = 0;       ///< Vertices of no triangle; they were left alone.
     int factorizations = 0;             ///< Sparse Cholesky or LDL^T factorizations.
     int solves = 0;                     ///< Solves with one right-hand side.
+    bool accuracyReached = true;        ///< Whether errorEstimate is within the requested accuracy.
     double errorEstimate = 0.0;         ///< Estimated error of the evaluation, relative, all steps.
     std::vector<double> stepSizes;      ///< The fractional powers alpha, in their order; sum 1.
     std::vector<std::string> warnings;  ///< What fell short without being an error; sentences.

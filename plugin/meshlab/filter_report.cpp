@@ -27,6 +27,7 @@ std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& r
         {"factorizations", result.factorizations},
         {"solves", result.solves},
         {"error_estimate", result.errorEstimate},
+        {"accuracy_reached", result.accuracyReached},
         {"step_sizes",
          vectorVariant(Eigen::Map<const Eigen::VectorXd>(
              result.stepSizes.data(), static_cast<Eigen::Index>(result.stepSizes.size())))},
@@ -57,5 +58,6 @@ std::string reportText(const spectral::FilterResult& result) {
              << std::sqrt(result.eigenvalues[result.eigenvalues.size() - 1]);
     else
         text << ", estimated relative error " << result.errorEstimate;
+    for (const std::string& warning : result.warnings) text << "\n  WARNING: " << warning;
     return text.str();
 }

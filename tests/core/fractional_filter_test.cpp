@@ -242,6 +242,23 @@ TEST(FractionalFilter, ReportsWhatItDid) {
     EXPECT_EQ(result.eigenvalues.size(), 0);
 }
 
+TEST(FractionalFilter, WarnsWhenTheAccuracyIsNotReached) {
+    // The tenth root of a gain that vanishes inside the spectrum has a cusp there.
+    const Mesh mesh = testing::withNoise(testing::icosphere(4), 0.02, 5);
+    FilterOptions options = smoothing(mesh, 10, BasisUpdate::None);
+    options.transferFunction.type = FilterType::BandStop;
+    const FilterResult cusp = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_FALSE(cusp.accuracyReached);
+    EXPECT_GT(cusp.errorEstimate, options.accuracy);
+    ASSERT_EQ(cusp.warnings.size(), 1u);
+    EXPECT_NE(cusp.warnings[0].find("stop_gain"), std::string::npos);
+
+    options.transferFunction.stopGain = 0.05;
+    const FilterResult smooth = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_TRUE(smooth.accuracyReached);
+    EXPECT_TRUE(smooth.warnings.empty());
+}
+
 TEST(FractionalFilter, ReportsProgressUpToTheEnd) {
     const Mesh mesh = testing::blob();
     double last = 0.0;
