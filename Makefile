@@ -10,9 +10,6 @@ MESHLAB_SOURCE_DIR ?=
 WARNINGS_AS_ERRORS ?= OFF
 BENCH_MESH ?= ../shared/data/dragon_40k.ply
 
-# Pictures are drawn off-screen; otherwise VTK first tries, and warns, where there is no X server.
-export VTK_DEFAULT_OPENGL_WINDOW ?= vtkEGLRenderWindow
-
 BENCHMARKS := OFF
 BIN := .venv/bin
 CMAKE_OPTIONS := $(if $(MESHLAB_SOURCE_DIR),-DMESHLAB_SOURCE_DIR=$(abspath $(MESHLAB_SOURCE_DIR)))

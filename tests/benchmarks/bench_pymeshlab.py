@@ -24,9 +24,8 @@ CASES = {
 
 def measure(mesh: str, case: str) -> dict[str, float]:
     """Run one case in this process and return what it took."""
-    import pymeshlab
-
     import meshlab_spectral
+    import pymeshlab
 
     meshlab_spectral.load()
     meshes = pymeshlab.MeshSet()

@@ -21,7 +21,7 @@ from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeEl
 from meshlab_spectral import __version__
 from meshlab_spectral.errors import FormatError, OptionError, SpectralError
 from meshlab_spectral.options import FeatureSize, FilterOptions
-from meshlab_spectral.report import report_table
+from meshlab_spectral.report import report_table, report_warning
 from meshlab_spectral.worker import ProgressCallback, filter_file_in_child
 
 EXIT_FAILED, EXIT_USAGE, EXIT_INTERRUPTED = 1, 2, 130
@@ -149,6 +149,9 @@ def filter_command(
     begin = time.monotonic()
     with _errors_reported(debug), _progress_shown() as on_progress:
         report = filter_file_in_child(source, target, options, on_progress)
+    warning = report_warning(report)
+    if warning:
+        _messages.print(f"Warning: {warning}.", highlight=False, soft_wrap=True)
     if as_json:
         typer.echo(json.dumps(_record(source, target, options, report, time.monotonic() - begin)))
     else:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -84,6 +86,9 @@ def draw_side_by_side(
     SpectralError
         When PyVista is not installed.
     """
+    if sys.platform == "linux" and not os.environ.get("DISPLAY"):
+        # Without this VTK first tries, and warns about, the X server that is not there.
+        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
     try:
         import pyvista
     except ModuleNotFoundError as error:
@@ -109,12 +114,12 @@ def draw_side_by_side(
             plotter.add_text(
                 panel.label, position="lower_edge", font_size=15, color="#202020", shadow=False
             )
-            for light in _lights(pyvista):
-                plotter.add_light(light)
             plotter.camera_position = camera
             plotter.camera.parallel_projection = True
             plotter.camera.parallel_scale = _radius(panels[0]) / view.zoom
             plotter.reset_camera_clipping_range()
+        for light in _lights(pyvista):
+            plotter.add_light(light)  # to all panels at once
         plotter.enable_anti_aliasing("ssaa")
         plotter.screenshot(str(path))
     finally:
@@ -146,8 +151,8 @@ def _radius(panel: Panel) -> float:
 def _lights(pyvista: Any) -> list[Any]:
     """Key light from the upper left, fill from the right: both move with the camera.
 
-    Together they stay below full white, so that no relief is lost in the brightest parts.
+    No part of a surface faces both, so they stay below full white and no relief is lost.
     """
-    key = pyvista.Light(position=(-0.9, 0.9, 0.6), light_type="camera light", intensity=0.62)
-    fill = pyvista.Light(position=(1.0, 0.0, 0.7), light_type="camera light", intensity=0.32)
+    key = pyvista.Light(position=(-0.9, 0.9, 0.6), light_type="camera light", intensity=1.15)
+    fill = pyvista.Light(position=(1.0, 0.0, 0.7), light_type="camera light", intensity=0.55)
     return [key, fill]

@@ -27,6 +27,17 @@ def report_table(report: dict[str, Any], title: str) -> Table:
     return table
 
 
+def report_warning(report: dict[str, Any]) -> str | None:
+    """Say what a user should know about a result that fell short, or nothing."""
+    if report["accuracy_reached"]:
+        return None
+    return (
+        f"the evaluation is only accurate to about {report['error_estimate']:.1e}, relative to the "
+        "shape's size: the filter is too steep for spectrum = full. Choose a stop gain of 0.05 "
+        "instead of 0, a lower order, a wider band, or fewer steps"
+    )
+
+
 def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
     rows = [
         ("Feature size", f"{report['feature_size']:.6g}"),
