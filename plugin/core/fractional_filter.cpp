@@ -20,8 +20,6 @@ namespace spectral {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 /// More harmonics than this for a discontinuous gain are a mistake of the user's: minutes of time.
 constexpr Index kMaxExactBasis = 1000;
 

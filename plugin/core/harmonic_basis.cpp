@@ -183,7 +183,7 @@ HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& co
                             " connected components: choose a basis_size above " +
                             std::to_string(c) + ", or spectrum = full");
 
-    const double sigma = -kShift * 4.0 * std::acos(-1.0) / laplacian.D.sum();
+    const double sigma = -kShift * 4.0 * kPi / laplacian.D.sum();
     progress.report(0.0, "factorizing");
     cholesky.factorize(laplacian, -sigma);
 

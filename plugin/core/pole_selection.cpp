@@ -8,8 +8,6 @@ namespace spectral {
 
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
-
 /// Chebyshev nodes: degrees up to this are told apart, more than any Krylov space should need.
 constexpr int kNodes = 256;
 

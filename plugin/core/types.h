@@ -18,4 +18,6 @@ using Faces = Eigen::Matrix<int, Eigen::Dynamic, 3>;
 using SparseMatrix = Eigen::SparseMatrix<double>;
 using Eigen::Index;
 
+inline constexpr double kPi = 3.14159265358979323846;
+
 }  // namespace spectral

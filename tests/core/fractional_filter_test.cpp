@@ -143,7 +143,7 @@ TEST(FractionalFilter, IsTheCompositionOfItsSteps) {
     FilterOptions options = smoothing(mesh, 3, BasisUpdate::Full);
     const Vertices whole = fractionalFilter(mesh.V, mesh.F, options).V;
 
-    const double cutoff = 2.0 * std::acos(-1.0) / options.featureSize;
+    const double cutoff = 2.0 * kPi / options.featureSize;
     const TransferFunction F(options.transferFunction, cutoff);
     Mesh current = mesh;
     for (int step = 0; step < 3; ++step) {
@@ -159,7 +159,7 @@ TEST(FractionalFilter, ConformalUpdateTakesTheMassesAnewAndKeepsTheStiffness) {
     FilterOptions options = smoothing(mesh, 3, BasisUpdate::Conformal);
     const Vertices whole = fractionalFilter(mesh.V, mesh.F, options).V;
 
-    const double cutoff = 2.0 * std::acos(-1.0) / options.featureSize;
+    const double cutoff = 2.0 * kPi / options.featureSize;
     const TransferFunction F(options.transferFunction, cutoff);
     Operator A(mesh);
     for (int step = 0; step < 3; ++step) {
@@ -190,8 +190,7 @@ TEST(FractionalFilter, IdealResponseInFullSpectrumIsExact) {
             options.transferFunction.type = type;
             options.transferFunction.response = Response::Ideal;
             options.featureSize *= 2.0;
-            const TransferFunction F(options.transferFunction,
-                                     2.0 * std::acos(-1.0) / options.featureSize);
+            const TransferFunction F(options.transferFunction, 2.0 * kPi / options.featureSize);
             const Vertices expected = testing::filteredDense(A, dense, fractionalPower(F, 1.0));
             const Vertices Y = fractionalFilter(mesh.V, mesh.F, options).V;
             EXPECT_LT(largestDifference(Y, expected), 1e-8)
@@ -234,7 +233,7 @@ TEST(FractionalFilter, ReportsWhatItDid) {
     EXPECT_EQ(result.components, 1);
     EXPECT_EQ(result.unreferencedVertices, 0);
     EXPECT_NEAR(std::accumulate(result.stepSizes.begin(), result.stepSizes.end(), 0.0), 1.0, 1e-15);
-    EXPECT_NEAR(result.cutoffFrequency * result.featureSize, 2.0 * std::acos(-1.0), 1e-12);
+    EXPECT_NEAR(result.cutoffFrequency * result.featureSize, 2.0 * kPi, 1e-12);
     EXPECT_GT(result.errorEstimate, 0.0);
     EXPECT_LE(result.errorEstimate, options.accuracy);
     EXPECT_DOUBLE_EQ(result.areaAfter, surfaceArea(result.V, mesh.F));

@@ -12,7 +12,6 @@ namespace {
 using testing::Mesh;
 using testing::Operator;
 
-const double kPi = std::acos(-1.0);
 constexpr double kRoundOff = 1e-13;
 
 std::vector<Mesh> classesOfMeshes() {

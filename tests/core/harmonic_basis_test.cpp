@@ -14,8 +14,6 @@ namespace {
 using testing::Mesh;
 using testing::Operator;
 
-const double kPi = std::acos(-1.0);
-
 HarmonicBasis lowest(const Operator& A, Index k) {
     ShiftedCholesky cholesky;
     return truncatedBasis(A.laplacian, A.constants, k, cholesky);

@@ -17,8 +17,6 @@ namespace {
 using testing::Mesh;
 using testing::Operator;
 
-const double kPi = std::acos(-1.0);
-
 class RealMesh : public ::testing::TestWithParam<const char*> {
   protected:
     void SetUp() override {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/errors.h"
+#include "core/types.h"
 
 namespace spectral {
 namespace {
@@ -147,9 +148,9 @@ TEST(MeanGain, IsExactForAnIdealFilterAcrossItsJump) {
 TEST(MeanGain, AgreesWithTheErrorFunctionForAGaussian) {
     // The integral of 2^(-x^2/2) is sqrt(pi / (2 ln 2)) erf(x sqrt(ln 2 / 2)).
     const TransferFunction F({}, 2.0);
-    const double ln2 = std::log(2.0), pi = std::acos(-1.0);
+    const double ln2 = std::log(2.0);
     const auto integral = [&](double omega) {
-        return 2.0 * std::sqrt(pi / (2.0 * ln2)) * std::erf(omega / 2.0 * std::sqrt(ln2 / 2.0));
+        return 2.0 * std::sqrt(kPi / (2.0 * ln2)) * std::erf(omega / 2.0 * std::sqrt(ln2 / 2.0));
     };
     for (const auto& [from, to] : {std::pair{0.0, 1.0}, {0.5, 4.0}, {1.0, 1000.0}})
         EXPECT_NEAR(meanGain(F, from, to), (integral(to) - integral(from)) / (to - from), 1e-9);
