@@ -3,35 +3,21 @@
 #include <string>
 #include <vector>
 
+#include "laplacian_builder.h"
 #include "progress.h"
+#include "step_evaluator.h"
 #include "transfer_function.h"
 #include "types.h"
 
 namespace spectral {
 
-/// What a step takes from the current shape.
-enum class BasisUpdate {
-    Full,       ///< W and D: the paper's scheme.
-    Conformal,  ///< D only, W stays that of the input (Kazhdan, Solomon, Ben-Chen 2012).
-    None        ///< Neither: one basis for all steps (Vallet and Levy 2008).
-};
-
-/// How F(sqrt(A)) X is evaluated.
-enum class Spectrum {
-    Full,      ///< All n harmonics, by a rational Krylov method that computes none of them.
-    Truncated  ///< The k lowest harmonics, and one gain for the rest.
-};
-
 struct FilterOptions {
     TransferFunctionOptions transferFunction;
     double featureSize = 0.0;  ///< Wavelength of the cutoff, 2 pi / omega_c, length units, > 0.
     int steps = 10;            ///< K >= 1: the filter is applied as K steps of F^(1/K).
+    LaplacianKind laplacian = LaplacianKind::IntrinsicDelaunay;
     BasisUpdate basisUpdate = BasisUpdate::Full;
-    Spectrum spectrum = Spectrum::Full;
-    int basisSize = 300;           ///< k, for Spectrum::Truncated: below the number of vertices.
-    bool reinjectResidual = true;  ///< For Spectrum::Truncated: keep what is beyond k (Eq. 8).
-    double accuracy = 1e-6;  ///< For Spectrum::Full: error of the evaluation, all steps together,
-                             ///< relative to the shape's own size (see full_spectrum.h).
+    EvaluationOptions evaluation;
 };
 
 struct FilterResult {

@@ -26,7 +26,7 @@ std::string counted(Index count, const char* one, const char* many) {
 
 }  // namespace
 
-void checkMesh(const Vertices& V, const Faces& F) {
+void checkMesh(const Vertices& V, const Faces& F, LaplacianKind kind) {
     if (V.rows() == 0)
         throw InvalidMesh("the mesh is empty: it has no vertices; load or create a mesh first");
     if (F.rows() == 0)
@@ -54,10 +54,14 @@ void checkMesh(const Vertices& V, const Faces& F) {
     Index degenerate = 0, firstDegenerate = -1;
     for (Index t = 0; t < F.rows(); ++t)
         if (isDegenerate(V, F, t) && degenerate++ == 0) firstDegenerate = t;
-    if (degenerate > 0)
+    if (degenerate == F.rows())
+        throw InvalidMesh("none of the " + counted(F.rows(), "triangle", "triangles") +
+                          " has an area: the mesh is a line or a point, not a surface");
+    if (degenerate > 0 && kind == LaplacianKind::Cotangent)
         throw InvalidMesh(counted(degenerate, "triangle has", "triangles have") +
                           " no area, the first is triangle " + std::to_string(firstDegenerate) +
-                          "; their cotangents are infinite. Apply 'Merge Close Vertices', 'Remove "
+                          "; their cotangents are infinite. Choose laplacian = intrinsic delaunay, "
+                          "or apply 'Merge Close Vertices', 'Remove "
                           "Duplicate Faces' and 'Remove Zero Area Faces', or remesh with "
                           "'Remeshing: Isotropic Explicit Remeshing'");
 }

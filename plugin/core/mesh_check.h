@@ -1,5 +1,6 @@
 #pragma once
 
+#include "laplacian_builder.h"
 #include "types.h"
 
 namespace spectral {
@@ -7,9 +8,10 @@ namespace spectral {
 /// Refuses what no Laplacian can be made of.
 ///
 /// @throws InvalidMesh  when there is no vertex or no triangle, an index is out of range, a
-///                      coordinate is not finite, or a triangle is degenerate (two equal corners,
-///                      or an area that is zero beside its longest edge). The text counts them and
-///                      names the MeshLab filter that mends it.
-void checkMesh(const Vertices& V, const Faces& F);
+///                      coordinate is not finite, or no triangle has an area; with
+///                      LaplacianKind::Cotangent also when some triangle is degenerate (two equal
+///                      corners, or an area that is zero beside its longest edge). The text counts
+///                      them and names the MeshLab filter that mends it.
+void checkMesh(const Vertices& V, const Faces& F, LaplacianKind kind);
 
 }  // namespace spectral

@@ -71,20 +71,28 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "strong smoothing, thin parts shrink instead of turning into spikes. <b>none</b> keeps the "
         "frequencies of the input; then the number of steps does not matter."));
     list.addParam(RichEnum(
-        "spectrum", static_cast<int>(defaults.spectrum), {"full", "truncated"}, "Spectrum",
+        "spectrum", static_cast<int>(defaults.evaluation.spectrum), {"full", "truncated"},
+        "Spectrum",
         "<b>full</b> filters all frequencies that the mesh can carry, and is fast. "
         "<b>truncated</b> computes only the lowest frequencies (as many as the basis size) and "
         "treats all the others alike, as older methods do.",
         true));
     list.addParam(RichInt(
-        "basis_size", defaults.basisSize, "Basis size",
+        "basis_size", defaults.evaluation.basisSize, "Basis size",
         "How many frequencies (manifold harmonics) a truncated spectrum has, e.g. 300. Must be "
         "below the number of vertices; time and memory grow with it.",
         true));
     list.addParam(RichBool(
-        "reinject_residual", defaults.reinjectResidual, "Reinject residual",
+        "reinject_residual", defaults.evaluation.reinjectResidual, "Reinject residual",
         "For a truncated spectrum: keep the details beyond the basis, with the mean gain of their "
         "frequencies. Off: drop them.",
+        true));
+    list.addParam(RichEnum(
+        "laplacian", static_cast<int>(defaults.laplacian), {"intrinsic delaunay", "cotangent"},
+        "Laplacian",
+        "How the frequencies of the surface are measured. <b>intrinsic delaunay</b> works on any "
+        "triangles, also needles, holes, doubled or crossing sheets, and stays stable in strong "
+        "filters. <b>cotangent</b> is the formula of the paper; every triangle needs an area.",
         true));
     return list;
 }
@@ -101,8 +109,9 @@ FilterOptions fractionalFilterOptions(const RichParameterList& parameters) {
     options.featureSize = parameters.getAbsPerc("feature_size");
     options.steps = parameters.getInt("steps");
     options.basisUpdate = static_cast<spectral::BasisUpdate>(parameters.getEnum("basis_update"));
-    options.spectrum = static_cast<spectral::Spectrum>(parameters.getEnum("spectrum"));
-    options.basisSize = parameters.getInt("basis_size");
-    options.reinjectResidual = parameters.getBool("reinject_residual");
+    options.evaluation.spectrum = static_cast<spectral::Spectrum>(parameters.getEnum("spectrum"));
+    options.evaluation.basisSize = parameters.getInt("basis_size");
+    options.evaluation.reinjectResidual = parameters.getBool("reinject_residual");
+    options.laplacian = static_cast<spectral::LaplacianKind>(parameters.getEnum("laplacian"));
     return options;
 }

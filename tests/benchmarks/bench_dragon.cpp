@@ -81,7 +81,7 @@ int main(int argc, char** argv) {
     const double part = argc > 2 ? std::atof(argv[2]) : 0.15;
     const double featureSize = part * boundingBoxDiagonal(mesh.V);
     std::printf("%s: %ld vertices, feature size %g of the diagonal, accuracy %g\n", argv[1],
-                static_cast<long>(mesh.V.rows()), part, FilterOptions().accuracy);
+                static_cast<long>(mesh.V.rows()), part, EvaluationOptions().accuracy);
     std::printf("%-34s %14s %14s %10s %10s %8s %6s\n", "filter", "factorizations", "solves/coord.",
                 "error", "filter s", "alone s", "ratio");
 

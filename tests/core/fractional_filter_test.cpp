@@ -27,7 +27,7 @@ FilterOptions boost(const Mesh& mesh, BasisUpdate update = BasisUpdate::Full) {
     options.featureSize = 0.3 * boundingBoxDiagonal(mesh.V);
     options.steps = 3;
     options.basisUpdate = update;
-    options.accuracy = 1e-9;
+    options.evaluation.accuracy = 1e-9;
     return options;
 }
 
@@ -36,7 +36,7 @@ FilterOptions smoothing(const Mesh& mesh, int steps, BasisUpdate update) {
     options.featureSize = 0.25 * boundingBoxDiagonal(mesh.V);
     options.steps = steps;
     options.basisUpdate = update;
-    options.accuracy = 1e-9;
+    options.evaluation.accuracy = 1e-9;
     return options;
 }
 
@@ -57,8 +57,8 @@ TEST(FractionalFilter, WithUnitGainMovesNothing) {
             for (const Spectrum spectrum : {Spectrum::Full, Spectrum::Truncated}) {
                 FilterOptions options = smoothing(mesh, 3, update);
                 options.transferFunction.stopGain = 1.0;
-                options.spectrum = spectrum;
-                options.basisSize = 40;
+                options.evaluation.spectrum = spectrum;
+                options.evaluation.basisSize = 40;
                 const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
                 EXPECT_LT(result.maxDisplacement, 1e-12 * boundingBoxDiagonal(mesh.V));
             }
@@ -68,8 +68,8 @@ TEST(FractionalFilter, InManyStepsWithoutUpdateEqualsOneStep) {
     for (const Mesh& mesh : classesOfMeshes())
         for (const Spectrum spectrum : {Spectrum::Full, Spectrum::Truncated}) {
             FilterOptions options = smoothing(mesh, 1, BasisUpdate::None);
-            options.spectrum = spectrum;
-            options.basisSize = 40;
+            options.evaluation.spectrum = spectrum;
+            options.evaluation.basisSize = 40;
             const Vertices once = fractionalFilter(mesh.V, mesh.F, options).V;
             options.steps = 7;
             const Vertices often = fractionalFilter(mesh.V, mesh.F, options).V;
@@ -126,11 +126,13 @@ TEST(FractionalFilter, GivesTheSameShapeAMillionUnitsFromTheOrigin) {
     EXPECT_LT(largestDifference(far, fractionalFilter(mesh.V, mesh.F, options).V), 1e-7);
 }
 
+// With the masses of the step's Laplacian as weights; those of the cotangent one are plain areas.
 TEST(FractionalFilter, KeepsTheCentroidOfEveryComponent) {
     const Mesh mesh = testing::joined(testing::blob(), testing::torus(3, 0.8, 24, 12));
     const Operator A(mesh);
     for (const FilterType type : {FilterType::LowPass, FilterType::HighPass}) {
         FilterOptions options = smoothing(mesh, 1, BasisUpdate::Full);
+        options.laplacian = LaplacianKind::Cotangent;
         options.transferFunction.type = type;
         const Vertices Y = fractionalFilter(mesh.V, mesh.F, options).V;
         EXPECT_LT((A.constants.means(Y) - A.constants.means(mesh.V)).cwiseAbs().maxCoeff(), 1e-13);
@@ -141,6 +143,7 @@ TEST(FractionalFilter, IsTheCompositionOfItsSteps) {
     // Eq. 11: each step is the one-step filter of the shape that the step before has left.
     const Mesh mesh = testing::blob();
     FilterOptions options = smoothing(mesh, 3, BasisUpdate::Full);
+    options.laplacian = LaplacianKind::Cotangent;
     const Vertices whole = fractionalFilter(mesh.V, mesh.F, options).V;
 
     const double cutoff = 2.0 * kPi / options.featureSize;
@@ -157,6 +160,7 @@ TEST(FractionalFilter, IsTheCompositionOfItsSteps) {
 TEST(FractionalFilter, ConformalUpdateTakesTheMassesAnewAndKeepsTheStiffness) {
     const Mesh mesh = testing::blob();
     FilterOptions options = smoothing(mesh, 3, BasisUpdate::Conformal);
+    options.laplacian = LaplacianKind::Cotangent;
     const Vertices whole = fractionalFilter(mesh.V, mesh.F, options).V;
 
     const double cutoff = 2.0 * kPi / options.featureSize;
@@ -173,7 +177,8 @@ TEST(FractionalFilter, ConformalUpdateTakesTheMassesAnewAndKeepsTheStiffness) {
 
 TEST(FractionalFilter, LowPassLowersTheDirichletEnergy) {
     for (const Mesh& mesh : classesOfMeshes()) {
-        const FilterOptions options = smoothing(mesh, 1, BasisUpdate::None);
+        FilterOptions options = smoothing(mesh, 1, BasisUpdate::None);
+        options.laplacian = LaplacianKind::Cotangent;
         const SparseMatrix W = cotangentLaplacian(mesh.V, mesh.F).W;
         const Vertices Y = fractionalFilter(mesh.V, mesh.F, options).V;
         EXPECT_LT((Y.transpose() * W * Y).trace(), (mesh.V.transpose() * W * mesh.V).trace());
@@ -187,6 +192,7 @@ TEST(FractionalFilter, IdealResponseInFullSpectrumIsExact) {
         for (const FilterType type : {FilterType::LowPass, FilterType::HighPass,
                                       FilterType::BandPass, FilterType::BandStop}) {
             FilterOptions options = smoothing(mesh, 1, BasisUpdate::Full);
+            options.laplacian = LaplacianKind::Cotangent;
             options.transferFunction.type = type;
             options.transferFunction.response = Response::Ideal;
             options.featureSize *= 2.0;
@@ -217,8 +223,8 @@ TEST(FractionalFilter, IsReproducibleToTheBit) {
     const Mesh mesh = testing::blob();
     for (const Spectrum spectrum : {Spectrum::Full, Spectrum::Truncated}) {
         FilterOptions options = boost(mesh);
-        options.spectrum = spectrum;
-        options.basisSize = 50;
+        options.evaluation.spectrum = spectrum;
+        options.evaluation.basisSize = 50;
         EXPECT_EQ(fractionalFilter(mesh.V, mesh.F, options).V,
                   fractionalFilter(mesh.V, mesh.F, options).V);
     }
@@ -235,7 +241,7 @@ TEST(FractionalFilter, ReportsWhatItDid) {
     EXPECT_NEAR(std::accumulate(result.stepSizes.begin(), result.stepSizes.end(), 0.0), 1.0, 1e-15);
     EXPECT_NEAR(result.cutoffFrequency * result.featureSize, 2.0 * kPi, 1e-12);
     EXPECT_GT(result.errorEstimate, 0.0);
-    EXPECT_LE(result.errorEstimate, options.accuracy);
+    EXPECT_LE(result.errorEstimate, options.evaluation.accuracy);
     EXPECT_DOUBLE_EQ(result.areaAfter, surfaceArea(result.V, mesh.F));
     EXPECT_NEAR(result.maxDisplacement, largestDifference(result.V, mesh.V), 1e-14);
     EXPECT_EQ(result.eigenvalues.size(), 0);
@@ -249,7 +255,7 @@ TEST(FractionalFilter, WarnsWhenTheAccuracyIsNotReached) {
     options.featureSize = 0.5;  // where the noise is
     const FilterResult cusp = fractionalFilter(mesh.V, mesh.F, options);
     EXPECT_FALSE(cusp.accuracyReached);
-    EXPECT_GT(cusp.errorEstimate, options.accuracy);
+    EXPECT_GT(cusp.errorEstimate, options.evaluation.accuracy);
     ASSERT_EQ(cusp.warnings.size(), 1u);
     EXPECT_NE(cusp.warnings[0].find("stop_gain"), std::string::npos);
 
@@ -280,8 +286,8 @@ TEST(FractionalFilter, StopsWhenTheCallerSaysSo) {
     const Mesh mesh = testing::blob();
     for (const Spectrum spectrum : {Spectrum::Full, Spectrum::Truncated}) {
         FilterOptions options = smoothing(mesh, 5, BasisUpdate::Full);
-        options.spectrum = spectrum;
-        options.basisSize = 50;
+        options.evaluation.spectrum = spectrum;
+        options.evaluation.basisSize = 50;
         int calls = 0;
         const Progress progress([&](double, const std::string&) { return ++calls < 7; });
         EXPECT_THROW(fractionalFilter(mesh.V, mesh.F, options, progress), Cancelled);
@@ -299,11 +305,11 @@ TEST(FractionalFilter, RefusesOptionsOutOfTheirRange) {
     refuses([](FilterOptions& o) { o.steps = 0; });
     refuses([](FilterOptions& o) { o.featureSize = 0.0; });
     refuses([](FilterOptions& o) { o.featureSize = std::nan(""); });
-    refuses([](FilterOptions& o) { o.accuracy = 0.0; });
+    refuses([](FilterOptions& o) { o.evaluation.accuracy = 0.0; });
     refuses([](FilterOptions& o) { o.transferFunction.passGain = -1.0; });
     refuses([](FilterOptions& o) {
-        o.spectrum = Spectrum::Truncated;
-        o.basisSize = 162;
+        o.evaluation.spectrum = Spectrum::Truncated;
+        o.evaluation.basisSize = 162;
     });
 }
 
@@ -313,6 +319,7 @@ TEST(FractionalFilter, SaysInWhichStepThinPartsCollapsed) {
     mesh.V.col(0) *= 60.0;
     FilterOptions options;
     options.featureSize = 400.0;
+    options.laplacian = LaplacianKind::Cotangent;
     options.steps = 60;
     try {
         fractionalFilter(mesh.V, mesh.F, options);

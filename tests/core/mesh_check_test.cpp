@@ -14,9 +14,9 @@ namespace {
 
 using testing::Mesh;
 
-std::string complaint(const Mesh& mesh) {
+std::string complaint(const Mesh& mesh, LaplacianKind kind = LaplacianKind::Cotangent) {
     try {
-        checkMesh(mesh.V, mesh.F);
+        checkMesh(mesh.V, mesh.F, kind);
     } catch (const InvalidMesh& error) {
         return error.what();
     }
@@ -51,6 +51,13 @@ TEST(CheckMesh, CountsTrianglesWithoutArea) {
     mesh.F.row(4) << 7, 7, 9;
     EXPECT_TRUE(contains(complaint(mesh), "1 triangle has no area"));
     EXPECT_TRUE(contains(complaint(mesh), "Remove Zero Area Faces"));
+    EXPECT_EQ(complaint(mesh, LaplacianKind::IntrinsicDelaunay), "");
+}
+
+TEST(CheckMesh, RefusesAMeshWithoutAnyArea) {
+    Mesh mesh = testing::icosphere(1);
+    mesh.V.rightCols(2).setZero();
+    EXPECT_TRUE(contains(complaint(mesh, LaplacianKind::IntrinsicDelaunay), "line or a point"));
 }
 
 TEST(CheckMesh, NamesAnIndexOutOfRange) {

@@ -87,11 +87,11 @@ TEST_P(RealMesh, FullSpectrumAndTruncatedAgreeWhereTheGainVanishesBeyondTheBasis
     FilterOptions options;
     options.featureSize = 0.5 * diagonal_;
     options.steps = 1;
-    options.accuracy = 1e-9;
+    options.evaluation.accuracy = 1e-9;
     const Vertices full = fractionalFilter(mesh_.V, mesh_.F, options).V;
-    options.spectrum = Spectrum::Truncated;
-    options.basisSize = 500;
-    options.reinjectResidual = false;
+    options.evaluation.spectrum = Spectrum::Truncated;
+    options.evaluation.basisSize = 500;
+    options.evaluation.reinjectResidual = false;
     const Vertices truncated = fractionalFilter(mesh_.V, mesh_.F, options).V;
     EXPECT_LT(largestDifference(full, truncated), 1e-7);
 }

@@ -45,10 +45,15 @@ def assert_full_spectrum_agrees(
     mesh: tuple[NDArray[Any], NDArray[Any]], options: dict[str, Any], record: Callable[..., None]
 ) -> None:
     V, F = mesh
-    options = {"feature_size": percent(15), **options}
+    options = {"feature_size": percent(15), "laplacian": "cotangent", **options}
     Y, report = filter_arrays(V, F, **options)
     expected = reference.full_filter(
-        V, F, gain_of(options, report), options["steps"], options.get("basis_update", "none")
+        V,
+        F,
+        gain_of(options, report),
+        options["steps"],
+        options.get("basis_update", "none"),
+        options["laplacian"],
     )
     error = largest_distance(Y, expected) / diagonal(V)
     record("largest_distance_in_diagonals", error)
@@ -99,6 +104,24 @@ def test_eight_steps_agree_on_every_sample(
     assert_full_spectrum_agrees(decimated(sample_name), options, record_property)
 
 
+@pytest.mark.parametrize("basis_update", ["full", "conformal"])
+@pytest.mark.parametrize("steps", [1, 8])
+def test_intrinsic_delaunay_agrees_with_its_inventors_package(
+    sample_name: str,
+    steps: int,
+    basis_update: str,
+    decimated: Decimated,
+    record_property: Callable[..., None],
+) -> None:
+    options = {
+        "laplacian": "intrinsic delaunay",
+        "feature_size": percent(10),
+        "steps": steps,
+        "basis_update": basis_update,
+    }
+    assert_full_spectrum_agrees(decimated(sample_name), options, record_property)
+
+
 def test_eight_steps_without_update_agree(
     decimated: Decimated, record_property: Callable[..., None]
 ) -> None:
@@ -130,6 +153,7 @@ def test_truncated_basis_agrees(
     options = {
         **TYPES[filter_type],
         "feature_size": percent(15),
+        "laplacian": "cotangent",
         "spectrum": "truncated",
         "basis_size": 100,
         "reinject_residual": reinject_residual,
@@ -154,7 +178,9 @@ def test_truncated_basis_agrees(
 
 def test_eigenvalues_of_a_truncated_basis_agree(sample_name: str, decimated: Decimated) -> None:
     V, F = decimated(sample_name)
-    _, report = filter_arrays(V, F, spectrum="truncated", basis_size=100, steps=1)
+    _, report = filter_arrays(
+        V, F, spectrum="truncated", basis_size=100, steps=1, laplacian="cotangent"
+    )
     found = report["eigenvalues"]
     (spectrum,) = reference.spectra(
         reference.cotangent_matrix(V, F),

@@ -138,6 +138,7 @@ def test_every_option_reaches_the_filter(cow: Path, tmp_path: Path) -> None:
         "spectrum": "truncated",
         "basis_size": 60,
         "reinject_residual": False,
+        "laplacian": "cotangent",
     }
     assert options.keys() == FilterOptions().as_dict().keys()
     arguments: list[object] = []

@@ -16,6 +16,7 @@ FilterType = Literal["low-pass", "high-pass", "band-pass", "band-stop"]
 Response = Literal["gaussian", "butterworth", "ideal"]
 BasisUpdate = Literal["full", "conformal", "none"]
 Spectrum = Literal["full", "truncated"]
+LaplacianKind = Literal["intrinsic delaunay", "cotangent"]
 
 
 @dataclass(frozen=True)
@@ -160,6 +161,11 @@ class FilterOptions:
     )
     reinject_residual: bool = _option(
         True, "Keep the details beyond a truncated spectrum, or drop them."
+    )
+    laplacian: LaplacianKind = _option(
+        "intrinsic delaunay",
+        "How frequencies are measured: 'intrinsic delaunay' works on any triangles and stays "
+        "stable; cotangent is the paper's and needs triangles with an area.",
     )
 
     def __post_init__(self) -> None:

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <optional>
+
+#include "intrinsic_delaunay.h"
+#include "laplacian.h"
+#include "surface.h"
+
+namespace spectral {
+
+enum class LaplacianKind {
+    IntrinsicDelaunay,  ///< Robust: any triangles, all weights non-negative (intrinsic_delaunay.h).
+    Cotangent           ///< The paper's: plain cotangents, every triangle needs an area.
+};
+
+/// What a step takes from the current shape.
+enum class BasisUpdate {
+    Full,       ///< W and D: the paper's scheme.
+    Conformal,  ///< D only, W stays that of the input (Kazhdan, Solomon, Ben-Chen 2012).
+    None        ///< Neither: one basis for all steps (Vallet and Levy 2008).
+};
+
+/// Makes the Laplacians of the shapes that a surface takes on in the course of a filter.
+class LaplacianBuilder {
+  public:
+    /// @param surface  kept by reference; its X is the input's shape.
+    LaplacianBuilder(const Surface& surface, LaplacianKind kind, BasisUpdate update);
+
+    /// The Laplacian of the input.
+    const Laplacian& input() const { return input_; }
+
+    /// The Laplacian of the shape X (n x 3), as far as the update takes it from there.
+    Laplacian operator()(const Vertices& X) const;
+
+  private:
+    Laplacian ofShape(const Vertices& X) const;
+    Laplacian conformal(const Vertices& X) const;
+
+    const Surface& surface_;
+    BasisUpdate update_;
+    std::optional<IntrinsicDelaunay> intrinsic_;
+    Laplacian input_;
+    Eigen::VectorXd inputMass_;  // of the mesh's own triangles
+};
+
+}  // namespace spectral

@@ -1,0 +1,114 @@
+#include "step_evaluator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+#include <string>
+
+#include "errors.h"
+#include "full_spectrum.h"
+#include "pole_selection.h"
+
+namespace spectral {
+
+namespace {
+
+/// More harmonics than this for a discontinuous gain are a mistake of the user's: minutes of time.
+constexpr Index kMaxExactBasis = 1000;
+
+/// Up to this many vertices the dense solver computes all harmonics in about a second.
+constexpr Index kDenseVertices = 600;
+
+/// Relative accuracy of a step that round-off still allows.
+constexpr double kFinestAccuracy = 1e-13;
+
+/// Relative error, all steps together, beyond which a result is not worth having.
+constexpr double kUselessError = 0.1;
+
+}  // namespace
+
+StepEvaluator::StepEvaluator(const EvaluationOptions& options, const Components& components,
+                             const TransferFunction& F)
+    : options_(options), components_(components), F_(F) {}
+
+void StepEvaluator::setLaplacian(Laplacian laplacian, double alpha, const Progress& progress) {
+    laplacian_ = std::move(laplacian);
+    if (!isUsable(laplacian_))
+        throw SolverFailure("triangles have collapsed: a cotangent or a mass is not finite");
+    constants_.emplace(components_, laplacian_.D);
+    if (options_.spectrum == Spectrum::Truncated) {
+        basis_ = truncated(progress);
+    } else if (usesBasis()) {
+        basis_ = upToLastJump(progress);
+    } else {
+        progress.report(0.0, "factorizing");
+        cholesky_.factorize(laplacian_, selectPole(fractionalPower(F_, alpha), F_.cutoff(),
+                                                   bulkSpectrum(laplacian_), accuracyOf(alpha)));
+    }
+}
+
+Eigen::MatrixXd StepEvaluator::operator()(const Eigen::MatrixXd& X, double alpha,
+                                          const Progress& progress) {
+    const Gain gain = fractionalPower(F_, alpha);
+    // The power of the mean gain, not the mean of the power: K steps then make one filter.
+    if (usesBasis())
+        return applyInBasis(basis_, laplacian_.D, *constants_, gain, std::pow(residualGain_, alpha),
+                            X);
+
+    FullSpectrumOptions options;
+    options.accuracy = accuracyOf(alpha);
+    const FullSpectrumResult step =
+        applyFullSpectrum(laplacian_.D, *constants_, cholesky_, gain, X, options, progress);
+    errorEstimate_ += step.errorEstimate;
+    accuracyReached_ = accuracyReached_ && step.converged;
+    if (errorEstimate_ > kUselessError) {
+        std::ostringstream text;
+        text << "the transfer function is too steep for spectrum = full: the relative error is "
+                "about "
+             << std::setprecision(2) << errorEstimate_
+             << ". Choose a stop_gain of 0.05 instead of 0, a lower order or a wider band, "
+                "response = gaussian, fewer steps, or spectrum = truncated";
+        throw SolverFailure(text.str());
+    }
+    return step.Y;
+}
+
+/// A rational Krylov space approximates smooth gains; a jump needs the eigenvectors below it.
+bool StepEvaluator::usesBasis() const {
+    return options_.spectrum == Spectrum::Truncated || !F_.discontinuities().empty();
+}
+
+/// The errors of the steps add up to the requested one: each has its share.
+double StepEvaluator::accuracyOf(double alpha) const {
+    return std::max(options_.accuracy * alpha, kFinestAccuracy);
+}
+
+HarmonicBasis StepEvaluator::truncated(const Progress& progress) {
+    HarmonicBasis basis =
+        truncatedBasis(laplacian_, *constants_, options_.basisSize, cholesky_, progress);
+    residualGain_ = 0.0;
+    if (options_.reinjectResidual) {  // Eq. 9
+        const double from = std::sqrt(basis.lambda[basis.size() - 1]);
+        const double to = std::sqrt(largestEigenvalue(laplacian_));
+        residualGain_ = from < to ? meanGain(F_, from, to) : F_(to);
+    }
+    return basis;
+}
+
+/// The harmonics up to the last jump of F, beyond which an ideal F is constant: exact.
+HarmonicBasis StepEvaluator::upToLastJump(const Progress& progress) {
+    const double last = F_.discontinuities().back();
+    residualGain_ = F_(2.0 * last);
+    if (components_.label.size() <= kDenseVertices) return denseBasis(laplacian_, *constants_);
+    const Index below = cholesky_.countEigenvaluesBelow(laplacian_, last * last);
+    if (below > kMaxExactBasis)
+        throw InvalidOption("response = ideal needs every harmonic up to its edge, here " +
+                            std::to_string(below) + " (at most " + std::to_string(kMaxExactBasis) +
+                            "): choose a larger feature_size, response = butterworth with order = "
+                            "8, or spectrum = truncated with reinject_residual");
+    return truncatedBasis(laplacian_, *constants_, std::max<Index>(below, constants_->count() + 1),
+                          cholesky_, progress);
+}
+
+}  // namespace spectral

@@ -1,0 +1,156 @@
+#include "core/intrinsic_delaunay.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "core/cholesky.h"
+#include "core/measures.h"
+#include "core/surface.h"
+#include "support/evaluation.h"
+
+namespace spectral {
+namespace {
+
+using testing::Mesh;
+
+Laplacian intrinsicLaplacian(const Mesh& mesh) {
+    return IntrinsicDelaunay(mesh.V, mesh.F).laplacian(mesh.V);
+}
+
+/// Every kind of mesh that plain cotangents cannot deal with.
+std::vector<Mesh> brokenMeshes() {
+    std::vector<Mesh> meshes;
+    const Mesh blob = testing::blob();
+
+    Mesh duplicates = blob;  // faces 0 to 9 once more, half of them turned over
+    duplicates.F.conservativeResize(blob.F.rows() + 10, 3);
+    duplicates.F.bottomRows(10) = blob.F.topRows(10);
+    duplicates.F.bottomRows(5).col(1).swap(duplicates.F.bottomRows(5).col(2));
+    meshes.push_back(duplicates);
+
+    Mesh fins = blob;  // triangles that stand on edges, so that these have three
+    fins.V.conservativeResize(blob.V.rows() + 1, 3);
+    fins.V.bottomRows(1) << 2.0, 2.0, 2.0;
+    fins.F.conservativeResize(blob.F.rows() + 3, 3);
+    for (int k = 0; k < 3; ++k)
+        fins.F.row(blob.F.rows() + k) << blob.F(40 * k, 0), blob.F(40 * k, 1),
+            static_cast<int>(blob.V.rows());
+    meshes.push_back(fins);
+
+    Mesh collapsed = blob;  // a fan shrunk to a point, other corners moved onto an edge
+    for (int k = 0; k < 3; ++k) collapsed.V.row(blob.F(7, k)) = blob.V.row(blob.F(7, 0));
+    collapsed.V.row(blob.F(300, 2)) =
+        0.5 * (blob.V.row(blob.F(300, 0)) + blob.V.row(blob.F(300, 1)));
+    meshes.push_back(collapsed);
+
+    Mesh flat = blob;  // crushed almost to a line
+    flat.V.col(0) *= 1e-9;
+    flat.V.col(1) *= 1e-9;
+    meshes.push_back(flat);
+
+    Mesh turned = blob;  // neighbours of opposite orientation
+    for (int t = 0; t < 100; ++t) std::swap(turned.F(t, 1), turned.F(t, 2));
+    meshes.push_back(turned);
+
+    Mesh pinched = testing::joined(testing::icosphere(1), testing::icosphere(1));
+    pinched.V.bottomRows(42).col(0).array() += 2.0;
+    pinched.F = pinched.F.unaryExpr([](int i) { return i == 42 ? 3 : i; }).eval();
+    pinched.V.row(42) = pinched.V.row(41);  // left out of all triangles
+    const Surface surface = surfaceOf(pinched.V, pinched.F);
+    meshes.push_back({surface.X, surface.F});  // two spheres with one common vertex
+
+    meshes.push_back(testing::withNoise(testing::rectangle(2, 1, 20, 10), 0.08, 6));
+    return meshes;
+}
+
+TEST(IntrinsicDelaunay, GivesNonNegativeWeightsAndPositiveMassesOnAnyMesh) {
+    int number = 0;
+    for (const Mesh& mesh : brokenMeshes()) {
+        const Laplacian laplacian = intrinsicLaplacian(mesh);
+        ASSERT_TRUE(isUsable(laplacian)) << number;
+        double largestOffDiagonal = 0.0;
+        for (int k = 0; k < laplacian.W.outerSize(); ++k)
+            for (SparseMatrix::InnerIterator it(laplacian.W, k); it; ++it)
+                if (it.row() != it.col())
+                    largestOffDiagonal = std::max(largestOffDiagonal, it.value());
+        EXPECT_LE(largestOffDiagonal, 0.0) << number;
+        ShiftedCholesky cholesky;
+        EXPECT_NO_THROW(cholesky.factorize(laplacian, 1.0)) << number;
+        ++number;
+    }
+}
+
+TEST(IntrinsicDelaunay, IsPositiveSemidefiniteWithRowsThatSumToZero) {
+    for (const Mesh& mesh : brokenMeshes()) {
+        const Eigen::MatrixXd W = intrinsicLaplacian(mesh).W;
+        const double scale = W.cwiseAbs().maxCoeff();
+        EXPECT_EQ(W, W.transpose());
+        EXPECT_LT(W.rowwise().sum().cwiseAbs().maxCoeff(), 1e-11 * scale);
+        const Eigen::VectorXd lambda =
+            Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(W, Eigen::EigenvaluesOnly).eigenvalues();
+        EXPECT_GT(lambda[0], -1e-11 * scale);
+    }
+}
+
+TEST(IntrinsicDelaunay, EqualsTheCotangentMatrixWhereTheMeshIsDelaunay) {
+    // All triangles of an icosphere are acute; its triangulation is already the Delaunay one.
+    const Mesh mesh = testing::icosphere(3);
+    const Laplacian intrinsic = intrinsicLaplacian(mesh);
+    const Laplacian cotangent = cotangentLaplacian(mesh.V, mesh.F);
+    EXPECT_LT(Eigen::MatrixXd(intrinsic.W - cotangent.W).cwiseAbs().maxCoeff(), 1e-12);
+    EXPECT_LT((intrinsic.D - cotangent.D).cwiseAbs().maxCoeff(), 1e-14);
+}
+
+TEST(IntrinsicDelaunay, FlipsTheLongDiagonalOfAKite) {
+    // Two obtuse triangles on the edge (0, 1), turned into the two on (2, 3): as by hand, on the
+    // double cover of a sheet with boundary.
+    Mesh kite{Vertices(4, 3), Faces(2, 3)};
+    kite.V << -2, 0, 0, 2, 0, 0, 0, 1, 0, 0, -1, 0;
+    kite.F << 0, 1, 2, 1, 0, 3;
+    const Eigen::MatrixXd W = intrinsicLaplacian(kite).W;
+    EXPECT_NEAR(W(0, 1), 0.0, 1e-12);
+    // Opposite angles of (2, 3) at 0 and 1: tan of the half is 1/2, so cot is 3/4.
+    EXPECT_NEAR(W(2, 3), -0.75, 1e-12);
+    // Opposite angle of (0, 2) at 3: tan is 2.
+    EXPECT_NEAR(W(0, 2), -0.25, 1e-12);
+}
+
+TEST(IntrinsicDelaunay, TakesOneCopyOfAClosedOrientedSurfaceAndTwoOfAnyOther) {
+    const Mesh blob = testing::blob(), sheet = testing::rectangle(1, 1, 3, 3);
+    EXPECT_TRUE(IntrinsicDelaunay(blob.V, blob.F).isSingleCover());
+    EXPECT_FALSE(IntrinsicDelaunay(sheet.V, sheet.F).isSingleCover());
+}
+
+TEST(IntrinsicDelaunay, DoesNotCareForTheOrientationOfFaces) {
+    const Mesh mesh = testing::withNoise(testing::blob(), 0.05, 2);
+    Mesh turned = mesh;
+    for (Index t = 0; t < mesh.F.rows(); t += 3) std::swap(turned.F(t, 1), turned.F(t, 2));
+    const Laplacian one = intrinsicLaplacian(mesh), two = intrinsicLaplacian(turned);
+    EXPECT_LT(Eigen::MatrixXd(one.W - two.W).cwiseAbs().maxCoeff(), 1e-9);
+    EXPECT_LT((one.D - two.D).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(IntrinsicDelaunay, KeepsTheAreaOfAPlaneWhateverItsTriangles) {
+    // Flips inside a plane move no point of it; mollification adds its share.
+    Mesh mesh = testing::rectangle(2, 1, 24, 12);
+    const Vertices shaken = testing::withNoise(mesh, 0.03, 8).V;
+    for (Index i = 0; i < mesh.V.rows(); ++i) {
+        const bool inside =
+            mesh.V(i, 0) > 0 && mesh.V(i, 0) < 2 && mesh.V(i, 1) > 0 && mesh.V(i, 1) < 1;
+        if (inside) mesh.V.row(i).head(2) = shaken.row(i).head(2);
+    }
+    EXPECT_NEAR(intrinsicLaplacian(mesh).D.sum(), 2.0, 1e-3);
+}
+
+TEST(IntrinsicDelaunay, AreaOfATorusConvergesAtSecondOrder) {
+    const auto error = [](int n) {
+        const Laplacian laplacian = intrinsicLaplacian(testing::torus(1.0, 0.3, 2 * n, n));
+        return std::abs(laplacian.D.sum() / (4.0 * kPi * kPi * 0.3) - 1.0);
+    };
+    EXPECT_NEAR(error(16) / error(32), 4.0, 0.2);
+}
+
+}  // namespace
+}  // namespace spectral
