@@ -122,10 +122,6 @@ class IntrinsicTriangulation {
     /// Sum of the cotangents opposite to an edge.
     double edgeCotangents(int s) const { return cotangent(s) + cotangent(twin_[s]); }
 
-    double area(int triangle) const {
-        return Triangle::areaOf(length_[3 * triangle], length_[3 * triangle + 1],
-                                length_[3 * triangle + 2]);
-    }
     int sideCount() const { return static_cast<int>(tail_.size()); }
     int tail(int side) const { return tail_[side]; }
     int twin(int side) const { return twin_[side]; }
@@ -241,7 +237,7 @@ IntrinsicDelaunay::IntrinsicDelaunay(const Vertices& V, const Faces& F) : vertex
     }
 }
 
-Laplacian IntrinsicDelaunay::laplacian(const Vertices& V) const {
+SparseMatrix IntrinsicDelaunay::stiffness(const Vertices& V) const {
     std::vector<double> length(tail_.size());
     for (std::size_t s = 0; s < tail_.size(); ++s)
         length[s] = (V.row(tail_[next(static_cast<int>(s))]) - V.row(tail_[s])).norm();
@@ -260,16 +256,11 @@ Laplacian IntrinsicDelaunay::laplacian(const Vertices& V) const {
     triangulation.makeDelaunay();
 
     const double share = 1.0 / copies_;
-    Eigen::VectorXd D = Eigen::VectorXd::Zero(vertexCount_);
     Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(vertexCount_);
     std::vector<Eigen::Triplet<double>> entries;
     entries.reserve(tail_.size() + static_cast<std::size_t>(vertexCount_));
     for (int s = 0; s < triangulation.sideCount(); ++s) {
         const int t = triangulation.twin(s), i = triangulation.tail(s), j = triangulation.tail(t);
-        if (s % 3 == 0) {
-            const double third = share * triangulation.area(s / 3) / 3.0;
-            for (int c = 0; c < 3; ++c) D[triangulation.tail(s + c)] += third;
-        }
         // An edge from a vertex to itself carries no difference.
         if (s > t || i == j) continue;
         const double w = share * 0.5 * std::max(0.0, triangulation.edgeCotangents(s));
@@ -281,7 +272,7 @@ Laplacian IntrinsicDelaunay::laplacian(const Vertices& V) const {
     for (int i = 0; i < vertexCount_; ++i) entries.emplace_back(i, i, diagonal[i]);
     SparseMatrix W(vertexCount_, vertexCount_);
     W.setFromTriplets(entries.begin(), entries.end());
-    return {std::move(W), std::move(D)};
+    return W;
 }
 
 }  // namespace spectral

@@ -2,19 +2,18 @@
 
 #include <vector>
 
-#include "laplacian.h"
 #include "types.h"
 
 namespace spectral {
 
-/// The Laplacian on the intrinsic Delaunay triangulation of a mesh of any topology.
+/// The cotangent matrix on the intrinsic Delaunay triangulation of a mesh of any topology.
 ///
 /// N. Sharp and K. Crane, "A Laplacian for Nonmanifold Triangle Meshes", SGP 2020: the edge lengths
 /// are mollified, so that no triangle is degenerate; the triangles are glued into a closed surface,
 /// the tufted cover; its edges are flipped, by lengths alone, until all are Delaunay; the cotangent
-/// matrix of that triangulation is taken. All weights are then non-negative, W is positive
-/// semidefinite and D positive, whatever the triangles were: boundaries, edges with many triangles,
-/// duplicate and zero-area faces are allowed.
+/// matrix of that triangulation is taken. All weights are then non-negative and W is positive
+/// semidefinite, whatever the triangles were: boundaries, edges with many triangles, duplicate and
+/// zero-area faces are allowed.
 ///
 /// The gluing depends on the connectivity only (and, round an edge of more than two triangles, on
 /// their order in the first embedding): it is made once for all steps of a filter.
@@ -24,8 +23,8 @@ class IntrinsicDelaunay {
     /// @param F  m x 3; three different corners each, every vertex in some triangle.
     IntrinsicDelaunay(const Vertices& V, const Faces& F);
 
-    /// W and D of the embedding V (n x 3, finite, not all in one point).
-    Laplacian laplacian(const Vertices& V) const;
+    /// W of the embedding V (n x 3, finite, not all in one point): n x n, symmetric, rows sum to 0.
+    SparseMatrix stiffness(const Vertices& V) const;
 
     /// Whether the cover has one copy of every triangle, which is enough for a closed, oriented
     /// surface, or a front and a back.

@@ -33,14 +33,13 @@ class LaplacianBuilder {
     Laplacian operator()(const Vertices& X) const;
 
   private:
-    Laplacian ofShape(const Vertices& X) const;
-    Laplacian conformal(const Vertices& X) const;
+    SparseMatrix stiffness(const Vertices& X) const;
+    Eigen::VectorXd mass(const Vertices& X) const;
 
     const Surface& surface_;
     BasisUpdate update_;
     std::optional<IntrinsicDelaunay> intrinsic_;
     Laplacian input_;
-    Eigen::VectorXd inputMass_;  // of the mesh's own triangles
 };
 
 }  // namespace spectral

@@ -2,8 +2,8 @@
 
 usage: export_sample_meshes.py FOLDER
 
-Beside each mesh NAME.ply goes NAME.laplacian, its Laplacian as the package robust_laplacian has it:
-rows of three numbers (i, j, W_ij), and (i, -1, D_ii) for the masses.
+Beside each mesh NAME.ply goes NAME.stiffness, the matrix W of its intrinsic Delaunay Laplacian by
+the package robust_laplacian: rows of three doubles (i, j, W_ij).
 
 Exit code 77, which ctest takes for "skipped", when a package that this needs is not installed.
 """
@@ -60,18 +60,10 @@ def write_ply(target: pathlib.Path, vertices: Vertices, faces: Faces) -> None:
     print(target.name, len(vertices), "vertices", len(faces), "faces")
 
 
-def write_laplacian(target: pathlib.Path, vertices: Vertices, faces: Faces) -> None:
-    """Write the Laplacian of the package robust_laplacian."""
-    W, D = robust_laplacian.mesh_laplacian(vertices, faces)
-    W = W.tocoo()
-    masses = D.diagonal()
-    rows = np.vstack(
-        [
-            np.column_stack([W.row, W.col, W.data]),
-            np.column_stack([np.arange(len(masses)), np.full(len(masses), -1), masses]),
-        ]
-    )
-    target.write_bytes(rows.astype("<f8").tobytes())
+def write_stiffness(target: pathlib.Path, vertices: Vertices, faces: Faces) -> None:
+    """Write the matrix W of the package robust_laplacian."""
+    W = robust_laplacian.mesh_laplacian(vertices, faces)[0].tocoo()
+    target.write_bytes(np.column_stack([W.row, W.col, W.data]).astype("<f8").tobytes())
 
 
 def main(folder: pathlib.Path) -> None:
@@ -94,7 +86,7 @@ def main(folder: pathlib.Path) -> None:
     meshes["half_bunny"] = keep(vertices, faces, vertices[:, 0] < np.median(vertices[:, 0]))
     for name, (vertices, faces) in meshes.items():
         write_ply(folder / f"{name}.ply", vertices, faces)
-        write_laplacian(folder / f"{name}.laplacian", vertices, faces)
+        write_stiffness(folder / f"{name}.stiffness", vertices, faces)
 
 
 if __name__ == "__main__":

@@ -126,13 +126,11 @@ TEST(FractionalFilter, GivesTheSameShapeAMillionUnitsFromTheOrigin) {
     EXPECT_LT(largestDifference(far, fractionalFilter(mesh.V, mesh.F, options).V), 1e-7);
 }
 
-// With the masses of the step's Laplacian as weights; those of the cotangent one are plain areas.
 TEST(FractionalFilter, KeepsTheCentroidOfEveryComponent) {
     const Mesh mesh = testing::joined(testing::blob(), testing::torus(3, 0.8, 24, 12));
     const Operator A(mesh);
     for (const FilterType type : {FilterType::LowPass, FilterType::HighPass}) {
         FilterOptions options = smoothing(mesh, 1, BasisUpdate::Full);
-        options.laplacian = LaplacianKind::Cotangent;
         options.transferFunction.type = type;
         const Vertices Y = fractionalFilter(mesh.V, mesh.F, options).V;
         EXPECT_LT((A.constants.means(Y) - A.constants.means(mesh.V)).cwiseAbs().maxCoeff(), 1e-13);

@@ -144,20 +144,17 @@ def apply_gain(X: Array, spectrum: list[Spectrum], gain: Gain) -> Array:
 
 
 def matrices(V: Array, F: Indices, laplacian: str) -> tuple[scipy.sparse.csr_array, Array]:
-    """W and the diagonal of D, of either kind of Laplacian."""
+    """W of either kind of Laplacian, and the diagonal of D."""
     if laplacian == "cotangent":
         return cotangent_matrix(V, F), lumped_areas(V, F)
-    W, D = robust_laplacian.mesh_laplacian(V, F)
-    return scipy.sparse.csr_array(W), D.diagonal()
+    W, _ = robust_laplacian.mesh_laplacian(V, F)
+    return scipy.sparse.csr_array(W), lumped_areas(V, F)
 
 
 def full_filter(
     V: Array, F: Indices, gain: Gain, steps: int, basis_update: str, laplacian: str = "cotangent"
 ) -> Array:
-    """K steps of F^(1/K) (Eq. 11) with all eigenvectors.
-
-    The conformal update scales the input's masses as the areas round the vertices change.
-    """
+    """K steps of F^(1/K) (Eq. 11) with all eigenvectors."""
     parts = components(len(V), F)
     W, d = matrices(V, F, laplacian)
     spectrum = spectra(W, d, parts)
@@ -166,7 +163,7 @@ def full_filter(
         if step > 0 and basis_update == "full":
             spectrum = spectra(*matrices(X, F, laplacian), parts)
         if step > 0 and basis_update == "conformal":
-            spectrum = spectra(W, d * lumped_areas(X, F) / lumped_areas(V, F), parts)
+            spectrum = spectra(W, lumped_areas(X, F), parts)
         X = apply_gain(X, spectrum, lambda omega: gain(omega) ** (1 / steps))
     return X
 
