@@ -5,6 +5,7 @@
 #include <sstream>
 #include <string>
 
+#include "fractional_steps.h"
 #include "measures.h"
 #include "mesh_check.h"
 #include "surface.h"
@@ -14,42 +15,19 @@ namespace spectral {
 namespace {
 
 void checkOptions(const FilterOptions& options) {
-    if (options.steps < 1)
+    if (options.steps < 0)
         throw InvalidOption("steps = " + std::to_string(options.steps) +
-                            ": the filter is applied in at least 1 step; 10 is a good number");
+                            ": give a number of steps, e.g. 10, or 0 for automatic steps");
+    if (options.steps == 0 && !(std::isfinite(options.tolerance) && options.tolerance > 0.0))
+        throw InvalidOption("tolerance = " + std::to_string(options.tolerance) +
+                            ": automatic steps need a length above zero, e.g. 0.05 % of the "
+                            "diagonal of the bounding box");
     if (!std::isfinite(options.featureSize) || options.featureSize <= 0.0)
         throw InvalidOption("feature_size = " + std::to_string(options.featureSize) +
                             ": a feature size is a length above zero, e.g. 5 % of the diagonal of "
                             "the bounding box");
     if (!(options.evaluation.accuracy >= 1e-12 && options.evaluation.accuracy < 1.0))
         throw InvalidOption("accuracy must lie between 1e-12 and 1");
-}
-
-/// Eq. 11: X_0 = X, X_(i+1) = F^(1/K)(sqrt(A(X_i))) X_i.
-Vertices paperSteps(const LaplacianBuilder& laplacians, StepEvaluator& evaluate,
-                    const FilterOptions& options, Vertices X, const Progress& progress) {
-    const int K = options.steps;
-    for (int step = 0; step < K; ++step) {
-        const std::string name =
-            "step " + std::to_string(step + 1) + " of " + std::to_string(K) + ": ";
-        const Progress stage = progress.part(static_cast<double>(step) / K, (step + 1.0) / K, name);
-        try {
-            if (step == 0)
-                evaluate.setLaplacian(laplacians.input(), 1.0 / K, stage);
-            else if (options.basisUpdate != BasisUpdate::None)
-                evaluate.setLaplacian(laplacians(X), 1.0 / K, stage);
-            X = evaluate(X, 1.0 / K, stage);
-            stage.report(1.0, "done");
-        } catch (const SolverFailure& failure) {
-            throw SolverFailure(
-                name + failure.what() +
-                (step == 0 || options.basisUpdate != BasisUpdate::Full
-                     ? ""
-                     : ". A strong filter with basis_update = full pinches thin "
-                       "parts off: basis_update = conformal is the stabler choice"));
-        }
-    }
-    return X;
 }
 
 /// Length of every row of `displacement`, as their maximum and their D-weighted root mean square.
@@ -69,6 +47,27 @@ std::string accuracyWarning(double requested, double estimate) {
     return text.str();
 }
 
+std::string singularityWarning(double tolerance, const FractionalSteps& steps) {
+    std::ostringstream text;
+    text << std::setprecision(2) << "during " << 100.0 * steps.singularPart
+         << " % of the filter no step was small enough for the tolerance of " << tolerance
+         << ", the estimated error is " << steps.stepError
+         << ": thin parts pinch off there, the result depends on the steps. basis_update = "
+            "conformal shrinks them smoothly";
+    return text.str();
+}
+
+/// Without an update of the basis all powers commute, and one step is the whole filter.
+FractionalSteps filterInSteps(const LaplacianBuilder& laplacians, StepEvaluator& evaluate,
+                              const Vertices& X, const FilterOptions& options,
+                              const Progress& progress) {
+    if (options.steps > 0)
+        return fixedSteps(laplacians, evaluate, X, options.steps, options.basisUpdate, progress);
+    if (options.basisUpdate == BasisUpdate::None)
+        return fixedSteps(laplacians, evaluate, X, 1, BasisUpdate::None, progress);
+    return automaticSteps(laplacians, evaluate, X, {options.tolerance}, progress);
+}
+
 }  // namespace
 
 FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOptions& options,
@@ -81,7 +80,8 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
 
     const LaplacianBuilder laplacians(surface, options.laplacian, options.basisUpdate);
     StepEvaluator evaluate(options.evaluation, components, transfer);
-    const Vertices X = paperSteps(laplacians, evaluate, options, surface.X, progress);
+    const FractionalSteps steps = filterInSteps(laplacians, evaluate, surface.X, options, progress);
+    const Vertices& X = steps.X;
     if (!X.allFinite()) throw SolverFailure("the filtered coordinates are not finite numbers");
 
     // The displacement is added to the input: what does not move keeps its coordinates to the bit.
@@ -90,8 +90,10 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     result.V = V;
     for (Index i = 0; i < X.rows(); ++i) result.V.row(surface.vertex[i]) += displacement.row(i);
 
-    result.steps = options.steps;
-    result.stepSizes.assign(static_cast<std::size_t>(options.steps), 1.0 / options.steps);
+    result.steps = static_cast<int>(steps.sizes.size());
+    result.stepSizes = steps.sizes;
+    result.stepError = steps.stepError;
+    result.singularPart = steps.singularPart;
     result.cutoffFrequency = transfer.cutoff();
     result.featureSize = options.featureSize;
     measureDisplacement(displacement, lumpedMass(surface.X, surface.F), result);
@@ -108,6 +110,8 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     if (!result.accuracyReached)
         result.warnings.push_back(
             accuracyWarning(options.evaluation.accuracy, result.errorEstimate));
+    if (steps.singularPart > 0.0)
+        result.warnings.push_back(singularityWarning(options.tolerance, steps));
     result.eigenvalues = evaluate.basis().lambda;
     return result;
 }

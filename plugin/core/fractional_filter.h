@@ -14,7 +14,9 @@ namespace spectral {
 struct FilterOptions {
     TransferFunctionOptions transferFunction;
     double featureSize = 0.0;  ///< Wavelength of the cutoff, 2 pi / omega_c, length units, > 0.
-    int steps = 10;            ///< K >= 1: the filter is applied as K steps of F^(1/K).
+    int steps = 10;            ///< K >= 1: K steps of F^(1/K), the paper's scheme; 0: automatic.
+    double tolerance = 0.0;    ///< For automatic steps: largest error of any vertex against
+                               ///< infinitely many steps, length units, > 0.
     LaplacianKind laplacian = LaplacianKind::IntrinsicDelaunay;
     BasisUpdate basisUpdate = BasisUpdate::Full;
     EvaluationOptions evaluation;
@@ -31,18 +33,22 @@ struct FilterResult {
     double areaBefore = 0.0, areaAfter = 0.0;
     double volumeBefore = 0.0, volumeAfter = 0.0;  ///< Signed; a volume for closed meshes only.
     int components = 0;                            ///< Connected components of the surface.
-    int unreferencedVertices = 0;       ///< Vertices of no triangle; they were left alone.
-    int factorizations = 0;             ///< Sparse Cholesky or LDL^T factorizations.
-    int solves = 0;                     ///< Solves with one right-hand side.
-    bool accuracyReached = true;        ///< Whether errorEstimate is within the requested accuracy.
-    double errorEstimate = 0.0;         ///< Estimated error of the evaluation, relative, all steps.
+    int unreferencedVertices = 0;  ///< Vertices of no triangle; they were left alone.
+    int factorizations = 0;        ///< Sparse Cholesky or LDL^T factorizations.
+    int solves = 0;                ///< Solves with one right-hand side.
+    bool accuracyReached = true;   ///< Whether errorEstimate is within the requested accuracy.
+    double errorEstimate = 0.0;    ///< Estimated error of the evaluation, relative, all steps.
+    double stepError = 0.0;     ///< Automatic steps: estimated error of any vertex, length units.
+    double singularPart = 0.0;  ///< Automatic steps: part of the filter, 0 to 1, in which no step
+                                ///< was small enough for the tolerance; see fractional_steps.h.
     std::vector<double> stepSizes;      ///< The fractional powers alpha, in their order; sum 1.
     std::vector<std::string> warnings;  ///< What fell short without being an error; sentences.
     Eigen::VectorXd eigenvalues;        ///< Of the last step's basis, ascending; empty without one.
 };
 
 /// Filters the geometry of a mesh: K steps X <- F^(1/K)(sqrt(A)) X, the Laplacian A taken anew from
-/// the current shape after every step (Kovnatsky et al. 2012, Eq. 11).
+/// the current shape after every step (Kovnatsky et al. 2012, Eq. 11), or its limit for infinitely
+/// many steps, to a tolerance.
 ///
 /// The result is exact to round-off under translation: every connected component keeps its centroid
 /// (area-weighted, of the shape that a step starts from).

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 
 #include "errors.h"
@@ -42,39 +43,45 @@ double TransferFunction::operator()(double omega) const {
     return options_.stopGain + (options_.passGain - options_.stopGain) * prototype(omega / cutoff_);
 }
 
+double TransferFunction::power(double omega, double alpha) const {
+    const bool passesOnly = options_.stopGain == 0.0 && options_.type != FilterType::BandStop;
+    if (!passesOnly) return std::pow((*this)(omega), alpha);
+    return std::pow(options_.passGain, alpha) * std::exp2(-alpha * octavesDown(omega / cutoff_));
+}
+
 double TransferFunction::prototype(double x) const {
+    const double B = std::exp2(-octavesDown(x));
+    return options_.type == FilterType::BandStop ? 1.0 - B : B;
+}
+
+/// -log2 of the prototype B, >= 0; of the band-pass for a band-stop.
+double TransferFunction::octavesDown(double x) const {
+    // The frequency as the low-pass sees it: its cutoff is at 1.
+    double y = x;
     switch (options_.type) {
-        case FilterType::LowPass: return lowPass(x);
-        case FilterType::HighPass: return lowPass(1.0 / x);
-        case FilterType::BandPass: return bandPass(x);
-        case FilterType::BandStop: return 1.0 - bandPass(x);
-    }
-    return 0.0;
-}
-
-double TransferFunction::lowPass(double x) const {
-    switch (options_.response) {
-        case Response::Gaussian: return std::exp2(-0.5 * x * x);
-        case Response::Butterworth: return 1.0 / std::sqrt(1.0 + std::pow(x, 2 * options_.order));
-        case Response::Ideal: return x <= 1.0 ? 1.0 : 0.0;
-    }
-    return 0.0;
-}
-
-double TransferFunction::bandPass(double x) const {
-    const double b = options_.bandWidth;
-    switch (options_.response) {
-        case Response::Gaussian: {
-            const double t = 2.0 * std::log2(x) / b;
-            return std::exp2(-0.5 * t * t);
-        }
-        case Response::Butterworth: {
+        case FilterType::LowPass: break;
+        case FilterType::HighPass: y = 1.0 / x; break;
+        case FilterType::BandPass:
+        case FilterType::BandStop: {
+            const double b = options_.bandWidth;
             const double q = std::exp2(0.5 * b) - std::exp2(-0.5 * b);
-            return 1.0 / std::sqrt(1.0 + std::pow(std::abs(x - 1.0 / x) / q, 2 * options_.order));
+            y = options_.response == Response::Butterworth ? std::abs(x - 1.0 / x) / q
+                                                           : 2.0 * std::abs(std::log2(x)) / b;
+            break;
         }
-        case Response::Ideal: return std::abs(std::log2(x)) <= 0.5 * b ? 1.0 : 0.0;
     }
-    return 0.0;
+    switch (options_.response) {
+        case Response::Gaussian: return 0.5 * y * y;
+        case Response::Butterworth: {
+            // log2(1 + y^2m) / 2, without forming a power that overflows
+            const double exponent = 2.0 * options_.order * std::log(y);
+            const double softplus = exponent > 0.0 ? exponent + std::log1p(std::exp(-exponent))
+                                                   : std::log1p(std::exp(exponent));
+            return 0.5 * softplus / std::log(2.0);
+        }
+        case Response::Ideal: break;
+    }
+    return y <= 1.0 ? 0.0 : std::numeric_limits<double>::infinity();
 }
 
 std::vector<double> TransferFunction::discontinuities() const {
@@ -86,7 +93,7 @@ std::vector<double> TransferFunction::discontinuities() const {
 }
 
 Gain fractionalPower(const TransferFunction& F, double alpha) {
-    return [F, alpha](double omega) { return std::pow(F(omega), alpha); };
+    return [F, alpha](double omega) { return F.power(omega, alpha); };
 }
 
 double meanGain(const TransferFunction& F, double from, double to) {

@@ -38,6 +38,10 @@ class TransferFunction {
     /// Gain F(omega) at the frequency omega >= 0 (radians per length unit; infinity is allowed).
     double operator()(double omega) const;
 
+    /// F(omega)^alpha, alpha > 0, also where F itself is too small to be told from 0: the hundredth
+    /// power of a Gaussian matters far beyond where the Gaussian underflows.
+    double power(double omega, double alpha) const;
+
     double cutoff() const { return cutoff_; }
 
     /// Frequencies at which F jumps, ascending; empty for a continuous F.
@@ -45,8 +49,7 @@ class TransferFunction {
 
   private:
     double prototype(double x) const;
-    double lowPass(double x) const;
-    double bandPass(double x) const;
+    double octavesDown(double x) const;
 
     TransferFunctionOptions options_;
     double cutoff_;

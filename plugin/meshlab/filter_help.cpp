@@ -13,12 +13,15 @@ QString fractionalFilterHelp() {
            "applied "
            "in weak fractional <b>steps</b>, and the waves are taken anew after each."
            "<br><br>Position, topology, colours and all other attributes are kept; only the "
-           "vertices move. The surface needs faces, all with an area."
+           "vertices move. The mesh needs faces; holes, several parts, doubled and degenerate "
+           "faces do not disturb."
            "<br><br>For more information see:"
            "<br><i>A. Kovnatsky, M. M. Bronstein, A. M. Bronstein</i>, <b>Stable Spectral Mesh "
            "Filtering</b>, ECCV Workshops 2012"
            "<br><i>B. Vallet, B. L&eacute;vy</i>, <b>Spectral Geometry Processing with Manifold "
            "Harmonics</b>, Computer Graphics Forum 27(2), 2008"
+           "<br><i>N. Sharp, K. Crane</i>, <b>A Laplacian for Nonmanifold Triangle Meshes</b>, "
+           "Computer Graphics Forum 39(5), 2020 (the default Laplacian)"
            "<br><i>M. Kazhdan, J. Solomon, M. Ben-Chen</i>, <b>Can Mean-Curvature Flow Be Modified "
            "to Be Non-Singular?</b>, Computer Graphics Forum 31(5), 2012 (the conformal update)";
 }

@@ -8,6 +8,7 @@ namespace {
 
 /// Defaults of lengths, in parts of the diagonal of the bounding box.
 constexpr double kDefaultFeatureSize = 0.05;
+constexpr double kDefaultTolerance = 0.0005;
 
 }  // namespace
 
@@ -62,7 +63,14 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "steps", defaults.steps, "Steps",
         "The filter is applied as this many weak steps, because a single strong one damages the "
         "shape: thin parts turn into spikes or balloons. 10 is good; 1 is the classical one-shot "
-        "filter; more is slower and closer to the ideal."));
+        "filter; more is slower and closer to the ideal. 0 chooses the steps by the tolerance."));
+    list.addParam(RichPercentage(
+        "tolerance", static_cast<Scalarm>(kDefaultTolerance) * diagonal, 0, diagonal,
+        "Tolerance of automatic steps",
+        "With 0 steps: how far any point may be from where infinitely many steps would put it. "
+        "0.05 % of the diagonal is hardly visible. Where thin parts pinch off, no number of steps "
+        "is enough; the report then says so.",
+        true));
     list.addParam(RichEnum(
         "basis_update", static_cast<int>(defaults.basisUpdate), {"full", "conformal", "none"},
         "Basis update",
@@ -108,6 +116,7 @@ FilterOptions fractionalFilterOptions(const RichParameterList& parameters) {
     transfer.stopGain = parameters.getFloat("stop_gain");
     options.featureSize = parameters.getAbsPerc("feature_size");
     options.steps = parameters.getInt("steps");
+    options.tolerance = parameters.getAbsPerc("tolerance");
     options.basisUpdate = static_cast<spectral::BasisUpdate>(parameters.getEnum("basis_update"));
     options.evaluation.spectrum = static_cast<spectral::Spectrum>(parameters.getEnum("spectrum"));
     options.evaluation.basisSize = parameters.getInt("basis_size");

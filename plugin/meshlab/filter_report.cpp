@@ -28,6 +28,8 @@ std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& r
         {"solves", result.solves},
         {"error_estimate", result.errorEstimate},
         {"accuracy_reached", result.accuracyReached},
+        {"step_error", result.stepError},
+        {"singular_part", result.singularPart},
         {"step_sizes",
          vectorVariant(Eigen::Map<const Eigen::VectorXd>(
              result.stepSizes.data(), static_cast<Eigen::Index>(result.stepSizes.size())))},
@@ -51,6 +53,8 @@ std::string reportText(const spectral::FilterResult& result) {
          << (result.components == 1 ? " component" : " components");
     if (result.unreferencedVertices > 0)
         text << ", " << result.unreferencedVertices << " unreferenced vertices left alone";
+    if (result.stepError > 0.0)
+        text << "\n  automatic steps: estimated error of any vertex " << result.stepError;
     text << "\n  work: " << result.factorizations << " factorizations, " << result.solves
          << " solves";
     if (result.eigenvalues.size() > 0)

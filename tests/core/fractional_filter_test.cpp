@@ -300,7 +300,8 @@ TEST(FractionalFilter, RefusesOptionsOutOfTheirRange) {
         change(options);
         EXPECT_THROW(fractionalFilter(mesh.V, mesh.F, options), InvalidOption);
     };
-    refuses([](FilterOptions& o) { o.steps = 0; });
+    refuses([](FilterOptions& o) { o.steps = -1; });
+    refuses([](FilterOptions& o) { o.steps = 0; });  // automatic, without a tolerance
     refuses([](FilterOptions& o) { o.featureSize = 0.0; });
     refuses([](FilterOptions& o) { o.featureSize = std::nan(""); });
     refuses([](FilterOptions& o) { o.evaluation.accuracy = 0.0; });

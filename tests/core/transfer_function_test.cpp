@@ -122,6 +122,24 @@ TEST(TransferFunction, FractionalPowersMultiplyToTheWhole) {
         EXPECT_NEAR(std::pow(power(omega), 10), F(omega), 1e-13);
 }
 
+TEST(TransferFunction, FractionalPowersSurviveWhereTheGainUnderflows) {
+    const TransferFunction gaussian({}, 1.0);
+    EXPECT_EQ(gaussian(60.0), 0.0);
+    EXPECT_NEAR(gaussian.power(60.0, 0.01) / std::exp2(-18.0), 1.0, 1e-12);
+    TransferFunctionOptions steep = options(FilterType::LowPass, Response::Butterworth);
+    steep.order = 64;
+    EXPECT_NEAR(TransferFunction(steep, 1.0).power(1000.0, 0.01) / std::pow(1000.0, -0.64), 1.0,
+                1e-12);
+    for (const FilterType type : {FilterType::LowPass, FilterType::HighPass, FilterType::BandPass})
+        for (const Response response : {Response::Gaussian, Response::Butterworth})
+            for (const double omega : {0.0, 0.3, 1.0, 4.0, kInf}) {
+                TransferFunctionOptions o = options(type, response);
+                o.passGain = 2.0;
+                const TransferFunction F(o, 1.0);
+                EXPECT_NEAR(F.power(omega, 0.5), std::sqrt(F(omega)), 1e-14);
+            }
+}
+
 TEST(TransferFunction, RefusesWhatHasNoFractionalPower) {
     TransferFunctionOptions o;
     o.passGain = -0.5;

@@ -134,6 +134,7 @@ def test_every_option_reaches_the_filter(cow: Path, tmp_path: Path) -> None:
         "pass_gain": 2.0,
         "stop_gain": 1.0,
         "steps": 2,
+        "tolerance": "0.1%",
         "basis_update": "conformal",
         "spectrum": "truncated",
         "basis_size": 60,
@@ -153,7 +154,9 @@ def test_every_option_reaches_the_filter(cow: Path, tmp_path: Path) -> None:
     assert json.loads(done.stdout)["options"] == options
     mesh_set = pymeshlab.MeshSet()
     mesh_set.load_new_mesh(str(cow))
-    mesh_set.apply_filter(FILTER, **{**options, "feature_size": percent(12)})
+    mesh_set.apply_filter(
+        FILTER, **{**options, "feature_size": percent(12), "tolerance": percent(0.1)}
+    )
     V, _ = arrays_of(target)
     np.testing.assert_array_equal(V, mesh_set.current_mesh().vertex_matrix())
 
@@ -420,8 +423,8 @@ def test_debug_shows_where_an_error_arose(existing: Path, tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("arguments", "word"),
     [
-        (["--feature-size", "0"], "feature_size"),
-        (["--feature-size", "-5%"], "feature_size"),
+        (["--feature-size", "0"], "feature-size"),
+        (["--feature-size", "-5%"], "feature-size"),
         (["--feature-size", "big"], "5%"),
         (["--feature-size", "150%"], "100%"),
         (["--filter-type", "lowpass"], "low-pass"),
@@ -431,7 +434,7 @@ def test_debug_shows_where_an_error_arose(existing: Path, tmp_path: Path) -> Non
         (["--band-width", "0"], "band_width"),
         (["--pass-gain", "-1"], "pass_gain"),
         (["--stop-gain", "nan"], "stop_gain"),
-        (["--steps", "0"], "steps"),
+        (["--steps", "-1"], "steps"),
         (["--basis-size", "0"], "basis_size"),
         (["--basis-update", "sometimes"], "conformal"),
         (["--no-such-option"], "--no-such-option"),

@@ -24,7 +24,8 @@ REFUSED_OPTIONS: dict[str, tuple[dict[str, Any], str]] = {
     "negative stop gain": ({"stop_gain": -0.01}, "stop_gain"),
     "gain that is no number": ({"pass_gain": float("nan")}, "pass_gain"),
     "infinite gain": ({"stop_gain": float("inf")}, "stop_gain"),
-    "no steps": ({"steps": 0}, "steps"),
+    "negative steps": ({"steps": -1}, "steps"),
+    "automatic steps without tolerance": ({"steps": 0, "tolerance": percent(0)}, "tolerance"),
     "feature size of nothing": ({"feature_size": percent(0)}, "feature_size"),
     "negative feature size": ({"feature_size": length(-1.0)}, "feature_size"),
     "feature size that is no number": ({"feature_size": length(float("nan"))}, "feature_size"),
@@ -133,5 +134,5 @@ def test_a_failure_in_the_middle_of_the_steps_leaves_the_mesh_as_it_was(
 
 def test_a_mesh_can_be_filtered_after_a_refusal(decimated: Callable[..., Any]) -> None:
     mesh_set = mesh_set_of(*decimated("cow.obj"))
-    refusal(mesh_set, steps=0)
+    refusal(mesh_set, steps=-1)
     assert mesh_set.apply_filter(FILTER, steps=1)["steps"] == 1

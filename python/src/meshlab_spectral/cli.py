@@ -20,8 +20,8 @@ from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeEl
 
 from meshlab_spectral import __version__
 from meshlab_spectral.errors import FormatError, OptionError, SpectralError
-from meshlab_spectral.options import FeatureSize, FilterOptions
-from meshlab_spectral.report import report_table, report_warning
+from meshlab_spectral.options import FilterOptions, Length
+from meshlab_spectral.report import report_table, report_warnings
 from meshlab_spectral.worker import ProgressCallback, filter_file_in_child
 
 EXIT_FAILED, EXIT_USAGE, EXIT_INTERRUPTED = 1, 2, 130
@@ -72,8 +72,8 @@ def with_filter_options(command: Callable[..., None]) -> Callable[..., None]:
     for option in fields(FilterOptions):
         settings: dict[str, Any] = {"help": option.metadata["help"]}
         type_, default = types[option.name], option.default
-        if type_ is FeatureSize:
-            settings |= {"parser": _feature_size, "metavar": "SIZE"}
+        if type_ is Length:
+            settings |= {"parser": _length, "metavar": "SIZE"}
             default = str(default)
         added.append(
             inspect.Parameter(
@@ -100,9 +100,9 @@ def with_filter_options(command: Callable[..., None]) -> Callable[..., None]:
     return run
 
 
-def _feature_size(text: str | FeatureSize) -> FeatureSize:
+def _length(text: str | Length) -> Length:
     try:
-        return text if isinstance(text, FeatureSize) else FeatureSize.parse(text)
+        return text if isinstance(text, Length) else Length.parse(text)
     except OptionError as error:
         raise typer.BadParameter(str(error)) from error
 
@@ -149,8 +149,7 @@ def filter_command(
     begin = time.monotonic()
     with _errors_reported(debug), _progress_shown() as on_progress:
         report = filter_file_in_child(source, target, options, on_progress)
-    warning = report_warning(report)
-    if warning:
+    for warning in report_warnings(report):
         _messages.print(f"Warning: {warning}.", highlight=False, soft_wrap=True)
     if as_json:
         typer.echo(json.dumps(_record(source, target, options, report, time.monotonic() - begin)))

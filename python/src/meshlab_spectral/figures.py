@@ -11,12 +11,12 @@ import sys
 from pathlib import Path
 
 from meshlab_spectral.errors import SpectralError
-from meshlab_spectral.options import FeatureSize, FilterOptions
+from meshlab_spectral.options import FilterOptions, Length
 from meshlab_spectral.pictures import Panel, View, draw_side_by_side
 from meshlab_spectral.plugin import FILTER_NAME, load
 
 
-def draw_stability(mesh_file: Path, picture: Path, feature_size: FeatureSize) -> None:
+def draw_stability(mesh_file: Path, picture: Path, feature_size: Length) -> None:
     """Draw a mesh, its one-shot low-pass and its conformal low-pass in ten steps.
 
     Parameters
@@ -62,7 +62,7 @@ def _main() -> None:
         draw_stability(
             arguments.mesh,
             arguments.picture,
-            FeatureSize.parse(arguments.feature_size),
+            Length.parse(arguments.feature_size),
         )
     except SpectralError as error:
         sys.exit(f"Error: {error}")

@@ -20,8 +20,8 @@ LaplacianKind = Literal["intrinsic delaunay", "cotangent"]
 
 
 @dataclass(frozen=True)
-class FeatureSize:
-    """A size of details: a length, or a percentage of the diagonal of the bounding box.
+class Length:
+    """A length in the units of the mesh, or as a percentage of the diagonal of its bounding box.
 
     Attributes
     ----------
@@ -37,17 +37,16 @@ class FeatureSize:
     def __post_init__(self) -> None:
         if not (math.isfinite(self.value) and self.value > 0):
             raise OptionError(
-                f"feature_size = {self}: must be above zero, a percentage of the diagonal of the "
-                "bounding box such as 5%, or a length such as 0.02"
+                f"{self}: must be above zero, a percentage of the diagonal of the bounding box "
+                "such as 5%, or a length such as 0.02"
             )
         if self.relative and self.value > 100:
             raise OptionError(
-                f"feature_size = {self}: a percentage of the diagonal goes up to 100%; give a "
-                "length for more"
+                f"{self}: a percentage of the diagonal goes up to 100%; give a length for more"
             )
 
     @classmethod
-    def parse(cls, text: str) -> FeatureSize:
+    def parse(cls, text: str) -> Length:
         """Read `5%` as a percentage of the diagonal, `0.02` as a length.
 
         Raises
@@ -61,8 +60,8 @@ class FeatureSize:
             value = float(number.removesuffix("%"))
         except ValueError:
             raise OptionError(
-                f"feature_size = {text!r}: give a percentage of the diagonal of the bounding box "
-                "such as 5%, or a length such as 0.02"
+                f"{text!r}: give a percentage of the diagonal of the bounding box such as 5%, or a "
+                "length such as 0.02"
             ) from None
         return cls(value, relative)
 
@@ -117,8 +116,8 @@ class FilterOptions:
         "high-pass acts on the small ones (sharpen with --stop-gain 1 --pass-gain 2); band-pass "
         "and band-stop act on details of about the feature size.",
     )
-    feature_size: FeatureSize = _option(
-        FeatureSize(5, relative=True),
+    feature_size: Length = _option(
+        Length(5, relative=True),
         "Size of the details where the filter turns over: 5% of the model's diagonal, or a length "
         "in the model's units such as 0.02. Try twice the width of what you want to remove.",
     )
@@ -145,8 +144,13 @@ class FilterOptions:
     steps: int = _option(
         10,
         "Apply the filter as this many weak steps, so that thin parts survive: 10 is good, 1 is "
-        "the classical one-shot filter.",
-        Limits(1),
+        "the classical one-shot filter, 0 chooses them by --tolerance.",
+        Limits(0),
+    )
+    tolerance: Length = _option(
+        Length(0.05, relative=True),
+        "With 0 steps: how far any point may be from where infinitely many steps would put it, "
+        "e.g. 0.05% of the diagonal.",
     )
     basis_update: BasisUpdate = _option(
         "full",
@@ -185,15 +189,21 @@ class FilterOptions:
     def as_dict(self) -> dict[str, Any]:
         """All options as plain values: text, numbers, truth values."""
         plain = {option.name: getattr(self, option.name) for option in fields(self)}
-        plain["feature_size"] = str(self.feature_size)
-        return plain
+        return {
+            name: str(value) if isinstance(value, Length) else value
+            for name, value in plain.items()
+        }
 
     @classmethod
     def from_dict(cls, plain: dict[str, Any]) -> FilterOptions:
         """Make options from plain values, as `as_dict` gives them; the rest have their default."""
         values = dict(plain)
-        if "feature_size" in values:
-            values["feature_size"] = FeatureSize.parse(str(values["feature_size"]))
+        for name, wanted in get_type_hints(cls).items():
+            if wanted is Length and name in values:
+                try:
+                    values[name] = Length.parse(str(values[name]))
+                except OptionError as error:
+                    raise OptionError(f"{name} = {error}") from None
         unknown = values.keys() - {option.name for option in fields(cls)}
         if unknown:
             raise OptionError(f"unknown options: {', '.join(sorted(unknown))}")
@@ -203,6 +213,10 @@ class FilterOptions:
         """All options as keyword arguments of pymeshlab's filter."""
         import pymeshlab
 
-        size = self.feature_size
-        length = pymeshlab.PercentageValue if size.relative else pymeshlab.PureValue
-        return {**self.as_dict(), "feature_size": length(size.value)}
+        parameters = self.as_dict()
+        for option in fields(self):
+            value = getattr(self, option.name)
+            if isinstance(value, Length):
+                kind = pymeshlab.PercentageValue if value.relative else pymeshlab.PureValue
+                parameters[option.name] = kind(value.value)
+        return parameters

@@ -27,15 +27,22 @@ def report_table(report: dict[str, Any], title: str) -> Table:
     return table
 
 
-def report_warning(report: dict[str, Any]) -> str | None:
-    """Say what a user should know about a result that fell short, or nothing."""
-    if report["accuracy_reached"]:
-        return None
-    return (
-        f"the evaluation is only accurate to about {report['error_estimate']:.1e}, relative to the "
-        "shape's size: the filter is too steep for spectrum = full. Choose a stop gain of 0.05 "
-        "instead of 0, a lower order, a wider band, or fewer steps"
-    )
+def report_warnings(report: dict[str, Any]) -> list[str]:
+    """Say what a user should know about a result that fell short; empty when nothing did."""
+    warnings = []
+    if not report["accuracy_reached"]:
+        warnings.append(
+            f"the evaluation is only accurate to about {report['error_estimate']:.1e}, relative to "
+            "the shape's size: the filter is too steep for spectrum = full. Choose a stop gain of "
+            "0.05 instead of 0, a lower order, a wider band, or fewer steps"
+        )
+    if report["singular_part"] > 0:
+        warnings.append(
+            f"during {report['singular_part']:.0%} of the filter no step was small enough for the "
+            f"tolerance, the estimated error is {report['step_error']:.2g}: thin parts pinch off "
+            "there. Fixed steps, or the conformal update, cope better"
+        )
+    return warnings
 
 
 def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
@@ -43,6 +50,7 @@ def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
         ("Feature size", f"{report['feature_size']:.6g}"),
         ("Cutoff frequency", f"{report['cutoff_frequency']:.6g} rad per unit"),
         ("Steps", f"{report['steps']}"),
+        *_automatic(report),
         ("Largest displacement", f"{report['max_displacement']:.4g}"),
         ("RMS displacement", f"{report['rms_displacement']:.4g}"),
         ("Area", _change(report["area_before"], report["area_after"])),
@@ -57,6 +65,12 @@ def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
         rows.append(("Estimated relative error", f"{report['error_estimate']:.1e}"))
     rows.append(("Work", f"{report['factorizations']} factorizations, {report['solves']} solves"))
     return rows
+
+
+def _automatic(report: dict[str, Any]) -> list[tuple[str, str]]:
+    if not report["step_error"]:
+        return []
+    return [("Estimated error of the steps", f"{report['step_error']:.2g}")]
 
 
 def _change(before: float, after: float) -> str:
