@@ -26,6 +26,10 @@ constexpr double kBreakdown = 1e-13;
 /// too.
 constexpr double kNearlyThere = 30.0;
 
+/// Factor on the estimate where it stops short: at a cusp the changes shrink more slowly than any
+/// geometric series, and add up to more.
+constexpr double kStoppedShort = 3.0;
+
 /// Estimates the error of the newest approximation from the changes between checks, in one norm.
 ///
 /// With changes that shrink by a factor q from check to check, what is still to come is their
@@ -210,7 +214,11 @@ FullSpectrumResult applyFullSpectrum(const Eigen::VectorXd& D, const ConstantMod
         if (m % kCheckInterval != 0) continue;
         result.errorEstimate = renew();
         result.converged = m >= kFirstCheck && result.errorEstimate <= options.accuracy;
-        if (result.converged || m >= options.maxDimension) break;
+        if (result.converged) break;
+        if (m >= options.maxDimension) {
+            result.errorEstimate *= kStoppedShort;
+            break;
+        }
 
         // Convergence is geometric: the logarithm of the error tells how far it is.
         if (!std::isfinite(result.errorEstimate)) continue;
