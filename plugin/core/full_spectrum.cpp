@@ -156,6 +156,7 @@ FullSpectrumResult applyFullSpectrum(const Eigen::VectorXd& D, const ConstantMod
     FullSpectrumResult result;
     if (!(normX > 0.0)) {
         result.Y = X;
+        result.converged = true;
         return result;
     }
 
