@@ -1,10 +1,12 @@
 #include "fractional_filter.h"
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
 #include <string>
 
+#include "automatic_steps.h"
 #include "fractional_steps.h"
 #include "measures.h"
 #include "mesh_check.h"
@@ -13,6 +15,12 @@
 namespace spectral {
 
 namespace {
+
+/// Part of the tolerance of automatic steps that their evaluations may take up.
+constexpr double kEvaluationShare = 0.02;
+
+/// Relative accuracy of evaluations, however large the tolerance is.
+constexpr double kCoarsestAccuracy = 1e-4;
 
 void checkOptions(const FilterOptions& options) {
     if (options.steps < 0)
@@ -47,25 +55,38 @@ std::string accuracyWarning(double requested, double estimate) {
     return text.str();
 }
 
-std::string singularityWarning(double tolerance, const FractionalSteps& steps) {
+std::string toleranceWarning(double tolerance, const AutomaticSteps& steps) {
     std::ostringstream text;
-    text << std::setprecision(2) << "during " << 100.0 * steps.singularPart
-         << " % of the filter no step was small enough for the tolerance of " << tolerance
-         << ", the estimated error is " << steps.stepError
-         << ": thin parts pinch off there, the result depends on the steps. basis_update = "
+    text << std::setprecision(2) << "the tolerance of " << tolerance << " was not reached on "
+         << 100.0 * steps.singularPart << " % of the surface, the largest estimated error is "
+         << steps.error
+         << ": thin parts pinch off there, and more steps do not converge. basis_update = "
             "conformal shrinks them smoothly";
     return text.str();
 }
 
-/// Without an update of the basis all powers commute, and one step is the whole filter.
-FractionalSteps filterInSteps(const LaplacianBuilder& laplacians, StepEvaluator& evaluate,
-                              const Vertices& X, const FilterOptions& options,
-                              const Progress& progress) {
-    if (options.steps > 0)
-        return fixedSteps(laplacians, evaluate, X, options.steps, options.basisUpdate, progress);
-    if (options.basisUpdate == BasisUpdate::None)
-        return fixedSteps(laplacians, evaluate, X, 1, BasisUpdate::None, progress);
-    return automaticSteps(laplacians, evaluate, X, {options.tolerance}, progress);
+/// The evaluations of automatic steps need not be much finer than the steps.
+EvaluationOptions evaluationFor(const FilterOptions& options, const Vertices& X) {
+    EvaluationOptions evaluation = options.evaluation;
+    if (options.steps == 0) {
+        const double size = X.rowwise().norm().maxCoeff();  // X is centred
+        evaluation.accuracy =
+            std::max(evaluation.accuracy,
+                     std::min(kEvaluationShare * options.tolerance / size, kCoarsestAccuracy));
+    }
+    return evaluation;
+}
+
+/// The steps that the options ask for.
+AutomaticSteps filterInSteps(const LaplacianBuilder& laplacians, StepEvaluator& evaluate,
+                             const Vertices& X, const FilterOptions& options,
+                             const Progress& progress) {
+    if (options.steps == 0 && options.basisUpdate != BasisUpdate::None)
+        return automaticSteps(laplacians, evaluate, X, {options.tolerance}, progress);
+    // Without an update of the basis all powers commute, and one step is the whole filter.
+    const int K = options.steps == 0 ? 1 : options.steps;
+    FractionalSteps fixed = fixedSteps(laplacians, evaluate, X, K, options.basisUpdate, progress);
+    return {std::move(fixed.X), std::move(fixed.sizes)};
 }
 
 }  // namespace
@@ -79,8 +100,9 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     const Components components = connectedComponents(surface.F, surface.X.rows());
 
     const LaplacianBuilder laplacians(surface, options.laplacian, options.basisUpdate);
-    StepEvaluator evaluate(options.evaluation, components, transfer);
-    const FractionalSteps steps = filterInSteps(laplacians, evaluate, surface.X, options, progress);
+    const EvaluationOptions evaluation = evaluationFor(options, surface.X);
+    StepEvaluator evaluate(evaluation, components, transfer);
+    const AutomaticSteps steps = filterInSteps(laplacians, evaluate, surface.X, options, progress);
     const Vertices& X = steps.X;
     if (!X.allFinite()) throw SolverFailure("the filtered coordinates are not finite numbers");
 
@@ -92,7 +114,7 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
 
     result.steps = static_cast<int>(steps.sizes.size());
     result.stepSizes = steps.sizes;
-    result.stepError = steps.stepError;
+    result.stepError = steps.error;
     result.singularPart = steps.singularPart;
     result.cutoffFrequency = transfer.cutoff();
     result.featureSize = options.featureSize;
@@ -108,10 +130,9 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     result.errorEstimate = evaluate.errorEstimate();
     result.accuracyReached = evaluate.accuracyReached();
     if (!result.accuracyReached)
-        result.warnings.push_back(
-            accuracyWarning(options.evaluation.accuracy, result.errorEstimate));
-    if (steps.singularPart > 0.0)
-        result.warnings.push_back(singularityWarning(options.tolerance, steps));
+        result.warnings.push_back(accuracyWarning(evaluation.accuracy, result.errorEstimate));
+    if (options.steps == 0 && steps.error > options.tolerance)
+        result.warnings.push_back(toleranceWarning(options.tolerance, steps));
     result.eigenvalues = evaluate.basis().lambda;
     return result;
 }

@@ -39,8 +39,8 @@ struct FilterResult {
     bool accuracyReached = true;   ///< Whether errorEstimate is within the requested accuracy.
     double errorEstimate = 0.0;    ///< Estimated error of the evaluation, relative, all steps.
     double stepError = 0.0;     ///< Automatic steps: estimated error of any vertex, length units.
-    double singularPart = 0.0;  ///< Automatic steps: part of the filter, 0 to 1, in which no step
-                                ///< was small enough for the tolerance; see fractional_steps.h.
+    double singularPart = 0.0;  ///< Automatic steps: part of the input's surface, 0 to 1, on which
+                                ///< the tolerance was not reached; see automatic_steps.h.
     std::vector<double> stepSizes;      ///< The fractional powers alpha, in their order; sum 1.
     std::vector<std::string> warnings;  ///< What fell short without being an error; sentences.
     Eigen::VectorXd eigenvalues;        ///< Of the last step's basis, ascending; empty without one.

@@ -191,7 +191,7 @@ FullSpectrumResult applyFullSpectrum(const Eigen::VectorXd& D, const ConstantMod
         return std::max(error, atVertices(std::max(before, largest) / maxX));
     };
 
-    double firstError = 0.0;
+    double firstError = 0.0, furthest = 0.0;
     for (int m = 1;; ++m) {
         std::vector<Index> active;
         for (Index c = 0; c < columns; ++c)
@@ -226,7 +226,8 @@ FullSpectrumResult applyFullSpectrum(const Eigen::VectorXd& D, const ConstantMod
         if (firstError <= 0.0) firstError = std::max(result.errorEstimate, options.accuracy * 10);
         const double done =
             std::log(firstError / result.errorEstimate) / std::log(firstError / options.accuracy);
-        progress.report(std::clamp(done, 0.0, 1.0), "filtering");
+        furthest = std::clamp(done, furthest, 1.0);  // an estimate may be worse than the one before
+        progress.report(furthest, "filtering");
     }
 
     result.Y.resize(n, columns);

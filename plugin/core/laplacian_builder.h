@@ -32,9 +32,11 @@ class LaplacianBuilder {
     /// The Laplacian of the shape X (n x 3), as far as the update takes it from there.
     Laplacian operator()(const Vertices& X) const;
 
+    /// Its D alone: a third of the area of the triangles at every vertex, > 0.
+    Eigen::VectorXd mass(const Vertices& X) const;
+
   private:
     SparseMatrix stiffness(const Vertices& X) const;
-    Eigen::VectorXd mass(const Vertices& X) const;
 
     const Surface& surface_;
     BasisUpdate update_;

@@ -60,18 +60,24 @@ Eigen::MatrixXd StepEvaluator::operator()(const Eigen::MatrixXd& X, double alpha
     options.accuracy = accuracyOf(alpha);
     const FullSpectrumResult step =
         applyFullSpectrum(laplacian_.D, *constants_, cholesky_, gain, X, options, progress);
-    errorEstimate_ += step.errorEstimate;
-    accuracyReached_ = accuracyReached_ && step.converged;
-    if (errorEstimate_ > kUselessError) {
+    const double error = errorEstimate_ + step.errorEstimate;
+    if (error > kUselessError) {
         std::ostringstream text;
         text << "the transfer function is too steep for spectrum = full: the relative error is "
                 "about "
-             << std::setprecision(2) << errorEstimate_
+             << std::setprecision(2) << error
              << ". Choose a stop_gain of 0.05 instead of 0, a lower order or a wider band, "
                 "response = gaussian, fewer steps, or spectrum = truncated";
         throw SolverFailure(text.str());
     }
+    errorEstimate_ = error;  // only now: a failed step is tried again in smaller ones
+    accuracyReached_ = accuracyReached_ && step.converged;
     return step.Y;
+}
+
+void StepEvaluator::forgetErrors() {
+    errorEstimate_ = 0.0;
+    accuracyReached_ = true;
 }
 
 /// A rational Krylov space approximates smooth gains; a jump needs the eigenvectors below it.

@@ -45,6 +45,9 @@ class StepEvaluator {
     const HarmonicBasis& basis() const { return basis_; }  ///< Empty where none is used.
     int factorizations() const { return cholesky_.factorizations(); }
     int solves() const { return cholesky_.solves(); }
+
+    /// Counts errorEstimate and accuracyReached anew from here on, for another way from the start.
+    void forgetErrors();
     double errorEstimate() const { return errorEstimate_; }  ///< Relative, of all evaluations.
     bool accuracyReached() const { return accuracyReached_; }
 

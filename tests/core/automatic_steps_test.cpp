@@ -1,0 +1,111 @@
+#include "core/automatic_steps.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+
+#include "core/fractional_steps.h"
+#include "support/shapes.h"
+
+namespace spectral {
+namespace {
+
+/// What automatic steps of a filter of `blob` need.
+struct Setting {
+    Surface surface;
+    Components components;
+    TransferFunction F;
+    EvaluationOptions evaluation;
+    LaplacianBuilder laplacians;
+
+    Setting(const TransferFunctionOptions& options, double feature, BasisUpdate update)
+        : surface(surfaceOf(testing::blob().V, testing::blob().F)),
+          components(connectedComponents(surface.F, surface.X.rows())),
+          F(options, 2.0 * kPi / feature),
+          laplacians(surface, LaplacianKind::IntrinsicDelaunay, update) {
+        evaluation.accuracy = 1e-9;
+    }
+
+    AutomaticSteps automatic(double tolerance, int maxSteps = 64) const {
+        StepEvaluator evaluate(evaluation, components, F);
+        return automaticSteps(laplacians, evaluate, surface.X, {tolerance, maxSteps}, {});
+    }
+
+    Vertices midpoint(int K) const {
+        StepEvaluator evaluate(evaluation, components, F);
+        return midpointSteps(laplacians, evaluate, surface.X, K, K, {}).X;
+    }
+};
+
+TransferFunctionOptions boost() {
+    TransferFunctionOptions options;
+    options.type = FilterType::BandPass;
+    options.stopGain = 1.0;
+    options.passGain = 2.0;
+    return options;
+}
+
+double largestDifference(const Vertices& A, const Vertices& B) {
+    return (A - B).rowwise().norm().maxCoeff();
+}
+
+TEST(AutomaticSteps, KeepTheirToleranceAndTheirEstimateBoundsTheError) {
+    for (const BasisUpdate update : {BasisUpdate::Full, BasisUpdate::Conformal}) {
+        for (const TransferFunctionOptions& options : {boost(), TransferFunctionOptions()}) {
+            const Setting setting(options, 1.0, update);
+            for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
+                const AutomaticSteps steps = setting.automatic(tolerance);
+                const int finer = 8 * static_cast<int>(steps.sizes.size());
+                const double error = largestDifference(steps.X, setting.midpoint(finer));
+                EXPECT_LE(steps.error, tolerance);
+                EXPECT_LE(error, steps.error) << "tolerance " << tolerance;
+                EXPECT_EQ(steps.singularPart, 0.0);
+            }
+        }
+    }
+}
+
+TEST(AutomaticSteps, AreAsFewAsTheToleranceAllows) {
+    const Setting setting(boost(), 1.0, BasisUpdate::Conformal);
+    EXPECT_EQ(setting.automatic(1.0).sizes.size(), 2u);
+    EXPECT_LT(setting.automatic(1e-3).sizes.size(), setting.automatic(1e-6).sizes.size());
+}
+
+TEST(AutomaticSteps, HavePowersThatSumToOne) {
+    const Setting setting(boost(), 0.7, BasisUpdate::Full);
+    for (const double tolerance : {1e-1, 1e-3}) {
+        const std::vector<double> sizes = setting.automatic(tolerance).sizes;
+        EXPECT_NEAR(std::accumulate(sizes.begin(), sizes.end(), 0.0), 1.0, 1e-12);
+        for (const double size : sizes) EXPECT_GT(size, 0.0);
+    }
+}
+
+TEST(AutomaticSteps, TellWhenTheirBoundStopsThem) {
+    const Setting setting(boost(), 1.0, BasisUpdate::Full);
+    const AutomaticSteps steps = setting.automatic(1e-8, 8);
+    EXPECT_EQ(steps.sizes.size(), 8u);
+    EXPECT_GT(steps.error, 1e-8);
+    EXPECT_GT(steps.singularPart, 0.0);
+    // The best result so far, not that of an earlier pass.
+    EXPECT_LE(largestDifference(steps.X, setting.midpoint(8)), 1e-12);
+}
+
+TEST(AutomaticSteps, ReportProgressThatNeverRunsBackwards) {
+    const Setting setting(boost(), 1.0, BasisUpdate::Full);
+    double last = 0.0;
+    int reports = 0;
+    const Progress progress([&](double fraction, const std::string&) {
+        EXPECT_GE(fraction, last - 1e-12);
+        EXPECT_LE(fraction, 1.0 + 1e-12);
+        last = fraction;
+        ++reports;
+        return true;
+    });
+    StepEvaluator evaluate(setting.evaluation, setting.components, setting.F);
+    automaticSteps(setting.laplacians, evaluate, setting.surface.X, {1e-4}, progress);
+    EXPECT_GT(reports, 10);
+}
+
+}  // namespace
+}  // namespace spectral
