@@ -33,3 +33,11 @@ void setPositions(const std::vector<std::size_t>& vertexIndex, const spectral::V
                 static_cast<Scalarm>(V(static_cast<Eigen::Index>(i), c));
     mesh.updateBoxAndNormals();
 }
+
+void setQuality(const std::vector<std::size_t>& vertexIndex, const Eigen::VectorXd& values,
+                MeshModel& mesh) {
+    mesh.updateDataMask(MeshModel::MM_VERTQUALITY);
+    for (std::size_t i = 0; i < vertexIndex.size(); ++i)
+        mesh.cm.vert[vertexIndex[i]].Q() =
+            static_cast<Scalarm>(values[static_cast<Eigen::Index>(i)]);
+}

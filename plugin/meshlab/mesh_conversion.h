@@ -18,3 +18,7 @@ MeshMatrices toMatrices(const CMeshO& mesh);
 /// Moves the vertices to the rows of V and updates bounding box and normals; all else is kept.
 void setPositions(const std::vector<std::size_t>& vertexIndex, const spectral::Vertices& V,
                   MeshModel& mesh);
+
+/// Sets the vertex quality to the entries of `values`.
+void setQuality(const std::vector<std::size_t>& vertexIndex, const Eigen::VectorXd& values,
+                MeshModel& mesh);
