@@ -23,8 +23,10 @@ void checkBasisSize(int k, Index vertices, int components) {
                             " vertices; the surface has " + std::to_string(vertices) +
                             ": choose at most " + std::to_string(vertices - 1));
     if (k <= components)
-        throw InvalidOption(given + " holds no more than the constant modes of the " +
-                            std::to_string(components) + " connected components: choose at least " +
+        throw InvalidOption(given +
+                            " leaves no room beside the constant modes, of which every "
+                            "connected component has one (here " +
+                            std::to_string(components) + "): choose at least " +
                             std::to_string(components + 1));
 }
 

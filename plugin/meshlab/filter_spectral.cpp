@@ -14,7 +14,7 @@ spectral::Progress meshlabProgress(vcg::CallBackPos* callback) {
 }  // namespace
 
 FilterSpectralPlugin::FilterSpectralPlugin()
-    : filters_{fractionalMeshFilter(), artefactsMeshFilter()} {
+    : filters_{fractionalMeshFilter(), artefactsMeshFilter(), harmonicsMeshFilter()} {
     for (std::size_t i = 0; i < filters_.size(); ++i) {
         typeList.push_back(static_cast<ActionIDType>(i));
         actionList.push_back(new QAction(filters_[i].name, this));

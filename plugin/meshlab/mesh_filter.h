@@ -37,3 +37,4 @@ struct MeshFilter {
 // One function for each filter, in a file of its own.
 MeshFilter fractionalMeshFilter();  ///< filter_fractional.cpp
 MeshFilter artefactsMeshFilter();   ///< filter_artefacts.cpp
+MeshFilter harmonicsMeshFilter();   ///< filter_harmonics.cpp
