@@ -4,7 +4,7 @@ usage: bench_artefacts.py [MESH...]
 
 Every cell holds the root mean square and the maximum of the part of a shape above twice the
 filter's cutoff, in the shape's own spectrum (meshlab_spectral.measure_artefacts), both in diagonals
-of the filter's input. The first rows of a mesh are the input itself, by which one judges the
+of the filter's input. The column "input" is the unfiltered mesh itself, by which one judges the
 others. Meshes default to the dragon and the angel beside the repository; absent ones are skipped.
 """
 
@@ -69,20 +69,18 @@ def main() -> None:
     """Print the table row by row."""
     meshlab_spectral.load()
     print("rms / maximum, in diagonals of the input\n")
-    print(f"| mesh | filter | {' | '.join(COLUMNS)} |")
-    print(f"|---|---|{'---|' * len(COLUMNS)}")
+    print(f"| mesh | filter | input | {' | '.join(COLUMNS)} |")
+    print(f"|---|---|---|{'---|' * len(COLUMNS)}")
     for mesh in [pathlib.Path(name) for name in sys.argv[1:]] or MESHES:
         if not mesh.exists():
             print(f"skipped: no {mesh}", file=sys.stderr)
             continue
         meshes = loaded(mesh)
         diagonal = meshes.current_mesh().bounding_box().diagonal()
-        for name, (percent, _) in FILTERS.items():
-            found = cell(meshes, percent / 100 * diagonal, diagonal)
-            print(f"| {mesh.stem} | none (input, for {name}) | {found} | | |", flush=True)
         for name, (percent, options) in FILTERS.items():
             size = percent / 100 * diagonal
-            cells = [filtered_cell(mesh, size, diagonal, options | c) for c in COLUMNS.values()]
+            cells = [cell(meshes, size, diagonal)]
+            cells += [filtered_cell(mesh, size, diagonal, options | c) for c in COLUMNS.values()]
             print(f"| {mesh.stem} | {name} | {' | '.join(cells)} |", flush=True)
 
 
