@@ -127,7 +127,8 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     result.accuracyReached = evaluate.accuracyReached();
     if (!result.accuracyReached)
         result.warnings.push_back(accuracyWarning(evaluation.accuracy, result.errorEstimate));
-    if (options.steps == 0 && steps.error > options.tolerance)
+    result.toleranceReached = options.steps > 0 || steps.error <= options.tolerance;
+    if (!result.toleranceReached)
         result.warnings.push_back(toleranceWarning(options.tolerance, steps));
     result.eigenvalues = evaluate.basis().lambda;
     return result;

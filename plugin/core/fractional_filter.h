@@ -14,7 +14,7 @@ namespace spectral {
 struct FilterOptions {
     TransferFunctionOptions transferFunction;
     double featureSize = 0.0;  ///< Wavelength of the cutoff, 2 pi / omega_c, length units, > 0.
-    int steps = 10;            ///< K >= 1: K steps of F^(1/K), the paper's scheme; 0: automatic.
+    int steps = 0;             ///< K >= 1: K steps of F^(1/K), the paper's scheme; 0: automatic.
     double tolerance = 0.0;    ///< For automatic steps: largest error of any vertex against
                                ///< infinitely many steps, length units, > 0.
     LaplacianKind laplacian = LaplacianKind::IntrinsicDelaunay;
@@ -38,7 +38,8 @@ struct FilterResult {
     int solves = 0;                ///< Solves with one right-hand side.
     bool accuracyReached = true;   ///< Whether errorEstimate is within the requested accuracy.
     double errorEstimate = 0.0;    ///< Estimated error of the evaluation, relative, all steps.
-    double stepError = 0.0;     ///< Automatic steps: estimated error of any vertex, length units.
+    double stepError = 0.0;  ///< Automatic steps: estimated error of any vertex, length units.
+    bool toleranceReached = true;  ///< Automatic steps: whether stepError is within it.
     double singularPart = 0.0;  ///< Automatic steps: part of the input's surface, 0 to 1, on which
                                 ///< the tolerance was not reached; see automatic_steps.h.
     std::vector<double> stepSizes;      ///< The fractional powers alpha, in their order; sum 1.

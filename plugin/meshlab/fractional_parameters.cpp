@@ -62,14 +62,15 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
     list.addParam(RichInt(
         "steps", defaults.steps, "Steps",
         "The filter is applied as this many weak steps, because a single strong one damages the "
-        "shape: thin parts turn into spikes or balloons. 10 is good; 1 is the classical one-shot "
-        "filter; more is slower and closer to the ideal. 0 chooses the steps by the tolerance."));
+        "shape: thin parts turn into spikes or balloons. 0 takes as many as the tolerance needs; "
+        "10 "
+        "is the scheme of the paper with ten steps; 1 is the classical one-shot filter."));
     list.addParam(RichPercentage(
         "tolerance", static_cast<Scalarm>(kDefaultTolerance) * diagonal, 0, diagonal,
         "Tolerance of automatic steps",
         "With 0 steps: how far any point may be from where infinitely many steps would put it. "
-        "0.05 % of the diagonal is hardly visible. Where thin parts pinch off, no number of steps "
-        "is enough; the report then says so.",
+        "0.05 % of the diagonal is hardly visible; more is faster. Where thin parts pinch off, no "
+        "number of steps is enough: the report then says on how much of the surface.",
         true));
     list.addParam(RichEnum(
         "basis_update", static_cast<int>(defaults.basisUpdate), {"full", "conformal", "none"},

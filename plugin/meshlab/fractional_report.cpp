@@ -29,6 +29,7 @@ std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& r
         {"error_estimate", result.errorEstimate},
         {"accuracy_reached", result.accuracyReached},
         {"step_error", result.stepError},
+        {"tolerance_reached", result.toleranceReached},
         {"singular_part", result.singularPart},
         {"step_sizes",
          vectorVariant(Eigen::Map<const Eigen::VectorXd>(

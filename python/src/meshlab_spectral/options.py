@@ -142,9 +142,9 @@ class FilterOptions:
         0.0, "Factor for all other details: 0 removes them, 0.5 halves their height.", Limits(0)
     )
     steps: int = _option(
-        10,
-        "Apply the filter as this many weak steps, so that thin parts survive: 10 is good, 1 is "
-        "the classical one-shot filter, 0 chooses them by --tolerance.",
+        0,
+        "Apply the filter as this many weak steps, so that thin parts survive: 0 takes as many as "
+        "--tolerance needs, 10 is the paper's scheme with ten, 1 the classical one-shot filter.",
         Limits(0),
     )
     tolerance: Length = _option(

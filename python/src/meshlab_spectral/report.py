@@ -36,11 +36,11 @@ def report_warnings(report: dict[str, Any]) -> list[str]:
             "the shape's size: the filter is too steep for spectrum = full. Choose a stop gain of "
             "0.05 instead of 0, a lower order, a wider band, or fewer steps"
         )
-    if report["singular_part"] > 0:
+    if not report["tolerance_reached"]:
         warnings.append(
-            f"during {report['singular_part']:.0%} of the filter no step was small enough for the "
-            f"tolerance, the estimated error is {report['step_error']:.2g}: thin parts pinch off "
-            "there. Fixed steps, or the conformal update, cope better"
+            f"the tolerance was not reached on {report['singular_part']:.2%} of the surface, the "
+            f"largest estimated error is {report['step_error']:.2g}: thin parts pinch off there, "
+            "and more steps do not converge. The conformal update shrinks them smoothly"
         )
     return warnings
 
