@@ -30,6 +30,9 @@ void checkOptions(const FilterOptions& options) {
         throw InvalidOption("tolerance = " + std::to_string(options.tolerance) +
                             ": automatic steps need a length above zero, e.g. 0.05 % of the "
                             "diagonal of the bounding box");
+    if (!(options.conformalShare >= 0.0 && options.conformalShare <= 1.0))
+        throw InvalidOption("conformal_share = " + std::to_string(options.conformalShare) +
+                            ": give a part between 0 (the paper's update) and 1 (conformal)");
     if (!(options.evaluation.accuracy >= 1e-12 && options.evaluation.accuracy < 1.0))
         throw InvalidOption("accuracy must lie between 1e-12 and 1");
 }
@@ -95,7 +98,8 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     const TransferFunction transfer(options.transferFunction, cutoffFrequency(options.featureSize));
     const Components components = connectedComponents(surface.F, surface.X.rows());
 
-    const LaplacianBuilder laplacians(surface, options.laplacian, options.basisUpdate);
+    const LaplacianBuilder laplacians(surface, options.laplacian, options.basisUpdate,
+                                      options.conformalShare);
     const EvaluationOptions evaluation = evaluationFor(options, surface.X);
     StepEvaluator evaluate(evaluation, components, transfer);
     const AutomaticSteps steps = filterInSteps(laplacians, evaluate, surface.X, options, progress);

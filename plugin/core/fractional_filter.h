@@ -19,6 +19,7 @@ struct FilterOptions {
                                ///< infinitely many steps, length units, > 0.
     LaplacianKind laplacian = LaplacianKind::IntrinsicDelaunay;
     BasisUpdate basisUpdate = BasisUpdate::Full;
+    double conformalShare = 0.0;  ///< For BasisUpdate::Full, 0 to 1; see laplacian_builder.h.
     EvaluationOptions evaluation;
 };
 

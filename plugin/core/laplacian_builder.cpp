@@ -2,15 +2,18 @@
 
 namespace spectral {
 
-LaplacianBuilder::LaplacianBuilder(const Surface& surface, LaplacianKind kind, BasisUpdate update)
-    : surface_(surface), update_(update) {
+LaplacianBuilder::LaplacianBuilder(const Surface& surface, LaplacianKind kind, BasisUpdate update,
+                                   double conformalShare)
+    : surface_(surface), update_(update), conformalShare_(conformalShare) {
     if (kind == LaplacianKind::IntrinsicDelaunay) intrinsic_.emplace(surface.X, surface.F);
     input_ = {stiffness(surface.X), mass(surface.X)};
 }
 
 Laplacian LaplacianBuilder::operator()(const Vertices& X) const {
     switch (update_) {
-        case BasisUpdate::Full: return {stiffness(X), mass(X)};
+        case BasisUpdate::Full:
+            if (conformalShare_ == 0.0) return {stiffness(X), mass(X)};
+            return {(1.0 - conformalShare_) * stiffness(X) + conformalShare_ * input_.W, mass(X)};
         case BasisUpdate::Conformal: return {input_.W, mass(X)};
         case BasisUpdate::None: break;
     }

@@ -24,7 +24,12 @@ enum class BasisUpdate {
 class LaplacianBuilder {
   public:
     /// @param surface  kept by reference; its X is the input's shape.
-    LaplacianBuilder(const Surface& surface, LaplacianKind kind, BasisUpdate update);
+    /// @param conformalShare  for BasisUpdate::Full: part of W, 0 to 1, that stays the input's,
+    ///                        W = (1 - share) W(X) + share W(X_0); 0 is the paper's scheme, 1 the
+    ///                        conformal update. Where a part has pinched to a line, the mass of the
+    ///                        line vanishes but this share of W does not, and draws the line in.
+    LaplacianBuilder(const Surface& surface, LaplacianKind kind, BasisUpdate update,
+                     double conformalShare = 0.0);
 
     /// The Laplacian of the input.
     const Laplacian& input() const { return input_; }
@@ -40,6 +45,7 @@ class LaplacianBuilder {
 
     const Surface& surface_;
     BasisUpdate update_;
+    double conformalShare_;
     std::optional<IntrinsicDelaunay> intrinsic_;
     Laplacian input_;
 };

@@ -302,6 +302,8 @@ TEST(FractionalFilter, RefusesOptionsOutOfTheirRange) {
     };
     refuses([](FilterOptions& o) { o.steps = -1; });
     refuses([](FilterOptions& o) { o.steps = 0; });  // automatic, without a tolerance
+    refuses([](FilterOptions& o) { o.conformalShare = -0.1; });
+    refuses([](FilterOptions& o) { o.conformalShare = 1.1; });
     refuses([](FilterOptions& o) { o.featureSize = 0.0; });
     refuses([](FilterOptions& o) { o.featureSize = std::nan(""); });
     refuses([](FilterOptions& o) { o.evaluation.accuracy = 0.0; });
@@ -310,6 +312,24 @@ TEST(FractionalFilter, RefusesOptionsOutOfTheirRange) {
         o.evaluation.spectrum = Spectrum::Truncated;
         o.evaluation.basisSize = 162;
     });
+}
+
+TEST(FractionalFilter, ConformalShareLeadsFromTheFullToTheConformalUpdate) {
+    const Mesh mesh = testing::blob();
+    FilterOptions options = smoothing(mesh, 5, BasisUpdate::Full);
+    const Vertices full = fractionalFilter(mesh.V, mesh.F, options).V;
+    options.conformalShare = 1.0;
+    const Vertices all = fractionalFilter(mesh.V, mesh.F, options).V;
+    options.conformalShare = 0.5;
+    const Vertices half = fractionalFilter(mesh.V, mesh.F, options).V;
+    const Vertices conformal =
+        fractionalFilter(mesh.V, mesh.F, smoothing(mesh, 5, BasisUpdate::Conformal)).V;
+
+    EXPECT_LE(largestDifference(all, conformal), 1e-8);
+    const double whole = largestDifference(full, conformal);
+    EXPECT_GT(whole, 1e-4);
+    EXPECT_LT(largestDifference(full, half), 0.75 * whole);
+    EXPECT_LT(largestDifference(half, conformal), 0.75 * whole);
 }
 
 TEST(FractionalFilter, SaysInWhichStepThinPartsCollapsed) {
