@@ -50,10 +50,11 @@ build: setup  ## compile the plugin and the C++ tests, in build/
 	cmake --build build
 
 bench: BENCHMARKS := ON
-bench: build $(PACKAGE)  ## measure time and memory
+bench: build $(PACKAGE)  ## measure time, memory and artefacts
 	@if [ -f $(BENCH_MESH) ]; then set -x; build/tests/benchmarks/bench_dragon $(BENCH_MESH); \
 	else echo "bench_dragon skipped: no $(BENCH_MESH)"; fi
 	$(BIN)/python tests/benchmarks/bench_pymeshlab.py
+	$(BIN)/python tests/benchmarks/bench_artefacts.py
 
 lint: setup  ## check style and types, change nothing
 	$(CPP_FILES) | xargs $(BIN)/clang-format --dry-run -Werror

@@ -22,10 +22,6 @@ void checkOptions(const FilterOptions& options) {
         throw InvalidOption("tolerance = " + std::to_string(options.tolerance) +
                             ": automatic steps need a length above zero, e.g. 0.05 % of the "
                             "diagonal of the bounding box");
-    if (!std::isfinite(options.featureSize) || options.featureSize <= 0.0)
-        throw InvalidOption("feature_size = " + std::to_string(options.featureSize) +
-                            ": a feature size is a length above zero, e.g. 5 % of the diagonal of "
-                            "the bounding box");
     if (!(options.evaluation.accuracy >= 1e-12 && options.evaluation.accuracy < 1.0))
         throw InvalidOption("accuracy must lie between 1e-12 and 1");
 }
@@ -75,7 +71,7 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     checkMesh(V, F, options.laplacian);  // first: a feature size that is a part of an infinite
     checkOptions(options);               // diagonal is the mesh's fault
     const Surface surface = surfaceOf(V, F);
-    const TransferFunction transfer(options.transferFunction, 2.0 * kPi / options.featureSize);
+    const TransferFunction transfer(options.transferFunction, cutoffFrequency(options.featureSize));
     const Components components = connectedComponents(surface.F, surface.X.rows());
 
     const LaplacianBuilder laplacians(surface, options.laplacian, options.basisUpdate);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "errors.h"
+#include "types.h"
 
 namespace spectral {
 
@@ -100,6 +101,14 @@ std::vector<double> TransferFunction::discontinuities() const {
         return {cutoff_};
     const double half = std::exp2(0.5 * options_.bandWidth);
     return {cutoff_ / half, cutoff_ * half};
+}
+
+double cutoffFrequency(double featureSize) {
+    if (!std::isfinite(featureSize) || featureSize <= 0.0)
+        throw InvalidOption("feature_size = " + std::to_string(featureSize) +
+                            ": a feature size is a length above zero, e.g. 5 % of the diagonal of "
+                            "the bounding box");
+    return 2.0 * kPi / featureSize;
 }
 
 Gain fractionalPower(const TransferFunction& F, double alpha) {

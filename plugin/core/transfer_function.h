@@ -61,6 +61,12 @@ class TransferFunction {
     double cutoff_;
 };
 
+/// The cutoff frequency omega_c = 2 pi / featureSize, radians per length unit.
+///
+/// @param featureSize  wavelength of the cutoff, length units, > 0.
+/// @throws InvalidOption  when it is not a finite length above zero.
+double cutoffFrequency(double featureSize);
+
 /// Gain as a function of the frequency omega, e.g. a power of a transfer function.
 using Gain = std::function<double(double omega)>;
 

@@ -1,11 +1,6 @@
 #include "filter_spectral.h"
 
 #include "core/errors.h"
-#include "core/fractional_filter.h"
-#include "filter_help.h"
-#include "filter_parameters.h"
-#include "filter_report.h"
-#include "mesh_conversion.h"
 
 namespace {
 
@@ -18,65 +13,74 @@ spectral::Progress meshlabProgress(vcg::CallBackPos* callback) {
 
 }  // namespace
 
-FilterSpectralPlugin::FilterSpectralPlugin() {
-    typeList = {SpectralFilterFractional};
-    for (const ActionIDType filter : types())
-        actionList.push_back(new QAction(filterName(filter), this));
+FilterSpectralPlugin::FilterSpectralPlugin()
+    : filters_{fractionalMeshFilter(), artefactsMeshFilter(), harmonicsMeshFilter()} {
+    for (std::size_t i = 0; i < filters_.size(); ++i) {
+        typeList.push_back(static_cast<ActionIDType>(i));
+        actionList.push_back(new QAction(filters_[i].name, this));
+    }
+}
+
+const MeshFilter& FilterSpectralPlugin::filterOf(const QAction* action) const {
+    return filters_.at(static_cast<std::size_t>(ID(action)));
 }
 
 QString FilterSpectralPlugin::pluginName() const { return "FilterSpectral"; }
 
 QString FilterSpectralPlugin::vendor() const { return "meshlab-spectral"; }
 
-QString FilterSpectralPlugin::filterName(ActionIDType) const {
-    return "Spectral Filter (Fractional)";
+QString FilterSpectralPlugin::filterName(ActionIDType filter) const {
+    return filters_.at(static_cast<std::size_t>(filter)).name;
 }
 
-QString FilterSpectralPlugin::pythonFilterName(ActionIDType) const {
-    return "apply_coord_spectral_filter_fractional";
+QString FilterSpectralPlugin::pythonFilterName(ActionIDType filter) const {
+    return filters_.at(static_cast<std::size_t>(filter)).pythonName;
 }
 
-QString FilterSpectralPlugin::filterInfo(ActionIDType) const { return fractionalFilterHelp(); }
-
-FilterPlugin::FilterClass FilterSpectralPlugin::getClass(const QAction*) const {
-    return FilterPlugin::Smoothing;
+QString FilterSpectralPlugin::filterInfo(ActionIDType filter) const {
+    return filters_.at(static_cast<std::size_t>(filter)).help;
 }
 
+FilterPlugin::FilterClass FilterSpectralPlugin::getClass(const QAction* action) const {
+    return filterOf(action).category;
+}
+
+// None: what a filter writes it allocates itself, when there is a result to write.
 int FilterSpectralPlugin::getRequirements(const QAction*) { return MeshModel::MM_NONE; }
 
 // None, although faces are needed: the core's message says more than "missing items: faces".
 int FilterSpectralPlugin::getPreConditions(const QAction*) const { return MeshModel::MM_NONE; }
 
-int FilterSpectralPlugin::postCondition(const QAction*) const {
-    return MeshModel::MM_VERTCOORD | MeshModel::MM_VERTNORMAL | MeshModel::MM_FACENORMAL;
+int FilterSpectralPlugin::postCondition(const QAction* action) const {
+    return filterOf(action).changes;
 }
 
 FilterPlugin::FilterArity FilterSpectralPlugin::filterArity(const QAction*) const {
     return SINGLE_MESH;
 }
 
-RichParameterList FilterSpectralPlugin::initParameterList(const QAction*, const MeshModel& mesh) {
-    return fractionalFilterParameters(mesh);
+RichParameterList FilterSpectralPlugin::initParameterList(const QAction* action,
+                                                          const MeshModel& mesh) {
+    return filterOf(action).parameters(mesh);
 }
 
 std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
-    const QAction*, const RichParameterList& parameters, MeshDocument& document, unsigned int&,
-    vcg::CallBackPos* callback) {
+    const QAction* action, const RichParameterList& parameters, MeshDocument& document,
+    unsigned int&, vcg::CallBackPos* callback) {
     // The one place where the core's errors become MeshLab's. MeshLab ends the program on anything
     // but MLException and bad_alloc.
     try {
-        MeshModel& mesh = *document.mm();
-        const MeshMatrices input = toMatrices(mesh.cm);
-        const spectral::FilterResult result = spectral::fractionalFilter(
-            input.V, input.F, fractionalFilterOptions(parameters), meshlabProgress(callback));
-        setPositions(input.vertexIndex, result.V, mesh);
-        log(reportText(result));
-        return reportDictionary(result);
+        FilterOutcome outcome =
+            filterOf(action).apply(parameters, *document.mm(), meshlabProgress(callback));
+        log(outcome.text);
+        return std::move(outcome.report);
     } catch (const spectral::Error& error) {
         throw MLException(QString::fromStdString(error.what()));
     } catch (const std::bad_alloc&) {
         throw MLException(
-            "not enough memory for this mesh; choose a smaller basis_size, or spectrum = full");
+            "not enough memory for this mesh; choose a smaller basis_size or spectrum = full where "
+            "the filter has them, or simplify the mesh ('Simplification: Quadric Edge Collapse "
+            "Decimation')");
     } catch (const MLException&) {
         throw;
     } catch (const std::exception& error) {

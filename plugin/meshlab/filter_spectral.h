@@ -2,18 +2,21 @@
 
 #include <common/plugins/interfaces/filter_plugin.h>
 
-/// MeshLab's view of the project: one plugin with the filter "Spectral Filter (Fractional)".
+#include <vector>
+
+#include "mesh_filter.h"
+
+/// MeshLab's view of the project: one plugin with several filters.
 ///
-/// An adapter: it reads parameters and mesh, calls the core, and writes the result back only after
-/// the whole computation has succeeded.
+/// An adapter: every filter reads parameters and mesh, calls the core, and writes the result back
+/// only after the whole computation has succeeded. This class tells MeshLab about the filters, and
+/// calls them.
 class FilterSpectralPlugin : public QObject, public FilterPlugin {
     Q_OBJECT
     MESHLAB_PLUGIN_IID_EXPORTER(FILTER_PLUGIN_IID)
     Q_INTERFACES(FilterPlugin)
 
   public:
-    enum { SpectralFilterFractional };
-
     FilterSpectralPlugin();
 
     QString pluginName() const override;
@@ -34,4 +37,9 @@ class FilterSpectralPlugin : public QObject, public FilterPlugin {
                                                 MeshDocument& document,
                                                 unsigned int& postConditionMask,
                                                 vcg::CallBackPos* callback) override;
+
+  private:
+    const MeshFilter& filterOf(const QAction* action) const;
+
+    const std::vector<MeshFilter> filters_;  // a filter's ActionIDType is its index here
 };

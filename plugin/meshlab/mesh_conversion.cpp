@@ -33,3 +33,30 @@ void setPositions(const std::vector<std::size_t>& vertexIndex, const spectral::V
                 static_cast<Scalarm>(V(static_cast<Eigen::Index>(i), c));
     mesh.updateBoxAndNormals();
 }
+
+void setQuality(const std::vector<std::size_t>& vertexIndex, const Eigen::VectorXd& values,
+                MeshModel& mesh) {
+    mesh.updateDataMask(MeshModel::MM_VERTQUALITY);
+    for (std::size_t i = 0; i < vertexIndex.size(); ++i)
+        mesh.cm.vert[vertexIndex[i]].Q() =
+            static_cast<Scalarm>(values[static_cast<Eigen::Index>(i)]);
+}
+
+void setAttributes(const std::vector<std::size_t>& vertexIndex, const std::string& name,
+                   const Eigen::MatrixXd& values, MeshModel& mesh) {
+    using Attributes = vcg::tri::Allocator<CMeshO>;
+    // VCG must never have two attributes of one name; and a longer series from before would look
+    // like the end of this one.
+    for (Eigen::Index j = 0;
+         Attributes::DeletePerVertexAttribute(mesh.cm, name + std::to_string(j)); ++j) {
+    }
+    for (Eigen::Index j = 0; j < values.cols(); ++j) {
+        const std::string one = name + std::to_string(j);
+        Attributes::DeletePerVertexAttribute(mesh.cm, one);
+        auto attribute = Attributes::AddPerVertexAttribute<Scalarm>(mesh.cm, one);
+        for (std::size_t i = 0; i < mesh.cm.vert.size(); ++i) attribute[i] = 0;
+        for (std::size_t i = 0; i < vertexIndex.size(); ++i)
+            attribute[vertexIndex[i]] =
+                static_cast<Scalarm>(values(static_cast<Eigen::Index>(i), j));
+    }
+}

@@ -2,6 +2,7 @@
 
 #include <common/ml_document/mesh_model.h>
 
+#include <string>
 #include <vector>
 
 #include "core/types.h"
@@ -18,3 +19,12 @@ MeshMatrices toMatrices(const CMeshO& mesh);
 /// Moves the vertices to the rows of V and updates bounding box and normals; all else is kept.
 void setPositions(const std::vector<std::size_t>& vertexIndex, const spectral::Vertices& V,
                   MeshModel& mesh);
+
+/// Sets the vertex quality to the entries of `values`.
+void setQuality(const std::vector<std::size_t>& vertexIndex, const Eigen::VectorXd& values,
+                MeshModel& mesh);
+
+/// Stores the columns of `values` as scalar vertex attributes `name`0, `name`1, ..., in place of
+/// all that had such a name. Other vertices, those deleted, have 0.
+void setAttributes(const std::vector<std::size_t>& vertexIndex, const std::string& name,
+                   const Eigen::MatrixXd& values, MeshModel& mesh);

@@ -29,13 +29,13 @@ def filter_arrays(
     return mesh_set.current_mesh().vertex_matrix().copy(), report
 
 
-def refusal(mesh_set: pymeshlab.MeshSet, **parameters: Any) -> str:
-    """Call the filter, which must refuse; its message."""
+def refusal(mesh_set: pymeshlab.MeshSet, filter_name: str = FILTER, **parameters: Any) -> str:
+    """Call a filter, which must refuse; its message."""
     # pymeshlab 2025.7 crashes when a MeshSet is destroyed in which a filter, any filter, has
     # failed: such a MeshSet lives until the end of the tests.
     _refusing_mesh_sets.append(mesh_set)
     with pytest.raises(pymeshlab.PyMeshLabException) as error:
-        mesh_set.apply_filter(FILTER, **parameters)
+        mesh_set.apply_filter(filter_name, **parameters)
     return str(error.value)
 
 

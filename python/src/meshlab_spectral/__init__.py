@@ -9,9 +9,19 @@
 
 from importlib.metadata import version
 
+from meshlab_spectral.artefacts import Artefacts, measure_artefacts
 from meshlab_spectral.errors import FilterError, MeshFileError, OptionError, PluginError
 from meshlab_spectral.options import FilterOptions
 from meshlab_spectral.plugin import load
 
-__all__ = ["FilterError", "FilterOptions", "MeshFileError", "OptionError", "PluginError", "load"]
+__all__ = [
+    "Artefacts",
+    "FilterError",
+    "FilterOptions",
+    "MeshFileError",
+    "OptionError",
+    "PluginError",
+    "load",
+    "measure_artefacts",
+]
 __version__ = version("meshlab-spectral")

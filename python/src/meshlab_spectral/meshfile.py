@@ -14,17 +14,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from meshlab_spectral.errors import FilterError, FormatError, MeshFileError
+from meshlab_spectral.calling import call_filter, reason_of
+from meshlab_spectral.errors import FormatError, MeshFileError
 from meshlab_spectral.options import FilterOptions
 from meshlab_spectral.plugin import FILTER_NAME, load
 
 StageCallback = Callable[[str], None]
 
 _USUAL_FORMATS = ".ply, .obj, .stl or .off"
-
-# After a filter has thrown, destroying its MeshSet makes pymeshlab 2025.7 crash at the next one
-# (MeshLab's own filters do the same). Such a MeshSet is therefore kept until the process ends.
-_failed_mesh_sets: list[Any] = []
 
 
 def filter_file(
@@ -80,11 +77,7 @@ def filter_to_scratch(
     mesh_set = pymeshlab.MeshSet(verbose=True)  # its log is the only source of progress
     _read(mesh_set, source)
     on_stage("filtering")
-    try:
-        report = mesh_set.apply_filter(FILTER_NAME, **options.pymeshlab_parameters())
-    except pymeshlab.PyMeshLabException as error:
-        _failed_mesh_sets.append(mesh_set)
-        raise FilterError(_reason(error)) from error
+    report = call_filter(mesh_set, FILTER_NAME, options.pymeshlab_parameters())
     on_stage("writing")
     _write(mesh_set, scratch, source)
     return {name: _plain(value) for name, value in report.items()}
@@ -231,7 +224,7 @@ def _read(mesh_set: Any, source: Path) -> None:
     try:
         mesh_set.load_new_mesh(str(source))
     except pymeshlab.PyMeshLabException as error:
-        reason = _reason(error)
+        reason = reason_of(error)
         if reason.startswith("Unknown format"):
             raise MeshFileError(
                 f"{source} ends in {source.suffix or 'nothing'}, which MeshLab cannot read as a "
@@ -256,7 +249,7 @@ def _write(mesh_set: Any, scratch: Path, source: Path) -> None:
             str(scratch), save_textures=_textures_to_be_saved(mesh_set, scratch, source)
         )
     except pymeshlab.PyMeshLabException as error:
-        reason = _reason(error).rsplit(": ", 1)[-1]  # without the scratch file's name
+        reason = reason_of(error).rsplit(": ", 1)[-1]  # without the scratch file's name
         raise MeshFileError(
             f"{scratch.name} cannot be written ({reason}): is the disk full?"
         ) from error
@@ -272,16 +265,6 @@ def _textures_to_be_saved(mesh_set: Any, scratch: Path, source: Path) -> bool:
     beside_input = scratch.parent.parent.samefile(source.resolve().parent)
     within = all(not name.is_absolute() and ".." not in name.parts for name in names)
     return within and not beside_input
-
-
-def _reason(error: Exception) -> str:
-    """Take what matters of pymeshlab's message, on one line."""
-    lines = [line.strip() for line in str(error).splitlines() if line.strip()]
-    for start in ("Details: ", "Error details: "):
-        for number, line in enumerate(lines):
-            if line.startswith(start):
-                return " ".join([line.removeprefix(start), *lines[number + 1 :]])
-    return " ".join(lines)
 
 
 def _plain(value: Any) -> Any:

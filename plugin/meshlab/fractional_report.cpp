@@ -1,4 +1,4 @@
-#include "filter_report.h"
+#include "fractional_report.h"
 
 #include <common/plugins/interfaces/filter_plugin.h>
 

@@ -6,8 +6,7 @@
 
 #include "core/fractional_filter.h"
 
-/// The report as the dictionary that pymeshlab returns. Only int, bool, double and Eigen::VectorXd:
-/// other types (strings, unsigned) do not reach Python.
+/// The report as the dictionary that pymeshlab returns.
 std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& result);
 
 /// The same as lines for MeshLab's log.

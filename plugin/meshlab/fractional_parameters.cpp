@@ -1,13 +1,14 @@
-#include "filter_parameters.h"
+#include "fractional_parameters.h"
 
 #include <common/parameters/rich_parameters.h>
+
+#include "common_parameters.h"
 
 using spectral::FilterOptions;
 
 namespace {
 
-/// Defaults of lengths, in parts of the diagonal of the bounding box.
-constexpr double kDefaultFeatureSize = 0.05;
+/// In parts of the diagonal of the bounding box.
 constexpr double kDefaultTolerance = 0.0005;
 
 }  // namespace
@@ -29,9 +30,8 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "of "
         "about the feature size: with stop gain 1 and pass gain above 1 it enhances just them. "
         "<b>band-stop</b> removes just them."));
-    list.addParam(RichPercentage(
-        "feature_size", static_cast<Scalarm>(kDefaultFeatureSize) * diagonal, 0, diagonal,
-        "Feature size",
+    list.addParam(featureSizeParameter(
+        mesh,
         "Size of the details where the filter turns over, as the wavelength of a wave along the "
         "surface: a bump and the hollow beside it. Low-pass with 5 % of the diagonal wipes out "
         "bumps that are clearly narrower than 2.5 % of the model. Larger values filter more "
@@ -100,13 +100,10 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "For a truncated spectrum: keep the details beyond the basis, with the mean gain of their "
         "frequencies. Off: drop them.",
         true));
-    list.addParam(RichEnum(
-        "laplacian", static_cast<int>(defaults.laplacian), {"intrinsic delaunay", "cotangent"},
-        "Laplacian",
+    list.addParam(laplacianParameter(
         "How the frequencies of the surface are measured. <b>intrinsic delaunay</b> works on any "
         "triangles, also needles, holes, doubled or crossing sheets, and stays stable in strong "
-        "filters. <b>cotangent</b> is the formula of the paper; every triangle needs an area.",
-        true));
+        "filters. <b>cotangent</b> is the formula of the paper; every triangle needs an area."));
     return list;
 }
 
@@ -120,13 +117,13 @@ FilterOptions fractionalFilterOptions(const RichParameterList& parameters) {
     transfer.passGain = parameters.getFloat("pass_gain");
     transfer.stopGain = parameters.getFloat("stop_gain");
     transfer.power = parameters.getFloat("power");
-    options.featureSize = parameters.getAbsPerc("feature_size");
+    options.featureSize = featureSize(parameters);
     options.steps = parameters.getInt("steps");
     options.tolerance = parameters.getAbsPerc("tolerance");
     options.basisUpdate = static_cast<spectral::BasisUpdate>(parameters.getEnum("basis_update"));
     options.evaluation.spectrum = static_cast<spectral::Spectrum>(parameters.getEnum("spectrum"));
     options.evaluation.basisSize = parameters.getInt("basis_size");
     options.evaluation.reinjectResidual = parameters.getBool("reinject_residual");
-    options.laplacian = static_cast<spectral::LaplacianKind>(parameters.getEnum("laplacian"));
+    options.laplacian = laplacianKind(parameters);
     return options;
 }

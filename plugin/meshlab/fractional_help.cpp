@@ -1,4 +1,4 @@
-#include "filter_help.h"
+#include "fractional_help.h"
 
 QString fractionalFilterHelp() {
     return "Filters the shape of the surface by the <b>size of its details</b>, as an equalizer "

@@ -1,0 +1,61 @@
+#include "manifold_harmonics.h"
+
+#include <cmath>
+#include <string>
+
+#include "cholesky.h"
+#include "errors.h"
+#include "harmonic_basis.h"
+#include "mesh_laplacian.h"
+
+namespace spectral {
+
+namespace {
+
+/// Relative difference of absolute values that are taken for equal: well above the accuracy of an
+/// eigenvector, well below what tells entries apart where there is no symmetry.
+constexpr double kTie = 1e-6;
+
+void checkBasisSize(int k, Index vertices, int components) {
+    const std::string given = "basis_size = " + std::to_string(k);
+    if (k >= vertices)
+        throw InvalidOption(given + " needs more than " + std::to_string(k) +
+                            " vertices; the surface has " + std::to_string(vertices) +
+                            ": choose at most " + std::to_string(vertices - 1));
+    if (k <= components)
+        throw InvalidOption(given +
+                            " leaves no room beside the constant modes, of which every "
+                            "connected component has one (here " +
+                            std::to_string(components) + "): choose at least " +
+                            std::to_string(components + 1));
+}
+
+}  // namespace
+
+void fixSigns(Eigen::MatrixXd& Phi) {
+    for (Index j = 0; j < Phi.cols(); ++j) {
+        const double extreme = Phi.col(j).cwiseAbs().maxCoeff();
+        Index first = 0;
+        while (first < Phi.rows() && std::abs(Phi(first, j)) < (1.0 - kTie) * extreme) ++first;
+        if (first < Phi.rows() && Phi(first, j) < 0.0) Phi.col(j) *= -1.0;
+    }
+}
+
+ManifoldHarmonics manifoldHarmonics(const Vertices& V, const Faces& F,
+                                    const HarmonicsOptions& options, const Progress& progress) {
+    const MeshLaplacian mesh = meshLaplacian(V, F, options.laplacian);
+    const Index k = options.basisSize;
+    checkBasisSize(options.basisSize, mesh.surface.X.rows(), mesh.components.count);
+
+    ShiftedCholesky cholesky;
+    HarmonicBasis basis = truncatedBasis(mesh.laplacian, mesh.constants, k, cholesky, progress);
+    ManifoldHarmonics harmonics;
+    harmonics.wholeSize = static_cast<int>(basis.size());
+    basis.Phi.conservativeResize(Eigen::NoChange, k);
+    fixSigns(basis.Phi);
+    harmonics.lambda = basis.lambda.head(k);
+    harmonics.Phi = onMesh(mesh.surface, basis.Phi, V.rows());
+    return harmonics;
+}
+
+}  // namespace spectral

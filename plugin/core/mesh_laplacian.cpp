@@ -1,0 +1,29 @@
+#include "mesh_laplacian.h"
+
+#include <utility>
+
+#include "errors.h"
+#include "mesh_check.h"
+
+namespace spectral {
+
+MeshLaplacian meshLaplacian(const Vertices& V, const Faces& F, LaplacianKind kind) {
+    checkMesh(V, F, kind);
+    Surface surface = surfaceOf(V, F);
+    Components components = connectedComponents(surface.F, surface.X.rows());
+    Laplacian laplacian = LaplacianBuilder(surface, kind, BasisUpdate::None).input();
+    if (!isUsable(laplacian))
+        throw SolverFailure(
+            "a cotangent or a mass of the mesh is not finite: some triangles are nearly without "
+            "area. Choose laplacian = intrinsic delaunay");
+    ConstantModes constants(components, laplacian.D);
+    return {std::move(surface), std::move(components), std::move(laplacian), std::move(constants)};
+}
+
+Eigen::MatrixXd onMesh(const Surface& surface, const Eigen::MatrixXd& values, Index vertexCount) {
+    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(vertexCount, values.cols());
+    for (Index i = 0; i < values.rows(); ++i) all.row(surface.vertex[i]) = values.row(i);
+    return all;
+}
+
+}  // namespace spectral

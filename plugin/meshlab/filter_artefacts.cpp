@@ -1,0 +1,84 @@
+#include <common/parameters/rich_parameters.h>
+#include <vcg/complex/algorithms/update/color.h>
+
+#include <iomanip>
+#include <sstream>
+
+#include "common_parameters.h"
+#include "core/artefacts.h"
+#include "mesh_conversion.h"
+#include "mesh_filter.h"
+
+namespace {
+
+const char* const kHelp =
+    "Measures the <b>artefacts</b> that a filter has left in the shape: spikes, creases and "
+    "ripples that are much finer than what it should have left."
+    "<br><br>Apply it to the filtered mesh, with the feature size of the filter, as the same "
+    "length. The part of the shape above twice the cutoff frequency, in the frequencies of the "
+    "filtered surface itself, is split off; its length at every vertex goes into the vertex "
+    "quality and is shown in colours, from red (none) to blue (the most). The log tells its root "
+    "mean square over the surface and its maximum."
+    "<br><br>Nothing moves. A strong smoothing should leave next to nothing; on a mesh that was "
+    "not smoothed, its own fine details are measured."
+    "<br><br>For more information see:"
+    "<br><i>A. Kovnatsky, M. M. Bronstein, A. M. Bronstein</i>, <b>Stable Spectral Mesh "
+    "Filtering</b>, ECCV Workshops 2012";
+
+RichParameterList parameters(const MeshModel& mesh) {
+    RichParameterList list;
+    list.addParam(featureSizeParameter(
+        mesh,
+        "The feature size of the low-pass or of the band that was applied. Mind that a percentage "
+        "refers to this mesh, whose diagonal the filter may have changed: give the length that the "
+        "filter has reported."));
+    list.addParam(
+        laplacianParameter("How the frequencies of the surface are measured: as in the filter. "
+                           "<b>intrinsic delaunay</b> works on any triangles; for <b>cotangent</b> "
+                           "every triangle needs an area."));
+    return list;
+}
+
+std::string textOf(const spectral::Artefacts& artefacts, double featureSize, double diagonal) {
+    std::ostringstream text;
+    text << std::setprecision(4) << "Spectral Artefacts: above twice the cutoff of feature size "
+         << featureSize << "\n  root mean square " << artefacts.rms << " ("
+         << artefacts.rms / diagonal << " diagonals), largest " << artefacts.maximum << " ("
+         << artefacts.maximum / diagonal << " diagonals)";
+    return text.str();
+}
+
+FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
+                    const spectral::Progress& progress) {
+    const MeshMatrices input = toMatrices(mesh.cm);
+    spectral::ArtefactOptions options;
+    options.featureSize = featureSize(parameters);
+    options.laplacian = laplacianKind(parameters);
+    const spectral::Artefacts artefacts =
+        spectral::measureArtefacts(input.V, input.F, options, progress);
+
+    setQuality(input.vertexIndex, artefacts.length, mesh);
+    mesh.updateDataMask(MeshModel::MM_VERTCOLOR);
+    vcg::tri::UpdateColor<CMeshO>::PerVertexQualityRamp(mesh.cm, 0,
+                                                        static_cast<Scalarm>(artefacts.maximum));
+    const double diagonal = mesh.cm.bbox.Diag();
+    return {{{"rms", artefacts.rms},
+             {"maximum", artefacts.maximum},
+             {"feature_size", options.featureSize},
+             {"diagonal", diagonal}},
+            textOf(artefacts, options.featureSize, diagonal)};
+}
+
+}  // namespace
+
+MeshFilter artefactsMeshFilter() {
+    MeshFilter filter;
+    filter.name = "Spectral Artefacts";
+    filter.pythonName = "compute_scalar_spectral_artefacts_per_vertex";
+    filter.help = kHelp;
+    filter.category = FilterPlugin::FilterClass(FilterPlugin::Quality | FilterPlugin::Measure);
+    filter.changes = MeshModel::MM_VERTQUALITY | MeshModel::MM_VERTCOLOR;
+    filter.parameters = parameters;
+    filter.apply = apply;
+    return filter;
+}

@@ -1,0 +1,31 @@
+#include "core/fractional_filter.h"
+#include "fractional_help.h"
+#include "fractional_parameters.h"
+#include "fractional_report.h"
+#include "mesh_conversion.h"
+#include "mesh_filter.h"
+
+namespace {
+
+FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
+                    const spectral::Progress& progress) {
+    const MeshMatrices input = toMatrices(mesh.cm);
+    const spectral::FilterResult result =
+        spectral::fractionalFilter(input.V, input.F, fractionalFilterOptions(parameters), progress);
+    setPositions(input.vertexIndex, result.V, mesh);
+    return {reportDictionary(result), reportText(result)};
+}
+
+}  // namespace
+
+MeshFilter fractionalMeshFilter() {
+    MeshFilter filter;
+    filter.name = "Spectral Filter (Fractional)";
+    filter.pythonName = "apply_coord_spectral_filter_fractional";
+    filter.help = fractionalFilterHelp();
+    filter.category = FilterPlugin::Smoothing;
+    filter.changes = MeshModel::MM_VERTCOORD | MeshModel::MM_VERTNORMAL | MeshModel::MM_FACENORMAL;
+    filter.parameters = fractionalFilterParameters;
+    filter.apply = apply;
+    return filter;
+}

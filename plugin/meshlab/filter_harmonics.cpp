@@ -1,0 +1,108 @@
+#include <common/parameters/rich_parameters.h>
+
+#include <iomanip>
+#include <sstream>
+
+#include "common_parameters.h"
+#include "core/errors.h"
+#include "core/manifold_harmonics.h"
+#include "mesh_conversion.h"
+#include "mesh_filter.h"
+#include "vertex_colors.h"
+
+namespace {
+
+constexpr int kDefaultMode = 1;  // the first that is not constant, on a connected surface
+
+/// Name of the vertex attribute of harmonic i: this and the number.
+const char* const kAttribute = "harmonic_";
+
+const char* const kHelp =
+    "Computes the <b>manifold harmonics</b> of the surface: its own standing waves, from the "
+    "slowest to finer and finer ones, as a drum of this shape would show them. They are the "
+    "eigenfunctions of its Laplace-Beltrami operator, which the spectral filters work with."
+    "<br><br>The harmonic that you choose by its number, the <b>mode</b>, goes into the vertex "
+    "quality and is shown in colours: red where it is positive, blue where it is negative, white "
+    "in between. Its sign, which is arbitrary, is chosen so that the value farthest from zero is "
+    "positive; of several such values (to within one millionth) that of the first vertex. Modes "
+    "of equal eigenvalue, on symmetric shapes, may come in any mixture."
+    "<br><br>The report holds the eigenvalues; the frequency of a harmonic is the square root of "
+    "its eigenvalue, and 2 pi over the frequency its wavelength. <b>Store basis</b> keeps all "
+    "harmonics in the mesh, as the vertex attributes harmonic_0, harmonic_1 and so on."
+    "<br><br>For more information see:"
+    "<br><i>B. Vallet, B. L&eacute;vy</i>, <b>Spectral Geometry Processing with Manifold "
+    "Harmonics</b>, Computer Graphics Forum 27(2), 2008";
+
+RichParameterList parameters(const MeshModel&) {
+    RichParameterList list;
+    list.addParam(RichInt(
+        "mode", kDefaultMode, "Mode",
+        "Number of the harmonic to show, below the basis size. 0 is the constant one (every "
+        "connected component has its own, they come first), higher ones are finer."));
+    list.addParam(
+        RichInt("basis_size", spectral::HarmonicsOptions().basisSize, "Basis size",
+                "How many harmonics are computed, the constant ones included. Must be below the "
+                "number of vertices; time and memory grow with it."));
+    list.addParam(RichBool(
+        "store_basis", false, "Store basis",
+        "Keep all harmonics as vertex attributes named harmonic_0, harmonic_1 and so on, one "
+        "number per vertex each. Those of an earlier run are replaced. With the areas that belong "
+        "to the vertices as weights they are orthonormal."));
+    list.addParam(laplacianParameter(
+        "How the frequencies of the surface are measured. <b>intrinsic delaunay</b> works on any "
+        "triangles, also needles, holes, doubled or crossing sheets. <b>cotangent</b> is the "
+        "classical formula; every triangle needs an area."));
+    return list;
+}
+
+void checkMode(int mode, int basisSize) {
+    if (mode >= 0 && (mode < basisSize || basisSize < 1)) return;  // a size below 1 has its own say
+    throw spectral::InvalidOption("mode = " + std::to_string(mode) +
+                                  ": a basis of basis_size = " + std::to_string(basisSize) +
+                                  " has the modes 0 to " + std::to_string(basisSize - 1));
+}
+
+std::string textOf(const spectral::ManifoldHarmonics& harmonics, int mode) {
+    const double lambda = harmonics.lambda[mode];
+    const auto size = static_cast<int>(harmonics.lambda.size());
+    std::ostringstream text;
+    text << std::setprecision(4) << "Manifold Harmonics: mode " << mode << " of " << size
+         << ", eigenvalue " << lambda;
+    if (lambda > 0.0) text << ", wavelength " << 2.0 * spectral::kPi / std::sqrt(lambda);
+    if (harmonics.wholeSize > size)
+        text << "\n  the basis ends within a group of equal eigenvalues; basis_size = "
+             << harmonics.wholeSize << " would hold all of it";
+    return text.str();
+}
+
+FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
+                    const spectral::Progress& progress) {
+    const int mode = parameters.getInt("mode");
+    spectral::HarmonicsOptions options;
+    options.basisSize = parameters.getInt("basis_size");
+    options.laplacian = laplacianKind(parameters);
+    checkMode(mode, options.basisSize);
+    const MeshMatrices input = toMatrices(mesh.cm);
+    const spectral::ManifoldHarmonics harmonics =
+        spectral::manifoldHarmonics(input.V, input.F, options, progress);
+
+    if (parameters.getBool("store_basis"))
+        setAttributes(input.vertexIndex, kAttribute, harmonics.Phi, mesh);
+    setQuality(input.vertexIndex, harmonics.Phi.col(mode), mesh);
+    setDivergingColors(input.vertexIndex, harmonics.Phi.col(mode), mesh);
+    return {{{"eigenvalues", QVariant::fromValue(harmonics.lambda)}}, textOf(harmonics, mode)};
+}
+
+}  // namespace
+
+MeshFilter harmonicsMeshFilter() {
+    MeshFilter filter;
+    filter.name = "Manifold Harmonics";
+    filter.pythonName = "compute_scalar_manifold_harmonic_per_vertex";
+    filter.help = kHelp;
+    filter.category = FilterPlugin::Quality;
+    filter.changes = MeshModel::MM_VERTQUALITY | MeshModel::MM_VERTCOLOR;
+    filter.parameters = parameters;
+    filter.apply = apply;
+    return filter;
+}

@@ -1,0 +1,53 @@
+"""Calling a filter of pymeshlab so that its refusal becomes an error of this package."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from meshlab_spectral.errors import FilterError
+
+# After a filter has thrown, destroying its MeshSet makes pymeshlab 2025.7 crash at the next one
+# (MeshLab's own filters do the same). Such a MeshSet is therefore kept until the process ends.
+_failed_mesh_sets: list[Any] = []
+
+
+def call_filter(mesh_set: Any, name: str, parameters: dict[str, Any]) -> dict[str, Any]:
+    """Apply a filter to the current mesh of a MeshSet.
+
+    Parameters
+    ----------
+    mesh_set
+        A `pymeshlab.MeshSet`.
+    name
+        The filter's Python name; its plugin has been loaded.
+    parameters
+        As pymeshlab takes them.
+
+    Returns
+    -------
+    dict
+        The filter's report, as pymeshlab gives it.
+
+    Raises
+    ------
+    FilterError
+        When the filter refuses the mesh or the parameters: with what is wrong and what to do.
+    """
+    import pymeshlab
+
+    try:
+        report: dict[str, Any] = mesh_set.apply_filter(name, **parameters)
+    except pymeshlab.PyMeshLabException as error:
+        _failed_mesh_sets.append(mesh_set)
+        raise FilterError(reason_of(error)) from error
+    return report
+
+
+def reason_of(error: Exception) -> str:
+    """Take what matters of pymeshlab's message, on one line."""
+    lines = [line.strip() for line in str(error).splitlines() if line.strip()]
+    for start in ("Details: ", "Error details: "):
+        for number, line in enumerate(lines):
+            if line.startswith(start):
+                return " ".join([line.removeprefix(start), *lines[number + 1 :]])
+    return " ".join(lines)

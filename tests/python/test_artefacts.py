@@ -1,0 +1,157 @@
+"""The artefact measure is what an independent implementation with all eigenvectors computes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pymeshlab
+import pytest
+import spectral_reference as reference
+from helpers import assert_same, diagonal, length, mesh_set_of, percent, refusal, snapshot
+from meshlab_spectral import Artefacts, FilterError, OptionError, measure_artefacts
+from numpy.typing import NDArray
+
+ARTEFACTS = "compute_scalar_spectral_artefacts_per_vertex"
+AGREEMENT = 1e-7  # of the diagonal of the bounding box; parameters go through 32-bit floats
+
+Decimated = Callable[..., tuple[NDArray[Any], NDArray[Any]]]
+
+TRIANGLE = (np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]]))
+
+
+def expected_lengths(
+    V: NDArray[Any], F: NDArray[Any], feature_size: float, laplacian: str
+) -> NDArray[np.float64]:
+    """Lengths of X - g(A) X with all eigenvectors."""
+    lam_c = (2 * np.pi / feature_size) ** 2
+    W, d = reference.matrices(V, F, laplacian)
+    spectrum = reference.spectra(W, d, reference.components(len(V), F))
+    smooth = reference.apply_gain(
+        V, spectrum, lambda omega: 1 / (1 + (omega**2 / (4 * lam_c)) ** 4)
+    )
+    return np.linalg.norm(V - smooth, axis=1)
+
+
+@pytest.mark.parametrize("laplacian", ["cotangent", "intrinsic delaunay"])
+@pytest.mark.parametrize("part", [0.2, 0.5])
+def test_lengths_rms_and_maximum_agree(
+    sample_name: str, part: float, laplacian: Any, decimated: Decimated
+) -> None:
+    V, F = decimated(sample_name)
+    size = part * diagonal(V)
+    found = measure_artefacts(V, F, size, laplacian)
+    expected = expected_lengths(V, F, size, laplacian)
+    d = reference.lumped_areas(V, F)
+    tolerance = AGREEMENT * diagonal(V)
+    assert expected.max() > 1e-3 * diagonal(V), "a mesh without artefacts tests nothing"
+    np.testing.assert_allclose(found.length, expected, rtol=0, atol=tolerance)
+    assert found.maximum == pytest.approx(expected.max(), abs=tolerance)
+    assert found.rms == pytest.approx(np.sqrt(d @ expected**2 / d.sum()), abs=tolerance)
+    assert found.diagonal == pytest.approx(diagonal(V), rel=1e-12)
+
+
+def test_it_scales_with_the_mesh_and_does_not_change_under_translation(
+    decimated: Decimated,
+) -> None:
+    V, F = decimated("bone.ply")
+    before = measure_artefacts(V, F, 0.15 * diagonal(V))
+    after = measure_artefacts(1e3 * V + [5, -7, 9], F, 1e3 * 0.15 * diagonal(V))
+    np.testing.assert_allclose(after.length, 1e3 * before.length, rtol=0, atol=1e-4 * diagonal(V))
+    assert after.rms == pytest.approx(1e3 * before.rms, rel=1e-5)
+
+
+def test_vertices_without_faces_have_none(decimated: Decimated) -> None:
+    V, F = decimated("cow.obj")
+    found = measure_artefacts(np.vstack([V, V[:1] + 0.01]), F, 0.15 * diagonal(V))
+    assert len(found.length) == len(V) + 1
+    assert found.length[-1] == 0
+
+
+def test_the_filter_fills_quality_and_colours_and_moves_nothing(decimated: Decimated) -> None:
+    mesh_set = mesh_set_of(*decimated("cow.obj"))
+    mesh = mesh_set.current_mesh()
+    before = snapshot(mesh)
+    report = mesh_set.compute_scalar_spectral_artefacts_per_vertex(feature_size=percent(15))
+    assert report.keys() == {"rms", "maximum", "feature_size", "diagonal"}
+    assert report["feature_size"] == pytest.approx(0.15 * report["diagonal"], rel=1e-6)
+    quality = mesh.vertex_scalar_array()
+    assert quality.max() == report["maximum"]
+    assert quality.min() >= 0
+    colours = mesh.vertex_color_matrix()
+    assert not np.array_equal(colours[quality.argmax()], colours[quality.argmin()])
+    after = snapshot(mesh)
+    for name in ("vertex_scalar_array", "vertex_color_matrix"):
+        before.pop(name, None)
+        del after[name]
+    assert_same(before, after)
+
+
+REFUSED: dict[str, tuple[dict[str, Any], str]] = {
+    "feature size of nothing": ({"feature_size": percent(0)}, "feature_size"),
+    "negative feature size": ({"feature_size": length(-1.0)}, "feature_size"),
+    "feature size that is no number": ({"feature_size": length(float("nan"))}, "feature_size"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSED)
+def test_a_refused_parameter_is_named_and_leaves_the_mesh_as_it_was(
+    case: str, decimated: Decimated
+) -> None:
+    parameters, named = REFUSED[case]
+    mesh_set = mesh_set_of(*decimated("cow.obj"))
+    before = snapshot(mesh_set.current_mesh())
+    assert named in refusal(mesh_set, filter_name=ARTEFACTS, **parameters)
+    assert_same(before, snapshot(mesh_set.current_mesh()))
+
+
+def test_a_point_cloud_is_refused_and_left_as_it_was(decimated: Decimated) -> None:
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.add_mesh(pymeshlab.Mesh(decimated("cow.obj")[0]))
+    before = snapshot(mesh_set.current_mesh())
+    assert "point cloud" in refusal(mesh_set, filter_name=ARTEFACTS)
+    assert_same(before, snapshot(mesh_set.current_mesh()))
+
+
+@pytest.mark.parametrize("feature_size", [0.0, -1.0, float("nan"), float("inf")])
+def test_another_feature_size_is_refused_by_name(feature_size: float) -> None:
+    with pytest.raises(OptionError, match="feature_size"):
+        measure_artefacts(*TRIANGLE, feature_size)
+
+
+def test_another_laplacian_is_refused_with_the_choices() -> None:
+    with pytest.raises(OptionError, match="intrinsic delaunay, cotangent"):
+        measure_artefacts(*TRIANGLE, 1.0, "uniform")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("vertices", "faces", "named"),
+    [
+        (np.zeros((3, 2)), TRIANGLE[1], r"shape \(3, 2\)"),
+        (np.zeros((0, 3)), np.zeros((0, 3), dtype=int), "no vertices"),
+        (TRIANGLE[0], np.array([[0, 1, 2, 0]]), r"shape \(1, 4\)"),
+        (TRIANGLE[0], np.array([[0.0, 1.0, 2.0]]), "float64"),
+        (TRIANGLE[0], np.array([[0, 1, 3]]), "vertex 3"),
+        (TRIANGLE[0], np.array([[0, 1, -1]]), "vertex -1"),
+    ],
+)
+def test_arrays_that_are_no_mesh_are_refused(
+    vertices: NDArray[Any], faces: NDArray[Any], named: str
+) -> None:
+    with pytest.raises(ValueError, match=named):
+        measure_artefacts(vertices, faces, 1.0)
+
+
+def test_a_mesh_that_cannot_be_measured_is_refused_with_the_plugins_reason() -> None:
+    V, F = TRIANGLE
+    with pytest.raises(FilterError, match="no faces"):
+        measure_artefacts(V, F[:0], 1.0)
+    with pytest.raises(FilterError, match="vertex 1"):
+        measure_artefacts([[0, 0, 0], [np.nan, 0, 0], [0, 1, 0]], F, 1.0)
+
+
+def test_the_result_can_be_taken_from_lists() -> None:
+    found = measure_artefacts([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], 1.0)
+    assert isinstance(found, Artefacts)
+    assert found.length.shape == (3,)
