@@ -62,8 +62,7 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
     list.addParam(RichFloat(
         "power", static_cast<Scalarm>(transfer.power), "Power",
         "The part of the filter to apply, as a power of all its gains: 1 is the whole filter, 0.5 "
-        "is half of it (a gain of 4 becomes 2, and two halves in turn are the whole). The steps "
-        "divide this part. Above 0, at most 1."));
+        "is half of it (a gain of 4 becomes 2). The steps divide this part. Above 0, at most 1."));
     list.addParam(RichInt(
         "steps", defaults.steps, "Steps",
         "The filter is applied as this many weak steps, because a single strong one damages the "

@@ -12,8 +12,11 @@ from typing import Any
 import matplotlib.image
 import numpy as np
 import pytest
+import spectral_reference as reference
 from helpers import FILTER, diagonal, largest_distance, mesh_set_of
 from meshlab_spectral.figures import FIGURES
+from meshlab_spectral.figures.eigenfunctions import most_alike
+from meshlab_spectral.figures.harmonics import lumped_areas, manifold_harmonics
 from meshlab_spectral.figures.sequences import K, after
 from meshlab_spectral.figures.stability import BAND, LOW_PASS
 from meshlab_spectral.options import FilterOptions
@@ -111,6 +114,30 @@ def test_sequences_show_shapes_on_the_way_to_the_whole_filter(
     assert min(ways) > 1e-3 * diagonal(V)
     whole = shape(FilterOptions(**{**vars(options), "steps": K, "basis_update": update}))
     np.testing.assert_array_equal(shapes[-1], whole)
+
+
+def test_harmonics_are_orthonormal_and_find_themselves_in_any_order_and_sign(
+    decimated: Callable[..., Any],
+) -> None:
+    V, F = decimated("bunny.obj", 1000)
+    d = lumped_areas(V, F)
+    np.testing.assert_allclose(d, reference.lumped_areas(V, F), rtol=1e-12)
+    Phi = manifold_harmonics(V, F, 12)
+    np.testing.assert_allclose(Phi.T @ (d[:, None] * Phi), np.eye(12), atol=1e-8)
+    number, correlation = most_alike(Phi[:, 7], -Phi[:, ::-1], d)
+    assert number == 11 - 7
+    assert correlation == pytest.approx(-1)
+
+
+def test_a_mesh_too_small_for_its_eigenfunctions_is_refused(tmp_path: Path) -> None:
+    corners = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    path = tmp_path / "tetrahedron.ply"
+    faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    mesh_set_of(corners, faces).save_current_mesh(str(path))
+    done = command(path, "--output", tmp_path, "--only", 4, "--scale", 0.2)
+    assert done.returncode == 1, done.stderr
+    assert "basis_size" in done.stderr
+    assert "Traceback" not in done.stderr
 
 
 def test_a_frame_holds_all_of_its_shapes(decimated: Callable[..., Any]) -> None:

@@ -194,7 +194,8 @@ def figures_command(
 ) -> None:
     """Draw the figures of the paper: `meshlab-spectral figures --help` tells more."""
     numbers = _figure_numbers(only)
-    with _errors_reported(debug), _progress_shown() as on_progress:
+    interrupted = "pictures that were finished are there, and whole"
+    with _errors_reported(debug, interrupted), _progress_shown() as on_progress:
         pictures = draw_figures(
             meshes, output, numbers, scale, lambda stage: on_progress(stage, None)
         )
@@ -228,12 +229,14 @@ def _record(
 
 
 @contextlib.contextmanager
-def _errors_reported(debug: bool) -> Iterator[None]:
+def _errors_reported(
+    debug: bool, when_interrupted: str = "no output was written"
+) -> Iterator[None]:
     """Turn every error of this package into one message and an exit code."""
     try:
         yield
     except KeyboardInterrupt:
-        _messages.print("Interrupted: no output was written.")
+        _messages.print(f"Interrupted: {when_interrupted}.")
         raise typer.Exit(EXIT_INTERRUPTED) from None
     except SpectralError as error:
         if debug:

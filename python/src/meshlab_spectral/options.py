@@ -144,8 +144,8 @@ class FilterOptions:
     )
     power: float = _option(
         1.0,
-        "The part of the filter to apply, as a power of its gains: 0.5 is half of the filter, and "
-        "two halves in turn are the whole.",
+        "The part of the filter to apply, as a power of its gains: 0.5 is half of the filter, a "
+        "gain of 4 becomes 2.",
         Limits(0, 1, low_open=True),
     )
     steps: int = _option(

@@ -6,11 +6,12 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from meshlab_spectral.errors import MeshFileError, OptionError
-from meshlab_spectral.figures import sequences, stability
+from meshlab_spectral.figures import eigenfunctions, sequences, stability
 from meshlab_spectral.figures.subject import Subject
 
 FIGURES = {
     1: ("figure1_stability", stability.draw),
+    4: ("figure4_eigenfunctions", eigenfunctions.draw),
     5: ("figure5_sequences", sequences.draw),
 }
 

@@ -32,7 +32,7 @@ ROWS: list[tuple[FilterOptions, BasisUpdate]] = [
     (BAND, "none"),
     (BAND, "full"),
 ]
-_ROW_NAMES = {"none": "one basis", "full": "full update", "conformal": "conformal update"}
+_ROW_NAMES = {"none": "no update", "full": "full update", "conformal": "conformal update"}
 
 
 def after(options: FilterOptions, i: int, update: BasisUpdate) -> FilterOptions:

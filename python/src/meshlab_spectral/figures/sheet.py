@@ -21,12 +21,14 @@ FONT_SIZE = 9.0
 # A page is drawn for this width: 900 pixels of it on a web page give letters of 12 pixels.
 _PAGE_WIDTH = 9.0
 # Pictures in a repository: pixels of one page, about a megabyte of a .png file, and per inch.
-_PAGE_PIXELS = 2.0e6
+_PAGE_PIXELS = 1.9e6
 _DOTS_PER_INCH = 200
 _LINE = 0.165
 _GAP = 0.07
 # Pictures of upright shapes are not as wide as the page allows, but as high as this.
 _MAX_HEIGHT = 3.4
+# The longest labels need as much; narrower pictures stand in the middle of their cells.
+_MIN_CELL = 1.95
 
 
 class Sheet:
@@ -72,21 +74,23 @@ class Sheet:
                 f"figures need Matplotlib ({error}): pip install 'meshlab-spectral[pictures]'"
             ) from error
         fitting = (_PAGE_WIDTH - (columns + 1) * _GAP) / columns
-        self._cell = min(fitting, min(aspects) * _MAX_HEIGHT)
-        self._heights = [self._cell / aspect for aspect in aspects]
+        self._picture = min(fitting, min(aspects) * _MAX_HEIGHT)
+        self._cell = max(self._picture, min(fitting, _MIN_CELL))
+        self._heights = [self._picture / aspect for aspect in aspects]
         self._label = label_lines * _LINE + 0.06
         self._width = columns * (self._cell + _GAP) + _GAP
         self._height = sum(self._heights) + len(aspects) * (self._label + _GAP) + _GAP + footer
         area = self._width * self._height
         self._dpi = scale * min(_DOTS_PER_INCH, (_PAGE_PIXELS / area) ** 0.5)
-        self.pixels = round(self._cell * self._dpi)
+        self.pixels = round(self._picture * self._dpi)
         self._figure = Figure((self._width, self._height), dpi=self._dpi, facecolor="white")
         self._canvas = FigureCanvasAgg(self._figure)
 
     def picture(self, row: int, column: int, image: Image, label: str, colour: str = INK) -> None:
         """Fill a cell with a picture and the label under it."""
         left, bottom = self._left(column), self._bottom(row)
-        axes = self._axes(left, bottom, self._cell, self._heights[row])
+        margin = (self._cell - self._picture) / 2
+        axes = self._axes(left + margin, bottom, self._picture, self._heights[row])
         axes.imshow(image, aspect="auto", interpolation="antialiased")
         axes.set_axis_off()
         self._figure.text(
@@ -101,7 +105,7 @@ class Sheet:
 
     def plot(self, row: int, column: int) -> Axes:
         """Give axes for curves in a cell: as wide as it allows, and not much higher than wide."""
-        left, below, right, above = 0.4, 0.34, 0.1, 0.2
+        left, below, right, above = 0.44, 0.34, 0.1, 0.2
         width = self._cell - left - right
         room = self._heights[row] + self._label - below - above
         height = min(room, 1.1 * width)

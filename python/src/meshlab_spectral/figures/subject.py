@@ -78,9 +78,10 @@ def describe(options: FilterOptions) -> str:
 def filter_name(options: FilterOptions) -> str:
     """Name a filter with its numbers, such as `low-pass 15 %`."""
     size = str(options.feature_size).replace("%", " %")
+    name = f"{options.filter_type} {size}"
     if options.stop_gain == 1:
-        return f"{options.filter_type} \N{MULTIPLICATION SIGN} {options.pass_gain:g} at {size}"
-    return f"{options.filter_type} {size}"
+        name = f"{options.filter_type} \N{MULTIPLICATION SIGN} {options.pass_gain:g} at {size}"
+    return name if options.power == 1 else f"{name}, power {options.power:g}"
 
 
 def scheme_name(options: FilterOptions) -> str:
@@ -88,5 +89,5 @@ def scheme_name(options: FilterOptions) -> str:
     if options.steps == 1:
         return "one shot"
     if options.basis_update == "none":
-        return "one basis"
+        return "no update"
     return f"{options.steps} steps, {options.basis_update} update"
