@@ -3,6 +3,7 @@
 
 #include <iomanip>
 #include <sstream>
+#include <string>
 
 #include "common_parameters.h"
 #include "core/artefacts.h"
@@ -44,7 +45,8 @@ std::string textOf(const spectral::Artefacts& artefacts, double featureSize, dou
     text << std::setprecision(4) << "Spectral Artefacts: above twice the cutoff of feature size "
          << featureSize << "\n  root mean square " << artefacts.rms << " ("
          << artefacts.rms / diagonal << " diagonals), largest " << artefacts.maximum << " ("
-         << artefacts.maximum / diagonal << " diagonals)";
+         << artefacts.maximum / diagonal << " diagonals), estimated error of these lengths "
+         << artefacts.errorEstimate;
     return text.str();
 }
 

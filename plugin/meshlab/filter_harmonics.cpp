@@ -1,7 +1,9 @@
 #include <common/parameters/rich_parameters.h>
 
+#include <cmath>
 #include <iomanip>
 #include <sstream>
+#include <string>
 
 #include "common_parameters.h"
 #include "core/errors.h"

@@ -45,15 +45,15 @@ void setQuality(const std::vector<std::size_t>& vertexIndex, const Eigen::Vector
 void setAttributes(const std::vector<std::size_t>& vertexIndex, const std::string& name,
                    const Eigen::MatrixXd& values, MeshModel& mesh) {
     using Attributes = vcg::tri::Allocator<CMeshO>;
-    // VCG must never have two attributes of one name; and a longer series from before would look
-    // like the end of this one.
-    for (Eigen::Index j = 0;
-         Attributes::DeletePerVertexAttribute(mesh.cm, name + std::to_string(j)); ++j) {
-    }
+    const auto remove = [&](Eigen::Index j) {
+        return Attributes::DeletePerVertexAttribute(mesh.cm, name + std::to_string(j));
+    };
+    Eigen::Index older = values.cols();
+    while (remove(older)) ++older;  // a longer series would look like the end of this one
     for (Eigen::Index j = 0; j < values.cols(); ++j) {
-        const std::string one = name + std::to_string(j);
-        Attributes::DeletePerVertexAttribute(mesh.cm, one);
-        auto attribute = Attributes::AddPerVertexAttribute<Scalarm>(mesh.cm, one);
+        remove(j);  // VCG must never get a second attribute of a name, of whatever type
+        auto attribute =
+            Attributes::AddPerVertexAttribute<Scalarm>(mesh.cm, name + std::to_string(j));
         for (std::size_t i = 0; i < mesh.cm.vert.size(); ++i) attribute[i] = 0;
         for (std::size_t i = 0; i < vertexIndex.size(); ++i)
             attribute[vertexIndex[i]] =
