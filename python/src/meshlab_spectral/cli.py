@@ -178,7 +178,8 @@ def figures_command(
     meshes: Annotated[
         list[Path],
         typer.Argument(
-            metavar="MESH...", help="Meshes to show. Seen along the shortest axis; y is up, or z."
+            metavar="MESH",
+            help="Meshes to show. They are seen along their shortest axis, with y up, or z.",
         ),
     ],
     output: Annotated[

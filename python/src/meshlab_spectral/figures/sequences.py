@@ -1,8 +1,8 @@
 """Figure 5: the fractional powers of two filters, and the shapes that they make of the input.
 
-Above, the powers F^(i/K) of a low-pass and of the enhancement of a band as a family of curves;
-beside them the shapes after some of the K steps, with one basis throughout and with the basis taken
-anew after every step (Kovnatsky et al. 2012, Figure 5).
+For a low-pass and for the enhancement of a band: the powers F^(i/K) as a family of curves, and
+beside them the shapes after some of the K steps, with the basis of the input throughout and with
+the basis taken anew after every step (Kovnatsky et al. 2012, Figure 5).
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ def draw(subject: Subject, path: Path, scale: float = 1.0) -> None:
 
 
 def _plot_powers(axes: Axes, options: FilterOptions) -> None:
-    """F^(i/K) against the frequency, for all i; those whose shapes are shown are thick."""
+    """Plot F^(i/K) against the frequency, for all i; those whose shapes are shown are thick."""
     from matplotlib import colormaps
 
     x = np.linspace(0, 3, 301)

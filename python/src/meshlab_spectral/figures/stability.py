@@ -56,7 +56,7 @@ def draw(subject: Subject, path: Path, scale: float = 1.0) -> None:
 
 
 def _plot_gains(axes: Axes) -> None:
-    """Gains of both filters against the size of details, large ones left: frequency grows."""
+    """Plot the gains of both filters, large details left: to the right the frequency grows."""
     sizes = np.geomspace(200, 2, 400)
     for options, place in ((LOW_PASS, (180, 0.6)), (BAND, (180, 4.35))):
         colour = COLOURS[options.filter_type]
