@@ -97,7 +97,10 @@ HarmonicBasis StepEvaluator::truncated(const Progress& progress) {
     if (options_.reinjectResidual) {  // Eq. 9
         const double from = std::sqrt(basis.lambda[basis.size() - 1]);
         const double to = std::sqrt(largestEigenvalue(laplacian_));
-        residualGain_ = from < to ? meanGain(F_, from, to) : F_(to);
+        // As for the steps: the power of the mean, so that parts of a filter make the whole.
+        const TransferFunction whole = F_.whole();
+        residualGain_ =
+            std::pow(from < to ? meanGain(whole, from, to) : whole(to), F_.appliedPower());
     }
     return basis;
 }

@@ -64,7 +64,7 @@ class StepEvaluator {
     std::optional<ConstantModes> constants_;
     ShiftedCholesky cholesky_;
     HarmonicBasis basis_;
-    double residualGain_ = 0.0;  // of the whole filter, for what is beyond the basis
+    double residualGain_ = 0.0;  // F's mean for what is beyond the basis
     double errorEstimate_ = 0.0;
     bool accuracyReached_ = true;
 };

@@ -38,16 +38,26 @@ TransferFunction::TransferFunction(const TransferFunctionOptions& options, doubl
                             ": the width of a band is a positive number of octaves");
     requireGain(options.passGain, "pass_gain");
     requireGain(options.stopGain, "stop_gain");
+    if (!(options.power > 0.0 && options.power <= 1.0))
+        throw InvalidOption("power = " + std::to_string(options.power) +
+                            ": the part of the filter to apply is above 0 and at most 1, the whole "
+                            "filter");
 }
 
-double TransferFunction::operator()(double omega) const {
-    return options_.stopGain + (options_.passGain - options_.stopGain) * prototype(omega / cutoff_);
-}
+double TransferFunction::operator()(double omega) const { return power(omega, 1.0); }
 
 double TransferFunction::power(double omega, double alpha) const {
-    const bool passesOnly = options_.stopGain == 0.0 && options_.type != FilterType::BandStop;
-    if (!passesOnly) return std::pow((*this)(omega), alpha);
-    return std::pow(options_.passGain, alpha) * std::exp2(-alpha * octavesDown(omega / cutoff_));
+    const double x = omega / cutoff_, exponent = alpha * options_.power;
+    const double stop = options_.stopGain, pass = options_.passGain;
+    const bool passesOnly = stop == 0.0 && options_.type != FilterType::BandStop;
+    if (!passesOnly) return std::pow(stop + (pass - stop) * prototype(x), exponent);
+    return std::pow(pass, exponent) * std::exp2(-exponent * octavesDown(x));
+}
+
+TransferFunction TransferFunction::whole() const {
+    TransferFunctionOptions options = options_;
+    options.power = 1.0;
+    return TransferFunction(options, cutoff_);
 }
 
 double TransferFunction::prototype(double x) const {

@@ -17,9 +17,10 @@ struct TransferFunctionOptions {
     double bandWidth = 1.0;  ///< Full width of a band between its -3 dB points, octaves, > 0.
     double passGain = 1.0;   ///< Gain in the pass band, >= 0.
     double stopGain = 0.0;   ///< Gain in the stop band, >= 0.
+    double power = 1.0;      ///< The part of the filter to apply, 0 < power <= 1; 1 is the whole.
 };
 
-/// Transfer function F(omega) = stopGain + (passGain - stopGain) B(omega / omega_c) of a filter.
+/// Transfer function F(omega) = (stopGain + (passGain - stopGain) B(omega / omega_c))^power.
 ///
 /// The prototype B is -3 dB (1/sqrt 2) at its cutoff; with x = omega / omega_c and b = bandWidth:
 ///   low-pass   Gaussian 2^(-x^2/2), Butterworth 1/sqrt(1 + x^2m), ideal 1 for x <= 1, else 0;
@@ -43,6 +44,11 @@ class TransferFunction {
     double power(double omega, double alpha) const;
 
     double cutoff() const { return cutoff_; }
+
+    double appliedPower() const { return options_.power; }
+
+    /// What F is a power of: the same transfer function with power = 1.
+    TransferFunction whole() const;
 
     /// Frequencies at which F jumps, ascending; empty for a continuous F.
     std::vector<double> discontinuities() const;
@@ -71,8 +77,8 @@ using Gain = std::function<double(double omega)>;
 /// and puts it back unchanged, whatever F(0) says.
 Gain fractionalPower(const TransferFunction& F, double alpha);
 
-/// Mean of F over the frequencies in [from, to], 0 <= from < to: the gain of the residual of a
-/// truncated basis (Vallet and Levy 2008, section 4.3; Kovnatsky et al. 2012, Eq. 9).
+/// Mean of F over the frequencies in [from, to], 0 <= from < to: for a whole F the gain of the
+/// residual of a truncated basis (Vallet and Levy 2008, section 4.3; Kovnatsky et al. 2012, Eq. 9).
 double meanGain(const TransferFunction& F, double from, double to);
 
 }  // namespace spectral

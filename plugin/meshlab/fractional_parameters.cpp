@@ -59,6 +59,10 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "stop_gain", static_cast<Scalarm>(transfer.stopGain), "Stop gain",
         "Factor for all other details: 0 removes them, 0.5 halves their height, 1 keeps them. Not "
         "negative."));
+    list.addParam(RichFloat(
+        "power", static_cast<Scalarm>(transfer.power), "Power",
+        "The part of the filter to apply, as a power of all its gains: 1 is the whole filter, 0.5 "
+        "is half of it (a gain of 4 becomes 2). The steps divide this part. Above 0, at most 1."));
     list.addParam(RichInt(
         "steps", defaults.steps, "Steps",
         "The filter is applied as this many weak steps, because a single strong one damages the "
@@ -112,6 +116,7 @@ FilterOptions fractionalFilterOptions(const RichParameterList& parameters) {
     transfer.bandWidth = parameters.getFloat("band_width");
     transfer.passGain = parameters.getFloat("pass_gain");
     transfer.stopGain = parameters.getFloat("stop_gain");
+    transfer.power = parameters.getFloat("power");
     options.featureSize = featureSize(parameters);
     options.steps = parameters.getInt("steps");
     options.tolerance = parameters.getAbsPerc("tolerance");

@@ -155,6 +155,26 @@ TEST(FractionalFilter, IsTheCompositionOfItsSteps) {
     EXPECT_LT(largestDifference(whole, current.V), 1e-7 * boundingBoxDiagonal(mesh.V));
 }
 
+TEST(FractionalFilter, WithAPowerIsTheShapeOnTheWay) {
+    // Three steps of F^(1/5), and from there the other two: also the residual of a truncated basis.
+    const Mesh mesh = testing::blob();
+    for (const Spectrum spectrum : {Spectrum::Full, Spectrum::Truncated}) {
+        FilterOptions options = boost(mesh);
+        options.evaluation.spectrum = spectrum;
+        options.evaluation.basisSize = 20;
+        options.steps = 5;
+        const Vertices whole = fractionalFilter(mesh.V, mesh.F, options).V;
+        options.steps = 3;
+        options.transferFunction.power = 0.6;
+        const Vertices onTheWay = fractionalFilter(mesh.V, mesh.F, options).V;
+        options.steps = 2;
+        options.transferFunction.power = 0.4;
+        const Vertices end = fractionalFilter(onTheWay, mesh.F, options).V;
+        EXPECT_LT(largestDifference(end, whole), 1e-7 * boundingBoxDiagonal(mesh.V));
+        EXPECT_GT(largestDifference(onTheWay, whole), 1e-3 * boundingBoxDiagonal(mesh.V));
+    }
+}
+
 TEST(FractionalFilter, ConformalUpdateTakesTheMassesAnewAndKeepsTheStiffness) {
     const Mesh mesh = testing::blob();
     FilterOptions options = smoothing(mesh, 3, BasisUpdate::Conformal);

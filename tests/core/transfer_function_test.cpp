@@ -122,6 +122,23 @@ TEST(TransferFunction, FractionalPowersMultiplyToTheWhole) {
         EXPECT_NEAR(std::pow(power(omega), 10), F(omega), 1e-13);
 }
 
+TEST(TransferFunction, APartOfAFilterIsThatPowerOfTheWhole) {
+    for (const FilterType type : {FilterType::LowPass, FilterType::BandPass, FilterType::BandStop})
+        for (const double stop : {0.0, 0.4}) {
+            TransferFunctionOptions o = options(type, Response::Gaussian);
+            o.passGain = 2.5;
+            o.stopGain = stop;
+            const TransferFunction whole(o, 2.0);
+            o.power = 0.3;
+            const TransferFunction part(o, 2.0);
+            for (const double omega : {0.5, 1.0, 2.5, 9.0}) {
+                EXPECT_NEAR(part(omega), std::pow(whole(omega), 0.3), 1e-14);
+                EXPECT_NEAR(part.power(omega, 0.5), std::pow(whole(omega), 0.15), 1e-14);
+                EXPECT_EQ(part.whole()(omega), whole(omega));
+            }
+        }
+}
+
 TEST(TransferFunction, FractionalPowersSurviveWhereTheGainUnderflows) {
     const TransferFunction gaussian({}, 1.0);
     EXPECT_EQ(gaussian(60.0), 0.0);
@@ -153,6 +170,11 @@ TEST(TransferFunction, RefusesWhatHasNoFractionalPower) {
     o = {};
     o.bandWidth = 0.0;
     EXPECT_THROW(TransferFunction(o, 1.0), InvalidOption);
+    for (const double power : {0.0, -0.5, 1.5, std::nan("")}) {
+        o = {};
+        o.power = power;
+        EXPECT_THROW(TransferFunction(o, 1.0), InvalidOption);
+    }
     for (const double cutoff : {0.0, -1.0, kInf, std::nan("")})
         EXPECT_THROW(TransferFunction({}, cutoff), InvalidOption);
 }

@@ -129,6 +129,27 @@ def test_eight_steps_without_update_agree(
     assert_full_spectrum_agrees(decimated("cow.obj", 2000), options, record_property)
 
 
+@pytest.mark.parametrize("basis_update", ["full", "conformal"])
+@pytest.mark.parametrize("filter_type", ["low-pass", "enhancement"])
+def test_a_part_of_a_filter_agrees(
+    filter_type: str, basis_update: str, decimated: Decimated
+) -> None:
+    V, F = decimated("cow.obj", 2000)
+    options = {
+        **TYPES[filter_type],
+        "feature_size": percent(15),
+        "laplacian": "cotangent",
+        "steps": 3,
+        "basis_update": basis_update,
+        "power": 0.25,
+    }
+    Y, report = filter_arrays(V, F, **options)
+    whole = gain_of(options, report)
+    expected = reference.full_filter(V, F, lambda omega: whole(omega) ** 0.25, 3, basis_update)
+    assert largest_distance(expected, V) > 1e-3 * diagonal(V), "a test that moves nothing"
+    assert largest_distance(Y, expected) < AGREEMENT * diagonal(V)
+
+
 def test_ideal_low_pass_agrees(
     sample_name: str, decimated: Decimated, record_property: Callable[..., None]
 ) -> None:

@@ -133,6 +133,7 @@ def test_every_option_reaches_the_filter(cow: Path, tmp_path: Path) -> None:
         "band_width": 1.5,
         "pass_gain": 2.0,
         "stop_gain": 1.0,
+        "power": 0.5,
         "steps": 2,
         "tolerance": "0.1%",
         "basis_update": "conformal",

@@ -62,6 +62,8 @@ OUT_OF_RANGE = [
     ("pass_gain", float("inf"), {}),
     ("stop_gain", -0.5, {}),
     ("stop_gain", float("nan"), {}),
+    ("power", 0.0, {}),
+    ("power", 1.5, {}),
     ("steps", -3, {}),
     ("basis_size", 0, {"spectrum": "truncated"}),
 ]
@@ -141,6 +143,7 @@ def test_options_given_to_pymeshlab_reach_the_filter(
         band_width=2.0,
         pass_gain=0.5,
         stop_gain=0.25,
+        power=0.5,
         steps=2,
         tolerance=Length(0.25),
         basis_update="conformal",

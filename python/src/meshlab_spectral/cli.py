@@ -20,6 +20,7 @@ from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeEl
 
 from meshlab_spectral import __version__
 from meshlab_spectral.errors import FormatError, OptionError, SpectralError
+from meshlab_spectral.figures import FIGURES, draw_figures
 from meshlab_spectral.options import FilterOptions, Length
 from meshlab_spectral.report import report_table, report_warnings
 from meshlab_spectral.worker import ProgressCallback, filter_file_in_child
@@ -40,6 +41,21 @@ Smooth a scan, away with what is smaller than 1 % of it:
 Sharpen it:
   meshlab-spectral filter scan.ply sharp.ply --filter-type high-pass \\
     --stop-gain 1 --pass-gain 2
+"""
+
+_FIGURES_HELP = """Draw the figures of the paper (Kovnatsky et al. 2012) from your meshes.
+
+\b
+1  one shot of a strong filter, and ten fractional steps of it
+4  eigenfunctions before a filter, after its 1/10 power, after all of it
+5  the fractional powers of two filters, and the shapes that they make
+
+Every mesh gets its own pictures. The paper's meshes, the dragon and the angel, are in the Stanford
+3D Scanning Repository, https://graphics.stanford.edu/data/3Dscanrep/.
+
+\b
+  meshlab-spectral figures dragon.ply angel.ply --output pictures
+  meshlab-spectral figures scan.ply --only 1,5
 """
 
 app = typer.Typer(
@@ -157,6 +173,45 @@ def filter_command(
         Console().print(report_table(report, f"{source.name} -> {target.name}"))
 
 
+@app.command("figures", help=_FIGURES_HELP, epilog=_EXIT_CODES)
+def figures_command(
+    meshes: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="MESH",
+            help="Meshes to show. They are seen along their shortest axis, with y up, or z.",
+        ),
+    ],
+    output: Annotated[
+        Path, typer.Option(metavar="DIR", help="Where to put the pictures; made if need be.")
+    ] = Path(),
+    only: Annotated[
+        str, typer.Option(metavar="NUMBERS", help="The figures to draw, such as 1,5.")
+    ] = ",".join(map(str, FIGURES)),
+    scale: Annotated[
+        float, typer.Option(min=0.1, max=10, help="Resolution: 2 has twice as many pixels a side.")
+    ] = 1.0,
+    debug: Annotated[bool, typer.Option("--debug", hidden=True)] = False,
+) -> None:
+    """Draw the figures of the paper: `meshlab-spectral figures --help` tells more."""
+    numbers = _figure_numbers(only)
+    interrupted = "pictures that were finished are there, and whole"
+    with _errors_reported(debug, interrupted), _progress_shown() as on_progress:
+        pictures = draw_figures(
+            meshes, output, numbers, scale, lambda stage: on_progress(stage, None)
+        )
+    for picture in pictures:
+        typer.echo(picture)
+
+
+def _figure_numbers(text: str) -> list[int]:
+    known = {str(number): number for number in FIGURES}
+    numbers = [part.strip() for part in text.split(",")]
+    if not known.keys() >= set(numbers):
+        raise typer.BadParameter(f"{text!r}: choose of {', '.join(known)}", param_hint="--only")
+    return [known[number] for number in numbers]
+
+
 def _record(
     source: Path, target: Path, options: FilterOptions, report: dict[str, Any], seconds: float
 ) -> dict[str, Any]:
@@ -175,12 +230,14 @@ def _record(
 
 
 @contextlib.contextmanager
-def _errors_reported(debug: bool) -> Iterator[None]:
+def _errors_reported(
+    debug: bool, when_interrupted: str = "no output was written"
+) -> Iterator[None]:
     """Turn every error of this package into one message and an exit code."""
     try:
         yield
     except KeyboardInterrupt:
-        _messages.print("Interrupted: no output was written.")
+        _messages.print(f"Interrupted: {when_interrupted}.")
         raise typer.Exit(EXIT_INTERRUPTED) from None
     except SpectralError as error:
         if debug:

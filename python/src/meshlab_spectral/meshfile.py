@@ -11,6 +11,9 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from meshlab_spectral.calling import call_filter, reason_of
 from meshlab_spectral.errors import FormatError, MeshFileError
 from meshlab_spectral.options import FilterOptions
@@ -78,6 +81,23 @@ def filter_to_scratch(
     on_stage("writing")
     _write(mesh_set, scratch, source)
     return {name: _plain(value) for name, value in report.items()}
+
+
+def load_arrays(source: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Read the mesh of one file: n x 3 coordinates, m x 3 indices of the corners of triangles.
+
+    Raises
+    ------
+    MeshFileError
+        When `source` cannot be read.
+    """
+    import pymeshlab
+
+    check_source(source)
+    mesh_set = pymeshlab.MeshSet()
+    _read(mesh_set, source)
+    mesh = mesh_set.current_mesh()
+    return mesh.vertex_matrix().copy(), mesh.face_matrix().astype(np.int64)
 
 
 def check_source(source: Path) -> None:

@@ -71,7 +71,7 @@ class Length:
 
 @dataclass(frozen=True)
 class Limits:
-    """Numbers that an option may have: `low <= x <= high`, or `low < x` where `low_open`."""
+    """Numbers that an option may have: `low <= x <= high`, or `low < x <= high` if `low_open`."""
 
     low: float
     high: float = math.inf
@@ -83,9 +83,10 @@ class Limits:
         return math.isfinite(value) and above and value <= self.high
 
     def __str__(self) -> str:
-        if math.isfinite(self.high):
+        if math.isfinite(self.high) and not self.low_open:
             return f"from {self.low:g} to {self.high:g}"
-        return f"{'above' if self.low_open else 'at least'} {self.low:g}"
+        low = f"{'above' if self.low_open else 'at least'} {self.low:g}"
+        return f"{low}, at most {self.high:g}" if math.isfinite(self.high) else low
 
 
 def _option(default: Any, explanation: str, limits: Limits | None = None) -> Any:
@@ -140,6 +141,12 @@ class FilterOptions:
     )
     stop_gain: float = _option(
         0.0, "Factor for all other details: 0 removes them, 0.5 halves their height.", Limits(0)
+    )
+    power: float = _option(
+        1.0,
+        "The part of the filter to apply, as a power of its gains: 0.5 is half of the filter, a "
+        "gain of 4 becomes 2.",
+        Limits(0, 1, low_open=True),
     )
     steps: int = _option(
         0,

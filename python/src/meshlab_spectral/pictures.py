@@ -17,6 +17,10 @@ from meshlab_spectral.errors import SpectralError
 if TYPE_CHECKING:
     import pymeshlab
 
+Image = NDArray[np.uint8]
+
+SIGNED_COLOURS = "coolwarm"  # grey in the middle: white would be lost against the page
+
 
 @dataclass(frozen=True)
 class Panel:
@@ -30,11 +34,14 @@ class Panel:
         n x 3 coordinates.
     F
         m x 3 indices of the corners of triangles.
+    signed
+        n values from -1 (blue) over 0 (grey, with a line) to 1 (red) to colour the mesh by.
     """
 
     label: str
     V: NDArray[np.float64]
     F: NDArray[np.int64]
+    signed: NDArray[np.float64] | None = None
 
     @classmethod
     def of(cls, label: str, mesh: pymeshlab.Mesh) -> Panel:
@@ -44,21 +51,75 @@ class Panel:
 
 @dataclass(frozen=True)
 class View:
-    """Where the camera stands, seen from the middle of the first mesh.
+    """From where a mesh is seen.
 
     Attributes
     ----------
     direction
         From the mesh towards the camera.
     up
-        What is up in the picture.
-    zoom
-        1 fits the bounding sphere of the first mesh into a panel.
+        What is up in the picture; not along `direction`.
     """
 
     direction: tuple[float, float, float] = (0.0, 0.0, 1.0)
     up: tuple[float, float, float] = (0.0, 1.0, 0.0)
-    zoom: float = 1.0
+
+    @classmethod
+    def of_widest_side(cls, V: NDArray[np.float64]) -> View:
+        """Look along the shortest axis of the bounding box, from its positive side.
+
+        Up is y, or z where y is the shortest axis: right for models that follow either custom.
+        """
+        shortest = int(np.argmin(np.ptp(V, axis=0)))
+        x, y, z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+        return cls((x, y, z)[shortest], z if shortest == 1 else y)
+
+    def axes(self) -> NDArray[np.float64]:
+        """Give unit vectors to the right, upwards and to the camera, as rows."""
+        back = np.asarray(self.direction) / np.linalg.norm(self.direction)
+        right = np.cross(self.up, back)
+        right /= np.linalg.norm(right)
+        return np.array([right, np.cross(back, right), back])
+
+
+@dataclass(frozen=True)
+class Frame:
+    """The rectangle that a picture shows, in parallel projection.
+
+    Attributes
+    ----------
+    view
+        From where.
+    middle
+        Point of the mesh's space that is in the middle of the picture.
+    width, height
+        In the units of the mesh.
+    """
+
+    view: View
+    middle: NDArray[np.float64]
+    width: float
+    height: float
+
+    @classmethod
+    def around(cls, shapes: Sequence[NDArray[np.float64]], view: View) -> Frame:
+        """Fit all of some meshes, each n x 3 coordinates, with a narrow margin."""
+        return cls.row_by_row([shapes], view)[0]
+
+    @classmethod
+    def row_by_row(cls, rows: Sequence[Sequence[NDArray[np.float64]]], view: View) -> list[Frame]:
+        """Fit rows of meshes: all frames have the same width, each row its own height."""
+        axes = view.axes()
+        boxes = [_box([V @ axes.T for V in row]) for row in rows]
+        left = min(low[0] for low, _ in boxes)
+        right = max(high[0] for _, high in boxes)
+        margin = 0.02 * (right - left)
+        frames = []
+        for low, high in boxes:
+            low[0], high[0] = left, right
+            width, height = (high - low)[:2] + margin
+            frames.append(cls(view, (low + high) / 2 @ axes, float(width), float(height)))
+        return frames
 
 
 def draw_side_by_side(
@@ -86,6 +147,58 @@ def draw_side_by_side(
     SpectralError
         When PyVista is not installed.
     """
+    # Half of the largest extent, with a margin for the label.
+    low, high = _box([panels[0].V])
+    height = 1.24 * float((high - low).max())
+    frame = Frame(view or View(), (low + high) / 2, height, height)
+    plotter = _plotter(len(panels), panel_size)
+    try:
+        for column, panel in enumerate(panels):
+            plotter.subplot(0, column)
+            _add(plotter, panel, frame)
+            plotter.add_text(
+                panel.label, position="lower_edge", font_size=15, color="#202020", shadow=False
+            )
+        plotter.screenshot(str(path))
+    finally:
+        plotter.close()
+
+
+def render(panel: Panel, frame: Frame, pixels: int) -> Image:
+    """Draw one mesh, without its label.
+
+    Parameters
+    ----------
+    panel
+        The mesh.
+    frame
+        What the picture shows.
+    pixels
+        Width of the picture; its height follows from the frame.
+
+    Returns
+    -------
+    array
+        Height x width x 3, 0 to 255.
+
+    Raises
+    ------
+    SpectralError
+        When PyVista is not installed.
+    """
+    height = max(1, round(pixels * frame.height / frame.width))
+    plotter = _plotter(1, (2 * pixels, 2 * height))
+    try:
+        _add(plotter, panel, frame)
+        fine = plotter.screenshot(return_img=True)
+    finally:
+        plotter.close()
+    # On top of VTK's own smoothing, for spikes that are thinner than a pixel.
+    image: Image = fine.reshape(height, 2, pixels, 2, 3).mean(axis=(1, 3)).round().astype(np.uint8)
+    return image
+
+
+def _plotter(columns: int, panel_size: tuple[int, int]) -> Any:
     if sys.platform == "linux" and not os.environ.get("DISPLAY"):
         # Without this VTK first tries, and warns about, the X server that is not there.
         os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
@@ -95,35 +208,52 @@ def draw_side_by_side(
         raise SpectralError(
             f"pictures need PyVista ({error}): pip install 'meshlab-spectral[pictures]'"
         ) from error
-
-    view = view or View()
     width, height = panel_size
     plotter = pyvista.Plotter(
         off_screen=True,
-        shape=(1, len(panels)),
-        window_size=[width * len(panels), height],
+        shape=(1, columns),
+        window_size=[width * columns, height],
         border=False,
         lighting="none",
     )
-    try:
-        plotter.set_background("white")
-        camera = _camera(panels[0], view)
-        for column, panel in enumerate(panels):
-            plotter.subplot(0, column)
-            plotter.add_mesh(_surface(panel), color="#c9c2b4", smooth_shading=True, specular=0.05)
-            plotter.add_text(
-                panel.label, position="lower_edge", font_size=15, color="#202020", shadow=False
-            )
-            plotter.camera_position = camera
-            plotter.camera.parallel_projection = True
-            plotter.camera.parallel_scale = _radius(panels[0]) / view.zoom
-            plotter.reset_camera_clipping_range()
-        for light in _lights(pyvista):
-            plotter.add_light(light)  # to all panels at once
-        plotter.enable_anti_aliasing("ssaa")
-        plotter.screenshot(str(path))
-    finally:
-        plotter.close()
+    plotter.set_background("white")
+    plotter.enable_anti_aliasing("ssaa")
+    return plotter
+
+
+def _add(plotter: Any, panel: Panel, frame: Frame) -> None:
+    """Put a mesh, its lights and its camera into the plotter's current panel."""
+    surface = _surface(panel)
+    if panel.signed is None:
+        plotter.add_mesh(surface, color="#c9c2b4", smooth_shading=True, specular=0.05)
+    else:
+        surface["signed"] = panel.signed
+        plotter.add_mesh(
+            surface,
+            scalars="signed",
+            cmap=SIGNED_COLOURS,
+            clim=(-1, 1),
+            smooth_shading=True,
+            specular=0.0,
+            show_scalar_bar=False,
+        )
+        zero = surface.contour([0.0], scalars="signed")
+        if zero.n_points:
+            # A hair before the surface, which would else hide half of the line.
+            zero.translate(2e-3 * frame.height * frame.view.axes()[2], inplace=True)
+            plotter.add_mesh(zero, color="#404040", line_width=5, lighting=False)
+    for light in _lights():
+        plotter.add_light(light)
+    back = frame.view.axes()[2]
+    distance = 10 * max(frame.width, frame.height)
+    plotter.camera_position = [
+        tuple(frame.middle + distance * back),
+        tuple(frame.middle),
+        frame.view.up,
+    ]
+    plotter.camera.parallel_projection = True
+    plotter.camera.parallel_scale = frame.height / 2
+    plotter.reset_camera_clipping_range()
 
 
 def _surface(panel: Panel) -> Any:
@@ -136,23 +266,21 @@ def _surface(panel: Panel) -> Any:
     )
 
 
-def _camera(panel: Panel, view: View) -> list[tuple[float, ...]]:
-    middle = (panel.V.min(axis=0) + panel.V.max(axis=0)) / 2
-    direction = np.asarray(view.direction) / np.linalg.norm(view.direction)
-    position = middle + 10 * _radius(panel) * direction
-    return [tuple(position), tuple(middle), view.up]
+def _box(shapes: Sequence[NDArray[np.float64]]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Corners of the bounding box of several meshes."""
+    return (
+        np.min([V.min(axis=0) for V in shapes], axis=0),
+        np.max([V.max(axis=0) for V in shapes], axis=0),
+    )
 
 
-def _radius(panel: Panel) -> float:
-    """Half of the largest extent, with a margin for the label."""
-    return 0.62 * float(np.ptp(panel.V, axis=0).max())
-
-
-def _lights(pyvista: Any) -> list[Any]:
+def _lights() -> list[Any]:
     """Key light from the upper left, fill from the right: both move with the camera.
 
     No part of a surface faces both, so they stay below full white and no relief is lost.
     """
+    import pyvista
+
     key = pyvista.Light(position=(-0.9, 0.9, 0.6), light_type="camera light", intensity=1.15)
     fill = pyvista.Light(position=(1.0, 0.0, 0.7), light_type="camera light", intensity=0.55)
     return [key, fill]

@@ -1,0 +1,100 @@
+"""Figure 5: the fractional powers of two filters, and the shapes that they make of the input.
+
+For a low-pass and for the enhancement of a band: the powers F^(i/K) as a family of curves, and
+beside them the shapes after some of the K steps, with the basis of the input throughout and with
+the basis taken anew after every step (Kovnatsky et al. 2012, Figure 5).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from meshlab_spectral.figures.sheet import FONT_SIZE, INK, Sheet
+from meshlab_spectral.figures.stability import BAND, LOW_PASS
+from meshlab_spectral.figures.subject import Subject, filter_name
+from meshlab_spectral.options import BasisUpdate, FilterOptions
+from meshlab_spectral.pictures import Frame, Panel, render
+from meshlab_spectral.transfer import gain
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+K = 10
+SHOWN = (3, 6, 10)
+# The update that copes best with each filter.
+ROWS: list[tuple[FilterOptions, BasisUpdate]] = [
+    (LOW_PASS, "none"),
+    (LOW_PASS, "conformal"),
+    (BAND, "none"),
+    (BAND, "full"),
+]
+_ROW_NAMES = {"none": "no update", "full": "full update", "conformal": "conformal update"}
+
+
+def after(options: FilterOptions, i: int, update: BasisUpdate) -> FilterOptions:
+    """Give the first i of K steps of a filter: i steps of F^(1/K), which make F^(i/K)."""
+    # With one basis all powers commute: one step is as good as many.
+    steps = 1 if update == "none" else i
+    return replace(options, power=i / K, steps=steps, basis_update=update)
+
+
+def draw(subject: Subject, path: Path, scale: float = 1.0) -> None:
+    """Draw the figure for one mesh into a .png file."""
+    shapes = {
+        (row, i): subject.filtered(after(options, i, update))
+        for row, (options, update) in enumerate(ROWS)
+        for i in SHOWN
+    }
+    frames = Frame.row_by_row(
+        [[subject.V, *(shapes[row, i] for i in SHOWN)] for row in range(len(ROWS))], subject.view
+    )
+    sheet = Sheet([frame.width / frame.height for frame in frames], 1 + len(SHOWN), 1, scale)
+    subject.stage("drawing figure 5")
+    for row, (options, update) in enumerate(ROWS):
+        if row % 2:
+            original = render(Panel("", subject.V, subject.F), frames[row], sheet.pixels)
+            sheet.picture(row, 0, original, "power 0: original")
+        else:
+            _plot_powers(sheet.plot(row, 0), options)
+        for column, i in enumerate(SHOWN, start=1):
+            image = render(Panel("", shapes[row, i], subject.F), frames[row], sheet.pixels)
+            sheet.picture(row, column, image, f"power {i / K:g}, {_ROW_NAMES[update]}")
+    sheet.save(path)
+
+
+def _plot_powers(axes: Axes, options: FilterOptions) -> None:
+    """Plot F^(i/K) against the frequency, for all i; those whose shapes are shown are thick."""
+    from matplotlib import colormaps
+
+    x = np.linspace(0, 3, 301)
+    for i in range(K + 1):
+        shown = i in SHOWN or i == 0
+        gains = gain(replace(options, power=i / K), x) if i else np.ones_like(x)
+        axes.plot(
+            x,
+            gains,
+            color=colormaps["viridis_r"](0.15 + 0.8 * i / K),
+            linewidth=1.6 if shown else 0.6,
+            label=f"{i / K:g}" if shown else None,
+        )
+    axes.set_xlim(0, 3)
+    axes.set_ylim(0, 1.1 * max(1.0, options.pass_gain))
+    axes.set_xticks([0, 1, 2, 3])
+    axes.set_xlabel(r"frequency $\omega / \omega_c$", fontsize=FONT_SIZE - 1, color=INK)
+    axes.set_ylabel("gain", fontsize=FONT_SIZE - 1, color=INK)
+    axes.set_title(filter_name(options), fontsize=FONT_SIZE, color=INK, pad=3)
+    axes.legend(
+        title="power",
+        title_fontsize=FONT_SIZE - 2,
+        fontsize=FONT_SIZE - 2,
+        loc="lower left" if options.pass_gain <= 1 else "upper right",
+        frameon=False,
+        handlelength=1.2,
+        labelspacing=0.15,
+        borderaxespad=0.1,
+        labelcolor=INK,
+    )

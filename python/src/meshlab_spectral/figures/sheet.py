@@ -1,0 +1,162 @@
+"""The pages of the figures: pictures in rows and columns with labels, lengths in inches."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from meshlab_spectral.errors import SpectralError
+from meshlab_spectral.meshfile import writing_whole
+from meshlab_spectral.pictures import Image
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+INK = "#202020"
+FONT_SIZE = 9.0
+
+# A page is drawn for this width: 900 pixels of it on a web page give letters of 12 pixels.
+_PAGE_WIDTH = 9.0
+# Pictures in a repository: pixels of one page, about a megabyte of a .png file, and per inch.
+_PAGE_PIXELS = 1.9e6
+_DOTS_PER_INCH = 200
+_LINE = 0.165
+_GAP = 0.07
+# Pictures of upright shapes are not as wide as the page allows, but as high as this.
+_MAX_HEIGHT = 3.4
+# The longest labels need as much; narrower pictures stand in the middle of their cells.
+_MIN_CELL = 1.95
+
+
+class Sheet:
+    """A page of pictures, all of the same width.
+
+    Parameters
+    ----------
+    aspects
+        For every row, the width of its pictures over their height.
+    columns
+        Number of columns.
+    label_lines
+        Lines of the label under every picture.
+    scale
+        Of the resolution; 1 fills a screen.
+    footer
+        Height of the strip at the bottom of the page, for `colour_bar`.
+
+    Attributes
+    ----------
+    pixels
+        Width of a picture in pixels.
+
+    Raises
+    ------
+    SpectralError
+        When Matplotlib is not installed.
+    """
+
+    def __init__(
+        self,
+        aspects: Sequence[float],
+        columns: int,
+        label_lines: int,
+        scale: float = 1.0,
+        footer: float = 0.0,
+    ) -> None:
+        try:
+            from matplotlib.backends.backend_agg import FigureCanvasAgg
+            from matplotlib.figure import Figure
+        except ModuleNotFoundError as error:
+            raise SpectralError(
+                f"figures need Matplotlib ({error}): pip install 'meshlab-spectral[pictures]'"
+            ) from error
+        fitting = (_PAGE_WIDTH - (columns + 1) * _GAP) / columns
+        self._picture = min(fitting, min(aspects) * _MAX_HEIGHT)
+        self._cell = max(self._picture, min(fitting, _MIN_CELL))
+        self._heights = [self._picture / aspect for aspect in aspects]
+        self._label = label_lines * _LINE + 0.06
+        self._width = columns * (self._cell + _GAP) + _GAP
+        self._height = sum(self._heights) + len(aspects) * (self._label + _GAP) + _GAP + footer
+        area = self._width * self._height
+        self._dpi = scale * min(_DOTS_PER_INCH, (_PAGE_PIXELS / area) ** 0.5)
+        self.pixels = round(self._picture * self._dpi)
+        self._figure = Figure((self._width, self._height), dpi=self._dpi, facecolor="white")
+        self._canvas = FigureCanvasAgg(self._figure)
+
+    def picture(self, row: int, column: int, image: Image, label: str, colour: str = INK) -> None:
+        """Fill a cell with a picture and the label under it."""
+        left, bottom = self._left(column), self._bottom(row)
+        margin = (self._cell - self._picture) / 2
+        axes = self._axes(left + margin, bottom, self._picture, self._heights[row])
+        axes.imshow(image, aspect="auto", interpolation="antialiased")
+        axes.set_axis_off()
+        self._figure.text(
+            (left + self._cell / 2) / self._width,
+            (bottom - 0.03) / self._height,
+            label,
+            ha="center",
+            va="top",
+            fontsize=FONT_SIZE,
+            color=colour,
+        )
+
+    def plot(self, row: int, column: int) -> Axes:
+        """Give axes for curves in a cell: as wide as it allows, and not much higher than wide."""
+        left, below, right, above = 0.44, 0.34, 0.1, 0.2
+        width = self._cell - left - right
+        room = self._heights[row] + self._label - below - above
+        height = min(room, 1.1 * width)
+        bottom = self._bottom(row) - self._label + below + (room - height) / 2
+        axes = self._axes(self._left(column) + left, bottom, width, height)
+        for side in ("top", "right"):
+            axes.spines[side].set_visible(False)
+        axes.tick_params(labelsize=FONT_SIZE - 1, colors=INK, length=2.5, pad=2)
+        return axes
+
+    def colour_bar(self, colour_map: str, labels: tuple[str, str, str]) -> None:
+        """Draw a scale into the footer, with labels for its left end, middle and right end."""
+        width = min(2.4, 0.5 * self._width)
+        axes = self._axes((self._width - width) / 2, 0.22, width, 0.1)
+        axes.imshow(np.linspace(0, 1, 256)[None], aspect="auto", cmap=colour_map)
+        axes.set_yticks([])
+        axes.set_xticks([0, 127.5, 255], labels)
+        axes.tick_params(labelsize=FONT_SIZE - 1, colors=INK, length=0, pad=3)
+        for spine in axes.spines.values():
+            spine.set_visible(False)
+
+    def save(self, path: Path) -> None:
+        """Write the page; the file appears whole, or not at all.
+
+        Raises
+        ------
+        MeshFileError
+            When it cannot be written.
+        """
+        from PIL import Image as Picture
+
+        self._canvas.draw()
+        # Without the alpha channel, and compressed as well as can be: a third smaller.
+        picture = Picture.fromarray(np.asarray(self._canvas.buffer_rgba())[:, :, :3])
+        with writing_whole(path) as scratch:
+            picture.save(scratch, optimize=True, dpi=(self._dpi, self._dpi))
+
+    def _left(self, column: int) -> float:
+        return _GAP + column * (self._cell + _GAP)
+
+    def _bottom(self, row: int) -> float:
+        """Lower edge of a row's pictures; their labels are below."""
+        rows = row + 1
+        return self._height - sum(self._heights[:rows]) - row * self._label - rows * _GAP
+
+    def _axes(self, left: float, bottom: float, width: float, height: float) -> Axes:
+        place = (
+            left / self._width,
+            bottom / self._height,
+            width / self._width,
+            height / self._height,
+        )
+        axes: Axes = self._figure.add_axes(place)
+        return axes

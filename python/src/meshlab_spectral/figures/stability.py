@@ -1,0 +1,72 @@
+"""Figure 1: one shot of a strong filter damages thin parts, fractional steps do not.
+
+A low-pass and an enhancement of one band, each in one shot, in ten steps of the paper's scheme, and
+in ten steps with the conformal update (Kovnatsky et al. 2012, Figure 1).
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from meshlab_spectral.figures.sheet import FONT_SIZE, INK, Sheet
+from meshlab_spectral.figures.subject import Subject, filter_name, scheme_name
+from meshlab_spectral.options import FilterOptions, Length
+from meshlab_spectral.pictures import Frame, Panel, render
+from meshlab_spectral.transfer import gain
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+LOW_PASS = FilterOptions(feature_size=Length(15, relative=True))
+BAND = FilterOptions(
+    filter_type="band-pass", feature_size=Length(15, relative=True), stop_gain=1, pass_gain=4
+)
+COLOURS = {LOW_PASS.filter_type: "#1c639f", BAND.filter_type: "#b04607"}
+
+
+def schemes(options: FilterOptions) -> list[FilterOptions]:
+    """Ways to apply a filter: in one shot, and in ten steps with either update."""
+    return [
+        replace(options, steps=1, basis_update="none"),
+        replace(options, steps=10, basis_update="full"),
+        replace(options, steps=10, basis_update="conformal"),
+    ]
+
+
+def draw(subject: Subject, path: Path, scale: float = 1.0) -> None:
+    """Draw the figure for one mesh into a .png file."""
+    rows = [schemes(LOW_PASS), schemes(BAND)]
+    shapes = [[subject.filtered(options) for options in row] for row in rows]
+    frames = Frame.row_by_row([[subject.V, *shapes[0]], *shapes[1:]], subject.view)
+    sheet = Sheet([frame.width / frame.height for frame in frames], 1 + len(rows[0]), 2, scale)
+    subject.stage("drawing figure 1")
+    original = render(Panel("", subject.V, subject.F), frames[0], sheet.pixels)
+    sheet.picture(0, 0, original, "original")
+    for i, row in enumerate(rows):
+        for j, options in enumerate(row):
+            picture = render(Panel("", shapes[i][j], subject.F), frames[i], sheet.pixels)
+            label = f"{filter_name(options)}\n{scheme_name(options)}"
+            sheet.picture(i, 1 + j, picture, label, COLOURS[options.filter_type])
+    _plot_gains(sheet.plot(1, 0))
+    sheet.save(path)
+
+
+def _plot_gains(axes: Axes) -> None:
+    """Plot the gains of both filters, large details left: to the right the frequency grows."""
+    sizes = np.geomspace(200, 2, 400)
+    for options, place in ((LOW_PASS, (180, 0.6)), (BAND, (180, 4.35))):
+        colour = COLOURS[options.filter_type]
+        gains = gain(options, options.feature_size.value / sizes)
+        axes.plot(sizes, gains, color=colour, linewidth=1.5)
+        axes.text(*place, filter_name(options), fontsize=FONT_SIZE - 1, color=colour, va="center")
+    axes.set_xscale("log")
+    axes.set_xlim(sizes[0], sizes[-1])
+    axes.set_ylim(0, 4.6)
+    axes.set_xticks([100, 30, 10, 3], ["100", "30", "10", "3"])
+    axes.set_xticks([], minor=True)
+    axes.set_xlabel("feature size, % of the diagonal", fontsize=FONT_SIZE - 1, color=INK)
+    axes.set_ylabel("gain", fontsize=FONT_SIZE - 1, color=INK)

@@ -1,0 +1,93 @@
+"""A mesh that figures show, and what filters make of it."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshlab_spectral.meshfile import load_arrays
+from meshlab_spectral.options import FilterOptions
+from meshlab_spectral.pictures import View
+from meshlab_spectral.worker import filter_file_in_child
+
+Shape = NDArray[np.float64]
+
+
+class Subject:
+    """One mesh file. Every filter runs once, however many figures show its result.
+
+    Parameters
+    ----------
+    source
+        A file that pymeshlab reads.
+    on_stage
+        Called with what is being computed, for people.
+
+    Attributes
+    ----------
+    source, name
+        The file; its name without ending.
+    V, F
+        n x 3 coordinates, m x 3 indices of the corners of triangles.
+    view
+        From where the figures look.
+
+    Raises
+    ------
+    MeshFileError
+        When the file cannot be read.
+    """
+
+    def __init__(self, source: Path, on_stage: Callable[[str], None] = lambda stage: None) -> None:
+        self.source, self.name = source, source.stem
+        self.V, self.F = load_arrays(source)
+        self.view = View.of_widest_side(self.V)
+        self._on_stage = on_stage
+        self._shapes: dict[FilterOptions, Shape] = {}
+
+    def stage(self, what: str) -> None:
+        """Tell what is being done with this mesh."""
+        self._on_stage(f"{self.name}: {what}")
+
+    def filtered(self, options: FilterOptions) -> Shape:
+        """Coordinates after a filter.
+
+        Raises
+        ------
+        FilterError
+            When the filter refuses the mesh.
+        """
+        if options not in self._shapes:
+            self.stage(describe(options))
+            with tempfile.TemporaryDirectory() as folder:
+                result = Path(folder) / "filtered.ply"
+                filter_file_in_child(self.source, result, options)
+                self._shapes[options], _ = load_arrays(result)
+        return self._shapes[options]
+
+
+def describe(options: FilterOptions) -> str:
+    """Name a filter and how it is applied: `low-pass 15 %, 10 steps, full update`."""
+    return f"{filter_name(options)}, {scheme_name(options)}"
+
+
+def filter_name(options: FilterOptions) -> str:
+    """Name a filter with its numbers, such as `low-pass 15 %`."""
+    size = str(options.feature_size).replace("%", " %")
+    name = f"{options.filter_type} {size}"
+    if options.stop_gain == 1:
+        name = f"{options.filter_type} \N{MULTIPLICATION SIGN} {options.pass_gain:g} at {size}"
+    return name if options.power == 1 else f"{name}, power {options.power:g}"
+
+
+def scheme_name(options: FilterOptions) -> str:
+    """Name how a filter is applied: in one shot, or in steps."""
+    if options.steps == 1:
+        return "one shot"
+    if options.basis_update == "none":
+        return "no update"
+    return f"{options.steps} steps, {options.basis_update} update"
