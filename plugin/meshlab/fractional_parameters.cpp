@@ -83,6 +83,11 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "its own frequencies anew. <b>conformal</b> takes only its areas anew: the best choice for "
         "strong smoothing, thin parts shrink instead of turning into spikes. <b>none</b> keeps the "
         "frequencies of the input; then the number of steps does not matter."));
+    list.addParam(RichFloat(
+        "conformal_share", static_cast<Scalarm>(defaults.conformalShare), "Conformal share",
+        "For the full update: from 0, the scheme of the paper, to 1, the conformal update. 0.1 is "
+        "enough to draw in thin parts that a strong full update leaves as hair-thin spikes.",
+        true));
     list.addParam(RichEnum(
         "spectrum", static_cast<int>(defaults.evaluation.spectrum), {"full", "truncated"},
         "Spectrum",
@@ -121,6 +126,7 @@ FilterOptions fractionalFilterOptions(const RichParameterList& parameters) {
     options.steps = parameters.getInt("steps");
     options.tolerance = parameters.getAbsPerc("tolerance");
     options.basisUpdate = static_cast<spectral::BasisUpdate>(parameters.getEnum("basis_update"));
+    options.conformalShare = parameters.getFloat("conformal_share");
     options.evaluation.spectrum = static_cast<spectral::Spectrum>(parameters.getEnum("spectrum"));
     options.evaluation.basisSize = parameters.getInt("basis_size");
     options.evaluation.reinjectResidual = parameters.getBool("reinject_residual");

@@ -152,16 +152,23 @@ def matrices(V: Array, F: Indices, laplacian: str) -> tuple[scipy.sparse.csr_arr
 
 
 def full_filter(
-    V: Array, F: Indices, gain: Gain, steps: int, basis_update: str, laplacian: str = "cotangent"
+    V: Array,
+    F: Indices,
+    gain: Gain,
+    steps: int,
+    basis_update: str,
+    laplacian: str = "cotangent",
+    conformal_share: float = 0.0,
 ) -> Array:
-    """K steps of F^(1/K) (Eq. 11) with all eigenvectors."""
+    """K steps of F^(1/K) (Eq. 11) with all eigenvectors; a share of W may stay the input's."""
     parts = components(len(V), F)
     W, d = matrices(V, F, laplacian)
     spectrum = spectra(W, d, parts)
     X = V.copy()
     for step in range(steps):
         if step > 0 and basis_update == "full":
-            spectrum = spectra(*matrices(X, F, laplacian), parts)
+            now, d = matrices(X, F, laplacian)
+            spectrum = spectra((1 - conformal_share) * now + conformal_share * W, d, parts)
         if step > 0 and basis_update == "conformal":
             spectrum = spectra(W, lumped_areas(X, F), parts)
         X = apply_gain(X, spectrum, lambda omega: gain(omega) ** (1 / steps))

@@ -54,6 +54,7 @@ def assert_full_spectrum_agrees(
         options["steps"],
         options.get("basis_update", "none"),
         options["laplacian"],
+        options.get("conformal_share", 0.0),
     )
     error = largest_distance(Y, expected) / diagonal(V)
     record("largest_distance_in_diagonals", error)
@@ -120,6 +121,19 @@ def test_intrinsic_delaunay_agrees_with_its_inventors_package(
         "basis_update": basis_update,
     }
     assert_full_spectrum_agrees(decimated(sample_name), options, record_property)
+
+
+def test_a_conformal_share_agrees(
+    decimated: Decimated, record_property: Callable[..., None]
+) -> None:
+    options = {
+        "laplacian": "intrinsic delaunay",
+        "feature_size": percent(10),
+        "steps": 4,
+        "basis_update": "full",
+        "conformal_share": 0.25,  # goes through a 32-bit float unchanged
+    }
+    assert_full_spectrum_agrees(decimated("cow.obj"), options, record_property)
 
 
 def test_eight_steps_without_update_agree(

@@ -137,6 +137,7 @@ def test_every_option_reaches_the_filter(cow: Path, tmp_path: Path) -> None:
         "steps": 2,
         "tolerance": "0.1%",
         "basis_update": "conformal",
+        "conformal_share": 0.25,
         "spectrum": "truncated",
         "basis_size": 60,
         "reinject_residual": False,

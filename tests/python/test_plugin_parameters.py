@@ -64,6 +64,8 @@ OUT_OF_RANGE = [
     ("stop_gain", float("nan"), {}),
     ("power", 0.0, {}),
     ("power", 1.5, {}),
+    ("conformal_share", 1.5, {}),
+    ("conformal_share", float("nan"), {}),
     ("steps", -3, {}),
     ("basis_size", 0, {"spectrum": "truncated"}),
 ]
@@ -147,6 +149,7 @@ def test_options_given_to_pymeshlab_reach_the_filter(
         steps=2,
         tolerance=Length(0.25),
         basis_update="conformal",
+        conformal_share=0.5,
     )
     tetrahedron.apply_filter(FILTER, **options.pymeshlab_parameters())
     script = tmp_path / "script.mlx"

@@ -164,6 +164,12 @@ class FilterOptions:
         "What a step learns from the one before: full, conformal (best for strong smoothing) or "
         "none.",
     )
+    conformal_share: float = _option(
+        0.0,
+        "For the full update: from 0, the paper's, to 1, the conformal one; 0.1 draws in thin "
+        "parts that a strong full update leaves as spikes.",
+        Limits(0, 1),
+    )
     spectrum: Spectrum = _option(
         "full", "full filters every detail; truncated only the largest, as older methods do."
     )
