@@ -20,6 +20,9 @@ constexpr double kStagnant = 2.0;
 /// Part of the result's area below which what has not converged is a pinched part.
 constexpr double kPinchedArea = 1e-3;
 
+/// Multiple of the tolerance that one more pass will probably bring within it.
+constexpr double kNear = 2.0;
+
 /// Fewer steps than this do not show that something has stopped converging.
 constexpr int kFewSteps = 8;
 
@@ -109,7 +112,10 @@ AutomaticSteps automaticSteps(const LaplacianBuilder& laplacians, StepEvaluator&
         }
         const bool onlyPinchedPartsLeft = K >= kFewSteps && limit.stagnates() &&
                                           limit.unresolvedPart(D, options.tolerance) < kPinchedArea;
-        if (onlyPinchedPartsLeft || 2 * K > options.maxSteps) {
+        const bool oneMorePass =
+            2 * K <= options.maxSteps ||
+            (K <= options.maxSteps && result.error <= kNear * options.tolerance);
+        if (onlyPinchedPartsLeft || !oneMorePass) {
             result.X = limit.last();
             result.singularPart = limit.unresolvedPart(laplacians.input().D, options.tolerance);
             return result;

@@ -11,7 +11,8 @@ namespace spectral {
 
 struct AutomaticOptions {
     double tolerance = 0.0;  ///< Largest error of any vertex, length units, > 0.
-    int maxSteps = 64;       ///< Most steps of one pass, >= 4.
+    int maxSteps = 64;       ///< Most steps of one pass, >= 4; twice as many where the pass before
+                             ///< came near the tolerance.
 };
 
 /// The limit of the paper's scheme for infinitely many steps, as far as it was found.

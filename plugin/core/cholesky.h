@@ -28,6 +28,12 @@ class ShiftedCholesky {
     /// @throws SolverFailure  when a pivot vanishes, i.e. sigma is too near an eigenvalue.
     Index countEigenvaluesBelow(const Laplacian& laplacian, double sigma);
 
+    /// Adds work that was done with other factors to the counts.
+    void countWork(int factorizations, int solves) {
+        factorizations_ += factorizations;
+        solves_ += solves;
+    }
+
     double shift() const { return shift_; }
     int factorizations() const { return factorizations_; }  ///< Of both kinds.
     int solves() const { return solves_; }                  ///< Columns solved for.

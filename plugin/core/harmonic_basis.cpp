@@ -1,6 +1,5 @@
 #include "harmonic_basis.h"
 
-#include <Spectra/SymEigsShiftSolver.h>
 #include <Spectra/SymEigsSolver.h>
 
 #include <Eigen/Eigenvalues>
@@ -11,73 +10,25 @@
 #include <string>
 
 #include "errors.h"
+#include "spectrum_slicing.h"
 
 namespace spectral {
 
 namespace {
 
-/// The shift below zero, in units of the first eigenvalues' scale 4 pi / area (Weyl's law).
-constexpr double kShift = 0.1;
+/// Up to this many vertices, or this many where a large part of all harmonics is wanted, the dense
+/// solver is the quicker one.
+constexpr Index kDenseVertices = 600, kDenseVerticesForMany = 4000;
 
-/// Relative accuracy of the eigenvalues asked of the iteration.
-constexpr double kTolerance = 1e-11;
+/// Neighbours whose overlaps are looked at: those of harmonics with distinct eigenvalues are bound
+/// by their residuals.
+constexpr Index kNeighbours = 16;
 
 constexpr int kMaxRestarts = 300;
-
-/// Searches for missed copies of multiple eigenvalues before giving up.
-constexpr int kMaxSearches = 5;
 
 /// Neighbouring eigenvalues nearer than this part of the mean spacing lambda_k / k (Weyl's law)
 /// belong to one cluster: equal ones by symmetry, told apart by the mesh or by round-off only.
 constexpr double kClusterSpacing = 0.1;
-
-/// Symmetric operator of the shift-inverted problem, D^1/2 (W - sigma D)^-1 D^1/2, on the
-/// complement of the constant modes and of `known` (n x p, D-orthonormal).
-class ShiftInvert {
-  public:
-    using Scalar = double;
-
-    ShiftInvert(const Laplacian& laplacian, const ConstantModes& constants,
-                const ShiftedCholesky& cholesky, const Eigen::MatrixXd& known,
-                const Progress& progress, double expectedSolves)
-        : D_(laplacian.D),
-          sqrtD_(laplacian.D.cwiseSqrt()),
-          constants_(constants),
-          cholesky_(cholesky),
-          known_(known),
-          progress_(progress),
-          expectedSolves_(expectedSolves) {}
-
-    Index rows() const { return D_.size(); }
-    Index cols() const { return D_.size(); }
-    void set_shift(double) {}  // the factorization is made before
-
-    void perform_op(const double* in, double* out) const {
-        Eigen::MatrixXd u = Eigen::Map<const Eigen::VectorXd>(in, rows()).cwiseQuotient(sqrtD_);
-        project(u);
-        u = cholesky_.solve(D_.asDiagonal() * u);
-        project(u);
-        Eigen::Map<Eigen::VectorXd>(out, rows()) = sqrtD_.cwiseProduct(u.col(0));
-        // The number of solves is not known beforehand: approach 1 without reaching it.
-        solves_ += 1.0;
-        progress_.report(solves_ / (solves_ + expectedSolves_), "computing the harmonics");
-    }
-
-  private:
-    void project(Eigen::MatrixXd& u) const {
-        constants_.remove(u);
-        if (known_.cols() > 0) u -= known_ * (known_.transpose() * (D_.asDiagonal() * u));
-    }
-
-    const Eigen::VectorXd& D_;
-    Eigen::VectorXd sqrtD_;
-    const ConstantModes& constants_;
-    const ShiftedCholesky& cholesky_;
-    const Eigen::MatrixXd& known_;
-    const Progress& progress_;
-    double expectedSolves_;
-    mutable double solves_ = 0.0;
-};
 
 /// Matrix-vector product with D^-1/2 W D^-1/2.
 class ScaledStiffness {
@@ -109,42 +60,6 @@ class ScaledStiffness {
                         "degenerate triangles ('Remove Zero Area Faces')");
 }
 
-/// The `wanted` lowest eigenpairs outside the constants and outside `known`, unordered.
-HarmonicBasis lowestPairs(const Laplacian& laplacian, const ConstantModes& constants,
-                          const ShiftedCholesky& cholesky, double sigma,
-                          const Eigen::MatrixXd& known, Index wanted, const Progress& progress) {
-    const Index n = laplacian.D.size();
-    const Index krylov = std::min(n, std::max<Index>(2 * wanted + 1, 20));
-    ShiftInvert op(laplacian, constants, cholesky, known, progress,
-                   3.0 * static_cast<double>(wanted));
-    Spectra::SymEigsShiftSolver<ShiftInvert> solver(op, wanted, krylov, sigma);
-    solver.init();  // Spectra's own start vector: pseudo-random with a fixed seed
-    solver.compute(Spectra::SortRule::LargestMagn, kMaxRestarts, kTolerance);
-    if (solver.info() != Spectra::CompInfo::Successful)
-        failed(solver.info(), "the harmonics could not be computed");
-    return {laplacian.D.cwiseSqrt().cwiseInverse().asDiagonal() * solver.eigenvectors(),
-            solver.eigenvalues()};
-}
-
-/// Appends the pairs of `more` and sorts all by eigenvalue.
-HarmonicBasis merged(const HarmonicBasis& basis, const HarmonicBasis& more) {
-    const Index n = std::max(basis.Phi.rows(), more.Phi.rows());
-    Eigen::VectorXd lambda(basis.size() + more.size());
-    lambda << basis.lambda, more.lambda;
-    std::vector<Index> order(static_cast<std::size_t>(lambda.size()));
-    std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](Index i, Index j) { return lambda[i] < lambda[j]; });
-    HarmonicBasis all{Eigen::MatrixXd(n, lambda.size()), Eigen::VectorXd(lambda.size())};
-    for (Index i = 0; i < lambda.size(); ++i) {
-        const Index from = order[i];
-        all.lambda[i] = lambda[from];
-        all.Phi.col(i) =
-            from < basis.size() ? basis.Phi.col(from) : more.Phi.col(from - basis.size());
-    }
-    return all;
-}
-
 /// The number of pairs, from `asked` on, at which a spectrum may be cut; empty when every candidate
 /// lies inside a cluster. `lambda` ascends and has more than `asked` entries.
 std::optional<Index> cutOutsideClusters(const Eigen::VectorXd& lambda, Index asked) {
@@ -152,6 +67,35 @@ std::optional<Index> cutOutsideClusters(const Eigen::VectorXd& lambda, Index ask
     for (Index k = asked; k < lambda.size(); ++k)
         if (lambda[k] - lambda[k - 1] > kClusterSpacing * spacing) return k;
     return std::nullopt;
+}
+
+void cut(HarmonicBasis& basis, Index size) {
+    basis.Phi.conservativeResize(Eigen::NoChange, size);
+    basis.lambda.conservativeResize(size);
+}
+
+/// Fills in the certificate of a basis that is as large as the inertia says.
+void certify(const Laplacian& laplacian, Index constants, HarmonicBasis& basis) {
+    const Index k = basis.size();
+    basis.inertiaCount = k;
+    basis.residuals = Eigen::VectorXd::Zero(k);
+    basis.largestOverlap = 0.0;
+    const Eigen::VectorXd invSqrtD = laplacian.D.cwiseSqrt().cwiseInverse();
+    for (Index i = 0; i < k; ++i) {
+        const Eigen::VectorXd phi = basis.Phi.col(i);
+        const Eigen::VectorXd Dphi = laplacian.D.cwiseProduct(phi);
+        const Index first = std::max<Index>(0, i - kNeighbours);
+        Eigen::VectorXd overlaps = basis.Phi.middleCols(first, i - first + 1).transpose() * Dphi;
+        overlaps[i - first] -= 1.0;
+        basis.largestOverlap = std::max(basis.largestOverlap, overlaps.cwiseAbs().maxCoeff());
+        if (i < constants) continue;
+        const Eigen::VectorXd residual = laplacian.W * phi - basis.lambda[i] * Dphi;
+        basis.residuals[i] = invSqrtD.cwiseProduct(residual).norm() / basis.lambda[i];
+    }
+    if (!basis.residuals.allFinite() || !std::isfinite(basis.largestOverlap))
+        throw SolverFailure(
+            "the harmonics are not finite numbers: the mesh probably has degenerate "
+            "triangles ('Remove Zero Area Faces')");
 }
 
 }  // namespace
@@ -164,7 +108,9 @@ HarmonicBasis denseBasis(const Laplacian& laplacian, const ConstantModes& consta
     if (solver.info() != Eigen::Success)
         throw SolverFailure("the dense eigenproblem of " + std::to_string(A.rows()) +
                             " vertices did not converge");
-    HarmonicBasis basis{invSqrtD.asDiagonal() * solver.eigenvectors(), solver.eigenvalues()};
+    HarmonicBasis basis;
+    basis.Phi = invSqrtD.asDiagonal() * solver.eigenvectors();
+    basis.lambda = solver.eigenvalues();
     basis.lambda.head(constants.count()).setZero();
     basis.Phi.leftCols(constants.count()) = constants.orthonormal();
     return basis;
@@ -183,45 +129,40 @@ HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& co
                             " connected components: choose a basis_size above " +
                             std::to_string(c) + ", or spectrum = full");
 
-    const double sigma = -kShift * 4.0 * kPi / laplacian.D.sum();
-    progress.report(0.0, "factorizing");
-    cholesky.factorize(laplacian, -sigma);
-
-    const HarmonicBasis constant{constants.orthonormal(), Eigen::VectorXd::Zero(c)};
-    HarmonicBasis found{Eigen::MatrixXd(n, 0), Eigen::VectorXd(0)};
-    int searches = 0;
+    const bool dense = n <= kDenseVertices || (n <= kDenseVerticesForMany && 4 * k > n);
+    if (dense) {
+        HarmonicBasis basis = denseBasis(laplacian, constants);
+        cut(basis, cutOutsideClusters(basis.lambda, k).value_or(n));
+        certify(laplacian, c, basis);
+        return basis;
+    }
     // Some pairs beyond k show whether k cuts a cluster; more are taken while it does.
     for (Index guard = std::max<Index>(8, k / 20);; guard *= 2) {
         const Index total = std::min(k + guard, n - 1);
-        const Index wanted = total - c - found.size();
-        if (wanted > 0)
-            found = merged(found, lowestPairs(laplacian, constants, cholesky, sigma, found.Phi,
-                                              wanted, progress));
-        HarmonicBasis basis = merged(constant, found);
-
-        std::optional<Index> cut = cutOutsideClusters(basis.lambda, k);
-        if (!cut) {
+        LowestPairs pairs = lowestPairs(laplacian, constants, total, progress);
+        cholesky.countWork(pairs.factorizations, pairs.solves);
+        HarmonicBasis basis;
+        basis.Phi = std::move(pairs.Phi);
+        basis.lambda = std::move(pairs.lambda);
+        std::optional<Index> size = cutOutsideClusters(basis.lambda, k);
+        if (!size) {
             if (total < n - 1) continue;
-            cut = total;  // nothing left to cut off but the last one
+            size = basis.size();  // nothing left to cut off
         }
-        if (*cut < basis.size()) {
-            // Sylvester's law of inertia: a Lanczos run can miss copies of a multiple eigenvalue.
-            const double between = 0.5 * (basis.lambda[*cut - 1] + basis.lambda[*cut]);
-            const Index missing = cholesky.countEigenvaluesBelow(laplacian, between) - *cut;
-            if (missing > 0) {
-                if (++searches > kMaxSearches)
-                    throw SolverFailure(
-                        "the basis misses " + std::to_string(missing) +
-                        " of the harmonics that the inertia of W - sigma D counts; choose another "
-                        "basis_size, or spectrum = full");
-                found = merged(found, lowestPairs(laplacian, constants, cholesky, sigma, found.Phi,
-                                                  missing, progress));
-                guard = (guard + 1) / 2;
-                continue;
-            }
-        }
-        basis.Phi.conservativeResize(Eigen::NoChange, *cut);
-        basis.lambda.conservativeResize(*cut);
+        // Sylvester's law of inertia: none is missing below the cut. Beyond the last pair found
+        // there is a shift of the slices that has counted it already.
+        const Index counted =
+            *size < basis.size()
+                ? cholesky.countEigenvaluesBelow(
+                      laplacian, 0.5 * (basis.lambda[*size - 1] + basis.lambda[*size]))
+                : basis.size();
+        cut(basis, *size);
+        if (counted != *size)
+            throw SolverFailure("of the " + std::to_string(counted) +
+                                " harmonics that the inertia of W - sigma D counts, " +
+                                std::to_string(*size) +
+                                " were found; choose another basis_size, or spectrum = full");
+        certify(laplacian, c, basis);
         return basis;
     }
 }

@@ -15,6 +15,12 @@ struct HarmonicBasis {
     Eigen::MatrixXd Phi;     ///< n x k, D-orthonormal: Phi^T D Phi = I.
     Eigen::VectorXd lambda;  ///< k eigenvalues, ascending; exactly 0 for the constant modes.
 
+    // The certificate of a truncated basis; without meaning for a dense one.
+    Eigen::VectorXd residuals;    ///< k, |D^-1/2 (W phi - lambda D phi)| / lambda; 0 for constants.
+    double largestOverlap = 0.0;  ///< Of Phi^T D Phi - I, for neighbours in the spectrum.
+    Index inertiaCount = 0;       ///< Eigenvalues below the first that is not in the basis, by the
+                                  ///< inertia of W - sigma D: equal to size(), none is missing.
+
     Index size() const { return lambda.size(); }
 };
 
@@ -23,20 +29,18 @@ struct HarmonicBasis {
 /// @throws SolverFailure  when the solver does not converge.
 HarmonicBasis denseBasis(const Laplacian& laplacian, const ConstantModes& constants);
 
-/// At least the k lowest eigenpairs, by shift-invert Lanczos (Spectra).
-///
-/// The shift lies below zero by a fraction of the first eigenvalues' scale 4 pi / area, so that
-/// W - sigma D is positive definite and a Cholesky factorization serves. The constant modes are not
-/// computed but known: they are projected out of the iteration and set in front exactly.
+/// At least the k lowest eigenpairs, certified: slice by slice (spectrum_slicing.h), or by the
+/// dense solver where that is quicker.
 ///
 /// The cut is never inside a cluster of equal eigenvalues: a few pairs more than k are taken where
-/// lambda_k and lambda_k+1 are equal or nearly so. The count of eigenvalues below the cut is
-/// checked against the inertia of W - sigma D, and missing copies of a multiple eigenvalue are
-/// sought again.
+/// lambda_k and lambda_k+1 are equal or nearly so. The certificate: as many pairs as the inertia of
+/// W - sigma D counts below the cut (Sylvester's law of inertia), or an error; residuals and
+/// overlaps as reported (1e-9 is usual, more where triangles have collapsed).
 ///
 /// @param k  constants.count() < k < n.
-/// @param cholesky  factorized here; counts the work.
-/// @throws InvalidOption  when k is out of range; SolverFailure when the iteration fails.
+/// @param cholesky  counts the work; its factor is left as it is.
+/// @throws InvalidOption  when k is out of range; SolverFailure when the basis fails its
+///                        count.
 HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& constants, Index k,
                              ShiftedCholesky& cholesky, const Progress& progress = {});
 

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/SparseCholesky>
+
+#include "laplacian.h"
+#include "types.h"
+
+namespace spectral {
+
+/// LDL^T factorization of W - sigma D for shifts inside the spectrum, where it is indefinite.
+///
+/// It serves twice: for solves, and by the signs of its pivots as a count of eigenvalues
+/// (Sylvester's law of inertia). The fill-reducing order and the symbolic analysis are made once.
+class IndefiniteFactor {
+  public:
+    /// @param laplacian  kept by reference.
+    explicit IndefiniteFactor(const Laplacian& laplacian);
+
+    /// @param sigma  in units of lambda (1 / length^2); moved a little when a pivot vanishes.
+    /// @throws SolverFailure  when pivots vanish at every shift nearby.
+    void factorize(double sigma);
+
+    double shift() const { return shift_; }
+
+    /// Number of eigenvalues of W phi = lambda D phi below shift(), exactly: that of the negative
+    /// pivots.
+    Index eigenvaluesBelow() const { return below_; }
+
+    /// (W - sigma D)^-1 B for every column of B (n x c).
+    Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const;
+
+  private:
+    template <int Columns>
+    void solveColumns(const Eigen::MatrixXd& B, Index first, Eigen::MatrixXd& X) const;
+
+    const Laplacian& laplacian_;
+    Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>> ldlt_;
+    Eigen::VectorXd pivots_;
+    double shift_ = 0.0;
+    Index below_ = 0;
+};
+
+}  // namespace spectral
