@@ -1,0 +1,80 @@
+#include "core/spectrum_slicing.h"
+
+#include <gtest/gtest.h>
+
+#include "core/errors.h"
+#include "core/harmonic_basis.h"
+#include "support/evaluation.h"
+#include "support/shapes.h"
+
+namespace spectral {
+namespace {
+
+using testing::Mesh;
+using testing::Operator;
+
+/// Compares with all eigenvalues by the dense solver: none missing, none twice.
+void expectLowest(const Mesh& mesh, Index k, const char* name) {
+    SCOPED_TRACE(name);
+    const Operator A(mesh);
+    const LowestPairs pairs = lowestPairs(A.laplacian, A.constants, k);
+    const Eigen::VectorXd lambda = denseBasis(A.laplacian, A.constants).lambda;
+    ASSERT_GE(pairs.lambda.size(), k);
+    const Index c = A.constants.count(), found = pairs.lambda.size();
+    const Eigen::VectorXd error = pairs.lambda - lambda.head(found);
+    EXPECT_LT(error.cwiseAbs().maxCoeff(), 1e-9 * lambda[found - 1]);
+
+    const Eigen::MatrixXd gram = pairs.Phi.transpose() * A.laplacian.D.asDiagonal() * pairs.Phi;
+    EXPECT_LT((gram - Eigen::MatrixXd::Identity(found, found)).cwiseAbs().maxCoeff(), 1e-7);
+    const Eigen::MatrixXd residual = A.laplacian.W * pairs.Phi - A.laplacian.D.asDiagonal() *
+                                                                     pairs.Phi *
+                                                                     pairs.lambda.asDiagonal();
+    for (Index i = c; i < found; ++i)
+        EXPECT_LT(residual.col(i).cwiseQuotient(A.laplacian.D.cwiseSqrt()).norm(),
+                  1e-7 * pairs.lambda[i]);
+}
+
+Mesh copies(const Mesh& mesh, int count) {
+    Mesh all = mesh;
+    for (int i = 1; i < count; ++i) all = testing::joined(all, mesh);
+    return all;
+}
+
+TEST(LowestPairs, AreAllThere) {
+    expectLowest(testing::blob(), 150, "no symmetry");
+    expectLowest(testing::withNoise(testing::rectangle(2, 1, 40, 20), 0.01, 5), 200, "boundary");
+}
+
+TEST(LowestPairs, HoldEveryCopyOfAMultipleEigenvalue) {
+    expectLowest(testing::icosphere(3), 120, "sphere");
+    expectLowest(testing::cube(12), 120, "cube");
+    expectLowest(testing::rectangle(1, 1, 24, 24), 100, "square");
+    expectLowest(copies(testing::icosphere(2), 5), 100, "five equal spheres");
+}
+
+TEST(LowestPairs, AreFewWhereFewAreAsked) {
+    expectLowest(testing::blob(), 2, "one harmonic");
+    expectLowest(testing::icosphere(3), 5, "within a group of equal ones");
+}
+
+TEST(LowestPairs, DoNotDependOnTheThreads) {
+    const Operator A(testing::icosphere(3));
+    const LowestPairs once = lowestPairs(A.laplacian, A.constants, 100);
+    const LowestPairs again = lowestPairs(A.laplacian, A.constants, 100);
+    EXPECT_TRUE((once.Phi.array() == again.Phi.array()).all());
+    EXPECT_TRUE((once.lambda.array() == again.lambda.array()).all());
+}
+
+TEST(LowestPairs, StopWhenTheCallerWantsIt) {
+    const Operator A(testing::icosphere(4));
+    int reports = 0;
+    const Progress progress([&](double fraction, const std::string&) {
+        EXPECT_GE(fraction, 0.0);
+        EXPECT_LE(fraction, 1.0);
+        return ++reports < 20;
+    });
+    EXPECT_THROW(lowestPairs(A.laplacian, A.constants, 100, progress), Cancelled);
+}
+
+}  // namespace
+}  // namespace spectral
