@@ -1,4 +1,4 @@
-"""Artefacts that strong filters leave: one shot, ten full and ten conformal steps, as a table.
+"""Artefacts that strong filters leave, by step schemes, as a table.
 
 usage: bench_artefacts.py [MESH...]
 
@@ -28,6 +28,11 @@ COLUMNS: dict[str, dict[str, Any]] = {
     "one shot": {"steps": 1, "basis_update": "none"},
     "full, K = 10": {"steps": 10, "basis_update": "full"},
     "conformal, K = 10": {"steps": 10, "basis_update": "conformal"},
+    "full, conformal share 0.1, K = 30": {
+        "steps": 30,
+        "basis_update": "full",
+        "conformal_share": 0.1,
+    },
 }
 
 REFUSED: list[pymeshlab.MeshSet] = []  # destroying a MeshSet after a refusal crashes pymeshlab
