@@ -8,16 +8,40 @@ from typing import Any
 
 import numpy as np
 import pymeshlab
+import pytest
 from meshlab_spectral import measure_artefacts
 
 
-def filtered(path: Path, **options: Any) -> tuple[pymeshlab.MeshSet, dict[str, Any]]:
+def filtered(
+    path: Path, percentage: float = 15, **options: Any
+) -> tuple[pymeshlab.MeshSet, dict[str, Any]]:
     mesh_set = pymeshlab.MeshSet()
     mesh_set.load_new_mesh(str(path))
     report = mesh_set.apply_coord_spectral_filter_fractional(
-        feature_size=pymeshlab.PercentageValue(15), **options
+        feature_size=pymeshlab.PercentageValue(percentage), **options
     )
     return mesh_set, report
+
+
+@pytest.mark.parametrize("percentage", [15, 30])
+@pytest.mark.parametrize(
+    "name",
+    [
+        "T.ply",
+        "rocker-arm.obj",
+        "fandisk.off",
+        "gears.stl",
+        "thingi_1514499.stl",
+        "angel_gatech_28k.ply",
+        "dragon_40k.ply",
+    ],
+)
+def test_a_strong_low_pass_of_a_closed_mesh_stays_finite(
+    name: str, percentage: float, shared_mesh: Callable[[str], Path]
+) -> None:
+    mesh_set, report = filtered(shared_mesh(name), percentage, steps=10, basis_update="full")
+    assert np.isfinite(mesh_set.current_mesh().vertex_matrix()).all()
+    assert report["max_displacement"] > 0
 
 
 def test_one_strong_low_pass_of_the_dragon_takes_few_solves(
