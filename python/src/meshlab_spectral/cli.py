@@ -251,6 +251,9 @@ def basis_command(
         str | None,
         typer.Option(metavar="NUMBERS", help="Harmonics in the pictures, such as 1,2,3,5,8."),
     ] = None,
+    scale: Annotated[
+        float, typer.Option(min=0.1, max=10, help="Resolution of the pictures; 1 fills a screen.")
+    ] = 1.0,
     debug: Annotated[bool, typer.Option("--debug", hidden=True)] = False,
 ) -> None:
     """Compute manifold harmonics: `meshlab-spectral basis --help` tells more."""
@@ -260,7 +263,7 @@ def basis_command(
             basis_file_in_child(source, output, basis_size, laplacian, boundary, on_progress)
             if pictures is not None:
                 on_progress("drawing", None)
-                draw_basis_file(output, pictures, shown)
+                draw_basis_file(output, pictures, shown, scale)
     for path in (output, pictures):
         if path is not None:
             typer.echo(path)

@@ -24,6 +24,8 @@ from meshlab_spectral.pictures import (
 # So many pictures unless others are asked for, and so many beside each other.
 _SHOWN = 12
 _COLUMNS, _COLUMNS_UPRIGHT = 4, 6
+# A page full of colours makes a larger file than other figures: to a megabyte again.
+_RESOLUTION = 0.92
 
 
 def spread_modes(first: int, size: int) -> list[int]:
@@ -41,11 +43,13 @@ def check_modes(modes: Sequence[int], size: int) -> None:
             raise OptionError(f"mode {mode}: a basis of {size} harmonics has 0 to {size - 1}")
 
 
-def draw_basis_file(archive: Path, path: Path, modes: Sequence[int] | None = None) -> None:
+def draw_basis_file(
+    archive: Path, path: Path, modes: Sequence[int] | None = None, scale: float = 1.0
+) -> None:
     """Draw harmonics of an archive that `meshlab-spectral basis` has written; see `draw`."""
     with np.load(archive) as arrays:
         basis = Harmonics(arrays["eigenvalues"], arrays["harmonics"], arrays["masses"])
-        draw(basis, arrays["vertices"], arrays["faces"], path, modes)
+        draw(basis, arrays["vertices"], arrays["faces"], path, modes, scale)
 
 
 def draw(
@@ -87,14 +91,17 @@ def draw(
     frame = Frame.around([V], View.of_widest_side(V))
     aspect = frame.width / frame.height
     columns = min(len(modes), _COLUMNS if aspect > 0.8 else _COLUMNS_UPRIGHT)
-    sheet = Sheet([aspect] * ceil(len(modes) / columns), columns, 2, scale, footer=0.4)
+    rows = ceil(len(modes) / columns)
+    sheet = Sheet([aspect] * rows, columns, 2, _RESOLUTION * scale, footer=0.56)
     diagonal = float(np.linalg.norm(np.ptp(V, axis=0)))
     for cell, mode in enumerate(modes):
         values = to_full_colours(basis.harmonics[:, mode], basis.masses)
         picture = render(Panel("", V, F, values), frame, sheet.pixels)
         label = f"harmonic {mode}\n{_wavelength(basis.frequencies[mode], diagonal)}"
         sheet.picture(*divmod(cell, columns), picture, label)
-    sheet.colour_bar(SIGNED_COLOURS, ("\N{MINUS SIGN}", "0", "+"))
+    sheet.colour_bar(
+        SIGNED_COLOURS, ("\N{MINUS SIGN}", "0", "+"), "wavelengths in % of the model's diagonal"
+    )
     sheet.save(path)
 
 
