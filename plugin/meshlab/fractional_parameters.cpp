@@ -111,8 +111,8 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "filters. <b>cotangent</b> is the formula of the paper; every triangle needs an area."));
     list.addParam(boundaryParameter(
         "What happens at the rims of an open surface and of its holes. <b>free</b>: they move as "
-        "the rest does, a smoothing may shrink them. <b>fixed</b>: every rim stays exactly where "
-        "it is, and the surface between is filtered."));
+        "the rest does; a strong smoothing rounds them off and draws them in. <b>fixed</b>: every "
+        "rim stays exactly where it is, and the surface between is filtered."));
     return list;
 }
 

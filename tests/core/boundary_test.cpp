@@ -335,6 +335,17 @@ TEST(FixedBoundary, WhereNothingCanMoveNothingMovesAndAWarningSaysSo) {
         }
 }
 
+TEST(FixedBoundary, MovesASingleVertexInside) {
+    const Mesh mesh = testing::withNoise(testing::rectangle(1, 1, 2, 2), 0.1, 3);
+    FilterOptions options = smoothing(mesh, 1);
+    options.laplacian = LaplacianKind::Cotangent;
+    const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
+    const TransferFunction F(options.transferFunction, result.cutoffFrequency);
+    EXPECT_LT(largestDifference(result.V, DenseFilter(mesh)(fractionalPower(F, 1.0))), 1e-12);
+    EXPECT_EQ(result.fixedVertices, 8);
+    EXPECT_GT(result.maxDisplacement, 1e-4);
+}
+
 TEST(FixedBoundary, ABasisThatTheInteriorCannotHoldIsRefused) {
     const Mesh mesh = testing::rectangle(1, 1, 4, 4);  // nine vertices inside
     FilterOptions options = smoothing(mesh, 1);

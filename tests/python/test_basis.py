@@ -121,6 +121,7 @@ WRONG: dict[str, tuple[list[object], int, str]] = {
     "another boundary": (["--boundary", "loose"], 2, "fixed"),
     "a mode beyond the basis": (["-k", 10, "--modes", "3,10"], 2, "mode 10"),
     "a mode that is no number": (["--modes", "first"], 2, "first"),
+    "no .png file": (["--pictures", "sheet.jpg"], 2, ".png"),
     "no archive of NumPy": (["--output", "basis.txt"], 2, ".npz"),
     "no such folder": (["--output", "nowhere/basis.npz"], 1, "nowhere"),
 }

@@ -152,6 +152,7 @@ def test_every_option_reaches_the_filter(cow: Path, tmp_path: Path) -> None:
         "basis_size": 60,
         "reinject_residual": False,
         "laplacian": "cotangent",
+        "boundary": "fixed",
     }
     assert options.keys() == FilterOptions().as_dict().keys()
     arguments: list[object] = []

@@ -21,7 +21,7 @@ from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeEl
 from meshlab_spectral import __version__
 from meshlab_spectral.errors import FormatError, OptionError, SpectralError
 from meshlab_spectral.figures import FIGURES, draw_figures
-from meshlab_spectral.figures.harmonics import check_modes, draw_basis_file
+from meshlab_spectral.figures.harmonics import check_modes, check_picture, draw_basis_file
 from meshlab_spectral.harmonics import DEFAULT_BASIS_SIZE
 from meshlab_spectral.options import Boundary, FilterOptions, LaplacianKind, Length
 from meshlab_spectral.report import report_table, report_warnings
@@ -259,6 +259,8 @@ def basis_command(
     """Compute manifold harmonics: `meshlab-spectral basis --help` tells more."""
     with _errors_reported(debug, "files that were finished are there, and whole"):
         shown = None if modes is None else _modes(modes, basis_size)
+        if pictures is not None:
+            check_picture(pictures)
         with _progress_shown() as on_progress:
             basis_file_in_child(source, output, basis_size, laplacian, boundary, on_progress)
             if pictures is not None:

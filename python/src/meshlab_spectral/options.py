@@ -187,8 +187,8 @@ class FilterOptions:
     )
     boundary: Boundary = _option(
         "free",
-        "Rims of an open surface and of its holes: free lets them move as the rest does, so that "
-        "smoothing may shrink them; fixed keeps them exactly where they are.",
+        "Rims of an open surface and of its holes: free lets them move as the rest does, strong "
+        "smoothing draws them in; fixed keeps them exactly where they are.",
     )
 
     def __post_init__(self) -> None:

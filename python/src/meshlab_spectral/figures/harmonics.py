@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from meshlab_spectral.errors import OptionError
+from meshlab_spectral.errors import FormatError, OptionError
 from meshlab_spectral.figures.sheet import Sheet
 from meshlab_spectral.harmonics import Harmonics
 from meshlab_spectral.pictures import (
@@ -41,6 +41,12 @@ def check_modes(modes: Sequence[int], size: int) -> None:
     for mode in modes:
         if not 0 <= mode < size:
             raise OptionError(f"mode {mode}: a basis of {size} harmonics has 0 to {size - 1}")
+
+
+def check_picture(path: Path) -> None:
+    """Raise FormatError unless the name of a picture ends in .png."""
+    if path.suffix != ".png":
+        raise FormatError(f"{path.name}: the pictures are a .png file, end its name so")
 
 
 def draw_basis_file(
