@@ -8,7 +8,7 @@ namespace spectral {
 
 /// The connected components of a surface; triangles that share a vertex belong together.
 struct Components {
-    Eigen::VectorXi label;  ///< n labels, 0 <= label < count.
+    Eigen::VectorXi label;  ///< n labels, 0 <= label < count; -1 for vertices that count to none.
     int count = 0;
 };
 
@@ -16,6 +16,7 @@ struct Components {
 Components connectedComponents(const Faces& F, Index vertexCount);
 
 /// The constant modes of a Laplacian: its null space, one constant function for each component.
+/// Vertices of label -1 have none: they hang on a fixed boundary (boundary.h).
 ///
 /// A filter changes shape, not place, so the gain of these modes is 1 whatever F(0) is. They are
 /// taken out of a signal exactly before F is applied and put back afterwards; no eigenvalue of
@@ -30,7 +31,7 @@ class ConstantModes {
     /// D-weighted mean of every column of X (n x c) on every component: count x c.
     Eigen::MatrixXd means(const Eigen::MatrixXd& X) const;
 
-    /// Adds row label(i) of `means` (count x c) to row i of X.
+    /// Adds row label(i) of `means` (count x c) to row i of X, nothing where the label is -1.
     void add(const Eigen::MatrixXd& means, Eigen::MatrixXd& X) const;
 
     /// D-orthogonal projection of X onto the complement of the constants, in place.

@@ -45,6 +45,12 @@ void measureDisplacement(const Vertices& displacement, const Eigen::VectorXd& D,
     result.rmsDisplacement = std::sqrt(squares.dot(D) / D.sum());
 }
 
+std::string nothingMovesWarning() {
+    return "nothing can move: every vertex lies on the boundary, which is fixed. Choose boundary = "
+           "free; where the triangles of the mesh are not connected, apply 'Merge Close Vertices' "
+           "first";
+}
+
 std::string accuracyWarning(double requested, double estimate) {
     std::ostringstream text;
     text << std::setprecision(2) << "the requested relative accuracy of " << requested
@@ -96,12 +102,13 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     checkOptions(options);               // diagonal is the mesh's fault
     const Surface surface = surfaceOf(V, F);
     const TransferFunction transfer(options.transferFunction, cutoffFrequency(options.featureSize));
-    const Components components = connectedComponents(surface.F, surface.X.rows());
+    const Interior interior(surface.F, connectedComponents(surface.F, surface.X.rows()),
+                            options.boundary);
 
     const LaplacianBuilder laplacians(surface, options.laplacian, options.basisUpdate,
                                       options.conformalShare);
     const EvaluationOptions evaluation = evaluationFor(options, surface.X);
-    StepEvaluator evaluate(evaluation, components, transfer);
+    StepEvaluator evaluate(evaluation, interior, transfer);
     const AutomaticSteps steps = filterInSteps(laplacians, evaluate, surface.X, options, progress);
     const Vertices& X = steps.X;
     if (!X.allFinite()) throw SolverFailure("the filtered coordinates are not finite numbers");
@@ -123,12 +130,14 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     result.areaAfter = surfaceArea(X, surface.F);
     result.volumeBefore = signedVolume(surface.X, surface.F);
     result.volumeAfter = signedVolume(X, surface.F);
-    result.components = components.count;
+    result.components = interior.surfaceComponents().count;
     result.unreferencedVertices = static_cast<int>(V.rows() - X.rows());
+    result.fixedVertices = static_cast<int>(interior.fixedVertices());
     result.factorizations = evaluate.factorizations();
     result.solves = evaluate.solves();
     result.errorEstimate = evaluate.errorEstimate();
     result.accuracyReached = evaluate.accuracyReached();
+    if (interior.size() == 0) result.warnings.push_back(nothingMovesWarning());
     if (!result.accuracyReached)
         result.warnings.push_back(accuracyWarning(evaluation.accuracy, result.errorEstimate));
     result.toleranceReached = options.steps > 0 || steps.error <= options.tolerance;

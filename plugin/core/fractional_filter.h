@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "boundary.h"
 #include "laplacian_builder.h"
 #include "progress.h"
 #include "step_evaluator.h"
@@ -20,6 +21,7 @@ struct FilterOptions {
     LaplacianKind laplacian = LaplacianKind::IntrinsicDelaunay;
     BasisUpdate basisUpdate = BasisUpdate::Full;
     double conformalShare = 0.0;  ///< For BasisUpdate::Full, 0 to 1; see laplacian_builder.h.
+    Boundary boundary = Boundary::Free;
     EvaluationOptions evaluation;
 };
 
@@ -35,6 +37,7 @@ struct FilterResult {
     double volumeBefore = 0.0, volumeAfter = 0.0;  ///< Signed; a volume for closed meshes only.
     int components = 0;                            ///< Connected components of the surface.
     int unreferencedVertices = 0;  ///< Vertices of no triangle; they were left alone.
+    int fixedVertices = 0;         ///< Of a fixed boundary: exactly where they were.
     int factorizations = 0;        ///< Sparse Cholesky or LDL^T factorizations.
     int solves = 0;                ///< Solves with one right-hand side.
     bool accuracyReached = true;   ///< Whether errorEstimate is within the requested accuracy.
@@ -53,7 +56,7 @@ struct FilterResult {
 /// many steps, to a tolerance.
 ///
 /// The result is exact to round-off under translation: every connected component keeps its centroid
-/// (area-weighted, of the shape that a step starts from).
+/// (area-weighted, of the shape that a step starts from), unless its boundary is fixed.
 ///
 /// @param V  n x 3 positions, finite.
 /// @param F  m x 3 vertex indices, m >= 1; any topology, unreferenced vertices allowed.

@@ -16,16 +16,24 @@ namespace {
 /// eigenvector, well below what tells entries apart where there is no symmetry.
 constexpr double kTie = 1e-6;
 
-void checkBasisSize(int k, Index vertices, int components) {
+void checkBasisSize(int k, const Interior& interior) {
     const std::string given = "basis_size = " + std::to_string(k);
+    const Index vertices = interior.size();
+    const int components = interior.components().count;
+    const char* const where =
+        interior.isWhole() ? "the surface has " : "beside its fixed boundary the surface has ";
+    if (vertices < 2)
+        throw InvalidOption(std::string("boundary = fixed leaves nothing that could vibrate: ") +
+                            where + std::to_string(vertices) + " vertices. Choose boundary = free");
     if (k >= vertices)
-        throw InvalidOption(given + " needs more than " + std::to_string(k) +
-                            " vertices; the surface has " + std::to_string(vertices) +
-                            ": choose at most " + std::to_string(vertices - 1));
+        throw InvalidOption(given + " needs more than " + std::to_string(k) + " vertices; " +
+                            where + std::to_string(vertices) + ": choose at most " +
+                            std::to_string(vertices - 1));
+    if (k < 1) throw InvalidOption(given + ": choose at least " + std::to_string(components + 1));
     if (k <= components)
         throw InvalidOption(given +
                             " leaves no room beside the constant modes, of which every "
-                            "connected component has one (here " +
+                            "connected component has one that no boundary holds (here " +
                             std::to_string(components) + "): choose at least " +
                             std::to_string(components + 1));
 }
@@ -44,17 +52,20 @@ void fixSigns(Eigen::MatrixXd& Phi) {
 ManifoldHarmonics manifoldHarmonics(const Vertices& V, const Faces& F,
                                     const HarmonicsOptions& options, const Progress& progress) {
     const MeshLaplacian mesh = meshLaplacian(V, F, options.laplacian);
+    const Interior interior(mesh.surface.F, mesh.components, options.boundary);
     const Index k = options.basisSize;
-    checkBasisSize(options.basisSize, mesh.surface.X.rows(), mesh.components.count);
+    checkBasisSize(options.basisSize, interior);
 
+    const Laplacian laplacian = interior.restricted(mesh.laplacian);
+    const ConstantModes constants(interior.components(), laplacian.D);
     ShiftedCholesky cholesky;
-    HarmonicBasis basis = truncatedBasis(mesh.laplacian, mesh.constants, k, cholesky, progress);
+    HarmonicBasis basis = truncatedBasis(laplacian, constants, k, cholesky, progress);
     ManifoldHarmonics harmonics;
     harmonics.wholeSize = static_cast<int>(basis.size());
     basis.Phi.conservativeResize(Eigen::NoChange, k);
     fixSigns(basis.Phi);
     harmonics.lambda = basis.lambda.head(k);
-    harmonics.Phi = onMesh(mesh.surface, basis.Phi, V.rows());
+    harmonics.Phi = onMesh(mesh.surface, interior.extended(basis.Phi), V.rows());
     return harmonics;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "boundary.h"
 #include "laplacian_builder.h"
 #include "progress.h"
 #include "types.h"
@@ -7,15 +8,17 @@
 namespace spectral {
 
 struct HarmonicsOptions {
-    int basisSize = 100;  ///< k, the constant modes included: below the number of vertices that the
-                          ///< triangles use, and above the number of connected components.
+    int basisSize = 100;  ///< k, the constant modes included and above their number; below the
+                          ///< number of vertices of triangles, without those of a fixed boundary.
     LaplacianKind laplacian = LaplacianKind::IntrinsicDelaunay;
+    Boundary boundary = Boundary::Free;
 };
 
 struct ManifoldHarmonics {
     Eigen::VectorXd lambda;  ///< k eigenvalues, ascending, 1 / length^2; exactly 0 for the constant
-                             ///< mode of every component.
-    Eigen::MatrixXd Phi;     ///< n x k, D-orthonormal, 1 / length; 0 at unreferenced vertices.
+                             ///< mode of every component, unless its boundary is fixed.
+    Eigen::MatrixXd Phi;     ///< n x k, D-orthonormal, 1 / length; 0 at unreferenced vertices and
+                             ///< on a fixed boundary.
     int wholeSize = 0;       ///< >= k: the size at which no group of equal eigenvalues is cut.
 };
 

@@ -23,20 +23,30 @@ constexpr Index kDenseVertices = 600;
 /// Relative accuracy of a step that round-off still allows.
 constexpr double kFinestAccuracy = 1e-13;
 
+/// Relative accuracy of a signal that is next to nothing beside the shape.
+constexpr double kCoarsestAccuracy = 1e-2;
+
 /// Relative error, all steps together, beyond which a result is not worth having.
 constexpr double kUselessError = 0.1;
 
 }  // namespace
 
-StepEvaluator::StepEvaluator(const EvaluationOptions& options, const Components& components,
+StepEvaluator::StepEvaluator(const EvaluationOptions& options, const Interior& interior,
                              const TransferFunction& F)
-    : options_(options), components_(components), F_(F) {}
+    : options_(options), interior_(interior), F_(F), extension_(interior) {}
 
 void StepEvaluator::setLaplacian(Laplacian laplacian, double alpha, const Progress& progress) {
-    laplacian_ = std::move(laplacian);
-    if (!isUsable(laplacian_))
+    if (!isUsable(laplacian))
         throw SolverFailure("triangles have collapsed: a cotangent or a mass is not finite");
-    constants_.emplace(components_, laplacian_.D);
+    if (interior_.size() == 0) return;  // nothing can move
+    if (interior_.isWhole()) {
+        laplacian_ = std::move(laplacian);
+    } else {
+        progress.report(0.0, "factorizing");
+        extension_.setLaplacian(laplacian);
+        laplacian_ = interior_.restricted(laplacian);
+    }
+    constants_.emplace(interior_.components(), laplacian_.D);
     if (options_.spectrum == Spectrum::Truncated) {
         basis_ = truncated(progress);
     } else if (usesBasis()) {
@@ -50,17 +60,30 @@ void StepEvaluator::setLaplacian(Laplacian laplacian, double alpha, const Progre
 
 Eigen::MatrixXd StepEvaluator::operator()(const Eigen::MatrixXd& X, double alpha,
                                           const Progress& progress) {
+    if (interior_.isWhole()) return onInterior(X, 1.0, alpha, progress);
+    if (interior_.size() == 0) return X;
+    const HarmonicExtension::Rest rest = extension_.rest(X);
+    const Eigen::MatrixXd filtered = onInterior(rest.U, rest.relativeSize, alpha, progress);
+    return X + interior_.extended(filtered - rest.U);  // exactly X on the boundary
+}
+
+/// F^alpha(sqrt(A)) U on the interior; U has this size beside the shape, to which errors are
+/// relative.
+Eigen::MatrixXd StepEvaluator::onInterior(const Eigen::MatrixXd& U, double relativeSize,
+                                          double alpha, const Progress& progress) {
     const Gain gain = fractionalPower(F_, alpha);
     // The power of the mean gain, not the mean of the power: K steps then make one filter.
     if (usesBasis())
         return applyInBasis(basis_, laplacian_.D, *constants_, gain, std::pow(residualGain_, alpha),
-                            X);
+                            U);
 
     FullSpectrumOptions options;
     options.accuracy = accuracyOf(alpha);
+    if (relativeSize < 1.0)
+        options.accuracy = std::min(options.accuracy / relativeSize, kCoarsestAccuracy);
     const FullSpectrumResult step =
-        applyFullSpectrum(laplacian_.D, *constants_, cholesky_, gain, X, options, progress);
-    const double error = errorEstimate_ + step.errorEstimate;
+        applyFullSpectrum(laplacian_.D, *constants_, cholesky_, gain, U, options, progress);
+    const double error = errorEstimate_ + relativeSize * step.errorEstimate;
     if (error > kUselessError) {
         std::ostringstream text;
         text << "the transfer function is too steep for spectrum = full: the relative error is "
@@ -91,6 +114,11 @@ double StepEvaluator::accuracyOf(double alpha) const {
 }
 
 HarmonicBasis StepEvaluator::truncated(const Progress& progress) {
+    if (!interior_.isWhole() && options_.basisSize >= interior_.size())
+        throw InvalidOption("basis_size = " + std::to_string(options_.basisSize) +
+                            " needs more vertices than the " + std::to_string(interior_.size()) +
+                            " that a fixed boundary leaves: choose a smaller basis_size, "
+                            "spectrum = full, or boundary = free");
     HarmonicBasis basis =
         truncatedBasis(laplacian_, *constants_, options_.basisSize, cholesky_, progress);
     residualGain_ = 0.0;
@@ -109,7 +137,7 @@ HarmonicBasis StepEvaluator::truncated(const Progress& progress) {
 HarmonicBasis StepEvaluator::upToLastJump(const Progress& progress) {
     const double last = F_.discontinuities().back();
     residualGain_ = F_(2.0 * last);
-    if (components_.label.size() <= kDenseVertices) return denseBasis(laplacian_, *constants_);
+    if (interior_.size() <= kDenseVertices) return denseBasis(laplacian_, *constants_);
     const Index below = cholesky_.countEigenvaluesBelow(laplacian_, last * last);
     if (below > kMaxExactBasis)
         throw InvalidOption("response = ideal needs every harmonic up to its edge, here " +

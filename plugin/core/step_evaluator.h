@@ -2,9 +2,11 @@
 
 #include <optional>
 
+#include "boundary.h"
 #include "cholesky.h"
 #include "components.h"
 #include "harmonic_basis.h"
+#include "harmonic_extension.h"
 #include "laplacian.h"
 #include "progress.h"
 #include "transfer_function.h"
@@ -26,13 +28,16 @@ struct EvaluationOptions {
 };
 
 /// Evaluates fractional steps F^alpha(sqrt(A)) X (Eq. 11), for one Laplacian A after another.
+///
+/// With a fixed boundary a step is H + F^alpha(sqrt(A_II)) (X - H), H the harmonic extension of the
+/// boundary's positions (harmonic_extension.h): all that follows is done on the interior.
 class StepEvaluator {
   public:
     /// The arguments are kept by reference.
-    StepEvaluator(const EvaluationOptions& options, const Components& components,
+    StepEvaluator(const EvaluationOptions& options, const Interior& interior,
                   const TransferFunction& F);
 
-    /// Takes the Laplacian of the evaluations to come, and makes of it what they need: a
+    /// Takes the surface's Laplacian for the evaluations to come, and makes of it what they need: a
     /// factorization, or a basis.
     /// @param alpha  fractional power that the evaluations will mostly have.
     /// @throws SolverFailure  when triangles have collapsed so far that this is impossible.
@@ -41,10 +46,9 @@ class StepEvaluator {
     /// @throws SolverFailure  when F^alpha is too steep to be evaluated at all.
     Eigen::MatrixXd operator()(const Eigen::MatrixXd& X, double alpha, const Progress& progress);
 
-    const Laplacian& laplacian() const { return laplacian_; }
     const HarmonicBasis& basis() const { return basis_; }  ///< Empty where none is used.
-    int factorizations() const { return cholesky_.factorizations(); }
-    int solves() const { return cholesky_.solves(); }
+    int factorizations() const { return cholesky_.factorizations() + extension_.factorizations(); }
+    int solves() const { return cholesky_.solves() + extension_.solves(); }
 
     /// Counts errorEstimate and accuracyReached anew from here on, for another way from the start.
     void forgetErrors();
@@ -54,13 +58,16 @@ class StepEvaluator {
   private:
     bool usesBasis() const;
     double accuracyOf(double alpha) const;
+    Eigen::MatrixXd onInterior(const Eigen::MatrixXd& U, double relativeSize, double alpha,
+                               const Progress& progress);
     HarmonicBasis truncated(const Progress& progress);
     HarmonicBasis upToLastJump(const Progress& progress);
 
     const EvaluationOptions& options_;
-    const Components& components_;
+    const Interior& interior_;
     const TransferFunction& F_;
-    Laplacian laplacian_;
+    HarmonicExtension extension_;
+    Laplacian laplacian_;  // of the interior, as all that follows
     std::optional<ConstantModes> constants_;
     ShiftedCholesky cholesky_;
     HarmonicBasis basis_;

@@ -5,8 +5,8 @@
 
 /// Spectral filtering of triangle meshes: the algorithm, without any user interface or file format.
 ///
-/// Reading order is data order: mesh_check, components -> laplacian -> (harmonic_basis |
-/// full_spectrum) -> transfer_function -> fractional_filter.
+/// Reading order is data order: mesh_check, components -> laplacian -> boundary ->
+/// (harmonic_basis | full_spectrum) -> transfer_function -> fractional_filter.
 namespace spectral {
 
 /// Vertex positions, n x 3, in length units.

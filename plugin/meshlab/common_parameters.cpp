@@ -36,3 +36,14 @@ RichEnum laplacianParameter(const QString& help) {
 spectral::LaplacianKind laplacianKind(const RichParameterList& parameters) {
     return static_cast<spectral::LaplacianKind>(parameters.getEnum("laplacian"));
 }
+
+RichEnum boundaryParameter(const QString& help) {
+    // The order of the entries is that of the core's enumeration.
+    return {
+        "boundary", static_cast<int>(spectral::Boundary::Free), {"free", "fixed"}, "Boundary", help,
+        true};
+}
+
+spectral::Boundary boundaryCondition(const RichParameterList& parameters) {
+    return static_cast<spectral::Boundary>(parameters.getEnum("boundary"));
+}

@@ -3,6 +3,7 @@
 #include <common/ml_document/mesh_model.h>
 #include <common/parameters/rich_parameter_list.h>
 
+#include "core/boundary.h"
 #include "core/laplacian_builder.h"
 
 /// The parameters that several filters have, under one name, with one default.
@@ -17,3 +18,8 @@ double featureSize(const RichParameterList& parameters);
 RichEnum laplacianParameter(const QString& help);
 
 spectral::LaplacianKind laplacianKind(const RichParameterList& parameters);
+
+/// `boundary`, by default free.
+RichEnum boundaryParameter(const QString& help);
+
+spectral::Boundary boundaryCondition(const RichParameterList& parameters);

@@ -40,11 +40,12 @@ RichParameterList parameters(const MeshModel&) {
     list.addParam(RichInt(
         "mode", kDefaultMode, "Mode",
         "Number of the harmonic to show, below the basis size. 0 is the constant one (every "
-        "connected component has its own, they come first), higher ones are finer."));
+        "connected component has its own, they come first; with a fixed boundary it has none), "
+        "higher ones are finer."));
     list.addParam(
         RichInt("basis_size", spectral::HarmonicsOptions().basisSize, "Basis size",
                 "How many harmonics are computed, the constant ones included. Must be below the "
-                "number of vertices; time and memory grow with it."));
+                "number of vertices that are not fixed; time and memory grow with it."));
     list.addParam(RichBool(
         "store_basis", false, "Store basis",
         "Keep all harmonics as vertex attributes named harmonic_0, harmonic_1 and so on, one "
@@ -54,6 +55,12 @@ RichParameterList parameters(const MeshModel&) {
         "How the frequencies of the surface are measured. <b>intrinsic delaunay</b> works on any "
         "triangles, also needles, holes, doubled or crossing sheets. <b>cotangent</b> is the "
         "classical formula; every triangle needs an area."));
+    list.addParam(
+        boundaryParameter("What the waves do at the rims of an open surface and of its holes. "
+                          "<b>free</b>: they swing "
+                          "there, too, and meet the rim without slope. <b>fixed</b>: they are zero "
+                          "there, as a drum's "
+                          "skin is held by its rim."));
     return list;
 }
 
@@ -83,6 +90,7 @@ FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
     spectral::HarmonicsOptions options;
     options.basisSize = parameters.getInt("basis_size");
     options.laplacian = laplacianKind(parameters);
+    options.boundary = boundaryCondition(parameters);
     checkMode(mode, options.basisSize);
     const MeshMatrices input = toMatrices(mesh.cm);
     const spectral::ManifoldHarmonics harmonics =

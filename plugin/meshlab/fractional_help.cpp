@@ -14,7 +14,7 @@ QString fractionalFilterHelp() {
            "in weak fractional <b>steps</b>, and the waves are taken anew after each."
            "<br><br>Position, topology, colours and all other attributes are kept; only the "
            "vertices move. The mesh needs faces; holes, several parts, doubled and degenerate "
-           "faces do not disturb."
+           "faces do not disturb. The rims of holes move, too, unless you fix the <b>boundary</b>."
            "<br><br>For more information see:"
            "<br><i>A. Kovnatsky, M. M. Bronstein, A. M. Bronstein</i>, <b>Stable Spectral Mesh "
            "Filtering</b>, ECCV Workshops 2012"

@@ -109,6 +109,10 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "How the frequencies of the surface are measured. <b>intrinsic delaunay</b> works on any "
         "triangles, also needles, holes, doubled or crossing sheets, and stays stable in strong "
         "filters. <b>cotangent</b> is the formula of the paper; every triangle needs an area."));
+    list.addParam(boundaryParameter(
+        "What happens at the rims of an open surface and of its holes. <b>free</b>: they move as "
+        "the rest does; a strong smoothing rounds them off and draws them in. <b>fixed</b>: every "
+        "rim stays exactly where it is, and the surface between is filtered."));
     return list;
 }
 
@@ -131,5 +135,6 @@ FilterOptions fractionalFilterOptions(const RichParameterList& parameters) {
     options.evaluation.basisSize = parameters.getInt("basis_size");
     options.evaluation.reinjectResidual = parameters.getBool("reinject_residual");
     options.laplacian = laplacianKind(parameters);
+    options.boundary = boundaryCondition(parameters);
     return options;
 }

@@ -24,6 +24,7 @@ std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& r
         {"volume_after", result.volumeAfter},
         {"components", result.components},
         {"unreferenced_vertices", result.unreferencedVertices},
+        {"fixed_vertices", result.fixedVertices},
         {"factorizations", result.factorizations},
         {"solves", result.solves},
         {"error_estimate", result.errorEstimate},
@@ -54,6 +55,8 @@ std::string reportText(const spectral::FilterResult& result) {
          << (result.components == 1 ? " component" : " components");
     if (result.unreferencedVertices > 0)
         text << ", " << result.unreferencedVertices << " unreferenced vertices left alone";
+    if (result.fixedVertices > 0)
+        text << ", " << result.fixedVertices << " vertices fixed on its boundary";
     if (result.stepError > 0.0)
         text << "\n  automatic steps: estimated error of any vertex " << result.stepError;
     text << "\n  work: " << result.factorizations << " factorizations, " << result.solves

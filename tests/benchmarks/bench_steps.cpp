@@ -54,25 +54,25 @@ class Flow {
   public:
     Flow(const Surface& surface, const FilterOptions& options)
         : surface_(surface),
-          components_(connectedComponents(surface.F, surface.X.rows())),
+          interior_(surface.F, connectedComponents(surface.F, surface.X.rows()), Boundary::Free),
           F_(options.transferFunction, 2.0 * kPi / options.featureSize),
           laplacians_(surface, options.laplacian, options.basisUpdate),
           update_(options.basisUpdate) {}
 
     Vertices paper(int K) const {
-        StepEvaluator evaluate(evaluation_, components_, F_);
+        StepEvaluator evaluate(evaluation_, interior_, F_);
         return fixedSteps(laplacians_, evaluate, surface_.X, K, update_, {}).X;
     }
 
     Vertices midpoint(int K) const {
-        StepEvaluator evaluate(evaluation_, components_, F_);
+        StepEvaluator evaluate(evaluation_, interior_, F_);
         return midpointSteps(laplacians_, evaluate, surface_.X, K, 16 * K, {}).X;
     }
 
   private:
     const Surface& surface_;
     EvaluationOptions evaluation_;
-    Components components_;
+    Interior interior_;
     TransferFunction F_;
     LaplacianBuilder laplacians_;
     BasisUpdate update_;

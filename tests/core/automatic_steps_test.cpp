@@ -14,26 +14,26 @@ namespace {
 /// What automatic steps of a filter of `blob` need.
 struct Setting {
     Surface surface;
-    Components components;
+    Interior interior;
     TransferFunction F;
     EvaluationOptions evaluation;
     LaplacianBuilder laplacians;
 
     Setting(const TransferFunctionOptions& options, double feature, BasisUpdate update)
         : surface(surfaceOf(testing::blob().V, testing::blob().F)),
-          components(connectedComponents(surface.F, surface.X.rows())),
+          interior(surface.F, connectedComponents(surface.F, surface.X.rows()), Boundary::Free),
           F(options, 2.0 * kPi / feature),
           laplacians(surface, LaplacianKind::IntrinsicDelaunay, update) {
         evaluation.accuracy = 1e-9;
     }
 
     AutomaticSteps automatic(double tolerance, int maxSteps = 64) const {
-        StepEvaluator evaluate(evaluation, components, F);
+        StepEvaluator evaluate(evaluation, interior, F);
         return automaticSteps(laplacians, evaluate, surface.X, {tolerance, maxSteps}, {});
     }
 
     Vertices midpoint(int K) const {
-        StepEvaluator evaluate(evaluation, components, F);
+        StepEvaluator evaluate(evaluation, interior, F);
         return midpointSteps(laplacians, evaluate, surface.X, K, K, {}).X;
     }
 };
@@ -102,7 +102,7 @@ TEST(AutomaticSteps, ReportProgressThatNeverRunsBackwards) {
         ++reports;
         return true;
     });
-    StepEvaluator evaluate(setting.evaluation, setting.components, setting.F);
+    StepEvaluator evaluate(setting.evaluation, setting.interior, setting.F);
     automaticSteps(setting.laplacians, evaluate, setting.surface.X, {1e-4}, progress);
     EXPECT_GT(reports, 10);
 }

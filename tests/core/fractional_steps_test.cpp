@@ -13,26 +13,26 @@ namespace {
 /// What the steps of a filter of `blob` need.
 struct Setting {
     Surface surface;
-    Components components;
+    Interior interior;
     TransferFunction F;
     EvaluationOptions evaluation;
     LaplacianBuilder laplacians;
 
     Setting(const TransferFunctionOptions& options, double feature, BasisUpdate update)
         : surface(surfaceOf(testing::blob().V, testing::blob().F)),
-          components(connectedComponents(surface.F, surface.X.rows())),
+          interior(surface.F, connectedComponents(surface.F, surface.X.rows()), Boundary::Free),
           F(options, 2.0 * kPi / feature),
           laplacians(surface, LaplacianKind::IntrinsicDelaunay, update) {
         evaluation.accuracy = 1e-9;
     }
 
     Vertices paper(int K, BasisUpdate update) const {
-        StepEvaluator evaluate(evaluation, components, F);
+        StepEvaluator evaluate(evaluation, interior, F);
         return fixedSteps(laplacians, evaluate, surface.X, K, update, {}).X;
     }
 
     FractionalSteps midpoint(int K) const {
-        StepEvaluator evaluate(evaluation, components, F);
+        StepEvaluator evaluate(evaluation, interior, F);
         return midpointSteps(laplacians, evaluate, surface.X, K, 64 * K, {});
     }
 

@@ -39,6 +39,13 @@ def refusal(mesh_set: pymeshlab.MeshSet, filter_name: str = FILTER, **parameters
     return str(error.value)
 
 
+def lower_part(V: NDArray[Any], F: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Cut a mesh at half of its height, z: a surface with a boundary."""
+    below = V[:, 2] < np.median(V[:, 2])
+    used, index = np.unique(F[below[F].all(axis=1)], return_inverse=True)
+    return V[used], index.reshape(-1, 3)
+
+
 def percent(value: float) -> pymeshlab.PercentageValue:
     return pymeshlab.PercentageValue(value)
 

@@ -209,6 +209,63 @@ def truncated_filter(
     return X, k
 
 
+def boundary_vertices(F: Indices) -> Indices:
+    """End points of the edges of exactly one triangle, ascending."""
+    edges = np.sort(np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]]), axis=1)
+    unique, count = np.unique(edges, axis=0, return_counts=True)
+    return np.unique(unique[count == 1])
+
+
+def fixed_spectrum(W: scipy.sparse.csr_array, d: Array, interior: Indices) -> Spectrum:
+    """Solve W_II phi = lambda D_II phi, phi = 0 elsewhere, for all eigenpairs."""
+    root = np.sqrt(d[interior])
+    S = W[interior][:, interior].toarray() / np.outer(root, root)
+    lam, Q = scipy.linalg.eigh((S + S.T) / 2, driver="evd")
+    return Spectrum(interior, lam, Q / root[:, None], d[interior])
+
+
+def fixed_filter(
+    V: Array,
+    F: Indices,
+    gain: Gain,
+    steps: int,
+    basis_update: str,
+    laplacian: str = "cotangent",
+    basis_size: int | None = None,
+) -> Array:
+    """K steps with a fixed boundary, on a mesh each component of which has one.
+
+    X = H + U with U = 0 on the boundary and H harmonic: Y = H + F^(1/K)(sqrt(A_II)) U, with all
+    eigenvectors of the interior, or with the `basis_size` lowest and F_h for the rest (Eq. 9).
+    """
+    rim = boundary_vertices(F)
+    interior = np.setdiff1d(np.arange(len(V)), rim)
+    W, d = matrices(V, F, laplacian)
+    spectrum = fixed_spectrum(W, d, interior)
+    X = V.copy()
+    for step in range(steps):
+        if step > 0 and basis_update != "none":
+            W = matrices(X, F, laplacian)[0] if basis_update == "full" else W
+            d = lumped_areas(X, F)
+            spectrum = fixed_spectrum(W, d, interior)
+        rows = W[interior]
+        H = scipy.linalg.solve(
+            rows[:, interior].toarray(), -(rows[:, rim] @ X[rim]), assume_a="pos"
+        )
+        U = X[interior] - H
+        omega = np.sqrt(spectrum.lam)
+        k = len(omega)
+        F_h = 0.0
+        if basis_size is not None:
+            k = cut_outside_clusters(spectrum.lam, basis_size)
+            F_h = mean_gain(gain, omega[k - 1], omega[-1])
+        Phi = spectrum.Phi[:, :k]
+        C = Phi.T @ (spectrum.d[:, None] * U)
+        g = gain(omega[:k]) ** (1 / steps)
+        X[interior] = H + Phi @ (g[:, None] * C) + F_h ** (1 / steps) * (U - Phi @ C)
+    return X
+
+
 def cut_outside_clusters(lam: Array, asked: int) -> int:
     """Take more eigenpairs than asked while the next eigenvalue is nearly equal to the last one.
 

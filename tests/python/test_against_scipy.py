@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
+import numpy as np
 import pytest
 import spectral_reference as reference
-from helpers import diagonal, filter_arrays, largest_distance, percent
+from helpers import diagonal, filter_arrays, largest_distance, lower_part, percent
 from numpy.typing import NDArray
 
 Decimated = Callable[..., tuple[NDArray[Any], NDArray[Any]]]
@@ -226,3 +227,48 @@ def test_eigenvalues_of_a_truncated_basis_agree(sample_name: str, decimated: Dec
     assert len(found) >= 100
     assert found[0] == 0
     assert abs(found[1:] / expected[1:] - 1).max() < 1e-8
+
+
+@pytest.mark.parametrize("filter_type", ["low-pass", "enhancement"])
+@pytest.mark.parametrize(
+    ("steps", "basis_update"), [(1, "none"), (6, "conformal"), (6, "full")], ids=str
+)
+@pytest.mark.parametrize("spectrum", ["full", "truncated"])
+@pytest.mark.parametrize("laplacian", ["cotangent", "intrinsic delaunay"])
+def test_a_fixed_boundary_agrees(
+    laplacian: str,
+    spectrum: str,
+    steps: int,
+    basis_update: str,
+    filter_type: str,
+    decimated: Decimated,
+    record_property: Callable[..., None],
+) -> None:
+    V, F = lower_part(*decimated("bunny.obj", 2400))
+    options = {
+        **TYPES[filter_type],
+        "feature_size": percent(10),
+        "laplacian": laplacian,
+        "boundary": "fixed",
+        "spectrum": spectrum,
+        "basis_size": 100,
+        "steps": steps,
+        "basis_update": basis_update,
+    }
+    Y, report = filter_arrays(V, F, **options)
+    expected = reference.fixed_filter(
+        V,
+        F,
+        gain_of(options, report),
+        steps,
+        basis_update,
+        laplacian,
+        100 if spectrum == "truncated" else None,
+    )
+    error = largest_distance(Y, expected) / diagonal(V)
+    record_property("largest_distance_in_diagonals", error)
+    assert largest_distance(expected, V) > 1e-3 * diagonal(V), "a test that moves nothing"
+    assert error < AGREEMENT
+    rim = reference.boundary_vertices(F)
+    assert report["fixed_vertices"] == len(rim) > 30
+    np.testing.assert_array_equal(Y[rim], V[rim])

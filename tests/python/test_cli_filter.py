@@ -116,6 +116,16 @@ def test_json_is_one_object_with_report_options_and_versions(cow: Path, tmp_path
     assert {"meshlab_spectral", "python"} <= record["versions"].keys()
 
 
+def test_a_fixed_boundary_with_nothing_inside_is_a_warning(tmp_path: Path) -> None:
+    source = write_ply(tmp_path / "triangle.ply", "0 0 0\n1 0 0\n0 1 0", "3 0 1 2")
+    target = tmp_path / "out.ply"
+    done = command("filter", source, target, "--boundary", "fixed")
+    assert done.returncode == 0, done.stderr
+    assert "nothing moved" in done.stderr
+    assert "fixed boundary" in done.stdout
+    np.testing.assert_array_equal(arrays_of(target)[0], arrays_of(source)[0])
+
+
 def test_json_holds_the_eigenvalues_of_a_truncated_spectrum(cow: Path, tmp_path: Path) -> None:
     arguments = ["--spectrum", "truncated", "--basis-size", 50, "--steps", 1, "--json"]
     done = command("filter", cow, tmp_path / "cow.ply", *arguments, "--no-reinject-residual")
@@ -142,6 +152,7 @@ def test_every_option_reaches_the_filter(cow: Path, tmp_path: Path) -> None:
         "basis_size": 60,
         "reinject_residual": False,
         "laplacian": "cotangent",
+        "boundary": "fixed",
     }
     assert options.keys() == FilterOptions().as_dict().keys()
     arguments: list[object] = []

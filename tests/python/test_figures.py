@@ -14,9 +14,10 @@ import numpy as np
 import pytest
 import spectral_reference as reference
 from helpers import FILTER, diagonal, largest_distance, mesh_set_of
+from meshlab_spectral import manifold_harmonics
+from meshlab_spectral.arrays import lumped_areas
 from meshlab_spectral.figures import FIGURES
 from meshlab_spectral.figures.eigenfunctions import most_alike
-from meshlab_spectral.figures.harmonics import lumped_areas, manifold_harmonics
 from meshlab_spectral.figures.sequences import K, after
 from meshlab_spectral.figures.stability import BAND, LOW_PASS
 from meshlab_spectral.options import FilterOptions
@@ -122,7 +123,7 @@ def test_harmonics_are_orthonormal_and_find_themselves_in_any_order_and_sign(
     V, F = decimated("bunny.obj", 1000)
     d = lumped_areas(V, F)
     np.testing.assert_allclose(d, reference.lumped_areas(V, F), rtol=1e-12)
-    Phi = manifold_harmonics(V, F, 12)
+    Phi = manifold_harmonics(V, F, 12).harmonics
     np.testing.assert_allclose(Phi.T @ (d[:, None] * Phi), np.eye(12), atol=1e-8)
     number, correlation = most_alike(Phi[:, 7], -Phi[:, ::-1], d)
     assert number == 11 - 7

@@ -12,7 +12,7 @@ import pytest
 import scipy.sparse
 import scipy.sparse.linalg
 import spectral_reference as reference
-from helpers import assert_same, mesh_set_of, refusal, snapshot
+from helpers import assert_same, lower_part, mesh_set_of, refusal, snapshot
 from numpy.typing import NDArray
 
 HARMONICS = "compute_scalar_manifold_harmonic_per_vertex"
@@ -68,6 +68,27 @@ def test_eigenvalues_and_harmonics_agree_with_scipy(
     assert gaps > 1e-5, "equal eigenvalues: their vectors cannot be compared one by one"
     overlap = np.abs(np.sum(Phi * d[:, None] * basis, axis=0))
     np.testing.assert_allclose(overlap, 1, rtol=0, atol=1e-7)
+
+
+@pytest.mark.parametrize("laplacian", ["cotangent", "intrinsic delaunay"])
+def test_on_a_fixed_boundary_harmonics_vanish_and_agree_with_scipy(
+    sample_name: str, laplacian: str, decimated: Decimated
+) -> None:
+    V, F = lower_part(*decimated(sample_name))
+    mesh_set = mesh_set_of(V, F)
+    report = mesh_set.apply_filter(
+        HARMONICS, basis_size=20, laplacian=laplacian, boundary="fixed", store_basis=True
+    )
+    rim = reference.boundary_vertices(F)
+    W, d = reference.matrices(V, F, laplacian)
+    spectrum = reference.fixed_spectrum(W, d, np.setdiff1d(np.arange(len(V)), rim))
+    lam = spectrum.lam[:20]
+    np.testing.assert_allclose(report["eigenvalues"], lam, rtol=0, atol=1e-8 * lam[-1])
+    basis = stored_basis(mesh_set.current_mesh(), 20)
+    assert (basis[rim] == 0).all()
+    # Whole spaces of harmonics, for eigenvalues may be nearly equal.
+    overlap = spectrum.Phi.T[:20] @ (spectrum.d[:, None] * basis[spectrum.of])
+    assert np.linalg.norm(overlap[:, :10], axis=0).min() > 1 - 1e-6
 
 
 def test_the_mode_is_the_quality_with_its_extreme_value_positive(decimated: Decimated) -> None:

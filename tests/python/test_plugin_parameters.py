@@ -150,6 +150,7 @@ def test_options_given_to_pymeshlab_reach_the_filter(
         tolerance=Length(0.25),
         basis_update="conformal",
         conformal_share=0.5,
+        boundary="fixed",
     )
     tetrahedron.apply_filter(FILTER, **options.pymeshlab_parameters())
     script = tmp_path / "script.mlx"

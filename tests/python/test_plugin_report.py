@@ -17,6 +17,7 @@ from helpers import (
     filter_arrays,
     largest_distance,
     length,
+    lower_part,
     mesh_set_of,
     percent,
 )
@@ -228,3 +229,37 @@ def test_a_large_mesh_keeps_its_centroid(name: str, shared_mesh: Callable[[str],
         weight = np.where(part_of == number, d, 0) / d[part_of == number].sum()
         shift = weight @ (mesh.vertex_matrix() - V)
         assert np.linalg.norm(shift) < 1e-9 * diagonal(V)
+
+
+@pytest.mark.parametrize("steps", [0, 2])
+def test_fixing_the_boundary_of_a_closed_mesh_changes_nothing(
+    steps: int, decimated: Callable[..., Any]
+) -> None:
+    V, F = decimated("cow.obj")
+    parameters = {"feature_size": percent(5), "basis_update": "conformal", "steps": steps}
+    free, _ = filter_arrays(V, F, **parameters)
+    fixed, report = filter_arrays(V, F, boundary="fixed", **parameters)
+    np.testing.assert_array_equal(fixed, free)
+    assert report["fixed_vertices"] == 0
+
+
+def test_automatic_steps_keep_a_fixed_boundary(decimated: Callable[..., Any]) -> None:
+    V, F = lower_part(*decimated("bunny.obj"))
+    free, _ = filter_arrays(V, F, feature_size=percent(8), basis_update="conformal")
+    Y, report = filter_arrays(
+        V, F, feature_size=percent(8), basis_update="conformal", boundary="fixed"
+    )
+    rim = reference.boundary_vertices(F)
+    np.testing.assert_array_equal(Y[rim], V[rim])
+    assert largest_distance(free[rim], V[rim]) > 1e-3 * diagonal(V)
+    assert report["tolerance_reached"]
+    assert report["step_error"] > 0
+    assert report["fixed_vertices"] == len(rim)
+
+
+def test_where_every_vertex_is_fixed_nothing_moves() -> None:
+    V, F = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]])
+    Y, report = filter_arrays(V, F, boundary="fixed")
+    np.testing.assert_array_equal(Y, V)
+    assert report["max_displacement"] == 0
+    assert report["fixed_vertices"] == 3

@@ -77,6 +77,33 @@ Mesh rectangle(double width, double height, int nx, int ny) {
     return mesh;
 }
 
+Mesh hemisphere(int rings) {
+    const double turn = 2.0 * std::acos(-1.0);
+    Mesh mesh{Vertices(1 + 3 * rings * (rings + 1), 3), Faces(6 * rings * rings, 3)};
+    const auto at = [](int ring, int i) {
+        return ring == 0 ? 0 : 1 + 3 * ring * (ring - 1) + i % (6 * ring);
+    };
+    mesh.V.row(0) << 0.0, 0.0, 1.0;
+    Index t = 0;
+    for (int ring = 1; ring <= rings; ++ring) {
+        const double polar = 0.25 * turn * ring / rings;
+        for (int i = 0; i < 6 * ring; ++i) {
+            const double around = turn * i / (6 * ring);
+            mesh.V.row(at(ring, i)) << std::sin(polar) * std::cos(around),
+                std::sin(polar) * std::sin(around), std::cos(polar);
+        }
+        for (int sector = 0; sector < 6; ++sector)
+            for (int i = 0; i < ring; ++i) {
+                const int outer = sector * ring + i, inner = sector * (ring - 1) + i;
+                mesh.F.row(t++) << at(ring, outer), at(ring, outer + 1), at(ring - 1, inner);
+                if (i + 1 < ring)
+                    mesh.F.row(t++) << at(ring, outer + 1), at(ring - 1, inner + 1),
+                        at(ring - 1, inner);
+            }
+    }
+    return mesh;
+}
+
 Mesh cube(int cells) {
     const Mesh side = rectangle(2.0, 2.0, cells, cells);
     Mesh soup{Vertices(0, 3), Faces(0, 3)};

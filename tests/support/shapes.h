@@ -11,6 +11,9 @@ Mesh icosphere(int levels);
 /// Flat rectangle [0, width] x [0, height] of nx x ny cells, each cut into two right triangles.
 Mesh rectangle(double width, double height, int nx, int ny);
 
+/// Upper half of the unit sphere: a pole, and `rings` circles of 6, 12, 18, ... vertices.
+Mesh hemisphere(int rings);
+
 /// Axis-parallel box [-1, 1]^3, every face a grid of cells x cells squares of two triangles;
 /// closed.
 Mesh cube(int cells);

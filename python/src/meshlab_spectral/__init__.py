@@ -11,6 +11,7 @@ from importlib.metadata import version
 
 from meshlab_spectral.artefacts import Artefacts, measure_artefacts
 from meshlab_spectral.errors import FilterError, MeshFileError, OptionError, PluginError
+from meshlab_spectral.harmonics import Harmonics, manifold_harmonics
 from meshlab_spectral.options import FilterOptions
 from meshlab_spectral.plugin import load
 
@@ -18,10 +19,12 @@ __all__ = [
     "Artefacts",
     "FilterError",
     "FilterOptions",
+    "Harmonics",
     "MeshFileError",
     "OptionError",
     "PluginError",
     "load",
+    "manifold_harmonics",
     "measure_artefacts",
 ]
 __version__ = version("meshlab-spectral")

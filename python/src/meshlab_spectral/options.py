@@ -17,6 +17,7 @@ Response = Literal["gaussian", "butterworth", "ideal"]
 BasisUpdate = Literal["full", "conformal", "none"]
 Spectrum = Literal["full", "truncated"]
 LaplacianKind = Literal["intrinsic delaunay", "cotangent"]
+Boundary = Literal["free", "fixed"]
 
 
 @dataclass(frozen=True)
@@ -183,6 +184,11 @@ class FilterOptions:
         "intrinsic delaunay",
         "How frequencies are measured: 'intrinsic delaunay' works on any triangles and stays "
         "stable; cotangent is the paper's and needs triangles with an area.",
+    )
+    boundary: Boundary = _option(
+        "free",
+        "Rims of an open surface and of its holes: free lets them move as the rest does, strong "
+        "smoothing draws them in; fixed keeps them exactly where they are.",
     )
 
     def __post_init__(self) -> None:

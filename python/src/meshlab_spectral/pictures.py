@@ -198,6 +198,21 @@ def render(panel: Panel, frame: Frame, pixels: int) -> Image:
     return image
 
 
+def to_full_colours(values: NDArray[np.float64], areas: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Scale to -1 .. 1; the outermost hundredth of the area, mostly spikes, is cut off.
+
+    Parameters
+    ----------
+    values, areas
+        Of the n vertices.
+    """
+    order = np.argsort(np.abs(values))
+    reached = np.searchsorted(np.cumsum(areas[order]), 0.99 * areas.sum())
+    largest = np.abs(values)[order[min(reached, len(order) - 1)]]
+    scaled: NDArray[np.float64] = np.clip(values / largest, -1, 1)
+    return scaled
+
+
 def _plotter(columns: int, panel_size: tuple[int, int]) -> Any:
     if sys.platform == "linux" and not os.environ.get("DISPLAY"):
         # Without this VTK first tries, and warns about, the X server that is not there.

@@ -42,6 +42,12 @@ def report_warnings(report: dict[str, Any]) -> list[str]:
             f"largest estimated error is {report['step_error']:.2g}: thin parts pinch off there, "
             "and more steps do not converge. The conformal update shrinks them smoothly"
         )
+    if report["fixed_vertices"] and report["max_displacement"] == 0:
+        warnings.append(
+            "nothing moved: every vertex lies on the boundary, which is fixed. Choose boundary "
+            "free; where the triangles of the mesh are not connected, apply 'Merge Close "
+            "Vertices' first"
+        )
     return warnings
 
 
@@ -59,6 +65,8 @@ def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
     ]
     if report.get("unreferenced_vertices"):
         rows.append(("Vertices without faces", f"{report['unreferenced_vertices']}, left alone"))
+    if report.get("fixed_vertices"):
+        rows.append(("Vertices on a fixed boundary", f"{report['fixed_vertices']}, left alone"))
     if "eigenvalues" in report:
         rows.append(("Harmonics", f"{len(report['eigenvalues'])}"))
     else:

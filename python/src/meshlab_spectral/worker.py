@@ -1,4 +1,4 @@
-"""Filtering in a process of its own.
+"""Filters in a process of their own.
 
 MeshLab's code cannot be interrupted, tells its progress only on the standard error stream, and a
 crash in it takes its whole process along. So the command runs it in a child process: the command
@@ -23,8 +23,9 @@ from pathlib import Path
 from typing import IO, Any
 
 from meshlab_spectral import errors
-from meshlab_spectral.meshfile import check_source, filter_to_scratch, writing_whole
-from meshlab_spectral.options import FilterOptions
+from meshlab_spectral.harmonics import basis_to_scratch, check_basis_target
+from meshlab_spectral.meshfile import StageCallback, check_source, filter_to_scratch, writing_whole
+from meshlab_spectral.options import Boundary, FilterOptions, LaplacianKind
 
 ProgressCallback = Callable[[str, float | None], None]
 
@@ -60,13 +61,55 @@ def filter_file_in_child(
     KeyboardInterrupt
         After the child has been stopped and the scratch files are gone.
     """
+    return _in_child(source, target, {"task": "filter", "options": options.as_dict()}, on_progress)
+
+
+def basis_file_in_child(
+    source: Path,
+    target: Path,
+    basis_size: int,
+    laplacian: LaplacianKind,
+    boundary: Boundary,
+    on_progress: ProgressCallback = lambda stage, fraction: None,
+) -> dict[str, Any]:
+    """Write the manifold harmonics of a mesh file into an archive of NumPy.
+
+    Parameters
+    ----------
+    source
+        A file that pymeshlab reads, with one mesh in it.
+    target
+        The .npz file to write, with the arrays of `harmonics.basis_to_scratch`. It appears whole,
+        in place of an existing one, or not at all.
+    basis_size, laplacian, boundary
+        As for `harmonics.manifold_harmonics`.
+    on_progress
+        As for `filter_file_in_child`.
+
+    Returns
+    -------
+    dict
+        The numbers of "vertices" and "harmonics".
+
+    Raises
+    ------
+    SpectralError
+        When `source` cannot be read, `target` cannot be written or does not end in .npz, or the
+        filter refuses the mesh or an option; also when the child ended without an answer.
+    KeyboardInterrupt
+        After the child has been stopped and the scratch files are gone.
+    """
+    check_basis_target(target)
+    options = {"basis_size": basis_size, "laplacian": laplacian, "boundary": boundary}
+    return _in_child(source, target, {"task": "basis", "options": options}, on_progress)
+
+
+def _in_child(
+    source: Path, target: Path, job: dict[str, Any], on_progress: ProgressCallback
+) -> dict[str, Any]:
     check_source(source)
     with writing_whole(target) as scratch:
-        job = {
-            "source": str(source.absolute()),
-            "scratch": str(scratch.absolute()),
-            "options": options.as_dict(),
-        }
+        job |= {"source": str(source.absolute()), "scratch": str(scratch.absolute())}
         child = subprocess.Popen(
             [sys.executable, "-m", "meshlab_spectral.worker"],
             stdin=subprocess.PIPE,
@@ -140,6 +183,13 @@ def _error_of(answer: dict[str, Any]) -> errors.SpectralError:
     return error
 
 
+def _report_of(job: dict[str, Any], on_stage: StageCallback) -> dict[str, Any]:
+    source, scratch, options = Path(job["source"]), Path(job["scratch"]), job["options"]
+    if job["task"] == "basis":
+        return basis_to_scratch(source, scratch, **options, on_stage=on_stage)
+    return filter_to_scratch(source, scratch, FilterOptions.from_dict(options), on_stage)
+
+
 def _main() -> None:
     """Run in the child: one job, then the end."""
     # Ctrl-C reaches every process of the terminal; the parent decides what it means.
@@ -152,14 +202,7 @@ def _main() -> None:
         answers.write(json.dumps(content) + "\n")
 
     try:
-        job = json.load(sys.stdin)
-        report = filter_to_scratch(
-            Path(job["source"]),
-            Path(job["scratch"]),
-            FilterOptions.from_dict(job["options"]),
-            lambda stage: answer(stage=stage),
-        )
-        answer(report=report)
+        answer(report=_report_of(json.load(sys.stdin), lambda stage: answer(stage=stage)))
     except errors.SpectralError as error:
         answer(
             error=type(error).__name__, message=str(error), traceback=traceback.format_exc().strip()

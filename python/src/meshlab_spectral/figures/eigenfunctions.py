@@ -17,11 +17,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from meshlab_spectral.figures.harmonics import lumped_areas, manifold_harmonics
+from meshlab_spectral.arrays import lumped_areas
 from meshlab_spectral.figures.sheet import Sheet
 from meshlab_spectral.figures.stability import LOW_PASS
 from meshlab_spectral.figures.subject import Subject, filter_name
-from meshlab_spectral.pictures import SIGNED_COLOURS, Frame, Panel, render
+from meshlab_spectral.harmonics import manifold_harmonics
+from meshlab_spectral.pictures import SIGNED_COLOURS, Frame, Panel, render, to_full_colours
 
 Array = NDArray[np.float64]
 
@@ -72,7 +73,7 @@ def draw(subject: Subject, path: Path, scale: float = 1.0) -> None:
     of_input: Array | None = None
     for column, (name, V) in enumerate(zip(COLUMNS, shapes, strict=True)):
         subject.stage(f"{size} harmonics, {name}")
-        Psi = manifold_harmonics(V, subject.F, size)
+        Psi = manifold_harmonics(V, subject.F, size).harmonics
         of_input = Psi if of_input is None else of_input
         for row, mode in enumerate(shown):
             nearest, correlation = most_alike(of_input[:, mode], Psi, d)
@@ -81,17 +82,8 @@ def draw(subject: Subject, path: Path, scale: float = 1.0) -> None:
                 label += f", correlation {abs(correlation):.2f}"
             values = np.sign(correlation) * Psi[:, nearest]
             picture = render(
-                Panel("", V, subject.F, _to_full_colours(values, d)), frame, sheet.pixels
+                Panel("", V, subject.F, to_full_colours(values, d)), frame, sheet.pixels
             )
             sheet.picture(row, column, picture, label)
     sheet.colour_bar(SIGNED_COLOURS, ("\N{MINUS SIGN}", "0", "+"))
     sheet.save(path)
-
-
-def _to_full_colours(values: Array, d: Array) -> Array:
-    """Scale to -1 .. 1; the outermost hundredth of the area, mostly spikes, is cut off."""
-    order = np.argsort(np.abs(values))
-    reached = np.searchsorted(np.cumsum(d[order]), 0.99 * d.sum())
-    largest = np.abs(values)[order[min(reached, len(order) - 1)]]
-    scaled: Array = np.clip(values / largest, -1, 1)
-    return scaled

@@ -1,55 +1,118 @@
-"""Manifold harmonics of meshes given as arrays, from the plugin."""
+"""A sheet of a mesh's manifold harmonics: the picture of `meshlab-spectral basis`."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
+from math import ceil
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from meshlab_spectral.calling import call_filter
-from meshlab_spectral.plugin import load
+from meshlab_spectral.errors import FormatError, OptionError
+from meshlab_spectral.figures.sheet import Sheet
+from meshlab_spectral.harmonics import Harmonics
+from meshlab_spectral.pictures import (
+    SIGNED_COLOURS,
+    Frame,
+    Panel,
+    View,
+    render,
+    to_full_colours,
+)
 
-_FILTER_NAME = "compute_scalar_manifold_harmonic_per_vertex"
+# So many pictures unless others are asked for, and so many beside each other.
+_SHOWN = 12
+_COLUMNS, _COLUMNS_UPRIGHT = 4, 6
+# A page full of colours makes a larger file than other figures: to a megabyte again.
+_RESOLUTION = 0.92
 
 
-def manifold_harmonics(
-    V: NDArray[np.float64], F: NDArray[np.int64], basis_size: int
-) -> NDArray[np.float64]:
-    """Compute the eigenfunctions of a mesh's Laplacian with the lowest eigenvalues.
+def spread_modes(first: int, size: int) -> list[int]:
+    """Choose some numbers of harmonics, from `first` to the last of `size`, ever farther apart."""
+    modes = [first]
+    for ideal in np.geomspace(1, max(size - first, 1), _SHOWN)[1:]:
+        modes.append(max(modes[-1] + 1, first - 1 + round(ideal)))
+    return [mode for mode in modes if mode < size]
+
+
+def check_modes(modes: Sequence[int], size: int) -> None:
+    """Raise OptionError unless every mode is the number of one of `size` harmonics."""
+    for mode in modes:
+        if not 0 <= mode < size:
+            raise OptionError(f"mode {mode}: a basis of {size} harmonics has 0 to {size - 1}")
+
+
+def check_picture(path: Path) -> None:
+    """Raise FormatError unless the name of a picture ends in .png."""
+    if path.suffix != ".png":
+        raise FormatError(f"{path.name}: the pictures are a .png file, end its name so")
+
+
+def draw_basis_file(
+    archive: Path, path: Path, modes: Sequence[int] | None = None, scale: float = 1.0
+) -> None:
+    """Draw harmonics of an archive that `meshlab-spectral basis` has written; see `draw`."""
+    with np.load(archive) as arrays:
+        basis = Harmonics(arrays["eigenvalues"], arrays["harmonics"], arrays["masses"])
+        draw(basis, arrays["vertices"], arrays["faces"], path, modes, scale)
+
+
+def draw(
+    basis: Harmonics,
+    V: NDArray[np.float64],
+    F: NDArray[np.int64],
+    path: Path,
+    modes: Sequence[int] | None = None,
+    scale: float = 1.0,
+) -> None:
+    """Draw harmonics into a .png file: red where positive, blue where negative, a line at zero.
 
     Parameters
     ----------
+    basis
+        Of the mesh with these n x 3 coordinates and m x 3 triangles.
     V, F
-        n x 3 coordinates, m x 3 indices of the corners of triangles.
-    basis_size
-        Their number k, below n.
-
-    Returns
-    -------
-    array
-        n x k, by ascending eigenvalue; the first is the constant.
+        The mesh.
+    path
+        The picture; it appears whole, or not at all.
+    modes
+        Numbers of the harmonics to show; without them a dozen from the first that is not constant
+        to the last of the basis.
+    scale
+        Of the resolution; 1 fills a screen.
 
     Raises
     ------
-    FilterError
-        When the filter refuses the mesh or the number.
+    OptionError
+        When the basis has no such mode.
+    MeshFileError
+        When `path` cannot be written.
     """
-    load()
-    import pymeshlab
+    size = len(basis.eigenvalues)
+    if modes is None:
+        constants = int(np.count_nonzero(basis.eigenvalues == 0))
+        modes = spread_modes(min(constants, size - 1), size)
+    check_modes(modes, size)
+    frame = Frame.around([V], View.of_widest_side(V))
+    aspect = frame.width / frame.height
+    columns = min(len(modes), _COLUMNS if aspect > 0.8 else _COLUMNS_UPRIGHT)
+    rows = ceil(len(modes) / columns)
+    sheet = Sheet([aspect] * rows, columns, 2, _RESOLUTION * scale, footer=0.56)
+    diagonal = float(np.linalg.norm(np.ptp(V, axis=0)))
+    for cell, mode in enumerate(modes):
+        values = to_full_colours(basis.harmonics[:, mode], basis.masses)
+        picture = render(Panel("", V, F, values), frame, sheet.pixels)
+        label = f"harmonic {mode}\n{_wavelength(basis.frequencies[mode], diagonal)}"
+        sheet.picture(*divmod(cell, columns), picture, label)
+    sheet.colour_bar(
+        SIGNED_COLOURS, ("\N{MINUS SIGN}", "0", "+"), "wavelengths in % of the model's diagonal"
+    )
+    sheet.save(path)
 
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.add_mesh(pymeshlab.Mesh(V, F))
-    call_filter(mesh_set, _FILTER_NAME, {"basis_size": basis_size, "store_basis": True})
-    mesh = mesh_set.current_mesh()
-    columns = [
-        mesh.vertex_custom_scalar_attribute_array(f"harmonic_{mode}") for mode in range(basis_size)
-    ]
-    return np.column_stack(columns)
 
-
-def lumped_areas(V: NDArray[np.float64], F: NDArray[np.int64]) -> NDArray[np.float64]:
-    """Area of every vertex, a third of that of the triangles at it: the diagonal of D."""
-    a, b, c = (V[F[:, corner]] for corner in range(3))
-    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
-    lumped = np.zeros(len(V))
-    np.add.at(lumped, F, areas[:, None] / 3)
-    return lumped
+def _wavelength(frequency: float, diagonal: float) -> str:
+    """Tell it as the filter takes a feature size."""
+    if frequency == 0:
+        return "constant"
+    return f"wavelength {100 * 2 * np.pi / (frequency * diagonal):.3g} %"

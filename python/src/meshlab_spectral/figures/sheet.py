@@ -116,10 +116,15 @@ class Sheet:
         axes.tick_params(labelsize=FONT_SIZE - 1, colors=INK, length=2.5, pad=2)
         return axes
 
-    def colour_bar(self, colour_map: str, labels: tuple[str, str, str]) -> None:
-        """Draw a scale into the footer, with labels for its left end, middle and right end."""
+    def colour_bar(self, colour_map: str, labels: tuple[str, str, str], caption: str = "") -> None:
+        """Draw a scale into the footer, with labels for its left end, middle and right end.
+
+        A caption goes under it, and adds a line to the footer that is needed.
+        """
         width = min(2.4, 0.5 * self._width)
-        axes = self._axes((self._width - width) / 2, 0.22, width, 0.1)
+        bottom = 0.22 + (_LINE if caption else 0)
+        axes = self._axes((self._width - width) / 2, bottom, width, 0.1)
+        axes.set_xlabel(caption, fontsize=FONT_SIZE - 1, color=INK, labelpad=2)
         axes.imshow(np.linspace(0, 1, 256)[None], aspect="auto", cmap=colour_map)
         axes.set_yticks([])
         axes.set_xticks([0, 127.5, 255], labels)

@@ -1,0 +1,72 @@
+#include "boundary.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace spectral {
+
+std::vector<bool> boundaryVertices(const Faces& F, Index vertexCount) {
+    std::vector<std::pair<int, int>> edges;
+    edges.reserve(static_cast<std::size_t>(3 * F.rows()));
+    for (Index t = 0; t < F.rows(); ++t)
+        for (int c = 0; c < 3; ++c) edges.push_back(std::minmax({F(t, c), F(t, (c + 1) % 3)}));
+    std::sort(edges.begin(), edges.end());
+
+    std::vector<bool> onBoundary(static_cast<std::size_t>(vertexCount), false);
+    for (std::size_t first = 0, next = 0; first < edges.size(); first = next) {
+        while (next < edges.size() && edges[next] == edges[first]) ++next;
+        if (next - first == 1)
+            onBoundary[edges[first].first] = onBoundary[edges[first].second] = true;
+    }
+    return onBoundary;
+}
+
+Interior::Interior(const Faces& F, Components components, Boundary boundary)
+    : surfaceComponents_(std::move(components)) {
+    const Eigen::VectorXi& label = surfaceComponents_.label;
+    std::vector<bool> fixed(static_cast<std::size_t>(label.size()), false);
+    if (boundary == Boundary::Fixed) fixed = boundaryVertices(F, label.size());
+    std::vector<bool> hasFixed(static_cast<std::size_t>(surfaceComponents_.count), false);
+    for (Index i = 0; i < label.size(); ++i) {
+        if (fixed[i])
+            hasFixed[label[i]] = true;
+        else
+            vertex_.push_back(i);
+    }
+
+    std::vector<int> number(hasFixed.size(), -1);
+    for (std::size_t c = 0; c < hasFixed.size(); ++c)
+        if (!hasFixed[c]) number[c] = components_.count++;
+    components_.label.resize(size());
+    for (Index i = 0; i < size(); ++i) components_.label[i] = number[label[vertex_[i]]];
+}
+
+Laplacian Interior::restricted(const Laplacian& surface) const {
+    if (isWhole()) return surface;
+    std::vector<int> row(static_cast<std::size_t>(surface.D.size()), -1);
+    for (Index i = 0; i < size(); ++i) row[vertex_[i]] = static_cast<int>(i);
+
+    Laplacian interior{SparseMatrix(size(), size()), restricted(surface.D)};
+    interior.W.reserve(surface.W.nonZeros());
+    for (Index j = 0; j < size(); ++j) {
+        interior.W.startVec(j);
+        for (SparseMatrix::InnerIterator entry(surface.W, vertex_[j]); entry; ++entry)
+            if (row[entry.row()] >= 0) interior.W.insertBack(row[entry.row()], j) = entry.value();
+    }
+    interior.W.finalize();
+    return interior;
+}
+
+Eigen::MatrixXd Interior::restricted(const Eigen::MatrixXd& X) const {
+    Eigen::MatrixXd rows(size(), X.cols());
+    for (Index i = 0; i < size(); ++i) rows.row(i) = X.row(vertex_[i]);
+    return rows;
+}
+
+Eigen::MatrixXd Interior::extended(const Eigen::MatrixXd& values) const {
+    Eigen::MatrixXd X = Eigen::MatrixXd::Zero(surfaceComponents_.label.size(), values.cols());
+    for (Index i = 0; i < size(); ++i) X.row(vertex_[i]) = values.row(i);
+    return X;
+}
+
+}  // namespace spectral

@@ -1,0 +1,180 @@
+"""Manifold harmonics of a mesh, for users of NumPy, and as a file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from meshlab_spectral.arrays import lumped_areas, mesh_arrays
+from meshlab_spectral.calling import call_filter
+from meshlab_spectral.errors import FormatError, OptionError
+from meshlab_spectral.meshfile import load_arrays
+from meshlab_spectral.options import Boundary, LaplacianKind
+from meshlab_spectral.plugin import load
+
+DEFAULT_BASIS_SIZE = 100
+
+_FILTER_NAME = "compute_scalar_manifold_harmonic_per_vertex"
+
+
+@dataclass(frozen=True, eq=False)
+class Harmonics:
+    """The k lowest eigenpairs of a mesh's Laplacian, ``W phi = lambda D phi``.
+
+    Attributes
+    ----------
+    eigenvalues
+        k values lambda, ascending, 1 / length^2; exactly 0 for the constant of every component,
+        which a component with a fixed boundary does not have.
+    harmonics
+        n x k, column i for eigenvalue i, 1 / length. Orthonormal with the masses as weights,
+        ``Phi.T @ (masses[:, None] * Phi) = 1``; 0 at vertices of no face and on a fixed boundary.
+        The value of each that is farthest from zero is positive.
+    masses
+        Areas of the n vertices, the diagonal of D: a third of the triangles at each, length^2.
+    """
+
+    eigenvalues: NDArray[np.float64]
+    harmonics: NDArray[np.float64]
+    masses: NDArray[np.float64]
+
+    @property
+    def frequencies(self) -> NDArray[np.float64]:
+        """Square roots of the eigenvalues, radians per length; 2 pi over them are wavelengths."""
+        roots: NDArray[np.float64] = np.sqrt(self.eigenvalues)
+        return roots
+
+
+def manifold_harmonics(
+    vertices: ArrayLike,
+    faces: ArrayLike,
+    basis_size: int = DEFAULT_BASIS_SIZE,
+    laplacian: LaplacianKind = "intrinsic delaunay",
+    boundary: Boundary = "free",
+) -> Harmonics:
+    """Compute the manifold harmonics of a mesh with the lowest frequencies.
+
+    Parameters
+    ----------
+    vertices
+        n x 3 coordinates, finite.
+    faces
+        m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
+    basis_size
+        Their number k, the constants included: below the number of vertices that are not fixed.
+    laplacian
+        "intrinsic delaunay" works on any triangles; for "cotangent" every one needs an area.
+    boundary
+        "free": without slope at the rims of an open surface; "fixed": zero there.
+
+    Returns
+    -------
+    Harmonics
+        Eigenvalues, eigenfunctions and the areas of the vertices, in the units of the mesh.
+
+    Raises
+    ------
+    ValueError
+        When an array does not have the shape or the type above, or an index is out of range.
+    OptionError
+        When there is no such `laplacian` or `boundary`.
+    FilterError
+        When the mesh has no faces, no area, coordinates that are not finite, or too few vertices
+        for `basis_size`.
+    PluginError
+        When the plugin cannot be loaded.
+
+    Examples
+    --------
+    >>> basis = manifold_harmonics(V, F, 50)
+    >>> spectrum = basis.harmonics.T @ (basis.masses[:, None] * V)
+    """
+    return _computed(*mesh_arrays(vertices, faces), basis_size, laplacian, boundary)
+
+
+def check_basis_target(target: Path) -> None:
+    """Raise FormatError unless the name of `target` ends in .npz."""
+    if target.suffix != ".npz":
+        raise FormatError(f"{target.name}: a basis is an archive of NumPy, end its name in .npz")
+
+
+def basis_to_scratch(
+    source: Path,
+    scratch: Path,
+    basis_size: int,
+    laplacian: LaplacianKind,
+    boundary: Boundary,
+    on_stage: Callable[[str], None],
+) -> dict[str, Any]:
+    """Write the harmonics of a mesh file into an archive of NumPy, `scratch` of `writing_whole`.
+
+    Its arrays are eigenvalues (k), frequencies (k), harmonics (n x k) and masses (n), as those of
+    `Harmonics`, and the mesh as it was read, to which their rows belong: vertices (n x 3), faces
+    (m x 3).
+
+    Returns
+    -------
+    dict
+        The sizes n and k, as "vertices" and "harmonics".
+
+    Raises
+    ------
+    SpectralError
+        As `manifold_harmonics`; MeshFileError when `source` cannot be read.
+    """
+    on_stage("reading")
+    V, F = load_arrays(source)
+    on_stage("computing")
+    # Verbose: its log is the only source of progress.
+    basis = _computed(V, F, basis_size, laplacian, boundary, verbose=True)
+    on_stage("writing")
+    with scratch.open("wb") as file:
+        np.savez(
+            file,
+            eigenvalues=basis.eigenvalues,
+            frequencies=basis.frequencies,
+            harmonics=basis.harmonics,
+            masses=basis.masses,
+            vertices=V,
+            faces=F,
+        )
+    return {"vertices": len(V), "harmonics": len(basis.eigenvalues)}
+
+
+def _computed(
+    V: NDArray[np.float64],
+    F: NDArray[Any],
+    basis_size: int,
+    laplacian: LaplacianKind,
+    boundary: Boundary,
+    verbose: bool = False,
+) -> Harmonics:
+    for name, value, kind in (
+        ("laplacian", laplacian, LaplacianKind),
+        ("boundary", boundary, Boundary),
+    ):
+        if value not in get_args(kind):
+            raise OptionError(f"{name} = {value}: choose {', '.join(get_args(kind))}")
+    load()
+    import pymeshlab
+
+    mesh_set = pymeshlab.MeshSet(verbose=verbose)
+    mesh_set.add_mesh(pymeshlab.Mesh(V, F))
+    parameters = {
+        "mode": 0,  # the one that every basis has
+        "basis_size": basis_size,
+        "store_basis": True,
+        "laplacian": laplacian,
+        "boundary": boundary,
+    }
+    report = call_filter(mesh_set, _FILTER_NAME, parameters)
+    mesh = mesh_set.current_mesh()
+    columns = [
+        mesh.vertex_custom_scalar_attribute_array(f"harmonic_{mode}") for mode in range(basis_size)
+    ]
+    return Harmonics(report["eigenvalues"].copy(), np.column_stack(columns), lumped_areas(V, F))
