@@ -13,14 +13,17 @@ from meshlab_spectral.artefacts import Artefacts, measure_artefacts
 from meshlab_spectral.errors import FilterError, MeshFileError, OptionError, PluginError
 from meshlab_spectral.options import FilterOptions
 from meshlab_spectral.plugin import load
+from meshlab_spectral.spectrum import GeometrySpectrum, geometry_spectrum
 
 __all__ = [
     "Artefacts",
     "FilterError",
     "FilterOptions",
+    "GeometrySpectrum",
     "MeshFileError",
     "OptionError",
     "PluginError",
+    "geometry_spectrum",
     "load",
     "measure_artefacts",
 ]

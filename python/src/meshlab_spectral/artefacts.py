@@ -8,6 +8,7 @@ from typing import get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from meshlab_spectral.arrays import checked_mesh
 from meshlab_spectral.calling import call_filter
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.options import LaplacianKind, Length
@@ -89,7 +90,7 @@ def measure_artefacts(
     >>> left = measure_artefacts(result.vertex_matrix(), result.face_matrix(), 0.15 * before)
     >>> left.rms / before, left.maximum / before
     """
-    V, F = _checked(vertices, faces)
+    V, F = checked_mesh(vertices, faces)
     try:
         size = Length(feature_size)
     except OptionError as error:
@@ -113,23 +114,3 @@ def measure_artefacts(
         length=mesh_set.current_mesh().vertex_scalar_array().copy(),
         diagonal=report["diagonal"],
     )
-
-
-def _checked(
-    vertices: ArrayLike, faces: ArrayLike
-) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """Take the arrays as pymeshlab wants them; it would read others wrongly, or not say why."""
-    V, F = np.asarray(vertices, dtype=np.float64), np.asarray(faces)
-    if V.ndim != 2 or V.shape[1] != 3:
-        raise ValueError(f"vertices have the shape {V.shape}: give n x 3 coordinates")
-    if len(V) == 0:
-        raise ValueError("there are no vertices: give a mesh")
-    if F.ndim != 2 or F.shape[1] != 3 or not np.issubdtype(F.dtype, np.integer):
-        raise ValueError(
-            f"faces have the shape {F.shape} and the type {F.dtype}: give m x 3 whole numbers, the "
-            "corners of triangles"
-        )
-    if F.size and (F.min() < 0 or F.max() >= len(V)):
-        wrong = F.min() if F.min() < 0 else F.max()
-        raise ValueError(f"a face refers to vertex {wrong}, but there are {len(V)} vertices")
-    return V, F.astype(np.int32)

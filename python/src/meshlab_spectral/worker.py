@@ -1,4 +1,4 @@
-"""Filtering in a process of its own.
+"""Filtering and measuring in a process of its own.
 
 MeshLab's code cannot be interrupted, tells its progress only on the standard error stream, and a
 crash in it takes its whole process along. So the command runs it in a child process: the command
@@ -23,8 +23,16 @@ from pathlib import Path
 from typing import IO, Any
 
 from meshlab_spectral import errors
-from meshlab_spectral.meshfile import check_source, filter_to_scratch, writing_whole
-from meshlab_spectral.options import FilterOptions
+from meshlab_spectral.meshfile import (
+    StageCallback,
+    check_source,
+    filter_to_scratch,
+    load_arrays,
+    plain_report,
+    writing_whole,
+)
+from meshlab_spectral.options import FilterOptions, LaplacianKind
+from meshlab_spectral.spectrum import GeometrySpectrum, measure, spectrum_parameters
 
 ProgressCallback = Callable[[str, float | None], None]
 
@@ -63,24 +71,62 @@ def filter_file_in_child(
     check_source(source)
     with writing_whole(target) as scratch:
         job = {
+            "task": "filter",
             "source": str(source.absolute()),
             "scratch": str(scratch.absolute()),
             "options": options.as_dict(),
         }
-        child = subprocess.Popen(
-            [sys.executable, "-m", "meshlab_spectral.worker"],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            encoding="utf-8",
-            errors="replace",
-        )
-        with child:
-            try:
-                return _converse(child, job, on_progress)
-            finally:
-                child.kill()  # nothing to a child that has ended
+        return _run_in_child(job, on_progress)
+
+
+def measure_spectrum_in_child(
+    source: Path,
+    basis_size: int,
+    laplacian: LaplacianKind,
+    on_progress: ProgressCallback = lambda stage, fraction: None,
+) -> GeometrySpectrum:
+    """Measure the geometry spectrum of a mesh file, in a child process that can be interrupted.
+
+    Parameters
+    ----------
+    source
+        A file that pymeshlab reads, with one mesh in it.
+    basis_size, laplacian
+        As for `spectrum.geometry_spectrum`.
+    on_progress
+        As for `filter_file_in_child`.
+
+    Raises
+    ------
+    SpectralError
+        As `load_arrays` and `geometry_spectrum`; also when the child ended without an answer.
+    KeyboardInterrupt
+        After the child has been stopped.
+    """
+    check_source(source)
+    job = {
+        "task": "spectrum",
+        "source": str(source.absolute()),
+        "parameters": spectrum_parameters(basis_size, laplacian),
+    }
+    return GeometrySpectrum.from_report(_run_in_child(job, on_progress))
+
+
+def _run_in_child(job: dict[str, Any], on_progress: ProgressCallback) -> dict[str, Any]:
+    child = subprocess.Popen(
+        [sys.executable, "-m", "meshlab_spectral.worker"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        encoding="utf-8",
+        errors="replace",
+    )
+    with child:
+        try:
+            return _converse(child, job, on_progress)
+        finally:
+            child.kill()  # nothing to a child that has ended
 
 
 def _converse(
@@ -140,6 +186,19 @@ def _error_of(answer: dict[str, Any]) -> errors.SpectralError:
     return error
 
 
+def _report_of(job: dict[str, Any], on_stage: StageCallback) -> dict[str, Any]:
+    """Do a job, in the child."""
+    source = Path(job["source"])
+    if job["task"] == "spectrum":
+        on_stage("reading")
+        V, F = load_arrays(source)
+        on_stage("measuring")
+        # Its log is the only source of progress.
+        return plain_report(measure(V, F, job["parameters"], verbose=True))
+    options = FilterOptions.from_dict(job["options"])
+    return filter_to_scratch(source, Path(job["scratch"]), options, on_stage)
+
+
 def _main() -> None:
     """Run in the child: one job, then the end."""
     # Ctrl-C reaches every process of the terminal; the parent decides what it means.
@@ -153,13 +212,7 @@ def _main() -> None:
 
     try:
         job = json.load(sys.stdin)
-        report = filter_to_scratch(
-            Path(job["source"]),
-            Path(job["scratch"]),
-            FilterOptions.from_dict(job["options"]),
-            lambda stage: answer(stage=stage),
-        )
-        answer(report=report)
+        answer(report=_report_of(job, lambda stage: answer(stage=stage)))
     except errors.SpectralError as error:
         answer(
             error=type(error).__name__, message=str(error), traceback=traceback.format_exc().strip()

@@ -1,0 +1,32 @@
+"""Meshes as arrays, on their way into pymeshlab."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+
+def checked_mesh(
+    vertices: ArrayLike, faces: ArrayLike
+) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """Take the arrays as pymeshlab wants them; it would read others wrongly, or not say why.
+
+    Raises
+    ------
+    ValueError
+        When an array does not have the shape or the type of a mesh, or an index is out of range.
+    """
+    V, F = np.asarray(vertices, dtype=np.float64), np.asarray(faces)
+    if V.ndim != 2 or V.shape[1] != 3:
+        raise ValueError(f"vertices have the shape {V.shape}: give n x 3 coordinates")
+    if len(V) == 0:
+        raise ValueError("there are no vertices: give a mesh")
+    if F.ndim != 2 or F.shape[1] != 3 or not np.issubdtype(F.dtype, np.integer):
+        raise ValueError(
+            f"faces have the shape {F.shape} and the type {F.dtype}: give m x 3 whole numbers, the "
+            "corners of triangles"
+        )
+    if F.size and (F.min() < 0 or F.max() >= len(V)):
+        wrong = F.min() if F.min() < 0 else F.max()
+        raise ValueError(f"a face refers to vertex {wrong}, but there are {len(V)} vertices")
+    return V, F.astype(np.int32)
