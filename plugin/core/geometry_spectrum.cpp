@@ -117,7 +117,7 @@ double featureSizeHolding(double part, const GeometrySpectrum& spectrum, const O
     }
     // Beyond the basis along straight lines, over octaves, between what is known at the edges.
     double size = 2.0 * kPi / omega[omega.size() - 1];
-    for (int j = 0; j < octaves.count(); ++j) {
+    for (int j = 0; j < spectrum.cumulativeEnergy.size(); ++j) {
         const double next = octaves.edge(j);
         const double energyThere = spectrum.cumulativeEnergy[j] * spectrum.totalEnergy;
         if (next >= size || energyThere <= energy) continue;
@@ -174,12 +174,17 @@ GeometrySpectrum geometrySpectrum(const Vertices& V, const Faces& F, const Spect
         for (Index i = constants; i < basis.size(); ++i)
             spectrum.octaveEnergies[j] += energies[i] * octaves.window(j, spectrum.frequencies[i]);
     }
+    // A triangle almost without area has frequencies far beyond all others, and nothing in them.
+    Index filled = octaves.count();
+    while (spectrum.octaveEnergies[filled - 1] <= kRoundOff * spectrum.totalEnergy) --filled;
+    spectrum.octaveEnergies.conservativeResize(filled);
+    spectrum.octaveFeatureSizes.conservativeResize(filled);
     spectrum.octaveEnergies *= spectrum.totalEnergy / spectrum.octaveEnergies.sum();  // round-off
     spectrum.octaveAmplitudes = (spectrum.octaveEnergies / spectrum.area).cwiseSqrt();
-    spectrum.cumulativeEnergy.resize(octaves.count());
+    spectrum.cumulativeEnergy.resize(filled);
     std::partial_sum(spectrum.octaveEnergies.begin(), spectrum.octaveEnergies.end(),
                      spectrum.cumulativeEnergy.begin());
-    spectrum.cumulativeEnergy /= spectrum.cumulativeEnergy[octaves.count() - 1];
+    spectrum.cumulativeEnergy /= spectrum.cumulativeEnergy[filled - 1];
     spectrum.featureSize50 = featureSizeHolding(0.50, spectrum, octaves);
     spectrum.featureSize90 = featureSizeHolding(0.90, spectrum, octaves);
     spectrum.featureSize99 = featureSizeHolding(0.99, spectrum, octaves);

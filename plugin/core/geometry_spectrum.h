@@ -28,8 +28,8 @@ struct GeometrySpectrum {
     Eigen::VectorXd frequencies;  ///< omega_i, ascending, radians per length unit; constants: 0.
     Eigen::VectorXd amplitudes;   ///< |Phi_i^T D X| / sqrt(area), length units; constants: 0.
 
-    /// Of the octaves (octaves.h), from large feature sizes to small ones, up to the smallest that
-    /// the mesh can carry.
+    /// Of the octaves (octaves.h), from large feature sizes to small ones, down to the last one
+    /// that holds anything of the shape.
     Eigen::VectorXd octaveFeatureSizes;  ///< Middles: diagonal times powers of two, length units.
     Eigen::VectorXd octaveEnergies;      ///< >= 0, length^4; they sum to totalEnergy.
     Eigen::VectorXd octaveAmplitudes;    ///< sqrt(energy / area), length units.

@@ -225,6 +225,20 @@ TEST(GeometrySpectrum, OfTinyMeshesHasAllTheirHarmonics) {
         }
 }
 
+TEST(GeometrySpectrum, EndsWhereTheShapeDoesEvenIfATriangleHasNoArea) {
+    Mesh mesh = testing::blob();
+    const Index octaves = spectrumOf(mesh, 20).octaveEnergies.size();
+    mesh.V.row(mesh.F(0, 0)) = mesh.V.row(mesh.F(0, 1));
+    const GeometrySpectrum spectrum =
+        geometrySpectrum(mesh.V, mesh.F, withBasis(20, LaplacianKind::IntrinsicDelaunay));
+    const Index last = spectrum.octaveEnergies.size() - 1;
+    EXPECT_GT(spectrum.octaveEnergies[last], 0.0);
+    EXPECT_EQ(spectrum.octaveFeatureSizes.size(), last + 1);
+    EXPECT_EQ(spectrum.cumulativeEnergy.size(), last + 1);
+    EXPECT_LT(last, 3 * octaves);
+    EXPECT_NEAR(spectrum.octaveEnergies.sum() / spectrum.totalEnergy, 1.0, 1e-12);
+}
+
 TEST(GeometrySpectrum, RefusesBadMeshesAndSizes) {
     const Mesh mesh = testing::icosphere(2);
     for (const int basisSize : {0, -3}) EXPECT_THROW(spectrumOf(mesh, basisSize), InvalidOption);

@@ -45,7 +45,7 @@ class GeometrySpectrum:
         Of these harmonics; 0 for the constant ones.
     octave_feature_sizes
         Middles of the octaves, from large to small: the diagonal times powers of two. The last one
-        holds the smallest details that the mesh can carry.
+        is the last that holds anything of the shape.
     octave_energies
         Of the octaves, length^4; they sum to `total_energy`. From one octave to the next it is half
         an octave, over which a detail counts in parts to both.
