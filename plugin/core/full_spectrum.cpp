@@ -1,13 +1,12 @@
 #include "full_spectrum.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
+#include <utility>
 #include <vector>
 
-#include "errors.h"
+#include "lanczos.h"
 
 namespace spectral {
 
@@ -18,9 +17,6 @@ constexpr int kCheckInterval = 3;
 
 /// Below this dimension a difference says nothing: a narrow band has not been seen yet.
 constexpr int kFirstCheck = 6;
-
-/// Norm below which a new direction is round-off: the space is invariant, the result exact.
-constexpr double kBreakdown = 1e-13;
 
 /// At this multiple of the requested accuracy over the surface the single vertices are looked at
 /// too.
@@ -51,91 +47,6 @@ class ErrorEstimate {
   private:
     static constexpr double kSlowest = 0.9;  // changes that do not shrink at all are scatter
     std::vector<double> changes_;
-};
-
-/// Lanczos recurrence of one column for M = D^1/2 (W + lambda_p D)^-1 D^1/2, the symmetric form of
-/// S, with full reorthogonalization. Columns of the basis are D^1/2 times those of U.
-class LanczosColumn {
-  public:
-    explicit LanczosColumn(const Eigen::VectorXd& start)
-        : basis_(start.size(), std::min(kCapacity, start.size())), norm_(start.norm()) {
-        exhausted_ = !(norm_ > 0.0);
-        if (!exhausted_) basis_.col(0) = start / norm_;
-    }
-
-    bool exhausted() const { return exhausted_; }
-    int dimension() const { return static_cast<int>(alpha_.size()); }
-    double norm() const { return norm_; }
-    auto current() const { return basis_.col(dimension()); }
-
-    /// Takes w = M current() and makes the next basis vector of it.
-    void extend(Eigen::VectorXd w) {
-        const Index j = dimension();
-        const double scale = w.norm();
-        // The three-term recurrence first, so that the pass over the whole basis finds next to
-        // nothing and is needed only once: it is memory traffic, the dearest part after the solves.
-        alpha_.push_back(basis_.col(j).dot(w));
-        w -= alpha_.back() * basis_.col(j);
-        if (j > 0) w -= beta_.back() * basis_.col(j - 1);
-        const double before = w.norm();
-        reorthogonalize(w);
-        double beta = w.norm();
-        if (beta < 0.5 * before) {  // much was found: what round-off left of it goes now
-            reorthogonalize(w);
-            beta = w.norm();
-        }
-        if (!(beta > kBreakdown * scale) || j + 1 == basis_.rows()) {
-            exhausted_ = true;
-            return;
-        }
-        beta_.push_back(beta);
-        if (j + 1 == basis_.cols())
-            basis_.conservativeResize(Eigen::NoChange,
-                                      std::min(basis_.rows(), basis_.cols() + kCapacity));
-        basis_.col(j + 1) = w / beta;
-    }
-
-    /// Coefficients |x| F(sqrt(T^-1 - pole)) e_1 of the present approximation in the basis.
-    Eigen::VectorXd coefficients(const Gain& gain, double pole) const {
-        const Index m = dimension();
-        if (m == 0) return Eigen::VectorXd();
-        const Eigen::VectorXd diagonal = Eigen::Map<const Eigen::VectorXd>(alpha_.data(), m);
-        const Eigen::VectorXd off = Eigen::Map<const Eigen::VectorXd>(beta_.data(), m - 1);
-        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz;
-        ritz.computeFromTridiagonal(diagonal, off);
-        if (ritz.info() != Eigen::Success)
-            throw SolverFailure(
-                "the tridiagonal eigenproblem of the Krylov space did not converge");
-        Eigen::VectorXd gains(m);
-        for (Index i = 0; i < m; ++i) {
-            // theta = 1/(lambda + pole); round-off may push it out of (0, 1/pole].
-            const double theta = ritz.eigenvalues()[i];
-            const double lambda = theta > 0.0 ? std::max(0.0, 1.0 / theta - pole)
-                                              : std::numeric_limits<double>::infinity();
-            gains[i] = gain(std::sqrt(lambda));
-        }
-        const Eigen::MatrixXd& Q = ritz.eigenvectors();
-        return norm_ * (Q * gains.cwiseProduct(Q.row(0).transpose()));
-    }
-
-    /// The signal (times D^1/2) with these coefficients in the basis.
-    Eigen::VectorXd combine(const Eigen::VectorXd& coefficients) const {
-        return basis_.leftCols(coefficients.size()) * coefficients;
-    }
-
-  private:
-    void reorthogonalize(Eigen::VectorXd& w) const {
-        const auto Q = basis_.leftCols(dimension());
-        const Eigen::VectorXd overlap = Q.transpose() * w;
-        w.noalias() -= Q * overlap;
-    }
-
-    static constexpr Index kCapacity = 32;  // columns by which the basis grows
-
-    Eigen::MatrixXd basis_;
-    std::vector<double> alpha_, beta_;
-    double norm_ = 0.0;
-    bool exhausted_ = false;
 };
 
 }  // namespace
@@ -193,24 +104,12 @@ FullSpectrumResult applyFullSpectrum(const Eigen::VectorXd& D, const ConstantMod
 
     double firstError = 0.0, furthest = 0.0;
     for (int m = 1;; ++m) {
-        std::vector<Index> active;
-        for (Index c = 0; c < columns; ++c)
-            if (!lanczos[c].exhausted()) active.push_back(c);
-        if (active.empty()) {  // the Krylov spaces are invariant: no error but round-off
-            renew();
+        if (!extendColumns(lanczos, sqrtD, constants, cholesky)) {
+            renew();  // the Krylov spaces are invariant: no error but round-off
             result.errorEstimate = std::numeric_limits<double>::epsilon();
             result.converged = true;
             break;
         }
-        Eigen::MatrixXd block(n, static_cast<Index>(active.size()));
-        for (std::size_t a = 0; a < active.size(); ++a)
-            block.col(a) = sqrtD.cwiseProduct(lanczos[active[a]].current());
-        block = cholesky.solve(block);
-        // S keeps the complement of the constants; round-off does not, and S amplifies it most
-        // there.
-        constants.remove(block);
-        block = sqrtD.asDiagonal() * block;
-        for (std::size_t a = 0; a < active.size(); ++a) lanczos[active[a]].extend(block.col(a));
         result.dimension = m;
         if (m % kCheckInterval != 0) continue;
         result.errorEstimate = renew();

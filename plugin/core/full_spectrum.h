@@ -29,9 +29,8 @@ struct FullSpectrumResult {
 ///
 /// The same as with all n harmonics, Y = Phi F(Lambda^1/2) Phi^T D X (Kovnatsky et al. 2012, Eq.
 /// 6), as the action of a function of a matrix: a shift-invert Lanczos method with one repeated
-/// real pole, S = (W + lambda_p D)^-1 D. S is self-adjoint in the D-inner product and has the
-/// eigenvectors of A with eigenvalues theta = 1/(lambda + lambda_p). In the Krylov space of S and
-/// x, with D-orthonormal basis U and T = U^T D S U,
+/// real pole (lanczos.h). In the Krylov space of S = (W + lambda_p D)^-1 D and x, with
+/// D-orthonormal basis U and T = U^T D S U,
 ///     F(sqrt(A)) x ~ |x|_D U F(sqrt(T^-1 - lambda_p)) e_1.
 /// The columns of X run in step, so that one pass over the Cholesky factor serves all of them.
 ///

@@ -14,7 +14,8 @@ spectral::Progress meshlabProgress(vcg::CallBackPos* callback) {
 }  // namespace
 
 FilterSpectralPlugin::FilterSpectralPlugin()
-    : filters_{fractionalMeshFilter(), artefactsMeshFilter(), harmonicsMeshFilter()} {
+    : filters_{fractionalMeshFilter(), artefactsMeshFilter(), harmonicsMeshFilter(),
+               geometrySpectrumMeshFilter()} {
     for (std::size_t i = 0; i < filters_.size(); ++i) {
         typeList.push_back(static_cast<ActionIDType>(i));
         actionList.push_back(new QAction(filters_[i].name, this));

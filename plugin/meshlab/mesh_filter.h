@@ -35,6 +35,7 @@ struct MeshFilter {
 };
 
 // One function for each filter, in a file of its own.
-MeshFilter fractionalMeshFilter();  ///< filter_fractional.cpp
-MeshFilter artefactsMeshFilter();   ///< filter_artefacts.cpp
-MeshFilter harmonicsMeshFilter();   ///< filter_harmonics.cpp
+MeshFilter fractionalMeshFilter();        ///< filter_fractional.cpp
+MeshFilter artefactsMeshFilter();         ///< filter_artefacts.cpp
+MeshFilter harmonicsMeshFilter();         ///< filter_harmonics.cpp
+MeshFilter geometrySpectrumMeshFilter();  ///< filter_geometry_spectrum.cpp

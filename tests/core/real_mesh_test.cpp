@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/fractional_filter.h"
+#include "core/geometry_spectrum.h"
 #include "core/intrinsic_delaunay.h"
 #include "core/measures.h"
 #include "support/evaluation.h"
@@ -112,6 +113,20 @@ TEST_P(RealMesh, FullSpectrumAndTruncatedAgreeWhereTheGainVanishesBeyondTheBasis
     options.evaluation.reinjectResidual = false;
     const Vertices truncated = fractionalFilter(mesh_.V, mesh_.F, options).V;
     EXPECT_LT(largestDifference(full, truncated), 1e-7);
+}
+
+TEST_P(RealMesh, OctavesOfTheGeometrySpectrumAreThoseOfAllEigenvectors) {
+    SpectrumOptions options;
+    options.basisSize = static_cast<int>(mesh_.V.rows());
+    const GeometrySpectrum dense = geometrySpectrum(mesh_.V, mesh_.F, options);
+    for (const int basisSize : {10, 200}) {
+        options.basisSize = basisSize;
+        const GeometrySpectrum spectrum = geometrySpectrum(mesh_.V, mesh_.F, options);
+        ASSERT_EQ(spectrum.octaveEnergies.size(), dense.octaveEnergies.size());
+        for (Index j = 0; j < dense.octaveEnergies.size(); ++j)
+            EXPECT_NEAR(spectrum.octaveEnergies[j] / dense.octaveEnergies[j], 1.0, 2e-3)
+                << "basis " << basisSize << ", octave " << j;
+    }
 }
 
 class OpenRealMesh : public RealMesh {};

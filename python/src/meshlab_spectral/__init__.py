@@ -14,15 +14,18 @@ from meshlab_spectral.errors import FilterError, MeshFileError, OptionError, Plu
 from meshlab_spectral.harmonics import Harmonics, manifold_harmonics
 from meshlab_spectral.options import FilterOptions
 from meshlab_spectral.plugin import load
+from meshlab_spectral.spectrum import GeometrySpectrum, geometry_spectrum
 
 __all__ = [
     "Artefacts",
     "FilterError",
     "FilterOptions",
+    "GeometrySpectrum",
     "Harmonics",
     "MeshFileError",
     "OptionError",
     "PluginError",
+    "geometry_spectrum",
     "load",
     "manifold_harmonics",
     "measure_artefacts",

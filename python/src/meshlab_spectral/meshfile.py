@@ -80,7 +80,7 @@ def filter_to_scratch(
     report = call_filter(mesh_set, FILTER_NAME, options.pymeshlab_parameters())
     on_stage("writing")
     _write(mesh_set, scratch, source)
-    return {name: _plain(value) for name, value in report.items()}
+    return plain_report(report)
 
 
 def load_arrays(source: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
@@ -267,6 +267,9 @@ def _textures_to_be_saved(mesh_set: Any, scratch: Path, source: Path) -> bool:
     return within and not beside_input
 
 
-def _plain(value: Any) -> Any:
-    """Turn a number or an array of a report into what JSON can hold."""
-    return value.tolist() if hasattr(value, "tolist") else value
+def plain_report(report: dict[str, Any]) -> dict[str, Any]:
+    """Turn the arrays of a filter's report into lists, which JSON can hold."""
+    return {
+        name: value.tolist() if hasattr(value, "tolist") else value
+        for name, value in report.items()
+    }

@@ -1,4 +1,4 @@
-"""Filters in a process of their own.
+"""Filtering and measuring in a process of its own.
 
 MeshLab's code cannot be interrupted, tells its progress only on the standard error stream, and a
 crash in it takes its whole process along. So the command runs it in a child process: the command
@@ -24,8 +24,16 @@ from typing import IO, Any
 
 from meshlab_spectral import errors
 from meshlab_spectral.harmonics import basis_to_scratch, check_basis_target
-from meshlab_spectral.meshfile import StageCallback, check_source, filter_to_scratch, writing_whole
+from meshlab_spectral.meshfile import (
+    StageCallback,
+    check_source,
+    filter_to_scratch,
+    load_arrays,
+    plain_report,
+    writing_whole,
+)
 from meshlab_spectral.options import Boundary, FilterOptions, LaplacianKind
+from meshlab_spectral.spectrum import GeometrySpectrum, measure, spectrum_parameters
 
 ProgressCallback = Callable[[str, float | None], None]
 
@@ -61,7 +69,9 @@ def filter_file_in_child(
     KeyboardInterrupt
         After the child has been stopped and the scratch files are gone.
     """
-    return _in_child(source, target, {"task": "filter", "options": options.as_dict()}, on_progress)
+    return _write_in_child(
+        source, target, {"task": "filter", "options": options.as_dict()}, on_progress
+    )
 
 
 def basis_file_in_child(
@@ -101,29 +111,66 @@ def basis_file_in_child(
     """
     check_basis_target(target)
     options = {"basis_size": basis_size, "laplacian": laplacian, "boundary": boundary}
-    return _in_child(source, target, {"task": "basis", "options": options}, on_progress)
+    return _write_in_child(source, target, {"task": "basis", "options": options}, on_progress)
 
 
-def _in_child(
+def _write_in_child(
     source: Path, target: Path, job: dict[str, Any], on_progress: ProgressCallback
 ) -> dict[str, Any]:
     check_source(source)
     with writing_whole(target) as scratch:
         job |= {"source": str(source.absolute()), "scratch": str(scratch.absolute())}
-        child = subprocess.Popen(
-            [sys.executable, "-m", "meshlab_spectral.worker"],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            encoding="utf-8",
-            errors="replace",
-        )
-        with child:
-            try:
-                return _converse(child, job, on_progress)
-            finally:
-                child.kill()  # nothing to a child that has ended
+        return _run_in_child(job, on_progress)
+
+
+def measure_spectrum_in_child(
+    source: Path,
+    basis_size: int,
+    laplacian: LaplacianKind,
+    on_progress: ProgressCallback = lambda stage, fraction: None,
+) -> GeometrySpectrum:
+    """Measure the geometry spectrum of a mesh file, in a child process that can be interrupted.
+
+    Parameters
+    ----------
+    source
+        A file that pymeshlab reads, with one mesh in it.
+    basis_size, laplacian
+        As for `spectrum.geometry_spectrum`.
+    on_progress
+        As for `filter_file_in_child`.
+
+    Raises
+    ------
+    SpectralError
+        As `load_arrays` and `geometry_spectrum`; also when the child ended without an answer.
+    KeyboardInterrupt
+        After the child has been stopped.
+    """
+    check_source(source)
+    job = {
+        "task": "spectrum",
+        "source": str(source.absolute()),
+        "parameters": spectrum_parameters(basis_size, laplacian),
+    }
+    return GeometrySpectrum.from_report(_run_in_child(job, on_progress))
+
+
+def _run_in_child(job: dict[str, Any], on_progress: ProgressCallback) -> dict[str, Any]:
+    child = subprocess.Popen(
+        [sys.executable, "-m", "meshlab_spectral.worker"],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        encoding="utf-8",
+        errors="replace",
+    )
+    with child:
+        try:
+            return _converse(child, job, on_progress)
+        finally:
+            child.kill()  # nothing to a child that has ended
 
 
 def _converse(
@@ -184,8 +231,16 @@ def _error_of(answer: dict[str, Any]) -> errors.SpectralError:
 
 
 def _report_of(job: dict[str, Any], on_stage: StageCallback) -> dict[str, Any]:
-    source, scratch, options = Path(job["source"]), Path(job["scratch"]), job["options"]
-    if job["task"] == "basis":
+    """Do a job, in the child."""
+    source, task = Path(job["source"]), job["task"]
+    if task == "spectrum":
+        on_stage("reading")
+        V, F = load_arrays(source)
+        on_stage("measuring")
+        # Its log is the only source of progress.
+        return plain_report(measure(V, F, job["parameters"], verbose=True))
+    scratch, options = Path(job["scratch"]), job["options"]
+    if task == "basis":
         return basis_to_scratch(source, scratch, **options, on_stage=on_stage)
     return filter_to_scratch(source, scratch, FilterOptions.from_dict(options), on_stage)
 
@@ -202,7 +257,8 @@ def _main() -> None:
         answers.write(json.dumps(content) + "\n")
 
     try:
-        answer(report=_report_of(json.load(sys.stdin), lambda stage: answer(stage=stage)))
+        job = json.load(sys.stdin)
+        answer(report=_report_of(job, lambda stage: answer(stage=stage)))
     except errors.SpectralError as error:
         answer(
             error=type(error).__name__, message=str(error), traceback=traceback.format_exc().strip()

@@ -1,0 +1,61 @@
+#pragma once
+
+#include "laplacian_builder.h"
+#include "progress.h"
+#include "types.h"
+
+namespace spectral {
+
+struct SpectrumOptions {
+    /// k >= 1, the harmonics that are computed, the constant ones included. A mesh of no more
+    /// vertices, up to 2,000 of them, gets all it has.
+    int basisSize = 200;
+    LaplacianKind laplacian = LaplacianKind::IntrinsicDelaunay;
+};
+
+/// How much of a shape is in details of which size.
+///
+/// Energies are integrals of squared lengths over the surface, length^4. An amplitude is the root
+/// mean square height sqrt(energy / area) that a part of the spectrum contributes to the shape, a
+/// length: those of all parts, squared, sum to that of the shape. Vertices that lie unevenly within
+/// the surface do not count, only what is across it; an open boundary counts at all sizes.
+struct GeometrySpectrum {
+    double diagonal = 0.0;     ///< Of the bounding box of all vertices, length units.
+    double area = 0.0;         ///< Sum of D, length^2.
+    double totalEnergy = 0.0;  ///< |X|_D^2, X centred on every component, length^4.
+
+    /// Of the lowest harmonics, at least basisSize of them as no group of equal ones is cut.
+    Eigen::VectorXd frequencies;  ///< omega_i, ascending, radians per length unit; constants: 0.
+    Eigen::VectorXd amplitudes;   ///< |Phi_i^T D X| / sqrt(area), length units; constants: 0.
+
+    /// Of the octaves (octaves.h), from large feature sizes to small ones, down to the last one
+    /// that holds anything of the shape.
+    Eigen::VectorXd octaveFeatureSizes;  ///< Middles: diagonal times powers of two, length units.
+    Eigen::VectorXd octaveEnergies;      ///< >= 0, length^4; they sum to totalEnergy.
+    Eigen::VectorXd octaveAmplitudes;    ///< sqrt(energy / area), length units.
+    Eigen::VectorXd cumulativeEnergy;    ///< Part of the energy in this octave and all larger ones,
+                                         ///< ascending to 1.
+
+    /// Feature sizes at and above which 50, 90 and 99 % of the energy are, length units.
+    double featureSize50 = 0.0, featureSize90 = 0.0, featureSize99 = 0.0;
+
+    /// Part by which the octave energies beyond the basis missed their known sum, before they were
+    /// scaled to it; 0 where the basis is the whole spectrum.
+    double mismatch = 0.0;
+};
+
+/// The spectrum of the coordinates in the manifold harmonics of the surface, all of it.
+///
+/// The k lowest harmonics are computed, their coefficients Phi^T D X are exact (Vallet and Levy
+/// 2008). For the remainder R of X no eigenvector is: the energy of an octave with the window g is
+/// the quadratic form R^T D g(sqrt(A)) R, by Gauss quadrature in a shift-invert Krylov space with
+/// the pole in the middle of the octave (lanczos.h; Golub and Meurant 1994). Taking the basis out
+/// of X first keeps the large energies of the large features from drowning those of the details.
+///
+/// @param V  n x 3 positions, finite.
+/// @param F  m x 3 vertex indices, m >= 1; any topology, unreferenced vertices allowed.
+/// @throws InvalidMesh, InvalidOption, SolverFailure, Cancelled
+GeometrySpectrum geometrySpectrum(const Vertices& V, const Faces& F, const SpectrumOptions& options,
+                                  const Progress& progress = {});
+
+}  // namespace spectral

@@ -1,0 +1,116 @@
+#include <common/parameters/rich_parameters.h>
+
+#include <iomanip>
+#include <sstream>
+#include <string>
+
+#include "common_parameters.h"
+#include "core/geometry_spectrum.h"
+#include "mesh_conversion.h"
+#include "mesh_filter.h"
+
+namespace {
+
+using spectral::GeometrySpectrum;
+
+const char* const kHelp =
+    "Measures how much of a shape is in details of which size: what an equalizer shows of sound. "
+    "Look at it to <b>choose a feature size</b> for the spectral filters; nothing moves."
+    "<br><br>The shape is taken apart into its manifold harmonics, the standing waves of its own "
+    "surface. Those of one octave of feature sizes, that is wavelengths, add up to details of a "
+    "certain height: the <b>amplitude</b> of the octave, the root mean square over the surface, in "
+    "the units of the mesh. The log lists it for every octave, down to the smallest details that "
+    "the mesh can carry; a smooth shape falls off steadily towards small ones. Where the "
+    "amplitudes stop falling, there is noise: a low-pass with a feature size somewhat above "
+    "removes it."
+    "<br><br>Squares of amplitudes are energies. The log also tells the feature sizes at and above "
+    "which 50, 90 and 99 % of the energy are: nearly all is in the largest features, which make "
+    "the overall shape."
+    "<br><br>An open boundary adds to the details of every size, the more so the longer and the "
+    "more ragged it is."
+    "<br><br>For more information see:"
+    "<br><i>B. Vallet, B. L&eacute;vy</i>, <b>Spectral Geometry Processing with Manifold "
+    "Harmonics</b>, Computer Graphics Forum 27(2), 2008"
+    "<br><i>G. H. Golub, G. Meurant</i>, <b>Matrices, Moments and Quadrature</b>, Numerical "
+    "Analysis 1993, Longman, 1994";
+
+RichParameterList parameters(const MeshModel&) {
+    RichParameterList list;
+    list.addParam(
+        RichInt("basis_size", spectral::SpectrumOptions().basisSize, "Basis size",
+                "How many of the largest features (manifold harmonics) are told one by one, the "
+                "constant ones included; time and memory grow with it. The octaves cover all "
+                "features whatever this is. A small mesh gets all that it has."));
+    list.addParam(
+        laplacianParameter("How the frequencies of the surface are measured: as in the filter. "
+                           "<b>intrinsic delaunay</b> works on any triangles; for <b>cotangent</b> "
+                           "every triangle needs an area."));
+    return list;
+}
+
+QVariant vectorVariant(const Eigen::VectorXd& v) { return QVariant::fromValue(v); }
+
+/// A length, and what it is in percent of the diagonal.
+std::string withPercent(double length, double diagonal) {
+    std::ostringstream text;
+    text << std::setprecision(4) << length << " (" << std::setprecision(3)
+         << 100.0 * length / diagonal << " %)";
+    return text.str();
+}
+
+std::string textOf(const GeometrySpectrum& spectrum) {
+    std::ostringstream text;
+    text << std::setprecision(4) << "Geometry Spectrum: " << spectrum.frequencies.size()
+         << " harmonics, octaves of all details; in brackets percent of the diagonal, "
+         << spectrum.diagonal << "\n"
+         << std::left << "  " << std::setw(24) << "feature size" << std::setw(24) << "amplitude"
+         << "energy in this and larger ones";
+    for (Eigen::Index j = 0; j < spectrum.octaveEnergies.size(); ++j)
+        text << "\n  " << std::setw(24)
+             << withPercent(spectrum.octaveFeatureSizes[j], spectrum.diagonal) << std::setw(24)
+             << withPercent(spectrum.octaveAmplitudes[j], spectrum.diagonal) << std::fixed
+             << std::setprecision(5) << 100.0 * spectrum.cumulativeEnergy[j] << " %"
+             << std::defaultfloat;
+    text << "\n  50 % of the energy at feature sizes of at least "
+         << withPercent(spectrum.featureSize50, spectrum.diagonal) << ", 90 % "
+         << withPercent(spectrum.featureSize90, spectrum.diagonal) << ", 99 % "
+         << withPercent(spectrum.featureSize99, spectrum.diagonal);
+    return text.str();
+}
+
+FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
+                    const spectral::Progress& progress) {
+    const MeshMatrices input = toMatrices(mesh.cm);
+    spectral::SpectrumOptions options;
+    options.basisSize = parameters.getInt("basis_size");
+    options.laplacian = laplacianKind(parameters);
+    const GeometrySpectrum spectrum =
+        spectral::geometrySpectrum(input.V, input.F, options, progress);
+    return {{{"diagonal", spectrum.diagonal},
+             {"area", spectrum.area},
+             {"total_energy", spectrum.totalEnergy},
+             {"frequencies", vectorVariant(spectrum.frequencies)},
+             {"amplitudes", vectorVariant(spectrum.amplitudes)},
+             {"octave_feature_sizes", vectorVariant(spectrum.octaveFeatureSizes)},
+             {"octave_energies", vectorVariant(spectrum.octaveEnergies)},
+             {"octave_amplitudes", vectorVariant(spectrum.octaveAmplitudes)},
+             {"cumulative_energy", vectorVariant(spectrum.cumulativeEnergy)},
+             {"feature_size_50", spectrum.featureSize50},
+             {"feature_size_90", spectrum.featureSize90},
+             {"feature_size_99", spectrum.featureSize99},
+             {"mismatch", spectrum.mismatch}},
+            textOf(spectrum)};
+}
+
+}  // namespace
+
+MeshFilter geometrySpectrumMeshFilter() {
+    MeshFilter filter;
+    filter.name = "Geometry Spectrum";
+    filter.pythonName = "get_geometry_spectrum";
+    filter.help = kHelp;
+    filter.category = FilterPlugin::Measure;
+    filter.parameters = parameters;
+    filter.apply = apply;
+    return filter;
+}

@@ -1,0 +1,144 @@
+"""What the commands of `meshlab-spectral` have in common: options, messages, exit codes."""
+
+from __future__ import annotations
+
+import contextlib
+import inspect
+import platform
+from collections.abc import Callable, Collection, Iterator
+from dataclasses import fields
+from importlib.metadata import version
+from typing import Annotated, Any, get_type_hints
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+from meshlab_spectral.errors import FormatError, OptionError, SpectralError
+from meshlab_spectral.options import FilterOptions, Length
+from meshlab_spectral.worker import ProgressCallback
+
+EXIT_FAILED, EXIT_USAGE, EXIT_INTERRUPTED = 1, 2, 130
+
+EXIT_CODES = (
+    "Exit codes: 0 all done; 1 a file could not be read, filtered or written; 2 the command line "
+    "is wrong; 130 interrupted."
+)
+
+MESSAGES = Console(stderr=True)
+
+Command = Callable[..., None]
+
+
+def versions() -> dict[str, str]:
+    """Tell the versions that a result may depend on."""
+    return {
+        "meshlab_spectral": version("meshlab-spectral"),
+        "pymeshlab": version("pymeshlab"),
+        "python": platform.python_version(),
+    }
+
+
+def with_filter_options(command: Command) -> Command:
+    """Give a command one option per field of FilterOptions, handed to it as `options`."""
+    return with_some_filter_options([option.name for option in fields(FilterOptions)])(command)
+
+
+def with_some_filter_options(names: Collection[str]) -> Callable[[Command], Command]:
+    """Give a command options for these fields of FilterOptions; the others have their defaults."""
+
+    def decorate(command: Command) -> Command:
+        return _with_options(names, command)
+
+    return decorate
+
+
+def _with_options(names: Collection[str], command: Command) -> Command:
+    types = get_type_hints(FilterOptions)
+    own = [
+        parameter
+        for parameter in inspect.signature(command, eval_str=True).parameters.values()
+        if parameter.name != "options"
+    ]
+    added = []
+    for option in fields(FilterOptions):
+        if option.name not in names:
+            continue
+        settings: dict[str, Any] = {"help": option.metadata["help"]}
+        type_, default = types[option.name], option.default
+        if type_ is Length:
+            settings |= {"parser": _length, "metavar": "SIZE"}
+            default = str(default)
+        added.append(
+            inspect.Parameter(
+                option.name,
+                inspect.Parameter.KEYWORD_ONLY,
+                default=default,
+                annotation=Annotated[type_, typer.Option(**settings)],
+            )
+        )
+
+    def run(**arguments: Any) -> None:
+        given = {parameter.name: arguments.pop(parameter.name) for parameter in added}
+        try:
+            options = FilterOptions(**given)
+        except OptionError as error:
+            raise typer.BadParameter(str(error)) from error
+        command(options=options, **arguments)
+
+    parameters = [p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in [*own, *added]]
+    run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    run.__annotations__ = {p.name: p.annotation for p in parameters}
+    run.__doc__ = command.__doc__
+    run.__name__ = command.__name__
+    return run
+
+
+def _length(text: str | Length) -> Length:
+    try:
+        return text if isinstance(text, Length) else Length.parse(text)
+    except OptionError as error:
+        raise typer.BadParameter(str(error)) from error
+
+
+@contextlib.contextmanager
+def errors_reported(debug: bool, when_interrupted: str = "no output was written") -> Iterator[None]:
+    """Turn every error of this package into one message and an exit code."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        MESSAGES.print(f"Interrupted: {when_interrupted}.")
+        raise typer.Exit(EXIT_INTERRUPTED) from None
+    except SpectralError as error:
+        if debug:
+            MESSAGES.print_exception()
+        # No markup, no wrapping: file names hold brackets, and scripts search for messages.
+        MESSAGES.print(f"Error: {error}", markup=False, highlight=False, soft_wrap=True)
+        usage = isinstance(error, OptionError | FormatError)
+        raise typer.Exit(EXIT_USAGE if usage else EXIT_FAILED) from error
+
+
+@contextlib.contextmanager
+def progress_shown() -> Iterator[ProgressCallback]:
+    """Show on a terminal what MeshLab reports of its progress; elsewhere nothing."""
+    with Progress(
+        SpinnerColumn(),
+        BarColumn(),
+        TextColumn("{task.description}", markup=False),
+        TimeElapsedColumn(),
+        console=MESSAGES,
+        transient=True,
+        disable=not MESSAGES.is_terminal,
+    ) as progress:
+        task = progress.add_task("starting", total=None)
+
+        def update(stage: str, fraction: float | None) -> None:
+            if fraction is None:
+                progress.reset(task, start=False, total=None, description=stage)
+                progress.start_task(task)
+            else:
+                # MeshLab's figure may fall back a little when a step turns out to need more work.
+                done = max(fraction, progress.tasks[0].completed)
+                progress.update(task, total=1.0, completed=done, description=stage)
+
+        yield update

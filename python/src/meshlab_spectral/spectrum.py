@@ -1,0 +1,162 @@
+"""The geometry spectrum of a mesh: how much of its shape is in details of which size."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Any, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from meshlab_spectral.arrays import mesh_arrays
+from meshlab_spectral.calling import call_filter
+from meshlab_spectral.errors import OptionError
+from meshlab_spectral.options import LaplacianKind
+from meshlab_spectral.plugin import load
+
+FILTER_NAME = "get_geometry_spectrum"
+DEFAULT_BASIS_SIZE = 200
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class GeometrySpectrum:
+    """How much of a shape is in details of which size.
+
+    An amplitude is the root mean square height over the surface that a part of the spectrum
+    contributes to the shape, ``sqrt(energy / area)``; the amplitudes of all parts, squared, sum to
+    that of the shape. Feature sizes are wavelengths, those of the filter. Lengths are in the units
+    of the mesh.
+
+    Attributes
+    ----------
+    diagonal
+        Of the bounding box.
+    area
+        Of the surface.
+    total_energy
+        Integral over the surface of the squared distance from the centroid of the connected
+        component, length^4.
+    frequencies
+        Of the lowest harmonics, ascending, in radians per length unit, 0 for the constant ones; at
+        least `basis_size` of them, as no group of equal frequencies is cut, or all there are.
+    amplitudes
+        Of these harmonics; 0 for the constant ones.
+    octave_feature_sizes
+        Middles of the octaves, from large to small: the diagonal times powers of two. The last one
+        is the last that holds anything of the shape.
+    octave_energies
+        Of the octaves, length^4; they sum to `total_energy`. From one octave to the next it is half
+        an octave, over which a detail counts in parts to both.
+    octave_amplitudes
+        ``sqrt(octave_energies / area)``.
+    cumulative_energy
+        Part of the energy in every octave and all larger ones, ascending to 1.
+    feature_size_50, feature_size_90, feature_size_99
+        Feature sizes at and above which 50, 90 and 99 % of the energy are.
+    mismatch
+        Part by which the octave energies beyond the harmonics missed their known sum before they
+        were scaled to it: a measure of their error.
+    """
+
+    diagonal: float
+    area: float
+    total_energy: float
+    frequencies: Array
+    amplitudes: Array
+    octave_feature_sizes: Array
+    octave_energies: Array
+    octave_amplitudes: Array
+    cumulative_energy: Array
+    feature_size_50: float
+    feature_size_90: float
+    feature_size_99: float
+    mismatch: float
+
+    @classmethod
+    def from_report(cls, report: dict[str, Any]) -> GeometrySpectrum:
+        """Take the filter's report, with arrays or with lists."""
+        values: dict[str, Any] = {}
+        for field in fields(cls):
+            value = report[field.name]
+            values[field.name] = np.array(value) if np.ndim(value) else float(value)
+        return cls(**values)
+
+
+def geometry_spectrum(
+    vertices: ArrayLike,
+    faces: ArrayLike,
+    basis_size: int = DEFAULT_BASIS_SIZE,
+    laplacian: LaplacianKind = "intrinsic delaunay",
+) -> GeometrySpectrum:
+    """Measure how much of a shape is in details of which size.
+
+    With the harmonics ``W phi_i = omega_i^2 D phi_i`` of the mesh and its coordinates X, an energy
+    is a sum of ``|phi_i^T D X|^2``: of single harmonics for the lowest ones, and of octaves over
+    the whole spectrum.
+
+    Parameters
+    ----------
+    vertices
+        n x 3 coordinates, finite.
+    faces
+        m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
+    basis_size
+        How many harmonics are told one by one, the constant ones included; at least 1. Below n, or
+        n at most 2,000.
+    laplacian
+        "intrinsic delaunay" works on any triangles; for "cotangent" every one needs an area.
+
+    Returns
+    -------
+    GeometrySpectrum
+        In the units of the mesh.
+
+    Raises
+    ------
+    ValueError
+        When an array does not have the shape or the type above, or an index is out of range.
+    OptionError
+        When there is no such `laplacian`, or `basis_size` is no whole number above 0.
+    FilterError
+        When the mesh has no faces, no area, or coordinates that are not finite, or `basis_size` is
+        too large for it.
+    PluginError
+        When the plugin cannot be loaded.
+
+    Examples
+    --------
+    >>> spectrum = geometry_spectrum(mesh.vertex_matrix(), mesh.face_matrix())
+    >>> for size, height in zip(spectrum.octave_feature_sizes, spectrum.octave_amplitudes):
+    ...     print(f"details of {size:.3g}: {height:.3g} high")
+    """
+    V, F = mesh_arrays(vertices, faces)
+    return GeometrySpectrum.from_report(measure(V, F, spectrum_parameters(basis_size, laplacian)))
+
+
+def measure(
+    V: Array, F: NDArray[Any], parameters: dict[str, Any], verbose: bool = False
+) -> dict[str, Any]:
+    """Apply the filter to a mesh; its report. With `verbose`, MeshLab writes its log."""
+    load()
+    import pymeshlab
+
+    mesh_set = pymeshlab.MeshSet(verbose=verbose)
+    mesh_set.add_mesh(pymeshlab.Mesh(V, F))
+    return call_filter(mesh_set, FILTER_NAME, parameters)
+
+
+def spectrum_parameters(basis_size: int, laplacian: str) -> dict[str, Any]:
+    """Check the options of the filter, and name them as pymeshlab does.
+
+    Raises
+    ------
+    OptionError
+        When one has a value that it cannot take.
+    """
+    if isinstance(basis_size, bool) or not isinstance(basis_size, int) or basis_size < 1:
+        raise OptionError(f"basis_size = {basis_size}: must be a whole number, at least 1")
+    if laplacian not in get_args(LaplacianKind):
+        raise OptionError(f"laplacian = {laplacian}: choose {', '.join(get_args(LaplacianKind))}")
+    return {"basis_size": basis_size, "laplacian": laplacian}

@@ -1,0 +1,169 @@
+"""The geometry spectrum is what an independent implementation with all eigenvectors computes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import fields
+from typing import Any
+
+import numpy as np
+import pytest
+import spectral_reference as reference
+from helpers import assert_same, diagonal, mesh_set_of, refusal, snapshot
+from meshlab_spectral import FilterError, GeometrySpectrum, OptionError, geometry_spectrum
+from numpy.typing import NDArray
+
+SPECTRUM = "get_geometry_spectrum"
+OCTAVES = 2e-3  # relative accuracy of an octave's energy
+
+Decimated = Callable[..., tuple[NDArray[Any], NDArray[Any]]]
+
+
+def reference_spectrum(
+    V: NDArray[Any], F: NDArray[Any], laplacian: str
+) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
+    """Frequencies and energies of all harmonics, constants without energy; and the area."""
+    W, d = reference.matrices(V, F, laplacian)
+    omega, energy = [], []
+    for part in reference.spectra(W, d, reference.components(len(V), F)):
+        c = part.Phi.T @ (part.d[:, None] * V[part.of])
+        c[0] = 0
+        omega.append(np.sqrt(part.lam))
+        energy.append((c**2).sum(axis=1))
+    frequencies, energies = np.concatenate(omega), np.concatenate(energy)
+    order = np.argsort(frequencies, kind="stable")
+    return frequencies[order], energies[order], float(d.sum())
+
+
+def octave_energies(
+    sizes: NDArray[np.float64], omega: NDArray[np.float64], energy: NDArray[np.float64]
+) -> list[float]:
+    """Energies of octaves with these middles, that merge as cos^2 over half an octave."""
+    with np.errstate(divide="ignore"):
+        x = -np.log2(2 * np.pi / omega / sizes[0])  # octaves from the first middle
+    result = []
+    for j in range(len(sizes)):
+        rise = np.sin(np.pi / 2 * np.clip(2 * (x - j + 0.5) + 0.5, 0, 1)) ** 2 if j else 1.0
+        fall = np.sin(np.pi / 2 * np.clip(2 * (x - j - 0.5) + 0.5, 0, 1)) ** 2
+        fall = fall if j < len(sizes) - 1 else 0.0
+        result.append(float(np.sum((rise - fall) * energy)))
+    return result
+
+
+@pytest.mark.parametrize("laplacian", ["cotangent", "intrinsic delaunay"])
+@pytest.mark.parametrize("basis_size", [10, 200])
+def test_all_of_it_agrees(
+    sample_name: str, basis_size: int, laplacian: Any, decimated: Decimated
+) -> None:
+    V, F = decimated(sample_name)
+    omega, energy, area = reference_spectrum(V, F, laplacian)
+    found = geometry_spectrum(V, F, basis_size, laplacian)
+
+    k = len(found.frequencies)
+    assert basis_size <= k < basis_size + 20
+    np.testing.assert_allclose(found.frequencies, omega[:k], rtol=1e-6, atol=1e-6 * omega[k])
+    # Harmonics of nearly equal frequency may mix: the energies of all of them do not.
+    np.testing.assert_allclose(
+        np.cumsum(found.amplitudes**2), np.cumsum(energy[:k]) / area, rtol=1e-5
+    )
+    assert found.diagonal == pytest.approx(diagonal(V), rel=1e-12)
+    assert found.area == pytest.approx(area, rel=1e-12)
+    assert found.total_energy == pytest.approx(energy.sum(), rel=1e-9)
+
+    expected = octave_energies(found.octave_feature_sizes, omega, energy)
+    np.testing.assert_allclose(found.octave_energies, expected, rtol=OCTAVES)
+    assert found.octave_energies.sum() == pytest.approx(energy.sum(), rel=1e-9)
+    np.testing.assert_allclose(
+        found.octave_amplitudes, np.sqrt(found.octave_energies / area), rtol=1e-12
+    )
+    np.testing.assert_allclose(
+        found.cumulative_energy, np.cumsum(found.octave_energies) / energy.sum(), rtol=1e-9
+    )
+    for share, size in (
+        (0.5, found.feature_size_50),
+        (0.9, found.feature_size_90),
+        (0.99, found.feature_size_99),
+    ):
+        exact = 2 * np.pi / omega[np.searchsorted(np.cumsum(energy), share * energy.sum())]
+        within_basis = exact > 1.001 * 2 * np.pi / omega[k - 1]
+        assert abs(np.log2(size / exact)) < (1e-4 if within_basis else 0.75)
+
+
+def test_octaves_are_powers_of_two_of_the_diagonal_and_hold_all_frequencies(
+    sample_name: str, decimated: Decimated
+) -> None:
+    V, F = decimated(sample_name)
+    omega, _, _ = reference_spectrum(V, F, "intrinsic delaunay")
+    found = geometry_spectrum(V, F, 20)
+    powers = np.log2(found.octave_feature_sizes / diagonal(V))
+    np.testing.assert_allclose(powers, np.round(powers), atol=1e-12)
+    np.testing.assert_allclose(np.diff(powers), -1, atol=1e-12)
+    largest, smallest = 2 * np.pi / omega[[1, -1]]
+    assert abs(np.log2(found.octave_feature_sizes[0] / largest)) <= 0.5001
+    assert abs(np.log2(found.octave_feature_sizes[-1] / smallest)) <= 0.5001
+
+
+def test_noise_shows_in_the_small_octaves_with_its_height_and_nowhere_else(
+    decimated: Decimated,
+) -> None:
+    V, F = decimated("bone.ply")
+    before = geometry_spectrum(V, F, 50)
+    height = 0.003 * before.diagonal
+    normals = np.zeros_like(V)
+    a, b, c = (V[F[:, corner]] for corner in range(3))
+    np.add.at(normals, F, np.cross(b - a, c - a)[:, None])
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    noise = height * np.random.default_rng(1).standard_normal((len(V), 1)) * normals
+    after = geometry_spectrum(V + noise, F, 50)
+    large = before.octave_feature_sizes > 0.2 * before.diagonal
+    total = [np.linalg.norm(each.octave_amplitudes[: large.sum()]) for each in (before, after)]
+    assert total[1] == pytest.approx(total[0], rel=0.02)
+    small = [np.linalg.norm(each.octave_amplitudes[-2:]) for each in (before, after)]
+    # Not all of it: some of the noise is longer.
+    assert 0.8 * height < np.sqrt(small[1] ** 2 - small[0] ** 2) < 1.05 * height
+
+
+def test_the_filter_reports_everything_and_leaves_the_mesh_as_it_was(decimated: Decimated) -> None:
+    mesh_set = mesh_set_of(*decimated("cow.obj"))
+    before = snapshot(mesh_set.current_mesh())
+    report = mesh_set.get_geometry_spectrum(basis_size=30)
+    assert report.keys() == {field.name for field in fields(GeometrySpectrum)}
+    assert_same(before, snapshot(mesh_set.current_mesh()))
+
+
+def test_a_small_mesh_has_all_of_its_harmonics() -> None:
+    found = geometry_spectrum([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    assert found.frequencies.shape == (3,)
+    assert found.octave_energies.sum() == pytest.approx(found.total_energy)
+
+
+def test_a_basis_as_large_as_a_large_mesh_is_refused(decimated: Decimated) -> None:
+    V, F = decimated("bunny.obj", 5000)
+    with pytest.raises(FilterError, match=f"choose at most {len(V) - 1}"):
+        geometry_spectrum(V, F, len(V))
+
+
+@pytest.mark.parametrize("basis_size", [0, -1, 2.5, True])
+def test_a_basis_size_that_is_no_number_of_harmonics_is_refused(basis_size: Any) -> None:
+    with pytest.raises(OptionError, match="basis_size"):
+        geometry_spectrum([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], basis_size)
+
+
+def test_an_unknown_laplacian_is_refused_with_the_choices(decimated: Decimated) -> None:
+    unknown: Any = "graph"
+    with pytest.raises(OptionError, match="intrinsic delaunay, cotangent"):
+        geometry_spectrum(*decimated("cow.obj"), laplacian=unknown)
+
+
+def test_a_mesh_that_cannot_be_measured_is_refused_and_left_as_it_was(
+    decimated: Decimated,
+) -> None:
+    V, F = decimated("cow.obj")
+    with pytest.raises(FilterError, match="no faces"):
+        geometry_spectrum(V, F[:0])
+    with pytest.raises(ValueError, match="vertex"):
+        geometry_spectrum(V, F + len(V))
+    mesh_set = mesh_set_of(V, F)
+    before = snapshot(mesh_set.current_mesh())
+    assert "basis_size" in refusal(mesh_set, filter_name=SPECTRUM, basis_size=0)
+    assert_same(before, snapshot(mesh_set.current_mesh()))
