@@ -65,6 +65,8 @@ ManifoldHarmonics manifoldHarmonics(const Vertices& V, const Faces& F,
     basis.Phi.conservativeResize(Eigen::NoChange, k);
     fixSigns(basis.Phi);
     harmonics.lambda = basis.lambda.head(k);
+    harmonics.residuals = basis.residuals.head(k);
+    harmonics.inertiaCount = static_cast<int>(basis.inertiaCount);
     harmonics.Phi = onMesh(mesh.surface, interior.extended(basis.Phi), V.rows());
     return harmonics;
 }

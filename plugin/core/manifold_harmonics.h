@@ -20,6 +20,11 @@ struct ManifoldHarmonics {
     Eigen::MatrixXd Phi;     ///< n x k, D-orthonormal, 1 / length; 0 at unreferenced vertices and
                              ///< on a fixed boundary.
     int wholeSize = 0;       ///< >= k: the size at which no group of equal eigenvalues is cut.
+
+    // The certificate; see HarmonicBasis.
+    Eigen::VectorXd residuals;  ///< k, relative, 0 for the constant modes.
+    int inertiaCount = 0;       ///< Eigenvalues below the first beyond wholeSize, counted by the
+                                ///< inertia of W - sigma D: equal to wholeSize, none is missing.
 };
 
 /// The k lowest manifold harmonics of a mesh, W phi = lambda D phi (Vallet and Levy 2008; Kovnatsky

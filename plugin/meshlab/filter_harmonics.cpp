@@ -28,7 +28,9 @@ const char* const kHelp =
     "in between. Its sign, which is arbitrary, is chosen so that the value farthest from zero is "
     "positive; of several such values (to within one millionth) that of the first vertex. Modes "
     "of equal eigenvalue, on symmetric shapes, may come in any mixture."
-    "<br><br>The report holds the eigenvalues; the frequency of a harmonic is the square root of "
+    "<br><br>None is missing: their number is checked against the inertia of a factorization "
+    "(Sylvester's law). The report holds that count, the relative residuals and the eigenvalues; "
+    "the frequency of a harmonic is the square root of "
     "its eigenvalue, and 2 pi over the frequency its wavelength. <b>Store basis</b> keeps all "
     "harmonics in the mesh, as the vertex attributes harmonic_0, harmonic_1 and so on."
     "<br><br>For more information see:"
@@ -81,6 +83,10 @@ std::string textOf(const spectral::ManifoldHarmonics& harmonics, int mode) {
     if (harmonics.wholeSize > size)
         text << "\n  the basis ends within a group of equal eigenvalues; basis_size = "
              << harmonics.wholeSize << " would hold all of it";
+    text << "\n  certificate: " << harmonics.inertiaCount
+         << " eigenvalues up to there by the inertia of W - sigma D, as many as found; largest "
+            "relative residual "
+         << harmonics.residuals.maxCoeff();
     return text.str();
 }
 
@@ -100,7 +106,10 @@ FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
         setAttributes(input.vertexIndex, kAttribute, harmonics.Phi, mesh);
     setQuality(input.vertexIndex, harmonics.Phi.col(mode), mesh);
     setDivergingColors(input.vertexIndex, harmonics.Phi.col(mode), mesh);
-    return {{{"eigenvalues", QVariant::fromValue(harmonics.lambda)}}, textOf(harmonics, mode)};
+    return {{{"eigenvalues", QVariant::fromValue(harmonics.lambda)},
+             {"residuals", QVariant::fromValue(harmonics.residuals)},
+             {"inertia_count", harmonics.inertiaCount}},
+            textOf(harmonics, mode)};
 }
 
 }  // namespace

@@ -56,8 +56,10 @@ def test_eigenvalues_and_harmonics_agree_with_scipy(
         HARMONICS, mode=5, basis_size=30, laplacian=laplacian, store_basis=True
     )
     lam, Phi = eigenpairs(V, F, 30, laplacian)
-    assert report.keys() == {"eigenvalues"}
-    assert len(report["eigenvalues"]) == 30
+    assert report.keys() == {"eigenvalues", "residuals", "inertia_count"}
+    assert len(report["eigenvalues"]) == len(report["residuals"]) == 30
+    assert (report["residuals"] < 1e-8).all()
+    assert report["inertia_count"] >= 30
     assert report["eigenvalues"][0] == 0
     np.testing.assert_allclose(report["eigenvalues"], lam, rtol=0, atol=1e-8 * lam[-1])
 
