@@ -3,7 +3,9 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <deque>
 #include <exception>
 #include <functional>
@@ -38,6 +40,9 @@ constexpr double kTolerance = 1e-8;
 
 /// Relative distance of eigenvalues of whose vectors nothing but orthogonality is well defined.
 constexpr double kEqual = 1e-6;
+
+/// From one report of progress to the next, at most.
+constexpr std::chrono::milliseconds kReportInterval{100};
 
 /// Waves of runs after which something must be wrong.
 constexpr int kMaxWaves = 12;
@@ -206,43 +211,60 @@ Run runOf(const Laplacian& laplacian, const ConstantModes& constants, Indefinite
     }
 }
 
-/// Executes tasks on all cores. Only the calling thread reports progress.
+/// Executes tasks on all cores.
 class Workers {
   public:
     Workers(const Laplacian& laplacian, const ConstantModes& constants)
-        : laplacian_(laplacian), constants_(constants) {
-        const std::size_t count = std::max(1U, std::thread::hardware_concurrency());
-        factors_.resize(count);
-    }
+        : laplacian_(laplacian),
+          constants_(constants),
+          factors_(std::max(1U, std::thread::hardware_concurrency())) {}
 
+    /// Only the calling thread reports progress, and it does nothing else: whatever the others do,
+    /// the caller can stop them at once.
     std::vector<Run> execute(const std::vector<Task>& tasks, const Progress& progress) {
         std::vector<Run> runs(tasks.size());
-        std::atomic<std::size_t> next{0}, finished{0};
+        std::atomic<std::size_t> next{0};
         std::atomic<bool> stop{false};
         std::exception_ptr failure;
-        std::mutex mutex;
-        const auto work = [&](std::size_t worker, bool reports) {
+        std::size_t finished = 0;
+        std::mutex mutex;  // guards failure and finished
+        std::condition_variable changed;
+        const auto work = [&](std::unique_ptr<IndefiniteFactor>& factor) {
             try {
-                if (!factors_[worker])
-                    factors_[worker] = std::make_unique<IndefiniteFactor>(laplacian_);
-                for (std::size_t t; !stop && (t = next++) < tasks.size(); ++finished)
-                    runs[t] = runOf(laplacian_, constants_, *factors_[worker], tasks[t], [&] {
+                if (!factor) factor = std::make_unique<IndefiniteFactor>(laplacian_);
+                for (std::size_t t; !stop && (t = next++) < tasks.size();) {
+                    runs[t] = runOf(laplacian_, constants_, *factor, tasks[t], [&] {
                         if (stop) throw Cancelled();
-                        if (reports)
-                            progress.report(
-                                static_cast<double>(finished) / static_cast<double>(tasks.size()),
-                                "computing the harmonics");
                     });
+                    const std::lock_guard<std::mutex> lock(mutex);
+                    ++finished;
+                    changed.notify_one();
+                }
             } catch (...) {
                 const std::lock_guard<std::mutex> lock(mutex);
                 if (!stop) failure = std::current_exception();
                 stop = true;
+                changed.notify_one();
             }
         };
         std::vector<std::thread> threads;
-        for (std::size_t w = 1; w < std::min(factors_.size(), tasks.size()); ++w)
-            threads.emplace_back(work, w, false);
-        work(0, true);
+        for (std::size_t w = 0; w < std::min(factors_.size(), tasks.size()); ++w)
+            threads.emplace_back(work, std::ref(factors_[w]));
+        try {
+            std::unique_lock<std::mutex> lock(mutex);
+            while (finished < tasks.size() && !stop) {
+                const double done =
+                    static_cast<double>(finished) / static_cast<double>(tasks.size());
+                lock.unlock();
+                progress.report(done, "computing the harmonics");
+                lock.lock();
+                if (finished < tasks.size() && !stop) changed.wait_for(lock, kReportInterval);
+            }
+        } catch (...) {
+            const std::lock_guard<std::mutex> lock(mutex);
+            failure = std::current_exception();
+            stop = true;
+        }
         for (std::thread& thread : threads) thread.join();
         if (failure) std::rethrow_exception(failure);
         return runs;

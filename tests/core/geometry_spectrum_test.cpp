@@ -262,10 +262,16 @@ TEST(GeometrySpectrum, CanBeInterruptedAtAnyStage) {
     const Progress counting([&](double, const std::string&) { return ++reports > 0; });
     geometrySpectrum(mesh.V, mesh.F, withBasis(20), counting);
     ASSERT_GT(reports, 3);
+    // How often the harmonics report depends on the threads.
     for (int stop = 1; stop <= reports; ++stop) {
         int seen = 0;
         const Progress progress([&](double, const std::string&) { return ++seen < stop; });
-        EXPECT_THROW(geometrySpectrum(mesh.V, mesh.F, withBasis(20), progress), Cancelled);
+        try {
+            geometrySpectrum(mesh.V, mesh.F, withBasis(20), progress);
+            EXPECT_LT(seen, stop);
+        } catch (const Cancelled&) {
+            EXPECT_EQ(seen, stop);
+        }
     }
 }
 
