@@ -1,16 +1,15 @@
 #pragma once
 
-#include <Eigen/SparseCholesky>
+#include <Eigen/Core>
 
 #include "laplacian.h"
+#include "shifted_ldlt.h"
 #include "types.h"
 
 namespace spectral {
 
-/// Sparse Cholesky factorization of W + s D, s > 0, with blocked solves; counts its own work.
-///
-/// The fill-reducing order and the symbolic analysis are made once for each pattern of W: a
-/// filter's steps change the numbers, not the connectivity.
+/// Sparse Cholesky factorization (square-root free, LDL^T) of the positive definite W + s D, s > 0;
+/// counts its own work.
 class ShiftedCholesky {
   public:
     /// @param shift  s > 0, in units of lambda (1 / length^2).
@@ -25,7 +24,7 @@ class ShiftedCholesky {
     /// Cholesky factor as it is.
     ///
     /// @param sigma  in units of lambda; must not be an eigenvalue.
-    /// @throws SolverFailure  when a pivot vanishes, i.e. sigma is too near an eigenvalue.
+    /// @throws SolverFailure  as ShiftedLdlt::factorize does.
     Index countEigenvaluesBelow(const Laplacian& laplacian, double sigma);
 
     /// Adds work that was done with other factors to the counts.
@@ -39,11 +38,7 @@ class ShiftedCholesky {
     int solves() const { return solves_; }                  ///< Columns solved for.
 
   private:
-    template <int Columns>
-    void solveColumns(const Eigen::MatrixXd& B, Index first, Eigen::MatrixXd& X) const;
-
-    Eigen::SimplicialLLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>> llt_;
-    SparseMatrix analyzed_;  // the last factorized matrix, for its pattern
+    ShiftedLdlt ldlt_;
     double shift_ = 0.0;
     int factorizations_ = 0;
     mutable int solves_ = 0;

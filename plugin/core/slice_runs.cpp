@@ -2,18 +2,12 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
-#include <atomic>
-#include <chrono>
 #include <cmath>
-#include <condition_variable>
-#include <exception>
-#include <functional>
-#include <mutex>
 #include <random>
-#include <thread>
 #include <utility>
 
 #include "errors.h"
+#include "parallel_tasks.h"
 
 namespace spectral {
 
@@ -26,15 +20,12 @@ constexpr Index kFirstCheck = 56, kCheckInterval = 8, kMaxDimension = 160;
 /// are purified afterwards, which lowers it further.
 constexpr double kTolerance = 1e-8;
 
-/// From one report of progress to the next, at most.
-constexpr std::chrono::milliseconds kReportInterval{100};
-
 /// The Lanczos recurrence of M = D^1/2 (W - sigma D)^-1 D^1/2 from one start vector, on the
 /// complement of the constants and of known vectors, with full reorthogonalization.
 class SliceLanczos {
   public:
     SliceLanczos(const Laplacian& laplacian, const ConstantModes& constants,
-                 const IndefiniteFactor& factor, const SliceTask& task)
+                 const ShiftedLdlt& factor, const SliceTask& task)
         : laplacian_(laplacian),
           constants_(constants),
           factor_(factor),
@@ -139,7 +130,7 @@ class SliceLanczos {
 
     const Laplacian& laplacian_;
     const ConstantModes& constants_;
-    const IndefiniteFactor& factor_;
+    const ShiftedLdlt& factor_;
     const Eigen::MatrixXd* known_;
     Eigen::VectorXd sqrtD_;
     Eigen::MatrixXd Q_;  // orthonormal
@@ -148,19 +139,19 @@ class SliceLanczos {
     Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz_;
 };
 
-SliceRun runOf(const Laplacian& laplacian, const ConstantModes& constants, IndefiniteFactor& factor,
-               const SliceTask& task, const std::function<void()>& tick) {
+SliceRun runOf(const Laplacian& laplacian, const ConstantModes& constants, ShiftedLdlt& factor,
+               const SliceTask& task, const StopPoint& stopPoint) {
     SliceRun run;
-    factor.factorize(task.sigma);
+    factor.factorize(laplacian, task.sigma);
     run.sigma = factor.shift();
     run.below = factor.eigenvaluesBelow();
-    tick();
+    stopPoint();
     if (task.down + task.up == 0) return run;  // a count was all that was asked for
     SliceLanczos lanczos(laplacian, constants, factor, task);
     Index check = std::min(kFirstCheck, 2 * (task.down + task.up) + 8);
     for (;;) {
         lanczos.extend();
-        tick();
+        stopPoint();
         if (!lanczos.exhausted() && lanczos.dimension() < check) continue;
         const auto [down, up] = lanczos.converged();
         if ((down >= task.down && up >= task.up) || lanczos.exhausted() ||
@@ -178,54 +169,19 @@ SliceRun runOf(const Laplacian& laplacian, const ConstantModes& constants, Indef
 SliceWorkers::SliceWorkers(const Laplacian& laplacian, const ConstantModes& constants)
     : laplacian_(laplacian),
       constants_(constants),
-      factors_(std::max(1U, std::thread::hardware_concurrency())) {}
+      factors_(static_cast<std::size_t>(workerCount())) {}
 
 std::vector<SliceRun> SliceWorkers::execute(const std::vector<SliceTask>& tasks,
                                             const Progress& progress) {
     std::vector<SliceRun> runs(tasks.size());
-    std::atomic<std::size_t> next{0};
-    std::atomic<bool> stop{false};
-    std::exception_ptr failure;
-    std::size_t finished = 0;
-    std::mutex mutex;  // guards failure and finished
-    std::condition_variable changed;
-    const auto work = [&](std::unique_ptr<IndefiniteFactor>& factor) {
-        try {
-            if (!factor) factor = std::make_unique<IndefiniteFactor>(laplacian_);
-            for (std::size_t t; !stop && (t = next++) < tasks.size();) {
-                runs[t] = runOf(laplacian_, constants_, *factor, tasks[t], [&] {
-                    if (stop) throw Cancelled();
-                });
-                const std::lock_guard<std::mutex> lock(mutex);
-                ++finished;
-                changed.notify_one();
-            }
-        } catch (...) {
-            const std::lock_guard<std::mutex> lock(mutex);
-            if (!stop) failure = std::current_exception();
-            stop = true;
-            changed.notify_one();
-        }
-    };
-    std::vector<std::thread> threads;
-    for (std::size_t w = 0; w < std::min(factors_.size(), tasks.size()); ++w)
-        threads.emplace_back(work, std::ref(factors_[w]));
-    try {
-        std::unique_lock<std::mutex> lock(mutex);
-        while (finished < tasks.size() && !stop) {
-            const double done = static_cast<double>(finished) / static_cast<double>(tasks.size());
-            lock.unlock();
-            progress.report(done, "computing the harmonics");
-            lock.lock();
-            if (finished < tasks.size() && !stop) changed.wait_for(lock, kReportInterval);
-        }
-    } catch (...) {
-        const std::lock_guard<std::mutex> lock(mutex);
-        failure = std::current_exception();
-        stop = true;
-    }
-    for (std::thread& thread : threads) thread.join();
-    if (failure) std::rethrow_exception(failure);
+    runInParallel(
+        static_cast<Index>(tasks.size()),
+        [&](Index task, int worker, const StopPoint& stopPoint) {
+            const auto t = static_cast<std::size_t>(task);
+            ShiftedLdlt& factor = factors_[static_cast<std::size_t>(worker)];
+            runs[t] = runOf(laplacian_, constants_, factor, tasks[t], stopPoint);
+        },
+        progress, "computing the harmonics");
     return runs;
 }
 

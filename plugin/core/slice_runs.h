@@ -1,13 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <memory>
 #include <vector>
 
 #include "components.h"
-#include "indefinite_factor.h"
 #include "laplacian.h"
 #include "progress.h"
+#include "shifted_ldlt.h"
 #include "types.h"
 
 namespace spectral {
@@ -39,15 +38,14 @@ class SliceWorkers {
     SliceWorkers(const Laplacian& laplacian, const ConstantModes& constants);
 
     /// Does the tasks, each with a factorization of its own; the results are in their order and do
-    /// not depend on the number of cores. Only the calling thread reports progress, and it does
-    /// nothing else: whatever the others do, the caller can stop them at once.
+    /// not depend on the number of cores.
     /// @throws SolverFailure  of any run; Cancelled.
     std::vector<SliceRun> execute(const std::vector<SliceTask>& tasks, const Progress& progress);
 
   private:
     const Laplacian& laplacian_;
     const ConstantModes& constants_;
-    std::vector<std::unique_ptr<IndefiniteFactor>> factors_;  // one for each core, made when needed
+    std::vector<ShiftedLdlt> factors_;  // one for each worker
 };
 
 }  // namespace spectral

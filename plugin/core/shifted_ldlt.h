@@ -7,18 +7,17 @@
 
 namespace spectral {
 
-/// LDL^T factorization of W - sigma D for shifts inside the spectrum, where it is indefinite.
+/// LDL^T factorization of W - sigma D for any shift: below the spectrum, where the matrix is
+/// positive definite, or inside it, where it is indefinite.
 ///
 /// It serves twice: for solves, and by the signs of its pivots as a count of eigenvalues
-/// (Sylvester's law of inertia). The fill-reducing order and the symbolic analysis are made once.
-class IndefiniteFactor {
+/// (Sylvester's law of inertia). The fill-reducing order and the symbolic analysis are made once
+/// for each pattern of W: shifts and a filter's steps change the numbers, not the connectivity.
+class ShiftedLdlt {
   public:
-    /// @param laplacian  kept by reference.
-    explicit IndefiniteFactor(const Laplacian& laplacian);
-
     /// @param sigma  in units of lambda (1 / length^2); moved a little when a pivot vanishes.
-    /// @throws SolverFailure  when pivots vanish at every shift nearby.
-    void factorize(double sigma);
+    /// @throws SolverFailure  when pivots vanish, or are not finite, at every shift nearby.
+    void factorize(const Laplacian& laplacian, double sigma);
 
     double shift() const { return shift_; }
 
@@ -33,8 +32,8 @@ class IndefiniteFactor {
     template <int Columns>
     void solveColumns(const Eigen::MatrixXd& B, Index first, Eigen::MatrixXd& X) const;
 
-    const Laplacian& laplacian_;
     Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>> ldlt_;
+    SparseMatrix shifted_;  // the last factorized matrix, for its pattern
     Eigen::VectorXd pivots_;
     double shift_ = 0.0;
     Index below_ = 0;

@@ -1,5 +1,6 @@
-#include "indefinite_factor.h"
+#include "shifted_ldlt.h"
 
+#include <algorithm>
 #include <string>
 
 #include "errors.h"
@@ -13,20 +14,25 @@ constexpr int kMaxAttempts = 4;
 /// Relative change of a shift that has met an eigenvalue of a leading minor.
 constexpr double kNudge = 1e-7;
 
-}  // namespace
-
-IndefiniteFactor::IndefiniteFactor(const Laplacian& laplacian) : laplacian_(laplacian) {
-    ldlt_.analyzePattern(laplacian.W);
+bool samePattern(const SparseMatrix& A, const SparseMatrix& B) {
+    return A.rows() == B.rows() && A.nonZeros() == B.nonZeros() &&
+           std::equal(A.outerIndexPtr(), A.outerIndexPtr() + A.outerSize() + 1,
+                      B.outerIndexPtr()) &&
+           std::equal(A.innerIndexPtr(), A.innerIndexPtr() + A.nonZeros(), B.innerIndexPtr());
 }
 
-void IndefiniteFactor::factorize(double sigma) {
+}  // namespace
+
+void ShiftedLdlt::factorize(const Laplacian& laplacian, double sigma) {
+    if (!samePattern(shifted_, laplacian.W)) ldlt_.analyzePattern(laplacian.W);
     for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
         shift_ = sigma * (1.0 + attempt * kNudge);
-        SparseMatrix A = laplacian_.W;
-        A.diagonal() -= shift_ * laplacian_.D;
-        ldlt_.factorize(A);
+        shifted_ = laplacian.W;
+        shifted_.diagonal() -= shift_ * laplacian.D;
+        ldlt_.factorize(shifted_);
         if (ldlt_.info() != Eigen::Success) continue;
         pivots_ = ldlt_.vectorD();
+        if (!pivots_.allFinite()) continue;
         below_ = (pivots_.array() < 0.0).count();
         return;
     }
@@ -34,17 +40,22 @@ void IndefiniteFactor::factorize(double sigma) {
                         std::to_string(sigma));
 }
 
-Eigen::MatrixXd IndefiniteFactor::solve(const Eigen::MatrixXd& B) const {
+Eigen::MatrixXd ShiftedLdlt::solve(const Eigen::MatrixXd& B) const {
     Eigen::MatrixXd X(B.rows(), B.cols());
+    // The factor is far larger than the cache: each pass over it serves as many columns as it can.
     Index c = 0;
     for (; c + 4 <= B.cols(); c += 4) solveColumns<4>(B, c, X);
-    for (; c < B.cols(); ++c) solveColumns<1>(B, c, X);
+    switch (B.cols() - c) {
+        case 3: solveColumns<3>(B, c, X); break;
+        case 2: solveColumns<2>(B, c, X); break;
+        case 1: solveColumns<1>(B, c, X); break;
+        default: break;
+    }
     return X;
 }
 
 template <int Columns>
-void IndefiniteFactor::solveColumns(const Eigen::MatrixXd& B, Index first,
-                                    Eigen::MatrixXd& X) const {
+void ShiftedLdlt::solveColumns(const Eigen::MatrixXd& B, Index first, Eigen::MatrixXd& X) const {
     // Strictly below the diagonal; the diagonal of L is 1.
     const SparseMatrix& L = ldlt_.matrixL().nestedExpression();
     const Eigen::VectorXi& order = ldlt_.permutationP().indices();

@@ -1,0 +1,72 @@
+#include "parallel_tasks.h"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "errors.h"
+
+namespace spectral {
+
+namespace {
+
+/// From one report of progress to the next, at most.
+constexpr std::chrono::milliseconds kReportInterval{100};
+
+}  // namespace
+
+int workerCount() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
+
+void runInParallel(Index count, const std::function<void(Index, int, const StopPoint&)>& work,
+                   const Progress& progress, const std::string& stage) {
+    std::atomic<Index> next{0};
+    std::atomic<bool> stop{false};
+    std::exception_ptr failure;
+    Index finished = 0;
+    std::mutex mutex;  // guards failure and finished
+    std::condition_variable changed;
+    const StopPoint stopPoint = [&stop] {
+        if (stop) throw Cancelled();
+    };
+    const auto doTasks = [&](int worker) {
+        try {
+            for (Index task; !stop && (task = next++) < count;) {
+                work(task, worker, stopPoint);
+                const std::lock_guard<std::mutex> lock(mutex);
+                ++finished;
+                changed.notify_one();
+            }
+        } catch (...) {
+            const std::lock_guard<std::mutex> lock(mutex);
+            if (!stop) failure = std::current_exception();
+            stop = true;
+            changed.notify_one();
+        }
+    };
+    std::vector<std::thread> threads;
+    const int workers = static_cast<int>(std::min<Index>(workerCount(), count));
+    for (int worker = 0; worker < workers; ++worker) threads.emplace_back(doTasks, worker);
+    try {
+        std::unique_lock<std::mutex> lock(mutex);
+        while (finished < count && !stop) {
+            const double done = static_cast<double>(finished) / static_cast<double>(count);
+            lock.unlock();
+            progress.report(done, stage);
+            lock.lock();
+            if (finished < count && !stop) changed.wait_for(lock, kReportInterval);
+        }
+    } catch (...) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        failure = std::current_exception();
+        stop = true;
+    }
+    for (std::thread& thread : threads) thread.join();
+    if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace spectral
