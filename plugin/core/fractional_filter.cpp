@@ -144,6 +144,10 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     if (!result.toleranceReached)
         result.warnings.push_back(toleranceWarning(options.tolerance, steps));
     result.eigenvalues = evaluate.basis().lambda;
+    result.residuals = evaluate.basis().residuals;
+    result.inertiaCount = static_cast<int>(evaluate.basis().inertiaCount);
+    result.computedBases = evaluate.computedBases();
+    result.updatedBases = evaluate.updatedBases();
     return result;
 }
 

@@ -48,7 +48,13 @@ struct FilterResult {
                                 ///< the tolerance was not reached; see automatic_steps.h.
     std::vector<double> stepSizes;      ///< The fractional powers alpha, in their order; sum 1.
     std::vector<std::string> warnings;  ///< What fell short without being an error; sentences.
-    Eigen::VectorXd eigenvalues;        ///< Of the last step's basis, ascending; empty without one.
+
+    // Where a basis is used, the last step's one.
+    Eigen::VectorXd eigenvalues;  ///< k, ascending; empty without a basis.
+    Eigen::VectorXd residuals;    ///< k, relative; see HarmonicBasis. Empty for a dense basis.
+    int inertiaCount = 0;         ///< Harmonics that must be in it, by inertia; 0 for a dense one.
+    int computedBases = 0;        ///< Bases of all steps that were computed from nothing,
+    int updatedBases = 0;         ///< and those that were made of the one before.
 };
 
 /// Filters the geometry of a mesh: K steps X <- F^(1/K)(sqrt(A)) X, the Laplacian A taken anew from

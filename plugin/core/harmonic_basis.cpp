@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 
+#include "basis_certificate.h"
 #include "errors.h"
 #include "spectrum_slicing.h"
 
@@ -20,15 +21,7 @@ namespace {
 /// solver is the quicker one.
 constexpr Index kDenseVertices = 600, kDenseVerticesForMany = 4000;
 
-/// Neighbours whose overlaps are looked at: those of harmonics with distinct eigenvalues are bound
-/// by their residuals.
-constexpr Index kNeighbours = 16;
-
 constexpr int kMaxRestarts = 300;
-
-/// Neighbouring eigenvalues nearer than this part of the mean spacing lambda_k / k (Weyl's law)
-/// belong to one cluster: equal ones by symmetry, told apart by the mesh or by round-off only.
-constexpr double kClusterSpacing = 0.1;
 
 /// Matrix-vector product with D^-1/2 W D^-1/2.
 class ScaledStiffness {
@@ -60,42 +53,11 @@ class ScaledStiffness {
                         "degenerate triangles ('Remove Zero Area Faces')");
 }
 
-/// The number of pairs, from `asked` on, at which a spectrum may be cut; empty when every candidate
-/// lies inside a cluster. `lambda` ascends and has more than `asked` entries.
-std::optional<Index> cutOutsideClusters(const Eigen::VectorXd& lambda, Index asked) {
-    const double spacing = lambda[asked - 1] / static_cast<double>(asked);
-    for (Index k = asked; k < lambda.size(); ++k)
-        if (lambda[k] - lambda[k - 1] > kClusterSpacing * spacing) return k;
-    return std::nullopt;
-}
-
-void cut(HarmonicBasis& basis, Index size) {
-    basis.Phi.conservativeResize(Eigen::NoChange, size);
+/// Cuts the basis off at `size`, but for at most so many guards.
+void cut(HarmonicBasis& basis, Index size, Index guards) {
+    basis.Phi.conservativeResize(Eigen::NoChange, std::min(basis.Phi.cols(), size + guards));
     basis.lambda.conservativeResize(size);
-}
-
-/// Fills in the certificate of a basis that is as large as the inertia says.
-void certify(const Laplacian& laplacian, Index constants, HarmonicBasis& basis) {
-    const Index k = basis.size();
-    basis.inertiaCount = k;
-    basis.residuals = Eigen::VectorXd::Zero(k);
-    basis.largestOverlap = 0.0;
-    const Eigen::VectorXd invSqrtD = laplacian.D.cwiseSqrt().cwiseInverse();
-    for (Index i = 0; i < k; ++i) {
-        const Eigen::VectorXd phi = basis.Phi.col(i);
-        const Eigen::VectorXd Dphi = laplacian.D.cwiseProduct(phi);
-        const Index first = std::max<Index>(0, i - kNeighbours);
-        Eigen::VectorXd overlaps = basis.Phi.middleCols(first, i - first + 1).transpose() * Dphi;
-        overlaps[i - first] -= 1.0;
-        basis.largestOverlap = std::max(basis.largestOverlap, overlaps.cwiseAbs().maxCoeff());
-        if (i < constants) continue;
-        const Eigen::VectorXd residual = laplacian.W * phi - basis.lambda[i] * Dphi;
-        basis.residuals[i] = invSqrtD.cwiseProduct(residual).norm() / basis.lambda[i];
-    }
-    if (!basis.residuals.allFinite() || !std::isfinite(basis.largestOverlap))
-        throw SolverFailure(
-            "the harmonics are not finite numbers: the mesh probably has degenerate "
-            "triangles ('Remove Zero Area Faces')");
+    basis.inertiaCount = size;
 }
 
 }  // namespace
@@ -117,7 +79,7 @@ HarmonicBasis denseBasis(const Laplacian& laplacian, const ConstantModes& consta
 }
 
 HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& constants, Index k,
-                             ShiftedCholesky& cholesky, const Progress& progress) {
+                             ShiftedCholesky& cholesky, const Progress& progress, Index guards) {
     const Index n = laplacian.D.size(), c = constants.count();
     if (k >= n)
         throw InvalidOption("basis_size = " + std::to_string(k) + " needs more than " +
@@ -132,14 +94,14 @@ HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& co
     const bool dense = n <= kDenseVertices || (n <= kDenseVerticesForMany && 4 * k > n);
     if (dense) {
         HarmonicBasis basis = denseBasis(laplacian, constants);
-        cut(basis, cutOutsideClusters(basis.lambda, k).value_or(n));
-        certify(laplacian, c, basis);
+        cut(basis, cutOutsideClusters(basis.lambda, k).value_or(n), 0);
+        measureBasis(laplacian, c, basis, progress);
         return basis;
     }
     // Some pairs beyond k show whether k cuts a cluster; more are taken while it does.
-    for (Index guard = std::max<Index>(8, k / 20);; guard *= 2) {
-        const Index total = std::min(k + guard, n - 1);
-        LowestPairs pairs = lowestPairs(laplacian, constants, total, progress);
+    for (Index more = std::max({Index{8}, k / 20, guards});; more *= 2) {
+        const Index total = std::min(k + more, n - 1);
+        LowestPairs pairs = lowestPairs(laplacian, constants, total, progress.part(0.0, 0.95));
         cholesky.countWork(pairs.factorizations, pairs.solves);
         HarmonicBasis basis;
         basis.Phi = std::move(pairs.Phi);
@@ -156,13 +118,13 @@ HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& co
                 ? cholesky.countEigenvaluesBelow(
                       laplacian, 0.5 * (basis.lambda[*size - 1] + basis.lambda[*size]))
                 : basis.size();
-        cut(basis, *size);
+        cut(basis, *size, guards);
         if (counted != *size)
             throw SolverFailure("of the " + std::to_string(counted) +
                                 " harmonics that the inertia of W - sigma D counts, " +
                                 std::to_string(*size) +
                                 " were found; choose another basis_size, or spectrum = full");
-        certify(laplacian, c, basis);
+        measureBasis(laplacian, c, basis, progress.part(0.95, 1.0));
         return basis;
     }
 }
@@ -187,12 +149,13 @@ Eigen::MatrixXd applyInBasis(const HarmonicBasis& basis, const Eigen::VectorXd& 
 
     // With the manifold harmonic transform c = Phi^T D X:
     // Phi F c + F_h (X - Phi c) = F_h X + Phi (F - F_h) c.
-    const Eigen::MatrixXd spectrum = basis.Phi.transpose() * (D.asDiagonal() * centred);
+    const auto Phi = basis.Phi.leftCols(basis.size());
+    const Eigen::MatrixXd spectrum = Phi.transpose() * (D.asDiagonal() * centred);
     Eigen::VectorXd gains(basis.size());
     for (Index i = 0; i < basis.size(); ++i)
         gains[i] = gain(std::sqrt(std::max(0.0, basis.lambda[i]))) - residualGain;
     Eigen::MatrixXd Y = residualGain * centred;
-    Y.noalias() += basis.Phi * (gains.asDiagonal() * spectrum);
+    Y.noalias() += Phi * (gains.asDiagonal() * spectrum);
 
     constants.remove(Y);
     constants.add(means, Y);

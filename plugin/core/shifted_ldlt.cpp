@@ -44,6 +44,7 @@ Eigen::MatrixXd ShiftedLdlt::solve(const Eigen::MatrixXd& B) const {
     Eigen::MatrixXd X(B.rows(), B.cols());
     // The factor is far larger than the cache: each pass over it serves as many columns as it can.
     Index c = 0;
+    for (; c + 8 <= B.cols(); c += 8) solveColumns<8>(B, c, X);
     for (; c + 4 <= B.cols(); c += 4) solveColumns<4>(B, c, X);
     switch (B.cols() - c) {
         case 3: solveColumns<3>(B, c, X); break;

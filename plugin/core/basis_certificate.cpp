@@ -1,0 +1,64 @@
+#include "basis_certificate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "errors.h"
+#include "parallel_tasks.h"
+
+namespace spectral {
+
+namespace {
+
+/// Neighbours whose overlaps are looked at: those of harmonics with distinct eigenvalues are bound
+/// by their residuals.
+constexpr Index kNeighbours = 16;
+
+/// Harmonics that one task looks at.
+constexpr Index kColumns = 16;
+
+/// Neighbouring eigenvalues nearer than this part of the mean spacing lambda_k / k (Weyl's law)
+/// belong to one cluster: equal ones by symmetry, told apart by the mesh or by round-off only.
+constexpr double kClusterSpacing = 0.1;
+
+}  // namespace
+
+std::optional<Index> cutOutsideClusters(const Eigen::VectorXd& lambda, Index asked) {
+    const double spacing = lambda[asked - 1] / static_cast<double>(asked);
+    for (Index k = asked; k < lambda.size(); ++k)
+        if (lambda[k] - lambda[k - 1] > kClusterSpacing * spacing) return k;
+    return std::nullopt;
+}
+
+void measureBasis(const Laplacian& laplacian, Index constants, HarmonicBasis& basis,
+                  const Progress& progress) {
+    const Index k = basis.size();
+    const Eigen::VectorXd invSqrtD = laplacian.D.cwiseSqrt().cwiseInverse();
+    Eigen::VectorXd overlaps(k);
+    basis.residuals = Eigen::VectorXd::Zero(k);
+    runInParallel(
+        (k + kColumns - 1) / kColumns,
+        [&](Index task, int, const StopPoint& stopPoint) {
+            for (Index i = task * kColumns; i < std::min(k, (task + 1) * kColumns); ++i) {
+                stopPoint();
+                const Eigen::VectorXd phi = basis.Phi.col(i);
+                const Eigen::VectorXd Dphi = laplacian.D.cwiseProduct(phi);
+                const Index first = std::max<Index>(0, i - kNeighbours);
+                Eigen::VectorXd gram =
+                    basis.Phi.middleCols(first, i - first + 1).transpose() * Dphi;
+                gram[i - first] -= 1.0;
+                overlaps[i] = gram.cwiseAbs().maxCoeff();
+                if (i < constants) continue;
+                const Eigen::VectorXd residual = laplacian.W * phi - basis.lambda[i] * Dphi;
+                basis.residuals[i] = invSqrtD.cwiseProduct(residual).norm() / basis.lambda[i];
+            }
+        },
+        progress, "checking the harmonics");
+    basis.largestOverlap = overlaps.maxCoeff();
+    if (!basis.residuals.allFinite() || !overlaps.allFinite())
+        throw SolverFailure(
+            "the harmonics are not finite numbers: the mesh probably has degenerate "
+            "triangles ('Remove Zero Area Faces')");
+}
+
+}  // namespace spectral

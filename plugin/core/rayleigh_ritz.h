@@ -1,0 +1,23 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "laplacian.h"
+#include "progress.h"
+
+namespace spectral {
+
+/// The Rayleigh-Ritz procedure on the span of the columns of S: its best approximations of
+/// eigenpairs of W phi = lambda D phi, all at once.
+///
+/// Solves S^T W S z = theta S^T D S z, and replaces S by S Z, in place: beside S no second matrix
+/// of its size is needed. Works on all cores; the result does not depend on their number. The cost
+/// is 4 n m^2 floating-point operations.
+///
+/// @param S  n x m, of full rank; on return the Ritz vectors, D-orthonormal.
+/// @return theta, m Ritz values, ascending.
+/// @throws SolverFailure  when the columns are dependent to working precision; Cancelled.
+Eigen::VectorXd rayleighRitz(const Laplacian& laplacian, Eigen::Ref<Eigen::MatrixXd> S,
+                             const Progress& progress);
+
+}  // namespace spectral

@@ -1,0 +1,131 @@
+#include "core/basis_update.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/fractional_filter.h"
+#include "support/evaluation.h"
+#include "support/shapes.h"
+
+namespace spectral {
+namespace {
+
+using testing::Mesh;
+using testing::Operator;
+
+constexpr Index kHarmonics = 100, kGuards = 24;
+
+/// The mesh after the fractional power alpha of a low-pass of this feature size.
+Mesh filtered(const Mesh& mesh, double featureSize, double alpha) {
+    FilterOptions options;
+    options.featureSize = featureSize;
+    options.transferFunction.power = alpha;
+    options.steps = 1;
+    return {fractionalFilter(mesh.V, mesh.F, options).V, mesh.F};
+}
+
+HarmonicBasis withGuards(const Operator& A) {
+    ShiftedCholesky cholesky;
+    return truncatedBasis(A.laplacian, A.constants, kHarmonics, cholesky, {}, kGuards);
+}
+
+Mesh lumpy() { return testing::withNoise(testing::icosphere(4), 0.02, 7); }
+
+TEST(BasisUpdate, ComesNearTheBasisFromNothing) {
+    const Mesh before = lumpy(), after = filtered(before, 0.5, 0.1);
+    const Operator A(after);
+    HarmonicBasis basis = withGuards(Operator(before));
+    const BasisUpdateResult update =
+        updateBasis(A.laplacian, A.constants, kHarmonics, UpdateGate(), basis);
+    ASSERT_TRUE(update.accepted);
+
+    ShiftedCholesky cholesky;
+    const HarmonicBasis anew = truncatedBasis(A.laplacian, A.constants, kHarmonics, cholesky);
+    ASSERT_EQ(basis.size(), anew.size());
+    EXPECT_EQ(basis.inertiaCount, basis.size());
+    const Index k = basis.size();
+    const Eigen::VectorXd error =
+        (basis.lambda.tail(k - 1) - anew.lambda.tail(k - 1)).cwiseQuotient(anew.lambda.tail(k - 1));
+    EXPECT_LT(error.cwiseAbs().maxCoeff(), 1e-4);
+    EXPECT_GE(error.minCoeff(), -1e-9);  // Ritz values are upper bounds
+
+    const auto DPhi = A.laplacian.D.asDiagonal() * basis.Phi;
+    const Eigen::MatrixXd gram = basis.Phi.transpose() * DPhi;
+    EXPECT_LT((gram - Eigen::MatrixXd::Identity(gram.rows(), gram.cols())).cwiseAbs().maxCoeff(),
+              1e-8);
+}
+
+TEST(BasisUpdate, OfTheSameLaplacianChangesNothing) {
+    const Operator A(lumpy());
+    HarmonicBasis basis = withGuards(A);
+    const Eigen::VectorXd lambda = basis.lambda;
+    ASSERT_TRUE(updateBasis(A.laplacian, A.constants, kHarmonics, UpdateGate(), basis).accepted);
+    EXPECT_LT((basis.lambda - lambda).cwiseAbs().maxCoeff(), 1e-9 * lambda[lambda.size() - 1]);
+    EXPECT_LT(basis.residuals.maxCoeff(), 1e-6);
+}
+
+TEST(BasisUpdate, IsRefusedAfterALargeStep) {
+    const Mesh before = testing::withNoise(testing::cube(16), 0.03, 3);
+    Mesh after = before;  // squeezed flat, with all its lengths changed
+    after.V.col(2) *= 0.05;
+    after.V.col(0) = after.V.col(0).array() * (1.0 + 0.5 * after.V.col(0).array());
+    const Operator A(after);
+    HarmonicBasis basis = withGuards(Operator(before));
+    EXPECT_FALSE(updateBasis(A.laplacian, A.constants, kHarmonics, UpdateGate(), basis).accepted);
+}
+
+TEST(BasisUpdate, IsRefusedWithoutGuards) {
+    const Operator A(lumpy());
+    ShiftedCholesky cholesky;
+    HarmonicBasis basis = truncatedBasis(A.laplacian, A.constants, kHarmonics, cholesky);
+    EXPECT_FALSE(updateBasis(A.laplacian, A.constants, kHarmonics, UpdateGate(), basis).accepted);
+}
+
+TEST(BasisUpdate, DoesNotDependOnTheThreads) {
+    const Mesh before = lumpy();
+    const Operator A(filtered(before, 0.5, 0.1));
+    const HarmonicBasis start = withGuards(Operator(before));
+    HarmonicBasis once = start, again = start;
+    updateBasis(A.laplacian, A.constants, kHarmonics, UpdateGate(), once);
+    updateBasis(A.laplacian, A.constants, kHarmonics, UpdateGate(), again);
+    EXPECT_TRUE((once.Phi.array() == again.Phi.array()).all());
+}
+
+TEST(BasisUpdate, StopsWhenTheCallerWantsIt) {
+    const Operator A(lumpy());
+    HarmonicBasis basis = withGuards(A);
+    const Progress progress([](double, const std::string&) { return false; });
+    EXPECT_THROW(updateBasis(A.laplacian, A.constants, kHarmonics, UpdateGate(), basis, progress),
+                 Cancelled);
+}
+
+FilterOptions truncatedSteps(double featureSize, int steps) {
+    FilterOptions options;
+    options.featureSize = featureSize;
+    options.steps = steps;
+    options.evaluation.spectrum = Spectrum::Truncated;
+    options.evaluation.basisSize = static_cast<int>(kHarmonics);
+    return options;
+}
+
+TEST(TruncatedSteps, UpdateTheBasisAfterTheFirst) {
+    const Mesh mesh = lumpy();
+    const FilterResult result = fractionalFilter(mesh.V, mesh.F, truncatedSteps(0.5, 5));
+    EXPECT_EQ(result.computedBases, 1);
+    EXPECT_EQ(result.updatedBases, 4);
+    EXPECT_EQ(result.inertiaCount, result.eigenvalues.size());
+}
+
+TEST(TruncatedSteps, ComputeTheBasisAnewWhereTheGateTrips) {
+    const Mesh mesh = testing::withNoise(testing::cube(16), 0.05, 3);
+    FilterOptions options = truncatedSteps(0.3, 2);  // two strong steps: all detail goes in one
+    options.evaluation.reinjectResidual = false;
+    const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_EQ(result.computedBases, 2);
+    EXPECT_EQ(result.updatedBases, 0);
+    EXPECT_LT(result.residuals.maxCoeff(), 1e-7);
+}
+
+}  // namespace
+}  // namespace spectral
