@@ -63,7 +63,8 @@ Eigen::MatrixXd Interior::restricted(const Eigen::MatrixXd& X) const {
     return rows;
 }
 
-Eigen::MatrixXd Interior::extended(const Eigen::MatrixXd& values) const {
+Eigen::MatrixXd Interior::extended(Eigen::MatrixXd values) const {
+    if (isWhole()) return values;
     Eigen::MatrixXd X = Eigen::MatrixXd::Zero(surfaceComponents_.label.size(), values.cols());
     for (Index i = 0; i < size(); ++i) X.row(vertex_[i]) = values.row(i);
     return X;

@@ -47,7 +47,7 @@ class Interior {
     Eigen::MatrixXd restricted(const Eigen::MatrixXd& X) const;
 
     /// Values of the interior (rows of `values`) on the surface, 0 at fixed vertices: n x c.
-    Eigen::MatrixXd extended(const Eigen::MatrixXd& values) const;
+    Eigen::MatrixXd extended(Eigen::MatrixXd values) const;
 
   private:
     Components surfaceComponents_;

@@ -99,7 +99,7 @@ HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& co
         return basis;
     }
     // Some pairs beyond k show whether k cuts a cluster; more are taken while it does.
-    for (Index more = std::max({Index{8}, k / 20, guards});; more *= 2) {
+    for (Index more = std::max(Index{8}, guards);; more *= 2) {
         const Index total = std::min(k + more, n - 1);
         LowestPairs pairs = lowestPairs(laplacian, constants, total, progress.part(0.0, 0.95));
         cholesky.countWork(pairs.factorizations, pairs.solves);

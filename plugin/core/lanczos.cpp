@@ -1,12 +1,11 @@
 #include "lanczos.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include "errors.h"
+#include "tridiagonal.h"
 
 namespace spectral {
 
@@ -55,16 +54,11 @@ void LanczosColumn::extend(Eigen::VectorXd w) {
 LanczosColumn::Ritz LanczosColumn::ritz(double pole) const {
     const Index m = dimension();
     if (m == 0) return {};
-    const Eigen::VectorXd diagonal = Eigen::Map<const Eigen::VectorXd>(alpha_.data(), m);
-    const Eigen::VectorXd off = Eigen::Map<const Eigen::VectorXd>(beta_.data(), m - 1);
-    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
-    solver.computeFromTridiagonal(diagonal, off);
-    if (solver.info() != Eigen::Success)
-        throw SolverFailure("the tridiagonal eigenproblem of the Krylov space did not converge");
-    Ritz pairs{Eigen::VectorXd(m), solver.eigenvectors()};
+    TridiagonalEigenpairs T = eigenpairsOfTridiagonal(alpha_, beta_);
+    Ritz pairs{Eigen::VectorXd(m), std::move(T.vectors)};
     for (Index i = 0; i < m; ++i) {
         // theta = 1/(lambda + pole); round-off may push it out of (0, 1/pole].
-        const double theta = solver.eigenvalues()[i];
+        const double theta = T.values[i];
         const double lambda = theta > 0.0 ? std::max(0.0, 1.0 / theta - pole)
                                           : std::numeric_limits<double>::infinity();
         pairs.omega[i] = std::sqrt(lambda);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "cholesky.h"
 #include "errors.h"
@@ -67,7 +68,7 @@ ManifoldHarmonics manifoldHarmonics(const Vertices& V, const Faces& F,
     harmonics.lambda = basis.lambda.head(k);
     harmonics.residuals = basis.residuals.head(k);
     harmonics.inertiaCount = static_cast<int>(basis.inertiaCount);
-    harmonics.Phi = onMesh(mesh.surface, interior.extended(basis.Phi), V.rows());
+    harmonics.Phi = onMesh(mesh.surface, interior.extended(std::move(basis.Phi)), V.rows());
     return harmonics;
 }
 

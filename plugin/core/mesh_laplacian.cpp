@@ -20,7 +20,8 @@ MeshLaplacian meshLaplacian(const Vertices& V, const Faces& F, LaplacianKind kin
     return {std::move(surface), std::move(components), std::move(laplacian), std::move(constants)};
 }
 
-Eigen::MatrixXd onMesh(const Surface& surface, const Eigen::MatrixXd& values, Index vertexCount) {
+Eigen::MatrixXd onMesh(const Surface& surface, Eigen::MatrixXd values, Index vertexCount) {
+    if (values.rows() == vertexCount) return values;
     Eigen::MatrixXd all = Eigen::MatrixXd::Zero(vertexCount, values.cols());
     for (Index i = 0; i < values.rows(); ++i) all.row(surface.vertex[i]) = values.row(i);
     return all;

@@ -25,6 +25,6 @@ MeshLaplacian meshLaplacian(const Vertices& V, const Faces& F, LaplacianKind kin
 /// vertices.
 ///
 /// @param vertexCount  n of the mesh that the surface was taken from.
-Eigen::MatrixXd onMesh(const Surface& surface, const Eigen::MatrixXd& values, Index vertexCount);
+Eigen::MatrixXd onMesh(const Surface& surface, Eigen::MatrixXd values, Index vertexCount);
 
 }  // namespace spectral

@@ -1,6 +1,5 @@
 #include "slice_runs.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -8,30 +7,43 @@
 
 #include "errors.h"
 #include "parallel_tasks.h"
+#include "tridiagonal.h"
 
 namespace spectral {
 
 namespace {
 
 /// Krylov dimensions: at the first check of convergence, from check to check, and at most.
-constexpr Index kFirstCheck = 56, kCheckInterval = 8, kMaxDimension = 160;
+constexpr Index kFirstCheck = 48, kCheckInterval = 6, kMaxDimension = 160;
 
 /// Residual of a Ritz pair of the shift-inverted operator, relative to its eigenvalue. The pairs
 /// are purified afterwards, which lowers it further.
 constexpr double kTolerance = 1e-8;
 
+/// Relative distance of eigenvalues, or gaps between them, that are taken for equal.
+constexpr double kEqual = 1e-6;
+
+/// Length of what is left of a vector of an invariant space, beside the vector's own.
+constexpr double kTiny = 1e-13;
+
+/// Rows that are rotated, and columns that are purified, at a time: small beside the space.
+constexpr Index kRows = 512, kColumns = 4;
+
+constexpr const char* kStage = "computing the harmonics";
+
 /// The Lanczos recurrence of M = D^1/2 (W - sigma D)^-1 D^1/2 from one start vector, on the
 /// complement of the constants and of known vectors, with full reorthogonalization.
 class SliceLanczos {
   public:
+    /// @param Q  storage for the basis of the space: n rows, and columns for its largest dimension.
     SliceLanczos(const Laplacian& laplacian, const ConstantModes& constants,
-                 const ShiftedLdlt& factor, const SliceTask& task)
+                 const ShiftedLdlt& factor, const SliceTask& task, Eigen::MatrixXd& Q)
         : laplacian_(laplacian),
           constants_(constants),
           factor_(factor),
-          known_(task.known),
+          task_(task),
           sqrtD_(laplacian.D.cwiseSqrt()),
-          Q_(sqrtD_.size(), std::min<Index>(kFirstCheck + 3 * kCheckInterval, sqrtD_.size())) {
+          Q_(Q) {
         std::mt19937 random(task.seed);
         std::uniform_real_distribution<double> uniform(-1.0, 1.0);
         Eigen::MatrixXd start(sqrtD_.size(), 1);
@@ -59,62 +71,119 @@ class SliceLanczos {
         if (w.norm() < 0.5 * before) reorthogonalize(w);
         const double beta = w.norm();
         beta_.push_back(beta);
-        if (!(beta > 1e-13 * scale) || j + 1 == Q_.rows()) {
-            beta_.back() = 0.0;
+        if (!(beta > kTiny * scale) || j + 1 == Q_.cols()) {
+            if (j + 1 < Q_.cols()) beta_.back() = 0.0;  // an invariant space
             exhausted_ = true;
             return;
         }
-        if (j + 1 == Q_.cols())
-            Q_.conservativeResize(Eigen::NoChange, std::min(Q_.rows(), Q_.cols() + 32));
         Q_.col(j + 1) = w / beta;
     }
 
-    /// Looks at the Ritz pairs; returns how many have converged below and above the shift, counted
-    /// from the shift on up to the first that has not.
-    std::pair<Index, Index> converged() {
+    /// Looks at the Ritz pairs, counted from the shift on up to the first that has not converged.
+    void examine() {
         const Index m = dimension();
-        ritz_.computeFromTridiagonal(Eigen::Map<const Eigen::VectorXd>(alpha_.data(), m),
-                                     Eigen::Map<const Eigen::VectorXd>(beta_.data(), m - 1));
-        if (ritz_.info() != Eigen::Success)
-            throw SolverFailure("the eigenproblem of a Krylov space did not converge");
-        // theta = 1 / (lambda - sigma): the ends of its range are next to the shift.
-        // Between -1 / sigma and 0 it would be negative: round-off.
-        Index down = 0, up = 0;
+        ritz_ = eigenpairsOfTridiagonal(alpha_, beta_);
+        // theta = 1 / (lambda - sigma): the ends of its range are next to the shift. Between
+        // -1 / sigma and 0 lambda would be negative: round-off.
+        const Eigen::VectorXd& theta = ritz_.values;
         const double least = -1.0 / factor_.shift();
-        while (down < m && ritz_.eigenvalues()[down] < least && isConverged(down)) ++down;
-        while (up < m && ritz_.eigenvalues()[m - 1 - up] > 0.0 && isConverged(m - 1 - up)) ++up;
-        return {down, up};
-    }
-
-    /// The first `down` and `up` Ritz pairs on either side of the shift, in ascending order.
-    void pairs(Index down, Index up, SliceRun& run) const {
-        const Index m = dimension();
-        Eigen::MatrixXd Z(m, down + up);
-        Eigen::VectorXd theta(down + up);
+        Index down = 0, up = 0;
+        while (down < m && theta[down] < least && isConverged(down)) ++down;
+        while (up < m && theta[m - 1 - up] > 0.0 && isConverged(m - 1 - up)) ++up;
         // Below the shift lambda falls as theta rises towards 0; above it lambda rises as theta
         // falls.
-        for (Index i = 0; i < down; ++i) {
-            Z.col(i) = ritz_.eigenvectors().col(down - 1 - i);
-            theta[i] = ritz_.eigenvalues()[down - 1 - i];
+        ritzOf_.clear();
+        for (Index i = down - 1; i >= 0; --i) ritzOf_.push_back(i);
+        for (Index i = 0; i < up; ++i) ritzOf_.push_back(m - 1 - i);
+        lambda_.resize(down + up);
+        for (Index i = 0; i < lambda_.size(); ++i)
+            lambda_[i] = factor_.shift() + 1.0 / theta[ritzOf_[static_cast<std::size_t>(i)]];
+        // An edge is reached by a pair beyond it. Below the edge at 0 there is none: it is reached
+        // when no pair that has not converged is left.
+        const Index c = lambda_.size();
+        const double first = task_.from.lambda - task_.from.window;
+        reachedFrom_ =
+            first > 0.0 ? down > 0 && lambda_[0] < first : !(down < m && theta[down] < least);
+        reachedTo_ = up > 0 && lambda_[c - 1] > task_.to.lambda + task_.to.window;
+    }
+
+    bool reachedFrom() const { return reachedFrom_; }
+    bool reachedTo() const { return reachedTo_; }
+
+    /// The part of the slice that converged pairs cover.
+    double coveredFrom() const {
+        if (reachedFrom_) return resolved(task_.from);
+        return lambda_.size() > 0 && lambda_[0] < factor_.shift() ? lambda_[0] * (1.0 - kEqual)
+                                                                  : factor_.shift();
+    }
+    double coveredTo() const {
+        if (reachedTo_) return resolved(task_.to);
+        const Index c = lambda_.size();
+        return c > 0 && lambda_[c - 1] > factor_.shift() ? lambda_[c - 1] * (1.0 + kEqual)
+                                                         : factor_.shift();
+    }
+
+    /// The converged pairs of the covered part.
+    std::vector<Index> covered() const {
+        const double from = coveredFrom(), to = coveredTo();
+        std::vector<Index> pairs;
+        for (Index i = 0; i < lambda_.size(); ++i)
+            if (lambda_[i] > from && lambda_[i] < to) pairs.push_back(i);
+        return pairs;
+    }
+
+    /// Puts the covered pairs into the store; ends the recurrence. Returns their number.
+    Index deliver(PairStore& store) {
+        const std::vector<Index> taken = covered();
+        const Index m = dimension(), count = static_cast<Index>(taken.size());
+        Eigen::MatrixXd Z(m, count);
+        Eigen::VectorXd lambda(count);
+        for (Index i = 0; i < count; ++i) {
+            const Index pair = taken[static_cast<std::size_t>(i)];
+            Z.col(i) = ritz_.vectors.col(ritzOf_[static_cast<std::size_t>(pair)]);
+            lambda[i] = lambda_[pair];
         }
-        for (Index i = 0; i < up; ++i) {
-            Z.col(down + i) = ritz_.eigenvectors().col(m - 1 - i);
-            theta[down + i] = ritz_.eigenvalues()[m - 1 - i];
+        const Index n = Q_.rows(), first = store.claim(lambda, task_.seed);
+        for (Index row = 0; row < n; row += kRows) {  // Q <- Q Z, in place
+            const Index rows = std::min(kRows, n - row);
+            const Eigen::MatrixXd ritz = Q_.block(row, 0, rows, m) * Z;
+            Q_.block(row, 0, rows, count) = ritz;
         }
-        run.lambda = run.sigma + theta.cwiseInverse().array();
-        // Purification: one more inverse iteration takes away what is not in the Krylov space.
-        const Eigen::MatrixXd ritz = Q_.leftCols(m) * Z;
-        run.Phi = factor_.solve(sqrtD_.asDiagonal() * ritz);
-        project(run.Phi);
-        for (Index i = 0; i < run.Phi.cols(); ++i)
-            run.Phi.col(i) /= sqrtD_.cwiseProduct(run.Phi.col(i)).norm();
+        for (Index i = 0; i < count; i += kColumns) {
+            // Purification: one more inverse iteration takes away what is not in the Krylov space.
+            const Index columns = std::min(kColumns, count - i);
+            Eigen::MatrixXd phi = factor_.solve(sqrtD_.asDiagonal() * Q_.middleCols(i, columns));
+            project(phi);
+            for (Index j = 0; j < columns; ++j)
+                phi.col(j) /= sqrtD_.cwiseProduct(phi.col(j)).norm();
+            store.vectors(first + i, columns) = phi;
+        }
+        return count;
     }
 
   private:
+    /// The widest gap within the window of an edge that the eigenvalues leave.
+    double resolved(const SliceEdge& edge) const {
+        double at = edge.lambda, widest = 0.0, last = edge.lambda - edge.window;
+        const double end = edge.lambda + edge.window;
+        const auto look = [&](double next) {
+            // By a margin: of gaps equal but for round-off every run takes the first.
+            if (next - last > widest * (1.0 + kEqual)) {
+                widest = next - last;
+                at = 0.5 * (next + last);
+            }
+            last = next;
+        };
+        for (const double lambda : lambda_)
+            if (lambda > last && lambda < end) look(lambda);
+        look(end);
+        return at;
+    }
+
     void project(Eigen::MatrixXd& u) const {
         constants_.remove(u);
-        if (known_ != nullptr && known_->cols() > 0)
-            u -= *known_ * (known_->transpose() * (laplacian_.D.asDiagonal() * u));
+        if (task_.known.cols() > 0)
+            u -= task_.known * (task_.known.transpose() * (laplacian_.D.asDiagonal() * u));
     }
 
     void reorthogonalize(Eigen::VectorXd& w) const {
@@ -124,44 +193,49 @@ class SliceLanczos {
     }
 
     bool isConverged(Index i) const {
-        const double residual = beta_.back() * std::abs(ritz_.eigenvectors()(dimension() - 1, i));
-        return residual <= kTolerance * std::abs(ritz_.eigenvalues()[i]);
+        const double residual = beta_.back() * std::abs(ritz_.vectors(dimension() - 1, i));
+        return residual <= kTolerance * std::abs(ritz_.values[i]);
     }
 
     const Laplacian& laplacian_;
     const ConstantModes& constants_;
     const ShiftedLdlt& factor_;
-    const Eigen::MatrixXd* known_;
+    const SliceTask& task_;
     Eigen::VectorXd sqrtD_;
-    Eigen::MatrixXd Q_;  // orthonormal
+    Eigen::MatrixXd& Q_;  // its first columns are orthonormal
     std::vector<double> alpha_, beta_;
     bool exhausted_ = false;
-    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> ritz_;
+    TridiagonalEigenpairs ritz_;
+    Eigen::VectorXd lambda_;     // of the converged Ritz pairs, ascending
+    std::vector<Index> ritzOf_;  // their columns in ritz_
+    bool reachedFrom_ = false, reachedTo_ = false;
 };
 
 SliceRun runOf(const Laplacian& laplacian, const ConstantModes& constants, ShiftedLdlt& factor,
-               const SliceTask& task, const StopPoint& stopPoint) {
+               Eigen::MatrixXd& Q, const SliceTask& task, PairStore& found,
+               const StopPoint& stopPoint) {
     SliceRun run;
     factor.factorize(laplacian, task.sigma);
     run.sigma = factor.shift();
     run.below = factor.eigenvaluesBelow();
-    stopPoint();
-    if (task.down + task.up == 0) return run;  // a count was all that was asked for
-    SliceLanczos lanczos(laplacian, constants, factor, task);
-    Index check = std::min(kFirstCheck, 2 * (task.down + task.up) + 8);
-    for (;;) {
-        lanczos.extend();
+    SliceLanczos lanczos(laplacian, constants, factor, task, Q);
+    for (Index check = kFirstCheck;;) {
         stopPoint();
-        if (!lanczos.exhausted() && lanczos.dimension() < check) continue;
-        const auto [down, up] = lanczos.converged();
-        if ((down >= task.down && up >= task.up) || lanczos.exhausted() ||
-            lanczos.dimension() >= kMaxDimension) {
-            lanczos.pairs(down, up, run);
-            run.solves = static_cast<int>(lanczos.dimension() + down + up);
-            return run;
-        }
+        lanczos.extend();
+        if (lanczos.dimension() < check && !lanczos.exhausted()) continue;
+        lanczos.examine();
+        // Beyond the first copy of a multiple eigenvalue the others come in by round-off.
+        const bool done = lanczos.reachedFrom() && lanczos.reachedTo() &&
+                          static_cast<Index>(lanczos.covered().size()) >= task.missing;
+        if (done || lanczos.exhausted()) break;
         check = lanczos.dimension() + kCheckInterval;
     }
+    run.reachedFrom = lanczos.reachedFrom();
+    run.reachedTo = lanczos.reachedTo();
+    run.coveredFrom = lanczos.coveredFrom();
+    run.coveredTo = lanczos.coveredTo();
+    run.solves = static_cast<int>(lanczos.dimension() + lanczos.deliver(found));
+    return run;
 }
 
 }  // namespace
@@ -169,19 +243,37 @@ SliceRun runOf(const Laplacian& laplacian, const ConstantModes& constants, Shift
 SliceWorkers::SliceWorkers(const Laplacian& laplacian, const ConstantModes& constants)
     : laplacian_(laplacian),
       constants_(constants),
-      factors_(static_cast<std::size_t>(workerCount())) {}
+      workspaces_(static_cast<std::size_t>(workerCount())) {}
 
-std::vector<SliceRun> SliceWorkers::execute(const std::vector<SliceTask>& tasks,
+std::vector<Index> SliceWorkers::count(const std::vector<double>& sigmas,
+                                       const Progress& progress) {
+    std::vector<Index> below(sigmas.size());
+    runInParallel(
+        static_cast<Index>(sigmas.size()),
+        [&](Index task, int worker, const StopPoint&) {
+            const auto t = static_cast<std::size_t>(task);
+            ShiftedLdlt& factor = workspaces_[static_cast<std::size_t>(worker)].factor;
+            factor.factorize(laplacian_, sigmas[t]);
+            below[t] = factor.eigenvaluesBelow();
+        },
+        progress, kStage);
+    return below;
+}
+
+std::vector<SliceRun> SliceWorkers::execute(const std::vector<SliceTask>& tasks, PairStore& found,
                                             const Progress& progress) {
     std::vector<SliceRun> runs(tasks.size());
+    const Index n = laplacian_.D.size();
     runInParallel(
         static_cast<Index>(tasks.size()),
         [&](Index task, int worker, const StopPoint& stopPoint) {
             const auto t = static_cast<std::size_t>(task);
-            ShiftedLdlt& factor = factors_[static_cast<std::size_t>(worker)];
-            runs[t] = runOf(laplacian_, constants_, factor, tasks[t], stopPoint);
+            Workspace& workspace = workspaces_[static_cast<std::size_t>(worker)];
+            workspace.Q.resize(n, std::min(n, kMaxDimension));
+            runs[t] = runOf(laplacian_, constants_, workspace.factor, workspace.Q, tasks[t], found,
+                            stopPoint);
         },
-        progress, "computing the harmonics");
+        progress, kStage);
     return runs;
 }
 

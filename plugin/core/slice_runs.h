@@ -5,30 +5,41 @@
 
 #include "components.h"
 #include "laplacian.h"
+#include "pair_store.h"
 #include "progress.h"
 #include "shifted_ldlt.h"
 #include "types.h"
 
 namespace spectral {
 
-/// One Lanczos run of spectrum slicing: a shift, and the eigenpairs round it.
-struct SliceRun {
-    double sigma = 0.0;
-    Index below = 0;         // eigenvalues below sigma, by inertia
-    Eigen::VectorXd lambda;  // ascending
-    Eigen::MatrixXd Phi;     // n x lambda.size()
-    int solves = 0;
-
-    double lowest() const { return lambda.size() > 0 ? lambda[0] : sigma; }
-    double highest() const { return lambda.size() > 0 ? lambda[lambda.size() - 1] : sigma; }
+/// Where the slices of two runs meet: at `lambda`, or in the widest gap between eigenvalues within
+/// `window` of it, so that no group of equal ones is torn apart. Both runs find these eigenvalues
+/// and, each for itself, the same gap.
+struct SliceEdge {
+    double lambda = 0.0;
+    double window = 0.0;
 };
 
-/// What a run is to find.
+/// What a run is to find: the eigenpairs between two edges, from a shift between them.
 struct SliceTask {
     double sigma = 0.0;
-    Index down = 0, up = 0;             // pairs below and above the shift, none of them `known`
-    const Eigen::MatrixXd* known = {};  // D-orthonormal vectors that it is not to find again
-    unsigned seed = 0;
+    SliceEdge from, to;
+    Eigen::Ref<const Eigen::MatrixXd> known;  ///< D-orthonormal vectors not to be found again.
+    Index missing = 0;  ///< Pairs that are known to be there: as long as the space may grow, the
+                        ///< run does not end before it has so many.
+    unsigned seed = 0;  ///< Of the start vector; another for each run.
+};
+
+/// What a run has found. Its pairs are in the store.
+struct SliceRun {
+    double sigma = 0.0;
+    Index below = 0;  ///< Eigenvalues below sigma, by inertia.
+    int solves = 0;
+
+    // Converged pairs cover the part of the slice between these; it is the whole slice unless the
+    // space became too large.
+    double coveredFrom = 0.0, coveredTo = 0.0;
+    bool reachedFrom = true, reachedTo = true;
 };
 
 /// Does runs on all cores.
@@ -37,15 +48,24 @@ class SliceWorkers {
     /// The arguments are kept by reference.
     SliceWorkers(const Laplacian& laplacian, const ConstantModes& constants);
 
-    /// Does the tasks, each with a factorization of its own; the results are in their order and do
-    /// not depend on the number of cores.
+    /// Numbers of eigenvalues below these shifts, by inertia.
+    std::vector<Index> count(const std::vector<double>& sigmas, const Progress& progress);
+
+    /// Does the tasks; the results are in their order and do not depend on the number of cores.
     /// @throws SolverFailure  of any run; Cancelled.
-    std::vector<SliceRun> execute(const std::vector<SliceTask>& tasks, const Progress& progress);
+    std::vector<SliceRun> execute(const std::vector<SliceTask>& tasks, PairStore& found,
+                                  const Progress& progress);
 
   private:
+    /// Storage that a worker uses again from run to run.
+    struct Workspace {
+        ShiftedLdlt factor;
+        Eigen::MatrixXd Q;  // of the Krylov space; memory only as far as it has been written
+    };
+
     const Laplacian& laplacian_;
     const ConstantModes& constants_;
-    std::vector<ShiftedLdlt> factors_;  // one for each worker
+    std::vector<Workspace> workspaces_;  // one for each worker
 };
 
 }  // namespace spectral
