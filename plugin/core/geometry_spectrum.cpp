@@ -9,6 +9,7 @@
 #include "cholesky.h"
 #include "errors.h"
 #include "harmonic_basis.h"
+#include "harmonic_extension.h"
 #include "lanczos.h"
 #include "measures.h"
 #include "mesh_laplacian.h"
@@ -35,9 +36,50 @@ constexpr double kConverged = 1e-4, kNegligible = 1e-10;
 /// What is left of the energy, relative to all of it, when there is nothing left.
 constexpr double kRoundOff = 1e-26;
 
+/// Size of a signal beside the shape that is round-off of the harmonic extension.
+constexpr double kNoShape = 1e-11;
+
 /// The first frequency is no lower than this part of the scale 4 pi / area of the first
 /// eigenvalues, were the surface a hair of that proportion.
 constexpr double kLowest = 1e-6;
+
+/// What can vibrate: the surface, or its interior where the boundary is fixed.
+struct Vibration {
+    Laplacian laplacian;
+    ConstantModes constants;
+    Eigen::MatrixXd U;  ///< The shape that the harmonics make up; its constants are 0.
+};
+
+/// The positions less their mean on every component.
+Vibration freeVibration(MeshLaplacian mesh) {
+    Eigen::MatrixXd U = std::move(mesh.surface.X);
+    mesh.constants.remove(U);
+    return {std::move(mesh.laplacian), std::move(mesh.constants), std::move(U)};
+}
+
+/// The positions less what those of the boundary determine.
+Vibration heldVibration(const MeshLaplacian& mesh, const Interior& interior) {
+    if (interior.size() == 0)
+        throw InvalidOption(
+            "boundary = fixed leaves nothing to measure: every vertex is on the boundary. Choose "
+            "boundary = free");
+    HarmonicExtension extension(interior);
+    extension.setLaplacian(mesh.laplacian);
+    HarmonicExtension::Rest rest = extension.rest(mesh.surface.X);
+    if (rest.relativeSize <= kNoShape)
+        throw InvalidOption(
+            "boundary = fixed leaves nothing to measure: the surface is what its boundary "
+            "determines, as a flat one is. Choose boundary = free");
+    Laplacian laplacian = interior.restricted(mesh.laplacian);
+    ConstantModes constants(interior.components(), laplacian.D);
+    constants.remove(rest.U);
+    return {std::move(laplacian), std::move(constants), std::move(rest.U)};
+}
+
+Vibration vibrationOf(MeshLaplacian mesh, Boundary boundary) {
+    const Interior interior(mesh.surface.F, mesh.components, boundary);
+    return interior.isWhole() ? freeVibration(std::move(mesh)) : heldVibration(mesh, interior);
+}
 
 /// The harmonics to compute, or all there are.
 Index sizeOfBasis(int asked, Index vertices, int components) {
@@ -69,16 +111,16 @@ double octaveEnergy(const Octaves& octaves, int j, const std::vector<LanczosColu
 }
 
 /// The same from a Krylov space that grows until it stays as it is.
-double convergedEnergy(const Octaves& octaves, int j, const MeshLaplacian& mesh,
+double convergedEnergy(const Octaves& octaves, int j, const Vibration& vibration,
                        const Eigen::MatrixXd& R, double energyOfR, ShiftedCholesky& cholesky) {
     const double omega = 2.0 * kPi / octaves.featureSize(j), pole = omega * omega;
-    cholesky.factorize(mesh.laplacian, pole);
-    const Eigen::VectorXd sqrtD = mesh.laplacian.D.cwiseSqrt();
+    cholesky.factorize(vibration.laplacian, pole);
+    const Eigen::VectorXd sqrtD = vibration.laplacian.D.cwiseSqrt();
     std::vector<LanczosColumn> columns;
     for (Index c = 0; c < R.cols(); ++c) columns.emplace_back(sqrtD.cwiseProduct(R.col(c)));
     double energy = 0.0, change = energyOfR;
     for (int m = 1; m <= kMaxDimension; ++m) {
-        if (!extendColumns(columns, sqrtD, mesh.constants, cholesky))
+        if (!extendColumns(columns, sqrtD, vibration.constants, cholesky))
             return octaveEnergy(octaves, j, columns, pole);
         if (m % kCheckInterval != 0) continue;
         const double before = energy, changeBefore = change;
@@ -92,7 +134,7 @@ double convergedEnergy(const Octaves& octaves, int j, const MeshLaplacian& mesh,
 }
 
 /// Energies that a remainder R beyond the basis has in every octave; they sum to that of R.
-Eigen::VectorXd energiesBeyond(const Octaves& octaves, const MeshLaplacian& mesh,
+Eigen::VectorXd energiesBeyond(const Octaves& octaves, const Vibration& vibration,
                                double lastOfBasis, const Eigen::MatrixXd& R, double energyOfR,
                                ShiftedCholesky& cholesky, const Progress& progress,
                                double& mismatch) {
@@ -100,7 +142,7 @@ Eigen::VectorXd energiesBeyond(const Octaves& octaves, const MeshLaplacian& mesh
     for (int j = 0; j < octaves.count(); ++j) {
         if (octaves.end(j) <= lastOfBasis) continue;  // all of it is in the basis
         progress.report(static_cast<double>(j) / octaves.count(), "energies of the octaves");
-        energies[j] = convergedEnergy(octaves, j, mesh, R, energyOfR, cholesky);
+        energies[j] = convergedEnergy(octaves, j, vibration, R, energyOfR, cholesky);
     }
     mismatch = std::abs(energies.sum() / energyOfR - 1.0);
     return energies * (energyOfR / energies.sum());
@@ -133,22 +175,23 @@ double featureSizeHolding(double part, const GeometrySpectrum& spectrum, const O
 
 GeometrySpectrum geometrySpectrum(const Vertices& V, const Faces& F, const SpectrumOptions& options,
                                   const Progress& progress) {
-    const MeshLaplacian mesh = meshLaplacian(V, F, options.laplacian);
-    const Eigen::VectorXd& D = mesh.laplacian.D;
-    const Index n = D.size(), constants = mesh.constants.count();
-    const Index k = sizeOfBasis(options.basisSize, n, mesh.constants.count());
+    MeshLaplacian mesh = meshLaplacian(V, F, options.laplacian);
+    GeometrySpectrum spectrum;
+    spectrum.diagonal = boundingBoxDiagonal(V);
+    spectrum.area = mesh.laplacian.D.sum();
+    const Vibration vibration = vibrationOf(std::move(mesh), options.boundary);
+    const Laplacian& laplacian = vibration.laplacian;
+    const Eigen::VectorXd& D = laplacian.D;
+    const Index n = D.size(), constants = vibration.constants.count();
+    const Index k = sizeOfBasis(options.basisSize, n, vibration.constants.count());
 
     ShiftedCholesky cholesky;
-    const HarmonicBasis basis = k == n ? denseBasis(mesh.laplacian, mesh.constants)
-                                       : truncatedBasis(mesh.laplacian, mesh.constants, k, cholesky,
+    const HarmonicBasis basis = k == n ? denseBasis(laplacian, vibration.constants)
+                                       : truncatedBasis(laplacian, vibration.constants, k, cholesky,
                                                         progress.part(0.0, kBasisDone));
     const bool whole = basis.size() == n;
 
-    GeometrySpectrum spectrum;
-    spectrum.diagonal = boundingBoxDiagonal(V);
-    spectrum.area = D.sum();
-    Eigen::MatrixXd R = mesh.surface.X;
-    mesh.constants.remove(R);
+    Eigen::MatrixXd R = vibration.U;
     spectrum.totalEnergy = energyOf(R, D);
     Eigen::MatrixXd coefficients = basis.Phi.transpose() * (D.asDiagonal() * R);
     coefficients.topRows(constants).setZero();
@@ -160,13 +203,13 @@ GeometrySpectrum geometrySpectrum(const Vertices& V, const Faces& F, const Spect
 
     const double lowest = std::max(basis.lambda[constants], kLowest * 4.0 * kPi / spectrum.area);
     const double highest =
-        std::max(lowest, whole ? basis.lambda[n - 1] : largestEigenvalue(mesh.laplacian));
+        std::max(lowest, whole ? basis.lambda[n - 1] : largestEigenvalue(laplacian));
     const Octaves octaves(spectrum.diagonal, std::sqrt(lowest), std::sqrt(highest));
 
     spectrum.octaveEnergies = Eigen::VectorXd::Zero(octaves.count());
     if (energyOfR > kRoundOff * spectrum.totalEnergy)
         spectrum.octaveEnergies =
-            energiesBeyond(octaves, mesh, spectrum.frequencies[basis.size() - 1], R, energyOfR,
+            energiesBeyond(octaves, vibration, spectrum.frequencies[basis.size() - 1], R, energyOfR,
                            cholesky, progress.part(kBasisDone, 1.0), spectrum.mismatch);
     spectrum.octaveFeatureSizes.resize(octaves.count());
     for (int j = 0; j < octaves.count(); ++j) {

@@ -27,7 +27,9 @@ const char* const kHelp =
     "which 50, 90 and 99 % of the energy are: nearly all is in the largest features, which make "
     "the overall shape."
     "<br><br>An open boundary adds to the details of every size, the more so the longer and the "
-    "more ragged it is."
+    "more ragged it is. With <b>boundary</b> <i>fixed</i> it does not: what its position "
+    "determines is taken out first, and what is left is measured. That is also all that a filter "
+    "with a fixed boundary acts on."
     "<br><br>For more information see:"
     "<br><i>B. Vallet, B. L&eacute;vy</i>, <b>Spectral Geometry Processing with Manifold "
     "Harmonics</b>, Computer Graphics Forum 27(2), 2008"
@@ -45,6 +47,10 @@ RichParameterList parameters(const MeshModel&) {
         laplacianParameter("How the frequencies of the surface are measured: as in the filter. "
                            "<b>intrinsic delaunay</b> works on any triangles; for <b>cotangent</b> "
                            "every triangle needs an area."));
+    list.addParam(boundaryParameter(
+        "Rims of an open surface and of its holes: as in the filter. <b>free</b>: they are part of "
+        "the shape. <b>fixed</b>: only what the position of the rims does not determine is "
+        "measured."));
     return list;
 }
 
@@ -84,6 +90,7 @@ FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
     spectral::SpectrumOptions options;
     options.basisSize = parameters.getInt("basis_size");
     options.laplacian = laplacianKind(parameters);
+    options.boundary = boundaryCondition(parameters);
     const GeometrySpectrum spectrum =
         spectral::geometrySpectrum(input.V, input.F, options, progress);
     return {{{"diagonal", spectrum.diagonal},

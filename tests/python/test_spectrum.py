@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import spectral_reference as reference
-from helpers import assert_same, diagonal, mesh_set_of, refusal, snapshot
+from helpers import assert_same, diagonal, lower_part, mesh_set_of, refusal, snapshot
 from meshlab_spectral import FilterError, GeometrySpectrum, OptionError, geometry_spectrum
 from numpy.typing import NDArray
 
@@ -89,6 +89,41 @@ def test_all_of_it_agrees(
         assert abs(np.log2(size / exact)) < (1e-4 if within_basis else 0.75)
 
 
+@pytest.mark.parametrize("laplacian", ["cotangent", "intrinsic delaunay"])
+@pytest.mark.parametrize("basis_size", [10, 200])
+def test_with_a_fixed_boundary_it_is_what_the_boundary_does_not_determine(
+    sample_name: str, basis_size: int, laplacian: Any, decimated: Decimated
+) -> None:
+    V, F = lower_part(*decimated(sample_name))
+    W, d = reference.matrices(V, F, laplacian)
+    rim = reference.boundary_vertices(F)
+    interior = np.setdiff1d(np.arange(len(V)), rim)
+    rows = W[interior].toarray()
+    harmonic = np.linalg.solve(rows[:, interior], -rows[:, rim] @ V[rim])
+    part = reference.fixed_spectrum(W, d, interior)
+    coefficients = part.Phi.T @ (part.d[:, None] * (V[interior] - harmonic))
+    omega, energy = np.sqrt(part.lam), (coefficients**2).sum(axis=1)
+
+    found = geometry_spectrum(V, F, basis_size, laplacian, "fixed")
+    k = len(found.frequencies)
+    assert basis_size <= k < basis_size + 20
+    np.testing.assert_allclose(found.frequencies, omega[:k], rtol=1e-6)
+    np.testing.assert_allclose(
+        np.cumsum(found.amplitudes**2), np.cumsum(energy[:k]) / d.sum(), rtol=1e-4
+    )
+    assert found.area == pytest.approx(d.sum(), rel=1e-12)
+    assert found.total_energy == pytest.approx(energy.sum(), rel=1e-9)
+    expected = octave_energies(found.octave_feature_sizes, omega, energy)
+    np.testing.assert_allclose(found.octave_energies, expected, rtol=OCTAVES)
+
+
+def test_a_fixed_boundary_that_leaves_nothing_is_refused() -> None:
+    flat = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.4, 0.3, 0]]
+    for faces in ([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]], [[0, 1, 2], [0, 2, 3]]):
+        with pytest.raises(FilterError, match="boundary = free"):
+            geometry_spectrum(flat, faces, laplacian="cotangent", boundary="fixed")
+
+
 def test_octaves_are_powers_of_two_of_the_diagonal_and_hold_all_frequencies(
     sample_name: str, decimated: Decimated
 ) -> None:
@@ -149,10 +184,12 @@ def test_a_basis_size_that_is_no_number_of_harmonics_is_refused(basis_size: Any)
         geometry_spectrum([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], basis_size)
 
 
-def test_an_unknown_laplacian_is_refused_with_the_choices(decimated: Decimated) -> None:
+def test_an_unknown_choice_is_refused_with_the_known_ones(decimated: Decimated) -> None:
     unknown: Any = "graph"
     with pytest.raises(OptionError, match="intrinsic delaunay, cotangent"):
         geometry_spectrum(*decimated("cow.obj"), laplacian=unknown)
+    with pytest.raises(OptionError, match="free, fixed"):
+        geometry_spectrum(*decimated("cow.obj"), boundary=unknown)
 
 
 def test_a_mesh_that_cannot_be_measured_is_refused_and_left_as_it_was(

@@ -40,7 +40,7 @@ Where the octaves stop falling towards small sizes, there is noise.
   meshlab-spectral spectrum scan.ply --json
 """
 
-# Those that make the curve, and that on which the frequencies depend.
+# Those that make the curve, and those on which the spectrum depends.
 SHOWN_OPTIONS = (
     "filter_type",
     "feature_size",
@@ -51,6 +51,7 @@ SHOWN_OPTIONS = (
     "stop_gain",
     "power",
     "laplacian",
+    "boundary",
 )
 
 
@@ -88,7 +89,9 @@ def spectrum_command(
             check_format(output)
             scratch = stack.enter_context(writing_whole(output))
         with progress_shown() as on_progress:
-            spectrum = measure_spectrum_in_child(source, basis_size, options.laplacian, on_progress)
+            spectrum = measure_spectrum_in_child(
+                source, basis_size, options.laplacian, options.boundary, on_progress
+            )
         if scratch is not None:
             draw_spectrum(spectrum, options, source.name, scratch)
     if as_json:

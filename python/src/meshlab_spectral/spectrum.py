@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from meshlab_spectral.arrays import mesh_arrays
 from meshlab_spectral.calling import call_filter
 from meshlab_spectral.errors import OptionError
-from meshlab_spectral.options import LaplacianKind
+from meshlab_spectral.options import Boundary, LaplacianKind
 from meshlab_spectral.plugin import load
 
 FILTER_NAME = "get_geometry_spectrum"
@@ -29,15 +29,17 @@ class GeometrySpectrum:
     that of the shape. Feature sizes are wavelengths, those of the filter. Lengths are in the units
     of the mesh.
 
+    The shape is what a filter with the same boundary acts on: the positions less the centroid of
+    their connected component; with a fixed boundary, less their harmonic extension from there.
+
     Attributes
     ----------
     diagonal
         Of the bounding box.
     area
-        Of the surface.
+        Of the surface, all of it.
     total_energy
-        Integral over the surface of the squared distance from the centroid of the connected
-        component, length^4.
+        Integral over the surface of the squared lengths of the shape, length^4.
     frequencies
         Of the lowest harmonics, ascending, in radians per length unit, 0 for the constant ones; at
         least `basis_size` of them, as no group of equal frequencies is cut, or all there are.
@@ -89,11 +91,12 @@ def geometry_spectrum(
     faces: ArrayLike,
     basis_size: int = DEFAULT_BASIS_SIZE,
     laplacian: LaplacianKind = "intrinsic delaunay",
+    boundary: Boundary = "free",
 ) -> GeometrySpectrum:
     """Measure how much of a shape is in details of which size.
 
-    With the harmonics ``W phi_i = omega_i^2 D phi_i`` of the mesh and its coordinates X, an energy
-    is a sum of ``|phi_i^T D X|^2``: of single harmonics for the lowest ones, and of octaves over
+    With the harmonics ``W phi_i = omega_i^2 D phi_i`` of the mesh and its shape U, an energy
+    is a sum of ``|phi_i^T D U|^2``: of single harmonics for the lowest ones, and of octaves over
     the whole spectrum.
 
     Parameters
@@ -103,10 +106,13 @@ def geometry_spectrum(
     faces
         m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
     basis_size
-        How many harmonics are told one by one, the constant ones included; at least 1. Below n, or
-        n at most 2,000.
+        How many harmonics are told one by one, the constant ones included; at least 1. Below the
+        number of vertices that are not fixed, unless these are 2,000 at most.
     laplacian
         "intrinsic delaunay" works on any triangles; for "cotangent" every one needs an area.
+    boundary
+        Rims of an open surface and of its holes. "free": part of the shape, they add to the details
+        of every size; "fixed": only what they do not determine is measured.
 
     Returns
     -------
@@ -118,10 +124,10 @@ def geometry_spectrum(
     ValueError
         When an array does not have the shape or the type above, or an index is out of range.
     OptionError
-        When there is no such `laplacian`, or `basis_size` is no whole number above 0.
+        When there is no such `laplacian` or `boundary`, or `basis_size` is no whole number above 0.
     FilterError
-        When the mesh has no faces, no area, or coordinates that are not finite, or `basis_size` is
-        too large for it.
+        When the mesh has no faces, no area, or coordinates that are not finite, `basis_size` is
+        too large for it, or a fixed boundary leaves nothing to measure, as in a flat mesh.
     PluginError
         When the plugin cannot be loaded.
 
@@ -132,7 +138,8 @@ def geometry_spectrum(
     ...     print(f"details of {size:.3g}: {height:.3g} high")
     """
     V, F = mesh_arrays(vertices, faces)
-    return GeometrySpectrum.from_report(measure(V, F, spectrum_parameters(basis_size, laplacian)))
+    parameters = spectrum_parameters(basis_size, laplacian, boundary)
+    return GeometrySpectrum.from_report(measure(V, F, parameters))
 
 
 def measure(
@@ -147,7 +154,7 @@ def measure(
     return call_filter(mesh_set, FILTER_NAME, parameters)
 
 
-def spectrum_parameters(basis_size: int, laplacian: str) -> dict[str, Any]:
+def spectrum_parameters(basis_size: int, laplacian: str, boundary: str) -> dict[str, Any]:
     """Check the options of the filter, and name them as pymeshlab does.
 
     Raises
@@ -157,6 +164,10 @@ def spectrum_parameters(basis_size: int, laplacian: str) -> dict[str, Any]:
     """
     if isinstance(basis_size, bool) or not isinstance(basis_size, int) or basis_size < 1:
         raise OptionError(f"basis_size = {basis_size}: must be a whole number, at least 1")
-    if laplacian not in get_args(LaplacianKind):
-        raise OptionError(f"laplacian = {laplacian}: choose {', '.join(get_args(LaplacianKind))}")
-    return {"basis_size": basis_size, "laplacian": laplacian}
+    for name, value, kind in (
+        ("laplacian", laplacian, LaplacianKind),
+        ("boundary", boundary, Boundary),
+    ):
+        if value not in get_args(kind):
+            raise OptionError(f"{name} = {value}: choose {', '.join(get_args(kind))}")
+    return {"basis_size": basis_size, "laplacian": laplacian, "boundary": boundary}
