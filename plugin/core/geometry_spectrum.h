@@ -36,7 +36,7 @@ struct GeometrySpectrum {
     Eigen::VectorXd frequencies;  ///< omega_i, ascending, radians per length unit; constants: 0.
     Eigen::VectorXd amplitudes;   ///< |Phi_i^T D U| / sqrt(area), length units; constants: 0.
 
-    /// Of the octaves (octaves.h), from large feature sizes to small ones, down to the last one
+    /// Of the octaves (bands.h), from large feature sizes to small ones, down to the last one
     /// that holds anything of the shape.
     Eigen::VectorXd octaveFeatureSizes;  ///< Middles: diagonal times powers of two, length units.
     Eigen::VectorXd octaveEnergies;      ///< >= 0, length^4; they sum to totalEnergy.
@@ -47,6 +47,18 @@ struct GeometrySpectrum {
     /// Feature sizes at and above which 50, 90 and 99 % of the energy are, length units.
     double featureSize50 = 0.0, featureSize90 = 0.0, featureSize99 = 0.0;
 
+    /// Of thirds of octaves (bands.h), from large feature sizes to small ones, those that hold as
+    /// much as 30 of all harmonics.
+    Eigen::VectorXd bandFeatureSizes;  ///< Middles, length units.
+    Eigen::VectorXd bandAmplitudes;    ///< Of the shape, length units.
+    Eigen::VectorXd bandNoise;         ///< Of white noise of the vertices that are not fixed, of
+                                       ///< height 1 across the surface; > 0. bandAmplitudes over
+                                       ///< these is the height of noise that would explain a band.
+
+    // Where the shape is no more than such noise (noise_floor.h); 0 where that is not seen.
+    double noiseHeight = 0.0;       ///< Its root mean square height, length units.
+    double noiseFeatureSize = 0.0;  ///< It begins there: all smaller details are like it.
+
     /// Part by which the octave energies beyond the basis missed their known sum, before they were
     /// scaled to it; 0 where the basis is the whole spectrum.
     double mismatch = 0.0;
@@ -55,10 +67,9 @@ struct GeometrySpectrum {
 /// The spectrum of the coordinates in the manifold harmonics of the surface, all of it.
 ///
 /// The k lowest harmonics are computed, their coefficients Phi^T D U are exact (Vallet and Levy
-/// 2008). For the remainder R of U no eigenvector is: the energy of an octave with the window g is
-/// the quadratic form R^T D g(sqrt(A)) R, by Gauss quadrature in a shift-invert Krylov space with
-/// the pole in the middle of the octave (lanczos.h; Golub and Meurant 1994). Taking the basis out
-/// of X first keeps the large energies of the large features from drowning those of the details.
+/// 2008). For the remainder of U no eigenvector is: its energies are quadratic forms
+/// (band_energies.h). Taking the basis out of U first keeps the large energies of the large
+/// features from drowning those of the details.
 ///
 /// @param V  n x 3 positions, finite.
 /// @param F  m x 3 vertex indices, m >= 1; any topology, unreferenced vertices allowed.

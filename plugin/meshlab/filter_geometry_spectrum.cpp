@@ -20,8 +20,10 @@ const char* const kHelp =
     "surface. Those of one octave of feature sizes, that is wavelengths, add up to details of a "
     "certain height: the <b>amplitude</b> of the octave, the root mean square over the surface, in "
     "the units of the mesh. The log lists it for every octave, down to the smallest details that "
-    "the mesh can carry; a smooth shape falls off steadily towards small ones. Where the "
-    "amplitudes stop falling, there is noise: a low-pass with a feature size somewhat above "
+    "the mesh can carry; a smooth shape falls off steadily towards small ones."
+    "<br><br>Where the details are no more than those of vertices displaced at random, there is "
+    "<b>noise</b>, or what is too fine for the mesh to tell it from noise. The log says from which "
+    "feature size down, and how high that noise is: a low-pass with a somewhat larger feature size "
     "removes it."
     "<br><br>Squares of amplitudes are energies. The log also tells the feature sizes at and above "
     "which 50, 90 and 99 % of the energy are: nearly all is in the largest features, which make "
@@ -77,6 +79,11 @@ std::string textOf(const GeometrySpectrum& spectrum) {
              << withPercent(spectrum.octaveAmplitudes[j], spectrum.diagonal) << std::fixed
              << std::setprecision(5) << 100.0 * spectrum.cumulativeEnergy[j] << " %"
              << std::defaultfloat;
+    if (spectrum.noiseHeight > 0.0)
+        text << "\n  details smaller than "
+             << withPercent(spectrum.noiseFeatureSize, spectrum.diagonal)
+             << " are as noise of the vertices, of a root mean square height of "
+             << withPercent(spectrum.noiseHeight, spectrum.diagonal);
     text << "\n  50 % of the energy at feature sizes of at least "
          << withPercent(spectrum.featureSize50, spectrum.diagonal) << ", 90 % "
          << withPercent(spectrum.featureSize90, spectrum.diagonal) << ", 99 % "
@@ -102,6 +109,11 @@ FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
              {"octave_energies", vectorVariant(spectrum.octaveEnergies)},
              {"octave_amplitudes", vectorVariant(spectrum.octaveAmplitudes)},
              {"cumulative_energy", vectorVariant(spectrum.cumulativeEnergy)},
+             {"band_feature_sizes", vectorVariant(spectrum.bandFeatureSizes)},
+             {"band_amplitudes", vectorVariant(spectrum.bandAmplitudes)},
+             {"band_noise", vectorVariant(spectrum.bandNoise)},
+             {"noise_height", spectrum.noiseHeight},
+             {"noise_feature_size", spectrum.noiseFeatureSize},
              {"feature_size_50", spectrum.featureSize50},
              {"feature_size_90", spectrum.featureSize90},
              {"feature_size_99", spectrum.featureSize99},

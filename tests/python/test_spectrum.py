@@ -9,7 +9,16 @@ from typing import Any
 import numpy as np
 import pytest
 import spectral_reference as reference
-from helpers import assert_same, diagonal, lower_part, mesh_set_of, refusal, snapshot
+from helpers import (
+    assert_same,
+    diagonal,
+    filter_arrays,
+    length,
+    lower_part,
+    mesh_set_of,
+    refusal,
+    snapshot,
+)
 from meshlab_spectral import FilterError, GeometrySpectrum, OptionError, geometry_spectrum
 from numpy.typing import NDArray
 
@@ -158,6 +167,62 @@ def test_noise_shows_in_the_small_octaves_with_its_height_and_nowhere_else(
     assert 0.8 * height < np.sqrt(small[1] ** 2 - small[0] ** 2) < 1.05 * height
 
 
+@pytest.mark.parametrize("percent", [0.1, 0.15])
+def test_the_height_of_noise_is_told_and_where_it_begins(
+    percent: float, decimated: Decimated
+) -> None:
+    V, F = decimated("bunny.obj", 10000)
+    smooth, _ = filter_arrays(V, F, feature_size=length(0.06 * diagonal(V)), steps=1)
+    # Next to nothing is left of details of a third of that size.
+    height = percent / 100 * diagonal(V)
+    noise = height * np.random.default_rng(2).standard_normal(V.shape)
+    found = geometry_spectrum(smooth + noise, F, 100)
+    assert found.noise_height == pytest.approx(height, rel=0.2)
+    assert 0.02 < found.noise_feature_size / found.diagonal < 0.07
+    below = found.band_feature_sizes < 0.8 * found.noise_feature_size
+    assert below.sum() >= 3
+    np.testing.assert_allclose(found.noise_heights[below], height, rtol=0.35)
+    # What the triangles themselves make of a smooth shape is less.
+    assert geometry_spectrum(smooth, F, 100).noise_height < 0.8 * height
+
+
+@pytest.mark.parametrize("basis_size", [10, 200])
+def test_the_bands_agree(sample_name: str, basis_size: int, decimated: Decimated) -> None:
+    V, F = decimated(sample_name)
+    W, d = reference.matrices(V, F, "cotangent")
+    omega, energy, area = reference_spectrum(V, F, "cotangent")
+    parts = reference.spectra(W, d, reference.components(len(V), F))
+    frequencies = np.concatenate([np.sqrt(part.lam) for part in parts])
+    # The mean of the energy over all draws of noise of height 1, constants without.
+    noise = np.concatenate(
+        [
+            ((part.d[:, None] * part.Phi) ** 2).sum(axis=0) * (np.arange(len(part.lam)) > 0)
+            for part in parts
+        ]
+    )
+    found = geometry_spectrum(V, F, basis_size, "cotangent")
+    assert len(found.band_feature_sizes) > 3
+    for size, amplitude, of_noise in zip(
+        found.band_feature_sizes[1:-1],  # the first and the last may be open to one side
+        found.band_amplitudes[1:-1],
+        found.band_noise[1:-1],
+        strict=True,
+    ):
+        shape, mean = (
+            np.sqrt(np.sum(third_window(size, w) * e) / area)
+            for w, e in ((omega, energy), (frequencies, noise))
+        )
+        assert amplitude == pytest.approx(shape, rel=0.02)
+        assert of_noise == pytest.approx(mean, rel=0.35)  # of one draw, 30 harmonics or more
+
+
+def third_window(size: float, omega: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Window of a third of an octave about a feature size: cos^2, 0 at a third to each side."""
+    with np.errstate(divide="ignore"):
+        thirds = np.abs(3 * np.log2(omega * size / (2 * np.pi)))
+    return np.asarray(np.cos(np.pi / 2 * np.minimum(thirds, 1)) ** 2)
+
+
 def test_the_filter_reports_everything_and_leaves_the_mesh_as_it_was(decimated: Decimated) -> None:
     mesh_set = mesh_set_of(*decimated("cow.obj"))
     before = snapshot(mesh_set.current_mesh())
@@ -170,6 +235,8 @@ def test_a_small_mesh_has_all_of_its_harmonics() -> None:
     found = geometry_spectrum([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
     assert found.frequencies.shape == (3,)
     assert found.octave_energies.sum() == pytest.approx(found.total_energy)
+    assert found.band_feature_sizes.shape == found.noise_heights.shape == (0,)
+    assert found.noise_height == found.noise_feature_size == 0
 
 
 def test_a_basis_as_large_as_a_large_mesh_is_refused(decimated: Decimated) -> None:
