@@ -29,11 +29,6 @@ def command(*arguments: object, folder: Path | None = None) -> subprocess.Comple
     )
 
 
-@pytest.fixture
-def cow(samples: Path) -> Path:
-    return samples / "cow.obj"
-
-
 def colours(path: Path) -> Any:
     return np.asarray(matplotlib.image.imread(path))[:, :, :3]
 
