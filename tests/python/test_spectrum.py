@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import fields
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,7 @@ from helpers import (
     snapshot,
 )
 from meshlab_spectral import FilterError, GeometrySpectrum, OptionError, geometry_spectrum
+from meshlab_spectral.meshfile import load_arrays
 from numpy.typing import NDArray
 
 SPECTRUM = "get_geometry_spectrum"
@@ -184,6 +186,21 @@ def test_the_height_of_noise_is_told_and_where_it_begins(
     np.testing.assert_allclose(found.noise_heights[below], height, rtol=0.35)
     # What the triangles themselves make of a smooth shape is less.
     assert geometry_spectrum(smooth, F, 100).noise_height < 0.8 * height
+
+
+def test_noise_in_a_range_scan_is_told_from_its_relief_and_its_rim(
+    shared_mesh: Callable[[str], Path],
+) -> None:
+    V, F = load_arrays(shared_mesh("rangescan_lato000.ply"))
+    raw = geometry_spectrum(V, F, 50, boundary="fixed")
+    # Three edges; smaller than most of the relief.
+    assert 0.005 < raw.noise_feature_size / raw.diagonal < 0.012
+    height = 0.05
+    assert 0 < raw.noise_height < height / 3
+    noisy = V + height * np.random.default_rng(4).standard_normal(V.shape)
+    found = geometry_spectrum(noisy, F, 50, boundary="fixed")
+    assert found.noise_height == pytest.approx(height, rel=0.15)
+    assert found.noise_feature_size > 1.4 * raw.noise_feature_size
 
 
 @pytest.mark.parametrize("basis_size", [10, 200])
