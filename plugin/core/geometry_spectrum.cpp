@@ -3,16 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <random>
 #include <string>
-#include <vector>
+#include <utility>
 
+#include "band_energies.h"
+#include "bands.h"
 #include "cholesky.h"
 #include "errors.h"
 #include "harmonic_basis.h"
-#include "lanczos.h"
+#include "harmonic_extension.h"
 #include "measures.h"
 #include "mesh_laplacian.h"
-#include "octaves.h"
+#include "noise_floor.h"
 
 namespace spectral {
 
@@ -25,19 +28,59 @@ constexpr Index kWholeBasis = 2000;
 /// Part of the progress at which the basis is done.
 constexpr double kBasisDone = 0.6;
 
-/// Lanczos dimensions of an octave: from one look at its energy to the next, at least, at most.
-constexpr int kCheckInterval = 4, kFirstCheck = 16, kMaxDimension = 120;
-
-/// An octave's energy has converged when it changes no more, relative to itself or to all of the
-/// energy beyond the basis.
-constexpr double kConverged = 1e-4, kNegligible = 1e-10;
-
 /// What is left of the energy, relative to all of it, when there is nothing left.
 constexpr double kRoundOff = 1e-26;
+
+/// Size of a signal beside the shape that is round-off of the harmonic extension.
+constexpr double kNoShape = 1e-11;
+
+/// Fewer harmonics than this in a band, or as much of the noise, are too few to tell its height by.
+constexpr double kFewHarmonics = 30.0;
+
+/// Of the noise that takes the place of all; any will do.
+constexpr unsigned kNoiseSeed = 1;
 
 /// The first frequency is no lower than this part of the scale 4 pi / area of the first
 /// eigenvalues, were the surface a hair of that proportion.
 constexpr double kLowest = 1e-6;
+
+/// What can vibrate: the surface, or its interior where the boundary is fixed.
+struct Vibration {
+    Laplacian laplacian;
+    ConstantModes constants;
+    Eigen::MatrixXd U;  ///< The shape that the harmonics make up; its constants are 0.
+};
+
+/// The positions less their mean on every component.
+Vibration freeVibration(MeshLaplacian mesh) {
+    Eigen::MatrixXd U = std::move(mesh.surface.X);
+    mesh.constants.remove(U);
+    return {std::move(mesh.laplacian), std::move(mesh.constants), std::move(U)};
+}
+
+/// The positions less what those of the boundary determine.
+Vibration heldVibration(const MeshLaplacian& mesh, const Interior& interior) {
+    if (interior.size() == 0)
+        throw InvalidOption(
+            "boundary = fixed leaves nothing to measure: every vertex is on the boundary. Choose "
+            "boundary = free");
+    HarmonicExtension extension(interior);
+    extension.setLaplacian(mesh.laplacian);
+    HarmonicExtension::Rest rest = extension.rest(mesh.surface.X);
+    if (rest.relativeSize <= kNoShape)
+        throw InvalidOption(
+            "boundary = fixed leaves nothing to measure: the surface is what its boundary "
+            "determines, as a flat one is. Choose boundary = free");
+    Laplacian laplacian = interior.restricted(mesh.laplacian);
+    ConstantModes constants(interior.components(), laplacian.D);
+    constants.remove(rest.U);
+    return {std::move(laplacian), std::move(constants), std::move(rest.U)};
+}
+
+Vibration vibrationOf(MeshLaplacian mesh, Boundary boundary) {
+    const Interior interior(mesh.surface.F, mesh.components, boundary);
+    return interior.isWhole() ? freeVibration(std::move(mesh)) : heldVibration(mesh, interior);
+}
 
 /// The harmonics to compute, or all there are.
 Index sizeOfBasis(int asked, Index vertices, int components) {
@@ -56,58 +99,100 @@ double energyOf(const Eigen::MatrixXd& X, const Eigen::VectorXd& D) {
     return X.rowwise().squaredNorm().dot(D);
 }
 
-/// Sum over the columns x of R of the energies x^T D g_j(sqrt(A)) x of one octave.
-double octaveEnergy(const Octaves& octaves, int j, const std::vector<LanczosColumn>& columns,
-                    double pole) {
-    double energy = 0.0;
-    for (const LanczosColumn& column : columns) {
-        const Quadrature measure = column.quadrature(pole);
-        for (Index i = 0; i < measure.omega.size(); ++i)
-            energy += measure.weight[i] * octaves.window(j, measure.omega[i]);
-    }
-    return energy;
+/// A value of 1 or -1 at every vertex, at random: noise whose energies vary least from one draw to
+/// the next.
+Eigen::VectorXd noiseOfUnitHeight(Index vertices) {
+    std::mt19937 bits(kNoiseSeed);
+    return Eigen::VectorXd::NullaryExpr(vertices, [&] { return bits() & 1U ? 1.0 : -1.0; });
 }
 
-/// The same from a Krylov space that grows until it stays as it is.
-double convergedEnergy(const Octaves& octaves, int j, const MeshLaplacian& mesh,
-                       const Eigen::MatrixXd& R, double energyOfR, ShiftedCholesky& cholesky) {
-    const double omega = 2.0 * kPi / octaves.featureSize(j), pole = omega * omega;
-    cholesky.factorize(mesh.laplacian, pole);
-    const Eigen::VectorXd sqrtD = mesh.laplacian.D.cwiseSqrt();
-    std::vector<LanczosColumn> columns;
-    for (Index c = 0; c < R.cols(); ++c) columns.emplace_back(sqrtD.cwiseProduct(R.col(c)));
-    double energy = 0.0, change = energyOfR;
-    for (int m = 1; m <= kMaxDimension; ++m) {
-        if (!extendColumns(columns, sqrtD, mesh.constants, cholesky))
-            return octaveEnergy(octaves, j, columns, pole);
-        if (m % kCheckInterval != 0) continue;
-        const double before = energy, changeBefore = change;
-        energy = octaveEnergy(octaves, j, columns, pole);
-        change = std::abs(energy - before);
-        // One small change may be chance.
-        const double allowed = std::max(kConverged * energy, kNegligible * energyOfR);
-        if (m >= kFirstCheck && std::max(change, changeBefore) <= allowed) break;
-    }
-    return energy;
+/// Energies sum_i e_i g(omega_i) of the harmonics in every band g, `first` the first of them.
+Eigen::VectorXd energiesWithin(const Bands& bands, const Eigen::VectorXd& omega,
+                               const Eigen::VectorXd& energies, Index first) {
+    Eigen::VectorXd sums = Eigen::VectorXd::Zero(bands.count());
+    for (int j = 0; j < bands.count(); ++j)
+        for (Index i = first; i < omega.size(); ++i)
+            sums[j] += energies[i] * bands.window(j, omega[i]);
+    return sums;
 }
 
-/// Energies that a remainder R beyond the basis has in every octave; they sum to that of R.
-Eigen::VectorXd energiesBeyond(const Octaves& octaves, const MeshLaplacian& mesh,
-                               double lastOfBasis, const Eigen::MatrixXd& R, double energyOfR,
-                               ShiftedCholesky& cholesky, const Progress& progress,
-                               double& mismatch) {
-    Eigen::VectorXd energies = Eigen::VectorXd::Zero(octaves.count());
-    for (int j = 0; j < octaves.count(); ++j) {
-        if (octaves.end(j) <= lastOfBasis) continue;  // all of it is in the basis
-        progress.report(static_cast<double>(j) / octaves.count(), "energies of the octaves");
-        energies[j] = convergedEnergy(octaves, j, mesh, R, energyOfR, cholesky);
+/// The energies of the shape in every band, and those that noise of height 1 has on average.
+///
+/// In the basis the mean over all draws of the noise is known, sum_v (phi_i(v) D_v)^2; beyond, one
+/// draw is near enough to it, for there are many harmonics in a band.
+BandEnergies bandEnergies(const Bands& octaves, const Bands& thirds, const Vibration& vibration,
+                          const HarmonicBasis& basis, ShiftedCholesky& cholesky,
+                          const Progress& progress, GeometrySpectrum& spectrum) {
+    const Eigen::VectorXd& D = vibration.laplacian.D;
+    const Index constants = vibration.constants.count();
+    const Eigen::MatrixXd Dphi = D.asDiagonal() * basis.Phi;
+    const Eigen::VectorXd shapeWithin = spectrum.amplitudes.cwiseAbs2() * spectrum.area;
+    const Eigen::VectorXd noiseWithin = Dphi.colwise().squaredNorm();
+    BandEnergies energies{
+        energiesWithin(octaves, spectrum.frequencies, shapeWithin, constants),
+        energiesWithin(thirds, spectrum.frequencies, shapeWithin, constants),
+        energiesWithin(thirds, spectrum.frequencies, noiseWithin, constants),
+    };
+    if (basis.size() == D.size()) return energies;
+
+    Eigen::MatrixXd R = vibration.U;
+    R.noalias() -= basis.Phi * (Dphi.transpose() * R);
+    const double energyOfR = energyOf(R, D);
+    if (energyOfR <= kRoundOff * spectrum.totalEnergy) R.setZero();
+    Eigen::VectorXd noise = noiseOfUnitHeight(D.size());
+    noise -= basis.Phi * (Dphi.transpose() * noise);
+    BandEnergies beyond =
+        energiesBeyond(octaves, thirds, vibration.laplacian, vibration.constants,
+                       spectrum.frequencies[basis.size() - 1], R, noise, cholesky, progress);
+    if (const double sum = beyond.octaves.sum(); sum > 0.0) {
+        spectrum.mismatch = std::abs(sum / energyOfR - 1.0);
+        beyond.octaves *= energyOfR / sum;
     }
-    mismatch = std::abs(energies.sum() / energyOfR - 1.0);
-    return energies * (energyOfR / energies.sum());
+    energies.octaves += beyond.octaves;
+    energies.thirds += beyond.thirds;
+    energies.noise += beyond.noise;
+    return energies;
+}
+
+void setOctaves(const Bands& octaves, const Eigen::VectorXd& energies, GeometrySpectrum& spectrum) {
+    // A triangle almost without area has frequencies far beyond all others, and nothing in them.
+    Index filled = octaves.count();
+    while (energies[filled - 1] <= kRoundOff * spectrum.totalEnergy) --filled;
+    spectrum.octaveFeatureSizes.resize(filled);
+    for (int j = 0; j < filled; ++j) spectrum.octaveFeatureSizes[j] = octaves.featureSize(j);
+    const double sum = energies.head(filled).sum();  // totalEnergy, but for round-off
+    spectrum.octaveEnergies = energies.head(filled) * (spectrum.totalEnergy / sum);
+    spectrum.octaveAmplitudes = (spectrum.octaveEnergies / spectrum.area).cwiseSqrt();
+    spectrum.cumulativeEnergy.resize(filled);
+    std::partial_sum(spectrum.octaveEnergies.begin(), spectrum.octaveEnergies.end(),
+                     spectrum.cumulativeEnergy.begin());
+    spectrum.cumulativeEnergy /= spectrum.cumulativeEnergy[filled - 1];
+}
+
+/// The thirds of octaves that have enough harmonics.
+void setBands(const Bands& thirds, const BandEnergies& energies, Index vertices,
+              GeometrySpectrum& spectrum) {
+    const double least = kFewHarmonics / static_cast<double>(vertices) * spectrum.area;
+    const Index count = (energies.noise.array() >= least).count();
+    spectrum.bandFeatureSizes.resize(count);
+    spectrum.bandAmplitudes.resize(count);
+    spectrum.bandNoise.resize(count);
+    Index b = 0;
+    for (int t = 0; t < thirds.count(); ++t) {
+        if (energies.noise[t] < least) continue;
+        spectrum.bandFeatureSizes[b] = thirds.featureSize(t);
+        spectrum.bandAmplitudes[b] = std::sqrt(energies.thirds[t] / spectrum.area);
+        spectrum.bandNoise[b] = std::sqrt(energies.noise[t] / spectrum.area);
+        ++b;
+    }
+    const NoiseFloor floor =
+        noiseFloor(spectrum.bandFeatureSizes, spectrum.bandAmplitudes, spectrum.bandNoise);
+    spectrum.noiseHeight = floor.height;
+    spectrum.noiseFeatureSize = floor.featureSize;
 }
 
 /// Feature size at and above which a part of the energy is.
-double featureSizeHolding(double part, const GeometrySpectrum& spectrum, const Octaves& octaves) {
+double featureSizeHolding(double part, const GeometrySpectrum& spectrum, const Bands& octaves) {
     const double wanted = part * spectrum.totalEnergy;
     const Eigen::VectorXd& omega = spectrum.frequencies;
     double energy = 0.0;
@@ -133,58 +218,36 @@ double featureSizeHolding(double part, const GeometrySpectrum& spectrum, const O
 
 GeometrySpectrum geometrySpectrum(const Vertices& V, const Faces& F, const SpectrumOptions& options,
                                   const Progress& progress) {
-    const MeshLaplacian mesh = meshLaplacian(V, F, options.laplacian);
-    const Eigen::VectorXd& D = mesh.laplacian.D;
-    const Index n = D.size(), constants = mesh.constants.count();
-    const Index k = sizeOfBasis(options.basisSize, n, mesh.constants.count());
-
-    ShiftedCholesky cholesky;
-    const HarmonicBasis basis = k == n ? denseBasis(mesh.laplacian, mesh.constants)
-                                       : truncatedBasis(mesh.laplacian, mesh.constants, k, cholesky,
-                                                        progress.part(0.0, kBasisDone));
-    const bool whole = basis.size() == n;
-
+    MeshLaplacian mesh = meshLaplacian(V, F, options.laplacian);
     GeometrySpectrum spectrum;
     spectrum.diagonal = boundingBoxDiagonal(V);
-    spectrum.area = D.sum();
-    Eigen::MatrixXd R = mesh.surface.X;
-    mesh.constants.remove(R);
-    spectrum.totalEnergy = energyOf(R, D);
-    Eigen::MatrixXd coefficients = basis.Phi.transpose() * (D.asDiagonal() * R);
-    coefficients.topRows(constants).setZero();
-    R.noalias() -= basis.Phi * coefficients;
-    const Eigen::VectorXd energies = coefficients.rowwise().squaredNorm();
-    const double energyOfR = whole ? 0.0 : energyOf(R, D);
+    spectrum.area = mesh.laplacian.D.sum();
+    const Vibration vibration = vibrationOf(std::move(mesh), options.boundary);
+    const Laplacian& laplacian = vibration.laplacian;
+    const Eigen::VectorXd& D = laplacian.D;
+    const Index n = D.size(), constants = vibration.constants.count();
+    const Index k = sizeOfBasis(options.basisSize, n, vibration.constants.count());
+
+    ShiftedCholesky cholesky;
+    const HarmonicBasis basis = k == n ? denseBasis(laplacian, vibration.constants)
+                                       : truncatedBasis(laplacian, vibration.constants, k, cholesky,
+                                                        progress.part(0.0, kBasisDone));
+    spectrum.totalEnergy = energyOf(vibration.U, D);
     spectrum.frequencies = basis.lambda.cwiseMax(0.0).cwiseSqrt();
-    spectrum.amplitudes = (energies / spectrum.area).cwiseSqrt();
+    spectrum.amplitudes =
+        (basis.Phi.transpose() * (D.asDiagonal() * vibration.U)).rowwise().norm() /
+        std::sqrt(spectrum.area);
+    spectrum.amplitudes.head(constants).setZero();
 
     const double lowest = std::max(basis.lambda[constants], kLowest * 4.0 * kPi / spectrum.area);
     const double highest =
-        std::max(lowest, whole ? basis.lambda[n - 1] : largestEigenvalue(mesh.laplacian));
-    const Octaves octaves(spectrum.diagonal, std::sqrt(lowest), std::sqrt(highest));
-
-    spectrum.octaveEnergies = Eigen::VectorXd::Zero(octaves.count());
-    if (energyOfR > kRoundOff * spectrum.totalEnergy)
-        spectrum.octaveEnergies =
-            energiesBeyond(octaves, mesh, spectrum.frequencies[basis.size() - 1], R, energyOfR,
-                           cholesky, progress.part(kBasisDone, 1.0), spectrum.mismatch);
-    spectrum.octaveFeatureSizes.resize(octaves.count());
-    for (int j = 0; j < octaves.count(); ++j) {
-        spectrum.octaveFeatureSizes[j] = octaves.featureSize(j);
-        for (Index i = constants; i < basis.size(); ++i)
-            spectrum.octaveEnergies[j] += energies[i] * octaves.window(j, spectrum.frequencies[i]);
-    }
-    // A triangle almost without area has frequencies far beyond all others, and nothing in them.
-    Index filled = octaves.count();
-    while (spectrum.octaveEnergies[filled - 1] <= kRoundOff * spectrum.totalEnergy) --filled;
-    spectrum.octaveEnergies.conservativeResize(filled);
-    spectrum.octaveFeatureSizes.conservativeResize(filled);
-    spectrum.octaveEnergies *= spectrum.totalEnergy / spectrum.octaveEnergies.sum();  // round-off
-    spectrum.octaveAmplitudes = (spectrum.octaveEnergies / spectrum.area).cwiseSqrt();
-    spectrum.cumulativeEnergy.resize(filled);
-    std::partial_sum(spectrum.octaveEnergies.begin(), spectrum.octaveEnergies.end(),
-                     spectrum.cumulativeEnergy.begin());
-    spectrum.cumulativeEnergy /= spectrum.cumulativeEnergy[filled - 1];
+        std::max(lowest, k == n ? basis.lambda[n - 1] : largestEigenvalue(laplacian));
+    const Bands octaves(spectrum.diagonal, std::sqrt(lowest), std::sqrt(highest));
+    const Bands thirds(spectrum.diagonal, std::sqrt(lowest), std::sqrt(highest), 3);
+    const BandEnergies energies = bandEnergies(octaves, thirds, vibration, basis, cholesky,
+                                               progress.part(kBasisDone, 1.0), spectrum);
+    setOctaves(octaves, energies.octaves, spectrum);
+    setBands(thirds, energies, n, spectrum);
     spectrum.featureSize50 = featureSizeHolding(0.50, spectrum, octaves);
     spectrum.featureSize90 = featureSizeHolding(0.90, spectrum, octaves);
     spectrum.featureSize99 = featureSizeHolding(0.99, spectrum, octaves);

@@ -20,14 +20,18 @@ const char* const kHelp =
     "surface. Those of one octave of feature sizes, that is wavelengths, add up to details of a "
     "certain height: the <b>amplitude</b> of the octave, the root mean square over the surface, in "
     "the units of the mesh. The log lists it for every octave, down to the smallest details that "
-    "the mesh can carry; a smooth shape falls off steadily towards small ones. Where the "
-    "amplitudes stop falling, there is noise: a low-pass with a feature size somewhat above "
+    "the mesh can carry; a smooth shape falls off steadily towards small ones."
+    "<br><br>Where the details are no more than those of vertices displaced at random, there is "
+    "<b>noise</b>, or what is too fine for the mesh to tell it from noise. The log says from which "
+    "feature size down, and how high that noise is: a low-pass with a somewhat larger feature size "
     "removes it."
     "<br><br>Squares of amplitudes are energies. The log also tells the feature sizes at and above "
     "which 50, 90 and 99 % of the energy are: nearly all is in the largest features, which make "
     "the overall shape."
     "<br><br>An open boundary adds to the details of every size, the more so the longer and the "
-    "more ragged it is."
+    "more ragged it is. With <b>boundary</b> <i>fixed</i> it does not: what its position "
+    "determines is taken out first, and what is left is measured. That is also all that a filter "
+    "with a fixed boundary acts on."
     "<br><br>For more information see:"
     "<br><i>B. Vallet, B. L&eacute;vy</i>, <b>Spectral Geometry Processing with Manifold "
     "Harmonics</b>, Computer Graphics Forum 27(2), 2008"
@@ -45,6 +49,10 @@ RichParameterList parameters(const MeshModel&) {
         laplacianParameter("How the frequencies of the surface are measured: as in the filter. "
                            "<b>intrinsic delaunay</b> works on any triangles; for <b>cotangent</b> "
                            "every triangle needs an area."));
+    list.addParam(boundaryParameter(
+        "Rims of an open surface and of its holes: as in the filter. <b>free</b>: they are part of "
+        "the shape. <b>fixed</b>: only what the position of the rims does not determine is "
+        "measured."));
     return list;
 }
 
@@ -71,6 +79,11 @@ std::string textOf(const GeometrySpectrum& spectrum) {
              << withPercent(spectrum.octaveAmplitudes[j], spectrum.diagonal) << std::fixed
              << std::setprecision(5) << 100.0 * spectrum.cumulativeEnergy[j] << " %"
              << std::defaultfloat;
+    if (spectrum.noiseHeight > 0.0)
+        text << "\n  details smaller than "
+             << withPercent(spectrum.noiseFeatureSize, spectrum.diagonal)
+             << " are as noise of the vertices, of a root mean square height of "
+             << withPercent(spectrum.noiseHeight, spectrum.diagonal);
     text << "\n  50 % of the energy at feature sizes of at least "
          << withPercent(spectrum.featureSize50, spectrum.diagonal) << ", 90 % "
          << withPercent(spectrum.featureSize90, spectrum.diagonal) << ", 99 % "
@@ -84,6 +97,7 @@ FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
     spectral::SpectrumOptions options;
     options.basisSize = parameters.getInt("basis_size");
     options.laplacian = laplacianKind(parameters);
+    options.boundary = boundaryCondition(parameters);
     const GeometrySpectrum spectrum =
         spectral::geometrySpectrum(input.V, input.F, options, progress);
     return {{{"diagonal", spectrum.diagonal},
@@ -95,6 +109,11 @@ FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
              {"octave_energies", vectorVariant(spectrum.octaveEnergies)},
              {"octave_amplitudes", vectorVariant(spectrum.octaveAmplitudes)},
              {"cumulative_energy", vectorVariant(spectrum.cumulativeEnergy)},
+             {"band_feature_sizes", vectorVariant(spectrum.bandFeatureSizes)},
+             {"band_amplitudes", vectorVariant(spectrum.bandAmplitudes)},
+             {"band_noise", vectorVariant(spectrum.bandNoise)},
+             {"noise_height", spectrum.noiseHeight},
+             {"noise_feature_size", spectrum.noiseFeatureSize},
              {"feature_size_50", spectrum.featureSize50},
              {"feature_size_90", spectrum.featureSize90},
              {"feature_size_99", spectrum.featureSize99},

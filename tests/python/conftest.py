@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import meshlab_spectral
 import pymeshlab
 import pytest
+from commands import PRECIOUS
 from numpy.typing import NDArray
 
 SAMPLES = Path(pymeshlab.__file__).parent / "tests" / "sample_meshes"
@@ -77,3 +78,20 @@ def shared_mesh() -> Callable[[str], Path]:
         return path
 
     return get
+
+
+@pytest.fixture
+def cow(samples: Path) -> Path:
+    return samples / "cow.obj"
+
+
+@pytest.fixture
+def existing(tmp_path: Path) -> Iterator[Path]:
+    """An output that was there before; it must be the only file left, byte for byte."""
+    folder = tmp_path / "out"
+    folder.mkdir()
+    target = folder / "result.ply"
+    target.write_bytes(PRECIOUS)
+    yield target
+    assert target.read_bytes() == PRECIOUS
+    assert list(folder.iterdir()) == [target]

@@ -124,6 +124,7 @@ WRONG: dict[str, tuple[list[object], int, str]] = {
     "no .png file": (["--pictures", "sheet.jpg"], 2, ".png"),
     "no archive of NumPy": (["--output", "basis.txt"], 2, ".npz"),
     "no such folder": (["--output", "nowhere/basis.npz"], 1, "nowhere"),
+    "no such folder for pictures": (["--pictures", "nowhere/sheet.png"], 1, "create it first"),
 }
 
 

@@ -10,7 +10,9 @@ from typing import Any
 
 import matplotlib.image
 import numpy as np
+import pymeshlab
 import pytest
+from helpers import lower_part, mesh_set_of
 from meshlab_spectral import FilterOptions, geometry_spectrum
 from meshlab_spectral.cli_spectrum import SHOWN_OPTIONS
 from meshlab_spectral.meshfile import load_arrays
@@ -27,11 +29,6 @@ def command(*arguments: object, folder: Path | None = None) -> subprocess.Comple
     )
 
 
-@pytest.fixture
-def cow(samples: Path) -> Path:
-    return samples / "cow.obj"
-
-
 def colours(path: Path) -> Any:
     return np.asarray(matplotlib.image.imread(path))[:, :, :3]
 
@@ -42,11 +39,53 @@ def test_the_plot_and_a_table_of_the_octaves_are_made(cow: Path, tmp_path: Path)
     assert done.stderr == ""
     assert [path.name for path in tmp_path.iterdir()] == ["cow_spectrum.png"]
     assert done.stdout.splitlines()[-1] == "cow_spectrum.png"
-    for word in ("cow.obj", "low-pass", "Amplitude", "Gain", "50, 90, 99 %"):
+    for word in ("cow.obj", "low-pass", "Amplitude", "Gain", "50, 90, 99 %", "oise"):
         assert word in done.stdout
     picture = colours(tmp_path / "cow_spectrum.png")
     assert picture.shape[0] > 500
     assert 0.1 < (picture < 0.98).any(axis=2).mean() < 0.9
+
+
+def test_noise_is_told_and_shaded(samples: Path, tmp_path: Path) -> None:
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.load_new_mesh(str(samples / "bunny.obj"))
+    mesh_set.meshing_decimation_quadric_edge_collapse(targetfacenum=12000)
+    mesh = mesh_set.current_mesh()
+    V, F = mesh.vertex_matrix(), mesh.face_matrix()
+    noisy = V + 0.002 * np.random.default_rng(3).standard_normal(V.shape)
+    mesh_set_of(noisy, F).save_current_mesh(str(tmp_path / "noisy.ply"))
+    done = command(tmp_path / "noisy.ply", "--basis-size", 50, folder=tmp_path)
+    assert "Noise: details smaller than" in done.stdout
+    shaded = colours(tmp_path / "noisy_spectrum.png")
+    # A pale brown that nothing else in the plot has, over the last part of its width.
+    brown = (shaded[:, :, 0] > shaded[:, :, 2] + 0.03) & (shaded.min(axis=2) > 0.8)
+    columns = np.flatnonzero(brown.sum(axis=0) > 200)
+    assert 0.5 * shaded.shape[1] < columns.min() < columns.max()
+
+
+def test_a_mesh_too_small_to_tell_noise_by_is_drawn(samples: Path, tmp_path: Path) -> None:
+    mesh_set_of(
+        np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]])
+    ).save_current_mesh(str(tmp_path / "triangle.ply"))
+    done = command("triangle.ply", folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "No noise is seen" in done.stdout
+
+
+def test_a_fixed_boundary_makes_another_spectrum(tmp_path: Path, decimated: Any) -> None:
+    mesh_set_of(*lower_part(*decimated("bunny.obj", 1500))).save_current_mesh(
+        str(tmp_path / "open.ply")
+    )
+    free, fixed = (
+        json.loads(
+            command(
+                "open.ply", "--json", "--boundary", b, "--basis-size", 9, folder=tmp_path
+            ).stdout
+        )
+        for b in ("free", "fixed")
+    )
+    assert fixed["options"]["boundary"] == "fixed"
+    assert fixed["spectrum"]["total_energy"] != free["spectrum"]["total_energy"]
 
 
 def test_another_filter_makes_another_plot(cow: Path, tmp_path: Path) -> None:

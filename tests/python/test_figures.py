@@ -78,6 +78,22 @@ def test_a_missing_mesh_is_named_with_a_place_to_get_it(meshes: list[Path], tmp_
     assert not (tmp_path / "out").exists()
 
 
+def test_a_place_where_no_picture_can_be_is_refused_before_the_work(
+    meshes: list[Path], tmp_path: Path
+) -> None:
+    taken = tmp_path / "taken"
+    taken.write_text("a file\n")
+    picture = tmp_path / "out" / f"{FIGURES[5][0]}_{meshes[0].stem}.png"
+    picture.mkdir(parents=True)  # a folder in its place
+    for output, words in ((taken, "choose another one"), (picture.parent, "is no file")):
+        done = command(meshes[0], "--output", output, "--only", "1,5")
+        assert done.returncode == 1
+        assert words in done.stderr
+        assert "Traceback" not in done.stderr
+    assert taken.read_text() == "a file\n"
+    assert list(picture.parent.iterdir()) == [picture], "nothing was drawn"
+
+
 @pytest.mark.parametrize("only", ["2", "1,x", "", "1,,5"])
 def test_an_unknown_figure_is_refused_with_those_there_are(
     only: str, meshes: list[Path], tmp_path: Path

@@ -10,6 +10,7 @@ import typer
 from meshlab_spectral.command_line import errors_reported, progress_shown
 from meshlab_spectral.figures.harmonics import check_modes, check_picture, draw_basis_file
 from meshlab_spectral.harmonics import DEFAULT_BASIS_SIZE
+from meshlab_spectral.meshfile import check_target
 from meshlab_spectral.options import Boundary, LaplacianKind
 from meshlab_spectral.worker import basis_file_in_child
 
@@ -61,6 +62,7 @@ def basis_command(
         shown = None if modes is None else _modes(modes, basis_size)
         if pictures is not None:
             check_picture(pictures)
+            check_target(pictures)
         with progress_shown() as on_progress:
             basis_file_in_child(source, output, basis_size, laplacian, boundary, on_progress)
             if pictures is not None:

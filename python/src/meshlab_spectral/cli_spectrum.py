@@ -32,15 +32,18 @@ SPECTRUM_HELP = """Show how much of a mesh is in details of which size, to choos
 
 The plot has the amplitude of the details, their root mean square height, against their feature
 size: octave by octave, and for the lowest harmonics one by one. The filter's gain is drawn over it.
-Where the octaves stop falling towards small sizes, there is noise.
+Below is the height of random displacements of the vertices that would explain the details of each
+size: where it turns level there is noise, or what is too fine for the mesh to tell it from noise.
+The rim of an open mesh adds to all sizes; --boundary fixed leaves it out.
 
 \b
   meshlab-spectral spectrum scan.ply
   meshlab-spectral spectrum scan.ply --feature-size 2% --output scan.svg
+  meshlab-spectral spectrum scan.ply --boundary fixed
   meshlab-spectral spectrum scan.ply --json
 """
 
-# Those that make the curve, and that on which the frequencies depend.
+# Those that make the curve, and those on which the spectrum depends.
 SHOWN_OPTIONS = (
     "filter_type",
     "feature_size",
@@ -51,6 +54,7 @@ SHOWN_OPTIONS = (
     "stop_gain",
     "power",
     "laplacian",
+    "boundary",
 )
 
 
@@ -88,7 +92,9 @@ def spectrum_command(
             check_format(output)
             scratch = stack.enter_context(writing_whole(output))
         with progress_shown() as on_progress:
-            spectrum = measure_spectrum_in_child(source, basis_size, options.laplacian, on_progress)
+            spectrum = measure_spectrum_in_child(
+                source, basis_size, options.laplacian, options.boundary, on_progress
+            )
         if scratch is not None:
             draw_spectrum(spectrum, options, source.name, scratch)
     if as_json:
@@ -113,6 +119,17 @@ def _record(
         ),
         "octave_gains": octave_gains(spectrum, options).tolist(),
     }
+
+
+def _noise_line(spectrum: GeometrySpectrum) -> str:
+    if spectrum.noise_height == 0:
+        return "No noise is seen"
+    percent = 100 / spectrum.diagonal
+    return (
+        f"Noise: details smaller than {spectrum.noise_feature_size:.3g} "
+        f"({percent * spectrum.noise_feature_size:.2g} %) are as vertices displaced at random by "
+        f"{spectrum.noise_height:.2g} ({percent * spectrum.noise_height:.2g} %)"
+    )
 
 
 def _table(spectrum: GeometrySpectrum, options: FilterOptions, name: str) -> Table:
@@ -149,7 +166,7 @@ def _table(spectrum: GeometrySpectrum, options: FilterOptions, name: str) -> Tab
     table.caption = Text(
         f"50, 90, 99 % of the energy are at feature sizes of at least "
         f"{spectrum.feature_size_50:.4g}, {spectrum.feature_size_90:.4g}, "
-        f"{spectrum.feature_size_99:.4g}"
+        f"{spectrum.feature_size_99:.4g}\n{_noise_line(spectrum)}"
     )
     table.caption_justify = "left"
     return table

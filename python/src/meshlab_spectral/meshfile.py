@@ -133,20 +133,7 @@ def writing_whole(target: Path) -> Iterator[Path]:
         when the scratch file is not there at the end.
     """
     place = target.resolve()  # through a symbolic link, as cp does
-    folder = place.parent
-    if place.exists() and not place.is_file():
-        raise MeshFileError(f"{target} is no file but a folder or a device: name a file to write")
-    if not folder.is_dir():
-        raise MeshFileError(
-            f"the folder {target.parent} of the output does not exist: create it first"
-        )
-    try:
-        scratch_folder = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=folder))
-    except OSError as error:
-        raise MeshFileError(
-            f"the folder {target.parent} of the output cannot be written to ({error.strerror}): "
-            "choose another folder"
-        ) from error
+    scratch_folder = _scratch_folder(target, place)
     try:
         scratch = scratch_folder / target.name
         yield scratch
@@ -156,6 +143,29 @@ def writing_whole(target: Path) -> Iterator[Path]:
             raise MeshFileError(f"{target} cannot be written ({error.strerror})") from error
     finally:
         shutil.rmtree(scratch_folder, ignore_errors=True)
+
+
+def check_target(target: Path) -> None:
+    """Raise MeshFileError where `writing_whole` would: before work that would be lost."""
+    _scratch_folder(target, target.resolve()).rmdir()
+
+
+def _scratch_folder(target: Path, place: Path) -> Path:
+    """Make a hidden folder beside `place`, which `target` resolves to."""
+    folder = place.parent
+    if place.exists() and not place.is_file():
+        raise MeshFileError(f"{target} is no file but a folder or a device: name a file to write")
+    if not folder.is_dir():
+        raise MeshFileError(
+            f"the folder {target.parent} of the output does not exist: create it first"
+        )
+    try:
+        return Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=folder))
+    except OSError as error:
+        raise MeshFileError(
+            f"the folder {target.parent} of the output cannot be written to ({error.strerror}): "
+            "choose another folder"
+        ) from error
 
 
 def _put_in_place(scratch: Path, place: Path) -> None:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from meshlab_spectral.arrays import mesh_arrays
 from meshlab_spectral.calling import call_filter
 from meshlab_spectral.errors import OptionError
-from meshlab_spectral.options import LaplacianKind
+from meshlab_spectral.options import Boundary, LaplacianKind
 from meshlab_spectral.plugin import load
 
 FILTER_NAME = "get_geometry_spectrum"
@@ -29,15 +29,17 @@ class GeometrySpectrum:
     that of the shape. Feature sizes are wavelengths, those of the filter. Lengths are in the units
     of the mesh.
 
+    The shape is what a filter with the same boundary acts on: the positions less the centroid of
+    their connected component; with a fixed boundary, less their harmonic extension from there.
+
     Attributes
     ----------
     diagonal
         Of the bounding box.
     area
-        Of the surface.
+        Of the surface, all of it.
     total_energy
-        Integral over the surface of the squared distance from the centroid of the connected
-        component, length^4.
+        Integral over the surface of the squared lengths of the shape, length^4.
     frequencies
         Of the lowest harmonics, ascending, in radians per length unit, 0 for the constant ones; at
         least `basis_size` of them, as no group of equal frequencies is cut, or all there are.
@@ -53,6 +55,20 @@ class GeometrySpectrum:
         ``sqrt(octave_energies / area)``.
     cumulative_energy
         Part of the energy in every octave and all larger ones, ascending to 1.
+    band_feature_sizes
+        Middles of thirds of octaves, from large to small: those that hold as much as 30 harmonics;
+        perhaps none.
+    band_amplitudes
+        Of the shape in these.
+    band_noise
+        Amplitudes that white noise of the vertices, of height 1 across the surface, has in these;
+        above 0.
+    noise_height
+        Root mean square height of the noise of which all details smaller than `noise_feature_size`
+        are no more: noise, or what is too fine for the mesh to tell it from noise. 0 where no such
+        details are seen. Up to 20 % too large, by what the shape itself has there.
+    noise_feature_size
+        Where that begins; 0 where it is not seen.
     feature_size_50, feature_size_90, feature_size_99
         Feature sizes at and above which 50, 90 and 99 % of the energy are.
     mismatch
@@ -69,10 +85,24 @@ class GeometrySpectrum:
     octave_energies: Array
     octave_amplitudes: Array
     cumulative_energy: Array
+    band_feature_sizes: Array
+    band_amplitudes: Array
+    band_noise: Array
+    noise_height: float
+    noise_feature_size: float
     feature_size_50: float
     feature_size_90: float
     feature_size_99: float
     mismatch: float
+
+    @property
+    def noise_heights(self) -> Array:
+        """Heights of the vertex noise that would explain each band alone.
+
+        They fall towards small features, and turn level where there is noise.
+        """
+        heights: Array = self.band_amplitudes / self.band_noise
+        return heights
 
     @classmethod
     def from_report(cls, report: dict[str, Any]) -> GeometrySpectrum:
@@ -89,11 +119,12 @@ def geometry_spectrum(
     faces: ArrayLike,
     basis_size: int = DEFAULT_BASIS_SIZE,
     laplacian: LaplacianKind = "intrinsic delaunay",
+    boundary: Boundary = "free",
 ) -> GeometrySpectrum:
     """Measure how much of a shape is in details of which size.
 
-    With the harmonics ``W phi_i = omega_i^2 D phi_i`` of the mesh and its coordinates X, an energy
-    is a sum of ``|phi_i^T D X|^2``: of single harmonics for the lowest ones, and of octaves over
+    With the harmonics ``W phi_i = omega_i^2 D phi_i`` of the mesh and its shape U, an energy
+    is a sum of ``|phi_i^T D U|^2``: of single harmonics for the lowest ones, and of octaves over
     the whole spectrum.
 
     Parameters
@@ -103,10 +134,13 @@ def geometry_spectrum(
     faces
         m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
     basis_size
-        How many harmonics are told one by one, the constant ones included; at least 1. Below n, or
-        n at most 2,000.
+        How many harmonics are told one by one, the constant ones included; at least 1. Below the
+        number of vertices that are not fixed, unless these are 2,000 at most.
     laplacian
         "intrinsic delaunay" works on any triangles; for "cotangent" every one needs an area.
+    boundary
+        Rims of an open surface and of its holes. "free": part of the shape, they add to the details
+        of every size; "fixed": only what they do not determine is measured.
 
     Returns
     -------
@@ -118,10 +152,10 @@ def geometry_spectrum(
     ValueError
         When an array does not have the shape or the type above, or an index is out of range.
     OptionError
-        When there is no such `laplacian`, or `basis_size` is no whole number above 0.
+        When there is no such `laplacian` or `boundary`, or `basis_size` is no whole number above 0.
     FilterError
-        When the mesh has no faces, no area, or coordinates that are not finite, or `basis_size` is
-        too large for it.
+        When the mesh has no faces, no area, or coordinates that are not finite, `basis_size` is
+        too large for it, or a fixed boundary leaves nothing to measure, as in a flat mesh.
     PluginError
         When the plugin cannot be loaded.
 
@@ -132,7 +166,8 @@ def geometry_spectrum(
     ...     print(f"details of {size:.3g}: {height:.3g} high")
     """
     V, F = mesh_arrays(vertices, faces)
-    return GeometrySpectrum.from_report(measure(V, F, spectrum_parameters(basis_size, laplacian)))
+    parameters = spectrum_parameters(basis_size, laplacian, boundary)
+    return GeometrySpectrum.from_report(measure(V, F, parameters))
 
 
 def measure(
@@ -147,7 +182,7 @@ def measure(
     return call_filter(mesh_set, FILTER_NAME, parameters)
 
 
-def spectrum_parameters(basis_size: int, laplacian: str) -> dict[str, Any]:
+def spectrum_parameters(basis_size: int, laplacian: str, boundary: str) -> dict[str, Any]:
     """Check the options of the filter, and name them as pymeshlab does.
 
     Raises
@@ -157,6 +192,10 @@ def spectrum_parameters(basis_size: int, laplacian: str) -> dict[str, Any]:
     """
     if isinstance(basis_size, bool) or not isinstance(basis_size, int) or basis_size < 1:
         raise OptionError(f"basis_size = {basis_size}: must be a whole number, at least 1")
-    if laplacian not in get_args(LaplacianKind):
-        raise OptionError(f"laplacian = {laplacian}: choose {', '.join(get_args(LaplacianKind))}")
-    return {"basis_size": basis_size, "laplacian": laplacian}
+    for name, value, kind in (
+        ("laplacian", laplacian, LaplacianKind),
+        ("boundary", boundary, Boundary),
+    ):
+        if value not in get_args(kind):
+            raise OptionError(f"{name} = {value}: choose {', '.join(get_args(kind))}")
+    return {"basis_size": basis_size, "laplacian": laplacian, "boundary": boundary}

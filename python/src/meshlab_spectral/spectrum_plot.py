@@ -1,4 +1,4 @@
-"""The plot of a geometry spectrum: amplitude against feature size, a filter's gain over it."""
+"""The plot of a geometry spectrum: amplitude against feature size, a filter's gain, the noise."""
 
 from __future__ import annotations
 
@@ -19,9 +19,10 @@ if TYPE_CHECKING:
 
 FORMATS = (".png", ".pdf", ".svg")
 
-_SIZE = (9.0, 5.0)  # inches
+_SIZE = (9.0, 7.5)  # inches
+_HEIGHTS = (3, 2)  # of the two parts
 _DOTS_PER_INCH = 150
-_OCTAVES, _HARMONICS, _FILTER = "#3b6ea5", "#7a7a7a", "#c0504d"
+_OCTAVES, _HARMONICS, _FILTER, _NOISE = "#3b6ea5", "#7a7a7a", "#c0504d", "#8a6d1d"
 
 # Octaves of less than this part of the largest amplitude, at the end, belong to a few slivers of
 # the mesh, and would take half of the plot.
@@ -53,7 +54,9 @@ def draw_spectrum(
 ) -> None:
     """Draw the spectrum of a mesh, and a filter's transfer function over it.
 
-    Large features are at the left, small ones at the right, as low and high notes are.
+    Large features are at the left, small ones at the right, as low and high notes are. Below is the
+    height of the noise of the vertices that would explain the details of each size: where it turns
+    level they are noise, and shaded.
 
     Parameters
     ----------
@@ -80,11 +83,16 @@ def draw_spectrum(
         ) from error
     figure = Figure(_SIZE, dpi=_DOTS_PER_INCH, facecolor="white", layout="constrained")
     FigureCanvasAgg(figure)
-    axes = figure.add_subplot()
+    axes, noise = figure.subplots(2, 1, sharex=True, height_ratios=_HEIGHTS)
     _plot_amplitudes(axes, spectrum)
     gains = axes.twinx()
     _plot_gain(gains, spectrum, options, axes.get_xlim())
-    _label(axes, gains, spectrum, title)
+    _plot_noise(noise, spectrum)
+    for each in (axes, noise):
+        if spectrum.noise_height > 0:
+            smallest = min(axes.get_xlim())
+            each.axvspan(smallest, spectrum.noise_feature_size, color=_NOISE, alpha=0.12, zorder=0)
+    _label(axes, gains, noise, spectrum, title)
     figure.savefig(path, format=path.suffix.lower().removeprefix("."))
 
 
@@ -136,7 +144,48 @@ def _plot_gain(
         )
 
 
-def _label(axes: Axes, gains: Axes, spectrum: GeometrySpectrum, title: str) -> None:
+def _plot_noise(axes: Axes, spectrum: GeometrySpectrum) -> None:
+    axes.set_yscale("log")
+    if len(spectrum.band_feature_sizes) == 0:
+        axes.plot([], [], " ", label="too few harmonics to tell noise by")
+        return
+    axes.plot(
+        spectrum.band_feature_sizes,
+        spectrum.noise_heights,
+        "o-",
+        color=_OCTAVES,
+        markersize=3.5,
+        linewidth=1.4,
+        label="noise that would explain the details of this size (thirds of octaves)",
+    )
+    heights = spectrum.noise_heights[spectrum.noise_heights > 0]
+    axes.set_ylim(0.05 * heights.min(), 3 * heights.max())  # room for the legend
+    if spectrum.noise_height == 0:
+        axes.plot([], [], " ", label="it does not turn level: no noise is seen")
+        return
+    size, percent = spectrum.noise_feature_size, 100 / spectrum.diagonal
+    axes.axhline(
+        spectrum.noise_height,
+        color=_NOISE,
+        linewidth=1.2,
+        linestyle=(0, (4, 3)),
+        label=f"noise of the height {spectrum.noise_height:.3g}"
+        f" ({percent * spectrum.noise_height:.2g} %)",
+    )
+    axes.annotate(
+        f"noise from {size:.3g} ({percent * size:.2g} %) down",
+        (size, 1),
+        xycoords=("data", "axes fraction"),
+        xytext=(-4, -5),
+        textcoords="offset points",
+        ha="right",
+        va="top",
+        fontsize=FONT_SIZE,
+        color=_NOISE,
+    )
+
+
+def _label(axes: Axes, gains: Axes, noise: Axes, spectrum: GeometrySpectrum, title: str) -> None:
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     def to_percent(size: Any) -> Any:
@@ -146,28 +195,30 @@ def _label(axes: Axes, gains: Axes, spectrum: GeometrySpectrum, title: str) -> N
         return spectrum.diagonal / 100 * percent
 
     percent = axes.secondary_xaxis("top", functions=(to_percent, to_length))
-    for axis in (axes.xaxis, percent.xaxis):
+    for axis in (noise.xaxis, percent.xaxis):
         axis.set_major_locator(LogLocator(10, subs=(1, 2, 5)))
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.10g}"))
         axis.set_minor_formatter(NullFormatter())
-    axes.set_xlabel("feature size (wavelength), units of the mesh", fontsize=FONT_SIZE, color=INK)
+    noise.set_xlabel("feature size (wavelength), units of the mesh", fontsize=FONT_SIZE, color=INK)
     percent.set_xlabel("% of the diagonal of the bounding box", fontsize=FONT_SIZE, color=INK)
     axes.set_ylabel("amplitude (rms height), units of the mesh", fontsize=FONT_SIZE, color=INK)
+    noise.set_ylabel("height of noise, units of the mesh", fontsize=FONT_SIZE, color=INK)
     gains.set_ylabel("gain of the filter", fontsize=FONT_SIZE, color=_FILTER)
     axes.set_title(title, fontsize=FONT_SIZE + 1, color=INK, parse_math=False)
-    for each in (axes, percent, gains):
+    for each in (axes, noise, percent, gains):
         each.tick_params(labelsize=FONT_SIZE - 1, colors=INK)
     gains.tick_params(colors=_FILTER)
-    axes.grid(which="major", color="#e4e4e4", linewidth=0.6)
-    axes.set_axisbelow(True)
+    for each in (axes, noise):
+        each.grid(which="major", color="#e4e4e4", linewidth=0.6)
+        each.set_axisbelow(True)
     (curves, names), (more, more_names) = (a.get_legend_handles_labels() for a in (axes, gains))
-    gains.legend(
-        [*curves, *more],
-        [*names, *more_names],
-        fontsize=FONT_SIZE - 1,
-        loc="lower left",
-        frameon=True,
-        framealpha=0.9,
-        edgecolor="none",
-        labelcolor=INK,
-    )
+    style: dict[str, Any] = {
+        "fontsize": FONT_SIZE - 1,
+        "loc": "lower left",
+        "frameon": True,
+        "framealpha": 0.9,
+        "edgecolor": "none",
+        "labelcolor": INK,
+    }
+    gains.legend([*curves, *more], [*names, *more_names], **style)
+    noise.legend(**style)

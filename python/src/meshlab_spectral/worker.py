@@ -127,6 +127,7 @@ def measure_spectrum_in_child(
     source: Path,
     basis_size: int,
     laplacian: LaplacianKind,
+    boundary: Boundary,
     on_progress: ProgressCallback = lambda stage, fraction: None,
 ) -> GeometrySpectrum:
     """Measure the geometry spectrum of a mesh file, in a child process that can be interrupted.
@@ -135,7 +136,7 @@ def measure_spectrum_in_child(
     ----------
     source
         A file that pymeshlab reads, with one mesh in it.
-    basis_size, laplacian
+    basis_size, laplacian, boundary
         As for `spectrum.geometry_spectrum`.
     on_progress
         As for `filter_file_in_child`.
@@ -151,7 +152,7 @@ def measure_spectrum_in_child(
     job = {
         "task": "spectrum",
         "source": str(source.absolute()),
-        "parameters": spectrum_parameters(basis_size, laplacian),
+        "parameters": spectrum_parameters(basis_size, laplacian, boundary),
     }
     return GeometrySpectrum.from_report(_run_in_child(job, on_progress))
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from meshlab_spectral.errors import MeshFileError, OptionError
 from meshlab_spectral.figures import eigenfunctions, sequences, stability
 from meshlab_spectral.figures.subject import Subject
+from meshlab_spectral.meshfile import check_target
 
 FIGURES = {
     1: ("figure1_stability", stability.draw),
@@ -67,7 +68,15 @@ def draw_figures(
             raise OptionError(
                 f"two meshes are named {name}, as their pictures would be: rename one"
             )
-    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise MeshFileError(
+            f"the folder {folder} cannot be made ({error.strerror}): choose another one"
+        ) from error
+    for name in names:
+        for number in only:
+            check_target(folder / f"{FIGURES[number][0]}_{name}.png")
     pictures = []
     for source in sources:
         subject = Subject(source, on_stage)

@@ -1,0 +1,54 @@
+"""What the tests of the command line need: running it, and files for it to read."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pymeshlab
+
+COMMAND = [sys.executable, "-m", "meshlab_spectral.cli"]
+PRECIOUS = b"precious bytes of a file that was here before\n"
+
+
+def command(*arguments: object, **environment: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [*COMMAND, *map(str, arguments)],
+        env={**os.environ, "COLUMNS": "200", **environment},
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+
+
+def assert_fails(done: subprocess.CompletedProcess[str], code: int, *words: str) -> None:
+    """The exit code, one message with these words, no traceback, nothing on standard output."""
+    assert done.returncode == code, done.stderr
+    assert done.stdout == ""
+    assert "Traceback" not in done.stderr
+    assert "LOG:" not in done.stderr
+    for word in words:
+        assert word in done.stderr
+    if code == 1:
+        assert len(done.stderr.splitlines()) == 1
+
+
+def write_ply(path: Path, vertices: str, faces: str) -> Path:
+    V, F = vertices.splitlines(), faces.splitlines()
+    path.write_text(
+        f"ply\nformat ascii 1.0\nelement vertex {len(V)}\nproperty float x\nproperty float y\n"
+        f"property float z\nelement face {len(F)}\nproperty list uchar int vertex_indices\n"
+        "end_header\n" + "".join(line + "\n" for line in V + F)
+    )
+    return path
+
+
+def arrays_of(path: Path) -> tuple[Any, Any]:
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.load_new_mesh(str(path))
+    mesh = mesh_set.current_mesh()
+    return mesh.vertex_matrix().copy(), mesh.face_matrix().copy()

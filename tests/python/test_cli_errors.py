@@ -1,0 +1,69 @@
+"""What `meshlab-spectral filter` refuses: one message that says why, nothing written."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from commands import assert_fails, command, write_ply
+
+
+def test_a_missing_input_is_named(existing: Path, tmp_path: Path) -> None:
+    missing = tmp_path / "no such.ply"
+    assert_fails(command("filter", missing, existing), 1, str(missing), "does not exist")
+
+
+def test_a_folder_as_input_is_refused(existing: Path, tmp_path: Path) -> None:
+    assert_fails(command("filter", tmp_path, existing), 1, "is a folder")
+
+
+@pytest.mark.parametrize("ending", [".ply", ".obj", ".stl", ".off"])
+@pytest.mark.parametrize("content", ["", "this is no mesh\n"], ids=["empty", "text"])
+def test_a_broken_input_is_refused_with_advice(
+    content: str, ending: str, existing: Path, tmp_path: Path
+) -> None:
+    broken = tmp_path / f"broken{ending}"
+    broken.write_text(content)
+    assert_fails(command("filter", broken, existing), 1, str(broken), "damaged")
+
+
+def test_a_cut_off_input_is_refused(cow: Path, existing: Path, tmp_path: Path) -> None:
+    whole, cut = tmp_path / "whole.ply", tmp_path / "cut.ply"
+    command("filter", cow, whole, "--steps", 1)
+    cut.write_bytes(whole.read_bytes()[:20_000])
+    assert_fails(command("filter", cut, existing), 1, str(cut), "damaged")
+
+
+def test_an_input_that_is_no_mesh_format_is_refused_with_formats(
+    existing: Path, tmp_path: Path
+) -> None:
+    text = tmp_path / "notes.txt2"
+    text.write_text("notes\n")
+    assert_fails(command("filter", text, existing), 1, ".txt2", ".ply")
+
+
+def test_an_empty_mesh_is_refused(existing: Path, tmp_path: Path) -> None:
+    assert_fails(command("filter", write_ply(tmp_path / "m.ply", "", ""), existing), 1, "empty")
+
+
+def test_a_point_cloud_is_refused_with_a_way_to_a_surface(existing: Path, tmp_path: Path) -> None:
+    cloud = write_ply(tmp_path / "cloud.ply", "0 0 0\n1 0 0\n0 1 0", "")
+    assert_fails(command("filter", cloud, existing), 1, "point cloud", "Surface Reconstruction")
+
+
+def test_a_basis_as_large_as_the_mesh_is_refused(cow: Path, existing: Path) -> None:
+    arguments = ("--spectrum", "truncated", "--basis-size", 5000)
+    assert_fails(command("filter", cow, existing, *arguments), 1, "2904", "spectrum = full")
+
+
+def test_a_missing_plugin_is_told_without_traceback(cow: Path, existing: Path) -> None:
+    done = command("filter", cow, existing, MESHLAB_SPECTRAL_PLUGIN="/no/such/plugin.so")
+    assert_fails(done, 1, "/no/such/plugin.so", "MESHLAB_SPECTRAL_PLUGIN")
+
+
+def test_debug_shows_where_an_error_arose(existing: Path, tmp_path: Path) -> None:
+    cloud = write_ply(tmp_path / "cloud.ply", "0 0 0\n1 0 0\n0 1 0", "")
+    done = command("filter", cloud, existing, "--debug")
+    assert done.returncode == 1
+    assert "Traceback" in done.stderr
+    assert "filter_to_scratch" in done.stderr

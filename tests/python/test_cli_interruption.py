@@ -1,0 +1,104 @@
+"""`meshlab-spectral filter` at work: its progress, its interruption, the death of its child."""
+
+from __future__ import annotations
+
+import os
+import pty
+import re
+import signal
+import subprocess
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+from commands import COMMAND, command
+
+
+@pytest.fixture
+def long_run(samples: Path, existing: Path) -> Iterator[subprocess.Popen[str]]:
+    """A filter that would take a minute, seen at work."""
+    process = subprocess.Popen(
+        [*COMMAND, "filter", str(samples / "bunny.obj"), str(existing), "--steps", "500"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        # A shell's background jobs, and all that they start, ignore Ctrl-C; this one must not.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
+    try:
+        wait_until(lambda: bool(child_of(process)))
+        time.sleep(1)
+        yield process
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def child_of(process: subprocess.Popen[str]) -> int:
+    """Process id of the command's own child, 0 as long as there is none."""
+    children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+    return int(children[0]) if children else 0
+
+
+def wait_until(reached: Callable[[], bool], seconds: float = 20) -> None:
+    end = time.monotonic() + seconds
+    while not reached():
+        assert time.monotonic() < end, "waited in vain"
+        time.sleep(0.02)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interruption_ends_with_130_at_once_and_leaves_nothing_behind(
+    number: signal.Signals, long_run: subprocess.Popen[str]
+) -> None:
+    child = child_of(long_run)
+    begin = time.monotonic()
+    long_run.send_signal(number)
+    stdout, stderr = long_run.communicate(timeout=20)
+    assert time.monotonic() - begin < 5
+    assert long_run.returncode == 130
+    assert stdout == ""
+    assert stderr == "Interrupted: no output was written.\n"
+    assert not Path(f"/proc/{child}").exists()
+
+
+def test_the_death_of_the_working_process_is_told(long_run: subprocess.Popen[str]) -> None:
+    os.kill(child_of(long_run), signal.SIGKILL)
+    stdout, stderr = long_run.communicate(timeout=20)
+    assert long_run.returncode == 1
+    assert stdout == ""
+    assert "SIGKILL" in stderr
+    assert "memory" in stderr
+    assert "Traceback" not in stderr
+
+
+def test_progress_is_shown_on_a_terminal_only(samples: Path, tmp_path: Path) -> None:
+    arguments = ["filter", str(samples / "bunny.obj"), str(tmp_path / "out.ply"), "--steps", "20"]
+    reader, terminal = pty.openpty()
+    try:
+        process = subprocess.Popen(
+            [*COMMAND, *arguments],
+            stdout=subprocess.PIPE,
+            stderr=terminal,
+            env={**os.environ, "COLUMNS": "100", "TERM": "xterm-256color"},
+        )
+        os.close(terminal)
+        shown = b""
+        while True:
+            try:
+                part = os.read(reader, 65536)
+            except OSError:  # Linux's way to say that the last writer has gone
+                break
+            if not part:
+                break
+            shown += part
+        stdout, _ = process.communicate(timeout=60)
+    finally:
+        os.close(reader)
+    assert process.returncode == 0
+    steps = [int(step) for step in re.findall(rb"step (\d+) of 20", shown)]
+    assert len(set(steps)) >= 3
+    assert steps == sorted(steps)
+    assert b"step" not in stdout
+    assert "step" not in command(*arguments).stderr

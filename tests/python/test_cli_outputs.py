@@ -1,0 +1,183 @@
+"""The output files of `meshlab-spectral filter`: formats, textures, whole or as they were."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import time
+from pathlib import Path
+
+import numpy as np
+import pymeshlab
+import pytest
+from commands import COMMAND, PRECIOUS, arrays_of, assert_fails, command
+from helpers import diagonal, largest_distance
+
+
+@pytest.mark.parametrize("ending", [".ply", ".obj", ".stl", ".off"])
+def test_every_usual_format_is_written(ending: str, cow: Path, tmp_path: Path) -> None:
+    target = tmp_path / f"cow{ending}"
+    assert command("filter", cow, target, "--steps", 1).returncode == 0
+    V, F = arrays_of(target)
+    assert len(F) == len(arrays_of(cow)[1])
+    reference = tmp_path / "reference.ply"
+    assert command("filter", cow, reference, "--steps", 1).returncode == 0
+    if ending != ".stl":  # which has its vertices in another order
+        expected, _ = arrays_of(reference)
+        assert largest_distance(V, expected) < 1e-6 * diagonal(expected)
+
+
+def test_colour_and_quality_are_in_the_output(samples: Path, tmp_path: Path) -> None:
+    source, target = samples / "colored_airplane.ply", tmp_path / "airplane.ply"
+    assert command("filter", source, target, "--steps", 1).returncode == 0
+    meshes = []
+    for path in (source, target):
+        mesh_set = pymeshlab.MeshSet()
+        mesh_set.load_new_mesh(str(path))
+        meshes.append(mesh_set)
+    before, after = (mesh_set.current_mesh() for mesh_set in meshes)
+    np.testing.assert_array_equal(before.vertex_color_matrix(), after.vertex_color_matrix())
+    np.testing.assert_array_equal(before.vertex_scalar_array(), after.vertex_scalar_array())
+
+
+def test_material_and_texture_of_an_obj_appear_beside_it_under_their_names(
+    samples: Path, tmp_path: Path
+) -> None:
+    target = tmp_path / "bunny.obj"
+    arguments = ("filter", samples / "bunny10k_textured.obj", target, "--steps", 1)
+    for _ in range(2):  # the second run replaces its own files
+        done = command(*arguments)
+        assert done.returncode == 0, done.stderr
+        names = sorted(path.name for path in tmp_path.iterdir())
+        assert names == ["TextureDouble_A.png", "bunny.obj", "bunny.obj.mtl"]
+    assert "mtllib ./bunny.obj.mtl" in target.read_text()
+    assert "map_Kd TextureDouble_A.png" in (tmp_path / "bunny.obj.mtl").read_text()
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.load_new_mesh(str(target))
+    assert mesh_set.current_mesh().has_wedge_tex_coord()
+    assert list(mesh_set.current_mesh().textures()) == ["TextureDouble_A.png"]
+
+
+def test_a_texture_in_a_folder_keeps_its_place(samples: Path, tmp_path: Path) -> None:
+    source = textured_bunny(samples, tmp_path / "in", "maps/skin.png")
+    target = tmp_path / "out" / "bunny.obj"
+    target.parent.mkdir()
+    assert command("filter", source, target, "--steps", 1).returncode == 0
+    assert (target.parent / "maps" / "skin.png").is_file()
+    assert "map_Kd maps/skin.png" in (target.parent / "bunny.obj.mtl").read_text()
+
+
+def test_the_texture_of_the_input_is_left_alone_when_the_output_lies_beside_it(
+    samples: Path, tmp_path: Path
+) -> None:
+    source = textured_bunny(samples, tmp_path / "in", "skin.png")
+    skin = source.parent / "skin.png"
+    before = skin.read_bytes()
+    assert command("filter", source, source.parent / "new.obj", "--steps", 1).returncode == 0
+    assert skin.read_bytes() == before
+    assert "map_Kd skin.png" in (source.parent / "new.obj.mtl").read_text()
+
+
+def test_a_texture_outside_of_the_folder_is_never_written(samples: Path, tmp_path: Path) -> None:
+    source = textured_bunny(samples, tmp_path / "in", "../skin.png")
+    target = tmp_path / "out" / "bunny.obj"
+    target.parent.mkdir()
+    assert command("filter", source, target, "--steps", 1).returncode == 0
+    names = sorted(path.name for path in target.parent.iterdir())
+    assert names == ["bunny.obj", "bunny.obj.mtl"]
+
+
+def test_a_foreign_file_in_the_place_of_a_texture_is_not_replaced(
+    samples: Path, existing: Path, tmp_path: Path
+) -> None:
+    source = textured_bunny(samples, tmp_path / "in", "skin.png")
+    foreign = existing.parent / "skin.png"
+    foreign.write_bytes(PRECIOUS)
+    done = command("filter", source, existing, "--steps", 1)
+    assert_fails(done, 1, "skin.png", "folder of its own")
+    assert foreign.read_bytes() == PRECIOUS
+    foreign.unlink()
+
+
+def textured_bunny(samples: Path, folder: Path, texture: str) -> Path:
+    """Copy pymeshlab's textured bunny; its texture gets the given path."""
+    place = folder / texture
+    place.parent.mkdir(parents=True, exist_ok=True)
+    folder.mkdir(exist_ok=True)
+    shutil.copy(samples / "TextureDouble_A.png", place)
+    material = (samples / "bunny10k_textured.mtl").read_text()
+    (folder / "bunny10k_textured.mtl").write_text(material.replace("TextureDouble_A.png", texture))
+    return Path(shutil.copy(samples / "bunny10k_textured.obj", folder))
+
+
+def test_an_existing_output_is_replaced_and_keeps_its_permissions(
+    cow: Path, tmp_path: Path
+) -> None:
+    target = tmp_path / "cow.ply"
+    target.write_bytes(PRECIOUS)
+    target.chmod(0o640)
+    assert command("filter", cow, target, "--steps", 1).returncode == 0
+    assert len(arrays_of(target)[0]) == len(arrays_of(cow)[0])
+    assert target.stat().st_mode & 0o777 == 0o640
+
+
+def test_a_symbolic_link_as_output_stays_a_link(cow: Path, tmp_path: Path) -> None:
+    real, link = tmp_path / "real.ply", tmp_path / "link.ply"
+    link.symlink_to(real)
+    assert command("filter", cow, link, "--steps", 1).returncode == 0
+    assert link.is_symlink()
+    assert real.is_file()
+
+
+def test_a_missing_output_folder_is_named(cow: Path, tmp_path: Path) -> None:
+    target = tmp_path / "nowhere" / "out.ply"
+    assert_fails(command("filter", cow, target), 1, str(target.parent), "create it first")
+
+
+def test_a_folder_as_output_is_refused(cow: Path, tmp_path: Path) -> None:
+    assert_fails(command("filter", cow, tmp_path), 1, "name a file")
+
+
+@pytest.mark.skipif(not Path("/proc/self").is_dir(), reason="no folder here that even root may not")
+def test_an_unwritable_output_folder_is_refused_before_the_work(cow: Path) -> None:
+    begin = time.monotonic()
+    assert_fails(command("filter", cow, "/proc/out.ply", "--steps", 1000), 1, "another folder")
+    assert time.monotonic() - begin < 10
+
+
+def test_a_full_disk_leaves_the_old_output(cow: Path, existing: Path) -> None:
+    """The disk is played by a limit on the size of files."""
+    limited = ["bash", "-c", 'ulimit -f 20; exec "$@"', "bash", *COMMAND]
+    done = subprocess.run(
+        [*limited, "filter", str(cow), str(existing), "--steps", "1"],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert_fails(done, 1)
+
+
+@pytest.mark.parametrize("name", ["result.xyzzy", "result"])
+def test_an_output_format_that_meshlab_cannot_write_is_refused_before_the_work(
+    name: str, samples: Path, tmp_path: Path
+) -> None:
+    begin = time.monotonic()
+    target = tmp_path / name
+    done = command("filter", samples / "bunny.obj", target, "--steps", 1000)
+    assert_fails(done, 2, name, ".ply")
+    assert time.monotonic() - begin < 10
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("how", ["same name", "symbolic link", "hard link"])
+def test_the_input_is_never_the_output(how: str, cow: Path, tmp_path: Path) -> None:
+    source = tmp_path / "cow.obj"
+    shutil.copy(cow, source)
+    target = source if how == "same name" else tmp_path / "other.obj"
+    if how == "symbolic link":
+        target.symlink_to(source)
+    if how == "hard link":
+        target.hardlink_to(source)
+    assert_fails(command("filter", source, target), 2, "INPUT itself")
+    assert source.read_bytes() == cow.read_bytes()
