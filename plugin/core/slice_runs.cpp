@@ -20,7 +20,7 @@ constexpr Index kFirstCheck = 48, kCheckInterval = 6, kMaxDimension = 160;
 /// are purified afterwards, which lowers it further.
 constexpr double kTolerance = 1e-8;
 
-/// Relative distance of eigenvalues, or gaps between them, that are taken for equal.
+/// Relative distance of eigenvalues that are taken for equal.
 constexpr double kEqual = 1e-6;
 
 /// Length of what is left of a vector of an invariant space, beside the vector's own.
@@ -100,11 +100,9 @@ class SliceLanczos {
             lambda_[i] = factor_.shift() + 1.0 / theta[ritzOf_[static_cast<std::size_t>(i)]];
         // An edge is reached by a pair beyond it. Below the edge at 0 there is none: it is reached
         // when no pair that has not converged is left.
-        const Index c = lambda_.size();
-        const double first = task_.from.lambda - task_.from.window;
-        reachedFrom_ =
-            first > 0.0 ? down > 0 && lambda_[0] < first : !(down < m && theta[down] < least);
-        reachedTo_ = up > 0 && lambda_[c - 1] > task_.to.lambda + task_.to.window;
+        reachedFrom_ = task_.from > 0.0 ? down > 0 && lambda_[0] < task_.from - task_.overlap
+                                        : !(down < m && theta[down] < least);
+        reachedTo_ = up > 0 && lambda_[down + up - 1] > task_.to + task_.overlap;
     }
 
     bool reachedFrom() const { return reachedFrom_; }
@@ -112,15 +110,15 @@ class SliceLanczos {
 
     /// The part of the slice that converged pairs cover.
     double coveredFrom() const {
-        if (reachedFrom_) return resolved(task_.from);
-        return lambda_.size() > 0 && lambda_[0] < factor_.shift() ? lambda_[0] * (1.0 - kEqual)
-                                                                  : factor_.shift();
+        if (reachedFrom_) return task_.from;
+        const bool any = lambda_.size() > 0 && lambda_[0] < factor_.shift();
+        return std::max(task_.from, any ? lambda_[0] * (1.0 - kEqual) : factor_.shift());
     }
     double coveredTo() const {
-        if (reachedTo_) return resolved(task_.to);
+        if (reachedTo_) return task_.to;
         const Index c = lambda_.size();
-        return c > 0 && lambda_[c - 1] > factor_.shift() ? lambda_[c - 1] * (1.0 + kEqual)
-                                                         : factor_.shift();
+        const bool any = c > 0 && lambda_[c - 1] > factor_.shift();
+        return std::min(task_.to, any ? lambda_[c - 1] * (1.0 + kEqual) : factor_.shift());
     }
 
     /// The converged pairs of the covered part.
@@ -128,7 +126,7 @@ class SliceLanczos {
         const double from = coveredFrom(), to = coveredTo();
         std::vector<Index> pairs;
         for (Index i = 0; i < lambda_.size(); ++i)
-            if (lambda_[i] > from && lambda_[i] < to) pairs.push_back(i);
+            if (lambda_[i] >= from && lambda_[i] < to) pairs.push_back(i);
         return pairs;
     }
 
@@ -162,24 +160,6 @@ class SliceLanczos {
     }
 
   private:
-    /// The widest gap within the window of an edge that the eigenvalues leave.
-    double resolved(const SliceEdge& edge) const {
-        double at = edge.lambda, widest = 0.0, last = edge.lambda - edge.window;
-        const double end = edge.lambda + edge.window;
-        const auto look = [&](double next) {
-            // By a margin: of gaps equal but for round-off every run takes the first.
-            if (next - last > widest * (1.0 + kEqual)) {
-                widest = next - last;
-                at = 0.5 * (next + last);
-            }
-            last = next;
-        };
-        for (const double lambda : lambda_)
-            if (lambda > last && lambda < end) look(lambda);
-        look(end);
-        return at;
-    }
-
     void project(Eigen::MatrixXd& u) const {
         constants_.remove(u);
         if (task_.known.cols() > 0)
@@ -230,8 +210,6 @@ SliceRun runOf(const Laplacian& laplacian, const ConstantModes& constants, Shift
         if (done || lanczos.exhausted()) break;
         check = lanczos.dimension() + kCheckInterval;
     }
-    run.reachedFrom = lanczos.reachedFrom();
-    run.reachedTo = lanczos.reachedTo();
     run.coveredFrom = lanczos.coveredFrom();
     run.coveredTo = lanczos.coveredTo();
     run.solves = static_cast<int>(lanczos.dimension() + lanczos.deliver(found));

@@ -12,18 +12,12 @@
 
 namespace spectral {
 
-/// Where the slices of two runs meet: at `lambda`, or in the widest gap between eigenvalues within
-/// `window` of it, so that no group of equal ones is torn apart. Both runs find these eigenvalues
-/// and, each for itself, the same gap.
-struct SliceEdge {
-    double lambda = 0.0;
-    double window = 0.0;
-};
-
-/// What a run is to find: the eigenpairs between two edges, from a shift between them.
+/// What a run is to find: the eigenpairs in a slice of the spectrum, from a shift within it.
 struct SliceTask {
     double sigma = 0.0;
-    SliceEdge from, to;
+    double from = 0.0, to = 0.0;  ///< The slice: from <= lambda < to.
+    double overlap = 0.0;  ///< How far beyond the slice pairs must have converged: of those within
+                           ///< it none is then likely to be overlooked.
     Eigen::Ref<const Eigen::MatrixXd> known;  ///< D-orthonormal vectors not to be found again.
     Index missing = 0;  ///< Pairs that are known to be there: as long as the space may grow, the
                         ///< run does not end before it has so many.
@@ -39,7 +33,6 @@ struct SliceRun {
     // Converged pairs cover the part of the slice between these; it is the whole slice unless the
     // space became too large.
     double coveredFrom = 0.0, coveredTo = 0.0;
-    bool reachedFrom = true, reachedTo = true;
 };
 
 /// Does runs on all cores.

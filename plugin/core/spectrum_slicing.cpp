@@ -17,11 +17,12 @@ namespace {
 /// orthogonalization costs the square of its dimension.
 constexpr Index kSpacing = 20;
 
-/// Half the width of the window in which neighbouring slices meet, in mean spacings.
-constexpr double kWindow = 3.0;
+/// Mean spacings by which a run goes beyond its slice.
+constexpr double kOverlap = 1.0;
 
-/// Relative distance of eigenvalues of whose vectors nothing but orthogonality is well defined.
-constexpr double kEqual = 1e-6;
+/// Relative distance of eigenvalues up to which vectors are made orthogonal to each other: if they
+/// come from different runs, their overlap is that of their residuals divided by this distance.
+constexpr double kNear = 3e-3;
 
 /// The last shift aims at so many pairs more than asked; tries for at most twice as many, and for
 /// any number. Every other try goes farther by this factor at least.
@@ -43,12 +44,13 @@ struct Count {
 
 bool operator<(const Count& a, const Count& b) { return a.sigma < b.sigma; }
 
-/// Makes columns of nearly equal eigenvalues D-orthonormal: they may come from different runs. All
-/// others are so already, to the accuracy of the pairs.
-void orthonormalizeClusters(const Eigen::VectorXd& D, const Eigen::VectorXd& lambda,
-                            Eigen::Ref<Eigen::MatrixXd> Phi) {
+/// Makes columns of near eigenvalues D-orthonormal: they may come from different runs. That changes
+/// their residuals by no more than these are. All others are so already, to the accuracy of the
+/// pairs.
+void orthonormalizeNear(const Eigen::VectorXd& D, const Eigen::VectorXd& lambda,
+                        Eigen::Ref<Eigen::MatrixXd> Phi) {
     for (Index j = 1; j < lambda.size(); ++j) {
-        for (Index i = j - 1; i >= 0 && lambda[j] - lambda[i] <= kEqual * lambda[j]; --i)
+        for (Index i = j - 1; i >= 0 && lambda[j] - lambda[i] <= kNear * lambda[j]; --i)
             Phi.col(j) -= Phi.col(i).dot(D.cwiseProduct(Phi.col(j))) * Phi.col(i);
         Phi.col(j) /= std::sqrt(Phi.col(j).dot(D.cwiseProduct(Phi.col(j))));
     }
@@ -87,8 +89,7 @@ class Slicing {
             }
             found.sort();
             const Index rest = found.size() - c;
-            orthonormalizeClusters(laplacian_.D, found.lambdas().tail(rest),
-                                   found.vectors(c, rest));
+            orthonormalizeNear(laplacian_.D, found.lambdas().tail(rest), found.vectors(c, rest));
             tasks = tasksForMissingCopies(found);
             if (tasks.empty()) return assembled(found);
             if (found.size() == searched) break;
@@ -142,26 +143,22 @@ class Slicing {
         return weylSlope() * index;
     }
 
-    SliceTask task(double sigma, const SliceEdge& from, const SliceEdge& to,
-                   const Eigen::Ref<const Eigen::MatrixXd>& known, Index missing = 0) {
-        return {sigma, from, to, known, missing, seed_++};
+    SliceTask task(double from, double to, double overlap,
+                   const Eigen::Ref<const Eigen::MatrixXd>& known, Index missing) {
+        return {0.5 * (from + to), from, to, overlap, known, missing, seed_++};
     }
 
     std::vector<SliceTask> firstTasks() {
         const Index c = constants_.count(), total = counts_.back().below - c;
         const Index slices = std::max<Index>(1, (total + kSpacing / 2) / kSpacing);
         const double spacing = static_cast<double>(total) / static_cast<double>(slices);
-        const auto at = [&](double slice) {
-            return lambdaAt(static_cast<double>(c) + spacing * slice);
-        };
         std::vector<SliceTask> tasks;
-        SliceEdge from;  // at 0, below which there is nothing
-        for (Index i = 0; i < slices; ++i) {
-            const double slice = static_cast<double>(i);
-            SliceEdge to{counts_.back().sigma, 0.0};
-            if (i + 1 < slices)
-                to = {at(slice + 1.0), kWindow / spacing * (at(slice + 1.0) - at(slice))};
-            tasks.push_back(task(at(slice + 0.5), from, to, none_));
+        double from = 0.0;
+        for (Index i = 1; i <= slices; ++i) {
+            const double to =
+                i < slices ? lambdaAt(static_cast<double>(c) + spacing * static_cast<double>(i))
+                           : counts_.back().sigma;
+            tasks.push_back(task(from, to, kOverlap / spacing * (to - from), none_, 0));
             from = to;
         }
         return tasks;
@@ -171,13 +168,12 @@ class Slicing {
     std::vector<SliceTask> tasksForGaps(const std::vector<SliceTask>& tasks,
                                         const std::vector<SliceRun>& runs) {
         std::vector<SliceTask> more;
-        const auto cover = [&](const SliceTask& slice, const SliceEdge& from, const SliceEdge& to) {
-            if (from.lambda < to.lambda)
-                more.push_back(task(0.5 * (from.lambda + to.lambda), from, to, slice.known));
+        const auto cover = [&](const SliceTask& slice, double from, double to) {
+            if (from < to) more.push_back(task(from, to, 0.0, slice.known, 0));
         };
         for (std::size_t i = 0; i < runs.size(); ++i) {
-            if (!runs[i].reachedFrom) cover(tasks[i], tasks[i].from, {runs[i].coveredFrom, 0.0});
-            if (!runs[i].reachedTo) cover(tasks[i], {runs[i].coveredTo, 0.0}, tasks[i].to);
+            cover(tasks[i], tasks[i].from, runs[i].coveredFrom);
+            cover(tasks[i], runs[i].coveredTo, tasks[i].to);
         }
         return more;
     }
@@ -197,8 +193,7 @@ class Slicing {
                     "the harmonics could not be told apart: more of them were found than the "
                     "inertia of W - sigma D counts");
             if (missing > 0)
-                tasks.push_back(task(0.5 * (counts_[i - 1].sigma + counts_[i].sigma),
-                                     {counts_[i - 1].sigma, 0.0}, {counts_[i].sigma, 0.0},
+                tasks.push_back(task(counts_[i - 1].sigma, counts_[i].sigma, 0.0,
                                      found.vectors(first, end - first), missing));
             first = end;
         }
