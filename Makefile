@@ -5,10 +5,12 @@
 #                       package is fetched into build/
 #   WARNINGS_AS_ERRORS  ON: a compiler warning fails the build
 #   BENCH_MESH          the mesh of the C++ benchmark, skipped when there is no such file
+#   BENCH_OPTIONS       of `make bench-basis`; --help lists them
 PYTHON ?= python3
 MESHLAB_SOURCE_DIR ?=
 WARNINGS_AS_ERRORS ?= OFF
 BENCH_MESH ?= ../shared/data/dragon_40k.ply
+BENCH_OPTIONS ?=
 
 BENCHMARKS := OFF
 BIN := .venv/bin
@@ -19,6 +21,7 @@ CMAKE_OPTIONS := $(if $(MESHLAB_SOURCE_DIR),-DMESHLAB_SOURCE_DIR=$(abspath $(MES
 PACKAGES := build/.packages
 VENV := .venv/.requirements
 PACKAGE := .venv/.package
+COMPETITORS := .venv/.competitors
 
 CPP_FILES = find plugin tests -name '*.h' -o -name '*.cpp'
 PYTHON_FILES = python tests
@@ -28,10 +31,10 @@ PACKAGE_SOURCES := CMakeLists.txt $(shell find plugin python -not -path '*/__pyc
 # Two targets at once would fetch MeshLab's headers twice; ninja uses every core anyway.
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help demo test setup build bench lint format clean
+.PHONY: help demo test setup build bench bench-basis lint format clean
 
 help:  ## list these commands
-	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 15
+	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 20
 
 demo: $(PACKAGE)  ## filter the Stanford bunny: report, mesh and picture in build/demo
 	@mkdir -p build/demo
@@ -56,6 +59,10 @@ bench: build $(PACKAGE)  ## measure time, memory and artefacts
 	$(BIN)/python tests/benchmarks/bench_pymeshlab.py
 	$(BIN)/python tests/benchmarks/bench_artefacts.py
 
+bench-basis: BENCHMARKS := ON
+bench-basis: build $(PACKAGE) $(COMPETITORS)  ## compare the truncated basis with other programs
+	$(BIN)/python tests/benchmarks/bench_basis.py --mesh $(BENCH_MESH) $(BENCH_OPTIONS)
+
 lint: setup  ## check style and types, change nothing
 	$(CPP_FILES) | xargs $(BIN)/clang-format --dry-run -Werror
 	$(BIN)/ruff check --config python/pyproject.toml $(PYTHON_FILES)
@@ -78,6 +85,15 @@ $(PACKAGES): plugin/cmake/debian_packages.txt plugin/cmake/install_debian_packag
 $(VENV): python/requirements.txt | $(PACKAGES)
 	$(PYTHON) -m venv .venv
 	$(BIN)/pip install --quiet --disable-pip-version-check --only-binary :all: --require-hashes -r $<
+	@touch $@
+
+# What the basis is compared with. scikit-sparse alone has no wheel.
+$(COMPETITORS): tests/benchmarks/requirements.txt tests/benchmarks/scikit_sparse.txt \
+  tests/benchmarks/debian_packages.txt $(VENV)
+	plugin/cmake/install_debian_packages.sh tests/benchmarks/debian_packages.txt
+	$(BIN)/pip install --quiet --disable-pip-version-check --only-binary :all: --require-hashes -r $<
+	$(BIN)/pip install --quiet --disable-pip-version-check --no-build-isolation --no-deps \
+	  --require-hashes -r tests/benchmarks/scikit_sparse.txt
 	@touch $@
 
 # The package holds a plugin of its own, built by scikit-build-core in a folder that is kept, so
