@@ -18,7 +18,7 @@ constexpr Index kFirstCheck = 48, kCheckInterval = 6, kMaxDimension = 160;
 
 /// Residual of a Ritz pair of the shift-inverted operator, relative to its eigenvalue. The pairs
 /// are purified afterwards, which lowers it further.
-constexpr double kTolerance = 1e-8;
+constexpr double kTolerance = 1e-9;
 
 /// Relative distance of eigenvalues that are taken for equal.
 constexpr double kEqual = 1e-6;
