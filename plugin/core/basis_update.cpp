@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "basis_certificate.h"
+#include "dense_products.h"
 #include "errors.h"
 #include "parallel_tasks.h"
 #include "rayleigh_ritz.h"
@@ -15,11 +16,12 @@ namespace spectral {
 
 namespace {
 
-/// Vectors of a slice, which share a factorization: it costs as much as 30 to 60 solves.
-constexpr Index kSliceWidth = 32;
+/// Vectors of a slice, about: they share a factorization, which costs as much as 50 solves.
+constexpr Index kSliceWidth = 44;
 
 /// Inverse iterations before the Rayleigh-Ritz procedure, whose cost is several times theirs.
-constexpr int kIterations = 2;
+/// The last slice takes more: it is the one beside which nothing of the spectrum is at hand.
+constexpr int kIterations = 2, kLastIterations = 4;
 
 /// An update is a round of iterations and Rayleigh-Ritz, and a second one where the first misses
 /// the gate by no more than this factor. More would cost as much as a basis from nothing.
@@ -47,20 +49,29 @@ Count countBelow(const Laplacian& laplacian, double sigma) {
 /// @throws SolverFailure  when they are dependent to working precision.
 void orthonormalize(const Eigen::VectorXd& D, Eigen::MatrixXd& S) {
     S.array().rowwise() /= S.colwise().norm().array().eval();
-    const Eigen::LLT<Eigen::MatrixXd> llt(S.transpose() * (D.asDiagonal() * S));
+    const Index n = S.rows(), m = S.cols();
+    const Eigen::MatrixXd DS = D.asDiagonal() * S;
+    Eigen::MatrixXd gram(m, m);
+    denseProducts().transposedProduct(S.data(), n, DS.data(), n, gram.data(), m, n, m, m);
+    const Eigen::LLT<Eigen::MatrixXd> llt(gram);
     if (llt.info() != Eigen::Success)
         throw SolverFailure("the vectors of a slice have become dependent");
-    llt.matrixU().solveInPlace<Eigen::OnTheRight>(S);
+    const Eigen::MatrixXd inverse = llt.matrixU().solve(Eigen::MatrixXd::Identity(m, m));
+    Eigen::MatrixXd Q(n, m);
+    denseProducts().product(S.data(), n, inverse.data(), m, Q.data(), n, n, m, m);
+    S.swap(Q);
 }
 
 /// An update at work: the candidates S are the columns of the basis beyond the constant modes.
 class Update {
   public:
-    Update(const Laplacian& laplacian, const ConstantModes& constants, HarmonicBasis& basis)
+    Update(const Laplacian& laplacian, const ConstantModes& constants, Index k,
+           HarmonicBasis& basis)
         : laplacian_(laplacian),
           constants_(constants),
           basis_(basis),
-          size_(basis.Phi.cols() - constants.count()) {}
+          size_(basis.Phi.cols() - constants.count()),
+          wanted_(k - constants.count()) {}
 
     /// The order of the candidates by their Rayleigh quotients under the new Laplacian.
     void sort(const Progress& progress) {
@@ -68,11 +79,11 @@ class Update {
         runInParallel(
             slices(),
             [&](Index slice, int, const StopPoint&) {
-                for (Index j = slice * kSliceWidth; j < end(slice); ++j) {
+                for (Index j = begin(slice); j < begin(slice + 1); ++j) {
                     Eigen::MatrixXd s = candidate(j);
                     constants_.remove(s);
-                    quotient_[j] = s.col(0).dot(laplacian_.W * s.col(0)) /
-                                   s.col(0).dot(laplacian_.D.cwiseProduct(s.col(0)));
+                    const Eigen::VectorXd Ws = laplacian_.W * s.col(0);
+                    quotient_[j] = s.col(0).dot(Ws) / s.col(0).cwiseAbs2().dot(laplacian_.D);
                 }
             },
             progress, kStage);
@@ -82,23 +93,26 @@ class Update {
                          [&](Index a, Index b) { return quotient_[a] < quotient_[b]; });
     }
 
-    /// S <- (W - sigma D)^-1 D S, twice, slice by slice.
+    /// S <- (W - sigma D)^-1 D S, several times, slice by slice.
     void iterate(const Progress& progress) {
         std::vector<ShiftedLdlt> factors(static_cast<std::size_t>(workerCount()));
         counts_.resize(static_cast<std::size_t>(slices()));
         runInParallel(
             slices(),
-            [&](Index slice, int worker, const StopPoint& stopPoint) {
-                const Index first = slice * kSliceWidth, count = end(slice) - first;
+            [&](Index task, int worker, const StopPoint& stopPoint) {
+                const Index slice = slices() - 1 - task;  // the last one takes longest
+                const Index first = begin(slice), count = begin(slice + 1) - first;
                 Eigen::MatrixXd S(laplacian_.D.size(), count);
                 for (Index j = 0; j < count; ++j) S.col(j) = candidate(sorted(first + j));
                 ShiftedLdlt& factor = factors[static_cast<std::size_t>(worker)];
-                factor.factorize(laplacian_, 0.5 * (quotient_[sorted(first)] +
-                                                    quotient_[sorted(first + count - 1)]));
+                // In the middle of what is wanted: of the last slice, not of the guards.
+                const Index last = std::min(first + count, wanted_) - 1;
+                factor.factorize(laplacian_,
+                                 0.5 * (quotient_[sorted(first)] + quotient_[sorted(last)]));
                 counts_[static_cast<std::size_t>(slice)] = {factor.shift(),
                                                             factor.eigenvaluesBelow()};
                 constants_.remove(S);
-                for (int i = 0; i < kIterations; ++i) {
+                for (int i = 0; i < iterations(slice); ++i) {
                     // Else all columns would come near the eigenvectors next to the shift.
                     if (i > 0) orthonormalize(laplacian_.D, S);
                     stopPoint();
@@ -126,16 +140,28 @@ class Update {
 
     const std::vector<Count>& counts() const { return counts_; }
 
+    /// Solves of one round.
+    int solves() const {
+        int sum = 0;
+        for (Index i = 0; i < slices(); ++i)
+            sum += iterations(i) * static_cast<int>(begin(i + 1) - begin(i));
+        return sum;
+    }
+
   private:
-    Index slices() const { return (size_ + kSliceWidth - 1) / kSliceWidth; }
-    Index end(Index slice) const { return std::min(size_, (slice + 1) * kSliceWidth); }
+    // Slices of equal width of what is wanted; the guards are in the last one.
+    Index slices() const { return std::max<Index>(1, (wanted_ + kSliceWidth / 2) / kSliceWidth); }
+    Index begin(Index slice) const { return slice < slices() ? slice * wanted_ / slices() : size_; }
+    int iterations(Index slice) const {
+        return slice + 1 < slices() ? kIterations : kLastIterations;
+    }
     Index sorted(Index i) const { return order_[static_cast<std::size_t>(i)]; }
     Eigen::MatrixXd::ColXpr candidate(Index j) { return basis_.Phi.col(constants_.count() + j); }
 
     const Laplacian& laplacian_;
     const ConstantModes& constants_;
     HarmonicBasis& basis_;
-    Index size_;
+    Index size_, wanted_;
     Eigen::VectorXd quotient_;
     std::vector<Index> order_;
     std::vector<Count> counts_;
@@ -166,17 +192,17 @@ BasisUpdateResult updateBasis(const Laplacian& laplacian, const ConstantModes& c
                               const Progress& progress) {
     BasisUpdateResult result;
     const Index c = constants.count(), columns = basis.Phi.cols();
-    if (columns <= k || basis.guards() == 0) return result;
+    if (columns <= k || k <= c || basis.guards() == 0) return result;
     basis.Phi.leftCols(c) = constants.orthonormal();
     try {
-        Update update(laplacian, constants, basis);
+        Update update(laplacian, constants, k, basis);
         update.sort(progress.part(0.0, 0.1));
         for (int round = 0; round < kMaxRounds && !result.accepted; ++round) {
             const Progress stage = progress.part(round == 0 ? 0.1 : 0.6, round == 0 ? 0.6 : 1.0);
             update.iterate(stage.part(0.0, 0.4));
             update.rayleighRitz(stage.part(0.4, 0.9));
             result.factorizations += static_cast<int>(update.counts().size()) + 1;
-            result.solves += kIterations * static_cast<int>(columns - c);
+            result.solves += update.solves();
 
             const Eigen::VectorXd lambda = update.lambda();
             const std::optional<Index> size = cutOutsideClusters(lambda, k);

@@ -50,9 +50,11 @@ ConstantModes::ConstantModes(const Components& components, const Eigen::VectorXd
     : label_(components.label), D_(D), mass_(Eigen::VectorXd::Zero(components.count)) {
     for (Index i = 0; i < D.size(); ++i)
         if (label_[i] >= 0) mass_[label_[i]] += D[i];
+    isWhole_ = count() == 1 && label_.minCoeff() == 0;
 }
 
 Eigen::MatrixXd ConstantModes::means(const Eigen::MatrixXd& X) const {
+    if (isWhole_) return D_.transpose() * X / mass_[0];
     Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(mass_.size(), X.cols());
     for (Index c = 0; c < X.cols(); ++c)
         for (Index i = 0; i < X.rows(); ++i)
@@ -61,6 +63,10 @@ Eigen::MatrixXd ConstantModes::means(const Eigen::MatrixXd& X) const {
 }
 
 void ConstantModes::add(const Eigen::MatrixXd& means, Eigen::MatrixXd& X) const {
+    if (isWhole_) {
+        X.rowwise() += means.row(0);
+        return;
+    }
     for (Index c = 0; c < X.cols(); ++c)
         for (Index i = 0; i < X.rows(); ++i)
             if (label_[i] >= 0) X(i, c) += means(label_[i], c);

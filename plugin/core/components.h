@@ -44,6 +44,7 @@ class ConstantModes {
     Eigen::VectorXi label_;
     Eigen::VectorXd D_;
     Eigen::VectorXd mass_;
+    bool isWhole_ = false;  // one mode, on all vertices: what most meshes have
 };
 
 }  // namespace spectral

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
+#include "dense_products.h"
 #include "errors.h"
 #include "parallel_tasks.h"
 
@@ -18,6 +19,7 @@ constexpr Index kColumns = 48, kRows = 1024;
 Eigen::VectorXd rayleighRitz(const Laplacian& laplacian, Eigen::Ref<Eigen::MatrixXd> S,
                              const Progress& progress) {
     const Index n = S.rows(), m = S.cols();
+    const DenseProducts& products = denseProducts();
     Eigen::MatrixXd H(m, m), G(m, m);  // S^T W S and S^T D S, their upper halves
     const Index blocks = (m + kColumns - 1) / kColumns;
     runInParallel(
@@ -26,10 +28,12 @@ Eigen::VectorXd rayleighRitz(const Laplacian& laplacian, Eigen::Ref<Eigen::Matri
             // The last block has the most rows of the upper half: it goes first.
             const Index first = (blocks - 1 - task) * kColumns;
             const Index count = std::min(kColumns, m - first), rows = first + count;
-            const Eigen::MatrixXd WS = laplacian.W * S.middleCols(first, count);
-            H.block(0, first, rows, count).noalias() = S.leftCols(rows).transpose() * WS;
-            const Eigen::MatrixXd DS = laplacian.D.asDiagonal() * S.middleCols(first, count);
-            G.block(0, first, rows, count).noalias() = S.leftCols(rows).transpose() * DS;
+            const auto upperHalf = [&](const Eigen::MatrixXd& AS, Eigen::MatrixXd& gram) {
+                products.transposedProduct(S.data(), S.outerStride(), AS.data(), n, &gram(0, first),
+                                           m, n, rows, count);
+            };
+            upperHalf(laplacian.W * S.middleCols(first, count), H);
+            upperHalf(laplacian.D.asDiagonal() * S.middleCols(first, count), G);
         },
         progress.part(0.0, 0.5), "updating the harmonics");
     G.triangularView<Eigen::StrictlyLower>() = G.transpose();

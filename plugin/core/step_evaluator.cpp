@@ -25,8 +25,8 @@ constexpr Index kDenseVertices = 600;
 /// the quicker one.
 constexpr Index kMaxUpdatedBasis = 600;
 
-/// Pairs beyond the basis that are kept for its updates: k / 8, at least 16.
-constexpr Index kGuardShare = 8, kMinGuards = 16;
+/// Pairs beyond the basis that are kept for its updates: k / 12, at least 16.
+constexpr Index kGuardShare = 12, kMinGuards = 16;
 
 /// Relative accuracy of a step that round-off still allows.
 constexpr double kFinestAccuracy = 1e-13;

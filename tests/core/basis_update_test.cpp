@@ -119,8 +119,10 @@ TEST(TruncatedSteps, UpdateTheBasisAfterTheFirst) {
 
 TEST(TruncatedSteps, ComputeTheBasisAnewWhereTheGateTrips) {
     const Mesh mesh = testing::withNoise(testing::cube(16), 0.05, 3);
-    FilterOptions options = truncatedSteps(0.3, 2);  // two strong steps: all detail goes in one
-    options.evaluation.reinjectResidual = false;
+    FilterOptions options = truncatedSteps(0.5, 2);  // each step multiplies what is small by four
+    options.transferFunction.type = FilterType::HighPass;
+    options.transferFunction.stopGain = 1.0;
+    options.transferFunction.passGain = 16.0;
     const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
     EXPECT_EQ(result.computedBases, 2);
     EXPECT_EQ(result.updatedBases, 0);

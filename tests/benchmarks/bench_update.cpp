@@ -1,0 +1,123 @@
+// The update of a basis against the basis from nothing, step by step of a truncated filter.
+//
+// usage: bench_update MESH.ply [HARMONICS [STEPS]]
+//
+// Two filters, each in STEPS (10) fractional steps with conformal update: a Gaussian low-pass at 15
+// % of the diagonal, and a band of gain 2.5 at 20 %. In every step the basis of HARMONICS (300) is
+// made of the one before, and computed from nothing for the same Laplacian. A second shape is
+// filtered with a basis from nothing in every step: `vertices` is how far the two are apart.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <vector>
+
+#include "core/basis_update.h"
+#include "core/components.h"
+#include "core/laplacian_builder.h"
+#include "core/measures.h"
+#include "core/surface.h"
+#include "support/ply.h"
+
+namespace {
+
+using namespace spectral;
+
+double seconds() {
+    using Clock = std::chrono::steady_clock;
+    return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
+}
+
+struct Filter {
+    const char* name;
+    double featureSize;  // in diagonals
+    TransferFunctionOptions options;
+};
+
+std::vector<Filter> filters() {
+    TransferFunctionOptions band;
+    band.type = FilterType::BandPass;
+    band.stopGain = 1.0;
+    band.passGain = 2.5;
+    return {{"low-pass 15 %", 0.15, {}}, {"band 2.5x at 20 %", 0.20, band}};
+}
+
+/// Largest and mean relative difference of eigenvalues that are not 0.
+void compare(const HarmonicBasis& basis, const HarmonicBasis& anew, Index constants,
+             double& largest, double& mean) {
+    const Index k = std::min(basis.size(), anew.size()) - constants;
+    const Eigen::ArrayXd error =
+        (basis.lambda.segment(constants, k).array() / anew.lambda.segment(constants, k).array() -
+         1.0)
+            .abs();
+    largest = error.maxCoeff();
+    mean = error.mean();
+}
+
+void run(const testing::Mesh& mesh, Index k, int steps, const Filter& filter) {
+    const Surface surface = surfaceOf(mesh.V, mesh.F);
+    const double diagonal = boundingBoxDiagonal(surface.X);
+    const LaplacianBuilder laplacians(surface, LaplacianKind::IntrinsicDelaunay,
+                                      BasisUpdate::Conformal);
+    const Components components = connectedComponents(surface.F, surface.X.rows());
+    const TransferFunction F(filter.options, cutoffFrequency(filter.featureSize * diagonal));
+    const Gain gain = fractionalPower(F, 1.0 / steps);
+    const auto applied = [&](const HarmonicBasis& basis, const Laplacian& A,
+                             const ConstantModes& constants, const Vertices& X) -> Vertices {
+        const double rest = gain(std::sqrt(basis.lambda[basis.size() - 1]));
+        return applyInBasis(basis, A.D, constants, gain, rest, X);
+    };
+
+    std::printf("%s, %d steps\n", filter.name, steps);
+    ShiftedCholesky work;
+    const Index guards = std::max<Index>(16, k / 12);
+    Laplacian A = laplacians.input();
+    ConstantModes constants(components, A.D);
+    HarmonicBasis basis = truncatedBasis(A, constants, k, work, {}, guards);
+    Vertices X = applied(basis, A, constants, surface.X), Y = X;
+    for (int step = 2; step <= steps; ++step) {
+        A = laplacians(X);
+        constants = ConstantModes(components, A.D);
+        double start = seconds();
+        const bool accepted = updateBasis(A, constants, k, UpdateGate(), basis).accepted;
+        const double update = seconds() - start;
+        start = seconds();
+        const HarmonicBasis anew = truncatedBasis(A, constants, k, work, {}, guards);
+        const double fromNothing = seconds() - start;
+        if (!accepted) basis = anew;
+        double largest, mean;
+        compare(basis, anew, constants.count(), largest, mean);
+        X = applied(basis, A, constants, X);
+
+        A = laplacians(Y);
+        constants = ConstantModes(components, A.D);
+        Y = applied(truncatedBasis(A, constants, k, work), A, constants, Y);
+        std::printf(
+            "  step %2d: %s %.2f s, from nothing %.2f s, ratio %.1f; eigenvalues %.1e, mean "
+            "%.1e; residuals %.1e, mean %.1e; vertices %.1e diagonals\n",
+            step, accepted ? "update" : "refused", update, fromNothing, fromNothing / update,
+            largest, mean, basis.residuals.maxCoeff(), basis.residuals.mean(),
+            (X - Y).rowwise().norm().maxCoeff() / diagonal);
+        std::fflush(stdout);
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc < 2 || argc > 4) {
+        std::fprintf(stderr, "usage: bench_update MESH.ply [HARMONICS [STEPS]]\n");
+        return 2;
+    }
+    try {
+        const testing::Mesh mesh = testing::readPly(argv[1]);
+        for (const Filter& filter : filters())
+            run(mesh, argc > 2 ? std::atoi(argv[2]) : 300, argc > 3 ? std::atoi(argv[3]) : 10,
+                filter);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "bench_update: %s\n", error.what());
+        return 1;
+    }
+}
