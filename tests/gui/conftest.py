@@ -67,19 +67,22 @@ def bunny(home: Path) -> Path:
     V = mesh.vertex_matrix().astype(np.float32).astype(np.float64)
     mesh_set.add_mesh(pymeshlab.Mesh(V, mesh.face_matrix()))
     path = home / "bunny.ply"
-    mesh_set.save_current_mesh(str(path))
+    # Nothing but the shape: MeshLab then shows it in its own colour, grey.
+    mesh_set.save_current_mesh(
+        str(path), save_vertex_color=False, save_vertex_quality=False, save_vertex_normal=False
+    )
     return path
 
 
 @pytest.fixture
 def start(
-    desktop: Desktop, home: Path, bunny: Path, request: pytest.FixtureRequest
-) -> Iterator[Callable[[], MeshLab]]:
-    """Start MeshLab with the bunny; it is ended after the test, when a picture of it was taken."""
+    desktop: Desktop, home: Path, request: pytest.FixtureRequest
+) -> Iterator[Callable[[Path], MeshLab]]:
+    """Start MeshLab with a mesh; it is ended after the test, when a picture of it was taken."""
     running: list[MeshLab] = []
 
-    def run() -> MeshLab:
-        running.append(MeshLab(desktop, home, bunny))
+    def run(mesh: Path) -> MeshLab:
+        running.append(MeshLab(desktop, home, mesh))
         return running[-1]
 
     yield run
@@ -89,7 +92,7 @@ def start(
 
 
 @pytest.fixture
-def meshlab(install: Callable[[], None], start: Callable[[], MeshLab]) -> MeshLab:
+def meshlab(install: Callable[[], None], start: Callable[[Path], MeshLab], bunny: Path) -> MeshLab:
     """A MeshLab in which the plugin was installed, with the bunny."""
     install()
-    return start()
+    return start(bunny)

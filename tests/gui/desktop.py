@@ -117,6 +117,11 @@ class Desktop:
             shot = shot.crop((box.x, box.y, box.x + box.width, box.y + box.height))
         return np.asarray(shot)
 
+    def point_at(self, box: Box) -> None:
+        """Move the mouse into the middle of a rectangle, with the last bit as a movement in it."""
+        x, y = box.center
+        self.run("xdotool", "mousemove", str(x - 4), str(y), "mousemove", str(x), str(y))
+
     def click(self, box: Box) -> None:
         """Click into the middle of a rectangle."""
         x, y = box.center

@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from meshlab import MeshLab
 
 _EDITORS = ("combo box", "text", "spin box", "check box")
-_TITLE_HEIGHT = 16
 _FAILURE = "Filter Failure"
 
 
@@ -84,10 +83,13 @@ class FilterDialog:
         return rows
 
     def _parameter_frame(self) -> Widget:
-        for widget in self.window.walk():
-            if any(child.has_name("▼") or child.has_name("▲") for child in widget.children()):
-                return widget
-        raise AssertionError("no frame with parameters, some of them advanced")
+        def has_editors(widget: Widget) -> bool:
+            inner = [w for w in widget.children() if not w.has_name("Preview")]
+            return any(w.has_role("filler") for w in inner) and any(
+                w.has_role(*_EDITORS) for w in inner
+            )
+
+        return next(filter(has_editors, self.window.walk()))
 
     def set_value(self, row: Row, value: str) -> None:
         """Set a parameter as a person does; a percentage by its percent."""
@@ -105,7 +107,10 @@ class FilterDialog:
 
     def _focus(self, editor: Widget) -> bool:
         """Try to direct the keys to a field of entry, which its window may not have at once."""
-        self._desktop.click(self.window.box._replace(height=_TITLE_HEIGHT))
+        # On the help: nothing happens there, whereas two clicks on the title dock the dialog.
+        text = self.window.find("label")
+        assert text is not None
+        self._desktop.click(text.box)
         editor.focus()
         return editor.focused
 

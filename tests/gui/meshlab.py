@@ -46,6 +46,8 @@ class MeshLab:
             output=self._log,
             QT_QPA_PLATFORM="xcb",
             QT_LINUX_ACCESSIBILITY_ALWAYS_ON="1",
+            # What is freed goes back to the system, so that what is kept can be measured.
+            MALLOC_MMAP_THRESHOLD_="131072",
         )
         wait_for("MeshLab's window", self._shows_itself)
         bus = self._session.listen()

@@ -38,28 +38,30 @@ def test_the_installed_plugin_is_loaded_without_an_error_and_its_filters_are_in_
         assert entry.enabled
 
 
-def test_without_the_plugin_there_is_no_such_menu_entry(start: Callable[[], MeshLab]) -> None:
-    assert start().menu_entry("Filters", *ENTRIES[0]) is None
+def test_without_the_plugin_there_is_no_such_menu_entry(
+    start: Callable[[Path], MeshLab], bunny: Path
+) -> None:
+    assert start(bunny).menu_entry("Filters", *ENTRIES[0]) is None
 
 
 def test_a_damaged_plugin_is_told_of_at_the_start(
-    install: Callable[[], None], home: Path, start: Callable[[], MeshLab]
+    install: Callable[[], None], home: Path, start: Callable[[Path], MeshLab], bunny: Path
 ) -> None:
     install()
     plugin = installed_plugin(home)
     plugin.write_bytes(plugin.read_bytes()[:5000])
-    error = start().plugin_error()
+    error = start(bunny).plugin_error()
     assert error is not None
     assert plugin.name in error
 
 
 def test_a_plugin_of_the_other_precision_is_told_of_at_the_start(
-    install: Callable[[], None], home: Path, start: Callable[[], MeshLab]
+    install: Callable[[], None], home: Path, start: Callable[[Path], MeshLab], bunny: Path
 ) -> None:
     install()
     double = extra_plugins_folder(DOUBLE, "linux", {"HOME": str(home)}) / library_name(DOUBLE)
     plugin = installed_plugin(home).with_name(double.name)
     double.rename(plugin)
-    error = start().plugin_error()
+    error = start(bunny).plugin_error()
     assert error is not None
     assert plugin.name in error
