@@ -67,6 +67,8 @@ done
 
 # In namespaces of its own, so that the mounts and whatever still runs go when it ends, in any way.
 inside() {
+    # A mount point as its root: without one, .ci/run could not have such namespaces in there.
+    mount --bind "$root" "$root"
     mount -t proc proc "$root/proc"
     mkdir -p "$root/dev/pts" "$root/dev/shm"
     mount -t devpts -o newinstance devpts "$root/dev/pts"

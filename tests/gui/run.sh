@@ -23,16 +23,26 @@ plugin/cmake/install_debian_packages.sh tests/gui/debian_packages.txt
 command -v debootstrap >/dev/null || { echo "$0: needs debootstrap" >&2; exit 2; }
 tests/gui/make_root.sh "$root"
 
+# The paths of sockets must be short, so the system is mounted at a short one.
+mount_point=$(mktemp -d /tmp/gui.XXXXXX)
+finish() {
+    rmdir "$mount_point"
+    # Of sudo's caller, for whom else nothing in here would be deletable.
+    if [ -n "${SUDO_UID:-}" ]; then chown -R "$SUDO_UID:$SUDO_GID" build/gui screenshots; fi
+}
+trap finish EXIT
+trap 'exit 130' INT TERM
+
 # In namespaces of its own: whatever still runs, and every mount, goes when it ends, in any way. No
-# network, and the system's folder cannot be written to. What the tests write is in memory. At /mnt,
-# because the paths of sockets must be short.
-export PYTHONDONTWRITEBYTECODE=1
+# network, and the system's folder cannot be written to. What the tests write is in memory.
+mkdir -p build/gui
+export MESHLAB_SPECTRAL_GUI_ROOT=$mount_point PYTHONDONTWRITEBYTECODE=1
 unshare --mount --pid --net --ipc --fork --kill-child --mount-proc bash -euo pipefail -c '
-    export MESHLAB_SPECTRAL_GUI_ROOT=/mnt
-    mount --bind "$0" /mnt
-    mount -o remount,bind,ro /mnt
-    mount -t proc proc /mnt/proc
-    mount -t tmpfs -o mode=1777 tmpfs /mnt/dev/shm
-    mount -t tmpfs -o mode=1777 tmpfs /mnt/tmp
+    at=$MESHLAB_SPECTRAL_GUI_ROOT
+    mount --bind "$0" "$at"
+    mount -o remount,bind,ro "$at"
+    mount -t proc proc "$at/proc"
+    mount -t tmpfs -o mode=1777 tmpfs "$at/dev/shm"
+    mount -t tmpfs -o mode=1777 tmpfs "$at/tmp"
     .venv/bin/python -m pytest -c python/pyproject.toml --rootdir . -p no:cacheprovider \
         "${@:-tests/gui}"' "$root" "$@"
