@@ -6,7 +6,6 @@ import io
 import re
 import subprocess
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from accessibility import Box, Widget
@@ -117,6 +116,17 @@ class Desktop:
             shot = shot.crop((box.x, box.y, box.x + box.width, box.y + box.height))
         return np.asarray(shot)
 
+    def settled_picture(self, box: Box) -> Picture:
+        """Take a picture of a part of the screen once it has stopped changing."""
+        pictures = [self.picture(box)]
+
+        def unchanged() -> bool:
+            pictures.append(self.picture(box))
+            return np.array_equal(*pictures[-2:])
+
+        wait_for("the picture to settle", unchanged)
+        return pictures[-1]
+
     def point_at(self, box: Box) -> None:
         """Move the mouse into the middle of a rectangle, with the last bit as a movement in it."""
         x, y = box.center
@@ -156,15 +166,3 @@ class Desktop:
 def save_picture(picture: Picture, path: Path) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     Image.fromarray(picture).save(path)
-
-
-def settled(desktop: Desktop, box: Box) -> Picture:
-    """Take a picture of a part of the screen once it has stopped changing."""
-    last: list[Any] = [None]
-
-    def same() -> bool:
-        before, last[0] = last[0], desktop.picture(box)
-        return before is not None and np.array_equal(before, last[0])
-
-    wait_for("the picture to settle", same)
-    return last[0]

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from accessibility import Box
-from desktop import Desktop, save_picture, settled
+from desktop import Desktop, save_picture
 from meshlab import MeshLab
 from waiting import wait_for
 
@@ -42,7 +42,7 @@ def test_the_menu(meshlab: MeshLab, desktop: Desktop) -> None:
             desktop.point_at(entry.box)
         else:
             desktop.click(entry.box)
-    settled(desktop, middle_of(meshlab))
+    desktop.settled_picture(middle_of(meshlab))
     save_picture(desktop.picture(), SCREENSHOTS / "meshlab_menu.png")
 
 
@@ -50,7 +50,7 @@ def test_the_dialog(meshlab: MeshLab, desktop: Desktop) -> None:
     dialog = meshlab.open_filter(SMOOTHING, FILTER)
     dialog.move(1020, 60)
     dialog.preview(True)
-    settled(desktop, middle_of(meshlab))
+    desktop.settled_picture(middle_of(meshlab))
     save_picture(desktop.picture(), SCREENSHOTS / "meshlab_dialog.png")
 
 
@@ -64,11 +64,11 @@ def test_the_dragon_before_and_after(
     meshlab = start(Path(shutil.copy(dragon, home)))
     window = meshlab.main_window().box
     scene = Box(window.x + 200, window.y + 270, 720, 490)  # where the dragon is seen
-    before = settled(desktop, scene)
+    before = desktop.settled_picture(scene)
     dialog = meshlab.open_filter(SMOOTHING, FILTER)
     dialog.apply()
     dialog.close()
-    both = np.concatenate([before, settled(desktop, scene)], axis=1)
+    both = np.concatenate([before, desktop.settled_picture(scene)], axis=1)
     save_picture(both, SCREENSHOTS / "meshlab_dragon_before_after.png")
 
 
@@ -78,5 +78,5 @@ def test_a_manifold_harmonic(meshlab: MeshLab, desktop: Desktop) -> None:
     dialog.set_value(mode, "12")
     dialog.apply()
     dialog.close()
-    settled(desktop, middle_of(meshlab))
+    desktop.settled_picture(middle_of(meshlab))
     save_picture(desktop.picture(), SCREENSHOTS / "meshlab_harmonic.png")

@@ -11,7 +11,7 @@ import numpy as np
 import pymeshlab
 import pytest
 from accessibility import Box
-from desktop import Desktop, Picture, settled
+from desktop import Desktop, Picture
 from filter_dialog import FilterDialog
 from meshlab import MeshLab
 from meshlab_spectral import FilterOptions
@@ -135,7 +135,7 @@ def test_preview_changes_the_picture_and_without_it_the_mesh_is_back(
 ) -> None:
     dialog.move(1000, 20)
     scene = scene_of(meshlab, dialog)
-    before = settled(desktop, scene)
+    before = desktop.settled_picture(scene)
     assert np.ptp(before) > 100, "the picture shows nothing"
     dialog.preview(True)
     wait_for("the picture to change", lambda: share_changed(before, desktop.picture(scene)) > 0.02)
