@@ -31,7 +31,7 @@ PACKAGE_SOURCES := CMakeLists.txt $(shell find plugin python -not -path '*/__pyc
 # Two targets at once would fetch MeshLab's headers twice; ninja uses every core anyway.
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help demo test setup build bench bench-basis lint format clean
+.PHONY: help demo test gui-test screenshots setup build bench bench-basis lint format clean
 
 help:  ## list these commands
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 20
@@ -43,6 +43,12 @@ demo: $(PACKAGE)  ## filter the Stanford bunny: report, mesh and picture in buil
 test: build $(PACKAGE)  ## run every test, C++ and Python
 	ctest --test-dir build --output-on-failure --no-tests=error --parallel $$(nproc)
 	$(BIN)/python -m pytest -c python/pyproject.toml --rootdir . tests/python
+
+gui-test: $(PACKAGE)  ## test in the real MeshLab 2025.07, made once (Linux, root or sudo)
+	tests/gui/run.sh
+
+screenshots: $(PACKAGE)  ## take the pictures of MeshLab in screenshots/ anew
+	tests/gui/run.sh tests/gui/screenshots.py
 
 setup: $(PACKAGES) $(VENV)  ## install what is missing: Debian packages, .venv
 

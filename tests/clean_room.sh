@@ -40,33 +40,13 @@ elif [ -n "$(ls -A "$root" 2>/dev/null)" ]; then
     exit 2
 fi
 
-# The first Debian mirror among the configured sources, of either format.
-mirror=$({ cat /etc/apt/sources.list /etc/apt/sources.list.d/*.{list,sources} 2>/dev/null || true; } |
-    sed -nE -e 's/^deb[[:space:]]+(\[[^]]*\][[:space:]]+)?([^[:space:]]*debian\/?)[[:space:]].*/\2/p' \
-            -e 's/^URIs:[[:space:]]*([^[:space:]]*debian\/?)([[:space:]].*)?$/\1/p' | sed -n 1p)
-[ -n "$mirror" ] || { echo "$0: no Debian mirror among the apt sources" >&2; exit 1; }
-
 include=ca-certificates,git,make
 [ "$user" = root ] || include=$include,sudo
-echo "=== debootstrap into $root"
-log=$(debootstrap --variant=minbase --include="$include" bookworm "$root" "$mirror" 2>&1) || {
-    tail -n 20 <<<"$log" >&2
-    exit 1
-}
-
-# What this machine's network needs. Of apt's settings only those about fetching: the others may
-# call programs that are not there.
-cp -L /etc/resolv.conf /etc/hosts "$root/etc/"
-for file in /etc/apt/apt.conf.d/*; do
-    if grep -q '^Acquire::' "$file" && ! grep -q 'Invoke' "$file"; then
-        cp "$file" "$root/etc/apt/apt.conf.d/"
-    fi
-done
+echo "=== a bare Debian in $root"
+"$repository/tests/debian_root.sh" bookworm "$root" "$include"
 for file in /etc/pip.conf ~/.pip/pip.conf ~/.config/pip/pip.conf; do
     [ ! -f "$file" ] || cp "$file" "$root/etc/pip.conf"
 done
-cp -r /usr/local/share/ca-certificates/. "$root/usr/local/share/ca-certificates/"
-chroot "$root" update-ca-certificates >/dev/null 2>&1
 
 home=/root
 if [ "$user" != root ]; then
@@ -87,6 +67,8 @@ done
 
 # In namespaces of its own, so that the mounts and whatever still runs go when it ends, in any way.
 inside() {
+    # A mount point as its root: without one, .ci/run could not have such namespaces in there.
+    mount --bind "$root" "$root"
     mount -t proc proc "$root/proc"
     mkdir -p "$root/dev/pts" "$root/dev/shm"
     mount -t devpts -o newinstance devpts "$root/dev/pts"

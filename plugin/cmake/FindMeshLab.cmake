@@ -1,14 +1,19 @@
 # FindMeshLab: the headers and the core library of MeshLab 2025.07, for which there is no
-# development package.
+# development package. MeshLab exists in two precisions, and takes plugins of its own only.
 #
 # Variables that may be set:
 #   MESHLAB_SOURCE_DIR   a checkout of MeshLab 2025.07 with its submodules (the folder that holds
 #                        src/common). Unset: taken from Debian's source package, checked by hash,
 #                        into build/meshlab-source of this project.
-#   MESHLAB_LIBRARY_DIR  the folder of libmeshlab-common.so. Unset: that of the Python package
-#                        pymeshlab in the interpreter Python3_EXECUTABLE.
+#   MESHLAB_LIBRARY_DIR  the folder of a double-precision libmeshlab-common.so. Unset: that of the
+#                        Python package pymeshlab in the interpreter Python3_EXECUTABLE.
 #
-# Target: MeshLab::common, with the definitions of the double-precision build (version 2025.07d).
+# Targets, each to build a plugin for one of the hosts:
+#   MeshLab::double  2025.07d: pymeshlab, and MeshLab's releases of double precision. Linked to the
+#                    core library, because Python does not show a library that it has loaded to
+#                    those that it loads later.
+#   MeshLab::float   2025.07: the usual MeshLab, Debian's too. Without a core library: the program
+#                    has loaded its own by the time it loads a plugin, which finds the symbols there.
 find_package(Qt5 5.15 REQUIRED COMPONENTS Core Gui Widgets Xml OpenGL)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 
@@ -48,15 +53,23 @@ find_package_handle_standard_args(MeshLab
   FAIL_MESSAGE "MeshLab 2025.07 not found: set MESHLAB_SOURCE_DIR (checkout with submodules) and \
 MESHLAB_LIBRARY_DIR (folder of libmeshlab-common.so, or install pymeshlab==2025.7.post1)")
 
-if(MeshLab_FOUND AND NOT TARGET MeshLab::common)
-  add_library(MeshLab::common SHARED IMPORTED)
-  set_target_properties(MeshLab::common PROPERTIES IMPORTED_LOCATION ${MeshLab_LIBRARY})
+if(MeshLab_FOUND AND NOT TARGET MeshLab::double)
+  add_library(MeshLab::headers INTERFACE IMPORTED)
   # As SYSTEM headers: their warnings are not ours to mend.
-  target_include_directories(MeshLab::common SYSTEM INTERFACE
+  target_include_directories(MeshLab::headers SYSTEM INTERFACE
     ${MeshLab_INCLUDE_DIR} ${MeshLab_VCG_INCLUDE_DIR}
     ${MESHLAB_SOURCE_DIR}/src/external/easyexif-1.0)
-  target_compile_definitions(MeshLab::common INTERFACE
-    MESHLAB_VERSION=2025.07d MESHLAB_SCALAR=double)
-  target_link_libraries(MeshLab::common INTERFACE
+  target_link_libraries(MeshLab::headers INTERFACE
     Qt5::Core Qt5::Gui Qt5::Widgets Qt5::Xml Qt5::OpenGL Eigen3::Eigen)
+
+  add_library(MeshLab::double SHARED IMPORTED)
+  set_target_properties(MeshLab::double PROPERTIES IMPORTED_LOCATION ${MeshLab_LIBRARY})
+  target_compile_definitions(MeshLab::double INTERFACE
+    MESHLAB_VERSION=2025.07d MESHLAB_SCALAR=double)
+  target_link_libraries(MeshLab::double INTERFACE MeshLab::headers)
+
+  add_library(MeshLab::float INTERFACE IMPORTED)
+  target_compile_definitions(MeshLab::float INTERFACE
+    MESHLAB_VERSION=2025.07 MESHLAB_SCALAR=float)
+  target_link_libraries(MeshLab::float INTERFACE MeshLab::headers)
 endif()

@@ -23,13 +23,7 @@ work=$(mktemp -d "$(cd "$(dirname "$folder")" && pwd)/meshlab-source.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 trap 'exit 130' INT TERM
 
-# The address of the first Debian mirror among the configured sources, of either format.
-mirror=$(cat /etc/apt/sources.list /etc/apt/sources.list.d/*.list \
-             /etc/apt/sources.list.d/*.sources 2>/dev/null |
-    sed -nE -e 's/^deb[[:space:]]+(\[[^]]*\][[:space:]]+)?([^[:space:]]*debian\/?)[[:space:]].*/\2/p' \
-            -e 's/^URIs:[[:space:]]*([^[:space:]]*debian\/?)([[:space:]].*)?$/\1/p' | sed -n 1p)
-[ -n "$mirror" ] || { echo "$0: no Debian mirror among the apt sources." >&2; exit 1; }
-
+mirror=$("$(dirname "$0")/debian_mirror.sh")
 mkdir -p "$work/lists/partial" "$work/tree"
 echo "deb-src $mirror forky main" > "$work/sources.list"
 (

@@ -1,5 +1,7 @@
 #include "filter_spectral.h"
 
+#include <sstream>
+
 #include "core/errors.h"
 
 namespace {
@@ -24,6 +26,12 @@ FilterSpectralPlugin::FilterSpectralPlugin()
 
 const MeshFilter& FilterSpectralPlugin::filterOf(const QAction* action) const {
     return filters_.at(static_cast<std::size_t>(ID(action)));
+}
+
+// Line by line: MeshLab's log runs the lines of one entry together.
+void FilterSpectralPlugin::logLines(const std::string& text) const {
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);) log(line);
 }
 
 QString FilterSpectralPlugin::pluginName() const { return "FilterSpectral"; }
@@ -73,7 +81,7 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
     try {
         FilterOutcome outcome =
             filterOf(action).apply(parameters, *document.mm(), meshlabProgress(callback));
-        log(outcome.text);
+        logLines(outcome.text);
         return std::move(outcome.report);
     } catch (const spectral::Error& error) {
         throw MLException(QString::fromStdString(error.what()));

@@ -25,10 +25,9 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         {"low-pass", "high-pass", "band-pass", "band-stop"}, "Filter type",
         "What to do with details, by their size. <b>low-pass</b> keeps what is larger than the "
         "feature size and removes the rest (smoothing, denoising). <b>high-pass</b> acts on what "
-        "is "
-        "smaller: with stop gain 1 and pass gain 2 it sharpens. <b>band-pass</b> acts on details "
-        "of "
-        "about the feature size: with stop gain 1 and pass gain above 1 it enhances just them. "
+        "is smaller: with stop gain 1 and pass gain 2 it sharpens. <b>band-pass</b> acts on "
+        "details of about the feature size: with stop gain 1 and pass gain above 1 it enhances "
+        "just them. "
         "<b>band-stop</b> removes just them."));
     list.addParam(featureSizeParameter(
         mesh,
@@ -42,11 +41,13 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "How sharply the filter tells sizes apart. <b>gaussian</b> changes over gently and never "
         "rings; <b>butterworth</b> is sharper the higher its order; <b>ideal</b> cuts at once and "
         "may leave ripples, like the rings around edges in a picture that was compressed too "
-        "much."));
+        "much.",
+        true));
     list.addParam(RichInt(
         "order", transfer.order, "Butterworth order",
         "Steepness of the butterworth response, from 1 (gentle) to 64 (nearly ideal). 2 is a good "
-        "start. Not used by the other responses."));
+        "start. Not used by the other responses.",
+        true));
     list.addParam(RichFloat(
         "band_width", static_cast<Scalarm>(transfer.bandWidth), "Band width (octaves)",
         "Width of the band of band-pass and band-stop, in octaves: 1 means that its largest "
@@ -62,7 +63,8 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
     list.addParam(RichFloat(
         "power", static_cast<Scalarm>(transfer.power), "Power",
         "The part of the filter to apply, as a power of all its gains: 1 is the whole filter, 0.5 "
-        "is half of it (a gain of 4 becomes 2). The steps divide this part. Above 0, at most 1."));
+        "is half of it (a gain of 4 becomes 2). The steps divide this part. Above 0, at most 1.",
+        true));
     list.addParam(RichInt(
         "steps", defaults.steps, "Steps",
         "The filter is applied as this many weak steps, because a single strong one damages the "
@@ -70,8 +72,7 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "10 "
         "is the scheme of the paper with ten steps; 1 is the classical one-shot filter."));
     list.addParam(RichPercentage(
-        "tolerance", static_cast<Scalarm>(kDefaultTolerance) * diagonal, 0, diagonal,
-        "Tolerance of automatic steps",
+        "tolerance", static_cast<Scalarm>(kDefaultTolerance) * diagonal, 0, diagonal, "Tolerance",
         "With 0 steps: how far any point may be from where infinitely many steps would put it. "
         "0.05 % of the diagonal is hardly visible; more is faster. Where thin parts pinch off, no "
         "number of steps is enough: the report then says on how much of the surface.",
@@ -80,7 +81,8 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "basis_update", static_cast<int>(defaults.basisUpdate), {"full", "conformal", "none"},
         "Basis update",
         "What every step learns from the shape that the step before has made. <b>full</b> takes "
-        "its own frequencies anew. <b>conformal</b> takes only its areas anew: the best choice for "
+        "its own frequencies anew. <b>conformal</b> takes only its areas anew [4]: the best choice "
+        "for "
         "strong smoothing, thin parts shrink instead of turning into spikes. <b>none</b> keeps the "
         "frequencies of the input; then the number of steps does not matter."));
     list.addParam(RichFloat(

@@ -1,0 +1,11 @@
+#!/bin/sh
+# Prints the address of the Debian mirror that this machine uses: the first one among its configured
+# apt sources, of either format.
+set -eu
+
+mirror=$(cat /etc/apt/sources.list /etc/apt/sources.list.d/*.list \
+             /etc/apt/sources.list.d/*.sources 2>/dev/null |
+    sed -nE -e 's/^deb[[:space:]]+(\[[^]]*\][[:space:]]+)?([^[:space:]]*debian\/?)[[:space:]].*/\2/p' \
+            -e 's/^URIs:[[:space:]]*([^[:space:]]*debian\/?)([[:space:]].*)?$/\1/p' | sed -n 1p)
+[ -n "$mirror" ] || { echo "$0: no Debian mirror among the apt sources" >&2; exit 1; }
+echo "$mirror"

@@ -1,0 +1,98 @@
+"""Fixtures: the screen, and the real MeshLab with the plugin as a user installs it."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import meshlab_spectral
+import numpy as np
+import pymeshlab
+import pytest
+from desktop import Desktop, save_picture
+from meshlab import MeshLab
+
+ROOT_VARIABLE = "MESHLAB_SPECTRAL_GUI_ROOT"
+PICTURES = Path(__file__).resolve().parents[2] / "build" / "gui"
+BUNNY = Path(pymeshlab.__file__).parent / "tests" / "sample_meshes" / "bunny.obj"
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _plugin_loaded() -> None:
+    meshlab_spectral.load()
+
+
+@pytest.fixture(scope="session")
+def desktop() -> Iterator[Desktop]:
+    root = os.environ.get(ROOT_VARIABLE)
+    if root is None:
+        pytest.exit(f"{ROOT_VARIABLE} is not set: start these tests by `make gui-test`", 2)
+    desktop = Desktop(Path(root))
+    yield desktop
+    desktop.close()
+
+
+@pytest.fixture
+def home(desktop: Desktop) -> Path:
+    """Folder of a new user, in the Debian system."""
+    # A short name: it is part of the names of sockets, which may have 107 characters.
+    return Path(tempfile.mkdtemp(prefix="", dir=desktop.scratch))
+
+
+@pytest.fixture
+def install(home: Path) -> Callable[[], None]:
+    """Install the plugin for that user, as a user does."""
+
+    def run() -> None:
+        environment = {k: v for k, v in os.environ.items() if k != "XDG_DATA_HOME"}
+        subprocess.run(
+            [sys.executable, "-m", "meshlab_spectral.cli", "install"],
+            env={**environment, "HOME": str(home)},
+            check=True,
+        )
+
+    return run
+
+
+@pytest.fixture
+def bunny(home: Path) -> Path:
+    """The bunny of 28,088 vertices, at places that both precisions can tell exactly."""
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.load_new_mesh(str(BUNNY))
+    mesh = mesh_set.current_mesh()
+    V = mesh.vertex_matrix().astype(np.float32).astype(np.float64)
+    mesh_set.add_mesh(pymeshlab.Mesh(V, mesh.face_matrix()))
+    path = home / "bunny.ply"
+    # Nothing but the shape: MeshLab then shows it in its own colour, grey.
+    mesh_set.save_current_mesh(
+        str(path), save_vertex_color=False, save_vertex_quality=False, save_vertex_normal=False
+    )
+    return path
+
+
+@pytest.fixture
+def start(
+    desktop: Desktop, home: Path, request: pytest.FixtureRequest
+) -> Iterator[Callable[[Path], MeshLab]]:
+    """Start MeshLab with a mesh; it is ended after the test, when a picture of it was taken."""
+    running: list[MeshLab] = []
+
+    def run(mesh: Path) -> MeshLab:
+        running.append(MeshLab(desktop, home, mesh))
+        return running[-1]
+
+    yield run
+    save_picture(desktop.picture(), PICTURES / f"{request.node.name}.png")
+    for meshlab in running:
+        meshlab.close()
+
+
+@pytest.fixture
+def meshlab(install: Callable[[], None], start: Callable[[Path], MeshLab], bunny: Path) -> MeshLab:
+    """A MeshLab in which the plugin was installed, with the bunny."""
+    install()
+    return start(bunny)

@@ -1,0 +1,168 @@
+"""A screen that nobody sees, in a Debian system of its own, with a keyboard and a mouse."""
+
+from __future__ import annotations
+
+import io
+import re
+import subprocess
+from pathlib import Path
+
+import numpy as np
+from accessibility import Box, Widget
+from numpy.typing import NDArray
+from PIL import Image
+from waiting import wait_for
+
+_DISPLAY = 7
+_SCREEN = "1600x1000x24"
+_ENVIRONMENT = {
+    "PATH": "/usr/sbin:/usr/bin:/sbin:/bin",
+    "LC_ALL": "C.UTF-8",
+    "DISPLAY": f":{_DISPLAY}",
+    "HOME": "/tmp",
+    # Software rendering: the same picture on every machine.
+    "LIBGL_ALWAYS_SOFTWARE": "1",
+    "GALLIUM_DRIVER": "llvmpipe",
+}
+
+Picture = NDArray[np.uint8]
+
+
+class Desktop:
+    """A running screen, and the programs on it.
+
+    Parameters
+    ----------
+    root
+        Folder of the Debian system, with a writable folder tmp.
+    """
+
+    def __init__(self, root: Path) -> None:
+        self.root = root
+        self._programs: list[subprocess.Popen[bytes]] = []
+        try:
+            screen = self.start("Xvfb", f":{_DISPLAY}", "-screen", "0", _SCREEN)
+            self.wait_for_socket(screen, self.scratch / f".X11-unix/X{_DISPLAY}")
+            self.start("openbox")
+        except BaseException:
+            self.close()
+            raise
+
+    @property
+    def scratch(self) -> Path:
+        """The folder /tmp of the Debian system."""
+        return self.root / "tmp"
+
+    def inside(self, path: Path) -> str:
+        """Tell the path of a file in the Debian system as programs in there know it."""
+        return f"/{path.relative_to(self.root)}"
+
+    def start(
+        self, *command: str, output: Path | None = None, **environment: str
+    ) -> subprocess.Popen[bytes]:
+        """Start a program, and leave it running."""
+        with (output or Path("/dev/null")).open("wb") as sink:
+            program = subprocess.Popen(
+                self._chrooted(command),
+                env={**_ENVIRONMENT, **environment},
+                stdin=subprocess.DEVNULL,
+                stdout=sink,
+                stderr=subprocess.STDOUT,
+            )
+        self._programs.append(program)
+        return program
+
+    def run(self, *command: str) -> bytes:
+        """Run a program to its end, which must be a good one; what it printed."""
+        done = self._run(*command)
+        assert done.returncode == 0, f"{' '.join(command)}: {done.stderr.decode()}"
+        return done.stdout
+
+    def _run(self, *command: str) -> subprocess.CompletedProcess[bytes]:
+        return subprocess.run(
+            self._chrooted(command), env=_ENVIRONMENT, capture_output=True, check=False
+        )
+
+    def _chrooted(self, command: tuple[str, ...]) -> list[str]:
+        return ["chroot", str(self.root), *command]
+
+    def wait_for_socket(self, program: subprocess.Popen[bytes], socket: Path) -> None:
+        """Wait until a program that was started listens."""
+
+        def listens() -> bool:
+            assert program.poll() is None, f"{program.args} has ended"
+            return socket.exists()
+
+        wait_for(f"{socket}", listens)
+
+    def stop(self, program: subprocess.Popen[bytes]) -> None:
+        """End a program that `start` has started."""
+        program.terminate()
+        try:
+            program.wait(10)
+        except subprocess.TimeoutExpired:
+            program.kill()
+            program.wait()
+        self._programs.remove(program)
+
+    def close(self) -> None:
+        for program in reversed(self._programs[:]):
+            self.stop(program)
+
+    def picture(self, box: Box | None = None) -> Picture:
+        """Take a picture of the screen, or of a part of it: rows x columns x RGB."""
+        shot = Image.open(io.BytesIO(self.run("import", "-window", "root", "png:-"))).convert("RGB")
+        if box is not None:
+            shot = shot.crop((box.x, box.y, box.x + box.width, box.y + box.height))
+        return np.asarray(shot)
+
+    def settled_picture(self, box: Box) -> Picture:
+        """Take a picture of a part of the screen once it has stopped changing."""
+        pictures = [self.picture(box)]
+
+        def unchanged() -> bool:
+            pictures.append(self.picture(box))
+            return np.array_equal(*pictures[-2:])
+
+        wait_for("the picture to settle", unchanged)
+        return pictures[-1]
+
+    def point_at(self, box: Box) -> None:
+        """Move the mouse into the middle of a rectangle, with the last bit as a movement in it."""
+        x, y = box.center
+        self.run("xdotool", "mousemove", str(x - 4), str(y), "mousemove", str(x), str(y))
+
+    def click(self, box: Box) -> None:
+        """Click into the middle of a rectangle."""
+        x, y = box.center
+        self.run("xdotool", "mousemove", str(x), str(y), "click", "1")
+
+    def type(self, text: str) -> None:
+        self.run("xdotool", "type", "--delay", "5", "--", text)
+
+    def press_keys(self, *keys: str) -> None:
+        """Press keys one after the other, named as xdotool does: "Return", "ctrl+a"."""
+        self.run("xdotool", "key", "--delay", "20", *keys)
+
+    def enter(self, field: Widget, text: str) -> None:
+        """Write into the field of entry that has the keys, in place of what is there."""
+        wait_for(f"{field} to have the keys", lambda: field.focused)
+        self.press_keys("ctrl+a")
+        self.type(text)
+        wait_for(f"{text!r} in the field of entry", lambda: field.text == text)
+
+    def has_window(self, title: str) -> bool:
+        """Whether there is a window with this title."""
+        pattern = f"^{re.escape(title)}$"
+        return self._run("xdotool", "search", "--onlyvisible", "--name", pattern).returncode == 0
+
+    def clipboard(self) -> str:
+        """What was copied; nothing as long as nothing was."""
+        return self._run(
+            *("xclip", "-selection", "clipboard", "-target", "UTF8_STRING", "-out")
+        ).stdout.decode()
+
+
+def save_picture(picture: Picture, path: Path) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    Image.fromarray(picture).save(path)

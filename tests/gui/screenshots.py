@@ -1,0 +1,82 @@
+"""The pictures of MeshLab in screenshots/, taken anew by `make screenshots`; no tests.
+
+Run by pytest for its fixtures: the screen, and MeshLab with the plugin installed.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from accessibility import Box
+from desktop import Desktop, save_picture
+from meshlab import MeshLab
+from waiting import wait_for
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+SCREENSHOTS = REPOSITORY / "screenshots"
+DATA = Path(os.environ.get("MESHLAB_SPECTRAL_DATA") or REPOSITORY.parent / "shared" / "data")
+
+SMOOTHING = "Smoothing, Fairing and Deformation"
+FILTER = "Spectral Filter (Fractional)"
+MEASURES = "Quality Measure and Computations"
+
+
+def middle_of(meshlab: MeshLab) -> Box:
+    """The part of the screen with the mesh, without what MeshLab writes below it."""
+    window = meshlab.main_window().box
+    return Box(window.x + 2, window.y + 100, 1000, 740)
+
+
+def test_the_menu(meshlab: MeshLab, desktop: Desktop) -> None:
+    path = ("Filters", SMOOTHING, FILTER)
+    for depth in range(1, len(path) + 1):
+        entry = meshlab.menu_entry(*path[:depth])
+        assert entry is not None
+        wait_for(f"{entry} on the screen", lambda entry=entry: entry.box.width > 0)
+        if depth == len(path):
+            desktop.point_at(entry.box)
+        else:
+            desktop.click(entry.box)
+    desktop.settled_picture(middle_of(meshlab))
+    save_picture(desktop.picture(), SCREENSHOTS / "meshlab_menu.png")
+
+
+def test_the_dialog(meshlab: MeshLab, desktop: Desktop) -> None:
+    dialog = meshlab.open_filter(SMOOTHING, FILTER)
+    dialog.move(1020, 60)
+    dialog.preview(True)
+    desktop.settled_picture(middle_of(meshlab))
+    save_picture(desktop.picture(), SCREENSHOTS / "meshlab_dialog.png")
+
+
+def test_the_dragon_before_and_after(
+    install: Callable[[], None], start: Callable[[Path], MeshLab], home: Path, desktop: Desktop
+) -> None:
+    dragon = DATA / "dragon_40k.ply"
+    if not dragon.is_file():
+        pytest.skip(f"no {dragon.name} in the collection of meshes")
+    install()
+    meshlab = start(Path(shutil.copy(dragon, home)))
+    window = meshlab.main_window().box
+    scene = Box(window.x + 200, window.y + 270, 720, 490)  # where the dragon is seen
+    before = desktop.settled_picture(scene)
+    dialog = meshlab.open_filter(SMOOTHING, FILTER)
+    dialog.apply()
+    dialog.close()
+    both = np.concatenate([before, desktop.settled_picture(scene)], axis=1)
+    save_picture(both, SCREENSHOTS / "meshlab_dragon_before_after.png")
+
+
+def test_a_manifold_harmonic(meshlab: MeshLab, desktop: Desktop) -> None:
+    dialog = meshlab.open_filter(MEASURES, "Manifold Harmonics")
+    mode = next(row for row in dialog.rows() if row.label == "Mode")
+    dialog.set_value(mode, "12")
+    dialog.apply()
+    dialog.close()
+    desktop.settled_picture(middle_of(meshlab))
+    save_picture(desktop.picture(), SCREENSHOTS / "meshlab_harmonic.png")

@@ -1,0 +1,184 @@
+"""The filter in MeshLab's dialog: its parameters, Preview, Apply, refusals, and what it leaves."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+import numpy as np
+import pymeshlab
+import pytest
+from accessibility import Box
+from desktop import Desktop, Picture
+from filter_dialog import FilterDialog
+from meshlab import MeshLab
+from meshlab_spectral import FilterOptions
+from numpy.typing import NDArray
+from waiting import wait_for
+
+MENU = ("Smoothing, Fairing and Deformation", "Spectral Filter (Fractional)")
+FILTER = "apply_coord_spectral_filter_fractional"
+
+# Of every parameter another value than its default, all together a filter that the bunny can take.
+OTHER_VALUES = {
+    "filter_type": "band-pass",
+    "feature_size": "8",
+    "response": "butterworth",
+    "order": "3",
+    "band_width": "2",
+    "pass_gain": "0.5",
+    "stop_gain": "0.25",
+    "power": "0.5",
+    "steps": "2",
+    "tolerance": "0.25",
+    "basis_update": "conformal",
+    "conformal_share": "0.5",
+    "spectrum": "truncated",
+    "basis_size": "40",
+    "reinject_residual": "false",
+    "laplacian": "cotangent",
+    "boundary": "fixed",
+}
+PARAMETERS = [option.name for option in fields(FilterOptions)]
+
+# Half a unit in the last place of a float near 1, the bunny's size, with room for rounding the
+# filter's own parameters, which MeshLab holds as floats, too.
+FLOAT_PRECISION = 4 * 2.0**-24
+
+
+@pytest.fixture
+def dialog(meshlab: MeshLab) -> FilterDialog:
+    return meshlab.open_filter(*MENU)
+
+
+def load(path: Path) -> pymeshlab.MeshSet:
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.load_new_mesh(str(path))
+    return mesh_set
+
+
+def vertices(mesh_set: pymeshlab.MeshSet) -> NDArray[np.float64]:
+    return mesh_set.current_mesh().vertex_matrix().copy()
+
+
+def saved_vertices(meshlab: MeshLab, name: str = "saved.ply") -> NDArray[np.float64]:
+    path = meshlab.home / name
+    meshlab.save_mesh(path)
+    return vertices(load(path))
+
+
+def diagonal(V: NDArray[Any]) -> float:
+    return float(np.linalg.norm(np.ptp(V, axis=0)))
+
+
+def assert_same_in_floats(A: NDArray[Any], B: NDArray[Any]) -> None:
+    assert A.shape == B.shape
+    assert np.abs(A - B).max() <= FLOAT_PRECISION * diagonal(B)
+
+
+def test_the_dialog_shows_every_parameter_with_its_default(dialog: FilterDialog) -> None:
+    rows = dialog.rows()
+    defaults = FilterOptions().as_dict()
+    assert len(rows) == len(PARAMETERS)
+    assert len({row.label for row in rows}) == len(PARAMETERS)
+    dialog.show_advanced()
+    for name, row in zip(PARAMETERS, rows, strict=True):
+        assert row.showing, name
+        assert len(row.tooltip) > len(row.label), name
+        default = defaults[name]
+        editor = row.editors[-1]
+        if isinstance(default, bool):
+            assert editor.checked == default, name
+        elif len(row.editors) == 2:
+            assert float(editor.text) == float(default.rstrip("%")), name
+        elif editor.has_role("combo box"):
+            assert editor.name == default, name
+        else:
+            assert float(editor.text) == default, name
+
+
+def test_every_parameter_set_in_the_dialog_is_in_the_copied_call_and_the_saved_script(
+    dialog: FilterDialog, meshlab: MeshLab, bunny: Path
+) -> None:
+    dialog.show_advanced()
+    assert list(OTHER_VALUES) == PARAMETERS
+    for row, value in zip(dialog.rows(), OTHER_VALUES.values(), strict=True):
+        dialog.set_value(row, value)
+    call = dialog.pymeshlab_call()
+    for name in PARAMETERS:
+        assert f"{name} = " in call, name
+    dialog.apply()
+    dialog.close()
+    in_meshlab = saved_vertices(meshlab)
+    script = meshlab.home / "script.mlx"
+    meshlab.save_script(script)
+
+    (entry,) = ElementTree.parse(script).iter("filter")
+    assert entry.attrib["name"] == MENU[-1]
+    assert [parameter.attrib["name"] for parameter in entry.iter("Param")] == PARAMETERS
+
+    ms = load(bunny)
+    exec(call, {"ms": ms, "pymeshlab": pymeshlab})
+    by_call = vertices(ms)
+    other = load(bunny)
+    other.load_filter_script(str(script))
+    other.apply_filter_script()
+    assert np.abs(by_call - vertices(load(bunny))).max() > 1e-3
+    assert_same_in_floats(in_meshlab, by_call)
+    assert_same_in_floats(in_meshlab, vertices(other))
+
+
+def test_preview_changes_the_picture_and_without_it_the_mesh_is_back(
+    dialog: FilterDialog, meshlab: MeshLab, desktop: Desktop, bunny: Path
+) -> None:
+    dialog.move(1000, 20)
+    scene = scene_of(meshlab, dialog)
+    before = desktop.settled_picture(scene)
+    assert np.ptp(before) > 100, "the picture shows nothing"
+    dialog.preview(True)
+    wait_for("the picture to change", lambda: share_changed(before, desktop.picture(scene)) > 0.02)
+    dialog.preview(False)
+    wait_for(
+        "the picture to be as before", lambda: share_changed(before, desktop.picture(scene)) < 0.001
+    )
+    dialog.close()
+    np.testing.assert_array_equal(saved_vertices(meshlab), vertices(load(bunny)))
+
+
+def test_apply_logs_the_report_and_the_saved_mesh_is_that_of_pymeshlab(
+    dialog: FilterDialog, meshlab: MeshLab, bunny: Path
+) -> None:
+    log = dialog.apply()
+    dialog.close()
+    ms = load(bunny)
+    report = ms.apply_filter(FILTER)
+    assert f"Spectral Filter: {report['steps']} steps, feature size" in log
+    assert f"largest {report['max_displacement']:.4g}" in log
+    assert f"area: {report['area_before']:.4g} -> {report['area_after']:.4g}" in log
+    assert_same_in_floats(saved_vertices(meshlab), vertices(ms))
+
+
+def test_a_refused_parameter_is_explained_and_the_mesh_is_as_it_was(
+    dialog: FilterDialog, meshlab: MeshLab, bunny: Path
+) -> None:
+    row = dialog.rows()[PARAMETERS.index("stop_gain")]
+    dialog.set_value(row, "-1")
+    message = dialog.fail()
+    assert "stop_gain = -1" in message
+    assert MENU[-1] in message
+    dialog.close()
+    np.testing.assert_array_equal(saved_vertices(meshlab), vertices(load(bunny)))
+
+
+def scene_of(meshlab: MeshLab, dialog: FilterDialog) -> Box:
+    """The part of the screen with the mesh: without the frame rate, which always changes."""
+    window = meshlab.main_window().box
+    top = window.y + window.height // 8
+    return Box(window.x, top, dialog.window.box.x - window.x, window.height * 3 // 4 - top)
+
+
+def share_changed(before: Picture, after: Picture) -> float:
+    """Which part of the pixels is of another colour than before, visibly."""
+    return float((np.abs(after.astype(int) - before).max(axis=2) > 8).mean())
