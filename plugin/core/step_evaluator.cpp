@@ -6,7 +6,6 @@
 #include <sstream>
 #include <string>
 
-#include "basis_update.h"
 #include "errors.h"
 #include "full_spectrum.h"
 #include "pole_selection.h"
@@ -20,13 +19,6 @@ constexpr Index kMaxExactBasis = 1000;
 
 /// Up to this many vertices the dense solver computes all harmonics in about a second.
 constexpr Index kDenseVertices = 600;
-
-/// The update of a basis costs k^2 n, the computation of one k n: beyond this size the latter is
-/// the quicker one.
-constexpr Index kMaxUpdatedBasis = 600;
-
-/// Pairs beyond the basis that are kept for its updates: k / 12, at least 16.
-constexpr Index kGuardShare = 12, kMinGuards = 16;
 
 /// Relative accuracy of a step that round-off still allows.
 constexpr double kFinestAccuracy = 1e-13;
@@ -59,7 +51,6 @@ void StepEvaluator::setLaplacian(Laplacian laplacian, double alpha, const Progre
         truncated(progress);
     } else if (usesBasis()) {
         basis_ = upToLastJump(progress);
-        ++computedBases_;
     } else {
         progress.report(0.0, "factorizing");
         cholesky_.factorize(laplacian_, selectPole(fractionalPower(F_, alpha), F_.cutoff(),
@@ -128,7 +119,7 @@ void StepEvaluator::truncated(const Progress& progress) {
                             " needs more vertices than the " + std::to_string(interior_.size()) +
                             " that a fixed boundary leaves: choose a smaller basis_size, "
                             "spectrum = full, or boundary = free");
-    followBasis(progress);
+    basis_ = truncatedBasis(laplacian_, *constants_, options_.basisSize, cholesky_, progress);
     residualGain_ = 0.0;
     if (options_.reinjectResidual) {  // Eq. 9
         const double from = std::sqrt(basis_.lambda[basis_.size() - 1]);
@@ -138,23 +129,6 @@ void StepEvaluator::truncated(const Progress& progress) {
         residualGain_ =
             std::pow(from < to ? meanGain(whole, from, to) : whole(to), F_.appliedPower());
     }
-}
-
-/// The basis of the present Laplacian: of the last one's, where that is near enough.
-void StepEvaluator::followBasis(const Progress& progress) {
-    const Index k = options_.basisSize;
-    if (k <= kMaxUpdatedBasis && basis_.guards() > 0) {
-        const BasisUpdateResult update =
-            updateBasis(laplacian_, *constants_, k, UpdateGate(), basis_, progress.part(0.0, 0.5));
-        cholesky_.countWork(update.factorizations, update.solves);
-        if (update.accepted) {
-            ++updatedBases_;
-            return;
-        }
-    }
-    basis_ = truncatedBasis(laplacian_, *constants_, k, cholesky_, progress,
-                            std::max(kMinGuards, k / kGuardShare));
-    ++computedBases_;
 }
 
 /// The harmonics up to the last jump of F, beyond which an ideal F is constant: exact.

@@ -72,7 +72,7 @@ void run(const testing::Mesh& mesh, Index k, int steps, const Filter& filter) {
 
     std::printf("%s, %d steps\n", filter.name, steps);
     ShiftedCholesky work;
-    const Index guards = std::max<Index>(16, k / 12);
+    const Index guards = std::max<Index>(24, k / 12);
     Laplacian A = laplacians.input();
     ConstantModes constants(components, A.D);
     HarmonicBasis basis = truncatedBasis(A, constants, k, work, {}, guards);

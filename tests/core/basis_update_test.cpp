@@ -100,34 +100,5 @@ TEST(BasisUpdate, StopsWhenTheCallerWantsIt) {
                  Cancelled);
 }
 
-FilterOptions truncatedSteps(double featureSize, int steps) {
-    FilterOptions options;
-    options.featureSize = featureSize;
-    options.steps = steps;
-    options.evaluation.spectrum = Spectrum::Truncated;
-    options.evaluation.basisSize = static_cast<int>(kHarmonics);
-    return options;
-}
-
-TEST(TruncatedSteps, UpdateTheBasisAfterTheFirst) {
-    const Mesh mesh = lumpy();
-    const FilterResult result = fractionalFilter(mesh.V, mesh.F, truncatedSteps(0.5, 5));
-    EXPECT_EQ(result.computedBases, 1);
-    EXPECT_EQ(result.updatedBases, 4);
-    EXPECT_EQ(result.inertiaCount, result.eigenvalues.size());
-}
-
-TEST(TruncatedSteps, ComputeTheBasisAnewWhereTheGateTrips) {
-    const Mesh mesh = testing::withNoise(testing::cube(16), 0.05, 3);
-    FilterOptions options = truncatedSteps(0.5, 2);  // each step multiplies what is small by four
-    options.transferFunction.type = FilterType::HighPass;
-    options.transferFunction.stopGain = 1.0;
-    options.transferFunction.passGain = 16.0;
-    const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
-    EXPECT_EQ(result.computedBases, 2);
-    EXPECT_EQ(result.updatedBases, 0);
-    EXPECT_LT(result.residuals.maxCoeff(), 1e-7);
-}
-
 }  // namespace
 }  // namespace spectral
