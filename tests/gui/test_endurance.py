@@ -1,4 +1,4 @@
-"""Many previews in a row: MeshLab does not end, nor grow as it would with a plugin that leaks."""
+"""Many previews in a row: MeshLab does not end, nor grow much faster than with its own filters."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from meshlab import MeshLab
 from test_fractional_filter import MENU, PARAMETERS
 
 PREVIEWS, WARM_UP = 50, 10
-# MeshLab 2025.07 itself keeps memory of every preview, whatever the filter: of this mesh 9 MiB for
-# a quick filter of its own, some more for one during which it draws its progress. This much more
-# would be matrices that the plugin has not freed; tests/python looks for less, without the GUI.
-MEBIBYTES_OF_MATRICES = 6.0
+# MeshLab 2025.07 itself keeps memory of every preview: of this mesh 9 MiB for a quick filter of its
+# own. 13 were seen for ours, and why it keeps more is not known: in pymeshlab nothing is kept
+# (tests/python/test_plugin_memory.py). So this is a bound against worse, not a proof of no leak.
+MEBIBYTES_MORE_THAN_OWN = 6.0
 
 
 def resident_mebibytes(pid: int) -> float:
@@ -41,7 +41,7 @@ def kept_of_a_preview(
     return (used[-1] - used[WARM_UP]) / (previews[-1] - previews[WARM_UP])
 
 
-def test_fifty_previews_leave_no_matrices_behind(
+def test_fifty_previews_keep_little_more_than_those_of_another_filter(
     meshlab: MeshLab, record_property: Callable[[str, object], None]
 ) -> None:
     own = meshlab.open_filter(MENU[0], "Taubin Smooth")
@@ -57,4 +57,4 @@ def test_fifty_previews_leave_no_matrices_behind(
     sizes = (str(2 + i % WARM_UP) for i in range(PREVIEWS))
     kept = kept_of_a_preview(meshlab, dialog, rows["feature_size"], sizes)
     record_property("MiB kept of a preview", (kept, kept_by_own))
-    assert kept < kept_by_own + MEBIBYTES_OF_MATRICES
+    assert kept < kept_by_own + MEBIBYTES_MORE_THAN_OWN
