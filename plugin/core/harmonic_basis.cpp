@@ -5,7 +5,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <optional>
 #include <string>
 
@@ -43,16 +42,6 @@ class ScaledStiffness {
     Eigen::VectorXd invSqrtD_;
 };
 
-[[noreturn]] void failed(Spectra::CompInfo info, const char* what) {
-    if (info == Spectra::CompInfo::NotConverging)
-        throw SolverFailure(std::string(what) +
-                            ": the Lanczos iteration did not converge; choose a smaller basis_size "
-                            "or spectrum = full");
-    throw SolverFailure(std::string(what) +
-                        ": numerical failure in the Lanczos iteration; the mesh probably has "
-                        "degenerate triangles ('Remove Zero Area Faces')");
-}
-
 /// Cuts the basis off at `size`, but for at most so many guards.
 void cut(HarmonicBasis& basis, Index size, Index guards) {
     basis.Phi.conservativeResize(Eigen::NoChange, std::min(basis.Phi.cols(), size + guards));
@@ -84,12 +73,12 @@ HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& co
     if (k >= n)
         throw InvalidOption("basis_size = " + std::to_string(k) + " needs more than " +
                             std::to_string(k) + " vertices; the mesh has " + std::to_string(n) +
-                            ": choose a smaller basis_size, or spectrum = full");
+                            ": choose a smaller basis_size");
     if (k <= c)
         throw InvalidOption("basis_size = " + std::to_string(k) +
                             " holds no more than the constant modes of the " + std::to_string(c) +
                             " connected components: choose a basis_size above " +
-                            std::to_string(c) + ", or spectrum = full");
+                            std::to_string(c));
 
     const bool dense = n <= kDenseVertices || (n <= kDenseVerticesForMany && 4 * k > n);
     if (dense) {
@@ -122,8 +111,7 @@ HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& co
         if (counted != *size)
             throw SolverFailure("of the " + std::to_string(counted) +
                                 " harmonics that the inertia of W - sigma D counts, " +
-                                std::to_string(*size) +
-                                " were found; choose another basis_size, or spectrum = full");
+                                std::to_string(*size) + " were found; choose another basis_size");
         measureBasis(laplacian, c, basis, progress.part(0.95, 1.0));
         return basis;
     }
@@ -136,7 +124,9 @@ double largestEigenvalue(const Laplacian& laplacian) {
     solver.init();
     solver.compute(Spectra::SortRule::LargestAlge, kMaxRestarts, 1e-8);
     if (solver.info() != Spectra::CompInfo::Successful)
-        failed(solver.info(), "the largest eigenvalue could not be computed");
+        throw SolverFailure(
+            "the largest eigenvalue could not be computed: the mesh probably has degenerate "
+            "triangles ('Remove Zero Area Faces')");
     return solver.eigenvalues()[0];
 }
 

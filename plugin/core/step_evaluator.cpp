@@ -119,7 +119,15 @@ void StepEvaluator::truncated(const Progress& progress) {
                             " needs more vertices than the " + std::to_string(interior_.size()) +
                             " that a fixed boundary leaves: choose a smaller basis_size, "
                             "spectrum = full, or boundary = free");
-    basis_ = truncatedBasis(laplacian_, *constants_, options_.basisSize, cholesky_, progress);
+    // The basis knows of no filter; what else a filter offers is said here.
+    const char* const remedy = ", or spectrum = full";
+    try {
+        basis_ = truncatedBasis(laplacian_, *constants_, options_.basisSize, cholesky_, progress);
+    } catch (const InvalidOption& error) {
+        throw InvalidOption(error.what() + std::string(remedy));
+    } catch (const SolverFailure& error) {
+        throw SolverFailure(error.what() + std::string(remedy));
+    }
     residualGain_ = 0.0;
     if (options_.reinjectResidual) {  // Eq. 9
         const double from = std::sqrt(basis_.lambda[basis_.size() - 1]);
