@@ -72,7 +72,8 @@ class SliceLanczos {
         const double beta = w.norm();
         beta_.push_back(beta);
         if (!(beta > kTiny * scale) || j + 1 == Q_.cols()) {
-            if (j + 1 < Q_.cols()) beta_.back() = 0.0;  // an invariant space
+            invariant_ = !(beta > kTiny * scale);
+            if (invariant_) beta_.back() = 0.0;
             exhausted_ = true;
             return;
         }
@@ -99,10 +100,12 @@ class SliceLanczos {
         for (Index i = 0; i < lambda_.size(); ++i)
             lambda_[i] = factor_.shift() + 1.0 / theta[ritzOf_[static_cast<std::size_t>(i)]];
         // An edge is reached by a pair beyond it. Below the edge at 0 there is none: it is reached
-        // when no pair that has not converged is left.
+        // when no pair that has not converged is left. An invariant space has a pair of every
+        // eigenvalue that is not known: there is nothing beyond what it holds.
         reachedFrom_ = task_.from > 0.0 ? down > 0 && lambda_[0] < task_.from - task_.overlap
                                         : !(down < m && theta[down] < least);
         reachedTo_ = up > 0 && lambda_[down + up - 1] > task_.to + task_.overlap;
+        if (invariant_) reachedFrom_ = reachedTo_ = true;
     }
 
     bool reachedFrom() const { return reachedFrom_; }
@@ -184,7 +187,7 @@ class SliceLanczos {
     Eigen::VectorXd sqrtD_;
     Eigen::MatrixXd& Q_;  // its first columns are orthonormal
     std::vector<double> alpha_, beta_;
-    bool exhausted_ = false;
+    bool exhausted_ = false, invariant_ = false;
     TridiagonalEigenpairs ritz_;
     Eigen::VectorXd lambda_;     // of the converged Ritz pairs, ascending
     std::vector<Index> ritzOf_;  // their columns in ritz_

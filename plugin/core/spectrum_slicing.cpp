@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -164,12 +165,21 @@ class Slicing {
         return tasks;
     }
 
+    /// Whether the counts say that there is no eigenvalue between these.
+    bool isEmpty(double from, double to) const {
+        const auto above = std::lower_bound(counts_.begin(), counts_.end(), Count{to, 0});
+        const auto beyond = std::upper_bound(counts_.begin(), counts_.end(), Count{from, 0});
+        return above != counts_.end() && beyond != counts_.begin() &&
+               std::prev(beyond)->below == above->below;
+    }
+
     /// A run for every part of a slice that its run has not covered.
     std::vector<SliceTask> tasksForGaps(const std::vector<SliceTask>& tasks,
                                         const std::vector<SliceRun>& runs) {
         std::vector<SliceTask> more;
         const auto cover = [&](const SliceTask& slice, double from, double to) {
-            if (from < to) more.push_back(task(from, to, 0.0, slice.known, 0));
+            if (from < to && !isEmpty(from, to))
+                more.push_back(task(from, to, 0.0, slice.known, 0));
         };
         for (std::size_t i = 0; i < runs.size(); ++i) {
             cover(tasks[i], tasks[i].from, runs[i].coveredFrom);

@@ -52,6 +52,12 @@ TEST(LowestPairs, HoldEveryCopyOfAMultipleEigenvalue) {
     expectLowest(copies(testing::icosphere(2), 5), 100, "five equal spheres");
 }
 
+TEST(LowestPairs, OfManyEqualPartsAreAllThere) {
+    // Few different eigenvalues with wide gaps, where a run finds nothing on one side of its shift.
+    expectLowest(copies(testing::icosphere(1), 20), 60, "twenty spheres");
+    expectLowest(copies(testing::cube(2), 40), 300, "forty cubes");
+}
+
 TEST(LowestPairs, AreFewWhereFewAreAsked) {
     expectLowest(testing::blob(), 2, "one harmonic");
     expectLowest(testing::icosphere(3), 5, "within a group of equal ones");
