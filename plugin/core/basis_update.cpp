@@ -2,15 +2,19 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <functional>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 #include "basis_certificate.h"
-#include "dense_products.h"
 #include "errors.h"
+#include "gram.h"
+#include "pair_store.h"
 #include "parallel_tasks.h"
 #include "rayleigh_ritz.h"
-#include "shifted_ldlt.h"
+#include "slice_iteration.h"
+#include "slice_runs.h"
 
 namespace spectral {
 
@@ -19,17 +23,29 @@ namespace {
 /// Vectors of a slice, about: they share a factorization, which costs as much as 50 solves.
 constexpr Index kSliceWidth = 44;
 
-/// Inverse iterations before the Rayleigh-Ritz procedure, whose cost is several times theirs.
-/// The last slice takes more: it is the one beside which nothing of the spectrum is at hand.
-constexpr int kIterations = 2, kLastIterations = 4;
+/// Harmonics next to the cut that are computed anew, below and above it, and how many of the
+/// previous ones in their place are iterated all the same, for what has moved.
+constexpr Index kEdgeBelow = 16, kEdgeAbove = 14, kMoved = 8;
+
+/// How far beyond these the pairs of the run have to converge, in mean distances of eigenvalues.
+constexpr double kOverlap = 1.0;
+
+/// Fewer harmonics than this are computed from nothing as quickly.
+constexpr Index kFewest = 64;
 
 /// An update is a round of iterations and Rayleigh-Ritz, and a second one where the first misses
 /// the gate by no more than this factor. More would cost as much as a basis from nothing.
 constexpr int kMaxRounds = 2;
-constexpr double kHopeless = 20.0;
+constexpr double kHopeless = 100.0;
+
+/// Square of the length that others leave of a unit vector, below which it is none of its own.
+constexpr double kDependent = 1e-3;
 
 /// Relative error of an eigenvalue that the count by inertia forgives beside a shift.
 constexpr double kCountTolerance = 1e-4;
+
+/// Columns that a task takes: few beside the basis, enough for products at full speed.
+constexpr Index kColumns = 48;
 
 constexpr const char* kStage = "updating the harmonics";
 
@@ -37,134 +53,6 @@ constexpr const char* kStage = "updating the harmonics";
 struct Count {
     double sigma = 0.0;
     Index below = 0;
-};
-
-Count countBelow(const Laplacian& laplacian, double sigma) {
-    ShiftedLdlt ldlt;
-    ldlt.factorize(laplacian, sigma);
-    return {ldlt.shift(), ldlt.eigenvaluesBelow()};
-}
-
-/// D-orthonormalizes the columns of S (n x m) by the Cholesky factor of their Gram matrix.
-/// @throws SolverFailure  when they are dependent to working precision.
-void orthonormalize(const Eigen::VectorXd& D, Eigen::MatrixXd& S) {
-    S.array().rowwise() /= S.colwise().norm().array().eval();
-    const Index n = S.rows(), m = S.cols();
-    const Eigen::MatrixXd DS = D.asDiagonal() * S;
-    Eigen::MatrixXd gram(m, m);
-    denseProducts().transposedProduct(S.data(), n, DS.data(), n, gram.data(), m, n, m, m);
-    const Eigen::LLT<Eigen::MatrixXd> llt(gram);
-    if (llt.info() != Eigen::Success)
-        throw SolverFailure("the vectors of a slice have become dependent");
-    const Eigen::MatrixXd inverse = llt.matrixU().solve(Eigen::MatrixXd::Identity(m, m));
-    Eigen::MatrixXd Q(n, m);
-    denseProducts().product(S.data(), n, inverse.data(), m, Q.data(), n, n, m, m);
-    S.swap(Q);
-}
-
-/// An update at work: the candidates S are the columns of the basis beyond the constant modes.
-class Update {
-  public:
-    Update(const Laplacian& laplacian, const ConstantModes& constants, Index k,
-           HarmonicBasis& basis)
-        : laplacian_(laplacian),
-          constants_(constants),
-          basis_(basis),
-          size_(basis.Phi.cols() - constants.count()),
-          wanted_(k - constants.count()) {}
-
-    /// The order of the candidates by their Rayleigh quotients under the new Laplacian.
-    void sort(const Progress& progress) {
-        quotient_.resize(size_);
-        runInParallel(
-            slices(),
-            [&](Index slice, int, const StopPoint&) {
-                for (Index j = begin(slice); j < begin(slice + 1); ++j) {
-                    Eigen::MatrixXd s = candidate(j);
-                    constants_.remove(s);
-                    const Eigen::VectorXd Ws = laplacian_.W * s.col(0);
-                    quotient_[j] = s.col(0).dot(Ws) / s.col(0).cwiseAbs2().dot(laplacian_.D);
-                }
-            },
-            progress, kStage);
-        order_.resize(static_cast<std::size_t>(size_));
-        std::iota(order_.begin(), order_.end(), Index{0});
-        std::stable_sort(order_.begin(), order_.end(),
-                         [&](Index a, Index b) { return quotient_[a] < quotient_[b]; });
-    }
-
-    /// S <- (W - sigma D)^-1 D S, several times, slice by slice.
-    void iterate(const Progress& progress) {
-        std::vector<ShiftedLdlt> factors(static_cast<std::size_t>(workerCount()));
-        counts_.resize(static_cast<std::size_t>(slices()));
-        runInParallel(
-            slices(),
-            [&](Index task, int worker, const StopPoint& stopPoint) {
-                const Index slice = slices() - 1 - task;  // the last one takes longest
-                const Index first = begin(slice), count = begin(slice + 1) - first;
-                Eigen::MatrixXd S(laplacian_.D.size(), count);
-                for (Index j = 0; j < count; ++j) S.col(j) = candidate(sorted(first + j));
-                ShiftedLdlt& factor = factors[static_cast<std::size_t>(worker)];
-                // In the middle of what is wanted: of the last slice, not of the guards.
-                const Index last = std::min(first + count, wanted_) - 1;
-                factor.factorize(laplacian_,
-                                 0.5 * (quotient_[sorted(first)] + quotient_[sorted(last)]));
-                counts_[static_cast<std::size_t>(slice)] = {factor.shift(),
-                                                            factor.eigenvaluesBelow()};
-                constants_.remove(S);
-                for (int i = 0; i < iterations(slice); ++i) {
-                    // Else all columns would come near the eigenvectors next to the shift.
-                    if (i > 0) orthonormalize(laplacian_.D, S);
-                    stopPoint();
-                    S = factor.solve(laplacian_.D.asDiagonal() * S);
-                }
-                constants_.remove(S);
-                S.array().rowwise() /= S.colwise().norm().array().eval();
-                for (Index j = 0; j < count; ++j) candidate(sorted(first + j)) = S.col(j);
-            },
-            progress, kStage);
-    }
-
-    /// Makes Ritz vectors of the candidates, all of them together.
-    void rayleighRitz(const Progress& progress) {
-        quotient_ = spectral::rayleighRitz(laplacian_, basis_.Phi.rightCols(size_), progress);
-        std::iota(order_.begin(), order_.end(), Index{0});
-    }
-
-    /// The Ritz values; 0 for the constant modes.
-    Eigen::VectorXd lambda() const {
-        Eigen::VectorXd all = Eigen::VectorXd::Zero(basis_.Phi.cols());
-        all.tail(size_) = quotient_;
-        return all;
-    }
-
-    const std::vector<Count>& counts() const { return counts_; }
-
-    /// Solves of one round.
-    int solves() const {
-        int sum = 0;
-        for (Index i = 0; i < slices(); ++i)
-            sum += iterations(i) * static_cast<int>(begin(i + 1) - begin(i));
-        return sum;
-    }
-
-  private:
-    // Slices of equal width of what is wanted; the guards are in the last one.
-    Index slices() const { return std::max<Index>(1, (wanted_ + kSliceWidth / 2) / kSliceWidth); }
-    Index begin(Index slice) const { return slice < slices() ? slice * wanted_ / slices() : size_; }
-    int iterations(Index slice) const {
-        return slice + 1 < slices() ? kIterations : kLastIterations;
-    }
-    Index sorted(Index i) const { return order_[static_cast<std::size_t>(i)]; }
-    Eigen::MatrixXd::ColXpr candidate(Index j) { return basis_.Phi.col(constants_.count() + j); }
-
-    const Laplacian& laplacian_;
-    const ConstantModes& constants_;
-    HarmonicBasis& basis_;
-    Index size_, wanted_;
-    Eigen::VectorXd quotient_;
-    std::vector<Index> order_;
-    std::vector<Count> counts_;
 };
 
 /// Whether lambda has as many entries below each shift as there are eigenvalues, if that is less
@@ -179,11 +67,226 @@ bool agree(const Eigen::VectorXd& lambda, Index size, const std::vector<Count>& 
     });
 }
 
-/// How far the basis is from what the gate asks: at most 1 when it passes.
-double excess(const UpdateGate& gate, const HarmonicBasis& basis) {
-    return std::max(basis.residuals.maxCoeff() / gate.largestResidual,
-                    basis.residuals.mean() / gate.meanResidual);
-}
+/// An update at work. The spectrum has three parts: the constant modes; the interior, what is
+/// iterated towards; and the edge, the pairs next to the cut on both sides, computed anew. The
+/// candidates for the interior are the columns of the basis beyond the constant modes.
+class Update {
+  public:
+    Update(const Laplacian& laplacian, const ConstantModes& constants, Index k,
+           HarmonicBasis& basis, BasisUpdateResult& result, const Progress& progress)
+        : laplacian_(laplacian),
+          constants_(constants),
+          k_(k),
+          basis_(basis),
+          result_(result),
+          workers_(laplacian, constants),
+          // More would mean that the spectrum has changed too much.
+          edge_(laplacian.D.size(), 2 * (basis.size() - k + kEdgeBelow + kEdgeAbove)) {
+        basis_.Phi.leftCols(c()) = constants_.orthonormal();
+        sortCandidates(progress.part(0.0, 0.2));
+        computeEdge(progress.part(0.2, 1.0));
+        chooseCut();
+        selectInterior();
+    }
+
+    /// Turns the interior towards its eigenspaces, once more.
+    void iterate(const Progress& progress) { iterate({}, progress); }
+
+    /// Makes harmonics of the interior, and the basis of all three parts.
+    void assemble(const Progress& progress) {
+        countAndRemoveEdge(progress.part(0.0, 0.2));
+        quotient_ = rayleighRitz(laplacian_, basis_.Phi.middleCols(c(), interior_),
+                                 progress.part(0.2, 0.9));
+        std::iota(order_.begin(), order_.end(), Index{0});
+        const Index first = c() + interior_, rest = size_ - first;
+        if (basis_.Phi.cols() != size_) basis_.Phi.conservativeResize(Eigen::NoChange, size_);
+        basis_.Phi.rightCols(rest) = edge_.vectors(0, rest);
+        basis_.lambda.resize(size_);
+        basis_.lambda << Eigen::VectorXd::Zero(c()), quotient_, edge_.lambdas().head(rest);
+        basis_.inertiaCount = counts_.back().below;
+        measureBasis(laplacian_, c(), basis_, progress.part(0.9, 1.0));
+    }
+
+    /// How far the basis is from what the gate asks: at most 1 when it passes.
+    double excess(const UpdateGate& gate) const {
+        const auto lambda = basis_.lambda.head(c() + interior_).array();
+        const auto residual = basis_.residuals.head(c() + interior_).array() * lambda;
+        const double leak = (residual / (beyond_ - lambda)).maxCoeff();
+        return std::max({basis_.residuals.maxCoeff() / gate.largestResidual,
+                         basis_.residuals.mean() / gate.meanResidual, leak / gate.largestLeak});
+    }
+
+    /// Whether the counts are those of the basis.
+    bool isComplete() const {
+        return basis_.inertiaCount == size_ && agree(basis_.lambda, size_, counts_);
+    }
+
+  private:
+    Index c() const { return constants_.count(); }
+    Index wanted() const { return k_ - c(); }
+
+    /// The order of the candidates by their Rayleigh quotients under the new Laplacian.
+    void sortCandidates(const Progress& progress) {
+        const Index all = basis_.Phi.cols() - c();
+        quotient_.resize(all);
+        runInParallel(
+            (all + kColumns - 1) / kColumns,
+            [&](Index task, int, const StopPoint&) {
+                for (Index j = task * kColumns; j < std::min(all, (task + 1) * kColumns); ++j) {
+                    Eigen::MatrixXd s = candidate(j);
+                    constants_.remove(s);
+                    const Eigen::VectorXd Ws = laplacian_.W * s.col(0);
+                    quotient_[j] = s.col(0).dot(Ws) / s.col(0).cwiseAbs2().dot(laplacian_.D);
+                }
+            },
+            progress, kStage);
+        order_.resize(static_cast<std::size_t>(all));
+        std::iota(order_.begin(), order_.end(), Index{0});
+        std::stable_sort(order_.begin(), order_.end(),
+                         [&](Index a, Index b) { return quotient_[a] < quotient_[b]; });
+        iterated_ = wanted() - kEdgeBelow + kMoved;
+    }
+
+    /// Computes the edge and, beside it, iterates the interior.
+    void computeEdge(const Progress& progress) {
+        const Eigen::MatrixXd none;
+        const Index end = wanted() - kEdgeBelow, last = quotient_.size() - 1;
+        const double spacing = sortedQuotient(wanted() - 1) / static_cast<double>(k_);
+        SliceTask task{0.0, 0.0, 0.0, kOverlap * spacing, none, 0, 1};
+        task.from = 0.5 * (sortedQuotient(end - 1) + sortedQuotient(end));
+        task.to = sortedQuotient(last) + static_cast<double>(kEdgeAbove) * spacing;
+        task.sigma = 0.5 * (task.from + task.to);
+        beyond_ = task.to;
+        SliceRun run;
+        iterate(
+            [&](int worker, const StopPoint& stopPoint) {
+                run = workers_.run(task, worker, edge_, stopPoint);
+            },
+            progress);
+        edge_.sort();
+        counts_.push_back({run.sigma, run.below});
+        ++result_.factorizations;
+        result_.solves += run.solves;
+        beyond_ = run.coveredTo;
+        interior_ = run.below - (edge_.lambdas().array() < run.sigma).count() - c();
+    }
+
+    /// The cut is in the edge: its eigenvalues are as good as those of a basis from nothing. The
+    /// next one beyond it may be anywhere behind its end.
+    void chooseCut() {
+        const Index first = c() + interior_, known = first + edge_.size();
+        Eigen::VectorXd lambda(known + 1);
+        lambda << Eigen::VectorXd::Zero(first), edge_.lambdas(), beyond_;
+        const std::optional<Index> size =
+            first < k_ && k_ <= known ? cutOutsideClusters(lambda, k_) : std::nullopt;
+        if (!size) throw SolverFailure("the cut is not within the edge");
+        size_ = *size;
+        cut_ = 0.5 * (lambda[size_ - 1] + lambda[size_]);
+    }
+
+    /// Brings the interior to the first columns: of the last slice, in whose place the edge begins,
+    /// those candidates are taken that are most independent of the edge and of each other.
+    void selectInterior() {
+        const Index first = begin(slices() - 1), needed = interior_ - first;
+        Eigen::MatrixXd S(laplacian_.D.size(), iterated_ - first);
+        if (needed <= 0 || needed > S.cols())
+            throw SolverFailure("harmonics have moved across the edge");
+        for (Index j = 0; j < S.cols(); ++j) S.col(j) = candidate(sorted(first + j));
+        const Eigen::ArrayXd squared = (S.cwiseAbs2().transpose() * laplacian_.D).array();
+        S.array().rowwise() /= squared.sqrt().transpose();
+        removePart(edge_.vectors(0, edge_.size()), laplacian_.D, S);
+        // With pivots: at each place what the columns before it leave of the longest one.
+        const Eigen::LDLT<Eigen::MatrixXd> ldlt(innerProducts(S, laplacian_.D, S));
+        if (!(ldlt.vectorD()[needed - 1] > kDependent))
+            throw SolverFailure("the vectors of a slice have become dependent");
+        Eigen::VectorXi ranks(S.cols());
+        std::iota(ranks.begin(), ranks.end(), static_cast<int>(first));
+        ranks = ldlt.transpositionsP() * ranks;
+
+        std::vector<Index> taken(order_.begin(), order_.begin() + first);
+        for (Index i = 0; i < needed; ++i) taken.push_back(sorted(ranks[i]));
+        std::sort(taken.begin(), taken.end());
+        for (Index j = 0; j < interior_; ++j)
+            candidate(j) = candidate(taken[static_cast<std::size_t>(j)]).eval();
+        order_.resize(taken.size());
+        iterated_ = interior_;
+    }
+
+    /// Iterates slice by slice, and does other work beside it, which is begun first.
+    void iterate(const std::function<void(int, const StopPoint&)>& beside,
+                 const Progress& progress) {
+        const Index others = beside ? 1 : 0;
+        counts_.assign(static_cast<std::size_t>(slices()), {});
+        runInParallel(
+            others + slices(),
+            [&](Index task, int worker, const StopPoint& stopPoint) {
+                if (task < others) return beside(worker, stopPoint);
+                const Index i = slices() - 1 - (task - others);  // the last take longest
+                const Index first = begin(i), count = begin(i + 1) - first;
+                Eigen::MatrixXd S(laplacian_.D.size(), count);
+                for (Index j = 0; j < count; ++j) S.col(j) = candidate(sorted(first + j));
+                ShiftedLdlt& factor = workers_.factor(worker);
+                factor.factorize(laplacian_, slice(i).middle());
+                counts_[static_cast<std::size_t>(i)] = {factor.shift(), factor.eigenvaluesBelow()};
+                spectral::iterate(laplacian_, constants_, factor, slice(i), S, stopPoint);
+                for (Index j = 0; j < count; ++j) candidate(sorted(first + j)) = S.col(j);
+            },
+            progress, kStage);
+        result_.factorizations += static_cast<int>(slices());
+        for (Index i = 0; i < slices(); ++i)
+            result_.solves += iterations(slice(i)) * static_cast<int>(begin(i + 1) - begin(i));
+    }
+
+    /// Counts the eigenvalues below the cut, and takes the edge out of the interior.
+    void countAndRemoveEdge(const Progress& progress) {
+        Count atCut;
+        runInParallel(
+            1 + (interior_ + kColumns - 1) / kColumns,
+            [&](Index task, int worker, const StopPoint&) {
+                if (task == 0) {
+                    ShiftedLdlt& factor = workers_.factor(worker);
+                    factor.factorize(laplacian_, cut_);
+                    atCut = {factor.shift(), factor.eigenvaluesBelow()};
+                } else {
+                    const Index first = (task - 1) * kColumns;
+                    removePart(
+                        edge_.vectors(0, edge_.size()), laplacian_.D,
+                        basis_.Phi.middleCols(c() + first, std::min(kColumns, interior_ - first)));
+                }
+            },
+            progress, kStage);
+        counts_.push_back(atCut);
+        ++result_.factorizations;
+    }
+
+    // Slices of equal width.
+    Index slices() const { return std::max<Index>(1, (iterated_ + kSliceWidth / 2) / kSliceWidth); }
+    Index begin(Index slice) const { return slice * iterated_ / slices(); }
+    Slice slice(Index i) const {
+        return {sortedQuotient(begin(i)), sortedQuotient(begin(i + 1) - 1), beyond_};
+    }
+
+    Index sorted(Index i) const { return order_[static_cast<std::size_t>(i)]; }
+    double sortedQuotient(Index i) const { return quotient_[sorted(i)]; }
+    Eigen::MatrixXd::ColXpr candidate(Index j) { return basis_.Phi.col(c() + j); }
+
+    const Laplacian& laplacian_;
+    const ConstantModes& constants_;
+    Index k_;
+    HarmonicBasis& basis_;
+    BasisUpdateResult& result_;
+    SliceWorkers workers_;
+
+    Eigen::VectorXd quotient_;  // of the candidates
+    std::vector<Index> order_;  // of the candidates, by their quotients
+    Index iterated_ = 0;        // candidates that are iterated: the first in this order
+    PairStore edge_;
+    double beyond_ = 0.0;        // end of the edge: what follows is in none of the three parts
+    Index interior_ = 0;         // harmonics
+    Index size_ = 0;             // of the basis
+    double cut_ = 0.0;           // shift between the last harmonic of the basis and the next
+    std::vector<Count> counts_;  // of the last round
+};
 
 }  // namespace
 
@@ -191,36 +294,22 @@ BasisUpdateResult updateBasis(const Laplacian& laplacian, const ConstantModes& c
                               const UpdateGate& gate, HarmonicBasis& basis,
                               const Progress& progress) {
     BasisUpdateResult result;
-    const Index c = constants.count(), columns = basis.Phi.cols();
-    if (columns <= k || k <= c || basis.guards() == 0) return result;
-    basis.Phi.leftCols(c) = constants.orthonormal();
+    const bool isSmall = k - constants.count() < kFewest || isDenseQuicker(laplacian.D.size(), k);
+    if (isSmall || basis.size() < k) return result;
     try {
-        Update update(laplacian, constants, k, basis);
-        update.sort(progress.part(0.0, 0.1));
-        for (int round = 0; round < kMaxRounds && !result.accepted; ++round) {
-            const Progress stage = progress.part(round == 0 ? 0.1 : 0.6, round == 0 ? 0.6 : 1.0);
-            update.iterate(stage.part(0.0, 0.4));
-            update.rayleighRitz(stage.part(0.4, 0.9));
-            result.factorizations += static_cast<int>(update.counts().size()) + 1;
-            result.solves += update.solves();
-
-            const Eigen::VectorXd lambda = update.lambda();
-            const std::optional<Index> size = cutOutsideClusters(lambda, k);
-            if (!size) return result;
-            basis.lambda = lambda.head(*size);
-            measureBasis(laplacian, c, basis, stage.part(0.9, 1.0));
-            std::vector<Count> counts = update.counts();
-            counts.push_back(countBelow(laplacian, 0.5 * (lambda[*size - 1] + lambda[*size])));
-            basis.inertiaCount = counts.back().below;
-            const double beyond = excess(gate, basis);
-            result.accepted =
-                beyond <= 1.0 && basis.inertiaCount == *size && agree(lambda, *size, counts);
-            if (beyond > kHopeless) return result;
+        Update update(laplacian, constants, k, basis, result, progress.part(0.0, 0.3));
+        for (int round = 1;; ++round) {
+            const Progress stage = progress.part(round == 1 ? 0.3 : 0.6, round == 1 ? 0.6 : 1.0);
+            if (round > 1) update.iterate(stage.part(0.0, 0.4));
+            update.assemble(stage.part(0.4, 1.0));
+            const double excess = update.excess(gate);
+            result.accepted = excess <= 1.0 && update.isComplete();
+            if (result.accepted || round == kMaxRounds || !(excess <= kHopeless)) return result;
         }
     } catch (const SolverFailure&) {
         // The step was so large that the old vectors are no start: the caller computes anew.
+        return result;
     }
-    return result;
 }
 
 }  // namespace spectral

@@ -7,11 +7,16 @@
 
 namespace spectral {
 
-/// What an update has to hold, else the basis is computed anew. The error of an eigenvalue goes
-/// with the square of its residual r: some 10 r^2 were seen, relative.
+/// What an update has to hold, else the basis is computed anew.
 struct UpdateGate {
-    /// Largest |D^-1/2 (W phi - lambda D phi)| / lambda of any harmonic, and their mean.
+    /// Largest |D^-1/2 (W phi - lambda D phi)| / lambda of any harmonic, and their mean. The error
+    /// of an eigenvalue goes with the square of its residual r: some 10 r^2 were seen, relative.
     double largestResidual = 3e-3, meanResidual = 3e-4;
+
+    /// Largest bound on the part of a harmonic that lies beyond the basis: its residual divided by
+    /// its distance in the spectrum from there. Where the gain jumps at the cut, this part has the
+    /// wrong gain.
+    double largestLeak = 3e-5;
 };
 
 /// What an update did.
@@ -23,22 +28,25 @@ struct BasisUpdateResult {
 /// The k lowest harmonics of a Laplacian from those of one nearby: the update of the basis as a
 /// perturbation (Kovnatsky et al. 2012, end of section 3, which names no algorithm).
 ///
-/// The previous harmonics and guards are sorted by their Rayleigh quotients under the new Laplacian
-/// and taken in slices. Two block inverse iterations turn each slice towards the eigenspaces round
-/// its own shift sigma, S <- (W - sigma D)^-1 D S; then one Rayleigh-Ritz procedure on all slices
-/// together sorts out what has moved from one slice to another. The accuracy is that of a
-/// perturbation: eigenvalues to about 1e-5, where a basis from nothing has 1e-10.
+/// The previous harmonics are sorted by their Rayleigh quotients under the new Laplacian and taken
+/// in slices. Block inverse iterations with a Chebyshev filter turn each slice towards the
+/// eigenspaces round its own shift (slice_iteration.h), and one Rayleigh-Ritz procedure on all
+/// slices together sorts out what has moved from one to another.
 ///
-/// The filter does not use it yet. Vectors next to the cut are mixed with those beyond it by the
-/// residual divided by the distance of eigenvalues. Where the gain jumps at the cut that moves
-/// vertices by 1e-5 to 1e-4 of the diagonal in ten steps: more than what is allowed for.
+/// At the cut that would not do: there is no gap between the last harmonic and the first that is
+/// not in the basis, and where the gain jumps there, what leaks from one into the other is seen. So
+/// the harmonics next to the cut, on both sides, are found by a Lanczos run, as exactly as those of
+/// a basis from nothing; the others are iterated towards on their complement, and the nearest
+/// eigenvalue beyond is then some tens of eigenvalues away.
 ///
-/// Two conditions are checked: the residuals are within the gate, and the inertia of every slice's
-/// W - sigma D counts as many eigenvalues below sigma as the basis has.
+/// Conditions checked: the residuals and leaks are within the gate; the inertia of W - sigma D
+/// counts at the cut as many eigenvalues as the basis has, and at every slice's shift as many as
+/// lie below it.
 ///
-/// @param k      harmonics wanted.
-/// @param basis  of the previous Laplacian, with guards; on return of the new one, certified as by
-///               truncatedBasis, and as many columns. Without meaning when not accepted.
+/// @param k      harmonics wanted. With less than some tens, or where truncatedBasis uses the dense
+///               solver, nothing is accepted: a basis from nothing is as quick.
+/// @param basis  of the previous Laplacian, at least k; on return of the new one, cut as by
+///               truncatedBasis. Without meaning when not accepted.
 /// @throws Cancelled
 BasisUpdateResult updateBasis(const Laplacian& laplacian, const ConstantModes& constants, Index k,
                               const UpdateGate& gate, HarmonicBasis& basis,

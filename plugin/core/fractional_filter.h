@@ -53,6 +53,8 @@ struct FilterResult {
     Eigen::VectorXd eigenvalues;  ///< k, ascending; empty without a basis.
     Eigen::VectorXd residuals;    ///< k, relative; see HarmonicBasis. Empty for a dense basis.
     int inertiaCount = 0;         ///< Harmonics that must be in it, by inertia; 0 for a dense one.
+    int computedBases = 0;        ///< Bases of all steps that were computed from nothing,
+    int updatedBases = 0;         ///< and those that were made of the one before.
 };
 
 /// Filters the geometry of a mesh: K steps X <- F^(1/K)(sqrt(A)) X, the Laplacian A taken anew from

@@ -42,9 +42,8 @@ class ScaledStiffness {
     Eigen::VectorXd invSqrtD_;
 };
 
-/// Cuts the basis off at `size`, but for at most so many guards.
-void cut(HarmonicBasis& basis, Index size, Index guards) {
-    basis.Phi.conservativeResize(Eigen::NoChange, std::min(basis.Phi.cols(), size + guards));
+void cut(HarmonicBasis& basis, Index size) {
+    basis.Phi.conservativeResize(Eigen::NoChange, size);
     basis.lambda.conservativeResize(size);
     basis.inertiaCount = size;
 }
@@ -67,8 +66,12 @@ HarmonicBasis denseBasis(const Laplacian& laplacian, const ConstantModes& consta
     return basis;
 }
 
+bool isDenseQuicker(Index n, Index k) {
+    return n <= kDenseVertices || (n <= kDenseVerticesForMany && 4 * k > n);
+}
+
 HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& constants, Index k,
-                             ShiftedCholesky& cholesky, const Progress& progress, Index guards) {
+                             ShiftedCholesky& cholesky, const Progress& progress) {
     const Index n = laplacian.D.size(), c = constants.count();
     if (k >= n)
         throw InvalidOption("basis_size = " + std::to_string(k) + " needs more than " +
@@ -80,15 +83,14 @@ HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& co
                             " connected components: choose a basis_size above " +
                             std::to_string(c));
 
-    const bool dense = n <= kDenseVertices || (n <= kDenseVerticesForMany && 4 * k > n);
-    if (dense) {
+    if (isDenseQuicker(n, k)) {
         HarmonicBasis basis = denseBasis(laplacian, constants);
-        cut(basis, cutOutsideClusters(basis.lambda, k).value_or(n), 0);
+        cut(basis, cutOutsideClusters(basis.lambda, k).value_or(n));
         measureBasis(laplacian, c, basis, progress);
         return basis;
     }
     // Some pairs beyond k show whether k cuts a cluster; more are taken while it does.
-    for (Index more = std::max(Index{8}, guards);; more *= 2) {
+    for (Index more = 8;; more *= 2) {
         const Index total = std::min(k + more, n - 1);
         LowestPairs pairs = lowestPairs(laplacian, constants, total, progress.part(0.0, 0.95));
         cholesky.countWork(pairs.factorizations, pairs.solves);
@@ -107,7 +109,7 @@ HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& co
                 ? cholesky.countEigenvaluesBelow(
                       laplacian, 0.5 * (basis.lambda[*size - 1] + basis.lambda[*size]))
                 : basis.size();
-        cut(basis, *size, guards);
+        cut(basis, *size);
         if (counted != *size)
             throw SolverFailure("of the " + std::to_string(counted) +
                                 " harmonics that the inertia of W - sigma D counts, " +
@@ -139,13 +141,12 @@ Eigen::MatrixXd applyInBasis(const HarmonicBasis& basis, const Eigen::VectorXd& 
 
     // With the manifold harmonic transform c = Phi^T D X:
     // Phi F c + F_h (X - Phi c) = F_h X + Phi (F - F_h) c.
-    const auto Phi = basis.Phi.leftCols(basis.size());
-    const Eigen::MatrixXd spectrum = Phi.transpose() * (D.asDiagonal() * centred);
+    const Eigen::MatrixXd spectrum = basis.Phi.transpose() * (D.asDiagonal() * centred);
     Eigen::VectorXd gains(basis.size());
     for (Index i = 0; i < basis.size(); ++i)
         gains[i] = gain(std::sqrt(std::max(0.0, basis.lambda[i]))) - residualGain;
     Eigen::MatrixXd Y = residualGain * centred;
-    Y.noalias() += Phi * (gains.asDiagonal() * spectrum);
+    Y.noalias() += basis.Phi * (gains.asDiagonal() * spectrum);
 
     constants.remove(Y);
     constants.add(means, Y);

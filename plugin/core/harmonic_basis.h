@@ -12,8 +12,7 @@ namespace spectral {
 
 /// Manifold harmonics: the k lowest eigenpairs of W phi = lambda D phi.
 struct HarmonicBasis {
-    Eigen::MatrixXd Phi;     ///< n x (k + g), D-orthonormal: Phi^T D Phi = I. The last g columns
-                             ///< are guards: the next pairs, uncertified, kept for updateBasis.
+    Eigen::MatrixXd Phi;     ///< n x k, D-orthonormal: Phi^T D Phi = I.
     Eigen::VectorXd lambda;  ///< k eigenvalues, ascending; exactly 0 for the constant modes.
 
     // The certificate of a truncated basis; without meaning for a dense one.
@@ -23,13 +22,15 @@ struct HarmonicBasis {
                                   ///< inertia of W - sigma D: equal to size(), none is missing.
 
     Index size() const { return lambda.size(); }
-    Index guards() const { return Phi.cols() - size(); }
 };
 
 /// All n eigenpairs by a dense solver: O(n^3) time, 3 n^2 numbers of memory. The yardstick of the
 /// tests, and what is quickest for a few hundred vertices.
 /// @throws SolverFailure  when the solver does not converge.
 HarmonicBasis denseBasis(const Laplacian& laplacian, const ConstantModes& constants);
+
+/// Whether the dense solver is the quickest way to k harmonics of n vertices.
+bool isDenseQuicker(Index n, Index k);
 
 /// At least the k lowest eigenpairs, certified: slice by slice (spectrum_slicing.h), or by the
 /// dense solver where that is quicker.
@@ -41,13 +42,10 @@ HarmonicBasis denseBasis(const Laplacian& laplacian, const ConstantModes& consta
 ///
 /// @param k  constants.count() < k < n.
 /// @param cholesky  counts the work; its factor is left as it is.
-/// @param guards  how many pairs to keep beyond the basis; none by the dense solver, which needs no
-///                update.
 /// @throws InvalidOption  when k is out of range; SolverFailure when the basis fails its
 ///                        count.
 HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& constants, Index k,
-                             ShiftedCholesky& cholesky, const Progress& progress = {},
-                             Index guards = 0);
+                             ShiftedCholesky& cholesky, const Progress& progress = {});
 
 /// Largest eigenvalue of W phi = lambda D phi, to about 1e-8 relative.
 double largestEigenvalue(const Laplacian& laplacian);

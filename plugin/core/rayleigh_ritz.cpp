@@ -44,9 +44,10 @@ Eigen::VectorXd rayleighRitz(const Laplacian& laplacian, Eigen::Ref<Eigen::Matri
     const Eigen::MatrixXd& Z = ritz.eigenvectors();
     runInParallel((n + kRows - 1) / kRows,
                   [&](Index task, int, const StopPoint&) {
-                      auto rows = S.middleRows(task * kRows, std::min(kRows, n - task * kRows));
-                      const Eigen::MatrixXd before = rows;
-                      rows.noalias() = before * Z;
+                      const Index first = task * kRows, count = std::min(kRows, n - first);
+                      const Eigen::MatrixXd rows = S.middleRows(first, count);
+                      products.product(rows.data(), count, Z.data(), m, &S(first, 0),
+                                       S.outerStride(), count, m, m);
                   },
                   progress.part(0.5, 1.0), "updating the harmonics");
     return ritz.eigenvalues();

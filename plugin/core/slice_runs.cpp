@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "errors.h"
-#include "parallel_tasks.h"
 #include "tridiagonal.h"
 
 namespace spectral {
@@ -226,6 +225,13 @@ SliceWorkers::SliceWorkers(const Laplacian& laplacian, const ConstantModes& cons
       constants_(constants),
       workspaces_(static_cast<std::size_t>(workerCount())) {}
 
+SliceRun SliceWorkers::run(const SliceTask& task, int worker, PairStore& found,
+                           const StopPoint& stopPoint) {
+    Workspace& workspace = workspaces_[static_cast<std::size_t>(worker)];
+    workspace.Q.resize(laplacian_.D.size(), std::min(laplacian_.D.size(), kMaxDimension));
+    return runOf(laplacian_, constants_, workspace.factor, workspace.Q, task, found, stopPoint);
+}
+
 std::vector<Index> SliceWorkers::count(const std::vector<double>& sigmas,
                                        const Progress& progress) {
     std::vector<Index> below(sigmas.size());
@@ -244,15 +250,11 @@ std::vector<Index> SliceWorkers::count(const std::vector<double>& sigmas,
 std::vector<SliceRun> SliceWorkers::execute(const std::vector<SliceTask>& tasks, PairStore& found,
                                             const Progress& progress) {
     std::vector<SliceRun> runs(tasks.size());
-    const Index n = laplacian_.D.size();
     runInParallel(
         static_cast<Index>(tasks.size()),
         [&](Index task, int worker, const StopPoint& stopPoint) {
             const auto t = static_cast<std::size_t>(task);
-            Workspace& workspace = workspaces_[static_cast<std::size_t>(worker)];
-            workspace.Q.resize(n, std::min(n, kMaxDimension));
-            runs[t] = runOf(laplacian_, constants_, workspace.factor, workspace.Q, tasks[t], found,
-                            stopPoint);
+            runs[t] = run(tasks[t], worker, found, stopPoint);
         },
         progress, kStage);
     return runs;

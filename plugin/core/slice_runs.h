@@ -6,6 +6,7 @@
 #include "components.h"
 #include "laplacian.h"
 #include "pair_store.h"
+#include "parallel_tasks.h"
 #include "progress.h"
 #include "shifted_ldlt.h"
 #include "types.h"
@@ -40,6 +41,13 @@ class SliceWorkers {
   public:
     /// The arguments are kept by reference.
     SliceWorkers(const Laplacian& laplacian, const ConstantModes& constants);
+
+    /// Does one task as a worker of the caller's own parallel work (see runInParallel).
+    /// @throws SolverFailure, and whatever the stop point throws.
+    SliceRun run(const SliceTask& task, int worker, PairStore& found, const StopPoint& stopPoint);
+
+    /// A worker's own factorization, for other uses of it between its runs.
+    ShiftedLdlt& factor(int worker) { return workspaces_[static_cast<std::size_t>(worker)].factor; }
 
     /// Numbers of eigenvalues below these shifts, by inertia.
     std::vector<Index> count(const std::vector<double>& sigmas, const Progress& progress);

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <string>
 
+#include "basis_update.h"
 #include "errors.h"
 #include "full_spectrum.h"
 #include "pole_selection.h"
@@ -19,6 +20,10 @@ constexpr Index kMaxExactBasis = 1000;
 
 /// Up to this many vertices the dense solver computes all harmonics in about a second.
 constexpr Index kDenseVertices = 600;
+
+/// The update of a basis costs k^2 n, the computation of one k n: beyond this size the latter is
+/// the quicker one.
+constexpr Index kMaxUpdatedBasis = 600;
 
 /// Relative accuracy of a step that round-off still allows.
 constexpr double kFinestAccuracy = 1e-13;
@@ -51,6 +56,7 @@ void StepEvaluator::setLaplacian(Laplacian laplacian, double alpha, const Progre
         truncated(progress);
     } else if (usesBasis()) {
         basis_ = upToLastJump(progress);
+        ++computedBases_;
     } else {
         progress.report(0.0, "factorizing");
         cholesky_.factorize(laplacian_, selectPole(fractionalPower(F_, alpha), F_.cutoff(),
@@ -122,7 +128,7 @@ void StepEvaluator::truncated(const Progress& progress) {
     // The basis knows of no filter; what else a filter offers is said here.
     const char* const remedy = ", or spectrum = full";
     try {
-        basis_ = truncatedBasis(laplacian_, *constants_, options_.basisSize, cholesky_, progress);
+        followBasis(progress);
     } catch (const InvalidOption& error) {
         throw InvalidOption(error.what() + std::string(remedy));
     } catch (const SolverFailure& error) {
@@ -137,6 +143,22 @@ void StepEvaluator::truncated(const Progress& progress) {
         residualGain_ =
             std::pow(from < to ? meanGain(whole, from, to) : whole(to), F_.appliedPower());
     }
+}
+
+/// The basis of the present Laplacian: of the last one's, where that is near enough.
+void StepEvaluator::followBasis(const Progress& progress) {
+    const Index k = options_.basisSize;
+    if (k <= kMaxUpdatedBasis && basis_.size() > 0) {
+        const BasisUpdateResult update =
+            updateBasis(laplacian_, *constants_, k, UpdateGate(), basis_, progress.part(0.0, 0.5));
+        cholesky_.countWork(update.factorizations, update.solves);
+        if (update.accepted) {
+            ++updatedBases_;
+            return;
+        }
+    }
+    basis_ = truncatedBasis(laplacian_, *constants_, k, cholesky_, progress);
+    ++computedBases_;
 }
 
 /// The harmonics up to the last jump of F, beyond which an ideal F is constant: exact.

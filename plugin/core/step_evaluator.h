@@ -47,6 +47,8 @@ class StepEvaluator {
     Eigen::MatrixXd operator()(const Eigen::MatrixXd& X, double alpha, const Progress& progress);
 
     const HarmonicBasis& basis() const { return basis_; }  ///< Empty where none is used.
+    int computedBases() const { return computedBases_; }   ///< Bases computed from nothing.
+    int updatedBases() const { return updatedBases_; }     ///< Bases made of the one before.
     int factorizations() const { return cholesky_.factorizations() + extension_.factorizations(); }
     int solves() const { return cholesky_.solves() + extension_.solves(); }
 
@@ -61,6 +63,7 @@ class StepEvaluator {
     Eigen::MatrixXd onInterior(const Eigen::MatrixXd& U, double relativeSize, double alpha,
                                const Progress& progress);
     void truncated(const Progress& progress);
+    void followBasis(const Progress& progress);
     HarmonicBasis upToLastJump(const Progress& progress);
 
     const EvaluationOptions& options_;
@@ -71,6 +74,7 @@ class StepEvaluator {
     std::optional<ConstantModes> constants_;
     ShiftedCholesky cholesky_;
     HarmonicBasis basis_;
+    int computedBases_ = 0, updatedBases_ = 0;
     double residualGain_ = 0.0;  // F's mean for what is beyond the basis
     double errorEstimate_ = 0.0;
     bool accuracyReached_ = true;

@@ -36,7 +36,11 @@ std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& r
          vectorVariant(Eigen::Map<const Eigen::VectorXd>(
              result.stepSizes.data(), static_cast<Eigen::Index>(result.stepSizes.size())))},
     };
-    if (result.eigenvalues.size() > 0) report["eigenvalues"] = vectorVariant(result.eigenvalues);
+    if (result.eigenvalues.size() > 0) {
+        report["eigenvalues"] = vectorVariant(result.eigenvalues);
+        report["computed_bases"] = result.computedBases;
+        report["updated_bases"] = result.updatedBases;
+    }
     if (result.residuals.size() > 0) {
         report["residuals"] = vectorVariant(result.residuals);
         report["inertia_count"] = result.inertiaCount;
@@ -67,7 +71,8 @@ std::string reportText(const spectral::FilterResult& result) {
          << " solves";
     if (result.eigenvalues.size() > 0)
         text << ", " << result.eigenvalues.size() << " harmonics up to frequency "
-             << std::sqrt(result.eigenvalues[result.eigenvalues.size() - 1]);
+             << std::sqrt(result.eigenvalues[result.eigenvalues.size() - 1]) << ", computed "
+             << result.computedBases << " times, updated " << result.updatedBases << " times";
     else
         text << ", estimated relative error " << result.errorEstimate;
     for (const std::string& warning : result.warnings) text << "\n  WARNING: " << warning;

@@ -14,7 +14,7 @@ namespace {
 using testing::Mesh;
 using testing::Operator;
 
-constexpr Index kHarmonics = 100, kGuards = 24;
+constexpr Index kHarmonics = 100;
 
 /// The mesh after the fractional power alpha of a low-pass of this feature size.
 Mesh filtered(const Mesh& mesh, double featureSize, double alpha) {
@@ -25,9 +25,9 @@ Mesh filtered(const Mesh& mesh, double featureSize, double alpha) {
     return {fractionalFilter(mesh.V, mesh.F, options).V, mesh.F};
 }
 
-HarmonicBasis withGuards(const Operator& A) {
+HarmonicBasis basisOf(const Operator& A) {
     ShiftedCholesky cholesky;
-    return truncatedBasis(A.laplacian, A.constants, kHarmonics, cholesky, {}, kGuards);
+    return truncatedBasis(A.laplacian, A.constants, kHarmonics, cholesky);
 }
 
 Mesh lumpy() { return testing::withNoise(testing::icosphere(4), 0.02, 7); }
@@ -35,7 +35,7 @@ Mesh lumpy() { return testing::withNoise(testing::icosphere(4), 0.02, 7); }
 TEST(BasisUpdate, ComesNearTheBasisFromNothing) {
     const Mesh before = lumpy(), after = filtered(before, 0.5, 0.1);
     const Operator A(after);
-    HarmonicBasis basis = withGuards(Operator(before));
+    HarmonicBasis basis = basisOf(Operator(before));
     const BasisUpdateResult update =
         updateBasis(A.laplacian, A.constants, kHarmonics, UpdateGate(), basis);
     ASSERT_TRUE(update.accepted);
@@ -58,7 +58,7 @@ TEST(BasisUpdate, ComesNearTheBasisFromNothing) {
 
 TEST(BasisUpdate, OfTheSameLaplacianChangesNothing) {
     const Operator A(lumpy());
-    HarmonicBasis basis = withGuards(A);
+    HarmonicBasis basis = basisOf(A);
     const Eigen::VectorXd lambda = basis.lambda;
     ASSERT_TRUE(updateBasis(A.laplacian, A.constants, kHarmonics, UpdateGate(), basis).accepted);
     EXPECT_LT((basis.lambda - lambda).cwiseAbs().maxCoeff(), 1e-9 * lambda[lambda.size() - 1]);
@@ -71,21 +71,36 @@ TEST(BasisUpdate, IsRefusedAfterALargeStep) {
     after.V.col(2) *= 0.05;
     after.V.col(0) = after.V.col(0).array() * (1.0 + 0.5 * after.V.col(0).array());
     const Operator A(after);
-    HarmonicBasis basis = withGuards(Operator(before));
+    HarmonicBasis basis = basisOf(Operator(before));
     EXPECT_FALSE(updateBasis(A.laplacian, A.constants, kHarmonics, UpdateGate(), basis).accepted);
 }
 
-TEST(BasisUpdate, IsRefusedWithoutGuards) {
+TEST(BasisUpdate, IsExactNextToTheCut) {
+    const Mesh before = lumpy();
+    const Operator A(filtered(before, 0.5, 0.1));
+    HarmonicBasis basis = basisOf(Operator(before));
+    ASSERT_TRUE(updateBasis(A.laplacian, A.constants, kHarmonics, UpdateGate(), basis).accepted);
+    const HarmonicBasis anew = basisOf(A);
+    ASSERT_EQ(basis.size(), anew.size());
+    EXPECT_LT((basis.lambda.tail(8) - anew.lambda.tail(8)).cwiseAbs().maxCoeff(),
+              1e-10 * anew.lambda[anew.size() - 1]);
+    // What one basis spans and the other does not: the sines of the angles between them.
+    const Eigen::MatrixXd DPhi = A.laplacian.D.asDiagonal() * anew.Phi;
+    const Eigen::MatrixXd rest = basis.Phi - anew.Phi * (DPhi.transpose() * basis.Phi);
+    EXPECT_LT((A.laplacian.D.cwiseSqrt().asDiagonal() * rest).colwise().norm().maxCoeff(), 1e-3);
+}
+
+TEST(BasisUpdate, IsRefusedWhereTheOldBasisIsTooSmall) {
     const Operator A(lumpy());
-    ShiftedCholesky cholesky;
-    HarmonicBasis basis = truncatedBasis(A.laplacian, A.constants, kHarmonics, cholesky);
-    EXPECT_FALSE(updateBasis(A.laplacian, A.constants, kHarmonics, UpdateGate(), basis).accepted);
+    HarmonicBasis basis = basisOf(A);
+    EXPECT_FALSE(
+        updateBasis(A.laplacian, A.constants, basis.size() + 1, UpdateGate(), basis).accepted);
 }
 
 TEST(BasisUpdate, DoesNotDependOnTheThreads) {
     const Mesh before = lumpy();
     const Operator A(filtered(before, 0.5, 0.1));
-    const HarmonicBasis start = withGuards(Operator(before));
+    const HarmonicBasis start = basisOf(Operator(before));
     HarmonicBasis once = start, again = start;
     updateBasis(A.laplacian, A.constants, kHarmonics, UpdateGate(), once);
     updateBasis(A.laplacian, A.constants, kHarmonics, UpdateGate(), again);
@@ -94,10 +109,39 @@ TEST(BasisUpdate, DoesNotDependOnTheThreads) {
 
 TEST(BasisUpdate, StopsWhenTheCallerWantsIt) {
     const Operator A(lumpy());
-    HarmonicBasis basis = withGuards(A);
+    HarmonicBasis basis = basisOf(A);
     const Progress progress([](double, const std::string&) { return false; });
     EXPECT_THROW(updateBasis(A.laplacian, A.constants, kHarmonics, UpdateGate(), basis, progress),
                  Cancelled);
+}
+
+FilterOptions truncatedSteps(double featureSize, int steps) {
+    FilterOptions options;
+    options.featureSize = featureSize;
+    options.steps = steps;
+    options.evaluation.spectrum = Spectrum::Truncated;
+    options.evaluation.basisSize = static_cast<int>(kHarmonics);
+    return options;
+}
+
+TEST(TruncatedSteps, UpdateTheBasisAfterTheFirst) {
+    const Mesh mesh = lumpy();
+    const FilterResult result = fractionalFilter(mesh.V, mesh.F, truncatedSteps(0.5, 5));
+    EXPECT_EQ(result.computedBases, 1);
+    EXPECT_EQ(result.updatedBases, 4);
+    EXPECT_EQ(result.inertiaCount, result.eigenvalues.size());
+}
+
+TEST(TruncatedSteps, ComputeTheBasisAnewWhereTheGateTrips) {
+    const Mesh mesh = testing::withNoise(testing::cube(16), 0.05, 3);
+    FilterOptions options = truncatedSteps(0.5, 2);  // each step multiplies what is small by four
+    options.transferFunction.type = FilterType::HighPass;
+    options.transferFunction.stopGain = 1.0;
+    options.transferFunction.passGain = 16.0;
+    const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_EQ(result.computedBases, 2);
+    EXPECT_EQ(result.updatedBases, 0);
+    EXPECT_LT(result.residuals.maxCoeff(), 1e-7);
 }
 
 }  // namespace
