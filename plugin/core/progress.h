@@ -19,6 +19,9 @@ class Progress {
     Progress() = default;
     explicit Progress(Callback callback) : callback_(std::move(callback)) {}
 
+    /// Whether anybody is told.
+    bool isHeard() const { return static_cast<bool>(callback_); }
+
     /// Reports `fraction` in [0, 1] of this object's own range.
     /// @throws Cancelled  when the caller wants to stop.
     void report(double fraction, const std::string& stage) const {
