@@ -9,8 +9,7 @@
 
 namespace spectral {
 
-/// Does `work` beside the calling thread, which meanwhile reports how far it is, ten times a
-/// second.
+/// Does `work` beside the calling thread, which reports twenty times a second how far it is.
 ///
 /// For a caller that must hear something all the time, whatever the work is at: a factorization of
 /// a large mesh takes seconds, and nothing can report from within it. A window that is painted anew

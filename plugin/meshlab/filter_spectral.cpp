@@ -1,5 +1,7 @@
 #include "filter_spectral.h"
 
+#include <common/ml_shared_data_context/ml_plugin_gl_context.h>
+
 #include <sstream>
 
 #include "core/errors.h"
@@ -60,6 +62,15 @@ int FilterSpectralPlugin::getRequirements(const QAction*) { return MeshModel::MM
 // None, although faces are needed: the core's message says more than "missing items: faces".
 int FilterSpectralPlugin::getPreConditions(const QAction*) const { return MeshModel::MM_NONE; }
 
+// Nothing is drawn here. MeshLab 2025.07 makes a context for every run, and after one from a dialog
+// forgets it: 9 MB a preview, where pictures are made in software. It takes none for an answer.
+void FilterSpectralPlugin::releaseGLContext() {
+    if (glContext == nullptr) return;
+    glContext->removePerViewRenderindData();
+    delete glContext;
+    glContext = nullptr;
+}
+
 int FilterSpectralPlugin::postCondition(const QAction* action) const {
     return filterOf(action).changes;
 }
@@ -76,11 +87,13 @@ RichParameterList FilterSpectralPlugin::initParameterList(const QAction* action,
 std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
     const QAction* action, const RichParameterList& parameters, MeshDocument& document,
     unsigned int&, vcg::CallBackPos* callback) {
+    releaseGLContext();
     // The one place where the core's errors become MeshLab's. MeshLab ends the program on anything
     // but MLException and bad_alloc.
     try {
-        FilterOutcome outcome =
-            filterOf(action).apply(parameters, *document.mm(), meshlabProgress(callback));
+        const spectral::Progress progress = meshlabProgress(callback);
+        progress.report(0.0, "reading the mesh");
+        FilterOutcome outcome = filterOf(action).apply(parameters, *document.mm(), progress);
         logLines(outcome.text);
         return std::move(outcome.report);
     } catch (const spectral::Error& error) {

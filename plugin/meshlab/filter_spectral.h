@@ -40,6 +40,7 @@ class FilterSpectralPlugin : public QObject, public FilterPlugin {
 
   private:
     const MeshFilter& filterOf(const QAction* action) const;
+    void releaseGLContext();
     void logLines(const std::string& text) const;
 
     const std::vector<MeshFilter> filters_;  // a filter's ActionIDType is its index here
