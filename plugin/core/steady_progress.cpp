@@ -19,14 +19,17 @@ constexpr std::chrono::milliseconds kReportInterval{50};
 /// What work on a thread of its own and the calling one tell each other.
 class Exchange {
   public:
+    explicit Exchange(const Progress& caller) : caller_(caller) {}
+
     /// For the work: notes how far it is.
     Progress progress() {
-        return Progress([this](double fraction, const std::string& stage) {
+        const auto note = [this](double fraction, const std::string& stage) {
             const std::lock_guard<std::mutex> lock(mutex_);
             fraction_ = fraction;
             stage_ = stage;
             return !stop_;
-        });
+        };
+        return Progress(note, [this] { return caller_.isInterrupted(); });
     }
 
     /// For the work: it is done, by an exception or without.
@@ -38,13 +41,13 @@ class Exchange {
     }
 
     /// For the caller: passes on what was noted, until the work is done.
-    void reportUntilEnd(const Progress& progress) {
+    void reportUntilEnd() {
         std::unique_lock<std::mutex> lock(mutex_);
         while (!ended_) {
             const double fraction = fraction_;
             const std::string stage = stage_;
             lock.unlock();
-            progress.report(fraction, stage);
+            caller_.report(fraction, stage);
             lock.lock();
             changed_.wait_for(lock, kReportInterval, [this] { return ended_; });
         }
@@ -62,7 +65,8 @@ class Exchange {
     }
 
   private:
-    std::mutex mutex_;
+    const Progress& caller_;
+    std::mutex mutex_;  // guards the rest
     std::condition_variable changed_;
     double fraction_ = 0.0;
     std::string stage_ = "preparing";
@@ -74,7 +78,7 @@ class Exchange {
 
 void runBeside(const Progress& progress, const std::function<void(const Progress&)>& work) {
     if (!progress.isHeard()) return work(progress);
-    Exchange exchange;
+    Exchange exchange(progress);
     std::thread thread;
     try {
         thread = std::thread([&] {
@@ -89,7 +93,7 @@ void runBeside(const Progress& progress, const std::function<void(const Progress
         return work(progress);
     }
     try {
-        exchange.reportUntilEnd(progress);
+        exchange.reportUntilEnd();
     } catch (...) {
         exchange.stop();
         thread.join();

@@ -62,6 +62,7 @@ FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
             return spectral::measureArtefacts(input.V, input.F, options, steady);
         });
 
+    reportWriting(input, mesh.cm, progress);
     setQuality(input.vertexIndex, artefacts.length, mesh);
     mesh.updateDataMask(MeshModel::MM_VERTCOLOR);
     vcg::tri::UpdateColor<CMeshO>::PerVertexQualityRamp(mesh.cm, 0,

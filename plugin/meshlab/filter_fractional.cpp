@@ -16,7 +16,7 @@ FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
         spectral::withSteadyProgress(progress, [&](const spectral::Progress& steady) {
             return spectral::fractionalFilter(input.V, input.F, options, steady);
         });
-    progress.report(1.0, "writing the mesh");
+    reportWriting(input, mesh.cm, progress);
     setPositions(input.vertexIndex, result.V, mesh);
     return {reportDictionary(result), reportText(result)};
 }

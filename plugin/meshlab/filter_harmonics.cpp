@@ -105,7 +105,7 @@ FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
             return spectral::manifoldHarmonics(input.V, input.F, options, steady);
         });
 
-    progress.report(1.0, "writing the mesh");
+    reportWriting(input, mesh.cm, progress);
     if (parameters.getBool("store_basis"))
         setAttributes(input.vertexIndex, kAttribute, harmonics.Phi, mesh);
     setQuality(input.vertexIndex, harmonics.Phi.col(mode), mesh);

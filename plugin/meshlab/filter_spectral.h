@@ -2,6 +2,7 @@
 
 #include <common/plugins/interfaces/filter_plugin.h>
 
+#include <atomic>
 #include <vector>
 
 #include "mesh_filter.h"
@@ -44,4 +45,5 @@ class FilterSpectralPlugin : public QObject, public FilterPlugin {
     void logLines(const std::string& text) const;
 
     const std::vector<MeshFilter> filters_;  // a filter's ActionIDType is its index here
+    std::vector<std::atomic<int>> runs_;     // of every filter, so far
 };

@@ -74,6 +74,27 @@ TEST(SteadyProgress, TheCallerStopsTheWorkAtItsNextReport) {
     EXPECT_TRUE(left);
 }
 
+TEST(SteadyProgress, AnInterruptionStopsTheWorkWhileTheCallbackHasNotReturned) {
+    std::atomic<bool> left{false};
+    // The callback returns only when the work has been left: without an interruption, never.
+    const Progress busy(
+        [&](double, const std::string&) {
+            while (!left) std::this_thread::yield();
+            return true;
+        },
+        [] { return true; });
+    EXPECT_THROW(runBeside(busy,
+                           [&](const Progress& steady) {
+                               try {
+                                   while (true) steady.report(0.5, "working");
+                               } catch (const Cancelled&) {
+                                   left = true;
+                                   throw;
+                               }
+                           }),
+                 Cancelled);
+}
+
 TEST(SteadyProgress, AFailureOfTheWorkReachesTheCaller) {
     const Progress progress([](double, const std::string&) { return true; });
     const auto fail = [](const Progress&) -> int { throw SolverFailure("broke down"); };
