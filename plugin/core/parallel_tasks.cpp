@@ -6,6 +6,8 @@
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <new>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -17,6 +19,30 @@ namespace {
 
 /// From one report of progress to the next, at most.
 constexpr std::chrono::milliseconds kReportInterval{100};
+
+/// Up to `most` threads, each doing work(its number): as many as the system has.
+std::vector<std::thread> startThreads(int most, const std::function<void(int)>& work) {
+    std::vector<std::thread> threads;
+    threads.reserve(static_cast<std::size_t>(most));
+    try {
+        for (int worker = 0; worker < most; ++worker) threads.emplace_back(work, worker);
+    } catch (const std::system_error&) {  // a limit on threads
+    } catch (const std::bad_alloc&) {
+    }
+    return threads;
+}
+
+/// All tasks on the calling thread, which reports at their stop points.
+void runHere(Index count, const std::function<void(Index, int, const StopPoint&)>& work,
+             const Progress& progress, const std::string& stage) {
+    for (Index task = 0; task < count; ++task) {
+        const StopPoint reportHere = [&] {
+            progress.report(static_cast<double>(task) / static_cast<double>(count), stage);
+        };
+        reportHere();
+        work(task, 0, reportHere);
+    }
+}
 
 }  // namespace
 
@@ -48,9 +74,9 @@ void runInParallel(Index count, const std::function<void(Index, int, const StopP
             changed.notify_one();
         }
     };
-    std::vector<std::thread> threads;
-    const int workers = static_cast<int>(std::min<Index>(workerCount(), count));
-    for (int worker = 0; worker < workers; ++worker) threads.emplace_back(doTasks, worker);
+    std::vector<std::thread> threads =
+        startThreads(static_cast<int>(std::min<Index>(workerCount(), count)), doTasks);
+    if (threads.empty()) return runHere(count, work, progress, stage);
     try {
         std::unique_lock<std::mutex> lock(mutex);
         while (finished < count && !stop) {

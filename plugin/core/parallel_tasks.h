@@ -18,7 +18,8 @@ using StopPoint = std::function<void()>;
 ///
 /// What a task computes must not depend on the worker that does it: the result is then the same on
 /// any machine. Only the calling thread reports progress, and it does nothing else: whatever the
-/// others do, the caller can stop them at once.
+/// others do, the caller can stop them at once. Where the system has fewer threads to give, those
+/// do all the tasks, and where it has none the calling thread does.
 ///
 /// @param work   work(task, worker, stopPoint), 0 <= worker < workerCount(): for storage that a
 ///               worker uses again from task to task.

@@ -7,6 +7,7 @@
 
 #include "common_parameters.h"
 #include "core/artefacts.h"
+#include "core/steady_progress.h"
 #include "mesh_conversion.h"
 #include "mesh_filter.h"
 
@@ -57,8 +58,11 @@ FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
     options.featureSize = featureSize(parameters);
     options.laplacian = laplacianKind(parameters);
     const spectral::Artefacts artefacts =
-        spectral::measureArtefacts(input.V, input.F, options, progress);
+        spectral::withSteadyProgress(progress, [&](const spectral::Progress& steady) {
+            return spectral::measureArtefacts(input.V, input.F, options, steady);
+        });
 
+    reportWriting(input, mesh.cm, progress);
     setQuality(input.vertexIndex, artefacts.length, mesh);
     mesh.updateDataMask(MeshModel::MM_VERTCOLOR);
     vcg::tri::UpdateColor<CMeshO>::PerVertexQualityRamp(mesh.cm, 0,

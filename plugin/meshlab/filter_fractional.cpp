@@ -1,4 +1,5 @@
 #include "core/fractional_filter.h"
+#include "core/steady_progress.h"
 #include "fractional_help.h"
 #include "fractional_parameters.h"
 #include "fractional_report.h"
@@ -10,8 +11,12 @@ namespace {
 FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
                     const spectral::Progress& progress) {
     const MeshMatrices input = toMatrices(mesh.cm);
+    const spectral::FilterOptions options = fractionalFilterOptions(parameters);
     const spectral::FilterResult result =
-        spectral::fractionalFilter(input.V, input.F, fractionalFilterOptions(parameters), progress);
+        spectral::withSteadyProgress(progress, [&](const spectral::Progress& steady) {
+            return spectral::fractionalFilter(input.V, input.F, options, steady);
+        });
+    reportWriting(input, mesh.cm, progress);
     setPositions(input.vertexIndex, result.V, mesh);
     return {reportDictionary(result), reportText(result)};
 }

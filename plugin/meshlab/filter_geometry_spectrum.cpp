@@ -6,6 +6,7 @@
 
 #include "common_parameters.h"
 #include "core/geometry_spectrum.h"
+#include "core/steady_progress.h"
 #include "mesh_conversion.h"
 #include "mesh_filter.h"
 
@@ -99,7 +100,9 @@ FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
     options.laplacian = laplacianKind(parameters);
     options.boundary = boundaryCondition(parameters);
     const GeometrySpectrum spectrum =
-        spectral::geometrySpectrum(input.V, input.F, options, progress);
+        spectral::withSteadyProgress(progress, [&](const spectral::Progress& steady) {
+            return spectral::geometrySpectrum(input.V, input.F, options, steady);
+        });
     return {{{"diagonal", spectrum.diagonal},
              {"area", spectrum.area},
              {"total_energy", spectrum.totalEnergy},

@@ -8,6 +8,7 @@
 #include "common_parameters.h"
 #include "core/errors.h"
 #include "core/manifold_harmonics.h"
+#include "core/steady_progress.h"
 #include "mesh_conversion.h"
 #include "mesh_filter.h"
 #include "vertex_colors.h"
@@ -100,8 +101,11 @@ FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
     checkMode(mode, options.basisSize);
     const MeshMatrices input = toMatrices(mesh.cm);
     const spectral::ManifoldHarmonics harmonics =
-        spectral::manifoldHarmonics(input.V, input.F, options, progress);
+        spectral::withSteadyProgress(progress, [&](const spectral::Progress& steady) {
+            return spectral::manifoldHarmonics(input.V, input.F, options, steady);
+        });
 
+    reportWriting(input, mesh.cm, progress);
     if (parameters.getBool("store_basis"))
         setAttributes(input.vertexIndex, kAttribute, harmonics.Phi, mesh);
     setQuality(input.vertexIndex, harmonics.Phi.col(mode), mesh);

@@ -1,23 +1,33 @@
 #include "filter_spectral.h"
 
+#include <common/ml_shared_data_context/ml_plugin_gl_context.h>
+
+#include <atomic>
+#include <functional>
 #include <sstream>
+#include <utility>
 
 #include "core/errors.h"
 
 namespace {
 
-spectral::Progress meshlabProgress(vcg::CallBackPos* callback) {
+/// MeshLab's callback as a progress.
+spectral::Progress meshlabProgress(vcg::CallBackPos* callback, std::function<bool()> isMeshThere,
+                                   spectral::Progress::Interruption isOvertaken) {
     if (callback == nullptr) return {};
-    return spectral::Progress([callback](double fraction, const std::string& stage) {
-        return callback(static_cast<int>(100.0 * fraction), stage.c_str());
-    });
+    const auto report = [callback, isMeshThere = std::move(isMeshThere)](double fraction,
+                                                                         const std::string& stage) {
+        return callback(static_cast<int>(100.0 * fraction), stage.c_str()) && isMeshThere();
+    };
+    return spectral::Progress(report, std::move(isOvertaken));
 }
 
 }  // namespace
 
 FilterSpectralPlugin::FilterSpectralPlugin()
     : filters_{fractionalMeshFilter(), artefactsMeshFilter(), harmonicsMeshFilter(),
-               geometrySpectrumMeshFilter()} {
+               geometrySpectrumMeshFilter()},
+      runs_(filters_.size()) {
     for (std::size_t i = 0; i < filters_.size(); ++i) {
         typeList.push_back(static_cast<ActionIDType>(i));
         actionList.push_back(new QAction(filters_[i].name, this));
@@ -60,6 +70,15 @@ int FilterSpectralPlugin::getRequirements(const QAction*) { return MeshModel::MM
 // None, although faces are needed: the core's message says more than "missing items: faces".
 int FilterSpectralPlugin::getPreConditions(const QAction*) const { return MeshModel::MM_NONE; }
 
+// Nothing is drawn here. MeshLab 2025.07 makes a context for every run, and after one from a dialog
+// forgets it: 9 MB a preview, where pictures are made in software. It takes none for an answer.
+void FilterSpectralPlugin::releaseGLContext() {
+    if (glContext == nullptr) return;
+    glContext->removePerViewRenderindData();
+    delete glContext;
+    glContext = nullptr;
+}
+
 int FilterSpectralPlugin::postCondition(const QAction* action) const {
     return filterOf(action).changes;
 }
@@ -76,13 +95,27 @@ RichParameterList FilterSpectralPlugin::initParameterList(const QAction* action,
 std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
     const QAction* action, const RichParameterList& parameters, MeshDocument& document,
     unsigned int&, vcg::CallBackPos* callback) {
+    releaseGLContext();
+    // In its callback MeshLab does whatever its user asks for, in the midst of this run: it starts
+    // the filter anew for a preview with other parameters, or deletes the mesh.
+    std::atomic<int>& latest = runs_.at(static_cast<std::size_t>(ID(action)));
+    const auto isOvertaken = [&latest, run = ++latest] { return run != latest; };
+    const auto isMeshThere = [&document, mesh = document.mm()->id()] {
+        return document.getMesh(mesh) != nullptr;
+    };
     // The one place where the core's errors become MeshLab's. MeshLab ends the program on anything
     // but MLException and bad_alloc.
     try {
-        FilterOutcome outcome =
-            filterOf(action).apply(parameters, *document.mm(), meshlabProgress(callback));
+        const spectral::Progress progress = meshlabProgress(callback, isMeshThere, isOvertaken);
+        progress.report(0.0, "reading the mesh");
+        FilterOutcome outcome = filterOf(action).apply(parameters, *document.mm(), progress);
         logLines(outcome.text);
         return std::move(outcome.report);
+    } catch (const spectral::Cancelled& cancelled) {
+        // The result of the newer run stays.
+        if (!isOvertaken()) throw MLException(cancelled.what());
+        log("stopped: the filter was started anew meanwhile");
+        return {};
     } catch (const spectral::Error& error) {
         throw MLException(QString::fromStdString(error.what()));
     } catch (const std::bad_alloc&) {

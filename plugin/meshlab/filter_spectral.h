@@ -2,6 +2,7 @@
 
 #include <common/plugins/interfaces/filter_plugin.h>
 
+#include <atomic>
 #include <vector>
 
 #include "mesh_filter.h"
@@ -40,7 +41,9 @@ class FilterSpectralPlugin : public QObject, public FilterPlugin {
 
   private:
     const MeshFilter& filterOf(const QAction* action) const;
+    void releaseGLContext();
     void logLines(const std::string& text) const;
 
     const std::vector<MeshFilter> filters_;  // a filter's ActionIDType is its index here
+    std::vector<std::atomic<int>> runs_;     // of every filter, so far
 };

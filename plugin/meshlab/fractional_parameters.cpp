@@ -27,8 +27,7 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "feature size and removes the rest (smoothing, denoising). <b>high-pass</b> acts on what "
         "is smaller: with stop gain 1 and pass gain 2 it sharpens. <b>band-pass</b> acts on "
         "details of about the feature size: with stop gain 1 and pass gain above 1 it enhances "
-        "just them. "
-        "<b>band-stop</b> removes just them."));
+        "just them. <b>band-stop</b> removes just them."));
     list.addParam(featureSizeParameter(
         mesh,
         "Size of the details where the filter turns over, as the wavelength of a wave along the "
@@ -66,11 +65,10 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "is half of it (a gain of 4 becomes 2). The steps divide this part. Above 0, at most 1.",
         true));
     list.addParam(RichInt(
-        "steps", defaults.steps, "Steps",
+        "steps", defaults.steps, "Steps (0 = automatic)",
         "The filter is applied as this many weak steps, because a single strong one damages the "
         "shape: thin parts turn into spikes or balloons. 0 takes as many as the tolerance needs; "
-        "10 "
-        "is the scheme of the paper with ten steps; 1 is the classical one-shot filter."));
+        "10 is the scheme of the paper [1] with ten steps; 1 is the classical one-shot filter."));
     list.addParam(RichPercentage(
         "tolerance", static_cast<Scalarm>(kDefaultTolerance) * diagonal, 0, diagonal, "Tolerance",
         "With 0 steps: how far any point may be from where infinitely many steps would put it. "
@@ -82,8 +80,8 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "Basis update",
         "What every step learns from the shape that the step before has made. <b>full</b> takes "
         "its own frequencies anew. <b>conformal</b> takes only its areas anew [4]: the best choice "
-        "for "
-        "strong smoothing, thin parts shrink instead of turning into spikes. <b>none</b> keeps the "
+        "for strong smoothing, thin parts shrink instead of turning into spikes. <b>none</b> keeps "
+        "the "
         "frequencies of the input; then the number of steps does not matter."));
     list.addParam(RichFloat(
         "conformal_share", static_cast<Scalarm>(defaults.conformalShare), "Conformal share",

@@ -1,5 +1,7 @@
 #include "mesh_conversion.h"
 
+#include "core/errors.h"
+
 MeshMatrices toMatrices(const CMeshO& mesh) {
     MeshMatrices matrices;
     matrices.vertexIndex.reserve(mesh.vn);
@@ -23,6 +25,17 @@ MeshMatrices toMatrices(const CMeshO& mesh) {
         ++t;
     }
     return matrices;
+}
+
+void reportWriting(const MeshMatrices& input, const CMeshO& mesh,
+                   const spectral::Progress& progress) {
+    progress.report(1.0, "writing the mesh");
+    const MeshMatrices now = toMatrices(mesh);
+    if (now.vertexIndex != input.vertexIndex || now.F.rows() != input.F.rows() ||
+        now.F != input.F || now.V != input.V)
+        throw spectral::InvalidMesh(
+            "the mesh was changed while the filter was at work, which has left it alone: apply the "
+            "filter again");
 }
 
 void setPositions(const std::vector<std::size_t>& vertexIndex, const spectral::Vertices& V,

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/progress.h"
 #include "core/types.h"
 
 /// A mesh of MeshLab's as matrices, without the deleted elements that stay in its containers.
@@ -15,6 +16,11 @@ struct MeshMatrices {
 };
 
 MeshMatrices toMatrices(const CMeshO& mesh);
+
+/// Reports that the mesh is to be written next, the last moment to stop.
+/// @throws InvalidMesh  when it is not `input` any more: MeshLab lets its user edit it meanwhile.
+void reportWriting(const MeshMatrices& input, const CMeshO& mesh,
+                   const spectral::Progress& progress);
 
 /// Moves the vertices to the rows of V and updates bounding box and normals; all else is kept.
 void setPositions(const std::vector<std::size_t>& vertexIndex, const spectral::Vertices& V,

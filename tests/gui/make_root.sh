@@ -16,18 +16,17 @@ recipe=$(cd "$here" && sha256sum make_root.sh root_packages.txt ../debian_root.s
 if [ "$(cat "$root/.recipe" 2>/dev/null)" = "$recipe" ]; then exit 0; fi
 
 mkdir -p "$(dirname "$root")"
+. "$here/../children.sh"
 new=$(mktemp -d "$root.XXXXXX")
-trap 'rm -rf --one-file-system "$new"' EXIT
-trap 'exit 130' INT TERM
+trap 'end_child; rm -rf --one-file-system "$new"' EXIT
 chmod 755 "$new"
 
 echo "=== MeshLab 2025.07 in a Debian system of its own, $root: two minutes, once"
-# The suite that has MeshLab 2025.07.
-"$here/../debian_root.sh" forky "$new" ca-certificates
 packages=$(sed -e 's/#.*//' "$here/root_packages.txt" | xargs)
-# In namespaces of its own, so that the mounts and whatever still runs go when it ends, in any way.
-export new packages
-unshare --mount --pid --fork --kill-child bash -euo pipefail -c '
+export here new packages
+in_namespaces bash -euo pipefail -c '
+    # The suite that has MeshLab 2025.07.
+    "$here/../debian_root.sh" forky "$new" ca-certificates
     mount -t proc proc "$new/proc"
     mount -t tmpfs tmpfs "$new/dev/shm"
     inside() { env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin LC_ALL=C.UTF-8 \

@@ -21,23 +21,24 @@ fi
 
 plugin/cmake/install_debian_packages.sh tests/gui/debian_packages.txt
 command -v debootstrap >/dev/null || { echo "$0: needs debootstrap" >&2; exit 2; }
-tests/gui/make_root.sh "$root"
 
-# The paths of sockets must be short, so the system is mounted at a short one.
-mount_point=$(mktemp -d /tmp/gui.XXXXXX)
+. tests/children.sh
+mount_point=''
 finish() {
-    rmdir "$mount_point"
+    end_child
+    [ -z "$mount_point" ] || rmdir "$mount_point"
     # Of sudo's caller, for whom else nothing in here would be deletable.
     if [ -n "${SUDO_UID:-}" ]; then chown -R "$SUDO_UID:$SUDO_GID" build/gui screenshots; fi
 }
 trap finish EXIT
-trap 'exit 130' INT TERM
-
-# In namespaces of its own: whatever still runs, and every mount, goes when it ends, in any way. No
-# network, and the system's folder cannot be written to. What the tests write is in memory.
 mkdir -p build/gui
+run_child TERM tests/gui/make_root.sh "$root"
+
+# The paths of sockets must be short, so the system is mounted at a short one. No network, and the
+# system's folder cannot be written to. What the tests write is in memory.
+mount_point=$(mktemp -d /tmp/gui.XXXXXX)
 export MESHLAB_SPECTRAL_GUI_ROOT=$mount_point PYTHONDONTWRITEBYTECODE=1
-unshare --mount --pid --net --ipc --fork --kill-child --mount-proc bash -euo pipefail -c '
+in_namespaces --net --ipc bash -euo pipefail -c '
     at=$MESHLAB_SPECTRAL_GUI_ROOT
     mount --bind "$0" "$at"
     mount -o remount,bind,ro "$at"

@@ -1,20 +1,20 @@
-"""Many previews in a row: MeshLab does not end, nor grow much faster than with its own filters."""
+"""Many previews in a row: MeshLab does not end, and needs little more memory than for the first."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from pathlib import Path
+from statistics import median
 
-from filter_dialog import FilterDialog, Row
 from meshlab import MeshLab
 from test_fractional_filter import MENU, PARAMETERS
 
 PREVIEWS, WARM_UP = 50, 10
-# MeshLab 2025.07 itself keeps memory of every preview: of this mesh 9 MiB for a quick filter of its
-# own. 13 were seen for ours, and why it keeps more is not known: in pymeshlab nothing is kept
-# (tests/python/test_plugin_memory.py). So this is a bound against worse, not a proof of no leak.
-MEBIBYTES_MORE_THAN_OWN = 6.0
+# Seen: 12 to 14. Some of it is freed but scattered; 0.2 of each preview are icons and menus that
+# MeshLab makes anew after every filter, and keeps. A filter that does not give up the GL context
+# which MeshLab makes for a preview costs 9 to 13 each time.
+MEBIBYTES_OF_NOISE = 25.0
 
 
 def resident_mebibytes(pid: int) -> float:
@@ -23,38 +23,20 @@ def resident_mebibytes(pid: int) -> float:
     return int(kibibytes) / 1024
 
 
-def kept_of_a_preview(
-    meshlab: MeshLab, dialog: FilterDialog, row: Row, values: Iterable[str]
-) -> float:
-    """Preview values of a parameter; what MeshLab grows by for each preview, in MiB."""
-    dialog.preview(True)
-    used, previews = [], []
-    for value in values:
-        before = len(meshlab.log())
-        dialog.set_value(row, value)
-        dialog.wait_for_result(before)
-        used.append(resident_mebibytes(meshlab.pid))
-        # Some fields preview every digit, and the value once more: more often than values are set.
-        previews.append(meshlab.log().count(f"Applied filter: {dialog.name} in"))
-    dialog.preview(False)
-    dialog.close()
-    return (used[-1] - used[WARM_UP]) / (previews[-1] - previews[WARM_UP])
-
-
-def test_fifty_previews_keep_little_more_than_those_of_another_filter(
+def test_fifty_previews_need_no_more_memory_than_the_first_ten(
     meshlab: MeshLab, record_property: Callable[[str, object], None]
 ) -> None:
-    own = meshlab.open_filter(MENU[0], "Taubin Smooth")
-    steps = own.rows()[2]
-    assert steps.label == "Smoothing steps"
-    kept_by_own = kept_of_a_preview(
-        meshlab, own, steps, (str(3 + i % WARM_UP) for i in range(2 * WARM_UP))
-    )
-
     dialog = meshlab.open_filter(*MENU)
     rows = dict(zip(PARAMETERS, dialog.rows(), strict=True))
     dialog.set_value(rows["steps"], "1")
-    sizes = (str(2 + i % WARM_UP) for i in range(PREVIEWS))
-    kept = kept_of_a_preview(meshlab, dialog, rows["feature_size"], sizes)
-    record_property("MiB kept of a preview", (kept, kept_by_own))
-    assert kept < kept_by_own + MEBIBYTES_MORE_THAN_OWN
+    dialog.preview(True)
+    used = []
+    for i in range(PREVIEWS):
+        before = len(meshlab.log())
+        dialog.set_value(rows["feature_size"], str(2 + i % WARM_UP))
+        dialog.wait_for_result(before)
+        used.append(resident_mebibytes(meshlab.pid))
+    record_property("MiB used after each preview", used)
+    # Medians: some are taken while the next preview is already under way.
+    grown = median(used[-WARM_UP:]) - median(used[WARM_UP : 2 * WARM_UP])
+    assert grown < MEBIBYTES_OF_NOISE, used

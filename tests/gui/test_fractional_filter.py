@@ -147,6 +147,25 @@ def test_preview_changes_the_picture_and_without_it_the_mesh_is_back(
     np.testing.assert_array_equal(saved_vertices(meshlab), vertices(load(bunny)))
 
 
+def test_a_preview_overtaken_by_another_one_does_not_come_back(
+    dialog: FilterDialog, meshlab: MeshLab, bunny: Path
+) -> None:
+    size = dialog.rows()[PARAMETERS.index("feature_size")]
+    dialog.preview(True)
+    before = len(meshlab.log())
+    dialog.set_value(size, "20")  # for many seconds; MeshLab handles its widgets meanwhile
+    dialog.set_value(size, "8")
+    dialog.wait_for_result(before)
+    previewed = saved_vertices(meshlab)
+    log = meshlab.log()[before:]
+    assert "stopped: the filter was started anew meanwhile" in log
+    ms = load(bunny)
+    report = ms.apply_filter(FILTER, feature_size=pymeshlab.PercentageValue(8))
+    assert log.count("Spectral Filter: ") == 1
+    assert f"largest {report['max_displacement']:.4g}" in log
+    assert_same_in_floats(previewed, vertices(ms))
+
+
 def test_apply_logs_the_report_and_the_saved_mesh_is_that_of_pymeshlab(
     dialog: FilterDialog, meshlab: MeshLab, bunny: Path
 ) -> None:
