@@ -29,9 +29,6 @@ class ShiftedLdlt {
     Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const;
 
   private:
-    template <int Columns>
-    void solveColumns(const Eigen::MatrixXd& B, Index first, Eigen::MatrixXd& X) const;
-
     Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>> ldlt_;
     SparseMatrix shifted_;  // the last factorized matrix, for its pattern
     Eigen::VectorXd pivots_;
