@@ -27,6 +27,8 @@ constexpr int kMaxPasses = 3;
 /// Length of what is left of a vector that depends on others, beside the vector's own.
 constexpr double kTiny = 1e-13;
 
+double largest(const Eigen::MatrixXd& E) { return E.size() > 0 ? E.cwiseAbs().maxCoeff() : 0.0; }
+
 /// Moves all entries away from zero.
 void enlarge(Eigen::MatrixXd& E, double by) {
     E = E.unaryExpr([by](double e) { return e + std::copysign(by, e); });
@@ -70,15 +72,17 @@ void BlockLanczos::extend() {
     const auto block = Q_.middleCols(first, width);
     Eigen::MatrixXd U = apply_(block);
     const Eigen::VectorXd scale = innerProducts(U, D_, U).diagonal().cwiseSqrt();
-    const auto previous = Q_.middleCols(last_, first - last_);
-    subtractProduct(previous, T_.block(last_, first, first - last_, width), U);
-    const Eigen::MatrixXd A = innerProducts(block, D_, U);
-    T_.block(first, first, width, width) = 0.5 * (A + A.transpose());
-    subtractProduct(block, A, U);
+    // The recurrence, and once more for what round-off has let in.
     const auto beside = Q_.middleCols(last_, end_ - last_);
-    const Eigen::MatrixXd roundOff = innerProducts(beside, D_, U);
-    subtractProduct(beside, roundOff, U);
-    noise_ = std::max({noise_, kEpsilon * scale.maxCoeff(), roundOff.cwiseAbs().maxCoeff()});
+    const Eigen::MatrixXd product = innerProducts(beside, D_, U);
+    subtractProduct(beside, product, U);
+    subtractProduct(beside, innerProducts(beside, D_, U), U);
+    const Eigen::MatrixXd A = product.bottomRows(width);
+    T_.block(first, first, width, width) = 0.5 * (A + A.transpose());
+    // M is self-adjoint but for round-off.
+    const auto above = T_.block(last_, first, first - last_, width);
+    noise_ = std::max({noise_, kEpsilon * scale.maxCoeff(), largest(A - A.transpose()),
+                       largest(product.topRows(first - last_) - above)});
 
     before_ = last_;
     last_ = first;
@@ -91,10 +95,16 @@ void BlockLanczos::extend() {
     }
     coupling_ = orthonormalized(std::move(U), scale);
     propagate();
-    const double loss =
-        std::max(lossOfNext_.size() > 0 ? lossOfNext_.cwiseAbs().maxCoeff() : 0.0,
-                 knownInNext_.size() > 0 ? knownInNext_.cwiseAbs().maxCoeff() : 0.0);
-    if (!(loss < kSemiOrthogonal)) restore();
+    if (!(largest(lossOfNext_) < kSemiOrthogonal)) {
+        restore(Q_.leftCols(last_));
+        lossOfLast_.setConstant(kEpsilon);
+        lossOfNext_ = Eigen::MatrixXd::Constant(dimension_, end_ - dimension_, kEpsilon);
+    }
+    if (!(largest(knownInNext_) < kSemiOrthogonal)) {
+        restore(known_.vectors);
+        knownInLast_.setConstant(kEpsilon);
+        knownInNext_ = Eigen::MatrixXd::Constant(known_.values.size(), end_ - dimension_, kEpsilon);
+    }
     const Index next = end_ - dimension_;
     T_.block(dimension_, first, next, width) = coupling_;
     T_.block(first, dimension_, width, next) = coupling_.transpose();
@@ -160,19 +170,13 @@ void BlockLanczos::propagate() {
     knownInNext_ = R.solve<Eigen::OnTheRight>(part);
 }
 
-/// Makes the last block and the next one orthogonal to the columns before them.
-void BlockLanczos::restore() {
-    const auto before = Q_.leftCols(last_);
+/// Makes the last block and the next one orthogonal to others.
+void BlockLanczos::restore(const Eigen::Ref<const Eigen::MatrixXd>& others) {
     for (int pass = 0; pass < kMaxPasses; ++pass) {
         auto blocks = Q_.middleCols(last_, end_ - last_);
-        const Eigen::MatrixXd overlap = innerProducts(before, D_, blocks);
-        const Eigen::MatrixXd part = innerProducts(known_.vectors, D_, blocks);
-        subtractProduct(before, overlap, blocks);
-        subtractProduct(known_.vectors, part, blocks);
-        double largest = 0.0;
-        if (overlap.size() > 0) largest = overlap.cwiseAbs().maxCoeff();
-        if (part.size() > 0) largest = std::max(largest, part.cwiseAbs().maxCoeff());
-        if (largest < kSevere) break;
+        const Eigen::MatrixXd overlap = innerProducts(others, D_, blocks);
+        subtractProduct(others, overlap, blocks);
+        if (largest(overlap) < kSevere) return;
         const Index next = end_ - dimension_;
         end_ = dimension_;
         const auto last = Q_.middleCols(last_, dimension_ - last_);
@@ -180,11 +184,6 @@ void BlockLanczos::restore() {
         subtractProduct(last, innerProducts(last, D_, U), U);
         coupling_ = orthonormalized(std::move(U), Eigen::VectorXd::Ones(next)) * coupling_;
     }
-    lossOfLast_.setConstant(kEpsilon);
-    knownInLast_.setConstant(kEpsilon);
-    const Index next = end_ - dimension_;
-    lossOfNext_ = Eigen::MatrixXd::Constant(dimension_, next, kEpsilon);
-    knownInNext_ = Eigen::MatrixXd::Constant(known_.values.size(), next, kEpsilon);
 }
 
 }  // namespace spectral

@@ -63,7 +63,7 @@ class BlockLanczos {
     void removeKnown(Eigen::Ref<Eigen::MatrixXd> U) const;
     Eigen::MatrixXd orthonormalized(Eigen::MatrixXd U, const Eigen::VectorXd& scale);
     void propagate();
-    void restore();
+    void restore(const Eigen::Ref<const Eigen::MatrixXd>& others);
 
     const Operator& apply_;
     const Eigen::VectorXd& D_;

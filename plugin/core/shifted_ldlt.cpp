@@ -41,12 +41,16 @@ void ShiftedLdlt::factorize(const Laplacian& laplacian, double sigma) {
                         std::to_string(sigma));
 }
 
-Eigen::MatrixXd ShiftedLdlt::solve(const Eigen::MatrixXd& B) const {
+void ShiftedLdlt::solveInPlace(Eigen::MatrixXd& B) const {
     const SparseMatrix& L = ldlt_.matrixL().nestedExpression();
     const LdltFactor factor{L.rows(),     L.outerIndexPtr(), L.innerIndexPtr(),
                             L.valuePtr(), pivots_.data(),    ldlt_.permutationP().indices().data()};
-    Eigen::MatrixXd X(B.rows(), B.cols());
-    triangularSolves().solve(factor, B.data(), B.cols(), X.data());
+    triangularSolves().solve(factor, B.data(), B.cols(), B.data());
+}
+
+Eigen::MatrixXd ShiftedLdlt::solve(const Eigen::MatrixXd& B) const {
+    Eigen::MatrixXd X = B;
+    solveInPlace(X);
     return X;
 }
 

@@ -29,7 +29,7 @@ constexpr double kDimensionForTolerance = 16.0, kDimensionPerPair = 1.5;
 
 /// Residual of a purified pair, |D^-1/2 (W phi - lambda D phi)|, relative to lambda; and of a Ritz
 /// pair of the inverted operator, relative to its eigenvalue.
-constexpr double kResidual = 3e-10, kRitzResidual = 1e-8;
+constexpr double kResidual = 1e-10, kRitzResidual = 1e-8;
 
 /// Relative distance of eigenvalues that are taken for equal.
 constexpr double kEqual = 1e-6;
@@ -65,6 +65,7 @@ class SliceLanczos {
     Index dimension() const { return lanczos_.dimension(); }
     bool exhausted() const { return lanczos_.exhausted(); }
     void extend() { lanczos_.extend(); }
+    int solves() const { return solves_; }
 
     /// Looks at the Ritz pairs, counted from the shift on up to the first that has not converged.
     void examine() {
@@ -126,14 +127,15 @@ class SliceLanczos {
         return columns;
     }
 
-    /// Puts the converged pairs into the store; ends the recurrence. Returns their number.
-    Index deliver(PairStore& store) {
+    /// Puts the converged pairs into the store; ends the recurrence.
+    void deliver(PairStore& store) {
         std::vector<Index> taken = converged();
         // From the shift on outwards: the first ones have the smallest errors.
         std::stable_sort(taken.begin(), taken.end(), [this](Index a, Index b) {
             return std::abs(theta_[a]) > std::abs(theta_[b]);
         });
         const Index count = static_cast<Index>(taken.size());
+        if (count == 0) return;
         Eigen::MatrixXd Z(dimension(), count);
         Eigen::VectorXd lambda(count);
         for (Index i = 0; i < count; ++i) {
@@ -148,30 +150,30 @@ class SliceLanczos {
             const Index columns = std::min(kColumns, count - i);
             Eigen::MatrixXd phi = inverse(Q_.middleCols(i, columns));
             for (Index j = 0; j < columns; ++j)
-                phi.col(j) /= theta_[taken[static_cast<std::size_t>(i + j)]];
+                phi.col(j) /= std::sqrt(phi.col(j).cwiseAbs2().dot(laplacian_.D));
             Phi.middleCols(i, columns) = phi;
         }
         orthonormalize(Phi);
-        return count;
     }
 
   private:
-    Eigen::MatrixXd inverse(const Eigen::MatrixXd& U) const {
-        Eigen::MatrixXd X = factor_.solve(laplacian_.D.asDiagonal() * U);
+    /// (W - sigma D)^-1 D U
+    Eigen::MatrixXd inverse(const Eigen::Ref<const Eigen::MatrixXd>& U) {
+        solves_ += static_cast<int>(U.cols());
+        Eigen::MatrixXd X = laplacian_.D.asDiagonal() * U;
+        factor_.solveInPlace(X);
         constants_.remove(X);
         return X;
     }
 
-    /// D-orthonormalizes vectors of the complement of the known ones, in their order.
+    /// D-orthonormalizes vectors of length 1, in their order, on the complement of the known ones.
     void orthonormalize(Eigen::Ref<Eigen::MatrixXd> Phi) const {
         const Eigen::VectorXd& D = laplacian_.D;
-        const Eigen::VectorXd norms = innerProducts(Phi, D, Phi).diagonal();
         subtractProduct(known_.vectors, innerProducts(known_.vectors, D, Phi), Phi);
         const Eigen::MatrixXd gram = innerProducts(Phi, D, Phi);
         const Eigen::LLT<Eigen::MatrixXd> llt(gram);
         const Eigen::MatrixXd R = llt.matrixU();
-        if (llt.info() != Eigen::Success ||
-            (R.diagonal().array() < kNew * norms.array().sqrt()).any())
+        if (llt.info() != Eigen::Success || (R.diagonal().array() < kNew).any())
             throw SolverFailure(
                 "the harmonics could not be told apart: one has been found a second time");
         multiplyInPlace(Phi,
@@ -189,6 +191,7 @@ class SliceLanczos {
     const ShiftedLdlt& factor_;
     const SliceTask& task_;
     KnownPairs known_;
+    int solves_ = 0;
     BlockLanczos::Operator apply_;
     Eigen::MatrixXd& Q_;
     BlockLanczos lanczos_;
@@ -225,7 +228,8 @@ SliceRun runOf(const Laplacian& laplacian, const ConstantModes& constants, Shift
     }
     run.coveredFrom = lanczos.coveredFrom();
     run.coveredTo = lanczos.coveredTo();
-    run.solves = static_cast<int>(lanczos.dimension() + lanczos.deliver(found));
+    lanczos.deliver(found);
+    run.solves = lanczos.solves();
     return run;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "errors.h"
+#include "mass_products.h"
 #include "slice_runs.h"
 
 namespace spectral {
@@ -50,12 +51,15 @@ bool operator<(const Count& a, const Count& b) { return a.sigma < b.sigma; }
 /// pairs.
 /// @param found  sorted.
 void orthogonalizeRuns(const Eigen::VectorXd& D, Index constants, PairStore& found) {
-    const auto phi = [&found](Index i) { return found.vectors(i, 1).col(0); };
     for (Index j = constants + 1; j < found.size(); ++j) {
+        auto phi = found.vectors(j, 1);
         const double near = found.lambda(j) * (1.0 - kNear);
-        for (Index i = j - 1; i >= constants && found.lambda(i) >= near; --i)
-            if (found.run(i) != found.run(j)) phi(j) -= phi(i).dot(D.cwiseProduct(phi(j))) * phi(i);
-        phi(j) /= std::sqrt(phi(j).cwiseAbs2().dot(D));
+        for (Index i = j - 1; i >= constants && found.lambda(i) >= near; --i) {
+            if (found.run(i) == found.run(j)) continue;
+            const auto other = found.vectors(i, 1);
+            subtractProduct(other, innerProducts(other, D, phi), phi);
+            phi /= std::sqrt(innerProducts(phi, D, phi)(0, 0));
+        }
     }
 }
 

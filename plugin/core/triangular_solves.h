@@ -19,7 +19,7 @@ struct LdltFactor {
 /// Pointers, not Eigen's types: those of one instruction set are none of another's business (see
 /// dense_products.cpp).
 struct TriangularSolves {
-    /// X = A^-1 B: B and X n x columns, column-major without gaps, apart from each other.
+    /// X = A^-1 B: B and X n x columns, column-major without gaps; X may be B.
     void (*solve)(const LdltFactor& factor, const double* B, std::ptrdiff_t columns, double* X);
 };
 
