@@ -4,14 +4,15 @@
 #include <cmath>
 
 #include "errors.h"
+#include "mass_products.h"
 #include "parallel_tasks.h"
 
 namespace spectral {
 
 namespace {
 
-/// Neighbours whose overlaps are looked at: those of harmonics with distinct eigenvalues are bound
-/// by their residuals.
+/// Neighbours below whose overlaps are looked at, at least: those of harmonics with distinct
+/// eigenvalues are bound by their residuals.
 constexpr Index kNeighbours = 16;
 
 /// Harmonics that one task looks at.
@@ -30,28 +31,36 @@ std::optional<Index> cutOutsideClusters(const Eigen::VectorXd& lambda, Index ask
     return std::nullopt;
 }
 
-void measureBasis(const Laplacian& laplacian, Index constants, HarmonicBasis& basis,
-                  const Progress& progress) {
+void certifyBasis(const Laplacian& laplacian, Index constants, std::optional<double> cut,
+                  ShiftedLdlt& factor, HarmonicBasis& basis, const Progress& progress) {
     const Index k = basis.size();
     const Eigen::VectorXd invSqrtD = laplacian.D.cwiseSqrt().cwiseInverse();
     Eigen::VectorXd overlaps(k);
     basis.residuals = Eigen::VectorXd::Zero(k);
+    basis.inertiaCount = k;
+    const auto measure = [&](Index begin, const StopPoint& stopPoint) {
+        stopPoint();
+        const Index end = std::min(k, begin + kColumns);
+        const Index first = std::max<Index>(0, begin - kNeighbours);
+        Eigen::MatrixXd gram = innerProducts(basis.Phi.middleCols(first, end - first), laplacian.D,
+                                             basis.Phi.middleCols(begin, end - begin));
+        gram.bottomRows(end - begin).diagonal().array() -= 1.0;
+        overlaps.segment(begin, end - begin) = gram.cwiseAbs().colwise().maxCoeff();
+        for (Index i = std::max(begin, constants); i < end; ++i) {
+            stopPoint();
+            const auto phi = basis.Phi.col(i);
+            const Eigen::VectorXd residual =
+                laplacian.W * phi - basis.lambda[i] * laplacian.D.cwiseProduct(phi);
+            basis.residuals[i] = invSqrtD.cwiseProduct(residual).norm() / basis.lambda[i];
+        }
+    };
     runInParallel(
-        (k + kColumns - 1) / kColumns,
+        1 + (k + kColumns - 1) / kColumns,
         [&](Index task, int, const StopPoint& stopPoint) {
-            for (Index i = task * kColumns; i < std::min(k, (task + 1) * kColumns); ++i) {
-                stopPoint();
-                const Eigen::VectorXd phi = basis.Phi.col(i);
-                const Eigen::VectorXd Dphi = laplacian.D.cwiseProduct(phi);
-                const Index first = std::max<Index>(0, i - kNeighbours);
-                Eigen::VectorXd gram =
-                    basis.Phi.middleCols(first, i - first + 1).transpose() * Dphi;
-                gram[i - first] -= 1.0;
-                overlaps[i] = gram.cwiseAbs().maxCoeff();
-                if (i < constants) continue;
-                const Eigen::VectorXd residual = laplacian.W * phi - basis.lambda[i] * Dphi;
-                basis.residuals[i] = invSqrtD.cwiseProduct(residual).norm() / basis.lambda[i];
-            }
+            if (task > 0) return measure((task - 1) * kColumns, stopPoint);
+            if (!cut) return;
+            factor.factorize(laplacian, *cut);
+            basis.inertiaCount = factor.eigenvaluesBelow();
         },
         progress, "checking the harmonics");
     basis.largestOverlap = overlaps.maxCoeff();

@@ -6,6 +6,7 @@
 #include "harmonic_basis.h"
 #include "laplacian.h"
 #include "progress.h"
+#include "shifted_ldlt.h"
 
 namespace spectral {
 
@@ -15,11 +16,15 @@ namespace spectral {
 /// @param lambda  ascending, more than `asked` entries.
 std::optional<Index> cutOutsideClusters(const Eigen::VectorXd& lambda, Index asked);
 
-/// Fills in residuals and largestOverlap of a basis.
+/// Fills in the certificate of a basis: residuals, largestOverlap and inertiaCount.
 ///
 /// @param constants  number of constant modes, whose residual is 0.
+/// @param cut        a shift between the last eigenvalue of the basis and the next one, where the
+///                   eigenvalues below it are counted. None, or a dense basis: inertiaCount is its
+///                   size.
+/// @param factor     of any shift; for its storage.
 /// @throws SolverFailure  when they are not finite; Cancelled.
-void measureBasis(const Laplacian& laplacian, Index constants, HarmonicBasis& basis,
-                  const Progress& progress);
+void certifyBasis(const Laplacian& laplacian, Index constants, std::optional<double> cut,
+                  ShiftedLdlt& factor, HarmonicBasis& basis, const Progress& progress);
 
 }  // namespace spectral

@@ -9,7 +9,7 @@
 
 #include "basis_certificate.h"
 #include "errors.h"
-#include "gram.h"
+#include "mass_products.h"
 #include "pair_store.h"
 #include "parallel_tasks.h"
 #include "rayleigh_ritz.h"
@@ -94,7 +94,7 @@ class Update {
 
     /// Makes harmonics of the interior, and the basis of all three parts.
     void assemble(const Progress& progress) {
-        countAndRemoveEdge(progress.part(0.0, 0.2));
+        removeEdge(progress.part(0.0, 0.2));
         quotient_ = rayleighRitz(laplacian_, basis_.Phi.middleCols(c(), interior_),
                                  progress.part(0.2, 0.9));
         std::iota(order_.begin(), order_.end(), Index{0});
@@ -103,8 +103,8 @@ class Update {
         basis_.Phi.rightCols(rest) = edge_.vectors(0, rest);
         basis_.lambda.resize(size_);
         basis_.lambda << Eigen::VectorXd::Zero(c()), quotient_, edge_.lambdas().head(rest);
-        basis_.inertiaCount = counts_.back().below;
-        measureBasis(laplacian_, c(), basis_, progress.part(0.9, 1.0));
+        certifyBasis(laplacian_, c(), cut_, workers_.factor(0), basis_, progress.part(0.9, 1.0));
+        ++result_.factorizations;
     }
 
     /// How far the basis is from what the gate asks: at most 1 when it passes.
@@ -152,7 +152,7 @@ class Update {
         const Eigen::MatrixXd none;
         const Index end = wanted() - kEdgeBelow, last = quotient_.size() - 1;
         const double spacing = sortedQuotient(wanted() - 1) / static_cast<double>(k_);
-        SliceTask task{0.0, 0.0, 0.0, kOverlap * spacing, none, 0, 1};
+        SliceTask task{0.0, 0.0, 0.0, kOverlap * spacing, none, {}, 0, 1};
         task.from = 0.5 * (sortedQuotient(end - 1) + sortedQuotient(end));
         task.to = sortedQuotient(last) + static_cast<double>(kEdgeAbove) * spacing;
         task.sigma = 0.5 * (task.from + task.to);
@@ -194,7 +194,7 @@ class Update {
         for (Index j = 0; j < S.cols(); ++j) S.col(j) = candidate(sorted(first + j));
         const Eigen::ArrayXd squared = (S.cwiseAbs2().transpose() * laplacian_.D).array();
         S.array().rowwise() /= squared.sqrt().transpose();
-        removePart(edge_.vectors(0, edge_.size()), laplacian_.D, S);
+        removeEdge(S);
         // With pivots: at each place what the columns before it leave of the longest one.
         const Eigen::LDLT<Eigen::MatrixXd> ldlt(innerProducts(S, laplacian_.D, S));
         if (!(ldlt.vectorD()[needed - 1] > kDependent))
@@ -237,26 +237,20 @@ class Update {
             result_.solves += iterations(slice(i)) * static_cast<int>(begin(i + 1) - begin(i));
     }
 
-    /// Counts the eigenvalues below the cut, and takes the edge out of the interior.
-    void countAndRemoveEdge(const Progress& progress) {
-        Count atCut;
-        runInParallel(
-            1 + (interior_ + kColumns - 1) / kColumns,
-            [&](Index task, int worker, const StopPoint&) {
-                if (task == 0) {
-                    ShiftedLdlt& factor = workers_.factor(worker);
-                    factor.factorize(laplacian_, cut_);
-                    atCut = {factor.shift(), factor.eigenvaluesBelow()};
-                } else {
-                    const Index first = (task - 1) * kColumns;
-                    removePart(
-                        edge_.vectors(0, edge_.size()), laplacian_.D,
-                        basis_.Phi.middleCols(c() + first, std::min(kColumns, interior_ - first)));
-                }
-            },
-            progress, kStage);
-        counts_.push_back(atCut);
-        ++result_.factorizations;
+    /// Takes the edge out of the interior.
+    void removeEdge(const Progress& progress) {
+        runInParallel((interior_ + kColumns - 1) / kColumns,
+                      [&](Index task, int, const StopPoint&) {
+                          const Index first = task * kColumns;
+                          removeEdge(basis_.Phi.middleCols(c() + first,
+                                                           std::min(kColumns, interior_ - first)));
+                      },
+                      progress, kStage);
+    }
+
+    void removeEdge(Eigen::Ref<Eigen::MatrixXd> S) {
+        const auto E = edge_.vectors(0, edge_.size());
+        subtractProduct(E, innerProducts(E, laplacian_.D, S), S);
     }
 
     // Slices of equal width.

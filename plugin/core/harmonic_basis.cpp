@@ -45,7 +45,6 @@ class ScaledStiffness {
 void cut(HarmonicBasis& basis, Index size) {
     basis.Phi.conservativeResize(Eigen::NoChange, size);
     basis.lambda.conservativeResize(size);
-    basis.inertiaCount = size;
 }
 
 }  // namespace
@@ -86,7 +85,8 @@ HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& co
     if (isDenseQuicker(n, k)) {
         HarmonicBasis basis = denseBasis(laplacian, constants);
         cut(basis, cutOutsideClusters(basis.lambda, k).value_or(n));
-        measureBasis(laplacian, c, basis, progress);
+        ShiftedLdlt none;
+        certifyBasis(laplacian, c, std::nullopt, none, basis, progress);
         return basis;
     }
     // Some pairs beyond k show whether k cuts a cluster; more are taken while it does.
@@ -102,19 +102,17 @@ HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& co
             if (total < n - 1) continue;
             size = basis.size();  // nothing left to cut off
         }
-        // Sylvester's law of inertia: none is missing below the cut. Beyond the last pair found
-        // there is a shift of the slices that has counted it already.
-        const Index counted =
-            *size < basis.size()
-                ? cholesky.countEigenvaluesBelow(
-                      laplacian, 0.5 * (basis.lambda[*size - 1] + basis.lambda[*size]))
-                : basis.size();
+        std::optional<double> beyond;
+        if (*size < basis.size()) beyond = 0.5 * (basis.lambda[*size - 1] + basis.lambda[*size]);
         cut(basis, *size);
-        if (counted != *size)
-            throw SolverFailure("of the " + std::to_string(counted) +
+        ShiftedLdlt factor;
+        certifyBasis(laplacian, c, beyond, factor, basis, progress.part(0.95, 1.0));
+        if (beyond) cholesky.countWork(1, 0);
+        // Sylvester's law of inertia: none is missing below the cut.
+        if (basis.inertiaCount != *size)
+            throw SolverFailure("of the " + std::to_string(basis.inertiaCount) +
                                 " harmonics that the inertia of W - sigma D counts, " +
                                 std::to_string(*size) + " were found; choose another basis_size");
-        measureBasis(laplacian, c, basis, progress.part(0.95, 1.0));
         return basis;
     }
 }

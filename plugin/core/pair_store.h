@@ -18,6 +18,7 @@ class PairStore {
 
     Index size() const { return static_cast<Index>(pairs_.size()); }
     double lambda(Index i) const { return pairs_[static_cast<std::size_t>(i)].lambda; }
+    unsigned run(Index i) const { return pairs_[static_cast<std::size_t>(i)].run; }
     Eigen::VectorXd lambdas() const;
     auto vectors(Index first, Index count) { return Phi_.middleCols(first, count); }
 

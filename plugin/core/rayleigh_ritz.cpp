@@ -5,6 +5,7 @@
 
 #include "dense_products.h"
 #include "errors.h"
+#include "mass_products.h"
 #include "parallel_tasks.h"
 
 namespace spectral {
@@ -44,10 +45,8 @@ Eigen::VectorXd rayleighRitz(const Laplacian& laplacian, Eigen::Ref<Eigen::Matri
     const Eigen::MatrixXd& Z = ritz.eigenvectors();
     runInParallel((n + kRows - 1) / kRows,
                   [&](Index task, int, const StopPoint&) {
-                      const Index first = task * kRows, count = std::min(kRows, n - first);
-                      const Eigen::MatrixXd rows = S.middleRows(first, count);
-                      products.product(rows.data(), count, Z.data(), m, &S(first, 0),
-                                       S.outerStride(), count, m, m);
+                      const Index first = task * kRows;
+                      multiplyInPlace(S.middleRows(first, std::min(kRows, n - first)), Z);
                   },
                   progress.part(0.5, 1.0), "updating the harmonics");
     return ritz.eigenvalues();

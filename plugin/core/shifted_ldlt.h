@@ -28,10 +28,10 @@ class ShiftedLdlt {
     /// (W - sigma D)^-1 B for every column of B (n x c).
     Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const;
 
-  private:
-    template <int Columns>
-    void solveColumns(const Eigen::MatrixXd& B, Index first, Eigen::MatrixXd& X) const;
+    /// The same, B <- (W - sigma D)^-1 B.
+    void solveInPlace(Eigen::MatrixXd& B) const;
 
+  private:
     Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>> ldlt_;
     SparseMatrix shifted_;  // the last factorized matrix, for its pattern
     Eigen::VectorXd pivots_;

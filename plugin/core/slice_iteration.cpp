@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dense_products.h"
 #include "errors.h"
-#include "gram.h"
+#include "mass_products.h"
 
 namespace spectral {
 
@@ -40,15 +39,11 @@ struct ChebyshevFilter {
 /// D-orthonormalizes the columns of S by the Cholesky factor of their Gram matrix.
 void orthonormalize(const Eigen::VectorXd& D, Eigen::MatrixXd& S) {
     S.array().rowwise() /= S.colwise().norm().array().eval();
-    const Index n = S.rows(), m = S.cols();
     const Eigen::MatrixXd gram = innerProducts(S, D, S);
     const Eigen::LLT<Eigen::MatrixXd> llt(gram);
     if (llt.info() != Eigen::Success || !gram.allFinite())
         throw SolverFailure("the vectors of a slice have become dependent");
-    const Eigen::MatrixXd inverse = llt.matrixU().solve(Eigen::MatrixXd::Identity(m, m));
-    Eigen::MatrixXd Q(n, m);
-    denseProducts().product(S.data(), n, inverse.data(), m, Q.data(), n, n, m, m);
-    S.swap(Q);
+    multiplyInPlace(S, llt.matrixU().solve(Eigen::MatrixXd::Identity(S.cols(), S.cols())));
 }
 
 }  // namespace
@@ -70,7 +65,10 @@ void iterate(const Laplacian& laplacian, const ConstantModes& constants, const S
         // Else all columns would come near the eigenvectors next to the shift.
         if (i > 0) orthonormalize(laplacian.D, S);
         stopPoint();
-        S = factor.solve(laplacian.D.asDiagonal() * S) - outside * filter.root(i) * S;
+        const Eigen::MatrixXd before = outside * filter.root(i) * S;
+        S = laplacian.D.asDiagonal() * S;
+        factor.solveInPlace(S);
+        S -= before;
     }
     constants.remove(S);
     S.array().rowwise() /= S.colwise().norm().array().eval();

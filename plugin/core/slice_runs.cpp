@@ -1,37 +1,52 @@
 #include "slice_runs.h"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <random>
 #include <utility>
 
+#include "block_lanczos.h"
 #include "errors.h"
-#include "tridiagonal.h"
+#include "mass_products.h"
 
 namespace spectral {
 
 namespace {
 
-/// Krylov dimensions: at the first check of convergence, from check to check, and at most.
-constexpr Index kFirstCheck = 48, kCheckInterval = 6, kMaxDimension = 160;
+/// Vectors of a block. More make a solve cheaper for each, but a space of the same dimension
+/// poorer: from 1 to 4 the time changes little, and 2 need the least room for it.
+constexpr Index kBlock = 2;
 
-/// Residual of a Ritz pair of the shift-inverted operator, relative to its eigenvalue. The pairs
-/// are purified afterwards, which lowers it further.
-constexpr double kTolerance = 1e-9;
+/// Krylov dimensions: at the first check of convergence, where the number of pairs is not known;
+/// from check to check, and at most.
+constexpr Index kFirstCheck = 60, kCheckInterval = 6, kMaxDimension = 160;
+
+/// Krylov dimension at the first check where that number is known: so much for the way from the
+/// last pair to its tolerance, and so much for each pair.
+constexpr double kDimensionForTolerance = 16.0, kDimensionPerPair = 1.5;
+
+/// Residual of a purified pair, |D^-1/2 (W phi - lambda D phi)|, relative to lambda; and of a Ritz
+/// pair of the inverted operator, relative to its eigenvalue.
+constexpr double kResidual = 1e-10, kRitzResidual = 1e-8;
 
 /// Relative distance of eigenvalues that are taken for equal.
 constexpr double kEqual = 1e-6;
 
-/// Length of what is left of a vector of an invariant space, beside the vector's own.
-constexpr double kTiny = 1e-13;
+/// Columns that are purified at a time: small beside the space.
+constexpr Index kColumns = 8;
 
-/// Rows that are rotated, and columns that are purified, at a time: small beside the space.
-constexpr Index kRows = 512, kColumns = 4;
+/// Length of what is left of a purified vector beside the known ones, if it is none of them.
+constexpr double kNew = 0.5;
 
 constexpr const char* kStage = "computing the harmonics";
 
-/// The Lanczos recurrence of M = D^1/2 (W - sigma D)^-1 D^1/2 from one start vector, on the
-/// complement of the constants and of known vectors, with full reorthogonalization.
+/// 1 / (lambda - sigma) of the known pairs.
+KnownPairs knownOf(const SliceTask& task, double sigma) {
+    return {task.known, (task.knownLambda.array() - sigma).inverse()};
+}
+
+/// A Lanczos run with (W - sigma D)^-1 D on the complement of the constants and of known vectors.
 class SliceLanczos {
   public:
     /// @param Q  storage for the basis of the space: n rows, and columns for its largest dimension.
@@ -41,70 +56,45 @@ class SliceLanczos {
           constants_(constants),
           factor_(factor),
           task_(task),
-          sqrtD_(laplacian.D.cwiseSqrt()),
-          Q_(Q) {
-        std::mt19937 random(task.seed);
-        std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-        Eigen::MatrixXd start(sqrtD_.size(), 1);
-        for (Index i = 0; i < start.rows(); ++i) start(i, 0) = uniform(random);
-        project(start);
-        Q_.col(0) = sqrtD_.cwiseProduct(start.col(0));
-        Q_.col(0).normalize();
-    }
+          known_(knownOf(task, factor.shift())),
+          apply_([this](const Eigen::MatrixXd& U) { return inverse(U); }),
+          Q_(Q),
+          lanczos_(apply_, laplacian.D, known_, kBlock, task.seed, Q) {}
 
-    Index dimension() const { return static_cast<Index>(alpha_.size()); }
-    bool exhausted() const { return exhausted_; }
-
-    void extend() {
-        const Index j = dimension();
-        Eigen::MatrixXd u = sqrtD_.cwiseProduct(Q_.col(j));
-        u = factor_.solve(u);
-        project(u);
-        Eigen::VectorXd w = sqrtD_.cwiseProduct(u.col(0));
-        const double scale = w.norm();
-        alpha_.push_back(Q_.col(j).dot(w));
-        w -= alpha_.back() * Q_.col(j);
-        if (j > 0) w -= beta_.back() * Q_.col(j - 1);
-        const double before = w.norm();
-        reorthogonalize(w);
-        if (w.norm() < 0.5 * before) reorthogonalize(w);
-        const double beta = w.norm();
-        beta_.push_back(beta);
-        if (!(beta > kTiny * scale) || j + 1 == Q_.cols()) {
-            invariant_ = !(beta > kTiny * scale);
-            if (invariant_) beta_.back() = 0.0;
-            exhausted_ = true;
-            return;
-        }
-        Q_.col(j + 1) = w / beta;
-    }
+    Index dimension() const { return lanczos_.dimension(); }
+    bool exhausted() const { return lanczos_.exhausted(); }
+    void extend() { lanczos_.extend(); }
+    int solves() const { return solves_; }
 
     /// Looks at the Ritz pairs, counted from the shift on up to the first that has not converged.
     void examine() {
         const Index m = dimension();
-        ritz_ = eigenpairsOfTridiagonal(alpha_, beta_);
+        if (m == 0) return;
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(lanczos_.T());
+        if (solver.info() != Eigen::Success)
+            throw SolverFailure("the eigenproblem of the Krylov space did not converge");
+        theta_ = solver.eigenvalues();
+        Z_ = solver.eigenvectors();
+        residuals_ = lanczos_.residuals(Z_);
         // theta = 1 / (lambda - sigma): the ends of its range are next to the shift. Between
         // -1 / sigma and 0 lambda would be negative: round-off.
-        const Eigen::VectorXd& theta = ritz_.values;
         const double least = -1.0 / factor_.shift();
         Index down = 0, up = 0;
-        while (down < m && theta[down] < least && isConverged(down)) ++down;
-        while (up < m && theta[m - 1 - up] > 0.0 && isConverged(m - 1 - up)) ++up;
+        while (down < m && theta_[down] < least && isConverged(down)) ++down;
+        while (up < m && theta_[m - 1 - up] > 0.0 && isConverged(m - 1 - up)) ++up;
         // Below the shift lambda falls as theta rises towards 0; above it lambda rises as theta
         // falls.
-        ritzOf_.clear();
-        for (Index i = down - 1; i >= 0; --i) ritzOf_.push_back(i);
-        for (Index i = 0; i < up; ++i) ritzOf_.push_back(m - 1 - i);
         lambda_.resize(down + up);
-        for (Index i = 0; i < lambda_.size(); ++i)
-            lambda_[i] = factor_.shift() + 1.0 / theta[ritzOf_[static_cast<std::size_t>(i)]];
+        for (Index i = 0; i < down; ++i) lambda_[i] = factor_.shift() + 1.0 / theta_[down - 1 - i];
+        for (Index i = 0; i < up; ++i)
+            lambda_[down + i] = factor_.shift() + 1.0 / theta_[m - 1 - i];
         // An edge is reached by a pair beyond it. Below the edge at 0 there is none: it is reached
         // when no pair that has not converged is left. An invariant space has a pair of every
         // eigenvalue that is not known: there is nothing beyond what it holds.
         reachedFrom_ = task_.from > 0.0 ? down > 0 && lambda_[0] < task_.from - task_.overlap
-                                        : !(down < m && theta[down] < least);
+                                        : !(down < m && theta_[down] < least);
         reachedTo_ = up > 0 && lambda_[down + up - 1] > task_.to + task_.overlap;
-        if (invariant_) reachedFrom_ = reachedTo_ = true;
+        if (lanczos_.isWhole()) reachedFrom_ = reachedTo_ = true;
     }
 
     bool reachedFrom() const { return reachedFrom_; }
@@ -123,75 +113,99 @@ class SliceLanczos {
         return std::min(task_.to, any ? lambda_[c - 1] * (1.0 + kEqual) : factor_.shift());
     }
 
-    /// The converged pairs of the covered part.
-    std::vector<Index> covered() const {
-        const double from = coveredFrom(), to = coveredTo();
-        std::vector<Index> pairs;
-        for (Index i = 0; i < lambda_.size(); ++i)
-            if (lambda_[i] >= from && lambda_[i] < to) pairs.push_back(i);
-        return pairs;
+    /// Columns of Z of the converged pairs: of those in the slice, where their number is known,
+    /// else of those in its covered part.
+    std::vector<Index> converged() const {
+        const bool all = task_.missing > 0;
+        const double from = all ? task_.from : coveredFrom(), to = all ? task_.to : coveredTo();
+        std::vector<Index> columns;
+        for (Index i = 0; i < theta_.size(); ++i) {
+            const double lambda = factor_.shift() + 1.0 / theta_[i];
+            if (lambda >= from && lambda < to && isConverged(i)) columns.push_back(i);
+        }
+        return columns;
     }
 
-    /// Puts the covered pairs into the store; ends the recurrence. Returns their number.
-    Index deliver(PairStore& store) {
-        const std::vector<Index> taken = covered();
-        const Index m = dimension(), count = static_cast<Index>(taken.size());
-        Eigen::MatrixXd Z(m, count);
+    /// Puts the converged pairs into the store; ends the recurrence.
+    void deliver(PairStore& store) {
+        std::vector<Index> taken = converged();
+        // From the shift on outwards: the first ones have the smallest errors.
+        std::stable_sort(taken.begin(), taken.end(), [this](Index a, Index b) {
+            return std::abs(theta_[a]) > std::abs(theta_[b]);
+        });
+        const Index count = static_cast<Index>(taken.size());
+        if (count == 0) return;
+        Eigen::MatrixXd Z(dimension(), count);
         Eigen::VectorXd lambda(count);
         for (Index i = 0; i < count; ++i) {
-            const Index pair = taken[static_cast<std::size_t>(i)];
-            Z.col(i) = ritz_.vectors.col(ritzOf_[static_cast<std::size_t>(pair)]);
-            lambda[i] = lambda_[pair];
+            Z.col(i) = Z_.col(taken[static_cast<std::size_t>(i)]);
+            lambda[i] = factor_.shift() + 1.0 / theta_[taken[static_cast<std::size_t>(i)]];
         }
-        const Index n = Q_.rows(), first = store.claim(lambda, task_.seed);
-        for (Index row = 0; row < n; row += kRows) {  // Q <- Q Z, in place
-            const Index rows = std::min(kRows, n - row);
-            const Eigen::MatrixXd ritz = Q_.block(row, 0, rows, m) * Z;
-            Q_.block(row, 0, rows, count) = ritz;
-        }
+        multiplyInPlace(Q_.leftCols(dimension()), Z);
+        const Index first = store.claim(lambda, task_.seed);
+        auto Phi = store.vectors(first, count);
         for (Index i = 0; i < count; i += kColumns) {
             // Purification: one more inverse iteration takes away what is not in the Krylov space.
             const Index columns = std::min(kColumns, count - i);
-            Eigen::MatrixXd phi = factor_.solve(sqrtD_.asDiagonal() * Q_.middleCols(i, columns));
-            project(phi);
+            Eigen::MatrixXd phi = inverse(Q_.middleCols(i, columns));
             for (Index j = 0; j < columns; ++j)
-                phi.col(j) /= sqrtD_.cwiseProduct(phi.col(j)).norm();
-            store.vectors(first + i, columns) = phi;
+                phi.col(j) /= std::sqrt(phi.col(j).cwiseAbs2().dot(laplacian_.D));
+            Phi.middleCols(i, columns) = phi;
         }
-        return count;
+        orthonormalize(Phi);
     }
 
   private:
-    void project(Eigen::MatrixXd& u) const {
-        constants_.remove(u);
-        if (task_.known.cols() > 0)
-            u -= task_.known * (task_.known.transpose() * (laplacian_.D.asDiagonal() * u));
+    /// (W - sigma D)^-1 D U
+    Eigen::MatrixXd inverse(const Eigen::Ref<const Eigen::MatrixXd>& U) {
+        solves_ += static_cast<int>(U.cols());
+        Eigen::MatrixXd X = laplacian_.D.asDiagonal() * U;
+        factor_.solveInPlace(X);
+        constants_.remove(X);
+        return X;
     }
 
-    void reorthogonalize(Eigen::VectorXd& w) const {
-        const auto Q = Q_.leftCols(dimension());
-        const Eigen::VectorXd overlap = Q.transpose() * w;
-        w.noalias() -= Q * overlap;
+    /// D-orthonormalizes vectors of length 1, in their order, on the complement of the known ones.
+    void orthonormalize(Eigen::Ref<Eigen::MatrixXd> Phi) const {
+        const Eigen::VectorXd& D = laplacian_.D;
+        subtractProduct(known_.vectors, innerProducts(known_.vectors, D, Phi), Phi);
+        const Eigen::MatrixXd gram = innerProducts(Phi, D, Phi);
+        const Eigen::LLT<Eigen::MatrixXd> llt(gram);
+        const Eigen::MatrixXd R = llt.matrixU();
+        if (llt.info() != Eigen::Success || (R.diagonal().array() < kNew).any())
+            throw SolverFailure(
+                "the harmonics could not be told apart: one has been found a second time");
+        multiplyInPlace(Phi,
+                        llt.matrixU().solve(Eigen::MatrixXd::Identity(gram.rows(), gram.cols())));
     }
 
+    /// Purified, a pair with residual r = |M y - theta y| has |W phi - lambda D phi| = r / theta^2.
     bool isConverged(Index i) const {
-        const double residual = beta_.back() * std::abs(ritz_.vectors(dimension() - 1, i));
-        return residual <= kTolerance * std::abs(ritz_.values[i]);
+        const double theta = std::abs(theta_[i]), lambda = factor_.shift() + 1.0 / theta_[i];
+        return residuals_[i] <= std::min(kRitzResidual, kResidual * lambda * theta) * theta;
     }
 
     const Laplacian& laplacian_;
     const ConstantModes& constants_;
     const ShiftedLdlt& factor_;
     const SliceTask& task_;
-    Eigen::VectorXd sqrtD_;
-    Eigen::MatrixXd& Q_;  // its first columns are orthonormal
-    std::vector<double> alpha_, beta_;
-    bool exhausted_ = false, invariant_ = false;
-    TridiagonalEigenpairs ritz_;
-    Eigen::VectorXd lambda_;     // of the converged Ritz pairs, ascending
-    std::vector<Index> ritzOf_;  // their columns in ritz_
+    KnownPairs known_;
+    int solves_ = 0;
+    BlockLanczos::Operator apply_;
+    Eigen::MatrixXd& Q_;
+    BlockLanczos lanczos_;
+    Eigen::VectorXd theta_, residuals_;  // of the Ritz pairs
+    Eigen::MatrixXd Z_;                  // their coordinates in Q
+    Eigen::VectorXd lambda_;             // of the converged ones from the shift on, ascending
     bool reachedFrom_ = false, reachedTo_ = false;
 };
+
+/// Krylov dimension at which a run is first looked at.
+Index firstCheck(const SliceTask& task) {
+    if (task.missing == 0) return kFirstCheck;
+    return static_cast<Index>(kDimensionForTolerance +
+                              kDimensionPerPair * static_cast<double>(task.missing));
+}
 
 SliceRun runOf(const Laplacian& laplacian, const ConstantModes& constants, ShiftedLdlt& factor,
                Eigen::MatrixXd& Q, const SliceTask& task, PairStore& found,
@@ -201,20 +215,20 @@ SliceRun runOf(const Laplacian& laplacian, const ConstantModes& constants, Shift
     run.sigma = factor.shift();
     run.below = factor.eigenvaluesBelow();
     SliceLanczos lanczos(laplacian, constants, factor, task, Q);
-    for (Index check = kFirstCheck;;) {
+    for (Index check = firstCheck(task); !lanczos.exhausted();) {
         stopPoint();
         lanczos.extend();
         if (lanczos.dimension() < check && !lanczos.exhausted()) continue;
         lanczos.examine();
-        // Beyond the first copy of a multiple eigenvalue the others come in by round-off.
-        const bool done = lanczos.reachedFrom() && lanczos.reachedTo() &&
-                          static_cast<Index>(lanczos.covered().size()) >= task.missing;
-        if (done || lanczos.exhausted()) break;
+        if (task.missing > 0 ? static_cast<Index>(lanczos.converged().size()) >= task.missing
+                             : lanczos.reachedFrom() && lanczos.reachedTo())
+            break;
         check = lanczos.dimension() + kCheckInterval;
     }
     run.coveredFrom = lanczos.coveredFrom();
     run.coveredTo = lanczos.coveredTo();
-    run.solves = static_cast<int>(lanczos.dimension() + lanczos.deliver(found));
+    lanczos.deliver(found);
+    run.solves = lanczos.solves();
     return run;
 }
 
@@ -228,7 +242,8 @@ SliceWorkers::SliceWorkers(const Laplacian& laplacian, const ConstantModes& cons
 SliceRun SliceWorkers::run(const SliceTask& task, int worker, PairStore& found,
                            const StopPoint& stopPoint) {
     Workspace& workspace = workspaces_[static_cast<std::size_t>(worker)];
-    workspace.Q.resize(laplacian_.D.size(), std::min(laplacian_.D.size(), kMaxDimension));
+    const Index dimension = task.dimension > 0 ? task.dimension : kMaxDimension;
+    workspace.Q.resize(laplacian_.D.size(), std::min(laplacian_.D.size(), dimension));
     return runOf(laplacian_, constants_, workspace.factor, workspace.Q, task, found, stopPoint);
 }
 

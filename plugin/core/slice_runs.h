@@ -18,11 +18,15 @@ struct SliceTask {
     double sigma = 0.0;
     double from = 0.0, to = 0.0;  ///< The slice: from <= lambda < to.
     double overlap = 0.0;  ///< How far beyond the slice pairs must have converged: of those within
-                           ///< it none is then likely to be overlooked.
-    Eigen::Ref<const Eigen::MatrixXd> known;  ///< D-orthonormal vectors not to be found again.
-    Index missing = 0;  ///< Pairs that are known to be there: as long as the space may grow, the
-                        ///< run does not end before it has so many.
-    unsigned seed = 0;  ///< Of the start vector; another for each run.
+                           ///< it none is then likely to be overlooked. Of no meaning when the
+                           ///< number of missing pairs is given.
+    Eigen::Ref<const Eigen::MatrixXd> known;  ///< D-orthonormal vectors not to be found again, of
+                                              ///< the slice or near it.
+    Eigen::VectorXd knownLambda;              ///< Their eigenvalues.
+    Index missing = 0;    ///< Pairs that the slice holds beside the known ones: the run ends when
+                          ///< it has so many. 0 when that is not known.
+    unsigned seed = 0;    ///< Of the start vectors; another for each run.
+    Index dimension = 0;  ///< At which the run ends in any case; 0 leaves it to the run.
 };
 
 /// What a run has found. Its pairs are in the store.

@@ -2,27 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "errors.h"
+#include "mass_products.h"
 #include "slice_runs.h"
 
 namespace spectral {
 
 namespace {
 
-/// Eigenvalues of a slice. Fewer cost more factorizations, more a Krylov space whose
-/// orthogonalization costs the square of its dimension.
-constexpr Index kSpacing = 20;
+/// Eigenvalues from one of the first shifts to the next. Fewer cost more factorizations, more a
+/// Krylov space whose orthogonalization costs the square of its dimension.
+constexpr Index kSpacing = 50;
 
-/// Mean spacings by which a run goes beyond its slice.
-constexpr double kOverlap = 1.0;
+/// Krylov dimension of the first runs: it yields the pairs of about two fifths of the spacing.
+constexpr Index kFirstDimension = 72;
 
-/// Relative distance of eigenvalues up to which vectors are made orthogonal to each other: if they
-/// come from different runs, their overlap is that of their residuals divided by this distance.
+/// Relative distance of eigenvalues up to which vectors of different runs are made orthogonal to
+/// each other: their overlap is that of their residuals divided by this distance.
 constexpr double kNear = 3e-3;
 
 /// The last shift aims at so many pairs more than asked; tries for at most twice as many, and for
@@ -32,28 +32,34 @@ constexpr int kTriesForFew = 3, kMaxTries = 40;
 constexpr double kFarther = 1.02;
 
 /// Waves of runs after which something must be wrong.
-constexpr int kMaxWaves = 12;
+constexpr int kMaxWaves = 40;
 
-/// Waves of runs for gaps, one after another, after which something must be wrong.
-constexpr int kMaxGapWaves = 12;
-
-/// Eigenvalues below a shift, by inertia.
+/// Eigenvalues below a shift, by inertia, and the part of the spectrum around it whose pairs have
+/// been found: nothing, where there was no run.
 struct Count {
     double sigma = 0.0;
     Index below = 0;
+    double coveredFrom = 0.0, coveredTo = 0.0;
 };
+
+Count counted(double sigma, Index below) { return {sigma, below, sigma, sigma}; }
 
 bool operator<(const Count& a, const Count& b) { return a.sigma < b.sigma; }
 
-/// Makes columns of near eigenvalues D-orthonormal: they may come from different runs. That changes
+/// Makes vectors of near eigenvalues D-orthogonal where they come from different runs. That changes
 /// their residuals by no more than these are. All others are so already, to the accuracy of the
 /// pairs.
-void orthonormalizeNear(const Eigen::VectorXd& D, const Eigen::VectorXd& lambda,
-                        Eigen::Ref<Eigen::MatrixXd> Phi) {
-    for (Index j = 1; j < lambda.size(); ++j) {
-        for (Index i = j - 1; i >= 0 && lambda[j] - lambda[i] <= kNear * lambda[j]; --i)
-            Phi.col(j) -= Phi.col(i).dot(D.cwiseProduct(Phi.col(j))) * Phi.col(i);
-        Phi.col(j) /= std::sqrt(Phi.col(j).dot(D.cwiseProduct(Phi.col(j))));
+/// @param found  sorted.
+void orthogonalizeRuns(const Eigen::VectorXd& D, Index constants, PairStore& found) {
+    for (Index j = constants + 1; j < found.size(); ++j) {
+        auto phi = found.vectors(j, 1);
+        const double near = found.lambda(j) * (1.0 - kNear);
+        for (Index i = j - 1; i >= constants && found.lambda(i) >= near; --i) {
+            if (found.run(i) == found.run(j)) continue;
+            const auto other = found.vectors(i, 1);
+            subtractProduct(other, innerProducts(other, D, phi), phi);
+            phi /= std::sqrt(innerProducts(phi, D, phi)(0, 0));
+        }
     }
 }
 
@@ -71,31 +77,21 @@ class Slicing {
         found.vectors(0, c) = constants_.orthonormal();
         std::vector<SliceTask> tasks = firstTasks();
         double done = 0.05;
-        Index searched = -1;  // size when copies were last seen to be missing
-        for (int gapWaves = 0; gapWaves < kMaxGapWaves;) {
-            const double end = done + 0.8 * (1.0 - done);
-            const std::vector<SliceRun> runs =
-                workers_.execute(tasks, found, progress.part(done, end));
-            done = end;
-            for (const SliceRun& run : runs) {
-                counts_.push_back({run.sigma, run.below});
+        for (int wave = 0; wave < kMaxWaves; ++wave) {
+            const double end = done + 0.6 * (1.0 - done);
+            for (const SliceRun& run : workers_.execute(tasks, found, progress.part(done, end))) {
+                counts_.push_back({run.sigma, run.below, run.coveredFrom, run.coveredTo});
                 ++factorizations_;
                 solves_ += run.solves;
             }
+            done = end;
             std::sort(counts_.begin(), counts_.end());
-            tasks = tasksForGaps(tasks, runs);
-            if (!tasks.empty()) {
-                ++gapWaves;
-                continue;
-            }
             found.sort();
-            const Index rest = found.size() - c;
-            orthonormalizeNear(laplacian_.D, found.lambdas().tail(rest), found.vectors(c, rest));
-            tasks = tasksForMissingCopies(found);
-            if (tasks.empty()) return assembled(found);
-            if (found.size() == searched) break;
-            searched = found.size();
-            gapWaves = 0;
+            tasks = tasksForMissing(found);
+            if (tasks.empty()) {
+                orthogonalizeRuns(laplacian_.D, c, found);
+                return assembled(found);
+            }
         }
         throw SolverFailure(
             "the harmonics could not all be found: the inertia of W - sigma D counts more of them; "
@@ -110,7 +106,7 @@ class Slicing {
     /// end of the spectrum that is computed: it has at least k eigenvalues below it.
     void calibrate(const Progress& progress) {
         const double top = weylSlope() * static_cast<double>(k_);
-        counts_.push_back({0.0, static_cast<Index>(constants_.count())});
+        counts_.push_back(counted(0.0, constants_.count()));
         countAt({0.25 * top, top}, progress);
         for (int i = 0; i < kMaxTries; ++i) {
             const bool enough = counts_.back().below >= k_;
@@ -126,7 +122,8 @@ class Slicing {
 
     void countAt(const std::vector<double>& sigmas, const Progress& progress) {
         const std::vector<Index> below = workers_.count(sigmas, progress);
-        for (std::size_t i = 0; i < sigmas.size(); ++i) counts_.push_back({sigmas[i], below[i]});
+        for (std::size_t i = 0; i < sigmas.size(); ++i)
+            counts_.push_back(counted(sigmas[i], below[i]));
         factorizations_ += static_cast<int>(sigmas.size());
         std::sort(counts_.begin(), counts_.end());
     }
@@ -144,68 +141,61 @@ class Slicing {
         return weylSlope() * index;
     }
 
-    SliceTask task(double from, double to, double overlap,
-                   const Eigen::Ref<const Eigen::MatrixXd>& known, Index missing) {
-        return {0.5 * (from + to), from, to, overlap, known, missing, seed_++};
-    }
-
+    /// Runs around shifts in equal distances. What they do not reach is found between them.
     std::vector<SliceTask> firstTasks() {
         const Index c = constants_.count(), total = counts_.back().below - c;
-        const Index slices = std::max<Index>(1, (total + kSpacing / 2) / kSpacing);
-        const double spacing = static_cast<double>(total) / static_cast<double>(slices);
+        const Index runs = std::max<Index>(1, (total + kSpacing / 2) / kSpacing);
+        const double spacing = static_cast<double>(total) / static_cast<double>(runs);
+        const auto at = [&](double place) {
+            return lambdaAt(static_cast<double>(c) + spacing * place);
+        };
         std::vector<SliceTask> tasks;
-        double from = 0.0;
-        for (Index i = 1; i <= slices; ++i) {
-            const double to =
-                i < slices ? lambdaAt(static_cast<double>(c) + spacing * static_cast<double>(i))
-                           : counts_.back().sigma;
-            tasks.push_back(task(from, to, kOverlap / spacing * (to - from), none_, 0));
-            from = to;
+        for (Index i = 0; i < runs; ++i) {
+            const double place = static_cast<double>(i);
+            const double from = i > 0 ? at(place) : 0.0;
+            const double to = i + 1 < runs ? at(place + 1.0) : counts_.back().sigma;
+            tasks.push_back(
+                {at(place + 0.5), from, to, 0.0, none_, {}, 0, seed_++, kFirstDimension});
         }
+        // These counts have served their purpose: the runs' own ones divide the spectrum.
+        counts_.erase(counts_.begin() + 1, counts_.end() - 1);
         return tasks;
     }
 
-    /// Whether the counts say that there is no eigenvalue between these.
-    bool isEmpty(double from, double to) const {
-        const auto above = std::lower_bound(counts_.begin(), counts_.end(), Count{to, 0});
-        const auto beyond = std::upper_bound(counts_.begin(), counts_.end(), Count{from, 0});
-        return above != counts_.end() && beyond != counts_.begin() &&
-               std::prev(beyond)->below == above->below;
-    }
-
-    /// A run for every part of a slice that its run has not covered.
-    std::vector<SliceTask> tasksForGaps(const std::vector<SliceTask>& tasks,
-                                        const std::vector<SliceRun>& runs) {
-        std::vector<SliceTask> more;
-        const auto cover = [&](const SliceTask& slice, double from, double to) {
-            if (from < to && !isEmpty(from, to))
-                more.push_back(task(from, to, 0.0, slice.known, 0));
-        };
-        for (std::size_t i = 0; i < runs.size(); ++i) {
-            cover(tasks[i], tasks[i].from, runs[i].coveredFrom);
-            cover(tasks[i], runs[i].coveredTo, tasks[i].to);
-        }
-        return more;
-    }
-
-    /// A Lanczos run from one vector sees one copy of a multiple eigenvalue, others only by
-    /// round-off: those that the counts say are missing are sought beside the known ones.
+    /// A run wherever the counts say that pairs are missing: in what the runs on both sides have
+    /// not reached, or copies of multiple eigenvalues in what they have. The pairs that are known
+    /// on both sides are no longer in the way: the missing ones are then far nearer to the shift
+    /// than all others, and the Lanczos process finds them quickly.
     /// @param found  sorted.
-    std::vector<SliceTask> tasksForMissingCopies(PairStore& found) {
-        std::vector<SliceTask> tasks;
-        Index first = constants_.count();
+    std::vector<SliceTask> tasksForMissing(PairStore& found) {
+        const Eigen::VectorXd lambda = found.lambdas();
+        const auto firstFrom = [&](double bound) {
+            return std::max<Index>(
+                constants_.count(),
+                std::lower_bound(lambda.data(), lambda.data() + lambda.size(), bound) -
+                    lambda.data());
+        };
+        std::vector<std::pair<Index, std::size_t>> gaps;  // missing pairs, and the count above them
         for (std::size_t i = 1; i < counts_.size(); ++i) {
-            Index end = first;
-            while (end < found.size() && found.lambda(end) < counts_[i].sigma) ++end;
-            const Index missing = counts_[i].below - counts_[i - 1].below - (end - first);
+            const Index between = firstFrom(counts_[i].sigma) - firstFrom(counts_[i - 1].sigma);
+            const Index missing = counts_[i].below - counts_[i - 1].below - between;
             if (missing < 0)
                 throw SolverFailure(
                     "the harmonics could not be told apart: more of them were found than the "
                     "inertia of W - sigma D counts");
-            if (missing > 0)
-                tasks.push_back(task(counts_[i - 1].sigma, counts_[i].sigma, 0.0,
-                                     found.vectors(first, end - first), missing));
-            first = end;
+            if (missing > 0) gaps.emplace_back(missing, i);
+        }
+        // The longest runs first: the cores then end at about the same time.
+        std::sort(gaps.rbegin(), gaps.rend());
+        std::vector<SliceTask> tasks;
+        for (const auto& [missing, i] : gaps) {
+            const Count& a = counts_[i - 1];
+            const Count& b = counts_[i];
+            const double sigma = a.coveredTo < b.coveredFrom ? 0.5 * (a.coveredTo + b.coveredFrom)
+                                                             : 0.5 * (a.sigma + b.sigma);
+            const Index first = firstFrom(a.coveredFrom), end = firstFrom(b.coveredTo);
+            tasks.push_back({sigma, a.sigma, b.sigma, 0.0, found.vectors(first, end - first),
+                             lambda.segment(first, end - first), missing, seed_++});
         }
         return tasks;
     }

@@ -17,15 +17,15 @@ struct LowestPairs {
 
 /// At least the k lowest eigenpairs of W phi = lambda D phi, slice by slice.
 ///
-/// Shifts sigma_1 < sigma_2 < ... are laid through the spectrum, some tens of eigenvalues apart
-/// (the bands of Vallet and Levy 2008, section 3.3). A short Lanczos run with (W - sigma_i D)^-1 D
-/// finds the pairs on both sides of sigma_i, and the inertia of the same factorization counts the
-/// eigenvalues below it. So the number of pairs between two shifts is known: what is missing, a gap
-/// or a copy of a multiple eigenvalue, is seen and sought again. The runs are independent of each
-/// other and share the machine's cores; the result does not depend on their number. The cost is
-/// linear in k, but for a small part.
-///
-/// The last pairs, above the last shift, are not yet covered by a count: see truncatedBasis.
+/// Shifts are laid through the spectrum, some tens of eigenvalues apart (the bands of Vallet and
+/// Levy 2008, section 3.3). A short Lanczos run with (W - sigma D)^-1 D finds the pairs on both
+/// sides of each, and the inertia of the same factorization counts the eigenvalues below it. So the
+/// number of pairs between two shifts is known, and how many of them are missing: those that the
+/// runs have not reached, and copies of multiple eigenvalues. A second wave of runs finds them, on
+/// the complement of the pairs that are known on both sides; where that is not enough, further
+/// waves do, until no count misses a pair. The runs of a wave are independent of each other and
+/// share the machine's cores; the result does not depend on their number. The cost is linear in k,
+/// but for a small part.
 ///
 /// @param k  constants.count() < k < n.
 /// @throws SolverFailure  when pairs stay missing; Cancelled.

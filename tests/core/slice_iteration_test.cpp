@@ -6,8 +6,8 @@
 #include <random>
 
 #include "core/errors.h"
-#include "core/gram.h"
 #include "core/harmonic_basis.h"
+#include "core/mass_products.h"
 #include "support/evaluation.h"
 #include "support/shapes.h"
 

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstddef>
+
+namespace spectral {
+
+/// A factorization P A P^T = L D L^T as it lies in memory, n x n.
+struct LdltFactor {
+    std::ptrdiff_t n = 0;
+    const int* starts = nullptr;  ///< n + 1: where the columns of L begin in `rows` and `values`.
+    const int* rows = nullptr;    ///< Ascending in each column, all below the diagonal,
+    const double* values = nullptr;  ///< whose ones are not stored.
+    const double* pivots = nullptr;  ///< n entries of D, none of them 0.
+    const int* order = nullptr;      ///< n: row i of A is row order[i] of P A.
+};
+
+/// Solves with a sparse factorization, for the widest vector instructions that the processor has.
+///
+/// Pointers, not Eigen's types: those of one instruction set are none of another's business (see
+/// dense_products.cpp).
+struct TriangularSolves {
+    /// X = A^-1 B: B and X n x columns, column-major without gaps; X may be B.
+    void (*solve)(const LdltFactor& factor, const double* B, std::ptrdiff_t columns, double* X);
+};
+
+/// Chosen for this processor, once.
+const TriangularSolves& triangularSolves();
+
+}  // namespace spectral
