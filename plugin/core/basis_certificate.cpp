@@ -6,6 +6,7 @@
 #include "errors.h"
 #include "mass_products.h"
 #include "parallel_tasks.h"
+#include "symmetric_product.h"
 
 namespace spectral {
 
@@ -46,12 +47,13 @@ void certifyBasis(const Laplacian& laplacian, Index constants, std::optional<dou
                                              basis.Phi.middleCols(begin, end - begin));
         gram.bottomRows(end - begin).diagonal().array() -= 1.0;
         overlaps.segment(begin, end - begin) = gram.cwiseAbs().colwise().maxCoeff();
+        stopPoint();
+        Eigen::MatrixXd residual =
+            symmetricProduct(laplacian.W, basis.Phi.middleCols(begin, end - begin));
         for (Index i = std::max(begin, constants); i < end; ++i) {
-            stopPoint();
-            const auto phi = basis.Phi.col(i);
-            const Eigen::VectorXd residual =
-                laplacian.W * phi - basis.lambda[i] * laplacian.D.cwiseProduct(phi);
-            basis.residuals[i] = invSqrtD.cwiseProduct(residual).norm() / basis.lambda[i];
+            auto r = residual.col(i - begin);
+            r -= basis.lambda[i] * laplacian.D.cwiseProduct(basis.Phi.col(i));
+            basis.residuals[i] = invSqrtD.cwiseProduct(r).norm() / basis.lambda[i];
         }
     };
     runInParallel(

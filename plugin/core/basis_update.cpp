@@ -15,13 +15,14 @@
 #include "rayleigh_ritz.h"
 #include "slice_iteration.h"
 #include "slice_runs.h"
+#include "symmetric_product.h"
 
 namespace spectral {
 
 namespace {
 
 /// Vectors of a slice, about: they share a factorization, which costs as much as 50 solves.
-constexpr Index kSliceWidth = 44;
+constexpr Index kSliceWidth = 32;
 
 /// Harmonics next to the cut that are computed anew, below and above it, and how many of the
 /// previous ones in their place are iterated all the same, for what has moved.
@@ -129,17 +130,18 @@ class Update {
     void sortCandidates(const Progress& progress) {
         const Index all = basis_.Phi.cols() - c();
         quotient_.resize(all);
-        runInParallel(
-            (all + kColumns - 1) / kColumns,
-            [&](Index task, int, const StopPoint&) {
-                for (Index j = task * kColumns; j < std::min(all, (task + 1) * kColumns); ++j) {
-                    Eigen::MatrixXd s = candidate(j);
-                    constants_.remove(s);
-                    const Eigen::VectorXd Ws = laplacian_.W * s.col(0);
-                    quotient_[j] = s.col(0).dot(Ws) / s.col(0).cwiseAbs2().dot(laplacian_.D);
-                }
-            },
-            progress, kStage);
+        runInParallel((all + kColumns - 1) / kColumns,
+                      [&](Index task, int, const StopPoint&) {
+                          const Index first = task * kColumns,
+                                      count = std::min(kColumns, all - first);
+                          Eigen::MatrixXd S = basis_.Phi.middleCols(c() + first, count);
+                          constants_.remove(S);
+                          const Eigen::MatrixXd WS = symmetricProduct(laplacian_.W, S);
+                          for (Index j = 0; j < count; ++j)
+                              quotient_[first + j] =
+                                  S.col(j).dot(WS.col(j)) / S.col(j).cwiseAbs2().dot(laplacian_.D);
+                      },
+                      progress, kStage);
         order_.resize(static_cast<std::size_t>(all));
         std::iota(order_.begin(), order_.end(), Index{0});
         std::stable_sort(order_.begin(), order_.end(),

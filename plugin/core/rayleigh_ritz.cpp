@@ -7,6 +7,7 @@
 #include "errors.h"
 #include "mass_products.h"
 #include "parallel_tasks.h"
+#include "symmetric_product.h"
 
 namespace spectral {
 
@@ -33,7 +34,7 @@ Eigen::VectorXd rayleighRitz(const Laplacian& laplacian, Eigen::Ref<Eigen::Matri
                 products.transposedProduct(S.data(), S.outerStride(), AS.data(), n, &gram(0, first),
                                            m, n, rows, count);
             };
-            upperHalf(laplacian.W * S.middleCols(first, count), H);
+            upperHalf(symmetricProduct(laplacian.W, S.middleCols(first, count)), H);
             upperHalf(laplacian.D.asDiagonal() * S.middleCols(first, count), G);
         },
         progress.part(0.0, 0.5), "updating the harmonics");
