@@ -1,0 +1,206 @@
+"""The engine of a batch: Dask, on workers of this machine or of an existing cluster."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import os
+import signal
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from dask.system import CPU_COUNT
+from distributed import Client, KilledWorker, LocalCluster, WorkerPlugin, as_completed
+from distributed.system import MEMORY_LIMIT
+
+from meshlab_spectral.batch.jobs import FileResult, Job
+from meshlab_spectral.batch.task import run_job
+from meshlab_spectral.errors import BatchError
+from meshlab_spectral.versions import versions
+
+# What all workers together may take of the machine's memory.
+_SHARE_OF_MEMORY = 0.9
+_SECONDS_TO_CONNECT = 30
+
+
+@contextlib.contextmanager
+def local_workers(count: int | None = None, memory_limit: int | None = None) -> Iterator[Client]:
+    """Start worker processes on this machine, reachable from this machine only.
+
+    Parameters
+    ----------
+    count
+        Of workers, each with one mesh at a time; by default that of the processors.
+    memory_limit
+        Bytes for each; by default they share nine tenths of the memory that this process may use.
+
+    Yields
+    ------
+    Client
+        For `run_jobs`. At the end the workers are ended, whatever they are doing.
+    """
+    count = count or CPU_COUNT
+    limit = memory_limit or int(_SHARE_OF_MEMORY * MEMORY_LIMIT / count)
+    with _quiet_log(), _one_thread_each():
+        cluster = LocalCluster(
+            n_workers=count,
+            threads_per_worker=1,
+            host="127.0.0.1",
+            dashboard_address="127.0.0.1:0",
+            scheduler_kwargs={"dashboard": False},
+            memory_limit=limit,
+            silence_logs=logging.CRITICAL,
+        )
+        client = Client(cluster)
+        try:
+            client.register_plugin(_LeaveInterruptsToTheCommand())
+            yield client
+        finally:
+            client.close(timeout=1)
+            cluster.close(timeout=1)
+
+
+@contextlib.contextmanager
+def workers_at(address: str) -> Iterator[Client]:
+    """Use the workers of a Dask cluster that is running.
+
+    Parameters
+    ----------
+    address
+        Of its scheduler, such as tcp://10.0.0.1:8786.
+
+    Raises
+    ------
+    BatchError
+        When it cannot be reached, has no workers, or these have not the same software as here.
+    """
+    with _quiet_log():
+        try:
+            client = Client(address, timeout=_SECONDS_TO_CONNECT, set_as_default=False)
+        except (OSError, ValueError) as error:
+            raise BatchError(
+                f"no Dask scheduler can be reached at {address} ({error}): check the address, and "
+                "that `dask scheduler` is running there"
+            ) from error
+        try:
+            _check_workers(client, address)
+            yield client
+        finally:
+            client.close(timeout=1)
+
+
+def run_jobs(client: Client, jobs: Sequence[Job]) -> Iterator[FileResult]:
+    """Have jobs done by workers.
+
+    Dask gives the job of a worker that has died to another one, up to three times; a process of
+    MeshLab that dies is the worker's own matter, see `task`.
+
+    Yields
+    ------
+    FileResult
+        Of every job, as soon as it is done.
+
+    Raises
+    ------
+    BatchError
+        When the cluster has gone.
+    """
+    if not jobs:
+        return
+    futures = client.map(run_job, jobs, pure=False, key="filter")
+    job_of = dict(zip(futures, jobs, strict=True))
+    for future, _ in as_completed(futures, with_results=True, raise_errors=False):
+        job = job_of.pop(future)
+        if future.status == "finished":
+            yield future.result()
+        elif future.status == "error":
+            yield _failed(job, future.exception())
+        else:
+            raise BatchError(
+                "the Dask cluster has gone: start it again, then run the same command with --resume"
+            )
+        future.release()
+
+
+def _failed(job: Job, error: BaseException) -> FileResult:
+    if isinstance(error, KilledWorker):
+        reason = (
+            "every worker that tried it was ended from outside: does the machine have too little "
+            "memory for that many workers?"
+        )
+    else:
+        reason = f"unexpected error: {error!r}; please report it"
+    return FileResult(
+        outcome="failed",
+        input=job.source,
+        output=job.target,
+        name=job.name,
+        reason=reason,
+        options=job.options,
+        versions=versions(),
+    )
+
+
+def _check_workers(client: Client, address: str) -> None:
+    try:
+        client.wait_for_workers(1, timeout=_SECONDS_TO_CONNECT)
+    except TimeoutError:
+        raise BatchError(
+            f"the Dask scheduler at {address} has no workers: start some with `dask worker "
+            f"{address}`"
+        ) from None
+    try:
+        found: dict[str, Any] = client.run(versions)
+    except ModuleNotFoundError as error:
+        raise BatchError(
+            f"the workers at {address} cannot import {error.name}: install this package there, too"
+        ) from error
+    here = versions()
+    for worker, there in found.items():
+        different = [
+            f"{name} {there.get(name, '')[:12]} instead of {here[name][:12]}"
+            for name in here
+            if name != "python" and there.get(name) != here[name]
+        ]
+        if different:
+            raise BatchError(
+                f"the worker {worker} has other software than this machine: "
+                f"{', '.join(different)}; install the same on both"
+            )
+
+
+class _LeaveInterruptsToTheCommand(WorkerPlugin):  # type: ignore[misc]
+    """Ctrl-C reaches every process of the terminal; the command decides what it means."""
+
+    name = "meshlab-spectral-interrupts"
+
+    def setup(self, worker: Any) -> None:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+@contextlib.contextmanager
+def _quiet_log() -> Iterator[None]:
+    """Keep Dask's log of workers that come and go to itself; what matters is in the report."""
+    logger = logging.getLogger("distributed")
+    level = logger.level
+    logger.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        logger.setLevel(level)
+
+
+@contextlib.contextmanager
+def _one_thread_each() -> Iterator[None]:
+    """Have the numerical libraries of the workers, and of what they start, use one thread.
+
+    The meshes are what is done in parallel; threads of their own would be in each other's way.
+    """
+    names = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+    added = [name for name in names if name not in os.environ]
+    os.environ.update(dict.fromkeys(added, "1"))
+    try:
+        yield
+    finally:
+        for name in added:
+            del os.environ[name]
