@@ -94,7 +94,7 @@ def _process(
 
     load()
     on_stage("reading")
-    _check_writable_format(scratch.suffix)
+    _check_writable_format(scratch)
     mesh_set = pymeshlab.MeshSet(verbose=True)  # its log is the only source of progress
     _read(mesh_set, source)
     on_stage("filtering")
@@ -136,9 +136,19 @@ def check_source(source: Path) -> None:
         raise MeshFileError(f"{source} cannot be read ({error.strerror})") from error
 
 
+def _check_writable_format(path: Path) -> None:
+    """Find out before the long computation."""
+    if not _is_writable(path.suffix):
+        ending = f"ends in {path.suffix}" if path.suffix else "has no ending"
+        raise FormatError(
+            f"{path.name} {ending}, which MeshLab cannot write: end the name of the output in "
+            f"{USUAL_FORMATS}"
+        )
+
+
 @functools.cache
-def _check_writable_format(ending: str) -> None:
-    """Find out before the long computation; pymeshlab offers no list of the formats it writes."""
+def _is_writable(ending: str) -> bool:
+    """Try to write a triangle: pymeshlab offers no list of the formats that it writes."""
     import pymeshlab
 
     mesh_set = pymeshlab.MeshSet()
@@ -147,11 +157,9 @@ def _check_writable_format(ending: str) -> None:
     with tempfile.TemporaryDirectory() as folder:
         try:
             mesh_set.save_current_mesh(str(Path(folder) / f"probe{ending}"))
-        except pymeshlab.PyMeshLabException as error:
-            raise FormatError(
-                f"the name of the output ends in {ending or 'nothing'}, which MeshLab cannot "
-                f"write: end it in {USUAL_FORMATS}"
-            ) from error
+        except pymeshlab.PyMeshLabException:
+            return False
+    return True
 
 
 def _read(mesh_set: Any, source: Path) -> None:

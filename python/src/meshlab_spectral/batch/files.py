@@ -306,8 +306,8 @@ def _refuse_to_replace(targets: Sequence[str], begun: float | None) -> None:
         more = ", ..." if len(taken) > _NAMED_AT_MOST else ""
         raise InputError(
             f"{len(taken)} of the outputs exist already "
-            f"({', '.join(taken[:_NAMED_AT_MOST])}{more}): choose another folder, replace them with "
-            "--overwrite, or take up an earlier run with --resume"
+            f"({', '.join(taken[:_NAMED_AT_MOST])}{more}): choose another folder, replace them "
+            "with --overwrite, or take up an earlier run with --resume"
         )
 
 
