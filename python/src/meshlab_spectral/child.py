@@ -1,8 +1,8 @@
 """The program of the child process in which MeshLab works: `python -m meshlab_spectral.child FD`.
 
 It reads jobs from its standard input, one JSON object a line, and answers each on its standard
-output with JSON lines: {"stage": ...} as the work goes on, then {"report": ...} or {"error": ...},
-with the peak of the memory. What MeshLab itself says goes to the standard error stream.
+output with JSON lines: {"stage": ...} as the work goes on, then {"report": ...} with the peak of
+the memory, or {"error": ...}. What MeshLab itself says goes to the standard error stream.
 
 It ends when its standard input does, and at once, in the middle of whatever MeshLab does, when the
 pipe FD is closed: its parent's death leaves no orphan.
@@ -82,6 +82,19 @@ def _peak_memory() -> int:
     return 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
 
 
+def _described(error: Exception) -> dict[str, str]:
+    """Name an error by its kind and its message."""
+    if isinstance(error, errors.SpectralError):
+        return {"error": type(error).__name__, "message": str(error)}
+    message = f"unexpected error: {error}; please report it"
+    if isinstance(error, MemoryError):
+        message = (
+            "the mesh needs more memory than there is; if it is not that large, the file is "
+            "damaged, and announces more than it holds"
+        )
+    return {"error": "FilterError", "message": message}
+
+
 def _main() -> None:
     # Ctrl-C reaches every process of the terminal; the parent decides what it means.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
@@ -98,20 +111,8 @@ def _main() -> None:
         try:
             report = _report_of(json.loads(line), lambda stage: answer(stage=stage))
             answer(report=report, peak_memory=_peak_memory())
-        except errors.SpectralError as error:
-            answer(
-                error=type(error).__name__,
-                message=str(error),
-                traceback=traceback.format_exc().strip(),
-                peak_memory=_peak_memory(),
-            )
         except Exception as error:
-            answer(
-                error="FilterError",
-                message=f"unexpected error: {error}; please report it",
-                traceback=traceback.format_exc().strip(),
-                peak_memory=_peak_memory(),
-            )
+            answer(**_described(error), traceback=traceback.format_exc().strip())
     answers.flush()
     # Without the interpreter's tidying up, in which pymeshlab may crash after an error.
     os._exit(0)

@@ -9,11 +9,13 @@ import signal
 from collections.abc import Iterator, Sequence
 from typing import Any
 
+import dask
 from dask.system import CPU_COUNT
 from distributed import Client, KilledWorker, LocalCluster, WorkerPlugin, as_completed
 from distributed.system import MEMORY_LIMIT
 
 from meshlab_spectral.batch.jobs import FileResult, Job
+from meshlab_spectral.batch.processes import processes
 from meshlab_spectral.batch.task import run_job
 from meshlab_spectral.errors import BatchError
 from meshlab_spectral.versions import versions
@@ -21,6 +23,18 @@ from meshlab_spectral.versions import versions
 # What all workers together may take of the machine's memory.
 _SHARE_OF_MEMORY = 0.9
 _SECONDS_TO_CONNECT = 30
+_SECONDS_TO_CLOSE = 5
+# While MeshLab works on one mesh, the worker reads and writes the files of another.
+_JOBS_PER_WORKER = 2
+# Dask watches itself for its dashboard, a hundred times a second; on small meshes and few
+# processors that is a tenth of the work.
+_NO_STATISTICS = {
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.tick.interval": "1s",
+    "distributed.admin.tick.cycle": "5s",
+    "distributed.admin.system-monitor.interval": "5s",
+    "distributed.admin.system-monitor.gil.enabled": False,
+}
 
 
 @contextlib.contextmanager
@@ -41,10 +55,10 @@ def local_workers(count: int | None = None, memory_limit: int | None = None) -> 
     """
     count = count or CPU_COUNT
     limit = memory_limit or int(_SHARE_OF_MEMORY * MEMORY_LIMIT / count)
-    with _quiet_log(), _one_thread_each():
+    with _quiet_log(), _one_thread_each(), dask.config.set(_NO_STATISTICS):
         cluster = LocalCluster(
             n_workers=count,
-            threads_per_worker=1,
+            threads_per_worker=_JOBS_PER_WORKER,
             host="127.0.0.1",
             dashboard_address="127.0.0.1:0",
             scheduler_kwargs={"dashboard": False},
@@ -53,11 +67,10 @@ def local_workers(count: int | None = None, memory_limit: int | None = None) -> 
         )
         client = Client(cluster)
         try:
-            client.register_plugin(_LeaveInterruptsToTheCommand())
+            client.register_plugin(_LocalWorker())
             yield client
         finally:
-            client.close(timeout=1)
-            cluster.close(timeout=1)
+            _end(client, cluster)
 
 
 @contextlib.contextmanager
@@ -169,13 +182,27 @@ def _check_workers(client: Client, address: str) -> None:
             )
 
 
-class _LeaveInterruptsToTheCommand(WorkerPlugin):  # type: ignore[misc]
-    """Ctrl-C reaches every process of the terminal; the command decides what it means."""
+def _end(client: Client, cluster: LocalCluster) -> None:
+    """End a local cluster at once; its workers would first finish the meshes that they are at."""
+    for nanny in cluster.workers.values():
+        nanny.close_gracefully()  # else it would start a worker anew
+        if nanny.pid is not None:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(nanny.pid, signal.SIGKILL)
+    with contextlib.suppress(TimeoutError):
+        client.close(timeout=_SECONDS_TO_CLOSE)
+        cluster.close(timeout=_SECONDS_TO_CLOSE)
 
-    name = "meshlab-spectral-interrupts"
+
+class _LocalWorker(WorkerPlugin):  # type: ignore[misc]
+    """Prepares a worker of `local_workers`, also one that takes the place of another."""
+
+    name = "meshlab-spectral"
 
     def setup(self, worker: Any) -> None:
+        # Ctrl-C reaches every process of the terminal; the command decides what it means.
         signal.signal(signal.SIGINT, signal.SIG_IGN)
+        processes.limit(1)
 
 
 @contextlib.contextmanager

@@ -61,8 +61,10 @@ def batch_progress(console: Console, files: int) -> Iterator[Callable[[FileResul
             nonlocal worked, failed
             if result.outcome == "failed":
                 failed += 1
+                reason = result.reason or ""
+                named = reason if result.input in reason else f"{result.input}: {reason}"
                 console.print(
-                    f"[red]Failed:[/red] {escape(result.input)}: {escape(result.reason or '')}",
+                    f"[red]Failed:[/red] {escape(named)}",
                     highlight=False,
                     soft_wrap=True,
                 )

@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import atexit
-import threading
 import time
 from typing import Any
 
 from meshlab_spectral.batch import storage
 from meshlab_spectral.batch.jobs import FileResult, Job
+from meshlab_spectral.batch.processes import processes
 from meshlab_spectral.errors import MemoryLimitError, ProcessDiedError, SpectralError
-from meshlab_spectral.meshlab_process import Answer, JobLimits, MeshLabProcess
+from meshlab_spectral.meshlab_process import Answer, JobLimits
 from meshlab_spectral.versions import versions
 
 # A mesh whose process dies gets a second, fresh one: it may have been another's fault.
 ATTEMPTS = 2
-# pymeshlab leaks a little with every mesh.
-JOBS_PER_PROCESS = 100
 
 
 def run_job(job: Job, memory_limit: int | None = None) -> FileResult:
@@ -36,7 +33,7 @@ def run_job(job: Job, memory_limit: int | None = None) -> FileResult:
         "filtered" or "failed": no error of a single file is raised.
     """
     begin = time.monotonic()
-    result: dict[str, Any] = {"outcome": "failed"}
+    result: dict[str, Any] = {"outcome": "failed", "waited": 0.0}
     limits = JobLimits(memory_limit or _worker_memory(), job.seconds)
     try:
         with storage.reading(job.source) as source:
@@ -57,7 +54,7 @@ def run_job(job: Job, memory_limit: int | None = None) -> FileResult:
         output=job.target,
         name=job.name,
         options=job.options,
-        seconds=round(time.monotonic() - begin, 3),
+        seconds=round(time.monotonic() - begin - result.pop("waited"), 3),
         versions=versions(),
         **result,
     )
@@ -66,14 +63,14 @@ def run_job(job: Job, memory_limit: int | None = None) -> FileResult:
 def _attempt(work: dict[str, Any], limits: JobLimits, result: dict[str, Any]) -> Answer:
     for attempt in range(1, ATTEMPTS + 1):
         result["attempts"] = attempt
-        process = _processes.take()
-        try:
-            return process.run(work, limits=limits)
-        except (ProcessDiedError, MemoryLimitError):
-            if attempt == ATTEMPTS:
-                raise
-        finally:
-            _processes.give_back(process)
+        begin = time.monotonic()
+        with processes.one(limits) as process:
+            result["waited"] += time.monotonic() - begin
+            try:
+                return process.run(work, limits=limits)
+            except (ProcessDiedError, MemoryLimitError):
+                if attempt == ATTEMPTS:
+                    raise
     raise AssertionError("unreachable")
 
 
@@ -86,34 +83,4 @@ def _worker_memory() -> int | None:
     except ValueError:
         return None
     limit = worker.memory_manager.memory_limit
-    return int(limit / worker.state.nthreads) if limit else None
-
-
-class _Processes:
-    """MeshLab's processes of one worker: one for each of its threads, used again and again."""
-
-    def __init__(self) -> None:
-        self._lock = threading.Lock()
-        self._idle: list[MeshLabProcess] = []
-
-    def take(self) -> MeshLabProcess:
-        with self._lock:
-            if self._idle:
-                return self._idle.pop()
-        return MeshLabProcess()
-
-    def give_back(self, process: MeshLabProcess) -> None:
-        if process.usable and process.jobs < JOBS_PER_PROCESS:
-            with self._lock:
-                self._idle.append(process)
-        else:
-            process.end()
-
-    def end(self) -> None:
-        with self._lock:
-            while self._idle:
-                self._idle.pop().end()
-
-
-_processes = _Processes()
-atexit.register(_processes.end)
+    return int(limit / (processes.at_once or worker.state.nthreads)) if limit else None
