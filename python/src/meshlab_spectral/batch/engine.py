@@ -7,6 +7,7 @@ import logging
 import os
 import signal
 from collections.abc import Iterator, Sequence
+from multiprocessing import resource_tracker
 from typing import Any
 
 import dask
@@ -56,6 +57,11 @@ def local_workers(count: int | None = None, memory_limit: int | None = None) -> 
     count = count or CPU_COUNT
     limit = memory_limit or int(_SHARE_OF_MEMORY * MEMORY_LIMIT / count)
     with _quiet_log(), _one_thread_each(), dask.config.set(_NO_STATISTICS):
+        # Ctrl-C reaches every process of the terminal; only this one decides what it means. The
+        # threads that are started here, and the workers that these start, keep the mask; unless
+        # they started Python's resource tracker, which takes it off.
+        resource_tracker.ensure_running()
+        mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         cluster = LocalCluster(
             n_workers=count,
             threads_per_worker=_JOBS_PER_WORKER,
@@ -65,9 +71,10 @@ def local_workers(count: int | None = None, memory_limit: int | None = None) -> 
             memory_limit=limit,
             silence_logs=logging.CRITICAL,
         )
-        client = Client(cluster)
+        client = Client(cluster, set_as_default=False)
         try:
             client.register_plugin(_LocalWorker())
+            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
             yield client
         finally:
             _end(client, cluster)
@@ -122,7 +129,8 @@ def run_jobs(client: Client, jobs: Sequence[Job]) -> Iterator[FileResult]:
         return
     futures = client.map(run_job, jobs, pure=False, key="filter")
     job_of = dict(zip(futures, jobs, strict=True))
-    for future, _ in as_completed(futures, with_results=True, raise_errors=False):
+    done = as_completed(futures, loop=client.loop, with_results=True, raise_errors=False)
+    for future, _ in done:
         job = job_of.pop(future)
         if future.status == "finished":
             yield future.result()
@@ -200,8 +208,6 @@ class _LocalWorker(WorkerPlugin):  # type: ignore[misc]
     name = "meshlab-spectral"
 
     def setup(self, worker: Any) -> None:
-        # Ctrl-C reaches every process of the terminal; the command decides what it means.
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
         processes.limit(1)
 
 
