@@ -60,7 +60,7 @@ def batch_command(
     inputs: Annotated[
         list[str],
         typer.Argument(
-            metavar="INPUT...",
+            metavar="INPUT",
             help="Mesh files, folders, patterns in quotes such as 'scans/*.ply', URLs.",
         ),
     ],

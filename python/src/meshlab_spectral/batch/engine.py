@@ -23,7 +23,7 @@ from meshlab_spectral.versions import versions
 
 # What all workers together may take of the machine's memory.
 _SHARE_OF_MEMORY = 0.9
-_SECONDS_TO_CONNECT = 30
+_SECONDS_TO_CONNECT = 10
 _SECONDS_TO_CLOSE = 5
 # While MeshLab works on one mesh, the worker reads and writes the files of another.
 _JOBS_PER_WORKER = 2
@@ -106,7 +106,9 @@ def workers_at(address: str) -> Iterator[Client]:
             _check_workers(client, address)
             yield client
         finally:
-            client.close(timeout=1)
+            with contextlib.suppress(OSError, TimeoutError):  # a cluster that has gone
+                client.run(_end_idle_processes, on_error="ignore")
+                client.close(timeout=_SECONDS_TO_CLOSE)
 
 
 def run_jobs(client: Client, jobs: Sequence[Job]) -> Iterator[FileResult]:
@@ -200,6 +202,11 @@ def _end(client: Client, cluster: LocalCluster) -> None:
     with contextlib.suppress(TimeoutError):
         client.close(timeout=_SECONDS_TO_CLOSE)
         cluster.close(timeout=_SECONDS_TO_CLOSE)
+
+
+def _end_idle_processes() -> None:
+    """Run in a worker: end the processes that wait for further meshes."""
+    processes.end()
 
 
 class _LocalWorker(WorkerPlugin):  # type: ignore[misc]
