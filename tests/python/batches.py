@@ -22,24 +22,17 @@ def make_meshes(folder: Path, count: int, seed: int = 0, rings: int = 12) -> lis
     """Write noisy tori as .ply files, each another one."""
     folder.mkdir(parents=True, exist_ok=True)
     rng = np.random.default_rng(seed)
-    k = np.arange(rings) * 2 * np.pi / rings
-    u, v = (angles.ravel() for angles in np.meshgrid(k, k))
-    i, j = (index.ravel() for index in np.meshgrid(np.arange(rings), np.arange(rings)))
-    corners = [
-        ((i + di) % rings) + rings * ((j + dj) % rings)
-        for di, dj in ((0, 0), (1, 0), (1, 1), (0, 1))
-    ]
-    F = np.vstack(
-        [
-            np.column_stack([corners[0], corners[1], corners[2]]),
-            np.column_stack([corners[0], corners[2], corners[3]]),
-        ]
-    )
+    k = np.arange(rings)
+    i, j = (index.ravel() for index in np.meshgrid(k, k))
+    a, b = i + rings * j, (i + 1) % rings + rings * j
+    c, d = ((corner + rings) % rings**2 for corner in (b, a))
+    F = np.vstack([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
+    u, v = (index * 2 * np.pi / rings for index in (i, j))
+    radius = 1 + 0.4 * np.cos(v)
+    torus = np.column_stack([radius * np.cos(u), radius * np.sin(u), 0.4 * np.sin(v)])
     paths = []
     for number in range(count):
-        radius = 1 + 0.4 * np.cos(v)
-        V = np.column_stack([radius * np.cos(u), radius * np.sin(u), 0.4 * np.sin(v)])
-        V += 0.02 * rng.standard_normal(V.shape)
+        V = torus + 0.02 * rng.standard_normal(torus.shape)
         mesh_set = pymeshlab.MeshSet()
         mesh_set.add_mesh(pymeshlab.Mesh(V, F.astype(np.int32)))
         paths.append(folder / f"torus_{number:03}.ply")

@@ -12,14 +12,14 @@ import pytest
 from batches import REPORT, alive, below, contents, make_meshes, records, start_batch, wait_until
 from commands import command
 
-MESHES = 16
+MESHES = 12
 OPTIONS = ["--steps", 60, "--workers", 2]
 
 
 @pytest.fixture(scope="module")
 def meshes(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("meshes")
-    make_meshes(folder, MESHES, rings=40)
+    make_meshes(folder, MESHES, rings=32)
     return folder
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -22,6 +23,7 @@ from meshlab_spectral import (
     filter_files,
     filter_mesh,
 )
+from meshlab_spectral.batch import engine
 
 
 def test_filter_mesh_is_the_filter(decimated: Callable[..., tuple[np.ndarray, np.ndarray]]) -> None:
@@ -124,14 +126,11 @@ def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
                 subprocess.Popen([*dask, "worker", *common, *file, *local], stdout=log, stderr=log)
             )
         wait_until(lambda: (folder / "log").read_text().count("Registered to:") >= 2)
-        import json
-
         yield json.loads(address_file.read_text())["address"]
     finally:
         for process in reversed(started):
-            process.terminate()
-        for process in started:
-            process.wait(timeout=20)
+            process.kill()  # a worker ends with its nanny
+            process.wait()
         log.close()
 
 
@@ -159,14 +158,11 @@ def test_a_cluster_takes_urls_of_shared_files(
     assert contents(out) == expected
 
 
-def test_a_cluster_that_is_not_there_is_told(meshes: Path, tmp_path: Path) -> None:
-    from meshlab_spectral.batch import engine
-
-    with (
-        pytest.MonkeyPatch.context() as patch,
-        pytest.raises(BatchError, match="no Dask scheduler"),
-    ):
-        patch.setattr(engine, "_SECONDS_TO_CONNECT", 0.5)
+def test_a_cluster_that_is_not_there_is_told(
+    meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(engine, "_SECONDS_TO_CONNECT", 0.5)
+    with pytest.raises(BatchError, match="no Dask scheduler"):
         list(filter_files(meshes, tmp_path / "out", scheduler="tcp://127.0.0.1:1"))
 
 

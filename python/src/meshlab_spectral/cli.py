@@ -16,6 +16,7 @@ from meshlab_spectral import __version__
 from meshlab_spectral.cli_basis import BASIS_HELP, basis_command
 from meshlab_spectral.cli_batch import BATCH_HELP, batch_command
 from meshlab_spectral.cli_install import INSTALL_HELP, install_command
+from meshlab_spectral.cli_spectra import SPECTRA_HELP, spectra_command
 from meshlab_spectral.cli_spectrum import SPECTRUM_HELP, spectrum_command
 from meshlab_spectral.command_line import (
     EXIT_CODES,
@@ -157,6 +158,7 @@ def figures_command(
 app.command("basis", help=BASIS_HELP, epilog=EXIT_CODES)(basis_command)
 app.command("batch", help=BATCH_HELP, epilog=EXIT_CODES)(batch_command)
 app.command("install", help=INSTALL_HELP, epilog=EXIT_CODES)(install_command)
+app.command("spectra", help=SPECTRA_HELP, epilog=EXIT_CODES)(spectra_command)
 app.command("spectrum", help=SPECTRUM_HELP, epilog=EXIT_CODES)(spectrum_command)
 
 

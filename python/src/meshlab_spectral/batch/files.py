@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import time
-from collections.abc import Iterator, Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass, field
 from datetime import datetime, timezone
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -48,12 +49,8 @@ class Batch:
     @property
     def folders(self) -> list[str]:
         """Folders that outputs go to."""
-        return sorted({target_folder(job.target) for job in self.jobs})
-
-
-def target_folder(target: str) -> str:
-    """Give the folder of a path or a URL."""
-    return target.rpartition("/")[0]
+        targets = [job.target for job in self.jobs if job.target is not None]
+        return sorted({target.rpartition("/")[0] for target in targets})
 
 
 def plan_batch(
@@ -94,8 +91,10 @@ def plan_batch(
     jobs = [_job(output, work, described, timeout) for output in planned]
     done = proved_done(jobs, records, versions()) if resume else {}
     left = [job for job in jobs if job not in done]
+    proved = {job.name for job in done}
     if not overwrite:
-        _refuse_to_replace([job.target for job in left], begun if resume else None)
+        targets = [output.target for output in planned if output.name not in proved]
+        _refuse_to_replace(targets, begun if resume else None)
     return Batch(left, list(done.values()), report_path)
 
 
@@ -221,6 +220,21 @@ def _run(
     memory_limit: int | None,
     scheduler: str | None,
 ) -> Iterator[FileResult]:
+    with workers_for(scheduler, workers, memory_limit) as run:
+        for result in run(jobs):
+            report.add("file", result.as_record())
+            counts[result.outcome] += 1
+            yield result
+
+
+@contextmanager
+def workers_for(
+    scheduler: str | None, workers: int | None = None, memory_limit: int | None = None
+) -> Iterator[Callable[[Sequence[Job]], Iterator[FileResult]]]:
+    """Give what has jobs done: by the workers of a scheduler, else by ones that are started here.
+
+    See `engine.run_jobs`, `engine.workers_at` and `engine.local_workers`.
+    """
     # Here, as it takes a while: a command that only filters one file needs none of it.
     from meshlab_spectral.batch import engine
 
@@ -228,10 +242,7 @@ def _run(
         engine.workers_at(scheduler) if scheduler else engine.local_workers(workers, memory_limit)
     )
     with cluster as client:
-        for result in engine.run_jobs(client, jobs):
-            report.add("file", result.as_record())
-            counts[result.outcome] += 1
-            yield result
+        yield partial(engine.run_jobs, client)
 
 
 def _now() -> str:

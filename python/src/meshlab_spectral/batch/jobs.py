@@ -6,21 +6,22 @@ import math
 from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
 
-Outcome = Literal["filtered", "failed", "unchanged"]
+Outcome = Literal["filtered", "measured", "failed", "unchanged"]
 
 
 @dataclass(frozen=True)
 class Job:
-    """What a worker needs to know to make one output; plain values, so that it can be sent.
+    """What a worker needs to know to deal with one file; plain values, so that it can be sent.
 
     Attributes
     ----------
     source, target
-        Places of the input and the output: absolute paths, or URLs.
+        Places of the input and the output: absolute paths, or URLs. No target: nothing is written,
+        the report is the result.
     name
         Of the output, relative to the folder of the outputs.
     work
-        The job of `child`, without its files: "task", and "options" or "script".
+        The job of `child`, without its files: "task", and what belongs to it.
     options
         What the work depends on, for the report: two jobs with equal options and equal inputs have
         equal results.
@@ -29,7 +30,7 @@ class Job:
     """
 
     source: str
-    target: str
+    target: str | None
     name: str
     work: dict[str, Any] = field(hash=False)
     options: dict[str, Any] = field(hash=False)
@@ -44,7 +45,7 @@ class FileResult:
     ----------
     outcome
         "filtered": the output is there, whole; "failed": it is as it was before; "unchanged": an
-        earlier run had made it, as its report proves.
+        earlier run had made it, as its report proves. "measured": done, and without an output.
     input, output
         Places: absolute paths, or URLs.
     name
@@ -69,7 +70,7 @@ class FileResult:
 
     outcome: Outcome
     input: str
-    output: str
+    output: str | None
     name: str
     reason: str | None = None
     options: dict[str, Any] = field(default_factory=dict)

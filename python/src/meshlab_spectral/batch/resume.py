@@ -46,7 +46,7 @@ def proved_done(
     dict
         For every such job what the record says of it, as "unchanged".
     """
-    candidates = [job for job in jobs if records.get(job.name)]
+    candidates = [job for job in jobs if job.target is not None and records.get(job.name)]
     with ThreadPoolExecutor() as pool:  # reading is what takes the time
         found = pool.map(lambda job: _proof(job, records[job.name], versions), candidates)
         return {job: result for job, result in zip(candidates, found, strict=True) if result}
@@ -62,6 +62,7 @@ def _proof(
     ]
     if not fitting:
         return None
+    assert job.target is not None
     output, source = digest_at(job.target), digest_at(job.source)
     if output is None or source is None:
         return None

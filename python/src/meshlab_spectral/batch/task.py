@@ -30,7 +30,7 @@ def run_job(job: Job, memory_limit: int | None = None) -> FileResult:
     Returns
     -------
     FileResult
-        "filtered" or "failed": no error of a single file is raised.
+        "filtered", "measured" or "failed": no error of a single file is raised.
     """
     begin = time.monotonic()
     result: dict[str, Any] = {"outcome": "failed", "waited": 0.0}
@@ -38,13 +38,16 @@ def run_job(job: Job, memory_limit: int | None = None) -> FileResult:
     try:
         with storage.reading(job.source) as source:
             result["input_sha256"] = storage.digest(source)
-            with storage.writing(job.target) as scratch:
-                work = job.work | {"source": str(source), "scratch": str(scratch)}
+            work = job.work | {"source": str(source)}
+            if job.target is None:
                 answer = _attempt(work, limits, result)
-                if scratch.is_file():
-                    result["output_sha256"] = storage.digest(scratch)
-        result |= {"outcome": "filtered", "report": answer.report}
-        result["peak_memory"] = answer.peak_memory
+            else:
+                with storage.writing(job.target) as scratch:
+                    answer = _attempt(work | {"scratch": str(scratch)}, limits, result)
+                    if scratch.is_file():
+                        result["output_sha256"] = storage.digest(scratch)
+        result["outcome"] = "measured" if job.target is None else "filtered"
+        result |= {"report": answer.report, "peak_memory": answer.peak_memory}
     except SpectralError as error:
         result |= {"reason": str(error), "output_sha256": None}
     except OSError as error:
