@@ -94,7 +94,7 @@ def test_nothing_that_exists_is_replaced_unasked(tmp_path: Path) -> None:
     batch = ["batch", source, "--output", out, "--steps", 1, "--workers", 1]
     assert_fails(command(*batch), 2, str(out / paths[1].name), "--overwrite")
     assert contents(out) == {paths[1].name: PRECIOUS}
-    assert_fails(command(*batch, "--resume"), 2, "no report")
+    assert_fails(command(*batch, "--resume"), 2, "exist already")
     done = command(*batch, "--overwrite")
     assert done.returncode == 0, done.stderr
     assert len(arrays_of(out / paths[1].name)[0]) == 144

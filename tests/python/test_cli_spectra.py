@@ -6,6 +6,7 @@ import csv
 from pathlib import Path
 
 import meshlab_spectral
+import numpy as np
 import pytest
 from commands import PRECIOUS, arrays_of, assert_fails, command
 
@@ -31,8 +32,9 @@ def test_the_table_has_the_octaves_of_every_mesh(cow: Path, samples: Path, tmp_p
             values = [float(row[column]) for row in of_mesh]
             assert values == pytest.approx(list(expected), rel=1e-5)
         assert sum(float(row["energy_share"]) for row in of_mesh) == pytest.approx(1, rel=1e-5)
-        percents = [float(row["feature_size_percent"]) for row in of_mesh]
-        assert percents[:4] == pytest.approx([400, 200, 100, 50])
+        octaves = np.log2([float(row["feature_size_percent"]) / 100 for row in of_mesh])
+        np.testing.assert_allclose(octaves, np.round(octaves), atol=1e-5)
+        np.testing.assert_allclose(np.diff(octaves), -1, atol=1e-5)
     assert len(rows) == sum(row["mesh"] in (str(cow), str(bone)) for row in rows)
 
 

@@ -20,6 +20,9 @@ from meshlab_spectral.whole_files import USUAL_FORMATS, writing_whole
 
 StageCallback = Callable[[str], None]
 
+# In which MeshLab writes triangles that were read as one polygon as that polygon again.
+_POLYGON_FORMATS = (".obj", ".off")
+
 
 def filter_file(
     source: Path,
@@ -188,15 +191,25 @@ def _read(mesh_set: Any, source: Path) -> None:
 def _write(mesh_set: Any, scratch: Path, source: Path) -> None:
     import pymeshlab
 
+    settings = {"save_textures": _textures_to_be_saved(mesh_set, scratch, source)}
+    if scratch.suffix.lower() in _POLYGON_FORMATS and _has_non_manifold_edges(mesh_set):
+        # MeshLab would look for the ends of its polygons for ever, and take all of the memory.
+        settings["save_polygonal"] = False
     try:
-        mesh_set.save_current_mesh(
-            str(scratch), save_textures=_textures_to_be_saved(mesh_set, scratch, source)
-        )
+        mesh_set.save_current_mesh(str(scratch), **settings)
     except pymeshlab.PyMeshLabException as error:
         reason = reason_of(error).rsplit(": ", 1)[-1]  # without the scratch file's name
         raise MeshFileError(
             f"{scratch.name} cannot be written ({reason}): is the disk full?"
         ) from error
+
+
+def _has_non_manifold_edges(mesh_set: Any) -> bool:
+    """Whether some edge has more than two faces."""
+    F = mesh_set.current_mesh().face_matrix()
+    edges = np.sort(np.vstack([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]]), axis=1)
+    _, faces = np.unique(edges, axis=0, return_counts=True)
+    return bool((faces > 2).any())
 
 
 def _textures_to_be_saved(mesh_set: Any, scratch: Path, source: Path) -> bool:

@@ -80,11 +80,6 @@ def plan_batch(
         lines = list(read_report(report_path))
         records = done_records(lines)
         begun = min((line["begun"] for line in lines if line.get("kind") == "run"), default=None)
-        if resume and begun is None:
-            raise InputError(
-                f"there is no report of an earlier run in {report_path} to resume: name it with "
-                "--report, or leave out --resume"
-            )
     planned = plan_outputs(
         _inputs(inputs, folder, recursive, report_path, records), folder, name, ending
     )
@@ -137,8 +132,8 @@ def filter_files(
     overwrite
         Replace outputs that exist. An input is never replaced.
     resume
-        Take up an earlier run: leave out what its report proves done with the same options, the
-        same inputs and the same versions.
+        Take up an earlier run, if there was one: leave out what its report proves done with the
+        same options, the same inputs and the same versions.
     report
         File that gets one JSON line a file, by default batch_report.jsonl in `output`.
     timeout
