@@ -76,6 +76,29 @@ def test_one_process_serves_many_files_until_one_fails(cow: Path, tmp_path: Path
     assert pids[0] == pids[1] != pids[2]
 
 
+def pid_after(job: Job, **limits: int) -> int | None:
+    """Do a job; the id of the process that waits for the next one."""
+    result = run_job(job, **limits)
+    assert result.outcome == "filtered", result.reason
+    return processes._idle[0].pid if processes._idle else None
+
+
+def test_a_process_is_replaced_after_its_share_of_meshes(
+    cow: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("meshlab_spectral.batch.processes._JOBS_PER_PROCESS", 2)
+    pids = [pid_after(job_of(cow, tmp_path / f"{k}.ply")) for k in range(4)]
+    assert pids[1] is pids[3] is None
+    assert pids[0] != pids[2]
+
+
+def test_a_process_that_has_grown_is_replaced(cow: Path, tmp_path: Path) -> None:
+    """It holds some 80 MiB from its start on: a quarter of 300 MiB, but not of 1 GiB."""
+    job = job_of(cow, tmp_path / "out.ply")
+    assert pid_after(job, memory_limit=2**30) is not None
+    assert pid_after(job, memory_limit=300 * 2**20) is None
+
+
 def test_a_mesh_that_kills_its_process_is_tried_again_once(
     samples: Path, existing: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

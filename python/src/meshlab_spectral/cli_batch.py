@@ -11,8 +11,9 @@ from typing import Annotated, Any
 
 import typer
 
-from meshlab_spectral.batch.files import Batch, plan_batch, run_batch
+from meshlab_spectral.batch.files import run_batch
 from meshlab_spectral.batch.outputs import DEFAULT_PATTERN
+from meshlab_spectral.batch.plan import Batch, plan_batch
 from meshlab_spectral.batch.progress import batch_progress
 from meshlab_spectral.batch.report import DEFAULT_NAME
 from meshlab_spectral.command_line import (

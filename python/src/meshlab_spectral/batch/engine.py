@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import itertools
 import logging
 import os
 import signal
@@ -12,7 +13,7 @@ from typing import Any
 
 import dask
 from dask.system import CPU_COUNT
-from distributed import Client, KilledWorker, LocalCluster, WorkerPlugin, as_completed
+from distributed import Client, Future, KilledWorker, LocalCluster, WorkerPlugin, as_completed
 from distributed.system import MEMORY_LIMIT
 
 from meshlab_spectral.batch.jobs import FileResult, Job
@@ -25,6 +26,7 @@ from meshlab_spectral.versions import versions
 _SHARE_OF_MEMORY = 0.9
 _SECONDS_TO_CONNECT = 10
 _SECONDS_TO_CLOSE = 5
+_FEWEST_SUBMITTED = 200
 # While MeshLab works on one mesh, the worker reads and writes the files of another.
 _JOBS_PER_WORKER = 2
 # Dask watches itself for its dashboard, a hundred times a second; on small meshes and few
@@ -127,13 +129,24 @@ def run_jobs(client: Client, jobs: Sequence[Job]) -> Iterator[FileResult]:
     BatchError
         When the cluster has gone.
     """
-    if not jobs:
-        return
-    futures = client.map(run_job, jobs, pure=False, key="filter")
-    job_of = dict(zip(futures, jobs, strict=True))
-    done = as_completed(futures, loop=client.loop, with_results=True, raise_errors=False)
+    # A scheduler that knows of all at once would be slow at first, and large.
+    window = max(_FEWEST_SUBMITTED, 4 * sum(client.nthreads().values()))
+    waiting = iter(jobs)
+    job_of: dict[Future, Job] = {}
+    done = as_completed(loop=client.loop, with_results=True, raise_errors=False)
+
+    def submit(count: int) -> None:
+        chosen = list(itertools.islice(waiting, count))
+        if chosen:
+            futures = client.map(run_job, chosen, pure=False, key="filter")
+            job_of.update(zip(futures, chosen, strict=True))
+            done.update(futures)
+
+    submit(window)
     for future, _ in done:
         job = job_of.pop(future)
+        if len(job_of) <= window // 2:
+            submit(window // 2)
         if future.status == "finished":
             yield future.result()
         elif future.status == "error":
@@ -142,7 +155,6 @@ def run_jobs(client: Client, jobs: Sequence[Job]) -> Iterator[FileResult]:
             raise BatchError(
                 "the Dask cluster has gone: start it again, then run the same command with --resume"
             )
-        future.release()
 
 
 def _failed(job: Job, error: BaseException) -> FileResult:

@@ -43,7 +43,7 @@ def batch_progress(console: Console, files: int) -> Iterator[Callable[[FileResul
         SpinnerColumn(),
         BarColumn(),
         MofNCompleteColumn(),
-        TextColumn("{task.fields[failed]} failed", style="red"),
+        TextColumn("{task.fields[failed]}"),
         TextColumn("{task.fields[rate]}"),
         TimeElapsedColumn(),
         TextColumn("left:"),
@@ -53,7 +53,7 @@ def batch_progress(console: Console, files: int) -> Iterator[Callable[[FileResul
         disable=not console.is_terminal,
         redirect_stdout=False,
     ) as progress:
-        task = progress.add_task("", total=files, failed=0, rate="")
+        task = progress.add_task("", total=files, failed="0 failed", rate="")
         begin = time.monotonic()
         worked = failed = 0
 
@@ -70,6 +70,7 @@ def batch_progress(console: Console, files: int) -> Iterator[Callable[[FileResul
                 )
             worked += result.outcome != "unchanged"
             rate = worked / max(time.monotonic() - begin, 1e-3)
-            progress.update(task, advance=1, failed=failed, rate=f"{rate:.1f} files/s")
+            told = f"[red]{failed} failed[/red]" if failed else "0 failed"
+            progress.update(task, advance=1, failed=told, rate=f"{rate:.1f} files/s")
 
         yield update
