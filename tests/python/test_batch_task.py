@@ -93,10 +93,10 @@ def test_a_process_is_replaced_after_its_share_of_meshes(
 
 
 def test_a_process_that_has_grown_is_replaced(cow: Path, tmp_path: Path) -> None:
-    """It holds some 80 MiB from its start on: a quarter of 300 MiB, but not of 1 GiB."""
+    """It holds some 80 MiB from its start on: half of 150 MiB, but not of 1 GiB."""
     job = job_of(cow, tmp_path / "out.ply")
     assert pid_after(job, memory_limit=2**30) is not None
-    assert pid_after(job, memory_limit=300 * 2**20) is None
+    assert pid_after(job, memory_limit=150 * 2**20) is None
 
 
 def test_a_mesh_that_kills_its_process_is_tried_again_once(

@@ -12,7 +12,7 @@ import meshlab_spectral
 import numpy as np
 import psutil
 import pytest
-from batches import REPORT, contents, make_meshes, records, wait_until
+from batches import REPORT, alive, contents, make_meshes, records, wait_until
 from commands import command
 from helpers import filter_arrays, percent
 from meshlab_spectral import (
@@ -90,15 +90,15 @@ def test_filter_files_checks_everything_before_it_begins(meshes: Path, tmp_path:
 
 
 def test_stopping_the_iteration_ends_the_workers(meshes: Path, tmp_path: Path) -> None:
+    this = psutil.Process()
+    before = this.children(recursive=True)
     results = filter_files(meshes, tmp_path / "out", workers=1, steps=1)
     next(results)
+    started = [child for child in this.children(recursive=True) if child not in before]
+    workers = [child for child in started if "resource_tracker" not in " ".join(child.cmdline())]
+    assert len(workers) >= 2  # a worker, and MeshLab's process in it
     results.close()
-    ended = [
-        child
-        for child in psutil.Process().children(recursive=True)
-        if "meshlab_spectral" in " ".join(child.cmdline())
-    ]
-    wait_until(lambda: not any(child.is_running() for child in ended))
+    wait_until(lambda: not alive(workers))
     assert not list((tmp_path / "out").glob(".*"))
 
 

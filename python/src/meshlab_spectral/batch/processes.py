@@ -12,7 +12,7 @@ from meshlab_spectral.meshlab_process import JobLimits, MeshLabProcess
 # pymeshlab leaks: a process is replaced after so many meshes, or when it holds more than this part
 # of what it may with nothing to do.
 _JOBS_PER_PROCESS = 250
-_IDLE_SHARE = 0.25
+_IDLE_SHARE = 0.5
 
 
 class Processes:
