@@ -31,6 +31,13 @@ _KEPT_LOG_LINES = 30
 # Seconds between looks at the clock and the memory. In this time memory can grow by some 100 MB.
 _LOOK_INTERVAL = 0.05
 _PAGE = os.sysconf("SC_PAGE_SIZE")
+# By default glibc gives the memory of every matrix back to the system, and takes it anew for the
+# next one: a tenth of the time of a small mesh, a fifth when two processes do so at once. These
+# keep up to 128 MiB at hand.
+_ALLOCATOR = {
+    "MALLOC_MMAP_THRESHOLD_": str(32 * 2**20),
+    "MALLOC_TRIM_THRESHOLD_": str(128 * 2**20),
+}
 
 
 @dataclass(frozen=True)
@@ -76,6 +83,7 @@ class MeshLabProcess:
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
                 pass_fds=[lifeline],
+                env=_ALLOCATOR | os.environ,
             )
         finally:
             os.close(lifeline)
