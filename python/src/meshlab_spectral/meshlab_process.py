@@ -83,7 +83,7 @@ class MeshLabProcess:
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
                 pass_fds=[lifeline],
-                env=_ALLOCATOR | os.environ,
+                env={**os.environ, **_ALLOCATOR},  # of a Dask worker: it wants the opposite
             )
         finally:
             os.close(lifeline)

@@ -47,7 +47,8 @@ def local_workers(count: int | None = None, memory_limit: int | None = None) -> 
     Parameters
     ----------
     count
-        Of workers, each with one mesh at a time; by default that of the processors.
+        Of workers, each with one mesh at a time and, as Dask wants it, one thread for the numerical
+        libraries; by default that of the processors.
     memory_limit
         Bytes for each; by default they share nine tenths of the memory that this process may use.
 
@@ -58,7 +59,7 @@ def local_workers(count: int | None = None, memory_limit: int | None = None) -> 
     """
     count = count or CPU_COUNT
     limit = memory_limit or int(_SHARE_OF_MEMORY * MEMORY_LIMIT / count)
-    with _quiet_log(), _one_thread_each(), dask.config.set(_NO_STATISTICS):
+    with _quiet_log(), dask.config.set(_NO_STATISTICS):
         # Ctrl-C reaches every process of the terminal; only this one decides what it means. The
         # threads that are started here, and the workers that these start, keep the mask; unless
         # they started Python's resource tracker, which takes it off.
@@ -240,19 +241,3 @@ def _quiet_log() -> Iterator[None]:
         yield
     finally:
         logger.setLevel(level)
-
-
-@contextlib.contextmanager
-def _one_thread_each() -> Iterator[None]:
-    """Have the numerical libraries of the workers, and of what they start, use one thread.
-
-    The meshes are what is done in parallel; threads of their own would be in each other's way.
-    """
-    names = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-    added = [name for name in names if name not in os.environ]
-    os.environ.update(dict.fromkeys(added, "1"))
-    try:
-        yield
-    finally:
-        for name in added:
-            del os.environ[name]
