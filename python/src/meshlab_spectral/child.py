@@ -41,18 +41,19 @@ _PEAK = re.compile(r"^VmHWM:\s+(\d+) kB$", re.MULTILINE)
 def _report_of(job: dict[str, Any], on_stage: StageCallback) -> dict[str, Any]:
     """Do a job."""
     source, task = Path(job["source"]), job["task"]
+    verbose = job.get("verbose", True)  # the log tells the progress within a mesh
     if task == "spectrum":
         on_stage("reading")
         V, F = load_arrays(source)
         on_stage("measuring")
-        # Its log is the only source of progress.
-        return plain_report(measure(V, F, job["parameters"], verbose=True))
+        return plain_report(measure(V, F, job["parameters"], verbose=verbose))
     scratch = Path(job["scratch"])
     if task == "basis":
         return basis_to_scratch(source, scratch, **job["options"], on_stage=on_stage)
     if task == "script":
-        return script_to_scratch(source, scratch, job["script"], on_stage)
-    return filter_to_scratch(source, scratch, FilterOptions.from_dict(job["options"]), on_stage)
+        return script_to_scratch(source, scratch, job["script"], on_stage, verbose)
+    options = FilterOptions.from_dict(job["options"])
+    return filter_to_scratch(source, scratch, options, on_stage, verbose)
 
 
 def _end_with_parent(lifeline: int) -> None:

@@ -63,28 +63,35 @@ def filter_file(
 
 
 def filter_to_scratch(
-    source: Path, scratch: Path, options: FilterOptions, on_stage: StageCallback
+    source: Path,
+    scratch: Path,
+    options: FilterOptions,
+    on_stage: StageCallback,
+    verbose: bool = True,
 ) -> dict[str, Any]:
     """Filter `source` into `scratch`, a file from `writing_whole`.
 
     Parameters and errors are those of `filter_file`; after an error `scratch` may be half-written.
+    With `verbose`, MeshLab writes its log, the only source of progress.
     """
 
     def apply(mesh_set: Any) -> dict[str, Any]:
         return plain_report(call_filter(mesh_set, FILTER_NAME, options.pymeshlab_parameters()))
 
-    return _process(source, scratch, apply, on_stage)
+    return _process(source, scratch, apply, on_stage, verbose)
 
 
 def script_to_scratch(
-    source: Path, scratch: Path, script: str, on_stage: StageCallback
+    source: Path, scratch: Path, script: str, on_stage: StageCallback, verbose: bool = True
 ) -> dict[str, Any]:
     """Apply the text of a MeshLab script to `source`; write the result into `scratch`.
 
     The result is the mesh that is the current one at the script's end. Errors are those of
     `filter_file` and `filter_script.apply_script`, which also tells of the report.
     """
-    return _process(source, scratch, lambda mesh_set: apply_script(mesh_set, script), on_stage)
+    return _process(
+        source, scratch, lambda mesh_set: apply_script(mesh_set, script), on_stage, verbose
+    )
 
 
 def _process(
@@ -92,13 +99,14 @@ def _process(
     scratch: Path,
     apply: Callable[[Any], dict[str, Any]],
     on_stage: StageCallback,
+    verbose: bool,
 ) -> dict[str, Any]:
     import pymeshlab
 
     load()
     on_stage("reading")
     _check_writable_format(scratch)
-    mesh_set = pymeshlab.MeshSet(verbose=True)  # its log is the only source of progress
+    mesh_set = pymeshlab.MeshSet(verbose=verbose)
     _read(mesh_set, source)
     on_stage("filtering")
     report = apply(mesh_set)

@@ -38,7 +38,7 @@ def run_job(job: Job, memory_limit: int | None = None) -> FileResult:
     try:
         with storage.reading(job.source) as source:
             result["input_sha256"] = storage.digest(source)
-            work = job.work | {"source": str(source)}
+            work = job.work | {"source": str(source), "verbose": False}
             if job.target is None:
                 answer = _attempt(work, limits, result)
             else:
