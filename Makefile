@@ -31,7 +31,7 @@ PACKAGE_SOURCES := CMakeLists.txt $(shell find plugin python -not -path '*/__pyc
 # Two targets at once would fetch MeshLab's headers twice; ninja uses every core anyway.
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help demo test gui-test screenshots setup build bench bench-basis lint format clean
+.PHONY: help demo test gui-test screenshots setup build bench bench-basis bench-batch lint format clean
 
 help:  ## list these commands
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 20
@@ -68,6 +68,9 @@ bench: build $(PACKAGE)  ## measure time, memory and artefacts
 bench-basis: BENCHMARKS := ON
 bench-basis: build $(PACKAGE) $(COMPETITORS)  ## compare the truncated basis with other programs
 	$(BIN)/python tests/benchmarks/bench_basis.py --mesh $(BENCH_MESH) $(BENCH_OPTIONS)
+
+bench-batch: $(PACKAGE)  ## measure a batch of 1,000 meshes against one process
+	$(BIN)/python tests/benchmarks/bench_batch.py
 
 lint: setup  ## check style and types, change nothing
 	$(CPP_FILES) | xargs $(BIN)/clang-format --dry-run -Werror

@@ -16,11 +16,18 @@ import meshlab_spectral
 import pymeshlab
 import pytest
 from commands import PRECIOUS
+from hypothesis import HealthCheck, settings
 from numpy.typing import NDArray
 
 SAMPLES = Path(pymeshlab.__file__).parent / "tests" / "sample_meshes"
 SAMPLE_NAMES = ("bunny.obj", "bone.ply", "cow.obj")
 DATA_VARIABLE = "MESHLAB_SPECTRAL_DATA"
+
+# The same examples in every run; and a busy machine is no failure.
+settings.register_profile(
+    "seeded", derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow]
+)
+settings.load_profile("seeded")
 
 Arrays = tuple[NDArray[Any], NDArray[Any]]
 

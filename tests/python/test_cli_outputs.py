@@ -27,6 +27,27 @@ def test_every_usual_format_is_written(ending: str, cow: Path, tmp_path: Path) -
         assert largest_distance(V, expected) < 1e-6 * diagonal(expected)
 
 
+@pytest.mark.parametrize("ending", [".obj", ".off"])
+def test_polygons_that_meet_in_a_non_manifold_edge_are_written(ending: str, tmp_path: Path) -> None:
+    """On some of them MeshLab's writer of polygons does not end."""
+    source, target = tmp_path / "in.obj", tmp_path / f"out{ending}"
+    corners = "0 0 0", "1 0 0", "1 1 0", "0 1 0", "0 0 1", "1 0 1", "0 -1 0", "1 -1 0"
+    quads = "1 2 3 4", "1 2 6 5", "1 2 8 7", "1 2 3 4"
+    lines = [f"v {corner}" for corner in corners] + [f"f {quad}" for quad in quads]
+    source.write_text("\n".join(lines) + "\n")
+    done = command("filter", source, target, "--steps", 1)
+    assert done.returncode == 0, done.stderr
+    assert len(arrays_of(target)[1]) == 8
+
+
+def test_the_polygons_of_an_obj_stay_polygons(tmp_path: Path) -> None:
+    source, target = tmp_path / "in.obj", tmp_path / "out.obj"
+    source.write_text("v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n")
+    assert command("filter", source, target, "--steps", 1).returncode == 0
+    faces = [line for line in target.read_text().splitlines() if line.startswith("f ")]
+    assert [len(face.split()) for face in faces] == [5]
+
+
 def test_colour_and_quality_are_in_the_output(samples: Path, tmp_path: Path) -> None:
     source, target = samples / "colored_airplane.ply", tmp_path / "airplane.ply"
     assert command("filter", source, target, "--steps", 1).returncode == 0

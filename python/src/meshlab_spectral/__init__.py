@@ -10,7 +10,17 @@
 from importlib.metadata import version
 
 from meshlab_spectral.artefacts import Artefacts, measure_artefacts
-from meshlab_spectral.errors import FilterError, MeshFileError, OptionError, PluginError
+from meshlab_spectral.batch.files import filter_files
+from meshlab_spectral.batch.jobs import FileResult
+from meshlab_spectral.errors import (
+    BatchError,
+    FilterError,
+    InputError,
+    MeshFileError,
+    OptionError,
+    PluginError,
+)
+from meshlab_spectral.filter_arrays import filter_mesh
 from meshlab_spectral.harmonics import Harmonics, manifold_harmonics
 from meshlab_spectral.options import FilterOptions
 from meshlab_spectral.plugin import load
@@ -18,13 +28,18 @@ from meshlab_spectral.spectrum import GeometrySpectrum, geometry_spectrum
 
 __all__ = [
     "Artefacts",
+    "BatchError",
+    "FileResult",
     "FilterError",
     "FilterOptions",
     "GeometrySpectrum",
     "Harmonics",
+    "InputError",
     "MeshFileError",
     "OptionError",
     "PluginError",
+    "filter_files",
+    "filter_mesh",
     "geometry_spectrum",
     "load",
     "manifold_harmonics",

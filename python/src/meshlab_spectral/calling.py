@@ -38,9 +38,22 @@ def call_filter(mesh_set: Any, name: str, parameters: dict[str, Any]) -> dict[st
     try:
         report: dict[str, Any] = mesh_set.apply_filter(name, **parameters)
     except pymeshlab.PyMeshLabException as error:
-        _failed_mesh_sets.append(mesh_set)
+        keep_failed(mesh_set)
         raise FilterError(reason_of(error)) from error
     return report
+
+
+def keep_failed(mesh_set: Any) -> None:
+    """Keep a MeshSet in which a filter has failed from being destroyed."""
+    _failed_mesh_sets.append(mesh_set)
+
+
+def plain_report(report: dict[str, Any]) -> dict[str, Any]:
+    """Turn the arrays of a filter's report into lists, which JSON can hold."""
+    return {
+        name: value.tolist() if hasattr(value, "tolist") else value
+        for name, value in report.items()
+    }
 
 
 def reason_of(error: Exception) -> str:

@@ -14,19 +14,21 @@ from rich.console import Console
 
 from meshlab_spectral import __version__
 from meshlab_spectral.cli_basis import BASIS_HELP, basis_command
+from meshlab_spectral.cli_batch import BATCH_HELP, batch_command
 from meshlab_spectral.cli_install import INSTALL_HELP, install_command
+from meshlab_spectral.cli_spectra import SPECTRA_HELP, spectra_command
 from meshlab_spectral.cli_spectrum import SPECTRUM_HELP, spectrum_command
 from meshlab_spectral.command_line import (
     EXIT_CODES,
     MESSAGES,
     errors_reported,
     progress_shown,
-    versions,
     with_filter_options,
 )
 from meshlab_spectral.figures import FIGURES, draw_figures
 from meshlab_spectral.options import FilterOptions
 from meshlab_spectral.report import report_table, report_warnings
+from meshlab_spectral.versions import versions
 from meshlab_spectral.worker import filter_file_in_child
 
 # "\b" keeps a paragraph's lines as they are.
@@ -154,7 +156,9 @@ def figures_command(
 
 
 app.command("basis", help=BASIS_HELP, epilog=EXIT_CODES)(basis_command)
+app.command("batch", help=BATCH_HELP, epilog=EXIT_CODES)(batch_command)
 app.command("install", help=INSTALL_HELP, epilog=EXIT_CODES)(install_command)
+app.command("spectra", help=SPECTRA_HELP, epilog=EXIT_CODES)(spectra_command)
 app.command("spectrum", help=SPECTRUM_HELP, epilog=EXIT_CODES)(spectrum_command)
 
 

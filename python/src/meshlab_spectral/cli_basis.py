@@ -10,8 +10,8 @@ import typer
 from meshlab_spectral.command_line import errors_reported, progress_shown
 from meshlab_spectral.figures.harmonics import check_modes, check_picture, draw_basis_file
 from meshlab_spectral.harmonics import DEFAULT_BASIS_SIZE
-from meshlab_spectral.meshfile import check_target
 from meshlab_spectral.options import Boundary, LaplacianKind
+from meshlab_spectral.whole_files import check_target
 from meshlab_spectral.worker import basis_file_in_child
 
 # "\b" keeps a paragraph's lines as they are.

@@ -15,16 +15,18 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from meshlab_spectral.calling import plain_report
 from meshlab_spectral.command_line import (
     errors_reported,
     progress_shown,
-    versions,
     with_some_filter_options,
 )
-from meshlab_spectral.meshfile import check_source, plain_report, writing_whole
+from meshlab_spectral.meshfile import check_source
 from meshlab_spectral.options import FilterOptions
 from meshlab_spectral.spectrum import DEFAULT_BASIS_SIZE, GeometrySpectrum
 from meshlab_spectral.spectrum_plot import check_format, draw_spectrum, length_of, octave_gains
+from meshlab_spectral.versions import versions
+from meshlab_spectral.whole_files import writing_whole
 from meshlab_spectral.worker import measure_spectrum_in_child
 
 # "\b" keeps a paragraph's lines as they are.

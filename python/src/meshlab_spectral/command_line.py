@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import contextlib
 import inspect
-import platform
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import fields
-from importlib.metadata import version
 from typing import Annotated, Any, get_type_hints
 
 import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-from meshlab_spectral.errors import FormatError, OptionError, SpectralError
+from meshlab_spectral.errors import FormatError, InputError, OptionError, SpectralError
+from meshlab_spectral.meshlab_process import ProgressCallback
 from meshlab_spectral.options import FilterOptions, Length
-from meshlab_spectral.worker import ProgressCallback
 
 EXIT_FAILED, EXIT_USAGE, EXIT_INTERRUPTED = 1, 2, 130
 
@@ -30,15 +28,6 @@ MESSAGES = Console(stderr=True)
 Command = Callable[..., None]
 
 
-def versions() -> dict[str, str]:
-    """Tell the versions that a result may depend on."""
-    return {
-        "meshlab_spectral": version("meshlab-spectral"),
-        "pymeshlab": version("pymeshlab"),
-        "python": platform.python_version(),
-    }
-
-
 def with_filter_options(command: Command) -> Command:
     """Give a command one option per field of FilterOptions, handed to it as `options`."""
     return with_some_filter_options([option.name for option in fields(FilterOptions)])(command)
@@ -48,17 +37,55 @@ def with_some_filter_options(names: Collection[str]) -> Callable[[Command], Comm
     """Give a command options for these fields of FilterOptions; the others have their defaults."""
 
     def decorate(command: Command) -> Command:
-        return _with_options(names, command)
+        def run(given: dict[str, Any], arguments: dict[str, Any]) -> None:
+            command(options=_checked(given), **arguments)
+
+        return _with_options(names, command, "options", run)
 
     return decorate
 
 
-def _with_options(names: Collection[str], command: Command) -> Command:
+def with_given_filter_options(command: Command) -> Command:
+    """Give a command one option per field of FilterOptions, handed to it as `given`.
+
+    `given` is a dict, as `FilterOptions.from_dict` takes it, of those options only that are on the
+    command line; they have been checked. The command has a parameter `context: typer.Context`.
+    """
+
+    def run(values: dict[str, Any], arguments: dict[str, Any]) -> None:
+        source = arguments["context"].get_parameter_source
+        given = {
+            name: value for name, value in values.items() if source(name).name == "COMMANDLINE"
+        }
+        _checked(given)
+        command(given=given, **arguments)
+
+    names = [option.name for option in fields(FilterOptions)]
+    return _with_options(names, command, "given", run)
+
+
+def _checked(given: dict[str, Any]) -> FilterOptions:
+    try:
+        return FilterOptions(**given)
+    except OptionError as error:
+        raise typer.BadParameter(str(error)) from error
+
+
+def _with_options(
+    names: Collection[str],
+    command: Command,
+    place: str,
+    call: Callable[[dict[str, Any], dict[str, Any]], None],
+) -> Command:
+    """Make a command of the options `names` and those of `command` but `place`.
+
+    It hands the values of the first and of the second to `call`.
+    """
     types = get_type_hints(FilterOptions)
     own = [
         parameter
         for parameter in inspect.signature(command, eval_str=True).parameters.values()
-        if parameter.name != "options"
+        if parameter.name != place
     ]
     added = []
     for option in fields(FilterOptions):
@@ -79,12 +106,8 @@ def _with_options(names: Collection[str], command: Command) -> Command:
         )
 
     def run(**arguments: Any) -> None:
-        given = {parameter.name: arguments.pop(parameter.name) for parameter in added}
-        try:
-            options = FilterOptions(**given)
-        except OptionError as error:
-            raise typer.BadParameter(str(error)) from error
-        command(options=options, **arguments)
+        values = {parameter.name: arguments.pop(parameter.name) for parameter in added}
+        call(values, arguments)
 
     parameters = [p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in [*own, *added]]
     run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
@@ -114,7 +137,7 @@ def errors_reported(debug: bool, when_interrupted: str = "no output was written"
             MESSAGES.print_exception()
         # No markup, no wrapping: file names hold brackets, and scripts search for messages.
         MESSAGES.print(f"Error: {error}", markup=False, highlight=False, soft_wrap=True)
-        usage = isinstance(error, OptionError | FormatError)
+        usage = isinstance(error, OptionError | FormatError | InputError)
         raise typer.Exit(EXIT_USAGE if usage else EXIT_FAILED) from error
 
 

@@ -12,11 +12,11 @@ from pathlib import Path
 from rich.console import Console
 
 from meshlab_spectral.errors import SpectralError
-from meshlab_spectral.meshfile import writing_whole
 from meshlab_spectral.options import FilterOptions, Length
 from meshlab_spectral.pictures import Panel, View, draw_side_by_side
 from meshlab_spectral.plugin import FILTER_NAME, load
 from meshlab_spectral.report import report_table
+from meshlab_spectral.whole_files import writing_whole
 
 OPTIONS = FilterOptions(feature_size=Length(15, relative=True), steps=10, basis_update="conformal")
 BUNNY_VIEW = View(direction=(0.25, 0.2, 1.0))

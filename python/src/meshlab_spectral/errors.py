@@ -23,3 +23,23 @@ class MeshFileError(SpectralError):
 
 class FilterError(SpectralError):
     """The filter refused a mesh, or failed on it."""
+
+
+class ProcessDiedError(FilterError):
+    """The process in which MeshLab worked on a mesh ended without an answer."""
+
+
+class TimeLimitError(FilterError):
+    """A mesh took more time than it was given."""
+
+
+class MemoryLimitError(FilterError):
+    """A mesh took more memory than it was given."""
+
+
+class InputError(SpectralError, ValueError):
+    """The inputs and outputs of a batch do not fit together: nothing has been done."""
+
+
+class BatchError(SpectralError):
+    """A batch cannot be run as a whole: its report or its workers are out of reach."""

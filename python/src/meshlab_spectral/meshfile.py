@@ -1,27 +1,27 @@
-"""Mesh files: read one, filter it, write one; an output file is whole or absent."""
+"""Mesh files: read one, filter it, write one."""
 
 from __future__ import annotations
 
-import contextlib
-import filecmp
-import os
-import shutil
+import functools
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from meshlab_spectral.calling import call_filter, reason_of
+from meshlab_spectral.calling import call_filter, plain_report, reason_of
 from meshlab_spectral.errors import FormatError, MeshFileError
+from meshlab_spectral.filter_script import apply_script
 from meshlab_spectral.options import FilterOptions
 from meshlab_spectral.plugin import FILTER_NAME, load
+from meshlab_spectral.whole_files import USUAL_FORMATS, writing_whole
 
 StageCallback = Callable[[str], None]
 
-_USUAL_FORMATS = ".ply, .obj, .stl or .off"
+# In which MeshLab writes triangles that were read as one polygon as that polygon again.
+_POLYGON_FORMATS = (".obj", ".off")
 
 
 def filter_file(
@@ -63,24 +63,56 @@ def filter_file(
 
 
 def filter_to_scratch(
-    source: Path, scratch: Path, options: FilterOptions, on_stage: StageCallback
+    source: Path,
+    scratch: Path,
+    options: FilterOptions,
+    on_stage: StageCallback,
+    verbose: bool = True,
 ) -> dict[str, Any]:
     """Filter `source` into `scratch`, a file from `writing_whole`.
 
     Parameters and errors are those of `filter_file`; after an error `scratch` may be half-written.
+    With `verbose`, MeshLab writes its log, the only source of progress.
     """
+
+    def apply(mesh_set: Any) -> dict[str, Any]:
+        return plain_report(call_filter(mesh_set, FILTER_NAME, options.pymeshlab_parameters()))
+
+    return _process(source, scratch, apply, on_stage, verbose)
+
+
+def script_to_scratch(
+    source: Path, scratch: Path, script: str, on_stage: StageCallback, verbose: bool = True
+) -> dict[str, Any]:
+    """Apply the text of a MeshLab script to `source`; write the result into `scratch`.
+
+    The result is the mesh that is the current one at the script's end. Errors are those of
+    `filter_file` and `filter_script.apply_script`, which also tells of the report.
+    """
+    return _process(
+        source, scratch, lambda mesh_set: apply_script(mesh_set, script), on_stage, verbose
+    )
+
+
+def _process(
+    source: Path,
+    scratch: Path,
+    apply: Callable[[Any], dict[str, Any]],
+    on_stage: StageCallback,
+    verbose: bool,
+) -> dict[str, Any]:
     import pymeshlab
 
     load()
     on_stage("reading")
     _check_writable_format(scratch)
-    mesh_set = pymeshlab.MeshSet(verbose=True)  # its log is the only source of progress
+    mesh_set = pymeshlab.MeshSet(verbose=verbose)
     _read(mesh_set, source)
     on_stage("filtering")
-    report = call_filter(mesh_set, FILTER_NAME, options.pymeshlab_parameters())
+    report = apply(mesh_set)
     on_stage("writing")
     _write(mesh_set, scratch, source)
-    return plain_report(report)
+    return report
 
 
 def load_arrays(source: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
@@ -104,6 +136,8 @@ def check_source(source: Path) -> None:
     """Raise MeshFileError unless `source` is a file that can be read."""
     if source.is_dir():
         raise MeshFileError(f"{source} is a folder: name a mesh file")
+    if source.exists() and not source.is_file():
+        raise MeshFileError(f"{source} is no file but a device or a pipe: name a mesh file")
     try:
         with source.open("rb"):
             pass
@@ -113,105 +147,19 @@ def check_source(source: Path) -> None:
         raise MeshFileError(f"{source} cannot be read ({error.strerror})") from error
 
 
-@contextlib.contextmanager
-def writing_whole(target: Path) -> Iterator[Path]:
-    """Give a scratch file to write instead of `target`; put it in place when all went well.
-
-    The scratch file has the name of `target` and lies in a hidden folder beside it, so that files
-    that a format keeps beside the mesh (materials, textures) are caught, too, and refer to each
-    other by their final names. After an error, nothing of all this remains.
-
-    Yields
-    ------
-    Path
-        The scratch file; it does not exist yet.
-
-    Raises
-    ------
-    MeshFileError
-        When the folder of `target` is missing or takes no files (before anything is yielded), or
-        when the scratch file is not there at the end.
-    """
-    place = target.resolve()  # through a symbolic link, as cp does
-    scratch_folder = _scratch_folder(target, place)
-    try:
-        scratch = scratch_folder / target.name
-        yield scratch
-        try:
-            _put_in_place(scratch, place)
-        except OSError as error:
-            raise MeshFileError(f"{target} cannot be written ({error.strerror})") from error
-    finally:
-        shutil.rmtree(scratch_folder, ignore_errors=True)
-
-
-def check_target(target: Path) -> None:
-    """Raise MeshFileError where `writing_whole` would: before work that would be lost."""
-    _scratch_folder(target, target.resolve()).rmdir()
-
-
-def _scratch_folder(target: Path, place: Path) -> Path:
-    """Make a hidden folder beside `place`, which `target` resolves to."""
-    folder = place.parent
-    if place.exists() and not place.is_file():
-        raise MeshFileError(f"{target} is no file but a folder or a device: name a file to write")
-    if not folder.is_dir():
-        raise MeshFileError(
-            f"the folder {target.parent} of the output does not exist: create it first"
-        )
-    try:
-        return Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=folder))
-    except OSError as error:
-        raise MeshFileError(
-            f"the folder {target.parent} of the output cannot be written to ({error.strerror}): "
-            "choose another folder"
-        ) from error
-
-
-def _put_in_place(scratch: Path, place: Path) -> None:
-    if not scratch.is_file() or scratch.stat().st_size == 0:
-        raise MeshFileError(
-            f"MeshLab wrote nothing for {scratch.name}: choose another format, {_USUAL_FORMATS}"
-        )
-    moves = {
-        path: place.parent / path.relative_to(scratch.parent)
-        for path in sorted(scratch.parent.rglob("*"))
-        if path.is_file() and path != scratch
-    }
-    for path, side_place in moves.items():
-        _check_side_file(path, side_place, scratch.name)
-    if place.exists():
-        shutil.copymode(place, scratch)
-    moves[scratch] = place  # last: what the mesh refers to is there when it appears
-    for path, final in moves.items():
-        final.parent.mkdir(parents=True, exist_ok=True)
-        _sync(path)
-        path.replace(final)
-    _sync(place.parent)
-
-
-def _check_side_file(path: Path, place: Path, mesh_name: str) -> None:
-    """Refuse to replace a file that the user did not name, such as another model's texture."""
-    ours = place.name.startswith(mesh_name)  # out.obj.mtl of out.obj
-    if ours or not place.exists():
-        return
-    if not (place.is_file() and filecmp.cmp(path, place, shallow=False)):
-        raise MeshFileError(
-            f"{mesh_name} needs a file {place.name} beside it, and another file has that name: "
-            "write the output to a folder of its own"
-        )
-
-
-def _sync(path: Path) -> None:
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
-
-
 def _check_writable_format(path: Path) -> None:
-    """Find out before the long computation; pymeshlab offers no list of the formats it writes."""
+    """Find out before the long computation."""
+    if not _is_writable(path.suffix):
+        ending = f"ends in {path.suffix}" if path.suffix else "has no ending"
+        raise FormatError(
+            f"{path.name} {ending}, which MeshLab cannot write: end the name of the output in "
+            f"{USUAL_FORMATS}"
+        )
+
+
+@functools.cache
+def _is_writable(ending: str) -> bool:
+    """Try to write a triangle: pymeshlab offers no list of the formats that it writes."""
     import pymeshlab
 
     mesh_set = pymeshlab.MeshSet()
@@ -219,13 +167,10 @@ def _check_writable_format(path: Path) -> None:
     mesh_set.add_mesh(pymeshlab.Mesh(corners, [[0, 1, 2]]))
     with tempfile.TemporaryDirectory() as folder:
         try:
-            mesh_set.save_current_mesh(str(Path(folder) / f"probe{path.suffix}"))
-        except pymeshlab.PyMeshLabException as error:
-            ending = f"ends in {path.suffix}" if path.suffix else "has no ending"
-            raise FormatError(
-                f"{path.name} {ending}, which MeshLab cannot write: end the name of the output in "
-                f"{_USUAL_FORMATS}"
-            ) from error
+            mesh_set.save_current_mesh(str(Path(folder) / f"probe{ending}"))
+        except pymeshlab.PyMeshLabException:
+            return False
+    return True
 
 
 def _read(mesh_set: Any, source: Path) -> None:
@@ -238,7 +183,7 @@ def _read(mesh_set: Any, source: Path) -> None:
         if reason.startswith("Unknown format"):
             raise MeshFileError(
                 f"{source} ends in {source.suffix or 'nothing'}, which MeshLab cannot read as a "
-                f"mesh: convert it to {_USUAL_FORMATS}"
+                f"mesh: convert it to {USUAL_FORMATS}"
             ) from error
         raise MeshFileError(
             f"{source} cannot be read as a mesh ({reason}): the file is damaged, or is not what "
@@ -254,15 +199,25 @@ def _read(mesh_set: Any, source: Path) -> None:
 def _write(mesh_set: Any, scratch: Path, source: Path) -> None:
     import pymeshlab
 
+    settings = {"save_textures": _textures_to_be_saved(mesh_set, scratch, source)}
+    if scratch.suffix.lower() in _POLYGON_FORMATS and _has_non_manifold_edges(mesh_set):
+        # MeshLab would look for the ends of its polygons for ever, and take all of the memory.
+        settings["save_polygonal"] = False
     try:
-        mesh_set.save_current_mesh(
-            str(scratch), save_textures=_textures_to_be_saved(mesh_set, scratch, source)
-        )
+        mesh_set.save_current_mesh(str(scratch), **settings)
     except pymeshlab.PyMeshLabException as error:
         reason = reason_of(error).rsplit(": ", 1)[-1]  # without the scratch file's name
         raise MeshFileError(
             f"{scratch.name} cannot be written ({reason}): is the disk full?"
         ) from error
+
+
+def _has_non_manifold_edges(mesh_set: Any) -> bool:
+    """Whether some edge has more than two faces."""
+    F = mesh_set.current_mesh().face_matrix()
+    edges = np.sort(np.vstack([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]]), axis=1)
+    _, faces = np.unique(edges, axis=0, return_counts=True)
+    return bool((faces > 2).any())
 
 
 def _textures_to_be_saved(mesh_set: Any, scratch: Path, source: Path) -> bool:
@@ -275,11 +230,3 @@ def _textures_to_be_saved(mesh_set: Any, scratch: Path, source: Path) -> bool:
     beside_input = scratch.parent.parent.samefile(source.resolve().parent)
     within = all(not name.is_absolute() and ".." not in name.parts for name in names)
     return within and not beside_input
-
-
-def plain_report(report: dict[str, Any]) -> dict[str, Any]:
-    """Turn the arrays of a filter's report into lists, which JSON can hold."""
-    return {
-        name: value.tolist() if hasattr(value, "tolist") else value
-        for name, value in report.items()
-    }

@@ -6,6 +6,7 @@ asserts that its names, choices and defaults are those of the plugin.
 
 from __future__ import annotations
 
+import difflib
 import math
 from dataclasses import dataclass, field, fields
 from typing import Any, Literal, get_args, get_type_hints
@@ -223,9 +224,12 @@ class FilterOptions:
                     values[name] = Length.parse(str(values[name]))
                 except OptionError as error:
                     raise OptionError(f"{name} = {error}") from None
-        unknown = values.keys() - {option.name for option in fields(cls)}
-        if unknown:
-            raise OptionError(f"unknown options: {', '.join(sorted(unknown))}")
+        known = [option.name for option in fields(cls)]
+        for name in values:
+            if name not in known:
+                similar = difflib.get_close_matches(name, known, n=1)
+                hint = f"did you mean {similar[0]}?" if similar else f"known are {', '.join(known)}"
+                raise OptionError(f"there is no option {name}: {hint}")
         return cls(**values)
 
     def pymeshlab_parameters(self) -> dict[str, Any]:

@@ -7,6 +7,13 @@ from pathlib import Path
 from meshlab_spectral.errors import PluginError
 
 FILTER_NAME = "apply_coord_spectral_filter_fractional"
+# The plugin's filters: name in MeshLab's menus and scripts -> name in Python.
+FILTERS = {
+    "Spectral Filter (Fractional)": FILTER_NAME,
+    "Spectral Artefacts": "compute_scalar_spectral_artefacts_per_vertex",
+    "Manifold Harmonics": "compute_scalar_manifold_harmonic_per_vertex",
+    "Geometry Spectrum": "get_geometry_spectrum",
+}
 PLUGIN_VARIABLE = "MESHLAB_SPECTRAL_PLUGIN"
 PYMESHLAB_VERSION = "2025.7.post1"
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from meshlab_spectral.errors import MeshFileError, OptionError
 from meshlab_spectral.figures import eigenfunctions, sequences, stability
 from meshlab_spectral.figures.subject import Subject
-from meshlab_spectral.meshfile import check_target
+from meshlab_spectral.whole_files import check_target
 
 FIGURES = {
     1: ("figure1_stability", stability.draw),

@@ -1,0 +1,245 @@
+"""The engine of a batch: Dask, on workers of this machine or of an existing cluster."""
+
+from __future__ import annotations
+
+import contextlib
+import itertools
+import logging
+import os
+import signal
+from collections.abc import Iterator, Sequence
+from multiprocessing import resource_tracker
+from typing import Any
+
+import dask
+from dask.system import CPU_COUNT
+from distributed import Client, Future, KilledWorker, LocalCluster, WorkerPlugin, as_completed
+from distributed.system import MEMORY_LIMIT
+
+from meshlab_spectral.batch.jobs import FileResult, Job
+from meshlab_spectral.batch.processes import processes
+from meshlab_spectral.batch.task import run_job
+from meshlab_spectral.errors import BatchError
+from meshlab_spectral.versions import versions
+
+# What all workers together may take of the machine's memory.
+_SHARE_OF_MEMORY = 0.9
+_SECONDS_TO_CONNECT = 10
+_SECONDS_TO_CLOSE = 5
+_FEWEST_SUBMITTED = 200
+# While MeshLab works on one mesh, the worker reads and writes the files of another.
+_JOBS_PER_WORKER = 2
+# Dask watches itself for its dashboard, a hundred times a second; on small meshes and few
+# processors that is a tenth of the work.
+_NO_STATISTICS = {
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.tick.interval": "1s",
+    "distributed.admin.tick.cycle": "5s",
+    "distributed.admin.system-monitor.interval": "5s",
+    "distributed.admin.system-monitor.gil.enabled": False,
+    "distributed.scheduler.active-memory-manager.start": False,
+    "distributed.worker.memory.monitor-interval": "1s",
+}
+
+
+@contextlib.contextmanager
+def local_workers(count: int | None = None, memory_limit: int | None = None) -> Iterator[Client]:
+    """Start worker processes on this machine, reachable from this machine only.
+
+    Parameters
+    ----------
+    count
+        Of workers, each with one mesh at a time and, as Dask wants it, one thread for the numerical
+        libraries; by default that of the processors.
+    memory_limit
+        Bytes for each; by default they share nine tenths of the memory that this process may use.
+
+    Yields
+    ------
+    Client
+        For `run_jobs`. At the end the workers are ended, whatever they are doing.
+    """
+    count = count or CPU_COUNT
+    limit = memory_limit or int(_SHARE_OF_MEMORY * MEMORY_LIMIT / count)
+    with _quiet_log(), dask.config.set(_NO_STATISTICS):
+        # Ctrl-C reaches every process of the terminal; only this one decides what it means. The
+        # threads that are started here, and the workers that these start, keep the mask; unless
+        # they started Python's resource tracker, which takes it off.
+        resource_tracker.ensure_running()
+        mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        cluster = LocalCluster(
+            n_workers=count,
+            threads_per_worker=_JOBS_PER_WORKER,
+            host="127.0.0.1",
+            dashboard_address="127.0.0.1:0",
+            scheduler_kwargs={"dashboard": False},
+            memory_limit=limit,
+            silence_logs=logging.CRITICAL,
+        )
+        client = Client(cluster, set_as_default=False)
+        try:
+            client.register_plugin(_LocalWorker())
+            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+            yield client
+        finally:
+            _end(client, cluster)
+
+
+@contextlib.contextmanager
+def workers_at(address: str) -> Iterator[Client]:
+    """Use the workers of a Dask cluster that is running.
+
+    Parameters
+    ----------
+    address
+        Of its scheduler, such as tcp://10.0.0.1:8786.
+
+    Raises
+    ------
+    BatchError
+        When it cannot be reached, has no workers, or these have not the same software as here.
+    """
+    with _quiet_log():
+        try:
+            client = Client(address, timeout=_SECONDS_TO_CONNECT, set_as_default=False)
+        except (OSError, ValueError) as error:
+            raise BatchError(
+                f"no Dask scheduler can be reached at {address} ({error}): check the address, and "
+                "that `dask scheduler` is running there"
+            ) from error
+        try:
+            _check_workers(client, address)
+            yield client
+        finally:
+            with contextlib.suppress(OSError, TimeoutError):  # a cluster that has gone
+                client.run(_end_idle_processes, on_error="ignore")
+                client.close(timeout=_SECONDS_TO_CLOSE)
+
+
+def run_jobs(client: Client, jobs: Sequence[Job]) -> Iterator[FileResult]:
+    """Have jobs done by workers.
+
+    Dask gives the job of a worker that has died to another one, up to three times; a process of
+    MeshLab that dies is the worker's own matter, see `task`.
+
+    Yields
+    ------
+    FileResult
+        Of every job, as soon as it is done.
+
+    Raises
+    ------
+    BatchError
+        When the cluster has gone.
+    """
+    # A scheduler that knows of all at once would be slow at first, and large.
+    window = max(_FEWEST_SUBMITTED, 4 * sum(client.nthreads().values()))
+    waiting = iter(jobs)
+    job_of: dict[Future, Job] = {}
+    done = as_completed(loop=client.loop, with_results=True, raise_errors=False)
+
+    def submit(count: int) -> None:
+        chosen = list(itertools.islice(waiting, count))
+        if chosen:
+            futures = client.map(run_job, chosen, pure=False, key="filter")
+            job_of.update(zip(futures, chosen, strict=True))
+            done.update(futures)
+
+    submit(window)
+    for future, _ in done:
+        job = job_of.pop(future)
+        if len(job_of) <= window // 2:
+            submit(window // 2)
+        if future.status == "finished":
+            yield future.result()
+        elif future.status == "error":
+            yield _failed(job, future.exception())
+        else:
+            raise BatchError(
+                "the Dask cluster has gone: start it again, then run the same command with --resume"
+            )
+
+
+def _failed(job: Job, error: BaseException) -> FileResult:
+    if isinstance(error, KilledWorker):
+        reason = (
+            "every worker that tried it was ended from outside: does the machine have too little "
+            "memory for that many workers?"
+        )
+    else:
+        reason = f"unexpected error: {error!r}; please report it"
+    return FileResult(
+        outcome="failed",
+        input=job.source,
+        output=job.target,
+        name=job.name,
+        reason=reason,
+        options=job.options,
+        versions=versions(),
+    )
+
+
+def _check_workers(client: Client, address: str) -> None:
+    try:
+        client.wait_for_workers(1, timeout=_SECONDS_TO_CONNECT)
+    except TimeoutError:
+        raise BatchError(
+            f"the Dask scheduler at {address} has no workers: start some with `dask worker "
+            f"{address}`"
+        ) from None
+    try:
+        found: dict[str, Any] = client.run(versions)
+    except ModuleNotFoundError as error:
+        raise BatchError(
+            f"the workers at {address} cannot import {error.name}: install this package there, too"
+        ) from error
+    here = versions()
+    for worker, there in found.items():
+        different = [
+            f"{name} {there.get(name, '')[:12]} instead of {here[name][:12]}"
+            for name in here
+            if name != "python" and there.get(name) != here[name]
+        ]
+        if different:
+            raise BatchError(
+                f"the worker {worker} has other software than this machine: "
+                f"{', '.join(different)}; install the same on both"
+            )
+
+
+def _end(client: Client, cluster: LocalCluster) -> None:
+    """End a local cluster at once; its workers would first finish the meshes that they are at."""
+    for nanny in cluster.workers.values():
+        nanny.close_gracefully()  # else it would start a worker anew
+        if nanny.pid is not None:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(nanny.pid, signal.SIGKILL)
+    with contextlib.suppress(TimeoutError):
+        client.close(timeout=_SECONDS_TO_CLOSE)
+        cluster.close(timeout=_SECONDS_TO_CLOSE)
+
+
+def _end_idle_processes() -> None:
+    """Run in a worker: end the processes that wait for further meshes."""
+    processes.end()
+
+
+class _LocalWorker(WorkerPlugin):  # type: ignore[misc]
+    """Prepares a worker of `local_workers`, also one that takes the place of another."""
+
+    name = "meshlab-spectral"
+
+    def setup(self, worker: Any) -> None:
+        processes.limit(1)
+
+
+@contextlib.contextmanager
+def _quiet_log() -> Iterator[None]:
+    """Keep Dask's log of workers that come and go to itself; what matters is in the report."""
+    logger = logging.getLogger("distributed")
+    level = logger.level
+    logger.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        logger.setLevel(level)

@@ -1,0 +1,149 @@
+"""The files of a batch: found in folders, by patterns, one by one."""
+
+from __future__ import annotations
+
+import glob
+import os
+import posixpath
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from meshlab_spectral.batch.formats import SEARCHED, ending_of
+from meshlab_spectral.batch.storage import file_system, is_url, located
+from meshlab_spectral.errors import InputError
+
+
+@dataclass(frozen=True)
+class Input:
+    """A file to be filtered.
+
+    Attributes
+    ----------
+    place
+        An absolute path, or a URL. A file that cannot be read is an input, too: it will fail.
+    folder
+        Where it lies in the folder that was given, as a relative path; "" if right there.
+    """
+
+    place: str
+    folder: str = ""
+
+    @property
+    def name(self) -> str:
+        """Name of the file, without folders."""
+        return posixpath.basename(self.place)
+
+
+def find_inputs(
+    arguments: Iterable[str], recursive: bool = False, leave_out: Collection[Path] = ()
+) -> list[Input]:
+    """Find the files that are meant by files, folders, patterns such as scans/*.ply, and URLs.
+
+    Parameters
+    ----------
+    arguments
+        What was given. A file is taken whatever its ending; in folders those are that MeshLab
+        reads, hidden ones left out.
+    recursive
+        Search the folders in the folders, too, and take ** in a pattern for any folders.
+    leave_out
+        Files and folders that are no inputs where a search comes upon them: the outputs.
+
+    Returns
+    -------
+    list of Input
+        In the order of the arguments, sorted within each; every file once.
+
+    Raises
+    ------
+    InputError
+        When one of the arguments leads to no file.
+    """
+    outputs = {path.resolve() for path in leave_out}
+    found: dict[str, Input] = {}
+    for argument in arguments:
+        of_this = list(_from_argument(argument, recursive, outputs))
+        if not of_this:
+            hint = "" if recursive else "; --recursive searches the folders in it, too"
+            raise InputError(f"{argument} holds no mesh that MeshLab reads{hint}")
+        for file in of_this:
+            key = file.place if is_url(file.place) else os.path.realpath(file.place)
+            found.setdefault(key, file)
+    return list(found.values())
+
+
+def _from_argument(argument: str, recursive: bool, outputs: set[Path]) -> Iterator[Input]:
+    place = located(argument)
+    if is_url(place):
+        yield from _from_url(place, recursive)
+    elif os.path.lexists(place):
+        yield from _from_path(Path(place), recursive, outputs)
+    elif glob.has_magic(place):
+        matches = sorted(glob.glob(place, recursive=recursive))  # noqa: PTH207 (hidden files)
+        if not matches:
+            raise InputError(f"{argument} matches no file: check the pattern and the folder")
+        for match in matches:
+            path = Path(match).resolve()
+            if outputs.isdisjoint([path, *path.parents]):
+                yield from _from_path(Path(match), recursive, outputs)
+    else:
+        raise InputError(f"{argument} does not exist: check the name and the folder")
+
+
+def _from_path(path: Path, recursive: bool, outputs: set[Path]) -> Iterator[Input]:
+    if not path.is_dir():
+        yield Input(str(path))
+        return
+    within = list(_search(path, "", recursive, outputs))
+    yield from within
+    if not within and _looks_like_mesh(path.name):
+        yield Input(str(path))  # will be reported as a folder
+
+
+def _search(folder: Path, relative: str, recursive: bool, outputs: set[Path]) -> Iterator[Input]:
+    try:
+        entries = sorted(os.scandir(folder), key=lambda entry: entry.name)
+    except OSError as error:
+        raise InputError(f"{folder} cannot be searched ({error.strerror})") from error
+    for entry in entries:
+        path = Path(entry.path)
+        if entry.name.startswith(".") or path.resolve() in outputs:
+            continue
+        if entry.is_dir(follow_symlinks=False) and recursive:
+            within = list(_search(path, posixpath.join(relative, entry.name), recursive, outputs))
+            yield from within
+            if within:
+                continue
+        if _looks_like_mesh(entry.name):
+            yield Input(entry.path, relative)
+
+
+def _from_url(url: str, recursive: bool) -> Iterator[Input]:
+    fs, path = file_system(url)
+    try:
+        if glob.has_magic(path):
+            matches = sorted(fs.glob(path))
+            if not matches:
+                raise InputError(f"{url} matches no file: check the pattern and the folder")
+            for match in matches:
+                yield Input(fs.unstrip_protocol(match))
+        elif fs.isdir(path):
+            for file in sorted(fs.find(path, maxdepth=None if recursive else 1)):
+                relative = posixpath.relpath(file, path)
+                if _looks_like_mesh(file) and not _hidden(relative):
+                    yield Input(fs.unstrip_protocol(file), posixpath.dirname(relative))
+        elif fs.exists(path):
+            yield Input(fs.unstrip_protocol(path))
+        else:
+            raise InputError(f"{url} does not exist: check the URL")
+    except OSError as error:
+        raise InputError(f"{url} cannot be read ({error})") from error
+
+
+def _hidden(relative: str) -> bool:
+    return any(part.startswith(".") for part in relative.split("/"))
+
+
+def _looks_like_mesh(name: str) -> bool:
+    return ending_of(posixpath.basename(name)).lower() in SEARCHED

@@ -1,0 +1,142 @@
+"""The names of a batch's outputs: made by a pattern, no two alike, none an input."""
+
+from __future__ import annotations
+
+import os
+import posixpath
+import string
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from meshlab_spectral.batch.formats import FALLBACK, WRITABLE, ending_of
+from meshlab_spectral.batch.inputs import Input
+from meshlab_spectral.batch.storage import is_url, joined
+from meshlab_spectral.errors import FormatError, InputError
+
+DEFAULT_PATTERN = "{stem}"
+_FIELDS = ("stem", "ending", "folder")
+_NAMED_AT_MOST = 5
+
+
+@dataclass(frozen=True)
+class Output:
+    """Where the result for an input goes.
+
+    Attributes
+    ----------
+    source
+        Place of the input.
+    name
+        Of the output, relative to the folder of the outputs, with "/" between folders.
+    target
+        Place of the output.
+    """
+
+    source: str
+    name: str
+    target: str
+
+
+def plan_outputs(
+    inputs: Sequence[Input], folder: str, pattern: str = DEFAULT_PATTERN, ending: str | None = None
+) -> list[Output]:
+    """Name the output of every input.
+
+    Parameters
+    ----------
+    inputs
+        From `find_inputs`.
+    folder
+        Place of the folder of the outputs. The folders within the inputs' are kept in it.
+    pattern
+        Of the names, without their ending: {stem} and {ending} stand for the parts of the input's
+        name before and after its last dot, {folder} for the name of the folder that it lies in. A
+        "/" makes folders.
+    ending
+        Of the outputs; by default that of the input, or ply where MeshLab cannot write it.
+
+    Raises
+    ------
+    InputError
+        When the pattern is wrong, two outputs would have one name, or one would replace an input.
+    FormatError
+        When MeshLab cannot write files of that ending.
+    """
+    check_pattern(pattern)
+    if ending is not None:
+        ending = ending.removeprefix(".")
+        if ending.lower() not in WRITABLE:
+            raise FormatError(
+                f"MeshLab cannot write .{ending} files: choose {', '.join(sorted(WRITABLE))}"
+            )
+    outputs = [_output(file, folder, pattern, ending) for file in inputs]
+    _refuse_collisions(outputs)
+    _refuse_inputs(outputs)
+    return outputs
+
+
+def check_pattern(pattern: str) -> None:
+    """Raise InputError when a pattern does not lead to names within the folder of the outputs."""
+    try:
+        parts = list(string.Formatter().parse(pattern))
+    except ValueError as error:
+        raise InputError(f"the name {pattern!r} cannot be understood ({error})") from error
+    for _, field, spec, conversion in parts:
+        if field is not None and (field not in _FIELDS or spec or conversion):
+            known = ", ".join(f"{{{name}}}" for name in _FIELDS)
+            raise InputError(f"the name {pattern!r} has a field {{{field}}}: choose of {known}")
+    steps = pattern.split("/")
+    if any(step.strip() in ("", ".", "..") or "\0" in step for step in steps):
+        raise InputError(
+            f"the name {pattern!r} does not lead to a file in the folder of the outputs: give "
+            "something like {stem}_smooth, or {folder}/{stem}"
+        )
+
+
+def _output(file: Input, folder: str, pattern: str, ending: str | None) -> Output:
+    own = ending_of(file.name)
+    stem = file.name.removesuffix(f".{own}") if own else file.name
+    if ending is None:
+        ending = own if own.lower() in WRITABLE else FALLBACK
+    parent = posixpath.basename(posixpath.dirname(file.place))
+    made = pattern.format(stem=stem, ending=own, folder=parent)
+    name = posixpath.join(file.folder, f"{made}.{ending}")
+    return Output(file.place, name, joined(folder, name))
+
+
+def _refuse_collisions(outputs: Sequence[Output]) -> None:
+    sources: dict[str, list[str]] = {}
+    for output in outputs:
+        sources.setdefault(output.target, []).append(output.source)
+    collisions = {target: of for target, of in sources.items() if len(of) > 1}
+    if collisions:
+        target, of = next(iter(collisions.items()))
+        raise InputError(
+            f"{', '.join(of[:_NAMED_AT_MOST])} would all be written to {target} "
+            f"({len(collisions)} such names): tell them apart with --name, such as "
+            "{stem}_{ending} or {folder}_{stem}, or filter them into different folders"
+        )
+
+
+def _refuse_inputs(outputs: Sequence[Output]) -> None:
+    places = {output.source for output in outputs if is_url(output.source)}
+    files = {key for output in outputs for key in _identities(output.source)}
+    for output in outputs:
+        if output.target in places or not files.isdisjoint(_identities(output.target)):
+            raise InputError(
+                f"{output.target} is an input itself, and would be lost: choose another folder, "
+                "or another --name, such as {stem}_smooth"
+            )
+
+
+def _identities(place: str) -> list[object]:
+    """Tell by what a file would be known under another name: links, hard and symbolic."""
+    if is_url(place):
+        return []
+    known: list[object] = [os.path.realpath(place)]
+    try:
+        status = Path(place).stat()
+    except OSError:
+        return known
+    return [*known, (status.st_dev, status.st_ino)]

@@ -1,0 +1,166 @@
+"""What a batch is going to do, found out and checked before anything is done."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from meshlab_spectral.batch import storage
+from meshlab_spectral.batch.inputs import Input, find_inputs
+from meshlab_spectral.batch.jobs import FileResult, Job
+from meshlab_spectral.batch.outputs import DEFAULT_PATTERN, plan_outputs
+from meshlab_spectral.batch.report import DEFAULT_NAME, read_report
+from meshlab_spectral.batch.resume import Records, done_records, proved_done
+from meshlab_spectral.errors import InputError, OptionError
+from meshlab_spectral.filter_script import script_filters
+from meshlab_spectral.options import FilterOptions
+from meshlab_spectral.versions import versions
+
+# Clocks of a file server and of this machine may differ by so many seconds.
+_CLOCK_SLACK = 2.0
+_NAMED_AT_MOST = 5
+
+
+@dataclass(frozen=True)
+class Batch:
+    """What is to be done.
+
+    Attributes
+    ----------
+    jobs
+        Left to be done, in the order of the inputs.
+    done
+        Results of an earlier run that stand.
+    report
+        File of the report.
+    """
+
+    jobs: list[Job]
+    done: list[FileResult] = field(default_factory=list)
+    report: Path = Path(DEFAULT_NAME)
+
+    @property
+    def folders(self) -> list[str]:
+        """Folders that outputs go to."""
+        targets = [job.target for job in self.jobs if job.target is not None]
+        return sorted({target.rpartition("/")[0] for target in targets})
+
+
+def plan_batch(
+    inputs: Sequence[str | Path],
+    output: str | Path,
+    options: FilterOptions | None = None,
+    *,
+    script: str | Path | None = None,
+    recursive: bool = False,
+    name: str = DEFAULT_PATTERN,
+    ending: str | None = None,
+    overwrite: bool = False,
+    resume: bool = False,
+    report: str | Path | None = None,
+    timeout: float | None = None,
+) -> Batch:
+    """Find the inputs of a batch, name its outputs, and check that nothing would be lost.
+
+    The parameters and errors are those of `files.filter_files`.
+    """
+    work, described = _work(options, script)
+    folder = storage.located(str(output))
+    report_path = _report_path(folder, report)
+    records: Records = {}
+    begun = None
+    if resume or report_path.is_file():
+        lines = list(read_report(report_path))
+        records = done_records(lines)
+        begun = min((line["begun"] for line in lines if line.get("kind") == "run"), default=None)
+    planned = plan_outputs(
+        _inputs(inputs, folder, recursive, report_path, records), folder, name, ending
+    )
+    jobs = [
+        Job(output.source, output.target, output.name, work, described, timeout)
+        for output in planned
+    ]
+    done = proved_done(jobs, records, versions()) if resume else {}
+    left = [job for job in jobs if job not in done]
+    proved = {job.name for job in done}
+    if not overwrite:
+        targets = [output.target for output in planned if output.name not in proved]
+        _refuse_to_replace(targets, begun if resume else None)
+    return Batch(left, list(done.values()), report_path)
+
+
+def _work(
+    options: FilterOptions | None, script: str | Path | None
+) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Give the work of every job, and what describes it in the report."""
+    if script is None:
+        described = (options or FilterOptions()).as_dict()
+        return {"task": "filter", "options": described}, described
+    if options is not None:
+        raise OptionError(
+            "a script has its parameters in itself: give either a script or options of the filter"
+        )
+    try:
+        content = Path(script).read_bytes()
+        text = content.decode()
+    except OSError as error:
+        raise InputError(f"the script {script} cannot be read ({error.strerror})") from error
+    except UnicodeDecodeError:
+        raise OptionError(f"{script} is no filter script of MeshLab") from None
+    described = {
+        "script": Path(script).name,
+        "script_sha256": hashlib.sha256(content).hexdigest(),
+        "filters": script_filters(text),
+    }
+    return {"task": "script", "script": text}, described
+
+
+def _report_path(folder: str, report: str | Path | None) -> Path:
+    if report is not None:
+        return Path(report).absolute()
+    if storage.is_url(folder):
+        raise InputError("the outputs go to a URL, the report to a file here: name it (--report)")
+    return Path(folder, DEFAULT_NAME)
+
+
+def _inputs(
+    inputs: Sequence[str | Path],
+    folder: str,
+    recursive: bool,
+    report: Path,
+    records: Records,
+) -> list[Input]:
+    """Find the inputs; outputs of an earlier run that lie among them are none."""
+    leave_out = [report]
+    given = {storage.located(str(place)) for place in inputs}
+    if not storage.is_url(folder):
+        leave_out += [Path(folder, name) for name in records]
+        if folder not in given:
+            leave_out.append(Path(folder))
+    return find_inputs([str(place) for place in inputs], recursive, leave_out)
+
+
+def _refuse_to_replace(targets: Sequence[str], begun: float | None) -> None:
+    """Refuse to replace files; those that the run to be resumed has made may be."""
+    taken = [
+        target
+        for target in storage.existing(list(targets))
+        if begun is None or not _made_since(target, begun)
+    ]
+    if taken:
+        more = ", ..." if len(taken) > _NAMED_AT_MOST else ""
+        raise InputError(
+            f"{len(taken)} of the outputs exist already "
+            f"({', '.join(taken[:_NAMED_AT_MOST])}{more}): choose another folder, replace them "
+            "with --overwrite, or take up an earlier run with --resume"
+        )
+
+
+def _made_since(target: str, begun: float) -> bool:
+    if storage.is_url(target):
+        return True  # which tells no time that can be relied on
+    path = Path(target)
+    return path.is_file() and path.stat().st_mtime >= begun - _CLOCK_SLACK

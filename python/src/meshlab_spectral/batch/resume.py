@@ -1,0 +1,89 @@
+"""What a report proves done, so that it need not be done again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from typing import Any
+
+from meshlab_spectral.batch.jobs import FileResult, Job
+from meshlab_spectral.batch.storage import digest_at
+
+Records = dict[str, list[dict[str, Any]]]
+
+# What a result depends on.
+_DECIDING_VERSIONS = ("meshlab_spectral", "plugin", "pymeshlab")
+
+
+def done_records(report: Iterable[Mapping[str, Any]]) -> Records:
+    """Collect the lines of a report that tell of a finished file, by the names of the outputs."""
+    records: Records = {}
+    for record in report:
+        if record.get("kind") == "file" and record.get("outcome") == "filtered":
+            records.setdefault(str(record.get("name")), []).append(dict(record))
+    return records
+
+
+def proved_done(
+    jobs: Iterable[Job], records: Records, versions: Mapping[str, str]
+) -> dict[Job, FileResult]:
+    """Tell the jobs that need not be done.
+
+    A job is done when a record has its options, the SHA-256 that its input has now, the SHA-256
+    that its output has now, and the versions that would do it now.
+
+    Parameters
+    ----------
+    jobs
+        All of them.
+    records
+        From `done_records`.
+    versions
+        From `versions.versions`.
+
+    Returns
+    -------
+    dict
+        For every such job what the record says of it, as "unchanged".
+    """
+    candidates = [job for job in jobs if job.target is not None and records.get(job.name)]
+    with ThreadPoolExecutor() as pool:  # reading is what takes the time
+        found = pool.map(lambda job: _proof(job, records[job.name], versions), candidates)
+        return {job: result for job, result in zip(candidates, found, strict=True) if result}
+
+
+def _proof(
+    job: Job, records: list[dict[str, Any]], versions: Mapping[str, str]
+) -> FileResult | None:
+    fitting = [
+        record
+        for record in records
+        if record.get("options") == job.options and _same_versions(record, versions)
+    ]
+    if not fitting:
+        return None
+    assert job.target is not None
+    output, source = digest_at(job.target), digest_at(job.source)
+    if output is None or source is None:
+        return None
+    for record in reversed(fitting):
+        if record.get("input_sha256") == source and record.get("output_sha256") == output:
+            return FileResult(
+                outcome="unchanged",
+                input=job.source,
+                output=job.target,
+                name=job.name,
+                options=job.options,
+                report=record.get("report"),
+                input_sha256=source,
+                output_sha256=output,
+                versions=record["versions"],
+            )
+    return None
+
+
+def _same_versions(record: Mapping[str, Any], versions: Mapping[str, str]) -> bool:
+    recorded = record.get("versions")
+    return isinstance(recorded, dict) and all(
+        recorded.get(name) == versions[name] for name in _DECIDING_VERSIONS
+    )

@@ -1,0 +1,89 @@
+"""What runs in a worker: one file from its input to its output, whatever happens."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+from meshlab_spectral.batch import storage
+from meshlab_spectral.batch.jobs import FileResult, Job
+from meshlab_spectral.batch.processes import processes
+from meshlab_spectral.errors import MemoryLimitError, ProcessDiedError, SpectralError
+from meshlab_spectral.meshlab_process import Answer, JobLimits
+from meshlab_spectral.versions import versions
+
+# A mesh whose process dies gets a second, fresh one: it may have been another's fault.
+ATTEMPTS = 2
+
+
+def run_job(job: Job, memory_limit: int | None = None) -> FileResult:
+    """Filter one file.
+
+    Parameters
+    ----------
+    job
+        What to do.
+    memory_limit
+        Bytes that MeshLab's process may hold; by default the share of the Dask worker that this
+        runs in, None outside of one.
+
+    Returns
+    -------
+    FileResult
+        "filtered", "measured" or "failed": no error of a single file is raised.
+    """
+    begin = time.monotonic()
+    result: dict[str, Any] = {"outcome": "failed", "waited": 0.0}
+    limits = JobLimits(memory_limit or _worker_memory(), job.seconds)
+    try:
+        with storage.reading(job.source) as source:
+            result["input_sha256"] = storage.digest(source)
+            work = job.work | {"source": str(source), "verbose": False}
+            if job.target is None:
+                answer = _attempt(work, limits, result)
+            else:
+                with storage.writing(job.target) as scratch:
+                    answer = _attempt(work | {"scratch": str(scratch)}, limits, result)
+                    if scratch.is_file():
+                        result["output_sha256"] = storage.digest(scratch)
+        result["outcome"] = "measured" if job.target is None else "filtered"
+        result |= {"report": answer.report, "peak_memory": answer.peak_memory}
+    except SpectralError as error:
+        result |= {"reason": str(error), "output_sha256": None}
+    except OSError as error:
+        result |= {"reason": f"a file cannot be read or written ({error})", "output_sha256": None}
+    return FileResult(
+        input=job.source,
+        output=job.target,
+        name=job.name,
+        options=job.options,
+        seconds=round(time.monotonic() - begin - result.pop("waited"), 3),
+        versions=versions(),
+        **result,
+    )
+
+
+def _attempt(work: dict[str, Any], limits: JobLimits, result: dict[str, Any]) -> Answer:
+    for attempt in range(1, ATTEMPTS + 1):
+        result["attempts"] = attempt
+        begin = time.monotonic()
+        with processes.one(limits) as process:
+            result["waited"] += time.monotonic() - begin
+            try:
+                return process.run(work, limits=limits)
+            except (ProcessDiedError, MemoryLimitError):
+                if attempt == ATTEMPTS:
+                    raise
+    raise AssertionError("unreachable")
+
+
+def _worker_memory() -> int | None:
+    """Tell the bytes that each thread of the Dask worker may use that this runs in."""
+    from distributed import get_worker
+
+    try:
+        worker = get_worker()
+    except ValueError:
+        return None
+    limit = worker.memory_manager.memory_limit
+    return int(limit / (processes.at_once or worker.state.nthreads)) if limit else None

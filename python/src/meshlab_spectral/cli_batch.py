@@ -1,0 +1,234 @@
+"""The command `meshlab-spectral batch`."""
+
+from __future__ import annotations
+
+import json
+import re
+import time
+from collections import Counter
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from meshlab_spectral.batch.files import run_batch
+from meshlab_spectral.batch.outputs import DEFAULT_PATTERN
+from meshlab_spectral.batch.plan import Batch, plan_batch
+from meshlab_spectral.batch.progress import batch_progress
+from meshlab_spectral.batch.report import DEFAULT_NAME
+from meshlab_spectral.command_line import (
+    EXIT_FAILED,
+    MESSAGES,
+    errors_reported,
+    with_given_filter_options,
+)
+from meshlab_spectral.options import FilterOptions
+from meshlab_spectral.recipe import load_recipe, save_recipe
+
+# "\b" keeps a paragraph's lines as they are.
+BATCH_HELP = """Filter many meshes, in worker processes; one that fails does not stop the others.
+
+\b
+Denoise a folder of scans:
+  meshlab-spectral batch scans --output smooth --feature-size 2%
+Go on after an interruption, or after more scans have come:
+  meshlab-spectral batch scans --output smooth --feature-size 2% --resume
+Keep the options for the next time:
+  meshlab-spectral batch scans --output smooth --feature-size 2% --save-recipe denoise.toml
+  meshlab-spectral batch more/*.obj --output more_smooth --recipe denoise.toml --format ply
+
+Every file gets a line in the report, DIR/batch_report.jsonl, as soon as it is done: its outcome,
+the options, the filter's report, SHA-256 of input and output, seconds, memory, versions.
+"""
+
+_SIZE = re.compile(r"(?P<number>\d+(\.\d+)?)\s*(?P<unit>[KMGT]?)(i?B)?", re.IGNORECASE)
+_UNITS = {"": 1, "K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
+
+
+def _bytes(text: str | int) -> int:
+    if isinstance(text, int):
+        return text
+    match = _SIZE.fullmatch(text.strip())
+    if match is None:
+        raise typer.BadParameter(f"{text!r}: give a size such as 4GB or 500MB")
+    return int(float(match["number"]) * _UNITS[match["unit"].upper()])
+
+
+@with_given_filter_options
+def batch_command(
+    context: typer.Context,
+    given: dict[str, Any],
+    inputs: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="INPUT",
+            help="Mesh files, folders, patterns in quotes such as 'scans/*.ply', URLs.",
+        ),
+    ],
+    output: Annotated[
+        str, typer.Option(metavar="DIR", help="Folder of the outputs, made if need be; or a URL.")
+    ],
+    name: Annotated[
+        str,
+        typer.Option(
+            metavar="PATTERN",
+            help="Names of the outputs, without ending, from those of the inputs: {stem}, "
+            "{ending}, {folder}; such as {stem}_smooth or {folder}/{stem}.",
+        ),
+    ] = DEFAULT_PATTERN,
+    ending: Annotated[
+        str | None,
+        typer.Option(
+            "--format",
+            metavar="ENDING",
+            help="Format of the outputs, such as ply. By default that of the input, or ply where "
+            "MeshLab cannot write that.",
+            show_default=False,
+        ),
+    ] = None,
+    recursive: Annotated[
+        bool,
+        typer.Option("--recursive", "-r", help="Search folders in folders, too; keep their order."),
+    ] = False,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace outputs that exist. Inputs never are.")
+    ] = False,
+    resume: Annotated[
+        bool,
+        typer.Option(
+            "--resume",
+            help="Leave out what the report proves done, with this input, options and versions.",
+        ),
+    ] = False,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Only tell what would be written.")
+    ] = False,
+    recipe: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="Take the filter's options from a TOML file; those given here come first.",
+        ),
+    ] = None,
+    save_recipe_as: Annotated[
+        Path | None,
+        typer.Option(
+            "--save-recipe", metavar="FILE", help="Write the filter's options into a TOML file."
+        ),
+    ] = None,
+    script: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="Apply a filter script of MeshLab (.mlx), in place of the options. Sizes in it "
+            "are lengths, not percentages.",
+        ),
+    ] = None,
+    report: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help=f"The report, one JSON object a line; added to if it exists. By default "
+            f"DIR/{DEFAULT_NAME}.",
+            show_default=False,
+        ),
+    ] = None,
+    workers: Annotated[
+        int | None,
+        typer.Option(min=1, help="Files at once. By default one for each processor."),
+    ] = None,
+    memory_limit: Annotated[
+        int | None,
+        typer.Option(
+            parser=_bytes,
+            metavar="SIZE",
+            help="Memory that a worker may use, such as 4GB. By default they share the machine's.",
+        ),
+    ] = None,
+    timeout: Annotated[
+        float | None, typer.Option(min=0, help="Seconds that a file may take. By default any.")
+    ] = None,
+    scheduler: Annotated[
+        str | None,
+        typer.Option(
+            metavar="ADDRESS",
+            help="Use the workers of a Dask cluster that is running, such as tcp://host:8786; they "
+            "must see the files under the same names.",
+        ),
+    ] = None,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print the summary as one JSON object.")
+    ] = False,
+    debug: Annotated[bool, typer.Option("--debug", hidden=True)] = False,
+) -> None:
+    """Filter many meshes: `meshlab-spectral batch --help` tells how."""
+    if scheduler is not None and (workers is not None or memory_limit is not None):
+        raise typer.BadParameter(
+            "the workers of a cluster are its own: leave out --workers and --memory-limit",
+            param_hint="--scheduler",
+        )
+    with errors_reported(debug, "what is done is in the report; go on with --resume"):
+        options = _options(given, recipe, script)
+        if save_recipe_as is not None:
+            save_recipe(save_recipe_as, options or FilterOptions())
+        begin = time.monotonic()
+        batch = plan_batch(
+            inputs,
+            output,
+            options,
+            script=script,
+            recursive=recursive,
+            name=name,
+            ending=ending,
+            overwrite=overwrite,
+            resume=resume,
+            report=report,
+            timeout=timeout,
+        )
+        if dry_run:
+            _tell_plan(batch)
+            return
+        counts: Counter[str] = Counter()
+        with batch_progress(MESSAGES, len(batch.jobs) + len(batch.done)) as on_result:
+            for result in run_batch(
+                batch, workers=workers, memory_limit=memory_limit, scheduler=scheduler
+            ):
+                counts[result.outcome] += 1
+                on_result(result)
+        _tell_summary(batch, counts, time.monotonic() - begin, as_json)
+    if counts["failed"]:
+        raise typer.Exit(EXIT_FAILED)
+
+
+def _options(
+    given: dict[str, Any], recipe: Path | None, script: Path | None
+) -> FilterOptions | None:
+    if script is not None and not given and recipe is None:
+        return None
+    options = load_recipe(recipe) if recipe is not None else {}
+    return FilterOptions.from_dict({**options, **given})
+
+
+def _tell_plan(batch: Batch) -> None:
+    for result in batch.done:
+        typer.echo(f"{result.input} -> {result.output} (done already)")
+    for job in batch.jobs:
+        typer.echo(f"{job.source} -> {job.target}")
+
+
+def _tell_summary(batch: Batch, counts: Counter[str], seconds: float, as_json: bool) -> None:
+    summary: dict[str, Any] = {
+        "filtered": counts["filtered"],
+        "failed": counts["failed"],
+        "unchanged": counts["unchanged"],
+        "seconds": round(seconds, 1),
+        "report": str(batch.report),
+    }
+    if as_json:
+        typer.echo(json.dumps(summary))
+        return
+    unchanged = f", {counts['unchanged']} done before" if counts["unchanged"] else ""
+    typer.echo(
+        f"{counts['filtered']} filtered, {counts['failed']} failed{unchanged} in {seconds:.1f} s; "
+        f"report: {batch.report}"
+    )

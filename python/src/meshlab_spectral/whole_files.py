@@ -1,0 +1,179 @@
+"""Output files that are whole or absent, whatever happens while they are written."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import filecmp
+import os
+import re
+import shutil
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from meshlab_spectral.errors import MeshFileError
+
+USUAL_FORMATS = ".ply, .obj, .stl or .off"
+
+_SCRATCH_ENDING = ".partial"
+_SCRATCH_NAME = re.compile(r"\.(?P<target>.+)\.[a-z0-9_]{8}\.partial")
+_LONGEST_NAME = 200  # bytes of the output's name that the scratch folder's holds
+
+
+@contextlib.contextmanager
+def writing_whole(target: Path) -> Iterator[Path]:
+    """Give a scratch file to write instead of `target`; put it in place when all went well.
+
+    The scratch file has the name of `target` and lies in a hidden folder beside it, so that files
+    that a format keeps beside the mesh (materials, textures) are caught, too, and refer to each
+    other by their final names. After an error, nothing of all this remains. Where the process is
+    killed, its scratch folder does: `remove_leftovers` knows it by its name.
+
+    Yields
+    ------
+    Path
+        The scratch file; it does not exist yet.
+
+    Raises
+    ------
+    MeshFileError
+        When the folder of `target` is missing or takes no files (before anything is yielded), or
+        when the scratch file is not there at the end.
+    """
+    place = target.resolve()  # through a symbolic link, as cp does
+    with _scratch_folder(target, place) as folder:
+        scratch = folder / target.name
+        yield scratch
+        try:
+            _put_in_place(scratch, place)
+        except OSError as error:
+            raise MeshFileError(f"{target} cannot be written ({error.strerror})") from error
+
+
+def check_target(target: Path) -> None:
+    """Raise MeshFileError where `writing_whole` would: before work that would be lost."""
+    with _scratch_folder(target, target.resolve()):
+        pass
+
+
+def remove_leftovers(folder: Path, target_name: str | None = None) -> None:
+    """Remove what processes that were killed while they wrote into a folder have left there.
+
+    Parameters
+    ----------
+    folder
+        A folder of outputs; it may be absent.
+    target_name
+        Only what belongs to the output of this name.
+    """
+    try:
+        entries = list(os.scandir(folder))
+    except OSError:
+        return
+    for entry in entries:
+        match = _SCRATCH_NAME.fullmatch(entry.name)
+        if not match or not entry.is_dir(follow_symlinks=False):
+            continue
+        if target_name is not None and match["target"] != _shortened(target_name):
+            continue
+        with contextlib.suppress(OSError), _locked(Path(entry.path)):
+            shutil.rmtree(entry.path, ignore_errors=True)
+
+
+@contextlib.contextmanager
+def _scratch_folder(target: Path, place: Path) -> Iterator[Path]:
+    """Make a hidden folder beside `place`, which `target` resolves to; remove it at the end."""
+    folder = place.parent
+    if place.exists() and not place.is_file():
+        raise MeshFileError(f"{target} is no file but a folder or a device: name a file to write")
+    if not folder.is_dir():
+        raise MeshFileError(
+            f"the folder {target.parent} of the output does not exist: create it first"
+        )
+    with contextlib.ExitStack() as stack:
+        try:
+            scratch = _make_locked(folder, target.name, stack)
+        except OSError as error:
+            raise MeshFileError(
+                f"the folder {target.parent} of the output cannot be written to "
+                f"({error.strerror}): choose another folder"
+            ) from error
+        stack.callback(shutil.rmtree, scratch, ignore_errors=True)
+        yield scratch
+
+
+def _make_locked(folder: Path, name: str, stack: contextlib.ExitStack) -> Path:
+    """Make a scratch folder whose lock says, as long as this process lives, that it is in use."""
+    while True:
+        path = Path(
+            tempfile.mkdtemp(prefix=f".{_shortened(name)}.", suffix=_SCRATCH_ENDING, dir=folder)
+        )
+        with contextlib.suppress(OSError):  # a file system without locks
+            stack.enter_context(_locked(path))
+        if path.is_dir():
+            return path
+        # Another process has taken it for a leftover before it was locked: once more.
+
+
+@contextlib.contextmanager
+def _locked(folder: Path) -> Iterator[None]:
+    """Hold the lock of a folder.
+
+    Raises
+    ------
+    OSError
+        When another process holds it, or the file system has none.
+    """
+    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        yield
+    finally:
+        os.close(descriptor)
+
+
+def _shortened(name: str) -> str:
+    return os.fsencode(name)[:_LONGEST_NAME].decode(errors="ignore")
+
+
+def _put_in_place(scratch: Path, place: Path) -> None:
+    if not scratch.is_file() or scratch.stat().st_size == 0:
+        raise MeshFileError(
+            f"MeshLab wrote nothing for {scratch.name}: choose another format, {USUAL_FORMATS}"
+        )
+    moves = {
+        path: place.parent / path.relative_to(scratch.parent)
+        for path in sorted(scratch.parent.rglob("*"))
+        if path.is_file() and path != scratch
+    }
+    for path, side_place in moves.items():
+        _check_side_file(path, side_place, scratch.name)
+    if place.exists():
+        shutil.copymode(place, scratch)
+    moves[scratch] = place  # last: what the mesh refers to is there when it appears
+    for path, final in moves.items():
+        final.parent.mkdir(parents=True, exist_ok=True)
+        _sync(path)
+        path.replace(final)
+    _sync(place.parent)
+
+
+def _check_side_file(path: Path, place: Path, mesh_name: str) -> None:
+    """Refuse to replace a file that the user did not name, such as another model's texture."""
+    ours = place.name.startswith(mesh_name)  # out.obj.mtl of out.obj
+    if ours or not place.exists():
+        return
+    if not (place.is_file() and filecmp.cmp(path, place, shallow=False)):
+        raise MeshFileError(
+            f"{mesh_name} needs a file {place.name} beside it, and another file has that name: "
+            "write the output to a folder of its own"
+        )
+
+
+def _sync(path: Path) -> None:
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

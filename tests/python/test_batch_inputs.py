@@ -1,0 +1,115 @@
+"""Finding the inputs of a batch: files, folders, patterns, URLs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import fsspec
+import pytest
+from meshlab_spectral import InputError
+from meshlab_spectral.batch.inputs import Input, find_inputs
+
+
+def files(folder: Path, *names: str) -> None:
+    for name in names:
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text("")
+
+
+def names(found: Iterable[Input], folder: Path) -> list[str]:
+    return [Path(file.place).relative_to(folder).as_posix() for file in found]
+
+
+def test_a_folder_gives_its_meshes_sorted_without_hidden_files(tmp_path: Path) -> None:
+    files(tmp_path, "b.ply", "a.OBJ", "c.stl", "notes.txt", "readme.md", ".a.ply", "._b.ply")
+    assert names(find_inputs([str(tmp_path)]), tmp_path) == ["a.OBJ", "b.ply", "c.stl"]
+
+
+def test_folders_in_folders_are_searched_only_when_asked(tmp_path: Path) -> None:
+    files(tmp_path, "a.ply", "deep/b.ply", "deep/er/c.ply", ".hidden/d.ply")
+    assert names(find_inputs([str(tmp_path)]), tmp_path) == ["a.ply"]
+    found = find_inputs([str(tmp_path)], recursive=True)
+    assert names(found, tmp_path) == ["a.ply", "deep/b.ply", "deep/er/c.ply"]
+    assert [file.folder for file in found] == ["", "deep", "deep/er"]
+
+
+def test_a_pattern_is_taken_and_so_is_a_file_of_any_ending(tmp_path: Path) -> None:
+    files(tmp_path, "a.ply", "b.ply", "b.obj", "odd.xyz3")
+    found = find_inputs([str(tmp_path / "*.ply"), str(tmp_path / "odd.xyz3")])
+    assert names(found, tmp_path) == ["a.ply", "b.ply", "odd.xyz3"]
+
+
+def test_two_stars_reach_into_folders_when_recursive(tmp_path: Path) -> None:
+    files(tmp_path, "a.ply", "x/b.ply", "x/y/c.ply")
+    found = find_inputs([str(tmp_path / "**/*.ply")], recursive=True)
+    assert names(found, tmp_path) == ["a.ply", "x/b.ply", "x/y/c.ply"]
+
+
+def test_a_file_whose_name_looks_like_a_pattern_is_that_file(tmp_path: Path) -> None:
+    files(tmp_path, "scan[1].ply", "scan1.ply")
+    assert names(find_inputs([str(tmp_path / "scan[1].ply")]), tmp_path) == ["scan[1].ply"]
+
+
+def test_a_file_that_is_given_twice_is_taken_once(tmp_path: Path) -> None:
+    files(tmp_path, "a.ply")
+    (tmp_path / "link.ply").symlink_to(tmp_path / "a.ply")
+    arguments = [str(tmp_path), str(tmp_path / "a.ply"), str(tmp_path / "link.ply")]
+    assert names(find_inputs(arguments), tmp_path) == ["a.ply"]
+
+
+def test_a_relative_path_is_one_from_the_working_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    files(tmp_path, "a.ply")
+    monkeypatch.chdir(tmp_path)
+    assert find_inputs(["a.ply"]) == [Input(str(tmp_path / "a.ply"))]
+
+
+def test_outputs_among_the_inputs_are_left_out(tmp_path: Path) -> None:
+    files(tmp_path, "a.ply", "a_smooth.ply", "out/b.ply", "raw/c.ply")
+    leave_out = [tmp_path / "out", tmp_path / "a_smooth.ply"]
+    for argument in (tmp_path, tmp_path / "**/*.ply"):
+        found = find_inputs([str(argument)], recursive=True, leave_out=leave_out)
+        assert names(found, tmp_path) == ["a.ply", "raw/c.ply"]
+
+
+def test_a_folder_that_is_called_like_a_mesh_is_an_input_that_will_fail(tmp_path: Path) -> None:
+    (tmp_path / "x.ply").mkdir()
+    assert names(find_inputs([str(tmp_path)]), tmp_path) == ["x.ply"]
+    files(tmp_path, "x.ply/a.ply")
+    assert names(find_inputs([str(tmp_path)], recursive=True), tmp_path) == ["x.ply/a.ply"]
+
+
+@pytest.mark.parametrize("wrong", ["missing.ply", "*.nothing", "empty"])
+def test_an_argument_that_leads_to_nothing_is_named(wrong: str, tmp_path: Path) -> None:
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(InputError, match=r"missing\.ply|nothing|empty"):
+        find_inputs([str(tmp_path / wrong)])
+
+
+def test_urls_are_found_as_files_are() -> None:
+    memory = fsspec.filesystem("memory")
+    for name in ("/scans/a.ply", "/scans/b.obj", "/scans/.c.ply", "/scans/deep/d.ply"):
+        memory.pipe(name, b"")
+    try:
+        flat = [file.place for file in find_inputs(["memory://scans"])]
+        assert flat == ["memory:///scans/a.ply", "memory:///scans/b.obj"]
+        deep = find_inputs(["memory://scans"], recursive=True)
+        assert (deep[-1].place, deep[-1].folder) == ("memory:///scans/deep/d.ply", "deep")
+        assert len(find_inputs(["memory://scans/*.ply"])) == 2
+        with pytest.raises(InputError, match="does not exist"):
+            find_inputs(["memory://scans/e.ply"])
+    finally:
+        memory.rm("/scans", recursive=True)
+
+
+def test_a_url_of_an_unknown_kind_is_refused() -> None:
+    with pytest.raises(InputError, match="nokind"):
+        find_inputs(["nokind://scans"])
+
+
+def test_a_file_url_is_a_path(tmp_path: Path) -> None:
+    files(tmp_path, "a b.ply")
+    assert find_inputs([(tmp_path / "a b.ply").as_uri()]) == [Input(str(tmp_path / "a b.ply"))]

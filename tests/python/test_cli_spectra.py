@@ -1,0 +1,44 @@
+"""The command `meshlab-spectral spectra`: one table of many meshes."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+import meshlab_spectral
+import numpy as np
+import pytest
+from commands import PRECIOUS, arrays_of, assert_fails, command
+
+
+def test_the_table_has_the_octaves_of_every_mesh(cow: Path, samples: Path, tmp_path: Path) -> None:
+    broken, table = tmp_path / "broken.ply", tmp_path / "spectra.csv"
+    broken.write_text("no mesh")
+    bone = samples / "bone.ply"
+    done = command("spectra", cow, bone, broken, "--output", table, "--basis-size", 50)
+    assert done.returncode == 1
+    assert "2 measured, 1 failed" in done.stdout
+    assert str(broken) in done.stderr
+    with table.open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    for path in (cow, bone):
+        of_mesh = [row for row in rows if row["mesh"] == str(path)]
+        spectrum = meshlab_spectral.geometry_spectrum(*arrays_of(path), basis_size=50)
+        for column, expected in (
+            ("feature_size", spectrum.octave_feature_sizes),
+            ("amplitude", spectrum.octave_amplitudes),
+            ("amplitude_percent", spectrum.octave_amplitudes / spectrum.diagonal * 100),
+        ):
+            values = [float(row[column]) for row in of_mesh]
+            assert values == pytest.approx(list(expected), rel=1e-5)
+        assert sum(float(row["energy_share"]) for row in of_mesh) == pytest.approx(1, rel=1e-5)
+        octaves = np.log2([float(row["feature_size_percent"]) / 100 for row in of_mesh])
+        np.testing.assert_allclose(octaves, np.round(octaves), atol=1e-5)
+        np.testing.assert_allclose(np.diff(octaves), -1, atol=1e-5)
+    assert len(rows) == sum(row["mesh"] in (str(cow), str(bone)) for row in rows)
+
+
+def test_a_mistake_leaves_the_old_table(cow: Path, existing: Path, tmp_path: Path) -> None:
+    missing = tmp_path / "none.ply"
+    assert_fails(command("spectra", missing, "--output", existing), 2, str(missing))
+    assert existing.read_bytes() == PRECIOUS

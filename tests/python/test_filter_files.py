@@ -1,0 +1,171 @@
+"""The functions for scripts: `filter_files` and `filter_mesh`; workers of an existing cluster."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import meshlab_spectral
+import numpy as np
+import psutil
+import pytest
+from batches import REPORT, alive, contents, make_meshes, records, wait_until
+from commands import command
+from helpers import filter_arrays, percent
+from meshlab_spectral import (
+    BatchError,
+    FilterError,
+    InputError,
+    OptionError,
+    filter_files,
+    filter_mesh,
+)
+from meshlab_spectral.batch import engine
+
+
+def test_filter_mesh_is_the_filter(decimated: Callable[..., tuple[np.ndarray, np.ndarray]]) -> None:
+    V, F = decimated("cow.obj", 2000)
+    expected, report = filter_arrays(V, F, feature_size=percent(8), steps=2)
+    filtered, same = filter_mesh(V, F, feature_size="8%", steps=2)
+    np.testing.assert_array_equal(filtered, expected)
+    assert same["step_sizes"] == [0.5, 0.5]
+    assert same["max_displacement"] == report["max_displacement"]
+    by_length, _ = filter_mesh(V.tolist(), F.tolist(), feature_size=same["feature_size"], steps=2)
+    np.testing.assert_allclose(by_length, expected, atol=1e-6)
+
+
+def test_filter_mesh_names_what_is_wrong() -> None:
+    V, F = np.eye(3), [[0, 1, 2]]
+    with pytest.raises(OptionError, match="did you mean feature_size"):
+        filter_mesh(V, F, feature_siz="8%")
+    with pytest.raises(ValueError, match="vertex 3"):
+        filter_mesh(V, [[0, 1, 3]])
+    with pytest.raises(FilterError, match="point cloud"):
+        filter_mesh(V, np.empty((0, 3), int))
+
+
+@pytest.fixture(scope="module")
+def meshes(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("meshes")
+    make_meshes(folder, 6)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def expected(meshes: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
+    out = tmp_path_factory.mktemp("expected") / "out"
+    assert command("batch", meshes, "--output", out, "--steps", 1).returncode == 0
+    return contents(out)
+
+
+def test_filter_files_gives_a_result_for_every_file(
+    meshes: Path, expected: dict[str, bytes], tmp_path: Path
+) -> None:
+    broken = tmp_path / "broken.ply"
+    broken.write_text("no mesh")
+    out = tmp_path / "out"
+    results = list(filter_files([meshes, broken], out, workers=1, steps=1))
+    assert sorted(result.outcome for result in results) == ["failed", *["filtered"] * 6]
+    assert contents(out) == expected
+    again = list(filter_files([meshes, broken], out, workers=1, resume=True, steps=1))
+    assert sorted(result.outcome for result in again) == ["failed", *["unchanged"] * 6]
+    assert {result.name: result.output_sha256 for result in again} == {
+        result.name: result.output_sha256 for result in results
+    }
+
+
+def test_filter_files_checks_everything_before_it_begins(meshes: Path, tmp_path: Path) -> None:
+    with pytest.raises(OptionError, match="did you mean steps"):
+        filter_files(meshes, tmp_path / "out", step=1)
+    with pytest.raises(OptionError, match="either a script or options"):
+        filter_files(meshes, tmp_path / "out", script=tmp_path / "x.mlx", steps=1)
+    with pytest.raises(InputError, match="does not exist"):
+        filter_files(tmp_path / "none", tmp_path / "out")
+    with pytest.raises(InputError, match="--report"):
+        filter_files(meshes, "memory://out")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_stopping_the_iteration_ends_the_workers(meshes: Path, tmp_path: Path) -> None:
+    this = psutil.Process()
+    before = this.children(recursive=True)
+    results = filter_files(meshes, tmp_path / "out", workers=1, steps=1)
+    next(results)
+    started = [child for child in this.children(recursive=True) if child not in before]
+    workers = [child for child in started if "resource_tracker" not in " ".join(child.cmdline())]
+    assert len(workers) >= 2  # a worker, and MeshLab's process in it
+    results.close()
+    wait_until(lambda: not alive(workers))
+    assert not list((tmp_path / "out").glob(".*"))
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """A scheduler and two workers, started by hand; the scheduler's address."""
+    folder = tmp_path_factory.mktemp("cluster")
+    address_file = folder / "scheduler.json"
+    dask = [sys.executable, "-m", "dask"]
+    common = ["--no-dashboard", "--host", "127.0.0.1"]
+    log = (folder / "log").open("w")
+    started = [
+        subprocess.Popen(
+            [*dask, "scheduler", *common, "--port", "0", "--scheduler-file", str(address_file)],
+            stdout=log,
+            stderr=log,
+        )
+    ]
+    try:
+        wait_until(lambda: address_file.is_file() and address_file.stat().st_size > 0)
+        for number in range(2):
+            local = ["--local-directory", str(folder / str(number)), "--nthreads", "1"]
+            file = ["--scheduler-file", str(address_file)]
+            started.append(
+                subprocess.Popen([*dask, "worker", *common, *file, *local], stdout=log, stderr=log)
+            )
+        wait_until(lambda: (folder / "log").read_text().count("Registered to:") >= 2)
+        yield json.loads(address_file.read_text())["address"]
+    finally:
+        for process in reversed(started):
+            process.kill()  # a worker ends with its nanny
+            process.wait()
+        log.close()
+
+
+def test_an_existing_cluster_gives_the_same_outputs(
+    cluster: str, meshes: Path, expected: dict[str, bytes], tmp_path: Path
+) -> None:
+    out = tmp_path / "out"
+    done = command("batch", meshes, "--output", out, "--steps", 1, "--scheduler", cluster)
+    assert done.returncode == 0, done.stderr
+    assert contents(out) == expected
+    assert len(records(out / REPORT)) == 6
+
+
+def test_a_cluster_takes_urls_of_shared_files(
+    cluster: str, meshes: Path, expected: dict[str, bytes], tmp_path: Path
+) -> None:
+    out = tmp_path / "out"
+    # A chain of file systems is a URL to fsspec, not a path: files are copied to the workers.
+    source = f"filecache::{meshes.as_uri()}"
+    places = [f"{source}/{name}" for name in sorted(expected)]
+    results = list(
+        filter_files(places, out.as_uri(), scheduler=cluster, report=tmp_path / "r", steps=1)
+    )
+    assert [result.outcome for result in results] == ["filtered"] * 6
+    assert contents(out) == expected
+
+
+def test_a_cluster_that_is_not_there_is_told(
+    meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(engine, "_SECONDS_TO_CONNECT", 0.5)
+    with pytest.raises(BatchError, match="no Dask scheduler"):
+        list(filter_files(meshes, tmp_path / "out", scheduler="tcp://127.0.0.1:1"))
+
+
+def test_the_public_names_are_there() -> None:
+    for name in meshlab_spectral.__all__:
+        assert hasattr(meshlab_spectral, name)
