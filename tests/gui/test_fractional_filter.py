@@ -166,6 +166,31 @@ def test_a_preview_overtaken_by_another_one_does_not_come_back(
     assert_same_in_floats(previewed, vertices(ms))
 
 
+def test_a_preview_switched_off_while_it_is_computed_does_not_come_back(
+    dialog: FilterDialog, meshlab: MeshLab, bunny: Path
+) -> None:
+    rows = dict(zip(PARAMETERS, dialog.rows(), strict=True))
+    dialog.set_value(rows["steps"], "20")  # for seconds
+    # Found before: during a run MeshLab answers ten questions a second.
+    bar = meshlab.main_window().find("progress bar")
+    box = dialog.window.find("check box", "Preview")
+    assert bar is not None
+    assert box is not None
+    before = len(meshlab.log())
+    box.press()
+    wait_for("the filter to be at work", lambda: bar.value >= 1)
+    box.press()
+    dialog.wait_for_result(before)
+    wait_for("Preview to be switched off", lambda: not box.checked)
+    assert "Spectral Filter: 20 steps" in meshlab.log()[before:], "switched off too late"
+    np.testing.assert_array_equal(saved_vertices(meshlab, "off.ply"), vertices(load(bunny)))
+
+    dialog.preview(True)
+    expected = load(bunny)
+    expected.apply_filter(FILTER, steps=20)
+    assert_same_in_floats(saved_vertices(meshlab, "on.ply"), vertices(expected))
+
+
 def test_apply_logs_the_report_and_the_saved_mesh_is_that_of_pymeshlab(
     dialog: FilterDialog, meshlab: MeshLab, bunny: Path
 ) -> None:
