@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/errors.h"
+#include "late_preview.h"
 
 namespace {
 
@@ -96,6 +97,7 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
     const QAction* action, const RichParameterList& parameters, MeshDocument& document,
     unsigned int&, vcg::CallBackPos* callback) {
     releaseGLContext();
+    const LatePreview latePreview;
     // In its callback MeshLab does whatever its user asks for, in the midst of this run: it starts
     // the filter anew for a preview with other parameters, or deletes the mesh.
     std::atomic<int>& latest = runs_.at(static_cast<std::size_t>(ID(action)));

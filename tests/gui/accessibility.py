@@ -141,6 +141,11 @@ class Widget:
         return str(self._call("Text", "GetText", "ii", (0, -1)))
 
     @property
+    def value(self) -> float:
+        """Number that a bar or a slider shows."""
+        return float(self._bus.property(self._program, self._path, "Value", "CurrentValue"))
+
+    @property
     def box(self) -> Box:
         """Place on the screen."""
         return Box(*self._call("Component", "GetExtents", "u", (0,)))

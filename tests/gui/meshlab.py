@@ -111,8 +111,9 @@ class MeshLab:
 
         def find() -> Widget | None:
             self._check_alive()
-            window = self._program.child(title)
-            return window if window is not None and window.showing else None
+            # One that was closed may still be there, hidden, beside its successor.
+            windows = self._program.children()
+            return next((w for w in windows if w.has_name(title) and w.showing), None)
 
         return wait_for(f"the window {title!r}", find)
 
@@ -151,6 +152,24 @@ class MeshLab:
         self._name_file(self._dialog("Save Filter Script File"), path)
         wait_for(f"{path.name} to be saved", path.is_file)
         self._confirm(script, "Close")
+
+    def apply_script(self, path: Path | None = None) -> None:
+        """Apply the current filter script, or one from a file, which becomes the current one."""
+        self.choose("Filters", "Show current filter script")
+        script = self._dialog("")
+        if path is not None:
+            button = script.find("push button", "Open Script")
+            assert button is not None
+            button.press()
+            self._name_file(self._dialog("Open Filter Script File"), path)
+        entries = len(script.find_all("list item"))
+        assert entries > 0, "the script is empty"
+        before = len(self.log())
+        self._confirm(script, "Apply Script")
+        wait_for(
+            f"{entries} filters of the script to be applied",
+            lambda: self.log()[before:].count("Re-Applied filter ") == entries,
+        )
 
     def _dialog(self, title: str) -> Widget:
         """Wait for a modal dialog whose title begins so: the last one that was opened."""

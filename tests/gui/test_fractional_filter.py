@@ -166,6 +166,68 @@ def test_a_preview_overtaken_by_another_one_does_not_come_back(
     assert_same_in_floats(previewed, vertices(ms))
 
 
+def test_a_preview_switched_off_while_it_is_computed_does_not_come_back(
+    dialog: FilterDialog, meshlab: MeshLab, bunny: Path
+) -> None:
+    rows = dict(zip(PARAMETERS, dialog.rows(), strict=True))
+    dialog.set_value(rows["steps"], "20")  # for seconds
+    # Found before: during a run MeshLab answers ten questions a second.
+    bar = meshlab.main_window().find("progress bar")
+    box = dialog.window.find("check box", "Preview")
+    assert bar is not None
+    assert box is not None
+    before = len(meshlab.log())
+    box.press()
+    wait_for("the filter to be at work", lambda: bar.value >= 1)
+    box.press()
+    dialog.wait_for_result(before)
+    wait_for("Preview to be switched off", lambda: not box.checked)
+    assert "Spectral Filter: 20 steps" in meshlab.log()[before:], "switched off too late"
+    np.testing.assert_array_equal(saved_vertices(meshlab, "off.ply"), vertices(load(bunny)))
+
+    dialog.preview(True)
+    expected = load(bunny)
+    expected.apply_filter(FILTER, steps=20)
+    assert_same_in_floats(saved_vertices(meshlab, "on.ply"), vertices(expected))
+
+
+@pytest.mark.parametrize(
+    "turns",
+    [("script", "dialog") * 2 + ("script",), ("dialog", "script") * 2],
+    ids=["script first", "dialog first"],
+)
+def test_scripts_and_the_dialog_take_turns(
+    meshlab: MeshLab, bunny: Path, turns: tuple[str, ...]
+) -> None:
+    ms = load(bunny)
+    sizes: list[float] = []  # of the script: MeshLab notes lengths in it, not percentages
+
+    def apply(size: float) -> None:
+        ms.apply_filter(FILTER, steps=1, feature_size=pymeshlab.PureValue(size))
+
+    if turns[0] == "script":
+        sizes.append(0.1)
+        apply(sizes[0])
+        script = meshlab.home / "script.mlx"
+        ms.save_filter_script(str(script))
+        meshlab.apply_script(script)
+        turns = turns[1:]
+    for turn in turns:
+        if turn == "script":
+            meshlab.apply_script()
+            for size in sizes:
+                apply(size)
+        else:
+            # Anew each time: Apply starts from the mesh of when the dialog was opened.
+            dialog = meshlab.open_filter(*MENU)
+            dialog.set_value(dialog.rows()[PARAMETERS.index("steps")], "1")
+            dialog.apply()
+            dialog.close()
+            sizes.append(0.05 * diagonal(vertices(ms)))
+            apply(sizes[-1])
+    assert_same_in_floats(saved_vertices(meshlab), vertices(ms))
+
+
 def test_apply_logs_the_report_and_the_saved_mesh_is_that_of_pymeshlab(
     dialog: FilterDialog, meshlab: MeshLab, bunny: Path
 ) -> None:
