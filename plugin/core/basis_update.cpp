@@ -2,7 +2,6 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <functional>
 #include <numeric>
 #include <optional>
 #include <vector>
@@ -33,11 +32,6 @@ constexpr double kOverlap = 1.0;
 
 /// Fewer harmonics than this are computed from nothing as quickly.
 constexpr Index kFewest = 64;
-
-/// An update is a round of iterations and Rayleigh-Ritz, and a second one where the first misses
-/// the gate by no more than this factor. More would cost as much as a basis from nothing.
-constexpr int kMaxRounds = 2;
-constexpr double kHopeless = 100.0;
 
 /// Square of the length that others leave of a unit vector, below which it is none of its own.
 constexpr double kDependent = 1e-3;
@@ -74,7 +68,7 @@ bool agree(const Eigen::VectorXd& lambda, Index size, const std::vector<Count>& 
 class Update {
   public:
     Update(const Laplacian& laplacian, const ConstantModes& constants, Index k,
-           HarmonicBasis& basis, BasisUpdateResult& result, const Progress& progress)
+           HarmonicBasis& basis, BasisUpdateResult& result)
         : laplacian_(laplacian),
           constants_(constants),
           k_(k),
@@ -84,21 +78,75 @@ class Update {
           // More would mean that the spectrum has changed too much.
           edge_(laplacian.D.size(), 2 * (basis.size() - k + kEdgeBelow + kEdgeAbove)) {
         basis_.Phi.leftCols(c()) = constants_.orthonormal();
-        sortCandidates(progress.part(0.0, 0.2));
-        computeEdge(progress.part(0.2, 1.0));
+    }
+
+    /// Looks at the candidates under the new Laplacian: takes them in the order of their Rayleigh
+    /// quotients. Returns their mean residual.
+    double sortCandidates(const Progress& progress) {
+        const Index all = basis_.Phi.cols() - c();
+        const Eigen::VectorXd &D = laplacian_.D, invSqrtD = D.cwiseSqrt().cwiseInverse();
+        Eigen::VectorXd residual(all);
+        quotient_.resize(all);
+        runInParallel(
+            (all + kColumns - 1) / kColumns,
+            [&](Index task, int, const StopPoint&) {
+                const Index first = task * kColumns, count = std::min(kColumns, all - first);
+                Eigen::MatrixXd S = basis_.Phi.middleCols(c() + first, count);
+                constants_.remove(S);
+                const Eigen::MatrixXd WS = symmetricProduct(laplacian_.W, S);
+                for (Index j = 0; j < count; ++j) {
+                    const double squared = S.col(j).cwiseAbs2().dot(D);
+                    const double quotient = S.col(j).dot(WS.col(j)) / squared;
+                    quotient_[first + j] = quotient;
+                    residual[first + j] =
+                        invSqrtD.cwiseProduct(WS.col(j) - quotient * D.cwiseProduct(S.col(j)))
+                            .norm() /
+                        (quotient * std::sqrt(squared));
+                }
+            },
+            progress, kStage);
+        order_.resize(static_cast<std::size_t>(all));
+        std::iota(order_.begin(), order_.end(), Index{0});
+        std::stable_sort(order_.begin(), order_.end(),
+                         [&](Index a, Index b) { return quotient_[a] < quotient_[b]; });
+        return residual.mean();
+    }
+
+    /// Computes the edge and, beside it, iterates the interior.
+    void compute(const Progress& progress) {
+        const Eigen::MatrixXd none;
+        const SliceTask edge = edgeTask(none);
+        beyond_ = edge.to;
+        iterated_ = wanted() - kEdgeBelow + kMoved;
+        counts_.resize(static_cast<std::size_t>(slices()));
+        SliceRun run;
+        runInParallel(
+            1 + slices(),
+            [&](Index task, int worker, const StopPoint& stopPoint) {
+                // The longest first: the edge, then the slices nearest to it.
+                if (task == 0)
+                    run = workers_.run(edge, worker, edge_, stopPoint);
+                else
+                    iterateSlice(slices() - task, workers_.factor(worker), stopPoint);
+            },
+            progress, kStage);
+        result_.factorizations += static_cast<int>(1 + slices());
+        result_.solves += run.solves;
+        for (Index i = 0; i < slices(); ++i)
+            result_.solves += iterations(slice(i)) * static_cast<int>(begin(i + 1) - begin(i));
+        edge_.sort();
+        counts_.push_back({run.sigma, run.below});
+        beyond_ = run.coveredTo;
+        interior_ = run.below - (edge_.lambdas().array() < run.sigma).count() - c();
         chooseCut();
         selectInterior();
     }
-
-    /// Turns the interior towards its eigenspaces, once more.
-    void iterate(const Progress& progress) { iterate({}, progress); }
 
     /// Makes harmonics of the interior, and the basis of all three parts.
     void assemble(const Progress& progress) {
         removeEdge(progress.part(0.0, 0.2));
         quotient_ = rayleighRitz(laplacian_, basis_.Phi.middleCols(c(), interior_),
                                  progress.part(0.2, 0.9));
-        std::iota(order_.begin(), order_.end(), Index{0});
         const Index first = c() + interior_, rest = size_ - first;
         if (basis_.Phi.cols() != size_) basis_.Phi.conservativeResize(Eigen::NoChange, size_);
         basis_.Phi.rightCols(rest) = edge_.vectors(0, rest);
@@ -108,13 +156,13 @@ class Update {
         ++result_.factorizations;
     }
 
-    /// How far the basis is from what the gate asks: at most 1 when it passes.
-    double excess(const UpdateGate& gate) const {
+    /// Whether residuals and leaks are within the gate.
+    bool passes(const UpdateGate& gate) const {
         const auto lambda = basis_.lambda.head(c() + interior_).array();
         const auto residual = basis_.residuals.head(c() + interior_).array() * lambda;
-        const double leak = (residual / (beyond_ - lambda)).maxCoeff();
-        return std::max({basis_.residuals.maxCoeff() / gate.largestResidual,
-                         basis_.residuals.mean() / gate.meanResidual, leak / gate.largestLeak});
+        return basis_.residuals.maxCoeff() <= gate.largestResidual &&
+               basis_.residuals.mean() <= gate.meanResidual &&
+               (residual / (beyond_ - lambda)).maxCoeff() <= gate.largestLeak;
     }
 
     /// Whether the counts are those of the basis.
@@ -126,51 +174,24 @@ class Update {
     Index c() const { return constants_.count(); }
     Index wanted() const { return k_ - c(); }
 
-    /// The order of the candidates by their Rayleigh quotients under the new Laplacian.
-    void sortCandidates(const Progress& progress) {
-        const Index all = basis_.Phi.cols() - c();
-        quotient_.resize(all);
-        runInParallel((all + kColumns - 1) / kColumns,
-                      [&](Index task, int, const StopPoint&) {
-                          const Index first = task * kColumns,
-                                      count = std::min(kColumns, all - first);
-                          Eigen::MatrixXd S = basis_.Phi.middleCols(c() + first, count);
-                          constants_.remove(S);
-                          const Eigen::MatrixXd WS = symmetricProduct(laplacian_.W, S);
-                          for (Index j = 0; j < count; ++j)
-                              quotient_[first + j] =
-                                  S.col(j).dot(WS.col(j)) / S.col(j).cwiseAbs2().dot(laplacian_.D);
-                      },
-                      progress, kStage);
-        order_.resize(static_cast<std::size_t>(all));
-        std::iota(order_.begin(), order_.end(), Index{0});
-        std::stable_sort(order_.begin(), order_.end(),
-                         [&](Index a, Index b) { return quotient_[a] < quotient_[b]; });
-        iterated_ = wanted() - kEdgeBelow + kMoved;
-    }
-
-    /// Computes the edge and, beside it, iterates the interior.
-    void computeEdge(const Progress& progress) {
-        const Eigen::MatrixXd none;
+    /// The run that finds the edge: from some pairs below the wanted number to some above the
+    /// number that the previous basis had, which did not cut a cluster.
+    SliceTask edgeTask(const Eigen::MatrixXd& none) const {
         const Index end = wanted() - kEdgeBelow, last = quotient_.size() - 1;
         const double spacing = sortedQuotient(wanted() - 1) / static_cast<double>(k_);
-        SliceTask task{0.0, 0.0, 0.0, kOverlap * spacing, none, {}, 0, 1};
-        task.from = 0.5 * (sortedQuotient(end - 1) + sortedQuotient(end));
-        task.to = sortedQuotient(last) + static_cast<double>(kEdgeAbove) * spacing;
-        task.sigma = 0.5 * (task.from + task.to);
-        beyond_ = task.to;
-        SliceRun run;
-        iterate(
-            [&](int worker, const StopPoint& stopPoint) {
-                run = workers_.run(task, worker, edge_, stopPoint);
-            },
-            progress);
-        edge_.sort();
-        counts_.push_back({run.sigma, run.below});
-        ++result_.factorizations;
-        result_.solves += run.solves;
-        beyond_ = run.coveredTo;
-        interior_ = run.below - (edge_.lambdas().array() < run.sigma).count() - c();
+        const double from = 0.5 * (sortedQuotient(end - 1) + sortedQuotient(end));
+        const double to = sortedQuotient(last) + static_cast<double>(kEdgeAbove) * spacing;
+        return {0.5 * (from + to), from, to, kOverlap * spacing, none, {}, 0, 1};
+    }
+
+    void iterateSlice(Index i, ShiftedLdlt& factor, const StopPoint& stopPoint) {
+        const Index first = begin(i), count = begin(i + 1) - first;
+        Eigen::MatrixXd S(laplacian_.D.size(), count);
+        for (Index j = 0; j < count; ++j) S.col(j) = candidate(sorted(first + j));
+        factor.factorize(laplacian_, slice(i).middle());
+        counts_[static_cast<std::size_t>(i)] = {factor.shift(), factor.eigenvaluesBelow()};
+        iterate(laplacian_, constants_, factor, slice(i), S, stopPoint);
+        for (Index j = 0; j < count; ++j) candidate(sorted(first + j)) = S.col(j);
     }
 
     /// The cut is in the edge: its eigenvalues are as good as those of a basis from nothing. The
@@ -210,33 +231,6 @@ class Update {
         std::sort(taken.begin(), taken.end());
         for (Index j = 0; j < interior_; ++j)
             candidate(j) = candidate(taken[static_cast<std::size_t>(j)]).eval();
-        order_.resize(taken.size());
-        iterated_ = interior_;
-    }
-
-    /// Iterates slice by slice, and does other work beside it, which is begun first.
-    void iterate(const std::function<void(int, const StopPoint&)>& beside,
-                 const Progress& progress) {
-        const Index others = beside ? 1 : 0;
-        counts_.assign(static_cast<std::size_t>(slices()), {});
-        runInParallel(
-            others + slices(),
-            [&](Index task, int worker, const StopPoint& stopPoint) {
-                if (task < others) return beside(worker, stopPoint);
-                const Index i = slices() - 1 - (task - others);  // the last take longest
-                const Index first = begin(i), count = begin(i + 1) - first;
-                Eigen::MatrixXd S(laplacian_.D.size(), count);
-                for (Index j = 0; j < count; ++j) S.col(j) = candidate(sorted(first + j));
-                ShiftedLdlt& factor = workers_.factor(worker);
-                factor.factorize(laplacian_, slice(i).middle());
-                counts_[static_cast<std::size_t>(i)] = {factor.shift(), factor.eigenvaluesBelow()};
-                spectral::iterate(laplacian_, constants_, factor, slice(i), S, stopPoint);
-                for (Index j = 0; j < count; ++j) candidate(sorted(first + j)) = S.col(j);
-            },
-            progress, kStage);
-        result_.factorizations += static_cast<int>(slices());
-        for (Index i = 0; i < slices(); ++i)
-            result_.solves += iterations(slice(i)) * static_cast<int>(begin(i + 1) - begin(i));
     }
 
     /// Takes the edge out of the interior.
@@ -277,11 +271,11 @@ class Update {
     std::vector<Index> order_;  // of the candidates, by their quotients
     Index iterated_ = 0;        // candidates that are iterated: the first in this order
     PairStore edge_;
-    double beyond_ = 0.0;        // end of the edge: what follows is in none of the three parts
-    Index interior_ = 0;         // harmonics
-    Index size_ = 0;             // of the basis
-    double cut_ = 0.0;           // shift between the last harmonic of the basis and the next
-    std::vector<Count> counts_;  // of the last round
+    double beyond_ = 0.0;  // end of the edge: what follows is in none of the three parts
+    Index interior_ = 0;   // harmonics
+    Index size_ = 0;       // of the basis
+    double cut_ = 0.0;     // shift between the last harmonic of the basis and the next
+    std::vector<Count> counts_;
 };
 
 }  // namespace
@@ -293,19 +287,15 @@ BasisUpdateResult updateBasis(const Laplacian& laplacian, const ConstantModes& c
     const bool isSmall = k - constants.count() < kFewest || isDenseQuicker(laplacian.D.size(), k);
     if (isSmall || basis.size() < k) return result;
     try {
-        Update update(laplacian, constants, k, basis, result, progress.part(0.0, 0.3));
-        for (int round = 1;; ++round) {
-            const Progress stage = progress.part(round == 1 ? 0.3 : 0.6, round == 1 ? 0.6 : 1.0);
-            if (round > 1) update.iterate(stage.part(0.0, 0.4));
-            update.assemble(stage.part(0.4, 1.0));
-            const double excess = update.excess(gate);
-            result.accepted = excess <= 1.0 && update.isComplete();
-            if (result.accepted || round == kMaxRounds || !(excess <= kHopeless)) return result;
-        }
+        Update update(laplacian, constants, k, basis, result);
+        if (!(update.sortCandidates(progress.part(0.0, 0.1)) <= gate.largestChange)) return result;
+        update.compute(progress.part(0.1, 0.6));
+        update.assemble(progress.part(0.6, 1.0));
+        result.accepted = update.passes(gate) && update.isComplete();
     } catch (const SolverFailure&) {
         // The step was so large that the old vectors are no start: the caller computes anew.
-        return result;
     }
+    return result;
 }
 
 }  // namespace spectral

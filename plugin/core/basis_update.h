@@ -9,6 +9,10 @@ namespace spectral {
 
 /// What an update has to hold, else the basis is computed anew.
 struct UpdateGate {
+    /// Mean residual of the previous harmonics under the new Laplacian, defined as below. Beyond
+    /// it nothing is tried: where areas have changed by a tenth it would be in vain.
+    double largestChange = 0.08;
+
     /// Largest |D^-1/2 (W phi - lambda D phi)| / lambda of any harmonic, and their mean. The error
     /// of an eigenvalue goes with the square of its residual r: some 10 r^2 were seen, relative.
     double largestResidual = 3e-3, meanResidual = 3e-4;
