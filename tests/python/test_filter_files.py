@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -100,6 +101,44 @@ def test_stopping_the_iteration_ends_the_workers(meshes: Path, tmp_path: Path) -
     results.close()
     wait_until(lambda: not alive(workers))
     assert not list((tmp_path / "out").glob(".*"))
+
+
+UNGUARDED = """
+import sys
+from meshlab_spectral import filter_files
+list(filter_files(sys.argv[1], sys.argv[2], workers=1, steps=1))
+"""
+
+
+def test_a_script_that_its_workers_cannot_import_is_told_how_to_mend_it(
+    meshes: Path, tmp_path: Path
+) -> None:
+    script = tmp_path / "script.py"
+    script.write_text(UNGUARDED)
+    done = subprocess.run(
+        [sys.executable, str(script), str(meshes), str(tmp_path / "out")],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert done.returncode == 1
+    last = done.stderr.splitlines()[-1]
+    assert "BatchError" in last
+    assert 'if __name__ == "__main__":' in last
+
+
+def test_workers_that_do_not_start_leave_ctrl_c_as_it_was(
+    meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(**_: object) -> None:
+        raise RuntimeError("no port is free")
+
+    monkeypatch.setattr(engine, "LocalCluster", fail)
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, [])
+    with pytest.raises(BatchError, match="no port"):
+        list(filter_files(meshes, tmp_path / "out", workers=1, steps=1))
+    assert signal.pthread_sigmask(signal.SIG_BLOCK, []) == before
 
 
 @pytest.fixture(scope="module")

@@ -58,31 +58,23 @@ def local_workers(count: int | None = None, memory_limit: int | None = None) -> 
     ------
     Client
         For `run_jobs`. At the end the workers are ended, whatever they are doing.
+
+    Raises
+    ------
+    BatchError
+        When they do not start.
     """
     count = count or CPU_COUNT
     limit = memory_limit or int(_SHARE_OF_MEMORY * MEMORY_LIMIT / count)
-    with _quiet_log(), dask.config.set(_NO_STATISTICS):
-        # Ctrl-C reaches every process of the terminal; only this one decides what it means. The
-        # threads that are started here, and the workers that these start, keep the mask; unless
-        # they started Python's resource tracker, which takes it off.
-        resource_tracker.ensure_running()
-        mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-        cluster = LocalCluster(
-            n_workers=count,
-            threads_per_worker=_JOBS_PER_WORKER,
-            host="127.0.0.1",
-            dashboard_address="127.0.0.1:0",
-            scheduler_kwargs={"dashboard": False},
-            memory_limit=limit,
-            silence_logs=logging.CRITICAL,
-        )
-        client = Client(cluster, set_as_default=False)
-        try:
+    with _quiet_log(), dask.config.set(_NO_STATISTICS), contextlib.ExitStack() as stack:
+        with _interrupts_held_back():
+            cluster = _start_cluster(count, limit)
+            stack.callback(_close, cluster)
+            client = Client(cluster, set_as_default=False)
+            stack.callback(_close, client)
+            stack.callback(_kill_workers, cluster)  # the last one is called first
             client.register_plugin(_LocalWorker())
-            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
-            yield client
-        finally:
-            _end(client, cluster)
+        yield client
 
 
 @contextlib.contextmanager
@@ -113,7 +105,7 @@ def workers_at(address: str) -> Iterator[Client]:
         finally:
             with contextlib.suppress(OSError, TimeoutError):  # a cluster that has gone
                 client.run(_end_idle_processes, on_error="ignore")
-                client.close(timeout=_SECONDS_TO_CLOSE)
+            _close(client)
 
 
 def run_jobs(client: Client, jobs: Sequence[Job]) -> Iterator[FileResult]:
@@ -207,16 +199,53 @@ def _check_workers(client: Client, address: str) -> None:
             )
 
 
-def _end(client: Client, cluster: LocalCluster) -> None:
-    """End a local cluster at once; its workers would first finish the meshes that they are at."""
+def _start_cluster(count: int, memory_limit: int) -> LocalCluster:
+    try:
+        return LocalCluster(
+            n_workers=count,
+            threads_per_worker=_JOBS_PER_WORKER,
+            host="127.0.0.1",
+            dashboard_address="127.0.0.1:0",
+            scheduler_kwargs={"dashboard": False},
+            memory_limit=memory_limit,
+            silence_logs=logging.CRITICAL,
+        )
+    except (OSError, RuntimeError) as error:
+        raise BatchError(
+            f"the worker processes do not start ({error}): too little memory, or too many open "
+            'files? A script that calls filter_files does so below `if __name__ == "__main__":`, '
+            "as its workers import it, too"
+        ) from error
+
+
+@contextlib.contextmanager
+def _interrupts_held_back() -> Iterator[None]:
+    """Keep Ctrl-C from the processes that are started meanwhile, and from this one until the end.
+
+    It reaches every process of the terminal; only this one decides what it means. The threads that
+    are started here, and the workers that these start, keep the mask; unless they started Python's
+    resource tracker, which takes it off.
+    """
+    resource_tracker.ensure_running()
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+
+
+def _kill_workers(cluster: LocalCluster) -> None:
+    """End workers at once; when closed, they would first finish the meshes that they are at."""
     for nanny in cluster.workers.values():
         nanny.close_gracefully()  # else it would start a worker anew
         if nanny.pid is not None:
             with contextlib.suppress(ProcessLookupError):
                 os.kill(nanny.pid, signal.SIGKILL)
-    with contextlib.suppress(TimeoutError):
-        client.close(timeout=_SECONDS_TO_CLOSE)
-        cluster.close(timeout=_SECONDS_TO_CLOSE)
+
+
+def _close(closable: Client | LocalCluster) -> None:
+    with contextlib.suppress(OSError, TimeoutError):
+        closable.close(timeout=_SECONDS_TO_CLOSE)
 
 
 def _end_idle_processes() -> None:
