@@ -94,7 +94,7 @@ def test_nothing_that_exists_is_replaced_unasked(tmp_path: Path) -> None:
     batch = ["batch", source, "--output", out, "--steps", 1, "--workers", 1]
     assert_fails(command(*batch), 2, str(out / paths[1].name), "--overwrite")
     assert contents(out) == {paths[1].name: PRECIOUS}
-    assert_fails(command(*batch, "--resume"), 2, "exist already")
+    assert_fails(command(*batch, "--resume"), 2, "exist already", "report of the run", REPORT)
     done = command(*batch, "--overwrite")
     assert done.returncode == 0, done.stderr
     assert len(arrays_of(out / paths[1].name)[0]) == 144
@@ -136,6 +136,24 @@ def test_a_mistake_is_named_before_anything_is_done(
     out = tmp_path / "out"
     assert_fails(command("batch", cow, "--output", out, *arguments), 2, word)
     assert not out.exists()
+
+
+def test_a_report_takes_the_place_of_no_other_file(cow: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    batch = ["batch", cow, "--output", out]
+    before = cow.read_bytes()
+    assert_fails(command(*batch, "--report", cow), 2, f"{cow} is no report")
+    assert_fails(command(*batch, "--report", out / cow.name), 2, "is an output, too")
+    assert cow.read_bytes() == before
+    assert not out.exists()
+
+
+def test_a_script_is_no_recipe(cow: Path, tmp_path: Path) -> None:
+    recipe = tmp_path / "recipe.toml"
+    arguments = ["--script", tmp_path / "x.mlx", "--save-recipe", recipe]
+    done = command("batch", cow, "--output", tmp_path / "out", *arguments)
+    assert_fails(done, 2, "--save-recipe")
+    assert not recipe.exists()
 
 
 def test_outputs_beside_their_inputs_are_not_filtered_again(tmp_path: Path) -> None:
