@@ -225,6 +225,19 @@ def test_what_is_no_script_is_refused(text: str, cow: Path, tmp_path: Path) -> N
     assert_fails(done, 2, "script")
 
 
+def test_a_wrong_value_in_a_script_is_named(cow: Path, tmp_path: Path) -> None:
+    script = tmp_path / "x.mlx"
+    script.write_text(
+        '<FilterScript><filter name="Spectral Filter (Fractional)">'
+        '<Param name="steps" type="RichInt" value="many"/></filter></FilterScript>'
+    )
+    done = command("batch", cow, "--output", tmp_path / "out", "--script", script, "--workers", 1)
+    assert done.returncode == 1
+    assert "filter 1 of the script" in done.stderr
+    assert "steps is no RichInt: 'many'" in done.stderr
+    assert "please report it" not in done.stderr
+
+
 def test_progress_is_shown_on_a_terminal_only(tmp_path: Path) -> None:
     make_meshes(tmp_path / "in", 3)
     arguments = ["batch", str(tmp_path / "in"), "--output", str(tmp_path / "out"), "--workers", "1"]

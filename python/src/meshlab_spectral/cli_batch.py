@@ -89,7 +89,11 @@ def batch_command(
     ] = None,
     recursive: Annotated[
         bool,
-        typer.Option("--recursive", "-r", help="Search folders in folders, too; keep their order."),
+        typer.Option(
+            "--recursive",
+            "-r",
+            help="Search folders in folders, too; the outputs lie in folders alike.",
+        ),
     ] = False,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace outputs that exist. Inputs never are.")
@@ -148,7 +152,7 @@ def batch_command(
         ),
     ] = None,
     timeout: Annotated[
-        float | None, typer.Option(min=0, help="Seconds that a file may take. By default any.")
+        float | None, typer.Option(min=1, help="Seconds that a file may take. By default any.")
     ] = None,
     scheduler: Annotated[
         str | None,

@@ -57,7 +57,7 @@ def spectra_command(
         int | None, typer.Option(min=1, help="Files at once. By default one for each processor.")
     ] = None,
     timeout: Annotated[
-        float | None, typer.Option(min=0, help="Seconds that a file may take. By default any.")
+        float | None, typer.Option(min=1, help="Seconds that a file may take. By default any.")
     ] = None,
     scheduler: Annotated[
         str | None,

@@ -14,6 +14,7 @@ from typing import Any
 import dask
 from dask.system import CPU_COUNT
 from distributed import Client, Future, KilledWorker, LocalCluster, WorkerPlugin, as_completed
+from distributed import TimeoutError as DaskTimeoutError  # in Python 3.10, not Python's own
 from distributed.system import MEMORY_LIMIT
 
 from meshlab_spectral.batch.jobs import FileResult, Job
@@ -94,7 +95,7 @@ def workers_at(address: str) -> Iterator[Client]:
     with _quiet_log():
         try:
             client = Client(address, timeout=_SECONDS_TO_CONNECT, set_as_default=False)
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, DaskTimeoutError) as error:
             raise BatchError(
                 f"no Dask scheduler can be reached at {address} ({error}): check the address, and "
                 "that `dask scheduler` is running there"
@@ -103,7 +104,7 @@ def workers_at(address: str) -> Iterator[Client]:
             _check_workers(client, address)
             yield client
         finally:
-            with contextlib.suppress(OSError, TimeoutError):  # a cluster that has gone
+            with contextlib.suppress(OSError, DaskTimeoutError):  # a cluster that has gone
                 client.run(_end_idle_processes, on_error="ignore")
             _close(client)
 
@@ -174,7 +175,7 @@ def _failed(job: Job, error: BaseException) -> FileResult:
 def _check_workers(client: Client, address: str) -> None:
     try:
         client.wait_for_workers(1, timeout=_SECONDS_TO_CONNECT)
-    except TimeoutError:
+    except DaskTimeoutError:
         raise BatchError(
             f"the Dask scheduler at {address} has no workers: start some with `dask worker "
             f"{address}`"
@@ -244,7 +245,7 @@ def _kill_workers(cluster: LocalCluster) -> None:
 
 
 def _close(closable: Client | LocalCluster) -> None:
-    with contextlib.suppress(OSError, TimeoutError):
+    with contextlib.suppress(OSError, DaskTimeoutError):
         closable.close(timeout=_SECONDS_TO_CLOSE)
 
 
