@@ -30,6 +30,8 @@ _SECONDS_TO_CLOSE = 5
 _FEWEST_SUBMITTED = 200
 # While MeshLab works on one mesh, the worker reads and writes the files of another.
 _JOBS_PER_WORKER = 2
+# Those that Dask gives a level of their own.
+_LOGGERS = ("distributed", "distributed.client")
 # Dask watches itself for its dashboard, a hundred times a second; on small meshes and few
 # processors that is a tenth of the work.
 _NO_STATISTICS = {
@@ -266,10 +268,12 @@ class _LocalWorker(WorkerPlugin):  # type: ignore[misc]
 @contextlib.contextmanager
 def _quiet_log() -> Iterator[None]:
     """Keep Dask's log of workers that come and go to itself; what matters is in the report."""
-    logger = logging.getLogger("distributed")
-    level = logger.level
-    logger.setLevel(logging.CRITICAL)
+    loggers = [logging.getLogger(name) for name in _LOGGERS]
+    levels = [logger.level for logger in loggers]
+    for logger in loggers:
+        logger.setLevel(logging.CRITICAL)
     try:
         yield
     finally:
-        logger.setLevel(level)
+        for logger, level in zip(loggers, levels, strict=True):
+            logger.setLevel(level)
