@@ -110,6 +110,14 @@ def test_a_wrong_pattern_is_refused(pattern: str) -> None:
         check_pattern(pattern)
 
 
+@pytest.mark.parametrize(
+    ("place", "pattern"), [("/in/scan", "{ending}/{stem}"), ("/scan.ply", "{folder}/{stem}")]
+)
+def test_a_pattern_that_leads_elsewhere_for_one_file_is_refused(place: str, pattern: str) -> None:
+    with pytest.raises(InputError, match=r"'/scan'"):
+        plan_outputs(inputs(place), "/out", pattern)
+
+
 @given(
     stems=st.lists(st.tuples(FOLDERS, NAMES), min_size=1, max_size=6, unique=True),
     pattern=st.sampled_from(["{stem}", "x_{stem}", "{folder}/{stem}_{ending}", "{stem}/{folder}"]),

@@ -7,13 +7,14 @@ import json
 import math
 from pathlib import Path
 from typing import Any
+from unittest.mock import MagicMock
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from meshlab_spectral import BatchError
+from meshlab_spectral import BatchError, InputError
 from meshlab_spectral.batch.jobs import FileResult, Job
-from meshlab_spectral.batch.report import Report, read_report
+from meshlab_spectral.batch.report import Report, check_report, read_report
 from meshlab_spectral.batch.resume import done_records, proved_done
 from meshlab_spectral.batch.storage import digest
 
@@ -71,6 +72,34 @@ def test_two_batches_cannot_write_one_report(tmp_path: Path) -> None:
         Report(path)
     with Report(path):
         pass
+
+
+@pytest.mark.parametrize("content", ["", '{"ki', '{"kind": "run"}\n'])
+def test_a_report_is_known_by_its_begin(content: str, tmp_path: Path) -> None:
+    path = tmp_path / "report.jsonl"
+    check_report(path)
+    path.write_text(content)
+    check_report(path)
+
+
+@pytest.mark.parametrize("content", ["ply\nformat ascii 1.0\n", "{}", '{"kinds": 3}', "\n"])
+def test_a_file_that_is_no_report_is_not_added_to(content: str, tmp_path: Path) -> None:
+    path = tmp_path / "precious.ply"
+    path.write_text(content)
+    with pytest.raises(InputError, match=r"precious\.ply is no report"):
+        check_report(path)
+
+
+def test_a_line_that_the_disk_takes_in_parts_is_whole(tmp_path: Path) -> None:
+    path = tmp_path / "report.jsonl"
+    with Report(path) as report:
+        file = report._file
+        parts = MagicMock(wraps=file)
+        parts.write = lambda part: file.write(part[:5])
+        report._file = parts
+        report.add("file", {"name": "a long one", "reason": "longer than a part"})
+    (record,) = read_report(path)
+    assert record["name"] == "a long one"
 
 
 def test_a_report_that_cannot_be_written_is_named(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import re
@@ -22,7 +23,12 @@ from meshlab_spectral.batch import storage
 from meshlab_spectral.batch.jobs import Job
 from meshlab_spectral.batch.processes import processes
 from meshlab_spectral.batch.task import run_job
-from meshlab_spectral.errors import MemoryLimitError, ProcessDiedError, TimeLimitError
+from meshlab_spectral.errors import (
+    MemoryLimitError,
+    MeshFileError,
+    ProcessDiedError,
+    TimeLimitError,
+)
 from meshlab_spectral.meshlab_process import JobLimits, MeshLabProcess
 from meshlab_spectral.whole_files import remove_leftovers, writing_whole
 
@@ -213,6 +219,23 @@ def test_leftovers_of_killed_processes_are_removed_and_nothing_else(tmp_path: Pa
         scratch.write_bytes(b"whole")
     remove_leftovers(tmp_path)
     assert sorted(tmp_path.iterdir()) == sorted([target, *kept])
+
+
+@pytest.mark.parametrize("content", [b"another skin", b"skin"])
+def test_a_texture_that_another_mesh_has_just_brought_is_not_replaced(
+    content: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    texture = tmp_path / "skin.png"
+    monkeypatch.setattr(  # between the check and the moves
+        "meshlab_spectral.whole_files._sync", lambda path: texture.write_bytes(content)
+    )
+    same = content == b"skin"
+    expected = contextlib.nullcontext() if same else pytest.raises(MeshFileError, match="skin")
+    with expected, writing_whole(tmp_path / "out.obj") as scratch:
+        scratch.write_bytes(b"mesh")
+        (scratch.parent / "skin.png").write_bytes(b"skin")
+    assert texture.read_bytes() == content
+    assert (tmp_path / "out.obj").exists() == same
 
 
 def test_files_at_urls_are_read_and_written(cow: Path) -> None:

@@ -94,7 +94,7 @@ def test_nothing_that_exists_is_replaced_unasked(tmp_path: Path) -> None:
     batch = ["batch", source, "--output", out, "--steps", 1, "--workers", 1]
     assert_fails(command(*batch), 2, str(out / paths[1].name), "--overwrite")
     assert contents(out) == {paths[1].name: PRECIOUS}
-    assert_fails(command(*batch, "--resume"), 2, "exist already")
+    assert_fails(command(*batch, "--resume"), 2, "exist already", "report of the run", REPORT)
     done = command(*batch, "--overwrite")
     assert done.returncode == 0, done.stderr
     assert len(arrays_of(out / paths[1].name)[0]) == 144
@@ -136,6 +136,24 @@ def test_a_mistake_is_named_before_anything_is_done(
     out = tmp_path / "out"
     assert_fails(command("batch", cow, "--output", out, *arguments), 2, word)
     assert not out.exists()
+
+
+def test_a_report_takes_the_place_of_no_other_file(cow: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    batch = ["batch", cow, "--output", out]
+    before = cow.read_bytes()
+    assert_fails(command(*batch, "--report", cow), 2, f"{cow} is no report")
+    assert_fails(command(*batch, "--report", out / cow.name), 2, "is an output, too")
+    assert cow.read_bytes() == before
+    assert not out.exists()
+
+
+def test_a_script_is_no_recipe(cow: Path, tmp_path: Path) -> None:
+    recipe = tmp_path / "recipe.toml"
+    arguments = ["--script", tmp_path / "x.mlx", "--save-recipe", recipe]
+    done = command("batch", cow, "--output", tmp_path / "out", *arguments)
+    assert_fails(done, 2, "--save-recipe")
+    assert not recipe.exists()
 
 
 def test_outputs_beside_their_inputs_are_not_filtered_again(tmp_path: Path) -> None:
@@ -207,6 +225,19 @@ def test_what_is_no_script_is_refused(text: str, cow: Path, tmp_path: Path) -> N
     assert_fails(done, 2, "script")
 
 
+def test_a_wrong_value_in_a_script_is_named(cow: Path, tmp_path: Path) -> None:
+    script = tmp_path / "x.mlx"
+    script.write_text(
+        '<FilterScript><filter name="Spectral Filter (Fractional)">'
+        '<Param name="steps" type="RichInt" value="many"/></filter></FilterScript>'
+    )
+    done = command("batch", cow, "--output", tmp_path / "out", "--script", script, "--workers", 1)
+    assert done.returncode == 1
+    assert "filter 1 of the script" in done.stderr
+    assert "steps is no RichInt: 'many'" in done.stderr
+    assert "please report it" not in done.stderr
+
+
 def test_progress_is_shown_on_a_terminal_only(tmp_path: Path) -> None:
     make_meshes(tmp_path / "in", 3)
     arguments = ["batch", str(tmp_path / "in"), "--output", str(tmp_path / "out"), "--workers", "1"]
@@ -234,7 +265,7 @@ def test_progress_is_shown_on_a_terminal_only(tmp_path: Path) -> None:
     assert process.returncode == 0
     assert re.search(rb"[0-3]/3", shown)
     assert b"0 failed" in shown
-    assert b"files/s" in shown
+    assert re.search(rb"files/s, 0:00:[0-9]{2} left", shown)
     assert re.fullmatch(rb"3 filtered, 0 failed in [0-9.]+ s; report: .*\n", stdout)
     quiet = command(*arguments, "--steps", 1, "--overwrite")
     assert quiet.stderr == ""

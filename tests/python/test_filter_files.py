@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
+import re
+import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -12,7 +15,7 @@ import meshlab_spectral
 import numpy as np
 import psutil
 import pytest
-from batches import REPORT, alive, contents, make_meshes, records, wait_until
+from batches import REPORT, alive, contents, make_meshes, records, start_batch, wait_until
 from commands import command
 from helpers import filter_arrays, percent
 from meshlab_spectral import (
@@ -102,10 +105,47 @@ def test_stopping_the_iteration_ends_the_workers(meshes: Path, tmp_path: Path) -
     assert not list((tmp_path / "out").glob(".*"))
 
 
-@pytest.fixture(scope="module")
-def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """A scheduler and two workers, started by hand; the scheduler's address."""
-    folder = tmp_path_factory.mktemp("cluster")
+UNGUARDED = """
+import sys
+from meshlab_spectral import filter_files
+list(filter_files(sys.argv[1], sys.argv[2], workers=1, steps=1))
+"""
+
+
+def test_a_script_that_its_workers_cannot_import_is_told_how_to_mend_it(
+    meshes: Path, tmp_path: Path
+) -> None:
+    script = tmp_path / "script.py"
+    script.write_text(UNGUARDED)
+    done = subprocess.run(
+        [sys.executable, str(script), str(meshes), str(tmp_path / "out")],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert done.returncode == 1
+    last = done.stderr.splitlines()[-1]
+    assert "BatchError" in last
+    assert 'if __name__ == "__main__":' in last
+
+
+def test_workers_that_do_not_start_leave_ctrl_c_as_it_was(
+    meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(**_: object) -> None:
+        raise RuntimeError("no port is free")
+
+    monkeypatch.setattr(engine, "LocalCluster", fail)
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, [])
+    with pytest.raises(BatchError, match="no port"):
+        list(filter_files(meshes, tmp_path / "out", workers=1, steps=1))
+    assert signal.pthread_sigmask(signal.SIG_BLOCK, []) == before
+
+
+@contextlib.contextmanager
+def dask_cluster(folder: Path) -> Iterator[tuple[str, subprocess.Popen[bytes]]]:
+    """A scheduler and two workers, started by hand; the scheduler's address and process."""
     address_file = folder / "scheduler.json"
     dask = [sys.executable, "-m", "dask"]
     common = ["--no-dashboard", "--host", "127.0.0.1"]
@@ -126,12 +166,18 @@ def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
                 subprocess.Popen([*dask, "worker", *common, *file, *local], stdout=log, stderr=log)
             )
         wait_until(lambda: (folder / "log").read_text().count("Registered to:") >= 2)
-        yield json.loads(address_file.read_text())["address"]
+        yield json.loads(address_file.read_text())["address"], started[0]
     finally:
         for process in reversed(started):
             process.kill()  # a worker ends with its nanny
             process.wait()
         log.close()
+
+
+@pytest.fixture(scope="module")
+def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    with dask_cluster(tmp_path_factory.mktemp("cluster")) as (address, _):
+        yield address
 
 
 def test_an_existing_cluster_gives_the_same_outputs(
@@ -164,6 +210,23 @@ def test_a_cluster_that_is_not_there_is_told(
     monkeypatch.setattr(engine, "_SECONDS_TO_CONNECT", 0.5)
     with pytest.raises(BatchError, match="no Dask scheduler"):
         list(filter_files(meshes, tmp_path / "out", scheduler="tcp://127.0.0.1:1"))
+
+
+def test_a_cluster_that_goes_in_the_middle_is_told_in_one_line(tmp_path: Path) -> None:
+    folder, out = tmp_path / "in", tmp_path / "out"
+    make_meshes(folder, 12, rings=32)
+    with dask_cluster(tmp_path) as (address, scheduler):
+        batch = start_batch(folder, "--output", out, "--steps", 60, "--scheduler", address)
+        try:
+            wait_until(lambda: bool(records(out / REPORT)))
+            scheduler.kill()
+            stdout, stderr = batch.communicate(timeout=120)
+        finally:
+            batch.kill()
+            batch.communicate()
+    assert batch.returncode == 1
+    assert stdout == ""
+    assert re.fullmatch("Error: the Dask cluster has gone.*--resume\n", stderr)
 
 
 def test_the_public_names_are_there() -> None:

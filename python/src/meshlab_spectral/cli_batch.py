@@ -6,6 +6,7 @@ import json
 import re
 import time
 from collections import Counter
+from contextlib import closing
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -88,7 +89,11 @@ def batch_command(
     ] = None,
     recursive: Annotated[
         bool,
-        typer.Option("--recursive", "-r", help="Search folders in folders, too; keep their order."),
+        typer.Option(
+            "--recursive",
+            "-r",
+            help="Search folders in folders, too; the outputs lie in folders alike.",
+        ),
     ] = False,
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace outputs that exist. Inputs never are.")
@@ -97,11 +102,12 @@ def batch_command(
         bool,
         typer.Option(
             "--resume",
-            help="Leave out what the report proves done, with this input, options and versions.",
+            help="Leave out what the report proves done, with this input, options and versions; "
+            "replace outputs that have been changed since.",
         ),
     ] = False,
     dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Only tell what would be written.")
+        bool, typer.Option("--dry-run", help="Only tell which outputs would be written.")
     ] = False,
     recipe: Annotated[
         Path | None,
@@ -146,7 +152,7 @@ def batch_command(
         ),
     ] = None,
     timeout: Annotated[
-        float | None, typer.Option(min=0, help="Seconds that a file may take. By default any.")
+        float | None, typer.Option(min=1, help="Seconds that a file may take. By default any.")
     ] = None,
     scheduler: Annotated[
         str | None,
@@ -167,10 +173,13 @@ def batch_command(
             "the workers of a cluster are its own: leave out --workers and --memory-limit",
             param_hint="--scheduler",
         )
+    if script is not None and save_recipe_as is not None:
+        raise typer.BadParameter(
+            "a script is kept as it is, a recipe holds options of the filter: leave out one",
+            param_hint="--save-recipe",
+        )
     with errors_reported(debug, "what is done is in the report; go on with --resume"):
         options = _options(given, recipe, script)
-        if save_recipe_as is not None:
-            save_recipe(save_recipe_as, options or FilterOptions())
         begin = time.monotonic()
         batch = plan_batch(
             inputs,
@@ -185,14 +194,18 @@ def batch_command(
             report=report,
             timeout=timeout,
         )
+        if save_recipe_as is not None and options is not None:
+            save_recipe(save_recipe_as, options)
         if dry_run:
             _tell_plan(batch)
             return
         counts: Counter[str] = Counter()
-        with batch_progress(MESSAGES, len(batch.jobs) + len(batch.done)) as on_result:
-            for result in run_batch(
-                batch, workers=workers, memory_limit=memory_limit, scheduler=scheduler
-            ):
+        running = run_batch(batch, workers=workers, memory_limit=memory_limit, scheduler=scheduler)
+        with (
+            batch_progress(MESSAGES, len(batch.jobs) + len(batch.done)) as on_result,
+            closing(running) as results,  # ends the workers when it is interrupted
+        ):
+            for result in results:
                 counts[result.outcome] += 1
                 on_result(result)
         _tell_summary(batch, counts, time.monotonic() - begin, as_json)

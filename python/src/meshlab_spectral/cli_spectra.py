@@ -15,7 +15,7 @@ from meshlab_spectral.batch.spectra import spectrum_jobs, write_table
 from meshlab_spectral.command_line import EXIT_FAILED, MESSAGES, errors_reported
 from meshlab_spectral.options import Boundary, LaplacianKind
 from meshlab_spectral.spectrum import DEFAULT_BASIS_SIZE
-from meshlab_spectral.whole_files import writing_whole
+from meshlab_spectral.whole_files import remove_leftovers, writing_whole
 
 # "\b" keeps a paragraph's lines as they are.
 SPECTRA_HELP = """Measure how much of many meshes is in details of which size: one table of all.
@@ -57,7 +57,7 @@ def spectra_command(
         int | None, typer.Option(min=1, help="Files at once. By default one for each processor.")
     ] = None,
     timeout: Annotated[
-        float | None, typer.Option(min=0, help="Seconds that a file may take. By default any.")
+        float | None, typer.Option(min=1, help="Seconds that a file may take. By default any.")
     ] = None,
     scheduler: Annotated[
         str | None,
@@ -66,6 +66,7 @@ def spectra_command(
     debug: Annotated[bool, typer.Option("--debug", hidden=True)] = False,
 ) -> None:
     """Measure spectra of many meshes: `meshlab-spectral spectra --help` tells more."""
+    remove_leftovers(output.resolve().parent, output.name)
     with errors_reported(debug), writing_whole(output) as scratch:
         found = find_inputs(inputs, recursive)
         jobs = spectrum_jobs(found, basis_size, laplacian, boundary, timeout)

@@ -105,15 +105,22 @@ def _load_single(mesh_set: Any, single: ElementTree.Element) -> None:
 
 def _parameter(element: ElementTree.Element) -> tuple[str, Any]:
     """Give a parameter as pymeshlab's filters take it: its name, and its value."""
+    name, kind, value = (element.get(key, "") for key in ("name", "type", "value"))
+    try:
+        return name, _value(kind, value)
+    except ValueError:
+        raise FilterError(f"its parameter {name} is no {kind}: {value!r}") from None
+
+
+def _value(kind: str, text: str) -> Any:
     import pymeshlab
 
-    name, kind, value = (element.get(key, "") for key in ("name", "type", "value"))
     if kind == "RichBool":
-        return name, value == "true"
+        return text == "true"
     if kind in ("RichInt", "RichEnum"):
-        return name, int(value)
+        return int(text)
     if kind in ("RichFloat", "RichDynamicFloat"):
-        return name, float(value)
+        return float(text)
     if kind in ("RichAbsPerc", "RichPercentage"):
-        return name, pymeshlab.PureValue(float(value))
-    return name, value
+        return pymeshlab.PureValue(float(text))
+    return text

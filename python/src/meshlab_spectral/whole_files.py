@@ -155,14 +155,31 @@ def _put_in_place(scratch: Path, place: Path) -> None:
     for path, final in moves.items():
         final.parent.mkdir(parents=True, exist_ok=True)
         _sync(path)
-        path.replace(final)
+        if path == scratch or _is_ours(final, scratch.name):
+            path.replace(final)
+        else:
+            _put_beside(path, final, scratch.name)
     _sync(place.parent)
+
+
+def _is_ours(place: Path, mesh_name: str) -> bool:
+    """Whether a file belongs to one mesh alone, such as out.obj.mtl to out.obj."""
+    return place.name.startswith(mesh_name)
+
+
+def _put_beside(path: Path, place: Path, mesh_name: str) -> None:
+    """Put a side file in place, unless another process has just put one there."""
+    try:
+        place.hardlink_to(path)
+    except FileExistsError:
+        _check_side_file(path, place, mesh_name)
+    except OSError:  # a file system without hard links
+        path.replace(place)
 
 
 def _check_side_file(path: Path, place: Path, mesh_name: str) -> None:
     """Refuse to replace a file that the user did not name, such as another model's texture."""
-    ours = place.name.startswith(mesh_name)  # out.obj.mtl of out.obj
-    if ours or not place.exists():
+    if _is_ours(place, mesh_name) or not place.exists():
         return
     if not (place.is_file() and filecmp.cmp(path, place, shallow=False)):
         raise MeshFileError(

@@ -14,6 +14,7 @@ from typing import Any
 import dask
 from dask.system import CPU_COUNT
 from distributed import Client, Future, KilledWorker, LocalCluster, WorkerPlugin, as_completed
+from distributed import TimeoutError as DaskTimeoutError  # in Python 3.10, not Python's own
 from distributed.system import MEMORY_LIMIT
 
 from meshlab_spectral.batch.jobs import FileResult, Job
@@ -29,6 +30,8 @@ _SECONDS_TO_CLOSE = 5
 _FEWEST_SUBMITTED = 200
 # While MeshLab works on one mesh, the worker reads and writes the files of another.
 _JOBS_PER_WORKER = 2
+# Those that Dask gives a level of their own.
+_LOGGERS = ("distributed", "distributed.client")
 # Dask watches itself for its dashboard, a hundred times a second; on small meshes and few
 # processors that is a tenth of the work.
 _NO_STATISTICS = {
@@ -58,31 +61,23 @@ def local_workers(count: int | None = None, memory_limit: int | None = None) -> 
     ------
     Client
         For `run_jobs`. At the end the workers are ended, whatever they are doing.
+
+    Raises
+    ------
+    BatchError
+        When they do not start.
     """
     count = count or CPU_COUNT
     limit = memory_limit or int(_SHARE_OF_MEMORY * MEMORY_LIMIT / count)
-    with _quiet_log(), dask.config.set(_NO_STATISTICS):
-        # Ctrl-C reaches every process of the terminal; only this one decides what it means. The
-        # threads that are started here, and the workers that these start, keep the mask; unless
-        # they started Python's resource tracker, which takes it off.
-        resource_tracker.ensure_running()
-        mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-        cluster = LocalCluster(
-            n_workers=count,
-            threads_per_worker=_JOBS_PER_WORKER,
-            host="127.0.0.1",
-            dashboard_address="127.0.0.1:0",
-            scheduler_kwargs={"dashboard": False},
-            memory_limit=limit,
-            silence_logs=logging.CRITICAL,
-        )
-        client = Client(cluster, set_as_default=False)
-        try:
+    with _quiet_log(), dask.config.set(_NO_STATISTICS), contextlib.ExitStack() as stack:
+        with _interrupts_held_back():
+            cluster = _start_cluster(count, limit)
+            stack.callback(_close, cluster)
+            client = Client(cluster, set_as_default=False)
+            stack.callback(_close, client)
+            stack.callback(_kill_workers, cluster)  # the last one is called first
             client.register_plugin(_LocalWorker())
-            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
-            yield client
-        finally:
-            _end(client, cluster)
+        yield client
 
 
 @contextlib.contextmanager
@@ -102,7 +97,7 @@ def workers_at(address: str) -> Iterator[Client]:
     with _quiet_log():
         try:
             client = Client(address, timeout=_SECONDS_TO_CONNECT, set_as_default=False)
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, DaskTimeoutError) as error:
             raise BatchError(
                 f"no Dask scheduler can be reached at {address} ({error}): check the address, and "
                 "that `dask scheduler` is running there"
@@ -111,9 +106,9 @@ def workers_at(address: str) -> Iterator[Client]:
             _check_workers(client, address)
             yield client
         finally:
-            with contextlib.suppress(OSError, TimeoutError):  # a cluster that has gone
+            with contextlib.suppress(OSError, DaskTimeoutError):  # a cluster that has gone
                 client.run(_end_idle_processes, on_error="ignore")
-                client.close(timeout=_SECONDS_TO_CLOSE)
+            _close(client)
 
 
 def run_jobs(client: Client, jobs: Sequence[Job]) -> Iterator[FileResult]:
@@ -182,7 +177,7 @@ def _failed(job: Job, error: BaseException) -> FileResult:
 def _check_workers(client: Client, address: str) -> None:
     try:
         client.wait_for_workers(1, timeout=_SECONDS_TO_CONNECT)
-    except TimeoutError:
+    except DaskTimeoutError:
         raise BatchError(
             f"the Dask scheduler at {address} has no workers: start some with `dask worker "
             f"{address}`"
@@ -207,16 +202,53 @@ def _check_workers(client: Client, address: str) -> None:
             )
 
 
-def _end(client: Client, cluster: LocalCluster) -> None:
-    """End a local cluster at once; its workers would first finish the meshes that they are at."""
+def _start_cluster(count: int, memory_limit: int) -> LocalCluster:
+    try:
+        return LocalCluster(
+            n_workers=count,
+            threads_per_worker=_JOBS_PER_WORKER,
+            host="127.0.0.1",
+            dashboard_address="127.0.0.1:0",
+            scheduler_kwargs={"dashboard": False},
+            memory_limit=memory_limit,
+            silence_logs=logging.CRITICAL,
+        )
+    except (OSError, RuntimeError) as error:
+        raise BatchError(
+            f"the worker processes do not start ({error}): too little memory, or too many open "
+            'files? A script that calls filter_files does so below `if __name__ == "__main__":`, '
+            "as its workers import it, too"
+        ) from error
+
+
+@contextlib.contextmanager
+def _interrupts_held_back() -> Iterator[None]:
+    """Keep Ctrl-C from the processes that are started meanwhile, and from this one until the end.
+
+    It reaches every process of the terminal; only this one decides what it means. The threads that
+    are started here, and the workers that these start, keep the mask; unless they started Python's
+    resource tracker, which takes it off.
+    """
+    resource_tracker.ensure_running()
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+
+
+def _kill_workers(cluster: LocalCluster) -> None:
+    """End workers at once; when closed, they would first finish the meshes that they are at."""
     for nanny in cluster.workers.values():
         nanny.close_gracefully()  # else it would start a worker anew
         if nanny.pid is not None:
             with contextlib.suppress(ProcessLookupError):
                 os.kill(nanny.pid, signal.SIGKILL)
-    with contextlib.suppress(TimeoutError):
-        client.close(timeout=_SECONDS_TO_CLOSE)
-        cluster.close(timeout=_SECONDS_TO_CLOSE)
+
+
+def _close(closable: Client | LocalCluster) -> None:
+    with contextlib.suppress(OSError, DaskTimeoutError):
+        closable.close(timeout=_SECONDS_TO_CLOSE)
 
 
 def _end_idle_processes() -> None:
@@ -236,10 +268,12 @@ class _LocalWorker(WorkerPlugin):  # type: ignore[misc]
 @contextlib.contextmanager
 def _quiet_log() -> Iterator[None]:
     """Keep Dask's log of workers that come and go to itself; what matters is in the report."""
-    logger = logging.getLogger("distributed")
-    level = logger.level
-    logger.setLevel(logging.CRITICAL)
+    loggers = [logging.getLogger(name) for name in _LOGGERS]
+    levels = [logger.level for logger in loggers]
+    for logger in loggers:
+        logger.setLevel(logging.CRITICAL)
     try:
         yield
     finally:
-        logger.setLevel(level)
+        for logger, level in zip(loggers, levels, strict=True):
+            logger.setLevel(level)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
 from datetime import datetime, timezone
 from functools import partial
@@ -34,11 +34,12 @@ def filter_files(
     memory_limit: int | None = None,
     scheduler: str | None = None,
     **options: Any,
-) -> Iterator[FileResult]:
+) -> Generator[FileResult, None, None]:
     """Filter many mesh files in worker processes; iterate over the results.
 
     Nothing is done until the first result is asked for. Worker processes are started anew from the
-    main module of the program, so that a script has to be guarded, see the example.
+    main module of the program, so that a script has to be guarded, see the example. The workers
+    are ended when the iteration is, or by `close` of the iterator.
 
     Parameters
     ----------
@@ -58,7 +59,8 @@ def filter_files(
         Replace outputs that exist. An input is never replaced.
     resume
         Take up an earlier run, if there was one: leave out what its report proves done with the
-        same options, the same inputs and the same versions.
+        same options, the same inputs and the same versions; replace outputs that have been changed
+        since.
     report
         File that gets one JSON line a file, by default batch_report.jsonl in `output`.
     timeout
@@ -114,7 +116,7 @@ def run_batch(
     workers: int | None = None,
     memory_limit: int | None = None,
     scheduler: str | None = None,
-) -> Iterator[FileResult]:
+) -> Generator[FileResult, None, None]:
     """Do what `plan_batch` has planned; see `filter_files`."""
     with Report(batch.report) as report:
         counts = {"filtered": 0, "failed": 0, "unchanged": len(batch.done)}

@@ -86,11 +86,15 @@ def check_pattern(pattern: str) -> None:
         if field is not None and (field not in _FIELDS or spec or conversion):
             known = ", ".join(f"{{{name}}}" for name in _FIELDS)
             raise InputError(f"the name {pattern!r} has a field {{{field}}}: choose of {known}")
-    steps = pattern.split("/")
-    if any(step.strip() in ("", ".", "..") or "\0" in step for step in steps):
+    _check_name(pattern.strip(), pattern)
+
+
+def _check_name(name: str, pattern: str) -> None:
+    if any(step in ("", ".", "..") or "\0" in step for step in name.split("/")):
+        made = "" if name == pattern else f", here {name!r},"
         raise InputError(
-            f"the name {pattern!r} does not lead to a file in the folder of the outputs: give "
-            "something like {stem}_smooth, or {folder}/{stem}"
+            f"the name {pattern!r}{made} does not lead to a file in the folder of the outputs: "
+            "give something like {stem}_smooth, or {folder}/{stem}"
         )
 
 
@@ -101,6 +105,7 @@ def _output(file: Input, folder: str, pattern: str, ending: str | None) -> Outpu
         ending = own if own.lower() in WRITABLE else FALLBACK
     parent = posixpath.basename(posixpath.dirname(file.place))
     made = pattern.format(stem=stem, ending=own, folder=parent)
+    _check_name(made, pattern)  # a file may have no ending, or lie in the topmost folder
     name = posixpath.join(file.folder, f"{made}.{ending}")
     return Output(file.place, name, joined(folder, name))
 

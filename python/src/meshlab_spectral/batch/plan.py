@@ -12,7 +12,7 @@ from meshlab_spectral.batch import storage
 from meshlab_spectral.batch.inputs import Input, find_inputs
 from meshlab_spectral.batch.jobs import FileResult, Job
 from meshlab_spectral.batch.outputs import DEFAULT_PATTERN, plan_outputs
-from meshlab_spectral.batch.report import DEFAULT_NAME, read_report
+from meshlab_spectral.batch.report import DEFAULT_NAME, check_report, read_report
 from meshlab_spectral.batch.resume import Records, done_records, proved_done
 from meshlab_spectral.errors import InputError, OptionError
 from meshlab_spectral.filter_script import script_filters
@@ -70,6 +70,7 @@ def plan_batch(
     work, described = _work(options, script)
     folder = storage.located(str(output))
     report_path = _report_path(folder, report)
+    check_report(report_path)
     records: Records = {}
     begun = None
     if resume or report_path.is_file():
@@ -86,9 +87,14 @@ def plan_batch(
     done = proved_done(jobs, records, versions()) if resume else {}
     left = [job for job in jobs if job not in done]
     proved = {job.name for job in done}
+    if str(report_path) in (output.target for output in planned):
+        raise InputError(f"the report {report_path} is an output, too: name another with --report")
     if not overwrite:
         targets = [output.target for output in planned if output.name not in proved]
-        _refuse_to_replace(targets, begun if resume else None)
+        hint = "take up an earlier run with --resume"
+        if resume:
+            hint = f"give the report of the run that made them (--report): {report_path} is not it"
+        _refuse_to_replace(targets, begun if resume else None, hint)
     return Batch(left, list(done.values()), report_path)
 
 
@@ -143,7 +149,7 @@ def _inputs(
     return find_inputs([str(place) for place in inputs], recursive, leave_out)
 
 
-def _refuse_to_replace(targets: Sequence[str], begun: float | None) -> None:
+def _refuse_to_replace(targets: Sequence[str], begun: float | None, hint: str) -> None:
     """Refuse to replace files; those that the run to be resumed has made may be."""
     taken = [
         target
@@ -155,7 +161,7 @@ def _refuse_to_replace(targets: Sequence[str], begun: float | None) -> None:
         raise InputError(
             f"{len(taken)} of the outputs exist already "
             f"({', '.join(taken[:_NAMED_AT_MOST])}{more}): choose another folder, replace them "
-            "with --overwrite, or take up an earlier run with --resume"
+            f"with --overwrite, or {hint}"
         )
 
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import contextlib
-import time
+import math
 from collections.abc import Callable, Iterator
+from datetime import timedelta
 
 from rich.console import Console
 from rich.markup import escape
@@ -12,13 +13,17 @@ from rich.progress import (
     BarColumn,
     MofNCompleteColumn,
     Progress,
+    ProgressColumn,
     SpinnerColumn,
+    Task,
     TextColumn,
     TimeElapsedColumn,
-    TimeRemainingColumn,
 )
+from rich.text import Text
 
 from meshlab_spectral.batch.jobs import FileResult
+
+_FEWEST_PER_SECOND = 0.1
 
 
 @contextlib.contextmanager
@@ -44,17 +49,14 @@ def batch_progress(console: Console, files: int) -> Iterator[Callable[[FileResul
         BarColumn(),
         MofNCompleteColumn(),
         TextColumn("{task.fields[failed]}"),
-        TextColumn("{task.fields[rate]}"),
         TimeElapsedColumn(),
-        TextColumn("left:"),
-        TimeRemainingColumn(),
+        _PaceColumn(),
         console=console,
         transient=True,
         disable=not console.is_terminal,
         redirect_stdout=False,
     ) as progress:
-        task = progress.add_task("", total=files, failed="0 failed", rate="")
-        begin = time.monotonic()
+        task = progress.add_task("", total=files, failed="0 failed", worked=0)
         worked = failed = 0
 
         def update(result: FileResult) -> None:
@@ -69,8 +71,20 @@ def batch_progress(console: Console, files: int) -> Iterator[Callable[[FileResul
                     soft_wrap=True,
                 )
             worked += result.outcome != "unchanged"
-            rate = worked / max(time.monotonic() - begin, 1e-3)
             told = f"[red]{failed} failed[/red]" if failed else "0 failed"
-            progress.update(task, advance=1, failed=told, rate=f"{rate:.1f} files/s")
+            progress.update(task, advance=1, failed=told, worked=worked)
 
         yield update
+
+
+class _PaceColumn(ProgressColumn):
+    """Rate and time left; rich's own would count the files that an earlier run has done."""
+
+    def render(self, task: Task) -> Text:
+        worked = task.fields["worked"]
+        if not worked or not task.elapsed or task.remaining is None:
+            return Text("")
+        rate = worked / task.elapsed
+        told = f"{rate:.1f} files/s" if rate >= _FEWEST_PER_SECOND else f"{60 * rate:.1f} files/min"
+        left = timedelta(seconds=math.ceil(task.remaining / rate))
+        return Text(f"{told}, {left} left")

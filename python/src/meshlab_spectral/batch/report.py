@@ -15,9 +15,11 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from meshlab_spectral.errors import BatchError
+from meshlab_spectral.errors import BatchError, InputError
 
 DEFAULT_NAME = "batch_report.jsonl"
+
+_BEGIN = b'{"kind": '  # of every line
 
 
 def read_report(path: Path) -> Iterator[dict[str, Any]]:
@@ -64,16 +66,11 @@ class Report:
                 "--report"
             ) from error
         try:
-            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
+            self._lock()
+            self._end_line()
+        except BaseException:
             self._file.close()
-            raise BatchError(
-                f"another batch is writing the report {path}: wait for its end, or name another "
-                "with --report"
-            ) from None
-        except OSError:
-            pass  # a file system without locks
-        self._end_line()
+            raise
 
     def __enter__(self) -> Report:
         return self
@@ -89,8 +86,13 @@ class Report:
     def add(self, kind: str, content: dict[str, Any]) -> None:
         """Add a line."""
         line = json.dumps({"kind": kind, **content}, ensure_ascii=False, allow_nan=False)
+        self._write(line.encode("utf-8", errors="surrogateescape") + b"\n")
+
+    def _write(self, text: bytes) -> None:
         try:
-            self._file.write(line.encode("utf-8", errors="surrogateescape") + b"\n")
+            rest = memoryview(text)
+            while rest:  # a disk that is nearly full takes a part
+                rest = rest[self._file.write(rest) :]
             os.fsync(self._file.fileno())
         except OSError as error:
             raise BatchError(
@@ -98,13 +100,40 @@ class Report:
                 "the same command with --resume"
             ) from error
 
+    def _lock(self) -> None:
+        try:
+            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            raise BatchError(
+                f"another batch is writing the report {self.path}: wait for its end, or name "
+                "another with --report"
+            ) from None
+        except OSError:
+            pass  # a file system without locks
+
     def _end_line(self) -> None:
         """End a line that was cut off, so that the next one stands for itself."""
         if self._file.seek(0, io.SEEK_END) == 0:
             return
         self._file.seek(-1, io.SEEK_END)
         if self._file.read(1) != b"\n":
-            self._file.write(b"\n")
+            self._write(b"\n")
+
+
+def check_report(path: Path) -> None:
+    """Raise InputError when there is a file at `path` that no batch has written."""
+    if not path.is_file():  # what else there may be, `Report` complains of
+        return
+    try:
+        with path.open("rb") as file:
+            begin = file.read(len(_BEGIN))
+    except OSError:  # `read_report` says why
+        return
+    if not _BEGIN.startswith(begin):  # it may be cut off
+        raise InputError(
+            f"{path} is no report of a batch, which would be added to it: name another file with "
+            "--report"
+        )
 
 
 def _record(line: bytes) -> dict[str, Any] | None:

@@ -37,6 +37,7 @@ def run_job(job: Job, memory_limit: int | None = None) -> FileResult:
     limits = JobLimits(memory_limit or _worker_memory(), job.seconds)
     try:
         with storage.reading(job.source) as source:
+            # Before MeshLab reads it: one that is changed meanwhile is then not proved done.
             result["input_sha256"] = storage.digest(source)
             work = job.work | {"source": str(source), "verbose": False}
             if job.target is None:
