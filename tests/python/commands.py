@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import pty
 import subprocess
 import sys
 from pathlib import Path
@@ -25,6 +26,32 @@ def command(
         timeout=timeout,
         check=False,
     )
+
+
+def command_on_terminal(*arguments: object) -> tuple[int, bytes, bytes]:
+    """Exit code, standard output, and what a terminal on standard error is sent."""
+    reader, terminal = pty.openpty()
+    try:
+        process = subprocess.Popen(
+            [*COMMAND, *map(str, arguments)],
+            stdout=subprocess.PIPE,
+            stderr=terminal,
+            env={**os.environ, "COLUMNS": "120", "TERM": "xterm-256color"},
+        )
+        os.close(terminal)
+        shown = b""
+        while True:
+            try:
+                part = os.read(reader, 65536)
+            except OSError:  # Linux's way to say that the last writer has gone
+                break
+            if not part:
+                break
+            shown += part
+        stdout, _ = process.communicate(timeout=60)
+    finally:
+        os.close(reader)
+    return process.returncode, stdout, shown
 
 
 def assert_fails(done: subprocess.CompletedProcess[str], code: int, *words: str) -> None:

@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import json
-import os
-import pty
 import re
 import shutil
-import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +12,13 @@ import pymeshlab
 import pytest
 from batches import REPORT, contents, make_meshes, records
 from broken_meshes import make_broken_meshes
-from commands import COMMAND, PRECIOUS, arrays_of, assert_fails, command
+from commands import (
+    PRECIOUS,
+    arrays_of,
+    assert_fails,
+    command,
+    command_on_terminal,
+)
 from helpers import FILTER, diagonal, largest_distance, percent
 from meshlab_spectral import FilterOptions
 from meshlab_spectral.options import Length
@@ -241,28 +244,8 @@ def test_a_wrong_value_in_a_script_is_named(cow: Path, tmp_path: Path) -> None:
 def test_progress_is_shown_on_a_terminal_only(tmp_path: Path) -> None:
     make_meshes(tmp_path / "in", 3)
     arguments = ["batch", str(tmp_path / "in"), "--output", str(tmp_path / "out"), "--workers", "1"]
-    reader, terminal = pty.openpty()
-    try:
-        process = subprocess.Popen(
-            [*COMMAND, *arguments, "--steps", "1"],
-            stdout=subprocess.PIPE,
-            stderr=terminal,
-            env={**os.environ, "COLUMNS": "120", "TERM": "xterm-256color"},
-        )
-        os.close(terminal)
-        shown = b""
-        while True:
-            try:
-                part = os.read(reader, 65536)
-            except OSError:  # Linux's way to say that the last writer has gone
-                break
-            if not part:
-                break
-            shown += part
-        stdout, _ = process.communicate(timeout=60)
-    finally:
-        os.close(reader)
-    assert process.returncode == 0
+    code, stdout, shown = command_on_terminal(*arguments, "--steps", 1)
+    assert code == 0
     assert re.search(rb"[0-3]/3", shown)
     assert b"0 failed" in shown
     assert re.search(rb"files/s, 0:00:[0-9]{2} left", shown)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import pty
 import re
 import signal
 import subprocess
@@ -12,7 +11,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from commands import COMMAND, command
+from commands import COMMAND, command, command_on_terminal
 
 
 @pytest.fixture
@@ -75,28 +74,8 @@ def test_the_death_of_the_working_process_is_told(long_run: subprocess.Popen[str
 
 def test_progress_is_shown_on_a_terminal_only(samples: Path, tmp_path: Path) -> None:
     arguments = ["filter", str(samples / "bunny.obj"), str(tmp_path / "out.ply"), "--steps", "20"]
-    reader, terminal = pty.openpty()
-    try:
-        process = subprocess.Popen(
-            [*COMMAND, *arguments],
-            stdout=subprocess.PIPE,
-            stderr=terminal,
-            env={**os.environ, "COLUMNS": "100", "TERM": "xterm-256color"},
-        )
-        os.close(terminal)
-        shown = b""
-        while True:
-            try:
-                part = os.read(reader, 65536)
-            except OSError:  # Linux's way to say that the last writer has gone
-                break
-            if not part:
-                break
-            shown += part
-        stdout, _ = process.communicate(timeout=60)
-    finally:
-        os.close(reader)
-    assert process.returncode == 0
+    code, stdout, shown = command_on_terminal(*arguments)
+    assert code == 0
     steps = [int(step) for step in re.findall(rb"step (\d+) of 20", shown)]
     assert len(set(steps)) >= 3
     assert steps == sorted(steps)
