@@ -70,6 +70,17 @@ std::string toleranceWarning(double tolerance, const AutomaticSteps& steps) {
     return text.str();
 }
 
+/// @param last  frequency of the basis' last harmonic.
+std::string cutoffWarning(const FilterResult& result, double last) {
+    std::ostringstream text;
+    text << std::setprecision(4) << "the " << result.eigenvalues.size()
+         << " harmonics end at features of " << 2.0 * kPi / last << ", above the feature size of "
+         << result.featureSize
+         << ": details between the two are not told from all finer ones. Choose a larger "
+            "feature_size, a larger basis_size, or spectrum = full";
+    return text.str();
+}
+
 /// The evaluations of automatic steps need not be much finer than the steps.
 EvaluationOptions evaluationFor(const FilterOptions& options, const Vertices& X) {
     EvaluationOptions evaluation = options.evaluation;
@@ -137,13 +148,18 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     result.solves = evaluate.solves();
     result.errorEstimate = evaluate.errorEstimate();
     result.accuracyReached = evaluate.accuracyReached();
+    result.eigenvalues = evaluate.basis().lambda;
     if (interior.size() == 0) result.warnings.push_back(nothingMovesWarning());
     if (!result.accuracyReached)
         result.warnings.push_back(accuracyWarning(evaluation.accuracy, result.errorEstimate));
     result.toleranceReached = options.steps > 0 || steps.error <= options.tolerance;
     if (!result.toleranceReached)
         result.warnings.push_back(toleranceWarning(options.tolerance, steps));
-    result.eigenvalues = evaluate.basis().lambda;
+    if (evaluation.spectrum == Spectrum::Truncated && result.eigenvalues.size() > 0) {
+        const double last = std::sqrt(result.eigenvalues[result.eigenvalues.size() - 1]);
+        result.cutoffReached = last >= transfer.cutoff();
+        if (!result.cutoffReached) result.warnings.push_back(cutoffWarning(result, last));
+    }
     result.residuals = evaluate.basis().residuals;
     result.inertiaCount = static_cast<int>(evaluate.basis().inertiaCount);
     result.computedBases = evaluate.computedBases();

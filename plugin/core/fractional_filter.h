@@ -46,6 +46,7 @@ struct FilterResult {
     bool toleranceReached = true;  ///< Automatic steps: whether stepError is within it.
     double singularPart = 0.0;  ///< Automatic steps: part of the input's surface, 0 to 1, on which
                                 ///< the tolerance was not reached; see automatic_steps.h.
+    bool cutoffReached = true;  ///< Truncated spectrum: whether the harmonics reach omega_c.
     std::vector<double> stepSizes;      ///< The fractional powers alpha, in their order; sum 1.
     std::vector<std::string> warnings;  ///< What fell short without being an error; sentences.
 

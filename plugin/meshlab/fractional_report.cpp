@@ -38,6 +38,7 @@ std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& r
     };
     if (result.eigenvalues.size() > 0) {
         report["eigenvalues"] = vectorVariant(result.eigenvalues);
+        report["cutoff_reached"] = result.cutoffReached;
         report["computed_bases"] = result.computedBases;
         report["updated_bases"] = result.updatedBases;
     }

@@ -283,6 +283,30 @@ TEST(FractionalFilter, WarnsWhenTheAccuracyIsNotReached) {
     EXPECT_TRUE(smooth.warnings.empty());
 }
 
+TEST(FractionalFilter, WarnsWhenTheHarmonicsEndBelowTheCutoff) {
+    const Mesh mesh = testing::blob();
+    FilterOptions options = smoothing(mesh, 2, BasisUpdate::Full);
+    options.evaluation.spectrum = Spectrum::Truncated;
+    options.evaluation.basisSize = 50;
+    const FilterResult enough = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_TRUE(enough.cutoffReached);
+    EXPECT_TRUE(enough.warnings.empty());
+
+    options.evaluation.basisSize = 5;
+    const FilterResult few = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_LT(std::sqrt(few.eigenvalues[few.eigenvalues.size() - 1]), few.cutoffFrequency);
+    EXPECT_FALSE(few.cutoffReached);
+    ASSERT_EQ(few.warnings.size(), 1u);
+    EXPECT_NE(few.warnings[0].find("basis_size"), std::string::npos);
+
+    // An ideal response needs no harmonic beyond its edge.
+    options.evaluation.spectrum = Spectrum::Full;
+    options.transferFunction.response = Response::Ideal;
+    const FilterResult ideal = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_GT(ideal.eigenvalues.size(), 0);
+    EXPECT_TRUE(ideal.warnings.empty());
+}
+
 TEST(FractionalFilter, ReportsProgressUpToTheEnd) {
     const Mesh mesh = testing::blob();
     double last = 0.0;

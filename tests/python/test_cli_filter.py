@@ -55,6 +55,16 @@ def test_a_fixed_boundary_with_nothing_inside_is_a_warning(tmp_path: Path) -> No
     np.testing.assert_array_equal(arrays_of(target)[0], arrays_of(source)[0])
 
 
+@pytest.mark.parametrize(("feature_size", "warned"), [("5%", True), ("60%", False)])
+def test_harmonics_that_end_above_the_feature_size_are_a_warning(
+    cow: Path, tmp_path: Path, feature_size: str, warned: bool
+) -> None:
+    arguments = ["--spectrum", "truncated", "--basis-size", 30, "--steps", 1]
+    done = command("filter", cow, tmp_path / "cow.ply", *arguments, "--feature-size", feature_size)
+    assert done.returncode == 0, done.stderr
+    assert ("harmonics end at features of" in done.stderr) == warned
+
+
 def test_json_holds_the_eigenvalues_of_a_truncated_spectrum(cow: Path, tmp_path: Path) -> None:
     arguments = ["--spectrum", "truncated", "--basis-size", 50, "--steps", 1, "--json"]
     done = command("filter", cow, tmp_path / "cow.ply", *arguments, "--no-reinject-residual")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from rich.table import Table
@@ -41,6 +42,14 @@ def report_warnings(report: dict[str, Any]) -> list[str]:
             f"the tolerance was not reached on {report['singular_part']:.2%} of the surface, the "
             f"largest estimated error is {report['step_error']:.2g}: thin parts pinch off there, "
             "and more steps do not converge. The conformal update shrinks them smoothly"
+        )
+    if not report.get("cutoff_reached", True):
+        ends = 2.0 * math.pi / math.sqrt(report["eigenvalues"][-1])
+        warnings.append(
+            f"the {len(report['eigenvalues'])} harmonics end at features of {ends:.4g}, above the "
+            f"feature size of {report['feature_size']:.4g}: details between the two are not told "
+            "from all finer ones. Choose a larger feature size, a larger basis, or the full "
+            "spectrum"
         )
     if report["fixed_vertices"] and report["max_displacement"] == 0:
         warnings.append(
