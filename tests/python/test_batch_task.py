@@ -221,14 +221,19 @@ def test_leftovers_of_killed_processes_are_removed_and_nothing_else(tmp_path: Pa
     assert sorted(tmp_path.iterdir()) == sorted([target, *kept])
 
 
+def put_there_meanwhile(monkeypatch: pytest.MonkeyPatch, path: Path, content: bytes) -> None:
+    """Have another program write a file when all checks have been made, before the moves."""
+    monkeypatch.setattr(
+        "meshlab_spectral.whole_files._sync", lambda path_: path.write_bytes(content)
+    )
+
+
 @pytest.mark.parametrize("content", [b"another skin", b"skin"])
 def test_a_texture_that_another_mesh_has_just_brought_is_not_replaced(
     content: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     texture = tmp_path / "skin.png"
-    monkeypatch.setattr(  # between the check and the moves
-        "meshlab_spectral.whole_files._sync", lambda path: texture.write_bytes(content)
-    )
+    put_there_meanwhile(monkeypatch, texture, content)
     same = content == b"skin"
     expected = contextlib.nullcontext() if same else pytest.raises(MeshFileError, match="skin")
     with expected, writing_whole(tmp_path / "out.obj") as scratch:
@@ -236,6 +241,27 @@ def test_a_texture_that_another_mesh_has_just_brought_is_not_replaced(
         (scratch.parent / "skin.png").write_bytes(b"skin")
     assert texture.read_bytes() == content
     assert (tmp_path / "out.obj").exists() == same
+
+
+@pytest.mark.parametrize("when", ["while MeshLab works", "in the last moment"])
+@pytest.mark.parametrize("content", [PRECIOUS, b"mesh"])
+def test_an_output_that_has_appeared_is_kept_unless_it_is_the_same(
+    content: bytes, when: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The same: a worker that died had put it there, and the mesh was done again."""
+    target = tmp_path / "out.ply"
+    same = content == b"mesh"
+    expected = (
+        contextlib.nullcontext() if same else pytest.raises(MeshFileError, match="another program")
+    )
+    with expected, writing_whole(target, overwrite=False) as scratch:
+        scratch.write_bytes(b"mesh")
+        if when == "in the last moment":
+            put_there_meanwhile(monkeypatch, target, content)
+        else:
+            target.write_bytes(content)
+    assert target.read_bytes() == content
+    assert list(tmp_path.iterdir()) == [target]
 
 
 def test_files_at_urls_are_read_and_written(cow: Path) -> None:
@@ -248,6 +274,12 @@ def test_files_at_urls_are_read_and_written(cow: Path) -> None:
         assert result.outcome == "filtered", result.reason
         assert [Path(path).name for path in memory.find("/out")] == ["cow.ply"]
         assert storage.digest_at("memory://out/deep/cow.ply") == result.output_sha256
+        again = run_job(job_of("memory://in/cow.obj", "memory://out/deep/cow.ply"))
+        assert again.outcome == "filtered", again.reason  # of the same content
+        memory.pipe("/out/deep/cow.ply", PRECIOUS)
+        taken = run_job(job_of("memory://in/cow.obj", "memory://out/deep/cow.ply"))
+        assert "another program" in (taken.reason or "")
+        assert memory.cat("/out/deep/cow.ply") == PRECIOUS
         missing = run_job(job_of("memory://in/none.obj", "memory://out/none.ply"))
         assert missing.outcome == "failed"
         assert "does not exist" in (missing.reason or "")
