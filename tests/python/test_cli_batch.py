@@ -89,6 +89,21 @@ def test_resume_leaves_out_what_is_proved_and_does_the_rest(tmp_path: Path) -> N
     assert "done already" not in changed.stdout
 
 
+def test_resume_restores_materials_and_textures(samples: Path, tmp_path: Path) -> None:
+    source, out = samples / "bunny10k_textured.obj", tmp_path / "out"
+    batch = ["batch", source, "--output", out, "--steps", 1, "--workers", 1]
+    assert command(*batch).returncode == 0
+    before = contents(out)
+    material, texture = f"{source.name}.mtl", "TextureDouble_A.png"
+    assert before.keys() == {source.name, material, texture}
+    assert "1 done before" in command(*batch, "--resume").stdout
+    (out / texture).unlink()
+    (out / material).write_bytes(PRECIOUS)
+    done = command(*batch, "--resume")
+    assert "1 filtered, 0 failed in" in done.stdout
+    assert contents(out) == before
+
+
 def test_nothing_that_exists_is_replaced_unasked(tmp_path: Path) -> None:
     source, out = tmp_path / "in", tmp_path / "out"
     paths = make_meshes(source, 2)
@@ -127,9 +142,10 @@ def test_a_dry_run_tells_and_does_nothing(tmp_path: Path) -> None:
         (["--name", "{size}"], "{stem}"),
         (["--format", "mesh3"], "ply"),
         (["--memory-limit", "much"], "4GB"),
+        (["--memory-limit", "0"], "4GB"),
         (["--recipe", "none.toml"], "none.toml"),
         (["--script", "none.mlx"], "none.mlx"),
-        (["--scheduler", "tcp://127.0.0.1:1", "--workers", "1"], "--scheduler"),
+        (["--scheduler", "tcp://127.0.0.1:1", "--workers", "1"], "with a scheduler"),
         (["nothing.ply"], "nothing.ply"),
     ],
 )
@@ -139,6 +155,19 @@ def test_a_mistake_is_named_before_anything_is_done(
     out = tmp_path / "out"
     assert_fails(command("batch", cow, "--output", out, *arguments), 2, word)
     assert not out.exists()
+
+
+def test_an_output_that_is_a_file_is_told(cow: Path, existing: Path) -> None:
+    assert_fails(command("batch", cow, "--output", existing), 2, f"{existing} is a file")
+
+
+def test_a_format_without_faces_is_written_with_a_warning(cow: Path, tmp_path: Path) -> None:
+    done = command(
+        "batch", cow, "--output", tmp_path, "--steps", 1, "--workers", 1, "--format", "xyz"
+    )
+    assert done.returncode == 0
+    assert done.stderr == "Warning: .xyz files hold points only, the faces are not written.\n"
+    assert list(contents(tmp_path)) == ["cow.xyz"]
 
 
 def test_a_report_takes_the_place_of_no_other_file(cow: Path, tmp_path: Path) -> None:
