@@ -18,6 +18,7 @@ from commands import (
     assert_fails,
     command,
     command_on_terminal,
+    write_ply,
 )
 from helpers import FILTER, diagonal, largest_distance, percent
 from meshlab_spectral import FilterOptions
@@ -155,6 +156,21 @@ def test_a_mistake_is_named_before_anything_is_done(
     out = tmp_path / "out"
     assert_fails(command("batch", cow, "--output", out, *arguments), 2, word)
     assert not out.exists()
+
+
+def test_results_that_fell_short_are_counted_and_their_warnings_kept(
+    cow: Path, tmp_path: Path
+) -> None:
+    flat, out = tmp_path / "flat.ply", tmp_path / "out"
+    write_ply(flat, "0 0 0\n1 0 0\n0 1 0", "3 0 1 2")
+    batch = ["batch", cow, flat, "--output", out, "--boundary", "fixed", "--workers", 1]
+    for more in ([], ["--resume"]):
+        done = command(*batch, "--steps", 1, *more)
+        assert done.returncode == 0, done.stderr
+        assert ", 1 with warnings in " in done.stdout
+    warnings = {record["name"]: record["warnings"] for record in records(out / REPORT)}
+    assert warnings["cow.obj"] == []
+    assert "nothing moved" in "".join(warnings["flat.ply"])
 
 
 def test_an_output_that_is_a_file_is_told(cow: Path, existing: Path) -> None:

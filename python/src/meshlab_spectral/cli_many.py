@@ -75,7 +75,13 @@ def run_shown(
     scheduler: str | None,
     take: Callable[[FileResult], None] = lambda result: None,
 ) -> Counter[str]:
-    """Run a batch with its progress shown, and hand every result to `take`; count the outcomes."""
+    """Run a batch with its progress shown, and hand every result to `take`.
+
+    Returns
+    -------
+    Counter
+        How many results there were of every outcome, and "with warnings".
+    """
     counts: Counter[str] = Counter()
     running = run_batch(batch, workers=workers, memory_limit=memory_limit, scheduler=scheduler)
     with (
@@ -84,12 +90,15 @@ def run_shown(
     ):
         for result in results:
             counts[result.outcome] += 1
+            counts["with warnings"] += bool(result.warnings)
             on_result(result)
             take(result)
     return counts
 
 
 def told(counts: Counter[str], done: str) -> str:
-    """Put counts into words; `done` is the outcome of a file that went well."""
+    """Put the counts of `run_shown` into words; `done` is the outcome of a file that went well."""
+    always = f"{counts[done]} {done}, {counts['failed']} failed"
     before = f", {counts['unchanged']} done before" if counts["unchanged"] else ""
-    return f"{counts[done]} {done}, {counts['failed']} failed{before}"
+    warned = f", {counts['with warnings']} with warnings" if counts["with warnings"] else ""
+    return always + before + warned

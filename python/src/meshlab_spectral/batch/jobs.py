@@ -59,6 +59,8 @@ class FileResult:
         Of the filter; for a MeshLab script its name, SHA-256 and filters.
     report
         Of the filter: numbers and lists, lengths in the units of the mesh. None if it failed.
+    warnings
+        Where the result fell short of what was asked for, and what to do.
     input_sha256, output_sha256
         Of the files; None where there was none.
     side_files
@@ -81,6 +83,7 @@ class FileResult:
     reason: str | None = None
     options: dict[str, Any] = field(default_factory=dict)
     report: dict[str, Any] | None = None
+    warnings: list[str] = field(default_factory=list)
     input_sha256: str | None = None
     output_sha256: str | None = None
     side_files: dict[str, str] = field(default_factory=dict)

@@ -80,6 +80,7 @@ def _proof(
                 name=job.name,
                 options=job.options,
                 report=record.get("report"),
+                warnings=record.get("warnings", []),
                 input_sha256=source,
                 output_sha256=output,
                 side_files=record.get("side_files", {}),

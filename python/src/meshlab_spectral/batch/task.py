@@ -11,6 +11,7 @@ from meshlab_spectral.batch.jobs import FileResult, Job
 from meshlab_spectral.batch.processes import processes
 from meshlab_spectral.errors import MemoryLimitError, ProcessDiedError, SpectralError
 from meshlab_spectral.meshlab_process import Answer, JobLimits
+from meshlab_spectral.report import report_warnings
 from meshlab_spectral.versions import versions
 from meshlab_spectral.whole_files import side_files
 
@@ -51,6 +52,7 @@ def run_job(job: Job, memory_limit: int | None = None) -> FileResult:
                 result |= written
         result["outcome"] = "measured" if job.target is None else "filtered"
         result |= {"report": answer.report, "peak_memory": answer.peak_memory}
+        result["warnings"] = _warnings(answer.report)
     except SpectralError as error:
         result["reason"] = str(error)
     except OSError as error:
@@ -64,6 +66,17 @@ def run_job(job: Job, memory_limit: int | None = None) -> FileResult:
         versions=versions(),
         **result,
     )
+
+
+def _warnings(report: dict[str, Any]) -> list[str]:
+    """Tell the warnings of our filter, alone or in a script; other filters have no such report."""
+    parts = [one.get("report", {}) for one in report.get("filters", [])] or [report]
+    return [
+        warning
+        for part in parts
+        if "tolerance_reached" in part
+        for warning in report_warnings(part)
+    ]
 
 
 def _digests(scratch: Path) -> dict[str, Any]:
