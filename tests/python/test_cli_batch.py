@@ -178,12 +178,12 @@ def test_an_output_that_is_a_file_is_told(cow: Path, existing: Path) -> None:
 
 
 def test_a_format_without_faces_is_written_with_a_warning(cow: Path, tmp_path: Path) -> None:
-    done = command(
-        "batch", cow, "--output", tmp_path, "--steps", 1, "--workers", 1, "--format", "xyz"
-    )
-    assert done.returncode == 0
-    assert done.stderr == "Warning: .xyz files hold points only, the faces are not written.\n"
-    assert list(contents(tmp_path)) == ["cow.xyz"]
+    batch = ["batch", cow, "--output", tmp_path, "--workers", 1, "--format", "xyz"]
+    for arguments in (batch, ["filter", cow, tmp_path / "one.xyz"]):
+        done = command(*arguments, "--steps", 1)
+        assert done.returncode == 0
+        assert done.stderr == "Warning: .xyz files hold points only, the faces are not written.\n"
+    assert sorted(contents(tmp_path)) == ["cow.xyz", "one.xyz"]
 
 
 def test_a_report_takes_the_place_of_no_other_file(cow: Path, tmp_path: Path) -> None:

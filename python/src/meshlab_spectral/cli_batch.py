@@ -11,7 +11,6 @@ from typing import Annotated, Any
 import typer
 
 from meshlab_spectral.batch.files import check_workers
-from meshlab_spectral.batch.formats import POINTS_ONLY
 from meshlab_spectral.batch.outputs import DEFAULT_PATTERN
 from meshlab_spectral.batch.plan import Batch, plan_batch
 from meshlab_spectral.batch.report import DEFAULT_NAME
@@ -28,8 +27,8 @@ from meshlab_spectral.cli_many import (
 )
 from meshlab_spectral.command_line import (
     EXIT_FAILED,
-    MESSAGES,
     errors_reported,
+    warn_of_points_only,
     with_given_filter_options,
 )
 from meshlab_spectral.options import FilterOptions
@@ -162,7 +161,7 @@ def batch_command(
             report=report,
             timeout=timeout,
         )
-        _warn_of_points_only(ending)
+        warn_of_points_only(ending or "")
         if save_recipe_as is not None and options is not None:
             save_recipe(save_recipe_as, options)
         if dry_run:
@@ -181,16 +180,6 @@ def _options(
         return None
     options = load_recipe(recipe) if recipe is not None else {}
     return FilterOptions.from_dict({**options, **given})
-
-
-def _warn_of_points_only(ending: str | None) -> None:
-    plain = (ending or "").removeprefix(".")
-    if plain.lower() in POINTS_ONLY:
-        MESSAGES.print(
-            f"Warning: .{plain} files hold points only, the faces are not written.",
-            highlight=False,
-            soft_wrap=True,
-        )
 
 
 def _tell_plan(batch: Batch) -> None:
