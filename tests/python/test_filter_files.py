@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import subprocess
 import sys
@@ -12,8 +13,8 @@ import meshlab_spectral
 import numpy as np
 import psutil
 import pytest
-from batches import alive, contents, make_meshes, wait_until
-from commands import command
+from batches import REPORT, alive, contents, make_meshes, records, wait_until
+from commands import PRECIOUS, command
 from helpers import filter_arrays, percent
 from meshlab_spectral import (
     BatchError,
@@ -24,6 +25,8 @@ from meshlab_spectral import (
     filter_mesh,
 )
 from meshlab_spectral.batch import engine
+from meshlab_spectral.batch.jobs import FileResult, Job
+from meshlab_spectral.batch.task import run_job
 
 
 def test_filter_mesh_is_the_filter(decimated: Callable[..., tuple[np.ndarray, np.ndarray]]) -> None:
@@ -81,6 +84,39 @@ def test_filter_files_checks_everything_before_it_begins(meshes: Path, tmp_path:
     with pytest.raises(InputError, match="--report"):
         filter_files(meshes, "memory://out")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_an_output_that_appears_before_its_turn_is_kept(meshes: Path, tmp_path: Path) -> None:
+    inputs, out = sorted(meshes.iterdir())[:2], tmp_path / "out"
+    results = filter_files(inputs, out, workers=1, steps=1)  # planned, not begun
+    out.mkdir()
+    taken = out / inputs[0].name
+    taken.write_bytes(PRECIOUS)
+    outcomes = {result.name: result.outcome for result in results}
+    assert outcomes == {inputs[0].name: "failed", inputs[1].name: "filtered"}
+    assert taken.read_bytes() == PRECIOUS
+
+
+def test_a_file_whose_workers_die_again_and_again_fails_alone(
+    meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    inputs, out = sorted(meshes.iterdir())[:3], tmp_path / "out"
+    deadly = inputs[0].name
+
+    def run_or_die(job: Job) -> FileResult:
+        if job.name != deadly:
+            return run_job(job)
+        wait_until(lambda: len(records(out / REPORT)) == 2)  # of the others
+        os.kill(os.getpid(), signal.SIGKILL)
+        raise AssertionError("unreachable")
+
+    monkeypatch.setattr(engine, "run_job", run_or_die)
+    results = {r.name: r for r in filter_files(inputs, out, workers=1, steps=1)}
+    failed = results.pop(deadly)
+    assert failed.outcome == "failed"
+    assert "ended from outside" in (failed.reason or "")
+    assert failed.attempts > 1
+    assert [result.outcome for result in results.values()] == ["filtered"] * 2
 
 
 def test_stopping_the_iteration_ends_the_workers(meshes: Path, tmp_path: Path) -> None:
