@@ -46,6 +46,18 @@ def test_a_mistake_leaves_the_old_table(cow: Path, existing: Path, tmp_path: Pat
     assert existing.read_bytes() == PRECIOUS
 
 
+@pytest.mark.parametrize("table", [".", "/"])
+def test_a_table_that_is_a_folder_is_told(table: str, cow: Path) -> None:
+    assert_fails(command("spectra", cow, "--output", table), 1, "no file but a folder")
+
+
+def test_the_table_is_not_the_report(cow: Path, tmp_path: Path) -> None:
+    table = tmp_path / "x.csv"
+    done = command("spectra", cow, "--output", table, "--report", table)
+    assert_fails(done, 2, "is the table, too")
+    assert not table.exists()
+
+
 def test_an_input_is_not_replaced_by_the_table(cow: Path, tmp_path: Path) -> None:
     mesh, link = tmp_path / "cow.obj", tmp_path / "link.csv"
     shutil.copy(cow, mesh)

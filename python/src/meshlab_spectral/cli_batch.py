@@ -47,7 +47,8 @@ Keep the options for the next time:
   meshlab-spectral batch more/*.obj --output more_smooth --recipe denoise.toml --format ply
 
 Every file gets a line in the report, DIR/batch_report.jsonl, as soon as it is done: its outcome,
-the options, the filter's report, SHA-256 of input and output, seconds, memory, versions.
+the options, the filter's report and warnings, SHA-256 of input and output, seconds, memory,
+versions.
 """
 
 

@@ -163,8 +163,9 @@ def _put_in_place(scratch: Path, place: Path, overwrite: bool) -> None:
     }
     # Such as out.obj.mtl to out.obj; a texture may be another mesh's, too.
     replaceable = {path for path in moves if overwrite and path.name.startswith(scratch.name)}
-    for path in moves.keys() - replaceable:
-        _refuse_another(path, moves[path], scratch)
+    for path, final in moves.items():
+        if path not in replaceable:
+            _refuse_another(path, final, scratch)
     if place.exists():
         shutil.copymode(place, scratch)
     for path, final in moves.items():
@@ -192,15 +193,15 @@ def _refuse_another(path: Path, place: Path, scratch: Path) -> None:
     if not place.exists() or (place.is_file() and filecmp.cmp(path, place, shallow=False)):
         return
     if path == scratch:
-        raise MeshFileError(appeared(place))
+        raise MeshFileError(why_kept(place))
     raise MeshFileError(
         f"{scratch.name} needs a file {place.name} beside it, and another file has that name: "
         "write the output to a folder of its own"
     )
 
 
-def appeared(place: object) -> str:
-    """Say why a file that was not there when the work began is kept."""
+def why_kept(place: object) -> str:
+    """Say why a file that was not there when the work began is not replaced."""
     return (
         f"{place} has been written by another program meanwhile, and is kept: choose another "
         "folder, or replace it with --overwrite"

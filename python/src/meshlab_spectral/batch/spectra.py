@@ -15,6 +15,7 @@ from meshlab_spectral.batch.outputs import refuse_inputs
 from meshlab_spectral.batch.plan import Batch
 from meshlab_spectral.batch.report import check_report, read_report
 from meshlab_spectral.batch.resume import done_records, proved_done
+from meshlab_spectral.errors import InputError
 from meshlab_spectral.spectrum import GeometrySpectrum, spectrum_parameters
 from meshlab_spectral.versions import versions
 
@@ -67,7 +68,10 @@ def plan_spectra(
         When an earlier report cannot be read.
     """
     parameters = spectrum_parameters(basis_size, laplacian, boundary)
-    report = (report or table.with_name(f"{table.stem}_report.jsonl")).absolute()
+    table = table.absolute()
+    report = (report or table.parent / f"{table.stem}_report.jsonl").absolute()
+    if report == table:
+        raise InputError(f"the report {report} is the table, too: name another with --report")
     check_report(report)
     places = [file.place for file in find_inputs(map(str, inputs), recursive, [table, report])]
     refuse_inputs([str(table)], places)

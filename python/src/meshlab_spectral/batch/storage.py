@@ -15,7 +15,7 @@ from urllib.parse import unquote, urlsplit
 
 from meshlab_spectral.errors import InputError, MeshFileError
 from meshlab_spectral.meshfile import check_source
-from meshlab_spectral.whole_files import appeared, remove_leftovers, side_files, writing_whole
+from meshlab_spectral.whole_files import remove_leftovers, side_files, why_kept, writing_whole
 
 _SCHEME = re.compile(r"[a-z][a-z0-9+.-]*(::|://)", re.IGNORECASE)
 _PART = 2**20  # bytes that are read at once
@@ -143,7 +143,7 @@ def writing(place: str, overwrite: bool) -> Iterator[Path]:
             raise MeshFileError(f"MeshLab wrote nothing for {place}: choose another format")
         try:
             if not overwrite and fs.exists(path) and digest_at(place) != digest(scratch):
-                raise MeshFileError(appeared(place))
+                raise MeshFileError(why_kept(place))
             # The mesh last: what it refers to is there when it appears.
             for file in [*side_files(scratch), scratch]:
                 name = file.relative_to(folder).as_posix()
