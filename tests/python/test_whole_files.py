@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from commands import PRECIOUS
+from meshlab_spectral.batch.storage import beside
 from meshlab_spectral.errors import MeshFileError
 from meshlab_spectral.whole_files import remove_leftovers, writing_whole
 
@@ -72,3 +73,16 @@ def test_an_output_that_has_appeared_is_kept_unless_it_is_the_same(
             target.write_bytes(content)
     assert target.read_bytes() == content
     assert list(tmp_path.iterdir()) == [target]
+
+
+@pytest.mark.parametrize("overwrite", [True, False])
+def test_a_link_is_written_through_side_files_included(overwrite: bool, tmp_path: Path) -> None:
+    link, real = tmp_path / "link.obj", tmp_path / "far" / "real.obj"
+    real.parent.mkdir()
+    link.symlink_to(real)
+    with writing_whole(link, overwrite) as scratch:
+        scratch.write_bytes(b"mesh")
+        (scratch.parent / "skin.png").write_bytes(b"skin")
+    assert link.is_symlink()
+    assert real.read_bytes() == b"mesh"
+    assert Path(beside(str(link), "skin.png")).read_bytes() == b"skin"

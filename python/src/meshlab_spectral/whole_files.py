@@ -156,11 +156,8 @@ def _put_in_place(scratch: Path, place: Path, overwrite: bool) -> None:
         raise MeshFileError(
             f"MeshLab wrote nothing for {scratch.name}: choose another format, {USUAL_FORMATS}"
         )
-    # The mesh last: what it refers to is there when it appears.
-    moves = {
-        path: place.parent / path.relative_to(scratch.parent)
-        for path in [*side_files(scratch), scratch]
-    }
+    moves = {path: place.parent / path.relative_to(scratch.parent) for path in side_files(scratch)}
+    moves[scratch] = place  # last: what the mesh refers to is there when it appears
     # Such as out.obj.mtl to out.obj; a texture may be another mesh's, too.
     replaceable = {path for path in moves if overwrite and path.name.startswith(scratch.name)}
     for path, final in moves.items():

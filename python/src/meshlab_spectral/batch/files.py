@@ -57,7 +57,8 @@ def filter_files(
     ending
         Format of the outputs, such as "ply"; by default that of each input.
     overwrite
-        Replace outputs that exist. An input is never replaced.
+        Replace files that are, or meanwhile appear, at the places of outputs. An input is never
+        replaced.
     resume
         Take up an earlier run, if there was one: leave out what its report proves done with the
         same options, the same inputs and the same versions; replace outputs that have been changed
@@ -71,7 +72,7 @@ def filter_files(
     memory_limit
         Bytes for each worker; by default they share nine tenths of the machine's.
     scheduler
-        Address of a Dask scheduler whose workers do the work, in place of the last two.
+        Address of a Dask scheduler whose workers do the work; to be given without the last two.
     **options
         Fields of `FilterOptions`; sizes as text such as "2%", or as a length.
 

@@ -154,7 +154,9 @@ def writing(place: str, overwrite: bool) -> Iterator[Path]:
 
 def beside(place: str, name: str) -> str:
     """Give the place of a file beside another one, by its name relative to that one's folder."""
-    return f"{place.rpartition('/')[0]}/{name}"
+    if is_url(place):
+        return f"{place.rpartition('/')[0]}/{name}"
+    return str(Path(place).resolve().parent / name)  # through a symbolic link, as it was written
 
 
 def tidy(folder: str) -> None:
