@@ -295,5 +295,8 @@ def test_progress_is_shown_on_a_terminal_only(tmp_path: Path) -> None:
     assert b"0 failed" in shown
     assert re.search(rb"files/s, 0:00:[0-9]{2} left", shown)
     assert re.fullmatch(rb"3 filtered, 0 failed in [0-9.]+ s; report: .*\n", stdout)
-    quiet = command(*arguments, "--steps", 1, "--overwrite")
-    assert quiet.stderr == ""
+    code, _, shown = command_on_terminal(*arguments, "--steps", 1, "--resume")
+    assert code == 0
+    assert b"Comparing files with the report" in shown
+    for more in ("--overwrite", "--resume"):
+        assert command(*arguments, "--steps", 1, more).stderr == ""

@@ -22,6 +22,7 @@ from meshlab_spectral.cli_many import (
     Scheduler,
     Timeout,
     Workers,
+    planning_shown,
     run_shown,
     told,
 )
@@ -149,19 +150,20 @@ def batch_command(
         check_workers(scheduler, workers, memory_limit)
         options = _options(given, recipe, script)
         begin = time.monotonic()
-        batch = plan_batch(
-            inputs,
-            output,
-            options,
-            script=script,
-            recursive=recursive,
-            name=name,
-            ending=ending,
-            overwrite=overwrite,
-            resume=resume,
-            report=report,
-            timeout=timeout,
-        )
+        with planning_shown(resume):
+            batch = plan_batch(
+                inputs,
+                output,
+                options,
+                script=script,
+                recursive=recursive,
+                name=name,
+                ending=ending,
+                overwrite=overwrite,
+                resume=resume,
+                report=report,
+                timeout=timeout,
+            )
         warn_of_points_only(ending or "")
         if save_recipe_as is not None and options is not None:
             save_recipe(save_recipe_as, options)

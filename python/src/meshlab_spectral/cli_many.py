@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Callable
-from contextlib import closing
+from contextlib import AbstractContextManager, closing, nullcontext
 from typing import Annotated
 
 import typer
@@ -66,6 +66,13 @@ Scheduler = Annotated[
     ),
 ]
 Debug = Annotated[bool, typer.Option("--debug", hidden=True)]
+
+
+def planning_shown(resume: bool) -> AbstractContextManager[object]:
+    """Say on a terminal that files are compared with the report; large ones take a while."""
+    if resume and MESSAGES.is_terminal:
+        return MESSAGES.status("Comparing files with the report")
+    return nullcontext()
 
 
 def run_shown(

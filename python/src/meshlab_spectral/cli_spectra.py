@@ -18,6 +18,7 @@ from meshlab_spectral.cli_many import (
     Scheduler,
     Timeout,
     Workers,
+    planning_shown,
     run_shown,
     told,
 )
@@ -86,17 +87,18 @@ def spectra_command(
     """Measure spectra of many meshes: `meshlab-spectral spectra --help` tells more."""
     with errors_reported(debug, INTERRUPTED):
         check_workers(scheduler, workers, memory_limit)
-        batch = plan_spectra(
-            inputs,
-            output,
-            basis_size,
-            laplacian,
-            boundary,
-            recursive=recursive,
-            resume=resume,
-            report=report,
-            timeout=timeout,
-        )
+        with planning_shown(resume):
+            batch = plan_spectra(
+                inputs,
+                output,
+                basis_size,
+                laplacian,
+                boundary,
+                recursive=recursive,
+                resume=resume,
+                report=report,
+                timeout=timeout,
+            )
         remove_leftovers(output.resolve().parent, output.name)
         results: list[FileResult] = []
         with writing_whole(output) as scratch:
