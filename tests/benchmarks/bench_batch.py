@@ -4,8 +4,8 @@ usage: bench_batch.py [--meshes 1000] [--workers 2] [--vertices 5000]
 
 The meshes are tori with noise, made in a temporary folder, and filtered with the defaults. One
 process: a plain loop of pymeshlab that loads, filters and saves, without hashes, report or safe
-writing. The batch runs with one
-worker and with several; meanwhile the memory of all its processes is looked at twice a second.
+writing. The batch runs with one worker and with several; meanwhile the memory of all its processes
+is looked at twice a second.
 """
 
 from __future__ import annotations

@@ -93,6 +93,26 @@ def test_an_interrupted_batch_ends_soon_with_130_and_resumes(
     assert_resumes(meshes, tmp_path / "out", undisturbed)
 
 
+def test_an_interrupted_batch_leaves_no_copies_of_files_at_urls(
+    meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    temporary = tmp_path / "tmp"
+    temporary.mkdir()
+    monkeypatch.setenv("TMPDIR", str(temporary))
+    # A chain of file systems is a URL to fsspec, not a path.
+    urls = [f"filecache::{path.as_uri()}" for path in meshes.iterdir()]
+    process = start_batch(*urls, "--output", tmp_path / "out", *OPTIONS)
+    try:
+        wait_until(lambda: bool(list(temporary.rglob("*.ply"))))
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=20)
+    finally:
+        process.kill()
+        process.communicate()
+    assert process.returncode == 130
+    assert not list(temporary.rglob("*.ply"))
+
+
 def test_a_killed_batch_leaves_no_process_and_resumes(
     running: subprocess.Popen[str],
     meshes: Path,

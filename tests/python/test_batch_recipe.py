@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from commands import PRECIOUS
 from hypothesis import given
 from hypothesis import strategies as st
 from meshlab_spectral import FilterOptions, InputError, OptionError
@@ -71,3 +72,13 @@ def test_a_mistake_in_a_recipe_is_named_with_the_file(
 def test_a_missing_recipe_is_named(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"none\.toml"):
         load_recipe(tmp_path / "none.toml")
+
+
+def test_a_recipe_replaces_a_recipe_and_nothing_else(tmp_path: Path) -> None:
+    path = write(tmp_path, "[filter]\nsteps = 4\n")
+    save_recipe(path, FilterOptions(steps=5))
+    assert load_recipe(path)["steps"] == 5
+    path.write_bytes(PRECIOUS)
+    with pytest.raises(InputError, match=r"recipe\.toml is no TOML file.*not replaced"):
+        save_recipe(path, FilterOptions())
+    assert path.read_bytes() == PRECIOUS

@@ -1,16 +1,10 @@
-"""What a worker does with one file: crashes, limits, leftovers, URLs."""
+"""What a worker does with one file: its processes, second attempts, URLs."""
 
 from __future__ import annotations
 
-import contextlib
-import json
 import os
-import re
 import signal
-import subprocess
-import sys
 import threading
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -23,14 +17,7 @@ from meshlab_spectral.batch import storage
 from meshlab_spectral.batch.jobs import Job
 from meshlab_spectral.batch.processes import processes
 from meshlab_spectral.batch.task import run_job
-from meshlab_spectral.errors import (
-    MemoryLimitError,
-    MeshFileError,
-    ProcessDiedError,
-    TimeLimitError,
-)
-from meshlab_spectral.meshlab_process import JobLimits, MeshLabProcess
-from meshlab_spectral.whole_files import remove_leftovers, writing_whole
+from meshlab_spectral.meshlab_process import MeshLabProcess
 
 
 @pytest.fixture(autouse=True)
@@ -43,12 +30,6 @@ def job_of(source: object, target: object, **more: Any) -> Job:
     options = FilterOptions(steps=1).as_dict()
     work = {"task": "filter", "options": options}
     return Job(str(source), str(target), "name", work, options, **more)
-
-
-def long_work(samples: Path, tmp_path: Path) -> dict[str, Any]:
-    options = FilterOptions(steps=1000).as_dict()
-    files = {"source": str(samples / "bunny.obj"), "scratch": str(tmp_path / "out.ply")}
-    return {"task": "filter", "options": options, **files}
 
 
 def test_a_filtered_file_is_described_completely(cow: Path, tmp_path: Path) -> None:
@@ -143,99 +124,11 @@ def test_a_process_killed_once_is_no_failure(
     assert result.attempts == 2
 
 
-def test_a_mesh_that_takes_too_long_is_given_up(samples: Path, tmp_path: Path) -> None:
-    with MeshLabProcess() as process:
-        with pytest.raises(TimeLimitError, match="after 1 seconds"):
-            process.run(long_work(samples, tmp_path), limits=JobLimits(seconds=1))
-        assert not process.usable
-
-
-def test_a_mesh_that_needs_too_much_memory_is_given_up(samples: Path, tmp_path: Path) -> None:
-    with (
-        MeshLabProcess() as process,
-        pytest.raises(MemoryLimitError, match="more than 60 MiB"),
-    ):
-        process.run(long_work(samples, tmp_path), limits=JobLimits(memory=60 * 2**20))
-
-
 def test_the_memory_limit_holds_for_a_job(samples: Path, existing: Path) -> None:
     result = run_job(job_of(samples / "bunny.obj", existing), memory_limit=60 * 2**20)
     assert result.outcome == "failed"
     assert result.attempts == 2
     assert "memory limit" in (result.reason or "")
-
-
-def test_a_process_that_is_gone_before_its_job_is_told(samples: Path, tmp_path: Path) -> None:
-    with MeshLabProcess() as process:
-        os.kill(process.pid, signal.SIGKILL)
-        with pytest.raises(ProcessDiedError, match="SIGKILL"):
-            process.run(long_work(samples, tmp_path))
-
-
-PARENT = """
-import json, os, sys, threading, time
-from meshlab_spectral.meshlab_process import MeshLabProcess
-process = MeshLabProcess()
-def tell(stage, fraction):
-    if fraction:
-        print(process.pid, flush=True)
-        os.kill(os.getpid(), 9)
-process.run(json.loads(sys.argv[1]), tell)
-"""
-
-
-def test_a_killed_parent_leaves_no_process_at_work(samples: Path, tmp_path: Path) -> None:
-    work = json.dumps(long_work(samples, tmp_path))
-    done = subprocess.run(
-        [sys.executable, "-c", PARENT, work],
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=False,
-    )
-    assert done.returncode == -signal.SIGKILL, done.stderr
-    status = Path(f"/proc/{done.stdout.split()[0]}/status")
-    end = time.monotonic() + 5
-    while status.exists() and not re.search(r"State:\tZ", status.read_text()):
-        assert time.monotonic() < end
-        time.sleep(0.02)
-
-
-def test_leftovers_of_killed_processes_are_removed_and_nothing_else(tmp_path: Path) -> None:
-    target = tmp_path / "out.ply"
-    leftover = tmp_path / ".out.ply.abcd1234.partial"
-    (leftover / "maps").mkdir(parents=True)
-    (leftover / "maps" / "skin.png").write_bytes(b"half")
-    another = tmp_path / ".other.ply.abcd1234.partial"
-    another.mkdir()
-    kept = [tmp_path / name for name in ("a.partial", ".b.abcd1234.partial", "c.ply")]
-    for path in kept:
-        path.write_bytes(PRECIOUS)  # files: not ours
-    with writing_whole(target) as scratch:
-        remove_leftovers(tmp_path, "out.ply")
-        assert scratch.parent.is_dir()  # in use
-        assert not leftover.exists()
-        assert another.is_dir()
-        scratch.write_bytes(b"whole")
-    remove_leftovers(tmp_path)
-    assert sorted(tmp_path.iterdir()) == sorted([target, *kept])
-
-
-@pytest.mark.parametrize("content", [b"another skin", b"skin"])
-def test_a_texture_that_another_mesh_has_just_brought_is_not_replaced(
-    content: bytes, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    texture = tmp_path / "skin.png"
-    monkeypatch.setattr(  # between the check and the moves
-        "meshlab_spectral.whole_files._sync", lambda path: texture.write_bytes(content)
-    )
-    same = content == b"skin"
-    expected = contextlib.nullcontext() if same else pytest.raises(MeshFileError, match="skin")
-    with expected, writing_whole(tmp_path / "out.obj") as scratch:
-        scratch.write_bytes(b"mesh")
-        (scratch.parent / "skin.png").write_bytes(b"skin")
-    assert texture.read_bytes() == content
-    assert (tmp_path / "out.obj").exists() == same
 
 
 def test_files_at_urls_are_read_and_written(cow: Path) -> None:
@@ -248,6 +141,12 @@ def test_files_at_urls_are_read_and_written(cow: Path) -> None:
         assert result.outcome == "filtered", result.reason
         assert [Path(path).name for path in memory.find("/out")] == ["cow.ply"]
         assert storage.digest_at("memory://out/deep/cow.ply") == result.output_sha256
+        again = run_job(job_of("memory://in/cow.obj", "memory://out/deep/cow.ply"))
+        assert again.outcome == "filtered", again.reason  # of the same content
+        memory.pipe("/out/deep/cow.ply", PRECIOUS)
+        taken = run_job(job_of("memory://in/cow.obj", "memory://out/deep/cow.ply"))
+        assert "another program" in (taken.reason or "")
+        assert memory.cat("/out/deep/cow.ply") == PRECIOUS
         missing = run_job(job_of("memory://in/none.obj", "memory://out/none.ply"))
         assert missing.outcome == "failed"
         assert "does not exist" in (missing.reason or "")

@@ -18,6 +18,7 @@ from commands import (
     assert_fails,
     command,
     command_on_terminal,
+    write_ply,
 )
 from helpers import FILTER, diagonal, largest_distance, percent
 from meshlab_spectral import FilterOptions
@@ -89,6 +90,21 @@ def test_resume_leaves_out_what_is_proved_and_does_the_rest(tmp_path: Path) -> N
     assert "done already" not in changed.stdout
 
 
+def test_resume_restores_materials_and_textures(samples: Path, tmp_path: Path) -> None:
+    source, out = samples / "bunny10k_textured.obj", tmp_path / "out"
+    batch = ["batch", source, "--output", out, "--steps", 1, "--workers", 1]
+    assert command(*batch).returncode == 0
+    before = contents(out)
+    material, texture = f"{source.name}.mtl", "TextureDouble_A.png"
+    assert before.keys() == {source.name, material, texture}
+    assert "1 done before" in command(*batch, "--resume").stdout
+    (out / texture).unlink()
+    (out / material).write_bytes(PRECIOUS)
+    done = command(*batch, "--resume")
+    assert "1 filtered, 0 failed in" in done.stdout
+    assert contents(out) == before
+
+
 def test_nothing_that_exists_is_replaced_unasked(tmp_path: Path) -> None:
     source, out = tmp_path / "in", tmp_path / "out"
     paths = make_meshes(source, 2)
@@ -127,9 +143,10 @@ def test_a_dry_run_tells_and_does_nothing(tmp_path: Path) -> None:
         (["--name", "{size}"], "{stem}"),
         (["--format", "mesh3"], "ply"),
         (["--memory-limit", "much"], "4GB"),
+        (["--memory-limit", "0"], "4GB"),
         (["--recipe", "none.toml"], "none.toml"),
         (["--script", "none.mlx"], "none.mlx"),
-        (["--scheduler", "tcp://127.0.0.1:1", "--workers", "1"], "--scheduler"),
+        (["--scheduler", "tcp://127.0.0.1:1", "--workers", "1"], "with a scheduler"),
         (["nothing.ply"], "nothing.ply"),
     ],
 )
@@ -139,6 +156,34 @@ def test_a_mistake_is_named_before_anything_is_done(
     out = tmp_path / "out"
     assert_fails(command("batch", cow, "--output", out, *arguments), 2, word)
     assert not out.exists()
+
+
+def test_results_that_fell_short_are_counted_and_their_warnings_kept(
+    cow: Path, tmp_path: Path
+) -> None:
+    flat, out = tmp_path / "flat.ply", tmp_path / "out"
+    write_ply(flat, "0 0 0\n1 0 0\n0 1 0", "3 0 1 2")
+    batch = ["batch", cow, flat, "--output", out, "--boundary", "fixed", "--workers", 1]
+    for more in ([], ["--resume"]):
+        done = command(*batch, "--steps", 1, *more)
+        assert done.returncode == 0, done.stderr
+        assert ", 1 with warnings in " in done.stdout
+    warnings = {record["name"]: record["warnings"] for record in records(out / REPORT)}
+    assert warnings["cow.obj"] == []
+    assert "nothing moved" in "".join(warnings["flat.ply"])
+
+
+def test_an_output_that_is_a_file_is_told(cow: Path, existing: Path) -> None:
+    assert_fails(command("batch", cow, "--output", existing), 2, f"{existing} is a file")
+
+
+def test_a_format_without_faces_is_written_with_a_warning(cow: Path, tmp_path: Path) -> None:
+    batch = ["batch", cow, "--output", tmp_path, "--workers", 1, "--format", "xyz"]
+    for arguments in (batch, ["filter", cow, tmp_path / "one.xyz"]):
+        done = command(*arguments, "--steps", 1)
+        assert done.returncode == 0
+        assert done.stderr == "Warning: .xyz files hold points only, the faces are not written.\n"
+    assert sorted(contents(tmp_path)) == ["cow.xyz", "one.xyz"]
 
 
 def test_a_report_takes_the_place_of_no_other_file(cow: Path, tmp_path: Path) -> None:
@@ -250,5 +295,8 @@ def test_progress_is_shown_on_a_terminal_only(tmp_path: Path) -> None:
     assert b"0 failed" in shown
     assert re.search(rb"files/s, 0:00:[0-9]{2} left", shown)
     assert re.fullmatch(rb"3 filtered, 0 failed in [0-9.]+ s; report: .*\n", stdout)
-    quiet = command(*arguments, "--steps", 1, "--overwrite")
-    assert quiet.stderr == ""
+    code, _, shown = command_on_terminal(*arguments, "--steps", 1, "--resume")
+    assert code == 0
+    assert b"Comparing files with the report" in shown
+    for more in ("--overwrite", "--resume"):
+        assert command(*arguments, "--steps", 1, more).stderr == ""

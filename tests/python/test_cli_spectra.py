@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import csv
+import shutil
 from pathlib import Path
 
 import meshlab_spectral
 import numpy as np
 import pytest
+from batches import make_meshes, records
 from commands import PRECIOUS, arrays_of, assert_fails, command
 
 
@@ -42,3 +44,43 @@ def test_a_mistake_leaves_the_old_table(cow: Path, existing: Path, tmp_path: Pat
     missing = tmp_path / "none.ply"
     assert_fails(command("spectra", missing, "--output", existing), 2, str(missing))
     assert existing.read_bytes() == PRECIOUS
+
+
+@pytest.mark.parametrize("table", [".", "/"])
+def test_a_table_that_is_a_folder_is_told(table: str, cow: Path) -> None:
+    assert_fails(command("spectra", cow, "--output", table), 1, "no file but a folder")
+
+
+def test_the_table_is_not_the_report(cow: Path, tmp_path: Path) -> None:
+    table = tmp_path / "x.csv"
+    done = command("spectra", cow, "--output", table, "--report", table)
+    assert_fails(done, 2, "is the table, too")
+    assert not table.exists()
+
+
+def test_an_input_is_not_replaced_by_the_table(cow: Path, tmp_path: Path) -> None:
+    mesh, link = tmp_path / "cow.obj", tmp_path / "link.csv"
+    shutil.copy(cow, mesh)
+    link.symlink_to(mesh)
+    for table in (mesh, link):
+        assert_fails(command("spectra", mesh, "--output", table), 2, "is an input itself")
+    assert mesh.read_bytes() == cow.read_bytes()
+    assert sorted(tmp_path.iterdir()) == [mesh, link]
+
+
+def test_resume_measures_only_what_the_report_does_not_hold(tmp_path: Path) -> None:
+    folder, table = tmp_path / "in", tmp_path / "spectra.csv"
+    make_meshes(folder, 2)
+    spectra = ["spectra", folder, "--output", table, "--basis-size", 20, "--workers", 1]
+    assert command(*spectra).returncode == 0
+    before = table.read_text()
+    assert len(records(tmp_path / "spectra_report.jsonl")) == 2
+    table.unlink()
+    make_meshes(folder, 3)
+    done = command(*spectra, "--resume")
+    assert "1 measured, 0 failed, 2 done before" in done.stdout
+    after = table.read_text()
+    assert after.startswith(before)
+    assert len({line.partition(",")[0] for line in after.splitlines()}) == 1 + 3
+    other = command(*spectra, "--resume", "--boundary", "fixed", "--basis-size", 21)
+    assert "3 measured" in other.stdout

@@ -1,22 +1,20 @@
-"""The functions for scripts: `filter_files` and `filter_mesh`; workers of an existing cluster."""
+"""The functions for scripts: `filter_files` and `filter_mesh`."""
 
 from __future__ import annotations
 
-import contextlib
-import json
-import re
+import os
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 
 import meshlab_spectral
 import numpy as np
 import psutil
 import pytest
-from batches import REPORT, alive, contents, make_meshes, records, start_batch, wait_until
-from commands import command
+from batches import REPORT, alive, contents, make_meshes, records, wait_until
+from commands import PRECIOUS, command
 from helpers import filter_arrays, percent
 from meshlab_spectral import (
     BatchError,
@@ -27,6 +25,8 @@ from meshlab_spectral import (
     filter_mesh,
 )
 from meshlab_spectral.batch import engine
+from meshlab_spectral.batch.jobs import FileResult, Job
+from meshlab_spectral.batch.task import run_job
 
 
 def test_filter_mesh_is_the_filter(decimated: Callable[..., tuple[np.ndarray, np.ndarray]]) -> None:
@@ -57,22 +57,14 @@ def meshes(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-@pytest.fixture(scope="module")
-def expected(meshes: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
-    out = tmp_path_factory.mktemp("expected") / "out"
-    assert command("batch", meshes, "--output", out, "--steps", 1).returncode == 0
-    return contents(out)
-
-
-def test_filter_files_gives_a_result_for_every_file(
-    meshes: Path, expected: dict[str, bytes], tmp_path: Path
-) -> None:
+def test_filter_files_gives_a_result_for_every_file(meshes: Path, tmp_path: Path) -> None:
     broken = tmp_path / "broken.ply"
     broken.write_text("no mesh")
-    out = tmp_path / "out"
+    out, by_command = tmp_path / "out", tmp_path / "by_command"
+    assert command("batch", meshes, "--output", by_command, "--steps", 1).returncode == 0
     results = list(filter_files([meshes, broken], out, workers=1, steps=1))
     assert sorted(result.outcome for result in results) == ["failed", *["filtered"] * 6]
-    assert contents(out) == expected
+    assert contents(out) == contents(by_command)
     again = list(filter_files([meshes, broken], out, workers=1, resume=True, steps=1))
     assert sorted(result.outcome for result in again) == ["failed", *["unchanged"] * 6]
     assert {result.name: result.output_sha256 for result in again} == {
@@ -87,9 +79,44 @@ def test_filter_files_checks_everything_before_it_begins(meshes: Path, tmp_path:
         filter_files(meshes, tmp_path / "out", script=tmp_path / "x.mlx", steps=1)
     with pytest.raises(InputError, match="does not exist"):
         filter_files(tmp_path / "none", tmp_path / "out")
+    with pytest.raises(OptionError, match="with a scheduler, leave out the number of workers"):
+        filter_files(meshes, tmp_path / "out", scheduler="tcp://127.0.0.1:1", workers=1)
     with pytest.raises(InputError, match="--report"):
         filter_files(meshes, "memory://out")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_an_output_that_appears_before_its_turn_is_kept(meshes: Path, tmp_path: Path) -> None:
+    inputs, out = sorted(meshes.iterdir())[:2], tmp_path / "out"
+    results = filter_files(inputs, out, workers=1, steps=1)  # planned, not begun
+    out.mkdir()
+    taken = out / inputs[0].name
+    taken.write_bytes(PRECIOUS)
+    outcomes = {result.name: result.outcome for result in results}
+    assert outcomes == {inputs[0].name: "failed", inputs[1].name: "filtered"}
+    assert taken.read_bytes() == PRECIOUS
+
+
+def test_a_file_whose_workers_die_again_and_again_fails_alone(
+    meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    inputs, out = sorted(meshes.iterdir())[:3], tmp_path / "out"
+    deadly = inputs[0].name
+
+    def run_or_die(job: Job) -> FileResult:
+        if job.name != deadly:
+            return run_job(job)
+        wait_until(lambda: len(records(out / REPORT)) == 2)  # of the others
+        os.kill(os.getpid(), signal.SIGKILL)
+        raise AssertionError("unreachable")
+
+    monkeypatch.setattr(engine, "run_job", run_or_die)
+    results = {r.name: r for r in filter_files(inputs, out, workers=1, steps=1)}
+    failed = results.pop(deadly)
+    assert failed.outcome == "failed"
+    assert "ended from outside" in (failed.reason or "")
+    assert failed.attempts > 1
+    assert [result.outcome for result in results.values()] == ["filtered"] * 2
 
 
 def test_stopping_the_iteration_ends_the_workers(meshes: Path, tmp_path: Path) -> None:
@@ -141,92 +168,6 @@ def test_workers_that_do_not_start_leave_ctrl_c_as_it_was(
     with pytest.raises(BatchError, match="no port"):
         list(filter_files(meshes, tmp_path / "out", workers=1, steps=1))
     assert signal.pthread_sigmask(signal.SIG_BLOCK, []) == before
-
-
-@contextlib.contextmanager
-def dask_cluster(folder: Path) -> Iterator[tuple[str, subprocess.Popen[bytes]]]:
-    """A scheduler and two workers, started by hand; the scheduler's address and process."""
-    address_file = folder / "scheduler.json"
-    dask = [sys.executable, "-m", "dask"]
-    common = ["--no-dashboard", "--host", "127.0.0.1"]
-    log = (folder / "log").open("w")
-    started = [
-        subprocess.Popen(
-            [*dask, "scheduler", *common, "--port", "0", "--scheduler-file", str(address_file)],
-            stdout=log,
-            stderr=log,
-        )
-    ]
-    try:
-        wait_until(lambda: address_file.is_file() and address_file.stat().st_size > 0)
-        for number in range(2):
-            local = ["--local-directory", str(folder / str(number)), "--nthreads", "1"]
-            file = ["--scheduler-file", str(address_file)]
-            started.append(
-                subprocess.Popen([*dask, "worker", *common, *file, *local], stdout=log, stderr=log)
-            )
-        wait_until(lambda: (folder / "log").read_text().count("Registered to:") >= 2)
-        yield json.loads(address_file.read_text())["address"], started[0]
-    finally:
-        for process in reversed(started):
-            process.kill()  # a worker ends with its nanny
-            process.wait()
-        log.close()
-
-
-@pytest.fixture(scope="module")
-def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    with dask_cluster(tmp_path_factory.mktemp("cluster")) as (address, _):
-        yield address
-
-
-def test_an_existing_cluster_gives_the_same_outputs(
-    cluster: str, meshes: Path, expected: dict[str, bytes], tmp_path: Path
-) -> None:
-    out = tmp_path / "out"
-    done = command("batch", meshes, "--output", out, "--steps", 1, "--scheduler", cluster)
-    assert done.returncode == 0, done.stderr
-    assert contents(out) == expected
-    assert len(records(out / REPORT)) == 6
-
-
-def test_a_cluster_takes_urls_of_shared_files(
-    cluster: str, meshes: Path, expected: dict[str, bytes], tmp_path: Path
-) -> None:
-    out = tmp_path / "out"
-    # A chain of file systems is a URL to fsspec, not a path: files are copied to the workers.
-    source = f"filecache::{meshes.as_uri()}"
-    places = [f"{source}/{name}" for name in sorted(expected)]
-    results = list(
-        filter_files(places, out.as_uri(), scheduler=cluster, report=tmp_path / "r", steps=1)
-    )
-    assert [result.outcome for result in results] == ["filtered"] * 6
-    assert contents(out) == expected
-
-
-def test_a_cluster_that_is_not_there_is_told(
-    meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(engine, "_SECONDS_TO_CONNECT", 0.5)
-    with pytest.raises(BatchError, match="no Dask scheduler"):
-        list(filter_files(meshes, tmp_path / "out", scheduler="tcp://127.0.0.1:1"))
-
-
-def test_a_cluster_that_goes_in_the_middle_is_told_in_one_line(tmp_path: Path) -> None:
-    folder, out = tmp_path / "in", tmp_path / "out"
-    make_meshes(folder, 12, rings=32)
-    with dask_cluster(tmp_path) as (address, scheduler):
-        batch = start_batch(folder, "--output", out, "--steps", 60, "--scheduler", address)
-        try:
-            wait_until(lambda: bool(records(out / REPORT)))
-            scheduler.kill()
-            stdout, stderr = batch.communicate(timeout=120)
-        finally:
-            batch.kill()
-            batch.communicate()
-    assert batch.returncode == 1
-    assert stdout == ""
-    assert re.fullmatch("Error: the Dask cluster has gone.*--resume\n", stderr)
 
 
 def test_the_public_names_are_there() -> None:

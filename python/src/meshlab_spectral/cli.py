@@ -23,6 +23,7 @@ from meshlab_spectral.command_line import (
     MESSAGES,
     errors_reported,
     progress_shown,
+    warn_of_points_only,
     with_filter_options,
 )
 from meshlab_spectral.figures import FIGURES, draw_figures
@@ -116,6 +117,7 @@ def filter_command(
     begin = time.monotonic()
     with errors_reported(debug), progress_shown() as on_progress:
         report = filter_file_in_child(source, target, options, on_progress)
+    warn_of_points_only(target.suffix)
     for warning in report_warnings(report):
         MESSAGES.print(f"Warning: {warning}.", highlight=False, soft_wrap=True)
     if as_json:

@@ -3,24 +3,33 @@
 from __future__ import annotations
 
 import json
-import re
 import time
 from collections import Counter
-from contextlib import closing
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from meshlab_spectral.batch.files import run_batch
+from meshlab_spectral.batch.files import check_workers
 from meshlab_spectral.batch.outputs import DEFAULT_PATTERN
 from meshlab_spectral.batch.plan import Batch, plan_batch
-from meshlab_spectral.batch.progress import batch_progress
 from meshlab_spectral.batch.report import DEFAULT_NAME
+from meshlab_spectral.cli_many import (
+    INTERRUPTED,
+    Debug,
+    Inputs,
+    MemoryLimit,
+    Scheduler,
+    Timeout,
+    Workers,
+    planning_shown,
+    run_shown,
+    told,
+)
 from meshlab_spectral.command_line import (
     EXIT_FAILED,
-    MESSAGES,
     errors_reported,
+    warn_of_points_only,
     with_given_filter_options,
 )
 from meshlab_spectral.options import FilterOptions
@@ -39,33 +48,16 @@ Keep the options for the next time:
   meshlab-spectral batch more/*.obj --output more_smooth --recipe denoise.toml --format ply
 
 Every file gets a line in the report, DIR/batch_report.jsonl, as soon as it is done: its outcome,
-the options, the filter's report, SHA-256 of input and output, seconds, memory, versions.
+the options, the filter's report and warnings, SHA-256 of input and output, seconds, memory,
+versions.
 """
-
-_SIZE = re.compile(r"(?P<number>\d+(\.\d+)?)\s*(?P<unit>[KMGT]?)(i?B)?", re.IGNORECASE)
-_UNITS = {"": 1, "K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
-
-
-def _bytes(text: str | int) -> int:
-    if isinstance(text, int):
-        return text
-    match = _SIZE.fullmatch(text.strip())
-    if match is None:
-        raise typer.BadParameter(f"{text!r}: give a size such as 4GB or 500MB")
-    return int(float(match["number"]) * _UNITS[match["unit"].upper()])
 
 
 @with_given_filter_options
 def batch_command(
     context: typer.Context,
     given: dict[str, Any],
-    inputs: Annotated[
-        list[str],
-        typer.Argument(
-            metavar="INPUT",
-            help="Mesh files, folders, patterns in quotes such as 'scans/*.ply', URLs.",
-        ),
-    ],
+    inputs: Inputs,
     output: Annotated[
         str, typer.Option(metavar="DIR", help="Folder of the outputs, made if need be; or a URL.")
     ],
@@ -83,7 +75,7 @@ def batch_command(
             "--format",
             metavar="ENDING",
             help="Format of the outputs, such as ply. By default that of the input, or ply where "
-            "MeshLab cannot write that.",
+            "MeshLab cannot write that with its faces.",
             show_default=False,
         ),
     ] = None,
@@ -139,75 +131,46 @@ def batch_command(
             show_default=False,
         ),
     ] = None,
-    workers: Annotated[
-        int | None,
-        typer.Option(min=1, help="Files at once. By default one for each processor."),
-    ] = None,
-    memory_limit: Annotated[
-        int | None,
-        typer.Option(
-            parser=_bytes,
-            metavar="SIZE",
-            help="Memory that a worker may use, such as 4GB. By default they share the machine's.",
-        ),
-    ] = None,
-    timeout: Annotated[
-        float | None, typer.Option(min=1, help="Seconds that a file may take. By default any.")
-    ] = None,
-    scheduler: Annotated[
-        str | None,
-        typer.Option(
-            metavar="ADDRESS",
-            help="Use the workers of a Dask cluster that is running, such as tcp://host:8786; they "
-            "must see the files under the same names.",
-        ),
-    ] = None,
+    workers: Workers = None,
+    memory_limit: MemoryLimit = None,
+    timeout: Timeout = None,
+    scheduler: Scheduler = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print the summary as one JSON object.")
     ] = False,
-    debug: Annotated[bool, typer.Option("--debug", hidden=True)] = False,
+    debug: Debug = False,
 ) -> None:
     """Filter many meshes: `meshlab-spectral batch --help` tells how."""
-    if scheduler is not None and (workers is not None or memory_limit is not None):
-        raise typer.BadParameter(
-            "the workers of a cluster are its own: leave out --workers and --memory-limit",
-            param_hint="--scheduler",
-        )
     if script is not None and save_recipe_as is not None:
         raise typer.BadParameter(
             "a script is kept as it is, a recipe holds options of the filter: leave out one",
             param_hint="--save-recipe",
         )
-    with errors_reported(debug, "what is done is in the report; go on with --resume"):
+    with errors_reported(debug, INTERRUPTED):
+        check_workers(scheduler, workers, memory_limit)
         options = _options(given, recipe, script)
         begin = time.monotonic()
-        batch = plan_batch(
-            inputs,
-            output,
-            options,
-            script=script,
-            recursive=recursive,
-            name=name,
-            ending=ending,
-            overwrite=overwrite,
-            resume=resume,
-            report=report,
-            timeout=timeout,
-        )
+        with planning_shown(resume):
+            batch = plan_batch(
+                inputs,
+                output,
+                options,
+                script=script,
+                recursive=recursive,
+                name=name,
+                ending=ending,
+                overwrite=overwrite,
+                resume=resume,
+                report=report,
+                timeout=timeout,
+            )
+        warn_of_points_only(ending or "")
         if save_recipe_as is not None and options is not None:
             save_recipe(save_recipe_as, options)
         if dry_run:
             _tell_plan(batch)
             return
-        counts: Counter[str] = Counter()
-        running = run_batch(batch, workers=workers, memory_limit=memory_limit, scheduler=scheduler)
-        with (
-            batch_progress(MESSAGES, len(batch.jobs) + len(batch.done)) as on_result,
-            closing(running) as results,  # ends the workers when it is interrupted
-        ):
-            for result in results:
-                counts[result.outcome] += 1
-                on_result(result)
+        counts = run_shown(batch, workers, memory_limit, scheduler)
         _tell_summary(batch, counts, time.monotonic() - begin, as_json)
     if counts["failed"]:
         raise typer.Exit(EXIT_FAILED)
@@ -234,14 +197,11 @@ def _tell_summary(batch: Batch, counts: Counter[str], seconds: float, as_json: b
         "filtered": counts["filtered"],
         "failed": counts["failed"],
         "unchanged": counts["unchanged"],
+        "with_warnings": counts["with warnings"],
         "seconds": round(seconds, 1),
         "report": str(batch.report),
     }
     if as_json:
         typer.echo(json.dumps(summary))
         return
-    unchanged = f", {counts['unchanged']} done before" if counts["unchanged"] else ""
-    typer.echo(
-        f"{counts['filtered']} filtered, {counts['failed']} failed{unchanged} in {seconds:.1f} s; "
-        f"report: {batch.report}"
-    )
+    typer.echo(f"{told(counts, 'filtered')} in {seconds:.1f} s; report: {batch.report}")

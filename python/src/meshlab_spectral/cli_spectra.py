@@ -7,12 +7,22 @@ from typing import Annotated
 
 import typer
 
-from meshlab_spectral.batch.files import workers_for
-from meshlab_spectral.batch.inputs import find_inputs
+from meshlab_spectral.batch.files import check_workers
 from meshlab_spectral.batch.jobs import FileResult
-from meshlab_spectral.batch.progress import batch_progress
-from meshlab_spectral.batch.spectra import spectrum_jobs, write_table
-from meshlab_spectral.command_line import EXIT_FAILED, MESSAGES, errors_reported
+from meshlab_spectral.batch.spectra import plan_spectra, write_table
+from meshlab_spectral.cli_many import (
+    INTERRUPTED,
+    Debug,
+    Inputs,
+    MemoryLimit,
+    Scheduler,
+    Timeout,
+    Workers,
+    planning_shown,
+    run_shown,
+    told,
+)
+from meshlab_spectral.command_line import EXIT_FAILED, errors_reported
 from meshlab_spectral.options import Boundary, LaplacianKind
 from meshlab_spectral.spectrum import DEFAULT_BASIS_SIZE
 from meshlab_spectral.whole_files import remove_leftovers, writing_whole
@@ -27,22 +37,28 @@ plots one of them.
 
 \b
   meshlab-spectral spectra scans --output spectra.csv
+Go on after an interruption, or after more scans have come:
+  meshlab-spectral spectra scans --output spectra.csv --resume
+
+Every mesh gets a line in the report, spectra_report.jsonl, as soon as it is measured.
 """
 
 
 def spectra_command(
-    inputs: Annotated[
-        list[str],
-        typer.Argument(
-            metavar="INPUT",
-            help="Mesh files, folders, patterns in quotes such as 'scans/*.ply', URLs.",
-        ),
-    ],
+    inputs: Inputs,
     output: Annotated[
         Path, typer.Option(metavar="FILE", help="The table to write. Replaces a file.")
     ] = Path("spectra.csv"),
     recursive: Annotated[
         bool, typer.Option("--recursive", "-r", help="Search folders in folders, too.")
+    ] = False,
+    resume: Annotated[
+        bool,
+        typer.Option(
+            "--resume",
+            help="Take from the report what it proves measured, of this input, with these options "
+            "and versions.",
+        ),
     ] = False,
     basis_size: Annotated[
         int, typer.Option(min=1, help="How many of the lowest harmonics are measured one by one.")
@@ -53,33 +69,41 @@ def spectra_command(
     boundary: Annotated[
         Boundary, typer.Option(help="Whether the rims of open surfaces are part of their shape.")
     ] = "free",
-    workers: Annotated[
-        int | None, typer.Option(min=1, help="Files at once. By default one for each processor.")
+    report: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="The report, one JSON object a line; added to if it exists. By default "
+            "spectra_report.jsonl beside spectra.csv.",
+            show_default=False,
+        ),
     ] = None,
-    timeout: Annotated[
-        float | None, typer.Option(min=1, help="Seconds that a file may take. By default any.")
-    ] = None,
-    scheduler: Annotated[
-        str | None,
-        typer.Option(metavar="ADDRESS", help="Use a Dask cluster that is running, as for batch."),
-    ] = None,
-    debug: Annotated[bool, typer.Option("--debug", hidden=True)] = False,
+    workers: Workers = None,
+    memory_limit: MemoryLimit = None,
+    timeout: Timeout = None,
+    scheduler: Scheduler = None,
+    debug: Debug = False,
 ) -> None:
     """Measure spectra of many meshes: `meshlab-spectral spectra --help` tells more."""
-    remove_leftovers(output.resolve().parent, output.name)
-    with errors_reported(debug), writing_whole(output) as scratch:
-        found = find_inputs(inputs, recursive)
-        jobs = spectrum_jobs(found, basis_size, laplacian, boundary, timeout)
+    with errors_reported(debug, INTERRUPTED):
+        check_workers(scheduler, workers, memory_limit)
+        with planning_shown(resume):
+            batch = plan_spectra(
+                inputs,
+                output,
+                basis_size,
+                laplacian,
+                boundary,
+                recursive=recursive,
+                resume=resume,
+                report=report,
+                timeout=timeout,
+            )
+        remove_leftovers(output.resolve().parent, output.name)
         results: list[FileResult] = []
-        with (
-            batch_progress(MESSAGES, len(jobs)) as on_result,
-            workers_for(scheduler, workers) as run,
-        ):
-            for result in run(jobs):
-                results.append(result)
-                on_result(result)
-        write_table(scratch, results)
-    failed = sum(result.outcome == "failed" for result in results)
-    typer.echo(f"{len(results) - failed} measured, {failed} failed; table: {output}")
-    if failed:
+        with writing_whole(output) as scratch:
+            counts = run_shown(batch, workers, memory_limit, scheduler, results.append)
+            write_table(scratch, results)
+        typer.echo(f"{told(counts, 'measured')}; table: {output}, report: {batch.report}")
+    if counts["failed"]:
         raise typer.Exit(EXIT_FAILED)

@@ -12,6 +12,7 @@ import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
+from meshlab_spectral.batch.formats import POINTS_ONLY
 from meshlab_spectral.errors import FormatError, InputError, OptionError, SpectralError
 from meshlab_spectral.meshlab_process import ProgressCallback
 from meshlab_spectral.options import FilterOptions, Length
@@ -139,6 +140,17 @@ def errors_reported(debug: bool, when_interrupted: str = "no output was written"
         MESSAGES.print(f"Error: {error}", markup=False, highlight=False, soft_wrap=True)
         usage = isinstance(error, OptionError | FormatError | InputError)
         raise typer.Exit(EXIT_USAGE if usage else EXIT_FAILED) from error
+
+
+def warn_of_points_only(ending: str) -> None:
+    """Warn of a format, such as .xyz, in which MeshLab keeps no faces and says nothing."""
+    plain = ending.removeprefix(".")
+    if plain.lower() in POINTS_ONLY:
+        MESSAGES.print(
+            f"Warning: .{plain} files hold points only, the faces are not written.",
+            highlight=False,
+            soft_wrap=True,
+        )
 
 
 @contextlib.contextmanager

@@ -85,6 +85,9 @@ class MeshLabProcess:
                 pass_fds=[lifeline],
                 env={**os.environ, **_ALLOCATOR},  # of a Dask worker: it wants the opposite
             )
+        except BaseException:
+            os.close(self._lifeline)
+            raise
         finally:
             os.close(lifeline)
         self._log: list[str] = []

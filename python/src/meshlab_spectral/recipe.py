@@ -35,6 +35,39 @@ def load_recipe(path: Path) -> dict[str, Any]:
     OptionError
         When it is no TOML, has a key that is unknown, or a value that an option cannot take.
     """
+    options = _table(path)
+    try:
+        FilterOptions.from_dict(options)
+    except OptionError as error:
+        raise OptionError(f"the recipe {path}: {error}") from error
+    return options
+
+
+def save_recipe(path: Path, options: FilterOptions) -> None:
+    """Write all options into a recipe; it may replace another recipe, and no other file.
+
+    Raises
+    ------
+    InputError
+        When there is a file that is no recipe.
+    MeshFileError
+        When it cannot be written.
+    """
+    if path.is_file():
+        try:
+            _table(path)
+        except OptionError as error:
+            raise InputError(f"{error}; so it is not replaced: give another name") from error
+    plain = {
+        name: _number_or_text(getattr(options, name), value)
+        for name, value in options.as_dict().items()
+    }
+    with writing_whole(path) as scratch:
+        scratch.write_text(tomli_w.dumps({_TABLE: plain}), encoding="utf-8")
+
+
+def _table(path: Path) -> dict[str, Any]:
+    """Read the table that a recipe is."""
     try:
         content = tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
@@ -47,28 +80,8 @@ def load_recipe(path: Path) -> dict[str, Any]:
         raise OptionError(
             f"the recipe {path} {wrong}: all options belong into one table, [{_TABLE}]"
         )
-    options: dict[str, Any] = content[_TABLE]
-    try:
-        FilterOptions.from_dict(options)
-    except OptionError as error:
-        raise OptionError(f"the recipe {path}: {error}") from error
-    return options
-
-
-def save_recipe(path: Path, options: FilterOptions) -> None:
-    """Write all options into a recipe; it replaces a file.
-
-    Raises
-    ------
-    MeshFileError
-        When it cannot be written.
-    """
-    plain = {
-        name: _number_or_text(getattr(options, name), value)
-        for name, value in options.as_dict().items()
-    }
-    with writing_whole(path) as scratch:
-        scratch.write_text(tomli_w.dumps({_TABLE: plain}), encoding="utf-8")
+    table: dict[str, Any] = content[_TABLE]
+    return table
 
 
 def _number_or_text(value: Any, plain: Any) -> Any:

@@ -22,13 +22,21 @@ _LONGEST_NAME = 200  # bytes of the output's name that the scratch folder's hold
 
 
 @contextlib.contextmanager
-def writing_whole(target: Path) -> Iterator[Path]:
+def writing_whole(target: Path, overwrite: bool = True) -> Iterator[Path]:
     """Give a scratch file to write instead of `target`; put it in place when all went well.
 
     The scratch file has the name of `target` and lies in a hidden folder beside it, so that files
     that a format keeps beside the mesh (materials, textures) are caught, too, and refer to each
     other by their final names. After an error, nothing of all this remains. Where the process is
     killed, its scratch folder does: `remove_leftovers` knows it by its name.
+
+    Parameters
+    ----------
+    target
+        The file to write.
+    overwrite
+        Whether it may take the place of another file, which may have appeared at any time until
+        the end. One of the same content is no other file.
 
     Yields
     ------
@@ -38,15 +46,15 @@ def writing_whole(target: Path) -> Iterator[Path]:
     Raises
     ------
     MeshFileError
-        When the folder of `target` is missing or takes no files (before anything is yielded), or
-        when the scratch file is not there at the end.
+        When the folder of `target` is missing or takes no files (before anything is yielded), when
+        the scratch file is not there at the end, or when a file is in the way then.
     """
     place = target.resolve()  # through a symbolic link, as cp does
     with _scratch_folder(target, place) as folder:
         scratch = folder / target.name
         yield scratch
         try:
-            _put_in_place(scratch, place)
+            _put_in_place(scratch, place, overwrite)
         except OSError as error:
             raise MeshFileError(f"{target} cannot be written ({error.strerror})") from error
 
@@ -137,55 +145,64 @@ def _shortened(name: str) -> str:
     return os.fsencode(name)[:_LONGEST_NAME].decode(errors="ignore")
 
 
-def _put_in_place(scratch: Path, place: Path) -> None:
+def side_files(scratch: Path) -> list[Path]:
+    """Tell the files that a format keeps beside the mesh, in the folder of a scratch file."""
+    folder = scratch.parent
+    return sorted(path for path in folder.rglob("*") if path.is_file() and path != scratch)
+
+
+def _put_in_place(scratch: Path, place: Path, overwrite: bool) -> None:
     if not scratch.is_file() or scratch.stat().st_size == 0:
         raise MeshFileError(
             f"MeshLab wrote nothing for {scratch.name}: choose another format, {USUAL_FORMATS}"
         )
-    moves = {
-        path: place.parent / path.relative_to(scratch.parent)
-        for path in sorted(scratch.parent.rglob("*"))
-        if path.is_file() and path != scratch
-    }
-    for path, side_place in moves.items():
-        _check_side_file(path, side_place, scratch.name)
+    moves = {path: place.parent / path.relative_to(scratch.parent) for path in side_files(scratch)}
+    moves[scratch] = place  # last: what the mesh refers to is there when it appears
+    # Such as out.obj.mtl to out.obj; a texture may be another mesh's, too.
+    replaceable = {path for path in moves if overwrite and path.name.startswith(scratch.name)}
+    for path, final in moves.items():
+        if path not in replaceable:
+            _refuse_another(path, final, scratch)
     if place.exists():
         shutil.copymode(place, scratch)
-    moves[scratch] = place  # last: what the mesh refers to is there when it appears
     for path, final in moves.items():
         final.parent.mkdir(parents=True, exist_ok=True)
         _sync(path)
-        if path == scratch or _is_ours(final, scratch.name):
+        if path in replaceable:
             path.replace(final)
         else:
-            _put_beside(path, final, scratch.name)
+            _put_new(path, final, scratch)
     _sync(place.parent)
 
 
-def _is_ours(place: Path, mesh_name: str) -> bool:
-    """Whether a file belongs to one mesh alone, such as out.obj.mtl to out.obj."""
-    return place.name.startswith(mesh_name)
-
-
-def _put_beside(path: Path, place: Path, mesh_name: str) -> None:
-    """Put a side file in place, unless another process has just put one there."""
+def _put_new(path: Path, place: Path, scratch: Path) -> None:
+    """Put a file in place, unless another process has just put one there."""
     try:
         place.hardlink_to(path)
     except FileExistsError:
-        _check_side_file(path, place, mesh_name)
+        _refuse_another(path, place, scratch)
     except OSError:  # a file system without hard links
         path.replace(place)
 
 
-def _check_side_file(path: Path, place: Path, mesh_name: str) -> None:
-    """Refuse to replace a file that the user did not name, such as another model's texture."""
-    if _is_ours(place, mesh_name) or not place.exists():
+def _refuse_another(path: Path, place: Path, scratch: Path) -> None:
+    """Refuse to replace a file that the user has not given up, such as another model's texture."""
+    if not place.exists() or (place.is_file() and filecmp.cmp(path, place, shallow=False)):
         return
-    if not (place.is_file() and filecmp.cmp(path, place, shallow=False)):
-        raise MeshFileError(
-            f"{mesh_name} needs a file {place.name} beside it, and another file has that name: "
-            "write the output to a folder of its own"
-        )
+    if path == scratch:
+        raise MeshFileError(why_kept(place))
+    raise MeshFileError(
+        f"{scratch.name} needs a file {place.name} beside it, and another file has that name: "
+        "write the output to a folder of its own"
+    )
+
+
+def why_kept(place: object) -> str:
+    """Say why a file that was not there when the work began is not replaced."""
+    return (
+        f"{place} has been written by another program meanwhile, and is kept: choose another "
+        "folder, or replace it with --overwrite"
+    )
 
 
 def _sync(path: Path) -> None:

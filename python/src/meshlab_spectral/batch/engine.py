@@ -156,7 +156,9 @@ def run_jobs(client: Client, jobs: Sequence[Job]) -> Iterator[FileResult]:
 
 
 def _failed(job: Job, error: BaseException) -> FileResult:
+    attempts = 0
     if isinstance(error, KilledWorker):
+        attempts = error.allowed_failures + 1
         reason = (
             "every worker that tried it was ended from outside: does the machine have too little "
             "memory for that many workers?"
@@ -170,6 +172,7 @@ def _failed(job: Job, error: BaseException) -> FileResult:
         name=job.name,
         reason=reason,
         options=job.options,
+        attempts=attempts,
         versions=versions(),
     )
 

@@ -8,13 +8,14 @@ from contextlib import AbstractContextManager, contextmanager
 from datetime import datetime, timezone
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from meshlab_spectral.batch import storage
-from meshlab_spectral.batch.jobs import FileResult, Job
+from meshlab_spectral.batch.jobs import FileResult, Job, Outcome
 from meshlab_spectral.batch.outputs import DEFAULT_PATTERN
 from meshlab_spectral.batch.plan import Batch, plan_batch
 from meshlab_spectral.batch.report import Report
+from meshlab_spectral.errors import OptionError
 from meshlab_spectral.options import FilterOptions
 
 
@@ -56,7 +57,8 @@ def filter_files(
     ending
         Format of the outputs, such as "ply"; by default that of each input.
     overwrite
-        Replace outputs that exist. An input is never replaced.
+        Replace files that are, or meanwhile appear, at the places of outputs. An input is never
+        replaced.
     resume
         Take up an earlier run, if there was one: leave out what its report proves done with the
         same options, the same inputs and the same versions; replace outputs that have been changed
@@ -70,7 +72,7 @@ def filter_files(
     memory_limit
         Bytes for each worker; by default they share nine tenths of the machine's.
     scheduler
-        Address of a Dask scheduler whose workers do the work, in place of the last two.
+        Address of a Dask scheduler whose workers do the work; to be given without the last two.
     **options
         Fields of `FilterOptions`; sizes as text such as "2%", or as a length.
 
@@ -93,6 +95,7 @@ def filter_files(
     ...     for result in filter_files("scans", "smooth", feature_size="2%"):
     ...         print(result.name, result.outcome, result.reason or "")
     """
+    check_workers(scheduler, workers, memory_limit)
     chosen = None if script is not None and not options else FilterOptions.from_dict(options)
     batch = plan_batch(
         [inputs] if isinstance(inputs, str | Path) else inputs,
@@ -110,6 +113,15 @@ def filter_files(
     return run_batch(batch, workers=workers, memory_limit=memory_limit, scheduler=scheduler)
 
 
+def check_workers(scheduler: str | None, workers: int | None, memory_limit: int | None) -> None:
+    """Raise OptionError when a cluster is asked for other workers than it has."""
+    if scheduler is not None and (workers is not None or memory_limit is not None):
+        raise OptionError(
+            "the workers of a cluster are its own: with a scheduler, leave out the number of "
+            "workers and the memory limit"
+        )
+
+
 def run_batch(
     batch: Batch,
     *,
@@ -117,9 +129,9 @@ def run_batch(
     memory_limit: int | None = None,
     scheduler: str | None = None,
 ) -> Generator[FileResult, None, None]:
-    """Do what `plan_batch` has planned; see `filter_files`."""
+    """Do what has been planned; see `filter_files`."""
     with Report(batch.report) as report:
-        counts = {"filtered": 0, "failed": 0, "unchanged": len(batch.done)}
+        counts = dict.fromkeys(get_args(Outcome), 0) | {"unchanged": len(batch.done)}
         begin = time.monotonic()
         report.add("run", {"begun": time.time(), "at": _now(), "files": len(batch.jobs)})
         yield from batch.done
@@ -137,7 +149,7 @@ def run_batch(
 def _run(
     jobs: list[Job],
     report: Report,
-    counts: dict[str, int],
+    counts: dict[Outcome, int],
     workers: int | None,
     memory_limit: int | None,
     scheduler: str | None,

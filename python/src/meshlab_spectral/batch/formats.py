@@ -6,6 +6,8 @@ _BOTH = {"3ds", "3mf", "ctm", "dae", "e57", "obj", "off", "ply", "stl", "wrl", "
 _READ_ONLY = {"apts", "asc", "bre", "fbx", "glb", "gltf", "pdb", "pts", "ptx", "qobj", "tri"}
 READABLE = frozenset(_BOTH | _READ_ONLY | {"txt", "vmi", "x3dv"})
 WRITABLE = frozenset(_BOTH | {"dxf", "idtf", "json", "nxs", "nxz"})
+# Written without an error, and without the faces.
+POINTS_ONLY = frozenset({"e57", "xyz"})
 # What a folder is searched for. To MeshLab a .txt file is a list of points; it is seldom meant so.
 SEARCHED = READABLE - {"txt"}
 

@@ -27,6 +27,8 @@ class Job:
         equal results.
     seconds
         That it may take at most; None: any.
+    overwrite
+        Whether the output may replace a file that is at its place by then.
     """
 
     source: str
@@ -35,6 +37,7 @@ class Job:
     work: dict[str, Any] = field(hash=False)
     options: dict[str, Any] = field(hash=False)
     seconds: float | None = None
+    overwrite: bool = False
 
 
 @dataclass(frozen=True)
@@ -56,8 +59,13 @@ class FileResult:
         Of the filter; for a MeshLab script its name, SHA-256 and filters.
     report
         Of the filter: numbers and lists, lengths in the units of the mesh. None if it failed.
+    warnings
+        Where the result fell short of what was asked for, and what to do.
     input_sha256, output_sha256
         Of the files; None where there was none.
+    side_files
+        What the format keeps beside the output, such as materials and textures: name, relative to
+        the output's folder -> SHA-256.
     attempts
         How often it was tried.
     seconds
@@ -75,8 +83,10 @@ class FileResult:
     reason: str | None = None
     options: dict[str, Any] = field(default_factory=dict)
     report: dict[str, Any] | None = None
+    warnings: list[str] = field(default_factory=list)
     input_sha256: str | None = None
     output_sha256: str | None = None
+    side_files: dict[str, str] = field(default_factory=dict)
     attempts: int = 0
     seconds: float = 0.0
     peak_memory: int | None = None

@@ -5,11 +5,11 @@ from __future__ import annotations
 import os
 import posixpath
 import string
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from meshlab_spectral.batch.formats import FALLBACK, WRITABLE, ending_of
+from meshlab_spectral.batch.formats import FALLBACK, POINTS_ONLY, WRITABLE, ending_of
 from meshlab_spectral.batch.inputs import Input
 from meshlab_spectral.batch.storage import is_url, joined
 from meshlab_spectral.errors import FormatError, InputError
@@ -54,7 +54,8 @@ def plan_outputs(
         name before and after its last dot, {folder} for the name of the folder that it lies in. A
         "/" makes folders.
     ending
-        Of the outputs; by default that of the input, or ply where MeshLab cannot write it.
+        Of the outputs; by default that of the input, or ply where MeshLab cannot write it, or
+        only without faces.
 
     Raises
     ------
@@ -72,7 +73,7 @@ def plan_outputs(
             )
     outputs = [_output(file, folder, pattern, ending) for file in inputs]
     _refuse_collisions(outputs)
-    _refuse_inputs(outputs)
+    refuse_inputs((output.target for output in outputs), (file.place for file in inputs))
     return outputs
 
 
@@ -102,7 +103,7 @@ def _output(file: Input, folder: str, pattern: str, ending: str | None) -> Outpu
     own = ending_of(file.name)
     stem = file.name.removesuffix(f".{own}") if own else file.name
     if ending is None:
-        ending = own if own.lower() in WRITABLE else FALLBACK
+        ending = own if own.lower() in WRITABLE - POINTS_ONLY else FALLBACK
     parent = posixpath.basename(posixpath.dirname(file.place))
     made = pattern.format(stem=stem, ending=own, folder=parent)
     _check_name(made, pattern)  # a file may have no ending, or lie in the topmost folder
@@ -124,14 +125,16 @@ def _refuse_collisions(outputs: Sequence[Output]) -> None:
         )
 
 
-def _refuse_inputs(outputs: Sequence[Output]) -> None:
-    places = {output.source for output in outputs if is_url(output.source)}
-    files = {key for output in outputs for key in _identities(output.source)}
-    for output in outputs:
-        if output.target in places or not files.isdisjoint(_identities(output.target)):
+def refuse_inputs(targets: Iterable[str], sources: Iterable[str]) -> None:
+    """Raise InputError when an output is one of the inputs, under whatever name."""
+    sources = list(sources)
+    places = {source for source in sources if is_url(source)}
+    files = {key for source in sources for key in _identities(source)}
+    for target in targets:
+        if target in places or not files.isdisjoint(_identities(target)):
             raise InputError(
-                f"{output.target} is an input itself, and would be lost: choose another folder, "
-                "or another --name, such as {stem}_smooth"
+                f"{target} is an input itself, and would be lost: give the output another name or "
+                "another folder"
             )
 
 

@@ -69,6 +69,8 @@ def plan_batch(
     """
     work, described = _work(options, script)
     folder = storage.located(str(output))
+    if not storage.is_url(folder) and Path(folder).is_file():
+        raise InputError(f"the output {output} is a file: name a folder for the outputs")
     report_path = _report_path(folder, report)
     check_report(report_path)
     records: Records = {}
@@ -81,7 +83,15 @@ def plan_batch(
         _inputs(inputs, folder, recursive, report_path, records), folder, name, ending
     )
     jobs = [
-        Job(output.source, output.target, output.name, work, described, timeout)
+        Job(
+            output.source,
+            output.target,
+            output.name,
+            work,
+            described,
+            seconds=timeout,
+            overwrite=overwrite or resume,
+        )
         for output in planned
     ]
     done = proved_done(jobs, records, versions()) if resume else {}

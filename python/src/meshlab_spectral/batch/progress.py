@@ -19,6 +19,7 @@ from rich.progress import (
     TextColumn,
     TimeElapsedColumn,
 )
+from rich.table import Column
 from rich.text import Text
 
 from meshlab_spectral.batch.jobs import FileResult
@@ -50,7 +51,7 @@ def batch_progress(console: Console, files: int) -> Iterator[Callable[[FileResul
         MofNCompleteColumn(),
         TextColumn("{task.fields[failed]}"),
         TimeElapsedColumn(),
-        _PaceColumn(),
+        _PaceColumn(table_column=Column(no_wrap=True)),  # a narrow terminal shortens the bar
         console=console,
         transient=True,
         disable=not console.is_terminal,

@@ -7,10 +7,11 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 from meshlab_spectral.batch.jobs import FileResult, Job
-from meshlab_spectral.batch.storage import digest_at
+from meshlab_spectral.batch.storage import beside, digest_at
 
 Records = dict[str, list[dict[str, Any]]]
 
+_DONE = ("filtered", "measured")
 # What a result depends on.
 _DECIDING_VERSIONS = ("meshlab_spectral", "plugin", "pymeshlab")
 
@@ -19,7 +20,7 @@ def done_records(report: Iterable[Mapping[str, Any]]) -> Records:
     """Collect the lines of a report that tell of a finished file, by the names of the outputs."""
     records: Records = {}
     for record in report:
-        if record.get("kind") == "file" and record.get("outcome") == "filtered":
+        if record.get("kind") == "file" and record.get("outcome") in _DONE:
             records.setdefault(str(record.get("name")), []).append(dict(record))
     return records
 
@@ -29,8 +30,8 @@ def proved_done(
 ) -> dict[Job, FileResult]:
     """Tell the jobs that need not be done.
 
-    A job is done when a record has its options, the SHA-256 that its input has now, the SHA-256
-    that its output has now, and the versions that would do it now.
+    A job is done when a record has its options, the SHA-256 that its input has now, those that its
+    output and the files beside it have now, and the versions that would do it now.
 
     Parameters
     ----------
@@ -46,7 +47,7 @@ def proved_done(
     dict
         For every such job what the record says of it, as "unchanged".
     """
-    candidates = [job for job in jobs if job.target is not None and records.get(job.name)]
+    candidates = [job for job in jobs if job.name in records]
     with ThreadPoolExecutor() as pool:  # reading is what takes the time
         found = pool.map(lambda job: _proof(job, records[job.name], versions), candidates)
         return {job: result for job, result in zip(candidates, found, strict=True) if result}
@@ -62,12 +63,16 @@ def _proof(
     ]
     if not fitting:
         return None
-    assert job.target is not None
-    output, source = digest_at(job.target), digest_at(job.source)
-    if output is None or source is None:
+    source = digest_at(job.source)
+    output = digest_at(job.target) if job.target is not None else None
+    if source is None or (output is None and job.target is not None):
         return None
     for record in reversed(fitting):
-        if record.get("input_sha256") == source and record.get("output_sha256") == output:
+        if (
+            record.get("input_sha256") == source
+            and record.get("output_sha256") == output
+            and _same_side_files(job, record.get("side_files", {}))
+        ):
             return FileResult(
                 outcome="unchanged",
                 input=job.source,
@@ -75,11 +80,20 @@ def _proof(
                 name=job.name,
                 options=job.options,
                 report=record.get("report"),
+                warnings=record.get("warnings", []),
                 input_sha256=source,
                 output_sha256=output,
+                side_files=record.get("side_files", {}),
                 versions=record["versions"],
             )
     return None
+
+
+def _same_side_files(job: Job, recorded: Mapping[str, str]) -> bool:
+    return all(
+        job.target is not None and digest_at(beside(job.target, name)) == sha256
+        for name, sha256 in recorded.items()
+    )
 
 
 def _same_versions(record: Mapping[str, Any], versions: Mapping[str, str]) -> bool:

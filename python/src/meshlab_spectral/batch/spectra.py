@@ -1,4 +1,4 @@
-"""The geometry spectra of many mesh files, measured in worker processes, as one table."""
+"""The geometry spectra of many mesh files: what is to be measured, and the table of it."""
 
 from __future__ import annotations
 
@@ -9,9 +9,15 @@ from typing import Any
 
 import numpy as np
 
-from meshlab_spectral.batch.inputs import Input
+from meshlab_spectral.batch.inputs import find_inputs
 from meshlab_spectral.batch.jobs import FileResult, Job
+from meshlab_spectral.batch.outputs import refuse_inputs
+from meshlab_spectral.batch.plan import Batch
+from meshlab_spectral.batch.report import check_report, read_report
+from meshlab_spectral.batch.resume import done_records, proved_done
+from meshlab_spectral.errors import InputError
 from meshlab_spectral.spectrum import GeometrySpectrum, spectrum_parameters
+from meshlab_spectral.versions import versions
 
 COLUMNS = (
     "mesh",
@@ -27,23 +33,52 @@ COLUMNS = (
 )
 
 
-def spectrum_jobs(
-    inputs: Sequence[Input],
+def plan_spectra(
+    inputs: Sequence[str | Path],
+    table: Path,
     basis_size: int,
     laplacian: str,
     boundary: str,
-    seconds: float | None = None,
-) -> list[Job]:
-    """Make a job of every input: its report is the spectrum.
+    *,
+    recursive: bool = False,
+    resume: bool = False,
+    report: Path | None = None,
+    timeout: float | None = None,
+) -> Batch:
+    """Find the meshes whose spectra go into a table; the report of each is its spectrum.
+
+    Parameters
+    ----------
+    inputs, recursive, resume, timeout
+        As for `files.filter_files`.
+    table
+        The file that `write_table` will write.
+    basis_size, laplacian, boundary
+        As for `spectrum.geometry_spectrum`.
+    report
+        By default TABLE_report.jsonl, beside the table.
 
     Raises
     ------
+    InputError
+        When inputs are missing, or the table or the report would replace another file.
     OptionError
-        When a parameter has a value that it cannot take; see `spectrum.geometry_spectrum`.
+        When a parameter has a value that it cannot take.
+    BatchError
+        When an earlier report cannot be read.
     """
     parameters = spectrum_parameters(basis_size, laplacian, boundary)
+    table = table.absolute()
+    report = (report or table.parent / f"{table.stem}_report.jsonl").absolute()
+    if report == table:
+        raise InputError(f"the report {report} is the table, too: name another with --report")
+    check_report(report)
+    places = [file.place for file in find_inputs(map(str, inputs), recursive, [table, report])]
+    refuse_inputs([str(table)], places)
     work = {"task": "spectrum", "parameters": parameters}
-    return [Job(file.place, None, file.place, work, parameters, seconds) for file in inputs]
+    jobs = [Job(place, None, place, work, parameters, timeout) for place in places]
+    done = proved_done(jobs, done_records(read_report(report)), versions()) if resume else {}
+    return Batch([job for job in jobs if job not in done], list(done.values()), report)
 
 
 def write_table(path: Path, results: Iterable[FileResult]) -> None:

@@ -15,7 +15,7 @@ from urllib.parse import unquote, urlsplit
 
 from meshlab_spectral.errors import InputError, MeshFileError
 from meshlab_spectral.meshfile import check_source
-from meshlab_spectral.whole_files import remove_leftovers, writing_whole
+from meshlab_spectral.whole_files import remove_leftovers, side_files, why_kept, writing_whole
 
 _SCHEME = re.compile(r"[a-z][a-z0-9+.-]*(::|://)", re.IGNORECASE)
 _PART = 2**20  # bytes that are read at once
@@ -102,8 +102,8 @@ def reading(place: str) -> Iterator[Path]:
         yield Path(place)
         return
     fs, path = file_system(place)
-    with tempfile.TemporaryDirectory(prefix="meshlab-spectral-") as folder:
-        copy = Path(folder, posixpath.basename(path))
+    with _scratch_folder() as folder:
+        copy = folder / posixpath.basename(path)
         try:
             fs.get_file(path, str(copy))
         except FileNotFoundError:
@@ -114,15 +114,16 @@ def reading(place: str) -> Iterator[Path]:
 
 
 @contextlib.contextmanager
-def writing(place: str) -> Iterator[Path]:
+def writing(place: str, overwrite: bool) -> Iterator[Path]:
     """Give a scratch file to write; put it, and the files beside it, in place if all went well.
 
-    Folders are made as needed. See `whole_files.writing_whole`.
+    Folders are made as needed. See `whole_files.writing_whole`; but a URL tells only shortly before
+    the file is put there whether another one is.
 
     Raises
     ------
     MeshFileError
-        When the place cannot be written to.
+        When the place cannot be written to, or is taken and not to be overwritten.
     """
     if not is_url(place):
         try:
@@ -131,23 +132,31 @@ def writing(place: str) -> Iterator[Path]:
             raise MeshFileError(
                 f"the folder of {place} cannot be made ({error.strerror})"
             ) from error
-        with writing_whole(Path(place)) as scratch:
+        with writing_whole(Path(place), overwrite) as scratch:
             yield scratch
         return
     fs, path = file_system(place)
-    with tempfile.TemporaryDirectory(prefix="meshlab-spectral-") as folder:
-        scratch = Path(folder, posixpath.basename(path))
+    with _scratch_folder() as folder:
+        scratch = folder / posixpath.basename(path)
         yield scratch
         if not scratch.is_file():
             raise MeshFileError(f"MeshLab wrote nothing for {place}: choose another format")
-        # The mesh last: what it refers to is there when it appears.
-        files = sorted(Path(folder).rglob("*"), key=lambda file: file == scratch)
         try:
-            for file in filter(Path.is_file, files):
+            if not overwrite and fs.exists(path) and digest_at(place) != digest(scratch):
+                raise MeshFileError(why_kept(place))
+            # The mesh last: what it refers to is there when it appears.
+            for file in [*side_files(scratch), scratch]:
                 name = file.relative_to(folder).as_posix()
                 _upload(fs, file, posixpath.join(posixpath.dirname(path), name))
         except OSError as error:
             raise MeshFileError(f"{place} cannot be written ({error})") from error
+
+
+def beside(place: str, name: str) -> str:
+    """Give the place of a file beside another one, by its name relative to that one's folder."""
+    if is_url(place):
+        return f"{place.rpartition('/')[0]}/{name}"
+    return str(Path(place).resolve().parent / name)  # through a symbolic link, as it was written
 
 
 def tidy(folder: str) -> None:
@@ -160,6 +169,19 @@ def tidy(folder: str) -> None:
         for found in fs.ls(path, detail=False):
             if _PARTIAL.fullmatch(posixpath.basename(found.rstrip("/"))):
                 fs.rm(found)
+
+
+@contextlib.contextmanager
+def _scratch_folder() -> Iterator[Path]:
+    """Make a folder for copies, in that of the Dask worker: Dask tidies up after a killed one."""
+    from distributed import get_worker
+
+    try:
+        parent = get_worker().local_directory
+    except ValueError:  # outside of a worker
+        parent = None
+    with tempfile.TemporaryDirectory(prefix="meshlab-spectral-", dir=parent) as folder:
+        yield Path(folder)
 
 
 def _upload(fs: Any, file: Path, path: str) -> None:

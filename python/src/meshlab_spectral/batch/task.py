@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from pathlib import Path
 from typing import Any
 
 from meshlab_spectral.batch import storage
@@ -10,7 +11,9 @@ from meshlab_spectral.batch.jobs import FileResult, Job
 from meshlab_spectral.batch.processes import processes
 from meshlab_spectral.errors import MemoryLimitError, ProcessDiedError, SpectralError
 from meshlab_spectral.meshlab_process import Answer, JobLimits
+from meshlab_spectral.report import report_warnings
 from meshlab_spectral.versions import versions
+from meshlab_spectral.whole_files import side_files
 
 # A mesh whose process dies gets a second, fresh one: it may have been another's fault.
 ATTEMPTS = 2
@@ -43,16 +46,17 @@ def run_job(job: Job, memory_limit: int | None = None) -> FileResult:
             if job.target is None:
                 answer = _attempt(work, limits, result)
             else:
-                with storage.writing(job.target) as scratch:
+                with storage.writing(job.target, job.overwrite) as scratch:
                     answer = _attempt(work | {"scratch": str(scratch)}, limits, result)
-                    if scratch.is_file():
-                        result["output_sha256"] = storage.digest(scratch)
+                    written = _digests(scratch)
+                result |= written
         result["outcome"] = "measured" if job.target is None else "filtered"
         result |= {"report": answer.report, "peak_memory": answer.peak_memory}
+        result["warnings"] = _warnings(answer.report)
     except SpectralError as error:
-        result |= {"reason": str(error), "output_sha256": None}
+        result["reason"] = str(error)
     except OSError as error:
-        result |= {"reason": f"a file cannot be read or written ({error})", "output_sha256": None}
+        result["reason"] = f"a file cannot be read or written ({error})"
     return FileResult(
         input=job.source,
         output=job.target,
@@ -62,6 +66,28 @@ def run_job(job: Job, memory_limit: int | None = None) -> FileResult:
         versions=versions(),
         **result,
     )
+
+
+def _warnings(report: dict[str, Any]) -> list[str]:
+    """Tell the warnings of our filter, alone or in a script; other filters have no such report."""
+    parts = [one.get("report", {}) for one in report.get("filters", [])] or [report]
+    return [
+        warning
+        for part in parts
+        if "tolerance_reached" in part
+        for warning in report_warnings(part)
+    ]
+
+
+def _digests(scratch: Path) -> dict[str, Any]:
+    """Give the SHA-256 of an output and of the files beside it."""
+    return {
+        "output_sha256": storage.digest(scratch) if scratch.is_file() else None,
+        "side_files": {
+            path.relative_to(scratch.parent).as_posix(): storage.digest(path)
+            for path in side_files(scratch)
+        },
+    }
 
 
 def _attempt(work: dict[str, Any], limits: JobLimits, result: dict[str, Any]) -> Answer:
