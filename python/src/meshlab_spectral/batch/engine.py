@@ -13,7 +13,15 @@ from typing import Any
 
 import dask
 from dask.system import CPU_COUNT
-from distributed import Client, Future, KilledWorker, LocalCluster, WorkerPlugin, as_completed
+from distributed import (
+    CancelledError,
+    Client,
+    Future,
+    KilledWorker,
+    LocalCluster,
+    WorkerPlugin,
+    as_completed,
+)
 from distributed import TimeoutError as DaskTimeoutError  # in Python 3.10, not Python's own
 from distributed.system import MEMORY_LIMIT
 
@@ -131,7 +139,7 @@ def run_jobs(client: Client, jobs: Sequence[Job]) -> Iterator[FileResult]:
     window = max(_FEWEST_SUBMITTED, 4 * sum(client.nthreads().values()))
     waiting = iter(jobs)
     job_of: dict[Future, Job] = {}
-    done = as_completed(loop=client.loop, with_results=True, raise_errors=False)
+    done = as_completed(loop=client.loop)
 
     def submit(count: int) -> None:
         chosen = list(itertools.islice(waiting, count))
@@ -141,18 +149,18 @@ def run_jobs(client: Client, jobs: Sequence[Job]) -> Iterator[FileResult]:
             done.update(futures)
 
     submit(window)
-    for future, _ in done:
+    for future in done:
         job = job_of.pop(future)
-        if len(job_of) <= window // 2:
-            submit(window // 2)
-        if future.status == "finished":
-            yield future.result()
-        elif future.status == "error":
-            yield _failed(job, future.exception())
-        else:
+        try:
+            if len(job_of) <= window // 2:
+                submit(window // 2)
+            failed = future.status == "error"
+            result = _failed(job, future.exception()) if failed else future.result()
+        except (OSError, CancelledError, DaskTimeoutError) as error:
             raise BatchError(
                 "the Dask cluster has gone: start it again, then run the same command with --resume"
-            )
+            ) from error
+        yield result
 
 
 def _failed(job: Job, error: BaseException) -> FileResult:
