@@ -7,6 +7,7 @@
 #include <sstream>
 #include <utility>
 
+#include "apply_lock.h"
 #include "core/errors.h"
 #include "late_preview.h"
 
@@ -98,6 +99,7 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
     unsigned int&, vcg::CallBackPos* callback) {
     releaseGLContext();
     const LatePreview latePreview;
+    const ApplyLock applyLock;
     // In its callback MeshLab does whatever its user asks for, in the midst of this run: it starts
     // the filter anew for a preview with other parameters, or deletes the mesh.
     std::atomic<int>& latest = runs_.at(static_cast<std::size_t>(ID(action)));

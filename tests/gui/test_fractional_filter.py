@@ -191,6 +191,31 @@ def test_a_preview_switched_off_while_it_is_computed_does_not_come_back(
     assert_same_in_floats(saved_vertices(meshlab, "on.ply"), vertices(expected))
 
 
+def test_apply_pressed_again_while_it_is_at_work_applies_once(
+    dialog: FilterDialog, meshlab: MeshLab, bunny: Path
+) -> None:
+    rows = dict(zip(PARAMETERS, dialog.rows(), strict=True))
+    dialog.set_value(rows["steps"], "20")  # for seconds
+    bar = meshlab.main_window().find("progress bar")
+    button = dialog.window.find("push button", "Apply")
+    assert bar is not None
+    assert button is not None
+    before = len(meshlab.log())
+    button.press()
+    wait_for("the filter to be at work", lambda: bar.value >= 1)
+    assert not button.enabled
+    button.press()
+    dialog.wait_for_result(before)
+    wait_for("Apply to be offered again", lambda: button.enabled)
+    dialog.close()
+    script = meshlab.home / "script.mlx"
+    meshlab.save_script(script)
+    assert len(list(ElementTree.parse(script).iter("filter"))) == 1
+    expected = load(bunny)
+    expected.apply_filter(FILTER, steps=20)
+    assert_same_in_floats(saved_vertices(meshlab), vertices(expected))
+
+
 @pytest.mark.parametrize(
     "turns",
     [("script", "dialog") * 2 + ("script",), ("dialog", "script") * 2],
