@@ -7,8 +7,9 @@ from collections.abc import Callable
 from pathlib import Path
 from statistics import median
 
+from filter_dialog import FilterDialog
+from fractional import PARAMETERS
 from meshlab import MeshLab
-from test_fractional_filter import MENU, PARAMETERS
 
 PREVIEWS, WARM_UP = 50, 10
 # Seen: 8 to 10. Of these, 6.6 are MeshLab's own: after every preview it makes icons and menus anew,
@@ -31,9 +32,8 @@ def mebibytes_taken(pid: int) -> float:
 
 
 def test_fifty_previews_need_no_more_memory_than_the_first_ten(
-    meshlab: MeshLab, record_property: Callable[[str, object], None]
+    dialog: FilterDialog, meshlab: MeshLab, record_property: Callable[[str, object], None]
 ) -> None:
-    dialog = meshlab.open_filter(*MENU)
     rows = dict(zip(PARAMETERS, dialog.rows(), strict=True))
     dialog.set_value(rows["steps"], "1")
     dialog.preview(True)
