@@ -10,6 +10,7 @@ import numpy as np
 import pymeshlab
 import pytest
 from accessibility import Widget
+from desktop import Desktop
 from filter_dialog import FilterDialog
 from fractional import FILTER, PARAMETERS, assert_same_in_floats, load, saved_vertices, vertices
 from meshlab import MeshLab
@@ -95,6 +96,23 @@ def test_apply_pressed_again_while_it_is_at_work_applies_once(
     button.press()
     dialog.wait_for_result(before)
     wait_for("Apply to be offered again", lambda: button.enabled)
+    dialog.close()
+    script = meshlab.home / "script.mlx"
+    meshlab.save_script(script)
+    assert len(list(ElementTree.parse(script).iter("filter"))) == 1
+    assert_same_in_floats(saved_vertices(meshlab), filtered(bunny))
+
+
+def test_apply_clicked_from_a_field_with_a_new_value_is_done_after_the_preview_of_that_value(
+    dialog: FilterDialog, meshlab: MeshLab, desktop: Desktop, bunny: Path
+) -> None:
+    steps = dialog.rows()[PARAMETERS.index("steps")]
+    dialog.set_value(steps, "1")
+    dialog.preview(True)
+    dialog.type_value(steps, str(STEPS))
+    before = len(meshlab.log())
+    desktop.click(part(dialog, "push button", "Apply").box)
+    wait_for("a preview and Apply", lambda: meshlab.log()[before:].count("Applied filter: ") == 2)
     dialog.close()
     script = meshlab.home / "script.mlx"
     meshlab.save_script(script)
