@@ -111,8 +111,10 @@ def test_apply_clicked_from_a_field_with_a_new_value_is_done_after_the_preview_o
     dialog.preview(True)
     dialog.type_value(steps, str(STEPS))
     before = len(meshlab.log())
-    desktop.click(part(dialog, "push button", "Apply").box)
+    button = part(dialog, "push button", "Apply")
+    desktop.click(button.box)
     wait_for("a preview and Apply", lambda: meshlab.log()[before:].count("Applied filter: ") == 2)
+    wait_for("Apply to have the keys again", lambda: button.focused)
     dialog.close()
     script = meshlab.home / "script.mlx"
     meshlab.save_script(script)
