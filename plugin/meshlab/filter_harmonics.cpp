@@ -31,9 +31,9 @@ const char* const kHelp =
     "of equal eigenvalue, on symmetric shapes, may come in any mixture."
     "<br><br>None is missing: their number is checked against the inertia of a factorization "
     "(Sylvester's law). The report holds that count, the relative residuals and the eigenvalues; "
-    "the frequency of a harmonic is the square root of "
-    "its eigenvalue, and 2 pi over the frequency its wavelength. <b>Store basis</b> keeps all "
-    "harmonics in the mesh, as the vertex attributes harmonic_0, harmonic_1 and so on."
+    "the frequency of a harmonic is the square root of its eigenvalue, and 2 pi over the frequency "
+    "its wavelength. <b>Store basis</b> keeps all harmonics in the mesh, as the vertex attributes "
+    "harmonic_0, harmonic_1 and so on."
     "<br><br>For more information see:"
     "<br><i>B. Vallet, B. L&eacute;vy</i>, <b>Spectral Geometry Processing with Manifold "
     "Harmonics</b>, Computer Graphics Forum 27(2), 2008";
@@ -60,10 +60,9 @@ RichParameterList parameters(const MeshModel&) {
         "classical formula; every triangle needs an area."));
     list.addParam(
         boundaryParameter("What the waves do at the rims of an open surface and of its holes. "
-                          "<b>free</b>: they swing "
-                          "there, too, and meet the rim without slope. <b>fixed</b>: they are zero "
-                          "there, as a drum's "
-                          "skin is held by its rim."));
+                          "<b>free</b>: they swing there, too, and meet the rim without "
+                          "slope. <b>fixed</b>: they are zero there, as a drum's skin is held by "
+                          "its rim."));
     return list;
 }
 

@@ -7,18 +7,20 @@
 #include <sstream>
 #include <utility>
 
+#include "apply_lock.h"
 #include "core/errors.h"
+#include "late_close.h"
 #include "late_preview.h"
 
 namespace {
 
-/// MeshLab's callback as a progress.
-spectral::Progress meshlabProgress(vcg::CallBackPos* callback, std::function<bool()> isMeshThere,
+/// MeshLab's callback as a progress; `isWanted` is asked after every call.
+spectral::Progress meshlabProgress(vcg::CallBackPos* callback, std::function<bool()> isWanted,
                                    spectral::Progress::Interruption isOvertaken) {
     if (callback == nullptr) return {};
-    const auto report = [callback, isMeshThere = std::move(isMeshThere)](double fraction,
-                                                                         const std::string& stage) {
-        return callback(static_cast<int>(100.0 * fraction), stage.c_str()) && isMeshThere();
+    const auto report = [callback, isWanted = std::move(isWanted)](double fraction,
+                                                                   const std::string& stage) {
+        return callback(static_cast<int>(100.0 * fraction), stage.c_str()) && isWanted();
     };
     return spectral::Progress(report, std::move(isOvertaken));
 }
@@ -97,26 +99,33 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
     const QAction* action, const RichParameterList& parameters, MeshDocument& document,
     unsigned int&, vcg::CallBackPos* callback) {
     releaseGLContext();
+    // In its callback MeshLab does whatever its user asks for, in the midst of this run: it
+    // switches the preview off, applies the filter, closes its windows, starts the filter anew for
+    // a preview with other parameters, or deletes the mesh.
     const LatePreview latePreview;
-    // In its callback MeshLab does whatever its user asks for, in the midst of this run: it starts
-    // the filter anew for a preview with other parameters, or deletes the mesh.
+    const ApplyLock applyLock;
+    const LateClose lateClose;
     std::atomic<int>& latest = runs_.at(static_cast<std::size_t>(ID(action)));
     const auto isOvertaken = [&latest, run = ++latest] { return run != latest; };
-    const auto isMeshThere = [&document, mesh = document.mm()->id()] {
-        return document.getMesh(mesh) != nullptr;
+    const auto isWanted = [&document, &lateClose, mesh = document.mm()->id()] {
+        return document.getMesh(mesh) != nullptr && !lateClose.isAsked();
     };
     // The one place where the core's errors become MeshLab's. MeshLab ends the program on anything
     // but MLException and bad_alloc.
     try {
-        const spectral::Progress progress = meshlabProgress(callback, isMeshThere, isOvertaken);
+        const spectral::Progress progress = meshlabProgress(callback, isWanted, isOvertaken);
         progress.report(0.0, "reading the mesh");
         FilterOutcome outcome = filterOf(action).apply(parameters, *document.mm(), progress);
         logLines(outcome.text);
         return std::move(outcome.report);
     } catch (const spectral::Cancelled& cancelled) {
-        // The result of the newer run stays.
-        if (!isOvertaken()) throw MLException(cancelled.what());
-        log("stopped: the filter was started anew meanwhile");
+        // Without an error's window: the result of the newer run stays, the project goes.
+        if (isOvertaken())
+            log("stopped: the filter was started anew meanwhile");
+        else if (lateClose.isAsked())
+            log("stopped: its window is being closed");
+        else
+            throw MLException(cancelled.what());
         return {};
     } catch (const spectral::Error& error) {
         throw MLException(QString::fromStdString(error.what()));

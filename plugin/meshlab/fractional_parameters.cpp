@@ -81,8 +81,7 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "What every step learns from the shape that the step before has made. <b>full</b> takes "
         "its own frequencies anew. <b>conformal</b> takes only its areas anew [4]: the best choice "
         "for strong smoothing, thin parts shrink instead of turning into spikes. <b>none</b> keeps "
-        "the "
-        "frequencies of the input; then the number of steps does not matter."));
+        "the frequencies of the input; then the number of steps does not matter."));
     list.addParam(RichFloat(
         "conformal_share", static_cast<Scalarm>(defaults.conformalShare), "Conformal share",
         "For the full update: from 0, the scheme of the paper, to 1, the conformal update. 0.1 is "

@@ -2,6 +2,7 @@
 
 #include <common/plugins/interfaces/filter_plugin.h>
 
+#include <cmath>
 #include <iomanip>
 #include <sstream>
 

@@ -14,6 +14,8 @@ import numpy as np
 import pymeshlab
 import pytest
 from desktop import Desktop, save_picture
+from filter_dialog import FilterDialog
+from fractional import MENU
 from meshlab import MeshLab
 
 ROOT_VARIABLE = "MESHLAB_SPECTRAL_GUI_ROOT"
@@ -96,3 +98,9 @@ def meshlab(install: Callable[[], None], start: Callable[[Path], MeshLab], bunny
     """A MeshLab in which the plugin was installed, with the bunny."""
     install()
     return start(bunny)
+
+
+@pytest.fixture
+def dialog(meshlab: MeshLab) -> FilterDialog:
+    """The dialog of the fractional filter."""
+    return meshlab.open_filter(*MENU)

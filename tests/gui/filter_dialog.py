@@ -101,9 +101,14 @@ class FilterDialog:
         elif editor.has_role("combo box"):
             self._choose(editor, value)
         else:
-            wait_for(f"{row.label} to have the keys", lambda: self._focus(editor))
-            self._desktop.enter(editor, value)
+            self.type_value(row, value)
             self._desktop.press_keys("Tab")
+
+    def type_value(self, row: Row, value: str) -> None:
+        """Write into a parameter's field, and stay there: the dialog does not yet know of it."""
+        editor = row.editors[-1]
+        wait_for(f"{row.label} to have the keys", lambda: self._focus(editor))
+        self._desktop.enter(editor, value)
 
     def _focus(self, editor: Widget) -> bool:
         """Try to direct the keys to a field of entry, which its window may not have at once."""

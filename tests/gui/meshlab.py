@@ -62,6 +62,11 @@ class MeshLab:
     def close(self) -> None:
         self._session.close()
 
+    def wait_for_end(self) -> int:
+        """Wait until it has ended by itself: its exit code, 0 for a good end."""
+        wait_for("MeshLab to end", lambda: self._process.poll() is not None)
+        return self._process.wait()
+
     def _shows_itself(self) -> bool:
         self._check_alive()
         return "All files opened" in self.log() or self.desktop.has_window(_PLUGIN_ERROR)
@@ -128,6 +133,10 @@ class MeshLab:
         words = _words(window)
         self._confirm(window, "OK")
         return words
+
+    def answer(self, title: str, button: str) -> None:
+        """Wait for a question, and answer it."""
+        self._confirm(self.window(title), button)
 
     def has_message(self, title: str) -> bool:
         return self._program.child(title) is not None

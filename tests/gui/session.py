@@ -11,14 +11,14 @@ from waiting import wait_for
 
 
 class Session:
-    """A new home, and the bus of a session in it.
+    """The session of a user at the desktop: its bus, and the programs in it.
 
     Parameters
     ----------
     desktop
         The screen on which the session's programs show themselves.
     home
-        Folder to make, below the desktop's scratch folder.
+        The user's folder, below the desktop's scratch folder.
     """
 
     def __init__(self, desktop: Desktop, home: Path) -> None:

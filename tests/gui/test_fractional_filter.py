@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from pathlib import Path
-from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -13,13 +11,19 @@ import pytest
 from accessibility import Box
 from desktop import Desktop, Picture
 from filter_dialog import FilterDialog
+from fractional import (
+    FILTER,
+    MENU,
+    PARAMETERS,
+    assert_same_in_floats,
+    diagonal,
+    load,
+    saved_vertices,
+    vertices,
+)
 from meshlab import MeshLab
 from meshlab_spectral import FilterOptions
-from numpy.typing import NDArray
 from waiting import wait_for
-
-MENU = ("Smoothing, Fairing and Deformation", "Spectral Filter (Fractional)")
-FILTER = "apply_coord_spectral_filter_fractional"
 
 # Of every parameter another value than its default, all together a filter that the bunny can take.
 OTHER_VALUES = {
@@ -41,41 +45,6 @@ OTHER_VALUES = {
     "laplacian": "cotangent",
     "boundary": "fixed",
 }
-PARAMETERS = [option.name for option in fields(FilterOptions)]
-
-# Half a unit in the last place of a float near 1, the bunny's size, with room for rounding the
-# filter's own parameters, which MeshLab holds as floats, too.
-FLOAT_PRECISION = 4 * 2.0**-24
-
-
-@pytest.fixture
-def dialog(meshlab: MeshLab) -> FilterDialog:
-    return meshlab.open_filter(*MENU)
-
-
-def load(path: Path) -> pymeshlab.MeshSet:
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.load_new_mesh(str(path))
-    return mesh_set
-
-
-def vertices(mesh_set: pymeshlab.MeshSet) -> NDArray[np.float64]:
-    return mesh_set.current_mesh().vertex_matrix().copy()
-
-
-def saved_vertices(meshlab: MeshLab, name: str = "saved.ply") -> NDArray[np.float64]:
-    path = meshlab.home / name
-    meshlab.save_mesh(path)
-    return vertices(load(path))
-
-
-def diagonal(V: NDArray[Any]) -> float:
-    return float(np.linalg.norm(np.ptp(V, axis=0)))
-
-
-def assert_same_in_floats(A: NDArray[Any], B: NDArray[Any]) -> None:
-    assert A.shape == B.shape
-    assert np.abs(A - B).max() <= FLOAT_PRECISION * diagonal(B)
 
 
 def test_the_dialog_shows_every_parameter_with_its_default(dialog: FilterDialog) -> None:
@@ -145,50 +114,6 @@ def test_preview_changes_the_picture_and_without_it_the_mesh_is_back(
     )
     dialog.close()
     np.testing.assert_array_equal(saved_vertices(meshlab), vertices(load(bunny)))
-
-
-def test_a_preview_overtaken_by_another_one_does_not_come_back(
-    dialog: FilterDialog, meshlab: MeshLab, bunny: Path
-) -> None:
-    size = dialog.rows()[PARAMETERS.index("feature_size")]
-    dialog.preview(True)
-    before = len(meshlab.log())
-    dialog.set_value(size, "20")  # for many seconds; MeshLab handles its widgets meanwhile
-    dialog.set_value(size, "8")
-    dialog.wait_for_result(before)
-    previewed = saved_vertices(meshlab)
-    log = meshlab.log()[before:]
-    assert "stopped: the filter was started anew meanwhile" in log
-    ms = load(bunny)
-    report = ms.apply_filter(FILTER, feature_size=pymeshlab.PercentageValue(8))
-    assert log.count("Spectral Filter: ") == 1
-    assert f"largest {report['max_displacement']:.4g}" in log
-    assert_same_in_floats(previewed, vertices(ms))
-
-
-def test_a_preview_switched_off_while_it_is_computed_does_not_come_back(
-    dialog: FilterDialog, meshlab: MeshLab, bunny: Path
-) -> None:
-    rows = dict(zip(PARAMETERS, dialog.rows(), strict=True))
-    dialog.set_value(rows["steps"], "20")  # for seconds
-    # Found before: during a run MeshLab answers ten questions a second.
-    bar = meshlab.main_window().find("progress bar")
-    box = dialog.window.find("check box", "Preview")
-    assert bar is not None
-    assert box is not None
-    before = len(meshlab.log())
-    box.press()
-    wait_for("the filter to be at work", lambda: bar.value >= 1)
-    box.press()
-    dialog.wait_for_result(before)
-    wait_for("Preview to be switched off", lambda: not box.checked)
-    assert "Spectral Filter: 20 steps" in meshlab.log()[before:], "switched off too late"
-    np.testing.assert_array_equal(saved_vertices(meshlab, "off.ply"), vertices(load(bunny)))
-
-    dialog.preview(True)
-    expected = load(bunny)
-    expected.apply_filter(FILTER, steps=20)
-    assert_same_in_floats(saved_vertices(meshlab, "on.ply"), vertices(expected))
 
 
 @pytest.mark.parametrize(

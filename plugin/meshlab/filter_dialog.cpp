@@ -1,0 +1,13 @@
+#include "filter_dialog.h"
+
+#include <QApplication>
+#include <QThread>
+
+QWidget* openFilterDialog() {
+    const auto* program = qobject_cast<QApplication*>(QCoreApplication::instance());
+    if (program == nullptr || program->thread() != QThread::currentThread()) return nullptr;
+    // MeshLab hides a dialog that is closed, and keeps it.
+    for (QWidget* widget : QApplication::allWidgets())
+        if (widget->inherits("FilterDockDialog") && widget->isVisible()) return widget;
+    return nullptr;
+}

@@ -1,0 +1,29 @@
+#include "late_close.h"
+
+#include <QApplication>
+#include <QEvent>
+#include <QMainWindow>
+#include <QMdiSubWindow>
+#include <QMetaObject>
+#include <QThread>
+
+LateClose::LateClose() {
+    auto* program = qobject_cast<QApplication*>(QCoreApplication::instance());
+    if (program != nullptr && program->thread() == QThread::currentThread())
+        program->installEventFilter(this);
+}
+
+LateClose::~LateClose() {
+    // Queued: MeshLab has yet to finish with the run.
+    if (isAsked()) QMetaObject::invokeMethod(window_, "close", Qt::QueuedConnection);
+}
+
+bool LateClose::eventFilter(QObject* object, QEvent* event) {
+    if (event->type() != QEvent::Close) return false;
+    if (qobject_cast<QMdiSubWindow*>(object) == nullptr &&
+        qobject_cast<QMainWindow*>(object) == nullptr)
+        return false;
+    window_ = static_cast<QWidget*>(object);
+    event->ignore();
+    return true;
+}

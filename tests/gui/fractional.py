@@ -1,0 +1,46 @@
+"""The filter "Spectral Filter (Fractional)", and the meshes before and after it."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pymeshlab
+from meshlab import MeshLab
+from meshlab_spectral import FilterOptions
+from numpy.typing import NDArray
+
+MENU = ("Smoothing, Fairing and Deformation", "Spectral Filter (Fractional)")
+FILTER = "apply_coord_spectral_filter_fractional"
+PARAMETERS = [option.name for option in fields(FilterOptions)]
+
+# Half a unit in the last place of a float near 1, the bunny's size, with room for rounding the
+# filter's own parameters, which MeshLab holds as floats, too.
+FLOAT_PRECISION = 4 * 2.0**-24
+
+
+def load(path: Path) -> pymeshlab.MeshSet:
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.load_new_mesh(str(path))
+    return mesh_set
+
+
+def vertices(mesh_set: pymeshlab.MeshSet) -> NDArray[np.float64]:
+    return mesh_set.current_mesh().vertex_matrix().copy()
+
+
+def saved_vertices(meshlab: MeshLab, name: str = "saved.ply") -> NDArray[np.float64]:
+    path = meshlab.home / name
+    meshlab.save_mesh(path)
+    return vertices(load(path))
+
+
+def diagonal(V: NDArray[Any]) -> float:
+    return float(np.linalg.norm(np.ptp(V, axis=0)))
+
+
+def assert_same_in_floats(A: NDArray[Any], B: NDArray[Any]) -> None:
+    assert A.shape == B.shape
+    assert np.abs(A - B).max() <= FLOAT_PRECISION * diagonal(B)
