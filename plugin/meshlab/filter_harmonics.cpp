@@ -83,9 +83,9 @@ std::string textOf(const spectral::ManifoldHarmonics& harmonics, int mode) {
     if (harmonics.wholeSize > size)
         text << "\n  the basis ends within a group of equal eigenvalues; basis_size = "
              << harmonics.wholeSize << " would hold all of it";
-    text << "\n  certificate: " << harmonics.inertiaCount
-         << " eigenvalues up to there by the inertia of W - sigma D, as many as found; largest "
-            "relative residual "
+    text << "\n  none of the lowest is missing: a count of its own (the inertia of W - sigma D) "
+            "finds "
+         << harmonics.inertiaCount << ", too; largest relative residual "
          << harmonics.residuals.maxCoeff();
     return text.str();
 }

@@ -92,7 +92,8 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "Spectrum",
         "<b>full</b> filters all frequencies that the mesh can carry, and is fast. "
         "<b>truncated</b> computes only the lowest frequencies (as many as the basis size) and "
-        "treats all the others alike, as older methods do.",
+        "treats all the others alike, as older methods do; each step computes them, so give a "
+        "number of steps, e.g. 10.",
         true));
     list.addParam(RichInt(
         "basis_size", defaults.evaluation.basisSize, "Basis size",
