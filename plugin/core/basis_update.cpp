@@ -284,7 +284,7 @@ BasisUpdateResult updateBasis(const Laplacian& laplacian, const ConstantModes& c
                               const UpdateGate& gate, HarmonicBasis& basis,
                               const Progress& progress) {
     BasisUpdateResult result;
-    const bool isSmall = k - constants.count() < kFewest || isDenseQuicker(laplacian.D.size(), k);
+    const bool isSmall = k - constants.count() < kFewest || isDenseQuicker(laplacian.D.size());
     if (isSmall || basis.size() < k) return result;
     try {
         Update update(laplacian, constants, k, basis, result);

@@ -28,7 +28,7 @@ constexpr double kNear = 3e-3;
 /// The last shift aims at so many pairs more than asked; once it has enough, so many tries are for
 /// at most twice as many. Tries in all, after which something must be wrong.
 constexpr Index kMorePairs = 4;
-constexpr int kTriesForFew = 3, kMaxTries = 60;
+constexpr int kTriesForFew = 6, kMaxTries = 60;
 
 /// Factor by which a try goes farther at least, and where the last one has found no eigenvalue: a
 /// large part of few vertices has all of its own far below those of small parts.
