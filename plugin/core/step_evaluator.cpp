@@ -5,6 +5,7 @@
 #include <iomanip>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "basis_update.h"
 #include "errors.h"
@@ -154,6 +155,7 @@ void StepEvaluator::followBasis(const Progress& progress) {
             return;
         }
     }
+    basis_ = {};  // of no more use: its memory goes to the next
     basis_ = truncatedBasis(laplacian_, *constants_, k, cholesky_, progress);
     ++computedBases_;
 }
