@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numeric>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "basis_certificate.h"
@@ -152,14 +153,15 @@ class Update {
         basis_.Phi.rightCols(rest) = edge_.vectors(0, rest);
         basis_.lambda.resize(size_);
         basis_.lambda << Eigen::VectorXd::Zero(c()), quotient_, edge_.lambdas().head(rest);
+        mergeEdge(first);
         certifyBasis(laplacian_, c(), cut_, workers_.factor(0), basis_, progress.part(0.9, 1.0));
         ++result_.factorizations;
     }
 
     /// Whether residuals and leaks are within the gate.
     bool passes(const UpdateGate& gate) const {
-        const auto lambda = basis_.lambda.head(c() + interior_).array();
-        const auto residual = basis_.residuals.head(c() + interior_).array() * lambda;
+        const auto lambda = basis_.lambda.array();
+        const auto residual = basis_.residuals.array() * lambda;
         return basis_.residuals.maxCoeff() <= gate.largestResidual &&
                basis_.residuals.mean() <= gate.meanResidual &&
                (residual / (beyond_ - lambda)).maxCoeff() <= gate.largestLeak;
@@ -233,6 +235,16 @@ class Update {
             candidate(j) = candidate(taken[static_cast<std::size_t>(j)]).eval();
     }
 
+    /// Brings the pairs from `first` on, those of the edge, to their places: where the run has
+    /// overlooked a copy of a multiple eigenvalue it is in the interior, above the edge's lowest.
+    void mergeEdge(Index first) {
+        for (Index i = first; i < size_; ++i)
+            for (Index j = i; j > c() && basis_.lambda[j] < basis_.lambda[j - 1]; --j) {
+                std::swap(basis_.lambda[j], basis_.lambda[j - 1]);
+                basis_.Phi.col(j).swap(basis_.Phi.col(j - 1));
+            }
+    }
+
     /// Takes the edge out of the interior.
     void removeEdge(const Progress& progress) {
         runInParallel((interior_ + kColumns - 1) / kColumns,
@@ -284,7 +296,7 @@ BasisUpdateResult updateBasis(const Laplacian& laplacian, const ConstantModes& c
                               const UpdateGate& gate, HarmonicBasis& basis,
                               const Progress& progress) {
     BasisUpdateResult result;
-    const bool isSmall = k - constants.count() < kFewest || isDenseQuicker(laplacian.D.size(), k);
+    const bool isSmall = k - constants.count() < kFewest || isDenseQuicker(laplacian.D.size());
     if (isSmall || basis.size() < k) return result;
     try {
         Update update(laplacian, constants, k, basis, result);

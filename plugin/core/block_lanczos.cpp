@@ -24,8 +24,9 @@ constexpr double kKnownError = 1e-12;
 constexpr double kSevere = 1e-6;
 constexpr int kMaxPasses = 3;
 
-/// Length of what is left of a vector that depends on others, beside the vector's own.
-constexpr double kTiny = 1e-13;
+/// Length of what is left of a vector that depends on others, beside the vector's own: within a
+/// block, and beside columns that are orthogonal to each other only to kSemiOrthogonal.
+constexpr double kTiny = 1e-13, kTinyBeside = 1e-6;
 
 double largest(const Eigen::MatrixXd& E) { return E.size() > 0 ? E.cwiseAbs().maxCoeff() : 0.0; }
 
@@ -60,7 +61,7 @@ void BlockLanczos::begin() {
         subtractProduct(Q, innerProducts(Q, D_, U), U);
         removeKnown(U);
     }
-    orthonormalized(U, scale);
+    orthonormalized(U, kTiny * scale);
     exhausted_ = end_ == dimension_;
     const Index width = end_ - dimension_;
     lossOfNext_ = Eigen::MatrixXd::Constant(dimension_, width, kEpsilon);
@@ -93,18 +94,9 @@ void BlockLanczos::extend() {
         coupling_ = qr.matrixQR().topRows(width).triangularView<Eigen::Upper>();
         return;
     }
-    coupling_ = orthonormalized(std::move(U), scale);
+    coupling_ = orthonormalized(std::move(U), kTiny * scale);
     propagate();
-    if (!(largest(lossOfNext_) < kSemiOrthogonal)) {
-        restore(Q_.leftCols(last_));
-        lossOfLast_.setConstant(kEpsilon);
-        lossOfNext_ = Eigen::MatrixXd::Constant(dimension_, end_ - dimension_, kEpsilon);
-    }
-    if (!(largest(knownInNext_) < kSemiOrthogonal)) {
-        restore(known_.vectors);
-        knownInLast_.setConstant(kEpsilon);
-        knownInNext_ = Eigen::MatrixXd::Constant(known_.values.size(), end_ - dimension_, kEpsilon);
-    }
+    restore();
     const Index next = end_ - dimension_;
     T_.block(dimension_, first, next, width) = coupling_;
     T_.block(first, dimension_, width, next) = coupling_.transpose();
@@ -120,8 +112,8 @@ void BlockLanczos::removeKnown(Eigen::Ref<Eigen::MatrixXd> U) const {
 }
 
 /// Makes the columns of U orthonormal; they follow those of Q, but for columns that depend on
-/// others. Returns R of U = (the new columns) R.
-Eigen::MatrixXd BlockLanczos::orthonormalized(Eigen::MatrixXd U, const Eigen::VectorXd& scale) {
+/// others, what is left of them shorter than `tiny`. Returns R of U = (the new columns) R.
+Eigen::MatrixXd BlockLanczos::orthonormalized(Eigen::MatrixXd U, const Eigen::VectorXd& tiny) {
     const Index first = end_;
     Eigen::MatrixXd R = Eigen::MatrixXd::Zero(U.cols(), U.cols());
     for (Index j = 0; j < U.cols(); ++j) {
@@ -133,7 +125,7 @@ Eigen::MatrixXd BlockLanczos::orthonormalized(Eigen::MatrixXd U, const Eigen::Ve
             R.col(j).head(count) += r;
         }
         const double norm = std::sqrt(U.col(j).cwiseAbs2().dot(D_));
-        if (!(norm > kTiny * scale[j])) continue;
+        if (!(norm > tiny[j])) continue;
         R(count, j) = norm;
         Q_.col(end_++) = U.col(j) / norm;
     }
@@ -158,7 +150,7 @@ void BlockLanczos::propagate() {
     Eigen::MatrixXd loss = T_.topLeftCorner(last_, last_) * lossOfLast_ - lossOfLast_ * A;
     loss.topRows(before_) -= lossOfNext_ * C;
     enlarge(loss, noise_);
-    loss = R.solve<Eigen::OnTheRight>(loss);
+    if (last_ > 0) loss = R.solve<Eigen::OnTheRight>(loss);
     // Next to the diagonal the products have been removed.
     lossOfNext_ = Eigen::MatrixXd::Constant(dimension_, next, kEpsilon);
     lossOfNext_.topRows(before_) = loss.topRows(before_);
@@ -170,20 +162,43 @@ void BlockLanczos::propagate() {
     knownInNext_ = R.solve<Eigen::OnTheRight>(part);
 }
 
-/// Makes the last block and the next one orthogonal to others.
-void BlockLanczos::restore(const Eigen::Ref<const Eigen::MatrixXd>& others) {
+/// Makes the last block and the next one orthogonal to the columns before and to the known vectors,
+/// where that is needed.
+void BlockLanczos::restore() {
+    bool before = !(largest(lossOfNext_) < kSemiOrthogonal);
+    bool known = !(largest(knownInNext_) < kSemiOrthogonal);
     for (int pass = 0; pass < kMaxPasses; ++pass) {
-        auto blocks = Q_.middleCols(last_, end_ - last_);
-        const Eigen::MatrixXd overlap = innerProducts(others, D_, blocks);
-        subtractProduct(others, overlap, blocks);
-        if (largest(overlap) < kSevere) return;
-        const Index next = end_ - dimension_;
-        end_ = dimension_;
-        const auto last = Q_.middleCols(last_, dimension_ - last_);
-        Eigen::MatrixXd U = Q_.middleCols(dimension_, next);
-        subtractProduct(last, innerProducts(last, D_, U), U);
-        coupling_ = orthonormalized(std::move(U), Eigen::VectorXd::Ones(next)) * coupling_;
+        bool severe = before && removeOverlap(Q_.leftCols(last_));
+        severe = (known && removeOverlap(known_.vectors)) || severe;
+        if (!severe) break;
+        before = known = true;  // round-off of either is now much of what little was left
     }
+    const Index next = end_ - dimension_;
+    if (before) {
+        lossOfLast_.setConstant(kEpsilon);
+        lossOfNext_ = Eigen::MatrixXd::Constant(dimension_, next, kEpsilon);
+    }
+    if (known) {
+        knownInLast_.setConstant(kEpsilon);
+        knownInNext_ = Eigen::MatrixXd::Constant(known_.values.size(), next, kEpsilon);
+    }
+}
+
+/// Takes others out of the last block and the next one. Returns whether that left so little of the
+/// next one that it had to be made orthonormal again.
+bool BlockLanczos::removeOverlap(const Eigen::Ref<const Eigen::MatrixXd>& others) {
+    auto blocks = Q_.middleCols(last_, end_ - last_);
+    const Eigen::MatrixXd overlap = innerProducts(others, D_, blocks);
+    subtractProduct(others, overlap, blocks);
+    if (largest(overlap) < kSevere) return false;
+    const Index next = end_ - dimension_;
+    end_ = dimension_;
+    const auto last = Q_.middleCols(last_, dimension_ - last_);
+    Eigen::MatrixXd U = Q_.middleCols(dimension_, next);
+    subtractProduct(last, innerProducts(last, D_, U), U);
+    coupling_ =
+        orthonormalized(std::move(U), Eigen::VectorXd::Constant(next, kTinyBeside)) * coupling_;
+    return true;
 }
 
 }  // namespace spectral

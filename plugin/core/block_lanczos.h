@@ -61,9 +61,10 @@ class BlockLanczos {
   private:
     void begin();
     void removeKnown(Eigen::Ref<Eigen::MatrixXd> U) const;
-    Eigen::MatrixXd orthonormalized(Eigen::MatrixXd U, const Eigen::VectorXd& scale);
+    Eigen::MatrixXd orthonormalized(Eigen::MatrixXd U, const Eigen::VectorXd& tiny);
     void propagate();
-    void restore(const Eigen::Ref<const Eigen::MatrixXd>& others);
+    void restore();
+    bool removeOverlap(const Eigen::Ref<const Eigen::MatrixXd>& others);
 
     const Operator& apply_;
     const Eigen::VectorXd& D_;

@@ -1,5 +1,6 @@
 #include "components.h"
 
+#include <cmath>
 #include <numeric>
 #include <utility>
 #include <vector>

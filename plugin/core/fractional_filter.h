@@ -52,8 +52,9 @@ struct FilterResult {
 
     // Where a basis is used, the last step's one.
     Eigen::VectorXd eigenvalues;  ///< k, ascending; empty without a basis.
-    Eigen::VectorXd residuals;    ///< k, relative; see HarmonicBasis. Empty for a dense basis.
-    int inertiaCount = 0;         ///< Harmonics that must be in it, by inertia; 0 for a dense one.
+    Eigen::VectorXd residuals;    ///< k, relative; see HarmonicBasis. Empty where an ideal response
+                                  ///< uses all harmonics of the mesh,
+    int inertiaCount = 0;         ///< and 0; else the harmonics that must be in it, by inertia.
     int computedBases = 0;        ///< Bases of all steps that were computed from nothing,
     int updatedBases = 0;         ///< and those that were made of the one before.
 };

@@ -16,9 +16,9 @@ namespace spectral {
 
 namespace {
 
-/// Up to this many vertices, or this many where a large part of all harmonics is wanted, the dense
-/// solver is the quicker one.
-constexpr Index kDenseVertices = 600, kDenseVerticesForMany = 4000;
+/// Up to this many vertices the dense solver is about as quick as slices, whose Krylov spaces must
+/// be small beside all.
+constexpr Index kDenseVertices = 300;
 
 constexpr int kMaxRestarts = 300;
 
@@ -65,9 +65,7 @@ HarmonicBasis denseBasis(const Laplacian& laplacian, const ConstantModes& consta
     return basis;
 }
 
-bool isDenseQuicker(Index n, Index k) {
-    return n <= kDenseVertices || (n <= kDenseVerticesForMany && 4 * k > n);
-}
+bool isDenseQuicker(Index n) { return n <= kDenseVertices; }
 
 HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& constants, Index k,
                              ShiftedCholesky& cholesky, const Progress& progress) {
@@ -82,7 +80,7 @@ HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& co
                             " connected components: choose a basis_size above " +
                             std::to_string(c));
 
-    if (isDenseQuicker(n, k)) {
+    if (isDenseQuicker(n)) {
         HarmonicBasis basis = denseBasis(laplacian, constants);
         cut(basis, cutOutsideClusters(basis.lambda, k).value_or(n));
         ShiftedLdlt none;

@@ -29,8 +29,8 @@ struct HarmonicBasis {
 /// @throws SolverFailure  when the solver does not converge.
 HarmonicBasis denseBasis(const Laplacian& laplacian, const ConstantModes& constants);
 
-/// Whether the dense solver is the quickest way to k harmonics of n vertices.
-bool isDenseQuicker(Index n, Index k);
+/// Whether the dense solver is the quickest way to harmonics of n vertices.
+bool isDenseQuicker(Index n);
 
 /// At least the k lowest eigenpairs, certified: slice by slice (spectrum_slicing.h), or by the
 /// dense solver where that is quicker.

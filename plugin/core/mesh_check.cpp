@@ -1,6 +1,7 @@
 #include "mesh_check.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <string>
 
 #include "errors.h"

@@ -1,6 +1,7 @@
 #include "shifted_ldlt.h"
 
 #include <algorithm>
+#include <limits>
 #include <string>
 
 #include "errors.h"
@@ -25,7 +26,7 @@ bool samePattern(const SparseMatrix& A, const SparseMatrix& B) {
 }  // namespace
 
 void ShiftedLdlt::factorize(const Laplacian& laplacian, double sigma) {
-    if (!samePattern(shifted_, laplacian.W)) ldlt_.analyzePattern(laplacian.W);
+    if (!samePattern(shifted_, laplacian.W)) analyze(laplacian.W);
     for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
         shift_ = sigma * (1.0 + attempt * kNudge);
         shifted_ = laplacian.W;
@@ -39,6 +40,15 @@ void ShiftedLdlt::factorize(const Laplacian& laplacian, double sigma) {
     }
     throw SolverFailure("the LDL^T factorization of W - sigma D meets a zero pivot at sigma = " +
                         std::to_string(sigma));
+}
+
+void ShiftedLdlt::analyze(const SparseMatrix& W) {
+    shifted_.resize(0, 0);  // of another pattern, even if this one cannot be used
+    ldlt_.analyzePattern(W);
+    if (ldlt_.entries() > std::numeric_limits<int>::max())
+        throw InvalidMesh("the factorization of W - sigma D (" + std::to_string(W.rows()) +
+                          " vertices) has too many entries, " + std::to_string(ldlt_.entries()) +
+                          ": apply 'Simplification: Quadric Edge Collapse Decimation' first");
 }
 
 void ShiftedLdlt::solveInPlace(Eigen::MatrixXd& B) const {

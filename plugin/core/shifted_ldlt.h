@@ -17,6 +17,7 @@ class ShiftedLdlt {
   public:
     /// @param sigma  in units of lambda (1 / length^2); moved a little when a pivot vanishes.
     /// @throws SolverFailure  when pivots vanish, or are not finite, at every shift nearby.
+    /// @throws InvalidMesh  when the factor has more entries than an int counts: some 1e7 vertices.
     void factorize(const Laplacian& laplacian, double sigma);
 
     double shift() const { return shift_; }
@@ -32,7 +33,16 @@ class ShiftedLdlt {
     void solveInPlace(Eigen::MatrixXd& B) const;
 
   private:
-    Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>> ldlt_;
+    using SimplicialLdlt =
+        Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>>;
+    struct Ldlt : SimplicialLdlt {
+        /// Entries of L by the symbolic analysis, which Eigen adds up in an int.
+        Index entries() const { return m_nonZerosPerCol.cast<Index>().sum(); }
+    };
+
+    void analyze(const SparseMatrix& W);
+
+    Ldlt ldlt_;
     SparseMatrix shifted_;  // the last factorized matrix, for its pattern
     Eigen::VectorXd pivots_;
     double shift_ = 0.0;

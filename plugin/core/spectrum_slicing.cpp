@@ -25,11 +25,14 @@ constexpr Index kFirstDimension = 72;
 /// each other: their overlap is that of their residuals divided by this distance.
 constexpr double kNear = 3e-3;
 
-/// The last shift aims at so many pairs more than asked; tries for at most twice as many, and for
-/// any number. Every other try goes farther by this factor at least.
+/// The last shift aims at so many pairs more than asked; once it has enough, so many tries are for
+/// at most twice as many. Tries in all, after which something must be wrong.
 constexpr Index kMorePairs = 4;
-constexpr int kTriesForFew = 3, kMaxTries = 40;
-constexpr double kFarther = 1.02;
+constexpr int kTriesForFew = 6, kMaxTries = 60;
+
+/// Factor by which a try goes farther at least, and where the last one has found no eigenvalue: a
+/// large part of few vertices has all of its own far below those of small parts.
+constexpr double kFarther = 1.02, kAcrossGap = 4.0;
 
 /// Waves of runs after which something must be wrong.
 constexpr int kMaxWaves = 40;
@@ -108,12 +111,16 @@ class Slicing {
         const double top = weylSlope() * static_cast<double>(k_);
         counts_.push_back(counted(0.0, constants_.count()));
         countAt({0.25 * top, top}, progress);
+        int triesForFew = 0;
         for (int i = 0; i < kMaxTries; ++i) {
-            const bool enough = counts_.back().below >= k_;
-            if (enough && (i >= kTriesForFew || counts_.back().below <= k_ + 2 * kMorePairs))
+            const Count last = counts_.back();
+            const bool enough = last.below >= k_;
+            if (enough && (last.below <= k_ + 2 * kMorePairs || triesForFew++ == kTriesForFew))
                 return;
+            const bool inGap = last.below == counts_[counts_.size() - 2].below;
             const double sigma = lambdaAt(static_cast<double>(k_ + kMorePairs));
-            countAt({enough ? sigma : std::max(sigma, kFarther * counts_.back().sigma)}, progress);
+            const double farther = (inGap ? kAcrossGap : kFarther) * last.sigma;
+            countAt({enough ? sigma : std::max(sigma, farther)}, progress);
             // Beyond the first count that suffices none is needed.
             while (counts_[counts_.size() - 2].below >= k_) counts_.pop_back();
         }

@@ -5,6 +5,7 @@
 #include <iomanip>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "basis_update.h"
 #include "errors.h"
@@ -17,9 +18,6 @@ namespace {
 
 /// More harmonics than this for a discontinuous gain are a mistake of the user's: minutes of time.
 constexpr Index kMaxExactBasis = 1000;
-
-/// Up to this many vertices the dense solver computes all harmonics in about a second.
-constexpr Index kDenseVertices = 600;
 
 /// The update of a basis costs k^2 n, the computation of one k n: beyond this size the latter is
 /// the quicker one.
@@ -157,6 +155,7 @@ void StepEvaluator::followBasis(const Progress& progress) {
             return;
         }
     }
+    basis_ = {};  // of no more use: its memory goes to the next
     basis_ = truncatedBasis(laplacian_, *constants_, k, cholesky_, progress);
     ++computedBases_;
 }
@@ -165,13 +164,14 @@ void StepEvaluator::followBasis(const Progress& progress) {
 HarmonicBasis StepEvaluator::upToLastJump(const Progress& progress) {
     const double last = F_.discontinuities().back();
     residualGain_ = F_(2.0 * last);
-    if (interior_.size() <= kDenseVertices) return denseBasis(laplacian_, *constants_);
+    if (isDenseQuicker(interior_.size())) return denseBasis(laplacian_, *constants_);
     const Index below = cholesky_.countEigenvaluesBelow(laplacian_, last * last);
     if (below > kMaxExactBasis)
         throw InvalidOption("response = ideal needs every harmonic up to its edge, here " +
                             std::to_string(below) + " (at most " + std::to_string(kMaxExactBasis) +
                             "): choose a larger feature_size, response = butterworth with order = "
                             "8, or spectrum = truncated with reinject_residual");
+    if (below == interior_.size()) return denseBasis(laplacian_, *constants_);  // nothing to cut
     return truncatedBasis(laplacian_, *constants_, std::max<Index>(below, constants_->count() + 1),
                           cholesky_, progress);
 }

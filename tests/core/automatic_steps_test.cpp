@@ -2,30 +2,20 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <numeric>
 
 #include "core/fractional_steps.h"
-#include "support/shapes.h"
+#include "support/filter_of_blob.h"
 
 namespace spectral {
 namespace {
 
-/// What automatic steps of a filter of `blob` need.
-struct Setting {
-    Surface surface;
-    Interior interior;
-    TransferFunction F;
-    EvaluationOptions evaluation;
-    LaplacianBuilder laplacians;
+using testing::boost;
+using testing::largestDifference;
 
-    Setting(const TransferFunctionOptions& options, double feature, BasisUpdate update)
-        : surface(surfaceOf(testing::blob().V, testing::blob().F)),
-          interior(surface.F, connectedComponents(surface.F, surface.X.rows()), Boundary::Free),
-          F(options, 2.0 * kPi / feature),
-          laplacians(surface, LaplacianKind::IntrinsicDelaunay, update) {
-        evaluation.accuracy = 1e-9;
-    }
+/// Automatic steps and the equal steps that they are compared with.
+struct Setting : testing::FilterOfBlob {
+    using FilterOfBlob::FilterOfBlob;
 
     AutomaticSteps automatic(double tolerance, int maxSteps = 64) const {
         StepEvaluator evaluate(evaluation, interior, F);
@@ -37,18 +27,6 @@ struct Setting {
         return midpointSteps(laplacians, evaluate, surface.X, K, K, {}).X;
     }
 };
-
-TransferFunctionOptions boost() {
-    TransferFunctionOptions options;
-    options.type = FilterType::BandPass;
-    options.stopGain = 1.0;
-    options.passGain = 2.0;
-    return options;
-}
-
-double largestDifference(const Vertices& A, const Vertices& B) {
-    return (A - B).rowwise().norm().maxCoeff();
-}
 
 TEST(AutomaticSteps, KeepTheirToleranceAndTheirEstimateBoundsTheError) {
     for (const BasisUpdate update : {BasisUpdate::Full, BasisUpdate::Conformal}) {

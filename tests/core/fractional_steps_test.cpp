@@ -2,29 +2,19 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <numeric>
 
-#include "support/shapes.h"
+#include "support/filter_of_blob.h"
 
 namespace spectral {
 namespace {
 
-/// What the steps of a filter of `blob` need.
-struct Setting {
-    Surface surface;
-    Interior interior;
-    TransferFunction F;
-    EvaluationOptions evaluation;
-    LaplacianBuilder laplacians;
+using testing::boost;
+using testing::largestDifference;
 
-    Setting(const TransferFunctionOptions& options, double feature, BasisUpdate update)
-        : surface(surfaceOf(testing::blob().V, testing::blob().F)),
-          interior(surface.F, connectedComponents(surface.F, surface.X.rows()), Boundary::Free),
-          F(options, 2.0 * kPi / feature),
-          laplacians(surface, LaplacianKind::IntrinsicDelaunay, update) {
-        evaluation.accuracy = 1e-9;
-    }
+/// Steps of both kinds, and what they converge to.
+struct Setting : testing::FilterOfBlob {
+    using FilterOfBlob::FilterOfBlob;
 
     Vertices paper(int K, BasisUpdate update) const {
         StepEvaluator evaluate(evaluation, interior, F);
@@ -42,18 +32,6 @@ struct Setting {
         return Y + (Y - midpoint(32).X) / 3.0;
     }
 };
-
-TransferFunctionOptions boost() {
-    TransferFunctionOptions options;
-    options.type = FilterType::BandPass;
-    options.stopGain = 1.0;
-    options.passGain = 2.0;
-    return options;
-}
-
-double largestDifference(const Vertices& A, const Vertices& B) {
-    return (A - B).rowwise().norm().maxCoeff();
-}
 
 TEST(FixedSteps, ConvergeToTheFlowAtFirstOrder) {
     for (const BasisUpdate update : {BasisUpdate::Full, BasisUpdate::Conformal}) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/errors.h"
+#include "core/laplacian_builder.h"
 #include "support/evaluation.h"
 
 namespace spectral {
@@ -117,6 +118,26 @@ TEST(TruncatedBasis, AgreesWithTheDenseSolver) {
             dense.Phi.leftCols(k).transpose() * A.laplacian.D.asDiagonal() * basis.Phi;
         EXPECT_LT((inDense.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-9);
     }
+}
+
+TEST(TruncatedBasis, StandsATriangleAlmostWithoutArea) {
+    // It hangs on the surface by one vertex: beside the masses of its other two, 1e-12 of the mean,
+    // its weights make the largest eigenvalues 1e12 times those of the surface.
+    Mesh mesh = testing::withNoise(testing::rectangle(2, 1, 22, 15), 0.01, 3);
+    const Index n = mesh.V.rows();
+    mesh.V.conservativeResize(n + 2, 3);
+    mesh.V.bottomRows(2).rowwise() = mesh.V.row(n / 2).eval();
+    mesh.V(n, 0) += 1e-8;
+    mesh.V(n + 1, 1) += 1e-8;
+    mesh.F.conservativeResize(mesh.F.rows() + 1, 3);
+    mesh.F.bottomRows(1) << static_cast<int>(n / 2), static_cast<int>(n), static_cast<int>(n + 1);
+    const Surface surface = surfaceOf(mesh.V, mesh.F);
+    const Laplacian laplacian =
+        LaplacianBuilder(surface, LaplacianKind::IntrinsicDelaunay, BasisUpdate::None).input();
+    const ConstantModes constants(connectedComponents(surface.F, surface.X.rows()), laplacian.D);
+    ShiftedCholesky cholesky;
+    const HarmonicBasis basis = truncatedBasis(laplacian, constants, 40, cholesky);
+    EXPECT_LT(basis.residuals.maxCoeff(), 1e-8);
 }
 
 TEST(TruncatedBasis, HoldsTheConstantOfEveryComponentExactly) {

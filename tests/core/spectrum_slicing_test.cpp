@@ -58,6 +58,15 @@ TEST(LowestPairs, OfManyEqualPartsAreAllThere) {
     expectLowest(copies(testing::cube(2), 40), 300, "forty cubes");
 }
 
+TEST(LowestPairs, OfALargeCoarsePartAndASmallFineOneAreAllThere) {
+    // A floor of four vertices under a scanned object has nearly all of the area, by which Weyl's
+    // law lays the first shifts: far below the object's eigenvalues.
+    Mesh floor = testing::rectangle(20, 20, 1, 1), hall = testing::icosphere(1);
+    hall.V *= 20.0;
+    expectLowest(testing::joined(floor, testing::blob()), 60, "floor");
+    expectLowest(testing::joined(hall, testing::blob()), 100, "hall");
+}
+
 TEST(LowestPairs, AreFewWhereFewAreAsked) {
     expectLowest(testing::blob(), 2, "one harmonic");
     expectLowest(testing::icosphere(3), 5, "within a group of equal ones");

@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <functional>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -16,6 +17,18 @@
 using namespace spectral;
 
 namespace {
+
+/// Work that goes on until it is stopped, and notes that it has been left.
+std::function<void(const Progress&)> endlessWork(std::atomic<bool>& left) {
+    return [&left](const Progress& steady) {
+        try {
+            while (true) steady.report(0.5, "working");
+        } catch (const Cancelled&) {
+            left = true;
+            throw;
+        }
+    };
+}
 
 TEST(SteadyProgress, ReportsGoOnWhileTheWorkIsSilent) {
     // The work waits, without a report, for what the caller hears meanwhile: without it, for ever.
@@ -61,16 +74,7 @@ TEST(SteadyProgress, OnlyTheCallerReportsWhatTheWorkHasTold) {
 TEST(SteadyProgress, TheCallerStopsTheWorkAtItsNextReport) {
     const Progress stopping([](double, const std::string&) { return false; });
     std::atomic<bool> left{false};
-    EXPECT_THROW(runBeside(stopping,
-                           [&](const Progress& steady) {
-                               try {
-                                   while (true) steady.report(0.5, "working");
-                               } catch (const Cancelled&) {
-                                   left = true;
-                                   throw;
-                               }
-                           }),
-                 Cancelled);
+    EXPECT_THROW(runBeside(stopping, endlessWork(left)), Cancelled);
     EXPECT_TRUE(left);
 }
 
@@ -83,16 +87,7 @@ TEST(SteadyProgress, AnInterruptionStopsTheWorkWhileTheCallbackHasNotReturned) {
             return true;
         },
         [] { return true; });
-    EXPECT_THROW(runBeside(busy,
-                           [&](const Progress& steady) {
-                               try {
-                                   while (true) steady.report(0.5, "working");
-                               } catch (const Cancelled&) {
-                                   left = true;
-                                   throw;
-                               }
-                           }),
-                 Cancelled);
+    EXPECT_THROW(runBeside(busy, endlessWork(left)), Cancelled);
 }
 
 TEST(SteadyProgress, AFailureOfTheWorkReachesTheCaller) {

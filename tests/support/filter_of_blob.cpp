@@ -1,0 +1,28 @@
+#include "support/filter_of_blob.h"
+
+#include "support/shapes.h"
+
+namespace spectral::testing {
+
+FilterOfBlob::FilterOfBlob(const TransferFunctionOptions& options, double featureSize,
+                           BasisUpdate update)
+    : surface(surfaceOf(blob().V, blob().F)),
+      interior(surface.F, connectedComponents(surface.F, surface.X.rows()), Boundary::Free),
+      F(options, cutoffFrequency(featureSize)),
+      laplacians(surface, LaplacianKind::IntrinsicDelaunay, update) {
+    evaluation.accuracy = 1e-9;
+}
+
+TransferFunctionOptions boost() {
+    TransferFunctionOptions options;
+    options.type = FilterType::BandPass;
+    options.stopGain = 1.0;
+    options.passGain = 2.0;
+    return options;
+}
+
+double largestDifference(const Vertices& A, const Vertices& B) {
+    return (A - B).rowwise().norm().maxCoeff();
+}
+
+}  // namespace spectral::testing

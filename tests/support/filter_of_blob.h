@@ -1,0 +1,31 @@
+#pragma once
+
+#include "core/boundary.h"
+#include "core/laplacian_builder.h"
+#include "core/step_evaluator.h"
+#include "core/surface.h"
+#include "core/transfer_function.h"
+
+namespace spectral::testing {
+
+/// What the steps of a filter of `blob` need.
+struct FilterOfBlob {
+    Surface surface;
+    Interior interior;
+    TransferFunction F;
+    EvaluationOptions evaluation;  ///< Of accuracy 1e-9.
+    LaplacianBuilder laplacians;   ///< Keeps `surface` by reference.
+
+    /// @param featureSize  length units; the blob's own size is about 2.
+    FilterOfBlob(const TransferFunctionOptions& options, double featureSize, BasisUpdate update);
+    FilterOfBlob(const FilterOfBlob&) = delete;
+    FilterOfBlob& operator=(const FilterOfBlob&) = delete;
+};
+
+/// A band-pass that doubles one octave and keeps all others.
+TransferFunctionOptions boost();
+
+/// Longest distance between corresponding vertices.
+double largestDifference(const Vertices& A, const Vertices& B);
+
+}  // namespace spectral::testing

@@ -1,0 +1,37 @@
+#include "support/geometry_spectra.h"
+
+#include <gtest/gtest.h>
+
+namespace spectral::testing {
+
+SpectrumOptions withBasis(int basisSize, LaplacianKind kind) {
+    SpectrumOptions options;
+    options.basisSize = basisSize;
+    options.laplacian = kind;
+    return options;
+}
+
+GeometrySpectrum spectrumOf(const Mesh& mesh, int basisSize, Boundary boundary) {
+    SpectrumOptions options = withBasis(basisSize);
+    options.boundary = boundary;
+    return geometrySpectrum(mesh.V, mesh.F, options);
+}
+
+void expectWhatAllEigenvectorsSay(const Mesh& mesh, Boundary boundary) {
+    const GeometrySpectrum dense = spectrumOf(mesh, static_cast<int>(mesh.V.rows()), boundary);
+    EXPECT_EQ(dense.mismatch, 0.0);
+    EXPECT_NEAR(dense.amplitudes.squaredNorm() * dense.area / dense.totalEnergy, 1.0, 1e-12);
+    for (const int basisSize : {4, 20, 100}) {
+        const GeometrySpectrum spectrum = spectrumOf(mesh, basisSize, boundary);
+        ASSERT_EQ(spectrum.octaveEnergies.size(), dense.octaveEnergies.size());
+        for (Index j = 0; j < dense.octaveEnergies.size(); ++j)
+            EXPECT_NEAR(spectrum.octaveEnergies[j] / dense.octaveEnergies[j], 1.0, 2e-3)
+                << "basis " << basisSize << ", octave " << j;
+        const Index k = spectrum.frequencies.size();
+        ASSERT_GE(k, basisSize);
+        EXPECT_LT((spectrum.frequencies - dense.frequencies.head(k)).cwiseAbs().maxCoeff(),
+                  1e-7 * dense.frequencies[k - 1]);
+    }
+}
+
+}  // namespace spectral::testing

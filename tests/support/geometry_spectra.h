@@ -1,0 +1,16 @@
+#pragma once
+
+#include "core/geometry_spectrum.h"
+#include "support/ply.h"
+
+namespace spectral::testing {
+
+SpectrumOptions withBasis(int basisSize, LaplacianKind kind = LaplacianKind::Cotangent);
+
+/// With plain cotangents.
+GeometrySpectrum spectrumOf(const Mesh& mesh, int basisSize, Boundary boundary = Boundary::Free);
+
+/// Compares bases of several sizes with the whole one, of up to 2,000 vertices.
+void expectWhatAllEigenvectorsSay(const Mesh& mesh, Boundary boundary);
+
+}  // namespace spectral::testing
