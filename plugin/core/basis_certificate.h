@@ -20,8 +20,8 @@ std::optional<Index> cutOutsideClusters(const Eigen::VectorXd& lambda, Index ask
 ///
 /// @param constants  number of constant modes, whose residual is 0.
 /// @param cut        a shift between the last eigenvalue of the basis and the next one, where the
-///                   eigenvalues below it are counted. None, or a dense basis: inertiaCount is its
-///                   size.
+///                   eigenvalues below it are counted. None where the basis holds all that there
+///                   are: inertiaCount is its size.
 /// @param factor     of any shift; for its storage.
 /// @throws SolverFailure  when they are not finite; Cancelled.
 void certifyBasis(const Laplacian& laplacian, Index constants, std::optional<double> cut,

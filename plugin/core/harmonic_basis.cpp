@@ -42,9 +42,22 @@ class ScaledStiffness {
     Eigen::VectorXd invSqrtD_;
 };
 
-void cut(HarmonicBasis& basis, Index size) {
+/// The first `size` pairs of a basis, with their certificate.
+HarmonicBasis certified(const Laplacian& laplacian, Index constants, HarmonicBasis basis,
+                        Index size, ShiftedCholesky& cholesky, const Progress& progress) {
+    std::optional<double> cut;
+    if (size < basis.size()) cut = 0.5 * (basis.lambda[size - 1] + basis.lambda[size]);
     basis.Phi.conservativeResize(Eigen::NoChange, size);
     basis.lambda.conservativeResize(size);
+    ShiftedLdlt factor;
+    certifyBasis(laplacian, constants, cut, factor, basis, progress);
+    if (cut) cholesky.countWork(1, 0);
+    // Sylvester's law of inertia: none is missing below the cut.
+    if (basis.inertiaCount != size)
+        throw SolverFailure("of the " + std::to_string(basis.inertiaCount) +
+                            " harmonics that the inertia of W - sigma D counts, " +
+                            std::to_string(size) + " were found; choose another basis_size");
+    return basis;
 }
 
 }  // namespace
@@ -81,11 +94,9 @@ HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& co
                             std::to_string(c));
 
     if (isDenseQuicker(n)) {
-        HarmonicBasis basis = denseBasis(laplacian, constants);
-        cut(basis, cutOutsideClusters(basis.lambda, k).value_or(n));
-        ShiftedLdlt none;
-        certifyBasis(laplacian, c, std::nullopt, none, basis, progress);
-        return basis;
+        HarmonicBasis all = denseBasis(laplacian, constants);
+        const Index size = cutOutsideClusters(all.lambda, k).value_or(n);
+        return certified(laplacian, c, std::move(all), size, cholesky, progress);
     }
     // Some pairs beyond k show whether k cuts a cluster; more are taken while it does.
     for (Index more = 8;; more *= 2) {
@@ -100,18 +111,7 @@ HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& co
             if (total < n - 1) continue;
             size = basis.size();  // nothing left to cut off
         }
-        std::optional<double> beyond;
-        if (*size < basis.size()) beyond = 0.5 * (basis.lambda[*size - 1] + basis.lambda[*size]);
-        cut(basis, *size);
-        ShiftedLdlt factor;
-        certifyBasis(laplacian, c, beyond, factor, basis, progress.part(0.95, 1.0));
-        if (beyond) cholesky.countWork(1, 0);
-        // Sylvester's law of inertia: none is missing below the cut.
-        if (basis.inertiaCount != *size)
-            throw SolverFailure("of the " + std::to_string(basis.inertiaCount) +
-                                " harmonics that the inertia of W - sigma D counts, " +
-                                std::to_string(*size) + " were found; choose another basis_size");
-        return basis;
+        return certified(laplacian, c, std::move(basis), *size, cholesky, progress.part(0.95, 1.0));
     }
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <sstream>
 #include <string>
 
 #include "errors.h"
@@ -38,8 +39,9 @@ void ShiftedLdlt::factorize(const Laplacian& laplacian, double sigma) {
         below_ = (pivots_.array() < 0.0).count();
         return;
     }
-    throw SolverFailure("the LDL^T factorization of W - sigma D meets a zero pivot at sigma = " +
-                        std::to_string(sigma));
+    std::ostringstream text;
+    text << "the LDL^T factorization of W - sigma D meets a zero pivot at sigma = " << sigma;
+    throw SolverFailure(text.str());
 }
 
 void ShiftedLdlt::analyze(const SparseMatrix& W) {
