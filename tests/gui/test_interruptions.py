@@ -53,6 +53,14 @@ def filtered(bunny: Path) -> NDArray[np.float64]:
     return vertices(mesh_set)
 
 
+def assert_filtered_once(meshlab: MeshLab, bunny: Path) -> None:
+    """The mesh is filtered once, and MeshLab has noted it once."""
+    script = meshlab.home / "script.mlx"
+    meshlab.save_script(script)
+    assert len(list(ElementTree.parse(script).iter("filter"))) == 1
+    assert_same_in_floats(saved_vertices(meshlab), filtered(bunny))
+
+
 def test_a_preview_overtaken_by_another_one_does_not_come_back(
     dialog: FilterDialog, meshlab: MeshLab, bunny: Path
 ) -> None:
@@ -97,10 +105,7 @@ def test_apply_pressed_again_while_it_is_at_work_applies_once(
     dialog.wait_for_result(before)
     wait_for("Apply to be offered again", lambda: button.enabled)
     dialog.close()
-    script = meshlab.home / "script.mlx"
-    meshlab.save_script(script)
-    assert len(list(ElementTree.parse(script).iter("filter"))) == 1
-    assert_same_in_floats(saved_vertices(meshlab), filtered(bunny))
+    assert_filtered_once(meshlab, bunny)
 
 
 def test_apply_clicked_from_a_field_with_a_new_value_is_done_after_the_preview_of_that_value(
@@ -116,10 +121,7 @@ def test_apply_clicked_from_a_field_with_a_new_value_is_done_after_the_preview_o
     wait_for("a preview and Apply", lambda: meshlab.log()[before:].count("Applied filter: ") == 2)
     wait_for("Apply to have the keys again", lambda: button.focused)
     dialog.close()
-    script = meshlab.home / "script.mlx"
-    meshlab.save_script(script)
-    assert len(list(ElementTree.parse(script).iter("filter"))) == 1
-    assert_same_in_floats(saved_vertices(meshlab), filtered(bunny))
+    assert_filtered_once(meshlab, bunny)
 
 
 def test_a_dialog_closed_while_it_previews_leaves_the_preview_as_one_closed_later_does(
