@@ -71,3 +71,13 @@ def test_all_panels_have_the_camera_of_the_first(
     np.testing.assert_array_equal(first, third)
     # Half as large in both directions.
     assert 0.2 < drawn_share(second) / drawn_share(first) < 0.3
+
+
+def test_a_panel_is_lit_as_it_is_alone(decimated: Callable[..., Any], tmp_path: Path) -> None:
+    panel = Panel("", *decimated("cow.obj"))
+    for count, name in ((1, "alone.png"), (3, "beside.png")):
+        draw_side_by_side([panel] * count, tmp_path / name, panel_size=(300, 200))
+    alone = read_picture(tmp_path / "alone.png")
+    beside = np.split(read_picture(tmp_path / "beside.png"), 3, axis=1)
+    for picture in beside:
+        assert np.abs(picture - alone).mean() < 0.01

@@ -258,7 +258,7 @@ def _add(plotter: Any, panel: Panel, frame: Frame) -> None:
             zero.translate(2e-3 * frame.height * frame.view.axes()[2], inplace=True)
             plotter.add_mesh(zero, color="#404040", line_width=5, lighting=False)
     for light in _lights():
-        plotter.add_light(light)
+        plotter.add_light(light, only_active=True)  # else every panel would light all others, too
     back = frame.view.axes()[2]
     distance = 10 * max(frame.width, frame.height)
     plotter.camera_position = [
