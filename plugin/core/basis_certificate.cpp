@@ -35,7 +35,7 @@ std::optional<Index> cutOutsideClusters(const Eigen::VectorXd& lambda, Index ask
 void certifyBasis(const Laplacian& laplacian, Index constants, std::optional<double> cut,
                   ShiftedLdlt& factor, HarmonicBasis& basis, const Progress& progress) {
     const Index k = basis.size();
-    const Eigen::VectorXd invSqrtD = laplacian.D.cwiseSqrt().cwiseInverse();
+    const Eigen::ArrayXd invD = laplacian.D.array().inverse();
     Eigen::VectorXd overlaps(k);
     basis.residuals = Eigen::VectorXd::Zero(k);
     basis.inertiaCount = k;
@@ -48,12 +48,12 @@ void certifyBasis(const Laplacian& laplacian, Index constants, std::optional<dou
         gram.bottomRows(end - begin).diagonal().array() -= 1.0;
         overlaps.segment(begin, end - begin) = gram.cwiseAbs().colwise().maxCoeff();
         stopPoint();
-        Eigen::MatrixXd residual =
+        const Eigen::MatrixXd WPhi =
             symmetricProduct(laplacian.W, basis.Phi.middleCols(begin, end - begin));
         for (Index i = std::max(begin, constants); i < end; ++i) {
-            auto r = residual.col(i - begin);
-            r -= basis.lambda[i] * laplacian.D.cwiseProduct(basis.Phi.col(i));
-            basis.residuals[i] = invSqrtD.cwiseProduct(r).norm() / basis.lambda[i];
+            const auto r = WPhi.col(i - begin).array() -
+                           basis.lambda[i] * laplacian.D.array() * basis.Phi.col(i).array();
+            basis.residuals[i] = std::sqrt((r.square() * invD).sum()) / basis.lambda[i];
         }
     };
     runInParallel(

@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <utility>
@@ -21,15 +22,21 @@ namespace spectral {
 
 namespace {
 
-/// Vectors of a slice, about: they share a factorization, which costs as much as 50 solves.
-constexpr Index kSliceWidth = 32;
+/// What a slice costs beside a solve for one vector: its factorization; and to make one of its
+/// vectors orthogonal to the others, divided by their number.
+constexpr double kFactorization = 80.0, kOrthogonalization = 1.0 / 80.0;
+
+/// Candidates from one possible end of a slice to the next.
+constexpr Index kGrain = 4;
 
 /// Harmonics next to the cut that are computed anew, below and above it, and how many of the
 /// previous ones in their place are iterated all the same, for what has moved.
 constexpr Index kEdgeBelow = 16, kEdgeAbove = 14, kMoved = 8;
 
-/// How far beyond these the pairs of the run have to converge, in mean distances of eigenvalues.
-constexpr double kOverlap = 1.0;
+/// How far beyond these the pairs of the run have to converge, in mean distances of eigenvalues;
+/// and their residuals, before they are purified: after that they are as good as those of a basis
+/// from nothing.
+constexpr double kOverlap = 1.0, kEdgeResidual = 1e-5;
 
 /// Fewer harmonics than this are computed from nothing as quickly.
 constexpr Index kFewest = 64;
@@ -43,7 +50,14 @@ constexpr double kCountTolerance = 1e-4;
 /// Columns that a task takes: few beside the basis, enough for products at full speed.
 constexpr Index kColumns = 48;
 
+/// Of so many candidates one is looked at before the others are touched.
+constexpr Index kSampling = 4;
+
 constexpr const char* kStage = "updating the harmonics";
+
+Index at(const std::vector<Index>& indices, Index i) {
+    return indices[static_cast<std::size_t>(i)];
+}
 
 /// Where the inertia of a factorization has counted the eigenvalues.
 struct Count {
@@ -81,35 +95,41 @@ class Update {
         basis_.Phi.leftCols(c()) = constants_.orthonormal();
     }
 
-    /// Looks at the candidates under the new Laplacian: takes them in the order of their Rayleigh
-    /// quotients. Returns their mean residual.
-    double sortCandidates(const Progress& progress) {
-        const Index all = basis_.Phi.cols() - c();
-        const Eigen::VectorXd &D = laplacian_.D, invSqrtD = D.cwiseSqrt().cwiseInverse();
-        Eigen::VectorXd residual(all);
-        quotient_.resize(all);
+    /// Looks at some of the candidates under the new Laplacian, and estimates the Rayleigh
+    /// quotients of all. Returns the mean residual of those.
+    double examineCandidates(const Progress& progress) {
+        const Index all = basis_.Phi.cols() - c(), count = (all - 1) / kSampling + 2;
+        const auto sample = [&](Index i) { return std::min(i * kSampling, all - 1); };
+        const Eigen::ArrayXd D = laplacian_.D.array(), invD = D.inverse();
+        Eigen::VectorXd residual(count), quotient(count);
         runInParallel(
-            (all + kColumns - 1) / kColumns,
+            (count + kColumns - 1) / kColumns,
             [&](Index task, int, const StopPoint&) {
-                const Index first = task * kColumns, count = std::min(kColumns, all - first);
-                Eigen::MatrixXd S = basis_.Phi.middleCols(c() + first, count);
+                const Index first = task * kColumns, columns = std::min(kColumns, count - first);
+                Eigen::MatrixXd S(D.size(), columns);
+                for (Index j = 0; j < columns; ++j) S.col(j) = candidates(sample(first + j), 1);
                 constants_.remove(S);
                 const Eigen::MatrixXd WS = symmetricProduct(laplacian_.W, S);
-                for (Index j = 0; j < count; ++j) {
-                    const double squared = S.col(j).cwiseAbs2().dot(D);
-                    const double quotient = S.col(j).dot(WS.col(j)) / squared;
-                    quotient_[first + j] = quotient;
+                for (Index j = 0; j < columns; ++j) {
+                    const auto phi = S.col(j).array();
+                    const auto Wphi = WS.col(j).array();
+                    const double squared = (D * phi.square()).sum();
+                    const double q = (phi * Wphi).sum() / squared;
+                    quotient[first + j] = q;
                     residual[first + j] =
-                        invSqrtD.cwiseProduct(WS.col(j) - quotient * D.cwiseProduct(S.col(j)))
-                            .norm() /
-                        (quotient * std::sqrt(squared));
+                        std::sqrt((invD * (Wphi - q * D * phi).square()).sum() / (q * q * squared));
                 }
             },
             progress, kStage);
-        order_.resize(static_cast<std::size_t>(all));
-        std::iota(order_.begin(), order_.end(), Index{0});
-        std::stable_sort(order_.begin(), order_.end(),
-                         [&](Index a, Index b) { return quotient_[a] < quotient_[b]; });
+        std::sort(quotient.begin(), quotient.end());
+        quotient_.resize(all);
+        for (Index i = 0; i < all; ++i) {
+            const Index before = i / kSampling;
+            const double width =
+                static_cast<double>(std::max<Index>(1, sample(before + 1) - sample(before)));
+            const double part = static_cast<double>(i - sample(before)) / width;
+            quotient_[i] = (1.0 - part) * quotient[before] + part * quotient[before + 1];
+        }
         return residual.mean();
     }
 
@@ -119,16 +139,21 @@ class Update {
         const SliceTask edge = edgeTask(none);
         beyond_ = edge.to;
         iterated_ = wanted() - kEdgeBelow + kMoved;
+        layOutSlices();
         counts_.resize(static_cast<std::size_t>(slices()));
+        std::vector<Index> longestFirst(counts_.size());
+        std::iota(longestFirst.begin(), longestFirst.end(), Index{0});
+        std::stable_sort(longestFirst.begin(), longestFirst.end(), [&](Index a, Index b) {
+            return cost(begin(a), begin(a + 1)) > cost(begin(b), begin(b + 1));
+        });
         SliceRun run;
         runInParallel(
             1 + slices(),
             [&](Index task, int worker, const StopPoint& stopPoint) {
-                // The longest first: the edge, then the slices nearest to it.
                 if (task == 0)
                     run = workers_.run(edge, worker, edge_, stopPoint);
                 else
-                    iterateSlice(slices() - task, workers_.factor(worker), stopPoint);
+                    iterateSlice(at(longestFirst, task - 1), workers_.factor(worker), stopPoint);
             },
             progress, kStage);
         result_.factorizations += static_cast<int>(1 + slices());
@@ -146,8 +171,7 @@ class Update {
     /// Makes harmonics of the interior, and the basis of all three parts.
     void assemble(const Progress& progress) {
         removeEdge(progress.part(0.0, 0.2));
-        quotient_ = rayleighRitz(laplacian_, basis_.Phi.middleCols(c(), interior_),
-                                 progress.part(0.2, 0.9));
+        quotient_ = rayleighRitz(laplacian_, candidates(0, interior_), progress.part(0.2, 0.9));
         const Index first = c() + interior_, rest = size_ - first;
         if (basis_.Phi.cols() != size_) basis_.Phi.conservativeResize(Eigen::NoChange, size_);
         basis_.Phi.rightCols(rest) = edge_.vectors(0, rest);
@@ -180,20 +204,19 @@ class Update {
     /// number that the previous basis had, which did not cut a cluster.
     SliceTask edgeTask(const Eigen::MatrixXd& none) const {
         const Index end = wanted() - kEdgeBelow, last = quotient_.size() - 1;
-        const double spacing = sortedQuotient(wanted() - 1) / static_cast<double>(k_);
-        const double from = 0.5 * (sortedQuotient(end - 1) + sortedQuotient(end));
-        const double to = sortedQuotient(last) + static_cast<double>(kEdgeAbove) * spacing;
-        return {0.5 * (from + to), from, to, kOverlap * spacing, none, {}, 0, 1};
+        const double spacing = quotient_[wanted() - 1] / static_cast<double>(k_);
+        const double from = 0.5 * (quotient_[end - 1] + quotient_[end]);
+        const double to = quotient_[last] + static_cast<double>(kEdgeAbove) * spacing;
+        SliceTask task{0.5 * (from + to), from, to, kOverlap * spacing, none, {}, 0, 1};
+        task.residual = kEdgeResidual;
+        return task;
     }
 
     void iterateSlice(Index i, ShiftedLdlt& factor, const StopPoint& stopPoint) {
         const Index first = begin(i), count = begin(i + 1) - first;
-        Eigen::MatrixXd S(laplacian_.D.size(), count);
-        for (Index j = 0; j < count; ++j) S.col(j) = candidate(sorted(first + j));
         factor.factorize(laplacian_, slice(i).middle());
         counts_[static_cast<std::size_t>(i)] = {factor.shift(), factor.eigenvaluesBelow()};
-        iterate(laplacian_, constants_, factor, slice(i), S, stopPoint);
-        for (Index j = 0; j < count; ++j) candidate(sorted(first + j)) = S.col(j);
+        iterate(laplacian_, constants_, factor, slice(i), candidates(first, count), stopPoint);
     }
 
     /// The cut is in the edge: its eigenvalues are as good as those of a basis from nothing. The
@@ -213,26 +236,22 @@ class Update {
     /// those candidates are taken that are most independent of the edge and of each other.
     void selectInterior() {
         const Index first = begin(slices() - 1), needed = interior_ - first;
-        Eigen::MatrixXd S(laplacian_.D.size(), iterated_ - first);
+        Eigen::MatrixXd S = candidates(first, iterated_ - first);
         if (needed <= 0 || needed > S.cols())
             throw SolverFailure("harmonics have moved across the edge");
-        for (Index j = 0; j < S.cols(); ++j) S.col(j) = candidate(sorted(first + j));
         const Eigen::ArrayXd squared = (S.cwiseAbs2().transpose() * laplacian_.D).array();
         S.array().rowwise() /= squared.sqrt().transpose();
         removeEdge(S);
         // With pivots: at each place what the columns before it leave of the longest one.
-        const Eigen::LDLT<Eigen::MatrixXd> ldlt(innerProducts(S, laplacian_.D, S));
+        const Eigen::LDLT<Eigen::MatrixXd> ldlt(gramMatrix(S, laplacian_.D));
         if (!(ldlt.vectorD()[needed - 1] > kDependent))
             throw SolverFailure("the vectors of a slice have become dependent");
-        Eigen::VectorXi ranks(S.cols());
-        std::iota(ranks.begin(), ranks.end(), static_cast<int>(first));
-        ranks = ldlt.transpositionsP() * ranks;
-
-        std::vector<Index> taken(order_.begin(), order_.begin() + first);
-        for (Index i = 0; i < needed; ++i) taken.push_back(sorted(ranks[i]));
-        std::sort(taken.begin(), taken.end());
-        for (Index j = 0; j < interior_; ++j)
-            candidate(j) = candidate(taken[static_cast<std::size_t>(j)]).eval();
+        const Eigen::VectorXi all = Eigen::VectorXi::LinSpaced(static_cast<int>(S.cols()), 0,
+                                                               static_cast<int>(S.cols()) - 1);
+        Eigen::VectorXi taken = ldlt.transpositionsP() * all;
+        std::sort(taken.begin(), taken.begin() + needed);
+        for (Index j = 0; j < needed; ++j)
+            if (taken[j] != j) candidates(first + j, 1) = candidates(first + taken[j], 1);
     }
 
     /// Brings the pairs from `first` on, those of the edge, to their places: where the run has
@@ -250,8 +269,7 @@ class Update {
         runInParallel((interior_ + kColumns - 1) / kColumns,
                       [&](Index task, int, const StopPoint&) {
                           const Index first = task * kColumns;
-                          removeEdge(basis_.Phi.middleCols(c() + first,
-                                                           std::min(kColumns, interior_ - first)));
+                          removeEdge(candidates(first, std::min(kColumns, interior_ - first)));
                       },
                       progress, kStage);
     }
@@ -261,16 +279,46 @@ class Update {
         subtractProduct(E, innerProducts(E, laplacian_.D, S), S);
     }
 
-    // Slices of equal width.
-    Index slices() const { return std::max<Index>(1, (iterated_ + kSliceWidth / 2) / kSliceWidth); }
-    Index begin(Index slice) const { return slice * iterated_ / slices(); }
-    Slice slice(Index i) const {
-        return {sortedQuotient(begin(i)), sortedQuotient(begin(i + 1) - 1), beyond_};
+    /// Cuts the candidates that are iterated into slices so that all together cost least: those of
+    /// a slice share one factorization, but the wider it is the more iterations it takes.
+    void layOutSlices() {
+        std::vector<Index> ends{0};  // where a slice may end
+        while (ends.back() < iterated_) ends.push_back(std::min(ends.back() + kGrain, iterated_));
+        // The least cost of all slices up to an end, and where the last of them then begins.
+        std::vector<double> least(ends.size(), std::numeric_limits<double>::infinity());
+        std::vector<std::size_t> last(ends.size(), 0);
+        least[0] = 0.0;
+        for (std::size_t end = 1; end < ends.size(); ++end)
+            for (std::size_t begin = 0; begin < end; ++begin) {
+                const double all = least[begin] + cost(ends[begin], ends[end]);
+                if (all >= least[end]) continue;
+                least[end] = all;
+                last[end] = begin;
+            }
+        begins_ = {iterated_};
+        for (std::size_t end = ends.size() - 1; end > 0; end = last[end])
+            begins_.push_back(ends[last[end]]);
+        std::reverse(begins_.begin(), begins_.end());
     }
 
-    Index sorted(Index i) const { return order_[static_cast<std::size_t>(i)]; }
-    double sortedQuotient(Index i) const { return quotient_[sorted(i)]; }
-    Eigen::MatrixXd::ColXpr candidate(Index j) { return basis_.Phi.col(c() + j); }
+    /// Of a slice, in solves for one vector.
+    double cost(Index begin, Index end) const {
+        const int solves = iterations(slice(begin, end));
+        const auto width = static_cast<double>(end - begin);
+        return kFactorization + width * (solves + (solves - 1) * kOrthogonalization * width);
+    }
+
+    Index slices() const { return static_cast<Index>(begins_.size()) - 1; }
+    Index begin(Index slice) const { return at(begins_, slice); }
+    Slice slice(Index i) const { return slice(begin(i), begin(i + 1)); }
+    Slice slice(Index begin, Index end) const {
+        return {quotient_[begin], quotient_[end - 1], beyond_};
+    }
+
+    Eigen::Block<Eigen::MatrixXd, Eigen::Dynamic, Eigen::Dynamic, true> candidates(Index first,
+                                                                                   Index count) {
+        return basis_.Phi.middleCols(c() + first, count);
+    }
 
     const Laplacian& laplacian_;
     const ConstantModes& constants_;
@@ -279,9 +327,9 @@ class Update {
     BasisUpdateResult& result_;
     SliceWorkers workers_;
 
-    Eigen::VectorXd quotient_;  // of the candidates
-    std::vector<Index> order_;  // of the candidates, by their quotients
-    Index iterated_ = 0;        // candidates that are iterated: the first in this order
+    Eigen::VectorXd quotient_;   // of the candidates, about; ascending
+    Index iterated_ = 0;         // candidates that are iterated: the first ones
+    std::vector<Index> begins_;  // of the slices, and the end of the last one
     PairStore edge_;
     double beyond_ = 0.0;  // end of the edge: what follows is in none of the three parts
     Index interior_ = 0;   // harmonics
@@ -300,7 +348,8 @@ BasisUpdateResult updateBasis(const Laplacian& laplacian, const ConstantModes& c
     if (isSmall || basis.size() < k) return result;
     try {
         Update update(laplacian, constants, k, basis, result);
-        if (!(update.sortCandidates(progress.part(0.0, 0.1)) <= gate.largestChange)) return result;
+        if (!(update.examineCandidates(progress.part(0.0, 0.1)) <= gate.largestChange))
+            return result;
         update.compute(progress.part(0.1, 0.6));
         update.assemble(progress.part(0.6, 1.0));
         result.accepted = update.passes(gate) && update.isComplete();

@@ -103,6 +103,13 @@ void transposedProduct(const double* A, Size strideA, const double* B, Size stri
         ConstMatrix(B, n, q, Eigen::OuterStride<>(strideB));
 }
 
+void upperTransposedProduct(const double* A, Size strideA, const double* B, Size strideB, double* C,
+                            Size strideC, Size n, Size m) {
+    Matrix(C, m, m, Eigen::OuterStride<>(strideC)).triangularView<Eigen::Upper>() =
+        ConstMatrix(A, n, m, Eigen::OuterStride<>(strideA)).transpose() *
+        ConstMatrix(B, n, m, Eigen::OuterStride<>(strideB));
+}
+
 void product(const double* A, Size strideA, const double* B, Size strideB, double* C, Size strideC,
              Size n, Size p, Size q) {
     switch (q) {
@@ -121,7 +128,7 @@ void product(const double* A, Size strideA, const double* B, Size strideB, doubl
 
 namespace SPECTRAL_INSTRUCTIONS {
 extern const DenseProducts denseProducts;
-const DenseProducts denseProducts{transposedProduct, product};
+const DenseProducts denseProducts{transposedProduct, upperTransposedProduct, product};
 }  // namespace SPECTRAL_INSTRUCTIONS
 
 }  // namespace spectral

@@ -14,6 +14,11 @@ struct DenseProducts {
                               std::ptrdiff_t strideB, double* C, std::ptrdiff_t strideC,
                               std::ptrdiff_t n, std::ptrdiff_t p, std::ptrdiff_t q);
 
+    /// The upper half of C = A^T B, with its diagonal: A and B n x m, C m x m.
+    void (*upperTransposedProduct)(const double* A, std::ptrdiff_t strideA, const double* B,
+                                   std::ptrdiff_t strideB, double* C, std::ptrdiff_t strideC,
+                                   std::ptrdiff_t n, std::ptrdiff_t m);
+
     /// C = A B: A n x p, B p x q, C n x q, which is none of the others.
     void (*product)(const double* A, std::ptrdiff_t strideA, const double* B,
                     std::ptrdiff_t strideB, double* C, std::ptrdiff_t strideC, std::ptrdiff_t n,

@@ -1,16 +1,19 @@
 #include "dense_products.h"
+#include "sparse_products.h"
 #include "triangular_solves.h"
 
 namespace spectral {
 
 namespace baseline {
 extern const DenseProducts denseProducts;
+extern const SparseProducts sparseProducts;
 extern const TriangularSolves triangularSolves;
 }  // namespace baseline
 
 #ifdef SPECTRAL_AVX2
 namespace avx2 {
 extern const DenseProducts denseProducts;
+extern const SparseProducts sparseProducts;
 extern const TriangularSolves triangularSolves;
 }  // namespace avx2
 
@@ -29,6 +32,13 @@ const DenseProducts& denseProducts() {
     if (hasAvx2()) return avx2::denseProducts;
 #endif
     return baseline::denseProducts;
+}
+
+const SparseProducts& sparseProducts() {
+#ifdef SPECTRAL_AVX2
+    if (hasAvx2()) return avx2::sparseProducts;
+#endif
+    return baseline::sparseProducts;
 }
 
 const TriangularSolves& triangularSolves() {

@@ -30,6 +30,22 @@ Eigen::MatrixXd innerProducts(const Eigen::Ref<const Eigen::MatrixXd>& A, const 
     return sum;
 }
 
+Eigen::MatrixXd gramMatrix(const Eigen::Ref<const Eigen::MatrixXd>& S, const Eigen::VectorXd& D) {
+    const Index n = S.rows(), m = S.cols();
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(m, m), part = sum;
+    if (m == 0) return sum;
+    Eigen::MatrixXd DS(kRows, m);
+    for (Index row = 0; row < n; row += kRows) {
+        const Index rows = std::min(kRows, n - row);
+        DS.topRows(rows) = D.segment(row, rows).asDiagonal() * S.middleRows(row, rows);
+        denseProducts().upperTransposedProduct(&S.coeffRef(row, 0), S.outerStride(), DS.data(),
+                                               kRows, part.data(), m, rows, m);
+        sum += part;
+    }
+    sum.triangularView<Eigen::StrictlyLower>() = sum.transpose();
+    return sum;
+}
+
 void subtractProduct(const Eigen::Ref<const Eigen::MatrixXd>& A, const Eigen::MatrixXd& C,
                      Eigen::Ref<Eigen::MatrixXd> B) {
     const Index n = A.rows(), p = A.cols(), q = B.cols();

@@ -8,6 +8,9 @@ namespace spectral {
 Eigen::MatrixXd innerProducts(const Eigen::Ref<const Eigen::MatrixXd>& A, const Eigen::VectorXd& D,
                               const Eigen::Ref<const Eigen::MatrixXd>& B);
 
+/// S^T D S, in half the time of innerProducts(S, D, S).
+Eigen::MatrixXd gramMatrix(const Eigen::Ref<const Eigen::MatrixXd>& S, const Eigen::VectorXd& D);
+
 /// B <- B - A C, for A n x p, B n x q.
 void subtractProduct(const Eigen::Ref<const Eigen::MatrixXd>& A, const Eigen::MatrixXd& C,
                      Eigen::Ref<Eigen::MatrixXd> B);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <vector>
 
 #include "dense_products.h"
 #include "errors.h"
@@ -14,31 +15,44 @@ namespace spectral {
 namespace {
 
 /// Columns and rows that a task takes: small beside S, large enough for products at full speed.
-constexpr Index kColumns = 48, kRows = 1024;
+constexpr Index kColumns = 72, kRows = 512;
+
+/// Parts of the rows whose Gram matrices are added in the end: enough for the cores, but few and
+/// large enough for these sums to be small beside S.
+constexpr Index kMostParts = 8, kLeastRows = 4096;
+
+constexpr const char* kStage = "updating the harmonics";
 
 }  // namespace
 
 Eigen::VectorXd rayleighRitz(const Laplacian& laplacian, Eigen::Ref<Eigen::MatrixXd> S,
                              const Progress& progress) {
     const Index n = S.rows(), m = S.cols();
-    const DenseProducts& products = denseProducts();
-    Eigen::MatrixXd H(m, m), G(m, m);  // S^T W S and S^T D S, their upper halves
+    Eigen::MatrixXd H(m, m);  // S^T W S, its upper half
     const Index blocks = (m + kColumns - 1) / kColumns;
+    const Index parts = std::clamp(n / kLeastRows, Index{1}, kMostParts);
+    std::vector<Eigen::MatrixXd> grams(static_cast<std::size_t>(parts));  // add up to S^T D S
     runInParallel(
-        blocks,
+        blocks + parts,
         [&](Index task, int, const StopPoint&) {
-            // The last block has the most rows of the upper half: it goes first.
-            const Index first = (blocks - 1 - task) * kColumns;
-            const Index count = std::min(kColumns, m - first), rows = first + count;
-            const auto upperHalf = [&](const Eigen::MatrixXd& AS, Eigen::MatrixXd& gram) {
-                products.transposedProduct(S.data(), S.outerStride(), AS.data(), n, &gram(0, first),
-                                           m, n, rows, count);
-            };
-            upperHalf(symmetricProduct(laplacian.W, S.middleCols(first, count)), H);
-            upperHalf(laplacian.D.asDiagonal() * S.middleCols(first, count), G);
+            if (task < blocks) {
+                // The last block has the most rows of the upper half: it goes first.
+                const Index first = (blocks - 1 - task) * kColumns;
+                const Index count = std::min(kColumns, m - first);
+                const Eigen::MatrixXd WS =
+                    symmetricProduct(laplacian.W, S.middleCols(first, count));
+                denseProducts().transposedProduct(S.data(), S.outerStride(), WS.data(), n,
+                                                  &H(0, first), m, n, first + count, count);
+                return;
+            }
+            const Index part = task - blocks, begin = part * n / parts;
+            const Index rows = (part + 1) * n / parts - begin;
+            grams[static_cast<std::size_t>(part)] =
+                gramMatrix(S.middleRows(begin, rows), laplacian.D.segment(begin, rows));
         },
-        progress.part(0.0, 0.5), "updating the harmonics");
-    G.triangularView<Eigen::StrictlyLower>() = G.transpose();
+        progress.part(0.0, 0.5), kStage);
+    Eigen::MatrixXd& G = grams[0];
+    for (std::size_t part = 1; part < grams.size(); ++part) G += grams[part];
     H.triangularView<Eigen::StrictlyLower>() = H.transpose();
     const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz(H, G);
     if (ritz.info() != Eigen::Success || !ritz.eigenvectors().allFinite())
@@ -49,7 +63,7 @@ Eigen::VectorXd rayleighRitz(const Laplacian& laplacian, Eigen::Ref<Eigen::Matri
                       const Index first = task * kRows;
                       multiplyInPlace(S.middleRows(first, std::min(kRows, n - first)), Z);
                   },
-                  progress.part(0.5, 1.0), "updating the harmonics");
+                  progress.part(0.5, 1.0), kStage);
     return ritz.eigenvalues();
 }
 

@@ -12,9 +12,12 @@ namespace spectral {
 namespace {
 
 /// At the ends of a slice the filter is to be so many times what it is beyond the bound.
-constexpr double kDamping = 1e4;
+constexpr double kDamping = 200.0;
 
 constexpr int kLeastIterations = 2, kMaxIterations = 6;
+
+/// Columns that are solved for at a time: few beside S.
+constexpr Index kColumns = 16;
 
 /// The Chebyshev polynomial T_d of the interval [centre - radius, centre + radius] whose least root
 /// is 0 and whose upper end is 1.
@@ -37,9 +40,9 @@ struct ChebyshevFilter {
 };
 
 /// D-orthonormalizes the columns of S by the Cholesky factor of their Gram matrix.
-void orthonormalize(const Eigen::VectorXd& D, Eigen::MatrixXd& S) {
+void orthonormalize(const Eigen::VectorXd& D, Eigen::Ref<Eigen::MatrixXd> S) {
     S.array().rowwise() /= S.colwise().norm().array().eval();
-    const Eigen::MatrixXd gram = innerProducts(S, D, S);
+    const Eigen::MatrixXd gram = gramMatrix(S, D);
     const Eigen::LLT<Eigen::MatrixXd> llt(gram);
     if (llt.info() != Eigen::Success || !gram.allFinite())
         throw SolverFailure("the vectors of a slice have become dependent");
@@ -57,21 +60,32 @@ int iterations(const Slice& slice) {
 }
 
 void iterate(const Laplacian& laplacian, const ConstantModes& constants, const ShiftedLdlt& factor,
-             const Slice& slice, Eigen::MatrixXd& S, const StopPoint& stopPoint) {
+             const Slice& slice, Eigen::Ref<Eigen::MatrixXd> S, const StopPoint& stopPoint) {
     const ChebyshevFilter filter(iterations(slice));
     const double outside = 1.0 / (slice.bound - factor.shift());
-    constants.remove(S);
-    for (int i = 0; i < filter.degree; ++i) {
+    Eigen::MatrixXd MS;
+    // The least root, 0, is the last.
+    for (int i = filter.degree - 1; i >= 0; --i) {
+        const double root = outside * filter.root(i);
+        for (Index first = 0; first < S.cols(); first += kColumns) {
+            stopPoint();
+            auto columns = S.middleCols(first, std::min(kColumns, S.cols() - first));
+            MS.resize(S.rows(), columns.cols());
+            for (Index j = 0; j < columns.cols(); ++j)
+                MS.col(j) = laplacian.D.cwiseProduct(columns.col(j));
+            factor.solveInPlace(MS);
+            for (Index j = 0; j < columns.cols(); ++j)
+                columns.col(j) = MS.col(j) - root * columns.col(j);
+        }
         // Else all columns would come near the eigenvectors next to the shift.
         if (i > 0) orthonormalize(laplacian.D, S);
-        stopPoint();
-        const Eigen::MatrixXd before = outside * filter.root(i) * S;
-        S = laplacian.D.asDiagonal() * S;
-        factor.solveInPlace(S);
-        S -= before;
     }
-    constants.remove(S);
-    S.array().rowwise() /= S.colwise().norm().array().eval();
+    for (Index first = 0; first < S.cols(); first += kColumns) {
+        auto columns = S.middleCols(first, std::min(kColumns, S.cols() - first));
+        MS = columns;
+        constants.remove(MS);
+        columns = MS.array().rowwise() / MS.colwise().norm().array().eval();
+    }
 }
 
 }  // namespace spectral

@@ -33,6 +33,6 @@ int iterations(const Slice& slice);
 /// @param S       n x m, m <= n, independent; on return with columns of length 1.
 /// @throws SolverFailure  when the columns have become dependent; whatever the stop point throws.
 void iterate(const Laplacian& laplacian, const ConstantModes& constants, const ShiftedLdlt& factor,
-             const Slice& slice, Eigen::MatrixXd& S, const StopPoint& stopPoint);
+             const Slice& slice, Eigen::Ref<Eigen::MatrixXd> S, const StopPoint& stopPoint);
 
 }  // namespace spectral

@@ -26,9 +26,9 @@ constexpr Index kFirstCheck = 60, kCheckInterval = 6, kMaxDimension = 160;
 /// last pair to its tolerance, and so much for each pair.
 constexpr double kDimensionForTolerance = 16.0, kDimensionPerPair = 1.5;
 
-/// Residual of a purified pair, |D^-1/2 (W phi - lambda D phi)|, relative to lambda; and of a Ritz
-/// pair of the inverted operator, relative to its eigenvalue.
-constexpr double kResidual = 1e-10, kRitzResidual = 1e-8;
+/// Residual of a Ritz pair of the inverted operator, relative to its eigenvalue, beside that which
+/// a task wants of the purified pair.
+constexpr double kRitzResidual = 100.0;
 
 /// Relative distance of eigenvalues that are taken for equal.
 constexpr double kEqual = 1e-6;
@@ -182,7 +182,7 @@ class SliceLanczos {
     /// Purified, a pair with residual r = |M y - theta y| has |W phi - lambda D phi| = r / theta^2.
     bool isConverged(Index i) const {
         const double theta = std::abs(theta_[i]), lambda = factor_.shift() + 1.0 / theta_[i];
-        return residuals_[i] <= std::min(kRitzResidual, kResidual * lambda * theta) * theta;
+        return residuals_[i] <= task_.residual * std::min(kRitzResidual, lambda * theta) * theta;
     }
 
     const Laplacian& laplacian_;

@@ -27,6 +27,8 @@ struct SliceTask {
                           ///< it has so many. 0 when that is not known.
     unsigned seed = 0;    ///< Of the start vectors; another for each run.
     Index dimension = 0;  ///< At which the run ends in any case; 0 leaves it to the run.
+    double residual =
+        1e-10;  ///< Of the pairs, |D^-1/2 (W phi - lambda D phi)|, relative to lambda.
 };
 
 /// What a run has found. Its pairs are in the store.
