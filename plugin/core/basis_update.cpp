@@ -1,7 +1,9 @@
 #include "basis_update.h"
 
-#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <optional>
@@ -41,8 +43,9 @@ constexpr double kOverlap = 1.0, kEdgeResidual = 1e-5;
 /// Fewer harmonics than this are computed from nothing as quickly.
 constexpr Index kFewest = 64;
 
-/// Square of the length that others leave of a unit vector, below which it is none of its own.
-constexpr double kDependent = 1e-3;
+/// Length that others leave of a unit vector, below which it is none of its own. The last iteration
+/// has turned all vectors of a slice towards those next to its shift.
+constexpr double kDependent = 3e-5;
 
 /// Relative error of an eigenvalue that the count by inertia forgives beside a shift.
 constexpr double kCountTolerance = 1e-4;
@@ -50,8 +53,9 @@ constexpr double kCountTolerance = 1e-4;
 /// Columns that a task takes: few beside the basis, enough for products at full speed.
 constexpr Index kColumns = 48;
 
-/// Of so many candidates one is looked at before the others are touched.
-constexpr Index kSampling = 4;
+/// Candidates below the cut that are all looked at before they are touched; of the others one in so
+/// many is.
+constexpr Index kExamined = 64, kSampling = 4;
 
 constexpr const char* kStage = "updating the harmonics";
 
@@ -83,54 +87,79 @@ bool agree(const Eigen::VectorXd& lambda, Index size, const std::vector<Count>& 
 class Update {
   public:
     Update(const Laplacian& laplacian, const ConstantModes& constants, Index k,
-           HarmonicBasis& basis, BasisUpdateResult& result)
+           HarmonicBasis& basis, std::vector<ShiftedLdlt>& factors, BasisUpdateResult& result)
         : laplacian_(laplacian),
           constants_(constants),
           k_(k),
           basis_(basis),
           result_(result),
-          workers_(laplacian, constants),
+          workers_(laplacian, constants, std::move(factors)),
           // More would mean that the spectrum has changed too much.
           edge_(laplacian.D.size(), 2 * (basis.size() - k + kEdgeBelow + kEdgeAbove)) {
         basis_.Phi.leftCols(c()) = constants_.orthonormal();
     }
 
-    /// Looks at some of the candidates under the new Laplacian, and estimates the Rayleigh
-    /// quotients of all. Returns the mean residual of those.
+    /// Looks at candidates under the new Laplacian: at some, and next to the cut at all, which it
+    /// puts in the order of their Rayleigh quotients. Returns their mean residual.
     double examineCandidates(const Progress& progress) {
-        const Index all = basis_.Phi.cols() - c(), count = (all - 1) / kSampling + 2;
-        const auto sample = [&](Index i) { return std::min(i * kSampling, all - 1); };
-        const Eigen::ArrayXd D = laplacian_.D.array(), invD = D.inverse();
-        Eigen::VectorXd residual(count), quotient(count);
+        const Index all = basis_.Phi.cols() - c(), tail = std::max(Index{0}, wanted() - kExamined);
+        std::vector<Index> examined;
+        for (Index i = 0; i < tail; i += kSampling) examined.push_back(i);
+        const auto sampled = static_cast<Index>(examined.size());
+        for (Index i = tail; i < all; ++i) examined.push_back(i);
+        const auto count = static_cast<Index>(examined.size());
+        Eigen::VectorXd quotient(count), residual(count);
         runInParallel(
             (count + kColumns - 1) / kColumns,
             [&](Index task, int, const StopPoint&) {
                 const Index first = task * kColumns, columns = std::min(kColumns, count - first);
-                Eigen::MatrixXd S(D.size(), columns);
-                for (Index j = 0; j < columns; ++j) S.col(j) = candidates(sample(first + j), 1);
-                constants_.remove(S);
-                const Eigen::MatrixXd WS = symmetricProduct(laplacian_.W, S);
-                for (Index j = 0; j < columns; ++j) {
-                    const auto phi = S.col(j).array();
-                    const auto Wphi = WS.col(j).array();
-                    const double squared = (D * phi.square()).sum();
-                    const double q = (phi * Wphi).sum() / squared;
-                    quotient[first + j] = q;
-                    residual[first + j] =
-                        std::sqrt((invD * (Wphi - q * D * phi).square()).sum() / (q * q * squared));
-                }
+                Eigen::MatrixXd S(laplacian_.D.size(), columns);
+                for (Index j = 0; j < columns; ++j) S.col(j) = candidate(at(examined, first + j));
+                examine(S, quotient.segment(first, columns), residual.segment(first, columns));
             },
             progress, kStage);
-        std::sort(quotient.begin(), quotient.end());
         quotient_.resize(all);
-        for (Index i = 0; i < all; ++i) {
-            const Index before = i / kSampling;
-            const double width =
-                static_cast<double>(std::max<Index>(1, sample(before + 1) - sample(before)));
-            const double part = static_cast<double>(i - sample(before)) / width;
-            quotient_[i] = (1.0 - part) * quotient[before] + part * quotient[before + 1];
+        sortTail(tail, quotient.tail(count - sampled));
+        // Of the others, about: in between those of the sample, which are nearly in order.
+        for (Index i = 0; i < tail; ++i) {
+            const Index place = i / kSampling;
+            const double next = place + 1 < sampled ? quotient[place + 1] : quotient_[tail];
+            const double part = static_cast<double>(i % kSampling) / kSampling;
+            quotient_[i] = (1.0 - part) * quotient[place] + part * next;
         }
+        std::sort(quotient_.begin(), quotient_.end());
         return residual.mean();
+    }
+
+    /// Rayleigh quotients and residuals, as UpdateGate has them, of the columns of S, which loses
+    /// its constants.
+    void examine(Eigen::MatrixXd& S, Eigen::Ref<Eigen::VectorXd> quotient,
+                 Eigen::Ref<Eigen::VectorXd> residual) const {
+        const Eigen::ArrayXd D = laplacian_.D.array(), invD = D.inverse();
+        constants_.remove(S);
+        const Eigen::MatrixXd WS = symmetricProduct(laplacian_.W, S);
+        for (Index j = 0; j < S.cols(); ++j) {
+            const auto phi = S.col(j).array();
+            const auto Wphi = WS.col(j).array();
+            const double squared = (D * phi.square()).sum();
+            const double q = (phi * Wphi).sum() / squared;
+            quotient[j] = q;
+            residual[j] =
+                std::sqrt((invD * (Wphi - q * D * phi).square()).sum() / (q * q * squared));
+        }
+    }
+
+    /// Puts the candidates from `first` on in the order of their quotients.
+    void sortTail(Index first, const Eigen::VectorXd& quotient) {
+        std::vector<Index> order(static_cast<std::size_t>(quotient.size()));
+        std::iota(order.begin(), order.end(), Index{0});
+        std::stable_sort(order.begin(), order.end(),
+                         [&](Index a, Index b) { return quotient[a] < quotient[b]; });
+        const Eigen::MatrixXd before = candidates(first, quotient.size());
+        for (Index j = 0; j < quotient.size(); ++j) {
+            quotient_[first + j] = quotient[at(order, j)];
+            candidate(first + j) = before.col(at(order, j));
+        }
     }
 
     /// Computes the edge and, beside it, iterates the interior.
@@ -191,6 +220,8 @@ class Update {
                (residual / (beyond_ - lambda)).maxCoeff() <= gate.largestLeak;
     }
 
+    std::vector<ShiftedLdlt> releaseFactors() { return workers_.releaseFactors(); }
+
     /// Whether the counts are those of the basis.
     bool isComplete() const {
         return basis_.inertiaCount == size_ && agree(basis_.lambda, size_, counts_);
@@ -232,26 +263,29 @@ class Update {
         cut_ = 0.5 * (lambda[size_ - 1] + lambda[size_]);
     }
 
-    /// Brings the interior to the first columns: of the last slice, in whose place the edge begins,
-    /// those candidates are taken that are most independent of the edge and of each other.
+    /// Brings the interior to the first columns: of the last candidates, in whose place the edge
+    /// begins, those are taken that are most independent of the edge and of each other.
     void selectInterior() {
-        const Index first = begin(slices() - 1), needed = interior_ - first;
+        const Index first = std::max(Index{0}, iterated_ - 4 * kMoved);
+        const Index needed = interior_ - first;
         Eigen::MatrixXd S = candidates(first, iterated_ - first);
         if (needed <= 0 || needed > S.cols())
             throw SolverFailure("harmonics have moved across the edge");
         const Eigen::ArrayXd squared = (S.cwiseAbs2().transpose() * laplacian_.D).array();
         S.array().rowwise() /= squared.sqrt().transpose();
         removeEdge(S);
-        // With pivots: at each place what the columns before it leave of the longest one.
-        const Eigen::LDLT<Eigen::MatrixXd> ldlt(gramMatrix(S, laplacian_.D));
-        if (!(ldlt.vectorD()[needed - 1] > kDependent))
+        // A^T A is their Gram matrix, so that A has their lengths and angles. The QR decomposition
+        // takes next the one of which those before leave most.
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> gram(gramMatrix(S, laplacian_.D));
+        const Eigen::MatrixXd A = gram.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
+                                  gram.eigenvectors().transpose();
+        const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(A);
+        if (!(std::abs(qr.matrixQR()(needed - 1, needed - 1)) > kDependent))
             throw SolverFailure("the vectors of a slice have become dependent");
-        const Eigen::VectorXi all = Eigen::VectorXi::LinSpaced(static_cast<int>(S.cols()), 0,
-                                                               static_cast<int>(S.cols()) - 1);
-        Eigen::VectorXi taken = ldlt.transpositionsP() * all;
+        Eigen::VectorXi taken = qr.colsPermutation().indices();
         std::sort(taken.begin(), taken.begin() + needed);
         for (Index j = 0; j < needed; ++j)
-            if (taken[j] != j) candidates(first + j, 1) = candidates(first + taken[j], 1);
+            if (taken[j] != j) candidate(first + j) = candidate(first + taken[j]);
     }
 
     /// Brings the pairs from `first` on, those of the edge, to their places: where the run has
@@ -315,8 +349,8 @@ class Update {
         return {quotient_[begin], quotient_[end - 1], beyond_};
     }
 
-    Eigen::Block<Eigen::MatrixXd, Eigen::Dynamic, Eigen::Dynamic, true> candidates(Index first,
-                                                                                   Index count) {
+    Eigen::MatrixXd::ColXpr candidate(Index i) { return basis_.Phi.col(c() + i); }
+    Eigen::MatrixXd::ColsBlockXpr candidates(Index first, Index count) {
         return basis_.Phi.middleCols(c() + first, count);
     }
 
@@ -342,17 +376,18 @@ class Update {
 
 BasisUpdateResult updateBasis(const Laplacian& laplacian, const ConstantModes& constants, Index k,
                               const UpdateGate& gate, HarmonicBasis& basis,
-                              const Progress& progress) {
+                              std::vector<ShiftedLdlt>& factors, const Progress& progress) {
     BasisUpdateResult result;
     const bool isSmall = k - constants.count() < kFewest || isDenseQuicker(laplacian.D.size());
     if (isSmall || basis.size() < k) return result;
     try {
-        Update update(laplacian, constants, k, basis, result);
+        Update update(laplacian, constants, k, basis, factors, result);
         if (!(update.examineCandidates(progress.part(0.0, 0.1)) <= gate.largestChange))
             return result;
         update.compute(progress.part(0.1, 0.6));
         update.assemble(progress.part(0.6, 1.0));
         result.accepted = update.passes(gate) && update.isComplete();
+        factors = update.releaseFactors();
     } catch (const SolverFailure&) {
         // The step was so large that the old vectors are no start: the caller computes anew.
     }

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <vector>
+
 #include "components.h"
 #include "harmonic_basis.h"
 #include "laplacian.h"
 #include "progress.h"
+#include "shifted_ldlt.h"
 
 namespace spectral {
 
@@ -20,7 +23,7 @@ struct UpdateGate {
     /// Largest bound on the part of a harmonic that lies beyond the basis: its residual divided by
     /// its distance in the spectrum from there. Where the gain jumps at the cut, this part has the
     /// wrong gain.
-    double largestLeak = 1e-3;
+    double largestLeak = 1e-2;
 };
 
 /// What an update did.
@@ -32,10 +35,10 @@ struct BasisUpdateResult {
 /// The k lowest harmonics of a Laplacian from those of one nearby: the update of the basis as a
 /// perturbation (Kovnatsky et al. 2012, end of section 3, which names no algorithm).
 ///
-/// The previous harmonics are sorted by their Rayleigh quotients under the new Laplacian and taken
-/// in slices. Block inverse iterations with a Chebyshev filter turn each slice towards the
-/// eigenspaces round its own shift (slice_iteration.h), and one Rayleigh-Ritz procedure on all
-/// slices together sorts out what has moved from one to another.
+/// The previous harmonics are taken in slices, by their Rayleigh quotients under the new Laplacian.
+/// Block inverse iterations with a Chebyshev filter turn each slice towards the eigenspaces round
+/// its own shift (slice_iteration.h), and one Rayleigh-Ritz procedure on all slices together sorts
+/// out what has moved from one to another.
 ///
 /// At the cut that would not do: there is no gap between the last harmonic and the first that is
 /// not in the basis, and where the gain jumps there, what leaks from one into the other is seen. So
@@ -51,9 +54,11 @@ struct BasisUpdateResult {
 ///               solver, nothing is accepted: a basis from nothing is as quick.
 /// @param basis  of the previous Laplacian, at least k; on return of the new one, cut as by
 ///               truncatedBasis. Without meaning when not accepted.
+/// @param factors  of the update before this one, or empty: while W keeps its pattern they need no
+///                 symbolic analysis. On return those of this one.
 /// @throws Cancelled
 BasisUpdateResult updateBasis(const Laplacian& laplacian, const ConstantModes& constants, Index k,
                               const UpdateGate& gate, HarmonicBasis& basis,
-                              const Progress& progress = {});
+                              std::vector<ShiftedLdlt>& factors, const Progress& progress = {});
 
 }  // namespace spectral

@@ -11,8 +11,10 @@ namespace spectral {
 
 namespace {
 
-/// At the ends of a slice the filter is to be so many times what it is beyond the bound.
-constexpr double kDamping = 200.0;
+/// At the ends of a slice the filter is to be so many times what it is beyond the bound; and so
+/// many times the distance of its end from 0 beside that from the bound: what vectors have in
+/// common with those beyond falls with that distance (see UpdateGate::largestLeak).
+constexpr double kLeastDamping = 30.0, kDamping = 500.0;
 
 constexpr int kLeastIterations = 2, kMaxIterations = 6;
 
@@ -54,8 +56,9 @@ void orthonormalize(const Eigen::VectorXd& D, Eigen::Ref<Eigen::MatrixXd> S) {
 int iterations(const Slice& slice) {
     // The end of the slice, beside the bound's mu = 1.
     const double end = (slice.bound - slice.middle()) / (slice.to - slice.middle());
+    const double damping = std::max(kLeastDamping, kDamping * slice.to / (slice.bound - slice.to));
     int degree = kLeastIterations;
-    while (degree < kMaxIterations && !(ChebyshevFilter(degree).beside(end) > kDamping)) ++degree;
+    while (degree < kMaxIterations && !(ChebyshevFilter(degree).beside(end) > damping)) ++degree;
     return degree;
 }
 

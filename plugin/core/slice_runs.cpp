@@ -234,17 +234,21 @@ SliceRun runOf(const Laplacian& laplacian, const ConstantModes& constants, Shift
 
 }  // namespace
 
-SliceWorkers::SliceWorkers(const Laplacian& laplacian, const ConstantModes& constants)
+SliceWorkers::SliceWorkers(const Laplacian& laplacian, const ConstantModes& constants,
+                           std::vector<ShiftedLdlt> factors)
     : laplacian_(laplacian),
       constants_(constants),
-      workspaces_(static_cast<std::size_t>(workerCount())) {}
+      factors_(std::move(factors)),
+      spaces_(static_cast<std::size_t>(workerCount())) {
+    if (factors_.size() != spaces_.size()) factors_ = std::vector<ShiftedLdlt>(spaces_.size());
+}
 
 SliceRun SliceWorkers::run(const SliceTask& task, int worker, PairStore& found,
                            const StopPoint& stopPoint) {
-    Workspace& workspace = workspaces_[static_cast<std::size_t>(worker)];
+    Eigen::MatrixXd& Q = spaces_[static_cast<std::size_t>(worker)];
     const Index dimension = task.dimension > 0 ? task.dimension : kMaxDimension;
-    workspace.Q.resize(laplacian_.D.size(), std::min(laplacian_.D.size(), dimension));
-    return runOf(laplacian_, constants_, workspace.factor, workspace.Q, task, found, stopPoint);
+    Q.resize(laplacian_.D.size(), std::min(laplacian_.D.size(), dimension));
+    return runOf(laplacian_, constants_, factor(worker), Q, task, found, stopPoint);
 }
 
 std::vector<Index> SliceWorkers::count(const std::vector<double>& sigmas,
@@ -254,9 +258,8 @@ std::vector<Index> SliceWorkers::count(const std::vector<double>& sigmas,
         static_cast<Index>(sigmas.size()),
         [&](Index task, int worker, const StopPoint&) {
             const auto t = static_cast<std::size_t>(task);
-            ShiftedLdlt& factor = workspaces_[static_cast<std::size_t>(worker)].factor;
-            factor.factorize(laplacian_, sigmas[t]);
-            below[t] = factor.eigenvaluesBelow();
+            factor(worker).factorize(laplacian_, sigmas[t]);
+            below[t] = factor(worker).eigenvaluesBelow();
         },
         progress, kStage);
     return below;

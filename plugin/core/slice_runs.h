@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <utility>
 #include <vector>
 
 #include "components.h"
@@ -45,15 +46,21 @@ struct SliceRun {
 /// Does runs on all cores.
 class SliceWorkers {
   public:
-    /// The arguments are kept by reference.
-    SliceWorkers(const Laplacian& laplacian, const ConstantModes& constants);
+    /// The Laplacian and the modes are kept by reference.
+    /// @param factors  of earlier workers, if there were any: see releaseFactors().
+    SliceWorkers(const Laplacian& laplacian, const ConstantModes& constants,
+                 std::vector<ShiftedLdlt> factors = {});
+
+    /// The workers' factorizations, for others whose W has the same pattern: they need no symbolic
+    /// analysis then. These workers are of no more use.
+    std::vector<ShiftedLdlt> releaseFactors() { return std::move(factors_); }
 
     /// Does one task as a worker of the caller's own parallel work (see runInParallel).
     /// @throws SolverFailure, and whatever the stop point throws.
     SliceRun run(const SliceTask& task, int worker, PairStore& found, const StopPoint& stopPoint);
 
     /// A worker's own factorization, for other uses of it between its runs.
-    ShiftedLdlt& factor(int worker) { return workspaces_[static_cast<std::size_t>(worker)].factor; }
+    ShiftedLdlt& factor(int worker) { return factors_[static_cast<std::size_t>(worker)]; }
 
     /// Numbers of eigenvalues below these shifts, by inertia.
     std::vector<Index> count(const std::vector<double>& sigmas, const Progress& progress);
@@ -64,15 +71,11 @@ class SliceWorkers {
                                   const Progress& progress);
 
   private:
-    /// Storage that a worker uses again from run to run.
-    struct Workspace {
-        ShiftedLdlt factor;
-        Eigen::MatrixXd Q;  // of the Krylov space; memory only as far as it has been written
-    };
-
     const Laplacian& laplacian_;
     const ConstantModes& constants_;
-    std::vector<Workspace> workspaces_;  // one for each worker
+    // One for each worker, which uses them again from run to run.
+    std::vector<ShiftedLdlt> factors_;
+    std::vector<Eigen::MatrixXd> spaces_;  // memory only as far as it has been written
 };
 
 }  // namespace spectral

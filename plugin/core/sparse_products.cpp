@@ -22,10 +22,10 @@ constexpr int kRows = 8;
 void product(const SymmetricSparse& W, const double* S, Size strideS, Size columns, double* WS,
              Size strideWS) {
     Eigen::Array<double, Eigen::Dynamic, kColumns, Eigen::RowMajor> in(W.n, kColumns);
-    in.setZero();
     Eigen::Array<double, kRows, kColumns, Eigen::RowMajor> out;
     for (Size first = 0; first < columns; first += kColumns) {
         const Size count = std::min<Size>(kColumns, columns - first);
+        if (count < kColumns) in.setZero();
         in.leftCols(count) =
             ConstMatrix(S + first * strideS, W.n, count, Eigen::OuterStride<>(strideS)).array();
         Matrix result(WS + first * strideWS, W.n, count, Eigen::OuterStride<>(strideWS));

@@ -148,7 +148,8 @@ void StepEvaluator::followBasis(const Progress& progress) {
     const Index k = options_.basisSize;
     if (k <= kMaxUpdatedBasis && basis_.size() > 0) {
         const BasisUpdateResult update =
-            updateBasis(laplacian_, *constants_, k, UpdateGate(), basis_, progress.part(0.0, 0.5));
+            updateBasis(laplacian_, *constants_, k, UpdateGate(), basis_, updateFactors_,
+                        progress.part(0.0, 0.5));
         cholesky_.countWork(update.factorizations, update.solves);
         if (update.accepted) {
             ++updatedBases_;
@@ -156,6 +157,7 @@ void StepEvaluator::followBasis(const Progress& progress) {
         }
     }
     basis_ = {};  // of no more use: its memory goes to the next
+    updateFactors_.clear();
     basis_ = truncatedBasis(laplacian_, *constants_, k, cholesky_, progress);
     ++computedBases_;
 }

@@ -79,11 +79,12 @@ void run(const testing::Mesh& mesh, Index k, int steps, const Filter& filter) {
     ConstantModes constants(components, A.D);
     HarmonicBasis basis = truncatedBasis(A, constants, k, work);
     Vertices X = applied(basis, A, constants, surface.X), Y = X;
+    std::vector<ShiftedLdlt> factors;
     for (int step = 2; step <= steps; ++step) {
         A = laplacians(X);
         constants = ConstantModes(components, A.D);
         double start = seconds();
-        const bool accepted = updateBasis(A, constants, k, UpdateGate(), basis).accepted;
+        const bool accepted = updateBasis(A, constants, k, UpdateGate(), basis, factors).accepted;
         const double update = seconds() - start;
         start = seconds();
         const HarmonicBasis anew = truncatedBasis(A, constants, k, work);

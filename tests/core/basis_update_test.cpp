@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/fractional_filter.h"
 #include "support/evaluation.h"
@@ -31,15 +32,19 @@ HarmonicBasis basisOf(const Operator& A, Index k = kHarmonics) {
     return truncatedBasis(A.laplacian, A.constants, k, cholesky);
 }
 
+BasisUpdateResult update(const Operator& A, HarmonicBasis& basis, Index k = kHarmonics,
+                         const Progress& progress = {}) {
+    std::vector<ShiftedLdlt> factors;
+    return updateBasis(A.laplacian, A.constants, k, UpdateGate(), basis, factors, progress);
+}
+
 Mesh lumpy() { return testing::withNoise(testing::icosphere(4), 0.02, 7); }
 
 TEST(BasisUpdate, ComesNearTheBasisFromNothing) {
     const Mesh before = lumpy(), after = filtered(before, 0.5, 0.1);
     const Operator A(after);
     HarmonicBasis basis = basisOf(Operator(before));
-    const BasisUpdateResult update =
-        updateBasis(A.laplacian, A.constants, kHarmonics, UpdateGate(), basis);
-    ASSERT_TRUE(update.accepted);
+    ASSERT_TRUE(update(A, basis).accepted);
 
     ShiftedCholesky cholesky;
     const HarmonicBasis anew = truncatedBasis(A.laplacian, A.constants, kHarmonics, cholesky);
@@ -61,7 +66,7 @@ TEST(BasisUpdate, OfTheSameLaplacianChangesNothing) {
     const Operator A(lumpy());
     HarmonicBasis basis = basisOf(A);
     const Eigen::VectorXd lambda = basis.lambda;
-    ASSERT_TRUE(updateBasis(A.laplacian, A.constants, kHarmonics, UpdateGate(), basis).accepted);
+    ASSERT_TRUE(update(A, basis).accepted);
     EXPECT_LT((basis.lambda - lambda).cwiseAbs().maxCoeff(), 1e-9 * lambda[lambda.size() - 1]);
     EXPECT_LT(basis.residuals.maxCoeff(), 1e-6);
 }
@@ -73,14 +78,14 @@ TEST(BasisUpdate, IsRefusedAfterALargeStep) {
     after.V.col(0) = after.V.col(0).array() * (1.0 + 0.5 * after.V.col(0).array());
     const Operator A(after);
     HarmonicBasis basis = basisOf(Operator(before));
-    EXPECT_FALSE(updateBasis(A.laplacian, A.constants, kHarmonics, UpdateGate(), basis).accepted);
+    EXPECT_FALSE(update(A, basis).accepted);
 }
 
 TEST(BasisUpdate, IsExactNextToTheCut) {
     const Mesh before = lumpy();
     const Operator A(filtered(before, 0.5, 0.1));
     HarmonicBasis basis = basisOf(Operator(before));
-    ASSERT_TRUE(updateBasis(A.laplacian, A.constants, kHarmonics, UpdateGate(), basis).accepted);
+    ASSERT_TRUE(update(A, basis).accepted);
     const HarmonicBasis anew = basisOf(A);
     ASSERT_EQ(basis.size(), anew.size());
     EXPECT_LT((basis.lambda.tail(8) - anew.lambda.tail(8)).cwiseAbs().maxCoeff(),
@@ -98,7 +103,7 @@ TEST(BasisUpdate, OfASymmetricMeshIsAscending) {
         const Mesh before = testing::icosphere(3);
         const Operator A(filtered(before, 0.7, power));
         HarmonicBasis basis = basisOf(Operator(before), k);
-        ASSERT_TRUE(updateBasis(A.laplacian, A.constants, k, UpdateGate(), basis).accepted);
+        ASSERT_TRUE(update(A, basis, k).accepted);
         EXPECT_TRUE(std::is_sorted(basis.lambda.begin(), basis.lambda.end()));
         const HarmonicBasis anew = basisOf(A, k);
         ASSERT_EQ(basis.size(), anew.size());
@@ -110,8 +115,7 @@ TEST(BasisUpdate, OfASymmetricMeshIsAscending) {
 TEST(BasisUpdate, IsRefusedWhereTheOldBasisIsTooSmall) {
     const Operator A(lumpy());
     HarmonicBasis basis = basisOf(A);
-    EXPECT_FALSE(
-        updateBasis(A.laplacian, A.constants, basis.size() + 1, UpdateGate(), basis).accepted);
+    EXPECT_FALSE(update(A, basis, basis.size() + 1).accepted);
 }
 
 TEST(BasisUpdate, DoesNotDependOnTheThreads) {
@@ -119,17 +123,30 @@ TEST(BasisUpdate, DoesNotDependOnTheThreads) {
     const Operator A(filtered(before, 0.5, 0.1));
     const HarmonicBasis start = basisOf(Operator(before));
     HarmonicBasis once = start, again = start;
-    updateBasis(A.laplacian, A.constants, kHarmonics, UpdateGate(), once);
-    updateBasis(A.laplacian, A.constants, kHarmonics, UpdateGate(), again);
+    update(A, once);
+    update(A, again);
     EXPECT_TRUE((once.Phi.array() == again.Phi.array()).all());
+}
+
+TEST(BasisUpdate, DoesNotDependOnTheFactorsOfAnother) {
+    const Operator first(filtered(lumpy(), 0.5, 0.1)), other(testing::cube(12));
+    const HarmonicBasis start = basisOf(Operator(lumpy()));
+    std::vector<ShiftedLdlt> factors;
+    for (const Operator* A : {&first, &first, &other, &first}) {
+        HarmonicBasis basis = A == &other ? basisOf(other) : start, anew = basis;
+        ASSERT_TRUE(
+            updateBasis(A->laplacian, A->constants, kHarmonics, UpdateGate(), basis, factors)
+                .accepted);
+        ASSERT_TRUE(update(*A, anew).accepted);
+        EXPECT_TRUE((basis.Phi.array() == anew.Phi.array()).all());
+    }
 }
 
 TEST(BasisUpdate, StopsWhenTheCallerWantsIt) {
     const Operator A(lumpy());
     HarmonicBasis basis = basisOf(A);
     const Progress progress([](double, const std::string&) { return false; });
-    EXPECT_THROW(updateBasis(A.laplacian, A.constants, kHarmonics, UpdateGate(), basis, progress),
-                 Cancelled);
+    EXPECT_THROW(update(A, basis, kHarmonics, progress), Cancelled);
 }
 
 FilterOptions truncatedSteps(double featureSize, int steps) {

@@ -30,6 +30,17 @@ TEST(MassProducts, AreThoseOfAnyShape) {
                     << n << " rows, " << p << " and " << q << " columns";
 }
 
+TEST(MassProducts, TheGramMatrixIsThatOfInnerProducts) {
+    std::srand(8);
+    for (const Index n : {1, 511, 512, 1030})
+        for (const Index m : {1, 2, 5, 19}) {
+            const Eigen::MatrixXd S = Eigen::MatrixXd::Random(n, m);
+            const Eigen::VectorXd D = Eigen::VectorXd::Random(n).cwiseAbs();
+            EXPECT_LT((gramMatrix(S, D) - S.transpose() * D.asDiagonal() * S).norm(), 1e-9)
+                << n << " rows, " << m << " columns";
+        }
+}
+
 TEST(MassProducts, OfNoColumnsAreEmpty) {
     const Eigen::MatrixXd none(20, 0);
     Eigen::MatrixXd B = Eigen::MatrixXd::Ones(20, 3);
