@@ -23,7 +23,7 @@ struct UpdateGate {
     /// Largest bound on the part of a harmonic that lies beyond the basis: its residual divided by
     /// its distance in the spectrum from there. Where the gain jumps at the cut, this part has the
     /// wrong gain.
-    double largestLeak = 1e-2;
+    double largestLeak = 3e-3;
 };
 
 /// What an update did.
