@@ -12,8 +12,9 @@ namespace spectral {
 
 /// What an update has to hold, else the basis is computed anew.
 struct UpdateGate {
-    /// Mean residual of the previous harmonics under the new Laplacian, defined as below. Beyond
-    /// it nothing is tried: where areas have changed by a tenth it would be in vain.
+    /// Mean residual of previous harmonics under the new Laplacian, defined as below: of some, and
+    /// of all next to the cut. Beyond it nothing is tried: where areas have changed by a tenth it
+    /// would be in vain.
     double largestChange = 0.08;
 
     /// Largest |D^-1/2 (W phi - lambda D phi)| / lambda of any harmonic, and their mean. The error
@@ -23,7 +24,7 @@ struct UpdateGate {
     /// Largest bound on the part of a harmonic that lies beyond the basis: its residual divided by
     /// its distance in the spectrum from there. Where the gain jumps at the cut, this part has the
     /// wrong gain.
-    double largestLeak = 3e-3;
+    double largestLeak = 1e-3;
 };
 
 /// What an update did.

@@ -14,7 +14,7 @@ namespace {
 /// At the ends of a slice the filter is to be so many times what it is beyond the bound; and so
 /// many times the distance of its end from 0 beside that from the bound: what vectors have in
 /// common with those beyond falls with that distance (see UpdateGate::largestLeak).
-constexpr double kLeastDamping = 30.0, kDamping = 500.0;
+constexpr double kLeastDamping = 100.0, kDamping = 5000.0;
 
 constexpr int kLeastIterations = 2, kMaxIterations = 6;
 
