@@ -32,13 +32,12 @@ std::optional<Index> cutOutsideClusters(const Eigen::VectorXd& lambda, Index ask
     return std::nullopt;
 }
 
-void certifyBasis(const Laplacian& laplacian, Index constants, std::optional<double> cut,
-                  ShiftedLdlt& factor, HarmonicBasis& basis, const Progress& progress) {
+void measureBasis(const Laplacian& laplacian, Index constants, HarmonicBasis& basis,
+                  const std::function<void()>& beside, const Progress& progress) {
     const Index k = basis.size();
     const Eigen::ArrayXd invD = laplacian.D.array().inverse();
     Eigen::VectorXd overlaps(k);
     basis.residuals = Eigen::VectorXd::Zero(k);
-    basis.inertiaCount = k;
     const auto measure = [&](Index begin, const StopPoint& stopPoint) {
         stopPoint();
         const Index end = std::min(k, begin + kColumns);
@@ -60,9 +59,7 @@ void certifyBasis(const Laplacian& laplacian, Index constants, std::optional<dou
         1 + (k + kColumns - 1) / kColumns,
         [&](Index task, int, const StopPoint& stopPoint) {
             if (task > 0) return measure((task - 1) * kColumns, stopPoint);
-            if (!cut) return;
-            factor.factorize(laplacian, *cut);
-            basis.inertiaCount = factor.eigenvaluesBelow();
+            if (beside) beside();
         },
         progress, "checking the harmonics");
     basis.largestOverlap = overlaps.maxCoeff();

@@ -1,12 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
 
 #include "harmonic_basis.h"
 #include "laplacian.h"
 #include "progress.h"
-#include "shifted_ldlt.h"
+#include "types.h"
 
 namespace spectral {
 
@@ -16,15 +17,12 @@ namespace spectral {
 /// @param lambda  ascending, more than `asked` entries.
 std::optional<Index> cutOutsideClusters(const Eigen::VectorXd& lambda, Index asked);
 
-/// Fills in the certificate of a basis: residuals, largestOverlap and inertiaCount.
+/// Fills in what the certificate of a basis has to say of its pairs: residuals and largestOverlap.
 ///
 /// @param constants  number of constant modes, whose residual is 0.
-/// @param cut        a shift between the last eigenvalue of the basis and the next one, where the
-///                   eigenvalues below it are counted. None where the basis holds all that there
-///                   are: inertiaCount is its size.
-/// @param factor     of any shift; for its storage.
-/// @throws SolverFailure  when they are not finite; Cancelled.
-void certifyBasis(const Laplacian& laplacian, Index constants, std::optional<double> cut,
-                  ShiftedLdlt& factor, HarmonicBasis& basis, const Progress& progress);
+/// @param beside     done meanwhile by one core: the count by inertia, for example.
+/// @throws SolverFailure  when they are not finite; Cancelled, and whatever `beside` throws.
+void measureBasis(const Laplacian& laplacian, Index constants, HarmonicBasis& basis,
+                  const std::function<void()>& beside, const Progress& progress);
 
 }  // namespace spectral

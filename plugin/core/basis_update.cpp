@@ -12,6 +12,7 @@
 
 #include "basis_certificate.h"
 #include "errors.h"
+#include "leak_correction.h"
 #include "mass_products.h"
 #include "pair_store.h"
 #include "parallel_tasks.h"
@@ -31,20 +32,25 @@ constexpr double kFactorization = 80.0, kOrthogonalization = 1.0 / 80.0;
 /// Candidates from one possible end of a slice to the next.
 constexpr Index kGrain = 4;
 
-/// Harmonics next to the cut that are computed anew, below and above it, and how many of the
-/// previous ones in their place are iterated all the same, for what has moved.
-constexpr Index kEdgeBelow = 16, kEdgeAbove = 14, kMoved = 8;
+/// Harmonics next to the cut that are computed anew, below and above it.
+constexpr Index kEdgeBelow = 10, kEdgeAbove = 8;
+
+/// Damping for each part of the mean residual of the previous harmonics: what is left of it leaks.
+constexpr double kDamping = 120.0;
 
 /// How far beyond these the pairs of the run have to converge, in mean distances of eigenvalues;
-/// and their residuals, before they are purified: after that they are as good as those of a basis
-/// from nothing.
-constexpr double kOverlap = 1.0, kEdgeResidual = 1e-5;
+/// their residuals, before they are purified; and the Krylov dimension at which that is first
+/// looked at.
+constexpr double kOverlap = 1.0, kEdgeResidual = 1e-3;
+constexpr Index kEdgeCheck = 44;
 
 /// Fewer harmonics than this are computed from nothing as quickly.
 constexpr Index kFewest = 64;
 
-/// Length that others leave of a unit vector, below which it is none of its own. The last iteration
-/// has turned all vectors of a slice towards those next to its shift.
+/// Candidates next to the cut that may be left with little of their own when the edge has been
+/// taken out of them; how many more of them are kept than there are harmonics; and the length that
+/// others leave of a unit vector, below which it is none of its own.
+constexpr Index kNextToEdge = 32, kSpare = 4;
 constexpr double kDependent = 3e-5;
 
 /// Relative error of an eigenvalue that the count by inertia forgives beside a shift.
@@ -55,7 +61,7 @@ constexpr Index kColumns = 48;
 
 /// Candidates below the cut that are all looked at before they are touched; of the others one in so
 /// many is.
-constexpr Index kExamined = 64, kSampling = 4;
+constexpr Index kExamined = 48, kSampling = 8;
 
 constexpr const char* kStage = "updating the harmonics";
 
@@ -128,7 +134,8 @@ class Update {
             quotient_[i] = (1.0 - part) * quotient[place] + part * next;
         }
         std::sort(quotient_.begin(), quotient_.end());
-        return residual.mean();
+        change_ = residual.mean();
+        return change_;
     }
 
     /// Rayleigh quotients and residuals, as UpdateGate has them, of the columns of S, which loses
@@ -167,7 +174,6 @@ class Update {
         const Eigen::MatrixXd none;
         const SliceTask edge = edgeTask(none);
         beyond_ = edge.to;
-        iterated_ = wanted() - kEdgeBelow + kMoved;
         layOutSlices();
         counts_.resize(static_cast<std::size_t>(slices()));
         std::vector<Index> longestFirst(counts_.size());
@@ -194,42 +200,56 @@ class Update {
         beyond_ = run.coveredTo;
         interior_ = run.below - (edge_.lambdas().array() < run.sigma).count() - c();
         chooseCut();
-        selectInterior();
+        leaveOutDependent();
     }
 
     /// Makes harmonics of the interior, and the basis of all three parts.
     void assemble(const Progress& progress) {
         removeEdge(progress.part(0.0, 0.2));
-        quotient_ = rayleighRitz(laplacian_, candidates(0, interior_), progress.part(0.2, 0.9));
+        ShiftedLdlt& factor = workers_.factor(0);
+        const auto interior = [&] {
+            factor.factorize(laplacian_, cut_);
+            basis_.inertiaCount = factor.eigenvaluesBelow();
+            addOverlooked(basis_.inertiaCount - size_);
+            return interior_;
+        };
+        quotient_ = rayleighRitz(laplacian_, candidates(0, independent_), interior,
+                                 progress.part(0.2, 0.9));
         const Index first = c() + interior_, rest = size_ - first;
         if (basis_.Phi.cols() != size_) basis_.Phi.conservativeResize(Eigen::NoChange, size_);
         basis_.Phi.rightCols(rest) = edge_.vectors(0, rest);
         basis_.lambda.resize(size_);
         basis_.lambda << Eigen::VectorXd::Zero(c()), quotient_, edge_.lambdas().head(rest);
         mergeEdge(first);
-        certifyBasis(laplacian_, c(), cut_, workers_.factor(0), basis_, progress.part(0.9, 1.0));
-        ++result_.factorizations;
+        basis_.leak = {quotient_[interior_ - 1], beyond_};
+        measureBasis(
+            laplacian_, c(), basis_, [&] { factor.factorize(laplacian_, correctionShift(basis_)); },
+            progress.part(0.9, 1.0));
+        result_.factorizations += 2;
     }
 
     /// Whether residuals and leaks are within the gate.
     bool passes(const UpdateGate& gate) const {
-        const auto lambda = basis_.lambda.array();
-        const auto residual = basis_.residuals.array() * lambda;
-        return basis_.residuals.maxCoeff() <= gate.largestResidual &&
-               basis_.residuals.mean() <= gate.meanResidual &&
-               (residual / (beyond_ - lambda)).maxCoeff() <= gate.largestLeak;
+        const Index pairs = basis_.size() - c();
+        const auto lambda = basis_.lambda.tail(pairs).array();
+        const auto residual = basis_.residuals.tail(pairs).array();
+        const Eigen::ArrayXd leak = residual * lambda / (beyond_ - lambda);
+        return leak.maxCoeff() <= gate.largestLeak &&
+               (leak * residual).maxCoeff() <= gate.largestError;
     }
 
     std::vector<ShiftedLdlt> releaseFactors() { return workers_.releaseFactors(); }
 
     /// Whether the counts are those of the basis.
     bool isComplete() const {
-        return basis_.inertiaCount == size_ && agree(basis_.lambda, size_, counts_);
+        return basis_.inertiaCount == size_ && basis_.lambda[size_ - 1] < cut_ &&
+               agree(basis_.lambda, size_, counts_);
     }
 
   private:
     Index c() const { return constants_.count(); }
     Index wanted() const { return k_ - c(); }
+    Index all() const { return quotient_.size(); }  // candidates
 
     /// The run that finds the edge: from some pairs below the wanted number to some above the
     /// number that the previous basis had, which did not cut a cluster.
@@ -240,6 +260,7 @@ class Update {
         const double to = quotient_[last] + static_cast<double>(kEdgeAbove) * spacing;
         SliceTask task{0.5 * (from + to), from, to, kOverlap * spacing, none, {}, 0, 1};
         task.residual = kEdgeResidual;
+        task.firstCheck = kEdgeCheck;
         return task;
     }
 
@@ -263,14 +284,12 @@ class Update {
         cut_ = 0.5 * (lambda[size_ - 1] + lambda[size_]);
     }
 
-    /// Brings the interior to the first columns: of the last candidates, in whose place the edge
-    /// begins, those are taken that are most independent of the edge and of each other.
-    void selectInterior() {
-        const Index first = std::max(Index{0}, iterated_ - 4 * kMoved);
-        const Index needed = interior_ - first;
-        Eigen::MatrixXd S = candidates(first, iterated_ - first);
-        if (needed <= 0 || needed > S.cols())
-            throw SolverFailure("harmonics have moved across the edge");
+    /// Of the candidates in whose place the edge begins, leaves out those that it and the others
+    /// make up; the rest come first. There may be some more of them than harmonics: which of their
+    /// combinations these are, the Rayleigh-Ritz procedure finds.
+    void leaveOutDependent() {
+        const Index first = std::max(Index{0}, all() - kNextToEdge);
+        Eigen::MatrixXd S = candidates(first, all() - first);
         const Eigen::ArrayXd squared = (S.cwiseAbs2().transpose() * laplacian_.D).array();
         S.array().rowwise() /= squared.sqrt().transpose();
         removeEdge(S);
@@ -280,12 +299,23 @@ class Update {
         const Eigen::MatrixXd A = gram.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
                                   gram.eigenvectors().transpose();
         const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(A);
-        if (!(std::abs(qr.matrixQR()(needed - 1, needed - 1)) > kDependent))
-            throw SolverFailure("the vectors of a slice have become dependent");
+        const Index independent = (qr.matrixQR().diagonal().array().abs() > kDependent).count();
+        const Index needed = interior_ - first, count = std::min(independent, needed + kSpare);
+        if (needed <= 0 || needed > count)
+            throw SolverFailure("harmonics have moved across the edge");
+        independent_ = first + count;
         Eigen::VectorXi taken = qr.colsPermutation().indices();
-        std::sort(taken.begin(), taken.begin() + needed);
-        for (Index j = 0; j < needed; ++j)
+        std::sort(taken.begin(), taken.begin() + count);
+        for (Index j = 0; j < count; ++j)
             if (taken[j] != j) candidate(first + j) = candidate(first + taken[j]);
+    }
+
+    /// Copies of a multiple eigenvalue that the run has overlooked above its shift are in the
+    /// interior, if there are candidates left to make them of.
+    void addOverlooked(Index copies) {
+        if (copies < 0 || interior_ + copies > independent_) return;  // the basis is not complete
+        interior_ += copies;
+        size_ += copies;
     }
 
     /// Brings the pairs from `first` on, those of the edge, to their places: where the run has
@@ -300,24 +330,24 @@ class Update {
 
     /// Takes the edge out of the interior.
     void removeEdge(const Progress& progress) {
-        runInParallel((interior_ + kColumns - 1) / kColumns,
+        runInParallel((independent_ + kColumns - 1) / kColumns,
                       [&](Index task, int, const StopPoint&) {
                           const Index first = task * kColumns;
-                          removeEdge(candidates(first, std::min(kColumns, interior_ - first)));
+                          removeEdge(candidates(first, std::min(kColumns, independent_ - first)));
                       },
                       progress, kStage);
     }
 
     void removeEdge(Eigen::Ref<Eigen::MatrixXd> S) {
         const auto E = edge_.vectors(0, edge_.size());
-        subtractProduct(E, innerProducts(E, laplacian_.D, S), S);
+        subtractProduct(E, innerProducts(S, laplacian_.D, E).transpose(), S);
     }
 
     /// Cuts the candidates that are iterated into slices so that all together cost least: those of
     /// a slice share one factorization, but the wider it is the more iterations it takes.
     void layOutSlices() {
         std::vector<Index> ends{0};  // where a slice may end
-        while (ends.back() < iterated_) ends.push_back(std::min(ends.back() + kGrain, iterated_));
+        while (ends.back() < all()) ends.push_back(std::min(ends.back() + kGrain, all()));
         // The least cost of all slices up to an end, and where the last of them then begins.
         std::vector<double> least(ends.size(), std::numeric_limits<double>::infinity());
         std::vector<std::size_t> last(ends.size(), 0);
@@ -329,7 +359,7 @@ class Update {
                 least[end] = all;
                 last[end] = begin;
             }
-        begins_ = {iterated_};
+        begins_ = {all()};
         for (std::size_t end = ends.size() - 1; end > 0; end = last[end])
             begins_.push_back(ends[last[end]]);
         std::reverse(begins_.begin(), begins_.end());
@@ -346,7 +376,7 @@ class Update {
     Index begin(Index slice) const { return at(begins_, slice); }
     Slice slice(Index i) const { return slice(begin(i), begin(i + 1)); }
     Slice slice(Index begin, Index end) const {
-        return {quotient_[begin], quotient_[end - 1], beyond_};
+        return {quotient_[begin], quotient_[end - 1], beyond_, kDamping * change_};
     }
 
     Eigen::MatrixXd::ColXpr candidate(Index i) { return basis_.Phi.col(c() + i); }
@@ -362,13 +392,14 @@ class Update {
     SliceWorkers workers_;
 
     Eigen::VectorXd quotient_;   // of the candidates, about; ascending
-    Index iterated_ = 0;         // candidates that are iterated: the first ones
+    double change_ = 0.0;        // mean residual of the candidates
     std::vector<Index> begins_;  // of the slices, and the end of the last one
     PairStore edge_;
-    double beyond_ = 0.0;  // end of the edge: what follows is in none of the three parts
-    Index interior_ = 0;   // harmonics
-    Index size_ = 0;       // of the basis
-    double cut_ = 0.0;     // shift between the last harmonic of the basis and the next
+    double beyond_ = 0.0;    // end of the edge: what follows is in none of the three parts
+    Index interior_ = 0;     // harmonics
+    Index independent_ = 0;  // candidates that they are made of
+    Index size_ = 0;         // of the basis
+    double cut_ = 0.0;       // shift between the last harmonic of the basis and the next
     std::vector<Count> counts_;
 };
 

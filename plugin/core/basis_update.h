@@ -17,14 +17,13 @@ struct UpdateGate {
     /// would be in vain.
     double largestChange = 0.08;
 
-    /// Largest |D^-1/2 (W phi - lambda D phi)| / lambda of any harmonic, and their mean. The error
-    /// of an eigenvalue goes with the square of its residual r: some 10 r^2 were seen, relative.
-    double largestResidual = 3e-3, meanResidual = 3e-4;
+    /// Largest bound on the part of a harmonic that lies beyond the basis: its residual
+    /// |D^-1/2 (W phi - lambda D phi)| divided by its distance in the spectrum from there. Filters
+    /// correct for it (leak_correction.h), up to its square.
+    double largestLeak = 1e-2;
 
-    /// Largest bound on the part of a harmonic that lies beyond the basis: its residual divided by
-    /// its distance in the spectrum from there. Where the gain jumps at the cut, this part has the
-    /// wrong gain.
-    double largestLeak = 1e-3;
+    /// Largest bound on the relative error of an eigenvalue: that part times the residual.
+    double largestError = 5e-5;
 };
 
 /// What an update did.
@@ -43,20 +42,22 @@ struct BasisUpdateResult {
 ///
 /// At the cut that would not do: there is no gap between the last harmonic and the first that is
 /// not in the basis, and where the gain jumps there, what leaks from one into the other is seen. So
-/// the harmonics next to the cut, on both sides, are found by a Lanczos run, as exactly as those of
-/// a basis from nothing; the others are iterated towards on their complement, and the nearest
-/// eigenvalue beyond is then some tens of eigenvalues away.
+/// the harmonics next to the cut, on both sides, are found by a Lanczos run, nearly as exactly as
+/// those of a basis from nothing; the others are iterated towards on their complement, and the
+/// nearest eigenvalue beyond is then some eigenvalues away. What they still leak into it, a little
+/// (HarmonicBasis::leak), filters correct for: that is cheaper than more iterations.
 ///
-/// Conditions checked: the residuals and leaks are within the gate; the inertia of W - sigma D
-/// counts at the cut as many eigenvalues as the basis has, and at every slice's shift as many as
-/// lie below it.
+/// Conditions checked: leaks and errors are within the gate; the inertia of W - sigma D counts at
+/// the cut as many eigenvalues as the basis has, and at every slice's shift as many as lie below
+/// it.
 ///
 /// @param k      harmonics wanted. With less than some tens, or where truncatedBasis uses the dense
 ///               solver, nothing is accepted: a basis from nothing is as quick.
 /// @param basis  of the previous Laplacian, at least k; on return of the new one, cut as by
 ///               truncatedBasis. Without meaning when not accepted.
 /// @param factors  of the update before this one, or empty: while W keeps its pattern they need no
-///                 symbolic analysis. On return those of this one.
+///                 symbolic analysis. On return those of this one; the first is the one that
+///                 applyInLeakingBasis wants.
 /// @throws Cancelled
 BasisUpdateResult updateBasis(const Laplacian& laplacian, const ConstantModes& constants, Index k,
                               const UpdateGate& gate, HarmonicBasis& basis,

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "basis_certificate.h"
+#include "basis_transform.h"
 #include "errors.h"
 #include "spectrum_slicing.h"
 
@@ -49,8 +50,16 @@ HarmonicBasis certified(const Laplacian& laplacian, Index constants, HarmonicBas
     if (size < basis.size()) cut = 0.5 * (basis.lambda[size - 1] + basis.lambda[size]);
     basis.Phi.conservativeResize(Eigen::NoChange, size);
     basis.lambda.conservativeResize(size);
-    ShiftedLdlt factor;
-    certifyBasis(laplacian, constants, cut, factor, basis, progress);
+    basis.inertiaCount = size;  // where it holds all that there are
+    measureBasis(
+        laplacian, constants, basis,
+        [&] {
+            if (!cut) return;
+            ShiftedLdlt factor;
+            factor.factorize(laplacian, *cut);
+            basis.inertiaCount = factor.eigenvaluesBelow();
+        },
+        progress);
     if (cut) cholesky.countWork(1, 0);
     // Sylvester's law of inertia: none is missing below the cut.
     if (basis.inertiaCount != size)
@@ -128,6 +137,13 @@ double largestEigenvalue(const Laplacian& laplacian) {
     return solver.eigenvalues()[0];
 }
 
+Eigen::ArrayXd gainsOf(const HarmonicBasis& basis, const Gain& gain) {
+    Eigen::ArrayXd gains(basis.size());
+    for (Index i = 0; i < basis.size(); ++i)
+        gains[i] = gain(std::sqrt(std::max(0.0, basis.lambda[i])));
+    return gains;
+}
+
 Eigen::MatrixXd applyInBasis(const HarmonicBasis& basis, const Eigen::VectorXd& D,
                              const ConstantModes& constants, const Gain& gain, double residualGain,
                              const Eigen::MatrixXd& X) {
@@ -137,12 +153,10 @@ Eigen::MatrixXd applyInBasis(const HarmonicBasis& basis, const Eigen::VectorXd& 
 
     // With the manifold harmonic transform c = Phi^T D X:
     // Phi F c + F_h (X - Phi c) = F_h X + Phi (F - F_h) c.
-    const Eigen::MatrixXd spectrum = basis.Phi.transpose() * (D.asDiagonal() * centred);
-    Eigen::VectorXd gains(basis.size());
-    for (Index i = 0; i < basis.size(); ++i)
-        gains[i] = gain(std::sqrt(std::max(0.0, basis.lambda[i]))) - residualGain;
+    const Eigen::VectorXd gains = gainsOf(basis, gain) - residualGain;
     Eigen::MatrixXd Y = residualGain * centred;
-    Y.noalias() += basis.Phi * (gains.asDiagonal() * spectrum);
+    Y += inverseHarmonicTransform(basis.Phi,
+                                  gains.asDiagonal() * harmonicTransform(basis.Phi, D, centred));
 
     constants.remove(Y);
     constants.add(means, Y);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "cholesky.h"
 #include "components.h"
@@ -20,6 +21,14 @@ struct HarmonicBasis {
     double largestOverlap = 0.0;  ///< Of Phi^T D Phi - I, for neighbours in the spectrum.
     Index inertiaCount = 0;       ///< Eigenvalues below the first that is not in the basis, by the
                                   ///< inertia of W - sigma D: equal to size(), none is missing.
+
+    /// Where harmonics are not those of the Laplacian alone, but leak into others beyond the basis:
+    /// in one that an update has made.
+    struct Leak {
+        double from = 0.0;  ///< The largest eigenvalue of a harmonic that leaks.
+        double into = 0.0;  ///< The least eigenvalue that one leaks into, > from.
+    };
+    std::optional<Leak> leak;
 
     Index size() const { return lambda.size(); }
 };
@@ -50,11 +59,14 @@ HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& co
 /// Largest eigenvalue of W phi = lambda D phi, to about 1e-8 relative.
 double largestEigenvalue(const Laplacian& laplacian);
 
+/// F(Lambda^1/2): the gains of the harmonics, k.
+Eigen::ArrayXd gainsOf(const HarmonicBasis& basis, const Gain& gain);
+
 /// Y = Phi F(Lambda^1/2) Phi^T D X + residualGain (X - Phi Phi^T D X)
 /// (Vallet and Levy 2008; Kovnatsky et al. 2012, Eqs. 6 to 8).
 ///
 /// @param residualGain  gain of all that is beyond the basis (Eq. 9); 0 drops it (Eq. 6).
-/// The constant modes keep gain 1.
+/// The constant modes keep gain 1. What harmonics leak is left as it is (see leak_correction.h).
 Eigen::MatrixXd applyInBasis(const HarmonicBasis& basis, const Eigen::VectorXd& D,
                              const ConstantModes& constants, const Gain& gain, double residualGain,
                              const Eigen::MatrixXd& X);

@@ -26,7 +26,7 @@ constexpr const char* kStage = "updating the harmonics";
 }  // namespace
 
 Eigen::VectorXd rayleighRitz(const Laplacian& laplacian, Eigen::Ref<Eigen::MatrixXd> S,
-                             const Progress& progress) {
+                             const std::function<Index()>& wanted, const Progress& progress) {
     const Index n = S.rows(), m = S.cols();
     Eigen::MatrixXd H(m, m);  // S^T W S, its upper half
     const Index blocks = (m + kColumns - 1) / kColumns;
@@ -54,17 +54,27 @@ Eigen::VectorXd rayleighRitz(const Laplacian& laplacian, Eigen::Ref<Eigen::Matri
     Eigen::MatrixXd& G = grams[0];
     for (std::size_t part = 1; part < grams.size(); ++part) G += grams[part];
     H.triangularView<Eigen::StrictlyLower>() = H.transpose();
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz(H, G);
+    Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz;
+    Index count = m;
+    runInParallel(
+        2,
+        [&](Index task, int, const StopPoint&) {
+            if (task == 0)
+                ritz.compute(H, G);
+            else
+                count = wanted();
+        },
+        progress.part(0.5, 0.6), kStage);
     if (ritz.info() != Eigen::Success || !ritz.eigenvectors().allFinite())
         throw SolverFailure("the Ritz vectors of dependent vectors do not exist");
-    const Eigen::MatrixXd& Z = ritz.eigenvectors();
+    const Eigen::MatrixXd Z = ritz.eigenvectors().leftCols(count);
     runInParallel((n + kRows - 1) / kRows,
                   [&](Index task, int, const StopPoint&) {
                       const Index first = task * kRows;
                       multiplyInPlace(S.middleRows(first, std::min(kRows, n - first)), Z);
                   },
-                  progress.part(0.5, 1.0), kStage);
-    return ritz.eigenvalues();
+                  progress.part(0.6, 1.0), kStage);
+    return ritz.eigenvalues().head(count);
 }
 
 }  // namespace spectral

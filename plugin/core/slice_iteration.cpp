@@ -11,12 +11,7 @@ namespace spectral {
 
 namespace {
 
-/// At the ends of a slice the filter is to be so many times what it is beyond the bound; and so
-/// many times the distance of its end from 0 beside that from the bound: what vectors have in
-/// common with those beyond falls with that distance (see UpdateGate::largestLeak).
-constexpr double kLeastDamping = 100.0, kDamping = 5000.0;
-
-constexpr int kLeastIterations = 2, kMaxIterations = 6;
+constexpr int kMaxIterations = 6;
 
 /// Columns that are solved for at a time: few beside S.
 constexpr Index kColumns = 16;
@@ -56,8 +51,10 @@ void orthonormalize(const Eigen::VectorXd& D, Eigen::Ref<Eigen::MatrixXd> S) {
 int iterations(const Slice& slice) {
     // The end of the slice, beside the bound's mu = 1.
     const double end = (slice.bound - slice.middle()) / (slice.to - slice.middle());
-    const double damping = std::max(kLeastDamping, kDamping * slice.to / (slice.bound - slice.to));
-    int degree = kLeastIterations;
+    // What vectors have in common with those beyond falls with the distance
+    // (UpdateGate::largestLeak).
+    const double damping = slice.damping * std::max(1.0, slice.to / (slice.bound - slice.to));
+    int degree = 1;
     while (degree < kMaxIterations && !(ChebyshevFilter(degree).beside(end) > damping)) ++degree;
     return degree;
 }

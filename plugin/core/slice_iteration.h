@@ -14,11 +14,13 @@ namespace spectral {
 struct Slice {
     double from = 0.0, to = 0.0;  ///< About the eigenvalues of the vectors.
     double bound = 0.0;           ///< > to.
+    double damping = 1.0;  ///< What is beyond the bound is to lose so much beside the vectors: more
+                           ///< where the bound is nearer than 0.
 
     double middle() const { return 0.5 * (from + to); }
 };
 
-/// Inverse iterations that a slice takes: the nearer its bound, the more.
+/// Inverse iterations that a slice takes: the nearer its bound, and the more damping, the more.
 int iterations(const Slice& slice);
 
 /// Block inverse iteration with a Chebyshev filter: S <- p(M) S, M = (W - sigma D)^-1 D.

@@ -18,16 +18,15 @@ namespace {
 /// poorer: from 1 to 4 the time changes little, and 2 need the least room for it.
 constexpr Index kBlock = 2;
 
-/// Krylov dimensions: at the first check of convergence, where the number of pairs is not known;
-/// from check to check, and at most.
-constexpr Index kFirstCheck = 60, kCheckInterval = 6, kMaxDimension = 160;
+/// Krylov dimensions from check to check of convergence, and at most.
+constexpr Index kCheckInterval = 6, kMaxDimension = 160;
 
 /// Krylov dimension at the first check where that number is known: so much for the way from the
 /// last pair to its tolerance, and so much for each pair.
 constexpr double kDimensionForTolerance = 16.0, kDimensionPerPair = 1.5;
 
-/// Residual of a Ritz pair of the inverted operator, relative to its eigenvalue, beside that which
-/// a task wants of the purified pair.
+/// Residual of a Ritz pair of the inverted operator, relative to its eigenvalue: at most so many
+/// times the residual that a task wants of the purified pair.
 constexpr double kRitzResidual = 100.0;
 
 /// Relative distance of eigenvalues that are taken for equal.
@@ -202,7 +201,7 @@ class SliceLanczos {
 
 /// Krylov dimension at which a run is first looked at.
 Index firstCheck(const SliceTask& task) {
-    if (task.missing == 0) return kFirstCheck;
+    if (task.missing == 0) return task.firstCheck;
     return static_cast<Index>(kDimensionForTolerance +
                               kDimensionPerPair * static_cast<double>(task.missing));
 }

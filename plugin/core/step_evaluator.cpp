@@ -10,6 +10,7 @@
 #include "basis_update.h"
 #include "errors.h"
 #include "full_spectrum.h"
+#include "leak_correction.h"
 #include "pole_selection.h"
 
 namespace spectral {
@@ -77,9 +78,11 @@ Eigen::MatrixXd StepEvaluator::onInterior(const Eigen::MatrixXd& U, double relat
                                           double alpha, const Progress& progress) {
     const Gain gain = fractionalPower(F_, alpha);
     // The power of the mean gain, not the mean of the power: K steps then make one filter.
-    if (usesBasis())
-        return applyInBasis(basis_, laplacian_.D, *constants_, gain, std::pow(residualGain_, alpha),
-                            U);
+    const double residualGain = std::pow(residualGain_, alpha);
+    if (basis_.leak)
+        return applyInLeakingBasis(basis_, laplacian_, *constants_, gain, residualGain, U,
+                                   updateFactors_.front(), progress);
+    if (usesBasis()) return applyInBasis(basis_, laplacian_.D, *constants_, gain, residualGain, U);
 
     FullSpectrumOptions options;
     options.accuracy = accuracyOf(alpha);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/fractional_filter.h"
+#include "core/leak_correction.h"
 #include "support/evaluation.h"
 #include "support/shapes.h"
 
@@ -60,6 +61,29 @@ TEST(BasisUpdate, ComesNearTheBasisFromNothing) {
     const Eigen::MatrixXd gram = basis.Phi.transpose() * DPhi;
     EXPECT_LT((gram - Eigen::MatrixXd::Identity(gram.rows(), gram.cols())).cwiseAbs().maxCoeff(),
               1e-8);
+}
+
+TEST(BasisUpdate, FiltersAsTheBasisFromNothing) {
+    const Mesh before = lumpy();
+    const Operator A(filtered(before, 0.5, 0.1));
+    HarmonicBasis basis = basisOf(Operator(before));
+    std::vector<ShiftedLdlt> factors;
+    ASSERT_TRUE(
+        updateBasis(A.laplacian, A.constants, kHarmonics, UpdateGate(), basis, factors).accepted);
+    // The gain jumps at the cut.
+    const Gain gain = [](double omega) { return 0.5 + 0.5 / (1.0 + omega); };
+    const double rest = 0.2, size = A.mesh.V.rowwise().norm().maxCoeff();
+    const auto error = [&](const Eigen::MatrixXd& X) {
+        const Eigen::MatrixXd expected =
+            applyInBasis(basisOf(A), A.laplacian.D, A.constants, gain, rest, A.mesh.V);
+        return (X - expected).rowwise().norm().maxCoeff() / size;
+    };
+    const double uncorrected =
+        error(applyInBasis(basis, A.laplacian.D, A.constants, gain, rest, A.mesh.V));
+    const double corrected = error(applyInLeakingBasis(basis, A.laplacian, A.constants, gain, rest,
+                                                       A.mesh.V, factors.front()));
+    EXPECT_LT(corrected, 1e-6);
+    EXPECT_LT(corrected, 0.1 * uncorrected);
 }
 
 TEST(BasisUpdate, OfTheSameLaplacianChangesNothing) {
