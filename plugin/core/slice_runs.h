@@ -24,14 +24,14 @@ struct SliceTask {
     Eigen::Ref<const Eigen::MatrixXd> known;  ///< D-orthonormal vectors not to be found again, of
                                               ///< the slice or near it.
     Eigen::VectorXd knownLambda;              ///< Their eigenvalues.
-    Index missing = 0;      ///< Pairs that the slice holds beside the known ones: the run ends when
-                            ///< it has so many. 0 when that is not known.
-    unsigned seed = 0;      ///< Of the start vectors; another for each run.
+    Index missing = 0;    ///< Pairs that the slice holds beside the known ones: the run ends when
+                          ///< it has so many. 0 when that is not known.
+    unsigned seed = 0;    ///< Of the start vectors; another for each run.
+    Index dimension = 0;  ///< At which the run ends in any case; 0 leaves it to the run.
+    double residual =
+        1e-10;              ///< Of the pairs, |D^-1/2 (W phi - lambda D phi)|, relative to lambda.
     Index firstCheck = 60;  ///< Krylov dimension at which the run first looks for converged pairs,
                             ///< where their number is not known.
-    Index dimension = 0;    ///< At which the run ends in any case; 0 leaves it to the run.
-    double residual =
-        1e-10;  ///< Of the pairs, |D^-1/2 (W phi - lambda D phi)|, relative to lambda.
 };
 
 /// What a run has found. Its pairs are in the store.
