@@ -35,14 +35,15 @@ constexpr Index kGrain = 4;
 /// Harmonics next to the cut that are computed anew, below and above it.
 constexpr Index kEdgeBelow = 10, kEdgeAbove = 8;
 
-/// Damping for each part of the mean residual of the previous harmonics: what is left of it leaks.
-constexpr double kDamping = 120.0;
-
 /// How far beyond these the pairs of the run have to converge, in mean distances of eigenvalues;
 /// their residuals, before they are purified; and the Krylov dimension at which that is first
 /// looked at.
 constexpr double kOverlap = 1.0, kEdgeResidual = 1e-3;
 constexpr Index kEdgeCheck = 44;
+
+/// Damping of the interior, as a multiple of the mean residual of the previous harmonics: what is
+/// left of it leaks.
+constexpr double kDamping = 120.0;
 
 /// Fewer harmonics than this are computed from nothing as quickly.
 constexpr Index kFewest = 64;
@@ -228,7 +229,7 @@ class Update {
         result_.factorizations += 2;
     }
 
-    /// Whether residuals and leaks are within the gate.
+    /// Whether leaks and errors are within the gate.
     bool passes(const UpdateGate& gate) const {
         const Index pairs = basis_.size() - c();
         const auto lambda = basis_.lambda.tail(pairs).array();

@@ -11,6 +11,7 @@
 #include "basis_certificate.h"
 #include "basis_transform.h"
 #include "errors.h"
+#include "shifted_ldlt.h"
 #include "spectrum_slicing.h"
 
 namespace spectral {

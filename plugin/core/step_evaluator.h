@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "boundary.h"
 #include "cholesky.h"
@@ -9,6 +10,7 @@
 #include "harmonic_extension.h"
 #include "laplacian.h"
 #include "progress.h"
+#include "shifted_ldlt.h"
 #include "transfer_function.h"
 
 namespace spectral {
