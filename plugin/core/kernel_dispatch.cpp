@@ -1,51 +1,53 @@
-#include "dense_products.h"
-#include "sparse_products.h"
-#include "triangular_solves.h"
+#include "kernels.h"
 
 namespace spectral {
 
 namespace baseline {
-extern const DenseProducts denseProducts;
-extern const SparseProducts sparseProducts;
-extern const TriangularSolves triangularSolves;
-}  // namespace baseline
+extern const Kernels kernels;
+}
 
 #ifdef SPECTRAL_AVX2
 namespace avx2 {
-extern const DenseProducts denseProducts;
-extern const SparseProducts sparseProducts;
-extern const TriangularSolves triangularSolves;
-}  // namespace avx2
+extern const Kernels kernels;
+}
+#endif
 
-namespace {
+#ifdef SPECTRAL_AVX512
+namespace avx512 {
+extern const Kernels kernels;
+}
+#endif
 
-bool hasAvx2() {
-    static const bool has = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-    return has;
+const std::vector<Kernels>& availableKernels() {
+    static const std::vector<Kernels> available = [] {
+        std::vector<Kernels> sets;
+#ifdef SPECTRAL_AVX512
+        if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq"))
+            sets.push_back(avx512::kernels);
+#endif
+#ifdef SPECTRAL_AVX2
+        if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+            sets.push_back(avx2::kernels);
+#endif
+        sets.push_back(baseline::kernels);
+        return sets;
+    }();
+    return available;
 }
 
-}  // namespace
-#endif
-
 const DenseProducts& denseProducts() {
-#ifdef SPECTRAL_AVX2
-    if (hasAvx2()) return avx2::denseProducts;
-#endif
-    return baseline::denseProducts;
+    static const DenseProducts& widest = availableKernels().front().dense;
+    return widest;
 }
 
 const SparseProducts& sparseProducts() {
-#ifdef SPECTRAL_AVX2
-    if (hasAvx2()) return avx2::sparseProducts;
-#endif
-    return baseline::sparseProducts;
+    static const SparseProducts& widest = availableKernels().front().sparse;
+    return widest;
 }
 
 const TriangularSolves& triangularSolves() {
-#ifdef SPECTRAL_AVX2
-    if (hasAvx2()) return avx2::triangularSolves;
-#endif
-    return baseline::triangularSolves;
+    static const TriangularSolves& widest = availableKernels().front().triangular;
+    return widest;
 }
 
 }  // namespace spectral

@@ -1,0 +1,13 @@
+// Compiled once for each instruction set, as dense_products.cpp is: see there.
+#include "kernels.h"
+
+namespace spectral::SPECTRAL_INSTRUCTIONS {
+
+extern const DenseProducts denseProducts;
+extern const SparseProducts sparseProducts;
+extern const TriangularSolves triangularSolves;
+
+extern const Kernels kernels;
+const Kernels kernels{denseProducts, sparseProducts, triangularSolves};
+
+}  // namespace spectral::SPECTRAL_INSTRUCTIONS

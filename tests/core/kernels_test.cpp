@@ -1,0 +1,91 @@
+#include "core/kernels.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <Eigen/SparseCholesky>
+
+#include "core/types.h"
+#include "support/evaluation.h"
+#include "support/shapes.h"
+
+namespace spectral {
+namespace {
+
+/// Those of the sets that this processor has, by their place: it takes the first, others another.
+class KernelsOfEverySet : public ::testing::TestWithParam<std::size_t> {
+  protected:
+    const Kernels& kernels() const { return availableKernels()[GetParam()]; }
+};
+
+INSTANTIATE_TEST_SUITE_P(Widest, KernelsOfEverySet,
+                         ::testing::Range(std::size_t{0}, availableKernels().size()));
+
+TEST_P(KernelsOfEverySet, MultipliesDenseMatrices) {
+    std::srand(3);
+    for (const Index n : {1, 7, 512, 1030})
+        for (const Index p : {1, 3, 8, 29})
+            for (const Index q : {1, 2, 3, 4, 5, 17}) {
+                const Eigen::MatrixXd A = Eigen::MatrixXd::Random(n, p);
+                const Eigen::MatrixXd B = Eigen::MatrixXd::Random(n, q);
+                Eigen::MatrixXd C(p, q), AC(n, q);
+                kernels().dense.transposedProduct(A.data(), n, B.data(), n, C.data(), p, n, p, q);
+                kernels().dense.product(A.data(), n, C.data(), p, AC.data(), n, n, p, q);
+                EXPECT_LT((C - A.transpose() * B).norm(), 1e-11) << n << ' ' << p << ' ' << q;
+                EXPECT_LT((AC - A * C).norm(), 1e-10) << n << ' ' << p << ' ' << q;
+            }
+}
+
+TEST_P(KernelsOfEverySet, MakesTheUpperHalfOfASquareProduct) {
+    std::srand(4);
+    const Index n = 700, m = 37;
+    const Eigen::MatrixXd A = Eigen::MatrixXd::Random(n, m), B = Eigen::MatrixXd::Random(n, m);
+    Eigen::MatrixXd C = Eigen::MatrixXd::Zero(m, m);
+    kernels().dense.upperTransposedProduct(A.data(), n, B.data(), n, C.data(), m, n, m);
+    const Eigen::MatrixXd all = A.transpose() * B;
+    EXPECT_LT((C.triangularView<Eigen::Upper>().toDenseMatrix() -
+               all.triangularView<Eigen::Upper>().toDenseMatrix())
+                  .norm(),
+              1e-11);
+}
+
+class SparseKernelsOfEverySet : public KernelsOfEverySet {
+  protected:
+    const testing::Operator A_{testing::withNoise(testing::icosphere(3), 0.03, 5)};
+    const Index n_ = A_.laplacian.W.rows();
+};
+
+INSTANTIATE_TEST_SUITE_P(Widest, SparseKernelsOfEverySet,
+                         ::testing::Range(std::size_t{0}, availableKernels().size()));
+
+TEST_P(SparseKernelsOfEverySet, MultipliesASparseMatrix) {
+    std::srand(5);
+    const SparseMatrix& W = A_.laplacian.W;
+    const SymmetricSparse matrix{n_, W.outerIndexPtr(), W.innerIndexPtr(), W.valuePtr()};
+    for (const Index columns : {1, 7, 8, 21}) {
+        const Eigen::MatrixXd S = Eigen::MatrixXd::Random(n_, columns);
+        Eigen::MatrixXd WS(n_, columns);
+        kernels().sparse.product(matrix, S.data(), n_, columns, WS.data(), n_);
+        EXPECT_LT((WS - W * S).norm(), 1e-11 * WS.norm()) << columns << " columns";
+    }
+}
+
+TEST_P(SparseKernelsOfEverySet, SolvesWithAFactorization) {
+    std::srand(6);
+    SparseMatrix shifted = A_.laplacian.W;
+    shifted.diagonal() -= 7.0 * A_.laplacian.D;
+    const Eigen::SimplicialLDLT<SparseMatrix> ldlt(shifted);
+    const SparseMatrix L = ldlt.matrixL().nestedExpression();
+    const Eigen::VectorXd pivots = ldlt.vectorD();
+    const LdltFactor factor{n_,           L.outerIndexPtr(), L.innerIndexPtr(),
+                            L.valuePtr(), pivots.data(),     ldlt.permutationP().indices().data()};
+    for (const Index columns : {1, 2, 3, 4, 7, 8, 21}) {
+        const Eigen::MatrixXd B = Eigen::MatrixXd::Random(n_, columns);
+        Eigen::MatrixXd X(n_, columns);
+        kernels().triangular.solve(factor, B.data(), columns, X.data());
+        EXPECT_LT((shifted * X - B).norm(), 1e-9 * B.norm()) << columns << " columns";
+    }
+}
+
+}  // namespace
+}  // namespace spectral
