@@ -57,8 +57,9 @@ constexpr double kDependent = 3e-5;
 /// Relative error of an eigenvalue that the count by inertia forgives beside a shift.
 constexpr double kCountTolerance = 1e-4;
 
-/// Columns that a task takes: few beside the basis, enough for products at full speed.
-constexpr Index kColumns = 48;
+/// Columns that a task takes: few beside the basis, enough for products at full speed; and those
+/// that it looks at, for which it needs copies.
+constexpr Index kColumns = 48, kColumnsExamined = 8;
 
 /// Candidates below the cut that are all looked at before they are touched; of the others one in so
 /// many is.
@@ -116,15 +117,17 @@ class Update {
         for (Index i = tail; i < all; ++i) examined.push_back(i);
         const auto count = static_cast<Index>(examined.size());
         Eigen::VectorXd quotient(count), residual(count);
-        runInParallel(
-            (count + kColumns - 1) / kColumns,
-            [&](Index task, int, const StopPoint&) {
-                const Index first = task * kColumns, columns = std::min(kColumns, count - first);
-                Eigen::MatrixXd S(laplacian_.D.size(), columns);
-                for (Index j = 0; j < columns; ++j) S.col(j) = candidate(at(examined, first + j));
-                examine(S, quotient.segment(first, columns), residual.segment(first, columns));
-            },
-            progress, kStage);
+        runInParallel((count + kColumnsExamined - 1) / kColumnsExamined,
+                      [&](Index task, int, const StopPoint&) {
+                          const Index first = task * kColumnsExamined;
+                          const Index columns = std::min(kColumnsExamined, count - first);
+                          Eigen::MatrixXd S(laplacian_.D.size(), columns);
+                          for (Index j = 0; j < columns; ++j)
+                              S.col(j) = candidate(at(examined, first + j));
+                          examine(S, quotient.segment(first, columns),
+                                  residual.segment(first, columns));
+                      },
+                      progress, kStage);
         quotient_.resize(all);
         sortTail(tail, quotient.tail(count - sampled));
         // Of the others, about: in between those of the sample, which are nearly in order.
@@ -163,10 +166,12 @@ class Update {
         std::iota(order.begin(), order.end(), Index{0});
         std::stable_sort(order.begin(), order.end(),
                          [&](Index a, Index b) { return quotient[a] < quotient[b]; });
-        const Eigen::MatrixXd before = candidates(first, quotient.size());
         for (Index j = 0; j < quotient.size(); ++j) {
             quotient_[first + j] = quotient[at(order, j)];
-            candidate(first + j) = before.col(at(order, j));
+            // What was here has gone to where its place was taken from.
+            Index from = at(order, j);
+            while (from < j) from = at(order, from);
+            if (from != j) candidate(first + j).swap(candidate(first + from));
         }
     }
 
@@ -201,12 +206,11 @@ class Update {
         beyond_ = run.coveredTo;
         interior_ = run.below - (edge_.lambdas().array() < run.sigma).count() - c();
         chooseCut();
-        leaveOutDependent();
     }
 
     /// Makes harmonics of the interior, and the basis of all three parts.
     void assemble(const Progress& progress) {
-        removeEdge(progress.part(0.0, 0.2));
+        leaveOutDependent(removeEdge(progress.part(0.0, 0.2)));
         ShiftedLdlt& factor = workers_.factor(0);
         const auto interior = [&] {
             factor.factorize(laplacian_, cut_);
@@ -288,15 +292,15 @@ class Update {
     /// Of the candidates in whose place the edge begins, leaves out those that it and the others
     /// make up; the rest come first. There may be some more of them than harmonics: which of their
     /// combinations these are, the Rayleigh-Ritz procedure finds.
-    void leaveOutDependent() {
+    /// @param removed  squared lengths of what the edge has had of each.
+    void leaveOutDependent(const Eigen::VectorXd& removed) {
         const Index first = std::max(Index{0}, all() - kNextToEdge);
-        Eigen::MatrixXd S = candidates(first, all() - first);
-        const Eigen::ArrayXd squared = (S.cwiseAbs2().transpose() * laplacian_.D).array();
-        S.array().rowwise() /= squared.sqrt().transpose();
-        removeEdge(S);
-        // A^T A is their Gram matrix, so that A has their lengths and angles. The QR decomposition
-        // takes next the one of which those before leave most.
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> gram(gramMatrix(S, laplacian_.D));
+        Eigen::MatrixXd G = gramMatrix(candidates(first, all() - first), laplacian_.D);
+        const Eigen::VectorXd lengths = (G.diagonal() + removed.tail(G.rows())).cwiseSqrt();
+        G = lengths.cwiseInverse().asDiagonal() * G * lengths.cwiseInverse().asDiagonal();
+        // A^T A is their Gram matrix, so that A has their lengths and angles, as parts of unit
+        // vectors. The QR decomposition takes next the one of which those before leave most.
+        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> gram(G);
         const Eigen::MatrixXd A = gram.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
                                   gram.eigenvectors().transpose();
         const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(A);
@@ -329,19 +333,21 @@ class Update {
             }
     }
 
-    /// Takes the edge out of the interior.
-    void removeEdge(const Progress& progress) {
-        runInParallel((independent_ + kColumns - 1) / kColumns,
+    /// Takes the edge out of the candidates. Returns the squared lengths of what it had of each.
+    Eigen::VectorXd removeEdge(const Progress& progress) {
+        Eigen::VectorXd removed(all());
+        runInParallel((all() + kColumns - 1) / kColumns,
                       [&](Index task, int, const StopPoint&) {
                           const Index first = task * kColumns;
-                          removeEdge(candidates(first, std::min(kColumns, independent_ - first)));
+                          const Index count = std::min(kColumns, all() - first);
+                          const auto E = edge_.vectors(0, edge_.size());
+                          const Eigen::MatrixXd C =
+                              innerProducts(candidates(first, count), laplacian_.D, E).transpose();
+                          subtractProduct(E, C, candidates(first, count));
+                          removed.segment(first, count) = C.colwise().squaredNorm();
                       },
                       progress, kStage);
-    }
-
-    void removeEdge(Eigen::Ref<Eigen::MatrixXd> S) {
-        const auto E = edge_.vectors(0, edge_.size());
-        subtractProduct(E, innerProducts(S, laplacian_.D, E).transpose(), S);
+        return removed;
     }
 
     /// Cuts the candidates that are iterated into slices so that all together cost least: those of

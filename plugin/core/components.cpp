@@ -54,7 +54,7 @@ ConstantModes::ConstantModes(const Components& components, const Eigen::VectorXd
     isWhole_ = count() == 1 && label_.minCoeff() == 0;
 }
 
-Eigen::MatrixXd ConstantModes::means(const Eigen::MatrixXd& X) const {
+Eigen::MatrixXd ConstantModes::means(const Eigen::Ref<const Eigen::MatrixXd>& X) const {
     if (isWhole_) return D_.transpose() * X / mass_[0];
     Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(mass_.size(), X.cols());
     for (Index c = 0; c < X.cols(); ++c)
@@ -63,7 +63,7 @@ Eigen::MatrixXd ConstantModes::means(const Eigen::MatrixXd& X) const {
     return mass_.cwiseInverse().asDiagonal() * sums;
 }
 
-void ConstantModes::add(const Eigen::MatrixXd& means, Eigen::MatrixXd& X) const {
+void ConstantModes::add(const Eigen::MatrixXd& means, Eigen::Ref<Eigen::MatrixXd> X) const {
     if (isWhole_) {
         X.rowwise() += means.row(0);
         return;

@@ -29,13 +29,13 @@ class ConstantModes {
     int count() const { return static_cast<int>(mass_.size()); }
 
     /// D-weighted mean of every column of X (n x c) on every component: count x c.
-    Eigen::MatrixXd means(const Eigen::MatrixXd& X) const;
+    Eigen::MatrixXd means(const Eigen::Ref<const Eigen::MatrixXd>& X) const;
 
     /// Adds row label(i) of `means` (count x c) to row i of X, nothing where the label is -1.
-    void add(const Eigen::MatrixXd& means, Eigen::MatrixXd& X) const;
+    void add(const Eigen::MatrixXd& means, Eigen::Ref<Eigen::MatrixXd> X) const;
 
     /// D-orthogonal projection of X onto the complement of the constants, in place.
-    void remove(Eigen::MatrixXd& X) const { add(-means(X), X); }
+    void remove(Eigen::Ref<Eigen::MatrixXd> X) const { add(-means(X), X); }
 
     /// The modes themselves, n x count, D-orthonormal: 1/sqrt(mass) on one component, 0 elsewhere.
     Eigen::MatrixXd orthonormal() const;

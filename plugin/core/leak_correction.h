@@ -4,15 +4,14 @@
 
 #include "components.h"
 #include "harmonic_basis.h"
-#include "laplacian.h"
 #include "progress.h"
 #include "shifted_ldlt.h"
 #include "transfer_function.h"
 
 namespace spectral {
 
-/// The shift from which the leaks of a basis are best computed: the polynomial below is then the
-/// shortest for its accuracy. In the middle of a gap between two harmonics, where solves lose
+/// The shift from which the leaks of a basis are best computed: the polynomial below is then of the
+/// lowest degree for its accuracy. In the middle of a gap between two harmonics, where solves lose
 /// nothing.
 double correctionShift(const HarmonicBasis& basis);
 
@@ -25,18 +24,24 @@ double correctionShift(const HarmonicBasis& basis);
 /// e_i = (A - lambda_i)^-1 D^-1 r_i on the rest, which is what phi_i leaks, applyInBasis has too
 /// much of
 ///
-///     sum_i (F(lambda_i^1/2) - F_h) (e_i phi_i^T D X + phi_i e_i^T D X).
+///     sum_i g_i (e_i phi_i^T D X + phi_i e_i^T D X),  g_i = F(lambda_i^1/2) - F_h.
 ///
-/// No e_i is computed: 1 / (mu - lambda_i) is a short polynomial in 1 / (mu - sigma), of one shift
-/// for all mu in the rest and all i, and so a few solves for the columns of X do.
+/// No e_i is computed. Let t(mu) = 1 / (mu - sigma) with one shift for all, and N a polynomial that
+/// is small at all t(mu) of the rest beside its values at the t(lambda_i), which are on either side
+/// of them. N(t(A)) phi_i is N(t(lambda_i)) times phi_i - e_i, but for so little in the rest. With
+/// Q = I - Phi Phi^T D, the projection onto the rest, the sum is therefore
+///
+///     - Q N(t(A)) Phi G Phi^T D X - Phi G Phi^T D N(t(A)) Q X,  G = diag(g_i / N(t(lambda_i))):
+///
+/// a few solves for the columns of X.
 ///
 /// What remains wrong is some hundredths of the correction, and the square of what leaks.
 ///
-/// @param gain, residualGain, X  as those of applyInBasis.
+/// @param D, gain, residualGain, X  as those of applyInBasis.
 /// @param basis   with a leak.
 /// @param factor  of W - sigma D, sigma the correctionShift of the basis.
 /// @throws Cancelled
-Eigen::MatrixXd applyInLeakingBasis(const HarmonicBasis& basis, const Laplacian& laplacian,
+Eigen::MatrixXd applyInLeakingBasis(const HarmonicBasis& basis, const Eigen::VectorXd& D,
                                     const ConstantModes& constants, const Gain& gain,
                                     double residualGain, const Eigen::MatrixXd& X,
                                     const ShiftedLdlt& factor, const Progress& progress = {});

@@ -1,6 +1,7 @@
 #include "shifted_ldlt.h"
 
 #include <algorithm>
+#include <cassert>
 #include <limits>
 #include <sstream>
 #include <string>
@@ -53,17 +54,19 @@ void ShiftedLdlt::analyze(const SparseMatrix& W) {
                           ": apply 'Simplification: Quadric Edge Collapse Decimation' first");
 }
 
-void ShiftedLdlt::solveInPlace(Eigen::MatrixXd& B) const {
+Eigen::MatrixXd ShiftedLdlt::solve(const Eigen::MatrixXd& B) const {
+    Eigen::MatrixXd X = B;
+    applyResolvent(Eigen::VectorXd::Ones(B.rows()), X);
+    return X;
+}
+
+void ShiftedLdlt::applyResolvent(const Eigen::VectorXd& D, Eigen::Ref<Eigen::MatrixXd> U,
+                                 double root) const {
     const SparseMatrix& L = ldlt_.matrixL().nestedExpression();
     const LdltFactor factor{L.rows(),     L.outerIndexPtr(), L.innerIndexPtr(),
                             L.valuePtr(), pivots_.data(),    ldlt_.permutationP().indices().data()};
-    triangularSolves().solve(factor, B.data(), B.cols(), B.data());
-}
-
-Eigen::MatrixXd ShiftedLdlt::solve(const Eigen::MatrixXd& B) const {
-    Eigen::MatrixXd X = B;
-    solveInPlace(X);
-    return X;
+    assert(U.outerStride() == U.rows());
+    triangularSolves().apply(factor, D.data(), root, U.data(), U.cols());
 }
 
 }  // namespace spectral

@@ -29,8 +29,11 @@ class ShiftedLdlt {
     /// (W - sigma D)^-1 B for every column of B (n x c).
     Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const;
 
-    /// The same, B <- (W - sigma D)^-1 B.
-    void solveInPlace(Eigen::MatrixXd& B) const;
+    /// U <- (W - sigma D)^-1 D U - root U for every column of U (n x c, without gaps): the
+    /// resolvent of A = D^-1 W at sigma, or a linear factor of a polynomial in it.
+    /// @param D  n masses, or a multiple of them.
+    void applyResolvent(const Eigen::VectorXd& D, Eigen::Ref<Eigen::MatrixXd> U,
+                        double root = 0.0) const;
 
   private:
     using SimplicialLdlt =

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kMaxIterations = 6;
 
-/// Columns that are solved for at a time: few beside S.
+/// Columns that are solved for between two stop points.
 constexpr Index kColumns = 16;
 
 /// The Chebyshev polynomial T_d of the interval [centre - radius, centre + radius] whose least root
@@ -63,28 +63,20 @@ void iterate(const Laplacian& laplacian, const ConstantModes& constants, const S
              const Slice& slice, Eigen::Ref<Eigen::MatrixXd> S, const StopPoint& stopPoint) {
     const ChebyshevFilter filter(iterations(slice));
     const double outside = 1.0 / (slice.bound - factor.shift());
-    Eigen::MatrixXd MS;
     // The least root, 0, is the last.
     for (int i = filter.degree - 1; i >= 0; --i) {
-        const double root = outside * filter.root(i);
         for (Index first = 0; first < S.cols(); first += kColumns) {
             stopPoint();
-            auto columns = S.middleCols(first, std::min(kColumns, S.cols() - first));
-            MS.resize(S.rows(), columns.cols());
-            for (Index j = 0; j < columns.cols(); ++j)
-                MS.col(j) = laplacian.D.cwiseProduct(columns.col(j));
-            factor.solveInPlace(MS);
-            for (Index j = 0; j < columns.cols(); ++j)
-                columns.col(j) = MS.col(j) - root * columns.col(j);
+            factor.applyResolvent(laplacian.D,
+                                  S.middleCols(first, std::min(kColumns, S.cols() - first)),
+                                  outside * filter.root(i));
         }
         // Else all columns would come near the eigenvectors next to the shift.
         if (i > 0) orthonormalize(laplacian.D, S);
     }
-    for (Index first = 0; first < S.cols(); first += kColumns) {
-        auto columns = S.middleCols(first, std::min(kColumns, S.cols() - first));
-        MS = columns;
-        constants.remove(MS);
-        columns = MS.array().rowwise() / MS.colwise().norm().array().eval();
+    for (Index j = 0; j < S.cols(); ++j) {
+        constants.remove(S.col(j));
+        S.col(j).normalize();
     }
 }
 

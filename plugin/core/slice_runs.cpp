@@ -158,8 +158,8 @@ class SliceLanczos {
     /// (W - sigma D)^-1 D U
     Eigen::MatrixXd inverse(const Eigen::Ref<const Eigen::MatrixXd>& U) {
         solves_ += static_cast<int>(U.cols());
-        Eigen::MatrixXd X = laplacian_.D.asDiagonal() * U;
-        factor_.solveInPlace(X);
+        Eigen::MatrixXd X = U;
+        factor_.applyResolvent(laplacian_.D, X);
         constants_.remove(X);
         return X;
     }

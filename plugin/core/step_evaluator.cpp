@@ -80,7 +80,7 @@ Eigen::MatrixXd StepEvaluator::onInterior(const Eigen::MatrixXd& U, double relat
     // The power of the mean gain, not the mean of the power: K steps then make one filter.
     const double residualGain = std::pow(residualGain_, alpha);
     if (basis_.leak)
-        return applyInLeakingBasis(basis_, laplacian_, *constants_, gain, residualGain, U,
+        return applyInLeakingBasis(basis_, laplacian_.D, *constants_, gain, residualGain, U,
                                    updateFactors_.front(), progress);
     if (usesBasis()) return applyInBasis(basis_, laplacian_.D, *constants_, gain, residualGain, U);
 

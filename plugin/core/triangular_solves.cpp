@@ -97,17 +97,15 @@ class UnitLower {
 };
 
 template <int Columns>
-void solveColumns(const LdltFactor& factor, const double* B, double* X) {
-    using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Columns>;
+void applyToColumns(const LdltFactor& factor, const double* d, double root, double* columns) {
     const UnitLower L(factor);
     const Size n = factor.n;
-    const Eigen::Map<const Matrix> in(B, n, Columns);
-    Eigen::Map<Matrix> out(X, n, Columns);
+    Eigen::Map<Eigen::Array<double, Eigen::Dynamic, Columns>> X(columns, n, Columns);
     constexpr int kMost = 4;  // columns of L at once: as many as fit into the registers
 
     Block<Columns> Y(n, Columns);
-    for (Size i = 0; i < n; ++i) Y.row(factor.order[i]) = in.row(i).array();
-    for (Size j = 0; j < n;) {  // L Y = P B
+    for (Size i = 0; i < n; ++i) Y.row(factor.order[i]) = d[i] * X.row(i);
+    for (Size j = 0; j < n;) {  // L Y = P diag(d) X
         const int width = L.width(j, kMost);
         switch (width) {
             case 4: L.eliminate<4>(j, Y); break;
@@ -128,19 +126,22 @@ void solveColumns(const LdltFactor& factor, const double* B, double* X) {
         }
         end -= width;
     }
-    for (Size i = 0; i < n; ++i) out.row(i) = Y.row(factor.order[i]).matrix();
+    for (Size i = 0; i < n; ++i) X.row(i) = Y.row(factor.order[i]) - root * X.row(i);
 }
 
-void solve(const LdltFactor& factor, const double* B, Size columns, double* X) {
+void apply(const LdltFactor& factor, const double* d, double root, double* X, Size columns) {
     const Size n = factor.n;
-    // The factor is far larger than the cache: each pass over it serves as many columns as it can.
+    // The factor is far larger than the cache: each pass over it serves as many columns as it can,
+    // those that fit into the registers.
     Size c = 0;
-    for (; c + 8 <= columns; c += 8) solveColumns<8>(factor, B + c * n, X + c * n);
-    for (; c + 4 <= columns; c += 4) solveColumns<4>(factor, B + c * n, X + c * n);
+    if constexpr (EIGEN_MAX_STATIC_ALIGN_BYTES >= 4 * sizeof(double))
+        for (; c + 16 <= columns; c += 16) applyToColumns<16>(factor, d, root, X + c * n);
+    for (; c + 8 <= columns; c += 8) applyToColumns<8>(factor, d, root, X + c * n);
+    for (; c + 4 <= columns; c += 4) applyToColumns<4>(factor, d, root, X + c * n);
     switch (columns - c) {
-        case 3: solveColumns<3>(factor, B + c * n, X + c * n); break;
-        case 2: solveColumns<2>(factor, B + c * n, X + c * n); break;
-        case 1: solveColumns<1>(factor, B + c * n, X + c * n); break;
+        case 3: applyToColumns<3>(factor, d, root, X + c * n); break;
+        case 2: applyToColumns<2>(factor, d, root, X + c * n); break;
+        case 1: applyToColumns<1>(factor, d, root, X + c * n); break;
         default: break;
     }
 }
@@ -149,7 +150,7 @@ void solve(const LdltFactor& factor, const double* B, Size columns, double* X) {
 
 namespace SPECTRAL_INSTRUCTIONS {
 extern const TriangularSolves triangularSolves;
-const TriangularSolves triangularSolves{solve};
+const TriangularSolves triangularSolves{apply};
 }  // namespace SPECTRAL_INSTRUCTIONS
 
 }  // namespace spectral

@@ -19,8 +19,9 @@ struct LdltFactor {
 /// Pointers, not Eigen's types: those of one instruction set are none of another's business (see
 /// dense_products.cpp).
 struct TriangularSolves {
-    /// X = A^-1 B: B and X n x columns, column-major without gaps; X may be B.
-    void (*solve)(const LdltFactor& factor, const double* B, std::ptrdiff_t columns, double* X);
+    /// X <- A^-1 diag(d) X - root X: d of n, X n x columns, column-major without gaps.
+    void (*apply)(const LdltFactor& factor, const double* d, double root, double* X,
+                  std::ptrdiff_t columns);
 };
 
 /// Chosen for this processor, once.

@@ -98,7 +98,7 @@ void run(const testing::Mesh& mesh, Index k, int steps, const Filter& filter) {
         const double uncorrected = seconds() - start;
         if (accepted) {
             start = seconds();
-            next = applyInLeakingBasis(basis, A, constants, gain, rest, X, factors.front());
+            next = applyInLeakingBasis(basis, A.D, constants, gain, rest, X, factors.front());
             update += seconds() - start - uncorrected;
         }
         X = next;

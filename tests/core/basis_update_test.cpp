@@ -80,8 +80,8 @@ TEST(BasisUpdate, FiltersAsTheBasisFromNothing) {
     };
     const double uncorrected =
         error(applyInBasis(basis, A.laplacian.D, A.constants, gain, rest, A.mesh.V));
-    const double corrected = error(applyInLeakingBasis(basis, A.laplacian, A.constants, gain, rest,
-                                                       A.mesh.V, factors.front()));
+    const double corrected = error(applyInLeakingBasis(basis, A.laplacian.D, A.constants, gain,
+                                                       rest, A.mesh.V, factors.front()));
     EXPECT_LT(corrected, 1e-6);
     EXPECT_LT(corrected, 0.1 * uncorrected);
 }

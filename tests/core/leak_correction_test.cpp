@@ -63,7 +63,7 @@ class LeakCorrection : public ::testing::Test {
     Eigen::MatrixXd corrected(const HarmonicBasis& basis) const {
         ShiftedLdlt factor;
         factor.factorize(A_.laplacian, correctionShift(basis));
-        return applyInLeakingBasis(basis, A_.laplacian, A_.constants, lowPass, kResidualGain,
+        return applyInLeakingBasis(basis, A_.laplacian.D, A_.constants, lowPass, kResidualGain,
                                    A_.mesh.V, factor);
     }
 
@@ -107,7 +107,7 @@ TEST_F(LeakCorrection, StopsWhenTheCallerWantsIt) {
     ShiftedLdlt factor;
     factor.factorize(A_.laplacian, correctionShift(basis));
     const Progress progress([](double, const std::string&) { return false; });
-    EXPECT_THROW(applyInLeakingBasis(basis, A_.laplacian, A_.constants, lowPass, kResidualGain,
+    EXPECT_THROW(applyInLeakingBasis(basis, A_.laplacian.D, A_.constants, lowPass, kResidualGain,
                                      A_.mesh.V, factor, progress),
                  Cancelled);
 }
