@@ -101,7 +101,7 @@ class Update {
           k_(k),
           basis_(basis),
           result_(result),
-          workers_(laplacian, constants, std::move(factors)),
+          workers_(laplacian, constants, factors),
           // More would mean that the spectrum has changed too much.
           edge_(laplacian.D.size(), 2 * (basis.size() - k + kEdgeBelow + kEdgeAbove)) {
         basis_.Phi.leftCols(c()) = constants_.orthonormal();
@@ -242,8 +242,6 @@ class Update {
         return leak.maxCoeff() <= gate.largestLeak &&
                (leak * residual).maxCoeff() <= gate.largestError;
     }
-
-    std::vector<ShiftedLdlt> releaseFactors() { return workers_.releaseFactors(); }
 
     /// Whether the counts are those of the basis.
     bool isComplete() const {
@@ -425,7 +423,6 @@ BasisUpdateResult updateBasis(const Laplacian& laplacian, const ConstantModes& c
         update.compute(progress.part(0.1, 0.6));
         update.assemble(progress.part(0.6, 1.0));
         result.accepted = update.passes(gate) && update.isComplete();
-        factors = update.releaseFactors();
     } catch (const SolverFailure&) {
         // The step was so large that the old vectors are no start: the caller computes anew.
     }

@@ -55,9 +55,8 @@ struct BasisUpdateResult {
 ///               solver, nothing is accepted: a basis from nothing is as quick.
 /// @param basis  of the previous Laplacian, at least k; on return of the new one, cut as by
 ///               truncatedBasis. Without meaning when not accepted.
-/// @param factors  of the update before this one, or empty: while W keeps its pattern they need no
-///                 symbolic analysis. On return those of this one; the first is the one that
-///                 applyInLeakingBasis wants.
+/// @param factors  as of truncatedBasis; on return the first is the one that applyInLeakingBasis
+///                 wants.
 /// @throws Cancelled
 BasisUpdateResult updateBasis(const Laplacian& laplacian, const ConstantModes& constants, Index k,
                               const UpdateGate& gate, HarmonicBasis& basis,

@@ -46,7 +46,8 @@ class ScaledStiffness {
 
 /// The first `size` pairs of a basis, with their certificate.
 HarmonicBasis certified(const Laplacian& laplacian, Index constants, HarmonicBasis basis,
-                        Index size, ShiftedCholesky& cholesky, const Progress& progress) {
+                        Index size, ShiftedCholesky& cholesky, ShiftedLdlt& factor,
+                        const Progress& progress) {
     std::optional<double> cut;
     if (size < basis.size()) cut = 0.5 * (basis.lambda[size - 1] + basis.lambda[size]);
     basis.Phi.conservativeResize(Eigen::NoChange, size);
@@ -56,7 +57,6 @@ HarmonicBasis certified(const Laplacian& laplacian, Index constants, HarmonicBas
         laplacian, constants, basis,
         [&] {
             if (!cut) return;
-            ShiftedLdlt factor;
             factor.factorize(laplacian, *cut);
             basis.inertiaCount = factor.eigenvaluesBelow();
         },
@@ -92,6 +92,13 @@ bool isDenseQuicker(Index n) { return n <= kDenseVertices; }
 
 HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& constants, Index k,
                              ShiftedCholesky& cholesky, const Progress& progress) {
+    std::vector<ShiftedLdlt> factors;
+    return truncatedBasis(laplacian, constants, k, cholesky, factors, progress);
+}
+
+HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& constants, Index k,
+                             ShiftedCholesky& cholesky, std::vector<ShiftedLdlt>& factors,
+                             const Progress& progress) {
     const Index n = laplacian.D.size(), c = constants.count();
     if (k >= n)
         throw InvalidOption("basis_size = " + std::to_string(k) + " needs more than " +
@@ -106,12 +113,14 @@ HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& co
     if (isDenseQuicker(n)) {
         HarmonicBasis all = denseBasis(laplacian, constants);
         const Index size = cutOutsideClusters(all.lambda, k).value_or(n);
-        return certified(laplacian, c, std::move(all), size, cholesky, progress);
+        ShiftedLdlt factor;
+        return certified(laplacian, c, std::move(all), size, cholesky, factor, progress);
     }
     // Some pairs beyond k show whether k cuts a cluster; more are taken while it does.
     for (Index more = 8;; more *= 2) {
         const Index total = std::min(k + more, n - 1);
-        LowestPairs pairs = lowestPairs(laplacian, constants, total, progress.part(0.0, 0.95));
+        LowestPairs pairs =
+            lowestPairs(laplacian, constants, total, factors, progress.part(0.0, 0.95));
         cholesky.countWork(pairs.factorizations, pairs.solves);
         HarmonicBasis basis;
         basis.Phi = std::move(pairs.Phi);
@@ -121,7 +130,8 @@ HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& co
             if (total < n - 1) continue;
             size = basis.size();  // nothing left to cut off
         }
-        return certified(laplacian, c, std::move(basis), *size, cholesky, progress.part(0.95, 1.0));
+        return certified(laplacian, c, std::move(basis), *size, cholesky, factors.front(),
+                         progress.part(0.95, 1.0));
     }
 }
 

@@ -2,11 +2,13 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <vector>
 
 #include "cholesky.h"
 #include "components.h"
 #include "laplacian.h"
 #include "progress.h"
+#include "shifted_ldlt.h"
 #include "transfer_function.h"
 
 namespace spectral {
@@ -51,8 +53,15 @@ bool isDenseQuicker(Index n);
 ///
 /// @param k  constants.count() < k < n.
 /// @param cholesky  counts the work; its factor is left as it is.
+/// @param factors  one for each core, those that made an earlier basis, or none: while W keeps its
+///                 pattern they need no symbolic analysis.
 /// @throws InvalidOption  when k is out of range; SolverFailure when the basis fails its
 ///                        count.
+HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& constants, Index k,
+                             ShiftedCholesky& cholesky, std::vector<ShiftedLdlt>& factors,
+                             const Progress& progress = {});
+
+/// The same, with factors of its own.
 HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& constants, Index k,
                              ShiftedCholesky& cholesky, const Progress& progress = {});
 

@@ -234,10 +234,10 @@ SliceRun runOf(const Laplacian& laplacian, const ConstantModes& constants, Shift
 }  // namespace
 
 SliceWorkers::SliceWorkers(const Laplacian& laplacian, const ConstantModes& constants,
-                           std::vector<ShiftedLdlt> factors)
+                           std::vector<ShiftedLdlt>& factors)
     : laplacian_(laplacian),
       constants_(constants),
-      factors_(std::move(factors)),
+      factors_(factors),
       spaces_(static_cast<std::size_t>(workerCount())) {
     if (factors_.size() != spaces_.size()) factors_ = std::vector<ShiftedLdlt>(spaces_.size());
 }

@@ -49,13 +49,11 @@ struct SliceRun {
 class SliceWorkers {
   public:
     /// The Laplacian and the modes are kept by reference.
-    /// @param factors  of earlier workers, if there were any: see releaseFactors().
+    /// @param factors  one for each worker, made where there are none; kept by reference, too.
+    ///                 Those of earlier workers need no symbolic analysis where W has the same
+    ///                 pattern.
     SliceWorkers(const Laplacian& laplacian, const ConstantModes& constants,
-                 std::vector<ShiftedLdlt> factors = {});
-
-    /// The workers' factorizations, for others whose W has the same pattern: they need no symbolic
-    /// analysis then. These workers are of no more use.
-    std::vector<ShiftedLdlt> releaseFactors() { return std::move(factors_); }
+                 std::vector<ShiftedLdlt>& factors);
 
     /// Does one task as a worker of the caller's own parallel work (see runInParallel).
     /// @throws SolverFailure, and whatever the stop point throws.
@@ -76,7 +74,7 @@ class SliceWorkers {
     const Laplacian& laplacian_;
     const ConstantModes& constants_;
     // One for each worker, which uses them again from run to run.
-    std::vector<ShiftedLdlt> factors_;
+    std::vector<ShiftedLdlt>& factors_;
     std::vector<Eigen::MatrixXd> spaces_;  // memory only as far as it has been written
 };
 

@@ -69,8 +69,12 @@ void orthogonalizeRuns(const Eigen::VectorXd& D, Index constants, PairStore& fou
 /// Slices the spectrum: lays out the runs, and those that are still needed afterwards.
 class Slicing {
   public:
-    Slicing(const Laplacian& laplacian, const ConstantModes& constants, Index k)
-        : laplacian_(laplacian), constants_(constants), k_(k), workers_(laplacian, constants) {}
+    Slicing(const Laplacian& laplacian, const ConstantModes& constants, Index k,
+            std::vector<ShiftedLdlt>& factors)
+        : laplacian_(laplacian),
+          constants_(constants),
+          k_(k),
+          workers_(laplacian, constants, factors) {}
 
     LowestPairs compute(const Progress& progress) {
         calibrate(progress.part(0.0, 0.05));
@@ -229,8 +233,8 @@ class Slicing {
 }  // namespace
 
 LowestPairs lowestPairs(const Laplacian& laplacian, const ConstantModes& constants, Index k,
-                        const Progress& progress) {
-    return Slicing(laplacian, constants, k).compute(progress);
+                        std::vector<ShiftedLdlt>& factors, const Progress& progress) {
+    return Slicing(laplacian, constants, k, factors).compute(progress);
 }
 
 }  // namespace spectral

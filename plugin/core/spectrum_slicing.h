@@ -1,8 +1,11 @@
 #pragma once
 
+#include <vector>
+
 #include "components.h"
 #include "laplacian.h"
 #include "progress.h"
+#include "shifted_ldlt.h"
 #include "types.h"
 
 namespace spectral {
@@ -28,8 +31,9 @@ struct LowestPairs {
 /// but for a small part.
 ///
 /// @param k  constants.count() < k < n.
+/// @param factors  as of truncatedBasis.
 /// @throws SolverFailure  when pairs stay missing; Cancelled.
 LowestPairs lowestPairs(const Laplacian& laplacian, const ConstantModes& constants, Index k,
-                        const Progress& progress = {});
+                        std::vector<ShiftedLdlt>& factors, const Progress& progress = {});
 
 }  // namespace spectral

@@ -81,7 +81,7 @@ Eigen::MatrixXd StepEvaluator::onInterior(const Eigen::MatrixXd& U, double relat
     const double residualGain = std::pow(residualGain_, alpha);
     if (basis_.leak)
         return applyInLeakingBasis(basis_, laplacian_.D, *constants_, gain, residualGain, U,
-                                   updateFactors_.front(), progress);
+                                   factors_.front(), progress);
     if (usesBasis()) return applyInBasis(basis_, laplacian_.D, *constants_, gain, residualGain, U);
 
     FullSpectrumOptions options;
@@ -150,9 +150,8 @@ void StepEvaluator::truncated(const Progress& progress) {
 void StepEvaluator::followBasis(const Progress& progress) {
     const Index k = options_.basisSize;
     if (k <= kMaxUpdatedBasis && basis_.size() > 0) {
-        const BasisUpdateResult update =
-            updateBasis(laplacian_, *constants_, k, UpdateGate(), basis_, updateFactors_,
-                        progress.part(0.0, 0.5));
+        const BasisUpdateResult update = updateBasis(laplacian_, *constants_, k, UpdateGate(),
+                                                     basis_, factors_, progress.part(0.0, 0.5));
         cholesky_.countWork(update.factorizations, update.solves);
         if (update.accepted) {
             ++updatedBases_;
@@ -160,8 +159,7 @@ void StepEvaluator::followBasis(const Progress& progress) {
         }
     }
     basis_ = {};  // of no more use: its memory goes to the next
-    updateFactors_.clear();
-    basis_ = truncatedBasis(laplacian_, *constants_, k, cholesky_, progress);
+    basis_ = truncatedBasis(laplacian_, *constants_, k, cholesky_, factors_, progress);
     ++computedBases_;
 }
 
@@ -178,7 +176,7 @@ HarmonicBasis StepEvaluator::upToLastJump(const Progress& progress) {
                             "8, or spectrum = truncated with reinject_residual");
     if (below == interior_.size()) return denseBasis(laplacian_, *constants_);  // nothing to cut
     return truncatedBasis(laplacian_, *constants_, std::max<Index>(below, constants_->count() + 1),
-                          cholesky_, progress);
+                          cholesky_, factors_, progress);
 }
 
 }  // namespace spectral

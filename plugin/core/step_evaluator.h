@@ -76,7 +76,7 @@ class StepEvaluator {
     std::optional<ConstantModes> constants_;
     ShiftedCholesky cholesky_;
     HarmonicBasis basis_;
-    std::vector<ShiftedLdlt> updateFactors_;  // of the last update of the basis
+    std::vector<ShiftedLdlt> factors_;  // those that made the basis
     int computedBases_ = 0, updatedBases_ = 0;
     double residualGain_ = 0.0;  // F's mean for what is beyond the basis
     double errorEstimate_ = 0.0;

@@ -78,7 +78,7 @@ void run(const testing::Mesh& mesh, Index k, int steps, const Filter& filter) {
     ShiftedCholesky work;
     Laplacian A = laplacians.input();
     ConstantModes constants(components, A.D);
-    HarmonicBasis basis = truncatedBasis(A, constants, k, work);
+    HarmonicBasis basis = truncatedBasis(A, constants, k, work, factors);
     Vertices X = applyInBasis(basis, A.D, constants, gain, restOf(basis, A), surface.X), Y = X;
     for (int step = 2; step <= steps; ++step) {
         A = laplacians(X);
