@@ -27,7 +27,7 @@ namespace {
 
 /// What a slice costs beside a solve for one vector: its factorization; and to make one of its
 /// vectors orthogonal to the others, divided by their number.
-constexpr double kFactorization = 80.0, kOrthogonalization = 1.0 / 80.0;
+constexpr double kFactorization = 100.0, kOrthogonalization = 1.0 / 60.0;
 
 /// Candidates from one possible end of a slice to the next.
 constexpr Index kGrain = 4;
@@ -197,6 +197,7 @@ class Update {
                     iterateSlice(at(longestFirst, task - 1), workers_.factor(worker), stopPoint);
             },
             progress, kStage);
+        workers_.releaseMemory();
         result_.factorizations += static_cast<int>(1 + slices());
         result_.solves += run.solves;
         for (Index i = 0; i < slices(); ++i)

@@ -15,7 +15,7 @@ namespace spectral {
 namespace {
 
 /// Columns and rows that a task takes: small beside S, large enough for products at full speed.
-constexpr Index kColumns = 72, kRows = 512;
+constexpr Index kColumns = 36, kRows = 512;
 
 /// Parts of the rows whose Gram matrices are added in the end: enough for the cores, but few and
 /// large enough for these sums to be small beside S.

@@ -59,6 +59,11 @@ class SliceWorkers {
     /// @throws SolverFailure, and whatever the stop point throws.
     SliceRun run(const SliceTask& task, int worker, PairStore& found, const StopPoint& stopPoint);
 
+    /// Gives the memory of runs back, which runs would use again.
+    void releaseMemory() {
+        for (Eigen::MatrixXd& Q : spaces_) Q.resize(0, 0);
+    }
+
     /// A worker's own factorization, for other uses of it between its runs.
     ShiftedLdlt& factor(int worker) { return factors_[static_cast<std::size_t>(worker)]; }
 
