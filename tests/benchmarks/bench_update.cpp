@@ -108,7 +108,7 @@ void run(const testing::Mesh& mesh, Index k, int steps, const Filter& filter) {
         const HarmonicBasis exact = truncatedBasis(A, constants, k, work);
         Y = applyInBasis(exact, A.D, constants, gain, restOf(exact, A), Y);
         std::printf(
-            "  step %2d: %s %.2f s, from nothing %.2f s, ratio %.1f; eigenvalues %.1e, mean "
+            "  step %2d: %s %.2f s, from nothing %.2f s, ratio %.2f; eigenvalues %.1e, mean "
             "%.1e; residuals %.1e, mean %.1e; vertices %.1e diagonals\n",
             step, accepted ? "update" : "refused", update, fromNothing, fromNothing / update,
             largest, mean, basis.residuals.maxCoeff(), basis.residuals.mean(),
