@@ -1,8 +1,10 @@
 #pragma once
 
-#include <Eigen/SparseCholesky>
+#include <Eigen/Core>
 
 #include "laplacian.h"
+#include "ldlt_elimination.h"
+#include "symbolic_ldlt.h"
 #include "types.h"
 
 namespace spectral {
@@ -36,18 +38,8 @@ class ShiftedLdlt {
                         double root = 0.0) const;
 
   private:
-    using SimplicialLdlt =
-        Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>>;
-    struct Ldlt : SimplicialLdlt {
-        /// Entries of L by the symbolic analysis, which Eigen adds up in an int.
-        Index entries() const { return m_nonZerosPerCol.cast<Index>().sum(); }
-    };
-
-    void analyze(const SparseMatrix& W);
-
-    Ldlt ldlt_;
-    SparseMatrix shifted_;  // the last factorized matrix, for its pattern
-    Eigen::VectorXd pivots_;
+    SymbolicLdlt symbolic_;
+    LdltNumbers numbers_;
     double shift_ = 0.0;
     Index below_ = 0;
 };
