@@ -27,7 +27,7 @@ namespace {
 
 /// What a slice costs beside a solve for one vector: its factorization; and to make one of its
 /// vectors orthogonal to the others, divided by their number.
-constexpr double kFactorization = 100.0, kOrthogonalization = 1.0 / 60.0;
+constexpr double kFactorization = 65.0, kOrthogonalization = 1.0 / 60.0;
 
 /// Candidates from one possible end of a slice to the next.
 constexpr Index kGrain = 4;
@@ -36,9 +36,9 @@ constexpr Index kGrain = 4;
 constexpr Index kEdgeBelow = 10, kEdgeAbove = 8;
 
 /// How far beyond these the pairs of the run have to converge, in mean distances of eigenvalues;
-/// their residuals, before they are purified; and the Krylov dimension at which that is first
+/// their residuals, within the edge and there; and the Krylov dimension at which that is first
 /// looked at.
-constexpr double kOverlap = 1.0, kEdgeResidual = 1e-3;
+constexpr double kOverlap = 1.0, kEdgeResidual = 3e-5, kResidualBeyond = 1e-3;
 constexpr Index kEdgeCheck = 44;
 
 /// Damping of the interior, as a multiple of the mean residual of the previous harmonics: what is
@@ -177,8 +177,7 @@ class Update {
 
     /// Computes the edge and, beside it, iterates the interior.
     void compute(const Progress& progress) {
-        const Eigen::MatrixXd none;
-        const SliceTask edge = edgeTask(none);
+        const SliceTask edge = edgeTask();
         beyond_ = edge.to;
         layOutSlices();
         counts_.resize(static_cast<std::size_t>(slices()));
@@ -188,23 +187,28 @@ class Update {
             return cost(begin(a), begin(a + 1)) > cost(begin(b), begin(b + 1));
         });
         SliceRun run;
+        Index belowEnd = 0;  // of the edge
         runInParallel(
-            1 + slices(),
+            slices() + 2,
             [&](Index task, int worker, const StopPoint& stopPoint) {
-                if (task == 0)
+                if (task == 0) {
                     run = workers_.run(edge, worker, edge_, stopPoint);
-                else
+                } else if (task <= slices()) {
                     iterateSlice(at(longestFirst, task - 1), workers_.factor(worker), stopPoint);
+                } else {
+                    workers_.factor(worker).factorize(laplacian_, edge.to);
+                    belowEnd = workers_.factor(worker).eigenvaluesBelow();
+                }
             },
             progress, kStage);
-        workers_.releaseMemory();
-        result_.factorizations += static_cast<int>(1 + slices());
+        result_.factorizations += static_cast<int>(2 + slices());
         result_.solves += run.solves;
         for (Index i = 0; i < slices(); ++i)
             result_.solves += iterations(slice(i)) * static_cast<int>(begin(i + 1) - begin(i));
+        findOverlooked(edge, run, belowEnd);
+        workers_.releaseMemory();
         edge_.sort();
         counts_.push_back({run.sigma, run.below});
-        beyond_ = run.coveredTo;
         interior_ = run.below - (edge_.lambdas().array() < run.sigma).count() - c();
         chooseCut();
     }
@@ -216,7 +220,6 @@ class Update {
         const auto interior = [&] {
             factor.factorize(laplacian_, cut_);
             basis_.inertiaCount = factor.eigenvaluesBelow();
-            addOverlooked(basis_.inertiaCount - size_);
             return interior_;
         };
         quotient_ = rayleighRitz(laplacian_, candidates(0, independent_), interior,
@@ -257,13 +260,17 @@ class Update {
 
     /// The run that finds the edge: from some pairs below the wanted number to some above the
     /// number that the previous basis had, which did not cut a cluster.
-    SliceTask edgeTask(const Eigen::MatrixXd& none) const {
+    SliceTask edgeTask() const {
         const Index end = wanted() - kEdgeBelow, last = quotient_.size() - 1;
         const double spacing = quotient_[wanted() - 1] / static_cast<double>(k_);
-        const double from = 0.5 * (quotient_[end - 1] + quotient_[end]);
-        const double to = quotient_[last] + static_cast<double>(kEdgeAbove) * spacing;
-        SliceTask task{0.5 * (from + to), from, to, kOverlap * spacing, none, {}, 0, 1};
+        SliceTask task;
+        task.from = 0.5 * (quotient_[end - 1] + quotient_[end]);
+        task.to = quotient_[last] + static_cast<double>(kEdgeAbove) * spacing;
+        task.sigma = 0.5 * (task.from + task.to);
+        task.overlap = kOverlap * spacing;
+        task.seed = 1;
         task.residual = kEdgeResidual;
+        task.residualBeyond = kResidualBeyond;
         task.firstCheck = kEdgeCheck;
         return task;
     }
@@ -273,6 +280,34 @@ class Update {
         factor.factorize(laplacian_, slice(i).middle());
         counts_[static_cast<std::size_t>(i)] = {factor.shift(), factor.eigenvaluesBelow()};
         iterate(laplacian_, constants_, factor, slice(i), candidates(first, count), stopPoint);
+    }
+
+    /// Where the run has overlooked copies of multiple eigenvalues above its shift, computes the
+    /// edge once more: accurately, so that another run can leave out what is known, and find them.
+    /// Below the shift the interior has such copies.
+    void findOverlooked(SliceTask edge, const SliceRun& run, Index belowEnd) {
+        const auto missing = [&] {
+            return belowEnd - run.below - (edge_.lambdas().array() >= run.sigma).count();
+        };
+        if (missing() > 0) {
+            edge_.clear();
+            edge.residual = edge.residualBeyond = SliceTask().residual;
+            result_.solves += workers_.run(edge, 0, edge_, [] {}).solves;
+            ++result_.factorizations;
+        }
+        if (missing() > 0) {
+            SliceTask copies;
+            copies.from = run.sigma;
+            copies.to = edge.to;
+            copies.sigma = 0.5 * (copies.from + copies.to);
+            copies.known = edge_.size();
+            copies.missing = missing();
+            copies.seed = edge.seed + 1;
+            result_.solves += workers_.run(copies, 0, edge_, [] {}).solves;
+            ++result_.factorizations;
+        }
+        if (missing() != 0)
+            throw SolverFailure("the edge has not as many pairs as the inertia counts");
     }
 
     /// The cut is in the edge: its eigenvalues are as good as those of a basis from nothing. The
@@ -312,14 +347,6 @@ class Update {
         std::sort(taken.begin(), taken.begin() + count);
         for (Index j = 0; j < count; ++j)
             if (taken[j] != j) candidate(first + j) = candidate(first + taken[j]);
-    }
-
-    /// Copies of a multiple eigenvalue that the run has overlooked above its shift are in the
-    /// interior, if there are candidates left to make them of.
-    void addOverlooked(Index copies) {
-        if (copies < 0 || interior_ + copies > independent_) return;  // the basis is not complete
-        interior_ += copies;
-        size_ += copies;
     }
 
     /// Brings the pairs from `first` on, those of the edge, to their places: where the run has

@@ -48,8 +48,8 @@ struct BasisUpdateResult {
 /// (HarmonicBasis::leak), filters correct for: that is cheaper than more iterations.
 ///
 /// Conditions checked: leaks and errors are within the gate; the inertia of W - sigma D counts at
-/// the cut as many eigenvalues as the basis has, and at every slice's shift as many as lie below
-/// it.
+/// the cut as many eigenvalues as the basis has, at every slice's shift as many as lie below it,
+/// and at the end of the run's part of the spectrum no more than have been found up to there.
 ///
 /// @param k      harmonics wanted. With less than some tens, or where truncatedBasis uses the dense
 ///               solver, nothing is accepted: a basis from nothing is as quick.

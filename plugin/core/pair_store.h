@@ -28,6 +28,8 @@ class PairStore {
     /// @throws SolverFailure  when there are more pairs than there can be.
     Index claim(const Eigen::VectorXd& lambda, unsigned run);
 
+    void clear() { pairs_.clear(); }
+
     /// Brings the pairs into ascending order, in place.
     void sort();
 

@@ -40,9 +40,12 @@ constexpr double kNew = 0.5;
 
 constexpr const char* kStage = "computing the harmonics";
 
-/// 1 / (lambda - sigma) of the known pairs.
-KnownPairs knownOf(const SliceTask& task, double sigma) {
-    return {task.known, (task.knownLambda.array() - sigma).inverse()};
+/// The known pairs of (W - sigma D)^-1 D.
+KnownPairs knownOf(const SliceTask& task, PairStore& found, double sigma) {
+    KnownPairs known{found.vectors(task.firstKnown, task.known), Eigen::VectorXd(task.known)};
+    for (Index i = 0; i < task.known; ++i)
+        known.values[i] = 1.0 / (found.lambda(task.firstKnown + i) - sigma);
+    return known;
 }
 
 /// A Lanczos run with (W - sigma D)^-1 D on the complement of the constants and of known vectors.
@@ -50,12 +53,14 @@ class SliceLanczos {
   public:
     /// @param Q  storage for the basis of the space: n rows, and columns for its largest dimension.
     SliceLanczos(const Laplacian& laplacian, const ConstantModes& constants,
-                 const ShiftedLdlt& factor, const SliceTask& task, Eigen::MatrixXd& Q)
+                 const ShiftedLdlt& factor, const SliceTask& task, PairStore& found,
+                 Eigen::MatrixXd& Q)
         : laplacian_(laplacian),
           constants_(constants),
           factor_(factor),
           task_(task),
-          known_(knownOf(task, factor.shift())),
+          found_(found),
+          known_(knownOf(task, found, factor.shift())),
           apply_([this](const Eigen::MatrixXd& U) { return inverse(U); }),
           Q_(Q),
           lanczos_(apply_, laplacian.D, known_, kBlock, task.seed, Q) {}
@@ -126,7 +131,7 @@ class SliceLanczos {
     }
 
     /// Puts the converged pairs into the store; ends the recurrence.
-    void deliver(PairStore& store) {
+    void deliver() {
         std::vector<Index> taken = converged();
         // From the shift on outwards: the first ones have the smallest errors.
         std::stable_sort(taken.begin(), taken.end(), [this](Index a, Index b) {
@@ -141,8 +146,8 @@ class SliceLanczos {
             lambda[i] = factor_.shift() + 1.0 / theta_[taken[static_cast<std::size_t>(i)]];
         }
         multiplyInPlace(Q_.leftCols(dimension()), Z);
-        const Index first = store.claim(lambda, task_.seed);
-        auto Phi = store.vectors(first, count);
+        const Index first = found_.claim(lambda, task_.seed);
+        auto Phi = found_.vectors(first, count);
         for (Index i = 0; i < count; i += kColumns) {
             // Purification: one more inverse iteration takes away what is not in the Krylov space.
             const Index columns = std::min(kColumns, count - i);
@@ -181,13 +186,16 @@ class SliceLanczos {
     /// Purified, a pair with residual r = |M y - theta y| has |W phi - lambda D phi| = r / theta^2.
     bool isConverged(Index i) const {
         const double theta = std::abs(theta_[i]), lambda = factor_.shift() + 1.0 / theta_[i];
-        return residuals_[i] <= task_.residual * std::min(kRitzResidual, lambda * theta) * theta;
+        const bool isWithin = lambda >= task_.from && lambda < task_.to;
+        const double wanted = isWithin ? task_.residual : task_.residualBeyond;
+        return residuals_[i] <= wanted * std::min(kRitzResidual, lambda * theta) * theta;
     }
 
     const Laplacian& laplacian_;
     const ConstantModes& constants_;
     const ShiftedLdlt& factor_;
     const SliceTask& task_;
+    PairStore& found_;
     KnownPairs known_;
     int solves_ = 0;
     BlockLanczos::Operator apply_;
@@ -213,7 +221,7 @@ SliceRun runOf(const Laplacian& laplacian, const ConstantModes& constants, Shift
     factor.factorize(laplacian, task.sigma);
     run.sigma = factor.shift();
     run.below = factor.eigenvaluesBelow();
-    SliceLanczos lanczos(laplacian, constants, factor, task, Q);
+    SliceLanczos lanczos(laplacian, constants, factor, task, found, Q);
     for (Index check = firstCheck(task); !lanczos.exhausted();) {
         stopPoint();
         lanczos.extend();
@@ -226,7 +234,7 @@ SliceRun runOf(const Laplacian& laplacian, const ConstantModes& constants, Shift
     }
     run.coveredFrom = lanczos.coveredFrom();
     run.coveredTo = lanczos.coveredTo();
-    lanczos.deliver(found);
+    lanczos.deliver();
     run.solves = lanczos.solves();
     return run;
 }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <utility>
 #include <vector>
 
 #include "components.h"
@@ -21,15 +20,14 @@ struct SliceTask {
     double overlap = 0.0;  ///< How far beyond the slice pairs must have converged: of those within
                            ///< it none is then likely to be overlooked. Of no meaning when the
                            ///< number of missing pairs is given.
-    Eigen::Ref<const Eigen::MatrixXd> known;  ///< D-orthonormal vectors not to be found again, of
-                                              ///< the slice or near it.
-    Eigen::VectorXd knownLambda;              ///< Their eigenvalues.
+    Index firstKnown = 0, known = 0;  ///< Pairs of the store that are not to be found again, of the
+                                      ///< slice or near it.
     Index missing = 0;    ///< Pairs that the slice holds beside the known ones: the run ends when
                           ///< it has so many. 0 when that is not known.
     unsigned seed = 0;    ///< Of the start vectors; another for each run.
     Index dimension = 0;  ///< At which the run ends in any case; 0 leaves it to the run.
-    double residual =
-        1e-10;              ///< Of the pairs, |D^-1/2 (W phi - lambda D phi)|, relative to lambda.
+    double residual = 1e-10;        ///< Of the pairs, |D^-1/2 (W phi - lambda D phi)| / lambda.
+    double residualBeyond = 1e-10;  ///< The same, of those that have to converge beyond the slice.
     Index firstCheck = 60;  ///< Krylov dimension at which the run first looks for converged pairs,
                             ///< where their number is not known.
 };

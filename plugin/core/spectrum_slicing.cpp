@@ -163,10 +163,13 @@ class Slicing {
         std::vector<SliceTask> tasks;
         for (Index i = 0; i < runs; ++i) {
             const double place = static_cast<double>(i);
-            const double from = i > 0 ? at(place) : 0.0;
-            const double to = i + 1 < runs ? at(place + 1.0) : counts_.back().sigma;
-            tasks.push_back(
-                {at(place + 0.5), from, to, 0.0, none_, {}, 0, seed_++, kFirstDimension});
+            SliceTask task;
+            task.sigma = at(place + 0.5);
+            task.from = i > 0 ? at(place) : 0.0;
+            task.to = i + 1 < runs ? at(place + 1.0) : counts_.back().sigma;
+            task.seed = seed_++;
+            task.dimension = kFirstDimension;
+            tasks.push_back(task);
         }
         // These counts have served their purpose: the runs' own ones divide the spectrum.
         counts_.erase(counts_.begin() + 1, counts_.end() - 1);
@@ -178,7 +181,7 @@ class Slicing {
     /// on both sides are no longer in the way: the missing ones are then far nearer to the shift
     /// than all others, and the Lanczos process finds them quickly.
     /// @param found  sorted.
-    std::vector<SliceTask> tasksForMissing(PairStore& found) {
+    std::vector<SliceTask> tasksForMissing(const PairStore& found) {
         const Eigen::VectorXd lambda = found.lambdas();
         const auto firstFrom = [&](double bound) {
             return std::max<Index>(
@@ -202,11 +205,16 @@ class Slicing {
         for (const auto& [missing, i] : gaps) {
             const Count& a = counts_[i - 1];
             const Count& b = counts_[i];
-            const double sigma = a.coveredTo < b.coveredFrom ? 0.5 * (a.coveredTo + b.coveredFrom)
-                                                             : 0.5 * (a.sigma + b.sigma);
-            const Index first = firstFrom(a.coveredFrom), end = firstFrom(b.coveredTo);
-            tasks.push_back({sigma, a.sigma, b.sigma, 0.0, found.vectors(first, end - first),
-                             lambda.segment(first, end - first), missing, seed_++});
+            SliceTask task;
+            task.sigma = a.coveredTo < b.coveredFrom ? 0.5 * (a.coveredTo + b.coveredFrom)
+                                                     : 0.5 * (a.sigma + b.sigma);
+            task.from = a.sigma;
+            task.to = b.sigma;
+            task.firstKnown = firstFrom(a.coveredFrom);
+            task.known = firstFrom(b.coveredTo) - task.firstKnown;
+            task.missing = missing;
+            task.seed = seed_++;
+            tasks.push_back(task);
         }
         return tasks;
     }
@@ -224,7 +232,6 @@ class Slicing {
     const ConstantModes& constants_;
     Index k_;
     SliceWorkers workers_;
-    Eigen::MatrixXd none_;
     std::vector<Count> counts_;  // ascending
     unsigned seed_ = 1;
     int factorizations_ = 0, solves_ = 0;
