@@ -17,7 +17,7 @@ namespace {
 constexpr Index kNeighbours = 16;
 
 /// Harmonics that one task looks at.
-constexpr Index kColumns = 32;
+constexpr Index kColumns = 16;
 
 /// Neighbouring eigenvalues nearer than this part of the mean spacing lambda_k / k (Weyl's law)
 /// belong to one cluster: equal ones by symmetry, told apart by the mesh or by round-off only.

@@ -40,6 +40,11 @@ const DenseProducts& denseProducts() {
     return widest;
 }
 
+const DenseEigenproblems& denseEigenproblems() {
+    static const DenseEigenproblems& widest = availableKernels().front().eigen;
+    return widest;
+}
+
 const SparseProducts& sparseProducts() {
     static const SparseProducts& widest = availableKernels().front().sparse;
     return widest;

@@ -4,10 +4,11 @@
 namespace spectral::SPECTRAL_INSTRUCTIONS {
 
 extern const DenseProducts denseProducts;
+extern const DenseEigenproblems denseEigenproblems;
 extern const SparseProducts sparseProducts;
 extern const TriangularSolves triangularSolves;
 
 extern const Kernels kernels;
-const Kernels kernels{denseProducts, sparseProducts, triangularSolves};
+const Kernels kernels{denseProducts, denseEigenproblems, sparseProducts, triangularSolves};
 
 }  // namespace spectral::SPECTRAL_INSTRUCTIONS

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "dense_eigenproblems.h"
 #include "dense_products.h"
 #include "sparse_products.h"
 #include "triangular_solves.h"
@@ -11,6 +12,7 @@ namespace spectral {
 /// What is compiled once for each instruction set.
 struct Kernels {
     const DenseProducts& dense;
+    const DenseEigenproblems& eigen;
     const SparseProducts& sparse;
     const TriangularSolves& triangular;
 };

@@ -1,9 +1,9 @@
 #include "rayleigh_ritz.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <vector>
 
+#include "dense_eigenproblems.h"
 #include "dense_products.h"
 #include "errors.h"
 #include "mass_products.h"
@@ -54,27 +54,29 @@ Eigen::VectorXd rayleighRitz(const Laplacian& laplacian, Eigen::Ref<Eigen::Matri
     Eigen::MatrixXd& G = grams[0];
     for (std::size_t part = 1; part < grams.size(); ++part) G += grams[part];
     H.triangularView<Eigen::StrictlyLower>() = H.transpose();
-    Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz;
+    Eigen::VectorXd values(m);
+    Eigen::MatrixXd Z(m, m);
+    bool hasConverged = false;
     Index count = m;
     runInParallel(
         2,
         [&](Index task, int, const StopPoint&) {
             if (task == 0)
-                ritz.compute(H, G);
+                hasConverged = denseEigenproblems().generalized(H.data(), G.data(), m,
+                                                                values.data(), Z.data());
             else
                 count = wanted();
         },
         progress.part(0.5, 0.6), kStage);
-    if (ritz.info() != Eigen::Success || !ritz.eigenvectors().allFinite())
-        throw SolverFailure("the Ritz vectors of dependent vectors do not exist");
-    const Eigen::MatrixXd Z = ritz.eigenvectors().leftCols(count);
+    if (!hasConverged) throw SolverFailure("the Ritz vectors of dependent vectors do not exist");
+    Z.conservativeResize(m, count);
     runInParallel((n + kRows - 1) / kRows,
                   [&](Index task, int, const StopPoint&) {
                       const Index first = task * kRows;
                       multiplyInPlace(S.middleRows(first, std::min(kRows, n - first)), Z);
                   },
                   progress.part(0.6, 1.0), kStage);
-    return ritz.eigenvalues().head(count);
+    return values.head(count);
 }
 
 }  // namespace spectral

@@ -36,9 +36,9 @@ struct ChebyshevFilter {
     double centre, radius;
 };
 
-/// D-orthonormalizes the columns of S by the Cholesky factor of their Gram matrix.
+/// D-orthonormalizes the columns of S by the Cholesky factor of their Gram matrix, whatever their
+/// lengths.
 void orthonormalize(const Eigen::VectorXd& D, Eigen::Ref<Eigen::MatrixXd> S) {
-    S.array().rowwise() /= S.colwise().norm().array().eval();
     const Eigen::MatrixXd gram = gramMatrix(S, D);
     const Eigen::LLT<Eigen::MatrixXd> llt(gram);
     if (llt.info() != Eigen::Success || !gram.allFinite())
@@ -74,10 +74,7 @@ void iterate(const Laplacian& laplacian, const ConstantModes& constants, const S
         // Else all columns would come near the eigenvectors next to the shift.
         if (i > 0) orthonormalize(laplacian.D, S);
     }
-    for (Index j = 0; j < S.cols(); ++j) {
-        constants.remove(S.col(j));
-        S.col(j).normalize();
-    }
+    for (Index j = 0; j < S.cols(); ++j) constants.remove(S.col(j));
 }
 
 }  // namespace spectral

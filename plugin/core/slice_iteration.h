@@ -32,7 +32,7 @@ int iterations(const Slice& slice);
 /// beyond the bound. Eigenvectors below the slice are left as they are: others look after them.
 ///
 /// @param factor  of W - sigma D, sigma within the slice.
-/// @param S       n x m, m <= n, independent; on return with columns of length 1.
+/// @param S       n x m, m <= n, independent; of any lengths, on return, too.
 /// @throws SolverFailure  when the columns have become dependent; whatever the stop point throws.
 void iterate(const Laplacian& laplacian, const ConstantModes& constants, const ShiftedLdlt& factor,
              const Slice& slice, Eigen::Ref<Eigen::MatrixXd> S, const StopPoint& stopPoint);

@@ -1,12 +1,12 @@
 #include "slice_runs.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "block_lanczos.h"
+#include "dense_eigenproblems.h"
 #include "errors.h"
 #include "mass_products.h"
 
@@ -74,11 +74,11 @@ class SliceLanczos {
     void examine() {
         const Index m = dimension();
         if (m == 0) return;
-        const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(lanczos_.T());
-        if (solver.info() != Eigen::Success)
+        const Eigen::MatrixXd T = lanczos_.T();
+        theta_.resize(m);
+        Z_.resize(m, m);
+        if (!denseEigenproblems().symmetric(T.data(), m, theta_.data(), Z_.data()))
             throw SolverFailure("the eigenproblem of the Krylov space did not converge");
-        theta_ = solver.eigenvalues();
-        Z_ = solver.eigenvectors();
         residuals_ = lanczos_.residuals(Z_);
         // theta = 1 / (lambda - sigma): the ends of its range are next to the shift. Between
         // -1 / sigma and 0 lambda would be negative: round-off.

@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 #include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cstdlib>
 
 #include "core/types.h"
 #include "support/evaluation.h"
@@ -47,6 +49,32 @@ TEST_P(KernelsOfEverySet, MakesTheUpperHalfOfASquareProduct) {
                all.triangularView<Eigen::Upper>().toDenseMatrix())
                   .norm(),
               1e-11);
+}
+
+TEST_P(KernelsOfEverySet, SolvesSmallEigenproblems) {
+    std::srand(7);
+    for (const Index m : {1, 2, 9, 80}) {
+        const Eigen::MatrixXd R = Eigen::MatrixXd::Random(m, m), Q = Eigen::MatrixXd::Random(m, m);
+        const Eigen::MatrixXd A = R + R.transpose(), I = Eigen::MatrixXd::Identity(m, m);
+        const Eigen::MatrixXd B = Q * Q.transpose() + I;
+        Eigen::VectorXd values(m);
+        Eigen::MatrixXd Z(m, m);
+        ASSERT_TRUE(kernels().eigen.symmetric(A.data(), m, values.data(), Z.data()));
+        EXPECT_LT((A * Z - Z * values.asDiagonal()).norm(), 1e-12 * A.norm());
+        EXPECT_LT((Z.transpose() * Z - I).norm(), 1e-12);
+        EXPECT_TRUE(std::is_sorted(values.begin(), values.end()));
+        ASSERT_TRUE(kernels().eigen.generalized(A.data(), B.data(), m, values.data(), Z.data()));
+        EXPECT_LT((A * Z - B * Z * values.asDiagonal()).norm(), 1e-11 * A.norm());
+        EXPECT_LT((Z.transpose() * B * Z - I).norm(), 1e-12 * B.norm());
+        EXPECT_TRUE(std::is_sorted(values.begin(), values.end()));
+    }
+}
+
+TEST_P(KernelsOfEverySet, SaysWhenAMatrixIsNotPositiveDefinite) {
+    const Eigen::MatrixXd A = Eigen::MatrixXd::Identity(2, 2), B = -A;
+    Eigen::VectorXd values(2);
+    Eigen::MatrixXd Z(2, 2);
+    EXPECT_FALSE(kernels().eigen.generalized(A.data(), B.data(), 2, values.data(), Z.data()));
 }
 
 class SparseKernelsOfEverySet : public KernelsOfEverySet {

@@ -49,7 +49,6 @@ TEST(SliceIteration, DampsWhatIsBeyondTheBound) {
     const Eigen::MatrixXd tangents = left * kept.inverse();
     const double before = 1e-3 * random(beyond, kCount, 1).norm();
     EXPECT_LT(tangents.norm(), before / kDamping);
-    EXPECT_LT((S.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-12);
 }
 
 TEST(SliceIteration, TakesMoreIterationsNearTheBoundAndForMoreDamping) {
