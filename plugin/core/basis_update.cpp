@@ -200,12 +200,12 @@ class Update {
                     belowEnd = workers_.factor(worker).eigenvaluesBelow();
                 }
             },
-            progress, kStage);
+            progress.part(0.0, 0.8), kStage);
         result_.factorizations += static_cast<int>(2 + slices());
         result_.solves += run.solves;
         for (Index i = 0; i < slices(); ++i)
             result_.solves += iterations(slice(i)) * static_cast<int>(begin(i + 1) - begin(i));
-        findOverlooked(edge, run, belowEnd);
+        findOverlooked(edge, run, belowEnd, progress.part(0.8, 1.0));
         workers_.releaseMemory();
         edge_.sort();
         counts_.push_back({run.sigma, run.below});
@@ -285,15 +285,15 @@ class Update {
     /// Where the run has overlooked copies of multiple eigenvalues above its shift, computes the
     /// edge once more: accurately, so that another run can leave out what is known, and find them.
     /// Below the shift the interior has such copies.
-    void findOverlooked(SliceTask edge, const SliceRun& run, Index belowEnd) {
+    void findOverlooked(SliceTask edge, const SliceRun& run, Index belowEnd,
+                        const Progress& progress) {
         const auto missing = [&] {
             return belowEnd - run.below - (edge_.lambdas().array() >= run.sigma).count();
         };
         if (missing() > 0) {
             edge_.clear();
             edge.residual = edge.residualBeyond = SliceTask().residual;
-            result_.solves += workers_.run(edge, 0, edge_, [] {}).solves;
-            ++result_.factorizations;
+            runAlone(edge, progress.part(0.0, 0.5));
         }
         if (missing() > 0) {
             SliceTask copies;
@@ -303,11 +303,15 @@ class Update {
             copies.known = edge_.size();
             copies.missing = missing();
             copies.seed = edge.seed + 1;
-            result_.solves += workers_.run(copies, 0, edge_, [] {}).solves;
-            ++result_.factorizations;
+            runAlone(copies, progress.part(0.5, 1.0));
         }
         if (missing() != 0)
             throw SolverFailure("the edge has not as many pairs as the inertia counts");
+    }
+
+    void runAlone(const SliceTask& task, const Progress& progress) {
+        result_.solves += workers_.execute({task}, edge_, progress).front().solves;
+        ++result_.factorizations;
     }
 
     /// The cut is in the edge: its eigenvalues are as good as those of a basis from nothing. The

@@ -10,6 +10,7 @@
 namespace spectral {
 
 /// The eigenpairs that runs have found, in a matrix of the size that they will have in the end.
+/// While threads add pairs, those that were there before may be read.
 class PairStore {
   public:
     PairStore(Index rows, Index capacity) : Phi_(rows, capacity) {

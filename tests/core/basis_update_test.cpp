@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "core/fractional_filter.h"
@@ -184,6 +185,28 @@ TEST(BasisUpdate, StopsWhenTheCallerWantsIt) {
     HarmonicBasis basis = basisOf(A);
     const Progress progress([](double, const std::string&) { return false; });
     EXPECT_THROW(update(A, basis, kHarmonics, progress), Cancelled);
+}
+
+TEST(BasisUpdate, OfASphereTellsItsProgressAndStopsAnywhere) {
+    // Copies of multiple eigenvalues take runs of their own.
+    const Mesh before = testing::icosphere(3);
+    const Operator A(filtered(before, 0.7, 0.1));
+    const HarmonicBasis start = basisOf(Operator(before));
+    HarmonicBasis basis = start;
+    double last = 0.0;
+    const Progress rising([&](double fraction, const std::string&) {
+        EXPECT_GE(fraction, last);
+        last = fraction;
+        return true;
+    });
+    EXPECT_TRUE(update(A, basis, kHarmonics, rising).accepted);
+    EXPECT_GT(last, 0.9);
+    for (const double end : {0.05, 0.3, 0.51, 0.56, 0.8}) {
+        basis = start;
+        const Progress progress(
+            [&](double fraction, const std::string&) { return fraction < end; });
+        EXPECT_THROW(update(A, basis, kHarmonics, progress), Cancelled) << end;
+    }
 }
 
 FilterOptions truncatedSteps(double featureSize, int steps) {
