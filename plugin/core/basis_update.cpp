@@ -43,7 +43,7 @@ constexpr Index kEdgeCheck = 44;
 
 /// Damping of the interior, as a multiple of the mean residual of the previous harmonics: what is
 /// left of it leaks.
-constexpr double kDamping = 100.0;
+constexpr double kDamping = 120.0;
 
 /// Fewer harmonics than this are computed from nothing as quickly.
 constexpr Index kFewest = 64;
