@@ -41,7 +41,8 @@ void ShiftedLdlt::applyResolvent(const Eigen::VectorXd& D, Eigen::Ref<Eigen::Mat
                                  double root) const {
     const LdltFactor factor{symbolic_.order.size(), symbolic_.factorStarts.data(),
                             numbers_.rows.data(),   numbers_.values.data(),
-                            numbers_.pivots.data(), symbolic_.order.data()};
+                            numbers_.pivots.data(), symbolic_.joined.data(),
+                            symbolic_.order.data()};
     assert(U.outerStride() == U.rows());
     triangularSolves().apply(factor, D.data(), root, U.data(), U.cols());
 }

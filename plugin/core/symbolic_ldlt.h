@@ -26,8 +26,9 @@ struct SymbolicLdlt {
     std::vector<int> parent;  ///< n, of the elimination tree: the first row of a column of L below
                               ///< its diagonal, or -1.
     std::vector<int> factorStarts;  ///< n + 1: where the columns of L begin, without diagonals.
-    std::vector<char> joined;       ///< n: whether column j + 1 of L has all rows of column j but
-                                    ///< the first, which is j + 1 (they are in one supernode).
+    std::vector<char>
+        joined;  ///< n: whether column j + 1 of L has all rows of column j but
+                 ///< the first, which is j + 1 (they are in one supernode); 0 for the last.
 
     /// The upper half of the reordered W with its diagonal, column by column.
     std::vector<int> upperStarts;   ///< n + 1

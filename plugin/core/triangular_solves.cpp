@@ -21,19 +21,19 @@ using Block = Eigen::Array<double, Eigen::Dynamic, Columns,
 class UnitLower {
   public:
     explicit UnitLower(const LdltFactor& factor)
-        : n_(factor.n), start_(factor.starts), row_(factor.rows), value_(factor.values) {}
+        : start_(factor.starts), row_(factor.rows), value_(factor.values), joined_(factor.joined) {}
 
     /// Number of columns from j on, at most so many, that have the same rows below them.
     int width(Size j, int most) const {
         int width = 1;
-        while (width < most && j + width < n_ && followed(j + width - 1)) ++width;
+        while (width < most && joined_[j + width - 1]) ++width;
         return width;
     }
 
     /// The same for the columns that end before `end`.
     int widthBefore(Size end, int most) const {
         int width = 1;
-        while (width < most && end - width > 0 && followed(end - width - 1)) ++width;
+        while (width < most && end > width && joined_[end - width - 1]) ++width;
         return width;
     }
 
@@ -85,15 +85,10 @@ class UnitLower {
 
     int count(Size j) const { return start_[j + 1] - start_[j]; }
 
-    /// Whether column j + 1 has all the rows of column j but the first, which is j + 1: that
-    /// follows from their number, because what is below the first entry of a column fills that
-    /// row's column.
-    bool followed(Size j) const { return count(j) == count(j + 1) + 1 && row_[start_[j]] == j + 1; }
-
-    Size n_;
     const int* start_;
     const int* row_;
     const double* value_;
+    const char* joined_;
 };
 
 template <int Columns>

@@ -11,6 +11,8 @@ struct LdltFactor {
     const int* rows = nullptr;    ///< Ascending in each column, all below the diagonal,
     const double* values = nullptr;  ///< whose ones are not stored.
     const double* pivots = nullptr;  ///< n entries of D, none of them 0.
+    const char* joined = nullptr;    ///< n: whether column j + 1 of L has all rows of column j but
+                                     ///< the first, which is j + 1; 0 for the last.
     const int* order = nullptr;      ///< n: row i of A is row order[i] of P A.
 };
 

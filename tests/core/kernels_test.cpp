@@ -6,6 +6,7 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cstdlib>
+#include <vector>
 
 #include "core/types.h"
 #include "support/evaluation.h"
@@ -77,6 +78,19 @@ TEST_P(KernelsOfEverySet, SaysWhenAMatrixIsNotPositiveDefinite) {
     EXPECT_FALSE(kernels().eigen.generalized(A.data(), B.data(), 2, values.data(), Z.data()));
 }
 
+/// LdltFactor::joined, from the rows themselves.
+std::vector<char> joinedColumns(const SparseMatrix& L) {
+    std::vector<char> joined(static_cast<std::size_t>(L.cols()), 0);
+    const int *row = L.innerIndexPtr(), *start = L.outerIndexPtr();
+    for (int j = 0; j + 1 < L.cols(); ++j) {
+        const bool isNext = start[j] < start[j + 1] && row[start[j]] == j + 1;
+        joined[static_cast<std::size_t>(j)] =
+            isNext && std::equal(row + start[j] + 1, row + start[j + 1], row + start[j + 1],
+                                 row + start[j + 2]);
+    }
+    return joined;
+}
+
 class SparseKernelsOfEverySet : public KernelsOfEverySet {
   protected:
     const testing::Operator A_{testing::withNoise(testing::icosphere(3), 0.03, 5)};
@@ -105,8 +119,14 @@ TEST_P(SparseKernelsOfEverySet, SolvesWithAFactorization) {
     const Eigen::SimplicialLDLT<SparseMatrix> ldlt(shifted);
     const SparseMatrix L = ldlt.matrixL().nestedExpression();
     const Eigen::VectorXd pivots = ldlt.vectorD();
-    const LdltFactor factor{n_,           L.outerIndexPtr(), L.innerIndexPtr(),
-                            L.valuePtr(), pivots.data(),     ldlt.permutationP().indices().data()};
+    const std::vector<char> joined = joinedColumns(L);
+    const LdltFactor factor{n_,
+                            L.outerIndexPtr(),
+                            L.innerIndexPtr(),
+                            L.valuePtr(),
+                            pivots.data(),
+                            joined.data(),
+                            ldlt.permutationP().indices().data()};
     for (const Index columns : {1, 2, 3, 4, 7, 8, 21}) {
         const Eigen::MatrixXd U = Eigen::MatrixXd::Random(n_, columns);
         Eigen::MatrixXd X = U;
