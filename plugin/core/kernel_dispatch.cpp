@@ -45,6 +45,11 @@ const DenseEigenproblems& denseEigenproblems() {
     return widest;
 }
 
+const FrontElimination& frontElimination() {
+    static const FrontElimination& widest = availableKernels().front().fronts;
+    return widest;
+}
+
 const SparseProducts& sparseProducts() {
     static const SparseProducts& widest = availableKernels().front().sparse;
     return widest;

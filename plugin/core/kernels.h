@@ -4,6 +4,7 @@
 
 #include "dense_eigenproblems.h"
 #include "dense_products.h"
+#include "front_elimination.h"
 #include "sparse_products.h"
 #include "triangular_solves.h"
 
@@ -13,6 +14,7 @@ namespace spectral {
 struct Kernels {
     const DenseProducts& dense;
     const DenseEigenproblems& eigen;
+    const FrontElimination& fronts;
     const SparseProducts& sparse;
     const TriangularSolves& triangular;
 };

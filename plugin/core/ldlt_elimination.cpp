@@ -3,31 +3,36 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "front_elimination.h"
+
 namespace spectral {
 
 namespace {
 
-/// Columns of L at a time: as many as keep their numbers in registers.
-constexpr int kMostColumns = 4;
-
-/// y -= sum_a values[a] x[a] at the common rows of Width columns of L.
-template <int Width>
-void subtractColumns(const int* rows, int count, const double* const* values, const double* x,
-                     double* y) {
-    double factor[Width];  // copies: the compiler cannot know that y is something else
-    const double* column[Width];
-    std::copy_n(x, Width, factor);
-    std::copy_n(values, Width, column);
-    for (int p = 0; p < count; ++p) {
-        double sum = column[0][p] * factor[0];
-        for (int a = 1; a < Width; ++a) sum += column[a][p] * factor[a];
-        y[rows[p]] -= sum;
-    }
+/// The front of a supernode, without its memory.
+DenseFront shapeOf(const SymbolicLdlt::Front& supernode) {
+    const auto padded = [](Index rows) {
+        return (rows + kFrontLane - 1) / kFrontLane * kFrontLane;
+    };
+    DenseFront front;
+    front.width = supernode.width;
+    front.below = supernode.below;
+    front.offset = padded(front.width) - front.width;
+    front.stride = front.offset + front.width + padded(front.below);
+    return front;
 }
 
-/// Row k of L solves a triangular system with the rows above: L y = column k of the matrix, and
-/// then l_k = y / pivots. Its entries are where paths in the elimination tree lead from those of
-/// that column.
+/// From one column of a front's update to the next.
+Index updateStride(const DenseFront& front) { return front.stride - front.offset - front.width; }
+
+/// What a front has left in the rows below its columns, until it goes to the parent's.
+struct Waiting {
+    const SymbolicLdlt::Front* supernode = nullptr;
+    Index at = 0;  // on the stack
+};
+
+/// The elimination, from the leaves to the roots. What a front leaves for its parent waits on a
+/// stack.
 class Elimination {
   public:
     Elimination(const SymbolicLdlt& symbolic, const Laplacian& laplacian, double sigma,
@@ -35,97 +40,100 @@ class Elimination {
         : symbolic_(symbolic),
           W_(laplacian.W.valuePtr()),
           shifts_(laplacian.D.size()),
-          numbers_(numbers),
-          y_(Eigen::VectorXd::Zero(laplacian.D.size())),
-          pattern_(static_cast<std::size_t>(laplacian.D.size())),
-          visited_(pattern_.size(), -1),
-          ends_(symbolic.factorStarts.begin(), symbolic.factorStarts.end() - 1) {
+          numbers_(numbers) {
         for (Index i = 0; i < shifts_.size(); ++i)
             shifts_[symbolic.order[i]] = sigma * laplacian.D[i];
-        numbers_.rows.resize(static_cast<std::size_t>(symbolic.factorStarts.back()));
-        numbers_.values.resize(numbers_.rows.size());
+        numbers_.values.resize(symbolic.factorRows.size());
         numbers_.pivots.resize(shifts_.size());
+        allocate();
     }
 
     bool run() {
-        const auto n = static_cast<int>(shifts_.size());
-        for (int k = 0; k < n; ++k) {
-            int next = gather(k);
-            double pivot = y_[k] - shifts_[k];
-            y_[k] = 0.0;
-            while (next < n) next += eliminateColumns(k, next, pivot);
-            if (pivot == 0.0) return false;
-            numbers_.pivots[k] = pivot;
+        for (const SymbolicLdlt::Front& supernode : symbolic_.fronts) {
+            DenseFront front = shapeOf(supernode);
+            front.panel = panel_.data();
+            front.scratch = scratch_.data();
+            front.update = stack_.data() + top_;
+            gather(supernode, front);
+            if (!frontElimination().eliminate(front)) return false;
+            store(supernode, front);
+            push(supernode, front);
         }
         return true;
     }
 
   private:
-    /// Puts column k of the upper half into y, and the columns of row k of L into the pattern,
-    /// each before those that depend on it. Returns where the pattern begins; it ends at n.
-    int gather(int k) {
-        auto begin = static_cast<int>(pattern_.size());
-        visited_[k] = k;
-        for (int p = symbolic_.upperStarts[k]; p < symbolic_.upperStarts[k + 1]; ++p) {
-            int i = symbolic_.upperRows[p], length = 0;
-            y_[i] += W_[symbolic_.upperSources[p]];
-            for (; visited_[i] != k; i = symbolic_.parent[i]) {
-                pattern_[length++] = i;
-                visited_[i] = k;
-            }
-            while (length > 0) pattern_[--begin] = pattern_[--length];
+    /// Goes through the fronts as they will come, for the memory that they will take.
+    void allocate() {
+        Index panel = 0, stack = 0;
+        for (const SymbolicLdlt::Front& supernode : symbolic_.fronts) {
+            const DenseFront front = shapeOf(supernode);
+            panel = std::max(panel, front.stride * front.width);
+            stack = std::max(stack, top_ + updateStride(front) * front.below);
+            push(supernode, front);
         }
-        return begin;
+        panel_.resize(panel);
+        scratch_.resize(panel);
+        stack_.resize(stack);
     }
 
-    /// The next columns of row k, as many of one supernode as go at once: makes their entries, and
-    /// takes what they contribute from the rest of y and from the pivot. Returns their number.
-    int eliminateColumns(int k, int next, double& pivot) {
-        const int first = pattern_[next], width = widthOf(next), last = first + width - 1;
-        double x[kMostColumns];
-        const double* values[kMostColumns];
-        for (int a = 0; a < width; ++a) {
-            x[a] = y_[first + a];
-            for (int b = 0; b < a; ++b) x[a] -= column(first + b)[a - b - 1] * x[b];
-            y_[first + a] = 0.0;
-            values[a] = column(first + a) + (width - 1 - a);  // from the first common row on
+    /// Puts the front's part of W - sigma D into it, and what its children have left.
+    void gather(const SymbolicLdlt::Front& supernode, const DenseFront& front) {
+        std::fill_n(front.panel, front.stride * front.width, 0.0);
+        std::fill_n(front.update, updateStride(front) * front.below, 0.0);
+        double* rows = front.panel + front.offset;
+        for (int e = supernode.entriesBegin; e < supernode.entriesEnd; ++e) {
+            const SymbolicLdlt::Entry& entry = symbolic_.entries[e];
+            rows[entry.column * front.stride + entry.row] = W_[entry.source];
         }
-        const int begin = symbolic_.factorStarts[last], count = ends_[last] - begin;
-        const int* rows = numbers_.rows.data() + begin;
-        switch (width) {
-            case 4: subtractColumns<4>(rows, count, values, x, y_.data()); break;
-            case 3: subtractColumns<3>(rows, count, values, x, y_.data()); break;
-            case 2: subtractColumns<2>(rows, count, values, x, y_.data()); break;
-            default: subtractColumns<1>(rows, count, values, x, y_.data()); break;
-        }
-        for (int a = 0; a < width; ++a) {
-            const double l = x[a] / numbers_.pivots[first + a];
-            pivot -= l * x[a];
-            const int end = ends_[first + a]++;
-            numbers_.rows[end] = k;
-            numbers_.values[end] = l;
-        }
-        return width;
+        for (Index j = 0; j < front.width; ++j)
+            rows[j * front.stride + j] -= shifts_[supernode.first + j];
+        for (std::size_t i = waiting_.size() - supernode.children; i < waiting_.size(); ++i)
+            add(waiting_[i], front);
     }
 
-    int widthOf(int next) const {
-        const int first = pattern_[next], end = static_cast<int>(pattern_.size());
-        int width = 1;
-        while (width < kMostColumns && next + width < end && symbolic_.joined[first + width - 1] &&
-               pattern_[next + width] == first + width)
-            ++width;
-        return width;
+    void add(const Waiting& child, const DenseFront& front) {
+        const int below = child.supernode->below;
+        const int* places = symbolic_.places.data() + child.supernode->firstPlace;
+        const Index stride = updateStride(shapeOf(*child.supernode));
+        for (int j = 0; j < below; ++j) {
+            const double* from = stack_.data() + child.at + j * stride;
+            // The column that has the rows of the front from the first one on.
+            const Index column = places[j] - front.width;
+            double* to = column < 0 ? front.panel + places[j] * front.stride + front.offset
+                                    : front.update + column * updateStride(front) - front.width;
+            for (int i = j; i < below; ++i) to[places[i]] += from[i];
+        }
     }
 
-    const double* column(int j) const { return numbers_.values.data() + symbolic_.factorStarts[j]; }
+    void store(const SymbolicLdlt::Front& supernode, const DenseFront& front) {
+        for (Index j = 0; j < front.width; ++j) {
+            const double* diagonal = front.panel + j * front.stride + front.offset + j;
+            const Index column = supernode.first + j;
+            numbers_.pivots[column] = *diagonal;
+            std::copy_n(diagonal + 1, front.width - 1 - j + front.below,
+                        numbers_.values.data() + symbolic_.factorStarts[column]);
+        }
+    }
+
+    /// Takes the children from the stack, and puts what the front has left in their place.
+    void push(const SymbolicLdlt::Front& supernode, const DenseFront& front) {
+        const Index size = updateStride(front) * front.below, from = top_;
+        for (int i = 0; i < supernode.children; ++i, waiting_.pop_back()) top_ = waiting_.back().at;
+        if (size == 0) return;
+        if (stack_.size() > 0) std::copy_n(stack_.data() + from, size, stack_.data() + top_);
+        waiting_.push_back({&supernode, top_});
+        top_ += size;
+    }
 
     const SymbolicLdlt& symbolic_;
     const double* W_;
     Eigen::VectorXd shifts_;  // sigma D, in the order of the factor
     LdltNumbers& numbers_;
-    Eigen::VectorXd y_;  // zero between rows
-    std::vector<int> pattern_, visited_;
-    std::vector<int> ends_;  // of the columns of L so far
+    Eigen::VectorXd panel_, scratch_;
+    Eigen::VectorXd stack_;
+    std::vector<Waiting> waiting_;
+    Index top_ = 0;  // of the stack
 };
 
 }  // namespace

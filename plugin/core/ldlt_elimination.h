@@ -8,16 +8,16 @@
 
 namespace spectral {
 
-/// P (W - sigma D) P^T = L diag(pivots) L^T. L has a diagonal of ones, which is not stored; its
-/// columns begin at SymbolicLdlt::factorStarts, their rows ascend.
+/// P (W - sigma D) P^T = L diag(pivots) L^T. L has a diagonal of ones, which is not stored; the
+/// values of its columns are where SymbolicLdlt has their rows.
 struct LdltNumbers {
-    std::vector<int> rows;
     std::vector<double> values;
     Eigen::VectorXd pivots;
 };
 
-/// Eliminates without pivoting, row by row of L ("up-looking": Davis, Direct Methods for Sparse
-/// Linear Systems, 2006, section 4.8), and up to four columns of one supernode at once.
+/// Eliminates without pivoting, supernode by supernode, each in a dense front (the multifrontal
+/// method: Duff and Reid 1983; Davis, Direct Methods for Sparse Linear Systems, 2006, section 11).
+/// What a front leaves in the rows below its columns is added to the front of its parent.
 ///
 /// @param symbolic  of laplacian.W.
 /// @param numbers   keeps its memory from call to call.
