@@ -43,7 +43,7 @@ class Elimination {
           numbers_(numbers) {
         for (Index i = 0; i < shifts_.size(); ++i)
             shifts_[symbolic.order[i]] = sigma * laplacian.D[i];
-        numbers_.values.resize(symbolic.factorRows.size());
+        numbers_.values.resize(static_cast<std::size_t>(symbolic.valueStarts.back()));
         numbers_.pivots.resize(shifts_.size());
         allocate();
     }
@@ -112,7 +112,7 @@ class Elimination {
             const Index column = supernode.first + j;
             numbers_.pivots[column] = *diagonal;
             std::copy_n(diagonal + 1, front.width - 1 - j + front.below,
-                        numbers_.values.data() + symbolic_.factorStarts[column]);
+                        numbers_.values.data() + symbolic_.valueStarts[column]);
         }
     }
 

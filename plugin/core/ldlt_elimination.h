@@ -9,7 +9,7 @@
 namespace spectral {
 
 /// P (W - sigma D) P^T = L diag(pivots) L^T. L has a diagonal of ones, which is not stored; the
-/// values of its columns are where SymbolicLdlt has their rows.
+/// values of its columns begin at SymbolicLdlt::valueStarts.
 struct LdltNumbers {
     std::vector<double> values;
     Eigen::VectorXd pivots;

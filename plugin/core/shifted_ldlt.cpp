@@ -39,10 +39,10 @@ Eigen::MatrixXd ShiftedLdlt::solve(const Eigen::MatrixXd& B) const {
 
 void ShiftedLdlt::applyResolvent(const Eigen::VectorXd& D, Eigen::Ref<Eigen::MatrixXd> U,
                                  double root) const {
-    const LdltFactor factor{symbolic_.order.size(),      symbolic_.factorStarts.data(),
-                            symbolic_.factorRows.data(), numbers_.values.data(),
-                            numbers_.pivots.data(),      symbolic_.joined.data(),
-                            symbolic_.order.data()};
+    const LdltFactor factor{symbolic_.order.size(),     symbolic_.valueStarts.data(),
+                            symbolic_.rowStarts.data(), symbolic_.frontRows.data(),
+                            numbers_.values.data(),     numbers_.pivots.data(),
+                            symbolic_.joined.data(),    symbolic_.order.data()};
     assert(U.outerStride() == U.rows());
     triangularSolves().apply(factor, D.data(), root, U.data(), U.cols());
 }

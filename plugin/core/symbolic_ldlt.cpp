@@ -2,6 +2,7 @@
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <numeric>
 #include <string>
@@ -11,6 +12,15 @@
 namespace spectral {
 
 namespace {
+
+/// Supernodes of up to so many columns may have so large a part of zeros in L: wider ones, with a
+/// smaller part of them, make elimination and solves quicker.
+struct Relaxation {
+    Index width;
+    double zeros;
+};
+constexpr Relaxation kRelaxations[] = {
+    {4, 0.5}, {16, 0.2}, {48, 0.1}, {std::numeric_limits<Index>::max(), 0.05}};
 
 /// What Eigen's analysis of a pattern keeps to itself.
 struct Analysis : Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>> {
@@ -38,101 +48,163 @@ std::vector<int> postorder(const std::vector<int>& parent) {
     return number;
 }
 
+/// A supernode while others may still join it.
+struct Supernode {
+    Index first = 0, width = 0, below = 0;
+    Index zeros = 0;  // that it has put into L
+
+    /// With its parent, whose first column follows its last.
+    Supernode joinedTo(const Supernode& parent) const {
+        const Index wider = width + parent.width, added = parent.width + parent.below - below;
+        return {first, wider, parent.below, zeros + parent.zeros + width * added};
+    }
+    /// Entries of L, with the diagonal.
+    Index entries() const { return width * (width + 1) / 2 + width * below; }
+
+    bool isWorthwhile() const {
+        const auto relaxation =
+            std::find_if(std::begin(kRelaxations), std::end(kRelaxations),
+                         [this](const Relaxation& r) { return width <= r.width; });
+        return static_cast<double>(zeros) <= relaxation->zeros * static_cast<double>(entries());
+    }
+};
+
 }  // namespace
 
 SymbolicLdlt::SymbolicLdlt(const SparseMatrix& W)
     : starts(W.outerIndexPtr(), W.outerIndexPtr() + W.outerSize() + 1),
       rows(W.innerIndexPtr(), W.innerIndexPtr() + W.nonZeros()) {
-    const std::vector<int> parent = findOrder(W);
-    findRows(parent);
-    findFronts();
+    const Columns columns = findOrder(W);
+    findFronts(columns);
+    findRows(columns);
+    findPlaces();
+    findEntries();
 }
 
-std::vector<int> SymbolicLdlt::findOrder(const SparseMatrix& W) {
+SymbolicLdlt::Columns SymbolicLdlt::findOrder(const SparseMatrix& W) {
     const auto n = static_cast<std::size_t>(W.rows());
     Analysis analysis;
     analysis.analyzePattern(W);
-    const auto& count = analysis.columnEntries();
-    const Index total = count.cast<Index>().sum();
+    const std::vector<int> tree(analysis.parent().begin(), analysis.parent().end());
+    const std::vector<int> number = postorder(tree);
+    order.resize(W.rows());
+    inverse_.resize(n);
+    Columns columns{std::vector<int>(n, -1), std::vector<int>(n)};
+    for (int i = 0; i < W.rows(); ++i) {
+        order[i] = number[analysis.permutationP().indices()[i]];
+        inverse_[order[i]] = i;
+        if (tree[i] >= 0) columns.parent[number[i]] = number[tree[i]];
+        columns.count[number[i]] = analysis.columnEntries()[i];
+    }
+    return columns;
+}
+
+void SymbolicLdlt::findFronts(const Columns& columns) {
+    const auto& [parent, count] = columns;
+    const auto n = static_cast<int>(parent.size());
+    std::vector<Supernode> supernodes;
+    for (int j = 0; j < n;) {
+        Supernode supernode{j, 0, 0, 0};
+        // What is below the first row of a column fills that row's column: if there is one row less
+        // below that, the others are the same.
+        do ++j, ++supernode.width;
+        while (j < n && parent[j - 1] == j && count[j - 1] == count[j] + 1);
+        supernode.below = count[j - 1];
+        // The last child of this one, the last child of both together, and so on.
+        while (!supernodes.empty()) {
+            const Supernode& child = supernodes.back();
+            const Supernode both = child.joinedTo(supernode);
+            const int next = parent[supernode.first - 1];
+            if (next < supernode.first || next >= j || !both.isWorthwhile()) break;
+            supernode = both;
+            supernodes.pop_back();
+        }
+        supernodes.push_back(supernode);
+    }
+    const Index total = std::accumulate(
+        supernodes.begin(), supernodes.end(), Index{0},
+        [](Index sum, const Supernode& supernode) { return sum + supernode.entries(); });
     if (total > std::numeric_limits<int>::max())
         throw InvalidMesh("the factorization of W - sigma D (" + std::to_string(n) +
                           " vertices) has too many entries, " + std::to_string(total) +
                           ": apply 'Simplification: Quadric Edge Collapse Decimation' first");
-    const std::vector<int> tree(analysis.parent().begin(), analysis.parent().end());
-    const std::vector<int> number = postorder(tree);
-    order.resize(W.rows());
-    for (Index i = 0; i < W.rows(); ++i) order[i] = number[analysis.permutationP().indices()[i]];
-    inverse_.resize(n);
-    for (int i = 0; i < W.rows(); ++i) inverse_[order[i]] = i;
-    std::vector<int> parent(n, -1);
-    factorStarts.assign(n + 1, 0);
-    for (std::size_t i = 0; i < n; ++i) {
-        if (tree[i] >= 0) parent[number[i]] = number[tree[i]];
-        factorStarts[number[i] + 1] = count[i];
-    }
-    std::partial_sum(factorStarts.begin(), factorStarts.end(), factorStarts.begin());
-    return parent;
-}
-
-void SymbolicLdlt::findRows(const std::vector<int>& parent) {
-    const auto n = static_cast<int>(parent.size());
-    factorRows.resize(static_cast<std::size_t>(factorStarts.back()));
-    std::vector<int> ends(factorStarts.begin(), factorStarts.end() - 1);
-    std::vector<int> visited(parent.size(), -1);
-    // Row k of L has its entries where paths in the elimination tree lead from those of W.
-    for (int k = 0; k < n; ++k) {
-        visited[k] = k;
-        for (int p = starts[inverse_[k]]; p < starts[inverse_[k] + 1]; ++p)
-            for (int j = order[rows[p]]; j < k && visited[j] != k; j = parent[j]) {
-                factorRows[ends[j]++] = k;
-                visited[j] = k;
-            }
-    }
-    // What is below the first row of a column fills that row's column: their numbers suffice.
-    joined.assign(parent.size(), 0);
-    const auto count = [&](int j) { return factorStarts[j + 1] - factorStarts[j]; };
-    for (int j = 0; j + 1 < n; ++j)
-        joined[j] = parent[j] == j + 1 && count(j) == count(j + 1) + 1 ? 1 : 0;
-}
-
-void SymbolicLdlt::findFronts() {
-    const auto n = static_cast<int>(joined.size());
-    std::vector<int> frontOf(joined.size());
-    for (int j = 0; j < n; ++j) {
-        if (j == 0 || !joined[j - 1]) {
-            fronts.emplace_back();
-            fronts.back().first = j;
+    frontOf_.resize(parent.size());
+    valueStarts.assign(parent.size() + 1, 0);
+    rowStarts.resize(parent.size());
+    joined.assign(parent.size(), 1);
+    int rowCount = 0;
+    for (const Supernode& supernode : supernodes) {
+        Front front;
+        front.first = static_cast<int>(supernode.first);
+        front.width = static_cast<int>(supernode.width);
+        front.below = static_cast<int>(supernode.below);
+        front.firstRow = rowCount;
+        rowCount += front.width + front.below;
+        const int end = front.first + front.width;
+        for (int j = front.first; j < end; ++j) {
+            frontOf_[j] = static_cast<int>(fronts.size());
+            rowStarts[j] = front.firstRow + j - front.first + 1;
+            valueStarts[j + 1] = valueStarts[j] + rowCount - rowStarts[j];
         }
-        frontOf[j] = static_cast<int>(fronts.size()) - 1;
-        ++fronts.back().width;
+        joined[end - 1] = 0;
+        fronts.push_back(front);
     }
-    std::vector<int> position(joined.size());  // of a row in the front
-    std::vector<int> waiting;                  // fronts whose parents are still to come
-    entries.reserve((rows.size() + joined.size()) / 2);
+    frontRows.resize(static_cast<std::size_t>(rowCount));
+}
+
+void SymbolicLdlt::findRows(const Columns& columns) {
+    std::vector<int> parent, ends;  // of the fronts; and of their rows that are known
+    for (const Front& front : fronts) {
+        const int last = front.first + front.width - 1, next = columns.parent[last];
+        parent.push_back(next < 0 ? -1 : frontOf_[next]);
+        std::iota(&frontRows[front.firstRow], &frontRows[front.firstRow] + front.width,
+                  front.first);
+        ends.push_back(front.firstRow + front.width);
+    }
+    // A row of L has its entries where paths in the tree of fronts lead from those of W.
+    std::vector<int> visited(fronts.size(), -1);
+    for (int k = 0; k < static_cast<int>(inverse_.size()); ++k) {
+        visited[frontOf_[k]] = k;
+        for (int p = starts[inverse_[k]]; p < starts[inverse_[k] + 1]; ++p) {
+            if (order[rows[p]] >= k) continue;
+            for (int f = frontOf_[order[rows[p]]]; visited[f] != k; f = parent[f]) {
+                frontRows[ends[f]++] = k;
+                visited[f] = k;
+            }
+        }
+    }
+}
+
+void SymbolicLdlt::findPlaces() {
+    std::vector<int> position(inverse_.size());  // of a row in a front
+    std::vector<int> waiting;                    // fronts whose parents are still to come
     for (int f = 0; f < static_cast<int>(fronts.size()); ++f) {
         Front& front = fronts[f];
-        const int end = front.first + front.width;
-        const int* below = factorRows.data() + factorStarts[end - 1];
-        front.below = factorStarts[end] - factorStarts[end - 1];
-        for (int j = front.first; j < end; ++j) position[j] = j - front.first;
-        for (int i = 0; i < front.below; ++i) position[below[i]] = front.width + i;
+        for (int i = 0; i < front.width + front.below; ++i)
+            position[frontRows[front.firstRow + i]] = i;
+        for (; !waiting.empty(); waiting.pop_back(), ++front.children) {
+            Front& child = fronts[waiting.back()];
+            const int* below = &frontRows[child.firstRow] + child.width;
+            if (frontOf_[*below] != f) break;
+            child.firstPlace = static_cast<int>(places.size());
+            for (int i = 0; i < child.below; ++i) places.push_back(position[below[i]]);
+        }
+        if (front.below > 0) waiting.push_back(f);
+    }
+}
 
+void SymbolicLdlt::findEntries() {
+    std::vector<int> position(inverse_.size());
+    entries.reserve((rows.size() + inverse_.size()) / 2);
+    for (Front& front : fronts) {
+        for (int i = 0; i < front.width + front.below; ++i)
+            position[frontRows[front.firstRow + i]] = i;
         front.entriesBegin = static_cast<int>(entries.size());
-        for (int j = front.first; j < end; ++j)
+        for (int j = front.first; j < front.first + front.width; ++j)
             for (int p = starts[inverse_[j]]; p < starts[inverse_[j] + 1]; ++p)
                 if (const int row = order[rows[p]]; row >= j)
                     entries.push_back({p, position[row], j - front.first});
         front.entriesEnd = static_cast<int>(entries.size());
-
-        for (; !waiting.empty(); waiting.pop_back(), ++front.children) {
-            Front& child = fronts[waiting.back()];
-            const int last = child.first + child.width - 1;
-            if (frontOf[factorRows[factorStarts[last]]] != f) break;
-            child.firstPlace = static_cast<int>(places.size());
-            for (int p = factorStarts[last]; p < factorStarts[last + 1]; ++p)
-                places.push_back(position[factorRows[p]]);
-        }
-        if (front.below > 0) waiting.push_back(f);
     }
 }
 

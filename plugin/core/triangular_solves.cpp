@@ -21,7 +21,11 @@ using Block = Eigen::Array<double, Eigen::Dynamic, Columns,
 class UnitLower {
   public:
     explicit UnitLower(const LdltFactor& factor)
-        : start_(factor.starts), row_(factor.rows), value_(factor.values), joined_(factor.joined) {}
+        : start_(factor.starts),
+          rowStart_(factor.rowStarts),
+          row_(factor.rows),
+          value_(factor.values),
+          joined_(factor.joined) {}
 
     /// Number of columns from j on, at most so many, that have the same rows below them.
     int width(Size j, int most) const {
@@ -75,7 +79,7 @@ class UnitLower {
     template <int Width>
     struct Tails {
         Tails(const UnitLower& L, Size j)
-            : size(L.count(j + Width - 1)), row(L.row_ + L.start_[j + Width - 1]) {
+            : size(L.count(j + Width - 1)), row(L.row_ + L.rowStart_[j + Width - 1]) {
             for (int k = 0; k < Width; ++k) value[k] = L.value_ + L.start_[j + k] + Width - 1 - k;
         }
         int size;
@@ -86,6 +90,7 @@ class UnitLower {
     int count(Size j) const { return start_[j + 1] - start_[j]; }
 
     const int* start_;
+    const int* rowStart_;
     const int* row_;
     const double* value_;
     const char* joined_;

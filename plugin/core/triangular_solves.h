@@ -7,8 +7,9 @@ namespace spectral {
 /// A factorization P A P^T = L D L^T as it lies in memory, n x n.
 struct LdltFactor {
     std::ptrdiff_t n = 0;
-    const int* starts = nullptr;  ///< n + 1: where the columns of L begin in `rows` and `values`.
-    const int* rows = nullptr;    ///< Ascending in each column, all below the diagonal,
+    const int* starts = nullptr;     ///< n + 1: where the columns of L begin in `values`.
+    const int* rowStarts = nullptr;  ///< n: where their rows begin in `rows`.
+    const int* rows = nullptr;       ///< Ascending in each column, all below the diagonal,
     const double* values = nullptr;  ///< whose ones are not stored.
     const double* pivots = nullptr;  ///< n entries of D, none of them 0.
     const char* joined = nullptr;    ///< n: whether column j + 1 of L has all rows of column j but

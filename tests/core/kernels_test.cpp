@@ -182,13 +182,9 @@ TEST_P(SparseKernelsOfEverySet, SolvesWithAFactorization) {
     const SparseMatrix L = ldlt.matrixL().nestedExpression();
     const Eigen::VectorXd pivots = ldlt.vectorD();
     const std::vector<char> joined = joinedColumns(L);
-    const LdltFactor factor{n_,
-                            L.outerIndexPtr(),
-                            L.innerIndexPtr(),
-                            L.valuePtr(),
-                            pivots.data(),
-                            joined.data(),
-                            ldlt.permutationP().indices().data()};
+    const LdltFactor factor{
+        n_,           L.outerIndexPtr(), L.outerIndexPtr(), L.innerIndexPtr(),
+        L.valuePtr(), pivots.data(),     joined.data(),     ldlt.permutationP().indices().data()};
     for (const Index columns : {1, 2, 3, 4, 7, 8, 21}) {
         const Eigen::MatrixXd U = Eigen::MatrixXd::Random(n_, columns);
         Eigen::MatrixXd X = U;

@@ -27,31 +27,56 @@ std::vector<SparseMatrix> patterns() {
     return all;
 }
 
-TEST(SymbolicLdlt, HasTheRowsOfEigensFactorInTheSameOrder) {
-    for (const SparseMatrix& W : patterns()) {
-        const SymbolicLdlt symbolic(W);
-        SparseMatrix positive = W;
-        positive.diagonal().array() += 1.0;
-        SparseMatrix reordered(W.rows(), W.cols());
-        const Eigen::PermutationMatrix<Eigen::Dynamic> P(symbolic.order);
-        reordered.selfadjointView<Eigen::Lower>() =
-            positive.selfadjointView<Eigen::Lower>().twistedBy(P);
-        const Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Natural> ldlt(reordered);
-        const SparseMatrix L = ldlt.matrixL().nestedExpression();
-        EXPECT_EQ(symbolic.factorStarts,
-                  std::vector<int>(L.outerIndexPtr(), L.outerIndexPtr() + L.cols() + 1));
-        EXPECT_EQ(symbolic.factorRows,
-                  std::vector<int>(L.innerIndexPtr(), L.innerIndexPtr() + L.nonZeros()));
-    }
+/// Eigen's factor of a positive definite matrix with the pattern of W, in this order.
+SparseMatrix factorOf(const SparseMatrix& W, const Eigen::VectorXi& order) {
+    SparseMatrix positive = W, reordered(W.rows(), W.cols());
+    positive.diagonal().array() += 1.0;
+    const Eigen::PermutationMatrix<Eigen::Dynamic> P(order);
+    reordered.selfadjointView<Eigen::Lower>() =
+        positive.selfadjointView<Eigen::Lower>().twistedBy(P);
+    const Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Natural> ldlt(reordered);
+    return ldlt.matrixL().nestedExpression();
+}
+
+std::vector<int> rowsOfColumn(const SymbolicLdlt& symbolic, Index column) {
+    const auto begin = symbolic.frontRows.begin() + symbolic.rowStarts[column];
+    return {begin, begin + symbolic.valueStarts[column + 1] - symbolic.valueStarts[column]};
 }
 
 /// Rows of the factor that a front has.
 std::vector<int> rowsOf(const SymbolicLdlt& symbolic, const SymbolicLdlt::Front& front) {
-    std::vector<int> rows{front.first};
-    const int* start = symbolic.factorStarts.data() + front.first;
-    rows.insert(rows.end(), symbolic.factorRows.begin() + start[0],
-                symbolic.factorRows.begin() + start[1]);
-    return rows;
+    const auto begin = symbolic.frontRows.begin() + front.firstRow;
+    return {begin, begin + front.width + front.below};
+}
+
+TEST(SymbolicLdlt, HasTheRowsOfEigensFactorAndFewZeros) {
+    for (const SparseMatrix& W : patterns()) {
+        const SymbolicLdlt symbolic(W);
+        const SparseMatrix L = factorOf(W, symbolic.order);
+        for (Index j = 0; j < W.cols(); ++j) {
+            const std::vector<int> rows = rowsOfColumn(symbolic, j);
+            const int *begin = L.innerIndexPtr() + L.outerIndexPtr()[j],
+                      *end = L.innerIndexPtr() + L.outerIndexPtr()[j + 1];
+            EXPECT_TRUE(std::includes(rows.begin(), rows.end(), begin, end)) << j;
+            EXPECT_TRUE(std::is_sorted(rows.begin(), rows.end())) << j;
+            if (!symbolic.joined[j]) {
+                EXPECT_EQ(rows, std::vector<int>(begin, end)) << j;
+            }
+        }
+        EXPECT_LE(symbolic.valueStarts.back(), 1.3 * static_cast<double>(L.nonZeros()));
+    }
+}
+
+TEST(SymbolicLdlt, JoinsColumnsThatHaveTheSameRowsBelow) {
+    for (const SparseMatrix& W : patterns()) {
+        const SymbolicLdlt symbolic(W);
+        for (Index j = 0; j < W.cols(); ++j) {
+            if (!symbolic.joined[j]) continue;
+            std::vector<int> next = rowsOfColumn(symbolic, j + 1);
+            next.insert(next.begin(), static_cast<int>(j + 1));
+            EXPECT_EQ(rowsOfColumn(symbolic, j), next);
+        }
+    }
 }
 
 TEST(SymbolicLdlt, FrontsTakeAllColumnsAndTheirChildrensRows) {
