@@ -2,6 +2,7 @@
 #include "triangular_solves.h"
 
 #include <Eigen/Core>
+#include <algorithm>
 
 namespace spectral {
 
@@ -96,15 +97,23 @@ class UnitLower {
     const char* joined_;
 };
 
+/// @param used  of the columns that are taken at once, those that there are.
 template <int Columns>
-void applyToColumns(const LdltFactor& factor, const double* d, double root, double* columns) {
+void applyToColumns(const LdltFactor& factor, const double* d, double root, double* columns,
+                    int used = Columns) {
     const UnitLower L(factor);
     const Size n = factor.n;
     Eigen::Map<Eigen::Array<double, Eigen::Dynamic, Columns>> X(columns, n, Columns);
     constexpr int kMost = 4;  // columns of L at once: as many as fit into the registers
 
     Block<Columns> Y(n, Columns);
-    for (Size i = 0; i < n; ++i) Y.row(factor.order[i]) = d[i] * X.row(i);
+    if (used == Columns) {
+        for (Size i = 0; i < n; ++i) Y.row(factor.order[i]) = d[i] * X.row(i);
+    } else {
+        Y.setZero();
+        for (Size i = 0; i < n; ++i)
+            for (int c = 0; c < used; ++c) Y(factor.order[i], c) = d[i] * X(i, c);
+    }
     for (Size j = 0; j < n;) {  // L Y = P diag(d) X
         const int width = L.width(j, kMost);
         switch (width) {
@@ -126,23 +135,32 @@ void applyToColumns(const LdltFactor& factor, const double* d, double root, doub
         }
         end -= width;
     }
-    for (Size i = 0; i < n; ++i) X.row(i) = Y.row(factor.order[i]) - root * X.row(i);
+    if (used == Columns) {
+        for (Size i = 0; i < n; ++i) X.row(i) = Y.row(factor.order[i]) - root * X.row(i);
+    } else {
+        for (Size i = 0; i < n; ++i)
+            for (int c = 0; c < used; ++c) X(i, c) = Y(factor.order[i], c) - root * X(i, c);
+    }
 }
 
 void apply(const LdltFactor& factor, const double* d, double root, double* X, Size columns) {
-    const Size n = factor.n;
     // The factor is far larger than the cache: each pass over it serves as many columns as it can,
-    // those that fit into the registers.
-    Size c = 0;
-    if constexpr (EIGEN_MAX_STATIC_ALIGN_BYTES >= 4 * sizeof(double))
-        for (; c + 16 <= columns; c += 16) applyToColumns<16>(factor, d, root, X + c * n);
-    for (; c + 8 <= columns; c += 8) applyToColumns<8>(factor, d, root, X + c * n);
-    for (; c + 4 <= columns; c += 4) applyToColumns<4>(factor, d, root, X + c * n);
-    switch (columns - c) {
-        case 3: applyToColumns<3>(factor, d, root, X + c * n); break;
-        case 2: applyToColumns<2>(factor, d, root, X + c * n); break;
-        case 1: applyToColumns<1>(factor, d, root, X + c * n); break;
-        default: break;
+    // those that fit into the registers. A few more than there are cost less than one pass more.
+    constexpr int kMost = EIGEN_MAX_STATIC_ALIGN_BYTES >= 4 * sizeof(double) ? 16 : 8;
+    for (Size c = 0; c < columns; c += kMost) {
+        double* first = X + c * factor.n;
+        const auto used = static_cast<int>(std::min<Size>(kMost, columns - c));
+        switch (used) {
+            case 1: applyToColumns<1>(factor, d, root, first); break;
+            case 2: applyToColumns<2>(factor, d, root, first); break;
+            case 3: applyToColumns<3>(factor, d, root, first); break;
+            case 4: applyToColumns<4>(factor, d, root, first); break;
+            case 5:
+            case 6:
+            case 7:
+            case 8: applyToColumns<8>(factor, d, root, first, used); break;
+            default: applyToColumns<kMost>(factor, d, root, first, used); break;
+        }
     }
 }
 
