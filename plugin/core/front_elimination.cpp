@@ -30,7 +30,8 @@ struct Subtraction {
     Size stride = 0;  // of both
     Size inner = 0;   // columns of both
     double* C = nullptr;
-    Size strideC = 0, rows = 0, columns = 0;  // rows: a multiple of kFrontLane, the first one, too
+    Size strideC = 0, columns = 0;
+    Size rows = 0;  // a multiple of kFrontLane
 };
 
 template <int Inner, int Columns>
@@ -96,7 +97,7 @@ class Panel {
         const Size from = begin * front_.stride + front_.offset + middle;
         double* C = front_.panel + middle * front_.stride + front_.offset + middle;
         subtract({front_.panel + from, front_.scratch + from, front_.stride, middle - begin, C,
-                  front_.stride, front_.stride - front_.offset - middle, end - middle});
+                  front_.stride, end - middle, front_.stride - front_.offset - middle});
         return eliminate(middle, end);
     }
 
@@ -104,7 +105,7 @@ class Panel {
     void update() const {
         const Size from = front_.offset + front_.width, rows = front_.stride - from;
         subtract({front_.panel + from, front_.scratch + from, front_.stride, front_.width,
-                  front_.update, rows, rows, front_.below});
+                  front_.update, rows, front_.below, rows});
     }
 
   private:

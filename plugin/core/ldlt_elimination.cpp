@@ -57,7 +57,9 @@ class Elimination {
             gather(supernode, front);
             if (!frontElimination().eliminate(front)) return false;
             store(supernode, front);
-            push(supernode, front);
+            const Index at = push(supernode, front);
+            if (stack_.data() + at != front.update)
+                std::copy_n(front.update, updateStride(front) * front.below, stack_.data() + at);
         }
         return true;
     }
@@ -93,16 +95,17 @@ class Elimination {
     }
 
     void add(const Waiting& child, const DenseFront& front) {
-        const int below = child.supernode->below;
+        const int below = child.supernode->below, width = static_cast<int>(front.width);
         const int* places = symbolic_.places.data() + child.supernode->firstPlace;
         const Index stride = updateStride(shapeOf(*child.supernode));
         for (int j = 0; j < below; ++j) {
             const double* from = stack_.data() + child.at + j * stride;
-            // The column that has the rows of the front from the first one on.
-            const Index column = places[j] - front.width;
-            double* to = column < 0 ? front.panel + places[j] * front.stride + front.offset
-                                    : front.update + column * updateStride(front) - front.width;
-            for (int i = j; i < below; ++i) to[places[i]] += from[i];
+            // The column of the front, and the row that it begins with.
+            const bool isEliminated = places[j] < width;
+            double* to = isEliminated ? front.panel + places[j] * front.stride + front.offset
+                                      : front.update + (places[j] - width) * updateStride(front);
+            const int first = isEliminated ? 0 : width;
+            for (int i = j; i < below; ++i) to[places[i] - first] += from[i];
         }
     }
 
@@ -116,14 +119,14 @@ class Elimination {
         }
     }
 
-    /// Takes the children from the stack, and puts what the front has left in their place.
-    void push(const SymbolicLdlt::Front& supernode, const DenseFront& front) {
-        const Index size = updateStride(front) * front.below, from = top_;
+    /// Takes the children from the stack, and room for what the front leaves in their place.
+    /// Returns where that is.
+    Index push(const SymbolicLdlt::Front& supernode, const DenseFront& front) {
         for (int i = 0; i < supernode.children; ++i, waiting_.pop_back()) top_ = waiting_.back().at;
-        if (size == 0) return;
-        if (stack_.size() > 0) std::copy_n(stack_.data() + from, size, stack_.data() + top_);
-        waiting_.push_back({&supernode, top_});
-        top_ += size;
+        const Index at = top_;
+        if (front.below > 0) waiting_.push_back({&supernode, at});
+        top_ += updateStride(front) * front.below;
+        return at;
     }
 
     const SymbolicLdlt& symbolic_;
