@@ -78,7 +78,6 @@ SymbolicLdlt::SymbolicLdlt(const SparseMatrix& W)
     findFronts(columns);
     findRows(columns);
     findPlaces();
-    findEntries();
 }
 
 SymbolicLdlt::Columns SymbolicLdlt::findOrder(const SparseMatrix& W) {
@@ -178,10 +177,12 @@ void SymbolicLdlt::findRows(const Columns& columns) {
 void SymbolicLdlt::findPlaces() {
     std::vector<int> position(inverse_.size());  // of a row in a front
     std::vector<int> waiting;                    // fronts whose parents are still to come
+    entries.reserve((rows.size() + inverse_.size()) / 2);
     for (int f = 0; f < static_cast<int>(fronts.size()); ++f) {
         Front& front = fronts[f];
         for (int i = 0; i < front.width + front.below; ++i)
             position[frontRows[front.firstRow + i]] = i;
+
         for (; !waiting.empty(); waiting.pop_back(), ++front.children) {
             Front& child = fronts[waiting.back()];
             const int* below = &frontRows[child.firstRow] + child.width;
@@ -190,15 +191,7 @@ void SymbolicLdlt::findPlaces() {
             for (int i = 0; i < child.below; ++i) places.push_back(position[below[i]]);
         }
         if (front.below > 0) waiting.push_back(f);
-    }
-}
 
-void SymbolicLdlt::findEntries() {
-    std::vector<int> position(inverse_.size());
-    entries.reserve((rows.size() + inverse_.size()) / 2);
-    for (Front& front : fronts) {
-        for (int i = 0; i < front.width + front.below; ++i)
-            position[frontRows[front.firstRow + i]] = i;
         front.entriesBegin = static_cast<int>(entries.size());
         for (int j = front.first; j < front.first + front.width; ++j)
             for (int p = starts[inverse_[j]]; p < starts[inverse_[j] + 1]; ++p)

@@ -63,7 +63,6 @@ struct SymbolicLdlt {
     void findFronts(const Columns& columns);
     void findRows(const Columns& columns);
     void findPlaces();
-    void findEntries();
 
     std::vector<int> inverse_;  // n: row j of the factor is row inverse_[j] of W
     std::vector<int> frontOf_;  // n: of a column
