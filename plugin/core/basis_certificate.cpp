@@ -35,7 +35,6 @@ std::optional<Index> cutOutsideClusters(const Eigen::VectorXd& lambda, Index ask
 void measureBasis(const Laplacian& laplacian, Index constants, HarmonicBasis& basis,
                   const std::function<void()>& beside, const Progress& progress) {
     const Index k = basis.size();
-    const Eigen::ArrayXd invD = laplacian.D.array().inverse();
     Eigen::VectorXd overlaps(k);
     basis.residuals = Eigen::VectorXd::Zero(k);
     const auto measure = [&](Index begin, const StopPoint& stopPoint) {
@@ -47,13 +46,13 @@ void measureBasis(const Laplacian& laplacian, Index constants, HarmonicBasis& ba
         gram.bottomRows(end - begin).diagonal().array() -= 1.0;
         overlaps.segment(begin, end - begin) = gram.cwiseAbs().colwise().maxCoeff();
         stopPoint();
-        const Eigen::MatrixXd WPhi =
-            symmetricProduct(laplacian.W, basis.Phi.middleCols(begin, end - begin));
-        for (Index i = std::max(begin, constants); i < end; ++i) {
-            const auto r = WPhi.col(i - begin).array() -
-                           basis.lambda[i] * laplacian.D.array() * basis.Phi.col(i).array();
-            basis.residuals[i] = std::sqrt((r.square() * invD).sum()) / basis.lambda[i];
-        }
+        const Index own = std::max(begin, constants), count = end - own;
+        if (count <= 0) return;
+        const auto lambda = basis.lambda.segment(own, count);
+        basis.residuals.segment(own, count) =
+            squaredResiduals(laplacian, basis.Phi.middleCols(own, count), lambda)
+                .cwiseSqrt()
+                .cwiseQuotient(lambda);
     };
     runInParallel(
         1 + (k + kColumns - 1) / kColumns,

@@ -114,8 +114,9 @@ class Update {
             basis_.inertiaCount = factor.eigenvaluesBelow();
             return interior_;
         };
-        const Eigen::VectorXd ritzValues = rayleighRitz(laplacian_, candidates(0, independent_),
-                                                        interior, progress.part(0.2, 0.9));
+        const Eigen::VectorXd ritzValues =
+            rayleighRitz(laplacian_, candidates(0, independent_), factor.order(laplacian_),
+                         interior, progress.part(0.2, 0.9));
         const Index first = c() + interior_, rest = size_ - first;
         if (basis_.Phi.cols() != size_) basis_.Phi.conservativeResize(Eigen::NoChange, size_);
         basis_.Phi.leftCols(c()) = constants_.orthonormal();

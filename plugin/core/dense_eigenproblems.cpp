@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <limits>
 
 namespace spectral {
 
@@ -31,6 +32,10 @@ bool generalized(const double* A, const double* B, Size m, double* values, doubl
     // does not say whether there is an L.
     const Eigen::LLT<Eigen::MatrixXd> llt(ConstMatrix(B, m, m));
     if (llt.info() != Eigen::Success) return false;
+    // Of a column that others make up rounding leaves a part that may be positive.
+    const double rounding = static_cast<double>(m) * std::numeric_limits<double>::epsilon();
+    const auto pivots = llt.matrixLLT().diagonal().array().square();
+    if ((pivots <= rounding * ConstMatrix(B, m, m).diagonal().array()).any()) return false;
     Eigen::MatrixXd C = ConstMatrix(A, m, m).selfadjointView<Eigen::Lower>();
     llt.matrixL().solveInPlace<Eigen::OnTheLeft>(C);
     llt.matrixU().solveInPlace<Eigen::OnTheRight>(C);

@@ -13,8 +13,8 @@ struct DenseEigenproblems {
     /// A Z = Z diag(values), Z^T Z = I, values ascending. Returns whether that converged.
     bool (*symmetric)(const double* A, std::ptrdiff_t m, double* values, double* Z);
 
-    /// A Z = B Z diag(values), Z^T B Z = I, values ascending: B is positive definite. Returns
-    /// whether that converged, with finite Z.
+    /// A Z = B Z diag(values), Z^T B Z = I, values ascending. Returns whether B is
+    /// positive definite to working precision, and that converged with finite Z.
     bool (*generalized)(const double* A, const double* B, std::ptrdiff_t m, double* values,
                         double* Z);
 };

@@ -50,6 +50,11 @@ const FrontElimination& frontElimination() {
     return widest;
 }
 
+const PanelProducts& panelProducts() {
+    static const PanelProducts& widest = availableKernels().front().panels;
+    return widest;
+}
+
 const SparseProducts& sparseProducts() {
     static const SparseProducts& widest = availableKernels().front().sparse;
     return widest;

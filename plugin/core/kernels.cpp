@@ -6,11 +6,12 @@ namespace spectral::SPECTRAL_INSTRUCTIONS {
 extern const DenseProducts denseProducts;
 extern const DenseEigenproblems denseEigenproblems;
 extern const FrontElimination frontElimination;
+extern const PanelProducts panelProducts;
 extern const SparseProducts sparseProducts;
 extern const TriangularSolves triangularSolves;
 
 extern const Kernels kernels;
-const Kernels kernels{denseProducts, denseEigenproblems, frontElimination, sparseProducts,
-                      triangularSolves};
+const Kernels kernels{denseProducts, denseEigenproblems, frontElimination,
+                      panelProducts, sparseProducts,     triangularSolves};
 
 }  // namespace spectral::SPECTRAL_INSTRUCTIONS

@@ -5,6 +5,7 @@
 #include "dense_eigenproblems.h"
 #include "dense_products.h"
 #include "front_elimination.h"
+#include "panel_products.h"
 #include "sparse_products.h"
 #include "triangular_solves.h"
 
@@ -15,6 +16,7 @@ struct Kernels {
     const DenseProducts& dense;
     const DenseEigenproblems& eigen;
     const FrontElimination& fronts;
+    const PanelProducts& panels;
     const SparseProducts& sparse;
     const TriangularSolves& triangular;
 };

@@ -17,8 +17,17 @@ constexpr double kNudge = 1e-7;
 
 }  // namespace
 
-void ShiftedLdlt::factorize(const Laplacian& laplacian, double sigma) {
+void ShiftedLdlt::analyze(const Laplacian& laplacian) {
     if (!symbolic_.isOf(laplacian.W)) symbolic_ = SymbolicLdlt(laplacian.W);
+}
+
+const std::vector<int>& ShiftedLdlt::order(const Laplacian& laplacian) {
+    analyze(laplacian);
+    return symbolic_.inverse;
+}
+
+void ShiftedLdlt::factorize(const Laplacian& laplacian, double sigma) {
+    analyze(laplacian);
     for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
         shift_ = sigma * (1.0 + attempt * kNudge);
         if (!eliminate(symbolic_, laplacian, shift_, numbers_)) continue;

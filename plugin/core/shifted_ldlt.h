@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "laplacian.h"
 #include "ldlt_elimination.h"
@@ -24,6 +25,11 @@ class ShiftedLdlt {
 
     double shift() const { return shift_; }
 
+    /// The rows of W in the order in which they are eliminated: neighbours mostly close to each
+    /// other, however the vertices of a mesh are numbered. The same for every factorization of a W
+    /// of the same pattern.
+    const std::vector<int>& order(const Laplacian& laplacian);
+
     /// Number of eigenvalues of W phi = lambda D phi below shift(), exactly: that of the negative
     /// pivots.
     Index eigenvaluesBelow() const { return below_; }
@@ -38,6 +44,8 @@ class ShiftedLdlt {
                         double root = 0.0) const;
 
   private:
+    void analyze(const Laplacian& laplacian);
+
     SymbolicLdlt symbolic_;
     LdltNumbers numbers_;
     double shift_ = 0.0;

@@ -19,25 +19,35 @@ constexpr int kColumns = 8;
 /// Rows of the result that are written at once.
 constexpr int kRows = 8;
 
+/// Some columns, each row of them in one piece.
+using Rows = Eigen::Array<double, Eigen::Dynamic, kColumns, Eigen::RowMajor>;
+using Row = Eigen::Array<double, 1, kColumns>;
+
+/// @param S  the first of `count` columns, at most kColumns.
+void copyRows(const double* S, Size strideS, Size count, Rows& rows) {
+    if (count < kColumns) rows.setZero();
+    rows.leftCols(count) =
+        ConstMatrix(S, rows.rows(), count, Eigen::OuterStride<>(strideS)).array();
+}
+
+/// A row of W S. As W is symmetric its columns serve as rows.
+Row productRow(const SymmetricSparse& W, Size row, const Rows& S) {
+    Row sum = Row::Zero();
+    for (int p = W.starts[row]; p < W.starts[row + 1]; ++p) sum += W.values[p] * S.row(W.rows[p]);
+    return sum;
+}
+
 void product(const SymmetricSparse& W, const double* S, Size strideS, Size columns, double* WS,
              Size strideWS) {
-    Eigen::Array<double, Eigen::Dynamic, kColumns, Eigen::RowMajor> in(W.n, kColumns);
+    Rows in(W.n, kColumns);
     Eigen::Array<double, kRows, kColumns, Eigen::RowMajor> out;
     for (Size first = 0; first < columns; first += kColumns) {
         const Size count = std::min<Size>(kColumns, columns - first);
-        if (count < kColumns) in.setZero();
-        in.leftCols(count) =
-            ConstMatrix(S + first * strideS, W.n, count, Eigen::OuterStride<>(strideS)).array();
+        copyRows(S + first * strideS, strideS, count, in);
         Matrix result(WS + first * strideWS, W.n, count, Eigen::OuterStride<>(strideWS));
         for (Size row = 0; row < W.n; row += kRows) {
             const Size rows = std::min<Size>(kRows, W.n - row);
-            for (Size i = 0; i < rows; ++i) {
-                // As W is symmetric its columns serve as rows, so that each result is written once.
-                Eigen::Array<double, 1, kColumns> sum = Eigen::Array<double, 1, kColumns>::Zero();
-                for (int p = W.starts[row + i]; p < W.starts[row + i + 1]; ++p)
-                    sum += W.values[p] * in.row(W.rows[p]);
-                out.row(i) = sum;
-            }
+            for (Size i = 0; i < rows; ++i) out.row(i) = productRow(W, row + i, in);
             if (rows == kRows && count == kColumns)
                 result.middleRows<kRows>(row) = out.matrix();
             else
@@ -46,11 +56,25 @@ void product(const SymmetricSparse& W, const double* S, Size strideS, Size colum
     }
 }
 
+void squaredResiduals(const SymmetricSparse& W, const double* D, const double* S, Size strideS,
+                      Size columns, const double* lambda, double* squares) {
+    Rows in(W.n, kColumns);
+    for (Size first = 0; first < columns; first += kColumns) {
+        const Size count = std::min<Size>(kColumns, columns - first);
+        copyRows(S + first * strideS, strideS, count, in);
+        Row values = Row::Zero(), sum = Row::Zero();
+        for (Size j = 0; j < count; ++j) values[j] = lambda[first + j];
+        for (Size row = 0; row < W.n; ++row)
+            sum += (productRow(W, row, in) - values * D[row] * in.row(row)).square() / D[row];
+        for (Size j = 0; j < count; ++j) squares[first + j] = sum[j];
+    }
+}
+
 }  // namespace
 
 namespace SPECTRAL_INSTRUCTIONS {
 extern const SparseProducts sparseProducts;
-const SparseProducts sparseProducts{product};
+const SparseProducts sparseProducts{product, squaredResiduals};
 }  // namespace SPECTRAL_INSTRUCTIONS
 
 }  // namespace spectral

@@ -87,11 +87,11 @@ SymbolicLdlt::Columns SymbolicLdlt::findOrder(const SparseMatrix& W) {
     const std::vector<int> tree(analysis.parent().begin(), analysis.parent().end());
     const std::vector<int> number = postorder(tree);
     order.resize(W.rows());
-    inverse_.resize(n);
+    inverse.resize(n);
     Columns columns{std::vector<int>(n, -1), std::vector<int>(n)};
     for (int i = 0; i < W.rows(); ++i) {
         order[i] = number[analysis.permutationP().indices()[i]];
-        inverse_[order[i]] = i;
+        inverse[order[i]] = i;
         if (tree[i] >= 0) columns.parent[number[i]] = number[tree[i]];
         columns.count[number[i]] = analysis.columnEntries()[i];
     }
@@ -162,9 +162,9 @@ void SymbolicLdlt::findRows(const Columns& columns) {
     }
     // A row of L has its entries where paths in the tree of fronts lead from those of W.
     std::vector<int> visited(fronts.size(), -1);
-    for (int k = 0; k < static_cast<int>(inverse_.size()); ++k) {
+    for (int k = 0; k < static_cast<int>(inverse.size()); ++k) {
         visited[frontOf_[k]] = k;
-        for (int p = starts[inverse_[k]]; p < starts[inverse_[k] + 1]; ++p) {
+        for (int p = starts[inverse[k]]; p < starts[inverse[k] + 1]; ++p) {
             if (order[rows[p]] >= k) continue;
             for (int f = frontOf_[order[rows[p]]]; visited[f] != k; f = parent[f]) {
                 frontRows[ends[f]++] = k;
@@ -175,9 +175,9 @@ void SymbolicLdlt::findRows(const Columns& columns) {
 }
 
 void SymbolicLdlt::findPlaces() {
-    std::vector<int> position(inverse_.size());  // of a row in a front
-    std::vector<int> waiting;                    // fronts whose parents are still to come
-    entries.reserve((rows.size() + inverse_.size()) / 2);
+    std::vector<int> position(inverse.size());  // of a row in a front
+    std::vector<int> waiting;                   // fronts whose parents are still to come
+    entries.reserve((rows.size() + inverse.size()) / 2);
     for (int f = 0; f < static_cast<int>(fronts.size()); ++f) {
         Front& front = fronts[f];
         for (int i = 0; i < front.width + front.below; ++i)
@@ -194,7 +194,7 @@ void SymbolicLdlt::findPlaces() {
 
         front.entriesBegin = static_cast<int>(entries.size());
         for (int j = front.first; j < front.first + front.width; ++j)
-            for (int p = starts[inverse_[j]]; p < starts[inverse_[j] + 1]; ++p)
+            for (int p = starts[inverse[j]]; p < starts[inverse[j] + 1]; ++p)
                 if (const int row = order[rows[p]]; row >= j)
                     entries.push_back({p, position[row], j - front.first});
         front.entriesEnd = static_cast<int>(entries.size());

@@ -26,7 +26,8 @@ struct SymbolicLdlt {
     bool isOf(const SparseMatrix& W) const;
 
     std::vector<int> starts, rows;  ///< The pattern, as W has it.
-    Eigen::VectorXi order;          ///< n: row i of W is row order[i] of the factor.
+    Eigen::VectorXi order;          ///< n: row i of W is row order[i] of the factor,
+    std::vector<int> inverse;       ///< n: and row j of the factor is row inverse[j] of W.
 
     /// The columns of a supernode, and the rows of its front: these, then those below them.
     struct Front {
@@ -64,7 +65,6 @@ struct SymbolicLdlt {
     void findRows(const Columns& columns);
     void findPlaces();
 
-    std::vector<int> inverse_;  // n: row j of the factor is row inverse_[j] of W
     std::vector<int> frontOf_;  // n: of a column
 };
 

@@ -6,8 +6,10 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cstdlib>
+#include <numeric>
 #include <vector>
 
+#include "core/row_panels.h"
 #include "core/types.h"
 #include "support/evaluation.h"
 #include "support/shapes.h"
@@ -76,6 +78,10 @@ TEST_P(KernelsOfEverySet, SaysWhenAMatrixIsNotPositiveDefinite) {
     Eigen::VectorXd values(2);
     Eigen::MatrixXd Z(2, 2);
     EXPECT_FALSE(kernels().eigen.generalized(A.data(), B.data(), 2, values.data(), Z.data()));
+    Eigen::Matrix2d nearlySingular = Eigen::Matrix2d::Ones();
+    nearlySingular(1, 1) += 2.3e-16;
+    EXPECT_FALSE(
+        kernels().eigen.generalized(A.data(), nearlySingular.data(), 2, values.data(), Z.data()));
 }
 
 /// A front in memory, as it is documented.
@@ -171,6 +177,47 @@ TEST_P(SparseKernelsOfEverySet, MultipliesASparseMatrix) {
         Eigen::MatrixXd WS(n_, columns);
         kernels().sparse.product(matrix, S.data(), n_, columns, WS.data(), n_);
         EXPECT_LT((WS - W * S).norm(), 1e-11 * WS.norm()) << columns << " columns";
+    }
+}
+
+TEST_P(SparseKernelsOfEverySet, MeasuresResiduals) {
+    std::srand(8);
+    const auto& [W, D] = A_.laplacian;
+    const SymmetricSparse matrix{n_, W.outerIndexPtr(), W.innerIndexPtr(), W.valuePtr()};
+    for (const Index columns : {1, 7, 8, 21}) {
+        const Eigen::MatrixXd S = Eigen::MatrixXd::Random(n_, columns);
+        const Eigen::VectorXd lambda = Eigen::VectorXd::Random(columns);
+        Eigen::VectorXd squares(columns);
+        kernels().sparse.squaredResiduals(matrix, D.data(), S.data(), n_, columns, lambda.data(),
+                                          squares.data());
+        const Eigen::MatrixXd R = W * S - D.asDiagonal() * S * lambda.asDiagonal();
+        const Eigen::VectorXd expected =
+            (D.cwiseSqrt().cwiseInverse().asDiagonal() * R).colwise().squaredNorm();
+        EXPECT_LT((squares - expected).norm(), 1e-12 * expected.norm()) << columns << " columns";
+    }
+}
+
+TEST_P(SparseKernelsOfEverySet, AddsWhatPanelsContributeToRitzProducts) {
+    std::srand(10);
+    const auto& [W, D] = A_.laplacian;
+    std::vector<int> order(static_cast<std::size_t>(n_));
+    std::iota(order.begin(), order.end(), 0);
+    const RowPanels rows(A_.laplacian, order, 0, n_);
+    const std::vector<RowPanel> panels = rows.panels();
+    ASSERT_GT(panels.size(), 2u);
+    for (const Index m : {1, 8, 16, 37}) {
+        const Eigen::MatrixXd S = Eigen::MatrixXd::Random(n_, m);
+        Eigen::MatrixXd H = Eigen::MatrixXd::Ones(m, m), G = 2.0 * H;
+        kernels().panels.add(panels.data(), static_cast<Index>(panels.size()), S.data(), n_, m,
+                             H.data(), G.data());
+        Eigen::MatrixXd expectedH = S.transpose() * (W * S);
+        Eigen::MatrixXd expectedG = S.transpose() * D.asDiagonal() * S;
+        expectedH.array() += 1.0;
+        expectedG.array() += 2.0;
+        for (Index j = 0; j < m; ++j) {
+            EXPECT_LT((H - expectedH).col(j).head(j + 1).norm(), 1e-12 * expectedH.norm()) << m;
+            EXPECT_LT((G - expectedG).col(j).head(j + 1).norm(), 1e-12 * expectedG.norm()) << m;
+        }
     }
 }
 

@@ -38,10 +38,11 @@ HarmonicBasis leaking(const Operator& A, const HarmonicBasis& all, double length
     Eigen::MatrixXd S = all.Phi.middleCols(c, columns) + length * all.Phi.rightCols(beyond) * parts;
 
     HarmonicBasis basis;
+    ShiftedLdlt factor;
     basis.Phi = all.Phi.leftCols(kHarmonics);
     basis.lambda = all.lambda.head(kHarmonics);
-    basis.lambda.segment(c, columns) =
-        rayleighRitz(A.laplacian, S, [&] { return columns; }, Progress());
+    basis.lambda.segment(c, columns) = rayleighRitz(
+        A.laplacian, S, factor.order(A.laplacian), [&] { return columns; }, Progress());
     basis.Phi.middleCols(c, columns) = S;
     basis.leak = {basis.lambda[leaky - 1], all.lambda[into]};
     return basis;
