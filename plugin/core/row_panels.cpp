@@ -22,7 +22,7 @@ RowPanels::RowPanels(const Laplacian& laplacian, const std::vector<int>& order, 
         return position[row];
     };
     for (Index first = begin; first < end; first += kRows) {
-        places_.push_back(this->end());
+        places_.push_back(next());
         std::vector<int> own(order.begin() + first, order.begin() + std::min(first + kRows, end));
         std::sort(own.begin(), own.end());  // as they lie in memory
         for (const int row : own) need(row);
@@ -39,7 +39,7 @@ RowPanels::RowPanels(const Laplacian& laplacian, const std::vector<int>& order, 
         for (auto row = rows_.begin() + places_.back().rows; row != rows_.end(); ++row)
             position[*row] = -1;
     }
-    places_.push_back(this->end());
+    places_.push_back(next());
 }
 
 std::vector<RowPanel> RowPanels::panels() const {

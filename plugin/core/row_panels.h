@@ -24,7 +24,7 @@ class RowPanels {
     struct Place {
         std::size_t rows = 0, starts = 0, entries = 0, masses = 0;
     };
-    Place end() const { return {rows_.size(), starts_.size(), columns_.size(), masses_.size()}; }
+    Place next() const { return {rows_.size(), starts_.size(), columns_.size(), masses_.size()}; }
 
     std::vector<Place> places_;  // of the panels, and where the next one would begin
     std::vector<int> rows_, starts_, columns_;

@@ -21,6 +21,7 @@
 #include "core/cholesky.h"
 #include "core/harmonic_basis.h"
 #include "core/mesh_laplacian.h"
+#include "support/memory.h"
 #include "support/ply.h"
 
 using namespace spectral;
@@ -102,22 +103,12 @@ void writeMatrices(const MeshLaplacian& mesh, const std::string& folder) {
                 static_cast<long>(mesh.laplacian.D.size()), mesh.components.count);
 }
 
-/// Peak memory of this program; ru_maxrss would begin with that of the one that started it.
-double peakMegabytes() {
-    std::ifstream status("/proc/self/status");
-    std::string word;
-    double kilobytes = 0.0;
-    while (status >> word)
-        if (word == "VmHWM:") status >> kilobytes;
-    return kilobytes / 1024.0;
-}
-
 void measure(const std::function<Pairs()>& compute, const std::string& folder) {
-    const double before = peakMegabytes();
+    const double before = testing::peakMegabytes();
     const auto start = std::chrono::steady_clock::now();
     const Pairs pairs = compute();
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-    const double peak = peakMegabytes() - before;
+    const double peak = testing::peakMegabytes() - before;
     write(folder + "/lambda", pairs.lambda.data(), pairs.lambda.size());
     write(folder + "/Phi", pairs.Phi.data(), pairs.Phi.size());
     std::printf("{\"seconds\": %.6f, \"megabytes\": %.1f}\n", took.count(), peak);
