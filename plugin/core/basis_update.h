@@ -13,9 +13,8 @@ namespace spectral {
 /// What an update has to hold, else the basis is computed anew.
 struct UpdateGate {
     /// Mean residual of previous harmonics under the new Laplacian, defined as below: of some, and
-    /// of all next to the cut. Beyond it nothing is tried: where areas have changed by a tenth it
-    /// would be in vain.
-    double largestChange = 0.08;
+    /// of all next to the cut. Beyond it nothing is tried: half of the updates would be in vain.
+    double largestChange = 0.13;
 
     /// Largest bound on the part of a harmonic that lies beyond the basis: its residual
     /// |D^-1/2 (W phi - lambda D phi)| divided by its distance in the spectrum from there. Filters
