@@ -1,7 +1,6 @@
 #include "basis_certificate.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "errors.h"
 #include "mass_products.h"
