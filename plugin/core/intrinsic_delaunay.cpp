@@ -2,8 +2,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace spectral {
@@ -14,34 +14,33 @@ namespace {
 /// than the third. Sharp and Crane's value.
 constexpr double kMollification = 1e-5;
 
-/// An edge is flipped when the sum of its two cotangents is below minus this part of their moduli:
-/// nearly cocircular corners would otherwise be flipped to and fro by round-off.
-constexpr double kFlipTolerance = 1e-11;
-
-/// Flips per edge after which the rest is left; a few are usual.
-constexpr long kMaxFlipsPerEdge = 100;
-
-int next(int side) { return side % 3 == 2 ? side - 2 : side + 1; }
-int previous(int side) { return side % 3 == 0 ? side + 2 : side - 1; }
-
 /// A triangle's side, in the mesh, with the edge that it lies on.
 struct EdgeSide {
     int low, high;  // vertices, low < high
     int side;
     bool operator<(const EdgeSide& other) const {
-        return std::array{low, high, side} < std::array{other.low, other.high, other.side};
+        return std::pair(high, side) < std::pair(other.high, other.side);
     }
 };
 
-std::vector<EdgeSide> sidesByEdge(const Faces& F) {
-    std::vector<EdgeSide> sides;
-    sides.reserve(static_cast<std::size_t>(3 * F.rows()));
-    for (int t = 0; t < F.rows(); ++t)
-        for (int c = 0; c < 3; ++c) {
-            const int i = F(t, c), j = F(t, (c + 1) % 3);
-            sides.push_back({std::min(i, j), std::max(i, j), 3 * t + c});
-        }
-    std::sort(sides.begin(), sides.end());
+/// All sides, those of an edge next to each other, in ascending order.
+std::vector<EdgeSide> sidesByEdge(const Faces& F, Index vertexCount) {
+    // In buckets by their lower vertex first: few sides share it.
+    std::vector<int> begin(static_cast<std::size_t>(vertexCount) + 1, 0);
+    const auto forEachSide = [&F](const auto& visit) {
+        for (int t = 0; t < F.rows(); ++t)
+            for (int c = 0; c < 3; ++c) {
+                const int i = F(t, c), j = F(t, c == 2 ? 0 : c + 1);
+                visit(EdgeSide{std::min(i, j), std::max(i, j), 3 * t + c});
+            }
+    };
+    forEachSide([&](const EdgeSide& s) { ++begin[s.low + 1]; });
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    std::vector<EdgeSide> sides(static_cast<std::size_t>(3 * F.rows()));
+    std::vector<int> next(begin.begin(), begin.end() - 1);
+    forEachSide([&](const EdgeSide& s) { sides[next[s.low]++] = s; });
+    for (Index i = 0; i < vertexCount; ++i)
+        std::sort(sides.begin() + begin[i], sides.begin() + begin[i + 1]);
     return sides;
 }
 
@@ -67,125 +66,59 @@ void sortByAngle(const Vertices& V, const Faces& F, EdgeSide* first, EdgeSide* l
     });
 }
 
-/// Triangle areas and cotangents from three lengths.
-struct Triangle {
-    double area, cotangent;  // of the angle opposite to the first length
-
-    /// Heron's formula, in Kahan's form that keeps its digits for needles.
-    static double areaOf(double a, double b, double c) {
-        if (a < b) std::swap(a, b);
-        if (a < c) std::swap(a, c);
-        if (b < c) std::swap(b, c);
-        const double product = (a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c));
-        return 0.25 * std::sqrt(std::max(0.0, product));
-    }
-
-    Triangle(double opposite, double b, double c)
-        : area(areaOf(opposite, b, c)),
-          // b^2 + c^2 - a^2 without cancelling the digits of a needle's short side
-          cotangent((b * b + (c - opposite) * (c + opposite)) / (4.0 * area)) {}
+/// An edge of the triangulation with half the sum of its cotangents; another may have the same
+/// ends.
+struct WeightedEdge {
+    int i, j;
+    double weight;
 };
 
-/// A triangulation by lengths alone, closed, that edge flips make Delaunay.
-class IntrinsicTriangulation {
-  public:
-    IntrinsicTriangulation(std::vector<int> tail, std::vector<int> twin, std::vector<double> length)
-        : tail_(std::move(tail)), twin_(std::move(twin)), length_(std::move(length)) {}
+/// W_ij = -weight, W_ii = -sum_j W_ij. An entry for each pair of ends, also where the weight is 0.
+SparseMatrix stiffnessOf(const std::vector<WeightedEdge>& edges, Index vertexCount) {
+    struct Entry {
+        int row;
+        double value;
+    };
+    std::vector<int> begin(static_cast<std::size_t>(vertexCount) + 1, 1);  // 1 for the diagonal
+    begin[0] = 0;
+    for (const WeightedEdge& edge : edges) {
+        ++begin[edge.i + 1];
+        ++begin[edge.j + 1];
+    }
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
+    std::vector<Entry> entries(static_cast<std::size_t>(begin.back()));
+    std::vector<int> next(begin.begin(), begin.end() - 1);
+    for (int i = 0; i < vertexCount; ++i) entries[next[i]++] = {i, 0.0};
+    for (const auto& [i, j, weight] : edges) {
+        entries[next[i]++] = {j, -weight};
+        entries[next[j]++] = {i, -weight};
+        entries[begin[i]].value += weight;
+        entries[begin[j]].value += weight;
+    }
 
-    void makeDelaunay() {
-        const int sides = static_cast<int>(tail_.size());
-        std::vector<int> stack;
-        std::vector<char> waiting(tail_.size(), 0);
-        const auto push = [&](int side) {
-            const int s = std::min(side, twin_[side]);
-            if (!waiting[s]) {
-                waiting[s] = 1;
-                stack.push_back(s);
-            }
-        };
-        for (int s = sides - 1; s >= 0; --s) push(s);
-        long flips = kMaxFlipsPerEdge * sides / 2;
-        while (!stack.empty() && flips > 0) {
-            const int s = stack.back();
-            stack.pop_back();
-            waiting[s] = 0;
-            if (isDelaunay(s)) continue;
-            // A side that waits may now be another edge; the edge that it was is pushed again.
-            const int t = twin_[s];
-            flip(s);
-            --flips;
-            push(s);
-            for (const int outer : {next(s), previous(s), next(t), previous(t)}) push(outer);
+    SparseMatrix W(vertexCount, vertexCount);
+    W.reserve(begin.back());
+    for (Index j = 0; j < vertexCount; ++j) {
+        const auto first = entries.begin() + begin[j], last = entries.begin() + begin[j + 1];
+        // By value, too: entries of the same ends are summed alike in both columns.
+        std::sort(first, last, [](const Entry& a, const Entry& b) {
+            return std::pair(a.row, a.value) < std::pair(b.row, b.value);
+        });
+        W.startVec(j);
+        for (auto entry = first; entry != last;) {
+            const int row = entry->row;
+            double& value = W.insertBack(row, j);
+            for (value = 0.0; entry != last && entry->row == row; ++entry) value += entry->value;
         }
     }
-
-    /// Sum of the cotangents opposite to an edge.
-    double edgeCotangents(int s) const { return cotangent(s) + cotangent(twin_[s]); }
-
-    int sideCount() const { return static_cast<int>(tail_.size()); }
-    int tail(int side) const { return tail_[side]; }
-    int twin(int side) const { return twin_[side]; }
-
-  private:
-    double cotangent(int s) const {
-        return Triangle(length_[s], length_[next(s)], length_[previous(s)]).cotangent;
-    }
-
-    bool isDelaunay(int s) const {
-        if (s / 3 == twin_[s] / 3) return true;  // a triangle glued to itself has nothing to flip
-        const double a = cotangent(s), b = cotangent(twin_[s]);
-        return a + b >= -kFlipTolerance * (std::abs(a) + std::abs(b));
-    }
-
-    /// Turns the edge of side s = (i, j), with triangles (i, j, k) and (j, i, l), into (k, l).
-    void flip(int s) {
-        const int t = twin_[s];
-        const std::array<int, 4> old{previous(t), next(s), previous(s), next(t)};
-        const std::array<int, 4> slot{next(s), previous(s), next(t), previous(t)};
-        const double lij = length_[s];
-        const double ljk = length_[next(s)], lki = length_[previous(s)];
-        const double lil = length_[next(t)], llj = length_[previous(t)];
-
-        // Both triangles laid out in the plane, i in the origin, j on the first axis.
-        const double kx = 0.5 * (lij + (lki - ljk) * (lki + ljk) / lij);
-        const double lx = 0.5 * (lij + (lil - llj) * (lil + llj) / lij);
-        const double ky = 2.0 * Triangle::areaOf(lij, ljk, lki) / lij;
-        const double ly = -2.0 * Triangle::areaOf(lij, lil, llj) / lij;
-        const double lkl = std::hypot(kx - lx, ky - ly);
-
-        const int k = tail_[previous(s)], l = tail_[previous(t)];
-        std::array<int, 4> tails, twins;
-        std::array<double, 4> lengths;
-        for (int q = 0; q < 4; ++q) {
-            tails[q] = tail_[old[q]];
-            twins[q] = twin_[old[q]];
-            lengths[q] = length_[old[q]];
-        }
-        for (int q = 0; q < 4; ++q) {
-            tail_[slot[q]] = tails[q];
-            length_[slot[q]] = lengths[q];
-            // An outer side may be glued to another one of the four, which has moved too.
-            const auto moved = std::find(old.begin(), old.end(), twins[q]);
-            if (moved != old.end()) {
-                twin_[slot[q]] = slot[moved - old.begin()];
-            } else {
-                twin_[slot[q]] = twins[q];
-                twin_[twins[q]] = slot[q];
-            }
-        }
-        tail_[s] = k;
-        tail_[t] = l;
-        length_[s] = length_[t] = lkl;
-    }
-
-    std::vector<int> tail_, twin_;
-    std::vector<double> length_;
-};
+    W.finalize();
+    return W;
+}
 
 }  // namespace
 
 IntrinsicDelaunay::IntrinsicDelaunay(const Vertices& V, const Faces& F) : vertexCount_(V.rows()) {
-    std::vector<EdgeSide> sides = sidesByEdge(F);
+    std::vector<EdgeSide> sides = sidesByEdge(F, V.rows());
     const int front = static_cast<int>(3 * F.rows());
     const auto runsUp = [&](const EdgeSide& s) { return F(s.side / 3, s.side % 3) == s.low; };
     const auto endOfEdge = [&](std::size_t begin) {
@@ -237,10 +170,10 @@ IntrinsicDelaunay::IntrinsicDelaunay(const Vertices& V, const Faces& F) : vertex
     }
 }
 
-SparseMatrix IntrinsicDelaunay::stiffness(const Vertices& V) const {
+IntrinsicTriangulation IntrinsicDelaunay::triangulation(const Vertices& V) const {
     std::vector<double> length(tail_.size());
     for (std::size_t s = 0; s < tail_.size(); ++s)
-        length[s] = (V.row(tail_[next(static_cast<int>(s))]) - V.row(tail_[s])).norm();
+        length[s] = (V.row(tail_[nextSide(static_cast<int>(s))]) - V.row(tail_[s])).norm();
 
     // Mollification: the least that makes every triangle inequality hold by the margin.
     double meanLength = 0.0;
@@ -248,31 +181,27 @@ SparseMatrix IntrinsicDelaunay::stiffness(const Vertices& V) const {
     meanLength /= static_cast<double>(oneSide_.size());
     double epsilon = 0.0;
     for (int s = 0; s < static_cast<int>(tail_.size()); ++s)
-        epsilon = std::max(epsilon, length[s] - length[next(s)] - length[previous(s)] +
+        epsilon = std::max(epsilon, length[s] - length[nextSide(s)] - length[previousSide(s)] +
                                         kMollification * meanLength);
     for (double& l : length) l += epsilon;
 
     IntrinsicTriangulation triangulation(tail_, twin_, std::move(length));
     triangulation.makeDelaunay();
+    return triangulation;
+}
 
-    const double share = 1.0 / copies_;
-    Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(vertexCount_);
-    std::vector<Eigen::Triplet<double>> entries;
-    entries.reserve(tail_.size() + static_cast<std::size_t>(vertexCount_));
-    for (int s = 0; s < triangulation.sideCount(); ++s) {
-        const int t = triangulation.twin(s), i = triangulation.tail(s), j = triangulation.tail(t);
+SparseMatrix IntrinsicDelaunay::stiffness(const Vertices& V) const {
+    const IntrinsicTriangulation delaunay = triangulation(V);
+    std::vector<WeightedEdge> edges;
+    edges.reserve(tail_.size() / 2);
+    for (int s = 0; s < delaunay.sideCount(); ++s) {
+        const int t = delaunay.twin(s), i = delaunay.tail(s), j = delaunay.tail(t);
         // An edge from a vertex to itself carries no difference.
         if (s > t || i == j) continue;
-        const double w = share * 0.5 * std::max(0.0, triangulation.edgeCotangents(s));
-        entries.emplace_back(i, j, -w);
-        entries.emplace_back(j, i, -w);
-        diagonal[i] += w;
-        diagonal[j] += w;
+        const double cotangents = std::max(0.0, delaunay.edgeCotangents(s));
+        edges.push_back({i, j, 0.5 / copies_ * cotangents});
     }
-    for (int i = 0; i < vertexCount_; ++i) entries.emplace_back(i, i, diagonal[i]);
-    SparseMatrix W(vertexCount_, vertexCount_);
-    W.setFromTriplets(entries.begin(), entries.end());
-    return W;
+    return stiffnessOf(edges, vertexCount_);
 }
 
 }  // namespace spectral

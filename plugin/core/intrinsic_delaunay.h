@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "intrinsic_triangulation.h"
 #include "types.h"
 
 namespace spectral {
@@ -23,7 +24,13 @@ class IntrinsicDelaunay {
     /// @param F  m x 3; three different corners each, every vertex in some triangle.
     IntrinsicDelaunay(const Vertices& V, const Faces& F);
 
-    /// W of the embedding V (n x 3, finite, not all in one point): n x n, symmetric, rows sum to 0.
+    /// The Delaunay triangulation of the tufted cover of the embedding V (n x 3, finite, not all in
+    /// one point).
+    /// @throws SolverFailure  when the flips do not end.
+    IntrinsicTriangulation triangulation(const Vertices& V) const;
+
+    /// W of the embedding V: n x n, symmetric, rows sum to 0.
+    /// @throws SolverFailure  when the flips do not end.
     SparseMatrix stiffness(const Vertices& V) const;
 
     /// Whether the cover has one copy of every triangle, which is enough for a closed, oriented

@@ -3,7 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <vector>
 
 #include "core/cholesky.h"
 #include "core/laplacian_builder.h"
@@ -93,6 +98,59 @@ TEST(IntrinsicDelaunay, IsPositiveSemidefiniteWithRowsThatSumToZero) {
             Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(W, Eigen::EigenvaluesOnly).eigenvalues();
         EXPECT_GT(lambda[0], -1e-11 * scale);
     }
+}
+
+/// Least sum of the cotangents opposite to any edge.
+double leastEdgeCotangents(const Mesh& mesh) {
+    const IntrinsicTriangulation delaunay = IntrinsicDelaunay(mesh.V, mesh.F).triangulation(mesh.V);
+    double least = std::numeric_limits<double>::infinity();
+    for (int s = 0; s < delaunay.sideCount(); ++s)
+        least = std::min(least, delaunay.edgeCotangents(s));
+    return least;
+}
+
+/// Meshes whose edges mostly are diagonals of rectangles: both opposite angles are right ones.
+std::vector<Mesh> rectangularMeshes() {
+    std::vector<Mesh> meshes{testing::rectangle(1, 1, 1, 1), testing::rectangle(3, 1, 40, 7),
+                             testing::rectangle(1e-3, 1e4, 30, 2), testing::cube(9),
+                             testing::joined(testing::cube(4), testing::rectangle(5, 1, 50, 50))};
+    const std::size_t count = meshes.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        std::srand(static_cast<unsigned>(i));
+        for (int turn = 0; turn < 20; ++turn) {
+            Mesh turned = meshes[i];
+            const Eigen::Quaterniond q(Eigen::Vector4d(Eigen::Vector4d::Random()).normalized());
+            const double scale = std::pow(10.0, 3 * turn / 2 - 15);
+            turned.V = scale * (turned.V * q.toRotationMatrix());
+            turned.V.rowwise() += scale * Eigen::RowVector3d::Random();
+            if (turn % 3 == 0)  // as a file of floats has them
+                turned.V = turned.V.cast<float>().cast<double>().eval();
+            meshes.push_back(turned);
+        }
+    }
+    return meshes;
+}
+
+TEST(IntrinsicDelaunay, LeavesNoEdgeWithANegativeWeight) {
+    for (const Mesh& mesh : rectangularMeshes()) EXPECT_GT(leastEdgeCotangents(mesh), -1e-9);
+    for (const Mesh& mesh : brokenMeshes()) EXPECT_GT(leastEdgeCotangents(mesh), -1e-6);
+}
+
+TEST(IntrinsicDelaunay, OfARectangleIsThatOfItsGrid) {
+    // Whatever the diagonals are, their weights are 0: W is that of a grid of squares, with half
+    // the weight along the boundary.
+    Mesh mesh = testing::rectangle(8, 5, 8, 5);
+    const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()));
+    mesh.V = (mesh.V * turn.toRotationMatrix()).eval();
+    const SparseMatrix W = intrinsicStiffness(mesh);
+    for (int j = 0; j < W.outerSize(); ++j)
+        for (SparseMatrix::InnerIterator w(W, j); w; ++w) {
+            const double distance = (mesh.V.row(w.row()) - mesh.V.row(j)).norm();
+            if (distance < 0.5) continue;
+            const double weight = -w.value();
+            const double expected = distance > 1.2 ? 0.0 : weight > 0.75 ? 1.0 : 0.5;
+            EXPECT_NEAR(weight, expected, 1e-4);
+        }
 }
 
 TEST(IntrinsicDelaunay, EqualsTheCotangentMatrixWhereTheMeshIsDelaunay) {
