@@ -6,6 +6,7 @@
 #include "full_spectrum.h"
 #include "mesh_laplacian.h"
 #include "pole_selection.h"
+#include "thread_team.h"
 
 namespace spectral {
 
@@ -24,6 +25,7 @@ double artefactFreeGain(double omega, double cutoff) {
 
 Artefacts measureArtefacts(const Vertices& V, const Faces& F, const ArtefactOptions& options,
                            const Progress& progress) {
+    const ThreadTeam team;
     const MeshLaplacian mesh = meshLaplacian(V, F, options.laplacian);
     const double cutoff = cutoffFrequency(options.featureSize);
     const Gain gain = [cutoff](double omega) { return artefactFreeGain(omega, cutoff); };

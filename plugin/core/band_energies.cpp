@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "lanczos.h"
+#include "krylov_spaces.h"
 
 namespace spectral {
 
@@ -46,12 +46,12 @@ double energyIn(const Bands& bands, int j, const Quadrature& measure) {
 
 /// The octave's energy, then those of the shape and of the noise in every third.
 Eigen::ArrayXd energiesOf(const Bundle& bundle, const Bands& octaves, const Bands& thirds,
-                          const std::vector<LanczosColumn>& columns, double pole) {
+                          const KrylovSpaces& signals) {
     const auto count = static_cast<Index>(bundle.thirds.size());
     Eigen::ArrayXd energies = Eigen::ArrayXd::Zero(1 + 2 * count);
-    for (std::size_t c = 0; c < columns.size(); ++c) {
-        const Quadrature measure = columns[c].quadrature(pole);
-        const bool isNoise = c + 1 == columns.size();
+    for (int c = 0; c < signals.columns(); ++c) {
+        const Quadrature measure = signals.quadrature(c);
+        const bool isNoise = c + 1 == signals.columns();
         if (!isNoise) energies[0] += energyIn(octaves, bundle.octave, measure);
         for (Index t = 0; t < count; ++t)
             energies[1 + t + (isNoise ? count : 0)] += energyIn(thirds, bundle.thirds[t], measure);
@@ -66,12 +66,9 @@ Eigen::ArrayXd convergedEnergies(const Bundle& bundle, const Bands& octaves, con
                                  const Laplacian& laplacian, const ConstantModes& constants,
                                  const Eigen::MatrixXd& signals, const Eigen::Array2d& total,
                                  ShiftedCholesky& cholesky) {
-    const double omega = 2.0 * kPi / octaves.featureSize(bundle.octave), pole = omega * omega;
-    cholesky.factorize(laplacian, pole);
-    const Eigen::VectorXd sqrtD = laplacian.D.cwiseSqrt();
-    std::vector<LanczosColumn> columns;
-    for (Index c = 0; c < signals.cols(); ++c)
-        columns.emplace_back(sqrtD.cwiseProduct(signals.col(c)));
+    const double omega = 2.0 * kPi / octaves.featureSize(bundle.octave);
+    cholesky.factorize(laplacian, omega * omega);
+    KrylovSpaces spaces(cholesky, laplacian.D, constants, signals);
 
     const auto count = static_cast<Index>(bundle.thirds.size());
     Eigen::ArrayXd negligible(1 + 2 * count), relative(1 + 2 * count);
@@ -80,11 +77,10 @@ Eigen::ArrayXd convergedEnergies(const Bundle& bundle, const Bands& octaves, con
     relative << kConverged, Eigen::ArrayXd::Constant(2 * count, kThirdsConverged);
     Eigen::ArrayXd energies = Eigen::ArrayXd::Zero(1 + 2 * count), change = energies;
     for (int m = 1; m <= kMaxDimension; ++m) {
-        if (!extendColumns(columns, sqrtD, constants, cholesky))
-            return energiesOf(bundle, octaves, thirds, columns, pole);
+        if (!spaces.extend()) return energiesOf(bundle, octaves, thirds, spaces);
         if (m % kCheckInterval != 0) continue;
         const Eigen::ArrayXd before = energies, changeBefore = change;
-        energies = energiesOf(bundle, octaves, thirds, columns, pole);
+        energies = energiesOf(bundle, octaves, thirds, spaces);
         change = (energies - before).abs();
         // One small change may be chance.
         if (m >= kFirstCheck &&

@@ -28,6 +28,11 @@ Eigen::MatrixXd ShiftedCholesky::solve(const Eigen::MatrixXd& B) const {
     return ldlt_.solve(B);
 }
 
+void ShiftedCholesky::solveOrdered(double* Y, int columns) const {
+    solves_ += columns;
+    ldlt_.solveOrdered(Y, columns);
+}
+
 Index ShiftedCholesky::countEigenvaluesBelow(const Laplacian& laplacian, double sigma) {
     ++factorizations_;
     ShiftedLdlt ldlt;

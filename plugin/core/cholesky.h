@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "laplacian.h"
 #include "shifted_ldlt.h"
@@ -18,6 +19,12 @@ class ShiftedCholesky {
 
     /// (W + s D)^-1 B for every column of B (n x c).
     Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const;
+
+    /// The same in place and in the factor's order; see ShiftedLdlt.
+    void solveOrdered(double* Y, int columns) const;
+    Index orderedRows() const { return ldlt_.orderedRows(); }
+    const Eigen::VectorXi& factorOrder() const { return ldlt_.factorOrder(); }
+    const std::vector<int>& inverseOrder() const { return ldlt_.inverseOrder(); }
 
     /// Number of eigenvalues of W phi = lambda D phi below sigma, exactly: the number of negative
     /// pivots of the LDL^T factorization of W - sigma D (Sylvester's law of inertia). Leaves the

@@ -28,6 +28,9 @@ class ConstantModes {
 
     int count() const { return static_cast<int>(mass_.size()); }
 
+    const Eigen::VectorXi& label() const { return label_; }  ///< n; -1 for those without a mode.
+    const Eigen::VectorXd& masses() const { return mass_; }  ///< Of the components.
+
     /// D-weighted mean of every column of X (n x c) on every component: count x c.
     Eigen::MatrixXd means(const Eigen::Ref<const Eigen::MatrixXd>& X) const;
 

@@ -11,6 +11,7 @@
 #include "measures.h"
 #include "mesh_check.h"
 #include "surface.h"
+#include "thread_team.h"
 
 namespace spectral {
 
@@ -109,6 +110,7 @@ AutomaticSteps filterInSteps(const LaplacianBuilder& laplacians, StepEvaluator& 
 
 FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOptions& options,
                               const Progress& progress) {
+    const ThreadTeam team;
     checkMesh(V, F, options.laplacian);  // first: a feature size that is a part of an infinite
     checkOptions(options);               // diagonal is the mesh's fault
     const Surface surface = surfaceOf(V, F);

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "lanczos.h"
+#include "krylov_spaces.h"
 
 namespace spectral {
 
@@ -55,15 +55,8 @@ FullSpectrumResult applyFullSpectrum(const Eigen::VectorXd& D, const ConstantMod
                                      const ShiftedCholesky& cholesky, const Gain& gain,
                                      const Eigen::MatrixXd& X, const FullSpectrumOptions& options,
                                      const Progress& progress) {
-    const Index n = X.rows(), columns = X.cols();
-    const double pole = cholesky.shift();
-    const Eigen::MatrixXd means = constants.means(X);
-    Eigen::MatrixXd centred = X;
-    constants.add(-means, centred);
-    const Eigen::VectorXd sqrtD = D.cwiseSqrt();
-    const double normX = (sqrtD.asDiagonal() * centred).norm();
-    const double maxX = centred.cwiseAbs().maxCoeff();
-
+    KrylovSpaces spaces(cholesky, D, constants, X);
+    const double normX = spaces.norms().matrix().norm();
     FullSpectrumResult result;
     if (!(normX > 0.0)) {
         result.Y = X;
@@ -71,21 +64,18 @@ FullSpectrumResult applyFullSpectrum(const Eigen::VectorXd& D, const ConstantMod
         return result;
     }
 
-    std::vector<LanczosColumn> lanczos;
-    for (Index c = 0; c < columns; ++c) lanczos.emplace_back(sqrtD.cwiseProduct(centred.col(c)));
-    std::vector<Eigen::VectorXd> coefficients(columns);
-
-    // Renews the coefficients of all columns; returns the estimated error of the signals.
+    // Renews the coefficients of all columns, and Y once it is nearly there; returns the estimated
+    // error of the signals.
     ErrorEstimate overSurface, atVertices;
+    std::vector<Eigen::VectorXd> coefficients(X.cols()), change(X.cols());
     double largest = 0.0;
     const auto renew = [&] {
-        std::vector<Eigen::VectorXd> change(columns);
         double squares = 0.0;
-        for (Index c = 0; c < columns; ++c) {
-            const Eigen::VectorXd older = std::move(coefficients[c]);
-            coefficients[c] = lanczos[c].coefficients(gain, pole);
-            change[c] = coefficients[c];
-            change[c].head(older.size()) -= older;
+        for (int c = 0; c < spaces.columns(); ++c) {
+            change[c] = spaces.coefficients(c, gain);
+            coefficients[c].conservativeResizeLike(Eigen::VectorXd::Zero(change[c].size()));
+            std::swap(coefficients[c], change[c]);
+            change[c] = coefficients[c] - change[c];
             squares += change[c].squaredNorm();
         }
         const double error = overSurface(std::sqrt(squares) / normX);
@@ -93,18 +83,15 @@ FullSpectrumResult applyFullSpectrum(const Eigen::VectorXd& D, const ConstantMod
         // A norm over the surface hardly sees a vertex of small mass; its error can be larger, and
         // shrink more slowly and less evenly: so the larger one of two changes counts.
         const double before = largest;
-        largest = 0.0;
-        for (Index c = 0; c < columns; ++c)
-            if (change[c].size() > 0)
-                largest = std::max(
-                    largest,
-                    lanczos[c].combine(change[c]).cwiseQuotient(sqrtD).cwiseAbs().maxCoeff());
-        return std::max(error, atVertices(std::max(before, largest) / maxX));
+        KrylovSpaces::Combination combination = spaces.combine(coefficients, change);
+        result.Y = std::move(combination.Y);
+        largest = combination.largestChange;
+        return std::max(error, atVertices(std::max(before, largest) / spaces.largestEntry()));
     };
 
     double firstError = 0.0, furthest = 0.0;
     for (int m = 1;; ++m) {
-        if (!extendColumns(lanczos, sqrtD, constants, cholesky)) {
+        if (!spaces.extend()) {
             renew();  // the Krylov spaces are invariant: no error but round-off
             result.errorEstimate = std::numeric_limits<double>::epsilon();
             result.converged = true;
@@ -129,11 +116,9 @@ FullSpectrumResult applyFullSpectrum(const Eigen::VectorXd& D, const ConstantMod
         progress.report(furthest, "filtering");
     }
 
-    result.Y.resize(n, columns);
-    for (Index c = 0; c < columns; ++c)
-        result.Y.col(c) = lanczos[c].combine(coefficients[c]).cwiseQuotient(sqrtD);
+    result.Y = spaces.combine(coefficients, change).Y;
     constants.remove(result.Y);
-    constants.add(means, result.Y);
+    constants.add(constants.means(X), result.Y);
     return result;
 }
 

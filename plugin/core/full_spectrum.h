@@ -29,7 +29,7 @@ struct FullSpectrumResult {
 ///
 /// The same as with all n harmonics, Y = Phi F(Lambda^1/2) Phi^T D X (Kovnatsky et al. 2012, Eq.
 /// 6), as the action of a function of a matrix: a shift-invert Lanczos method with one repeated
-/// real pole (lanczos.h). In the Krylov space of S = (W + lambda_p D)^-1 D and x, with
+/// real pole (krylov_spaces.h). In the Krylov space of S = (W + lambda_p D)^-1 D and x, with
 /// D-orthonormal basis U and T = U^T D S U,
 ///     F(sqrt(A)) x ~ |x|_D U F(sqrt(T^-1 - lambda_p)) e_1.
 /// The columns of X run in step, so that one pass over the Cholesky factor serves all of them.

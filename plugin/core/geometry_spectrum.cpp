@@ -16,6 +16,7 @@
 #include "measures.h"
 #include "mesh_laplacian.h"
 #include "noise_floor.h"
+#include "thread_team.h"
 
 namespace spectral {
 
@@ -228,6 +229,7 @@ GeometrySpectrum geometrySpectrum(const Vertices& V, const Faces& F, const Spect
     const Index n = D.size(), constants = vibration.constants.count();
     const Index k = sizeOfBasis(options.basisSize, n, vibration.constants.count());
 
+    const ThreadTeam team;
     ShiftedCholesky cholesky;
     const HarmonicBasis basis = k == n ? denseBasis(laplacian, vibration.constants)
                                        : truncatedBasis(laplacian, vibration.constants, k, cholesky,

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "front_elimination.h"
+#include "thread_team.h"
 
 namespace spectral {
 
@@ -28,55 +29,76 @@ Index updateStride(const DenseFront& front) { return front.stride - front.offset
 /// What a front has left in the rows below its columns, until it goes to the parent's.
 struct Waiting {
     const SymbolicLdlt::Front* supernode = nullptr;
-    Index at = 0;  // on the stack
+    Index at = 0;                       // on the stack of its elimination,
+    const double* elsewhere = nullptr;  // or here
 };
 
-/// The elimination, from the leaves to the roots. What a front leaves for its parent waits on a
-/// stack.
+class Elimination;
+
+/// Fronts that follow one another, and the subtree behind them that another elimination has done.
+struct Stretch {
+    int begin = 0, end = 0;
+    const Elimination* subtree = nullptr;
+    const SymbolicLdlt::Front* root = nullptr;  // of the subtree
+};
+
+/// The elimination of some stretches of fronts, from the leaves up. What a front leaves for its
+/// parent waits on a stack.
 class Elimination {
   public:
-    Elimination(const SymbolicLdlt& symbolic, const Laplacian& laplacian, double sigma,
+    Elimination(const SymbolicLdlt& symbolic, const double* W, const Eigen::VectorXd& shifts,
                 LdltNumbers& numbers)
-        : symbolic_(symbolic),
-          W_(laplacian.W.valuePtr()),
-          shifts_(laplacian.D.size()),
-          numbers_(numbers) {
-        for (Index i = 0; i < shifts_.size(); ++i)
-            shifts_[symbolic.order[i]] = sigma * laplacian.D[i];
-        numbers_.values.resize(static_cast<std::size_t>(symbolic.valueStarts.back()));
-        numbers_.pivots.resize(shifts_.size());
-        allocate();
-    }
+        : symbolic_(symbolic), W_(W), shifts_(shifts), numbers_(numbers) {}
 
-    bool run() {
-        for (const SymbolicLdlt::Front& supernode : symbolic_.fronts) {
-            DenseFront front = shapeOf(supernode);
-            front.panel = panel_.data();
-            front.scratch = scratch_.data();
-            front.update = stack_.data() + top_;
-            gather(supernode, front);
-            if (!frontElimination().eliminate(front)) return false;
-            store(supernode, front);
-            const Index at = push(supernode, front);
-            if (stack_.data() + at != front.update)
-                std::copy_n(front.update, updateStride(front) * front.below, stack_.data() + at);
+    /// False when a pivot is 0.
+    bool run(const std::vector<Stretch>& stretches) {
+        allocate(stretches);
+        for (const Stretch& stretch : stretches) {
+            for (int f = stretch.begin; f < stretch.end; ++f)
+                if (!eliminateFront(symbolic_.fronts[f])) return false;
+            take(stretch);
         }
         return true;
     }
 
   private:
     /// Goes through the fronts as they will come, for the memory that they will take.
-    void allocate() {
+    void allocate(const std::vector<Stretch>& stretches) {
         Index panel = 0, stack = 0;
-        for (const SymbolicLdlt::Front& supernode : symbolic_.fronts) {
-            const DenseFront front = shapeOf(supernode);
-            panel = std::max(panel, front.stride * front.width);
-            stack = std::max(stack, top_ + updateStride(front) * front.below);
-            push(supernode, front);
+        for (const Stretch& stretch : stretches) {
+            for (int f = stretch.begin; f < stretch.end; ++f) {
+                const DenseFront front = shapeOf(symbolic_.fronts[f]);
+                panel = std::max(panel, front.stride * front.width);
+                stack = std::max(stack, top_ + updateStride(front) * front.below);
+                push(symbolic_.fronts[f], front);
+            }
+            take(stretch);
         }
+        waiting_.clear();
+        top_ = 0;
         panel_.resize(panel);
         scratch_.resize(panel);
         stack_.resize(stack);
+    }
+
+    bool eliminateFront(const SymbolicLdlt::Front& supernode) {
+        DenseFront front = shapeOf(supernode);
+        front.panel = panel_.data();
+        front.scratch = scratch_.data();
+        front.update = stack_.data() + top_;
+        gather(supernode, front);
+        if (!frontElimination().eliminate(front)) return false;
+        store(supernode, front);
+        const Index at = push(supernode, front);
+        if (stack_.data() + at != front.update)
+            std::copy_n(front.update, updateStride(front) * front.below, stack_.data() + at);
+        return true;
+    }
+
+    /// What the root of the subtree has left: alone on the stack of the elimination that did it.
+    void take(const Stretch& stretch) {
+        if (stretch.subtree != nullptr && stretch.root->below > 0)
+            waiting_.push_back({stretch.root, top_, stretch.subtree->stack_.data()});
     }
 
     /// Puts the front's part of W - sigma D into it, and what its children have left.
@@ -98,8 +120,9 @@ class Elimination {
         const int below = child.supernode->below, width = static_cast<int>(front.width);
         const int* places = symbolic_.places.data() + child.supernode->firstPlace;
         const Index stride = updateStride(shapeOf(*child.supernode));
+        const double* left = child.elsewhere ? child.elsewhere : stack_.data() + child.at;
         for (int j = 0; j < below; ++j) {
-            const double* from = stack_.data() + child.at + j * stride;
+            const double* from = left + j * stride;
             // The column of the front, and the row that it begins with.
             const bool isEliminated = places[j] < width;
             double* to = isEliminated ? front.panel + places[j] * front.stride + front.offset
@@ -124,14 +147,14 @@ class Elimination {
     Index push(const SymbolicLdlt::Front& supernode, const DenseFront& front) {
         for (int i = 0; i < supernode.children; ++i, waiting_.pop_back()) top_ = waiting_.back().at;
         const Index at = top_;
-        if (front.below > 0) waiting_.push_back({&supernode, at});
+        if (front.below > 0) waiting_.push_back({&supernode, at, nullptr});
         top_ += updateStride(front) * front.below;
         return at;
     }
 
     const SymbolicLdlt& symbolic_;
     const double* W_;
-    Eigen::VectorXd shifts_;  // sigma D, in the order of the factor
+    const Eigen::VectorXd& shifts_;  // sigma D, in the order of the factor
     LdltNumbers& numbers_;
     Eigen::VectorXd panel_, scratch_;
     Eigen::VectorXd stack_;
@@ -143,7 +166,30 @@ class Elimination {
 
 bool eliminate(const SymbolicLdlt& symbolic, const Laplacian& laplacian, double sigma,
                LdltNumbers& numbers) {
-    return Elimination(symbolic, laplacian, sigma, numbers).run();
+    Eigen::VectorXd shifts(laplacian.D.size());
+    for (Index i = 0; i < shifts.size(); ++i) shifts[symbolic.order[i]] = sigma * laplacian.D[i];
+    numbers.values.resize(static_cast<std::size_t>(symbolic.valueStarts.back()));
+    numbers.pivots.resize(shifts.size());
+
+    const Elimination none(symbolic, laplacian.W.valuePtr(), shifts, numbers);
+    std::vector<Elimination> ofSubtree(symbolic.subtrees.size(), none);
+    std::vector<Stretch> above;
+    int next = 0;
+    for (std::size_t t = 0; t < symbolic.subtrees.size(); ++t) {
+        const SymbolicLdlt::Subtree& tree = symbolic.subtrees[t];
+        above.push_back(
+            {next, tree.firstFront, &ofSubtree[t], &symbolic.fronts[tree.endFront - 1]});
+        next = tree.endFront;
+    }
+    above.push_back({next, static_cast<int>(symbolic.fronts.size()), nullptr, nullptr});
+
+    std::vector<char> done(symbolic.subtrees.size());
+    parallelFor(static_cast<Index>(done.size()), [&](Index t) {
+        const SymbolicLdlt::Subtree& tree = symbolic.subtrees[t];
+        done[t] = ofSubtree[t].run({{tree.firstFront, tree.endFront, nullptr, nullptr}});
+    });
+    if (std::find(done.begin(), done.end(), 0) != done.end()) return false;
+    return Elimination(none).run(above);
 }
 
 }  // namespace spectral

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "errors.h"
+#include "thread_team.h"
 
 namespace spectral {
 
@@ -46,7 +47,7 @@ void runHere(Index count, const std::function<void(Index, int, const StopPoint&)
 
 }  // namespace
 
-int workerCount() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
+int workerCount() { return threadCount(); }
 
 void runInParallel(Index count, const std::function<void(Index, int, const StopPoint&)>& work,
                    const Progress& progress, const std::string& stage) {

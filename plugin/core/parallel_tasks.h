@@ -8,7 +8,7 @@
 
 namespace spectral {
 
-/// Number of workers that runInParallel shares its tasks among: one for each core.
+/// Number of workers that runInParallel shares its tasks among: threadCount().
 int workerCount();
 
 /// Leaves a task, by an exception, when the others are to stop; to be called often.

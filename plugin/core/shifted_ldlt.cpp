@@ -1,9 +1,10 @@
 #include "shifted_ldlt.h"
 
-#include <cassert>
+#include <algorithm>
 #include <sstream>
 
 #include "errors.h"
+#include "thread_team.h"
 #include "triangular_solves.h"
 
 namespace spectral {
@@ -11,6 +12,8 @@ namespace spectral {
 namespace {
 
 constexpr int kMaxAttempts = 4;
+
+using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Relative change of a shift that has met an eigenvalue of a leading minor.
 constexpr double kNudge = 1e-7;
@@ -48,12 +51,70 @@ Eigen::MatrixXd ShiftedLdlt::solve(const Eigen::MatrixXd& B) const {
 
 void ShiftedLdlt::applyResolvent(const Eigen::VectorXd& D, Eigen::Ref<Eigen::MatrixXd> U,
                                  double root) const {
-    const LdltFactor factor{symbolic_.order.size(),     symbolic_.valueStarts.data(),
-                            symbolic_.rowStarts.data(), symbolic_.frontRows.data(),
-                            numbers_.values.data(),     numbers_.pivots.data(),
-                            symbolic_.joined.data(),    symbolic_.order.data()};
-    assert(U.outerStride() == U.rows());
-    triangularSolves().apply(factor, D.data(), root, U.data(), U.cols());
+    // The factor is far larger than the cache: each pass over it serves as many columns as it can.
+    // A few more than there are cost less than one pass more.
+    const Eigen::VectorXi& order = symbolic_.order;
+    std::vector<double> ordered;
+    for (Index first = 0; first < U.cols(); first += kMostRightHandSides) {
+        const auto used = static_cast<int>(std::min<Index>(kMostRightHandSides, U.cols() - first));
+        const int columns = used <= 4 ? used : used <= 8 ? 8 : kMostRightHandSides;
+        ordered.assign(static_cast<std::size_t>(orderedRows() * columns), 0.0);
+        Eigen::Map<RowMajorMatrix> Y(ordered.data(), orderedRows(), columns);
+        for (Index i = 0; i < U.rows(); ++i)
+            Y.row(order[i]).head(used) = D[i] * U.row(i).segment(first, used);
+        solveOrdered(ordered.data(), columns);
+        for (Index i = 0; i < U.rows(); ++i)
+            U.row(i).segment(first, used) =
+                Y.row(order[i]).head(used) - root * U.row(i).segment(first, used);
+    }
+}
+
+void ShiftedLdlt::solveOrdered(double* Y, int columns) const {
+    const LdltFactor factor{symbolic_.valueStarts.data(), symbolic_.rowStarts.data(),
+                            symbolic_.solveRows.data(), numbers_.values.data(),
+                            symbolic_.joined.data()};
+    const Index n = symbolic_.order.size();
+    const std::vector<SymbolicLdlt::Subtree>& subtrees = symbolic_.subtrees;
+    const auto count = static_cast<Index>(subtrees.size());
+    const auto rowsOf = [&](double* rows) {
+        return Eigen::Map<RowMajorMatrix>(rows, orderedRows(), columns);
+    };
+    auto rows = rowsOf(Y);
+    const auto divideByPivots = [&](Index begin, Index end) {
+        for (Index i = begin; i < end; ++i) rows.row(i) /= numbers_.pivots[i];
+    };
+
+    // L Z = Y: the subtrees, each on its own rows and its copies of others', then what is above.
+    rows.bottomRows(orderedRows() - n).setZero();
+    parallelFor(count, [&](Index t) {
+        triangularSolves().eliminate(factor, Y, columns, subtrees[t].firstColumn,
+                                     subtrees[t].endColumn);
+        divideByPivots(subtrees[t].firstColumn, subtrees[t].endColumn);
+    });
+    for (std::size_t k = 0; k < symbolic_.copied.size(); ++k)
+        rows.row(symbolic_.copied[k]) += rows.row(n + static_cast<Index>(k));
+    Index next = 0;
+    for (const SymbolicLdlt::Subtree& tree : subtrees) {
+        triangularSolves().eliminate(factor, Y, columns, next, tree.firstColumn);
+        divideByPivots(next, tree.firstColumn);
+        next = tree.endColumn;
+    }
+    triangularSolves().eliminate(factor, Y, columns, next, n);
+    divideByPivots(next, n);
+
+    // L^T X = Z, the other way round.
+    Index end = n;
+    for (Index t = count - 1; t >= 0; --t) {
+        triangularSolves().substitute(factor, Y, columns, subtrees[t].endColumn, end);
+        end = subtrees[t].firstColumn;
+    }
+    triangularSolves().substitute(factor, Y, columns, 0, end);
+    for (std::size_t k = 0; k < symbolic_.copied.size(); ++k)
+        rows.row(n + static_cast<Index>(k)) = rows.row(symbolic_.copied[k]);
+    parallelFor(count, [&](Index t) {
+        triangularSolves().substitute(factor, Y, columns, subtrees[t].firstColumn,
+                                      subtrees[t].endColumn);
+    });
 }
 
 }  // namespace spectral

@@ -43,6 +43,22 @@ class ShiftedLdlt {
     void applyResolvent(const Eigen::VectorXd& D, Eigen::Ref<Eigen::MatrixXd> U,
                         double root = 0.0) const;
 
+    /// The factor's own order, for work that is done in it: row i of W is row factorOrder()[i], and
+    /// row j of the factor is row inverseOrder()[j]. Of the last factorize().
+    const Eigen::VectorXi& factorOrder() const { return symbolic_.order; }
+    const std::vector<int>& inverseOrder() const { return symbolic_.inverse; }
+
+    /// Rows of the vectors that solveOrdered works on: n, and some copies for its own use.
+    Index orderedRows() const {
+        return symbolic_.order.size() + static_cast<Index>(symbolic_.copied.size());
+    }
+
+    /// (W - sigma D)^-1 Y, in place and in the factor's order, on the threads of the caller's team.
+    /// @param Y  orderedRows() rows of `columns` numbers each, next to each other; what is in those
+    ///           from n on does not matter.
+    /// @param columns  1, 2, 3, 4, 8 or kMostRightHandSides.
+    void solveOrdered(double* Y, int columns) const;
+
   private:
     void analyze(const Laplacian& laplacian);
 

@@ -22,6 +22,12 @@ struct Relaxation {
 constexpr Relaxation kRelaxations[] = {
     {4, 0.5}, {16, 0.2}, {48, 0.1}, {std::numeric_limits<Index>::max(), 0.05}};
 
+/// A subtree that is eliminated beside others has at most the first part of L, which leaves work
+/// for two threads at least, and little above the subtrees, where there is no other work; and at
+/// least the second, less is not worth a task. A factor with fewer entries than the third is not
+/// shared at all: a solve takes as long as waking a thread.
+constexpr Index kLeastParts = 4, kMostParts = 200, kLeastShared = 30000;
+
 /// What Eigen's analysis of a pattern keeps to itself.
 struct Analysis : Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>> {
     const auto& parent() const { return m_parent; }
@@ -78,6 +84,7 @@ SymbolicLdlt::SymbolicLdlt(const SparseMatrix& W)
     findFronts(columns);
     findRows(columns);
     findPlaces();
+    findSubtrees();
 }
 
 SymbolicLdlt::Columns SymbolicLdlt::findOrder(const SparseMatrix& W) {
@@ -152,10 +159,10 @@ void SymbolicLdlt::findFronts(const Columns& columns) {
 }
 
 void SymbolicLdlt::findRows(const Columns& columns) {
-    std::vector<int> parent, ends;  // of the fronts; and of their rows that are known
+    std::vector<int> ends;  // of the rows of the fronts that are known
     for (const Front& front : fronts) {
         const int last = front.first + front.width - 1, next = columns.parent[last];
-        parent.push_back(next < 0 ? -1 : frontOf_[next]);
+        parentFront_.push_back(next < 0 ? -1 : frontOf_[next]);
         std::iota(&frontRows[front.firstRow], &frontRows[front.firstRow] + front.width,
                   front.first);
         ends.push_back(front.firstRow + front.width);
@@ -166,7 +173,7 @@ void SymbolicLdlt::findRows(const Columns& columns) {
         visited[frontOf_[k]] = k;
         for (int p = starts[inverse[k]]; p < starts[inverse[k] + 1]; ++p) {
             if (order[rows[p]] >= k) continue;
-            for (int f = frontOf_[order[rows[p]]]; visited[f] != k; f = parent[f]) {
+            for (int f = frontOf_[order[rows[p]]]; visited[f] != k; f = parentFront_[f]) {
                 frontRows[ends[f]++] = k;
                 visited[f] = k;
             }
@@ -198,6 +205,45 @@ void SymbolicLdlt::findPlaces() {
                 if (const int row = order[rows[p]]; row >= j)
                     entries.push_back({p, position[row], j - front.first});
         front.entriesEnd = static_cast<int>(entries.size());
+    }
+}
+
+void SymbolicLdlt::findSubtrees() {
+    const auto count = static_cast<int>(fronts.size());
+    std::vector<Index> size(fronts.size(), 0);  // of all that is below a front, with itself,
+    std::vector<int> frontsBelow(fronts.size(), 1);
+    for (int f = 0; f < count; ++f) {
+        size[f] += fronts[f].size();
+        if (const int parent = parentFront_[f]; parent >= 0) {
+            size[parent] += size[f];
+            frontsBelow[parent] += frontsBelow[f];
+        }
+    }
+    const Index total = valueStarts.back() + static_cast<Index>(inverse.size());
+    const Index most = total >= kLeastShared ? total / kLeastParts : 0;
+    const auto isWhole = [&](int f) { return size[f] <= most; };
+    solveRows = frontRows;
+    for (int f = 0; f < count; ++f) {
+        const int parent = parentFront_[f];
+        if (!isWhole(f) || size[f] * kMostParts < total || (parent >= 0 && isWhole(parent)))
+            continue;
+        const Front& root = fronts[f];
+        Subtree tree;
+        tree.firstFront = f + 1 - frontsBelow[f];
+        tree.endFront = f + 1;
+        tree.firstColumn = fronts[tree.firstFront].first;
+        tree.endColumn = root.first + root.width;
+        tree.firstCopy = static_cast<int>(copied.size());
+        tree.size = size[f];
+        const auto below = frontRows.begin() + root.firstRow + root.width;
+        copied.insert(copied.end(), below, below + root.below);
+        // The rows of a front within the subtree are its columns, or among those below the root.
+        for (auto row = solveRows.begin() + fronts[tree.firstFront].firstRow;
+             row != solveRows.begin() + root.firstRow + root.width + root.below; ++row)
+            if (*row >= tree.endColumn)
+                *row = static_cast<int>(inverse.size()) + tree.firstCopy +
+                       static_cast<int>(std::lower_bound(below, below + root.below, *row) - below);
+        subtrees.push_back(tree);
     }
 }
 

@@ -33,10 +33,13 @@ struct SymbolicLdlt {
     struct Front {
         int first = 0, width = 0;  ///< The columns.
         int below = 0;             ///< Number of the rows below.
-        int firstRow = 0;          ///< In `frontRows`: where its rows are, ascending.
-        int firstPlace = 0;        ///< In `places`: where its rows below are in its parent's front.
-        int children = 0;          ///< Fronts whose first row below is one of its columns: it has
-                                   ///< all of their rows below.
+
+        /// Its entries of L, with the diagonal.
+        Index size() const { return Index{width} * (width + 1) / 2 + Index{width} * below; }
+        int firstRow = 0;    ///< In `frontRows`: where its rows are, ascending.
+        int firstPlace = 0;  ///< In `places`: where its rows below are in its parent's front.
+        int children = 0;    ///< Fronts whose first row below is one of its columns: it has
+                             ///< all of their rows below.
         int entriesBegin = 0, entriesEnd = 0;  ///< In `entries`.
     };
     /// Each after its children: of those before that are nobody's yet, the last ones.
@@ -46,6 +49,24 @@ struct SymbolicLdlt {
     std::vector<int> valueStarts;  ///< n + 1: where the values of a column of L begin,
     std::vector<int> rowStarts;    ///< n: and its rows in `frontRows`, all below the diagonal.
     std::vector<char> joined;      ///< n: whether the next column is in the same supernode.
+
+    /// A part of the elimination tree that is eliminated, and solved with, beside the others: a
+    /// front and all below it in the tree. Its columns are in one piece, and what it contributes to
+    /// other rows is in the rows below its root's columns.
+    struct Subtree {
+        int firstFront = 0, endFront = 0;    ///< The last is its root.
+        int firstColumn = 0, endColumn = 0;  ///< Of the factor.
+        int firstCopy = 0;                   ///< In `copied`: the rows below its root's columns.
+        Index size = 0;                      ///< Its entries of L.
+    };
+    /// Disjoint, in their order; the fronts in none of them are eliminated one after the other.
+    /// They depend on the pattern alone: what is computed is the same for any number of threads.
+    std::vector<Subtree> subtrees;
+
+    /// Solves work on vectors of n + copied.size() rows: a subtree has copies of its own of the
+    /// rows that it shares with others. Row n + k is a copy of row copied[k], and `solveRows` are
+    /// `frontRows` with the numbers of the copies.
+    std::vector<int> copied, solveRows;
 
     /// An entry of the lower half of W in the front of its column.
     struct Entry {
@@ -64,8 +85,10 @@ struct SymbolicLdlt {
     void findFronts(const Columns& columns);
     void findRows(const Columns& columns);
     void findPlaces();
+    void findSubtrees();
 
-    std::vector<int> frontOf_;  // n: of a column
+    std::vector<int> frontOf_;      // n: of a column
+    std::vector<int> parentFront_;  // of a front, or -1
 };
 
 }  // namespace spectral

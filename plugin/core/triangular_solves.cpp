@@ -2,7 +2,6 @@
 #include "triangular_solves.h"
 
 #include <Eigen/Core>
-#include <algorithm>
 
 namespace spectral {
 
@@ -10,10 +9,20 @@ namespace {
 
 using Size = std::ptrdiff_t;
 
-/// A few right-hand sides, those of a row side by side.
+/// A row of the right-hand sides.
 template <int Columns>
-using Block = Eigen::Array<double, Eigen::Dynamic, Columns,
-                           (Columns > 1 ? Eigen::RowMajor : Eigen::ColMajor)>;
+using Row = Eigen::Array<double, 1, Columns>;
+
+/// A few right-hand sides, those of a row next to each other.
+template <int Columns>
+class Block {
+  public:
+    explicit Block(double* Y) : Y_(Y) {}
+    Eigen::Map<Row<Columns>> row(Size i) { return Eigen::Map<Row<Columns>>(Y_ + i * Columns); }
+
+  private:
+    double* Y_;
+};
 
 /// A sparse lower triangular matrix with a diagonal of 1, which is not stored.
 ///
@@ -44,8 +53,8 @@ class UnitLower {
 
     /// Forward elimination by columns j to j + Width - 1.
     template <int Width, int Columns>
-    void eliminate(Size j, Block<Columns>& Y) const {
-        Eigen::Array<double, 1, Columns> y[Width];
+    void eliminate(Size j, Block<Columns> Y) const {
+        Row<Columns> y[Width];
         for (int i = 0; i < Width; ++i) {
             y[i] = Y.row(j + i);
             for (int k = 0; k < i; ++k) y[i] -= value_[start_[j + k] + i - k - 1] * y[k];
@@ -53,7 +62,7 @@ class UnitLower {
         }
         const Tails<Width> tails(*this, j);
         for (int p = 0; p < tails.size; ++p) {
-            Eigen::Array<double, 1, Columns> z = Y.row(tails.row[p]);
+            Row<Columns> z = Y.row(tails.row[p]);
             for (int k = 0; k < Width; ++k) z -= tails.value[k][p] * y[k];
             Y.row(tails.row[p]) = z;
         }
@@ -61,12 +70,12 @@ class UnitLower {
 
     /// Back substitution by the transposes of columns j to j + Width - 1.
     template <int Width, int Columns>
-    void substitute(Size j, Block<Columns>& Y) const {
-        Eigen::Array<double, 1, Columns> y[Width];
+    void substitute(Size j, Block<Columns> Y) const {
+        Row<Columns> y[Width];
         for (int i = 0; i < Width; ++i) y[i] = Y.row(j + i);
         const Tails<Width> tails(*this, j);
         for (int p = 0; p < tails.size; ++p) {
-            const Eigen::Array<double, 1, Columns> z = Y.row(tails.row[p]);
+            const Row<Columns> z = Y.row(tails.row[p]);
             for (int k = 0; k < Width; ++k) y[k] -= tails.value[k][p] * z;
         }
         for (int i = Width - 1; i >= 0; --i) {
@@ -97,24 +106,14 @@ class UnitLower {
     const char* joined_;
 };
 
-/// @param used  of the columns that are taken at once, those that there are.
-template <int Columns>
-void applyToColumns(const LdltFactor& factor, const double* d, double root, double* columns,
-                    int used = Columns) {
-    const UnitLower L(factor);
-    const Size n = factor.n;
-    Eigen::Map<Eigen::Array<double, Eigen::Dynamic, Columns>> X(columns, n, Columns);
-    constexpr int kMost = 4;  // columns of L at once: as many as fit into the registers
+/// Columns of L at once: as many as fit into the registers.
+constexpr int kMost = 4;
 
-    Block<Columns> Y(n, Columns);
-    if (used == Columns) {
-        for (Size i = 0; i < n; ++i) Y.row(factor.order[i]) = d[i] * X.row(i);
-    } else {
-        Y.setZero();
-        for (Size i = 0; i < n; ++i)
-            for (int c = 0; c < used; ++c) Y(factor.order[i], c) = d[i] * X(i, c);
-    }
-    for (Size j = 0; j < n;) {  // L Y = P diag(d) X
+template <int Columns>
+void eliminateColumns(const LdltFactor& factor, double* rows, Size begin, Size end) {
+    const UnitLower L(factor);
+    const Block<Columns> Y(rows);
+    for (Size j = begin; j < end;) {
         const int width = L.width(j, kMost);
         switch (width) {
             case 4: L.eliminate<4>(j, Y); break;
@@ -124,8 +123,13 @@ void applyToColumns(const LdltFactor& factor, const double* d, double root, doub
         }
         j += width;
     }
-    Y.colwise() /= Eigen::Map<const Eigen::ArrayXd>(factor.pivots, n);
-    for (Size end = n; end > 0;) {  // L^T Z = D^-1 Y
+}
+
+template <int Columns>
+void substituteColumns(const LdltFactor& factor, double* rows, Size begin, Size end) {
+    const UnitLower L(factor);
+    const Block<Columns> Y(rows);
+    while (end > begin) {
         const int width = L.widthBefore(end, kMost);
         switch (width) {
             case 4: L.substitute<4>(end - 4, Y); break;
@@ -135,32 +139,27 @@ void applyToColumns(const LdltFactor& factor, const double* d, double root, doub
         }
         end -= width;
     }
-    if (used == Columns) {
-        for (Size i = 0; i < n; ++i) X.row(i) = Y.row(factor.order[i]) - root * X.row(i);
-    } else {
-        for (Size i = 0; i < n; ++i)
-            for (int c = 0; c < used; ++c) X(i, c) = Y(factor.order[i], c) - root * X(i, c);
+}
+
+void eliminate(const LdltFactor& factor, double* Y, int columns, Size begin, Size end) {
+    switch (columns) {
+        case 1: return eliminateColumns<1>(factor, Y, begin, end);
+        case 2: return eliminateColumns<2>(factor, Y, begin, end);
+        case 3: return eliminateColumns<3>(factor, Y, begin, end);
+        case 4: return eliminateColumns<4>(factor, Y, begin, end);
+        case 8: return eliminateColumns<8>(factor, Y, begin, end);
+        default: return eliminateColumns<kMostRightHandSides>(factor, Y, begin, end);
     }
 }
 
-void apply(const LdltFactor& factor, const double* d, double root, double* X, Size columns) {
-    // The factor is far larger than the cache: each pass over it serves as many columns as it can,
-    // those that fit into the registers. A few more than there are cost less than one pass more.
-    constexpr int kMost = EIGEN_MAX_STATIC_ALIGN_BYTES >= 4 * sizeof(double) ? 16 : 8;
-    for (Size c = 0; c < columns; c += kMost) {
-        double* first = X + c * factor.n;
-        const auto used = static_cast<int>(std::min<Size>(kMost, columns - c));
-        switch (used) {
-            case 1: applyToColumns<1>(factor, d, root, first); break;
-            case 2: applyToColumns<2>(factor, d, root, first); break;
-            case 3: applyToColumns<3>(factor, d, root, first); break;
-            case 4: applyToColumns<4>(factor, d, root, first); break;
-            case 5:
-            case 6:
-            case 7:
-            case 8: applyToColumns<8>(factor, d, root, first, used); break;
-            default: applyToColumns<kMost>(factor, d, root, first, used); break;
-        }
+void substitute(const LdltFactor& factor, double* Y, int columns, Size begin, Size end) {
+    switch (columns) {
+        case 1: return substituteColumns<1>(factor, Y, begin, end);
+        case 2: return substituteColumns<2>(factor, Y, begin, end);
+        case 3: return substituteColumns<3>(factor, Y, begin, end);
+        case 4: return substituteColumns<4>(factor, Y, begin, end);
+        case 8: return substituteColumns<8>(factor, Y, begin, end);
+        default: return substituteColumns<kMostRightHandSides>(factor, Y, begin, end);
     }
 }
 
@@ -168,7 +167,7 @@ void apply(const LdltFactor& factor, const double* d, double root, double* X, Si
 
 namespace SPECTRAL_INSTRUCTIONS {
 extern const TriangularSolves triangularSolves;
-const TriangularSolves triangularSolves{apply};
+const TriangularSolves triangularSolves{eliminate, substitute};
 }  // namespace SPECTRAL_INSTRUCTIONS
 
 }  // namespace spectral

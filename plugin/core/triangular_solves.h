@@ -4,27 +4,37 @@
 
 namespace spectral {
 
-/// A factorization P A P^T = L D L^T as it lies in memory, n x n.
+/// A sparse LDL^T factorization P A P^T = L D L^T, as it lies in memory.
 struct LdltFactor {
-    std::ptrdiff_t n = 0;
-    const int* starts = nullptr;     ///< n + 1: where the columns of L begin in `values`.
-    const int* rowStarts = nullptr;  ///< n: where their rows begin in `rows`.
-    const int* rows = nullptr;       ///< Ascending in each column, all below the diagonal,
-    const double* values = nullptr;  ///< whose ones are not stored.
-    const double* pivots = nullptr;  ///< n entries of D, none of them 0.
-    const char* joined = nullptr;    ///< n: whether column j + 1 of L has all rows of column j but
-                                     ///< the first, which is j + 1; 0 for the last.
-    const int* order = nullptr;      ///< n: row i of A is row order[i] of P A.
+    const int* starts = nullptr;     ///< n + 1: where the values of each column of L begin; the
+                                     ///< diagonal of ones is not stored.
+    const int* rowStarts = nullptr;  ///< n: where its rows begin, ascending.
+    const int* rows = nullptr;
+    const double* values = nullptr;
+    const char* joined = nullptr;  ///< n: whether column j + 1 of L has all rows of column j but
+                                   ///< the first, which is j + 1; 0 for the last.
 };
 
-/// Solves with a sparse factorization, for the widest vector instructions that the processor has.
+/// The largest number of right-hand sides of a solve: as many as fit into the widest registers.
+inline constexpr int kMostRightHandSides = 16;
+
+/// Parts of solves with a sparse factorization, for the widest vector instructions that the
+/// processor has.
 ///
-/// Pointers, not Eigen's types: those of one instruction set are none of another's business (see
+/// Right-hand sides are in the order of the factor, those of a row next to each other: 1, 2, 3, 4,
+/// 8 or kMostRightHandSides.
+///
+/// Pointers, not Eigen's types: those of one instruction set must not cross into another's (see
 /// dense_products.cpp).
 struct TriangularSolves {
-    /// X <- A^-1 diag(d) X - root X: d of n, X n x columns, column-major without gaps.
-    void (*apply)(const LdltFactor& factor, const double* d, double root, double* X,
-                  std::ptrdiff_t columns);
+    /// Y <- L^-1 Y, the part that columns `begin` to `end` - 1 of L do. All of the columns of a
+    /// supernode are among them, or none.
+    void (*eliminate)(const LdltFactor& factor, double* Y, int columns, std::ptrdiff_t begin,
+                      std::ptrdiff_t end);
+
+    /// Y <- L^-T Y, the same.
+    void (*substitute)(const LdltFactor& factor, double* Y, int columns, std::ptrdiff_t begin,
+                       std::ptrdiff_t end);
 };
 
 /// Chosen for this processor, once.

@@ -10,6 +10,7 @@
 #include "core/errors.h"
 #include "core/laplacian.h"
 #include "core/measures.h"
+#include "core/thread_team.h"
 #include "support/evaluation.h"
 
 namespace spectral {
@@ -75,6 +76,30 @@ TEST(FractionalFilter, InManyStepsWithoutUpdateEqualsOneStep) {
             const Vertices often = fractionalFilter(mesh.V, mesh.F, options).V;
             EXPECT_LT(largestDifference(once, often), 1e-7 * boundingBoxDiagonal(mesh.V));
         }
+}
+
+TEST(FractionalFilter, HasTheSameBitsForEveryNumberOfThreads) {
+    // Large enough for several subtrees of the factorization and blocks of rows, and of two
+    // components; then one with a fixed boundary.
+    const Mesh closed = testing::joined(testing::icosphere(5), testing::cube(20));
+    const Mesh sheet = testing::withNoise(testing::rectangle(2, 1, 120, 60), 0.01, 3);
+    for (const Boundary boundary : {Boundary::Free, Boundary::Fixed})
+        for (const BasisUpdate update : {BasisUpdate::Full, BasisUpdate::Conformal})
+            for (const int steps : {0, 2}) {
+                const Mesh& mesh = boundary == Boundary::Free ? closed : sheet;
+                FilterOptions options = smoothing(mesh, steps, update);
+                options.featureSize = 0.1 * boundingBoxDiagonal(mesh.V);
+                options.tolerance = 1e-3;
+                options.boundary = boundary;
+                std::vector<Vertices> results;
+                for (const int threads : {1, 2, 3}) {
+                    setThreadCount(threads);
+                    results.push_back(fractionalFilter(mesh.V, mesh.F, options).V);
+                }
+                setThreadCount(0);
+                EXPECT_TRUE(results[0] == results[1]);
+                EXPECT_TRUE(results[0] == results[2]);
+            }
 }
 
 TEST(FractionalFilter, CommutesWithRigidMotions) {

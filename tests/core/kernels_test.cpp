@@ -229,15 +229,17 @@ TEST_P(SparseKernelsOfEverySet, SolvesWithAFactorization) {
     const SparseMatrix L = ldlt.matrixL().nestedExpression();
     const Eigen::VectorXd pivots = ldlt.vectorD();
     const std::vector<char> joined = joinedColumns(L);
-    const LdltFactor factor{
-        n_,           L.outerIndexPtr(), L.outerIndexPtr(), L.innerIndexPtr(),
-        L.valuePtr(), pivots.data(),     joined.data(),     ldlt.permutationP().indices().data()};
-    for (const Index columns : {1, 2, 3, 4, 7, 8, 21}) {
-        const Eigen::MatrixXd U = Eigen::MatrixXd::Random(n_, columns);
-        Eigen::MatrixXd X = U;
-        kernels().triangular.apply(factor, A_.laplacian.D.data(), 0.3, X.data(), columns);
-        const Eigen::MatrixXd DU = A_.laplacian.D.asDiagonal() * U;
-        EXPECT_LT((shifted * (X + 0.3 * U) - DU).norm(), 1e-9 * DU.norm()) << columns << " columns";
+    const LdltFactor factor{L.outerIndexPtr(), L.outerIndexPtr(), L.innerIndexPtr(), L.valuePtr(),
+                            joined.data()};
+    for (const int columns : {1, 2, 3, 4, 8, kMostRightHandSides}) {
+        const Eigen::MatrixXd B = Eigen::MatrixXd::Random(n_, columns);
+        Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> Y =
+            ldlt.permutationP() * B;
+        kernels().triangular.eliminate(factor, Y.data(), columns, 0, n_);
+        Y = pivots.cwiseInverse().asDiagonal() * Y;
+        kernels().triangular.substitute(factor, Y.data(), columns, 0, n_);
+        const Eigen::MatrixXd X = ldlt.permutationPinv() * Eigen::MatrixXd(Y);
+        EXPECT_LT((shifted * X - B).norm(), 1e-9 * B.norm()) << columns << " columns";
     }
 }
 
