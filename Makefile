@@ -5,7 +5,7 @@
 #                       package is fetched into build/
 #   WARNINGS_AS_ERRORS  ON: a compiler warning fails the build
 #   BENCH_MESH          the mesh of the C++ benchmark, skipped when there is no such file
-#   BENCH_OPTIONS       of `make bench-basis`; --help lists them
+#   BENCH_OPTIONS       of `make bench-basis` and `make bench-defaults`; --help lists them
 PYTHON ?= python3
 MESHLAB_SOURCE_DIR ?=
 WARNINGS_AS_ERRORS ?= OFF
@@ -31,7 +31,7 @@ PACKAGE_SOURCES := CMakeLists.txt $(shell find plugin python -not -path '*/__pyc
 # Two targets at once would fetch MeshLab's headers twice; ninja uses every core anyway.
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help demo test gui-test screenshots setup build bench bench-basis bench-batch lint format clean
+.PHONY: help demo test gui-test screenshots setup build bench bench-basis bench-batch bench-defaults lint format clean
 
 help:  ## list these commands
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 20
@@ -64,6 +64,9 @@ bench: build $(PACKAGE)  ## measure time, memory and artefacts
 	else echo "bench_dragon skipped: no $(BENCH_MESH)"; fi
 	$(BIN)/python tests/benchmarks/bench_pymeshlab.py
 	$(BIN)/python tests/benchmarks/bench_artefacts.py
+
+bench-defaults: $(PACKAGE)  ## the run with every parameter at its default, on real meshes
+	$(BIN)/python tests/benchmarks/bench_defaults.py $(BENCH_OPTIONS)
 
 bench-basis: BENCHMARKS := ON
 bench-basis: build $(PACKAGE) $(COMPETITORS)  ## compare the truncated basis with other programs

@@ -34,8 +34,9 @@ Artefacts measureArtefacts(const Vertices& V, const Faces& F, const ArtefactOpti
     progress.report(0.0, "factorizing");
     ShiftedCholesky cholesky;
     // The gain turns over at twice the cutoff.
-    cholesky.factorize(mesh.laplacian,
-                       selectPole(gain, 2.0 * cutoff, bulkSpectrum(mesh.laplacian), kAccuracy));
+    cholesky.factorize(
+        mesh.laplacian,
+        selectPole(gain, 2.0 * cutoff, bulkSpectrum(mesh.laplacian), kAccuracy).shift);
     FullSpectrumOptions evaluation;
     evaluation.accuracy = kAccuracy;
     const Vertices& X = mesh.surface.X;

@@ -17,8 +17,9 @@ namespace spectral {
 
 namespace {
 
-/// Part of the tolerance of automatic steps that their evaluations may take up.
-constexpr double kEvaluationShare = 0.02;
+/// Part of the tolerance of automatic steps that their evaluations may take up, in the root mean
+/// square over the surface.
+constexpr double kEvaluationShare = 0.05;
 
 /// Relative accuracy of evaluations, however large the tolerance is.
 constexpr double kCoarsestAccuracy = 1e-4;
@@ -64,10 +65,10 @@ std::string accuracyWarning(double requested, double estimate) {
 std::string toleranceWarning(double tolerance, const AutomaticSteps& steps) {
     std::ostringstream text;
     text << std::setprecision(2) << "the tolerance of " << tolerance << " was not reached on "
-         << 100.0 * steps.singularPart << " % of the surface, the largest estimated error is "
+         << 100.0 * steps.singularPart << " % of the surface, where the estimated error is "
          << steps.error
-         << ": thin parts pinch off there, and more steps do not converge. basis_update = "
-            "conformal shrinks them smoothly";
+         << " and more: parts of it shrink away. Choose a smaller feature_size, or basis_update = "
+            "conformal where it is not";
     return text.str();
 }
 
@@ -83,19 +84,19 @@ std::string cutoffWarning(const FilterResult& result, double last) {
 }
 
 /// The evaluations of automatic steps need not be much finer than the steps.
-EvaluationOptions evaluationFor(const FilterOptions& options, const Vertices& X) {
+EvaluationOptions evaluationFor(const FilterOptions& options, const Surface& surface) {
     EvaluationOptions evaluation = options.evaluation;
-    if (options.steps == 0) {
-        const double size = X.rowwise().norm().maxCoeff();  // X is centred
-        evaluation.accuracy =
-            std::max(evaluation.accuracy,
-                     std::min(kEvaluationShare * options.tolerance / size, kCoarsestAccuracy));
-    }
+    if (options.steps > 0) return evaluation;
+    const double size = std::sqrt(surface.X.rowwise().squaredNorm().mean());  // X is centred
+    evaluation.accuracy =
+        std::max(evaluation.accuracy,
+                 std::min(kEvaluationShare * options.tolerance / size, kCoarsestAccuracy));
+    evaluation.atEveryVertex = false;
     return evaluation;
 }
 
 /// The steps that the options ask for.
-AutomaticSteps filterInSteps(const LaplacianBuilder& laplacians, StepEvaluator& evaluate,
+AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate,
                              const Vertices& X, const FilterOptions& options,
                              const Progress& progress) {
     if (options.steps == 0 && options.basisUpdate != BasisUpdate::None)
@@ -118,9 +119,9 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     const Interior interior(surface.F, connectedComponents(surface.F, surface.X.rows()),
                             options.boundary);
 
-    const LaplacianBuilder laplacians(surface, options.laplacian, options.basisUpdate,
-                                      options.conformalShare);
-    const EvaluationOptions evaluation = evaluationFor(options, surface.X);
+    LaplacianBuilder laplacians(surface, options.laplacian, options.basisUpdate,
+                                options.conformalShare);
+    const EvaluationOptions evaluation = evaluationFor(options, surface);
     StepEvaluator evaluate(evaluation, interior, transfer);
     const AutomaticSteps steps = filterInSteps(laplacians, evaluate, surface.X, options, progress);
     const Vertices& X = steps.X;

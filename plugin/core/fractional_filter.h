@@ -16,10 +16,11 @@ struct FilterOptions {
     TransferFunctionOptions transferFunction;
     double featureSize = 0.0;  ///< Wavelength of the cutoff, 2 pi / omega_c, length units, > 0.
     int steps = 0;             ///< K >= 1: K steps of F^(1/K), the paper's scheme; 0: automatic.
-    double tolerance = 0.0;    ///< For automatic steps: largest error of any vertex against
-                               ///< infinitely many steps, length units, > 0.
+    double tolerance = 0.0;  ///< For automatic steps: largest error against infinitely many steps,
+                             ///< over all but a thousandth of the filtered surface, length
+                             ///< units, > 0.
     LaplacianKind laplacian = LaplacianKind::IntrinsicDelaunay;
-    BasisUpdate basisUpdate = BasisUpdate::Full;
+    BasisUpdate basisUpdate = BasisUpdate::Conformal;
     double conformalShare = 0.0;  ///< For BasisUpdate::Full, 0 to 1; see laplacian_builder.h.
     Boundary boundary = Boundary::Free;
     EvaluationOptions evaluation;
@@ -31,7 +32,7 @@ struct FilterResult {
     int steps = 0;
     double cutoffFrequency = 0.0;  ///< omega_c, radians per length unit.
     double featureSize = 0.0;      ///< 2 pi / omega_c, length units.
-    double maxDisplacement = 0.0;  ///< Longest way of a vertex, length units.
+    double maxDisplacement = 0.0;  ///< Largest vertex displacement, length units.
     double rmsDisplacement = 0.0;  ///< Root mean square over the surface of the input.
     double areaBefore = 0.0, areaAfter = 0.0;
     double volumeBefore = 0.0, volumeAfter = 0.0;  ///< Signed; a volume for closed meshes only.
@@ -42,10 +43,11 @@ struct FilterResult {
     int solves = 0;                ///< Solves with one right-hand side.
     bool accuracyReached = true;   ///< Whether errorEstimate is within the requested accuracy.
     double errorEstimate = 0.0;    ///< Estimated error of the evaluation, relative, all steps.
-    double stepError = 0.0;  ///< Automatic steps: estimated error of any vertex, length units.
+    double stepError = 0.0;  ///< Automatic steps: estimated error over all but a thousandth of the
+                             ///< filtered surface, length units.
     bool toleranceReached = true;  ///< Automatic steps: whether stepError is within it.
     double singularPart = 0.0;  ///< Automatic steps: part of the input's surface, 0 to 1, on which
-                                ///< the tolerance was not reached; see automatic_steps.h.
+                                ///< the estimated error is above the tolerance.
     bool cutoffReached = true;  ///< Truncated spectrum: whether the harmonics reach omega_c.
     std::vector<double> stepSizes;      ///< The fractional powers alpha, in their order; sum 1.
     std::vector<std::string> warnings;  ///< What fell short without being an error; sentences.

@@ -9,25 +9,32 @@ namespace spectral {
 namespace {
 
 /// One step of the midpoint rule, or several smaller ones, from `steps` on.
-void midpointStep(const LaplacianBuilder& laplacians, StepEvaluator& evaluate, double h,
-                  double smallest, const Progress& progress, FractionalSteps& steps) {
+/// @param half  the shape at the half step, where it is known.
+void midpointStep(LaplacianBuilder& laplacians, StepEvaluator& evaluate, double h, double smallest,
+                  const Vertices* half, const Progress& progress, FractionalSteps& steps) {
     try {
-        evaluate.setLaplacian(laplacians(steps.X), h, progress.part(0.0, 0.1));
-        const Vertices half = evaluate(steps.X, 0.5 * h, progress.part(0.1, 0.5));
-        evaluate.setLaplacian(laplacians(half), h, progress.part(0.5, 0.6));
+        Vertices predicted;
+        if (half == nullptr) {
+            evaluate.setLaplacian(laplacians(steps.X), 0.5 * h, progress.part(0.0, 0.1));
+            predicted = evaluate.predict(steps.X, {0.5 * h}, progress.part(0.1, 0.5)).front();
+            half = &predicted;
+        }
+        evaluate.setLaplacian(laplacians(*half), h, progress.part(0.5, 0.6));
         steps.X = evaluate(steps.X, h, progress.part(0.6, 1.0));
         steps.sizes.push_back(h);
     } catch (const SolverFailure&) {
         if (0.5 * h < smallest) throw;
-        midpointStep(laplacians, evaluate, 0.5 * h, smallest, progress.part(0.0, 0.5), steps);
-        midpointStep(laplacians, evaluate, 0.5 * h, smallest, progress.part(0.5, 1.0), steps);
+        midpointStep(laplacians, evaluate, 0.5 * h, smallest, nullptr, progress.part(0.0, 0.5),
+                     steps);
+        midpointStep(laplacians, evaluate, 0.5 * h, smallest, nullptr, progress.part(0.5, 1.0),
+                     steps);
     }
 }
 
 }  // namespace
 
-FractionalSteps fixedSteps(const LaplacianBuilder& laplacians, StepEvaluator& evaluate,
-                           const Vertices& X, int K, BasisUpdate update, const Progress& progress) {
+FractionalSteps fixedSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate, const Vertices& X,
+                           int K, BasisUpdate update, const Progress& progress) {
     FractionalSteps steps{X, std::vector<double>(static_cast<std::size_t>(K), 1.0 / K)};
     for (int step = 0; step < K; ++step) {
         const std::string name =
@@ -52,8 +59,9 @@ FractionalSteps fixedSteps(const LaplacianBuilder& laplacians, StepEvaluator& ev
     return steps;
 }
 
-FractionalSteps midpointSteps(const LaplacianBuilder& laplacians, StepEvaluator& evaluate,
-                              const Vertices& X, int K, int finest, const Progress& progress) {
+FractionalSteps midpointSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate,
+                              const Vertices& X, int K, int finest, const Progress& progress,
+                              const Vertices* firstHalf) {
     const double smallest = (1.0 - 1e-9) / finest;
     FractionalSteps steps{X, {}};
     for (int step = 0; step < K; ++step) {
@@ -62,7 +70,8 @@ FractionalSteps midpointSteps(const LaplacianBuilder& laplacians, StepEvaluator&
             progress.part(from, (step + 1.0) / K,
                           "step " + std::to_string(step + 1) + " of " + std::to_string(K) + ": ");
         try {
-            midpointStep(laplacians, evaluate, 1.0 / K, smallest, stage, steps);
+            midpointStep(laplacians, evaluate, 1.0 / K, smallest, step == 0 ? firstHalf : nullptr,
+                         stage, steps);
         } catch (const SolverFailure& failure) {
             throw SolverFailure("at " + std::to_string(static_cast<int>(100.0 * from)) +
                                 " % of the filter: " + failure.what() +

@@ -22,8 +22,8 @@ struct FractionalSteps {
 ///
 /// @throws SolverFailure  naming the step, when triangles collapse (LaplacianKind::Cotangent) or an
 ///                        evaluation fails.
-FractionalSteps fixedSteps(const LaplacianBuilder& laplacians, StepEvaluator& evaluate,
-                           const Vertices& X, int K, BasisUpdate update, const Progress& progress);
+FractionalSteps fixedSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate, const Vertices& X,
+                           int K, BasisUpdate update, const Progress& progress);
 
 /// K equal steps towards the limit of the paper's scheme for K to infinity, of second order in 1/K.
 ///
@@ -32,9 +32,13 @@ FractionalSteps fixedSteps(const LaplacianBuilder& laplacians, StepEvaluator& ev
 ///     X_h/2 = F^(h/2)(sqrt(A(X))) X,    X_h = F^h(sqrt(A(X_h/2))) X.
 /// A step that fails is taken as two of half its size, these again, down to 1 / finest.
 ///
-/// @param finest  >= K.
+/// X_h/2 is computed with fewer digits (StepEvaluator::predict).
+///
+/// @param finest     >= K.
+/// @param firstHalf  X_h/2 of the first step, where it is known.
 /// @throws SolverFailure  saying how far it came, when a step of 1 / finest fails.
-FractionalSteps midpointSteps(const LaplacianBuilder& laplacians, StepEvaluator& evaluate,
-                              const Vertices& X, int K, int finest, const Progress& progress);
+FractionalSteps midpointSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate,
+                              const Vertices& X, int K, int finest, const Progress& progress,
+                              const Vertices* firstHalf = nullptr);
 
 }  // namespace spectral

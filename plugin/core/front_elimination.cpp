@@ -17,6 +17,9 @@ using ConstMatrix = Eigen::Map<const Eigen::MatrixXd, Eigen::Unaligned, Eigen::O
 /// columns are then taken at a time.
 constexpr Size kManyColumns = 32, kManyInner = 8;
 
+/// From so many multiplications on, sharing them pays.
+constexpr Size kMuchWork = 500000;
+
 auto lane(double* at) { return Eigen::Map<Lane>(at); }
 auto lane(const double* at) { return Eigen::Map<const Lane>(at); }
 
@@ -61,15 +64,24 @@ void subtractInner(const Subtraction& s, Size inner) {
     for (Size rest = j; rest < s.columns; ++rest) subtractFew<Inner, 1>(s, inner, rest, j);
 }
 
-void subtract(const Subtraction& s) {
+/// The columns from j on, at most kManyColumns, by Eigen's product.
+void subtractProduct(const Subtraction& s, Size j) {
+    const Eigen::OuterStride<> stride(s.stride), strideC(s.strideC);
+    const Size columns = std::min(kManyColumns, s.columns - j), rows = s.rows - j;
+    Matrix(s.C + j * s.strideC + j, rows, columns, strideC).noalias() -=
+        ConstMatrix(s.L + j, rows, s.inner, stride) *
+        ConstMatrix(s.Lpivots + j, columns, s.inner, stride).transpose();
+}
+
+void subtract(const Subtraction& s, const DenseFront& front) {
     if (s.inner >= kManyInner && s.columns >= kManyColumns) {
-        const Eigen::OuterStride<> stride(s.stride), strideC(s.strideC);
-        for (Size j = 0; j < s.columns; j += kManyColumns) {
-            const Size columns = std::min(kManyColumns, s.columns - j), rows = s.rows - j;
-            Matrix(s.C + j * s.strideC + j, rows, columns, strideC).noalias() -=
-                ConstMatrix(s.L + j, rows, s.inner, stride) *
-                ConstMatrix(s.Lpivots + j, columns, s.inner, stride).transpose();
-        }
+        const Size blocks = (s.columns + kManyColumns - 1) / kManyColumns;
+        const auto one = [](const void* subtraction, Size block) {
+            subtractProduct(*static_cast<const Subtraction*>(subtraction), block * kManyColumns);
+        };
+        if (front.share != nullptr && s.inner * s.columns * s.rows >= kMuchWork)
+            return front.share(blocks, one, &s);
+        for (Size block = 0; block < blocks; ++block) one(&s, block);
         return;
     }
     Size a = 0;
@@ -97,7 +109,8 @@ class Panel {
         const Size from = begin * front_.stride + front_.offset + middle;
         double* C = front_.panel + middle * front_.stride + front_.offset + middle;
         subtract({front_.panel + from, front_.scratch + from, front_.stride, middle - begin, C,
-                  front_.stride, end - middle, front_.stride - front_.offset - middle});
+                  front_.stride, end - middle, front_.stride - front_.offset - middle},
+                 front_);
         return eliminate(middle, end);
     }
 
@@ -105,7 +118,8 @@ class Panel {
     void update() const {
         const Size from = front_.offset + front_.width, rows = front_.stride - from;
         subtract({front_.panel + from, front_.scratch + from, front_.stride, front_.width,
-                  front_.update, rows, front_.below, rows});
+                  front_.update, rows, front_.below, rows},
+                 front_);
     }
 
   private:

@@ -21,6 +21,11 @@ struct DenseFront {
     double* update = nullptr;
 
     double* scratch = nullptr;  ///< width stride numbers.
+
+    /// Does call(function, task) for all tasks from 0 to count - 1, on several threads perhaps;
+    /// null: the elimination is not shared.
+    void (*share)(std::ptrdiff_t count, void (*call)(const void* function, std::ptrdiff_t task),
+                  const void* function) = nullptr;
 };
 
 /// The rows of a front come in so many at a time.
@@ -28,7 +33,7 @@ inline constexpr std::ptrdiff_t kFrontLane = 4;
 
 /// Elimination within fronts, for the widest vector instructions that the processor has.
 ///
-/// Pointers, not Eigen's types: those of one instruction set are none of another's business (see
+/// Pointers, not Eigen's types: those of one instruction set must not cross into another's (see
 /// dense_products.cpp).
 struct FrontElimination {
     /// Replaces the panel by the columns of L, the diagonal by the pivots, and the update by the

@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "krylov_spaces.h"
+#include "pole_selection.h"
 
 namespace spectral {
 
@@ -49,77 +51,124 @@ class ErrorEstimate {
     std::vector<double> changes_;
 };
 
+/// The approximation of one gain's signals in growing spaces.
+class Approximation {
+  public:
+    Approximation(const KrylovSpaces& spaces, const Gain& gain, double pole,
+                  const FullSpectrumOptions& options)
+        : spaces_(spaces),
+          gain_(gain),
+          options_(options),
+          sufficient_(options.atEveryVertex ? std::nullopt
+                                            : sufficientDimension(gain, pole, options.accuracy)),
+          coefficients_(static_cast<std::size_t>(spaces.columns())),
+          change_(coefficients_.size()) {}
+
+    bool isSufficient(int dimension) const { return sufficient_ && dimension >= *sufficient_; }
+
+    /// Renews the coefficients of all columns; returns the estimated error.
+    double renew() {
+        double squares = 0.0;
+        for (int c = 0; c < spaces_.columns(); ++c) {
+            change_[c] = spaces_.coefficients(c, gain_);
+            coefficients_[c].conservativeResizeLike(Eigen::VectorXd::Zero(change_[c].size()));
+            std::swap(coefficients_[c], change_[c]);
+            change_[c] = coefficients_[c] - change_[c];
+            squares += change_[c].squaredNorm();
+        }
+        const double error = overSurface_(std::sqrt(squares) / spaces_.norms().matrix().norm());
+        if (!options_.atEveryVertex || error > kNearlyThere * options_.accuracy) return error;
+        // A norm over the surface hardly sees a vertex of small mass; its error can be larger, and
+        // shrink more slowly and less evenly: so the larger one of two changes counts.
+        const double before =
+            std::exchange(largest_, spaces_.combine(coefficients_, change_).largestChange);
+        return std::max(error, atVertices_(std::max(before, largest_) / spaces_.largestEntry()));
+    }
+
+    Eigen::MatrixXd Y() const { return spaces_.combine(coefficients_, change_).Y; }
+
+  private:
+    const KrylovSpaces& spaces_;
+    const Gain& gain_;
+    const FullSpectrumOptions& options_;
+    std::optional<int> sufficient_;
+    std::vector<Eigen::VectorXd> coefficients_, change_;
+    ErrorEstimate overSurface_, atVertices_;
+    double largest_ = 0.0;
+};
+
 }  // namespace
 
 FullSpectrumResult applyFullSpectrum(const Eigen::VectorXd& D, const ConstantModes& constants,
                                      const ShiftedCholesky& cholesky, const Gain& gain,
                                      const Eigen::MatrixXd& X, const FullSpectrumOptions& options,
                                      const Progress& progress) {
+    return std::move(
+        applyFullSpectrum(D, constants, cholesky, std::vector{gain}, X, options, progress).front());
+}
+
+std::vector<FullSpectrumResult> applyFullSpectrum(
+    const Eigen::VectorXd& D, const ConstantModes& constants, const ShiftedCholesky& cholesky,
+    const std::vector<Gain>& gains, const Eigen::MatrixXd& X, const FullSpectrumOptions& options,
+    const Progress& progress) {
     KrylovSpaces spaces(cholesky, D, constants, X);
-    const double normX = spaces.norms().matrix().norm();
-    FullSpectrumResult result;
-    if (!(normX > 0.0)) {
-        result.Y = X;
-        result.converged = true;
-        return result;
+    if (!(spaces.largestEntry() > 0.0)) {
+        FullSpectrumResult same;
+        same.Y = X;
+        same.converged = true;
+        return std::vector<FullSpectrumResult>(gains.size(), same);
     }
+    std::vector<FullSpectrumResult> results(gains.size());
+    std::vector<Approximation> approximations;
+    for (const Gain& gain : gains)
+        approximations.emplace_back(spaces, gain, cholesky.shift(), options);
 
-    // Renews the coefficients of all columns, and Y once it is nearly there; returns the estimated
-    // error of the signals.
-    ErrorEstimate overSurface, atVertices;
-    std::vector<Eigen::VectorXd> coefficients(X.cols()), change(X.cols());
-    double largest = 0.0;
-    const auto renew = [&] {
-        double squares = 0.0;
-        for (int c = 0; c < spaces.columns(); ++c) {
-            change[c] = spaces.coefficients(c, gain);
-            coefficients[c].conservativeResizeLike(Eigen::VectorXd::Zero(change[c].size()));
-            std::swap(coefficients[c], change[c]);
-            change[c] = coefficients[c] - change[c];
-            squares += change[c].squaredNorm();
-        }
-        const double error = overSurface(std::sqrt(squares) / normX);
-        if (error > kNearlyThere * options.accuracy) return error;
-        // A norm over the surface hardly sees a vertex of small mass; its error can be larger, and
-        // shrink more slowly and less evenly: so the larger one of two changes counts.
-        const double before = largest;
-        KrylovSpaces::Combination combination = spaces.combine(coefficients, change);
-        result.Y = std::move(combination.Y);
-        largest = combination.largestChange;
-        return std::max(error, atVertices(std::max(before, largest) / spaces.largestEntry()));
-    };
-
+    const int first = std::max(kFirstCheck, std::min(options.resolution, options.maxDimension));
     double firstError = 0.0, furthest = 0.0;
-    for (int m = 1;; ++m) {
-        if (!spaces.extend()) {
-            renew();  // the Krylov spaces are invariant: no error but round-off
-            result.errorEstimate = std::numeric_limits<double>::epsilon();
-            result.converged = true;
-            break;
+    bool isDone = false;
+    for (int m = 1; !isDone; ++m) {
+        const bool isInvariant = !spaces.extend();
+        bool isSufficient = m >= options.resolution;
+        for (const Approximation& approximation : approximations)
+            isSufficient = isSufficient && approximation.isSufficient(m);
+        const bool isLast = m >= options.maxDimension;
+        if (!isInvariant && !isSufficient && !isLast && m % kCheckInterval != 0) continue;
+
+        isDone = isInvariant || isSufficient || isLast;
+        bool allConverged = m >= first;
+        double largestError = 0.0;
+        for (std::size_t g = 0; g < gains.size(); ++g) {
+            FullSpectrumResult& result = results[g];
+            result.dimension = isInvariant ? m - 1 : m;
+            result.errorEstimate = approximations[g].renew();
+            // An invariant space leaves no error but round-off.
+            if (isInvariant) result.errorEstimate = std::numeric_limits<double>::epsilon();
+            if (isSufficient)
+                result.errorEstimate = std::min(result.errorEstimate, options.accuracy);
+            result.converged = result.errorEstimate <= options.accuracy;
+            allConverged = allConverged && result.converged;
+            largestError = std::max(largestError, result.errorEstimate);
         }
-        result.dimension = m;
-        if (m % kCheckInterval != 0) continue;
-        result.errorEstimate = renew();
-        result.converged = m >= kFirstCheck && result.errorEstimate <= options.accuracy;
-        if (result.converged) break;
-        if (m >= options.maxDimension) {
-            result.errorEstimate *= kStoppedShort;
-            break;
-        }
+        isDone = isDone || allConverged;
+        if (isDone || !std::isfinite(largestError)) continue;
 
         // Convergence is geometric: the logarithm of the error tells how far it is.
-        if (!std::isfinite(result.errorEstimate)) continue;
-        if (firstError <= 0.0) firstError = std::max(result.errorEstimate, options.accuracy * 10);
+        if (firstError <= 0.0) firstError = std::max(largestError, options.accuracy * 10);
         const double done =
-            std::log(firstError / result.errorEstimate) / std::log(firstError / options.accuracy);
+            std::log(firstError / largestError) / std::log(firstError / options.accuracy);
         furthest = std::clamp(done, furthest, 1.0);  // an estimate may be worse than the one before
         progress.report(furthest, "filtering");
     }
 
-    result.Y = spaces.combine(coefficients, change).Y;
-    constants.remove(result.Y);
-    constants.add(constants.means(X), result.Y);
-    return result;
+    const Eigen::MatrixXd means = constants.means(X);
+    for (std::size_t g = 0; g < gains.size(); ++g) {
+        FullSpectrumResult& result = results[g];
+        if (!result.converged) result.errorEstimate *= kStoppedShort;
+        result.Y = approximations[g].Y();
+        constants.remove(result.Y);
+        constants.add(means, result.Y);
+    }
+    return results;
 }
 
 }  // namespace spectral

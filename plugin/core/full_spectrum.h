@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "cholesky.h"
 #include "components.h"
 #include "progress.h"
@@ -10,6 +12,11 @@ namespace spectral {
 struct FullSpectrumOptions {
     double accuracy = 1e-6;  ///< Requested error of Y, relative as in FullSpectrumResult.
     int maxDimension = 200;  ///< Krylov dimension of a column at which to stop short of it.
+
+    int resolution = 1;  ///< Dimension below which there is no telling; see Pole.
+
+    /// Whether the accuracy is for every vertex. Else for the surface: for |dY|_D / |X|_D alone.
+    bool atEveryVertex = true;
 };
 
 struct FullSpectrumResult {
@@ -35,7 +42,8 @@ struct FullSpectrumResult {
 /// The columns of X run in step, so that one pass over the Cholesky factor serves all of them.
 ///
 /// The stopping rule is a posteriori: from the differences of approximations a few dimensions
-/// apart, over the surface and at every vertex, and the rate at which they shrink.
+/// apart, over the surface and at every vertex, and the rate at which they shrink. Over the surface
+/// the dimension that is enough for every signal ends it, too.
 ///
 /// @param D         lumped masses of the Laplacian.
 /// @param cholesky  factorization of W + lambda_p D; see selectPole for lambda_p.
@@ -46,5 +54,11 @@ FullSpectrumResult applyFullSpectrum(const Eigen::VectorXd& D, const ConstantMod
                                      const ShiftedCholesky& cholesky, const Gain& gain,
                                      const Eigen::MatrixXd& X, const FullSpectrumOptions& options,
                                      const Progress& progress = {});
+
+/// The same for several gains, from the same Krylov spaces.
+std::vector<FullSpectrumResult> applyFullSpectrum(
+    const Eigen::VectorXd& D, const ConstantModes& constants, const ShiftedCholesky& cholesky,
+    const std::vector<Gain>& gains, const Eigen::MatrixXd& X, const FullSpectrumOptions& options,
+    const Progress& progress = {});
 
 }  // namespace spectral

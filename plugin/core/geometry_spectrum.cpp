@@ -222,6 +222,7 @@ GeometrySpectrum geometrySpectrum(const Vertices& V, const Faces& F, const Spect
     MeshLaplacian mesh = meshLaplacian(V, F, options.laplacian);
     GeometrySpectrum spectrum;
     spectrum.diagonal = boundingBoxDiagonal(V);
+    spectrum.meanEdge = meanEdgeLength(V, F);
     spectrum.area = mesh.laplacian.D.sum();
     const Vibration vibration = vibrationOf(std::move(mesh), options.boundary);
     const Laplacian& laplacian = vibration.laplacian;

@@ -29,6 +29,7 @@ struct SpectrumOptions {
 /// counts where the surface is curved, by 2^2.5.
 struct GeometrySpectrum {
     double diagonal = 0.0;     ///< Of the bounding box of all vertices, length units.
+    double meanEdge = 0.0;     ///< Mean length of the triangles' sides.
     double area = 0.0;         ///< Sum of D, length^2, fixed vertices included.
     double totalEnergy = 0.0;  ///< |U|_D^2, length^4.
 

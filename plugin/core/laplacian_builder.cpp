@@ -6,18 +6,27 @@ LaplacianBuilder::LaplacianBuilder(const Surface& surface, LaplacianKind kind, B
                                    double conformalShare)
     : surface_(surface), update_(update), conformalShare_(conformalShare) {
     if (kind == LaplacianKind::IntrinsicDelaunay) intrinsic_.emplace(surface.X, surface.F);
-    input_ = {stiffness(surface.X), mass(surface.X)};
+    current_ = {stiffness(surface.X), mass(surface.X)};
+    inputMass_ = current_.D;
+    if (update == BasisUpdate::Full) inputStiffness_ = current_.W;
 }
 
-Laplacian LaplacianBuilder::operator()(const Vertices& X) const {
-    switch (update_) {
-        case BasisUpdate::Full:
-            if (conformalShare_ == 0.0) return {stiffness(X), mass(X)};
-            return {(1.0 - conformalShare_) * stiffness(X) + conformalShare_ * input_.W, mass(X)};
-        case BasisUpdate::Conformal: return {input_.W, mass(X)};
-        case BasisUpdate::None: break;
+const Laplacian& LaplacianBuilder::input() {
+    if (update_ == BasisUpdate::Full) current_.W = inputStiffness_;
+    current_.D = inputMass_;
+    return current_;
+}
+
+const Laplacian& LaplacianBuilder::operator()(const Vertices& X) {
+    if (update_ == BasisUpdate::None) return input();
+    if (update_ == BasisUpdate::Full) {
+        current_.W = stiffness(X);
+        if (conformalShare_ > 0.0)
+            current_.W =
+                ((1.0 - conformalShare_) * current_.W + conformalShare_ * inputStiffness_).eval();
     }
-    return input_;
+    current_.D = mass(X);
+    return current_;
 }
 
 SparseMatrix LaplacianBuilder::stiffness(const Vertices& X) const {

@@ -31,11 +31,14 @@ class LaplacianBuilder {
     LaplacianBuilder(const Surface& surface, LaplacianKind kind, BasisUpdate update,
                      double conformalShare = 0.0);
 
-    /// The Laplacian of the input.
-    const Laplacian& input() const { return input_; }
+    /// The Laplacian of the input; until the next call of this or of the next function.
+    const Laplacian& input();
 
-    /// The Laplacian of the shape X (n x 3), as far as the update takes it from there.
-    Laplacian operator()(const Vertices& X) const;
+    /// The Laplacian of the shape X (n x 3), as far as the update takes it from there; likewise.
+    const Laplacian& operator()(const Vertices& X);
+
+    /// The masses of the input.
+    const Eigen::VectorXd& inputMass() const { return inputMass_; }
 
     /// Its D alone: a third of the area of the triangles at every vertex, > 0.
     Eigen::VectorXd mass(const Vertices& X) const;
@@ -47,7 +50,9 @@ class LaplacianBuilder {
     BasisUpdate update_;
     double conformalShare_;
     std::optional<IntrinsicDelaunay> intrinsic_;
-    Laplacian input_;
+    SparseMatrix inputStiffness_;  // empty where W stays that of the input
+    Eigen::VectorXd inputMass_;
+    Laplacian current_;
 };
 
 }  // namespace spectral

@@ -86,6 +86,8 @@ class Elimination {
         front.panel = panel_.data();
         front.scratch = scratch_.data();
         front.update = stack_.data() + top_;
+        front.share = [](std::ptrdiff_t count, void (*call)(const void*, std::ptrdiff_t),
+                         const void* function) { ThreadTeam::run(count, {call, function}); };
         gather(supernode, front);
         if (!frontElimination().eliminate(front)) return false;
         store(supernode, front);

@@ -8,6 +8,13 @@ double boundingBoxDiagonal(const Vertices& V) {
     return (V.colwise().maxCoeff() - V.colwise().minCoeff()).norm();
 }
 
+double meanEdgeLength(const Vertices& V, const Faces& F) {
+    double sum = 0.0;
+    for (Index t = 0; t < F.rows(); ++t)
+        for (int c = 0; c < 3; ++c) sum += (V.row(F(t, (c + 1) % 3)) - V.row(F(t, c))).norm();
+    return F.rows() > 0 ? sum / (3.0 * static_cast<double>(F.rows())) : 0.0;
+}
+
 double surfaceArea(const Vertices& V, const Faces& F) {
     double twiceArea = 0.0;
     for (Index t = 0; t < F.rows(); ++t) {

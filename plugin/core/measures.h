@@ -7,6 +7,10 @@ namespace spectral {
 /// Length of the diagonal of the axis-parallel bounding box.
 double boundingBoxDiagonal(const Vertices& V);
 
+/// Mean length of the triangles' sides: about that of the edges, most of which are two sides. 0
+/// without triangles.
+double meanEdgeLength(const Vertices& V, const Faces& F);
+
 /// Area of all triangles.
 double surfaceArea(const Vertices& V, const Faces& F);
 

@@ -8,65 +8,87 @@ namespace spectral {
 
 namespace {
 
-/// Chebyshev nodes: degrees up to this are told apart, more than any Krylov space should need.
-constexpr int kNodes = 256;
+/// Chebyshev nodes: degrees up to half of them are told apart. More are taken only for gains that
+/// need them.
+constexpr int kFewestNodes = 32, kMostNodes = 256;
 
 /// Poles that are tried: powers of two times the cutoff's lambda.
 constexpr int kLowestPower = -6, kHighestPower = 12;
 
-/// cos(pi i / (2 kNodes)) for all i of one period.
-std::vector<double> cosineTable() {
-    std::vector<double> table(4 * kNodes);
-    for (std::size_t i = 0; i < table.size(); ++i)
-        table[i] = std::cos(kPi * static_cast<double>(i) / (2.0 * kNodes));
-    return table;
-}
+/// Part of its variation to which a gain must be approximated for a space to tell where it varies.
+constexpr double kResolved = 0.1;
 
-/// Moduli of the Chebyshev coefficients of the gain as a function of theta = pole / (lambda +
-/// pole), summed from the highest degree down: entry d bounds the error of the best polynomial of
-/// degree below d.
-std::vector<double> chebyshevTails(const Gain& gain, double pole, const SpectrumRange& range,
-                                   const std::vector<double>& cosine) {
-    const double first = pole / (range.highest + pole), last = pole / (range.lowest + pole);
-    std::vector<double> value(kNodes);
-    for (int i = 0; i < kNodes; ++i) {
-        const double theta = first + (last - first) * 0.5 * (1.0 + cosine[2 * i + 1]);
-        value[i] = gain(std::sqrt(std::max(0.0, pole / theta - pole)));
+/// Approximation of a gain by polynomials in theta, on an interval of it.
+class ChebyshevSeries {
+  public:
+    ChebyshevSeries(const Gain& gain, double pole, double first, double last, int nodes)
+        : tail_(static_cast<std::size_t>(nodes) + 1, 0.0) {
+        std::vector<double> cosine(4 * static_cast<std::size_t>(nodes));  // cos(pi i / (2 nodes))
+        for (std::size_t i = 0; i < cosine.size(); ++i)
+            cosine[i] = std::cos(kPi * static_cast<double>(i) / (2.0 * nodes));
+        std::vector<double> value(static_cast<std::size_t>(nodes));
+        for (int i = 0; i < nodes; ++i) {
+            const double theta = first + (last - first) * 0.5 * (1.0 + cosine[2 * i + 1]);
+            value[i] = gain(std::sqrt(std::max(0.0, pole / theta - pole)));
+        }
+        for (int degree = nodes - 1; degree >= 0; --degree) {
+            double coefficient = 0.0;
+            for (int i = 0; i < nodes; ++i)
+                coefficient += value[i] * cosine[degree * (2 * i + 1) % (4 * nodes)];
+            tail_[degree] = tail_[degree + 1] + std::abs(coefficient) * 2.0 / nodes;
+        }
     }
-    std::vector<double> tail(kNodes + 1, 0.0);
-    for (int degree = kNodes - 1; degree >= 0; --degree) {
-        double coefficient = 0.0;
-        for (int i = 0; i < kNodes; ++i)
-            coefficient += value[i] * cosine[degree * (2 * i + 1) % (4 * kNodes)];
-        tail[degree] = tail[degree + 1] + std::abs(coefficient) * 2.0 / kNodes;
-    }
-    return tail;
-}
 
-/// Degree from which on the tail stays below the accuracy.
-Index requiredDegree(const std::vector<double>& tail, double accuracy) {
-    return std::partition_point(tail.begin(), tail.end(), [&](double t) { return t > accuracy; }) -
-           tail.begin();
-}
+    /// Number of coefficients, from the first, without which the error would exceed the accuracy.
+    int requiredDimension(double accuracy) const {
+        return static_cast<int>(std::partition_point(tail_.begin(), tail_.end(),
+                                                     [&](double t) { return t > accuracy; }) -
+                                tail_.begin());
+    }
+
+    /// Sum of the moduli of all coefficients but the constant one.
+    double variation() const { return tail_[1]; }
+
+  private:
+    std::vector<double> tail_;  // sums of moduli, from a degree on: bound the error below it
+};
 
 }  // namespace
 
-double selectPole(const Gain& gain, double cutoff, const SpectrumRange& range, double accuracy) {
-    const std::vector<double> cosine = cosineTable();
-    std::vector<double> poles;
-    std::vector<std::vector<double>> tails;
-    for (int power = kLowestPower; power <= kHighestPower; ++power) {
-        poles.push_back(std::exp2(power) * cutoff * cutoff);
-        tails.push_back(chebyshevTails(gain, poles.back(), range, cosine));
+Pole selectPole(const Gain& gain, double cutoff, const SpectrumRange& range, double accuracy) {
+    Pole best;
+    int nodes = kFewestNodes;
+    for (double target = accuracy;;) {
+        int fewest = nodes + 1;
+        for (int power = kLowestPower; power <= kHighestPower; ++power) {
+            const double pole = std::exp2(power) * cutoff * cutoff;
+            const ChebyshevSeries series(gain, pole, pole / (range.highest + pole),
+                                         pole / (range.lowest + pole), nodes);
+            const int dimension = series.requiredDimension(target);
+            if (dimension >= fewest) continue;
+            fewest = dimension;
+            best.shift = pole;
+            best.resolution = std::max(1, series.requiredDimension(kResolved * series.variation()));
+        }
+        if (fewest <= nodes / 2) break;
+        // Aliasing spoils the upper half of the coefficients of a gain that is not resolved: with
+        // the most nodes, such a gain is judged at the finest accuracy that some pole does reach.
+        if (nodes < kMostNodes)
+            nodes *= 2;
+        else
+            target *= 10.0;
     }
-    // Aliasing spoils the upper half of the coefficients of a gain that is not resolved: such a
-    // gain is judged at the finest accuracy that some pole does reach.
-    for (double target = accuracy;; target *= 10.0) {
-        std::size_t best = 0;
-        for (std::size_t p = 1; p < poles.size(); ++p)
-            if (requiredDegree(tails[p], target) < requiredDegree(tails[best], target)) best = p;
-        if (requiredDegree(tails[best], target) <= kNodes / 2) return poles[best];
-    }
+    return best;
+}
+
+std::optional<int> sufficientDimension(const Gain& gain, double pole, double accuracy) {
+    constexpr int kMost = 32;
+    const ChebyshevSeries series(gain, pole, 0.0, 1.0, 4 * kMost);
+    // Twice as accurate: the space's own approximation may be worse than the best polynomial by
+    // that factor.
+    const int dimension = std::max(1, series.requiredDimension(0.5 * accuracy));
+    if (dimension > kMost) return {};
+    return dimension;
 }
 
 SpectrumRange bulkSpectrum(const Laplacian& laplacian) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "laplacian.h"
 #include "transfer_function.h"
 
@@ -11,7 +13,15 @@ struct SpectrumRange {
     double highest;  ///< Upper end of the bulk, > lowest.
 };
 
-/// The pole lambda_p for which a rational Krylov space resolves a gain with the fewest dimensions.
+struct Pole {
+    double shift = 0.0;  ///< lambda_p > 0, in units of lambda.
+
+    /// Dimension from which on a space can tell the gain from a smoother one: below it, changes
+    /// from one dimension to the next say nothing of the error.
+    int resolution = 1;
+};
+
+/// The pole for which a rational Krylov space resolves a gain with the fewest dimensions.
 ///
 /// In the variable theta = lambda_p / (lambda + lambda_p) the Krylov method with the repeated pole
 /// -lambda_p approximates F by polynomials on (0, 1]. For each of a range of poles the degree that
@@ -27,8 +37,12 @@ struct SpectrumRange {
 /// @param cutoff    omega_c > 0, around which poles are tried.
 /// @param range     the part of the spectrum that matters; see `bulkSpectrum`.
 /// @param accuracy  absolute error of the gain, > 0.
-/// @return          lambda_p > 0, in units of lambda.
-double selectPole(const Gain& gain, double cutoff, const SpectrumRange& range, double accuracy);
+Pole selectPole(const Gain& gain, double cutoff, const SpectrumRange& range, double accuracy);
+
+/// Dimension of a Krylov space that is enough for the accuracy whatever the signal is, relative to
+/// its D-norm, on all of the spectrum. Empty where more than 32 would be needed: few signals need
+/// as many, and their spaces tell.
+std::optional<int> sufficientDimension(const Gain& gain, double pole, double accuracy);
 
 /// The range of the bulk of the eigenvalues of W phi = lambda D phi.
 ///

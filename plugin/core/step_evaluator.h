@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "harmonic_basis.h"
 #include "harmonic_extension.h"
 #include "laplacian.h"
+#include "pole_selection.h"
 #include "progress.h"
 #include "shifted_ldlt.h"
 #include "transfer_function.h"
@@ -26,7 +28,8 @@ struct EvaluationOptions {
     int basisSize = 300;           ///< k, for Spectrum::Truncated: below the number of vertices.
     bool reinjectResidual = true;  ///< For Spectrum::Truncated: keep what is beyond k (Eq. 8).
     double accuracy = 1e-6;        ///< For Spectrum::Full: error of all steps together, relative to
-                                   ///< the shape's own size (see full_spectrum.h).
+                                   ///< the shape's own size (see full_spectrum.h),
+    bool atEveryVertex = true;     ///< at every vertex or over the surface.
 };
 
 /// Evaluates fractional steps F^alpha(sqrt(A)) X (Eq. 11), for one Laplacian A after another.
@@ -41,12 +44,20 @@ class StepEvaluator {
 
     /// Takes the surface's Laplacian for the evaluations to come, and makes of it what they need: a
     /// factorization, or a basis.
-    /// @param alpha  fractional power that the evaluations will mostly have.
+    /// @param laplacian  kept by reference.
+    /// @param alpha      fractional power that the evaluations will mostly have.
     /// @throws SolverFailure  when triangles have collapsed so far that this is impossible.
-    void setLaplacian(Laplacian laplacian, double alpha, const Progress& progress);
+    void setLaplacian(const Laplacian& laplacian, double alpha, const Progress& progress);
 
+    /// F^alpha(sqrt(A)) X.
     /// @throws SolverFailure  when F^alpha is too steep to be evaluated at all.
     Eigen::MatrixXd operator()(const Eigen::MatrixXd& X, double alpha, const Progress& progress);
+
+    /// The same for several powers, with fewer digits: for shapes that Laplacians are taken of, and
+    /// that are not in the result themselves. Their errors do not count.
+    std::vector<Eigen::MatrixXd> predict(const Eigen::MatrixXd& X,
+                                         const std::vector<double>& alphas,
+                                         const Progress& progress);
 
     const HarmonicBasis& basis() const { return basis_; }  ///< Empty where none is used.
     int computedBases() const { return computedBases_; }   ///< Bases computed from nothing.
@@ -62,18 +73,28 @@ class StepEvaluator {
   private:
     bool usesBasis() const;
     double accuracyOf(double alpha) const;
-    Eigen::MatrixXd onInterior(const Eigen::MatrixXd& U, double relativeSize, double alpha,
-                               const Progress& progress);
+    std::vector<Eigen::MatrixXd> evaluate(const Eigen::MatrixXd& X,
+                                          const std::vector<double>& alphas, double accuracy,
+                                          const Progress& progress);
+    std::vector<Eigen::MatrixXd> onInterior(const Eigen::MatrixXd& U, double relativeSize,
+                                            const std::vector<double>& alphas, double accuracy,
+                                            const Progress& progress);
+    const Pole& poleFor(double alpha);
     void truncated(const Progress& progress);
     void followBasis(const Progress& progress);
     HarmonicBasis upToLastJump(const Progress& progress);
+    const Laplacian& laplacian() const { return interior_.isWhole() ? *surface_ : restricted_; }
 
     const EvaluationOptions& options_;
     const Interior& interior_;
     const TransferFunction& F_;
     HarmonicExtension extension_;
-    Laplacian laplacian_;  // of the interior, as all that follows
+    const Laplacian* surface_ = nullptr;
+    Laplacian restricted_;  // to the interior, where that is not all of the surface
     std::optional<ConstantModes> constants_;
+    std::optional<SpectrumRange> spectrum_;  // of the first Laplacian
+    std::map<double, Pole> poles_;           // for the powers that have been asked for
+    int resolution_ = 1;                     // of the last pole
     ShiftedCholesky cholesky_;
     HarmonicBasis basis_;
     std::vector<ShiftedLdlt> factors_;  // those that made the basis

@@ -111,6 +111,12 @@ double cutoffFrequency(double featureSize) {
     return 2.0 * kPi / featureSize;
 }
 
+double defaultFeatureSize(double meanEdge, double diagonal) {
+    constexpr double kEdges = 6.0, kShare = 0.05;
+    const double size = kEdges * meanEdge, most = kShare * diagonal;
+    return size > 0.0 && size < most ? size : most;
+}
+
 Gain fractionalPower(const TransferFunction& F, double alpha) {
     return [F, alpha](double omega) { return F.power(omega, alpha); };
 }

@@ -67,6 +67,14 @@ class TransferFunction {
 /// @throws InvalidOption  when it is not a finite length above zero.
 double cutoffFrequency(double featureSize);
 
+/// The feature size that suits a mesh when nobody says another: six mean edges, at most 5 % of the
+/// diagonal of the bounding box. Six edges take the noise of the sampling away (a wave of two
+/// edges, the finest that a mesh can carry, keeps 4 % of its height in a Gaussian low-pass); the
+/// bound keeps the shape of a coarse model.
+///
+/// @param meanEdge, diagonal  length units; without edges (0) it is the bound.
+double defaultFeatureSize(double meanEdge, double diagonal);
+
 /// Gain as a function of the frequency omega, e.g. a power of a transfer function.
 using Gain = std::function<double(double omega)>;
 

@@ -2,17 +2,16 @@
 
 #include <common/parameters/rich_parameters.h>
 
-namespace {
-
-/// In parts of the diagonal of the bounding box.
-constexpr double kDefaultFeatureSize = 0.05;
-
-}  // namespace
+#include "core/measures.h"
+#include "core/transfer_function.h"
+#include "mesh_conversion.h"
 
 RichPercentage featureSizeParameter(const MeshModel& mesh, const QString& help) {
     const Scalarm diagonal = mesh.cm.bbox.Diag();
+    const MeshMatrices matrices = toMatrices(mesh.cm);
+    const double meanEdge = spectral::meanEdgeLength(matrices.V, matrices.F);
     return {"feature_size",
-            static_cast<Scalarm>(kDefaultFeatureSize) * diagonal,
+            static_cast<Scalarm>(spectral::defaultFeatureSize(meanEdge, diagonal)),
             0,
             diagonal,
             "Feature size",

@@ -8,7 +8,8 @@
 
 /// The parameters that several filters have, under one name, with one default.
 
-/// `feature_size`, a percentage of the diagonal of the bounding box, by default 5 %.
+/// `feature_size`, a percentage of the diagonal of the bounding box, by default what suits the mesh
+/// (spectral::defaultFeatureSize).
 RichPercentage featureSizeParameter(const MeshModel& mesh, const QString& help);
 
 /// The feature size as a length.

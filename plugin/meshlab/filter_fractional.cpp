@@ -1,4 +1,5 @@
 #include "core/fractional_filter.h"
+#include "core/measures.h"
 #include "core/steady_progress.h"
 #include "fractional_help.h"
 #include "fractional_parameters.h"
@@ -18,7 +19,8 @@ FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
         });
     reportWriting(input, mesh.cm, progress);
     setPositions(input.vertexIndex, result.V, mesh);
-    return {reportDictionary(result), reportText(result)};
+    return {reportDictionary(result),
+            reportText(options, result, spectral::boundingBoxDiagonal(input.V))};
 }
 
 }  // namespace

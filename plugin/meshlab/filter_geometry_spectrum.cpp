@@ -7,6 +7,7 @@
 #include "common_parameters.h"
 #include "core/geometry_spectrum.h"
 #include "core/steady_progress.h"
+#include "core/transfer_function.h"
 #include "mesh_conversion.h"
 #include "mesh_filter.h"
 
@@ -104,6 +105,8 @@ FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
             return spectral::geometrySpectrum(input.V, input.F, options, steady);
         });
     return {{{"diagonal", spectrum.diagonal},
+             {"default_feature_size",
+              spectral::defaultFeatureSize(spectrum.meanEdge, spectrum.diagonal)},
              {"area", spectrum.area},
              {"total_energy", spectrum.totalEnergy},
              {"frequencies", vectorVariant(spectrum.frequencies)},

@@ -9,6 +9,7 @@
 
 #include "apply_lock.h"
 #include "core/errors.h"
+#include "core/thread_team.h"
 #include "late_close.h"
 #include "late_preview.h"
 
@@ -23,6 +24,20 @@ spectral::Progress meshlabProgress(vcg::CallBackPos* callback, std::function<boo
         return callback(static_cast<int>(100.0 * fraction), stage.c_str()) && isWanted();
     };
     return spectral::Progress(report, std::move(isOvertaken));
+}
+
+/// The number of threads that MESHLAB_SPECTRAL_THREADS asks for; 0, one for each core, without it.
+/// @throws spectral::InvalidOption  when it is no number above zero.
+int threadsOfEnvironment() {
+    const char* const variable = "MESHLAB_SPECTRAL_THREADS";
+    if (!qEnvironmentVariableIsSet(variable)) return 0;
+    bool isNumber = false;
+    const int count = qEnvironmentVariableIntValue(variable, &isNumber);
+    if (!isNumber || count < 1)
+        throw spectral::InvalidOption(std::string("the environment variable ") + variable + " = " +
+                                      qgetenv(variable).toStdString() +
+                                      ": give a number of threads above zero, or unset it");
+    return count;
 }
 
 }  // namespace
@@ -114,6 +129,7 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
     // but MLException and bad_alloc.
     try {
         const spectral::Progress progress = meshlabProgress(callback, isWanted, isOvertaken);
+        spectral::setThreadCount(threadsOfEnvironment());
         progress.report(0.0, "reading the mesh");
         FilterOutcome outcome = filterOf(action).apply(parameters, *document.mm(), progress);
         logLines(outcome.text);

@@ -24,33 +24,16 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "filter_type", static_cast<int>(transfer.type),
         {"low-pass", "high-pass", "band-pass", "band-stop"}, "Filter type",
         "What to do with details, by their size. <b>low-pass</b> keeps what is larger than the "
-        "feature size and removes the rest (smoothing, denoising). <b>high-pass</b> acts on what "
-        "is smaller: with stop gain 1 and pass gain 2 it sharpens. <b>band-pass</b> acts on "
-        "details of about the feature size: with stop gain 1 and pass gain above 1 it enhances "
-        "just them. <b>band-stop</b> removes just them."));
+        "feature size and removes the rest. <b>high-pass</b> acts on what is smaller: with stop "
+        "gain 1 and pass gain 2 it sharpens. <b>band-pass</b> acts on details of about the feature "
+        "size: with stop gain 1 and pass gain above 1 it enhances them. <b>band-stop</b> removes "
+        "them."));
     list.addParam(featureSizeParameter(
         mesh,
-        "Size of the details where the filter turns over, as the wavelength of a wave along the "
-        "surface: a bump and the hollow beside it. Low-pass with 5 % of the diagonal wipes out "
-        "bumps that are clearly narrower than 2.5 % of the model. Larger values filter more "
-        "strongly. Try twice the width of what you want to remove."));
-    list.addParam(RichEnum(
-        "response", static_cast<int>(transfer.response), {"gaussian", "butterworth", "ideal"},
-        "Response",
-        "How sharply the filter tells sizes apart. <b>gaussian</b> changes over gently and never "
-        "rings; <b>butterworth</b> is sharper the higher its order; <b>ideal</b> cuts at once and "
-        "may leave ripples, like the rings around edges in a picture that was compressed too "
-        "much.",
-        true));
-    list.addParam(RichInt(
-        "order", transfer.order, "Butterworth order",
-        "Steepness of the butterworth response, from 1 (gentle) to 64 (nearly ideal). 2 is a good "
-        "start. Not used by the other responses.",
-        true));
-    list.addParam(RichFloat(
-        "band_width", static_cast<Scalarm>(transfer.bandWidth), "Band width (octaves)",
-        "Width of the band of band-pass and band-stop, in octaves: 1 means that its largest "
-        "details are twice as large as its smallest. Not used by low-pass and high-pass."));
+        "Size of the details where the filter turns over: the wavelength of a wave along the "
+        "surface, a bump and the hollow next to it. To remove bumps, try twice their width. "
+        "By default six mean edges of this mesh, at most 5 % of its diagonal: enough to remove the "
+        "noise of a scan."));
     list.addParam(RichFloat(
         "pass_gain", static_cast<Scalarm>(transfer.passGain), "Pass gain",
         "Factor for the details that the filter passes: 1 keeps them, 2 doubles their height, 0 "
@@ -60,28 +43,44 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "Factor for all other details: 0 removes them, 0.5 halves their height, 1 keeps them. Not "
         "negative."));
     list.addParam(RichFloat(
+        "band_width", static_cast<Scalarm>(transfer.bandWidth), "Band width (octaves)",
+        "Width of the band of band-pass and band-stop, in octaves: 1 means that its largest "
+        "details are twice as large as its smallest.",
+        true));
+    list.addParam(RichEnum(
+        "response", static_cast<int>(transfer.response), {"gaussian", "butterworth", "ideal"},
+        "Response",
+        "How sharply the filter tells sizes apart. <b>gaussian</b> changes over gently and never "
+        "rings; <b>butterworth</b> is sharper the higher its order; <b>ideal</b> cuts at once and "
+        "may leave ripples.",
+        true));
+    list.addParam(RichInt(
+        "order", transfer.order, "Butterworth order",
+        "Steepness of the butterworth response, from 1 (gentle) to 64 (nearly ideal).", true));
+    list.addParam(RichFloat(
         "power", static_cast<Scalarm>(transfer.power), "Power",
-        "The part of the filter to apply, as a power of all its gains: 1 is the whole filter, 0.5 "
-        "is half of it (a gain of 4 becomes 2). The steps divide this part. Above 0, at most 1.",
+        "The part of the filter to apply, as a power of its gains: 0.5 is half of the filter (a "
+        "gain of 4 becomes 2). Above 0, at most 1.",
         true));
     list.addParam(RichInt(
         "steps", defaults.steps, "Steps (0 = automatic)",
-        "The filter is applied as this many weak steps, because a single strong one damages the "
-        "shape: thin parts turn into spikes or balloons. 0 takes as many as the tolerance needs; "
-        "10 is the scheme of the paper [1] with ten steps; 1 is the classical one-shot filter."));
+        "The filter is applied as this many weak steps, because a single strong one turns thin "
+        "parts into spikes or balloons. 0 takes as many as the tolerance needs; 10 is the scheme "
+        "of the paper [1] with ten steps; 1 is the classical one-shot filter.",
+        true));
     list.addParam(RichPercentage(
         "tolerance", static_cast<Scalarm>(kDefaultTolerance) * diagonal, 0, diagonal, "Tolerance",
-        "With 0 steps: how far any point may be from where infinitely many steps would put it. "
-        "0.05 % of the diagonal is hardly visible; more is faster. Where thin parts pinch off, no "
-        "number of steps is enough: the report then says on how much of the surface.",
+        "With 0 steps: how far the surface may be from where infinitely many steps would put it "
+        "(but a thousandth of it, where thin parts pinch off). More is faster.",
         true));
     list.addParam(RichEnum(
         "basis_update", static_cast<int>(defaults.basisUpdate), {"full", "conformal", "none"},
         "Basis update",
-        "What every step learns from the shape that the step before has made. <b>full</b> takes "
-        "its own frequencies anew. <b>conformal</b> takes only its areas anew [4]: the best choice "
-        "for strong smoothing, thin parts shrink instead of turning into spikes. <b>none</b> keeps "
-        "the frequencies of the input; then the number of steps does not matter."));
+        "What every step learns from the shape that the step before has made. <b>full</b>, the "
+        "paper's scheme, takes its frequencies anew. <b>conformal</b> takes its areas anew [4]: "
+        "thin parts shrink instead of turning into spikes. <b>none</b> keeps the frequencies of "
+        "the input; then the number of steps does not matter.",
+        true));
     list.addParam(RichFloat(
         "conformal_share", static_cast<Scalarm>(defaults.conformalShare), "Conformal share",
         "For the full update: from 0, the scheme of the paper, to 1, the conformal update. 0.1 is "

@@ -6,6 +6,8 @@
 #include <iomanip>
 #include <sstream>
 
+#include "core/automatic_steps.h"
+
 namespace {
 
 QVariant vectorVariant(const Eigen::VectorXd& v) { return QVariant::fromValue(v); }
@@ -50,14 +52,40 @@ std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& r
     return report;
 }
 
-std::string reportText(const spectral::FilterResult& result) {
+namespace {
+
+/// What a user wants to know, in one line: what was done to which size, how far the surface moved,
+/// and how far the result can be trusted.
+std::string headline(const spectral::FilterOptions& options, const spectral::FilterResult& result,
+                     double diagonal) {
+    static const char* const types[] = {"low-pass", "high-pass", "band-pass", "band-stop"};
+    const double percent = 100.0 / diagonal;
+    std::ostringstream text;
+    text << std::setprecision(4)
+         << "Spectral Filter: " << types[static_cast<int>(options.transferFunction.type)]
+         << " at feature size " << result.featureSize << " (" << percent * result.featureSize
+         << " % of the diagonal); the surface moved by " << result.rmsDisplacement
+         << " in the root mean square, by " << result.maxDisplacement << " at most; ";
+    if (options.steps > 0)
+        text << result.steps << (result.steps == 1 ? " step" : " steps") << ", as asked for";
+    else if (result.toleranceReached)
+        text << "accurate to " << result.stepError << " (" << percent * result.stepError << " %)";
+    else
+        text << "NOT accurate: estimated error " << result.stepError << " ("
+             << percent * result.stepError << " %)";
+    if (options.steps == 0 && result.singularPart > spectral::kNegligibleArea)
+        text << "; " << 100.0 * result.singularPart << " % of the input shrinks away";
+    return text.str();
+}
+
+}  // namespace
+
+std::string reportText(const spectral::FilterOptions& options, const spectral::FilterResult& result,
+                       double diagonal) {
     std::ostringstream text;
     text << std::setprecision(4);
-    text << "Spectral Filter: " << result.steps << (result.steps == 1 ? " step" : " steps")
-         << ", feature size " << result.featureSize << " (cutoff frequency "
-         << result.cutoffFrequency << " rad per unit)\n"
-         << "  displacement: largest " << result.maxDisplacement << ", root mean square "
-         << result.rmsDisplacement << "\n"
+    text << headline(options, result, diagonal) << "\n  steps: " << result.steps
+         << ", cutoff frequency " << result.cutoffFrequency << " rad per unit\n"
          << "  area: " << result.areaBefore << " -> " << result.areaAfter << "\n"
          << "  volume: " << result.volumeBefore << " -> " << result.volumeAfter
          << " (of closed surfaces)\n"
@@ -67,8 +95,6 @@ std::string reportText(const spectral::FilterResult& result) {
         text << ", " << result.unreferencedVertices << " unreferenced vertices left alone";
     if (result.fixedVertices > 0)
         text << ", " << result.fixedVertices << " vertices fixed on its boundary";
-    if (result.stepError > 0.0)
-        text << "\n  automatic steps: estimated error of any vertex " << result.stepError;
     text << "\n  work: " << result.factorizations << " factorizations, " << result.solves
          << " solves";
     if (result.eigenvalues.size() > 0)

@@ -74,7 +74,7 @@ class Flow {
     EvaluationOptions evaluation_;
     Interior interior_;
     TransferFunction F_;
-    LaplacianBuilder laplacians_;
+    mutable LaplacianBuilder laplacians_;
     BasisUpdate update_;
 };
 

@@ -112,7 +112,7 @@ struct Problem {
 
     Surface surface;
     double diagonal;
-    LaplacianBuilder laplacians;
+    mutable LaplacianBuilder laplacians;
     Components components;
     TransferFunction F;
     double power;

@@ -409,6 +409,7 @@ TEST(FractionalFilter, SaysInWhichStepThinPartsCollapsed) {
     FilterOptions options;
     options.featureSize = 400.0;
     options.laplacian = LaplacianKind::Cotangent;
+    options.basisUpdate = BasisUpdate::Full;
     options.steps = 60;
     try {
         fractionalFilter(mesh.V, mesh.F, options);

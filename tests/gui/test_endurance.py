@@ -34,6 +34,7 @@ def mebibytes_taken(pid: int) -> float:
 def test_fifty_previews_need_no_more_memory_than_the_first_ten(
     dialog: FilterDialog, meshlab: MeshLab, record_property: Callable[[str, object], None]
 ) -> None:
+    dialog.show_advanced()
     rows = dict(zip(PARAMETERS, dialog.rows(), strict=True))
     dialog.set_value(rows["steps"], "1")
     dialog.preview(True)

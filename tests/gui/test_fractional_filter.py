@@ -16,6 +16,7 @@ from fractional import (
     MENU,
     PARAMETERS,
     assert_same_in_floats,
+    default_feature_size,
     diagonal,
     load,
     saved_vertices,
@@ -29,15 +30,15 @@ from waiting import wait_for
 OTHER_VALUES = {
     "filter_type": "band-pass",
     "feature_size": "8",
-    "response": "butterworth",
-    "order": "3",
-    "band_width": "2",
     "pass_gain": "0.5",
     "stop_gain": "0.25",
+    "band_width": "2",
+    "response": "butterworth",
+    "order": "3",
     "power": "0.5",
     "steps": "2",
     "tolerance": "0.25",
-    "basis_update": "conformal",
+    "basis_update": "full",
     "conformal_share": "0.5",
     "spectrum": "truncated",
     "basis_size": "40",
@@ -47,7 +48,9 @@ OTHER_VALUES = {
 }
 
 
-def test_the_dialog_shows_every_parameter_with_its_default(dialog: FilterDialog) -> None:
+def test_the_dialog_shows_every_parameter_with_its_default(
+    dialog: FilterDialog, bunny: Path
+) -> None:
     rows = dialog.rows()
     defaults = FilterOptions().as_dict()
     assert len(rows) == len(PARAMETERS)
@@ -60,6 +63,10 @@ def test_the_dialog_shows_every_parameter_with_its_default(dialog: FilterDialog)
         editor = row.editors[-1]
         if isinstance(default, bool):
             assert editor.checked == default, name
+        elif name == "feature_size":
+            ms = load(bunny)
+            percent = 100 * default_feature_size(ms) / diagonal(vertices(ms))
+            assert float(editor.text) == pytest.approx(percent, rel=1e-3)
         elif len(row.editors) == 2:
             assert float(editor.text) == float(default.rstrip("%")), name
         elif editor.has_role("combo box"):
@@ -145,10 +152,11 @@ def test_scripts_and_the_dialog_take_turns(
         else:
             # Anew each time: Apply starts from the mesh of when the dialog was opened.
             dialog = meshlab.open_filter(*MENU)
+            dialog.show_advanced()
             dialog.set_value(dialog.rows()[PARAMETERS.index("steps")], "1")
             dialog.apply()
             dialog.close()
-            sizes.append(0.05 * diagonal(vertices(ms)))
+            sizes.append(default_feature_size(ms))
             apply(sizes[-1])
     assert_same_in_floats(saved_vertices(meshlab), vertices(ms))
 
@@ -160,8 +168,9 @@ def test_apply_logs_the_report_and_the_saved_mesh_is_that_of_pymeshlab(
     dialog.close()
     ms = load(bunny)
     report = ms.apply_filter(FILTER)
-    assert f"Spectral Filter: {report['steps']} steps, feature size" in log
-    assert f"largest {report['max_displacement']:.4g}" in log
+    assert f"low-pass at feature size {report['feature_size']:.4g}" in log
+    assert f"by {report['max_displacement']:.4g} at most" in log
+    assert f"steps: {report['steps']}," in log
     assert f"area: {report['area_before']:.4g} -> {report['area_after']:.4g}" in log
     assert_same_in_floats(saved_vertices(meshlab), vertices(ms))
 

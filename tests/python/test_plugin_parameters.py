@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, get_args, get_type_hints
 from xml.etree import ElementTree
 
+import numpy as np
 import pymeshlab
 import pytest
 from helpers import FILTER, mesh_set_of, refusal
@@ -31,16 +32,35 @@ def test_names_order_and_defaults_are_those_of_the_plugin(tetrahedron: pymeshlab
     parameters = tetrahedron.filter_parameter_values(FILTER)
     expected: dict[str, Any] = FilterOptions().as_dict()
     assert list(parameters) == list(expected)
+    diagonal = tetrahedron.current_mesh().bounding_box().diagonal()
     for name, value in parameters.items():
         default = expected[name]
         if name in CHOICES:
             assert CHOICES[name][value] == default, name
-        elif name in ("feature_size", "tolerance"):
-            diagonal = tetrahedron.current_mesh().bounding_box().diagonal()
+        elif name == "feature_size":
+            assert default == "auto"  # of a mesh as coarse as this: 5 %
+            assert value == pytest.approx(0.05 * diagonal)
+        elif name == "tolerance":
             assert f"{100 * value / diagonal:g}%" == default
         else:
             assert value == default, name
             assert type(value) is type(default), name
+
+
+def test_the_feature_size_of_a_fine_mesh_is_six_mean_edges(samples: Path) -> None:
+    ms = pymeshlab.MeshSet()
+    ms.load_new_mesh(str(samples / "bunny.obj"))
+    V, F = ms.current_mesh().vertex_matrix(), ms.current_mesh().face_matrix()
+    edges = np.linalg.norm(V[F] - V[np.roll(F, 1, axis=1)], axis=2)
+    size = ms.filter_parameter_values(FILTER)["feature_size"]
+    assert size == pytest.approx(6 * edges.mean(), rel=1e-6)
+    assert ms.apply_filter(FILTER)["feature_size"] == pytest.approx(size, rel=1e-6)
+
+
+def test_only_the_feature_size_can_be_automatic() -> None:
+    assert FilterOptions.from_dict({"feature_size": "auto"}) == FilterOptions()
+    with pytest.raises(OptionError, match="tolerance = auto: only feature_size"):
+        FilterOptions.from_dict({"tolerance": "auto"})
 
 
 @pytest.mark.parametrize("name", CHOICES)

@@ -13,9 +13,11 @@ Vertices filteredDense(const Operator& A, const HarmonicBasis& dense, const Gain
 FullSpectrumResult filteredFullSpectrum(const Operator& A, const Gain& gain, double cutoff,
                                         double accuracy) {
     ShiftedCholesky cholesky;
-    cholesky.factorize(A.laplacian, selectPole(gain, cutoff, bulkSpectrum(A.laplacian), accuracy));
+    const Pole pole = selectPole(gain, cutoff, bulkSpectrum(A.laplacian), accuracy);
+    cholesky.factorize(A.laplacian, pole.shift);
     FullSpectrumOptions options;
     options.accuracy = accuracy;
+    options.resolution = pole.resolution;
     return applyFullSpectrum(A.laplacian.D, A.constants, cholesky, gain, A.mesh.V, options);
 }
 

@@ -13,8 +13,8 @@ struct FilterOfBlob {
     Surface surface;
     Interior interior;
     TransferFunction F;
-    EvaluationOptions evaluation;  ///< Of accuracy 1e-9.
-    LaplacianBuilder laplacians;   ///< Keeps `surface` by reference.
+    EvaluationOptions evaluation;         ///< Of accuracy 1e-9.
+    mutable LaplacianBuilder laplacians;  ///< Keeps `surface` by reference.
 
     /// @param featureSize  length units; the blob's own size is about 2.
     FilterOfBlob(const TransferFunctionOptions& options, double featureSize, BasisUpdate update);

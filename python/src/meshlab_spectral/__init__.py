@@ -4,7 +4,7 @@
 >>> meshlab_spectral.load()
 >>> ms = pymeshlab.MeshSet()
 >>> ms.load_new_mesh("scan.ply")
->>> ms.apply_coord_spectral_filter_fractional(feature_size=pymeshlab.PercentageValue(5))
+>>> ms.apply_coord_spectral_filter_fractional(feature_size=pymeshlab.PercentageValue(2))
 """
 
 from importlib.metadata import version
@@ -25,6 +25,7 @@ from meshlab_spectral.harmonics import Harmonics, manifold_harmonics
 from meshlab_spectral.options import FilterOptions
 from meshlab_spectral.plugin import load
 from meshlab_spectral.spectrum import GeometrySpectrum, geometry_spectrum
+from meshlab_spectral.threads import set_threads, threads
 
 __all__ = [
     "Artefacts",
@@ -44,5 +45,7 @@ __all__ = [
     "load",
     "manifold_harmonics",
     "measure_artefacts",
+    "set_threads",
+    "threads",
 ]
 __version__ = version("meshlab-spectral")

@@ -24,7 +24,12 @@ from meshlab_spectral.command_line import (
 from meshlab_spectral.meshfile import check_source
 from meshlab_spectral.options import FilterOptions
 from meshlab_spectral.spectrum import DEFAULT_BASIS_SIZE, GeometrySpectrum
-from meshlab_spectral.spectrum_plot import check_format, draw_spectrum, length_of, octave_gains
+from meshlab_spectral.spectrum_plot import (
+    check_format,
+    draw_spectrum,
+    feature_size_of,
+    octave_gains,
+)
 from meshlab_spectral.versions import versions
 from meshlab_spectral.whole_files import writing_whole
 from meshlab_spectral.worker import measure_spectrum_in_child
@@ -136,7 +141,7 @@ def _noise_line(spectrum: GeometrySpectrum) -> str:
 
 def _table(spectrum: GeometrySpectrum, options: FilterOptions, name: str) -> Table:
     """Lay out the octaves, and the gain of the filter in their middles."""
-    size = length_of(options.feature_size, spectrum.diagonal)
+    size = feature_size_of(options, spectrum)
     # As Text: a name such as "[red].ply" is no markup.
     title = Text(f"{name}: diagonal {spectrum.diagonal:.6g}, {options.filter_type} at {size:.6g}")
     table = Table(title=title, title_justify="left", title_style="bold")

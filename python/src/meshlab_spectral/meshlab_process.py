@@ -23,6 +23,7 @@ from types import TracebackType
 from typing import Any
 
 from meshlab_spectral import errors
+from meshlab_spectral.threads import VARIABLE as THREADS_VARIABLE
 
 ProgressCallback = Callable[[str, float | None], None]
 
@@ -72,9 +73,17 @@ class MeshLabProcess:
 
     After an error it is of no more use: pymeshlab may crash, or be busy for ever, once a filter has
     failed in it. Use as a context manager, or `end` it.
+
+    Parameters
+    ----------
+    threads
+        That the plugin computes with in it; None: as here.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, threads: int | None = None) -> None:
+        environment = {**os.environ, **_ALLOCATOR}  # of a Dask worker: it wants the opposite
+        if threads is not None:
+            environment[THREADS_VARIABLE] = str(threads)
         lifeline, self._lifeline = os.pipe()
         try:
             self._child = subprocess.Popen(
@@ -83,7 +92,7 @@ class MeshLabProcess:
                 stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE,
                 pass_fds=[lifeline],
-                env={**os.environ, **_ALLOCATOR},  # of a Dask worker: it wants the opposite
+                env=environment,
             )
         except BaseException:
             os.close(self._lifeline)

@@ -31,12 +31,17 @@ class Length:
         Percent where `relative`, else a length in the units of the mesh; above 0, finite.
     relative
         Whether `value` is a percentage.
+    automatic
+        Whether the filter chooses the length that suits the mesh; `value` is then without meaning.
     """
 
-    value: float
+    value: float = 0.0
     relative: bool = False
+    automatic: bool = False
 
     def __post_init__(self) -> None:
+        if self.automatic:
+            return
         if not (math.isfinite(self.value) and self.value > 0):
             raise OptionError(
                 f"{self}: must be above zero, a percentage of the diagonal of the bounding box "
@@ -49,7 +54,7 @@ class Length:
 
     @classmethod
     def parse(cls, text: str) -> Length:
-        """Read `5%` as a percentage of the diagonal, `0.02` as a length.
+        """Read `5%` as a percentage of the diagonal, `0.02` as a length, `auto` as automatic.
 
         Raises
         ------
@@ -57,6 +62,8 @@ class Length:
             When `text` is neither, or not above zero.
         """
         number = text.strip()
+        if number == "auto":
+            return cls(automatic=True)
         relative = number.endswith("%")
         try:
             value = float(number.removesuffix("%"))
@@ -68,7 +75,7 @@ class Length:
         return cls(value, relative)
 
     def __str__(self) -> str:
-        return f"{self.value:.12g}{'%' if self.relative else ''}"
+        return "auto" if self.automatic else f"{self.value:.12g}{'%' if self.relative else ''}"
 
 
 @dataclass(frozen=True)
@@ -120,9 +127,22 @@ class FilterOptions:
         "and band-stop act on details of about the feature size.",
     )
     feature_size: Length = _option(
-        Length(5, relative=True),
-        "Size of the details where the filter turns over: 5% of the model's diagonal, or a length "
-        "in the model's units such as 0.02. Try twice the width of what you want to remove.",
+        Length(automatic=True),
+        "Size of the details where the filter turns over: 5% of the model's diagonal, a length in "
+        "the model's units such as 0.02, or auto: six mean edges, at most 5%. Try twice the width "
+        "of what you want to remove.",
+    )
+    pass_gain: float = _option(
+        1.0, "Factor for the details that pass: 1 keeps them, 2 doubles their height.", Limits(0)
+    )
+    stop_gain: float = _option(
+        0.0, "Factor for all other details: 0 removes them, 0.5 halves their height.", Limits(0)
+    )
+    band_width: float = _option(
+        1.0,
+        "Width of a band in octaves: 1 means that its largest details are twice as large as its "
+        "smallest.",
+        Limits(0, low_open=True),
     )
     response: Response = _option(
         "gaussian",
@@ -131,18 +151,6 @@ class FilterOptions:
     )
     order: int = _option(
         2, "Steepness of the butterworth response: 1 is gentle, 8 is steep.", Limits(1, 64)
-    )
-    band_width: float = _option(
-        1.0,
-        "Width of a band in octaves: 1 means that its largest details are twice as large as its "
-        "smallest.",
-        Limits(0, low_open=True),
-    )
-    pass_gain: float = _option(
-        1.0, "Factor for the details that pass: 1 keeps them, 2 doubles their height.", Limits(0)
-    )
-    stop_gain: float = _option(
-        0.0, "Factor for all other details: 0 removes them, 0.5 halves their height.", Limits(0)
     )
     power: float = _option(
         1.0,
@@ -158,13 +166,13 @@ class FilterOptions:
     )
     tolerance: Length = _option(
         Length(0.05, relative=True),
-        "With 0 steps: how far any point may be from where infinitely many steps would put it, "
+        "With 0 steps: how far the surface may be from where infinitely many steps would put it, "
         "e.g. 0.05% of the diagonal.",
     )
     basis_update: BasisUpdate = _option(
-        "full",
-        "What a step learns from the one before: full, conformal (best for strong smoothing) or "
-        "none.",
+        "conformal",
+        "What a step learns from the one before: its areas (conformal; thin parts shrink "
+        "smoothly), everything (full; the paper's scheme) or nothing (none).",
     )
     conformal_share: float = _option(
         0.0,
@@ -202,6 +210,8 @@ class FilterOptions:
             wanted = types[option.name]
             if not choices and not _is_of(value, wanted):
                 raise OptionError(f"{option.name} = {value!r}: must be a {wanted.__name__}")
+            if isinstance(value, Length) and value.automatic and option.name != "feature_size":
+                raise OptionError(f"{option.name} = auto: only feature_size can be automatic")
             limits: Limits | None = option.metadata["limits"]
             if limits is not None and not limits.contain(value):
                 raise OptionError(f"{option.name} = {value}: must be {limits}")
@@ -233,13 +243,15 @@ class FilterOptions:
         return cls(**values)
 
     def pymeshlab_parameters(self) -> dict[str, Any]:
-        """All options as keyword arguments of pymeshlab's filter."""
+        """All that the filter is not to choose itself, as pymeshlab's keyword arguments."""
         import pymeshlab
 
         parameters = self.as_dict()
         for option in fields(self):
             value = getattr(self, option.name)
-            if isinstance(value, Length):
+            if isinstance(value, Length) and value.automatic:
+                del parameters[option.name]
+            elif isinstance(value, Length):
                 kind = pymeshlab.PercentageValue if value.relative else pymeshlab.PureValue
                 parameters[option.name] = kind(value.value)
         return parameters

@@ -86,4 +86,5 @@ def _table(path: Path) -> dict[str, Any]:
 
 def _number_or_text(value: Any, plain: Any) -> Any:
     """Give a length in the units of the mesh as the number that it is."""
-    return value.value if isinstance(value, Length) and not value.relative else plain
+    is_number = isinstance(value, Length) and not (value.relative or value.automatic)
+    return value.value if is_number else plain

@@ -39,9 +39,9 @@ def report_warnings(report: dict[str, Any]) -> list[str]:
         )
     if not report["tolerance_reached"]:
         warnings.append(
-            f"the tolerance was not reached on {report['singular_part']:.2%} of the surface, the "
-            f"largest estimated error is {report['step_error']:.2g}: thin parts pinch off there, "
-            "and more steps do not converge. The conformal update shrinks them smoothly"
+            f"the tolerance was not reached on {report['singular_part']:.2%} of the surface, where "
+            f"the estimated error is {report['step_error']:.2g} and more: parts of it shrink away. "
+            "Choose a smaller feature size, or the conformal update where it is not"
         )
     if not report.get("cutoff_reached", True):
         ends = 2.0 * math.pi / math.sqrt(report["eigenvalues"][-1])

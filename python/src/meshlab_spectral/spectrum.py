@@ -36,6 +36,8 @@ class GeometrySpectrum:
     ----------
     diagonal
         Of the bounding box.
+    default_feature_size
+        What the filter takes when no feature size is given.
     area
         Of the surface, all of it.
     total_energy
@@ -77,6 +79,7 @@ class GeometrySpectrum:
     """
 
     diagonal: float
+    default_feature_size: float
     area: float
     total_energy: float
     frequencies: Array

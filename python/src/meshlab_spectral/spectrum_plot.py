@@ -10,7 +10,7 @@ import numpy as np
 from meshlab_spectral.errors import FormatError, SpectralError
 from meshlab_spectral.figures.sheet import FONT_SIZE, INK
 from meshlab_spectral.figures.subject import filter_name
-from meshlab_spectral.options import FilterOptions, Length
+from meshlab_spectral.options import FilterOptions
 from meshlab_spectral.spectrum import Array, GeometrySpectrum
 from meshlab_spectral.transfer import gain
 
@@ -38,14 +38,17 @@ def check_format(path: Path) -> None:
         )
 
 
-def length_of(size: Length, diagonal: float) -> float:
-    """Give a length in the units of the mesh."""
-    return size.value / 100 * diagonal if size.relative else size.value
+def feature_size_of(options: FilterOptions, spectrum: GeometrySpectrum) -> float:
+    """Give the filter's feature size in the units of the mesh."""
+    size = options.feature_size
+    if size.automatic:
+        return spectrum.default_feature_size
+    return size.value / 100 * spectrum.diagonal if size.relative else size.value
 
 
 def octave_gains(spectrum: GeometrySpectrum, options: FilterOptions) -> Array:
     """Give the gains of a filter in the middles of the octaves."""
-    cutoff = length_of(options.feature_size, spectrum.diagonal)
+    cutoff = feature_size_of(options, spectrum)
     return gain(options, cutoff / spectrum.octave_feature_sizes)
 
 
@@ -125,7 +128,7 @@ def _plot_amplitudes(axes: Axes, spectrum: GeometrySpectrum) -> None:
 def _plot_gain(
     axes: Axes, spectrum: GeometrySpectrum, options: FilterOptions, limits: tuple[float, float]
 ) -> None:
-    cutoff = length_of(options.feature_size, spectrum.diagonal)
+    cutoff = feature_size_of(options, spectrum)
     sizes = np.geomspace(*limits, 1000)
     gains = gain(options, cutoff / sizes)
     axes.plot(sizes, gains, color=_FILTER, linewidth=1.8, label=filter_name(options))

@@ -29,6 +29,7 @@ from meshlab_spectral.batch.jobs import FileResult, Job
 from meshlab_spectral.batch.processes import processes
 from meshlab_spectral.batch.task import run_job
 from meshlab_spectral.errors import BatchError
+from meshlab_spectral.threads import threads_each
 from meshlab_spectral.versions import versions
 
 # What all workers together may take of the machine's memory.
@@ -60,8 +61,8 @@ def local_workers(count: int | None = None, memory_limit: int | None = None) -> 
     Parameters
     ----------
     count
-        Of workers, each with one mesh at a time and, as Dask wants it, one thread for the numerical
-        libraries; by default that of the processors.
+        Of workers, each with one mesh at a time and its share of the threads; by default that of
+        the processors.
     memory_limit
         Bytes for each; by default they share nine tenths of the memory that this process may use.
 
@@ -84,7 +85,7 @@ def local_workers(count: int | None = None, memory_limit: int | None = None) -> 
             client = Client(cluster, set_as_default=False)
             stack.callback(_close, client)
             stack.callback(_kill_workers, cluster)  # the last one is called first
-            client.register_plugin(_LocalWorker())
+            client.register_plugin(_LocalWorker(threads_each(count)))
         yield client
 
 
@@ -272,8 +273,12 @@ class _LocalWorker(WorkerPlugin):  # type: ignore[misc]
 
     name = "meshlab-spectral"
 
+    def __init__(self, threads: int) -> None:
+        self.threads = threads
+
     def setup(self, worker: Any) -> None:
         processes.limit(1)
+        processes.threads = self.threads
 
 
 @contextlib.contextmanager

@@ -22,10 +22,13 @@ class Processes:
     ----------
     at_once
         How many may work at the same time; None: any number.
+    threads
+        That the plugin computes with in each of them; None: not said yet.
     """
 
     def __init__(self) -> None:
         self.at_once: int | None = None
+        self.threads: int | None = None
         self._turns: contextlib.AbstractContextManager[object] = contextlib.nullcontext()
         self._lock = threading.Lock()
         self._idle: list[MeshLabProcess] = []
@@ -55,7 +58,7 @@ class Processes:
         with self._lock:
             if self._idle:
                 return self._idle.pop()
-        return MeshLabProcess()
+        return MeshLabProcess(self.threads)
 
     def _give_back(self, process: MeshLabProcess, limits: JobLimits) -> None:
         grown = limits.memory is not None and process.memory() > _IDLE_SHARE * limits.memory

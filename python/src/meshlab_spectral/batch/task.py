@@ -12,6 +12,7 @@ from meshlab_spectral.batch.processes import processes
 from meshlab_spectral.errors import MemoryLimitError, ProcessDiedError, SpectralError
 from meshlab_spectral.meshlab_process import Answer, JobLimits
 from meshlab_spectral.report import report_warnings
+from meshlab_spectral.threads import threads_each
 from meshlab_spectral.versions import versions
 from meshlab_spectral.whole_files import side_files
 
@@ -38,6 +39,7 @@ def run_job(job: Job, memory_limit: int | None = None) -> FileResult:
     begin = time.monotonic()
     result: dict[str, Any] = {"outcome": "failed", "waited": 0.0}
     limits = JobLimits(memory_limit or _worker_memory(), job.seconds)
+    _share_threads()
     try:
         with storage.reading(job.source) as source:
             # Before MeshLab reads it: one that is changed meanwhile is then not proved done.
@@ -106,11 +108,26 @@ def _attempt(work: dict[str, Any], limits: JobLimits, result: dict[str, Any]) ->
 
 def _worker_memory() -> int | None:
     """Tell the bytes that each thread of the Dask worker may use that this runs in."""
+    worker = _worker()
+    limit = worker.memory_manager.memory_limit if worker else None
+    return int(limit / _at_once(worker)) if limit else None
+
+
+def _share_threads() -> None:
+    """Give each process its share of the threads, unless the worker's starter has said it."""
+    if processes.threads is None:
+        processes.threads = threads_each(_at_once(_worker()))
+
+
+def _at_once(worker: Any) -> int:
+    """Tell how many jobs may run at the same time in this worker."""
+    return processes.at_once or (worker.state.nthreads if worker else 1)
+
+
+def _worker() -> Any:
     from distributed import get_worker
 
     try:
-        worker = get_worker()
+        return get_worker()
     except ValueError:
         return None
-    limit = worker.memory_manager.memory_limit
-    return int(limit / (processes.at_once or worker.state.nthreads)) if limit else None

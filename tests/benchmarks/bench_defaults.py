@@ -1,0 +1,208 @@
+"""The run that most users make: open a mesh, leave everything as it is, press Apply.
+
+usage: bench_defaults.py [--setting NAME] [--reference] [--timeout SECONDS] [MESH ...]
+
+One row per mesh, each measured in a process of its own: seconds of the filter call (best of three
+where it is short), its ratio to MeshLab's Laplacian smoothing with 100 steps on the same mesh in
+the same process, the work, the process's peak memory above that before, and the warnings. With
+--reference also the error of the result, in tolerances, over all but 0.1 % of the surface and
+at most, against a reference of another scheme: the paper's with 16 times the steps and with 32
+times, extrapolated (twice the second minus the first).
+
+MESH defaults to every mesh with faces in ../shared/data beside the repository.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import pathlib
+import subprocess
+import sys
+import time
+from typing import Any
+
+SETTINGS: dict[str, dict[str, Any]] = {
+    "default": {},
+    "low-pass-15": {"feature_size": 15},
+    "boost-20": {
+        "filter_type": "band-pass",
+        "feature_size": 20,
+        "stop_gain": 1.0,
+        "pass_gain": 2.5,
+    },
+    "sharpen-2": {
+        "filter_type": "high-pass",
+        "feature_size": 2,
+        "stop_gain": 1.0,
+        "pass_gain": 2.0,
+    },
+}
+
+SMOOTHING_STEPS = 100
+SHORT = 2.0  # seconds; a call below this is timed three times
+UNRESOLVED_AREA = 1e-3
+
+
+def peak_megabytes() -> float:
+    """Return the peak resident memory of this process."""
+    status = pathlib.Path("/proc/self/status").read_text()
+    return int(status.split("VmHWM:")[1].split()[0]) / 1024
+
+
+def forget_peak() -> float:
+    """Have the peak begin anew; return the memory that is resident now, in megabytes."""
+    pathlib.Path("/proc/self/clear_refs").write_text("5")
+    return peak_megabytes()
+
+
+def measure(mesh: str, setting: str, with_reference: bool) -> dict[str, Any]:
+    """Filter one mesh in this process; return its row."""
+    import meshlab_spectral
+    import numpy as np
+    import pymeshlab
+
+    meshlab_spectral.load()
+    options = dict(SETTINGS[setting])
+    if "feature_size" in options:
+        options["feature_size"] = pymeshlab.PercentageValue(options["feature_size"])
+
+    def timed(call: Any) -> tuple[float, Any, Any]:
+        best = float("inf")
+        for _ in range(3):
+            meshes = pymeshlab.MeshSet()
+            meshes.load_new_mesh(mesh)
+            start = time.perf_counter()
+            result = call(meshes)
+            best = min(best, time.perf_counter() - start)
+            if best > SHORT:
+                break
+        return best, result, meshes
+
+    smoothing, _, _ = timed(
+        lambda meshes: meshes.apply_coord_laplacian_smoothing(stepsmoothnum=SMOOTHING_STEPS)
+    )
+
+    def filtered(**steps: int) -> Any:
+        return lambda meshes: meshes.apply_coord_spectral_filter_fractional(**options, **steps)
+
+    before = forget_peak()
+    seconds, report, meshes = timed(filtered())
+    current = meshes.current_mesh()
+    row: dict[str, Any] = {
+        "mesh": pathlib.Path(mesh).name,
+        "vertices": current.vertex_number(),
+        "seconds": seconds,
+        "smoothing": smoothing,
+        "megabytes": peak_megabytes() - before,
+        "steps": report["steps"],
+        "factorizations": report["factorizations"],
+        "solves": report["solves"],
+        "warned": not (report["tolerance_reached"] and report["accuracy_reached"]),
+        "estimate": report["step_error"],
+        "feature_size": report["feature_size"],
+        "singular_part": report["singular_part"],
+    }
+    if with_reference:
+        K = report["steps"]
+        coarse = timed(filtered(steps=16 * K))[2].current_mesh().vertex_matrix()
+        fine = timed(filtered(steps=32 * K))[2].current_mesh().vertex_matrix()
+        error = np.linalg.norm(current.vertex_matrix() - (2 * fine - coarse), axis=1)
+        meshes = pymeshlab.MeshSet()
+        meshes.load_new_mesh(mesh)
+        V = meshes.current_mesh().vertex_matrix()
+        F = meshes.current_mesh().face_matrix()
+        tolerance = 5e-4 * meshes.current_mesh().bounding_box().diagonal()
+        sides = V[F[:, 1:]] - V[F[:, :1]]
+        area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+        mass = np.bincount(F.ravel(), np.repeat(area, 3), len(V))
+        order = np.argsort(error)
+        share = np.cumsum(mass[order]) / mass.sum()
+        row["error"] = error[order][np.searchsorted(share, 1 - UNRESOLVED_AREA)] / tolerance
+        row["largest_error"] = error[mass > 0].max() / tolerance
+        row["beyond"] = mass[error > tolerance].sum() / mass.sum()
+        row["estimate"] /= tolerance
+    return row
+
+
+def default_meshes() -> list[str]:
+    """Return the meshes with faces beside the repository, smallest file first."""
+    folder = pathlib.Path(__file__).resolve().parents[3] / "shared" / "data"
+    files = [f for f in folder.iterdir() if f.suffix != ".md" and "points" not in f.name]
+    return [str(f) for f in sorted(files, key=lambda f: f.stat().st_size)]
+
+
+def printed(row: dict[str, Any]) -> str:
+    """Return the row as text."""
+    if "failure" in row:
+        return f"{row['mesh']:28} {row['failure']}"
+    text = (
+        f"{row['mesh']:28}{row['vertices']:8}{row['seconds']:9.3f}{row['smoothing']:9.3f}"
+        f"{row['seconds'] / row['smoothing']:7.2f}{row['steps']:6}{row['factorizations']:5}"
+        f"{row['solves']:7}{row['megabytes']:8.0f}{'  warns' if row['warned'] else '':8}"
+    )
+    if "error" in row:
+        text += (
+            f"{row['error']:9.2f}{row['largest_error']:9.2f}{100 * row['beyond']:9.3f}"
+            f"{row['estimate']:9.2f}"
+        )
+    return text
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("meshes", nargs="*", metavar="MESH")
+    parser.add_argument("--setting", choices=SETTINGS, default="default")
+    parser.add_argument("--reference", action="store_true")
+    parser.add_argument("--timeout", type=float, default=1800)
+    parser.add_argument("--json", type=pathlib.Path, help="append the rows to this file")
+    parser.add_argument("--one", action="store_true", help=argparse.SUPPRESS)
+    arguments = parser.parse_args()
+    if arguments.one:
+        row = measure(arguments.meshes[0], arguments.setting, arguments.reference)
+        print(json.dumps(row))
+        return
+
+    print(
+        f"{'mesh':28}{'vertices':>8}{'seconds':>9}{'Laplac.':>9}{'ratio':>7}{'steps':>6}{'fact':>5}"
+        f"{'solves':>7}{'MB':>8}{'':8}"
+        + (
+            f"{'err 99.9':>9}{'err max':>9}{'% beyond':>9}{'estimate':>9}"
+            if arguments.reference
+            else ""
+        )
+    )
+    ratios, warnings = [], 0
+    for mesh in arguments.meshes or default_meshes():
+        command = [sys.executable, __file__, mesh, "--one", "--setting", arguments.setting]
+        if arguments.reference:
+            command.append("--reference")
+        row: dict[str, Any]
+        try:
+            run = subprocess.run(command, capture_output=True, text=True, timeout=arguments.timeout)
+            if run.returncode == 0:
+                row = json.loads(run.stdout.splitlines()[-1])
+                ratios.append(row["seconds"] / row["smoothing"])
+                warnings += row["warned"]
+            else:
+                lines = run.stderr.strip().splitlines() or [f"exit status {run.returncode}"]
+                row = {"mesh": pathlib.Path(mesh).name, "failure": lines[-1][:200]}
+        except subprocess.TimeoutExpired:
+            row = {"mesh": pathlib.Path(mesh).name, "failure": f"> {arguments.timeout:.0f} s"}
+        print(printed(row), flush=True)
+        if arguments.json:
+            with arguments.json.open("a") as file:
+                file.write(json.dumps(row) + "\n")
+    if ratios:
+        product = 1.0
+        for ratio in ratios:
+            product *= ratio ** (1.0 / len(ratios))
+        print(
+            f"{len(ratios)} meshes: ratio {product:.2f} (geometric mean), at most"
+            f" {max(ratios):.2f}; {warnings} with a warning"
+        )
+
+
+if __name__ == "__main__":
+    main()
