@@ -80,12 +80,11 @@ class Approximation {
         if (!options_.atEveryVertex || error > kNearlyThere * options_.accuracy) return error;
         // A norm over the surface hardly sees a vertex of small mass; its error can be larger, and
         // shrink more slowly and less evenly: so the larger one of two changes counts.
-        const double before =
-            std::exchange(largest_, spaces_.combine(coefficients_, change_).largestChange);
+        const double before = std::exchange(largest_, spaces_.largestEntryOf(change_));
         return std::max(error, atVertices_(std::max(before, largest_) / spaces_.largestEntry()));
     }
 
-    Eigen::MatrixXd Y() const { return spaces_.combine(coefficients_, change_).Y; }
+    Eigen::MatrixXd Y() const { return spaces_.combine(coefficients_); }
 
   private:
     const KrylovSpaces& spaces_;

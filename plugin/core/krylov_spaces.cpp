@@ -25,11 +25,11 @@ template <int Columns>
 using Row = Eigen::Array<double, 1, Columns, Eigen::RowMajor | Eigen::DontAlign>;
 
 template <int Columns>
-Eigen::Map<Row<Columns>> rowOf(std::vector<double>& block, Index i) {
+Eigen::Map<Row<Columns>> rowOf(Eigen::VectorXd& block, Index i) {
     return Eigen::Map<Row<Columns>>(block.data() + i * Columns);
 }
 template <int Columns>
-Eigen::Map<const Row<Columns>> rowOf(const std::vector<double>& block, Index i) {
+Eigen::Map<const Row<Columns>> rowOf(const Eigen::VectorXd& block, Index i) {
     return Eigen::Map<const Row<Columns>>(block.data() + i * Columns);
 }
 
@@ -48,28 +48,44 @@ struct ComponentSum {
     Row<Columns> sum;
 };
 
-/// D-weighted means on every component, count x Columns, of the rows that `row` makes and returns.
+/// D-weighted means on every component, count x Columns, and sums of squares without them.
+template <int Columns>
+struct Moments {
+    Eigen::Array<double, Eigen::Dynamic, Columns> means;
+    Row<Columns> squares;
+};
+
+/// Those of the rows that `row` makes and returns. The means are to be small: their squares are
+/// subtracted.
 template <int Columns, class MakeRow>
-Eigen::Array<double, Eigen::Dynamic, Columns> means(const Eigen::VectorXd& D,
-                                                    const Eigen::VectorXi& label,
-                                                    const Eigen::VectorXd& mass,
-                                                    const MakeRow& row) {
+Moments<Columns> momentsOf(const Eigen::VectorXd& D, const Eigen::VectorXi& label,
+                           const Eigen::VectorXd& mass, const MakeRow& row) {
     std::vector<std::vector<ComponentSum<Columns>>> parts(
         static_cast<std::size_t>((D.size() + kRowsOfTask - 1) / kRowsOfTask));
-    parallelRows(D.size(), [&](Index begin, Index end) {
-        std::vector<ComponentSum<Columns>>& sums = parts[begin / kRowsOfTask];
-        for (Index i = begin; i < end;) {
-            ComponentSum<Columns> component{label[i], Row<Columns>::Zero()};
-            for (; i < end && label[i] == component.label; ++i) component.sum += D[i] * row(i);
-            if (component.label >= 0) sums.push_back(component);
-        }
-    });
-    Eigen::Array<double, Eigen::Dynamic, Columns> means =
-        Eigen::Array<double, Eigen::Dynamic, Columns>::Zero(mass.size(), Columns);
+    Moments<Columns> moments;
+    moments.squares =
+        parallelSum(D.size(), Row<Columns>::Zero().eval(), [&](Index begin, Index end) {
+            std::vector<ComponentSum<Columns>>& sums = parts[begin / kRowsOfTask];
+            Row<Columns> squares = Row<Columns>::Zero();
+            for (Index i = begin; i < end;) {
+                ComponentSum<Columns> component{label[i], Row<Columns>::Zero()};
+                for (; i < end && label[i] == component.label; ++i) {
+                    const Row<Columns> x = row(i), Dx = D[i] * x;
+                    component.sum += Dx;
+                    squares += Dx * x;
+                }
+                if (component.label >= 0) sums.push_back(component);
+            }
+            return squares;
+        });
+    moments.means = Eigen::Array<double, Eigen::Dynamic, Columns>::Zero(mass.size(), Columns);
     for (const auto& sums : parts)
         for (const ComponentSum<Columns>& component : sums)
-            means.row(component.label) += component.sum;
-    return means.colwise() / mass.array();
+            moments.means.row(component.label) += component.sum;
+    moments.means.colwise() /= mass.array();
+    moments.squares -= (moments.means.square().colwise() * mass.array()).colwise().sum();
+    moments.squares = moments.squares.max(0.0);
+    return moments;
 }
 
 }  // namespace
@@ -114,12 +130,12 @@ bool KrylovSpaces::extend() {
 template <int Columns>
 void KrylovSpaces::start(const Eigen::MatrixXd& X) {
     const Index n = D_.size();
-    work_.resize(static_cast<std::size_t>(cholesky_.orderedRows() * Columns));
+    work_.resize(cholesky_.orderedRows() * Columns);
     const Eigen::VectorXi& order = cholesky_.factorOrder();
     for (Index i = 0; i < n; ++i) rowOf<Columns>(work_, order[i]) = X.row(i).array();
-    const auto mean = means<Columns>(D_, label_, constants_.masses(), [&](Index i) -> Row<Columns> {
-        return rowOf<Columns>(work_, i);
-    });
+    const auto mean = momentsOf<Columns>(D_, label_, constants_.masses(), [&](Index i) {
+                          return Row<Columns>(rowOf<Columns>(work_, i));
+                      }).means;
     std::vector<double> largest(static_cast<std::size_t>((n + kRowsOfTask - 1) / kRowsOfTask));
     const Row<Columns> squares =
         parallelSum(n, Row<Columns>::Zero().eval(), [&](Index begin, Index end) {
@@ -140,7 +156,7 @@ void KrylovSpaces::start(const Eigen::MatrixXd& X) {
         exhausted_[c] = !(norms_[c] > 0.0);
         if (!exhausted_[c]) inverse[c] = 1.0 / norms_[c];
     }
-    basis_.emplace_back(static_cast<std::size_t>(n * Columns));
+    basis_.emplace_back(n * Columns);
     parallelRows(n, [&](Index begin, Index end) {
         for (Index i = begin; i < end; ++i) {
             const Row<Columns> q = inverse * rowOf<Columns>(work_, i);
@@ -167,22 +183,12 @@ void KrylovSpaces::extendColumns() {
     // constants; round-off does not, and would grow from step to step.
     const Row<Columns> before = lastOf<Columns>(beta_);
     const Block& p = basis_[basis_.size() > 1 ? basis_.size() - 2 : 0];
-    const auto mean = means<Columns>(D_, label_, constants_.masses(), [&](Index i) -> Row<Columns> {
-        auto w = rowOf<Columns>(work_, i);
-        w -= alpha * rowOf<Columns>(q, i) + before * rowOf<Columns>(p, i);
-        return w;
+    const Moments<Columns> w = momentsOf<Columns>(D_, label_, constants_.masses(), [&](Index i) {
+        auto row = rowOf<Columns>(work_, i);
+        row -= alpha * rowOf<Columns>(q, i) + before * rowOf<Columns>(p, i);
+        return Row<Columns>(row);
     });
-    const Row<Columns> squares =
-        parallelSum(n, Row<Columns>::Zero().eval(), [&](Index begin, Index end) {
-            Row<Columns> sum = Row<Columns>::Zero();
-            for (Index i = begin; i < end; ++i) {
-                auto w = rowOf<Columns>(work_, i);
-                if (label_[i] >= 0) w -= mean.row(label_[i]);
-                sum += D_[i] * w.square();
-            }
-            return sum;
-        });
-    Row<Columns> beta = squares.sqrt();
+    Row<Columns> beta = w.squares.sqrt();
     for (int c = 0; c < Columns; ++c)
         if (!exhausted_[c]) alpha_[c].push_back(alpha[c]);
     if (losesOrthogonality(beta)) beta = orthogonalize<Columns>(beta);
@@ -198,12 +204,14 @@ void KrylovSpaces::extendColumns() {
         inverse[c] = 1.0 / beta[c];
     }
 
-    Block next(static_cast<std::size_t>(n * Columns));
+    Block next(n * Columns);
     parallelRows(n, [&](Index begin, Index end) {
         for (Index i = begin; i < end; ++i) {
-            const Row<Columns> w = inverse * rowOf<Columns>(work_, i);
-            rowOf<Columns>(next, i) = w;
-            rowOf<Columns>(work_, i) = D_[i] * w;
+            Row<Columns> row = rowOf<Columns>(work_, i);
+            if (label_[i] >= 0) row -= w.means.row(label_[i]);
+            row *= inverse;
+            rowOf<Columns>(next, i) = row;
+            rowOf<Columns>(work_, i) = D_[i] * row;
         }
     });
     basis_.push_back(std::move(next));
@@ -306,47 +314,50 @@ Quadrature KrylovSpaces::quadrature(int column) const {
     return {std::move(pairs.omega), norm * norm * pairs.Q.row(0).transpose().cwiseAbs2()};
 }
 
-KrylovSpaces::Combination KrylovSpaces::combine(const std::vector<Eigen::VectorXd>& coefficients,
-                                                const std::vector<Eigen::VectorXd>& change) const {
-    // Filled up with zeros: spaces may have ended at different dimensions.
-    const auto matrixOf = [this](const std::vector<Eigen::VectorXd>& ofColumns) {
-        Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(static_cast<Index>(basis_.size()), columns_);
-        for (int c = 0; c < columns_; ++c) matrix.col(c).head(ofColumns[c].size()) = ofColumns[c];
-        return matrix;
-    };
-    const Eigen::MatrixXd Y = matrixOf(coefficients), dY = matrixOf(change);
+Eigen::MatrixXd KrylovSpaces::combine(const std::vector<Eigen::VectorXd>& coefficients) const {
+    Eigen::MatrixXd Y(D_.size(), columns_);
+    const std::vector<int>& inverse = cholesky_.inverseOrder();
+    combineRows(coefficients, [&](Index i, const auto& row) { Y.row(inverse[i]) = row.matrix(); });
+    return Y;
+}
+
+double KrylovSpaces::largestEntryOf(const std::vector<Eigen::VectorXd>& coefficients) const {
+    std::vector<double> largest(
+        static_cast<std::size_t>((D_.size() + kRowsOfTask - 1) / kRowsOfTask));
+    combineRows(coefficients, [&](Index i, const auto& row) {
+        double& ofTask = largest[i / kRowsOfTask];
+        ofTask = std::max(ofTask, row.abs().maxCoeff());
+    });
+    return *std::max_element(largest.begin(), largest.end());
+}
+
+template <class TakeRow>
+void KrylovSpaces::combineRows(const std::vector<Eigen::VectorXd>& coefficients,
+                               const TakeRow& takeRow) const {
     switch (columns_) {
-        case 1: return combineColumns<1>(Y, dY);
-        case 2: return combineColumns<2>(Y, dY);
-        case 3: return combineColumns<3>(Y, dY);
-        default: return combineColumns<4>(Y, dY);
+        case 1: return combineColumns<1>(coefficients, takeRow);
+        case 2: return combineColumns<2>(coefficients, takeRow);
+        case 3: return combineColumns<3>(coefficients, takeRow);
+        default: return combineColumns<4>(coefficients, takeRow);
     }
 }
 
-template <int Columns>
-KrylovSpaces::Combination KrylovSpaces::combineColumns(const Eigen::MatrixXd& coefficients,
-                                                       const Eigen::MatrixXd& change) const {
-    const Index n = D_.size();
-    const std::vector<int>& inverse = cholesky_.inverseOrder();
-    Combination result{Eigen::MatrixXd(n, Columns)};
-    std::vector<double> largest(static_cast<std::size_t>((n + kRowsOfTask - 1) / kRowsOfTask));
-    parallelRows(n, [&](Index begin, Index end) {
-        std::vector<double> Y(static_cast<std::size_t>((end - begin) * Columns)), dY = Y;
+template <int Columns, class TakeRow>
+void KrylovSpaces::combineColumns(const std::vector<Eigen::VectorXd>& coefficients,
+                                  const TakeRow& takeRow) const {
+    // Filled up with zeros: spaces may have ended at different dimensions.
+    std::vector<Row<Columns>> factors(basis_.size(), Row<Columns>::Zero());
+    for (int c = 0; c < Columns; ++c)
+        for (Index j = 0; j < coefficients[c].size(); ++j) factors[j][c] = coefficients[c][j];
+    parallelRows(D_.size(), [&](Index begin, Index end) {
+        Eigen::VectorXd sum = Eigen::VectorXd::Zero((end - begin) * Columns);
         for (std::size_t j = 0; j < basis_.size(); ++j) {
-            const Row<Columns> y = coefficients.row(j), dy = change.row(j);
-            for (Index i = begin; i < end; ++i) {
-                const auto q = rowOf<Columns>(basis_[j], i);
-                rowOf<Columns>(Y, i - begin) += y * q;
-                rowOf<Columns>(dY, i - begin) += dy * q;
-            }
+            if ((factors[j] == 0.0).all()) continue;
+            for (Index i = begin; i < end; ++i)
+                rowOf<Columns>(sum, i - begin) += factors[j] * rowOf<Columns>(basis_[j], i);
         }
-        for (Index i = begin; i < end; ++i)
-            result.Y.row(inverse[i]) = rowOf<Columns>(Y, i - begin).matrix();
-        for (const double entry : dY)
-            largest[begin / kRowsOfTask] = std::max(largest[begin / kRowsOfTask], std::abs(entry));
+        for (Index i = begin; i < end; ++i) takeRow(i, rowOf<Columns>(sum, i - begin));
     });
-    for (const double entry : largest) result.largestChange = std::max(result.largestChange, entry);
-    return result;
 }
 
 }  // namespace spectral

@@ -57,14 +57,12 @@ class KrylovSpaces {
     /// @throws SolverFailure  when the eigenproblem of T does not converge.
     Quadrature quadrature(int column) const;
 
-    /// The signals with these coefficients in their bases.
-    struct Combination {
-        Eigen::MatrixXd Y;           ///< n x c, in the order of the mesh.
-        double largestChange = 0.0;  ///< Largest entry of those with the second coefficients.
-    };
-    /// @param coefficients, change  of every column; no more of them than its dimension.
-    Combination combine(const std::vector<Eigen::VectorXd>& coefficients,
-                        const std::vector<Eigen::VectorXd>& change) const;
+    /// The signals with these coefficients in their bases, n x c, in the order of the mesh.
+    /// @param coefficients  of every column; no more of them than its dimension.
+    Eigen::MatrixXd combine(const std::vector<Eigen::VectorXd>& coefficients) const;
+
+    /// Largest modulus of an entry of what combine would give.
+    double largestEntryOf(const std::vector<Eigen::VectorXd>& coefficients) const;
 
     /// D-norm of each signal without its constants, c.
     const Eigen::ArrayXd& norms() const { return norms_; }
@@ -72,7 +70,7 @@ class KrylovSpaces {
     double largestEntry() const { return largestEntry_; }
 
   private:
-    using Block = std::vector<double>;  // n rows of columns_ numbers
+    using Block = Eigen::VectorXd;  // n rows of columns_ numbers
 
     /// Eigenpairs of T: frequencies of the Ritz values, and eigenvectors as columns.
     struct Ritz {
@@ -88,9 +86,12 @@ class KrylovSpaces {
     bool losesOrthogonality(const Eigen::Ref<const Eigen::ArrayXd>& beta);
     template <int Columns>
     Eigen::Array<double, 1, Columns> orthogonalize(Eigen::Array<double, 1, Columns> norm);
-    template <int Columns>
-    Combination combineColumns(const Eigen::MatrixXd& coefficients,
-                               const Eigen::MatrixXd& change) const;
+    template <int Columns, class TakeRow>
+    void combineColumns(const std::vector<Eigen::VectorXd>& coefficients,
+                        const TakeRow& takeRow) const;
+    template <class TakeRow>
+    void combineRows(const std::vector<Eigen::VectorXd>& coefficients,
+                     const TakeRow& takeRow) const;
 
     const ShiftedCholesky& cholesky_;
     const ConstantModes& constants_;

@@ -109,6 +109,8 @@ def test_every_parameter_set_in_the_dialog_is_in_the_copied_call_and_the_saved_s
 def test_preview_changes_the_picture_and_without_it_the_mesh_is_back(
     dialog: FilterDialog, meshlab: MeshLab, desktop: Desktop, bunny: Path
 ) -> None:
+    # Strong enough to be seen from afar.
+    dialog.set_value(dialog.rows()[PARAMETERS.index("feature_size")], "10")
     dialog.move(1000, 20)
     scene = scene_of(meshlab, dialog)
     before = desktop.settled_picture(scene)
