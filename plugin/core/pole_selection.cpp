@@ -15,7 +15,7 @@ constexpr int kFewestNodes = 32, kMostNodes = 256;
 /// Poles that are tried: powers of two times the cutoff's lambda.
 constexpr int kLowestPower = -6, kHighestPower = 12;
 
-/// Part of its variation to which a gain must be approximated for a space to tell where it varies.
+/// Part of its span to which a gain must be approximated for a space to tell where it varies.
 constexpr double kResolved = 0.1;
 
 /// Approximation of a gain by polynomials in theta, on an interval of it.
@@ -31,6 +31,8 @@ class ChebyshevSeries {
             const double theta = first + (last - first) * 0.5 * (1.0 + cosine[2 * i + 1]);
             value[i] = gain(std::sqrt(std::max(0.0, pole / theta - pole)));
         }
+        const auto [least, largest] = std::minmax_element(value.begin(), value.end());
+        span_ = *largest - *least;
         for (int degree = nodes - 1; degree >= 0; --degree) {
             double coefficient = 0.0;
             for (int i = 0; i < nodes; ++i)
@@ -46,11 +48,12 @@ class ChebyshevSeries {
                                 tail_.begin());
     }
 
-    /// Sum of the moduli of all coefficients but the constant one.
-    double variation() const { return tail_[1]; }
+    /// From the least value to the largest.
+    double span() const { return span_; }
 
   private:
     std::vector<double> tail_;  // sums of moduli, from a degree on: bound the error below it
+    double span_ = 0.0;
 };
 
 }  // namespace
@@ -68,7 +71,7 @@ Pole selectPole(const Gain& gain, double cutoff, const SpectrumRange& range, dou
             if (dimension >= fewest) continue;
             fewest = dimension;
             best.shift = pole;
-            best.resolution = std::max(1, series.requiredDimension(kResolved * series.variation()));
+            best.resolution = std::max(1, series.requiredDimension(kResolved * series.span()));
         }
         if (fewest <= nodes / 2) break;
         // Aliasing spoils the upper half of the coefficients of a gain that is not resolved: with

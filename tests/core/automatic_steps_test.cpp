@@ -6,6 +6,7 @@
 
 #include "core/fractional_steps.h"
 #include "support/filter_of_blob.h"
+#include "support/shapes.h"
 
 namespace spectral {
 namespace {
@@ -67,6 +68,32 @@ TEST(AutomaticSteps, TellWhenTheirBoundStopsThem) {
     EXPECT_GT(steps.singularPart, 0.0);
     // The best result so far, not that of an earlier pass.
     EXPECT_LE(largestDifference(steps.X, setting.midpoint(8)), 1e-12);
+}
+
+TEST(AutomaticSteps, AreNotHeldUpByPartsThatShrinkAway) {
+    // Fragments of all sizes around the one that vanishes just at the end of the filter: for some
+    // of them no number of steps is enough.
+    testing::Mesh mesh = testing::blob();
+    for (int i = 0; i < 40; ++i) {
+        testing::Mesh fragment = testing::icosphere(1);
+        fragment.V *= 0.02 + 0.002 * i;
+        fragment.V.col(0).array() += 3.0 + 0.5 * i;
+        mesh = testing::joined(mesh, fragment);
+    }
+    const Surface surface = surfaceOf(mesh.V, mesh.F);
+    const Interior interior(surface.F, connectedComponents(surface.F, surface.X.rows()),
+                            Boundary::Free);
+    const TransferFunction F({}, cutoffFrequency(0.3));
+    LaplacianBuilder laplacians(surface, LaplacianKind::IntrinsicDelaunay, BasisUpdate::Conformal);
+    EvaluationOptions evaluation;
+    StepEvaluator evaluate(evaluation, interior, F);
+    const double tolerance = 1e-3;
+    const AutomaticSteps steps =
+        automaticSteps(laplacians, evaluate, surface.X, {tolerance, 64}, {});
+    EXPECT_LE(steps.sizes.size(), 8u);
+    EXPECT_LE(steps.error, tolerance);
+    EXPECT_GT(steps.singularPart, kNegligibleArea);
+    EXPECT_LT(steps.singularPart, 0.1);
 }
 
 TEST(AutomaticSteps, ReportProgressThatNeverRunsBackwards) {

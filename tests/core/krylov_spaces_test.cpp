@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <vector>
 
 #include "support/evaluation.h"
 
@@ -22,6 +24,42 @@ Measured measured(const Operator& A, double pole, int dimensions) {
     KrylovSpaces space(cholesky, A.laplacian.D, A.constants, A.mesh.V.leftCols(1));
     for (int m = 0; m < dimensions; ++m) space.extend();
     return {space.quadrature(0), space.extend()};
+}
+
+TEST(KrylovSpaces, StayOrthogonalToConstantsAndToThemselves) {
+    // Constants are amplified by S more than all else, and the coordinates are almost harmonics.
+    const Operator A(testing::joined(testing::blob(), testing::icosphere(3)));
+    for (const double pole : {0.5, 50.0}) {
+        ShiftedCholesky cholesky;
+        cholesky.factorize(A.laplacian, pole);
+        KrylovSpaces spaces(cholesky, A.laplacian.D, A.constants, A.mesh.V);
+        const int dimensions = 80;
+        for (int m = 0; m < dimensions; ++m) spaces.extend();
+        const auto vector = [&](int m) {
+            return spaces.combine({3, Eigen::VectorXd::Unit(dimensions, m)});
+        };
+        const Eigen::MatrixXd last = vector(dimensions - 1);
+        EXPECT_LT(A.constants.means(last).cwiseAbs().maxCoeff(), 1e-12);
+        for (int m = 0; m < dimensions; ++m) {
+            const Eigen::VectorXd products =
+                (vector(m).transpose() * A.laplacian.D.asDiagonal() * last).diagonal();
+            const double expected = m == dimensions - 1 ? 1.0 : 0.0;
+            EXPECT_LT((products.array() - expected).abs().maxCoeff(), 1e-8) << m;
+        }
+    }
+}
+
+TEST(KrylovSpaces, TellTheLargestEntryOfACombination) {
+    const Operator A(testing::blob());
+    ShiftedCholesky cholesky;
+    cholesky.factorize(A.laplacian, 5.0);
+    KrylovSpaces spaces(cholesky, A.laplacian.D, A.constants, A.mesh.V);
+    for (int m = 0; m < 4; ++m) spaces.extend();
+    std::srand(5);
+    std::vector<Eigen::VectorXd> coefficients(3);
+    for (int c = 0; c < 3; ++c) coefficients[c] = Eigen::VectorXd::Random(c + 1);
+    EXPECT_EQ(spaces.largestEntryOf(coefficients),
+              spaces.combine(coefficients).cwiseAbs().maxCoeff());
 }
 
 double integral(const Quadrature& measure, const Gain& f) {

@@ -196,5 +196,12 @@ TEST(MeanGain, AgreesWithTheErrorFunctionForAGaussian) {
         EXPECT_NEAR(meanGain(F, from, to), (integral(to) - integral(from)) / (to - from), 1e-9);
 }
 
+TEST(DefaultFeatureSize, IsSixEdgesOrATwentiethOfTheDiagonal) {
+    EXPECT_DOUBLE_EQ(defaultFeatureSize(0.01, 10.0), 0.06);
+    EXPECT_DOUBLE_EQ(defaultFeatureSize(0.2, 10.0), 0.5);
+    EXPECT_DOUBLE_EQ(defaultFeatureSize(0.0, 10.0), 0.5);
+    EXPECT_DOUBLE_EQ(defaultFeatureSize(std::numeric_limits<double>::quiet_NaN(), 10.0), 0.5);
+}
+
 }  // namespace
 }  // namespace spectral
