@@ -66,6 +66,7 @@ std::string headline(const spectral::FilterOptions& options, const spectral::Fil
          << " at feature size " << result.featureSize << " (" << percent * result.featureSize
          << " % of the diagonal); the surface moved by " << result.rmsDisplacement
          << " in the root mean square, by " << result.maxDisplacement << " at most; ";
+    text << std::setprecision(2);
     if (options.steps > 0)
         text << result.steps << (result.steps == 1 ? " step" : " steps") << ", as asked for";
     else if (result.toleranceReached)
