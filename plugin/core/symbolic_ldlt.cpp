@@ -234,7 +234,6 @@ void SymbolicLdlt::findSubtrees() {
         tree.firstColumn = fronts[tree.firstFront].first;
         tree.endColumn = root.first + root.width;
         tree.firstCopy = static_cast<int>(copied.size());
-        tree.size = size[f];
         const auto below = frontRows.begin() + root.firstRow + root.width;
         copied.insert(copied.end(), below, below + root.below);
         // The rows of a front within the subtree are its columns, or among those below the root.

@@ -57,7 +57,6 @@ struct SymbolicLdlt {
         int firstFront = 0, endFront = 0;    ///< The last is its root.
         int firstColumn = 0, endColumn = 0;  ///< Of the factor.
         int firstCopy = 0;                   ///< In `copied`: the rows below its root's columns.
-        Index size = 0;                      ///< Its entries of L.
     };
     /// Disjoint, in their order; the fronts in none of them are eliminated one after the other.
     /// They depend on the pattern alone: what is computed is the same for any number of threads.
