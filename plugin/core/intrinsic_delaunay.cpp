@@ -6,6 +6,8 @@
 #include <numeric>
 #include <utility>
 
+#include "thread_team.h"
+
 namespace spectral {
 
 namespace {
@@ -66,44 +68,44 @@ void sortByAngle(const Vertices& V, const Faces& F, EdgeSide* first, EdgeSide* l
     });
 }
 
-/// An edge of the triangulation with half the sum of its cotangents; another may have the same
-/// ends.
-struct WeightedEdge {
-    int i, j;
-    double weight;
-};
-
 /// W_ij = -weight, W_ii = -sum_j W_ij. An entry for each pair of ends, also where the weight is 0.
-SparseMatrix stiffnessOf(const std::vector<WeightedEdge>& edges, Index vertexCount) {
+/// @param forEachEdge  calls its argument with (i, j, weight) of every edge, the same each time;
+///                     several edges may have the same ends.
+template <class ForEachEdge>
+SparseMatrix stiffnessOf(const ForEachEdge& forEachEdge, Index vertexCount) {
     struct Entry {
         int row;
         double value;
     };
     std::vector<int> begin(static_cast<std::size_t>(vertexCount) + 1, 1);  // 1 for the diagonal
     begin[0] = 0;
-    for (const WeightedEdge& edge : edges) {
-        ++begin[edge.i + 1];
-        ++begin[edge.j + 1];
-    }
+    forEachEdge([&](int i, int j, double) {
+        ++begin[i + 1];
+        ++begin[j + 1];
+    });
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
     std::vector<Entry> entries(static_cast<std::size_t>(begin.back()));
     std::vector<int> next(begin.begin(), begin.end() - 1);
     for (int i = 0; i < vertexCount; ++i) entries[next[i]++] = {i, 0.0};
-    for (const auto& [i, j, weight] : edges) {
+    forEachEdge([&](int i, int j, double weight) {
         entries[next[i]++] = {j, -weight};
         entries[next[j]++] = {i, -weight};
         entries[begin[i]].value += weight;
         entries[begin[j]].value += weight;
-    }
+    });
+    parallelRows(vertexCount, [&](Index first, Index last) {
+        // By value, too: entries of the same ends are summed alike in both columns.
+        for (Index j = first; j < last; ++j)
+            std::sort(entries.begin() + begin[j], entries.begin() + begin[j + 1],
+                      [](const Entry& a, const Entry& b) {
+                          return std::pair(a.row, a.value) < std::pair(b.row, b.value);
+                      });
+    });
 
     SparseMatrix W(vertexCount, vertexCount);
     W.reserve(begin.back());
     for (Index j = 0; j < vertexCount; ++j) {
         const auto first = entries.begin() + begin[j], last = entries.begin() + begin[j + 1];
-        // By value, too: entries of the same ends are summed alike in both columns.
-        std::sort(first, last, [](const Entry& a, const Entry& b) {
-            return std::pair(a.row, a.value) < std::pair(b.row, b.value);
-        });
         W.startVec(j);
         for (auto entry = first; entry != last;) {
             const int row = entry->row;
@@ -172,8 +174,10 @@ IntrinsicDelaunay::IntrinsicDelaunay(const Vertices& V, const Faces& F) : vertex
 
 IntrinsicTriangulation IntrinsicDelaunay::triangulation(const Vertices& V) const {
     std::vector<double> length(tail_.size());
-    for (std::size_t s = 0; s < tail_.size(); ++s)
-        length[s] = (V.row(tail_[nextSide(static_cast<int>(s))]) - V.row(tail_[s])).norm();
+    parallelRows(static_cast<Index>(tail_.size()), [&](Index begin, Index end) {
+        for (Index s = begin; s < end; ++s)
+            length[s] = (V.row(tail_[nextSide(static_cast<int>(s))]) - V.row(tail_[s])).norm();
+    });
 
     // Mollification: the least that makes every triangle inequality hold by the margin.
     double meanLength = 0.0;
@@ -192,16 +196,15 @@ IntrinsicTriangulation IntrinsicDelaunay::triangulation(const Vertices& V) const
 
 SparseMatrix IntrinsicDelaunay::stiffness(const Vertices& V) const {
     const IntrinsicTriangulation delaunay = triangulation(V);
-    std::vector<WeightedEdge> edges;
-    edges.reserve(tail_.size() / 2);
-    for (int s = 0; s < delaunay.sideCount(); ++s) {
-        const int t = delaunay.twin(s), i = delaunay.tail(s), j = delaunay.tail(t);
-        // An edge from a vertex to itself carries no difference.
-        if (s > t || i == j) continue;
-        const double cotangents = std::max(0.0, delaunay.edgeCotangents(s));
-        edges.push_back({i, j, 0.5 / copies_ * cotangents});
-    }
-    return stiffnessOf(edges, vertexCount_);
+    const auto forEachEdge = [&](const auto& visit) {
+        for (int s = 0; s < delaunay.sideCount(); ++s) {
+            const int t = delaunay.twin(s), i = delaunay.tail(s), j = delaunay.tail(t);
+            // An edge from a vertex to itself carries no difference.
+            if (s > t || i == j) continue;
+            visit(i, j, 0.5 / copies_ * std::max(0.0, delaunay.edgeCotangents(s)));
+        }
+    };
+    return stiffnessOf(forEachEdge, vertexCount_);
 }
 
 }  // namespace spectral

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "errors.h"
+#include "thread_team.h"
 
 namespace spectral {
 
@@ -39,7 +40,9 @@ IntrinsicTriangulation::IntrinsicTriangulation(std::vector<int> tail, std::vecto
       twin_(std::move(twin)),
       length_(std::move(length)),
       cotangent_(length_.size()) {
-    for (int s = 0; s < sideCount(); s += 3) setCotangents(s);
+    parallelRows(sideCount() / 3, [&](Index begin, Index end) {
+        for (Index t = begin; t < end; ++t) setCotangents(static_cast<int>(3 * t));
+    });
 }
 
 void IntrinsicTriangulation::makeDelaunay() {
@@ -52,7 +55,8 @@ void IntrinsicTriangulation::makeDelaunay() {
             stack.push_back(s);
         }
     };
-    for (int s = sideCount() - 1; s >= 0; --s) push(s);
+    for (int s = sideCount() - 1; s >= 0; --s)
+        if (!isDelaunay(s)) push(s);
     const long edges = sideCount() / 2;
     long flips = 0;
     while (!stack.empty()) {

@@ -104,10 +104,12 @@ KrylovSpaces::KrylovSpaces(const ShiftedCholesky& cholesky, const Eigen::VectorX
       exhausted_(X.cols()) {
     assert(columns_ >= 1 && columns_ <= kMostSignals);
     const Eigen::VectorXi& order = cholesky.factorOrder();
-    for (Index i = 0; i < D.size(); ++i) {
-        D_[order[i]] = D[i];
-        label_[order[i]] = constants.label()[i];
-    }
+    parallelRows(D.size(), [&](Index begin, Index end) {
+        for (Index i = begin; i < end; ++i) {
+            D_[order[i]] = D[i];
+            label_[order[i]] = constants.label()[i];
+        }
+    });
     switch (columns_) {
         case 1: start<1>(X); break;
         case 2: start<2>(X); break;
@@ -132,7 +134,9 @@ void KrylovSpaces::start(const Eigen::MatrixXd& X) {
     const Index n = D_.size();
     work_.resize(cholesky_.orderedRows() * Columns);
     const Eigen::VectorXi& order = cholesky_.factorOrder();
-    for (Index i = 0; i < n; ++i) rowOf<Columns>(work_, order[i]) = X.row(i).array();
+    parallelRows(n, [&](Index begin, Index end) {
+        for (Index i = begin; i < end; ++i) rowOf<Columns>(work_, order[i]) = X.row(i).array();
+    });
     const auto mean = momentsOf<Columns>(D_, label_, constants_.masses(), [&](Index i) {
                           return Row<Columns>(rowOf<Columns>(work_, i));
                       }).means;

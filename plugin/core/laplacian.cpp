@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <vector>
 
+#include "thread_team.h"
+
 namespace spectral {
 
 Laplacian cotangentLaplacian(const Vertices& V, const Faces& F) {
@@ -37,12 +39,16 @@ Laplacian cotangentLaplacian(const Vertices& V, const Faces& F) {
 }
 
 Eigen::VectorXd lumpedMass(const Vertices& V, const Faces& F) {
+    Eigen::VectorXd third(F.rows());  // of a triangle's area
+    parallelRows(F.rows(), [&](Index begin, Index end) {
+        for (Index t = begin; t < end; ++t) {
+            const Eigen::RowVector3d a = V.row(F(t, 0)), b = V.row(F(t, 1)), c = V.row(F(t, 2));
+            third[t] = (b - a).cross(c - a).norm() / 6.0;
+        }
+    });
     Eigen::VectorXd D = Eigen::VectorXd::Zero(V.rows());
-    for (Index t = 0; t < F.rows(); ++t) {
-        const Eigen::RowVector3d a = V.row(F(t, 0)), b = V.row(F(t, 1)), c = V.row(F(t, 2));
-        const double twiceArea = (b - a).cross(c - a).norm();
-        for (int k = 0; k < 3; ++k) D[F(t, k)] += twiceArea / 6.0;
-    }
+    for (Index t = 0; t < F.rows(); ++t)
+        for (int k = 0; k < 3; ++k) D[F(t, k)] += third[t];
     return D;
 }
 

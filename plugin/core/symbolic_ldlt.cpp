@@ -28,8 +28,16 @@ constexpr Relaxation kRelaxations[] = {
 /// shared at all: a solve takes as long as waking a thread.
 constexpr Index kLeastParts = 4, kMostParts = 200, kLeastShared = 30000;
 
+/// Approximate minimum degree; Eigen's own functor adds the transpose of what is symmetric.
+struct SymmetricOrdering {
+    using PermutationType = Eigen::AMDOrdering<int>::PermutationType;
+    void operator()(const SparseMatrix& W, PermutationType& permutation) const {
+        Eigen::AMDOrdering<int>()(W.selfadjointView<Eigen::Lower>(), permutation);
+    }
+};
+
 /// What Eigen's analysis of a pattern keeps to itself.
-struct Analysis : Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, Eigen::AMDOrdering<int>> {
+struct Analysis : Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, SymmetricOrdering> {
     const auto& parent() const { return m_parent; }
     const auto& columnEntries() const { return m_nonZerosPerCol; }
 };

@@ -109,11 +109,14 @@ double leastEdgeCotangents(const Mesh& mesh) {
     return least;
 }
 
-/// Meshes whose edges mostly are diagonals of rectangles: both opposite angles are right ones.
+/// Meshes with many edges that are diagonals of rectangles: both opposite angles are right ones.
 std::vector<Mesh> rectangularMeshes() {
-    std::vector<Mesh> meshes{testing::rectangle(1, 1, 1, 1), testing::rectangle(3, 1, 40, 7),
-                             testing::rectangle(1e-3, 1e4, 30, 2), testing::cube(9),
-                             testing::joined(testing::cube(4), testing::rectangle(5, 1, 50, 50))};
+    std::vector<Mesh> meshes{testing::rectangle(1, 1, 1, 1),
+                             testing::rectangle(3, 1, 40, 7),
+                             testing::rectangle(1e-3, 1e4, 30, 2),
+                             testing::cube(9),
+                             testing::joined(testing::cube(4), testing::rectangle(5, 1, 50, 50)),
+                             testing::segmentedBall(9)};
     const std::size_t count = meshes.size();
     for (std::size_t i = 0; i < count; ++i) {
         std::srand(static_cast<unsigned>(i));

@@ -1,5 +1,6 @@
 #include "support/shapes.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -118,6 +119,41 @@ Mesh cube(int cells) {
             if (sign < 0) face.F.col(1).swap(face.F.col(2));
             soup = joined(soup, face);
         }
+    return welded(soup);
+}
+
+Mesh segmentedBall(int radius) {
+    const auto isInside = [radius](const Eigen::RowVector3d& p) {
+        const double hole = 0.4 * radius;
+        return p.norm() < radius - 0.5 && (p - Eigen::RowVector3d(hole, 0, 0)).norm() > hole;
+    };
+    std::vector<Eigen::RowVector3d> corners;  // of one triangle after the other
+    const auto addTetrahedron = [&](std::array<Eigen::RowVector3d, 4> p) {
+        const auto inside = std::stable_partition(p.begin(), p.end(), isInside) - p.begin();
+        const auto middle = [&p](int i, int j) { return (0.5 * (p[i] + p[j])).eval(); };
+        if (inside == 1) corners.insert(corners.end(), {middle(0, 1), middle(0, 2), middle(0, 3)});
+        if (inside == 3) corners.insert(corners.end(), {middle(0, 3), middle(1, 3), middle(2, 3)});
+        if (inside == 2)
+            corners.insert(corners.end(), {middle(0, 2), middle(0, 3), middle(1, 2),  //
+                                           middle(0, 3), middle(1, 3), middle(1, 2)});
+    };
+    // Six tetrahedra for each cube, along the paths from one end of its diagonal to the other.
+    for (int x = -radius; x < radius; ++x)
+        for (int y = -radius; y < radius; ++y)
+            for (int z = -radius; z < radius; ++z) {
+                std::array<int, 3> axes = {0, 1, 2};
+                do {
+                    std::array<Eigen::RowVector3d, 4> p;
+                    p[0] << x, y, z;
+                    for (int k = 0; k < 3; ++k) p[k + 1] = p[k] + Eigen::RowVector3d::Unit(axes[k]);
+                    addTetrahedron(p);
+                } while (std::next_permutation(axes.begin(), axes.end()));
+            }
+    Mesh soup{Vertices(corners.size(), 3), Faces(corners.size() / 3, 3)};
+    for (Index i = 0; i < soup.V.rows(); ++i) {
+        soup.V.row(i) = corners[i];
+        soup.F(i / 3, i % 3) = static_cast<int>(i);
+    }
     return welded(soup);
 }
 

@@ -18,6 +18,11 @@ Mesh hemisphere(int rings);
 /// closed.
 Mesh cube(int cells);
 
+/// The border of a ball of voxels, 2 radius of them across, with a smaller ball taken out: marching
+/// tetrahedra of a mask of zeros and ones, as the segmentation of a scan is. Closed; all its
+/// corners are midpoints of lattice edges.
+Mesh segmentedBall(int radius);
+
 /// Torus with these radii, n x m vertices; closed, genus 1.
 Mesh torus(double major, double minor, int n, int m);
 
