@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "fractional_steps.h"
+#include "thread_team.h"
 
 namespace spectral {
 
@@ -21,7 +22,13 @@ constexpr double kSecondOrder = 4.0, kSlowest = 1.25;
 constexpr int kFewSteps = 8;
 
 /// Length of the rows of A - B.
-Eigen::VectorXd distances(const Vertices& A, const Vertices& B) { return (A - B).rowwise().norm(); }
+Eigen::VectorXd distances(const Vertices& A, const Vertices& B) {
+    Eigen::VectorXd length(A.rows());
+    parallelRows(A.rows(), [&](Index begin, Index end) {
+        for (Index i = begin; i < end; ++i) length[i] = (A.row(i) - B.row(i)).norm();
+    });
+    return length;
+}
 
 /// The least length that only kNegligibleArea of the masses D exceeds.
 double largestButNegligible(const Eigen::VectorXd& length, const Eigen::VectorXd& D) {

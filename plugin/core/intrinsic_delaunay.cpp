@@ -41,8 +41,10 @@ std::vector<EdgeSide> sidesByEdge(const Faces& F, Index vertexCount) {
     std::vector<EdgeSide> sides(static_cast<std::size_t>(3 * F.rows()));
     std::vector<int> next(begin.begin(), begin.end() - 1);
     forEachSide([&](const EdgeSide& s) { sides[next[s.low]++] = s; });
-    for (Index i = 0; i < vertexCount; ++i)
-        std::sort(sides.begin() + begin[i], sides.begin() + begin[i + 1]);
+    parallelRows(vertexCount, [&](Index first, Index last) {
+        for (Index i = first; i < last; ++i)
+            std::sort(sides.begin() + begin[i], sides.begin() + begin[i + 1]);
+    });
     return sides;
 }
 
