@@ -7,7 +7,6 @@
 namespace spectral {
 
 void ShiftedCholesky::factorize(const Laplacian& laplacian, double shift) {
-    ++factorizations_;
     shift_ = shift;
     bool definite = false;
     try {
@@ -23,20 +22,10 @@ void ShiftedCholesky::factorize(const Laplacian& laplacian, double shift) {
             "'Remeshing: Isotropic Explicit Remeshing' first");
 }
 
-Eigen::MatrixXd ShiftedCholesky::solve(const Eigen::MatrixXd& B) const {
-    solves_ += static_cast<int>(B.cols());
-    return ldlt_.solve(B);
-}
-
-void ShiftedCholesky::solveOrdered(double* Y, int columns) const {
-    solves_ += columns;
-    ldlt_.solveOrdered(Y, columns);
-}
-
 Index ShiftedCholesky::countEigenvaluesBelow(const Laplacian& laplacian, double sigma) {
-    ++factorizations_;
-    ShiftedLdlt ldlt;
+    ShiftedLdlt ldlt = emptyFactor(laplacian);
     ldlt.factorize(laplacian, sigma);
+    countWork(ldlt);
     return ldlt.eigenvaluesBelow();
 }
 

@@ -18,10 +18,10 @@ class ShiftedCholesky {
     void factorize(const Laplacian& laplacian, double shift);
 
     /// (W + s D)^-1 B for every column of B (n x c).
-    Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const;
+    Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const { return ldlt_.solve(B); }
 
     /// The same in place and in the factor's order; see ShiftedLdlt.
-    void solveOrdered(double* Y, int columns) const;
+    void solveOrdered(double* Y, int columns) const { ldlt_.solveOrdered(Y, columns); }
     Index orderedRows() const { return ldlt_.orderedRows(); }
     const Eigen::VectorXi& factorOrder() const { return ldlt_.factorOrder(); }
     const std::vector<int>& inverseOrder() const { return ldlt_.inverseOrder(); }
@@ -34,21 +34,25 @@ class ShiftedCholesky {
     /// @throws SolverFailure  as ShiftedLdlt::factorize does.
     Index countEigenvaluesBelow(const Laplacian& laplacian, double sigma);
 
-    /// Adds work that was done with other factors to the counts.
-    void countWork(int factorizations, int solves) {
-        factorizations_ += factorizations;
-        solves_ += solves;
+    /// A factor of none yet that shares the symbolic analysis of W's pattern.
+    ShiftedLdlt emptyFactor(const Laplacian& laplacian) {
+        return ShiftedLdlt(ldlt_.analysis(laplacian));
+    }
+
+    /// Adds to the counts what has been done with another factor.
+    void countWork(const ShiftedLdlt& other) {
+        otherFactorizations_ += other.factorizations();
+        otherSolves_ += other.solves();
     }
 
     double shift() const { return shift_; }
-    int factorizations() const { return factorizations_; }  ///< Of both kinds.
-    int solves() const { return solves_; }                  ///< Columns solved for.
+    int factorizations() const { return ldlt_.factorizations() + otherFactorizations_; }
+    int solves() const { return ldlt_.solves() + otherSolves_; }  ///< Columns solved for.
 
   private:
     ShiftedLdlt ldlt_;
     double shift_ = 0.0;
-    int factorizations_ = 0;
-    mutable int solves_ = 0;
+    int otherFactorizations_ = 0, otherSolves_ = 0;
 };
 
 }  // namespace spectral

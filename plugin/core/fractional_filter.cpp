@@ -166,7 +166,6 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     result.residuals = evaluate.basis().residuals;
     result.inertiaCount = static_cast<int>(evaluate.basis().inertiaCount);
     result.computedBases = evaluate.computedBases();
-    result.updatedBases = evaluate.updatedBases();
     return result;
 }
 

@@ -57,8 +57,7 @@ struct FilterResult {
     Eigen::VectorXd residuals;    ///< k, relative; see HarmonicBasis. Empty where an ideal response
                                   ///< uses all harmonics of the mesh,
     int inertiaCount = 0;         ///< and 0; else the harmonics that must be in it, by inertia.
-    int computedBases = 0;        ///< Bases of all steps that were computed from nothing,
-    int updatedBases = 0;         ///< and those that were made of the one before.
+    int computedBases = 0;        ///< Bases of all steps.
 };
 
 /// Filters the geometry of a mesh: K steps X <- F^(1/K)(sqrt(A)) X, the Laplacian A taken anew from

@@ -33,8 +33,7 @@ inline constexpr std::ptrdiff_t kFrontLane = 4;
 
 /// Elimination within fronts, for the widest vector instructions that the processor has.
 ///
-/// Pointers, not Eigen's types: those of one instruction set must not cross into another's (see
-/// dense_products.cpp).
+/// Pointers, not Eigen's types: see kernels.h.
 struct FrontElimination {
     /// Replaces the panel by the columns of L, the diagonal by the pivots, and the update by the
     /// Schur complement. False when a pivot is 0.

@@ -17,6 +17,7 @@
 #include "mesh_laplacian.h"
 #include "noise_floor.h"
 #include "thread_team.h"
+#include "truncated_basis.h"
 
 namespace spectral {
 

@@ -5,14 +5,10 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <string>
 
-#include "basis_certificate.h"
-#include "basis_transform.h"
 #include "errors.h"
-#include "shifted_ldlt.h"
-#include "spectrum_slicing.h"
+#include "thread_team.h"
 
 namespace spectral {
 
@@ -44,30 +40,24 @@ class ScaledStiffness {
     Eigen::VectorXd invSqrtD_;
 };
 
-/// The first `size` pairs of a basis, with their certificate.
-HarmonicBasis certified(const Laplacian& laplacian, Index constants, HarmonicBasis basis,
-                        Index size, ShiftedCholesky& cholesky, ShiftedLdlt& factor,
-                        const Progress& progress) {
-    std::optional<double> cut;
-    if (size < basis.size()) cut = 0.5 * (basis.lambda[size - 1] + basis.lambda[size]);
-    basis.Phi.conservativeResize(Eigen::NoChange, size);
-    basis.lambda.conservativeResize(size);
-    basis.inertiaCount = size;  // where it holds all that there are
-    measureBasis(
-        laplacian, constants, basis,
-        [&] {
-            if (!cut) return;
-            factor.factorize(laplacian, *cut);
-            basis.inertiaCount = factor.eigenvaluesBelow();
-        },
-        progress);
-    if (cut) cholesky.countWork(1, 0);
-    // Sylvester's law of inertia: none is missing below the cut.
-    if (basis.inertiaCount != size)
-        throw SolverFailure("of the " + std::to_string(basis.inertiaCount) +
-                            " harmonics that the inertia of W - sigma D counts, " +
-                            std::to_string(size) + " were found; choose another basis_size");
-    return basis;
+/// The manifold harmonic transform Phi^T D X.
+Eigen::MatrixXd transform(const Eigen::MatrixXd& Phi, const Eigen::VectorXd& D,
+                          const Eigen::MatrixXd& X) {
+    const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(Phi.cols(), X.cols());
+    return parallelSum(X.rows(), zero, [&](Index begin, Index end) -> Eigen::MatrixXd {
+        const Index rows = end - begin;
+        return Phi.middleRows(begin, rows).transpose() *
+               (D.segment(begin, rows).asDiagonal() * X.middleRows(begin, rows));
+    });
+}
+
+/// Its inverse, Phi c.
+Eigen::MatrixXd inverseTransform(const Eigen::MatrixXd& Phi, const Eigen::MatrixXd& c) {
+    Eigen::MatrixXd X(Phi.rows(), c.cols());
+    parallelRows(X.rows(), [&](Index begin, Index end) {
+        X.middleRows(begin, end - begin).noalias() = Phi.middleRows(begin, end - begin) * c;
+    });
+    return X;
 }
 
 }  // namespace
@@ -89,51 +79,6 @@ HarmonicBasis denseBasis(const Laplacian& laplacian, const ConstantModes& consta
 }
 
 bool isDenseQuicker(Index n) { return n <= kDenseVertices; }
-
-HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& constants, Index k,
-                             ShiftedCholesky& cholesky, const Progress& progress) {
-    std::vector<ShiftedLdlt> factors;
-    return truncatedBasis(laplacian, constants, k, cholesky, factors, progress);
-}
-
-HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& constants, Index k,
-                             ShiftedCholesky& cholesky, std::vector<ShiftedLdlt>& factors,
-                             const Progress& progress) {
-    const Index n = laplacian.D.size(), c = constants.count();
-    if (k >= n)
-        throw InvalidOption("basis_size = " + std::to_string(k) + " needs more than " +
-                            std::to_string(k) + " vertices; the mesh has " + std::to_string(n) +
-                            ": choose a smaller basis_size");
-    if (k <= c)
-        throw InvalidOption("basis_size = " + std::to_string(k) +
-                            " holds no more than the constant modes of the " + std::to_string(c) +
-                            " connected components: choose a basis_size above " +
-                            std::to_string(c));
-
-    if (isDenseQuicker(n)) {
-        HarmonicBasis all = denseBasis(laplacian, constants);
-        const Index size = cutOutsideClusters(all.lambda, k).value_or(n);
-        ShiftedLdlt factor;
-        return certified(laplacian, c, std::move(all), size, cholesky, factor, progress);
-    }
-    // Some pairs beyond k show whether k cuts a cluster; more are taken while it does.
-    for (Index more = 8;; more *= 2) {
-        const Index total = std::min(k + more, n - 1);
-        LowestPairs pairs =
-            lowestPairs(laplacian, constants, total, factors, progress.part(0.0, 0.95));
-        cholesky.countWork(pairs.factorizations, pairs.solves);
-        HarmonicBasis basis;
-        basis.Phi = std::move(pairs.Phi);
-        basis.lambda = std::move(pairs.lambda);
-        std::optional<Index> size = cutOutsideClusters(basis.lambda, k);
-        if (!size) {
-            if (total < n - 1) continue;
-            size = basis.size();  // nothing left to cut off
-        }
-        return certified(laplacian, c, std::move(basis), *size, cholesky, factors.front(),
-                         progress.part(0.95, 1.0));
-    }
-}
 
 double largestEigenvalue(const Laplacian& laplacian) {
     ScaledStiffness op(laplacian);
@@ -164,10 +109,10 @@ Eigen::MatrixXd applyInBasis(const HarmonicBasis& basis, const Eigen::VectorXd& 
 
     // With the manifold harmonic transform c = Phi^T D X:
     // Phi F c + F_h (X - Phi c) = F_h X + Phi (F - F_h) c.
+    const Eigen::MatrixXd c = transform(basis.Phi, D, centred);
     const Eigen::VectorXd gains = gainsOf(basis, gain) - residualGain;
-    Eigen::MatrixXd Y = residualGain * centred;
-    Y += inverseHarmonicTransform(basis.Phi,
-                                  gains.asDiagonal() * harmonicTransform(basis.Phi, D, centred));
+    Eigen::MatrixXd Y =
+        residualGain * centred + inverseTransform(basis.Phi, gains.asDiagonal() * c);
 
     constants.remove(Y);
     constants.add(means, Y);

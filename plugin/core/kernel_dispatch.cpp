@@ -35,28 +35,8 @@ const std::vector<Kernels>& availableKernels() {
     return available;
 }
 
-const DenseProducts& denseProducts() {
-    static const DenseProducts& widest = availableKernels().front().dense;
-    return widest;
-}
-
-const DenseEigenproblems& denseEigenproblems() {
-    static const DenseEigenproblems& widest = availableKernels().front().eigen;
-    return widest;
-}
-
 const FrontElimination& frontElimination() {
     static const FrontElimination& widest = availableKernels().front().fronts;
-    return widest;
-}
-
-const PanelProducts& panelProducts() {
-    static const PanelProducts& widest = availableKernels().front().panels;
-    return widest;
-}
-
-const SparseProducts& sparseProducts() {
-    static const SparseProducts& widest = availableKernels().front().sparse;
     return widest;
 }
 

@@ -2,27 +2,22 @@
 
 #include <vector>
 
-#include "dense_eigenproblems.h"
-#include "dense_products.h"
 #include "front_elimination.h"
-#include "panel_products.h"
-#include "sparse_products.h"
 #include "triangular_solves.h"
 
 namespace spectral {
 
-/// What is compiled once for each instruction set.
+/// What is compiled once for each instruction set, with SPECTRAL_INSTRUCTIONS for the namespace of
+/// the result. All of Eigen is then in a namespace of its own, too (-DEigen=...): its templates are
+/// compiled with other instructions there than elsewhere, and the linker must not take the one for
+/// the other. So pointers cross between them, not Eigen's types.
 struct Kernels {
-    const DenseProducts& dense;
-    const DenseEigenproblems& eigen;
     const FrontElimination& fronts;
-    const PanelProducts& panels;
-    const SparseProducts& sparse;
     const TriangularSolves& triangular;
 };
 
-/// Those that this processor can run, the one with the widest vectors first: denseProducts() and
-/// the like are of that one.
+/// Those that this processor can run, the one with the widest vectors first: frontElimination() and
+/// triangularSolves() are of that one.
 const std::vector<Kernels>& availableKernels();
 
 }  // namespace spectral

@@ -8,6 +8,7 @@
 #include "errors.h"
 #include "harmonic_basis.h"
 #include "mesh_laplacian.h"
+#include "truncated_basis.h"
 
 namespace spectral {
 

@@ -20,20 +20,18 @@ constexpr double kNudge = 1e-7;
 
 }  // namespace
 
-void ShiftedLdlt::analyze(const Laplacian& laplacian) {
-    if (!symbolic_.isOf(laplacian.W)) symbolic_ = SymbolicLdlt(laplacian.W);
-}
-
-const std::vector<int>& ShiftedLdlt::order(const Laplacian& laplacian) {
-    analyze(laplacian);
-    return symbolic_.inverse;
+const std::shared_ptr<const SymbolicLdlt>& ShiftedLdlt::analysis(const Laplacian& laplacian) {
+    if (!symbolic_ || !symbolic_->isOf(laplacian.W))
+        symbolic_ = std::make_shared<const SymbolicLdlt>(laplacian.W);
+    return symbolic_;
 }
 
 void ShiftedLdlt::factorize(const Laplacian& laplacian, double sigma) {
-    analyze(laplacian);
+    const SymbolicLdlt& symbolic = *analysis(laplacian);
+    ++factorizations_;
     for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
         shift_ = sigma * (1.0 + attempt * kNudge);
-        if (!eliminate(symbolic_, laplacian, shift_, numbers_)) continue;
+        if (!eliminate(symbolic, laplacian, shift_, numbers_)) continue;
         if (!numbers_.pivots.allFinite()) continue;
         below_ = (numbers_.pivots.array() < 0.0).count();
         return;
@@ -53,7 +51,7 @@ void ShiftedLdlt::applyResolvent(const Eigen::VectorXd& D, Eigen::Ref<Eigen::Mat
                                  double root) const {
     // The factor is far larger than the cache: each pass over it serves as many columns as it can.
     // A few more than there are cost less than one pass more.
-    const Eigen::VectorXi& order = symbolic_.order;
+    const Eigen::VectorXi& order = symbolic_->order;
     std::vector<double> ordered;
     for (Index first = 0; first < U.cols(); first += kMostRightHandSides) {
         const auto used = static_cast<int>(std::min<Index>(kMostRightHandSides, U.cols() - first));
@@ -63,6 +61,7 @@ void ShiftedLdlt::applyResolvent(const Eigen::VectorXd& D, Eigen::Ref<Eigen::Mat
         for (Index i = 0; i < U.rows(); ++i)
             Y.row(order[i]).head(used) = D[i] * U.row(i).segment(first, used);
         solveOrdered(ordered.data(), columns);
+        solves_ -= columns - used;  // columns that nobody has asked for
         for (Index i = 0; i < U.rows(); ++i)
             U.row(i).segment(first, used) =
                 Y.row(order[i]).head(used) - root * U.row(i).segment(first, used);
@@ -70,11 +69,13 @@ void ShiftedLdlt::applyResolvent(const Eigen::VectorXd& D, Eigen::Ref<Eigen::Mat
 }
 
 void ShiftedLdlt::solveOrdered(double* Y, int columns) const {
-    const LdltFactor factor{symbolic_.valueStarts.data(), symbolic_.rowStarts.data(),
-                            symbolic_.solveRows.data(), numbers_.values.data(),
-                            symbolic_.joined.data()};
-    const Index n = symbolic_.order.size();
-    const std::vector<SymbolicLdlt::Subtree>& subtrees = symbolic_.subtrees;
+    const SymbolicLdlt& symbolic = *symbolic_;
+    const LdltFactor factor{symbolic.valueStarts.data(), symbolic.rowStarts.data(),
+                            symbolic.solveRows.data(), numbers_.values.data(),
+                            symbolic.joined.data()};
+    const Index n = symbolic.order.size();
+    const std::vector<SymbolicLdlt::Subtree>& subtrees = symbolic.subtrees;
+    solves_ += columns;
     const auto count = static_cast<Index>(subtrees.size());
     const auto rowsOf = [&](double* rows) {
         return Eigen::Map<RowMajorMatrix>(rows, orderedRows(), columns);
@@ -91,8 +92,8 @@ void ShiftedLdlt::solveOrdered(double* Y, int columns) const {
                                      subtrees[t].endColumn);
         divideByPivots(subtrees[t].firstColumn, subtrees[t].endColumn);
     });
-    for (std::size_t k = 0; k < symbolic_.copied.size(); ++k)
-        rows.row(symbolic_.copied[k]) += rows.row(n + static_cast<Index>(k));
+    for (std::size_t k = 0; k < symbolic.copied.size(); ++k)
+        rows.row(symbolic.copied[k]) += rows.row(n + static_cast<Index>(k));
     Index next = 0;
     for (const SymbolicLdlt::Subtree& tree : subtrees) {
         triangularSolves().eliminate(factor, Y, columns, next, tree.firstColumn);
@@ -109,8 +110,8 @@ void ShiftedLdlt::solveOrdered(double* Y, int columns) const {
         end = subtrees[t].firstColumn;
     }
     triangularSolves().substitute(factor, Y, columns, 0, end);
-    for (std::size_t k = 0; k < symbolic_.copied.size(); ++k)
-        rows.row(n + static_cast<Index>(k)) = rows.row(symbolic_.copied[k]);
+    for (std::size_t k = 0; k < symbolic.copied.size(); ++k)
+        rows.row(n + static_cast<Index>(k)) = rows.row(symbolic.copied[k]);
     parallelFor(count, [&](Index t) {
         triangularSolves().substitute(factor, Y, columns, subtrees[t].firstColumn,
                                       subtrees[t].endColumn);

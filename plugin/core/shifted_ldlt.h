@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
 #include "laplacian.h"
@@ -18,6 +19,12 @@ namespace spectral {
 /// for each pattern of W: shifts and a filter's steps change the numbers, not the connectivity.
 class ShiftedLdlt {
   public:
+    ShiftedLdlt() = default;
+
+    /// @param analysis  of the pattern that the matrices will probably have: shared.
+    explicit ShiftedLdlt(std::shared_ptr<const SymbolicLdlt> analysis)
+        : symbolic_(std::move(analysis)) {}
+
     /// @param sigma  in units of lambda (1 / length^2); moved a little when a pivot vanishes.
     /// @throws SolverFailure  when pivots vanish, or are not finite, at every shift nearby.
     /// @throws InvalidMesh  when the factor has more entries than an int counts: some 1e7 vertices.
@@ -25,10 +32,11 @@ class ShiftedLdlt {
 
     double shift() const { return shift_; }
 
-    /// The rows of W in the order in which they are eliminated: neighbours mostly close to each
-    /// other, however the vertices of a mesh are numbered. The same for every factorization of a W
-    /// of the same pattern.
-    const std::vector<int>& order(const Laplacian& laplacian);
+    /// The symbolic analysis of W's pattern: made anew if the last one is not of it.
+    const std::shared_ptr<const SymbolicLdlt>& analysis(const Laplacian& laplacian);
+
+    int factorizations() const { return factorizations_; }  ///< Done with this object.
+    int solves() const { return solves_; }                  ///< Columns solved for.
 
     /// Number of eigenvalues of W phi = lambda D phi below shift(), exactly: that of the negative
     /// pivots.
@@ -45,12 +53,12 @@ class ShiftedLdlt {
 
     /// The factor's own order, for work that is done in it: row i of W is row factorOrder()[i], and
     /// row j of the factor is row inverseOrder()[j]. Of the last factorize().
-    const Eigen::VectorXi& factorOrder() const { return symbolic_.order; }
-    const std::vector<int>& inverseOrder() const { return symbolic_.inverse; }
+    const Eigen::VectorXi& factorOrder() const { return symbolic_->order; }
+    const std::vector<int>& inverseOrder() const { return symbolic_->inverse; }
 
     /// Rows of the vectors that solveOrdered works on: n, and some copies for its own use.
     Index orderedRows() const {
-        return symbolic_.order.size() + static_cast<Index>(symbolic_.copied.size());
+        return symbolic_->order.size() + static_cast<Index>(symbolic_->copied.size());
     }
 
     /// (W - sigma D)^-1 Y, in place and in the factor's order, on the threads of the caller's team.
@@ -60,12 +68,12 @@ class ShiftedLdlt {
     void solveOrdered(double* Y, int columns) const;
 
   private:
-    void analyze(const Laplacian& laplacian);
-
-    SymbolicLdlt symbolic_;
+    std::shared_ptr<const SymbolicLdlt> symbolic_;
     LdltNumbers numbers_;
     double shift_ = 0.0;
     Index below_ = 0;
+    int factorizations_ = 0;
+    mutable int solves_ = 0;
 };
 
 }  // namespace spectral

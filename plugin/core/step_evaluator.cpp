@@ -7,10 +7,9 @@
 #include <string>
 #include <utility>
 
-#include "basis_update.h"
 #include "errors.h"
 #include "full_spectrum.h"
-#include "leak_correction.h"
+#include "truncated_basis.h"
 
 namespace spectral {
 
@@ -18,10 +17,6 @@ namespace {
 
 /// More harmonics than this for a discontinuous gain are a mistake of the user's: minutes of time.
 constexpr Index kMaxExactBasis = 1000;
-
-/// The update of a basis costs k^2 n, the computation of one k n: beyond this size the latter is
-/// the quicker one.
-constexpr Index kMaxUpdatedBasis = 600;
 
 /// Relative accuracy of a step that round-off still allows.
 constexpr double kFinestAccuracy = 1e-13;
@@ -121,10 +116,7 @@ std::vector<Eigen::MatrixXd> StepEvaluator::onInterior(const Eigen::MatrixXd& U,
         for (std::size_t i = 0; i < alphas.size(); ++i) {
             // The power of the mean gain, not the mean of the power: K steps then make one filter.
             const double residualGain = std::pow(residualGain_, alphas[i]);
-            shapes.push_back(basis_.leak
-                                 ? applyInLeakingBasis(basis_, D, *constants_, gains[i],
-                                                       residualGain, U, factors_.front(), progress)
-                                 : applyInBasis(basis_, D, *constants_, gains[i], residualGain, U));
+            shapes.push_back(applyInBasis(basis_, D, *constants_, gains[i], residualGain, U));
         }
         return shapes;
     }
@@ -178,7 +170,9 @@ void StepEvaluator::truncated(const Progress& progress) {
     // The basis knows of no filter; what else a filter offers is said here.
     const char* const remedy = ", or spectrum = full";
     try {
-        followBasis(progress);
+        basis_ = {};  // of no more use: its memory goes to the next
+        basis_ = truncatedBasis(laplacian(), *constants_, options_.basisSize, cholesky_, progress);
+        ++computedBases_;
     } catch (const InvalidOption& error) {
         throw InvalidOption(error.what() + std::string(remedy));
     } catch (const SolverFailure& error) {
@@ -195,23 +189,6 @@ void StepEvaluator::truncated(const Progress& progress) {
     }
 }
 
-/// The basis of the present Laplacian: of the last one's, where that is near enough.
-void StepEvaluator::followBasis(const Progress& progress) {
-    const Index k = options_.basisSize;
-    if (k <= kMaxUpdatedBasis && basis_.size() > 0) {
-        const BasisUpdateResult update = updateBasis(laplacian(), *constants_, k, UpdateGate(),
-                                                     basis_, factors_, progress.part(0.0, 0.5));
-        cholesky_.countWork(update.factorizations, update.solves);
-        if (update.accepted) {
-            ++updatedBases_;
-            return;
-        }
-    }
-    basis_ = {};  // of no more use: its memory goes to the next
-    basis_ = truncatedBasis(laplacian(), *constants_, k, cholesky_, factors_, progress);
-    ++computedBases_;
-}
-
 /// The harmonics up to the last jump of F, beyond which an ideal F is constant: exact.
 HarmonicBasis StepEvaluator::upToLastJump(const Progress& progress) {
     const double last = F_.discontinuities().back();
@@ -225,7 +202,7 @@ HarmonicBasis StepEvaluator::upToLastJump(const Progress& progress) {
                             "8, or spectrum = truncated with reinject_residual");
     if (below == interior_.size()) return denseBasis(laplacian(), *constants_);  // nothing to cut
     return truncatedBasis(laplacian(), *constants_, std::max<Index>(below, constants_->count() + 1),
-                          cholesky_, factors_, progress);
+                          cholesky_, progress);
 }
 
 }  // namespace spectral

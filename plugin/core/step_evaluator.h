@@ -12,7 +12,6 @@
 #include "laplacian.h"
 #include "pole_selection.h"
 #include "progress.h"
-#include "shifted_ldlt.h"
 #include "transfer_function.h"
 
 namespace spectral {
@@ -60,8 +59,7 @@ class StepEvaluator {
                                          const Progress& progress);
 
     const HarmonicBasis& basis() const { return basis_; }  ///< Empty where none is used.
-    int computedBases() const { return computedBases_; }   ///< Bases computed from nothing.
-    int updatedBases() const { return updatedBases_; }     ///< Bases made of the one before.
+    int computedBases() const { return computedBases_; }
     int factorizations() const { return cholesky_.factorizations() + extension_.factorizations(); }
     int solves() const { return cholesky_.solves() + extension_.solves(); }
 
@@ -81,7 +79,6 @@ class StepEvaluator {
                                             const Progress& progress);
     const Pole& poleFor(double alpha);
     void truncated(const Progress& progress);
-    void followBasis(const Progress& progress);
     HarmonicBasis upToLastJump(const Progress& progress);
     const Laplacian& laplacian() const { return interior_.isWhole() ? *surface_ : restricted_; }
 
@@ -97,8 +94,7 @@ class StepEvaluator {
     int resolution_ = 1;                     // of the last pole
     ShiftedCholesky cholesky_;
     HarmonicBasis basis_;
-    std::vector<ShiftedLdlt> factors_;  // those that made the basis
-    int computedBases_ = 0, updatedBases_ = 0;
+    int computedBases_ = 0;
     double residualGain_ = 0.0;  // F's mean for what is beyond the basis
     double errorEstimate_ = 0.0;
     bool accuracyReached_ = true;

@@ -1,4 +1,4 @@
-// Compiled once for each instruction set, as dense_products.cpp is: see there.
+// Compiled once for each instruction set: see kernels.h.
 #include "triangular_solves.h"
 
 #include <Eigen/Core>

@@ -24,8 +24,7 @@ inline constexpr int kMostRightHandSides = 16;
 /// Right-hand sides are in the order of the factor, those of a row next to each other: 1, 2, 3, 4,
 /// 8 or kMostRightHandSides.
 ///
-/// Pointers, not Eigen's types: those of one instruction set must not cross into another's (see
-/// dense_products.cpp).
+/// Pointers, not Eigen's types: see kernels.h.
 struct TriangularSolves {
     /// Y <- L^-1 Y, the part that columns `begin` to `end` - 1 of L do. All of the columns of a
     /// supernode are among them, or none.

@@ -43,7 +43,6 @@ std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& r
         report["eigenvalues"] = vectorVariant(result.eigenvalues);
         report["cutoff_reached"] = result.cutoffReached;
         report["computed_bases"] = result.computedBases;
-        report["updated_bases"] = result.updatedBases;
     }
     if (result.residuals.size() > 0) {
         report["residuals"] = vectorVariant(result.residuals);
@@ -101,7 +100,7 @@ std::string reportText(const spectral::FilterOptions& options, const spectral::F
     if (result.eigenvalues.size() > 0)
         text << ", " << result.eigenvalues.size() << " harmonics up to frequency "
              << std::sqrt(result.eigenvalues[result.eigenvalues.size() - 1]) << ", computed "
-             << result.computedBases << " times, updated " << result.updatedBases << " times";
+             << result.computedBases << " times";
     else
         text << ", estimated relative error " << result.errorEstimate;
     for (const std::string& warning : result.warnings) text << "\n  WARNING: " << warning;

@@ -1,6 +1,6 @@
 // The C++ part of bench_basis.py, which runs it: bases of manifold harmonics of a mesh.
 //   bench_basis matrices MESH.ply FOLDER    W and D of the cotangent Laplacian, for everyone
-//   bench_basis slices MESH.ply FOLDER K    our basis, slice by slice (core/harmonic_basis.h)
+//   bench_basis slices MESH.ply FOLDER K    our basis, slice by slice (core/truncated_basis.h)
 //   bench_basis spectra MESH.ply FOLDER K   one run of Spectra over our Cholesky factorization
 // Arrays go to FOLDER as they lie in memory, one a file; figures go to standard output as JSON.
 // Times are those of the basis alone, factorizations included, without W and D.
@@ -19,8 +19,8 @@
 #include <utility>
 
 #include "core/cholesky.h"
-#include "core/harmonic_basis.h"
 #include "core/mesh_laplacian.h"
+#include "core/truncated_basis.h"
 #include "support/memory.h"
 #include "support/ply.h"
 

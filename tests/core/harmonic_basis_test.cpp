@@ -7,6 +7,7 @@
 
 #include "core/errors.h"
 #include "core/laplacian_builder.h"
+#include "core/truncated_basis.h"
 #include "support/evaluation.h"
 
 namespace spectral {

@@ -6,10 +6,8 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cstdlib>
-#include <numeric>
 #include <vector>
 
-#include "core/row_panels.h"
 #include "core/types.h"
 #include "support/evaluation.h"
 #include "support/shapes.h"
@@ -25,64 +23,6 @@ class KernelsOfEverySet : public ::testing::TestWithParam<std::size_t> {
 
 INSTANTIATE_TEST_SUITE_P(Widest, KernelsOfEverySet,
                          ::testing::Range(std::size_t{0}, availableKernels().size()));
-
-TEST_P(KernelsOfEverySet, MultipliesDenseMatrices) {
-    std::srand(3);
-    for (const Index n : {1, 7, 512, 1030})
-        for (const Index p : {1, 3, 8, 29})
-            for (const Index q : {1, 2, 3, 4, 5, 17}) {
-                const Eigen::MatrixXd A = Eigen::MatrixXd::Random(n, p);
-                const Eigen::MatrixXd B = Eigen::MatrixXd::Random(n, q);
-                Eigen::MatrixXd C(p, q), AC(n, q);
-                kernels().dense.transposedProduct(A.data(), n, B.data(), n, C.data(), p, n, p, q);
-                kernels().dense.product(A.data(), n, C.data(), p, AC.data(), n, n, p, q);
-                EXPECT_LT((C - A.transpose() * B).norm(), 1e-11) << n << ' ' << p << ' ' << q;
-                EXPECT_LT((AC - A * C).norm(), 1e-10) << n << ' ' << p << ' ' << q;
-            }
-}
-
-TEST_P(KernelsOfEverySet, MakesTheUpperHalfOfASquareProduct) {
-    std::srand(4);
-    const Index n = 700, m = 37;
-    const Eigen::MatrixXd A = Eigen::MatrixXd::Random(n, m), B = Eigen::MatrixXd::Random(n, m);
-    Eigen::MatrixXd C = Eigen::MatrixXd::Zero(m, m);
-    kernels().dense.upperTransposedProduct(A.data(), n, B.data(), n, C.data(), m, n, m);
-    const Eigen::MatrixXd all = A.transpose() * B;
-    EXPECT_LT((C.triangularView<Eigen::Upper>().toDenseMatrix() -
-               all.triangularView<Eigen::Upper>().toDenseMatrix())
-                  .norm(),
-              1e-11);
-}
-
-TEST_P(KernelsOfEverySet, SolvesSmallEigenproblems) {
-    std::srand(7);
-    for (const Index m : {1, 2, 9, 80}) {
-        const Eigen::MatrixXd R = Eigen::MatrixXd::Random(m, m), Q = Eigen::MatrixXd::Random(m, m);
-        const Eigen::MatrixXd A = R + R.transpose(), I = Eigen::MatrixXd::Identity(m, m);
-        const Eigen::MatrixXd B = Q * Q.transpose() + I;
-        Eigen::VectorXd values(m);
-        Eigen::MatrixXd Z(m, m);
-        ASSERT_TRUE(kernels().eigen.symmetric(A.data(), m, values.data(), Z.data()));
-        EXPECT_LT((A * Z - Z * values.asDiagonal()).norm(), 1e-12 * A.norm());
-        EXPECT_LT((Z.transpose() * Z - I).norm(), 1e-12);
-        EXPECT_TRUE(std::is_sorted(values.begin(), values.end()));
-        ASSERT_TRUE(kernels().eigen.generalized(A.data(), B.data(), m, values.data(), Z.data()));
-        EXPECT_LT((A * Z - B * Z * values.asDiagonal()).norm(), 1e-11 * A.norm());
-        EXPECT_LT((Z.transpose() * B * Z - I).norm(), 1e-12 * B.norm());
-        EXPECT_TRUE(std::is_sorted(values.begin(), values.end()));
-    }
-}
-
-TEST_P(KernelsOfEverySet, SaysWhenAMatrixIsNotPositiveDefinite) {
-    const Eigen::MatrixXd A = Eigen::MatrixXd::Identity(2, 2), B = -A;
-    Eigen::VectorXd values(2);
-    Eigen::MatrixXd Z(2, 2);
-    EXPECT_FALSE(kernels().eigen.generalized(A.data(), B.data(), 2, values.data(), Z.data()));
-    Eigen::Matrix2d nearlySingular = Eigen::Matrix2d::Ones();
-    nearlySingular(1, 1) += 2.3e-16;
-    EXPECT_FALSE(
-        kernels().eigen.generalized(A.data(), nearlySingular.data(), 2, values.data(), Z.data()));
-}
 
 /// A front in memory, as it is documented.
 class FrontOf {
@@ -167,59 +107,6 @@ class SparseKernelsOfEverySet : public KernelsOfEverySet {
 
 INSTANTIATE_TEST_SUITE_P(Widest, SparseKernelsOfEverySet,
                          ::testing::Range(std::size_t{0}, availableKernels().size()));
-
-TEST_P(SparseKernelsOfEverySet, MultipliesASparseMatrix) {
-    std::srand(5);
-    const SparseMatrix& W = A_.laplacian.W;
-    const SymmetricSparse matrix{n_, W.outerIndexPtr(), W.innerIndexPtr(), W.valuePtr()};
-    for (const Index columns : {1, 7, 8, 21}) {
-        const Eigen::MatrixXd S = Eigen::MatrixXd::Random(n_, columns);
-        Eigen::MatrixXd WS(n_, columns);
-        kernels().sparse.product(matrix, S.data(), n_, columns, WS.data(), n_);
-        EXPECT_LT((WS - W * S).norm(), 1e-11 * WS.norm()) << columns << " columns";
-    }
-}
-
-TEST_P(SparseKernelsOfEverySet, MeasuresResiduals) {
-    std::srand(8);
-    const auto& [W, D] = A_.laplacian;
-    const SymmetricSparse matrix{n_, W.outerIndexPtr(), W.innerIndexPtr(), W.valuePtr()};
-    for (const Index columns : {1, 7, 8, 21}) {
-        const Eigen::MatrixXd S = Eigen::MatrixXd::Random(n_, columns);
-        const Eigen::VectorXd lambda = Eigen::VectorXd::Random(columns);
-        Eigen::VectorXd squares(columns);
-        kernels().sparse.squaredResiduals(matrix, D.data(), S.data(), n_, columns, lambda.data(),
-                                          squares.data());
-        const Eigen::MatrixXd R = W * S - D.asDiagonal() * S * lambda.asDiagonal();
-        const Eigen::VectorXd expected =
-            (D.cwiseSqrt().cwiseInverse().asDiagonal() * R).colwise().squaredNorm();
-        EXPECT_LT((squares - expected).norm(), 1e-12 * expected.norm()) << columns << " columns";
-    }
-}
-
-TEST_P(SparseKernelsOfEverySet, AddsWhatPanelsContributeToRitzProducts) {
-    std::srand(10);
-    const auto& [W, D] = A_.laplacian;
-    std::vector<int> order(static_cast<std::size_t>(n_));
-    std::iota(order.begin(), order.end(), 0);
-    const RowPanels rows(A_.laplacian, order, 0, n_);
-    const std::vector<RowPanel> panels = rows.panels();
-    ASSERT_GT(panels.size(), 2u);
-    for (const Index m : {1, 8, 16, 37}) {
-        const Eigen::MatrixXd S = Eigen::MatrixXd::Random(n_, m);
-        Eigen::MatrixXd H = Eigen::MatrixXd::Ones(m, m), G = 2.0 * H;
-        kernels().panels.add(panels.data(), static_cast<Index>(panels.size()), S.data(), n_, m,
-                             H.data(), G.data());
-        Eigen::MatrixXd expectedH = S.transpose() * (W * S);
-        Eigen::MatrixXd expectedG = S.transpose() * D.asDiagonal() * S;
-        expectedH.array() += 1.0;
-        expectedG.array() += 2.0;
-        for (Index j = 0; j < m; ++j) {
-            EXPECT_LT((H - expectedH).col(j).head(j + 1).norm(), 1e-12 * expectedH.norm()) << m;
-            EXPECT_LT((G - expectedG).col(j).head(j + 1).norm(), 1e-12 * expectedG.norm()) << m;
-        }
-    }
-}
 
 TEST_P(SparseKernelsOfEverySet, SolvesWithAFactorization) {
     std::srand(6);

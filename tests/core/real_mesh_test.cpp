@@ -14,6 +14,7 @@
 #include "core/geometry_spectrum.h"
 #include "core/intrinsic_delaunay.h"
 #include "core/measures.h"
+#include "core/truncated_basis.h"
 #include "support/evaluation.h"
 
 namespace spectral {

@@ -1,9 +1,9 @@
-#include "core/spectrum_slicing.h"
+#include "core/truncated_basis.h"
 
 #include <gtest/gtest.h>
 
 #include "core/errors.h"
-#include "core/harmonic_basis.h"
+#include "core/fractional_filter.h"
 #include "support/evaluation.h"
 #include "support/shapes.h"
 
@@ -13,12 +13,16 @@ namespace {
 using testing::Mesh;
 using testing::Operator;
 
+HarmonicBasis lowest(const Operator& A, Index k, const Progress& progress = {}) {
+    ShiftedCholesky cholesky;
+    return truncatedBasis(A.laplacian, A.constants, k, cholesky, progress);
+}
+
 /// Compares with all eigenvalues by the dense solver: none missing, none twice.
 void expectLowest(const Mesh& mesh, Index k, const char* name) {
     SCOPED_TRACE(name);
     const Operator A(mesh);
-    std::vector<ShiftedLdlt> factors;
-    const LowestPairs pairs = lowestPairs(A.laplacian, A.constants, k, factors);
+    const HarmonicBasis pairs = lowest(A, k);
     const Eigen::VectorXd lambda = denseBasis(A.laplacian, A.constants).lambda;
     ASSERT_GE(pairs.lambda.size(), k);
     const Index c = A.constants.count(), found = pairs.lambda.size();
@@ -41,25 +45,25 @@ Mesh copies(const Mesh& mesh, int count) {
     return all;
 }
 
-TEST(LowestPairs, AreAllThere) {
+TEST(TruncatedBasisSlices, AreAllThere) {
     expectLowest(testing::blob(), 150, "no symmetry");
     expectLowest(testing::withNoise(testing::rectangle(2, 1, 40, 20), 0.01, 5), 200, "boundary");
 }
 
-TEST(LowestPairs, HoldEveryCopyOfAMultipleEigenvalue) {
+TEST(TruncatedBasisSlices, HoldEveryCopyOfAMultipleEigenvalue) {
     expectLowest(testing::icosphere(3), 120, "sphere");
     expectLowest(testing::cube(12), 120, "cube");
     expectLowest(testing::rectangle(1, 1, 24, 24), 100, "square");
     expectLowest(copies(testing::icosphere(2), 5), 100, "five equal spheres");
 }
 
-TEST(LowestPairs, OfManyEqualPartsAreAllThere) {
+TEST(TruncatedBasisSlices, OfManyEqualPartsAreAllThere) {
     // Few different eigenvalues with wide gaps, where a run finds nothing on one side of its shift.
     expectLowest(copies(testing::icosphere(1), 20), 60, "twenty spheres");
     expectLowest(copies(testing::cube(2), 40), 300, "forty cubes");
 }
 
-TEST(LowestPairs, OfALargeCoarsePartAndASmallFineOneAreAllThere) {
+TEST(TruncatedBasisSlices, OfALargeCoarsePartAndASmallFineOneAreAllThere) {
     // A floor of four vertices under a scanned object has nearly all of the area, by which Weyl's
     // law lays the first shifts: far below the object's eigenvalues.
     Mesh floor = testing::rectangle(20, 20, 1, 1), hall = testing::icosphere(1);
@@ -68,30 +72,52 @@ TEST(LowestPairs, OfALargeCoarsePartAndASmallFineOneAreAllThere) {
     expectLowest(testing::joined(hall, testing::blob()), 100, "hall");
 }
 
-TEST(LowestPairs, AreFewWhereFewAreAsked) {
+TEST(TruncatedBasisSlices, AreFewWhereFewAreAsked) {
     expectLowest(testing::blob(), 2, "one harmonic");
     expectLowest(testing::icosphere(3), 5, "within a group of equal ones");
 }
 
-TEST(LowestPairs, DoNotDependOnTheThreads) {
+TEST(TruncatedBasisSlices, DoNotDependOnTheThreads) {
     const Operator A(testing::icosphere(3));
-    std::vector<ShiftedLdlt> factors;
-    const LowestPairs once = lowestPairs(A.laplacian, A.constants, 100, factors);
-    const LowestPairs again = lowestPairs(A.laplacian, A.constants, 100, factors);
+    const HarmonicBasis once = lowest(A, 100), again = lowest(A, 100);
     EXPECT_TRUE((once.Phi.array() == again.Phi.array()).all());
     EXPECT_TRUE((once.lambda.array() == again.lambda.array()).all());
 }
 
-TEST(LowestPairs, StopWhenTheCallerWantsIt) {
+TEST(TruncatedBasisSlices, StopWhenTheCallerWantsIt) {
     const Operator A(testing::icosphere(4));
     int reports = 0;
     const Progress progress([&](double fraction, const std::string&) {
         EXPECT_GE(fraction, 0.0);
         EXPECT_LE(fraction, 1.0);
-        return ++reports < 2;  // there are at least two waves of runs
+        return ++reports < 2;  // there are many slices
     });
-    std::vector<ShiftedLdlt> factors;
-    EXPECT_THROW(lowestPairs(A.laplacian, A.constants, 100, factors, progress), Cancelled);
+    EXPECT_THROW(lowest(A, 100, progress), Cancelled);
+}
+
+TEST(TruncatedBasisSlices, TellTheirProgress) {
+    const Operator A(testing::icosphere(4));
+    double last = 0.0;
+    const Progress rising([&](double fraction, const std::string&) {
+        EXPECT_GE(fraction, last);
+        last = fraction;
+        return true;
+    });
+    lowest(A, 100, rising);
+    EXPECT_GT(last, 0.9);
+}
+
+TEST(TruncatedSteps, ComputeTheBasisOfEveryShape) {
+    const Mesh mesh = testing::withNoise(testing::icosphere(4), 0.02, 7);
+    FilterOptions options;
+    options.featureSize = 0.5;
+    options.steps = 3;
+    options.evaluation.spectrum = Spectrum::Truncated;
+    options.evaluation.basisSize = 100;
+    const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_EQ(result.computedBases, 3);
+    EXPECT_EQ(result.inertiaCount, result.eigenvalues.size());
+    EXPECT_LT(result.residuals.maxCoeff(), 1e-7);
 }
 
 }  // namespace
