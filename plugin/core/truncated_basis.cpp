@@ -180,6 +180,7 @@ HarmonicBasis certified(const Laplacian& laplacian, const ConstantModes& constan
     basis.Phi.conservativeResize(Eigen::NoChange, size);
     basis.lambda.conservativeResize(size);
     basis.residuals = relativeResiduals(laplacian, constants.count(), basis, progress);
+    progress.report(1.0, kStage);
     return basis;
 }
 
