@@ -21,17 +21,17 @@ constexpr double kNudge = 1e-7;
 }  // namespace
 
 const std::shared_ptr<const SymbolicLdlt>& ShiftedLdlt::analysis(const Laplacian& laplacian) {
-    if (!symbolic_ || !symbolic_->isOf(laplacian.W))
-        symbolic_ = std::make_shared<const SymbolicLdlt>(laplacian.W);
-    return symbolic_;
+    if (!analysis_ || !analysis_->isOf(laplacian.W))
+        analysis_ = std::make_shared<const SymbolicLdlt>(laplacian.W);
+    return analysis_;
 }
 
 void ShiftedLdlt::factorize(const Laplacian& laplacian, double sigma) {
-    const SymbolicLdlt& symbolic = *analysis(laplacian);
+    symbolic_ = analysis(laplacian);
     ++factorizations_;
     for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
         shift_ = sigma * (1.0 + attempt * kNudge);
-        if (!eliminate(symbolic, laplacian, shift_, numbers_)) continue;
+        if (!eliminate(*symbolic_, laplacian, shift_, numbers_)) continue;
         if (!numbers_.pivots.allFinite()) continue;
         below_ = (numbers_.pivots.array() < 0.0).count();
         return;

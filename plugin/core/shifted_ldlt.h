@@ -23,7 +23,7 @@ class ShiftedLdlt {
 
     /// @param analysis  of the pattern that the matrices will probably have: shared.
     explicit ShiftedLdlt(std::shared_ptr<const SymbolicLdlt> analysis)
-        : symbolic_(std::move(analysis)) {}
+        : analysis_(std::move(analysis)) {}
 
     /// @param sigma  in units of lambda (1 / length^2); moved a little when a pivot vanishes.
     /// @throws SolverFailure  when pivots vanish, or are not finite, at every shift nearby.
@@ -32,7 +32,8 @@ class ShiftedLdlt {
 
     double shift() const { return shift_; }
 
-    /// The symbolic analysis of W's pattern: made anew if the last one is not of it.
+    /// The symbolic analysis of W's pattern: made anew if the last one is not of it. The factor
+    /// keeps its own.
     const std::shared_ptr<const SymbolicLdlt>& analysis(const Laplacian& laplacian);
 
     int factorizations() const { return factorizations_; }  ///< Done with this object.
@@ -68,7 +69,8 @@ class ShiftedLdlt {
     void solveOrdered(double* Y, int columns) const;
 
   private:
-    std::shared_ptr<const SymbolicLdlt> symbolic_;
+    std::shared_ptr<const SymbolicLdlt> analysis_;  // the last one
+    std::shared_ptr<const SymbolicLdlt> symbolic_;  // of the factor
     LdltNumbers numbers_;
     double shift_ = 0.0;
     Index below_ = 0;

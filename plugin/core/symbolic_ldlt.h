@@ -19,9 +19,6 @@ struct SymbolicLdlt {
     /// @throws InvalidMesh  when the factor has more entries than an int counts: some 1e7 vertices.
     explicit SymbolicLdlt(const SparseMatrix& W);
 
-    /// None, of no matrix.
-    SymbolicLdlt() = default;
-
     /// Whether W has the pattern that was analyzed.
     bool isOf(const SparseMatrix& W) const;
 

@@ -94,6 +94,8 @@ class SlicedBasis {
     /// Makes every second slice orthogonal to its neighbours: eigenvectors of near eigenvalues
     /// from different runs overlap by their residuals, divided by the distance.
     void separateNeighbours(const Progress& progress) {
+        // Slices that have a vector in common with the next one: an eigenvalue lies on the cut.
+        std::vector<char> meetsNext(slices_.size(), 0);
         runInParallel(
             static_cast<Index>(slices_.size() / 2),
             [&](Index task, int, const StopPoint&) {
@@ -101,13 +103,14 @@ class SlicedBasis {
                 if (!isComplete_[i]) return;
                 for (const std::size_t j : {i - 1, i + 1}) {
                     if (j >= slices_.size() || !isComplete_[j]) continue;
-                    // Otherwise the same vector twice: an eigenvalue lies on the cut.
                     if (orthonormalize(laplacian_.D, columns(slices_[j]), columns(slices_[i])) <
                         kOwnPart)
-                        isComplete_[i] = 0;
+                        meetsNext[std::min(i, j)] = 1;
                 }
             },
             progress, kStage);
+        for (std::size_t i = 0; i < slices_.size(); ++i)
+            if (meetsNext[i]) isComplete_[i] = 0;  // and is merged with the next one
     }
 
     /// Merges every slice that is incomplete with the next one, or the last with the one before;

@@ -64,5 +64,15 @@ TEST(ShiftedCholesky, CountsEigenvaluesBelowAShiftExactly) {
     }
 }
 
+TEST(ShiftedCholesky, KeepsItsFactorWhileAnotherPatternIsCounted) {
+    const Mesh mesh = testing::blob(), other = testing::torus(2, 1, 20, 10);
+    const Laplacian laplacian = cotangentLaplacian(mesh.V, mesh.F);
+    ShiftedCholesky cholesky;
+    cholesky.factorize(laplacian, 1.0);
+    const Eigen::MatrixXd before = cholesky.solve(mesh.V);
+    cholesky.countEigenvaluesBelow(cotangentLaplacian(other.V, other.F), 0.3);
+    EXPECT_EQ(cholesky.solve(mesh.V), before);
+}
+
 }  // namespace
 }  // namespace spectral
