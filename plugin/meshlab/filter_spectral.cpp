@@ -1,4 +1,4 @@
-#include "filter_spectral.h"
+#include "meshlab/filter_spectral.h"
 
 #include <common/ml_shared_data_context/ml_plugin_gl_context.h>
 
@@ -7,11 +7,12 @@
 #include <sstream>
 #include <utility>
 
-#include "apply_lock.h"
 #include "core/support/errors.h"
-#include "core/support/thread_team.h"
-#include "late_close.h"
-#include "late_preview.h"
+#include "core/support/threads.h"
+#include "meshlab/error_messages.h"
+#include "meshlab/host_workarounds/apply_lock.h"
+#include "meshlab/host_workarounds/late_close.h"
+#include "meshlab/host_workarounds/late_preview.h"
 
 namespace {
 
@@ -144,7 +145,7 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
             throw MLException(cancelled.what());
         return {};
     } catch (const spectral::Error& error) {
-        throw MLException(QString::fromStdString(error.what()));
+        throw MLException(QString::fromStdString(errorMessage(error, parameters)));
     } catch (const std::bad_alloc&) {
         throw MLException(
             "not enough memory for this mesh; choose a smaller basis_size or spectrum = full where "

@@ -5,7 +5,7 @@
 #include <atomic>
 #include <vector>
 
-#include "mesh_filter.h"
+#include "meshlab/mesh_filter.h"
 
 /// MeshLab's view of the project: one plugin with several filters.
 ///

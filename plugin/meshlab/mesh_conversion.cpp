@@ -1,7 +1,8 @@
-#include "mesh_conversion.h"
+#include "meshlab/mesh_conversion.h"
+
+#include <common/mlexception.h>
 
 #include "core/mesh/mesh.h"
-#include "core/support/errors.h"
 
 MeshMatrices toMatrices(const CMeshO& mesh) {
     MeshMatrices matrices;
@@ -34,7 +35,7 @@ void reportWriting(const MeshMatrices& input, const CMeshO& mesh,
     const MeshMatrices now = toMatrices(mesh);
     if (now.vertexIndex != input.vertexIndex || now.F.rows() != input.F.rows() ||
         now.F != input.F || now.V != input.V)
-        throw spectral::InvalidMesh(
+        throw MLException(
             "the mesh was changed while the filter was at work, which has left it alone: apply the "
             "filter again");
 }

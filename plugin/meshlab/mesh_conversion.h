@@ -19,7 +19,7 @@ struct MeshMatrices {
 MeshMatrices toMatrices(const CMeshO& mesh);
 
 /// Reports that the mesh is to be written next, the last moment to stop.
-/// @throws InvalidMesh  when it is not `input` any more: MeshLab lets its user edit it meanwhile.
+/// @throws MLException  when it is not `input` any more: MeshLab lets its user edit it meanwhile.
 void reportWriting(const MeshMatrices& input, const CMeshO& mesh,
                    const spectral::Progress& progress);
 

@@ -15,6 +15,8 @@ struct FilterOutcome {
     /// unsigned) do not reach Python.
     std::map<std::string, QVariant> report;
     std::string text;  ///< The same as lines for MeshLab's log.
+    std::vector<std::string>
+        warnings{};  ///< What fell short without being an error; in the log too.
 };
 
 /// One filter of the plugin, as the plugin's class needs it.

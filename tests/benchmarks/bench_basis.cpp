@@ -20,7 +20,7 @@
 
 #include "core/harmonics/truncated_basis.h"
 #include "core/laplacian/mesh_laplacian.h"
-#include "core/ldlt/cholesky.h"
+#include "core/ldlt/shifted_ldlt.h"
 #include "support/memory.h"
 #include "support/ply.h"
 
@@ -44,19 +44,19 @@ class InverseOperator {
     using Scalar = double;
 
     InverseOperator(const Laplacian& laplacian, double shift) : sqrtD_(laplacian.D.cwiseSqrt()) {
-        cholesky_.factorize(laplacian, shift);
+        ldlt_.factorizeDefinite(laplacian.W, laplacian.D, shift);
     }
     Index rows() const { return sqrtD_.size(); }
     Index cols() const { return sqrtD_.size(); }
     void perform_op(const double* in, double* out) const {
         const Eigen::MatrixXd b =
             sqrtD_.cwiseProduct(Eigen::Map<const Eigen::VectorXd>(in, rows()));
-        Eigen::Map<Eigen::VectorXd>(out, rows()) = sqrtD_.cwiseProduct(cholesky_.solve(b).col(0));
+        Eigen::Map<Eigen::VectorXd>(out, rows()) = sqrtD_.cwiseProduct(ldlt_.solve(b).col(0));
     }
 
   private:
     Eigen::VectorXd sqrtD_;
-    ShiftedCholesky cholesky_;
+    ShiftedLdlt ldlt_;
 };
 
 Pairs spectraPairs(const MeshLaplacian& mesh, Index k) {
@@ -74,8 +74,8 @@ Pairs spectraPairs(const MeshLaplacian& mesh, Index k) {
 }
 
 Pairs slicedPairs(const MeshLaplacian& mesh, Index k) {
-    ShiftedCholesky cholesky;
-    HarmonicBasis basis = truncatedBasis(mesh.laplacian, mesh.constants, k, cholesky);
+    ShiftedLdlt ldlt;
+    HarmonicBasis basis = truncatedBasis(mesh.laplacian, mesh.constants, k, ldlt);
     return {std::move(basis.lambda), std::move(basis.Phi)};
 }
 

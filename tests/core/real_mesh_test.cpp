@@ -88,9 +88,9 @@ TEST_P(RealMesh, TruncatedWithAllHarmonicsEqualsDense) {
               1e-12);
 
     // All but the last from the iteration: the residual is then that last harmonic alone.
-    ShiftedCholesky cholesky;
+    ShiftedLdlt ldlt;
     const Index n = mesh_.V.rows();
-    const HarmonicBasis basis = truncatedBasis(A.laplacian, A.constants, n - 1, cholesky);
+    const HarmonicBasis basis = truncatedBasis(A.laplacian, A.constants, n - 1, ldlt);
     const double last = gain(std::sqrt(dense.lambda[n - 1]));
     EXPECT_LT(
         largestDifference(applyInBasis(basis, A.laplacian.D, A.constants, gain, last, mesh_.V),
@@ -101,8 +101,8 @@ TEST_P(RealMesh, TruncatedWithAllHarmonicsEqualsDense) {
 TEST_P(RealMesh, TruncatedBasisEqualsTheLowestOfTheDenseOne) {
     const Operator A(mesh_);
     const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
-    ShiftedCholesky cholesky;
-    const HarmonicBasis basis = truncatedBasis(A.laplacian, A.constants, 200, cholesky);
+    ShiftedLdlt ldlt;
+    const HarmonicBasis basis = truncatedBasis(A.laplacian, A.constants, 200, ldlt);
     EXPECT_LT((basis.lambda - dense.lambda.head(basis.size())).cwiseAbs().maxCoeff(),
               1e-9 * dense.lambda[basis.size() - 1]);
 }
@@ -114,8 +114,8 @@ TEST_P(RealMesh, FullSpectrumAndTruncatedAgreeWhereTheGainVanishesBeyondTheBasis
     options.evaluation.accuracy = 1e-9;
     const Vertices full = fractionalFilter(mesh_.V, mesh_.F, options).V;
     options.evaluation.spectrum = Spectrum::Truncated;
-    options.evaluation.basisSize = 500;
-    options.evaluation.reinjectResidual = false;
+    options.evaluation.truncation.basisSize = 500;
+    options.evaluation.truncation.reinjectResidual = false;
     const Vertices truncated = fractionalFilter(mesh_.V, mesh_.F, options).V;
     EXPECT_LT(largestDifference(full, truncated), 1e-7);
 }
@@ -146,8 +146,8 @@ TEST_P(OpenRealMesh, WithAFixedBoundaryFullSpectrumAndTruncatedAgree) {
     const FilterResult full = fractionalFilter(mesh_.V, mesh_.F, options);
     EXPECT_GT(full.fixedVertices, 20);
     options.evaluation.spectrum = Spectrum::Truncated;
-    options.evaluation.basisSize = 400;
-    options.evaluation.reinjectResidual = false;
+    options.evaluation.truncation.basisSize = 400;
+    options.evaluation.truncation.reinjectResidual = false;
     const Vertices truncated = fractionalFilter(mesh_.V, mesh_.F, options).V;
     EXPECT_LT(largestDifference(full.V, truncated), 1e-7);
 }

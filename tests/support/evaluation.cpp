@@ -15,13 +15,13 @@ Vertices filteredDense(const Operator& A, const HarmonicBasis& dense, const Gain
 
 FullSpectrumResult filteredFullSpectrum(const Operator& A, const Gain& gain, double cutoff,
                                         double accuracy) {
-    ShiftedCholesky cholesky;
+    ShiftedLdlt ldlt;
     const Pole pole = selectPole(gain, cutoff, bulkSpectrum(A.laplacian), accuracy);
-    cholesky.factorize(A.laplacian, pole.shift);
+    ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, pole.shift);
     FullSpectrumOptions options;
     options.accuracy = accuracy;
     options.resolution = pole.resolution;
-    return applyFullSpectrum(A.laplacian.D, A.constants, cholesky, gain, A.mesh.V, options);
+    return applyFullSpectrum(A.laplacian.D, A.constants, ldlt, gain, A.mesh.V, options);
 }
 
 double relativeError(const Operator& A, const Eigen::MatrixXd& difference) {

@@ -6,9 +6,9 @@
 #include "core/krylov/pole_selection.h"
 #include "core/laplacian/frequency.h"
 #include "core/laplacian/mesh_laplacian.h"
-#include "core/ldlt/cholesky.h"
+#include "core/ldlt/shifted_ldlt.h"
 #include "core/mesh/mesh.h"
-#include "core/support/thread_team.h"
+#include "core/support/threads.h"
 
 namespace spectral {
 
@@ -34,16 +34,16 @@ Artefacts measureArtefacts(const Vertices& V, const Faces& F, const ArtefactOpti
     const Eigen::VectorXd& D = mesh.laplacian.D;
 
     progress.report(0.0, "factorizing");
-    ShiftedCholesky cholesky;
+    ShiftedLdlt ldlt;
     // The gain turns over at twice the cutoff.
-    cholesky.factorize(
-        mesh.laplacian,
+    ldlt.factorizeDefinite(
+        mesh.laplacian.W, D,
         selectPole(gain, 2.0 * cutoff, bulkSpectrum(mesh.laplacian), kAccuracy).shift);
     FullSpectrumOptions evaluation;
     evaluation.accuracy = kAccuracy;
     const Vertices& X = mesh.surface.X;
     const FullSpectrumResult smooth =
-        applyFullSpectrum(D, mesh.constants, cholesky, gain, X, evaluation, progress);
+        applyFullSpectrum(D, mesh.constants, ldlt, gain, X, evaluation, progress);
 
     const Eigen::VectorXd length = (X - smooth.Y).rowwise().norm();
     Artefacts artefacts;

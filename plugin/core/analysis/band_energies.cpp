@@ -66,10 +66,10 @@ Eigen::ArrayXd energiesOf(const Bundle& bundle, const Bands& octaves, const Band
 Eigen::ArrayXd convergedEnergies(const Bundle& bundle, const Bands& octaves, const Bands& thirds,
                                  const Laplacian& laplacian, const ConstantModes& constants,
                                  const Eigen::MatrixXd& signals, const Eigen::Array2d& total,
-                                 ShiftedCholesky& cholesky) {
+                                 ShiftedLdlt& ldlt) {
     const double omega = 2.0 * kPi / octaves.featureSize(bundle.octave);
-    cholesky.factorize(laplacian, omega * omega);
-    KrylovSpaces spaces(cholesky, laplacian.D, constants, signals);
+    ldlt.factorizeDefinite(laplacian.W, laplacian.D, omega * omega);
+    KrylovSpaces spaces(ldlt, laplacian.D, constants, signals);
 
     const auto count = static_cast<Index>(bundle.thirds.size());
     Eigen::ArrayXd negligible(1 + 2 * count), relative(1 + 2 * count);
@@ -96,7 +96,7 @@ Eigen::ArrayXd convergedEnergies(const Bundle& bundle, const Bands& octaves, con
 BandEnergies energiesBeyond(const Bands& octaves, const Bands& thirds, const Laplacian& laplacian,
                             const ConstantModes& constants, double lastOfBasis,
                             const Eigen::MatrixXd& shape, const Eigen::VectorXd& noise,
-                            ShiftedCholesky& cholesky, const Progress& progress) {
+                            ShiftedLdlt& ldlt, const Progress& progress) {
     Eigen::MatrixXd signals(shape.rows(), shape.cols() + 1);
     signals << shape, noise;
     const Eigen::Array2d total(shape.rowwise().squaredNorm().dot(laplacian.D),
@@ -109,8 +109,8 @@ BandEnergies energiesBeyond(const Bands& octaves, const Bands& thirds, const Lap
     for (std::size_t i = 0; i < all.size(); ++i) {
         progress.report(static_cast<double>(i) / static_cast<double>(all.size()),
                         "energies of the octaves");
-        const Eigen::ArrayXd energies = convergedEnergies(all[i], octaves, thirds, laplacian,
-                                                          constants, signals, total, cholesky);
+        const Eigen::ArrayXd energies =
+            convergedEnergies(all[i], octaves, thirds, laplacian, constants, signals, total, ldlt);
         const auto count = static_cast<Index>(all[i].thirds.size());
         beyond.octaves[all[i].octave] = energies[0];
         for (Index t = 0; t < count; ++t) {

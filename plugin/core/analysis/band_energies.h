@@ -5,7 +5,7 @@
 #include "core/analysis/bands.h"
 #include "core/laplacian/constant_modes.h"
 #include "core/laplacian/laplacian.h"
-#include "core/ldlt/cholesky.h"
+#include "core/ldlt/shifted_ldlt.h"
 #include "core/support/progress.h"
 
 namespace spectral {
@@ -27,6 +27,6 @@ struct BandEnergies {
 BandEnergies energiesBeyond(const Bands& octaves, const Bands& thirds, const Laplacian& laplacian,
                             const ConstantModes& constants, double lastOfBasis,
                             const Eigen::MatrixXd& shape, const Eigen::VectorXd& noise,
-                            ShiftedCholesky& cholesky, const Progress& progress);
+                            ShiftedLdlt& ldlt, const Progress& progress);
 
 }  // namespace spectral

@@ -16,11 +16,11 @@
 #include "core/laplacian/harmonic_extension.h"
 #include "core/laplacian/interior.h"
 #include "core/laplacian/mesh_laplacian.h"
-#include "core/ldlt/cholesky.h"
+#include "core/ldlt/shifted_ldlt.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/mesh.h"
 #include "core/support/errors.h"
-#include "core/support/thread_team.h"
+#include "core/support/threads.h"
 
 namespace spectral {
 
@@ -67,15 +67,15 @@ Vibration freeVibration(MeshLaplacian mesh) {
 Vibration heldVibration(const MeshLaplacian& mesh, const Interior& interior) {
     if (interior.size() == 0)
         throw InvalidOption(
-            "boundary = fixed leaves nothing to measure: every vertex is on the boundary. Choose "
-            "boundary = free");
+            ErrorCode::BoundaryFixesAll,
+            "boundary = fixed leaves nothing to measure: every vertex is on the boundary");
     HarmonicExtension extension(interior);
     extension.setLaplacian(mesh.laplacian);
     HarmonicExtension::Rest rest = extension.rest(mesh.surface.X);
     if (rest.relativeSize <= kNoShape)
-        throw InvalidOption(
-            "boundary = fixed leaves nothing to measure: the surface is what its boundary "
-            "determines, as a flat one is. Choose boundary = free");
+        throw InvalidOption(ErrorCode::BoundaryFixesAll,
+                            "boundary = fixed leaves nothing to measure: the surface is what its "
+                            "boundary determines, as a flat one is");
     Laplacian laplacian = interior.restricted(mesh.laplacian);
     ConstantModes constants(interior.components(), laplacian.D);
     constants.remove(rest.U);
@@ -91,12 +91,8 @@ Vibration vibrationOf(MeshLaplacian mesh, Boundary boundary) {
 Index sizeOfBasis(int asked, Index vertices, int components) {
     if (asked < 1)
         throw InvalidOption("basis_size = " + std::to_string(asked) + ": must be at least 1");
-    if (asked < vertices || vertices <= kWholeBasis)
-        return std::min<Index>(std::max(asked, components + 1), vertices);
-    throw InvalidOption("basis_size = " + std::to_string(asked) + " needs more than " +
-                        std::to_string(asked) + " vertices; the surface has " +
-                        std::to_string(vertices) + ": choose at most " +
-                        std::to_string(vertices - 1) + ", 200 is plenty");
+    const Index size = std::max(asked, components + 1);
+    return vertices <= kWholeBasis ? std::min(size, vertices) : size;
 }
 
 /// |X|_D^2 over all columns.
@@ -126,8 +122,8 @@ Eigen::VectorXd energiesWithin(const Bands& bands, const Eigen::VectorXd& omega,
 /// In the basis the mean over all draws of the noise is known, sum_v (phi_i(v) D_v)^2; beyond, one
 /// draw is near enough to it, for there are many harmonics in a band.
 BandEnergies bandEnergies(const Bands& octaves, const Bands& thirds, const Vibration& vibration,
-                          const HarmonicBasis& basis, ShiftedCholesky& cholesky,
-                          const Progress& progress, GeometrySpectrum& spectrum) {
+                          const HarmonicBasis& basis, ShiftedLdlt& ldlt, const Progress& progress,
+                          GeometrySpectrum& spectrum) {
     const Eigen::VectorXd& D = vibration.laplacian.D;
     const Index constants = vibration.constants.count();
     const Eigen::MatrixXd Dphi = D.asDiagonal() * basis.Phi;
@@ -148,7 +144,7 @@ BandEnergies bandEnergies(const Bands& octaves, const Bands& thirds, const Vibra
     noise -= basis.Phi * (Dphi.transpose() * noise);
     BandEnergies beyond =
         energiesBeyond(octaves, thirds, vibration.laplacian, vibration.constants,
-                       spectrum.frequencies[basis.size() - 1], R, noise, cholesky, progress);
+                       spectrum.frequencies[basis.size() - 1], R, noise, ldlt, progress);
     if (const double sum = beyond.octaves.sum(); sum > 0.0) {
         spectrum.mismatch = std::abs(sum / energyOfR - 1.0);
         beyond.octaves *= energyOfR / sum;
@@ -235,10 +231,11 @@ GeometrySpectrum geometrySpectrum(const Vertices& V, const Faces& F, const Spect
     const Index k = sizeOfBasis(options.basisSize, n, vibration.constants.count());
 
     const ThreadTeam team;
-    ShiftedCholesky cholesky;
-    const HarmonicBasis basis = k == n ? denseBasis(laplacian, vibration.constants)
-                                       : truncatedBasis(laplacian, vibration.constants, k, cholesky,
-                                                        progress.part(0.0, kBasisDone));
+    ShiftedLdlt ldlt;
+    const HarmonicBasis basis = k == n && n <= kWholeBasis
+                                    ? denseBasis(laplacian, vibration.constants)
+                                    : truncatedBasis(laplacian, vibration.constants, k, ldlt,
+                                                     progress.part(0.0, kBasisDone));
     spectrum.totalEnergy = energyOf(vibration.U, D);
     spectrum.frequencies = basis.lambda.cwiseMax(0.0).cwiseSqrt();
     spectrum.amplitudes =
@@ -251,7 +248,7 @@ GeometrySpectrum geometrySpectrum(const Vertices& V, const Faces& F, const Spect
         std::max(lowest, k == n ? basis.lambda[n - 1] : largestEigenvalue(laplacian));
     const Bands octaves(spectrum.diagonal, std::sqrt(lowest), std::sqrt(highest));
     const Bands thirds(spectrum.diagonal, std::sqrt(lowest), std::sqrt(highest), 3);
-    const BandEnergies energies = bandEnergies(octaves, thirds, vibration, basis, cholesky,
+    const BandEnergies energies = bandEnergies(octaves, thirds, vibration, basis, ldlt,
                                                progress.part(kBasisDone, 1.0), spectrum);
     setOctaves(octaves, energies.octaves, spectrum);
     setBands(thirds, energies, n, spectrum);

@@ -9,9 +9,10 @@
 #include "core/laplacian/constant_modes.h"
 #include "core/laplacian/interior.h"
 #include "core/laplacian/mesh_laplacian.h"
-#include "core/ldlt/cholesky.h"
+#include "core/ldlt/shifted_ldlt.h"
 #include "core/mesh/mesh.h"
 #include "core/support/errors.h"
+#include "core/support/threads.h"
 
 namespace spectral {
 
@@ -20,28 +21,6 @@ namespace {
 /// Relative difference of absolute values that are taken for equal: well above the accuracy of an
 /// eigenvector, well below what tells entries apart where there is no symmetry.
 constexpr double kTie = 1e-6;
-
-void checkBasisSize(int k, const Interior& interior) {
-    const std::string given = "basis_size = " + std::to_string(k);
-    const Index vertices = interior.size();
-    const int components = interior.components().count;
-    const char* const where =
-        interior.isWhole() ? "the surface has " : "beside its fixed boundary the surface has ";
-    if (vertices < 2)
-        throw InvalidOption(std::string("boundary = fixed leaves nothing that could vibrate: ") +
-                            where + std::to_string(vertices) + " vertices. Choose boundary = free");
-    if (k >= vertices)
-        throw InvalidOption(given + " needs more than " + std::to_string(k) + " vertices; " +
-                            where + std::to_string(vertices) + ": choose at most " +
-                            std::to_string(vertices - 1));
-    if (k < 1) throw InvalidOption(given + ": choose at least " + std::to_string(components + 1));
-    if (k <= components)
-        throw InvalidOption(given +
-                            " leaves no room beside the constant modes, of which every "
-                            "connected component has one that no boundary holds (here " +
-                            std::to_string(components) + "): choose at least " +
-                            std::to_string(components + 1));
-}
 
 }  // namespace
 
@@ -59,12 +38,16 @@ ManifoldHarmonics manifoldHarmonics(const Vertices& V, const Faces& F,
     const MeshLaplacian mesh = meshLaplacian(V, F, options.laplacian);
     const Interior interior(mesh.surface.F, mesh.components, options.boundary);
     const Index k = options.basisSize;
-    checkBasisSize(options.basisSize, interior);
+    if (interior.size() < 2)
+        throw InvalidOption(ErrorCode::BoundaryFixesAll,
+                            "boundary = fixed leaves nothing that could vibrate: " +
+                                std::to_string(interior.size()) + " vertices are not on it");
+    const ThreadTeam team;
 
     const Laplacian laplacian = interior.restricted(mesh.laplacian);
     const ConstantModes constants(interior.components(), laplacian.D);
-    ShiftedCholesky cholesky;
-    HarmonicBasis basis = truncatedBasis(laplacian, constants, k, cholesky, progress);
+    ShiftedLdlt ldlt;
+    HarmonicBasis basis = truncatedBasis(laplacian, constants, k, ldlt, progress);
     ManifoldHarmonics harmonics;
     harmonics.wholeSize = static_cast<int>(basis.size());
     basis.Phi.conservativeResize(Eigen::NoChange, k);

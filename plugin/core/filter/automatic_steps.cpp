@@ -8,7 +8,7 @@
 
 #include "core/filter/fractional_steps.h"
 #include "core/mesh/mesh.h"
-#include "core/support/thread_team.h"
+#include "core/support/threads.h"
 
 namespace spectral {
 
@@ -35,25 +35,17 @@ Eigen::VectorXd distances(const Vertices& A, const Vertices& B) {
 double largestButNegligible(const Eigen::VectorXd& length, const Eigen::VectorXd& D) {
     std::vector<int> order(static_cast<std::size_t>(length.size()));
     std::iota(order.begin(), order.end(), 0);
-    double left = kNegligibleArea * D.sum();
-    // Of the longest only, as many as are needed: halves of what is not yet sorted.
-    auto end = order.end();
-    for (auto begin = order.begin(); begin != end;) {
-        const auto middle = begin + (end - begin + 1) / 2;
-        const auto isLonger = [&](int i, int j) { return length[i] > length[j]; };
-        std::nth_element(begin, middle - 1, end, isLonger);
-        const double mass =
-            std::accumulate(begin, middle, 0.0, [&](double sum, int i) { return sum + D[i]; });
-        if (mass <= left) {
-            left -= mass;
-            begin = middle;
-        } else if (middle - begin == 1) {
-            return length[*begin];
-        } else {
-            end = middle;
-        }
+    const auto isLonger = [&](int i, int j) { return length[i] > length[j]; };
+    // The longest are mostly few: so many vertices are sorted, four times as many if need be.
+    for (std::size_t count = order.size() / 256 + 1;; count *= 4) {
+        const auto end = order.begin() + static_cast<Index>(std::min(count, order.size()));
+        std::nth_element(order.begin(), end - 1, order.end(), isLonger);
+        std::sort(order.begin(), end, isLonger);
+        double left = kNegligibleArea * D.sum();
+        for (auto i = order.begin(); i != end; ++i)
+            if ((left -= D[*i]) < 0.0) return length[*i];
+        if (end == order.end()) return 0.0;
     }
-    return 0.0;
 }
 
 /// How far shapes are apart from pass to pass, over a surface but kNegligibleArea of it, and how
@@ -131,9 +123,9 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
     // From the Laplacian of the input: the paper's whole step, and the first half steps of the
     // first two passes.
     constexpr double kFirstPasses = 0.1;
-    evaluate.setLaplacian(laplacians.input(), 0.5, progress.part(0.0, 0.5 * kFirstPasses));
     std::vector<Eigen::MatrixXd> first =
-        evaluate.predict(X, {1.0, 0.5, 0.25}, progress.part(0.5 * kFirstPasses, kFirstPasses));
+        evaluate.predict(laplacians.input(), X, {1.0, 0.5, 0.25}, progress.part(0.0, kFirstPasses))
+            .Y;
     const Vertices halves[] = {first[1], first[2]};
     Limit limit(first[0], laplacians);
     first.clear();
@@ -143,13 +135,11 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
     for (int K = 1, last = 2;; K *= 2) {
         // The passes from this one to the last take K + 2 K + ... + last steps.
         const double end = done + (1.0 - done) * K / (2.0 * std::max(K, last) - K);
-        evaluate.forgetErrors();
         const Vertices* firstHalf = K <= 2 ? &halves[K - 1] : nullptr;
-        FractionalSteps pass = midpointSteps(laplacians, evaluate, X, K, options.maxSteps,
-                                             progress.part(done, end), firstHalf);
+        result.last = midpointSteps(laplacians, evaluate, X, K, options.maxSteps,
+                                    progress.part(done, end), firstHalf);
         done = end;
-        limit.add(std::move(pass.X));
-        result.sizes = std::move(pass.sizes);
+        limit.add(std::move(result.last.X));
         result.error = limit.ofResult().error();
         const bool isReached = result.error <= options.tolerance;
         // What shrinks away is worth a few passes only.
@@ -157,7 +147,7 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
             isReached && (K >= kFewSteps || limit.ofInput().error() <= options.tolerance);
         const bool stagnates = K >= kFewSteps && limit.ofResult().stagnates();
         if (isEnough || stagnates || 2 * K > options.maxSteps) {
-            result.X = isReached ? limit.extrapolated() : limit.last();
+            result.last.X = isReached ? limit.extrapolated() : limit.last();
             result.singularPart = limit.partBeyond(options.tolerance);
             return result;
         }

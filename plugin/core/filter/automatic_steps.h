@@ -1,7 +1,6 @@
 #pragma once
 
-#include <vector>
-
+#include "core/filter/fractional_steps.h"
 #include "core/filter/step_evaluator.h"
 #include "core/laplacian/laplacian_builder.h"
 #include "core/mesh/mesh.h"
@@ -22,10 +21,9 @@ struct AutomaticOptions {
 
 /// The limit of the paper's scheme for infinitely many steps, as far as it was found.
 struct AutomaticSteps {
-    Vertices X;                 ///< n x 3, the filtered shape.
-    std::vector<double> sizes;  ///< The fractional powers of the last pass's steps; sum 1.
-    double error = 0.0;  ///< Estimated error over the filtered surface but kNegligibleArea, length
-                         ///< units.
+    FractionalSteps last;  ///< Of the last pass; X may be extrapolated from the last two.
+    double error = 0.0;    ///< Estimated, over the filtered surface but kNegligibleArea, length
+                           ///< units.
 
     /// Part of the input's surface, 0 to 1, on which the estimated error is above the tolerance.
     double singularPart = 0.0;

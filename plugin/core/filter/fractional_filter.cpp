@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
-#include <sstream>
 #include <string>
 
 #include "core/filter/automatic_steps.h"
@@ -13,9 +11,8 @@
 #include "core/laplacian/interior.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/mesh.h"
-#include "core/mesh/mesh_check.h"
 #include "core/mesh/surface.h"
-#include "core/support/thread_team.h"
+#include "core/support/threads.h"
 
 namespace spectral {
 
@@ -25,22 +22,22 @@ namespace {
 /// square over the surface.
 constexpr double kEvaluationShare = 0.05;
 
-/// Relative accuracy of evaluations, however large the tolerance is.
+/// Relative accuracy of evaluations, however large the tolerance.
 constexpr double kCoarsestAccuracy = 1e-4;
 
 void checkOptions(const FilterOptions& options) {
     if (options.steps < 0)
         throw InvalidOption("steps = " + std::to_string(options.steps) +
-                            ": give a number of steps, e.g. 10, or 0 for automatic steps");
+                            ": must be at least 1, e.g. 10, or 0 for automatic steps");
     if (options.steps == 0 && !(std::isfinite(options.tolerance) && options.tolerance > 0.0))
         throw InvalidOption("tolerance = " + std::to_string(options.tolerance) +
                             ": automatic steps need a length above zero, e.g. 0.05 % of the "
                             "diagonal of the bounding box");
     if (!(options.conformalShare >= 0.0 && options.conformalShare <= 1.0))
         throw InvalidOption("conformal_share = " + std::to_string(options.conformalShare) +
-                            ": give a part between 0 (the paper's update) and 1 (conformal)");
+                            ": must be between 0 (the paper's update) and 1 (conformal)");
     if (!(options.evaluation.accuracy >= 1e-12 && options.evaluation.accuracy < 1.0))
-        throw InvalidOption("accuracy must lie between 1e-12 and 1");
+        throw InvalidOption("accuracy must be between 1e-12 and 1");
 }
 
 /// Length of every row of `displacement`, as their maximum and their D-weighted root mean square.
@@ -49,42 +46,6 @@ void measureDisplacement(const Vertices& displacement, const Eigen::VectorXd& D,
     const Eigen::VectorXd squares = displacement.rowwise().squaredNorm();
     result.maxDisplacement = std::sqrt(squares.maxCoeff());
     result.rmsDisplacement = std::sqrt(squares.dot(D) / D.sum());
-}
-
-std::string nothingMovesWarning() {
-    return "nothing can move: every vertex lies on the boundary, which is fixed. Choose boundary = "
-           "free; where the triangles of the mesh are not connected, apply 'Merge Close Vertices' "
-           "first";
-}
-
-std::string accuracyWarning(double requested, double estimate) {
-    std::ostringstream text;
-    text << std::setprecision(2) << "the requested relative accuracy of " << requested
-         << " was not reached, the estimated error is " << estimate
-         << ". Choose a stop_gain of 0.05 instead of 0, a lower order or a wider band, or fewer "
-            "steps";
-    return text.str();
-}
-
-std::string toleranceWarning(double tolerance, const AutomaticSteps& steps) {
-    std::ostringstream text;
-    text << std::setprecision(2) << "the tolerance of " << tolerance << " was not reached on "
-         << 100.0 * steps.singularPart << " % of the surface, where the estimated error is "
-         << steps.error
-         << " and more: parts of it shrink away. Choose a smaller feature_size, or basis_update = "
-            "conformal where it is not";
-    return text.str();
-}
-
-/// @param last  frequency of the basis' last harmonic.
-std::string cutoffWarning(const FilterResult& result, double last) {
-    std::ostringstream text;
-    text << std::setprecision(4) << "the " << result.eigenvalues.size()
-         << " harmonics end at features of " << 2.0 * kPi / last << ", above the feature size of "
-         << result.featureSize
-         << ": details between the two are not told from all finer ones. Choose a larger "
-            "feature_size, a larger basis_size, or spectrum = full";
-    return text.str();
 }
 
 /// The evaluations of automatic steps need not be much finer than the steps.
@@ -103,12 +64,16 @@ EvaluationOptions evaluationFor(const FilterOptions& options, const Surface& sur
 AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate,
                              const Vertices& X, const FilterOptions& options,
                              const Progress& progress) {
-    if (options.steps == 0 && options.basisUpdate != BasisUpdate::None)
+    if (options.basisUpdate == BasisUpdate::None) {
+        // All powers of one operator commute: K steps are the whole filter at once.
+        AutomaticSteps whole{fixedSteps(laplacians, evaluate, X, 1, progress)};
+        const int K = std::max(1, options.steps);
+        whole.last.sizes.assign(static_cast<std::size_t>(K), 1.0 / K);
+        return whole;
+    }
+    if (options.steps == 0)
         return automaticSteps(laplacians, evaluate, X, {options.tolerance}, progress);
-    // Without an update of the basis all powers commute, and one step is the whole filter.
-    const int K = options.steps == 0 ? 1 : options.steps;
-    FractionalSteps fixed = fixedSteps(laplacians, evaluate, X, K, options.basisUpdate, progress);
-    return {std::move(fixed.X), std::move(fixed.sizes)};
+    return {fixedSteps(laplacians, evaluate, X, options.steps, progress)};
 }
 
 }  // namespace
@@ -116,8 +81,8 @@ AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evalua
 FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOptions& options,
                               const Progress& progress) {
     const ThreadTeam team;
-    checkMesh(V, F, options.laplacian);  // first: a feature size that is a part of an infinite
-    checkOptions(options);               // diagonal is the mesh's fault
+    checkMesh(V, F, options.laplacian);  // first: of an infinite diagonal no feature size is right
+    checkOptions(options);
     const Surface surface = surfaceOf(V, F);
     const TransferFunction transfer(options.transferFunction, cutoffFrequency(options.featureSize));
     const Interior interior(surface.F, connectedComponents(surface.F, surface.X.rows()),
@@ -128,7 +93,7 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     const EvaluationOptions evaluation = evaluationFor(options, surface);
     StepEvaluator evaluate(evaluation, interior, transfer);
     const AutomaticSteps steps = filterInSteps(laplacians, evaluate, surface.X, options, progress);
-    const Vertices& X = steps.X;
+    const Vertices& X = steps.last.X;
     if (!X.allFinite()) throw SolverFailure("the filtered coordinates are not finite numbers");
 
     // The displacement is added to the input: what does not move keeps its coordinates to the bit.
@@ -137,10 +102,11 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     result.V = V;
     for (Index i = 0; i < X.rows(); ++i) result.V.row(surface.vertex[i]) += displacement.row(i);
 
-    result.steps = static_cast<int>(steps.sizes.size());
-    result.stepSizes = steps.sizes;
+    result.steps = static_cast<int>(steps.last.sizes.size());
+    result.stepSizes = steps.last.sizes;
     result.stepError = steps.error;
     result.singularPart = steps.singularPart;
+    result.toleranceReached = options.steps > 0 || steps.error <= options.tolerance;
     result.cutoffFrequency = transfer.cutoff();
     result.featureSize = options.featureSize;
     measureDisplacement(displacement, lumpedMass(surface.X, surface.F), result);
@@ -153,23 +119,17 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     result.fixedVertices = static_cast<int>(interior.fixedVertices());
     result.factorizations = evaluate.factorizations();
     result.solves = evaluate.solves();
-    result.errorEstimate = evaluate.errorEstimate();
-    result.accuracyReached = evaluate.accuracyReached();
-    result.eigenvalues = evaluate.basis().lambda;
-    if (interior.size() == 0) result.warnings.push_back(nothingMovesWarning());
-    if (!result.accuracyReached)
-        result.warnings.push_back(accuracyWarning(evaluation.accuracy, result.errorEstimate));
-    result.toleranceReached = options.steps > 0 || steps.error <= options.tolerance;
-    if (!result.toleranceReached)
-        result.warnings.push_back(toleranceWarning(options.tolerance, steps));
-    if (evaluation.spectrum == Spectrum::Truncated && result.eigenvalues.size() > 0) {
-        const double last = std::sqrt(result.eigenvalues[result.eigenvalues.size() - 1]);
-        result.cutoffReached = last >= transfer.cutoff();
-        if (!result.cutoffReached) result.warnings.push_back(cutoffWarning(result, last));
-    }
-    result.residuals = evaluate.basis().residuals;
-    result.inertiaCount = static_cast<int>(evaluate.basis().inertiaCount);
+    result.accuracy = evaluation.accuracy;
+    result.errorEstimate = steps.last.errorEstimate;
+    result.accuracyReached = steps.last.accuracyReached;
+
+    const HarmonicBasis& basis = evaluate.basis();
+    result.eigenvalues = basis.lambda;
+    result.residuals = basis.residuals;
+    result.inertiaCount = static_cast<int>(basis.inertiaCount);
     result.computedBases = evaluate.computedBases();
+    if (evaluation.spectrum == Spectrum::Truncated && basis.size() > 0)
+        result.cutoffReached = std::sqrt(basis.lambda[basis.size() - 1]) >= transfer.cutoff();
     return result;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "core/filter/step_evaluator.h"
@@ -43,16 +42,16 @@ struct FilterResult {
     int fixedVertices = 0;         ///< Of a fixed boundary: exactly where they were.
     int factorizations = 0;        ///< Sparse Cholesky or LDL^T factorizations.
     int solves = 0;                ///< Solves with one right-hand side.
-    bool accuracyReached = true;   ///< Whether errorEstimate is within the requested accuracy.
-    double errorEstimate = 0.0;    ///< Estimated error of the evaluation, relative, all steps.
+    double accuracy = 0.0;         ///< Requested of the evaluation of all steps, relative.
+    double errorEstimate = 0.0;    ///< Estimated error of the same.
+    bool accuracyReached = true;   ///< Whether every step was within its share of `accuracy`.
     double stepError = 0.0;  ///< Automatic steps: estimated error over all but a thousandth of the
                              ///< filtered surface, length units.
     bool toleranceReached = true;  ///< Automatic steps: whether stepError is within it.
     double singularPart = 0.0;  ///< Automatic steps: part of the input's surface, 0 to 1, on which
                                 ///< the estimated error is above the tolerance.
     bool cutoffReached = true;  ///< Truncated spectrum: whether the harmonics reach omega_c.
-    std::vector<double> stepSizes;      ///< The fractional powers alpha, in their order; sum 1.
-    std::vector<std::string> warnings;  ///< What fell short without being an error; sentences.
+    std::vector<double> stepSizes;  ///< The fractional powers alpha, in their order; sum 1.
 
     // Where a basis is used, the last step's one.
     Eigen::VectorXd eigenvalues;  ///< k, ascending; empty without a basis.

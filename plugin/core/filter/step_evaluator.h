@@ -1,17 +1,15 @@
 #pragma once
 
-#include <map>
-#include <optional>
+#include <Eigen/Core>
+#include <memory>
 #include <vector>
 
+#include "core/filter/basis_evaluator.h"
+#include "core/filter/evaluator.h"
 #include "core/filter/transfer_function.h"
-#include "core/harmonics/harmonic_basis.h"
-#include "core/krylov/pole_selection.h"
-#include "core/laplacian/constant_modes.h"
 #include "core/laplacian/harmonic_extension.h"
 #include "core/laplacian/interior.h"
 #include "core/laplacian/laplacian.h"
-#include "core/ldlt/cholesky.h"
 #include "core/support/progress.h"
 
 namespace spectral {
@@ -24,80 +22,56 @@ enum class Spectrum {
 
 struct EvaluationOptions {
     Spectrum spectrum = Spectrum::Full;
-    int basisSize = 300;           ///< k, for Spectrum::Truncated: below the number of vertices.
-    bool reinjectResidual = true;  ///< For Spectrum::Truncated: keep what is beyond k (Eq. 8).
-    double accuracy = 1e-6;        ///< For Spectrum::Full: error of all steps together, relative to
-                                   ///< the shape's own size (see full_spectrum.h),
-    bool atEveryVertex = true;     ///< at every vertex or over the surface.
+    TruncationOptions truncation;  ///< For Spectrum::Truncated.
+
+    /// For Spectrum::Full: error of all steps together, relative to the size of the shape (see
+    /// FullSpectrumResult).
+    double accuracy = 1e-6;
+    bool atEveryVertex = true;  ///< Whether that is the error of every vertex, or over the surface.
 };
 
-/// Evaluates fractional steps F^alpha(sqrt(A)) X (Eq. 11), for one Laplacian A after another.
+/// Evaluates fractional steps F^alpha(sqrt(A)) X (Eq. 11) on a surface.
 ///
 /// With a fixed boundary a step is H + F^alpha(sqrt(A_II)) (X - H), H the harmonic extension of the
-/// boundary's positions (harmonic_extension.h): all that follows is done on the interior.
+/// boundary's positions (harmonic_extension.h).
 class StepEvaluator {
   public:
     /// The arguments are kept by reference.
     StepEvaluator(const EvaluationOptions& options, const Interior& interior,
                   const TransferFunction& F);
 
-    /// Takes the surface's Laplacian for the evaluations to come, and makes of it what they need: a
-    /// factorization, or a basis.
-    /// @param laplacian  kept by reference.
-    /// @param alpha      fractional power that the evaluations will mostly have.
-    /// @throws SolverFailure  when triangles have collapsed so far that this is impossible.
-    void setLaplacian(const Laplacian& laplacian, double alpha, const Progress& progress);
-
     /// F^alpha(sqrt(A)) X.
-    /// @throws SolverFailure  when F^alpha is too steep to be evaluated at all.
-    Eigen::MatrixXd operator()(const Eigen::MatrixXd& X, double alpha, const Progress& progress);
+    /// @param surface  the Laplacian of the surface.
+    /// @throws SolverFailure  where triangles have collapsed so far that this is impossible, or the
+    ///                        result would be useless.
+    Evaluation operator()(const Laplacian& surface, const Eigen::MatrixXd& X, double alpha,
+                          const Progress& progress);
 
-    /// The same for several powers, with fewer digits: for shapes that Laplacians are taken of, and
-    /// that are not in the result themselves. Their errors do not count.
-    std::vector<Eigen::MatrixXd> predict(const Eigen::MatrixXd& X,
-                                         const std::vector<double>& alphas,
-                                         const Progress& progress);
+    /// The same for several powers, with fewer digits: for shapes that only Laplacians are taken
+    /// of, not in the result themselves.
+    Evaluation predict(const Laplacian& surface, const Eigen::MatrixXd& X,
+                       const std::vector<double>& alphas, const Progress& progress);
 
-    const HarmonicBasis& basis() const { return basis_; }  ///< Empty where none is used.
-    int computedBases() const { return computedBases_; }
-    int factorizations() const { return cholesky_.factorizations() + extension_.factorizations(); }
-    int solves() const { return cholesky_.solves() + extension_.solves(); }
-
-    /// Counts errorEstimate and accuracyReached anew from here on, for another way from the start.
-    void forgetErrors();
-    double errorEstimate() const { return errorEstimate_; }  ///< Relative, of all evaluations.
-    bool accuracyReached() const { return accuracyReached_; }
+    const HarmonicBasis& basis() const { return evaluator_->basis(); }  ///< Empty without one.
+    int computedBases() const { return evaluator_->computedBases(); }
+    int factorizations() const {
+        return evaluator_->ldlt().factorizations() + extension_.factorizations();
+    }
+    int solves() const { return evaluator_->ldlt().solves() + extension_.solves(); }
 
   private:
-    bool usesBasis() const;
-    double accuracyOf(double alpha) const;
-    std::vector<Eigen::MatrixXd> evaluate(const Eigen::MatrixXd& X,
-                                          const std::vector<double>& alphas, double accuracy,
-                                          const Progress& progress);
-    std::vector<Eigen::MatrixXd> onInterior(const Eigen::MatrixXd& U, double relativeSize,
-                                            const std::vector<double>& alphas, double accuracy,
-                                            const Progress& progress);
-    const Pole& poleFor(double alpha);
-    void truncated(const Progress& progress);
-    HarmonicBasis upToLastJump(const Progress& progress);
-    const Laplacian& laplacian() const { return interior_.isWhole() ? *surface_ : restricted_; }
+    Evaluation evaluate(const Laplacian& surface, const Eigen::MatrixXd& X,
+                        const std::vector<double>& alphas, double accuracy,
+                        const Progress& progress);
 
-    const EvaluationOptions& options_;
+    double accuracy_;
     const Interior& interior_;
-    const TransferFunction& F_;
     HarmonicExtension extension_;
-    const Laplacian* surface_ = nullptr;
-    Laplacian restricted_;  // to the interior, where that is not all of the surface
-    std::optional<ConstantModes> constants_;
-    std::optional<SpectrumRange> spectrum_;  // of the first Laplacian
-    std::map<double, Pole> poles_;           // for the powers that have been asked for
-    int resolution_ = 1;                     // of the last pole
-    ShiftedCholesky cholesky_;
-    HarmonicBasis basis_;
-    int computedBases_ = 0;
-    double residualGain_ = 0.0;  // F's mean for what is beyond the basis
-    double errorEstimate_ = 0.0;
-    bool accuracyReached_ = true;
+    std::unique_ptr<Evaluator> evaluator_;
 };
+
+/// Refuses a relative error, of one step or of several, that makes a result useless.
+/// @throws SolverFailure  of code TooSteep.
+void requireUsefulAccuracy(double errorEstimate);
 
 }  // namespace spectral

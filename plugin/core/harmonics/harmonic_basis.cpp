@@ -1,5 +1,6 @@
 #include "core/harmonics/harmonic_basis.h"
 
+#include <Spectra/MatOp/SparseSymMatProd.h>
 #include <Spectra/SymEigsSolver.h>
 
 #include <Eigen/Eigenvalues>
@@ -11,7 +12,7 @@
 #include "core/laplacian/frequency.h"
 #include "core/mesh/mesh.h"
 #include "core/support/errors.h"
-#include "core/support/thread_team.h"
+#include "core/support/threads.h"
 
 namespace spectral {
 
@@ -22,26 +23,6 @@ namespace {
 constexpr Index kDenseVertices = 300;
 
 constexpr int kMaxRestarts = 300;
-
-/// Matrix-vector product with D^-1/2 W D^-1/2.
-class ScaledStiffness {
-  public:
-    using Scalar = double;
-
-    explicit ScaledStiffness(const Laplacian& laplacian)
-        : W_(laplacian.W), invSqrtD_(laplacian.D.cwiseSqrt().cwiseInverse()) {}
-    Index rows() const { return W_.rows(); }
-    Index cols() const { return W_.cols(); }
-    void perform_op(const double* in, double* out) const {
-        const Eigen::VectorXd u =
-            invSqrtD_.cwiseProduct(Eigen::Map<const Eigen::VectorXd>(in, rows()));
-        Eigen::Map<Eigen::VectorXd>(out, rows()) = invSqrtD_.cwiseProduct(W_ * u);
-    }
-
-  private:
-    const SparseMatrix& W_;
-    Eigen::VectorXd invSqrtD_;
-};
 
 /// The manifold harmonic transform Phi^T D X.
 Eigen::MatrixXd transform(const Eigen::MatrixXd& Phi, const Eigen::VectorXd& D,
@@ -84,15 +65,16 @@ HarmonicBasis denseBasis(const Laplacian& laplacian, const ConstantModes& consta
 bool isDenseQuicker(Index n) { return n <= kDenseVertices; }
 
 double largestEigenvalue(const Laplacian& laplacian) {
-    ScaledStiffness op(laplacian);
-    const Index krylov = std::min<Index>(laplacian.D.size(), 30);
-    Spectra::SymEigsSolver<ScaledStiffness> solver(op, 1, krylov);
+    const Eigen::VectorXd invSqrtD = laplacian.D.cwiseSqrt().cwiseInverse();
+    const SparseMatrix A = invSqrtD.asDiagonal() * laplacian.W * invSqrtD.asDiagonal();
+    Spectra::SparseSymMatProd<double> op(A);
+    const Index dimension = std::min<Index>(A.rows(), 30);
+    Spectra::SymEigsSolver<Spectra::SparseSymMatProd<double>> solver(op, 1, dimension);
     solver.init();
     solver.compute(Spectra::SortRule::LargestAlge, kMaxRestarts, 1e-8);
     if (solver.info() != Spectra::CompInfo::Successful)
-        throw SolverFailure(
-            "the largest eigenvalue could not be computed: the mesh probably has degenerate "
-            "triangles ('Remove Zero Area Faces')");
+        throw SolverFailure(ErrorCode::SingularMatrix,
+                            "the largest eigenvalue could not be computed");
     return solver.eigenvalues()[0];
 }
 

@@ -83,9 +83,10 @@ Eigenpairs nearestPairs(DeflatedResolvent& op, Index wanted, Index dimension) {
     } catch (const Error&) {
         throw;
     } catch (const std::exception& error) {  // Spectra's own, of a breakdown
-        throw SolverFailure(std::string("the harmonics could not be computed: ") + error.what());
+        throw SolverFailure(ErrorCode::BasisIncomplete,
+                            std::string("the harmonics could not be computed: ") + error.what());
     }
-    throw SolverFailure("the harmonics of a part of the spectrum did not converge");
+    throw SolverFailure(ErrorCode::BasisIncomplete, "the harmonics did not converge");
 }
 
 Eigen::MatrixXd columnsOf(const Eigen::MatrixXd& A, const std::vector<Index>& columns) {
@@ -137,7 +138,7 @@ SlicePairs computeSlice(const Laplacian& laplacian, const ConstantModes& constan
                         const StopPoint& stopPoint) {
     const Eigen::VectorXd& D = laplacian.D;
     const Index n = D.size();
-    factor.factorize(laplacian, slice.middle());
+    factor.factorize(laplacian.W, D, slice.middle());
     SlicePairs pairs;
     Eigen::MatrixXd known(n, 0), Phi(n, 0);
     int fruitless = 0;

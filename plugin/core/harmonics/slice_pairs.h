@@ -6,7 +6,7 @@
 #include "core/laplacian/constant_modes.h"
 #include "core/laplacian/laplacian.h"
 #include "core/ldlt/shifted_ldlt.h"
-#include "core/support/parallel_tasks.h"
+#include "core/support/threads.h"
 
 namespace spectral {
 

@@ -7,7 +7,7 @@
 
 #include "core/laplacian/constant_modes.h"
 #include "core/support/errors.h"
-#include "core/support/parallel_tasks.h"
+#include "core/support/threads.h"
 
 namespace spectral {
 
@@ -75,17 +75,19 @@ class Slicing {
             countAt({enough ? sigma : std::max(sigma, farther)});
             while (counts_[counts_.size() - 2].below >= k) counts_.pop_back();
         }
-        throw SolverFailure("no shift beyond harmonic " + std::to_string(k) + " could be found");
+        throw SolverFailure(ErrorCode::BasisIncomplete,
+                            "no shift beyond harmonic " + std::to_string(k) + " could be found");
     }
 
     void countAt(const std::vector<double>& sigmas) {
         const double begin = std::exchange(done_, 0.5 * (1.0 + done_));
         std::vector<Count> counts(sigmas.size());
-        runInParallel(
+        runTasks(
             static_cast<Index>(sigmas.size()),
             [&](Index task, int worker, const StopPoint&) {
                 ShiftedLdlt& factor = factors_[static_cast<std::size_t>(worker)];
-                factor.factorize(laplacian_, sigmas[static_cast<std::size_t>(task)]);
+                factor.factorize(laplacian_.W, laplacian_.D,
+                                 sigmas[static_cast<std::size_t>(task)]);
                 counts[static_cast<std::size_t>(task)] = {factor.shift(),
                                                           factor.eigenvaluesBelow()};
             },

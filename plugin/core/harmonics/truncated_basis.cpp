@@ -12,7 +12,7 @@
 #include "core/laplacian/constant_modes.h"
 #include "core/mesh/mesh.h"
 #include "core/support/errors.h"
-#include "core/support/parallel_tasks.h"
+#include "core/support/threads.h"
 
 namespace spectral {
 
@@ -34,15 +34,14 @@ constexpr const char* kStage = "computing the harmonics";
 /// The lowest harmonics, slice by slice.
 class SlicedBasis {
   public:
-    SlicedBasis(const Laplacian& laplacian, const ConstantModes& constants,
-                ShiftedCholesky& cholesky)
+    SlicedBasis(const Laplacian& laplacian, const ConstantModes& constants, ShiftedLdlt& ldlt)
         : laplacian_(laplacian),
           constants_(constants),
-          cholesky_(cholesky),
-          factors_(static_cast<std::size_t>(workerCount()), cholesky.emptyFactor(laplacian)) {}
+          ldlt_(ldlt),
+          factors_(static_cast<std::size_t>(ThreadTeam::size()), ldlt.sibling(laplacian.W)) {}
 
     ~SlicedBasis() {
-        for (const ShiftedLdlt& factor : factors_) cholesky_.countWork(factor);
+        for (const ShiftedLdlt& factor : factors_) ldlt_.addWork(factor);
     }
 
     /// At least k pairs.
@@ -63,9 +62,8 @@ class SlicedBasis {
             done = end;
             if (!mergeIncomplete()) return std::move(basis_);
         }
-        throw SolverFailure(
-            "the harmonics could not all be found: the inertia of W - sigma D counts more of them; "
-            "choose a smaller basis_size");
+        throw SolverFailure(ErrorCode::BasisIncomplete,
+                            "not all harmonics were found: the inertia of W - sigma D counts more");
     }
 
   private:
@@ -77,7 +75,7 @@ class SlicedBasis {
         std::vector<std::size_t> incomplete;
         for (std::size_t i = 0; i < slices_.size(); ++i)
             if (!isComplete_[i]) incomplete.push_back(i);
-        runInParallel(
+        runTasks(
             static_cast<Index>(incomplete.size()),
             [&](Index task, int worker, const StopPoint& stopPoint) {
                 const std::size_t i = incomplete[static_cast<std::size_t>(task)];
@@ -98,7 +96,7 @@ class SlicedBasis {
     void separateNeighbours(const Progress& progress) {
         // Slices that have a vector in common with the next one: an eigenvalue lies on the cut.
         std::vector<char> meetsNext(slices_.size(), 0);
-        runInParallel(
+        runTasks(
             static_cast<Index>(slices_.size() / 2),
             [&](Index task, int, const StopPoint&) {
                 const auto i = static_cast<std::size_t>(2 * task + 1);
@@ -141,7 +139,7 @@ class SlicedBasis {
 
     const Laplacian& laplacian_;
     const ConstantModes& constants_;
-    ShiftedCholesky& cholesky_;
+    ShiftedLdlt& ldlt_;
     std::vector<ShiftedLdlt> factors_;
     std::vector<SpectrumSlice> slices_;
     std::vector<char> isComplete_;  // of the slices; not of bool: threads write to it
@@ -153,7 +151,7 @@ Eigen::VectorXd relativeResiduals(const Laplacian& laplacian, Index constants,
                                   const HarmonicBasis& basis, const Progress& progress) {
     const auto& [W, D] = laplacian;
     Eigen::VectorXd residuals = Eigen::VectorXd::Zero(basis.size());
-    runInParallel(
+    runTasks(
         basis.size() - constants,
         [&](Index task, int, const StopPoint&) {
             const Index i = constants + task;
@@ -163,25 +161,24 @@ Eigen::VectorXd relativeResiduals(const Laplacian& laplacian, Index constants,
         },
         progress, "checking the harmonics");
     if (!residuals.allFinite())
-        throw SolverFailure(
-            "the harmonics are not finite numbers: the mesh probably has degenerate triangles "
-            "('Remove Zero Area Faces')");
+        throw SolverFailure(ErrorCode::SingularMatrix, "the harmonics are not finite numbers");
     return residuals;
 }
 
 /// The first `size` pairs of a basis, with their certificate.
 HarmonicBasis certified(const Laplacian& laplacian, const ConstantModes& constants,
-                        HarmonicBasis basis, Index size, ShiftedCholesky& cholesky,
+                        HarmonicBasis basis, Index size, ShiftedLdlt& ldlt,
                         const Progress& progress) {
     basis.inertiaCount = size;  // where it holds all that there are
     if (size < basis.size())
-        basis.inertiaCount = cholesky.countEigenvaluesBelow(
-            laplacian, 0.5 * (basis.lambda[size - 1] + basis.lambda[size]));
+        basis.inertiaCount = countEigenvaluesBelow(
+            laplacian.W, laplacian.D, 0.5 * (basis.lambda[size - 1] + basis.lambda[size]), ldlt);
     // Sylvester's law of inertia: none is missing below the cut.
     if (basis.inertiaCount != size)
-        throw SolverFailure("of the " + std::to_string(basis.inertiaCount) +
-                            " harmonics that the inertia of W - sigma D counts, " +
-                            std::to_string(size) + " were found; choose another basis_size");
+        throw SolverFailure(ErrorCode::BasisIncomplete,
+                            "of the " + std::to_string(basis.inertiaCount) +
+                                " harmonics that the inertia of W - sigma D counts, " +
+                                std::to_string(size) + " were found");
     basis.Phi.conservativeResize(Eigen::NoChange, size);
     basis.lambda.conservativeResize(size);
     basis.residuals = relativeResiduals(laplacian, constants.count(), basis, progress);
@@ -190,15 +187,21 @@ HarmonicBasis certified(const Laplacian& laplacian, const ConstantModes& constan
 }
 
 void checkSize(Index k, Index n, Index constants) {
+    const std::string size = "basis_size = " + std::to_string(k);
     if (k >= n)
-        throw InvalidOption("basis_size = " + std::to_string(k) + " needs more than " +
-                            std::to_string(k) + " vertices; the mesh has " + std::to_string(n) +
-                            ": choose a smaller basis_size");
+        throw InvalidOption(ErrorCode::BasisTooLarge,
+                            size + " needs more than " + std::to_string(k) +
+                                " vertices; the surface has " + std::to_string(n) +
+                                " that are not on a fixed boundary",
+                            n - 1);
     if (k <= constants)
-        throw InvalidOption(
-            "basis_size = " + std::to_string(k) + " holds no more than the constant modes of the " +
-            std::to_string(constants) + " connected components: choose a basis_size above " +
-            std::to_string(constants));
+        throw InvalidOption(ErrorCode::BasisTooSmall,
+                            size +
+                                " leaves no room for more than the constant modes, one of each "
+                                "of the " +
+                                std::to_string(constants) +
+                                " connected components without a fixed boundary",
+                            constants + 1);
 }
 
 }  // namespace
@@ -211,25 +214,25 @@ std::optional<Index> cutOutsideClusters(const Eigen::VectorXd& lambda, Index ask
 }
 
 HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& constants, Index k,
-                             ShiftedCholesky& cholesky, const Progress& progress) {
+                             ShiftedLdlt& ldlt, const Progress& progress) {
     const Index n = laplacian.D.size();
     checkSize(k, n, constants.count());
     if (isDenseQuicker(n)) {
         HarmonicBasis all = denseBasis(laplacian, constants);
         const Index size = cutOutsideClusters(all.lambda, k).value_or(n);
-        return certified(laplacian, constants, std::move(all), size, cholesky, progress);
+        return certified(laplacian, constants, std::move(all), size, ldlt, progress);
     }
     // Some pairs beyond k show whether k cuts a cluster; more are taken while it does.
     for (Index more = 8;; more *= 2) {
         const Index total = std::min(k + more, n - 1);
         HarmonicBasis basis =
-            SlicedBasis(laplacian, constants, cholesky).compute(total, progress.part(0.0, 0.95));
+            SlicedBasis(laplacian, constants, ldlt).compute(total, progress.part(0.0, 0.95));
         std::optional<Index> size = cutOutsideClusters(basis.lambda, k);
         if (!size) {
             if (total < n - 1) continue;
             size = basis.size();  // nothing left to cut off
         }
-        return certified(laplacian, constants, std::move(basis), *size, cholesky,
+        return certified(laplacian, constants, std::move(basis), *size, ldlt,
                          progress.part(0.95, 1.0));
     }
 }

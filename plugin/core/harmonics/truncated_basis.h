@@ -5,7 +5,7 @@
 #include "core/harmonics/harmonic_basis.h"
 #include "core/laplacian/constant_modes.h"
 #include "core/laplacian/laplacian.h"
-#include "core/ldlt/cholesky.h"
+#include "core/ldlt/shifted_ldlt.h"
 #include "core/support/progress.h"
 #include "core/support/types.h"
 
@@ -20,11 +20,11 @@ namespace spectral {
 /// reported (1e-9 is usual, more where triangles have collapsed).
 ///
 /// @param k         constants.count() < k < n.
-/// @param cholesky  counts the work and lends its symbolic analysis; its factor is left as it is.
+/// @param ldlt      shares its symbolic analysis and counts the work; its factor stays.
 /// @throws InvalidOption  when k is out of range; SolverFailure when the basis fails its count;
 ///                        Cancelled.
 HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& constants, Index k,
-                             ShiftedCholesky& cholesky, const Progress& progress = {});
+                             ShiftedLdlt& ldlt, const Progress& progress = {});
 
 /// The number of pairs, from `asked` on, at which a spectrum may be cut: where the next eigenvalue
 /// is not equal to the last one or nearly so. Empty when every candidate lies inside a cluster.

@@ -101,18 +101,18 @@ class Approximation {
 }  // namespace
 
 FullSpectrumResult applyFullSpectrum(const Eigen::VectorXd& D, const ConstantModes& constants,
-                                     const ShiftedCholesky& cholesky, const Gain& gain,
+                                     const ShiftedLdlt& ldlt, const Gain& gain,
                                      const Eigen::MatrixXd& X, const FullSpectrumOptions& options,
                                      const Progress& progress) {
     return std::move(
-        applyFullSpectrum(D, constants, cholesky, std::vector{gain}, X, options, progress).front());
+        applyFullSpectrum(D, constants, ldlt, std::vector{gain}, X, options, progress).front());
 }
 
 std::vector<FullSpectrumResult> applyFullSpectrum(
-    const Eigen::VectorXd& D, const ConstantModes& constants, const ShiftedCholesky& cholesky,
+    const Eigen::VectorXd& D, const ConstantModes& constants, const ShiftedLdlt& ldlt,
     const std::vector<Gain>& gains, const Eigen::MatrixXd& X, const FullSpectrumOptions& options,
     const Progress& progress) {
-    KrylovSpaces spaces(cholesky, D, constants, X);
+    KrylovSpaces spaces(ldlt, D, constants, X);
     if (!(spaces.largestEntry() > 0.0)) {
         FullSpectrumResult same;
         same.Y = X;
@@ -122,7 +122,7 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
     std::vector<FullSpectrumResult> results(gains.size());
     std::vector<Approximation> approximations;
     for (const Gain& gain : gains)
-        approximations.emplace_back(spaces, gain, cholesky.shift(), options);
+        approximations.emplace_back(spaces, gain, -ldlt.shift(), options);
 
     const int first = std::max(kFirstCheck, std::min(options.resolution, options.maxDimension));
     double firstError = 0.0, furthest = 0.0;

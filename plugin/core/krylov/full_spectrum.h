@@ -4,7 +4,7 @@
 
 #include "core/laplacian/constant_modes.h"
 #include "core/laplacian/frequency.h"
-#include "core/ldlt/cholesky.h"
+#include "core/ldlt/shifted_ldlt.h"
 #include "core/support/progress.h"
 
 namespace spectral {
@@ -46,18 +46,18 @@ struct FullSpectrumResult {
 /// the dimension that is enough for every signal ends it, too.
 ///
 /// @param D         lumped masses of the Laplacian.
-/// @param cholesky  factorization of W + lambda_p D; see selectPole for lambda_p.
+/// @param ldlt  factorization of W + lambda_p D; see selectPole for lambda_p.
 /// @param gain      continuous, finite and >= 0 on [0, infinity]; constant modes keep gain 1.
 /// @param X         n x c signals, e.g. the three coordinates.
 /// @throws SolverFailure  when a small eigenproblem of the method fails.
 FullSpectrumResult applyFullSpectrum(const Eigen::VectorXd& D, const ConstantModes& constants,
-                                     const ShiftedCholesky& cholesky, const Gain& gain,
+                                     const ShiftedLdlt& ldlt, const Gain& gain,
                                      const Eigen::MatrixXd& X, const FullSpectrumOptions& options,
                                      const Progress& progress = {});
 
 /// The same for several gains, from the same Krylov spaces.
 std::vector<FullSpectrumResult> applyFullSpectrum(
-    const Eigen::VectorXd& D, const ConstantModes& constants, const ShiftedCholesky& cholesky,
+    const Eigen::VectorXd& D, const ConstantModes& constants, const ShiftedLdlt& ldlt,
     const std::vector<Gain>& gains, const Eigen::MatrixXd& X, const FullSpectrumOptions& options,
     const Progress& progress = {});
 

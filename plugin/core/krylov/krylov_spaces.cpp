@@ -9,7 +9,7 @@
 #include "core/krylov/tridiagonal.h"
 #include "core/laplacian/constant_modes.h"
 #include "core/laplacian/frequency.h"
-#include "core/support/thread_team.h"
+#include "core/support/threads.h"
 
 namespace spectral {
 
@@ -92,9 +92,9 @@ Moments<Columns> momentsOf(const Eigen::VectorXd& D, const Eigen::VectorXi& labe
 
 }  // namespace
 
-KrylovSpaces::KrylovSpaces(const ShiftedCholesky& cholesky, const Eigen::VectorXd& D,
+KrylovSpaces::KrylovSpaces(const ShiftedLdlt& ldlt, const Eigen::VectorXd& D,
                            const ConstantModes& constants, const Eigen::MatrixXd& X)
-    : cholesky_(cholesky),
+    : ldlt_(ldlt),
       constants_(constants),
       columns_(static_cast<int>(X.cols())),
       D_(D.size()),
@@ -105,7 +105,7 @@ KrylovSpaces::KrylovSpaces(const ShiftedCholesky& cholesky, const Eigen::VectorX
       overlapBefore_(X.cols()),
       exhausted_(X.cols()) {
     assert(columns_ >= 1 && columns_ <= kMostSignals);
-    const Eigen::VectorXi& order = cholesky.factorOrder();
+    const Eigen::VectorXi& order = ldlt.factorOrder();
     parallelRows(D.size(), [&](Index begin, Index end) {
         for (Index i = begin; i < end; ++i) {
             D_[order[i]] = D[i];
@@ -134,8 +134,8 @@ bool KrylovSpaces::extend() {
 template <int Columns>
 void KrylovSpaces::start(const Eigen::MatrixXd& X) {
     const Index n = D_.size();
-    work_.resize(cholesky_.orderedRows() * Columns);
-    const Eigen::VectorXi& order = cholesky_.factorOrder();
+    work_.resize(ldlt_.orderedRows() * Columns);
+    const Eigen::VectorXi& order = ldlt_.factorOrder();
     parallelRows(n, [&](Index begin, Index end) {
         for (Index i = begin; i < end; ++i) rowOf<Columns>(work_, order[i]) = X.row(i).array();
     });
@@ -175,7 +175,7 @@ void KrylovSpaces::start(const Eigen::MatrixXd& X) {
 template <int Columns>
 void KrylovSpaces::extendColumns() {
     const Index n = D_.size();
-    cholesky_.solveOrdered(work_.data(), Columns);
+    ldlt_.solveOrdered(work_.data(), Columns);
     const Block& q = basis_.back();
     const Row<Columns> alpha =
         parallelSum(n, Row<Columns>::Zero().eval(), [&](Index begin, Index end) {
@@ -298,7 +298,7 @@ KrylovSpaces::Ritz KrylovSpaces::ritz(int column) const {
     for (Index i = 0; i < m; ++i) {
         // theta = 1/(lambda + pole); round-off may push it out of (0, 1/pole].
         const double theta = T.values[i];
-        const double lambda = theta > 0.0 ? std::max(0.0, 1.0 / theta - cholesky_.shift())
+        const double lambda = theta > 0.0 ? std::max(0.0, 1.0 / theta + ldlt_.shift())
                                           : std::numeric_limits<double>::infinity();
         pairs.omega[i] = std::sqrt(lambda);
     }
@@ -322,7 +322,7 @@ Quadrature KrylovSpaces::quadrature(int column) const {
 
 Eigen::MatrixXd KrylovSpaces::combine(const std::vector<Eigen::VectorXd>& coefficients) const {
     Eigen::MatrixXd Y(D_.size(), columns_);
-    const std::vector<int>& inverse = cholesky_.inverseOrder();
+    const std::vector<int>& inverse = ldlt_.inverseOrder();
     combineRows(coefficients, [&](Index i, const auto& row) { Y.row(inverse[i]) = row.matrix(); });
     return Y;
 }

@@ -5,7 +5,7 @@
 
 #include "core/laplacian/constant_modes.h"
 #include "core/laplacian/frequency.h"
-#include "core/ldlt/cholesky.h"
+#include "core/ldlt/shifted_ldlt.h"
 
 namespace spectral {
 
@@ -36,12 +36,12 @@ class KrylovSpaces {
   public:
     static constexpr int kMostSignals = 4;
 
-    /// @param cholesky   factorization of W + lambda_p D; kept by reference, as D and constants
+    /// @param ldlt   factorization of W + lambda_p D; kept by reference, as D and constants
     /// are.
     /// @param constants  removed from everything.
     /// @param X          n x c signals, 1 <= c <= kMostSignals.
-    KrylovSpaces(const ShiftedCholesky& cholesky, const Eigen::VectorXd& D,
-                 const ConstantModes& constants, const Eigen::MatrixXd& X);
+    KrylovSpaces(const ShiftedLdlt& ldlt, const Eigen::VectorXd& D, const ConstantModes& constants,
+                 const Eigen::MatrixXd& X);
 
     int columns() const { return columns_; }
 
@@ -93,7 +93,7 @@ class KrylovSpaces {
     void combineRows(const std::vector<Eigen::VectorXd>& coefficients,
                      const TakeRow& takeRow) const;
 
-    const ShiftedCholesky& cholesky_;
+    const ShiftedLdlt& ldlt_;
     const ConstantModes& constants_;
     int columns_;
     Eigen::VectorXd D_;      // in the order of the factor, as all that follows

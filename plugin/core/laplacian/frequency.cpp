@@ -11,8 +11,8 @@ namespace spectral {
 double cutoffFrequency(double featureSize) {
     if (!std::isfinite(featureSize) || featureSize <= 0.0)
         throw InvalidOption("feature_size = " + std::to_string(featureSize) +
-                            ": a feature size is a length above zero, e.g. 5 % of the diagonal of "
-                            "the bounding box");
+                            ": must be a length above zero, e.g. 5 % of the diagonal of the "
+                            "bounding box");
     return 2.0 * kPi / featureSize;
 }
 

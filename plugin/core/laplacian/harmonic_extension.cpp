@@ -11,7 +11,7 @@ void HarmonicExtension::setLaplacian(const Laplacian& surface) {
     // W_II is singular where nothing is fixed: there, and only there, the masses make it definite.
     // These components need no solve.
     interior.D = (interior_.components().label.array() < 0).select(0.0, interior.D);
-    cholesky_.factorize(interior, 4.0 * kPi / surface.D.sum());
+    ldlt_.factorizeDefinite(interior.W, interior.D, 4.0 * kPi / surface.D.sum());
 }
 
 HarmonicExtension::Rest HarmonicExtension::rest(const Eigen::MatrixXd& X) const {
@@ -19,7 +19,7 @@ HarmonicExtension::Rest HarmonicExtension::rest(const Eigen::MatrixXd& X) const 
     means_->remove(centred);
 
     // X - H = W_II^-1 (W X)_I: nothing is left to cancel where X is harmonic.
-    Rest rest{cholesky_.solve(interior_.restricted(Eigen::MatrixXd(surface_.W * centred)))};
+    Rest rest{ldlt_.solve(interior_.restricted(Eigen::MatrixXd(surface_.W * centred)))};
     const Eigen::MatrixXd moving = interior_.restricted(centred);
     for (Index i = 0; i < moving.rows(); ++i)
         if (interior_.components().label[i] >= 0) rest.U.row(i) = moving.row(i);

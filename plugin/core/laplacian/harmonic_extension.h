@@ -5,7 +5,7 @@
 #include "core/laplacian/constant_modes.h"
 #include "core/laplacian/interior.h"
 #include "core/laplacian/laplacian.h"
-#include "core/ldlt/cholesky.h"
+#include "core/ldlt/shifted_ldlt.h"
 
 namespace spectral {
 
@@ -37,14 +37,14 @@ class HarmonicExtension {
     /// @param X  n x c signals on the surface.
     Rest rest(const Eigen::MatrixXd& X) const;
 
-    int factorizations() const { return cholesky_.factorizations(); }
-    int solves() const { return cholesky_.solves(); }
+    int factorizations() const { return ldlt_.factorizations(); }
+    int solves() const { return ldlt_.solves(); }
 
   private:
     const Interior& interior_;
     Laplacian surface_;
     std::optional<ConstantModes> means_;
-    ShiftedCholesky cholesky_;
+    ShiftedLdlt ldlt_;
 };
 
 }  // namespace spectral

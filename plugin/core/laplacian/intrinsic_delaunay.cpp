@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/mesh/mesh.h"
-#include "core/support/thread_team.h"
+#include "core/support/threads.h"
 
 namespace spectral {
 

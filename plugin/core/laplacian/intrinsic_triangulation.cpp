@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/support/errors.h"
-#include "core/support/thread_team.h"
+#include "core/support/threads.h"
 
 namespace spectral {
 
@@ -65,10 +65,10 @@ void IntrinsicTriangulation::makeDelaunay() {
         waiting[s] = 0;
         if (isDelaunay(s)) continue;
         if (flips++ == kMaxFlipsPerEdge * edges)
-            throw SolverFailure("the intrinsic Delaunay triangulation did not end after " +
-                                std::to_string(flips) + " flips of " + std::to_string(edges) +
-                                " edges, because triangles are degenerate. Apply 'Remeshing: "
-                                "Isotropic Explicit Remeshing' first");
+            throw SolverFailure(ErrorCode::NoDelaunay,
+                                "the intrinsic Delaunay triangulation did not end after " +
+                                    std::to_string(flips) + " flips of " + std::to_string(edges) +
+                                    " edges: triangles are degenerate");
         // A side that waits may now be another edge; the edge that it was is pushed again.
         const int t = twin_[s];
         flip(s);

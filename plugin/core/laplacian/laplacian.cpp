@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/mesh/mesh.h"
-#include "core/support/thread_team.h"
+#include "core/support/threads.h"
 
 namespace spectral {
 

@@ -1,8 +1,14 @@
 #include "core/laplacian/laplacian_builder.h"
 
 #include "core/mesh/mesh.h"
+#include "core/mesh/mesh_check.h"
 
 namespace spectral {
+
+void checkMesh(const Vertices& V, const Faces& F, LaplacianKind kind) {
+    checkMesh(V, F);
+    if (kind == LaplacianKind::Cotangent) checkAreas(V, F);
+}
 
 LaplacianBuilder::LaplacianBuilder(const Surface& surface, LaplacianKind kind, BasisUpdate update,
                                    double conformalShare)

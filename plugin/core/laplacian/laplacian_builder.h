@@ -14,6 +14,10 @@ enum class LaplacianKind {
     Cotangent           ///< The paper's: plain cotangents, every triangle needs an area.
 };
 
+/// Refuses a mesh that has no Laplacian of this kind: see mesh_check.h.
+/// @throws InvalidMesh
+void checkMesh(const Vertices& V, const Faces& F, LaplacianKind kind);
+
 /// What a step takes from the current shape.
 enum class BasisUpdate {
     Full,       ///< W and D: the paper's scheme.

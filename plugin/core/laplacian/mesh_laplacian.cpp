@@ -4,7 +4,6 @@
 
 #include "core/laplacian/constant_modes.h"
 #include "core/mesh/mesh.h"
-#include "core/mesh/mesh_check.h"
 #include "core/support/errors.h"
 
 namespace spectral {
@@ -15,9 +14,9 @@ MeshLaplacian meshLaplacian(const Vertices& V, const Faces& F, LaplacianKind kin
     Components components = connectedComponents(surface.F, surface.X.rows());
     Laplacian laplacian = LaplacianBuilder(surface, kind, BasisUpdate::None).input();
     if (!isUsable(laplacian))
-        throw SolverFailure(
-            "a cotangent or a mass of the mesh is not finite: some triangles are nearly without "
-            "area. Choose laplacian = intrinsic delaunay");
+        throw SolverFailure(ErrorCode::DegenerateTriangles,
+                            "a cotangent or a mass of the mesh is not finite: some triangles have "
+                            "hardly any area");
     ConstantModes constants(components, laplacian.D);
     return {std::move(surface), std::move(components), std::move(laplacian), std::move(constants)};
 }

@@ -4,7 +4,7 @@
 #include <cstddef>
 
 #include "core/kernels/front_elimination.h"
-#include "core/support/thread_team.h"
+#include "core/support/threads.h"
 
 namespace spectral {
 
@@ -166,14 +166,14 @@ class Elimination {
 
 }  // namespace
 
-bool eliminate(const SymbolicLdlt& symbolic, const Laplacian& laplacian, double sigma,
-               LdltNumbers& numbers) {
-    Eigen::VectorXd shifts(laplacian.D.size());
-    for (Index i = 0; i < shifts.size(); ++i) shifts[symbolic.order[i]] = sigma * laplacian.D[i];
+bool eliminate(const SymbolicLdlt& symbolic, const SparseMatrix& W, const Eigen::VectorXd& D,
+               double sigma, LdltNumbers& numbers) {
+    Eigen::VectorXd shifts(D.size());
+    for (Index i = 0; i < shifts.size(); ++i) shifts[symbolic.order[i]] = sigma * D[i];
     numbers.values.resize(static_cast<std::size_t>(symbolic.valueStarts.back()));
     numbers.pivots.resize(shifts.size());
 
-    const Elimination none(symbolic, laplacian.W.valuePtr(), shifts, numbers);
+    const Elimination none(symbolic, W.valuePtr(), shifts, numbers);
     std::vector<Elimination> ofSubtree(symbolic.subtrees.size(), none);
     std::vector<Stretch> above;
     int next = 0;

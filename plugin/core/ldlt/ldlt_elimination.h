@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/laplacian/laplacian.h"
 #include "core/ldlt/symbolic_ldlt.h"
 
 namespace spectral {
@@ -19,10 +18,10 @@ struct LdltNumbers {
 /// method: Duff and Reid 1983; Davis, Direct Methods for Sparse Linear Systems, 2006, section 11).
 /// What a front leaves in the rows below its columns is added to the front of its parent.
 ///
-/// @param symbolic  of laplacian.W.
+/// @param symbolic  of W.
 /// @param numbers   keeps its memory from call to call.
 /// @return whether no pivot is 0, else the numbers have no meaning. They may be infinite.
-bool eliminate(const SymbolicLdlt& symbolic, const Laplacian& laplacian, double sigma,
-               LdltNumbers& numbers);
+bool eliminate(const SymbolicLdlt& symbolic, const SparseMatrix& W, const Eigen::VectorXd& D,
+               double sigma, LdltNumbers& numbers);
 
 }  // namespace spectral

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <sstream>
+#include <string>
 
 #include "core/kernels/triangular_solves.h"
 #include "core/support/errors.h"
-#include "core/support/thread_team.h"
+#include "core/support/threads.h"
 
 namespace spectral {
 
@@ -15,30 +16,54 @@ constexpr int kMaxAttempts = 4;
 
 using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Relative change of a shift that has met an eigenvalue of a leading minor.
+/// Relative change of a shift that is an eigenvalue of a leading minor: far above round-off, far
+/// below the distance of eigenvalues.
 constexpr double kNudge = 1e-7;
 
 }  // namespace
 
-const std::shared_ptr<const SymbolicLdlt>& ShiftedLdlt::analysis(const Laplacian& laplacian) {
-    if (!analysis_ || !analysis_->isOf(laplacian.W))
-        analysis_ = std::make_shared<const SymbolicLdlt>(laplacian.W);
-    return analysis_;
+void ShiftedLdlt::analyze(const SparseMatrix& W) {
+    if (!analysis_ || !analysis_->isOf(W)) analysis_ = std::make_shared<const SymbolicLdlt>(W);
 }
 
-void ShiftedLdlt::factorize(const Laplacian& laplacian, double sigma) {
-    symbolic_ = analysis(laplacian);
+ShiftedLdlt ShiftedLdlt::sibling(const SparseMatrix& W) {
+    analyze(W);
+    ShiftedLdlt empty;
+    empty.analysis_ = analysis_;
+    return empty;
+}
+
+void ShiftedLdlt::factorize(const SparseMatrix& W, const Eigen::VectorXd& D, double sigma) {
+    analyze(W);
+    symbolic_ = analysis_;
     ++factorizations_;
     for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
         shift_ = sigma * (1.0 + attempt * kNudge);
-        if (!eliminate(*symbolic_, laplacian, shift_, numbers_)) continue;
+        if (!eliminate(*symbolic_, W, D, shift_, numbers_)) continue;
         if (!numbers_.pivots.allFinite()) continue;
         below_ = (numbers_.pivots.array() < 0.0).count();
         return;
     }
     std::ostringstream text;
-    text << "the LDL^T factorization of W - sigma D meets a zero pivot at sigma = " << sigma;
-    throw SolverFailure(text.str());
+    text << "the LDL^T factorization of W - sigma D (" << W.rows()
+         << " rows) meets a zero pivot at sigma = " << sigma;
+    throw SolverFailure(ErrorCode::SingularMatrix, text.str());
+}
+
+void ShiftedLdlt::factorizeDefinite(const SparseMatrix& W, const Eigen::VectorXd& D, double shift) {
+    factorize(W, D, -shift);
+    if (below_ > 0)
+        throw SolverFailure(ErrorCode::SingularMatrix,
+                            "W + s D (" + std::to_string(W.rows()) +
+                                " rows) is not positive definite to working precision");
+}
+
+Index countEigenvaluesBelow(const SparseMatrix& W, const Eigen::VectorXd& D, double sigma,
+                            ShiftedLdlt& ldlt) {
+    ShiftedLdlt sibling = ldlt.sibling(W);
+    sibling.factorize(W, D, sigma);
+    ldlt.addWork(sibling);
+    return sibling.eigenvaluesBelow();
 }
 
 Eigen::MatrixXd ShiftedLdlt::solve(const Eigen::MatrixXd& B) const {
@@ -47,8 +72,7 @@ Eigen::MatrixXd ShiftedLdlt::solve(const Eigen::MatrixXd& B) const {
     return X;
 }
 
-void ShiftedLdlt::applyResolvent(const Eigen::VectorXd& D, Eigen::Ref<Eigen::MatrixXd> U,
-                                 double root) const {
+void ShiftedLdlt::applyResolvent(const Eigen::VectorXd& D, Eigen::Ref<Eigen::MatrixXd> U) const {
     // The factor is far larger than the cache: each pass over it serves as many columns as it can.
     // A few more than there are cost less than one pass more.
     const Eigen::VectorXi& order = symbolic_->order;
@@ -63,8 +87,7 @@ void ShiftedLdlt::applyResolvent(const Eigen::VectorXd& D, Eigen::Ref<Eigen::Mat
         solveOrdered(ordered.data(), columns);
         solves_ -= columns - used;  // columns that nobody has asked for
         for (Index i = 0; i < U.rows(); ++i)
-            U.row(i).segment(first, used) =
-                Y.row(order[i]).head(used) - root * U.row(i).segment(first, used);
+            U.row(i).segment(first, used) = Y.row(order[i]).head(used);
     }
 }
 

@@ -2,58 +2,52 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <utility>
 #include <vector>
 
-#include "core/laplacian/laplacian.h"
 #include "core/ldlt/ldlt_elimination.h"
 #include "core/ldlt/symbolic_ldlt.h"
 #include "core/support/types.h"
 
 namespace spectral {
 
-/// LDL^T factorization of W - sigma D for any shift: below the spectrum, where the matrix is
-/// positive definite, or inside it, where it is indefinite.
+/// LDL^T factorization of W - sigma D for a symmetric W, a positive diagonal D and any shift: below
+/// the spectrum of W x = lambda D x, where the matrix is positive definite, or inside it, where it
+/// is indefinite.
 ///
-/// It serves twice: for solves, and by the signs of its pivots as a count of eigenvalues
-/// (Sylvester's law of inertia). The fill-reducing order and the symbolic analysis are made once
-/// for each pattern of W: shifts and a filter's steps change the numbers, not the connectivity.
+/// It serves solves and, by the signs of its pivots, counts of eigenvalues (Sylvester's law of
+/// inertia). The fill-reducing order and the symbolic analysis are shared by all factorizations of
+/// matrices with the same pattern.
 class ShiftedLdlt {
   public:
-    ShiftedLdlt() = default;
+    /// Factorizes W - sigma D.
+    /// @param W      n x n, symmetric, both triangles stored.
+    /// @param D      n diagonal entries > 0.
+    /// @param sigma  perturbed by parts of 1e-7 where a pivot vanishes; see shift().
+    /// @throws SolverFailure  when pivots vanish, or are not finite, at every shift nearby, or the
+    ///                        factor has more entries than an int counts: some 1e7 rows.
+    void factorize(const SparseMatrix& W, const Eigen::VectorXd& D, double sigma);
 
-    /// @param analysis  of the pattern that the matrices will probably have: shared.
-    explicit ShiftedLdlt(std::shared_ptr<const SymbolicLdlt> analysis)
-        : analysis_(std::move(analysis)) {}
+    /// The same, of W + shift D.
+    /// @throws SolverFailure  also when that is not positive definite to working precision.
+    void factorizeDefinite(const SparseMatrix& W, const Eigen::VectorXd& D, double shift);
 
-    /// @param sigma  in units of lambda (1 / length^2); moved a little when a pivot vanishes.
-    /// @throws SolverFailure  when pivots vanish, or are not finite, at every shift nearby.
-    /// @throws InvalidMesh  when the factor has more entries than an int counts: some 1e7 vertices.
-    void factorize(const Laplacian& laplacian, double sigma);
+    double shift() const { return shift_; }  ///< sigma, of W - sigma D.
 
-    double shift() const { return shift_; }
-
-    /// The symbolic analysis of W's pattern: made anew if the last one is not of it. The factor
-    /// keeps its own.
-    const std::shared_ptr<const SymbolicLdlt>& analysis(const Laplacian& laplacian);
-
-    int factorizations() const { return factorizations_; }  ///< Done with this object.
-    int solves() const { return solves_; }                  ///< Columns solved for.
-
-    /// Number of eigenvalues of W phi = lambda D phi below shift(), exactly: that of the negative
+    /// Number of eigenvalues of W x = lambda D x below shift(), exactly: the number of negative
     /// pivots.
     Index eigenvaluesBelow() const { return below_; }
 
     /// (W - sigma D)^-1 B for every column of B (n x c).
     Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const;
 
-    /// U <- (W - sigma D)^-1 D U - root U for every column of U (n x c, without gaps): the
-    /// resolvent of A = D^-1 W at sigma, or a linear factor of a polynomial in it.
+    /// U <- (W - sigma D)^-1 D U for every column of U (n x c, without gaps): the resolvent of
+    /// D^-1 W at sigma.
     /// @param D  n masses, or a multiple of them.
-    void applyResolvent(const Eigen::VectorXd& D, Eigen::Ref<Eigen::MatrixXd> U,
-                        double root = 0.0) const;
+    void applyResolvent(const Eigen::VectorXd& D, Eigen::Ref<Eigen::MatrixXd> U) const;
 
     /// The factor's own order, for work that is done in it: row i of W is row factorOrder()[i], and
-    /// row j of the factor is row inverseOrder()[j]. Of the last factorize().
+    /// row j of the factor is row inverseOrder()[j].
     const Eigen::VectorXi& factorOrder() const { return symbolic_->order; }
     const std::vector<int>& inverseOrder() const { return symbolic_->inverse; }
 
@@ -63,13 +57,26 @@ class ShiftedLdlt {
     }
 
     /// (W - sigma D)^-1 Y, in place and in the factor's order, on the threads of the caller's team.
-    /// @param Y  orderedRows() rows of `columns` numbers each, next to each other; what is in those
-    ///           from n on does not matter.
+    /// @param Y  orderedRows() rows of `columns` numbers each, contiguous; rows from n on are
+    ///           scratch.
     /// @param columns  1, 2, 3, 4, 8 or kMostRightHandSides.
     void solveOrdered(double* Y, int columns) const;
 
+    /// A factor of its own, yet empty, that shares the symbolic analysis of W's pattern.
+    ShiftedLdlt sibling(const SparseMatrix& W);
+
+    /// Adds the work of a sibling to that of this one.
+    void addWork(const ShiftedLdlt& sibling) {
+        factorizations_ += sibling.factorizations_;
+        solves_ += sibling.solves_;
+    }
+    int factorizations() const { return factorizations_; }
+    int solves() const { return solves_; }  ///< Columns solved for.
+
   private:
-    std::shared_ptr<const SymbolicLdlt> analysis_;  // the last one
+    void analyze(const SparseMatrix& W);
+
+    std::shared_ptr<const SymbolicLdlt> analysis_;  // of the last pattern
     std::shared_ptr<const SymbolicLdlt> symbolic_;  // of the factor
     LdltNumbers numbers_;
     double shift_ = 0.0;
@@ -77,5 +84,11 @@ class ShiftedLdlt {
     int factorizations_ = 0;
     mutable int solves_ = 0;
 };
+
+/// Number of eigenvalues of W x = lambda D x below sigma, which must not be one, exactly.
+/// @param ldlt  shares its symbolic analysis and counts the work; its factor stays.
+/// @throws SolverFailure  as ShiftedLdlt::factorize.
+Index countEigenvaluesBelow(const SparseMatrix& W, const Eigen::VectorXd& D, double sigma,
+                            ShiftedLdlt& ldlt);
 
 }  // namespace spectral

@@ -139,9 +139,9 @@ void SymbolicLdlt::findFronts(const Columns& columns) {
         supernodes.begin(), supernodes.end(), Index{0},
         [](Index sum, const Supernode& supernode) { return sum + supernode.entries(); });
     if (total > std::numeric_limits<int>::max())
-        throw InvalidMesh("the factorization of W - sigma D (" + std::to_string(n) +
-                          " vertices) has too many entries, " + std::to_string(total) +
-                          ": apply 'Simplification: Quadric Edge Collapse Decimation' first");
+        throw SolverFailure(ErrorCode::TooManyVertices,
+                            "the factorization of W - sigma D (" + std::to_string(n) +
+                                " rows) has too many entries: " + std::to_string(total));
     frontOf_.resize(parent.size());
     valueStarts.assign(parent.size() + 1, 0);
     rowStarts.resize(parent.size());

@@ -16,7 +16,8 @@ namespace spectral {
 /// same rows below in L: a few of its entries are 0.
 struct SymbolicLdlt {
     /// @param W  n x n, symmetric, both halves stored.
-    /// @throws InvalidMesh  when the factor has more entries than an int counts: some 1e7 vertices.
+    /// @throws SolverFailure  when the factor has more entries than an int counts: some 1e7
+    /// vertices.
     explicit SymbolicLdlt(const SparseMatrix& W);
 
     /// Whether W has the pattern that was analyzed.

@@ -28,44 +28,44 @@ std::string counted(Index count, const char* one, const char* many) {
 
 }  // namespace
 
-void checkMesh(const Vertices& V, const Faces& F, LaplacianKind kind) {
-    if (V.rows() == 0)
-        throw InvalidMesh("the mesh is empty: it has no vertices; load or create a mesh first");
+void checkMesh(const Vertices& V, const Faces& F) {
+    if (V.rows() == 0) throw InvalidMesh(ErrorCode::EmptyMesh, "the mesh is empty: no vertices");
     if (F.rows() == 0)
-        throw InvalidMesh(
-            "the mesh has " + counted(V.rows(), "vertex", "vertices") +
-            " but no faces: a point cloud has no surface to take frequencies of; reconstruct one "
-            "first, e.g. with 'Surface Reconstruction: Screened Poisson' or 'Surface "
-            "Reconstruction: Ball Pivoting'");
+        throw InvalidMesh(ErrorCode::NoFaces,
+                          "the mesh has " + counted(V.rows(), "vertex", "vertices") +
+                              " but no faces: a point cloud has no surface to take frequencies of");
     if (F.minCoeff() < 0 || F.maxCoeff() >= V.rows())
-        throw InvalidMesh("a triangle refers to vertex " +
-                          std::to_string(F.minCoeff() < 0 ? F.minCoeff() : F.maxCoeff()) +
-                          ", but the mesh has " + counted(V.rows(), "vertex", "vertices"));
+        throw InvalidMesh(ErrorCode::BadIndex,
+                          "a triangle refers to vertex " +
+                              std::to_string(F.minCoeff() < 0 ? F.minCoeff() : F.maxCoeff()) +
+                              ", but the mesh has " + counted(V.rows(), "vertex", "vertices"));
 
-    Index notFinite = 0, firstNotFinite = -1;
+    Index notFinite = 0, first = -1;
     for (Index i = 0; i < V.rows(); ++i)
-        if (!V.row(i).allFinite() && notFinite++ == 0) firstNotFinite = i;
+        if (!V.row(i).allFinite() && notFinite++ == 0) first = i;
     if (notFinite > 0)
-        throw InvalidMesh(counted(notFinite, "vertex has", "vertices have") +
-                          " coordinates that are not finite numbers (NaN or infinity), the first "
-                          "is vertex " +
-                          std::to_string(firstNotFinite) +
-                          "; delete them, e.g. with 'Conditional Vertex Selection' (x != x) and "
-                          "'Delete Selected Vertices'");
+        throw InvalidMesh(ErrorCode::NotFinite,
+                          counted(notFinite, "vertex has", "vertices have") +
+                              " coordinates that are not finite numbers (NaN or infinity), the "
+                              "first is vertex " +
+                              std::to_string(first));
 
-    Index degenerate = 0, firstDegenerate = -1;
     for (Index t = 0; t < F.rows(); ++t)
-        if (isDegenerate(V, F, t) && degenerate++ == 0) firstDegenerate = t;
-    if (degenerate == F.rows())
-        throw InvalidMesh("none of the " + counted(F.rows(), "triangle", "triangles") +
+        if (!isDegenerate(V, F, t)) return;
+    throw InvalidMesh(ErrorCode::NoArea,
+                      "none of the " + counted(F.rows(), "triangle", "triangles") +
                           " has an area: the mesh is a line or a point, not a surface");
-    if (degenerate > 0 && kind == LaplacianKind::Cotangent)
-        throw InvalidMesh(counted(degenerate, "triangle has", "triangles have") +
-                          " no area, the first is triangle " + std::to_string(firstDegenerate) +
-                          "; their cotangents are infinite. Choose laplacian = intrinsic delaunay, "
-                          "or apply 'Merge Close Vertices', 'Remove "
-                          "Duplicate Faces' and 'Remove Zero Area Faces', or remesh with "
-                          "'Remeshing: Isotropic Explicit Remeshing'");
+}
+
+void checkAreas(const Vertices& V, const Faces& F) {
+    Index degenerate = 0, first = -1;
+    for (Index t = 0; t < F.rows(); ++t)
+        if (isDegenerate(V, F, t) && degenerate++ == 0) first = t;
+    if (degenerate > 0)
+        throw InvalidMesh(ErrorCode::DegenerateTriangles,
+                          counted(degenerate, "triangle has", "triangles have") +
+                              " no area, the first is triangle " + std::to_string(first) +
+                              "; their cotangents are infinite");
 }
 
 }  // namespace spectral

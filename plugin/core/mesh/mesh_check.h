@@ -1,18 +1,19 @@
 #pragma once
 
-#include "core/laplacian/laplacian_builder.h"
 #include "core/mesh/mesh.h"
-#include "core/support/types.h"
 
 namespace spectral {
 
-/// Refuses what no Laplacian can be made of.
+/// Refuses a mesh that has no Laplacian of any kind.
 ///
-/// @throws InvalidMesh  when there is no vertex or no triangle, an index is out of range, a
-///                      coordinate is not finite, or no triangle has an area; with
-///                      LaplacianKind::Cotangent also when some triangle is degenerate (two equal
-///                      corners, or an area that is zero beside its longest edge). The text counts
-///                      them and names the MeshLab filter that mends it.
-void checkMesh(const Vertices& V, const Faces& F, LaplacianKind kind);
+/// @throws InvalidMesh  without a vertex or a triangle, with an index out of range, a coordinate
+///                      that is not finite, or no triangle with an area.
+void checkMesh(const Vertices& V, const Faces& F);
+
+/// Refuses a mesh whose cotangents are not all finite.
+///
+/// @throws InvalidMesh  when a triangle is degenerate: two equal corners, or no area compared with
+///                      its longest edge.
+void checkAreas(const Vertices& V, const Faces& F);
 
 }  // namespace spectral

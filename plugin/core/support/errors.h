@@ -1,13 +1,45 @@
 #pragma once
 
 #include <stdexcept>
+#include <string>
 
 namespace spectral {
 
-/// Base of everything that the core throws. The text says what is wrong, where, and what to do.
+/// What is wrong, for a program that knows the remedy in its own user's words.
+enum class ErrorCode {
+    OptionOutOfRange,     ///< The text names the option and its range.
+    EmptyMesh,            ///< No vertices.
+    NoFaces,              ///< A point cloud.
+    BadIndex,             ///< A triangle refers to a vertex that does not exist.
+    NotFinite,            ///< Coordinates that are NaN or infinite.
+    NoArea,               ///< No triangle has an area.
+    DegenerateTriangles,  ///< Some triangles have no area, or too little for their cotangents.
+    ShapeCollapsed,       ///< The same, in the course of the filter.
+    NoDelaunay,           ///< The intrinsic Delaunay flips did not terminate.
+    SingularMatrix,       ///< W - sigma D is singular, or not definite where it must be.
+    TooManyVertices,      ///< The sparse factor has more entries than an int can count.
+    BasisTooLarge,        ///< limit(): the largest basis size possible.
+    BasisTooSmall,        ///< limit(): the least basis size that makes sense.
+    BasisIncomplete,      ///< Eigenvectors could not be computed, or not all of them.
+    TooManyHarmonics,     ///< A discontinuous gain needs more of them; limit(): the most.
+    BoundaryFixesAll,     ///< A fixed boundary leaves nothing.
+    TooSteep,             ///< The gain is too steep for a rational Krylov space.
+    SolverFailed,         ///< A numerical method failed; the text says which.
+    Cancelled,
+};
+
+/// Base of everything that the core throws. The text says what is wrong and where, with numbers.
 class Error : public std::runtime_error {
   public:
-    using std::runtime_error::runtime_error;
+    Error(ErrorCode code, const std::string& text, long limit = 0)
+        : std::runtime_error(text), code_(code), limit_(limit) {}
+
+    ErrorCode code() const { return code_; }
+    long limit() const { return limit_; }  ///< As the code says; else 0.
+
+  private:
+    ErrorCode code_;
+    long limit_;
 };
 
 /// The mesh cannot be filtered: no triangles, coordinates that are not finite, ...
@@ -20,18 +52,20 @@ class InvalidMesh : public Error {
 class InvalidOption : public Error {
   public:
     using Error::Error;
+    explicit InvalidOption(const std::string& text) : Error(ErrorCode::OptionOutOfRange, text) {}
 };
 
 /// A factorization broke down, or an iteration did not converge.
 class SolverFailure : public Error {
   public:
     using Error::Error;
+    explicit SolverFailure(const std::string& text) : Error(ErrorCode::SolverFailed, text) {}
 };
 
 /// The caller asked to stop; nothing is wrong.
 class Cancelled : public Error {
   public:
-    Cancelled() : Error("cancelled") {}
+    Cancelled() : Error(ErrorCode::Cancelled, "cancelled") {}
 };
 
 }  // namespace spectral

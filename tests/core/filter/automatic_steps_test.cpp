@@ -39,8 +39,8 @@ TEST(AutomaticSteps, KeepTheirToleranceAndTheirEstimateBoundsTheError) {
             const Setting setting(options, 1.0, update);
             for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
                 const AutomaticSteps steps = setting.automatic(tolerance);
-                const int finer = 8 * static_cast<int>(steps.sizes.size());
-                const double error = largestDifference(steps.X, setting.midpoint(finer));
+                const int finer = 8 * static_cast<int>(steps.last.sizes.size());
+                const double error = largestDifference(steps.last.X, setting.midpoint(finer));
                 EXPECT_LE(steps.error, tolerance);
                 EXPECT_LE(error, steps.error) << "tolerance " << tolerance;
                 EXPECT_EQ(steps.singularPart, 0.0);
@@ -51,14 +51,14 @@ TEST(AutomaticSteps, KeepTheirToleranceAndTheirEstimateBoundsTheError) {
 
 TEST(AutomaticSteps, AreAsFewAsTheToleranceAllows) {
     const Setting setting(boost(), 1.0, BasisUpdate::Conformal);
-    EXPECT_EQ(setting.automatic(1.0).sizes.size(), 1u);
-    EXPECT_LT(setting.automatic(1e-3).sizes.size(), setting.automatic(1e-6).sizes.size());
+    EXPECT_EQ(setting.automatic(1.0).last.sizes.size(), 1u);
+    EXPECT_LT(setting.automatic(1e-3).last.sizes.size(), setting.automatic(1e-6).last.sizes.size());
 }
 
 TEST(AutomaticSteps, HavePowersThatSumToOne) {
     const Setting setting(boost(), 0.7, BasisUpdate::Full);
     for (const double tolerance : {1e-1, 1e-3}) {
-        const std::vector<double> sizes = setting.automatic(tolerance).sizes;
+        const std::vector<double> sizes = setting.automatic(tolerance).last.sizes;
         EXPECT_NEAR(std::accumulate(sizes.begin(), sizes.end(), 0.0), 1.0, 1e-12);
         for (const double size : sizes) EXPECT_GT(size, 0.0);
     }
@@ -67,11 +67,11 @@ TEST(AutomaticSteps, HavePowersThatSumToOne) {
 TEST(AutomaticSteps, TellWhenTheirBoundStopsThem) {
     const Setting setting(boost(), 1.0, BasisUpdate::Full);
     const AutomaticSteps steps = setting.automatic(1e-8, 8);
-    EXPECT_EQ(steps.sizes.size(), 8u);
+    EXPECT_EQ(steps.last.sizes.size(), 8u);
     EXPECT_GT(steps.error, 1e-8);
     EXPECT_GT(steps.singularPart, 0.0);
     // The best result so far, not that of an earlier pass.
-    EXPECT_LE(largestDifference(steps.X, setting.midpoint(8)), 1e-12);
+    EXPECT_LE(largestDifference(steps.last.X, setting.midpoint(8)), 1e-12);
 }
 
 TEST(AutomaticSteps, AreNotHeldUpByPartsThatShrinkAway) {
@@ -94,7 +94,7 @@ TEST(AutomaticSteps, AreNotHeldUpByPartsThatShrinkAway) {
     const double tolerance = 1e-3;
     const AutomaticSteps steps =
         automaticSteps(laplacians, evaluate, surface.X, {tolerance, 64}, {});
-    EXPECT_LE(steps.sizes.size(), 8u);
+    EXPECT_LE(steps.last.sizes.size(), 8u);
     EXPECT_LE(steps.error, tolerance);
     EXPECT_GT(steps.singularPart, kNegligibleArea);
     EXPECT_LT(steps.singularPart, 0.1);

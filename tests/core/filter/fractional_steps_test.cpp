@@ -18,9 +18,9 @@ using testing::largestDifference;
 struct Setting : testing::FilterOfBlob {
     using FilterOfBlob::FilterOfBlob;
 
-    Vertices paper(int K, BasisUpdate update) const {
+    Vertices paper(int K) const {
         StepEvaluator evaluate(evaluation, interior, F);
-        return fixedSteps(laplacians, evaluate, surface.X, K, update, {}).X;
+        return fixedSteps(laplacians, evaluate, surface.X, K, {}).X;
     }
 
     FractionalSteps midpoint(int K) const {
@@ -39,9 +39,9 @@ TEST(FixedSteps, ConvergeToTheFlowAtFirstOrder) {
     for (const BasisUpdate update : {BasisUpdate::Full, BasisUpdate::Conformal}) {
         const Setting setting(boost(), 1.0, update);
         const Vertices limit = setting.limit();
-        const double four = largestDifference(setting.paper(4, update), limit);
-        const double eight = largestDifference(setting.paper(8, update), limit);
-        const double sixteen = largestDifference(setting.paper(16, update), limit);
+        const double four = largestDifference(setting.paper(4), limit);
+        const double eight = largestDifference(setting.paper(8), limit);
+        const double sixteen = largestDifference(setting.paper(16), limit);
         EXPECT_NEAR(four / eight, 2.0, 0.25);
         EXPECT_NEAR(eight / sixteen, 2.0, 0.25);
     }
@@ -56,7 +56,7 @@ TEST(MidpointSteps, ConvergeToTheSameFlowAtSecondOrder) {
         const double sixteen = largestDifference(setting.midpoint(16).X, limit);
         EXPECT_NEAR(four / eight, 4.0, 0.5);
         EXPECT_NEAR(eight / sixteen, 4.0, 0.5);
-        EXPECT_LT(four, largestDifference(setting.paper(16, update), limit));
+        EXPECT_LT(four, largestDifference(setting.paper(16), limit));
     }
 }
 

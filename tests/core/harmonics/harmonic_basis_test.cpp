@@ -21,8 +21,8 @@ using testing::Mesh;
 using testing::Operator;
 
 HarmonicBasis lowest(const Operator& A, Index k) {
-    ShiftedCholesky cholesky;
-    return truncatedBasis(A.laplacian, A.constants, k, cholesky);
+    ShiftedLdlt ldlt;
+    return truncatedBasis(A.laplacian, A.constants, k, ldlt);
 }
 
 double orthonormalityError(const Operator& A, const HarmonicBasis& basis) {
@@ -140,8 +140,8 @@ TEST(TruncatedBasis, StandsATriangleAlmostWithoutArea) {
     const Laplacian laplacian =
         LaplacianBuilder(surface, LaplacianKind::IntrinsicDelaunay, BasisUpdate::None).input();
     const ConstantModes constants(connectedComponents(surface.F, surface.X.rows()), laplacian.D);
-    ShiftedCholesky cholesky;
-    const HarmonicBasis basis = truncatedBasis(laplacian, constants, 40, cholesky);
+    ShiftedLdlt ldlt;
+    const HarmonicBasis basis = truncatedBasis(laplacian, constants, 40, ldlt);
     EXPECT_LT(basis.residuals.maxCoeff(), 1e-8);
 }
 

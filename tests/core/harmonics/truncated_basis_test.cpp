@@ -14,8 +14,8 @@ using testing::Mesh;
 using testing::Operator;
 
 HarmonicBasis lowest(const Operator& A, Index k, const Progress& progress = {}) {
-    ShiftedCholesky cholesky;
-    return truncatedBasis(A.laplacian, A.constants, k, cholesky, progress);
+    ShiftedLdlt ldlt;
+    return truncatedBasis(A.laplacian, A.constants, k, ldlt, progress);
 }
 
 /// Compares with all eigenvalues by the dense solver: none missing, none twice.
@@ -113,7 +113,7 @@ TEST(TruncatedSteps, ComputeTheBasisOfEveryShape) {
     options.featureSize = 0.5;
     options.steps = 3;
     options.evaluation.spectrum = Spectrum::Truncated;
-    options.evaluation.basisSize = 100;
+    options.evaluation.truncation.basisSize = 100;
     const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
     EXPECT_EQ(result.computedBases, 3);
     EXPECT_EQ(result.inertiaCount, result.eigenvalues.size());

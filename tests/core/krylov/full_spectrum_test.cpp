@@ -108,11 +108,11 @@ TEST(FullSpectrum, IsExactWhenTheKrylovSpaceIsInvariant) {
 
 TEST(FullSpectrum, LeavesASignalOfConstantsAlone) {
     const Operator A(testing::blob());
-    ShiftedCholesky cholesky;
-    cholesky.factorize(A.laplacian, 1.0);
+    ShiftedLdlt ldlt;
+    ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, 1.0);
     const Eigen::MatrixXd X = Eigen::MatrixXd::Constant(A.mesh.V.rows(), 2, 4.0);
     const FullSpectrumResult result =
-        applyFullSpectrum(A.laplacian.D, A.constants, cholesky, [](double) { return 0.0; }, X, {});
+        applyFullSpectrum(A.laplacian.D, A.constants, ldlt, [](double) { return 0.0; }, X, {});
     EXPECT_TRUE(result.converged);
     EXPECT_LT((result.Y - X).cwiseAbs().maxCoeff(), 1e-14);
 }
@@ -120,13 +120,13 @@ TEST(FullSpectrum, LeavesASignalOfConstantsAlone) {
 TEST(FullSpectrum, SaysWhenATransferFunctionIsTooSteep) {
     const Operator A(testing::blob());
     const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
-    ShiftedCholesky cholesky;
-    cholesky.factorize(A.laplacian, 40.0);
+    ShiftedLdlt ldlt;
+    ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, 40.0);
     const Gain step = [](double omega) { return omega < 6.0 ? 1.0 : 0.0; };
     FullSpectrumOptions options;
     options.maxDimension = 24;
     const FullSpectrumResult result =
-        applyFullSpectrum(A.laplacian.D, A.constants, cholesky, step, A.mesh.V, options);
+        applyFullSpectrum(A.laplacian.D, A.constants, ldlt, step, A.mesh.V, options);
     EXPECT_FALSE(result.converged);
     EXPECT_EQ(result.dimension, 24);
     EXPECT_LE(testing::relativeError(A, result.Y - testing::filteredDense(A, dense, step)),

@@ -20,9 +20,9 @@ struct Measured {
     bool canBeExtended = false;
 };
 Measured measured(const Operator& A, double pole, int dimensions) {
-    ShiftedCholesky cholesky;
-    cholesky.factorize(A.laplacian, pole);
-    KrylovSpaces space(cholesky, A.laplacian.D, A.constants, A.mesh.V.leftCols(1));
+    ShiftedLdlt ldlt;
+    ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, pole);
+    KrylovSpaces space(ldlt, A.laplacian.D, A.constants, A.mesh.V.leftCols(1));
     for (int m = 0; m < dimensions; ++m) space.extend();
     return {space.quadrature(0), space.extend()};
 }
@@ -31,9 +31,9 @@ TEST(KrylovSpaces, StayOrthogonalToConstantsAndToThemselves) {
     // Constants are amplified by S more than all else, and the coordinates are almost harmonics.
     const Operator A(testing::joined(testing::blob(), testing::icosphere(3)));
     for (const double pole : {0.5, 50.0}) {
-        ShiftedCholesky cholesky;
-        cholesky.factorize(A.laplacian, pole);
-        KrylovSpaces spaces(cholesky, A.laplacian.D, A.constants, A.mesh.V);
+        ShiftedLdlt ldlt;
+        ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, pole);
+        KrylovSpaces spaces(ldlt, A.laplacian.D, A.constants, A.mesh.V);
         const int dimensions = 80;
         for (int m = 0; m < dimensions; ++m) spaces.extend();
         const auto vector = [&](int m) {
@@ -52,9 +52,9 @@ TEST(KrylovSpaces, StayOrthogonalToConstantsAndToThemselves) {
 
 TEST(KrylovSpaces, TellTheLargestEntryOfACombination) {
     const Operator A(testing::blob());
-    ShiftedCholesky cholesky;
-    cholesky.factorize(A.laplacian, 5.0);
-    KrylovSpaces spaces(cholesky, A.laplacian.D, A.constants, A.mesh.V);
+    ShiftedLdlt ldlt;
+    ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, 5.0);
+    KrylovSpaces spaces(ldlt, A.laplacian.D, A.constants, A.mesh.V);
     for (int m = 0; m < 4; ++m) spaces.extend();
     std::srand(5);
     std::vector<Eigen::VectorXd> coefficients(3);
@@ -106,9 +106,9 @@ TEST(LanczosQuadrature, OfAnInvariantSpaceIsTheSpectralMeasure) {
 
 TEST(LanczosQuadrature, OfNothingHasNoNodes) {
     const Operator A(testing::icosphere(0));
-    ShiftedCholesky cholesky;
-    cholesky.factorize(A.laplacian, 1.0);
-    KrylovSpaces space(cholesky, A.laplacian.D, A.constants,
+    ShiftedLdlt ldlt;
+    ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, 1.0);
+    KrylovSpaces space(ldlt, A.laplacian.D, A.constants,
                        Eigen::MatrixXd::Constant(A.mesh.V.rows(), 1, 5.0));
     EXPECT_FALSE(space.extend());
     EXPECT_EQ(space.quadrature(0).omega.size(), 0);

@@ -16,10 +16,10 @@ namespace {
 using testing::Operator;
 
 int dimensionWithPole(const Operator& A, const Gain& gain, double pole) {
-    ShiftedCholesky cholesky;
-    cholesky.factorize(A.laplacian, pole);
+    ShiftedLdlt ldlt;
+    ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, pole);
     const FullSpectrumResult result =
-        applyFullSpectrum(A.laplacian.D, A.constants, cholesky, gain, A.mesh.V, {});
+        applyFullSpectrum(A.laplacian.D, A.constants, ldlt, gain, A.mesh.V, {});
     return result.converged ? result.dimension : 1000;
 }
 
@@ -72,13 +72,13 @@ TEST(SufficientDimension, IsEnoughForAnySignal) {
                 const std::optional<int> dimension = sufficientDimension(gain, pole, accuracy);
                 if (!dimension) continue;
                 ++told;
-                ShiftedCholesky cholesky;
-                cholesky.factorize(A.laplacian, pole);
+                ShiftedLdlt ldlt;
+                ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, pole);
                 FullSpectrumOptions evaluation;
                 evaluation.accuracy = 1e-12;  // never reached
                 evaluation.maxDimension = *dimension;
                 const FullSpectrumResult result = applyFullSpectrum(
-                    A.laplacian.D, A.constants, cholesky, gain, noise.mesh.V, evaluation);
+                    A.laplacian.D, A.constants, ldlt, gain, noise.mesh.V, evaluation);
                 EXPECT_EQ(result.dimension, *dimension);
                 EXPECT_LE(testing::relativeError(
                               noise, result.Y - testing::filteredDense(noise, dense, gain)),

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <limits>
 
+#include "core/harmonics/harmonic_basis.h"
 #include "core/support/errors.h"
 #include "support/evaluation.h"
 #include "support/shapes.h"
@@ -36,7 +37,7 @@ TEST(ShiftedLdlt, SolvesWithinTheSpectrumAndBelowIt) {
         const Operator A = lumpySphere(subdivisions);
         ShiftedLdlt ldlt;
         for (const double sigma : {-3.0, 7.0, 25.0}) {
-            ldlt.factorize(A.laplacian, sigma);
+            ldlt.factorize(A.laplacian.W, A.laplacian.D, sigma);
             EXPECT_EQ(ldlt.shift(), sigma);
             EXPECT_LT(relativeResidual(ldlt, A.laplacian), 1e-9) << subdivisions << ' ' << sigma;
         }
@@ -47,7 +48,7 @@ TEST(ShiftedLdlt, CountsAsEigenDoes) {
     const Operator A = lumpySphere(3);
     ShiftedLdlt ldlt;
     for (const double sigma : {-1.0, 1e-3, 1.0, 5.0, 30.0, 1e3, 1e6}) {
-        ldlt.factorize(A.laplacian, sigma);
+        ldlt.factorize(A.laplacian.W, A.laplacian.D, sigma);
         const Eigen::SimplicialLDLT<SparseMatrix> eigen(shifted(A.laplacian, sigma));
         EXPECT_EQ(ldlt.eigenvaluesBelow(), (eigen.vectorD().array() < 0.0).count()) << sigma;
     }
@@ -58,7 +59,7 @@ TEST(ShiftedLdlt, TakesMatricesOfOtherPatterns) {
     ShiftedLdlt ldlt;
     for (const int subdivisions : {2, 3, 1, 2}) {
         const Operator A = lumpySphere(subdivisions);
-        ldlt.factorize(A.laplacian, 4.0);
+        ldlt.factorize(A.laplacian.W, A.laplacian.D, 4.0);
         EXPECT_LT(relativeResidual(ldlt, A.laplacian), 1e-9) << subdivisions;
     }
     // As many vertices and edges as before, otherwise connected.
@@ -69,7 +70,7 @@ TEST(ShiftedLdlt, TakesMatricesOfOtherPatterns) {
     const SparseMatrix PW = reversed * A.laplacian.W;
     A.laplacian.W = PW * reversed.transpose();
     A.laplacian.D = (reversed * A.laplacian.D).eval();
-    ldlt.factorize(A.laplacian, 4.0);
+    ldlt.factorize(A.laplacian.W, A.laplacian.D, 4.0);
     EXPECT_LT(relativeResidual(ldlt, A.laplacian), 1e-9);
 }
 
@@ -86,7 +87,7 @@ TEST(ShiftedLdlt, TakesAMatrixOfSeveralParts) {
     laplacian.W.makeCompressed();
     laplacian.D = Eigen::VectorXd::LinSpaced(9, 1.0, 2.0);
     ShiftedLdlt ldlt;
-    ldlt.factorize(laplacian, -0.5);
+    ldlt.factorize(laplacian.W, laplacian.D, -0.5);
     EXPECT_LT(relativeResidual(ldlt, laplacian), 1e-14);
     EXPECT_EQ(ldlt.eigenvaluesBelow(), 0);
 }
@@ -98,12 +99,59 @@ TEST(ShiftedLdlt, MovesAShiftThatMakesAPivotVanish) {
     laplacian.W.makeCompressed();
     laplacian.D = Eigen::VectorXd::Ones(3);
     ShiftedLdlt ldlt;
-    ldlt.factorize(laplacian, 2.0);
+    ldlt.factorize(laplacian.W, laplacian.D, 2.0);
     EXPECT_NE(ldlt.shift(), 2.0);
     EXPECT_NEAR(ldlt.shift(), 2.0, 1e-6);
     EXPECT_EQ(ldlt.eigenvaluesBelow(), 2);
     laplacian.W.coeffRef(1, 1) = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_THROW(ldlt.factorize(laplacian, 2.0), SolverFailure);
+    EXPECT_THROW(ldlt.factorize(laplacian.W, laplacian.D, 2.0), SolverFailure);
+}
+
+TEST(ShiftedLdlt, SolvesEveryNumberOfColumns) {
+    std::srand(4);
+    const Operator A = lumpySphere(3);
+    ShiftedLdlt ldlt;
+    ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, 3.0);
+    EXPECT_EQ(ldlt.shift(), -3.0);
+    int solves = 0;
+    for (int columns = 1; columns <= 19; ++columns) {
+        const Eigen::MatrixXd X = Eigen::MatrixXd::Random(A.laplacian.W.rows(), columns);
+        const Eigen::MatrixXd B = shifted(A.laplacian, -3.0) * X;
+        EXPECT_LT((ldlt.solve(B) - X).cwiseAbs().maxCoeff(), 1e-11) << columns;
+        solves += columns;
+    }
+    EXPECT_EQ(ldlt.factorizations(), 1);
+    EXPECT_EQ(ldlt.solves(), solves);
+}
+
+TEST(ShiftedLdlt, RefusesAnIndefiniteMatrixWhereItMustBeDefinite) {
+    const Operator A = lumpySphere(2);
+    ShiftedLdlt ldlt;
+    EXPECT_THROW(ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, -50.0), SolverFailure);
+}
+
+TEST(ShiftedLdlt, CountsEigenvaluesBelowAShiftExactly) {
+    for (const auto& mesh :
+         {testing::blob(), testing::icosphere(2), testing::rectangle(3, 1, 24, 8)}) {
+        const Operator A(mesh);
+        const Eigen::VectorXd lambda = denseBasis(A.laplacian, A.constants).lambda;
+        ShiftedLdlt ldlt;
+        for (const double part : {0.0007, 0.013, 0.11, 0.47, 0.93}) {
+            const double sigma = part * lambda[lambda.size() - 1];
+            EXPECT_EQ(countEigenvaluesBelow(A.laplacian.W, A.laplacian.D, sigma, ldlt),
+                      (lambda.array() < sigma).count());
+        }
+        EXPECT_EQ(ldlt.factorizations(), 5);
+    }
+}
+
+TEST(ShiftedLdlt, KeepsItsFactorWhileASiblingCounts) {
+    const Operator A(testing::blob()), other(testing::torus(2, 1, 20, 10));
+    ShiftedLdlt ldlt;
+    ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, 1.0);
+    const Eigen::MatrixXd before = ldlt.solve(A.mesh.V);
+    countEigenvaluesBelow(other.laplacian.W, other.laplacian.D, 0.3, ldlt);
+    EXPECT_EQ(ldlt.solve(A.mesh.V), before);
 }
 
 }  // namespace

@@ -1,13 +1,14 @@
-// Tasks on several threads, also where the system has few of them or none.
-
-#include "core/support/parallel_tasks.h"
+// Long tasks on several threads, also where the system has few of them or none.
 
 #include <gtest/gtest.h>
 
 #include <numeric>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include "core/support/errors.h"
+#include "core/support/threads.h"
 #include "support/thread_shortage.h"
 
 using namespace spectral;
@@ -17,10 +18,11 @@ namespace {
 /// Sum of the squares of 0 to count - 1, in parallel.
 Index sumOfSquares(Index count, const Progress& progress = {}) {
     std::vector<Index> squares(static_cast<std::size_t>(count));
-    runInParallel(
+    const int threads = ThreadTeam::size();
+    runTasks(
         count,
-        [&](Index task, int worker, const StopPoint& stopPoint) {
-            EXPECT_LT(worker, workerCount());
+        [&](Index task, int thread, const StopPoint& stopPoint) {
+            EXPECT_LT(thread, threads);
             stopPoint();
             squares[static_cast<std::size_t>(task)] = task * task;
         },
@@ -30,31 +32,50 @@ Index sumOfSquares(Index count, const Progress& progress = {}) {
 
 constexpr Index kTasks = 100, kSum = 328350;
 
-TEST(ParallelTasks, EveryTaskIsDoneOnce) { EXPECT_EQ(sumOfSquares(kTasks), kSum); }
-
-TEST(ParallelTasks, NoTaskIsNothingToDo) { EXPECT_EQ(sumOfSquares(0), 0); }
-
-TEST(ParallelTasks, TheThreadsThereAreDoAllTasks) {
-    const spectral::testing::ThreadShortage oneThread(1);
+TEST(RunTasks, DoesEveryTaskOnce) {
     EXPECT_EQ(sumOfSquares(kTasks), kSum);
+    const ThreadTeam team;
+    EXPECT_EQ(sumOfSquares(kTasks), kSum);
+    EXPECT_EQ(sumOfSquares(0), 0);
 }
 
-TEST(ParallelTasks, WithoutThreadsTheCallerDoesAllTasksAndReports) {
-    const spectral::testing::ThreadShortage noThreads(0);
-    Index reports = 0;
-    const Progress counting([&](double, const std::string& stage) {
+TEST(RunTasks, TheThreadsThereAreDoAllTasks) {
+    for (const int threads : {0, 1}) {
+        const spectral::testing::ThreadShortage shortage(threads);
+        const ThreadTeam team(4);
+        EXPECT_EQ(sumOfSquares(kTasks), kSum);
+    }
+}
+
+TEST(RunTasks, OnlyTheCallerReports) {
+    const ThreadTeam team(3);
+    const std::thread::id caller = std::this_thread::get_id();
+    const Progress progress([&](double fraction, const std::string& stage) {
+        EXPECT_EQ(std::this_thread::get_id(), caller);
         EXPECT_EQ(stage, "squaring");
-        return ++reports > 0;
+        EXPECT_LE(fraction, 1.0);
+        return true;
     });
-    EXPECT_EQ(sumOfSquares(kTasks, counting), kSum);
-    EXPECT_GE(reports, kTasks);
+    EXPECT_EQ(sumOfSquares(kTasks, progress), kSum);
 }
 
-TEST(ParallelTasks, WithoutThreadsTheCallerCanStop) {
-    const spectral::testing::ThreadShortage noThreads(0);
-    int reports = 0;
-    const Progress stopping([&](double, const std::string&) { return ++reports < 10; });
-    EXPECT_THROW(sumOfSquares(kTasks, stopping), Cancelled);
+TEST(RunTasks, TheCallerStopsAllTasks) {
+    const ThreadTeam team(2);
+    const Progress stopping([](double, const std::string&) { return false; });
+    // Endless tasks: without a stop, never.
+    const auto work = [](Index, int, const StopPoint& stopPoint) {
+        while (true) stopPoint();
+    };
+    EXPECT_THROW(runTasks(8, work, stopping, "working"), Cancelled);
+}
+
+TEST(RunTasks, TheFirstFailureStopsAllTasksAndReachesTheCaller) {
+    const ThreadTeam team(3);
+    const auto work = [](Index task, int, const StopPoint& stopPoint) {
+        if (task == 0) throw SolverFailure("broke down");
+        while (true) stopPoint();
+    };
+    for (int i = 0; i < 50; ++i) EXPECT_THROW(runTasks(3, work, {}, "working"), SolverFailure);
 }
 
 }  // namespace

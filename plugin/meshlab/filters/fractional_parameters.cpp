@@ -1,9 +1,9 @@
-#include "fractional_parameters.h"
+#include "meshlab/filters/fractional_parameters.h"
 
 #include <common/parameters/rich_parameters.h>
 
-#include "common_parameters.h"
 #include "core/filter/transfer_function.h"
+#include "meshlab/filters/common_parameters.h"
 
 using spectral::FilterOptions;
 
@@ -96,12 +96,12 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "number of steps, e.g. 10.",
         true));
     list.addParam(RichInt(
-        "basis_size", defaults.evaluation.basisSize, "Basis size",
+        "basis_size", defaults.evaluation.truncation.basisSize, "Basis size",
         "How many frequencies (manifold harmonics) a truncated spectrum has, e.g. 300. Must be "
         "below the number of vertices; time and memory grow with it.",
         true));
     list.addParam(RichBool(
-        "reinject_residual", defaults.evaluation.reinjectResidual, "Reinject residual",
+        "reinject_residual", defaults.evaluation.truncation.reinjectResidual, "Reinject residual",
         "For a truncated spectrum: keep the details beyond the basis, with the mean gain of their "
         "frequencies. Off: drop them.",
         true));
@@ -132,8 +132,8 @@ FilterOptions fractionalFilterOptions(const RichParameterList& parameters) {
     options.basisUpdate = static_cast<spectral::BasisUpdate>(parameters.getEnum("basis_update"));
     options.conformalShare = parameters.getFloat("conformal_share");
     options.evaluation.spectrum = static_cast<spectral::Spectrum>(parameters.getEnum("spectrum"));
-    options.evaluation.basisSize = parameters.getInt("basis_size");
-    options.evaluation.reinjectResidual = parameters.getBool("reinject_residual");
+    options.evaluation.truncation.basisSize = parameters.getInt("basis_size");
+    options.evaluation.truncation.reinjectResidual = parameters.getBool("reinject_residual");
     options.laplacian = laplacianKind(parameters);
     options.boundary = boundaryCondition(parameters);
     return options;

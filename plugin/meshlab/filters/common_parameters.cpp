@@ -1,4 +1,4 @@
-#include "common_parameters.h"
+#include "meshlab/filters/common_parameters.h"
 
 #include <common/parameters/rich_parameters.h>
 
@@ -6,7 +6,7 @@
 #include "core/laplacian/frequency.h"
 #include "core/laplacian/interior.h"
 #include "core/mesh/measures.h"
-#include "mesh_conversion.h"
+#include "meshlab/mesh_conversion.h"
 
 RichPercentage featureSizeParameter(const MeshModel& mesh, const QString& help) {
     const Scalarm diagonal = mesh.cm.bbox.Diag();

@@ -4,13 +4,13 @@
 #include <sstream>
 #include <string>
 
-#include "common_parameters.h"
 #include "core/analysis/geometry_spectrum.h"
 #include "core/filter/transfer_function.h"
 #include "core/laplacian/frequency.h"
 #include "core/support/steady_progress.h"
-#include "mesh_conversion.h"
-#include "mesh_filter.h"
+#include "meshlab/filters/common_parameters.h"
+#include "meshlab/mesh_conversion.h"
+#include "meshlab/mesh_filter.h"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "fractional_help.h"
+#include "meshlab/filters/fractional_help.h"
 
 // Short: MeshLab shows all of it above the parameters, on screens of 768 lines, too.
 QString fractionalFilterHelp() {

@@ -5,13 +5,13 @@
 #include <sstream>
 #include <string>
 
-#include "common_parameters.h"
 #include "core/analysis/manifold_harmonics.h"
 #include "core/support/errors.h"
 #include "core/support/steady_progress.h"
-#include "mesh_conversion.h"
-#include "mesh_filter.h"
-#include "vertex_colors.h"
+#include "meshlab/filters/common_parameters.h"
+#include "meshlab/filters/vertex_colors.h"
+#include "meshlab/mesh_conversion.h"
+#include "meshlab/mesh_filter.h"
 
 namespace {
 

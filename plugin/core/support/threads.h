@@ -1,9 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
+#include "core/support/progress.h"
 #include "core/support/types.h"
 
 namespace spectral {
@@ -15,12 +18,11 @@ int threadCount();
 /// @param count  >= 1; 0 for one thread for each core.
 void setThreadCount(int count);
 
-/// Threads for the calls of parallelFor that the thread which has made the team does, as long as
-/// the team lives: for one run of a filter.
+/// Threads that parallelFor shares its tasks among, for as long as the team lives: one run of a
+/// filter. It serves the thread that has made it.
 ///
-/// They wait between the calls, at first awake, because an evaluation makes thousands of them, of
-/// some hundred microseconds each. A team within a team, or made by one of its threads, has no
-/// threads of its own.
+/// Between calls the threads spin before they sleep, because an evaluation makes thousands of calls
+/// of some hundred microseconds each. A team made within another one has no threads of its own.
 class ThreadTeam {
   public:
     /// @param threads  with the calling one; as many as the system gives.
@@ -36,6 +38,11 @@ class ThreadTeam {
     };
     /// What parallelFor does.
     static void run(Index count, TaskFunction work);
+
+    static int size();  ///< Threads of the calling thread's team, itself included; 1 without one.
+
+    /// Number of the calling thread within its team; 0 for the one that made it, or without a team.
+    static int threadIndex();
 
   private:
     class Implementation;
@@ -81,5 +88,19 @@ Value parallelSum(Index count, Value zero, const Work& work) {
     for (const Value& part : parts) zero += part;
     return zero;
 }
+
+/// Ends a task by an exception when the others are to stop; to be called often.
+using StopPoint = std::function<void()>;
+
+/// parallelFor for tasks that take long: with progress, and stopped by the caller or by the first
+/// exception of a task.
+///
+/// Tasks begin in ascending order. Only the calling thread reports, at its own stop points.
+/// @param work   work(task, thread, stopPoint), 0 <= thread < ThreadTeam::size(): for storage
+///               that a thread reuses from task to task. Results must not depend on it.
+/// @param stage  what is being done, for the report.
+/// @throws the first exception of a task; Cancelled.
+void runTasks(Index count, const std::function<void(Index, int, const StopPoint&)>& work,
+              const Progress& progress, const std::string& stage);
 
 }  // namespace spectral

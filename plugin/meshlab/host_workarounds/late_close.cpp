@@ -1,4 +1,4 @@
-#include "late_close.h"
+#include "meshlab/host_workarounds/late_close.h"
 
 #include <QApplication>
 #include <QEvent>

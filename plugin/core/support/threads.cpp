@@ -1,4 +1,4 @@
-#include "core/support/thread_team.h"
+#include "core/support/threads.h"
 
 #include <atomic>
 #include <chrono>
@@ -7,6 +7,7 @@
 #include <exception>
 #include <mutex>
 #include <new>
+#include <string>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -21,8 +22,9 @@ std::atomic<int> chosenThreads{0};  // 0: one for each core
 /// evaluation, shorter than what a user would notice of a core that is busy for nothing.
 constexpr std::chrono::microseconds kAwake{200};
 
-/// Whether the calling thread is within a task.
+/// Whether the calling thread is within a task, and its number in its team.
 thread_local bool isInTask = false;
+thread_local int indexInTeam = 0;
 
 }  // namespace
 
@@ -40,7 +42,11 @@ class ThreadTeam::Implementation {
   public:
     explicit Implementation(int threads) {
         try {
-            for (int i = 1; i < threads; ++i) threads_.emplace_back([this] { serve(); });
+            for (int i = 1; i < threads; ++i)
+                threads_.emplace_back([this, i] {
+                    indexInTeam = i;
+                    serve();
+                });
         } catch (const std::system_error&) {  // a limit on threads: those that there are
         } catch (const std::bad_alloc&) {
         }
@@ -54,6 +60,8 @@ class ThreadTeam::Implementation {
         wakeUp_.notify_all();
         for (std::thread& thread : threads_) thread.join();
     }
+
+    int size() const { return static_cast<int>(threads_.size()) + 1; }
 
     void run(Index count, TaskFunction work) {
         work_ = work;
@@ -144,6 +152,32 @@ void ThreadTeam::run(Index count, TaskFunction work) {
         return;
     }
     for (Index task = 0; task < count; ++task) work.call(work.function, task);
+}
+
+int ThreadTeam::size() { return current_ != nullptr ? current_->size() : 1; }
+
+int ThreadTeam::threadIndex() { return indexInTeam; }
+
+void runTasks(Index count, const std::function<void(Index, int, const StopPoint&)>& work,
+              const Progress& progress, const std::string& stage) {
+    std::atomic<Index> finished{0};
+    std::atomic<bool> stop{false};
+    std::exception_ptr failure;  // of the task that has set `stop`
+    const StopPoint stopPoint = [&] {
+        if (stop) throw Cancelled();
+        if (ThreadTeam::threadIndex() == 0)
+            progress.report(static_cast<double>(finished) / static_cast<double>(count), stage);
+    };
+    parallelFor(count, [&](Index task) {
+        try {
+            stopPoint();
+            work(task, ThreadTeam::threadIndex(), stopPoint);
+            ++finished;
+        } catch (...) {
+            if (!stop.exchange(true)) failure = std::current_exception();
+        }
+    });
+    if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace spectral

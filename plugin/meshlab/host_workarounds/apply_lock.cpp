@@ -1,8 +1,8 @@
-#include "apply_lock.h"
+#include "meshlab/host_workarounds/apply_lock.h"
 
 #include <QApplication>
 
-#include "filter_dialog.h"
+#include "meshlab/host_workarounds/filter_dialog.h"
 
 ApplyLock::ApplyLock() {
     const QWidget* dialog = openFilterDialog();

@@ -1,4 +1,4 @@
-#include "filter_dialog.h"
+#include "meshlab/host_workarounds/filter_dialog.h"
 
 #include <QApplication>
 #include <QThread>

@@ -1,4 +1,4 @@
-#include "fractional_report.h"
+#include "meshlab/filters/fractional_report.h"
 
 #include <common/plugins/interfaces/filter_plugin.h>
 
@@ -8,6 +8,7 @@
 
 #include "core/filter/automatic_steps.h"
 #include "core/laplacian/frequency.h"
+#include "core/support/types.h"
 
 namespace {
 
@@ -79,7 +80,53 @@ std::string headline(const spectral::FilterOptions& options, const spectral::Fil
     return text.str();
 }
 
+/// @param last  frequency of the basis' last harmonic.
+std::string cutoffWarning(const spectral::FilterResult& result, double last) {
+    std::ostringstream text;
+    text << std::setprecision(4) << "the " << result.eigenvalues.size()
+         << " harmonics end at features of " << 2.0 * spectral::kPi / last
+         << ", above the feature size of " << result.featureSize
+         << ": details between the two are treated like all finer ones. Choose a larger "
+            "feature_size, a larger basis_size, or spectrum = full";
+    return text.str();
+}
+
+double lastFrequency(const spectral::FilterResult& result) {
+    return std::sqrt(result.eigenvalues[result.eigenvalues.size() - 1]);
+}
+
 }  // namespace
+
+std::vector<std::string> warningsOf(const spectral::FilterOptions& options,
+                                    const spectral::FilterResult& result) {
+    std::vector<std::string> warnings;
+    std::ostringstream text;
+    text << std::setprecision(2);
+    if (result.fixedVertices > 0 &&
+        result.fixedVertices + result.unreferencedVertices == result.V.rows())
+        warnings.emplace_back(
+            "nothing can move: every vertex lies on the boundary, which is fixed. Choose boundary "
+            "= free; where the triangles of the mesh are not connected, apply 'Merge Close "
+            "Vertices' first");
+    if (!result.accuracyReached) {
+        text << "the requested relative accuracy of " << result.accuracy
+             << " was not reached, the estimated error is " << result.errorEstimate
+             << ". Choose a stop_gain of 0.05 instead of 0, a lower order or a wider band, or "
+                "fewer steps";
+        warnings.push_back(text.str());
+        text.str("");
+    }
+    if (!result.toleranceReached) {
+        text << "the tolerance of " << options.tolerance << " was not reached on "
+             << 100.0 * result.singularPart
+             << " % of the surface, where the estimated error is at least " << result.stepError
+             << ": parts of it shrink away. Choose a smaller feature_size, or basis_update = "
+                "conformal if it is another one";
+        warnings.push_back(text.str());
+    }
+    if (!result.cutoffReached) warnings.push_back(cutoffWarning(result, lastFrequency(result)));
+    return warnings;
+}
 
 std::string reportText(const spectral::FilterOptions& options, const spectral::FilterResult& result,
                        double diagonal) {
@@ -100,10 +147,10 @@ std::string reportText(const spectral::FilterOptions& options, const spectral::F
          << " solves";
     if (result.eigenvalues.size() > 0)
         text << ", " << result.eigenvalues.size() << " harmonics up to frequency "
-             << std::sqrt(result.eigenvalues[result.eigenvalues.size() - 1]) << ", computed "
-             << result.computedBases << " times";
+             << lastFrequency(result) << ", computed " << result.computedBases << " times";
     else
         text << ", estimated relative error " << result.errorEstimate;
-    for (const std::string& warning : result.warnings) text << "\n  WARNING: " << warning;
+    for (const std::string& warning : warningsOf(options, result))
+        text << "\n  WARNING: " << warning;
     return text.str();
 }

@@ -1,4 +1,4 @@
-#include "core/support/thread_team.h"
+#include "core/support/threads.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "vertex_colors.h"
+#include "meshlab/filters/vertex_colors.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
-#include "late_preview.h"
+#include "meshlab/host_workarounds/late_preview.h"
 
 #include <QMetaObject>
 
-#include "filter_dialog.h"
+#include "meshlab/host_workarounds/filter_dialog.h"
 
 LatePreview::LatePreview() : dialog_(openFilterDialog()) {
     if (dialog_.isNull()) return;

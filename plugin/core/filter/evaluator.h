@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "core/harmonics/harmonic_basis.h"
+#include "core/laplacian/constant_modes.h"
+#include "core/laplacian/laplacian.h"
+#include "core/ldlt/shifted_ldlt.h"
+#include "core/support/progress.h"
+
+namespace spectral {
+
+/// F^alpha(sqrt(A)) X for some powers alpha.
+struct Evaluation {
+    std::vector<Eigen::MatrixXd> Y;  ///< n x c each, one for each power.
+    double errorEstimate = 0.0;      ///< The largest one, relative to the size of X.
+    bool accuracyReached = true;
+};
+
+/// Evaluates powers of a transfer function, for one Laplacian after another.
+class Evaluator {
+  public:
+    virtual ~Evaluator() = default;
+
+    /// F^alpha(sqrt(A)) X (Kovnatsky et al. 2012, Eqs. 6 to 8 and 11).
+    /// @param alphas    descending; tuned for the one in the middle.
+    /// @param accuracy  wanted, relative to the size of X.
+    /// @throws InvalidOption, SolverFailure, Cancelled
+    virtual Evaluation evaluate(const Laplacian& laplacian, const ConstantModes& constants,
+                                const Eigen::MatrixXd& X, const std::vector<double>& alphas,
+                                double accuracy, const Progress& progress) = 0;
+
+    /// The last basis; empty where none is used.
+    const HarmonicBasis& basis() const { return basis_; }
+    int computedBases() const { return computedBases_; }
+    const ShiftedLdlt& ldlt() const { return ldlt_; }  ///< Counts the work.
+
+  protected:
+    ShiftedLdlt ldlt_;
+    HarmonicBasis basis_;
+    int computedBases_ = 0;
+};
+
+}  // namespace spectral

@@ -1,0 +1,44 @@
+#include "core/filter/full_spectrum_evaluator.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/krylov/full_spectrum.h"
+
+namespace spectral {
+
+/// The pole is chosen for the spectrum of the first Laplacian: those that follow are much alike.
+const Pole& FullSpectrumEvaluator::poleFor(const Laplacian& laplacian, double alpha,
+                                           double accuracy) {
+    if (!spectrum_) spectrum_ = bulkSpectrum(laplacian);
+    const auto [place, isNew] = poles_.try_emplace(alpha);
+    if (isNew)
+        place->second = selectPole(fractionalPower(F_, alpha), F_.cutoff(), *spectrum_, accuracy);
+    return place->second;
+}
+
+Evaluation FullSpectrumEvaluator::evaluate(const Laplacian& laplacian,
+                                           const ConstantModes& constants, const Eigen::MatrixXd& X,
+                                           const std::vector<double>& alphas, double accuracy,
+                                           const Progress& progress) {
+    progress.report(0.0, "factorizing");
+    const Pole& pole = poleFor(laplacian, alphas[alphas.size() / 2], accuracy);
+    ldlt_.factorizeDefinite(laplacian.W, laplacian.D, pole.shift);
+
+    FullSpectrumOptions options;
+    options.accuracy = accuracy;
+    options.resolution = pole.resolution;
+    options.atEveryVertex = atEveryVertex_;
+    std::vector<Gain> gains;
+    for (const double alpha : alphas) gains.push_back(fractionalPower(F_, alpha));
+    Evaluation evaluation;
+    for (FullSpectrumResult& result :
+         applyFullSpectrum(laplacian.D, constants, ldlt_, gains, X, options, progress)) {
+        evaluation.errorEstimate = std::max(evaluation.errorEstimate, result.errorEstimate);
+        evaluation.accuracyReached = evaluation.accuracyReached && result.converged;
+        evaluation.Y.push_back(std::move(result.Y));
+    }
+    return evaluation;
+}
+
+}  // namespace spectral

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <map>
+#include <optional>
+
+#include "core/filter/evaluator.h"
+#include "core/filter/transfer_function.h"
+#include "core/krylov/pole_selection.h"
+
+namespace spectral {
+
+/// Evaluates over all n harmonics, by a rational Krylov method that computes none of them
+/// (full_spectrum.h): for a continuous F.
+class FullSpectrumEvaluator : public Evaluator {
+  public:
+    /// @param F  kept by reference.
+    /// @param atEveryVertex  whether the accuracy is that of every vertex, or over the surface.
+    FullSpectrumEvaluator(const TransferFunction& F, bool atEveryVertex)
+        : F_(F), atEveryVertex_(atEveryVertex) {}
+
+    Evaluation evaluate(const Laplacian& laplacian, const ConstantModes& constants,
+                        const Eigen::MatrixXd& X, const std::vector<double>& alphas,
+                        double accuracy, const Progress& progress) override;
+
+  private:
+    const Pole& poleFor(const Laplacian& laplacian, double alpha, double accuracy);
+
+    const TransferFunction& F_;
+    bool atEveryVertex_;
+    std::optional<SpectrumRange> spectrum_;  // of the first Laplacian
+    std::map<double, Pole> poles_;           // for the powers asked for so far
+};
+
+}  // namespace spectral

@@ -1,0 +1,80 @@
+#include "meshlab/error_messages.h"
+
+#include <QString>
+
+namespace {
+
+using spectral::ErrorCode;
+
+const char* const kRemesh =
+    "apply 'Remove Zero Area Faces' or 'Remeshing: Isotropic Explicit Remeshing' first";
+
+bool hasChoice(const RichParameterList& parameters, const char* name, int choice) {
+    return parameters.hasParameter(name) && parameters.getEnum(name) == choice;
+}
+
+/// What helps where a basis does not fit.
+std::string otherThanThisBasis(const RichParameterList& parameters) {
+    std::string text;
+    if (hasChoice(parameters, "boundary", 1)) text += ", or boundary = free";
+    if (parameters.hasParameter("spectrum")) text += ", or spectrum = full";
+    return text;
+}
+
+/// Where the shape has collapsed in the course of the filter.
+std::string stablerFilter(const RichParameterList& parameters) {
+    if (hasChoice(parameters, "laplacian", 1)) return "choose laplacian = intrinsic delaunay";
+    if (hasChoice(parameters, "basis_update", 0))
+        return "a strong filter with basis_update = full pinches thin parts off: basis_update = "
+               "conformal is the more stable choice";
+    return "choose a smaller feature_size";
+}
+
+std::string remedy(const spectral::Error& error, const RichParameterList& parameters) {
+    const std::string limit = std::to_string(error.limit());
+    switch (error.code()) {
+        case ErrorCode::EmptyMesh: return "load or create a mesh first";
+        case ErrorCode::NoFaces:
+            return "reconstruct one first, e.g. with 'Surface Reconstruction: Screened Poisson' or "
+                   "'Surface Reconstruction: Ball Pivoting'";
+        case ErrorCode::NotFinite:
+            return "delete them, e.g. with 'Conditional Vertex Selection' (x != x) and 'Delete "
+                   "Selected Vertices'";
+        case ErrorCode::DegenerateTriangles:
+            return std::string(
+                       "choose laplacian = intrinsic delaunay, or apply 'Merge Close "
+                       "Vertices' and 'Remove Duplicate Faces', or ") +
+                   kRemesh;
+        case ErrorCode::NoDelaunay:
+        case ErrorCode::SingularMatrix: return kRemesh;
+        case ErrorCode::ShapeCollapsed: return stablerFilter(parameters);
+        case ErrorCode::TooManyVertices:
+            return "apply 'Simplification: Quadric Edge Collapse Decimation' first";
+        case ErrorCode::BasisTooLarge:
+            return "choose at most " + limit + otherThanThisBasis(parameters);
+        case ErrorCode::BasisTooSmall:
+            return "choose at least " + limit + otherThanThisBasis(parameters);
+        case ErrorCode::BasisIncomplete:
+            return "choose another basis_size" + otherThanThisBasis(parameters);
+        case ErrorCode::TooManyHarmonics:
+            return "choose a larger feature_size, response = butterworth with order = 8, or "
+                   "spectrum = truncated with reinject_residual";
+        case ErrorCode::BoundaryFixesAll: return "choose boundary = free";
+        case ErrorCode::TooSteep:
+            return "choose a stop_gain of 0.05 instead of 0, a lower order or a wider band, "
+                   "response = gaussian, fewer steps, or spectrum = truncated";
+        case ErrorCode::OptionOutOfRange:
+        case ErrorCode::BadIndex:
+        case ErrorCode::NoArea:
+        case ErrorCode::SolverFailed:
+        case ErrorCode::Cancelled: break;
+    }
+    return "";
+}
+
+}  // namespace
+
+std::string errorMessage(const spectral::Error& error, const RichParameterList& parameters) {
+    const std::string mend = remedy(error, parameters);
+    return mend.empty() ? error.what() : error.what() + (": " + mend);
+}
