@@ -2,8 +2,10 @@
 
 #include <common/parameters/rich_parameters.h>
 
-#include "core/measures.h"
-#include "core/transfer_function.h"
+#include "core/filter/transfer_function.h"
+#include "core/laplacian/frequency.h"
+#include "core/laplacian/interior.h"
+#include "core/mesh/measures.h"
 #include "mesh_conversion.h"
 
 RichPercentage featureSizeParameter(const MeshModel& mesh, const QString& help) {

@@ -3,8 +3,9 @@
 #include <common/ml_document/mesh_model.h>
 #include <common/parameters/rich_parameter_list.h>
 
-#include "core/boundary.h"
-#include "core/laplacian_builder.h"
+#include "core/laplacian/frequency.h"
+#include "core/laplacian/interior.h"
+#include "core/laplacian/laplacian_builder.h"
 
 /// The parameters that several filters have, under one name, with one default.
 

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "common_parameters.h"
-#include "core/artefacts.h"
-#include "core/steady_progress.h"
+#include "core/analysis/artefacts.h"
+#include "core/support/steady_progress.h"
 #include "mesh_conversion.h"
 #include "mesh_filter.h"
 

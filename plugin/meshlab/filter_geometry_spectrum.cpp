@@ -5,9 +5,10 @@
 #include <string>
 
 #include "common_parameters.h"
-#include "core/geometry_spectrum.h"
-#include "core/steady_progress.h"
-#include "core/transfer_function.h"
+#include "core/analysis/geometry_spectrum.h"
+#include "core/filter/transfer_function.h"
+#include "core/laplacian/frequency.h"
+#include "core/support/steady_progress.h"
 #include "mesh_conversion.h"
 #include "mesh_filter.h"
 

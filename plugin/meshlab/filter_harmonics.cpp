@@ -6,9 +6,9 @@
 #include <string>
 
 #include "common_parameters.h"
-#include "core/errors.h"
-#include "core/manifold_harmonics.h"
-#include "core/steady_progress.h"
+#include "core/analysis/manifold_harmonics.h"
+#include "core/support/errors.h"
+#include "core/support/steady_progress.h"
 #include "mesh_conversion.h"
 #include "mesh_filter.h"
 #include "vertex_colors.h"

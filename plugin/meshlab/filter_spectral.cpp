@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "apply_lock.h"
-#include "core/errors.h"
-#include "core/thread_team.h"
+#include "core/support/errors.h"
+#include "core/support/thread_team.h"
 #include "late_close.h"
 #include "late_preview.h"
 

@@ -3,6 +3,7 @@
 #include <common/parameters/rich_parameters.h>
 
 #include "common_parameters.h"
+#include "core/filter/transfer_function.h"
 
 using spectral::FilterOptions;
 

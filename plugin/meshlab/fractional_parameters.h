@@ -3,7 +3,7 @@
 #include <common/ml_document/mesh_model.h>
 #include <common/parameters/rich_parameter_list.h>
 
-#include "core/fractional_filter.h"
+#include "core/filter/fractional_filter.h"
 
 /// The dialog's parameters, in the order in which one thinks: what, how big, how strong, how.
 RichParameterList fractionalFilterParameters(const MeshModel& mesh);

@@ -6,7 +6,8 @@
 #include <iomanip>
 #include <sstream>
 
-#include "core/automatic_steps.h"
+#include "core/filter/automatic_steps.h"
+#include "core/laplacian/frequency.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "core/fractional_filter.h"
+#include "core/filter/fractional_filter.h"
 
 /// The report as the dictionary that pymeshlab returns.
 std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& result);

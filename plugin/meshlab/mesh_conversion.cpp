@@ -1,6 +1,7 @@
 #include "mesh_conversion.h"
 
-#include "core/errors.h"
+#include "core/mesh/mesh.h"
+#include "core/support/errors.h"
 
 MeshMatrices toMatrices(const CMeshO& mesh) {
     MeshMatrices matrices;

@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "core/progress.h"
-#include "core/types.h"
+#include "core/mesh/mesh.h"
+#include "core/support/progress.h"
+#include "core/support/types.h"
 
 /// A mesh of MeshLab's as matrices, without the deleted elements that stay in its containers.
 struct MeshMatrices {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/progress.h"
+#include "core/support/progress.h"
 
 /// What a filter tells after its work.
 struct FilterOutcome {

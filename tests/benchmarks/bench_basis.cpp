@@ -18,9 +18,9 @@
 #include <string>
 #include <utility>
 
-#include "core/cholesky.h"
-#include "core/mesh_laplacian.h"
-#include "core/truncated_basis.h"
+#include "core/harmonics/truncated_basis.h"
+#include "core/laplacian/mesh_laplacian.h"
+#include "core/ldlt/cholesky.h"
 #include "support/memory.h"
 #include "support/ply.h"
 

@@ -10,11 +10,13 @@
 #include <string>
 #include <vector>
 
-#include "core/cholesky.h"
-#include "core/fractional_filter.h"
-#include "core/laplacian.h"
-#include "core/measures.h"
-#include "core/pole_selection.h"
+#include "core/filter/fractional_filter.h"
+#include "core/filter/transfer_function.h"
+#include "core/krylov/pole_selection.h"
+#include "core/laplacian/frequency.h"
+#include "core/laplacian/laplacian.h"
+#include "core/ldlt/cholesky.h"
+#include "core/mesh/measures.h"
 #include "support/ply.h"
 
 using namespace spectral;

@@ -12,12 +12,12 @@
 #include <string>
 #include <vector>
 
-#include "core/artefacts.h"
-#include "core/fractional_filter.h"
-#include "core/geometry_spectrum.h"
-#include "core/manifold_harmonics.h"
-#include "core/measures.h"
-#include "core/steady_progress.h"
+#include "core/analysis/artefacts.h"
+#include "core/analysis/geometry_spectrum.h"
+#include "core/analysis/manifold_harmonics.h"
+#include "core/filter/fractional_filter.h"
+#include "core/mesh/measures.h"
+#include "core/support/steady_progress.h"
 #include "support/ply.h"
 
 using namespace spectral;

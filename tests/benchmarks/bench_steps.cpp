@@ -12,11 +12,14 @@
 #include <string>
 #include <vector>
 
-#include "core/automatic_steps.h"
-#include "core/fractional_filter.h"
-#include "core/fractional_steps.h"
-#include "core/measures.h"
-#include "core/surface.h"
+#include "core/filter/automatic_steps.h"
+#include "core/filter/fractional_filter.h"
+#include "core/filter/fractional_steps.h"
+#include "core/filter/transfer_function.h"
+#include "core/laplacian/interior.h"
+#include "core/mesh/measures.h"
+#include "core/mesh/mesh.h"
+#include "core/mesh/surface.h"
 #include "support/ply.h"
 
 using namespace spectral;

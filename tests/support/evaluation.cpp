@@ -2,7 +2,10 @@
 
 #include <sstream>
 
-#include "core/pole_selection.h"
+#include "core/filter/transfer_function.h"
+#include "core/krylov/pole_selection.h"
+#include "core/laplacian/frequency.h"
+#include "core/mesh/mesh.h"
 
 namespace spectral::testing {
 

@@ -1,9 +1,13 @@
 #pragma once
 
-#include "core/components.h"
-#include "core/full_spectrum.h"
-#include "core/harmonic_basis.h"
-#include "core/laplacian.h"
+#include "core/filter/transfer_function.h"
+#include "core/harmonics/harmonic_basis.h"
+#include "core/krylov/full_spectrum.h"
+#include "core/laplacian/constant_modes.h"
+#include "core/laplacian/frequency.h"
+#include "core/laplacian/laplacian.h"
+#include "core/mesh/components.h"
+#include "core/mesh/mesh.h"
 #include "support/shapes.h"
 
 namespace spectral::testing {

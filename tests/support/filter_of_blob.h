@@ -1,10 +1,11 @@
 #pragma once
 
-#include "core/boundary.h"
-#include "core/laplacian_builder.h"
-#include "core/step_evaluator.h"
-#include "core/surface.h"
-#include "core/transfer_function.h"
+#include "core/filter/step_evaluator.h"
+#include "core/filter/transfer_function.h"
+#include "core/laplacian/interior.h"
+#include "core/laplacian/laplacian_builder.h"
+#include "core/mesh/mesh.h"
+#include "core/mesh/surface.h"
 
 namespace spectral::testing {
 

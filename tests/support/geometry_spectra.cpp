@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/laplacian/interior.h"
+
 namespace spectral::testing {
 
 SpectrumOptions withBasis(int basisSize, LaplacianKind kind) {

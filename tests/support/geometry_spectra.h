@@ -1,6 +1,7 @@
 #pragma once
 
-#include "core/geometry_spectrum.h"
+#include "core/analysis/geometry_spectrum.h"
+#include "core/laplacian/interior.h"
 #include "support/ply.h"
 
 namespace spectral::testing {

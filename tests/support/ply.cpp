@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/mesh/mesh.h"
+
 namespace spectral::testing {
 
 namespace {

@@ -2,7 +2,8 @@
 
 #include <string>
 
-#include "core/types.h"
+#include "core/mesh/mesh.h"
+#include "core/support/types.h"
 
 namespace spectral::testing {
 

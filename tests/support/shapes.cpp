@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/mesh/mesh.h"
+
 namespace spectral::testing {
 
 namespace {

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "core/laplacian/frequency.h"
+
+namespace spectral {
+
+enum class FilterType { LowPass, HighPass, BandPass, BandStop };
+enum class Response { Gaussian, Butterworth, Ideal };
+
+/// Shape of a transfer function; the frequency axis is set by TransferFunction.
+struct TransferFunctionOptions {
+    FilterType type = FilterType::LowPass;
+    Response response = Response::Gaussian;
+    int order = 2;           ///< Butterworth order m, 1 to 64.
+    double bandWidth = 1.0;  ///< Full width of a band between its -3 dB points, octaves, > 0.
+    double passGain = 1.0;   ///< Gain in the pass band, >= 0.
+    double stopGain = 0.0;   ///< Gain in the stop band, >= 0.
+    double power = 1.0;      ///< The part of the filter to apply, 0 < power <= 1; 1 is the whole.
+};
+
+/// Transfer function F(omega) = (stopGain + (passGain - stopGain) B(omega / omega_c))^power.
+///
+/// The prototype B is -3 dB (1/sqrt 2) at its cutoff; with x = omega / omega_c and b = bandWidth:
+///   low-pass   Gaussian 2^(-x^2/2), Butterworth 1/sqrt(1 + x^2m), ideal 1 for x <= 1, else 0;
+///   high-pass  the low-pass at 1/x;
+///   band-pass  Gaussian 2^(-(2 log2(x)/b)^2/2), Butterworth 1/sqrt(1 + ((x - 1/x)/q)^2m) with
+///              q = 2^(b/2) - 2^(-b/2), ideal 1 inside |log2 x| <= b/2;
+///   band-stop  1 minus the band-pass.
+/// F is finite and >= 0 everywhere, so that every fractional power of it exists.
+class TransferFunction {
+  public:
+    /// @param cutoff  omega_c, radians per length unit, > 0: the cutoff (low-pass, high-pass) or
+    ///                the centre of the band.
+    /// @throws InvalidOption  when an option is out of its range.
+    TransferFunction(const TransferFunctionOptions& options, double cutoff);
+
+    /// Gain F(omega) at the frequency omega >= 0 (radians per length unit; infinity is allowed).
+    double operator()(double omega) const;
+
+    /// F(omega)^alpha, alpha > 0, also where F itself is too small to be told from 0: the hundredth
+    /// power of a Gaussian matters far beyond where the Gaussian underflows.
+    double power(double omega, double alpha) const;
+
+    double cutoff() const { return cutoff_; }
+
+    double appliedPower() const { return options_.power; }
+
+    /// What F is a power of: the same transfer function with power = 1.
+    TransferFunction whole() const;
+
+    /// Frequencies at which F jumps, ascending; empty for a continuous F.
+    std::vector<double> discontinuities() const;
+
+  private:
+    double prototype(double x) const;
+    double octavesDown(double x) const;
+
+    TransferFunctionOptions options_;
+    double cutoff_;
+};
+
+/// The gain F^alpha of one fractional step (Kovnatsky et al. 2012, Eq. 11).
+///
+/// @param alpha  fractional power, 0 < alpha <= 1; 1 is the whole filter.
+/// The constant mode (omega = 0) is not this function's business: every evaluation removes it first
+/// and puts it back unchanged, whatever F(0) says.
+Gain fractionalPower(const TransferFunction& F, double alpha);
+
+/// Mean of F over the frequencies in [from, to], 0 <= from < to: for a whole F the gain of the
+/// residual of a truncated basis (Vallet and Levy 2008, section 4.3; Kovnatsky et al. 2012, Eq. 9).
+double meanGain(const TransferFunction& F, double from, double to);
+
+}  // namespace spectral

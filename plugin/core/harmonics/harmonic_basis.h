@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/laplacian/constant_modes.h"
+#include "core/laplacian/frequency.h"
+#include "core/laplacian/laplacian.h"
+#include "core/support/types.h"
+
+namespace spectral {
+
+/// Manifold harmonics: the k lowest eigenpairs of W phi = lambda D phi.
+struct HarmonicBasis {
+    Eigen::MatrixXd Phi;     ///< n x k, D-orthonormal: Phi^T D Phi = I.
+    Eigen::VectorXd lambda;  ///< k eigenvalues, ascending; exactly 0 for the constant modes.
+
+    // The certificate of a truncated basis; without meaning for a dense one.
+    Eigen::VectorXd residuals;  ///< k, |D^-1/2 (W phi - lambda D phi)| / lambda; 0 for constants.
+    Index inertiaCount = 0;     ///< Eigenvalues below the first that is not in the basis, by the
+                                ///< inertia of W - sigma D: equal to size(), none is missing.
+
+    Index size() const { return lambda.size(); }
+};
+
+/// All n eigenpairs by a dense solver: O(n^3) time, 3 n^2 numbers of memory. The yardstick of the
+/// tests, and what is quickest for a few hundred vertices.
+/// @throws SolverFailure  when the solver does not converge.
+HarmonicBasis denseBasis(const Laplacian& laplacian, const ConstantModes& constants);
+
+/// Whether the dense solver is the quickest way to harmonics of n vertices.
+bool isDenseQuicker(Index n);
+
+/// Largest eigenvalue of W phi = lambda D phi, to about 1e-8 relative.
+double largestEigenvalue(const Laplacian& laplacian);
+
+/// F(Lambda^1/2): the gains of the harmonics, k.
+Eigen::ArrayXd gainsOf(const HarmonicBasis& basis, const Gain& gain);
+
+/// Y = Phi F(Lambda^1/2) Phi^T D X + residualGain (X - Phi Phi^T D X)
+/// (Vallet and Levy 2008; Kovnatsky et al. 2012, Eqs. 6 to 8).
+///
+/// @param residualGain  gain of all that is beyond the basis (Eq. 9); 0 drops it (Eq. 6).
+/// The constant modes keep gain 1.
+Eigen::MatrixXd applyInBasis(const HarmonicBasis& basis, const Eigen::VectorXd& D,
+                             const ConstantModes& constants, const Gain& gain, double residualGain,
+                             const Eigen::MatrixXd& X);
+
+}  // namespace spectral

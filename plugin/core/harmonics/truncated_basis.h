@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+
+#include "core/harmonics/harmonic_basis.h"
+#include "core/laplacian/constant_modes.h"
+#include "core/laplacian/laplacian.h"
+#include "core/ldlt/cholesky.h"
+#include "core/support/progress.h"
+#include "core/support/types.h"
+
+namespace spectral {
+
+/// At least the k lowest eigenpairs, certified: slice by slice (spectrum_slicing.h), each by
+/// Spectra (slice_pairs.h), or by the dense solver where that is quicker.
+///
+/// The cut is never inside a cluster of equal eigenvalues: a few pairs more than k are taken where
+/// lambda_k and lambda_k+1 are equal or nearly so. The certificate: as many pairs as the inertia of
+/// W - sigma D counts below the cut (Sylvester's law of inertia), or an error; residuals as
+/// reported (1e-9 is usual, more where triangles have collapsed).
+///
+/// @param k         constants.count() < k < n.
+/// @param cholesky  counts the work and lends its symbolic analysis; its factor is left as it is.
+/// @throws InvalidOption  when k is out of range; SolverFailure when the basis fails its count;
+///                        Cancelled.
+HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& constants, Index k,
+                             ShiftedCholesky& cholesky, const Progress& progress = {});
+
+/// The number of pairs, from `asked` on, at which a spectrum may be cut: where the next eigenvalue
+/// is not equal to the last one or nearly so. Empty when every candidate lies inside a cluster.
+///
+/// @param lambda  ascending, more than `asked` entries.
+std::optional<Index> cutOutsideClusters(const Eigen::VectorXd& lambda, Index asked);
+
+}  // namespace spectral

@@ -1,0 +1,173 @@
+// Compiled once for each instruction set: see kernels.h.
+#include "core/kernels/triangular_solves.h"
+
+#include <Eigen/Core>
+
+namespace spectral {
+
+namespace {
+
+using Size = std::ptrdiff_t;
+
+/// A row of the right-hand sides.
+template <int Columns>
+using Row = Eigen::Array<double, 1, Columns>;
+
+/// A few right-hand sides, those of a row next to each other.
+template <int Columns>
+class Block {
+  public:
+    explicit Block(double* Y) : Y_(Y) {}
+    Eigen::Map<Row<Columns>> row(Size i) { return Eigen::Map<Row<Columns>>(Y_ + i * Columns); }
+
+  private:
+    double* Y_;
+};
+
+/// A sparse lower triangular matrix with a diagonal of 1, which is not stored.
+///
+/// Most of its entries are in runs of columns with the same rows below them (supernodes). Several
+/// columns are taken at once: each row of the right-hand side is then fetched once for all.
+class UnitLower {
+  public:
+    explicit UnitLower(const LdltFactor& factor)
+        : start_(factor.starts),
+          rowStart_(factor.rowStarts),
+          row_(factor.rows),
+          value_(factor.values),
+          joined_(factor.joined) {}
+
+    /// Number of columns from j on, at most so many, that have the same rows below them.
+    int width(Size j, int most) const {
+        int width = 1;
+        while (width < most && joined_[j + width - 1]) ++width;
+        return width;
+    }
+
+    /// The same for the columns that end before `end`.
+    int widthBefore(Size end, int most) const {
+        int width = 1;
+        while (width < most && end > width && joined_[end - width - 1]) ++width;
+        return width;
+    }
+
+    /// Forward elimination by columns j to j + Width - 1.
+    template <int Width, int Columns>
+    void eliminate(Size j, Block<Columns> Y) const {
+        Row<Columns> y[Width];
+        for (int i = 0; i < Width; ++i) {
+            y[i] = Y.row(j + i);
+            for (int k = 0; k < i; ++k) y[i] -= value_[start_[j + k] + i - k - 1] * y[k];
+            Y.row(j + i) = y[i];
+        }
+        const Tails<Width> tails(*this, j);
+        for (int p = 0; p < tails.size; ++p) {
+            Row<Columns> z = Y.row(tails.row[p]);
+            for (int k = 0; k < Width; ++k) z -= tails.value[k][p] * y[k];
+            Y.row(tails.row[p]) = z;
+        }
+    }
+
+    /// Back substitution by the transposes of columns j to j + Width - 1.
+    template <int Width, int Columns>
+    void substitute(Size j, Block<Columns> Y) const {
+        Row<Columns> y[Width];
+        for (int i = 0; i < Width; ++i) y[i] = Y.row(j + i);
+        const Tails<Width> tails(*this, j);
+        for (int p = 0; p < tails.size; ++p) {
+            const Row<Columns> z = Y.row(tails.row[p]);
+            for (int k = 0; k < Width; ++k) y[k] -= tails.value[k][p] * z;
+        }
+        for (int i = Width - 1; i >= 0; --i) {
+            for (int k = 0; k < i; ++k) y[k] -= value_[start_[j + k] + i - k - 1] * y[i];
+            Y.row(j + i) = y[i];
+        }
+    }
+
+  private:
+    /// The rows below a group of columns, and their entries there.
+    template <int Width>
+    struct Tails {
+        Tails(const UnitLower& L, Size j)
+            : size(L.count(j + Width - 1)), row(L.row_ + L.rowStart_[j + Width - 1]) {
+            for (int k = 0; k < Width; ++k) value[k] = L.value_ + L.start_[j + k] + Width - 1 - k;
+        }
+        int size;
+        const int* row;
+        const double* value[Width];
+    };
+
+    int count(Size j) const { return start_[j + 1] - start_[j]; }
+
+    const int* start_;
+    const int* rowStart_;
+    const int* row_;
+    const double* value_;
+    const char* joined_;
+};
+
+/// Columns of L at once: as many as fit into the registers.
+constexpr int kMost = 4;
+
+template <int Columns>
+void eliminateColumns(const LdltFactor& factor, double* rows, Size begin, Size end) {
+    const UnitLower L(factor);
+    const Block<Columns> Y(rows);
+    for (Size j = begin; j < end;) {
+        const int width = L.width(j, kMost);
+        switch (width) {
+            case 4: L.eliminate<4>(j, Y); break;
+            case 3: L.eliminate<3>(j, Y); break;
+            case 2: L.eliminate<2>(j, Y); break;
+            default: L.eliminate<1>(j, Y); break;
+        }
+        j += width;
+    }
+}
+
+template <int Columns>
+void substituteColumns(const LdltFactor& factor, double* rows, Size begin, Size end) {
+    const UnitLower L(factor);
+    const Block<Columns> Y(rows);
+    while (end > begin) {
+        const int width = L.widthBefore(end, kMost);
+        switch (width) {
+            case 4: L.substitute<4>(end - 4, Y); break;
+            case 3: L.substitute<3>(end - 3, Y); break;
+            case 2: L.substitute<2>(end - 2, Y); break;
+            default: L.substitute<1>(end - 1, Y); break;
+        }
+        end -= width;
+    }
+}
+
+void eliminate(const LdltFactor& factor, double* Y, int columns, Size begin, Size end) {
+    switch (columns) {
+        case 1: return eliminateColumns<1>(factor, Y, begin, end);
+        case 2: return eliminateColumns<2>(factor, Y, begin, end);
+        case 3: return eliminateColumns<3>(factor, Y, begin, end);
+        case 4: return eliminateColumns<4>(factor, Y, begin, end);
+        case 8: return eliminateColumns<8>(factor, Y, begin, end);
+        default: return eliminateColumns<kMostRightHandSides>(factor, Y, begin, end);
+    }
+}
+
+void substitute(const LdltFactor& factor, double* Y, int columns, Size begin, Size end) {
+    switch (columns) {
+        case 1: return substituteColumns<1>(factor, Y, begin, end);
+        case 2: return substituteColumns<2>(factor, Y, begin, end);
+        case 3: return substituteColumns<3>(factor, Y, begin, end);
+        case 4: return substituteColumns<4>(factor, Y, begin, end);
+        case 8: return substituteColumns<8>(factor, Y, begin, end);
+        default: return substituteColumns<kMostRightHandSides>(factor, Y, begin, end);
+    }
+}
+
+}  // namespace
+
+namespace SPECTRAL_INSTRUCTIONS {
+extern const TriangularSolves triangularSolves;
+const TriangularSolves triangularSolves{eliminate, substitute};
+}  // namespace SPECTRAL_INSTRUCTIONS
+
+}  // namespace spectral

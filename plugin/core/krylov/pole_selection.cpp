@@ -1,0 +1,107 @@
+#include "core/krylov/pole_selection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/laplacian/frequency.h"
+
+namespace spectral {
+
+namespace {
+
+/// Chebyshev nodes: degrees up to half of them are told apart. More are taken only for gains that
+/// need them.
+constexpr int kFewestNodes = 32, kMostNodes = 256;
+
+/// Poles that are tried: powers of two times the cutoff's lambda.
+constexpr int kLowestPower = -6, kHighestPower = 12;
+
+/// Part of its span to which a gain must be approximated for a space to tell where it varies.
+constexpr double kResolved = 0.1;
+
+/// Approximation of a gain by polynomials in theta, on an interval of it.
+class ChebyshevSeries {
+  public:
+    ChebyshevSeries(const Gain& gain, double pole, double first, double last, int nodes)
+        : tail_(static_cast<std::size_t>(nodes) + 1, 0.0) {
+        std::vector<double> cosine(4 * static_cast<std::size_t>(nodes));  // cos(pi i / (2 nodes))
+        for (std::size_t i = 0; i < cosine.size(); ++i)
+            cosine[i] = std::cos(kPi * static_cast<double>(i) / (2.0 * nodes));
+        std::vector<double> value(static_cast<std::size_t>(nodes));
+        for (int i = 0; i < nodes; ++i) {
+            const double theta = first + (last - first) * 0.5 * (1.0 + cosine[2 * i + 1]);
+            value[i] = gain(std::sqrt(std::max(0.0, pole / theta - pole)));
+        }
+        const auto [least, largest] = std::minmax_element(value.begin(), value.end());
+        span_ = *largest - *least;
+        for (int degree = nodes - 1; degree >= 0; --degree) {
+            double coefficient = 0.0;
+            for (int i = 0; i < nodes; ++i)
+                coefficient += value[i] * cosine[degree * (2 * i + 1) % (4 * nodes)];
+            tail_[degree] = tail_[degree + 1] + std::abs(coefficient) * 2.0 / nodes;
+        }
+    }
+
+    /// Number of coefficients, from the first, without which the error would exceed the accuracy.
+    int requiredDimension(double accuracy) const {
+        return static_cast<int>(std::partition_point(tail_.begin(), tail_.end(),
+                                                     [&](double t) { return t > accuracy; }) -
+                                tail_.begin());
+    }
+
+    /// From the least value to the largest.
+    double span() const { return span_; }
+
+  private:
+    std::vector<double> tail_;  // sums of moduli, from a degree on: bound the error below it
+    double span_ = 0.0;
+};
+
+}  // namespace
+
+Pole selectPole(const Gain& gain, double cutoff, const SpectrumRange& range, double accuracy) {
+    Pole best;
+    int nodes = kFewestNodes;
+    for (double target = accuracy;;) {
+        int fewest = nodes + 1;
+        for (int power = kLowestPower; power <= kHighestPower; ++power) {
+            const double pole = std::exp2(power) * cutoff * cutoff;
+            const ChebyshevSeries series(gain, pole, pole / (range.highest + pole),
+                                         pole / (range.lowest + pole), nodes);
+            const int dimension = series.requiredDimension(target);
+            if (dimension >= fewest) continue;
+            fewest = dimension;
+            best.shift = pole;
+            best.resolution = std::max(1, series.requiredDimension(kResolved * series.span()));
+        }
+        if (fewest <= nodes / 2) break;
+        // Aliasing spoils the upper half of the coefficients of a gain that is not resolved: with
+        // the most nodes, such a gain is judged at the finest accuracy that some pole does reach.
+        if (nodes < kMostNodes)
+            nodes *= 2;
+        else
+            target *= 10.0;
+    }
+    return best;
+}
+
+std::optional<int> sufficientDimension(const Gain& gain, double pole, double accuracy) {
+    constexpr int kMost = 32;
+    const ChebyshevSeries series(gain, pole, 0.0, 1.0, 4 * kMost);
+    // Twice as accurate: the space's own approximation may be worse than the best polynomial by
+    // that factor.
+    const int dimension = std::max(1, series.requiredDimension(0.5 * accuracy));
+    if (dimension > kMost) return {};
+    return dimension;
+}
+
+SpectrumRange bulkSpectrum(const Laplacian& laplacian) {
+    Eigen::VectorXd local = 2.0 * laplacian.W.diagonal().cwiseQuotient(laplacian.D);
+    const Index percentile = std::min<Index>(local.size() - 1, local.size() * 99 / 100);
+    std::nth_element(local.data(), local.data() + percentile, local.data() + local.size());
+    const double first = 0.1 * 4.0 * kPi / laplacian.D.sum();
+    return {first, std::max(local[percentile], 2.0 * first)};
+}
+
+}  // namespace spectral

@@ -1,0 +1,40 @@
+#include "core/laplacian/constant_modes.h"
+
+#include <cmath>
+
+namespace spectral {
+
+ConstantModes::ConstantModes(const Components& components, const Eigen::VectorXd& D)
+    : label_(components.label), D_(D), mass_(Eigen::VectorXd::Zero(components.count)) {
+    for (Index i = 0; i < D.size(); ++i)
+        if (label_[i] >= 0) mass_[label_[i]] += D[i];
+    isWhole_ = count() == 1 && label_.minCoeff() == 0;
+}
+
+Eigen::MatrixXd ConstantModes::means(const Eigen::Ref<const Eigen::MatrixXd>& X) const {
+    if (isWhole_) return D_.transpose() * X / mass_[0];
+    Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(mass_.size(), X.cols());
+    for (Index c = 0; c < X.cols(); ++c)
+        for (Index i = 0; i < X.rows(); ++i)
+            if (label_[i] >= 0) sums(label_[i], c) += D_[i] * X(i, c);
+    return mass_.cwiseInverse().asDiagonal() * sums;
+}
+
+void ConstantModes::add(const Eigen::MatrixXd& means, Eigen::Ref<Eigen::MatrixXd> X) const {
+    if (isWhole_) {
+        X.rowwise() += means.row(0);
+        return;
+    }
+    for (Index c = 0; c < X.cols(); ++c)
+        for (Index i = 0; i < X.rows(); ++i)
+            if (label_[i] >= 0) X(i, c) += means(label_[i], c);
+}
+
+Eigen::MatrixXd ConstantModes::orthonormal() const {
+    Eigen::MatrixXd modes = Eigen::MatrixXd::Zero(label_.size(), mass_.size());
+    for (Index i = 0; i < label_.size(); ++i)
+        if (label_[i] >= 0) modes(i, label_[i]) = 1.0 / std::sqrt(mass_[label_[i]]);
+    return modes;
+}
+
+}  // namespace spectral

@@ -1,0 +1,34 @@
+#include "core/laplacian/harmonic_extension.h"
+
+#include <algorithm>
+
+namespace spectral {
+
+void HarmonicExtension::setLaplacian(const Laplacian& surface) {
+    surface_ = surface;
+    means_.emplace(interior_.surfaceComponents(), surface.D);
+    Laplacian interior = interior_.restricted(surface);
+    // W_II is singular where nothing is fixed: there, and only there, the masses make it definite.
+    // These components need no solve.
+    interior.D = (interior_.components().label.array() < 0).select(0.0, interior.D);
+    cholesky_.factorize(interior, 4.0 * kPi / surface.D.sum());
+}
+
+HarmonicExtension::Rest HarmonicExtension::rest(const Eigen::MatrixXd& X) const {
+    Eigen::MatrixXd centred = X;
+    means_->remove(centred);
+
+    // X - H = W_II^-1 (W X)_I: nothing is left to cancel where X is harmonic.
+    Rest rest{cholesky_.solve(interior_.restricted(Eigen::MatrixXd(surface_.W * centred)))};
+    const Eigen::MatrixXd moving = interior_.restricted(centred);
+    for (Index i = 0; i < moving.rows(); ++i)
+        if (interior_.components().label[i] >= 0) rest.U.row(i) = moving.row(i);
+
+    const Eigen::VectorXd sqrtD = surface_.D.cwiseSqrt();
+    const double norm = (interior_.restricted(sqrtD).col(0).asDiagonal() * rest.U).norm();
+    rest.relativeSize = std::max(norm / (sqrtD.asDiagonal() * centred).norm(),
+                                 rest.U.cwiseAbs().maxCoeff() / centred.cwiseAbs().maxCoeff());
+    return rest;
+}
+
+}  // namespace spectral

@@ -1,0 +1,59 @@
+#include "core/laplacian/interior.h"
+
+#include <utility>
+
+#include "core/mesh/boundary.h"
+#include "core/mesh/mesh.h"
+
+namespace spectral {
+
+Interior::Interior(const Faces& F, Components components, Boundary boundary)
+    : surfaceComponents_(std::move(components)) {
+    const Eigen::VectorXi& label = surfaceComponents_.label;
+    std::vector<bool> fixed(static_cast<std::size_t>(label.size()), false);
+    if (boundary == Boundary::Fixed) fixed = boundaryVertices(F, label.size());
+    std::vector<bool> hasFixed(static_cast<std::size_t>(surfaceComponents_.count), false);
+    for (Index i = 0; i < label.size(); ++i) {
+        if (fixed[i])
+            hasFixed[label[i]] = true;
+        else
+            vertex_.push_back(i);
+    }
+
+    std::vector<int> number(hasFixed.size(), -1);
+    for (std::size_t c = 0; c < hasFixed.size(); ++c)
+        if (!hasFixed[c]) number[c] = components_.count++;
+    components_.label.resize(size());
+    for (Index i = 0; i < size(); ++i) components_.label[i] = number[label[vertex_[i]]];
+}
+
+Laplacian Interior::restricted(const Laplacian& surface) const {
+    if (isWhole()) return surface;
+    std::vector<int> row(static_cast<std::size_t>(surface.D.size()), -1);
+    for (Index i = 0; i < size(); ++i) row[vertex_[i]] = static_cast<int>(i);
+
+    Laplacian interior{SparseMatrix(size(), size()), restricted(surface.D)};
+    interior.W.reserve(surface.W.nonZeros());
+    for (Index j = 0; j < size(); ++j) {
+        interior.W.startVec(j);
+        for (SparseMatrix::InnerIterator entry(surface.W, vertex_[j]); entry; ++entry)
+            if (row[entry.row()] >= 0) interior.W.insertBack(row[entry.row()], j) = entry.value();
+    }
+    interior.W.finalize();
+    return interior;
+}
+
+Eigen::MatrixXd Interior::restricted(const Eigen::MatrixXd& X) const {
+    Eigen::MatrixXd rows(size(), X.cols());
+    for (Index i = 0; i < size(); ++i) rows.row(i) = X.row(vertex_[i]);
+    return rows;
+}
+
+Eigen::MatrixXd Interior::extended(Eigen::MatrixXd values) const {
+    if (isWhole()) return values;
+    Eigen::MatrixXd X = Eigen::MatrixXd::Zero(surfaceComponents_.label.size(), values.cols());
+    for (Index i = 0; i < size(); ++i) X.row(vertex_[i]) = values.row(i);
+    return X;
+}
+
+}  // namespace spectral

@@ -1,0 +1,141 @@
+#include "core/laplacian/intrinsic_triangulation.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "core/support/errors.h"
+#include "core/support/thread_team.h"
+
+namespace spectral {
+
+namespace {
+
+/// An edge is flipped when the sum of its two cotangents is below minus this: nearly cocircular
+/// corners would otherwise be flipped to and fro by round-off. The absolute part, which is right
+/// because cotangents have no unit, is for rectangles: both cotangents are round-off alone. The
+/// relative part is for needles, whose large cotangents have larger errors.
+double flipTolerance(double a, double b) { return 1e-10 + 1e-11 * (std::abs(a) + std::abs(b)); }
+
+/// Flips per edge after which the triangulation is given up; one or two are usual.
+constexpr long kMaxFlipsPerEdge = 100;
+
+/// Area of a triangle with these sides: Heron's formula, in Kahan's form that keeps its digits for
+/// needles.
+double triangleArea(double a, double b, double c) {
+    if (a < b) std::swap(a, b);
+    if (a < c) std::swap(a, c);
+    if (b < c) std::swap(b, c);
+    const double product = (a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c));
+    return 0.25 * std::sqrt(std::max(0.0, product));
+}
+
+}  // namespace
+
+IntrinsicTriangulation::IntrinsicTriangulation(std::vector<int> tail, std::vector<int> twin,
+                                               std::vector<double> length)
+    : tail_(std::move(tail)),
+      twin_(std::move(twin)),
+      length_(std::move(length)),
+      cotangent_(length_.size()) {
+    parallelRows(sideCount() / 3, [&](Index begin, Index end) {
+        for (Index t = begin; t < end; ++t) setCotangents(static_cast<int>(3 * t));
+    });
+}
+
+void IntrinsicTriangulation::makeDelaunay() {
+    std::vector<int> stack;
+    std::vector<char> waiting(tail_.size(), 0);
+    const auto push = [&](int side) {
+        const int s = std::min(side, twin_[side]);
+        if (!waiting[s]) {
+            waiting[s] = 1;
+            stack.push_back(s);
+        }
+    };
+    for (int s = sideCount() - 1; s >= 0; --s)
+        if (!isDelaunay(s)) push(s);
+    const long edges = sideCount() / 2;
+    long flips = 0;
+    while (!stack.empty()) {
+        const int s = stack.back();
+        stack.pop_back();
+        waiting[s] = 0;
+        if (isDelaunay(s)) continue;
+        if (flips++ == kMaxFlipsPerEdge * edges)
+            throw SolverFailure("the intrinsic Delaunay triangulation did not end after " +
+                                std::to_string(flips) + " flips of " + std::to_string(edges) +
+                                " edges, because triangles are degenerate. Apply 'Remeshing: "
+                                "Isotropic Explicit Remeshing' first");
+        // A side that waits may now be another edge; the edge that it was is pushed again.
+        const int t = twin_[s];
+        flip(s);
+        push(s);
+        for (const int outer : {nextSide(s), previousSide(s), nextSide(t), previousSide(t)})
+            push(outer);
+    }
+}
+
+/// The cotangents of the three angles of a side's triangle.
+void IntrinsicTriangulation::setCotangents(int side) {
+    const int s = side - side % 3;
+    const double a = length_[s], b = length_[s + 1], c = length_[s + 2];
+    const double fourAreas = 4.0 * triangleArea(a, b, c);
+    // b^2 + c^2 - a^2 without cancelling the digits of a needle's short side
+    cotangent_[s] = (b * b + (c - a) * (c + a)) / fourAreas;
+    cotangent_[s + 1] = (c * c + (a - b) * (a + b)) / fourAreas;
+    cotangent_[s + 2] = (a * a + (b - c) * (b + c)) / fourAreas;
+}
+
+bool IntrinsicTriangulation::isDelaunay(int side) const {
+    if (side / 3 == twin_[side] / 3) return true;  // a triangle glued to itself: nothing to flip
+    const double a = cotangent_[side], b = cotangent_[twin_[side]];
+    return !(a + b < -flipTolerance(a, b));  // a flip does not mend what is not finite
+}
+
+/// Turns the edge of side s = (i, j), with triangles (i, j, k) and (j, i, l), into (k, l).
+void IntrinsicTriangulation::flip(int s) {
+    const int t = twin_[s];
+    const std::array<int, 4> old{previousSide(t), nextSide(s), previousSide(s), nextSide(t)};
+    const std::array<int, 4> slot{nextSide(s), previousSide(s), nextSide(t), previousSide(t)};
+    const double lij = length_[s];
+    const double ljk = length_[nextSide(s)], lki = length_[previousSide(s)];
+    const double lil = length_[nextSide(t)], llj = length_[previousSide(t)];
+
+    // Both triangles laid out in the plane, i in the origin, j on the first axis.
+    const double kx = 0.5 * (lij + (lki - ljk) * (lki + ljk) / lij);
+    const double lx = 0.5 * (lij + (lil - llj) * (lil + llj) / lij);
+    const double ky = 2.0 * triangleArea(lij, ljk, lki) / lij;
+    const double ly = -2.0 * triangleArea(lij, lil, llj) / lij;
+    const double lkl = std::hypot(kx - lx, ky - ly);
+
+    const int k = tail_[previousSide(s)], l = tail_[previousSide(t)];
+    std::array<int, 4> tails, twins;
+    std::array<double, 4> lengths;
+    for (int q = 0; q < 4; ++q) {
+        tails[q] = tail_[old[q]];
+        twins[q] = twin_[old[q]];
+        lengths[q] = length_[old[q]];
+    }
+    for (int q = 0; q < 4; ++q) {
+        tail_[slot[q]] = tails[q];
+        length_[slot[q]] = lengths[q];
+        // An outer side may be glued to another one of the four, which has moved too.
+        const auto moved = std::find(old.begin(), old.end(), twins[q]);
+        if (moved != old.end()) {
+            twin_[slot[q]] = slot[moved - old.begin()];
+        } else {
+            twin_[slot[q]] = twins[q];
+            twin_[twins[q]] = slot[q];
+        }
+    }
+    tail_[s] = k;
+    tail_[t] = l;
+    length_[s] = length_[t] = lkl;
+    setCotangents(s);
+    setCotangents(t);
+}
+
+}  // namespace spectral

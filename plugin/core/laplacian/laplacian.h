@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/mesh/mesh.h"
+#include "core/support/types.h"
+
+namespace spectral {
+
+/// The Laplace-Beltrami operator A = D^-1 W of a triangle mesh, as the generalized eigenproblem
+/// W phi = lambda D phi (Kovnatsky et al. 2012, Eq. 4).
+///
+/// Sign: W is positive semidefinite, lambda >= 0 (the paper writes Delta = -div grad).
+/// A frequency is omega = sqrt(lambda), in radians per length unit; its wavelength is 2 pi / omega.
+struct Laplacian {
+    SparseMatrix W;     ///< Stiffness or cotangent matrix, n x n, symmetric, both triangles stored;
+                        ///< no unit. Natural (Neumann) conditions at the boundary.
+    Eigen::VectorXd D;  ///< Lumped mass matrix, n diagonal entries > 0, length units squared.
+};
+
+/// W_ij = -(cot a_ij + cot b_ij)/2, W_ii = -sum_j W_ij, and D_ii = one third of the area of the
+/// triangles at vertex i, from one pass over the triangles.
+///
+/// A triangle without area gives entries that are not finite; see `isUsable`.
+/// @param F  every vertex is in some triangle.
+Laplacian cotangentLaplacian(const Vertices& V, const Faces& F);
+
+/// D alone, for a W that is kept.
+Eigen::VectorXd lumpedMass(const Vertices& V, const Faces& F);
+
+/// Whether every entry is finite and every mass positive: false when triangles have collapsed.
+bool isUsable(const Laplacian& laplacian);
+
+}  // namespace spectral

@@ -1,0 +1,263 @@
+#include "core/ldlt/symbolic_ldlt.h"
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <iterator>
+#include <limits>
+#include <numeric>
+#include <string>
+
+#include "core/support/errors.h"
+
+namespace spectral {
+
+namespace {
+
+/// Supernodes of up to so many columns may have so large a part of zeros in L: wider ones, with a
+/// smaller part of them, make elimination and solves quicker.
+struct Relaxation {
+    Index width;
+    double zeros;
+};
+constexpr Relaxation kRelaxations[] = {
+    {4, 0.5}, {16, 0.2}, {48, 0.1}, {std::numeric_limits<Index>::max(), 0.05}};
+
+/// A subtree that is eliminated beside others has at most the first part of L, which leaves work
+/// for two threads at least, and little above the subtrees, where there is no other work; and at
+/// least the second, less is not worth a task. A factor with fewer entries than the third is not
+/// shared at all: a solve takes as long as waking a thread.
+constexpr Index kLeastParts = 4, kMostParts = 200, kLeastShared = 30000;
+
+/// Approximate minimum degree; Eigen's own functor adds the transpose of what is symmetric.
+struct SymmetricOrdering {
+    using PermutationType = Eigen::AMDOrdering<int>::PermutationType;
+    void operator()(const SparseMatrix& W, PermutationType& permutation) const {
+        Eigen::AMDOrdering<int>()(W.selfadjointView<Eigen::Lower>(), permutation);
+    }
+};
+
+/// What Eigen's analysis of a pattern keeps to itself.
+struct Analysis : Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, SymmetricOrdering> {
+    const auto& parent() const { return m_parent; }
+    const auto& columnEntries() const { return m_nonZerosPerCol; }
+};
+
+/// Numbers the nodes of a forest so that children come before their parents and every subtree is in
+/// one piece.
+/// @param parent  of each node, with a larger number; -1 of roots.
+std::vector<int> postorder(const std::vector<int>& parent) {
+    const auto n = static_cast<int>(parent.size());
+    std::vector<int> size(parent.size(), 1);  // of the subtrees
+    for (int i = 0; i < n; ++i)
+        if (parent[i] >= 0) size[parent[i]] += size[i];
+    // Subtrees take their places from the end of their parent's on; a node is the last of its own.
+    std::vector<int> number(parent.size()), next(parent.size());
+    int end = n;
+    for (int i = n - 1; i >= 0; --i) {
+        int& last = parent[i] >= 0 ? next[parent[i]] : end;
+        number[i] = last - 1;
+        next[i] = last - 1;
+        last -= size[i];
+    }
+    return number;
+}
+
+/// A supernode while others may still join it.
+struct Supernode {
+    Index first = 0, width = 0, below = 0;
+    Index zeros = 0;  // that it has put into L
+
+    /// With its parent, whose first column follows its last.
+    Supernode joinedTo(const Supernode& parent) const {
+        const Index wider = width + parent.width, added = parent.width + parent.below - below;
+        return {first, wider, parent.below, zeros + parent.zeros + width * added};
+    }
+    /// Entries of L, with the diagonal.
+    Index entries() const { return width * (width + 1) / 2 + width * below; }
+
+    bool isWorthwhile() const {
+        const auto relaxation =
+            std::find_if(std::begin(kRelaxations), std::end(kRelaxations),
+                         [this](const Relaxation& r) { return width <= r.width; });
+        return static_cast<double>(zeros) <= relaxation->zeros * static_cast<double>(entries());
+    }
+};
+
+}  // namespace
+
+SymbolicLdlt::SymbolicLdlt(const SparseMatrix& W)
+    : starts(W.outerIndexPtr(), W.outerIndexPtr() + W.outerSize() + 1),
+      rows(W.innerIndexPtr(), W.innerIndexPtr() + W.nonZeros()) {
+    const Columns columns = findOrder(W);
+    findFronts(columns);
+    findRows(columns);
+    findPlaces();
+    findSubtrees();
+}
+
+SymbolicLdlt::Columns SymbolicLdlt::findOrder(const SparseMatrix& W) {
+    const auto n = static_cast<std::size_t>(W.rows());
+    Analysis analysis;
+    analysis.analyzePattern(W);
+    const std::vector<int> tree(analysis.parent().begin(), analysis.parent().end());
+    const std::vector<int> number = postorder(tree);
+    order.resize(W.rows());
+    inverse.resize(n);
+    Columns columns{std::vector<int>(n, -1), std::vector<int>(n)};
+    for (int i = 0; i < W.rows(); ++i) {
+        order[i] = number[analysis.permutationP().indices()[i]];
+        inverse[order[i]] = i;
+        if (tree[i] >= 0) columns.parent[number[i]] = number[tree[i]];
+        columns.count[number[i]] = analysis.columnEntries()[i];
+    }
+    return columns;
+}
+
+void SymbolicLdlt::findFronts(const Columns& columns) {
+    const auto& [parent, count] = columns;
+    const auto n = static_cast<int>(parent.size());
+    std::vector<Supernode> supernodes;
+    for (int j = 0; j < n;) {
+        Supernode supernode{j, 0, 0, 0};
+        // What is below the first row of a column fills that row's column: if there is one row less
+        // below that, the others are the same.
+        do ++j, ++supernode.width;
+        while (j < n && parent[j - 1] == j && count[j - 1] == count[j] + 1);
+        supernode.below = count[j - 1];
+        // The last child of this one, the last child of both together, and so on.
+        while (!supernodes.empty()) {
+            const Supernode& child = supernodes.back();
+            const Supernode both = child.joinedTo(supernode);
+            const int next = parent[supernode.first - 1];
+            if (next < supernode.first || next >= j || !both.isWorthwhile()) break;
+            supernode = both;
+            supernodes.pop_back();
+        }
+        supernodes.push_back(supernode);
+    }
+    const Index total = std::accumulate(
+        supernodes.begin(), supernodes.end(), Index{0},
+        [](Index sum, const Supernode& supernode) { return sum + supernode.entries(); });
+    if (total > std::numeric_limits<int>::max())
+        throw InvalidMesh("the factorization of W - sigma D (" + std::to_string(n) +
+                          " vertices) has too many entries, " + std::to_string(total) +
+                          ": apply 'Simplification: Quadric Edge Collapse Decimation' first");
+    frontOf_.resize(parent.size());
+    valueStarts.assign(parent.size() + 1, 0);
+    rowStarts.resize(parent.size());
+    joined.assign(parent.size(), 1);
+    int rowCount = 0;
+    for (const Supernode& supernode : supernodes) {
+        Front front;
+        front.first = static_cast<int>(supernode.first);
+        front.width = static_cast<int>(supernode.width);
+        front.below = static_cast<int>(supernode.below);
+        front.firstRow = rowCount;
+        rowCount += front.width + front.below;
+        const int end = front.first + front.width;
+        for (int j = front.first; j < end; ++j) {
+            frontOf_[j] = static_cast<int>(fronts.size());
+            rowStarts[j] = front.firstRow + j - front.first + 1;
+            valueStarts[j + 1] = valueStarts[j] + rowCount - rowStarts[j];
+        }
+        joined[end - 1] = 0;
+        fronts.push_back(front);
+    }
+    frontRows.resize(static_cast<std::size_t>(rowCount));
+}
+
+void SymbolicLdlt::findRows(const Columns& columns) {
+    std::vector<int> ends;  // of the rows of the fronts that are known
+    for (const Front& front : fronts) {
+        const int last = front.first + front.width - 1, next = columns.parent[last];
+        parentFront_.push_back(next < 0 ? -1 : frontOf_[next]);
+        std::iota(&frontRows[front.firstRow], &frontRows[front.firstRow] + front.width,
+                  front.first);
+        ends.push_back(front.firstRow + front.width);
+    }
+    // A row of L has its entries where paths in the tree of fronts lead from those of W.
+    std::vector<int> visited(fronts.size(), -1);
+    for (int k = 0; k < static_cast<int>(inverse.size()); ++k) {
+        visited[frontOf_[k]] = k;
+        for (int p = starts[inverse[k]]; p < starts[inverse[k] + 1]; ++p) {
+            if (order[rows[p]] >= k) continue;
+            for (int f = frontOf_[order[rows[p]]]; visited[f] != k; f = parentFront_[f]) {
+                frontRows[ends[f]++] = k;
+                visited[f] = k;
+            }
+        }
+    }
+}
+
+void SymbolicLdlt::findPlaces() {
+    std::vector<int> position(inverse.size());  // of a row in a front
+    std::vector<int> waiting;                   // fronts whose parents are still to come
+    entries.reserve((rows.size() + inverse.size()) / 2);
+    for (int f = 0; f < static_cast<int>(fronts.size()); ++f) {
+        Front& front = fronts[f];
+        for (int i = 0; i < front.width + front.below; ++i)
+            position[frontRows[front.firstRow + i]] = i;
+
+        for (; !waiting.empty(); waiting.pop_back(), ++front.children) {
+            Front& child = fronts[waiting.back()];
+            const int* below = &frontRows[child.firstRow] + child.width;
+            if (frontOf_[*below] != f) break;
+            child.firstPlace = static_cast<int>(places.size());
+            for (int i = 0; i < child.below; ++i) places.push_back(position[below[i]]);
+        }
+        if (front.below > 0) waiting.push_back(f);
+
+        front.entriesBegin = static_cast<int>(entries.size());
+        for (int j = front.first; j < front.first + front.width; ++j)
+            for (int p = starts[inverse[j]]; p < starts[inverse[j] + 1]; ++p)
+                if (const int row = order[rows[p]]; row >= j)
+                    entries.push_back({p, position[row], j - front.first});
+        front.entriesEnd = static_cast<int>(entries.size());
+    }
+}
+
+void SymbolicLdlt::findSubtrees() {
+    const auto count = static_cast<int>(fronts.size());
+    std::vector<Index> size(fronts.size(), 0);  // of all that is below a front, with itself,
+    std::vector<int> frontsBelow(fronts.size(), 1);
+    for (int f = 0; f < count; ++f) {
+        size[f] += fronts[f].size();
+        if (const int parent = parentFront_[f]; parent >= 0) {
+            size[parent] += size[f];
+            frontsBelow[parent] += frontsBelow[f];
+        }
+    }
+    const Index total = valueStarts.back() + static_cast<Index>(inverse.size());
+    const Index most = total >= kLeastShared ? total / kLeastParts : 0;
+    const auto isWhole = [&](int f) { return size[f] <= most; };
+    solveRows = frontRows;
+    for (int f = 0; f < count; ++f) {
+        const int parent = parentFront_[f];
+        if (!isWhole(f) || size[f] * kMostParts < total || (parent >= 0 && isWhole(parent)))
+            continue;
+        const Front& root = fronts[f];
+        Subtree tree;
+        tree.firstFront = f + 1 - frontsBelow[f];
+        tree.endFront = f + 1;
+        tree.firstColumn = fronts[tree.firstFront].first;
+        tree.endColumn = root.first + root.width;
+        tree.firstCopy = static_cast<int>(copied.size());
+        const auto below = frontRows.begin() + root.firstRow + root.width;
+        copied.insert(copied.end(), below, below + root.below);
+        // The rows of a front within the subtree are its columns, or among those below the root.
+        for (auto row = solveRows.begin() + fronts[tree.firstFront].firstRow;
+             row != solveRows.begin() + root.firstRow + root.width + root.below; ++row)
+            if (*row >= tree.endColumn)
+                *row = static_cast<int>(inverse.size()) + tree.firstCopy +
+                       static_cast<int>(std::lower_bound(below, below + root.below, *row) - below);
+        subtrees.push_back(tree);
+    }
+}
+
+bool SymbolicLdlt::isOf(const SparseMatrix& W) const {
+    const int *start = W.outerIndexPtr(), *row = W.innerIndexPtr();
+    return std::equal(starts.begin(), starts.end(), start, start + W.outerSize() + 1) &&
+           std::equal(rows.begin(), rows.end(), row, row + W.nonZeros());
+}
+
+}  // namespace spectral

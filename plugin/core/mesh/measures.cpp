@@ -1,0 +1,41 @@
+#include "core/mesh/measures.h"
+
+#include <Eigen/Geometry>
+
+#include "core/mesh/mesh.h"
+
+namespace spectral {
+
+double boundingBoxDiagonal(const Vertices& V) {
+    return (V.colwise().maxCoeff() - V.colwise().minCoeff()).norm();
+}
+
+double meanEdgeLength(const Vertices& V, const Faces& F) {
+    double sum = 0.0;
+    for (Index t = 0; t < F.rows(); ++t)
+        for (int c = 0; c < 3; ++c) sum += (V.row(F(t, (c + 1) % 3)) - V.row(F(t, c))).norm();
+    return F.rows() > 0 ? sum / (3.0 * static_cast<double>(F.rows())) : 0.0;
+}
+
+double surfaceArea(const Vertices& V, const Faces& F) {
+    double twiceArea = 0.0;
+    for (Index t = 0; t < F.rows(); ++t) {
+        const Eigen::RowVector3d a = V.row(F(t, 0)), b = V.row(F(t, 1)), c = V.row(F(t, 2));
+        twiceArea += (b - a).cross(c - a).norm();
+    }
+    return 0.5 * twiceArea;
+}
+
+double signedVolume(const Vertices& V, const Faces& F) {
+    // About the middle: far from the origin the tetrahedra would cancel each other's digits.
+    const Eigen::RowVector3d o = 0.5 * (V.colwise().maxCoeff() + V.colwise().minCoeff());
+    double sixfoldVolume = 0.0;
+    for (Index t = 0; t < F.rows(); ++t) {
+        const Eigen::RowVector3d a = V.row(F(t, 0)) - o, b = V.row(F(t, 1)) - o,
+                                 c = V.row(F(t, 2)) - o;
+        sixfoldVolume += a.dot(b.cross(c));
+    }
+    return sixfoldVolume / 6.0;
+}
+
+}  // namespace spectral

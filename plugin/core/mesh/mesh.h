@@ -1,0 +1,15 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/support/types.h"
+
+namespace spectral {
+
+/// Vertex positions, n x 3, in length units.
+using Vertices = Eigen::Matrix<double, Eigen::Dynamic, 3>;
+
+/// Triangles, m x 3, as indices into the rows of the vertices.
+using Faces = Eigen::Matrix<int, Eigen::Dynamic, 3>;
+
+}  // namespace spectral

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include "core/support/progress.h"
+
+namespace spectral {
+
+/// Does `work` beside the calling thread, which reports twenty times a second how far it is.
+///
+/// For a caller that must hear something all the time, whatever the work is at: a factorization of
+/// a large mesh takes seconds, and nothing can report from within it. A window that is painted anew
+/// only in its callback, as MeshLab's, stands still as long.
+///
+/// `work` gets a progress that notes what it is told, and is left by Cancelled at its next report
+/// once the caller wants to stop. Only the calling thread calls the caller back. Where no thread
+/// can be had, or nobody is to be told, it does the work itself.
+///
+/// @throws whatever `work` throws; Cancelled.
+void runBeside(const Progress& progress, const std::function<void(const Progress&)>& work);
+
+/// runBeside for a function that gives a value.
+template <class Work>
+auto withSteadyProgress(const Progress& progress, const Work& work) {
+    std::optional<std::invoke_result_t<const Work&, const Progress&>> result;
+    runBeside(progress, [&](const Progress& steady) { result.emplace(work(steady)); });
+    return *std::move(result);
+}
+
+}  // namespace spectral

@@ -1,0 +1,168 @@
+#include "core/analysis/artefacts.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+
+#include "core/mesh/measures.h"
+#include "core/mesh/mesh.h"
+#include "core/support/errors.h"
+#include "support/evaluation.h"
+
+namespace spectral {
+namespace {
+
+using testing::Mesh;
+using testing::Operator;
+
+ArtefactOptions withFeatureSize(double featureSize,
+                                LaplacianKind kind = LaplacianKind::IntrinsicDelaunay) {
+    ArtefactOptions options;
+    options.featureSize = featureSize;
+    options.laplacian = kind;
+    return options;
+}
+
+Artefacts measured(const Mesh& mesh, double part,
+                   LaplacianKind kind = LaplacianKind::IntrinsicDelaunay) {
+    return measureArtefacts(mesh.V, mesh.F,
+                            withFeatureSize(part * boundingBoxDiagonal(mesh.V), kind));
+}
+
+std::vector<Mesh> classesOfMeshes() {
+    return {testing::blob(), testing::withNoise(testing::rectangle(2, 1, 20, 10), 0.03, 3),
+            testing::joined(testing::blob(), testing::withNoise(testing::cube(5), 0.05, 4))};
+}
+
+TEST(Artefacts, AreWhatAllEigenvectorsSay) {
+    for (const Mesh& mesh : classesOfMeshes())
+        for (const double part : {0.05, 0.15, 0.5}) {
+            const Operator A(mesh);
+            const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+            const double featureSize = part * boundingBoxDiagonal(mesh.V);
+            const double lambda_c = std::pow(2.0 * kPi / featureSize, 2);
+            const Vertices smooth = testing::filteredDense(A, dense, [lambda_c](double omega) {
+                return 1.0 / (1.0 + std::pow(omega * omega / (4.0 * lambda_c), 4));
+            });
+            const Eigen::VectorXd length = (mesh.V - smooth).rowwise().norm();
+            const Eigen::VectorXd& D = A.laplacian.D;
+
+            const Artefacts artefacts = measureArtefacts(
+                mesh.V, mesh.F, withFeatureSize(featureSize, LaplacianKind::Cotangent));
+            const double tolerance = 1e-7 * boundingBoxDiagonal(mesh.V);
+            EXPECT_LT((artefacts.length - length).cwiseAbs().maxCoeff(), tolerance);
+            EXPECT_LT(artefacts.errorEstimate, tolerance);
+            EXPECT_NEAR(artefacts.maximum, length.maxCoeff(), tolerance);
+            EXPECT_NEAR(artefacts.rms, std::sqrt(length.cwiseAbs2().dot(D) / D.sum()), tolerance);
+        }
+}
+
+/// Relative error of the closed form on a sphere of radius r: its coordinates are harmonics of
+/// lambda = 2 / r^2, so that with 4 lambda_c = 2 / r^2 just one half of them is called an artefact.
+double sphereError(int levels) {
+    const double r = 3.0;
+    Mesh sphere = testing::icosphere(levels);
+    sphere.V *= r;
+    const double featureSize = 2.0 * kPi / std::sqrt(0.5 / (r * r));
+    const Artefacts artefacts = measureArtefacts(sphere.V, sphere.F, withFeatureSize(featureSize));
+    EXPECT_LT(artefacts.maximum / artefacts.rms - 1.0, 0.02);
+    return std::abs(artefacts.rms / (0.5 * r) - 1.0);
+}
+
+TEST(Artefacts, OfASphereConvergeToTheClosedFormAtLeastAtSecondOrder) {
+    const double coarse = sphereError(2), middle = sphereError(3), fine = sphereError(4);
+    EXPECT_LT(coarse, 0.05);
+    EXPECT_GT(coarse / middle, 4.0);
+    EXPECT_GT(middle / fine, 4.0);
+}
+
+TEST(Artefacts, AreNoneInASmoothShapeAndAllOfARoughOne) {
+    const Mesh sphere = testing::icosphere(4);
+    EXPECT_LT(measured(sphere, 0.2).maximum, 1e-3);
+    const Mesh spiky = testing::withNoise(sphere, 0.02, 7);
+    EXPECT_GT(measured(spiky, 0.2).rms, 0.005);
+}
+
+TEST(Artefacts, OfASpikeAreAtTheSpike) {
+    Mesh mesh = testing::icosphere(4);
+    const Index tip = 1000;
+    mesh.V.row(tip) *= 1.05;
+    const Artefacts artefacts = measured(mesh, 0.3);
+    Index farthest = -1;
+    artefacts.length.maxCoeff(&farthest);
+    EXPECT_EQ(farthest, tip);
+    EXPECT_GT(artefacts.maximum, 0.03);
+    EXPECT_LT(artefacts.rms, 0.003);
+}
+
+TEST(ArtefactFreeGain, IsOneHalfAtTwiceTheCutoff) {
+    EXPECT_DOUBLE_EQ(artefactFreeGain(0.0, 3.0), 1.0);
+    EXPECT_DOUBLE_EQ(artefactFreeGain(6.0, 3.0), 0.5);
+    EXPECT_DOUBLE_EQ(artefactFreeGain(std::numeric_limits<double>::infinity(), 3.0), 0.0);
+    EXPECT_GT(artefactFreeGain(3.0, 3.0), 0.99);
+    EXPECT_LT(artefactFreeGain(12.0, 3.0), 0.01);
+}
+
+TEST(Artefacts, ScaleWithTheMesh) {
+    for (const Mesh& mesh : classesOfMeshes()) {
+        const Artefacts original = measured(mesh, 0.15);
+        for (const double scale : {1e-6, 1e5}) {
+            const Artefacts scaled = measured({scale * mesh.V, mesh.F}, 0.15);
+            EXPECT_NEAR(scaled.rms / scale, original.rms, 1e-8);
+            EXPECT_LT((scaled.length / scale - original.length).cwiseAbs().maxCoeff(), 1e-8);
+        }
+    }
+}
+
+TEST(Artefacts, DoNotChangeUnderRigidMotions) {
+    const Eigen::Matrix3d rotation =
+        Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, -0.5).normalized()).toRotationMatrix();
+    for (const Mesh& mesh : classesOfMeshes()) {
+        const Vertices moved = (mesh.V * rotation).rowwise() + Eigen::RowVector3d(500, -300, 200);
+        const Artefacts before = measureArtefacts(mesh.V, mesh.F, withFeatureSize(0.4));
+        const Artefacts after = measureArtefacts(moved, mesh.F, withFeatureSize(0.4));
+        EXPECT_NEAR(after.maximum, before.maximum, 1e-7);
+        EXPECT_LT((after.length - before.length).cwiseAbs().maxCoeff(), 1e-7);
+    }
+}
+
+TEST(Artefacts, AtUnreferencedVerticesAreZero) {
+    const Mesh mesh = testing::blob();
+    Vertices V(mesh.V.rows() + 2, 3);
+    V << Eigen::RowVector3d(9, 9, 9), mesh.V, Eigen::RowVector3d(-50, 0, 0);
+    const Faces F = (mesh.F.array() + 1).matrix();
+    const Artefacts with = measureArtefacts(V, F, withFeatureSize(0.4));
+    const Artefacts without = measureArtefacts(mesh.V, mesh.F, withFeatureSize(0.4));
+    ASSERT_EQ(with.length.size(), V.rows());
+    EXPECT_EQ(with.length[0], 0.0);
+    EXPECT_EQ(with.length[V.rows() - 1], 0.0);
+    EXPECT_LT((with.length.segment(1, mesh.V.rows()) - without.length).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(Artefacts, RefuseBadMeshesAndFeatureSizes) {
+    const Mesh mesh = testing::icosphere(2);
+    for (const double featureSize : {0.0, -1.0, std::nan("")})
+        EXPECT_THROW(measureArtefacts(mesh.V, mesh.F, withFeatureSize(featureSize)), InvalidOption);
+    EXPECT_THROW(measureArtefacts(Vertices(0, 3), Faces(0, 3), withFeatureSize(1.0)), InvalidMesh);
+    EXPECT_THROW(measureArtefacts(mesh.V, Faces(0, 3), withFeatureSize(1.0)), InvalidMesh);
+    Mesh broken = mesh;
+    broken.V(5, 1) = std::nan("");
+    EXPECT_THROW(measureArtefacts(broken.V, broken.F, withFeatureSize(1.0)), InvalidMesh);
+    broken = mesh;
+    broken.V.row(mesh.F(0, 0)) = broken.V.row(mesh.F(0, 1));
+    EXPECT_THROW(
+        measureArtefacts(broken.V, broken.F, withFeatureSize(1.0, LaplacianKind::Cotangent)),
+        InvalidMesh);
+    EXPECT_NO_THROW(measureArtefacts(broken.V, broken.F, withFeatureSize(1.0)));
+}
+
+TEST(Artefacts, CanBeInterrupted) {
+    const Mesh mesh = testing::blob();
+    const Progress progress([](double, const std::string&) { return false; });
+    EXPECT_THROW(measureArtefacts(mesh.V, mesh.F, withFeatureSize(0.4), progress), Cancelled);
+}
+
+}  // namespace
+}  // namespace spectral

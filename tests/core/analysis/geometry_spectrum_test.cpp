@@ -1,0 +1,251 @@
+#include "core/analysis/geometry_spectrum.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "core/analysis/bands.h"
+#include "core/laplacian/interior.h"
+#include "core/mesh/measures.h"
+#include "core/mesh/mesh.h"
+#include "core/support/errors.h"
+#include "support/evaluation.h"
+#include "support/geometry_spectra.h"
+
+namespace spectral {
+namespace {
+
+using testing::expectWhatAllEigenvectorsSay;
+using testing::Mesh;
+using testing::Operator;
+using testing::spectrumOf;
+using testing::withBasis;
+
+std::vector<Mesh> classesOfMeshes() {
+    return {testing::blob(), testing::withNoise(testing::rectangle(2, 1, 32, 16), 0.01, 3),
+            testing::joined(testing::blob(), testing::torus(2, 0.7, 24, 12)),
+            testing::withNoise(testing::icosphere(3), 0.005, 4)};
+}
+
+TEST(GeometrySpectrum, HoldsAllOfTheEnergyOfTheShape) {
+    for (const Mesh& mesh : classesOfMeshes())
+        for (const int basisSize : {4, 50, 200, 5000}) {
+            const Operator A(mesh);
+            Eigen::MatrixXd X = mesh.V;
+            A.constants.remove(X);
+            const double energy = X.rowwise().squaredNorm().dot(A.laplacian.D);
+
+            const GeometrySpectrum spectrum = spectrumOf(mesh, basisSize);
+            EXPECT_NEAR(spectrum.totalEnergy / energy, 1.0, 1e-12);
+            EXPECT_NEAR(spectrum.octaveEnergies.sum() / energy, 1.0, 1e-12);
+            EXPECT_NEAR(spectrum.octaveAmplitudes.squaredNorm() * A.area() / energy, 1.0, 1e-12);
+            EXPECT_GE(spectrum.octaveEnergies.minCoeff(), 0.0);
+            EXPECT_LT(spectrum.mismatch, 1e-3);
+            const Index last = spectrum.cumulativeEnergy.size() - 1;
+            EXPECT_EQ(spectrum.cumulativeEnergy[last], 1.0);
+            for (Index j = 0; j < last; ++j)
+                EXPECT_LE(spectrum.cumulativeEnergy[j], spectrum.cumulativeEnergy[j + 1]);
+        }
+}
+
+TEST(GeometrySpectrum, IsWhatAllEigenvectorsSay) {
+    for (const Mesh& mesh : classesOfMeshes()) {
+        EXPECT_EQ(spectrumOf(mesh, static_cast<int>(mesh.V.rows())).frequencies.size(),
+                  mesh.V.rows());
+        expectWhatAllEigenvectorsSay(mesh, Boundary::Free);
+    }
+}
+
+TEST(GeometrySpectrum, TellsTheFeatureSizesThatHoldPartsOfTheEnergy) {
+    for (const Mesh& mesh : classesOfMeshes()) {
+        const GeometrySpectrum dense = spectrumOf(mesh, static_cast<int>(mesh.V.rows()));
+        for (const int basisSize : {4, 100}) {
+            const GeometrySpectrum spectrum = spectrumOf(mesh, basisSize);
+            const double sizes[] = {spectrum.featureSize50, spectrum.featureSize90,
+                                    spectrum.featureSize99};
+            const double exact[] = {dense.featureSize50, dense.featureSize90, dense.featureSize99};
+            const double last = 2.0 * kPi / spectrum.frequencies[spectrum.frequencies.size() - 1];
+            for (int part = 0; part < 3; ++part) {
+                const double octavesOff = std::abs(std::log2(sizes[part] / exact[part]));
+                const bool inBasis = exact[part] > 1.001 * last;
+                EXPECT_LT(octavesOff, inBasis ? 1e-6 : 0.75);
+            }
+        }
+    }
+}
+
+TEST(GeometrySpectrum, OfASphereIsOneFrequency) {
+    Mesh sphere = testing::icosphere(4);
+    sphere.V *= 3.0;
+    const GeometrySpectrum spectrum = spectrumOf(sphere, 20);
+    const double featureSize = 2.0 * kPi / std::sqrt(2.0 / 9.0);  // lambda = l (l + 1) / r^2
+    EXPECT_NEAR(spectrum.featureSize50 / featureSize, 1.0, 2e-3);
+    EXPECT_NEAR(spectrum.featureSize99 / featureSize, 1.0, 2e-3);
+    EXPECT_NEAR(spectrum.octaveAmplitudes[0], 3.0, 0.02);  // the radius
+    EXPECT_LT(spectrum.octaveAmplitudes.tail(spectrum.octaveAmplitudes.size() - 1).maxCoeff(),
+              1e-3);
+    EXPECT_EQ(spectrum.amplitudes[0], 0.0);
+    EXPECT_EQ(spectrum.frequencies[0], 0.0);
+}
+
+/// Octave whose middle is nearest to a feature size.
+Index octaveOf(const GeometrySpectrum& spectrum, double featureSize) {
+    Index j = 0;
+    (spectrum.octaveFeatureSizes.array().log() - std::log(featureSize)).abs().minCoeff(&j);
+    return j;
+}
+
+TEST(GeometrySpectrum, ShowsAWaveOnARectangleInItsOctaveWithItsAmplitude) {
+    // Height e cos(p pi x / a) on a rectangle a x b: its root mean square is e / sqrt(2), its
+    // wavelength 2 a / p. The plane itself has the waves of x and y, x = a/2 - 4 a / pi^2 sum over
+    // odd m of cos(m pi x / a) / m^2.
+    const double a = 2.0, b = 1.0, e = 0.004;
+    const int p = 14;
+    const double featureSize = 2.0 * a / p;
+    Mesh mesh = testing::rectangle(a, b, 128, 64);
+    for (Index i = 0; i < mesh.V.rows(); ++i)
+        mesh.V(i, 2) = e * std::cos(p * kPi * mesh.V(i, 0) / a);
+    const double diagonal = boundingBoxDiagonal(mesh.V);
+    for (const int basisSize : {10, 400}) {  // the wave beyond the basis, and within
+        const GeometrySpectrum spectrum = spectrumOf(mesh, basisSize);
+        const Index j = octaveOf(spectrum, featureSize);
+        const Bands octaves(diagonal, spectrum.frequencies[1], 1e3);
+        double squares = 0.5 * e * e;
+        for (const double side : {a, b})
+            for (int m = 1; m < 100; m += 2)
+                squares += 0.5 * std::pow(4.0 * side / std::pow(m * kPi, 2), 2) *
+                           octaves.window(static_cast<int>(j), m * kPi / side);
+        EXPECT_NEAR(spectrum.octaveAmplitudes[j] / std::sqrt(squares), 1.0, 0.01)
+            << "basis " << basisSize;
+    }
+}
+
+TEST(GeometrySpectrum, ShowsABumpySphereInItsOctaveWithItsAmplitude) {
+    // Radius 1 + e P_l(z): a bump in the direction of the normal, whose coordinates are harmonics
+    // of l - 1 and l + 1. Its root mean square is e / sqrt(2 l + 1), but for the change of the
+    // harmonics with the surface, which is of relative order 1 / l.
+    const double e = 0.02;
+    const int l = 14;
+    Mesh mesh = testing::icosphere(5);
+    for (Index i = 0; i < mesh.V.rows(); ++i) {
+        const double z = mesh.V(i, 2);
+        double before = 1.0, legendre = z;
+        for (int d = 1; d < l; ++d) {
+            const double next = ((2 * d + 1) * z * legendre - d * before) / (d + 1);
+            before = legendre;
+            legendre = next;
+        }
+        mesh.V.row(i) *= 1.0 + e * legendre;
+    }
+    const GeometrySpectrum spectrum = spectrumOf(mesh, 20);
+    const Index j = octaveOf(spectrum, 2.0 * kPi / std::sqrt(l * (l + 1.0)));
+    EXPECT_NEAR(spectrum.octaveAmplitudes[j] / (e / std::sqrt(2.0 * l + 1.0)), 1.0, 1.5 / l);
+    Eigen::VectorXd others = spectrum.octaveAmplitudes;
+    others[j] = others[0] = 0.0;  // octave 0 is the sphere itself
+    EXPECT_LT(others.maxCoeff(), 0.1 * spectrum.octaveAmplitudes[j]);
+}
+
+TEST(GeometrySpectrum, ScalesWithTheMeshAndDoesNotChangeUnderTranslation) {
+    for (const Mesh& mesh : classesOfMeshes()) {
+        const GeometrySpectrum original = spectrumOf(mesh, 30);
+        for (const double scale : {1e-5, 1e4}) {
+            const Vertices V = (scale * mesh.V).rowwise() + scale * Eigen::RowVector3d(50, -30, 20);
+            const GeometrySpectrum scaled = geometrySpectrum(V, mesh.F, withBasis(30));
+            ASSERT_EQ(scaled.octaveEnergies.size(), original.octaveEnergies.size());
+            EXPECT_LT((scaled.octaveFeatureSizes / scale - original.octaveFeatureSizes)
+                          .cwiseAbs()
+                          .maxCoeff(),
+                      1e-9 * original.diagonal);
+            EXPECT_LT((scaled.octaveAmplitudes / scale)
+                          .cwiseQuotient(original.octaveAmplitudes)
+                          .maxCoeff(),
+                      1.0 + 1e-3);
+            EXPECT_NEAR(scaled.featureSize90 / scale / original.featureSize90, 1.0, 1e-6);
+            EXPECT_NEAR(scaled.totalEnergy / std::pow(scale, 4) / original.totalEnergy, 1.0, 1e-9);
+        }
+    }
+}
+
+TEST(GeometrySpectrum, OfPartsDoesNotDependOnWhereTheyAre) {
+    const Mesh one = testing::blob();
+    Mesh other = one;
+    other.V.rowwise() += Eigen::RowVector3d(3, 0, 0);
+    const GeometrySpectrum near = spectrumOf(testing::joined(one, other), 30);
+    other.V.rowwise() += Eigen::RowVector3d(0, 500, 0);
+    const GeometrySpectrum far = spectrumOf(testing::joined(one, other), 30);
+    EXPECT_NEAR(far.totalEnergy / near.totalEnergy, 1.0, 1e-9);
+    EXPECT_NEAR(far.featureSize90 / near.featureSize90, 1.0, 1e-6);
+    EXPECT_EQ(near.amplitudes.head(2).maxCoeff(), 0.0);
+}
+
+TEST(GeometrySpectrum, OfTinyMeshesHasAllTheirHarmonics) {
+    Mesh triangle{Vertices(3, 3), Faces(1, 3)};
+    triangle.V << 0, 0, 0, 1, 0, 0, 0, 2, 0;
+    triangle.F << 0, 1, 2;
+    for (const Mesh& mesh : {triangle, testing::icosphere(0), testing::cube(1),
+                             testing::joined(triangle, testing::icosphere(0))})
+        for (const LaplacianKind kind :
+             {LaplacianKind::Cotangent, LaplacianKind::IntrinsicDelaunay}) {
+            const GeometrySpectrum all = geometrySpectrum(mesh.V, mesh.F, withBasis(200, kind));
+            EXPECT_EQ(all.frequencies.size(), mesh.V.rows());
+            EXPECT_NEAR(all.octaveEnergies.sum() / all.totalEnergy, 1.0, 1e-12);
+            EXPECT_GT(all.featureSize99, 0.0);
+            // A basis that has no room for more than the constants is made larger.
+            EXPECT_GT(geometrySpectrum(mesh.V, mesh.F, withBasis(1, kind)).frequencies.size(), 1);
+        }
+}
+
+TEST(GeometrySpectrum, EndsWhereTheShapeDoesEvenIfATriangleHasNoArea) {
+    Mesh mesh = testing::blob();
+    const Index octaves = spectrumOf(mesh, 20).octaveEnergies.size();
+    mesh.V.row(mesh.F(0, 0)) = mesh.V.row(mesh.F(0, 1));
+    const GeometrySpectrum spectrum =
+        geometrySpectrum(mesh.V, mesh.F, withBasis(20, LaplacianKind::IntrinsicDelaunay));
+    const Index last = spectrum.octaveEnergies.size() - 1;
+    EXPECT_GT(spectrum.octaveEnergies[last], 0.0);
+    EXPECT_EQ(spectrum.octaveFeatureSizes.size(), last + 1);
+    EXPECT_EQ(spectrum.cumulativeEnergy.size(), last + 1);
+    EXPECT_LT(last, 3 * octaves);
+    EXPECT_NEAR(spectrum.octaveEnergies.sum() / spectrum.totalEnergy, 1.0, 1e-12);
+}
+
+TEST(GeometrySpectrum, RefusesBadMeshesAndSizes) {
+    const Mesh mesh = testing::icosphere(2);
+    for (const int basisSize : {0, -3}) EXPECT_THROW(spectrumOf(mesh, basisSize), InvalidOption);
+    const Mesh large = testing::icosphere(4);
+    try {
+        spectrumOf(large, static_cast<int>(large.V.rows()));
+        FAIL() << "a dense basis of " << large.V.rows() << " vertices";
+    } catch (const InvalidOption& error) {
+        EXPECT_NE(std::string(error.what()).find("at most 2561"), std::string::npos);
+    }
+    EXPECT_THROW(geometrySpectrum(Vertices(0, 3), Faces(0, 3), {}), InvalidMesh);
+    EXPECT_THROW(geometrySpectrum(mesh.V, Faces(0, 3), {}), InvalidMesh);
+    Mesh broken = mesh;
+    broken.V(5, 1) = std::nan("");
+    EXPECT_THROW(geometrySpectrum(broken.V, broken.F, {}), InvalidMesh);
+}
+
+TEST(GeometrySpectrum, CanBeInterruptedAtAnyStage) {
+    const Mesh mesh = testing::blob();
+    int reports = 0;
+    const Progress counting([&](double, const std::string&) { return ++reports > 0; });
+    geometrySpectrum(mesh.V, mesh.F, withBasis(20), counting);
+    ASSERT_GT(reports, 3);
+    // How often the harmonics report depends on the threads.
+    for (int stop = 1; stop <= reports; ++stop) {
+        int seen = 0;
+        const Progress progress([&](double, const std::string&) { return ++seen < stop; });
+        try {
+            geometrySpectrum(mesh.V, mesh.F, withBasis(20), progress);
+            EXPECT_LT(seen, stop);
+        } catch (const Cancelled&) {
+            EXPECT_EQ(seen, stop);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace spectral

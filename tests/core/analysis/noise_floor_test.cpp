@@ -1,0 +1,62 @@
+#include "core/analysis/noise_floor.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace spectral {
+namespace {
+
+/// Thirds of octaves, as an even mesh of unit area has them: noise in proportion to the number of
+/// harmonics, that grows by 4 per octave.
+struct Spectrum {
+    Eigen::VectorXd size = Eigen::VectorXd(15), amplitude = size, noise = size;
+
+    /// Noise of a height, and relief that has a height at size 1 and falls by 2^slope per octave.
+    Spectrum(double height, double relief, double slope) {
+        for (int b = 0; b < 15; ++b) {
+            size[b] = std::exp2((7 - b) / 3.0);
+            noise[b] = std::sqrt(0.37) * std::exp2((b - 14) / 3.0);
+            amplitude[b] = std::hypot(height * noise[b], relief * std::exp2(slope * (7 - b) / 3.0));
+        }
+    }
+
+    NoiseFloor floor() const { return noiseFloor(size, amplitude, noise); }
+};
+
+TEST(NoiseFloor, OfNoiseAloneIsItsHeightAtAllSizes) {
+    const Spectrum noise(0.02, 0.0, 1.0);
+    EXPECT_NEAR(noise.floor().height, 0.02, 1e-12);
+    EXPECT_NEAR(noise.floor().featureSize, noise.size[0], 1e-12);
+}
+
+TEST(NoiseFloor, BeginsWhereTheReliefSinksIntoTheNoise) {
+    // Both are as high where relief 2^slope(...) = height noise(size), at sizes from 0.6 to 3.
+    for (const double slope : {1.5, 2.0, 3.0})
+        for (const double octaves : {-0.7, 0.0, 0.8, 1.6}) {
+            const double noiseThere = std::sqrt(0.37) * std::exp2(-7.0 / 3.0 - octaves);
+            const double relief = 0.02 * noiseThere * std::exp2(-slope * octaves);
+            const NoiseFloor floor = Spectrum(0.02, relief, slope).floor();
+            EXPECT_NEAR(std::log2(floor.featureSize) - octaves, 0.0, 0.2)
+                << "slope " << slope << ", " << octaves << " octaves";
+            EXPECT_NEAR(floor.height / 0.02, 1.0, 0.05);
+        }
+}
+
+TEST(NoiseFloor, OfReliefAloneIsNone) {
+    for (const double slope : {1.5, 2.0, 2.5, 4.0}) {
+        const NoiseFloor floor = Spectrum(0.0, 1.0, slope).floor();
+        EXPECT_EQ(floor.height, 0.0) << "slope " << slope;
+        EXPECT_EQ(floor.featureSize, 0.0) << "slope " << slope;
+    }
+}
+
+TEST(NoiseFloor, OfNothingIsNone) {
+    EXPECT_EQ(noiseFloor({}, {}, {}).height, 0.0);
+    EXPECT_EQ(Spectrum(0.0, 0.0, 1.0).floor().height, 0.0);
+    const Eigen::VectorXd one = Eigen::VectorXd::Ones(1);
+    EXPECT_EQ(noiseFloor(one, one, one).height, 0.0);
+}
+
+}  // namespace
+}  // namespace spectral

@@ -1,0 +1,120 @@
+#include "core/filter/automatic_steps.h"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "core/filter/fractional_steps.h"
+#include "core/filter/transfer_function.h"
+#include "core/laplacian/frequency.h"
+#include "core/laplacian/interior.h"
+#include "core/mesh/mesh.h"
+#include "support/filter_of_blob.h"
+#include "support/shapes.h"
+
+namespace spectral {
+namespace {
+
+using testing::boost;
+using testing::largestDifference;
+
+/// Automatic steps and the equal steps that they are compared with.
+struct Setting : testing::FilterOfBlob {
+    using FilterOfBlob::FilterOfBlob;
+
+    AutomaticSteps automatic(double tolerance, int maxSteps = 64) const {
+        StepEvaluator evaluate(evaluation, interior, F);
+        return automaticSteps(laplacians, evaluate, surface.X, {tolerance, maxSteps}, {});
+    }
+
+    Vertices midpoint(int K) const {
+        StepEvaluator evaluate(evaluation, interior, F);
+        return midpointSteps(laplacians, evaluate, surface.X, K, K, {}).X;
+    }
+};
+
+TEST(AutomaticSteps, KeepTheirToleranceAndTheirEstimateBoundsTheError) {
+    for (const BasisUpdate update : {BasisUpdate::Full, BasisUpdate::Conformal}) {
+        for (const TransferFunctionOptions& options : {boost(), TransferFunctionOptions()}) {
+            const Setting setting(options, 1.0, update);
+            for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
+                const AutomaticSteps steps = setting.automatic(tolerance);
+                const int finer = 8 * static_cast<int>(steps.sizes.size());
+                const double error = largestDifference(steps.X, setting.midpoint(finer));
+                EXPECT_LE(steps.error, tolerance);
+                EXPECT_LE(error, steps.error) << "tolerance " << tolerance;
+                EXPECT_EQ(steps.singularPart, 0.0);
+            }
+        }
+    }
+}
+
+TEST(AutomaticSteps, AreAsFewAsTheToleranceAllows) {
+    const Setting setting(boost(), 1.0, BasisUpdate::Conformal);
+    EXPECT_EQ(setting.automatic(1.0).sizes.size(), 1u);
+    EXPECT_LT(setting.automatic(1e-3).sizes.size(), setting.automatic(1e-6).sizes.size());
+}
+
+TEST(AutomaticSteps, HavePowersThatSumToOne) {
+    const Setting setting(boost(), 0.7, BasisUpdate::Full);
+    for (const double tolerance : {1e-1, 1e-3}) {
+        const std::vector<double> sizes = setting.automatic(tolerance).sizes;
+        EXPECT_NEAR(std::accumulate(sizes.begin(), sizes.end(), 0.0), 1.0, 1e-12);
+        for (const double size : sizes) EXPECT_GT(size, 0.0);
+    }
+}
+
+TEST(AutomaticSteps, TellWhenTheirBoundStopsThem) {
+    const Setting setting(boost(), 1.0, BasisUpdate::Full);
+    const AutomaticSteps steps = setting.automatic(1e-8, 8);
+    EXPECT_EQ(steps.sizes.size(), 8u);
+    EXPECT_GT(steps.error, 1e-8);
+    EXPECT_GT(steps.singularPart, 0.0);
+    // The best result so far, not that of an earlier pass.
+    EXPECT_LE(largestDifference(steps.X, setting.midpoint(8)), 1e-12);
+}
+
+TEST(AutomaticSteps, AreNotHeldUpByPartsThatShrinkAway) {
+    // Fragments of all sizes around the one that vanishes just at the end of the filter: for some
+    // of them no number of steps is enough.
+    testing::Mesh mesh = testing::blob();
+    for (int i = 0; i < 40; ++i) {
+        testing::Mesh fragment = testing::icosphere(1);
+        fragment.V *= 0.02 + 0.002 * i;
+        fragment.V.col(0).array() += 3.0 + 0.5 * i;
+        mesh = testing::joined(mesh, fragment);
+    }
+    const Surface surface = surfaceOf(mesh.V, mesh.F);
+    const Interior interior(surface.F, connectedComponents(surface.F, surface.X.rows()),
+                            Boundary::Free);
+    const TransferFunction F({}, cutoffFrequency(0.3));
+    LaplacianBuilder laplacians(surface, LaplacianKind::IntrinsicDelaunay, BasisUpdate::Conformal);
+    EvaluationOptions evaluation;
+    StepEvaluator evaluate(evaluation, interior, F);
+    const double tolerance = 1e-3;
+    const AutomaticSteps steps =
+        automaticSteps(laplacians, evaluate, surface.X, {tolerance, 64}, {});
+    EXPECT_LE(steps.sizes.size(), 8u);
+    EXPECT_LE(steps.error, tolerance);
+    EXPECT_GT(steps.singularPart, kNegligibleArea);
+    EXPECT_LT(steps.singularPart, 0.1);
+}
+
+TEST(AutomaticSteps, ReportProgressThatNeverRunsBackwards) {
+    const Setting setting(boost(), 1.0, BasisUpdate::Full);
+    double last = 0.0;
+    int reports = 0;
+    const Progress progress([&](double fraction, const std::string&) {
+        EXPECT_GE(fraction, last - 1e-12);
+        EXPECT_LE(fraction, 1.0 + 1e-12);
+        last = fraction;
+        ++reports;
+        return true;
+    });
+    StepEvaluator evaluate(setting.evaluation, setting.interior, setting.F);
+    automaticSteps(setting.laplacians, evaluate, setting.surface.X, {1e-4}, progress);
+    EXPECT_GT(reports, 10);
+}
+
+}  // namespace
+}  // namespace spectral

@@ -1,0 +1,430 @@
+#include "core/filter/fractional_filter.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "core/filter/transfer_function.h"
+#include "core/laplacian/constant_modes.h"
+#include "core/laplacian/frequency.h"
+#include "core/laplacian/interior.h"
+#include "core/laplacian/laplacian.h"
+#include "core/mesh/measures.h"
+#include "core/mesh/mesh.h"
+#include "core/support/errors.h"
+#include "core/support/thread_team.h"
+#include "support/evaluation.h"
+
+namespace spectral {
+namespace {
+
+using testing::Mesh;
+using testing::Operator;
+
+/// A boost of medium details in three steps, which every kind of mesh survives.
+FilterOptions boost(const Mesh& mesh, BasisUpdate update = BasisUpdate::Full) {
+    FilterOptions options;
+    options.transferFunction.type = FilterType::BandPass;
+    options.transferFunction.stopGain = 1.0;
+    options.transferFunction.passGain = 1.8;
+    options.featureSize = 0.3 * boundingBoxDiagonal(mesh.V);
+    options.steps = 3;
+    options.basisUpdate = update;
+    options.evaluation.accuracy = 1e-9;
+    return options;
+}
+
+FilterOptions smoothing(const Mesh& mesh, int steps, BasisUpdate update) {
+    FilterOptions options;
+    options.featureSize = 0.25 * boundingBoxDiagonal(mesh.V);
+    options.steps = steps;
+    options.basisUpdate = update;
+    options.evaluation.accuracy = 1e-9;
+    return options;
+}
+
+double largestDifference(const Vertices& A, const Vertices& B) {
+    return (A - B).rowwise().norm().maxCoeff();
+}
+
+std::vector<Mesh> classesOfMeshes() {
+    return {testing::blob(), testing::withNoise(testing::rectangle(2, 1, 20, 10), 0.03, 3),
+            testing::joined(testing::blob(), testing::withNoise(testing::cube(5), 0.05, 4))};
+}
+
+const BasisUpdate kUpdates[] = {BasisUpdate::Full, BasisUpdate::Conformal, BasisUpdate::None};
+
+TEST(FractionalFilter, WithUnitGainMovesNothing) {
+    for (const Mesh& mesh : classesOfMeshes())
+        for (const BasisUpdate update : kUpdates)
+            for (const Spectrum spectrum : {Spectrum::Full, Spectrum::Truncated}) {
+                FilterOptions options = smoothing(mesh, 3, update);
+                options.transferFunction.stopGain = 1.0;
+                options.evaluation.spectrum = spectrum;
+                options.evaluation.basisSize = 40;
+                const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
+                EXPECT_LT(result.maxDisplacement, 1e-12 * boundingBoxDiagonal(mesh.V));
+            }
+}
+
+TEST(FractionalFilter, InManyStepsWithoutUpdateEqualsOneStep) {
+    for (const Mesh& mesh : classesOfMeshes())
+        for (const Spectrum spectrum : {Spectrum::Full, Spectrum::Truncated}) {
+            FilterOptions options = smoothing(mesh, 1, BasisUpdate::None);
+            options.evaluation.spectrum = spectrum;
+            options.evaluation.basisSize = 40;
+            const Vertices once = fractionalFilter(mesh.V, mesh.F, options).V;
+            options.steps = 7;
+            const Vertices often = fractionalFilter(mesh.V, mesh.F, options).V;
+            EXPECT_LT(largestDifference(once, often), 1e-7 * boundingBoxDiagonal(mesh.V));
+        }
+}
+
+TEST(FractionalFilter, HasTheSameBitsForEveryNumberOfThreads) {
+    // Large enough for several subtrees of the factorization and blocks of rows, and of two
+    // components; then one with a fixed boundary.
+    const Mesh closed = testing::joined(testing::icosphere(5), testing::cube(20));
+    const Mesh sheet = testing::withNoise(testing::rectangle(2, 1, 120, 60), 0.01, 3);
+    for (const Boundary boundary : {Boundary::Free, Boundary::Fixed})
+        for (const BasisUpdate update : {BasisUpdate::Full, BasisUpdate::Conformal})
+            for (const int steps : {0, 2}) {
+                const Mesh& mesh = boundary == Boundary::Free ? closed : sheet;
+                FilterOptions options = smoothing(mesh, steps, update);
+                options.featureSize = 0.1 * boundingBoxDiagonal(mesh.V);
+                options.tolerance = 1e-3;
+                options.boundary = boundary;
+                std::vector<Vertices> results;
+                for (const int threads : {1, 2, 3}) {
+                    setThreadCount(threads);
+                    results.push_back(fractionalFilter(mesh.V, mesh.F, options).V);
+                }
+                setThreadCount(0);
+                EXPECT_TRUE(results[0] == results[1]);
+                EXPECT_TRUE(results[0] == results[2]);
+            }
+}
+
+TEST(FractionalFilter, CommutesWithRigidMotions) {
+    const Eigen::Matrix3d rotation =
+        Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, -0.5).normalized()).toRotationMatrix();
+    for (const Mesh& mesh : classesOfMeshes())
+        for (const BasisUpdate update : kUpdates) {
+            const FilterOptions options = boost(mesh, update);
+            const Vertices moved = (mesh.V * rotation).rowwise() + Eigen::RowVector3d(5, -3, 2);
+            const Vertices expected =
+                (fractionalFilter(mesh.V, mesh.F, options).V * rotation).rowwise() +
+                Eigen::RowVector3d(5, -3, 2);
+            EXPECT_LT(largestDifference(fractionalFilter(moved, mesh.F, options).V, expected),
+                      1e-7 * boundingBoxDiagonal(mesh.V));
+        }
+}
+
+TEST(FractionalFilter, CommutesWithUniformScale) {
+    for (const Mesh& mesh : classesOfMeshes())
+        for (const double scale : {1e-6, 1e5}) {
+            FilterOptions options = boost(mesh);
+            const Vertices expected = scale * fractionalFilter(mesh.V, mesh.F, options).V;
+            options.featureSize *= scale;
+            const Vertices scaled = fractionalFilter(scale * mesh.V, mesh.F, options).V;
+            EXPECT_LT(largestDifference(scaled, expected),
+                      1e-8 * scale * boundingBoxDiagonal(mesh.V));
+        }
+}
+
+TEST(FractionalFilter, CommutesWithAPermutationOfTheVertices) {
+    const Mesh mesh = testing::blob();
+    const Index n = mesh.V.rows();
+    Mesh reversed = mesh;
+    reversed.V = mesh.V.colwise().reverse();
+    reversed.F = (n - 1 - mesh.F.array()).matrix();
+    const FilterOptions options = boost(mesh);
+    const Vertices expected = fractionalFilter(mesh.V, mesh.F, options).V.colwise().reverse();
+    EXPECT_LT(largestDifference(fractionalFilter(reversed.V, reversed.F, options).V, expected),
+              1e-8);
+}
+
+TEST(FractionalFilter, GivesTheSameShapeAMillionUnitsFromTheOrigin) {
+    const Mesh mesh = testing::blob();
+    const Eigen::RowVector3d away(1e6, -1e6, 1e6);
+    const FilterOptions options = boost(mesh);
+    const Vertices far =
+        fractionalFilter(mesh.V.rowwise() + away, mesh.F, options).V.rowwise() - away;
+    // The input itself is rounded to 1e-10 there.
+    EXPECT_LT(largestDifference(far, fractionalFilter(mesh.V, mesh.F, options).V), 1e-7);
+}
+
+TEST(FractionalFilter, KeepsTheCentroidOfEveryComponent) {
+    const Mesh mesh = testing::joined(testing::blob(), testing::torus(3, 0.8, 24, 12));
+    const Operator A(mesh);
+    for (const FilterType type : {FilterType::LowPass, FilterType::HighPass}) {
+        FilterOptions options = smoothing(mesh, 1, BasisUpdate::Full);
+        options.transferFunction.type = type;
+        const Vertices Y = fractionalFilter(mesh.V, mesh.F, options).V;
+        EXPECT_LT((A.constants.means(Y) - A.constants.means(mesh.V)).cwiseAbs().maxCoeff(), 1e-13);
+    }
+}
+
+TEST(FractionalFilter, IsTheCompositionOfItsSteps) {
+    // Eq. 11: each step is the one-step filter of the shape that the step before has left.
+    const Mesh mesh = testing::blob();
+    FilterOptions options = smoothing(mesh, 3, BasisUpdate::Full);
+    options.laplacian = LaplacianKind::Cotangent;
+    const Vertices whole = fractionalFilter(mesh.V, mesh.F, options).V;
+
+    const double cutoff = 2.0 * kPi / options.featureSize;
+    const TransferFunction F(options.transferFunction, cutoff);
+    Mesh current = mesh;
+    for (int step = 0; step < 3; ++step) {
+        const Operator A(current);
+        const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+        current.V = testing::filteredDense(A, dense, fractionalPower(F, 1.0 / 3.0));
+    }
+    EXPECT_LT(largestDifference(whole, current.V), 1e-7 * boundingBoxDiagonal(mesh.V));
+}
+
+TEST(FractionalFilter, WithAPowerIsTheShapeOnTheWay) {
+    // Three steps of F^(1/5), and from there the other two: also the residual of a truncated basis.
+    const Mesh mesh = testing::blob();
+    for (const Spectrum spectrum : {Spectrum::Full, Spectrum::Truncated}) {
+        FilterOptions options = boost(mesh);
+        options.evaluation.spectrum = spectrum;
+        options.evaluation.basisSize = 20;
+        options.steps = 5;
+        const Vertices whole = fractionalFilter(mesh.V, mesh.F, options).V;
+        options.steps = 3;
+        options.transferFunction.power = 0.6;
+        const Vertices onTheWay = fractionalFilter(mesh.V, mesh.F, options).V;
+        options.steps = 2;
+        options.transferFunction.power = 0.4;
+        const Vertices end = fractionalFilter(onTheWay, mesh.F, options).V;
+        EXPECT_LT(largestDifference(end, whole), 1e-7 * boundingBoxDiagonal(mesh.V));
+        EXPECT_GT(largestDifference(onTheWay, whole), 1e-3 * boundingBoxDiagonal(mesh.V));
+    }
+}
+
+TEST(FractionalFilter, ConformalUpdateTakesTheMassesAnewAndKeepsTheStiffness) {
+    const Mesh mesh = testing::blob();
+    FilterOptions options = smoothing(mesh, 3, BasisUpdate::Conformal);
+    options.laplacian = LaplacianKind::Cotangent;
+    const Vertices whole = fractionalFilter(mesh.V, mesh.F, options).V;
+
+    const double cutoff = 2.0 * kPi / options.featureSize;
+    const TransferFunction F(options.transferFunction, cutoff);
+    Operator A(mesh);
+    for (int step = 0; step < 3; ++step) {
+        A.laplacian.D = lumpedMass(A.mesh.V, mesh.F);
+        A.constants = ConstantModes(connectedComponents(mesh.F, mesh.V.rows()), A.laplacian.D);
+        const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+        A.mesh.V = testing::filteredDense(A, dense, fractionalPower(F, 1.0 / 3.0));
+    }
+    EXPECT_LT(largestDifference(whole, A.mesh.V), 1e-7 * boundingBoxDiagonal(mesh.V));
+}
+
+TEST(FractionalFilter, LowPassLowersTheDirichletEnergy) {
+    for (const Mesh& mesh : classesOfMeshes()) {
+        FilterOptions options = smoothing(mesh, 1, BasisUpdate::None);
+        options.laplacian = LaplacianKind::Cotangent;
+        const SparseMatrix W = cotangentLaplacian(mesh.V, mesh.F).W;
+        const Vertices Y = fractionalFilter(mesh.V, mesh.F, options).V;
+        EXPECT_LT((Y.transpose() * W * Y).trace(), (mesh.V.transpose() * W * mesh.V).trace());
+    }
+}
+
+TEST(FractionalFilter, IdealResponseInFullSpectrumIsExact) {
+    for (const Mesh& mesh : {testing::blob(), testing::withNoise(testing::icosphere(2), 0.05, 9)}) {
+        const Operator A(mesh);
+        const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+        for (const FilterType type : {FilterType::LowPass, FilterType::HighPass,
+                                      FilterType::BandPass, FilterType::BandStop})
+            for (const double feature : {2.0, 0.002}) {  // the smaller one beyond all harmonics
+                FilterOptions options = smoothing(mesh, 1, BasisUpdate::Full);
+                options.laplacian = LaplacianKind::Cotangent;
+                options.transferFunction.type = type;
+                options.transferFunction.response = Response::Ideal;
+                options.featureSize *= feature;
+                const TransferFunction F(options.transferFunction, 2.0 * kPi / options.featureSize);
+                const Vertices expected = testing::filteredDense(A, dense, fractionalPower(F, 1.0));
+                const Vertices Y = fractionalFilter(mesh.V, mesh.F, options).V;
+                EXPECT_LT(largestDifference(Y, expected), 1e-8)
+                    << testing::describe(options.transferFunction) << ", " << mesh.V.rows();
+            }
+    }
+}
+
+TEST(FractionalFilter, LeavesUnreferencedVerticesAlone) {
+    const Mesh mesh = testing::blob();
+    Vertices V(mesh.V.rows() + 2, 3);
+    V << Eigen::RowVector3d(9, 9, 9), mesh.V, Eigen::RowVector3d(-50, 0, 0);
+    const Faces F = (mesh.F.array() + 1).matrix();
+    const FilterOptions options = boost(mesh);
+    const FilterResult result = fractionalFilter(V, F, options);
+    EXPECT_EQ(result.unreferencedVertices, 2);
+    EXPECT_EQ(result.V.row(0), V.row(0));
+    EXPECT_EQ(result.V.row(V.rows() - 1), V.row(V.rows() - 1));
+    const Vertices alone = fractionalFilter(mesh.V, mesh.F, options).V;
+    EXPECT_LT(largestDifference(result.V.middleRows(1, mesh.V.rows()), alone), 1e-12);
+}
+
+TEST(FractionalFilter, IsReproducibleToTheBit) {
+    const Mesh mesh = testing::blob();
+    for (const Spectrum spectrum : {Spectrum::Full, Spectrum::Truncated}) {
+        FilterOptions options = boost(mesh);
+        options.evaluation.spectrum = spectrum;
+        options.evaluation.basisSize = 50;
+        EXPECT_EQ(fractionalFilter(mesh.V, mesh.F, options).V,
+                  fractionalFilter(mesh.V, mesh.F, options).V);
+    }
+}
+
+TEST(FractionalFilter, ReportsWhatItDid) {
+    const Mesh mesh = testing::blob();
+    const FilterOptions options = smoothing(mesh, 4, BasisUpdate::Full);
+    const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_EQ(result.steps, 4);
+    EXPECT_EQ(result.factorizations, 4);
+    EXPECT_EQ(result.components, 1);
+    EXPECT_EQ(result.unreferencedVertices, 0);
+    EXPECT_NEAR(std::accumulate(result.stepSizes.begin(), result.stepSizes.end(), 0.0), 1.0, 1e-15);
+    EXPECT_NEAR(result.cutoffFrequency * result.featureSize, 2.0 * kPi, 1e-12);
+    EXPECT_GT(result.errorEstimate, 0.0);
+    EXPECT_LE(result.errorEstimate, options.evaluation.accuracy);
+    EXPECT_DOUBLE_EQ(result.areaAfter, surfaceArea(result.V, mesh.F));
+    EXPECT_NEAR(result.maxDisplacement, largestDifference(result.V, mesh.V), 1e-14);
+    EXPECT_EQ(result.eigenvalues.size(), 0);
+}
+
+TEST(FractionalFilter, WarnsWhenTheAccuracyIsNotReached) {
+    // The tenth root of a gain that vanishes inside the spectrum has a cusp there.
+    const Mesh mesh = testing::withNoise(testing::icosphere(4), 0.02, 5);
+    FilterOptions options = smoothing(mesh, 10, BasisUpdate::None);
+    options.transferFunction.type = FilterType::BandStop;
+    options.featureSize = 0.5;  // where the noise is
+    const FilterResult cusp = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_FALSE(cusp.accuracyReached);
+    EXPECT_GT(cusp.errorEstimate, options.evaluation.accuracy);
+    ASSERT_EQ(cusp.warnings.size(), 1u);
+    EXPECT_NE(cusp.warnings[0].find("stop_gain"), std::string::npos);
+
+    options.transferFunction.stopGain = 0.05;
+    const FilterResult smooth = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_TRUE(smooth.accuracyReached);
+    EXPECT_TRUE(smooth.warnings.empty());
+}
+
+TEST(FractionalFilter, WarnsWhenTheHarmonicsEndBelowTheCutoff) {
+    const Mesh mesh = testing::blob();
+    FilterOptions options = smoothing(mesh, 2, BasisUpdate::Full);
+    options.evaluation.spectrum = Spectrum::Truncated;
+    options.evaluation.basisSize = 50;
+    const FilterResult enough = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_TRUE(enough.cutoffReached);
+    EXPECT_TRUE(enough.warnings.empty());
+
+    options.evaluation.basisSize = 5;
+    const FilterResult few = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_LT(std::sqrt(few.eigenvalues[few.eigenvalues.size() - 1]), few.cutoffFrequency);
+    EXPECT_FALSE(few.cutoffReached);
+    ASSERT_EQ(few.warnings.size(), 1u);
+    EXPECT_NE(few.warnings[0].find("basis_size"), std::string::npos);
+
+    // An ideal response needs no harmonic beyond its edge.
+    options.evaluation.spectrum = Spectrum::Full;
+    options.transferFunction.response = Response::Ideal;
+    const FilterResult ideal = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_GT(ideal.eigenvalues.size(), 0);
+    EXPECT_TRUE(ideal.warnings.empty());
+}
+
+TEST(FractionalFilter, ReportsProgressUpToTheEnd) {
+    const Mesh mesh = testing::blob();
+    double last = 0.0;
+    int calls = 0;
+    const Progress progress([&](double fraction, const std::string& stage) {
+        EXPECT_GE(fraction, last - 1e-12);
+        EXPECT_LE(fraction, 1.0);
+        EXPECT_NE(stage.find(" of 5: "), std::string::npos);
+        last = fraction;
+        ++calls;
+        return true;
+    });
+    fractionalFilter(mesh.V, mesh.F, smoothing(mesh, 5, BasisUpdate::Full), progress);
+    EXPECT_GT(calls, 10);
+    EXPECT_GT(last, 0.8);
+}
+
+TEST(FractionalFilter, StopsWhenTheCallerSaysSo) {
+    const Mesh mesh = testing::blob();
+    for (const Spectrum spectrum : {Spectrum::Full, Spectrum::Truncated}) {
+        FilterOptions options = smoothing(mesh, 5, BasisUpdate::Full);
+        options.evaluation.spectrum = spectrum;
+        options.evaluation.basisSize = 50;
+        int calls = 0;
+        const Progress progress([&](double, const std::string&) { return ++calls < 7; });
+        EXPECT_THROW(fractionalFilter(mesh.V, mesh.F, options, progress), Cancelled);
+        EXPECT_EQ(calls, 7);
+    }
+}
+
+TEST(FractionalFilter, RefusesOptionsOutOfTheirRange) {
+    const Mesh mesh = testing::icosphere(2);
+    const auto refuses = [&](auto change) {
+        FilterOptions options = smoothing(mesh, 2, BasisUpdate::Full);
+        change(options);
+        EXPECT_THROW(fractionalFilter(mesh.V, mesh.F, options), InvalidOption);
+    };
+    refuses([](FilterOptions& o) { o.steps = -1; });
+    refuses([](FilterOptions& o) { o.steps = 0; });  // automatic, without a tolerance
+    refuses([](FilterOptions& o) { o.conformalShare = -0.1; });
+    refuses([](FilterOptions& o) { o.conformalShare = 1.1; });
+    refuses([](FilterOptions& o) { o.featureSize = 0.0; });
+    refuses([](FilterOptions& o) { o.featureSize = std::nan(""); });
+    refuses([](FilterOptions& o) { o.evaluation.accuracy = 0.0; });
+    refuses([](FilterOptions& o) { o.transferFunction.passGain = -1.0; });
+    refuses([](FilterOptions& o) {
+        o.evaluation.spectrum = Spectrum::Truncated;
+        o.evaluation.basisSize = 162;
+    });
+}
+
+TEST(FractionalFilter, ConformalShareLeadsFromTheFullToTheConformalUpdate) {
+    const Mesh mesh = testing::blob();
+    FilterOptions options = smoothing(mesh, 5, BasisUpdate::Full);
+    const Vertices full = fractionalFilter(mesh.V, mesh.F, options).V;
+    options.conformalShare = 1.0;
+    const Vertices all = fractionalFilter(mesh.V, mesh.F, options).V;
+    options.conformalShare = 0.5;
+    const Vertices half = fractionalFilter(mesh.V, mesh.F, options).V;
+    const Vertices conformal =
+        fractionalFilter(mesh.V, mesh.F, smoothing(mesh, 5, BasisUpdate::Conformal)).V;
+
+    EXPECT_LE(largestDifference(all, conformal), 1e-8);
+    const double whole = largestDifference(full, conformal);
+    EXPECT_GT(whole, 1e-4);
+    EXPECT_LT(largestDifference(full, half), 0.75 * whole);
+    EXPECT_LT(largestDifference(half, conformal), 0.75 * whole);
+}
+
+TEST(FractionalFilter, SaysInWhichStepThinPartsCollapsed) {
+    // A needle: a strong low-pass with full update pinches it to a line.
+    Mesh mesh = testing::icosphere(4);
+    mesh.V.col(0) *= 60.0;
+    FilterOptions options;
+    options.featureSize = 400.0;
+    options.laplacian = LaplacianKind::Cotangent;
+    options.basisUpdate = BasisUpdate::Full;
+    options.steps = 60;
+    try {
+        fractionalFilter(mesh.V, mesh.F, options);
+        FAIL() << "the needle should have collapsed";
+    } catch (const SolverFailure& failure) {
+        const std::string text = failure.what();
+        EXPECT_NE(text.find("step "), std::string::npos) << text;
+        EXPECT_NE(text.find("conformal"), std::string::npos) << text;
+    }
+}
+
+}  // namespace
+}  // namespace spectral

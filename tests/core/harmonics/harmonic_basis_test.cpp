@@ -1,0 +1,203 @@
+#include "core/harmonics/harmonic_basis.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/filter/transfer_function.h"
+#include "core/harmonics/truncated_basis.h"
+#include "core/laplacian/constant_modes.h"
+#include "core/laplacian/frequency.h"
+#include "core/laplacian/laplacian_builder.h"
+#include "core/mesh/mesh.h"
+#include "core/support/errors.h"
+#include "support/evaluation.h"
+
+namespace spectral {
+namespace {
+
+using testing::Mesh;
+using testing::Operator;
+
+HarmonicBasis lowest(const Operator& A, Index k) {
+    ShiftedCholesky cholesky;
+    return truncatedBasis(A.laplacian, A.constants, k, cholesky);
+}
+
+double orthonormalityError(const Operator& A, const HarmonicBasis& basis) {
+    return (basis.Phi.transpose() * A.laplacian.D.asDiagonal() * basis.Phi -
+            Eigen::MatrixXd::Identity(basis.size(), basis.size()))
+        .cwiseAbs()
+        .maxCoeff();
+}
+
+/// Largest |W phi - lambda D phi| in the D^-1 norm, relative to the largest eigenvalue of the
+/// basis.
+double residual(const Operator& A, const HarmonicBasis& basis) {
+    const Eigen::VectorXd& D = A.laplacian.D;
+    const Eigen::MatrixXd R =
+        A.laplacian.W * basis.Phi - D.asDiagonal() * basis.Phi * basis.lambda.asDiagonal();
+    return (D.cwiseSqrt().cwiseInverse().asDiagonal() * R).colwise().norm().maxCoeff() /
+           basis.lambda[basis.size() - 1];
+}
+
+/// Worst relative error of the sphere's eigenvalues l(l+1), l = 1 to maxDegree.
+double sphereError(int levels, int maxDegree) {
+    const Operator A(testing::icosphere(levels));
+    const HarmonicBasis basis = lowest(A, (maxDegree + 1) * (maxDegree + 1));
+    double worst = 0.0;
+    for (int l = 1; l <= maxDegree; ++l)
+        for (int i = l * l; i < (l + 1) * (l + 1); ++i)
+            worst = std::max(worst, std::abs(basis.lambda[i] / (l * (l + 1.0)) - 1.0));
+    return worst;
+}
+
+TEST(TruncatedBasis, OfTheSphereConvergesToItsEigenvaluesAtSecondOrder) {
+    const double coarse = sphereError(3, 4), middle = sphereError(4, 4), fine = sphereError(5, 4);
+    EXPECT_LT(coarse, 0.03);
+    EXPECT_NEAR(coarse / middle, 4.0, 0.2);
+    EXPECT_NEAR(middle / fine, 4.0, 0.1);
+}
+
+TEST(TruncatedBasis, KeepsTheSpheresMultiplicitiesWhole) {
+    const Operator A(testing::icosphere(4));
+    // Every k cuts some 2l+1-fold eigenvalue unless it is a square.
+    for (const Index k : {2, 3, 5, 8, 10, 13, 17, 20, 26, 33, 50}) {
+        const Index kept = lowest(A, k).size();
+        const Index root = std::lround(std::sqrt(static_cast<double>(kept)));
+        EXPECT_EQ(root * root, kept) << "asked for " << k;
+        EXPECT_GE(kept, k);
+    }
+}
+
+/// Worst relative error of the 15 lowest eigenvalues pi^2 (p^2/a^2 + q^2/b^2) after the constant.
+double rectangleError(int cells) {
+    const double a = 2.0, b = 1.0;
+    const Operator A(testing::rectangle(a, b, 2 * cells, cells));
+    std::vector<double> exact;
+    for (int p = 0; p < 12; ++p)
+        for (int q = 0; q < 12; ++q)
+            exact.push_back(kPi * kPi * (p * p / (a * a) + q * q / (b * b)));
+    std::sort(exact.begin(), exact.end());
+    const HarmonicBasis basis = lowest(A, 16);
+    double worst = 0.0;
+    for (int i = 1; i < 16; ++i)
+        worst = std::max(worst, std::abs(basis.lambda[i] / exact[i] - 1.0));
+    return worst;
+}
+
+TEST(TruncatedBasis, OfAFlatRectangleConvergesToTheNeumannEigenvaluesAtSecondOrder) {
+    const double coarse = rectangleError(16), middle = rectangleError(32),
+                 fine = rectangleError(64);
+    EXPECT_LT(coarse, 0.05);
+    EXPECT_NEAR(coarse / middle, 4.0, 0.2);
+    EXPECT_NEAR(middle / fine, 4.0, 0.1);
+}
+
+TEST(TruncatedBasis, OfASquareKeepsEqualEigenvaluesWhole) {
+    const Operator A(testing::rectangle(1.0, 1.0, 32, 32));
+    // Neumann: 0 | (1,0) (0,1) | (1,1) | (2,0) (0,2) | (2,1) (1,2) | (2,2) | (3,0) (0,3) | ...
+    // The lumped grid's eigenvalues are those of the 5-point stencil: (p,q) and (q,p) agree.
+    for (const auto& [asked, kept] :
+         {std::pair<Index, Index>{2, 3}, {3, 3}, {4, 4}, {5, 6}, {7, 8}})
+        EXPECT_EQ(lowest(A, asked).size(), kept) << "asked for " << asked;
+}
+
+TEST(TruncatedBasis, AgreesWithTheDenseSolver) {
+    for (const Mesh& mesh :
+         {testing::blob(), testing::withNoise(testing::rectangle(2, 1, 20, 10), 0.02, 3),
+          testing::joined(testing::blob(), testing::torus(2, 0.7, 20, 10)), testing::cube(6),
+          testing::icosphere(2)}) {
+        const Operator A(mesh);
+        const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+        const HarmonicBasis basis = lowest(A, 60);
+        const Index k = basis.size();
+        ASSERT_GE(k, 60);
+        EXPECT_LT((basis.lambda - dense.lambda.head(k)).cwiseAbs().maxCoeff(),
+                  1e-9 * dense.lambda[k - 1]);
+        EXPECT_LT(orthonormalityError(A, basis), 1e-9);
+        EXPECT_LT(residual(A, basis), 1e-8);
+        // Eigenspaces, not vectors: the basis lies in the span of the dense one.
+        const Eigen::MatrixXd inDense =
+            dense.Phi.leftCols(k).transpose() * A.laplacian.D.asDiagonal() * basis.Phi;
+        EXPECT_LT((inDense.colwise().norm().array() - 1.0).abs().maxCoeff(), 1e-9);
+    }
+}
+
+TEST(TruncatedBasis, StandsATriangleAlmostWithoutArea) {
+    // It hangs on the surface by one vertex: beside the masses of its other two, 1e-12 of the mean,
+    // its weights make the largest eigenvalues 1e12 times those of the surface.
+    Mesh mesh = testing::withNoise(testing::rectangle(2, 1, 22, 15), 0.01, 3);
+    const Index n = mesh.V.rows();
+    mesh.V.conservativeResize(n + 2, 3);
+    mesh.V.bottomRows(2).rowwise() = mesh.V.row(n / 2).eval();
+    mesh.V(n, 0) += 1e-8;
+    mesh.V(n + 1, 1) += 1e-8;
+    mesh.F.conservativeResize(mesh.F.rows() + 1, 3);
+    mesh.F.bottomRows(1) << static_cast<int>(n / 2), static_cast<int>(n), static_cast<int>(n + 1);
+    const Surface surface = surfaceOf(mesh.V, mesh.F);
+    const Laplacian laplacian =
+        LaplacianBuilder(surface, LaplacianKind::IntrinsicDelaunay, BasisUpdate::None).input();
+    const ConstantModes constants(connectedComponents(surface.F, surface.X.rows()), laplacian.D);
+    ShiftedCholesky cholesky;
+    const HarmonicBasis basis = truncatedBasis(laplacian, constants, 40, cholesky);
+    EXPECT_LT(basis.residuals.maxCoeff(), 1e-8);
+}
+
+TEST(TruncatedBasis, HoldsTheConstantOfEveryComponentExactly) {
+    const Operator A(testing::joined(testing::joined(testing::blob(), testing::icosphere(1)),
+                                     testing::torus(2, 0.7, 12, 8)));
+    const HarmonicBasis basis = lowest(A, 12);
+    EXPECT_TRUE((basis.lambda.head(3).array() == 0.0).all());
+    EXPECT_GT(basis.lambda[3], 0.0);
+}
+
+TEST(TruncatedBasis, RefusesASizeThatTheMeshCannotHold) {
+    const Operator A(testing::icosphere(1));
+    EXPECT_THROW(lowest(A, 42), InvalidOption);
+    EXPECT_THROW(lowest(A, 1), InvalidOption);
+    EXPECT_EQ(lowest(A, 41).size(), 41);
+}
+
+TEST(DenseBasis, DiagonalizesTheLaplacian) {
+    const Operator A(testing::blob());
+    const HarmonicBasis basis = denseBasis(A.laplacian, A.constants);
+    EXPECT_EQ(basis.size(), A.mesh.V.rows());
+    EXPECT_LT(orthonormalityError(A, basis), 1e-12);
+    EXPECT_LT(residual(A, basis), 1e-12);
+}
+
+TEST(LargestEigenvalue, AgreesWithTheDenseSolver) {
+    for (const Mesh& mesh : {testing::blob(), testing::icosphere(2), testing::icosphere(0)}) {
+        const Operator A(mesh);
+        const Eigen::VectorXd lambda = denseBasis(A.laplacian, A.constants).lambda;
+        EXPECT_NEAR(largestEigenvalue(A.laplacian) / lambda[lambda.size() - 1], 1.0, 1e-7);
+    }
+}
+
+TEST(ApplyInBasis, WithAllPairsEqualsDense) {
+    const Operator A(testing::blob());
+    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    const Gain gain = fractionalPower(TransferFunction({}, 5.0), 1.0);
+    // A residual gain has nothing to act on once all n harmonics are there.
+    const Eigen::MatrixXd with =
+        applyInBasis(dense, A.laplacian.D, A.constants, gain, 0.7, A.mesh.V);
+    EXPECT_LT((with - testing::filteredDense(A, dense, gain)).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(ApplyInBasis, ResidualGainActsOnWhatIsBeyondTheBasis) {
+    const Operator A(testing::blob());
+    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    const HarmonicBasis basis = lowest(A, 40);
+    const double cut =
+        std::sqrt(0.5 * (dense.lambda[basis.size() - 1] + dense.lambda[basis.size()]));
+    const Eigen::MatrixXd Y =
+        applyInBasis(basis, A.laplacian.D, A.constants, [](double) { return 1.0; }, 0.25, A.mesh.V);
+    const Vertices expected =
+        testing::filteredDense(A, dense, [cut](double omega) { return omega < cut ? 1.0 : 0.25; });
+    EXPECT_LT((Y - expected).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+}  // namespace
+}  // namespace spectral

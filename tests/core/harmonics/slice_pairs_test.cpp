@@ -1,0 +1,70 @@
+#include "core/harmonics/slice_pairs.h"
+
+#include <gtest/gtest.h>
+
+#include "core/harmonics/harmonic_basis.h"
+#include "core/support/errors.h"
+#include "support/evaluation.h"
+#include "support/shapes.h"
+
+namespace spectral {
+namespace {
+
+using testing::Operator;
+
+const StopPoint kNeverStops = [] {};
+
+/// Half of the way from one eigenvalue to the next.
+double between(const Eigen::VectorXd& lambda, Index below) {
+    return 0.5 * (lambda[below - 1] + lambda[below]);
+}
+
+SpectrumSlice sliceOf(const Eigen::VectorXd& lambda, Index first, Index count) {
+    return {between(lambda, first), between(lambda, first + count), first, count};
+}
+
+/// The largest part of a vector of `Phi` that is in none of `space`.
+double outside(const Operator& A, const Eigen::MatrixXd& Phi, const Eigen::MatrixXd& space) {
+    const Eigen::MatrixXd rest =
+        Phi - space * (space.transpose() * (A.laplacian.D.asDiagonal() * Phi));
+    return (A.laplacian.D.cwiseSqrt().asDiagonal() * rest).colwise().norm().maxCoeff();
+}
+
+TEST(ComputeSlice, FindsWhatTheDenseSolverFinds) {
+    const Operator A(testing::blob());
+    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    ShiftedLdlt factor;
+    for (const Index first : {1, 30, 200}) {
+        const SpectrumSlice slice = sliceOf(dense.lambda, first, 12);
+        const SlicePairs pairs = computeSlice(A.laplacian, A.constants, slice, factor, kNeverStops);
+        ASSERT_TRUE(pairs.isComplete()) << first;
+        EXPECT_LT((pairs.lambda - dense.lambda.segment(first, 12)).cwiseAbs().maxCoeff(),
+                  1e-10 * dense.lambda[first + 12]);
+        EXPECT_LT(outside(A, pairs.Phi, dense.Phi.middleCols(first, 12)), 1e-8) << first;
+    }
+}
+
+TEST(ComputeSlice, IsIncompleteWhereItsCountIsWrong) {
+    const Operator A(testing::blob());
+    const Eigen::VectorXd lambda = denseBasis(A.laplacian, A.constants).lambda;
+    ShiftedLdlt factor;
+    for (const Index wrong : {-1, 1}) {
+        SpectrumSlice slice = sliceOf(lambda, 30, 12);
+        slice.count += wrong;
+        EXPECT_FALSE(
+            computeSlice(A.laplacian, A.constants, slice, factor, kNeverStops).isComplete());
+    }
+}
+
+TEST(Orthonormalize, TellsAVectorThatIsAlreadyThere) {
+    const Operator A(testing::blob());
+    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    Eigen::MatrixXd U = dense.Phi.middleCols(5, 3) + 0.1 * dense.Phi.leftCols(3);
+    EXPECT_GT(orthonormalize(A.laplacian.D, dense.Phi.leftCols(5), U), kOwnPart);
+    EXPECT_LT(outside(A, U, dense.Phi.middleCols(5, 3)), 1e-12);
+    U.col(1) = dense.Phi.col(2) + 1e-3 * U.col(1);
+    EXPECT_LT(orthonormalize(A.laplacian.D, dense.Phi.leftCols(5), U), kOwnPart);
+}
+
+}  // namespace
+}  // namespace spectral

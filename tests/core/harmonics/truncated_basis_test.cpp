@@ -1,0 +1,124 @@
+#include "core/harmonics/truncated_basis.h"
+
+#include <gtest/gtest.h>
+
+#include "core/filter/fractional_filter.h"
+#include "core/support/errors.h"
+#include "support/evaluation.h"
+#include "support/shapes.h"
+
+namespace spectral {
+namespace {
+
+using testing::Mesh;
+using testing::Operator;
+
+HarmonicBasis lowest(const Operator& A, Index k, const Progress& progress = {}) {
+    ShiftedCholesky cholesky;
+    return truncatedBasis(A.laplacian, A.constants, k, cholesky, progress);
+}
+
+/// Compares with all eigenvalues by the dense solver: none missing, none twice.
+void expectLowest(const Mesh& mesh, Index k, const char* name) {
+    SCOPED_TRACE(name);
+    const Operator A(mesh);
+    const HarmonicBasis pairs = lowest(A, k);
+    const Eigen::VectorXd lambda = denseBasis(A.laplacian, A.constants).lambda;
+    ASSERT_GE(pairs.lambda.size(), k);
+    const Index c = A.constants.count(), found = pairs.lambda.size();
+    const Eigen::VectorXd error = pairs.lambda - lambda.head(found);
+    EXPECT_LT(error.cwiseAbs().maxCoeff(), 1e-9 * lambda[found - 1]);
+
+    const Eigen::MatrixXd gram = pairs.Phi.transpose() * A.laplacian.D.asDiagonal() * pairs.Phi;
+    EXPECT_LT((gram - Eigen::MatrixXd::Identity(found, found)).cwiseAbs().maxCoeff(), 1e-7);
+    const Eigen::MatrixXd residual = A.laplacian.W * pairs.Phi - A.laplacian.D.asDiagonal() *
+                                                                     pairs.Phi *
+                                                                     pairs.lambda.asDiagonal();
+    for (Index i = c; i < found; ++i)
+        EXPECT_LT(residual.col(i).cwiseQuotient(A.laplacian.D.cwiseSqrt()).norm(),
+                  1e-7 * pairs.lambda[i]);
+}
+
+Mesh copies(const Mesh& mesh, int count) {
+    Mesh all = mesh;
+    for (int i = 1; i < count; ++i) all = testing::joined(all, mesh);
+    return all;
+}
+
+TEST(TruncatedBasisSlices, AreAllThere) {
+    expectLowest(testing::blob(), 150, "no symmetry");
+    expectLowest(testing::withNoise(testing::rectangle(2, 1, 40, 20), 0.01, 5), 200, "boundary");
+}
+
+TEST(TruncatedBasisSlices, HoldEveryCopyOfAMultipleEigenvalue) {
+    expectLowest(testing::icosphere(3), 120, "sphere");
+    expectLowest(testing::cube(12), 120, "cube");
+    expectLowest(testing::rectangle(1, 1, 24, 24), 100, "square");
+    expectLowest(copies(testing::icosphere(2), 5), 100, "five equal spheres");
+}
+
+TEST(TruncatedBasisSlices, OfManyEqualPartsAreAllThere) {
+    // Few different eigenvalues with wide gaps, where a run finds nothing on one side of its shift.
+    expectLowest(copies(testing::icosphere(1), 20), 60, "twenty spheres");
+    expectLowest(copies(testing::cube(2), 40), 300, "forty cubes");
+}
+
+TEST(TruncatedBasisSlices, OfALargeCoarsePartAndASmallFineOneAreAllThere) {
+    // A floor of four vertices under a scanned object has nearly all of the area, by which Weyl's
+    // law lays the first shifts: far below the object's eigenvalues.
+    Mesh floor = testing::rectangle(20, 20, 1, 1), hall = testing::icosphere(1);
+    hall.V *= 20.0;
+    expectLowest(testing::joined(floor, testing::blob()), 60, "floor");
+    expectLowest(testing::joined(hall, testing::blob()), 100, "hall");
+}
+
+TEST(TruncatedBasisSlices, AreFewWhereFewAreAsked) {
+    expectLowest(testing::blob(), 2, "one harmonic");
+    expectLowest(testing::icosphere(3), 5, "within a group of equal ones");
+}
+
+TEST(TruncatedBasisSlices, DoNotDependOnTheThreads) {
+    const Operator A(testing::icosphere(3));
+    const HarmonicBasis once = lowest(A, 100), again = lowest(A, 100);
+    EXPECT_TRUE((once.Phi.array() == again.Phi.array()).all());
+    EXPECT_TRUE((once.lambda.array() == again.lambda.array()).all());
+}
+
+TEST(TruncatedBasisSlices, StopWhenTheCallerWantsIt) {
+    const Operator A(testing::icosphere(4));
+    int reports = 0;
+    const Progress progress([&](double fraction, const std::string&) {
+        EXPECT_GE(fraction, 0.0);
+        EXPECT_LE(fraction, 1.0);
+        return ++reports < 2;  // there are many slices
+    });
+    EXPECT_THROW(lowest(A, 100, progress), Cancelled);
+}
+
+TEST(TruncatedBasisSlices, TellTheirProgress) {
+    const Operator A(testing::icosphere(4));
+    double last = 0.0;
+    const Progress rising([&](double fraction, const std::string&) {
+        EXPECT_GE(fraction, last);
+        last = fraction;
+        return true;
+    });
+    lowest(A, 100, rising);
+    EXPECT_GT(last, 0.9);
+}
+
+TEST(TruncatedSteps, ComputeTheBasisOfEveryShape) {
+    const Mesh mesh = testing::withNoise(testing::icosphere(4), 0.02, 7);
+    FilterOptions options;
+    options.featureSize = 0.5;
+    options.steps = 3;
+    options.evaluation.spectrum = Spectrum::Truncated;
+    options.evaluation.basisSize = 100;
+    const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_EQ(result.computedBases, 3);
+    EXPECT_EQ(result.inertiaCount, result.eigenvalues.size());
+    EXPECT_LT(result.residuals.maxCoeff(), 1e-7);
+}
+
+}  // namespace
+}  // namespace spectral

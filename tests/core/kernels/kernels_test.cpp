@@ -1,0 +1,134 @@
+#include "core/kernels/kernels.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cstdlib>
+#include <vector>
+
+#include "core/support/types.h"
+#include "support/evaluation.h"
+#include "support/shapes.h"
+
+namespace spectral {
+namespace {
+
+/// Those of the sets that this processor has, by their place: it takes the first, others another.
+class KernelsOfEverySet : public ::testing::TestWithParam<std::size_t> {
+  protected:
+    const Kernels& kernels() const { return availableKernels()[GetParam()]; }
+};
+
+INSTANTIATE_TEST_SUITE_P(Widest, KernelsOfEverySet,
+                         ::testing::Range(std::size_t{0}, availableKernels().size()));
+
+/// A front in memory, as it is documented.
+class FrontOf {
+  public:
+    FrontOf(const Eigen::MatrixXd& A, Index width)
+        : offset_((kFrontLane - width % kFrontLane) % kFrontLane),
+          below_(A.rows() - width),
+          padded_((below_ + kFrontLane - 1) / kFrontLane * kFrontLane),
+          panel_(Eigen::MatrixXd::Zero(offset_ + width + padded_, width)),
+          update_(Eigen::MatrixXd::Zero(padded_, below_)),
+          scratch_(panel_.rows(), width) {
+        panel_.middleRows(offset_, A.rows()) = A.leftCols(width).triangularView<Eigen::Lower>();
+        update_.topRows(below_) =
+            A.bottomRightCorner(below_, below_).triangularView<Eigen::Lower>();
+    }
+
+    DenseFront front() {
+        return {panel_.cols(), below_,         panel_.data(),  panel_.rows(),
+                offset_,       update_.data(), scratch_.data()};
+    }
+
+    /// The columns of L with the pivots in place of the ones.
+    Eigen::MatrixXd columns() const {
+        return panel_.middleRows(offset_, panel_.cols() + below_).triangularView<Eigen::Lower>();
+    }
+    Eigen::MatrixXd update() const {
+        return update_.topRows(below_).selfadjointView<Eigen::Lower>();
+    }
+
+  private:
+    Index offset_, below_, padded_;
+    Eigen::MatrixXd panel_, update_, scratch_;
+};
+
+TEST_P(KernelsOfEverySet, EliminatesInFronts) {
+    std::srand(9);
+    for (const Index width : {1, 2, 3, 4, 5, 9, 18, 67})
+        for (const Index below : {0, 1, 3, 4, 7, 31, 70}) {
+            const Index n = width + below;
+            // Indefinite, and of diagonal dominance: no pivot is small.
+            Eigen::MatrixXd A = Eigen::MatrixXd::Random(n, n);
+            A = (A + A.transpose()).eval();
+            for (Index i = 0; i < n; ++i)
+                A(i, i) = (i % 3 == 0 ? -3.0 : 3.0) * static_cast<double>(n + i);
+            FrontOf front(A, width);
+            ASSERT_TRUE(kernels().fronts.eliminate(front.front()));
+            Eigen::MatrixXd L = front.columns();
+            const Eigen::VectorXd pivots = L.diagonal();
+            L.diagonal().setOnes();
+            Eigen::MatrixXd product = L * pivots.asDiagonal() * L.transpose();
+            product.bottomRightCorner(below, below) += front.update();
+            EXPECT_LT((product - A).norm(), 1e-13 * A.norm()) << width << ' ' << below;
+        }
+}
+
+TEST_P(KernelsOfEverySet, SaysWhenAPivotVanishes) {
+    Eigen::MatrixXd A = Eigen::MatrixXd::Ones(7, 7);
+    A.diagonal() << 1.0, 1.0, 3.0, 4.0, 5.0, 6.0, 7.0;
+    FrontOf one(A, 1), five(A, 5);
+    EXPECT_TRUE(kernels().fronts.eliminate(one.front()));
+    EXPECT_FALSE(kernels().fronts.eliminate(five.front()));
+}
+
+/// LdltFactor::joined, from the rows themselves.
+std::vector<char> joinedColumns(const SparseMatrix& L) {
+    std::vector<char> joined(static_cast<std::size_t>(L.cols()), 0);
+    const int *row = L.innerIndexPtr(), *start = L.outerIndexPtr();
+    for (int j = 0; j + 1 < L.cols(); ++j) {
+        const bool isNext = start[j] < start[j + 1] && row[start[j]] == j + 1;
+        joined[static_cast<std::size_t>(j)] =
+            isNext && std::equal(row + start[j] + 1, row + start[j + 1], row + start[j + 1],
+                                 row + start[j + 2]);
+    }
+    return joined;
+}
+
+class SparseKernelsOfEverySet : public KernelsOfEverySet {
+  protected:
+    const testing::Operator A_{testing::withNoise(testing::icosphere(3), 0.03, 5)};
+    const Index n_ = A_.laplacian.W.rows();
+};
+
+INSTANTIATE_TEST_SUITE_P(Widest, SparseKernelsOfEverySet,
+                         ::testing::Range(std::size_t{0}, availableKernels().size()));
+
+TEST_P(SparseKernelsOfEverySet, SolvesWithAFactorization) {
+    std::srand(6);
+    SparseMatrix shifted = A_.laplacian.W;
+    shifted.diagonal() -= 7.0 * A_.laplacian.D;
+    const Eigen::SimplicialLDLT<SparseMatrix> ldlt(shifted);
+    const SparseMatrix L = ldlt.matrixL().nestedExpression();
+    const Eigen::VectorXd pivots = ldlt.vectorD();
+    const std::vector<char> joined = joinedColumns(L);
+    const LdltFactor factor{L.outerIndexPtr(), L.outerIndexPtr(), L.innerIndexPtr(), L.valuePtr(),
+                            joined.data()};
+    for (const int columns : {1, 2, 3, 4, 8, kMostRightHandSides}) {
+        const Eigen::MatrixXd B = Eigen::MatrixXd::Random(n_, columns);
+        Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> Y =
+            ldlt.permutationP() * B;
+        kernels().triangular.eliminate(factor, Y.data(), columns, 0, n_);
+        Y = pivots.cwiseInverse().asDiagonal() * Y;
+        kernels().triangular.substitute(factor, Y.data(), columns, 0, n_);
+        const Eigen::MatrixXd X = ldlt.permutationPinv() * Eigen::MatrixXd(Y);
+        EXPECT_LT((shifted * X - B).norm(), 1e-9 * B.norm()) << columns << " columns";
+    }
+}
+
+}  // namespace
+}  // namespace spectral

@@ -1,0 +1,137 @@
+#include "core/krylov/full_spectrum.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/filter/transfer_function.h"
+#include "core/laplacian/constant_modes.h"
+#include "core/laplacian/frequency.h"
+#include "core/mesh/mesh.h"
+#include "support/evaluation.h"
+
+namespace spectral {
+namespace {
+
+using testing::Mesh;
+using testing::Operator;
+
+constexpr double kRoundOff = 1e-13;
+
+std::vector<Mesh> classesOfMeshes() {
+    return {testing::blob(), testing::withNoise(testing::rectangle(2, 1, 24, 12), 0.03, 3),
+            testing::joined(testing::blob(), testing::torus(2, 0.7, 24, 12)),
+            testing::withNoise(testing::cube(8), 0.02, 4)};
+}
+
+TEST(FullSpectrum, EqualsAllEigenvectorsWithinTheRequestedAccuracy) {
+    for (const Mesh& mesh : classesOfMeshes()) {
+        const Operator A(mesh);
+        const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+        for (const double feature : {0.3, 1.0})
+            for (const auto& options : testing::smoothTransferFunctions())
+                for (const double alpha : {1.0, 0.1}) {
+                    const TransferFunction F(options, 2.0 * kPi / feature);
+                    const Gain gain = fractionalPower(F, alpha);
+                    const double accuracy = 1e-6;
+                    const FullSpectrumResult result =
+                        testing::filteredFullSpectrum(A, gain, F.cutoff(), accuracy);
+                    const Vertices expected = testing::filteredDense(A, dense, gain);
+                    // The fractional power of a gain that vanishes inside the spectrum has a cusp
+                    // there; it may stop short, and says so.
+                    const bool cusp = options.type == FilterType::BandStop &&
+                                      options.stopGain == 0.0 && alpha < 1.0;
+                    EXPECT_TRUE(result.converged || cusp);
+                    EXPECT_EQ(result.converged, result.errorEstimate <= accuracy);
+                    EXPECT_LE(testing::relativeError(A, result.Y - expected),
+                              result.errorEstimate + kRoundOff)
+                        << testing::describe(options) << ", feature " << feature << ", alpha "
+                        << alpha << ", dimension " << result.dimension;
+                }
+    }
+}
+
+TEST(FullSpectrum, ReachesTightAccuracies) {
+    const Operator A(testing::blob());
+    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    const TransferFunction F({}, 2.0 * kPi / 0.8);
+    const Gain gain = fractionalPower(F, 1.0);
+    const Vertices expected = testing::filteredDense(A, dense, gain);
+    int dimension = 0;
+    for (const double accuracy : {1e-3, 1e-5, 1e-7, 1e-9, 1e-11}) {
+        const FullSpectrumResult result =
+            testing::filteredFullSpectrum(A, gain, F.cutoff(), accuracy);
+        EXPECT_LE(testing::relativeError(A, result.Y - expected), accuracy);
+        EXPECT_GE(result.dimension, dimension);
+        dimension = result.dimension;
+    }
+}
+
+TEST(FullSpectrum, OfANarrowBandIsNotStoppedBeforeTheBandIsSeen) {
+    const Operator A(testing::blob());
+    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    TransferFunctionOptions options;
+    options.type = FilterType::BandPass;
+    options.stopGain = 1.0;
+    options.passGain = 3.0;
+    for (const double width : {0.5, 0.25, 0.1})
+        for (const double feature : {0.3, 0.6, 1.5}) {
+            options.bandWidth = width;
+            const TransferFunction F(options, 2.0 * kPi / feature);
+            const Gain gain = fractionalPower(F, 1.0);
+            const FullSpectrumResult result =
+                testing::filteredFullSpectrum(A, gain, F.cutoff(), 1e-6);
+            EXPECT_LE(testing::relativeError(A, result.Y - testing::filteredDense(A, dense, gain)),
+                      1e-6)
+                << "width " << width << ", feature " << feature;
+        }
+}
+
+TEST(FullSpectrum, KeepsConstantModesWhateverTheGainAtZero) {
+    const Operator A(testing::joined(testing::blob(), testing::torus(3, 1, 16, 8)));
+    for (const double gainAtAll : {0.0, 3.0}) {
+        const FullSpectrumResult result =
+            testing::filteredFullSpectrum(A, [&](double) { return gainAtAll; }, 1.0, 1e-9);
+        EXPECT_LT((A.constants.means(result.Y) - A.constants.means(A.mesh.V)).cwiseAbs().maxCoeff(),
+                  1e-13);
+    }
+}
+
+TEST(FullSpectrum, IsExactWhenTheKrylovSpaceIsInvariant) {
+    const Operator A(testing::icosphere(0));  // three frequencies in all
+    const FullSpectrumResult result =
+        testing::filteredFullSpectrum(A, [](double omega) { return omega; }, 1.0, 1e-12);
+    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    const Vertices expected = testing::filteredDense(A, dense, [](double omega) { return omega; });
+    EXPECT_LT((result.Y - expected).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(FullSpectrum, LeavesASignalOfConstantsAlone) {
+    const Operator A(testing::blob());
+    ShiftedCholesky cholesky;
+    cholesky.factorize(A.laplacian, 1.0);
+    const Eigen::MatrixXd X = Eigen::MatrixXd::Constant(A.mesh.V.rows(), 2, 4.0);
+    const FullSpectrumResult result =
+        applyFullSpectrum(A.laplacian.D, A.constants, cholesky, [](double) { return 0.0; }, X, {});
+    EXPECT_TRUE(result.converged);
+    EXPECT_LT((result.Y - X).cwiseAbs().maxCoeff(), 1e-14);
+}
+
+TEST(FullSpectrum, SaysWhenATransferFunctionIsTooSteep) {
+    const Operator A(testing::blob());
+    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    ShiftedCholesky cholesky;
+    cholesky.factorize(A.laplacian, 40.0);
+    const Gain step = [](double omega) { return omega < 6.0 ? 1.0 : 0.0; };
+    FullSpectrumOptions options;
+    options.maxDimension = 24;
+    const FullSpectrumResult result =
+        applyFullSpectrum(A.laplacian.D, A.constants, cholesky, step, A.mesh.V, options);
+    EXPECT_FALSE(result.converged);
+    EXPECT_EQ(result.dimension, 24);
+    EXPECT_LE(testing::relativeError(A, result.Y - testing::filteredDense(A, dense, step)),
+              result.errorEstimate);
+}
+
+}  // namespace
+}  // namespace spectral

@@ -1,0 +1,118 @@
+#include "core/krylov/krylov_spaces.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <vector>
+
+#include "core/laplacian/frequency.h"
+#include "support/evaluation.h"
+
+namespace spectral {
+namespace {
+
+using testing::Operator;
+
+/// The spectral measure of the x coordinate of a mesh from a space of some dimensions.
+struct Measured {
+    Quadrature measure;
+    bool canBeExtended = false;
+};
+Measured measured(const Operator& A, double pole, int dimensions) {
+    ShiftedCholesky cholesky;
+    cholesky.factorize(A.laplacian, pole);
+    KrylovSpaces space(cholesky, A.laplacian.D, A.constants, A.mesh.V.leftCols(1));
+    for (int m = 0; m < dimensions; ++m) space.extend();
+    return {space.quadrature(0), space.extend()};
+}
+
+TEST(KrylovSpaces, StayOrthogonalToConstantsAndToThemselves) {
+    // Constants are amplified by S more than all else, and the coordinates are almost harmonics.
+    const Operator A(testing::joined(testing::blob(), testing::icosphere(3)));
+    for (const double pole : {0.5, 50.0}) {
+        ShiftedCholesky cholesky;
+        cholesky.factorize(A.laplacian, pole);
+        KrylovSpaces spaces(cholesky, A.laplacian.D, A.constants, A.mesh.V);
+        const int dimensions = 80;
+        for (int m = 0; m < dimensions; ++m) spaces.extend();
+        const auto vector = [&](int m) {
+            return spaces.combine({3, Eigen::VectorXd::Unit(dimensions, m)});
+        };
+        const Eigen::MatrixXd last = vector(dimensions - 1);
+        EXPECT_LT(A.constants.means(last).cwiseAbs().maxCoeff(), 1e-12);
+        for (int m = 0; m < dimensions; ++m) {
+            const Eigen::VectorXd products =
+                (vector(m).transpose() * A.laplacian.D.asDiagonal() * last).diagonal();
+            const double expected = m == dimensions - 1 ? 1.0 : 0.0;
+            EXPECT_LT((products.array() - expected).abs().maxCoeff(), 1e-8) << m;
+        }
+    }
+}
+
+TEST(KrylovSpaces, TellTheLargestEntryOfACombination) {
+    const Operator A(testing::blob());
+    ShiftedCholesky cholesky;
+    cholesky.factorize(A.laplacian, 5.0);
+    KrylovSpaces spaces(cholesky, A.laplacian.D, A.constants, A.mesh.V);
+    for (int m = 0; m < 4; ++m) spaces.extend();
+    std::srand(5);
+    std::vector<Eigen::VectorXd> coefficients(3);
+    for (int c = 0; c < 3; ++c) coefficients[c] = Eigen::VectorXd::Random(c + 1);
+    EXPECT_EQ(spaces.largestEntryOf(coefficients),
+              spaces.combine(coefficients).cwiseAbs().maxCoeff());
+}
+
+double integral(const Quadrature& measure, const Gain& f) {
+    double sum = 0.0;
+    for (Index i = 0; i < measure.omega.size(); ++i) sum += measure.weight[i] * f(measure.omega[i]);
+    return sum;
+}
+
+TEST(LanczosQuadrature, IsExactForPolynomialsOfTwiceItsDimension) {
+    const Operator A(testing::blob());
+    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    Eigen::VectorXd c = dense.Phi.transpose() * A.laplacian.D.asDiagonal() * A.mesh.V.col(0);
+    c[0] = 0.0;
+    const double pole = 20.0;
+    const int m = 5;
+    const Quadrature measure = measured(A, pole, m).measure;
+    ASSERT_EQ(measure.omega.size(), m);
+    EXPECT_GE(measure.weight.minCoeff(), 0.0);
+    for (int degree = 0; degree <= 2 * m; ++degree) {
+        const Gain f = [&](double omega) {
+            return std::pow(pole / (omega * omega + pole), degree);
+        };
+        double expected = 0.0;
+        for (Index i = 0; i < c.size(); ++i)
+            expected += c[i] * c[i] * f(std::sqrt(dense.lambda[i]));
+        const double error = std::abs(integral(measure, f) / expected - 1.0);
+        if (degree < 2 * m)
+            EXPECT_LT(error, 1e-11) << "degree " << degree;
+        else
+            EXPECT_GT(error, 1e-11) << "the test would pass whatever the degree";
+    }
+}
+
+TEST(LanczosQuadrature, OfAnInvariantSpaceIsTheSpectralMeasure) {
+    const Operator A(testing::icosphere(0));  // its coordinates are harmonics of one frequency
+    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    const auto [measure, canBeExtended] = measured(A, 3.0, 4);
+    EXPECT_FALSE(canBeExtended);
+    ASSERT_EQ(measure.omega.size(), 1);
+    EXPECT_NEAR(measure.omega[0], std::sqrt(dense.lambda[1]), 1e-12);
+    EXPECT_NEAR(measure.weight[0], A.mesh.V.col(0).cwiseAbs2().dot(A.laplacian.D), 1e-12);
+}
+
+TEST(LanczosQuadrature, OfNothingHasNoNodes) {
+    const Operator A(testing::icosphere(0));
+    ShiftedCholesky cholesky;
+    cholesky.factorize(A.laplacian, 1.0);
+    KrylovSpaces space(cholesky, A.laplacian.D, A.constants,
+                       Eigen::MatrixXd::Constant(A.mesh.V.rows(), 1, 5.0));
+    EXPECT_FALSE(space.extend());
+    EXPECT_EQ(space.quadrature(0).omega.size(), 0);
+}
+
+}  // namespace
+}  // namespace spectral

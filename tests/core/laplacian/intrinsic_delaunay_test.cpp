@@ -1,0 +1,216 @@
+#include "core/laplacian/intrinsic_delaunay.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <vector>
+
+#include "core/laplacian/laplacian_builder.h"
+#include "core/ldlt/cholesky.h"
+#include "core/mesh/mesh.h"
+#include "support/evaluation.h"
+
+namespace spectral {
+namespace {
+
+using testing::Mesh;
+
+SparseMatrix intrinsicStiffness(const Mesh& mesh) {
+    return IntrinsicDelaunay(mesh.V, mesh.F).stiffness(mesh.V);
+}
+
+/// Every kind of mesh that plain cotangents cannot deal with.
+std::vector<Mesh> brokenMeshes() {
+    std::vector<Mesh> meshes;
+    const Mesh blob = testing::blob();
+
+    Mesh duplicates = blob;  // faces 0 to 9 once more, half of them turned over
+    duplicates.F.conservativeResize(blob.F.rows() + 10, 3);
+    duplicates.F.bottomRows(10) = blob.F.topRows(10);
+    duplicates.F.bottomRows(5).col(1).swap(duplicates.F.bottomRows(5).col(2));
+    meshes.push_back(duplicates);
+
+    Mesh fins = blob;  // triangles that stand on edges, so that these have three
+    fins.V.conservativeResize(blob.V.rows() + 1, 3);
+    fins.V.bottomRows(1) << 2.0, 2.0, 2.0;
+    fins.F.conservativeResize(blob.F.rows() + 3, 3);
+    for (int k = 0; k < 3; ++k)
+        fins.F.row(blob.F.rows() + k) << blob.F(40 * k, 0), blob.F(40 * k, 1),
+            static_cast<int>(blob.V.rows());
+    meshes.push_back(fins);
+
+    Mesh collapsed = blob;  // a fan shrunk to a point, other corners moved onto an edge
+    for (int k = 0; k < 3; ++k) collapsed.V.row(blob.F(7, k)) = blob.V.row(blob.F(7, 0));
+    collapsed.V.row(blob.F(300, 2)) =
+        0.5 * (blob.V.row(blob.F(300, 0)) + blob.V.row(blob.F(300, 1)));
+    meshes.push_back(collapsed);
+
+    Mesh flat = blob;  // crushed almost to a line
+    flat.V.col(0) *= 1e-9;
+    flat.V.col(1) *= 1e-9;
+    meshes.push_back(flat);
+
+    Mesh turned = blob;  // neighbours of opposite orientation
+    for (int t = 0; t < 100; ++t) std::swap(turned.F(t, 1), turned.F(t, 2));
+    meshes.push_back(turned);
+
+    Mesh pinched = testing::joined(testing::icosphere(1), testing::icosphere(1));
+    pinched.V.bottomRows(42).col(0).array() += 2.0;
+    pinched.F = pinched.F.unaryExpr([](int i) { return i == 42 ? 3 : i; }).eval();
+    pinched.V.row(42) = pinched.V.row(41);  // left out of all triangles
+    const Surface surface = surfaceOf(pinched.V, pinched.F);
+    meshes.push_back({surface.X, surface.F});  // two spheres with one common vertex
+
+    meshes.push_back(testing::withNoise(testing::rectangle(2, 1, 20, 10), 0.08, 6));
+    return meshes;
+}
+
+TEST(IntrinsicDelaunay, GivesNonNegativeWeightsAndAUsableLaplacianOnAnyMesh) {
+    int number = 0;
+    for (const Mesh& mesh : brokenMeshes()) {
+        const Surface surface{mesh.V, mesh.F, {}};
+        const Laplacian laplacian =
+            LaplacianBuilder(surface, LaplacianKind::IntrinsicDelaunay, BasisUpdate::Full).input();
+        ASSERT_TRUE(isUsable(laplacian)) << number;
+        double largestOffDiagonal = 0.0;
+        for (int k = 0; k < laplacian.W.outerSize(); ++k)
+            for (SparseMatrix::InnerIterator it(laplacian.W, k); it; ++it)
+                if (it.row() != it.col())
+                    largestOffDiagonal = std::max(largestOffDiagonal, it.value());
+        EXPECT_LE(largestOffDiagonal, 0.0) << number;
+        ShiftedCholesky cholesky;
+        EXPECT_NO_THROW(cholesky.factorize(laplacian, 1.0)) << number;
+        ++number;
+    }
+}
+
+TEST(IntrinsicDelaunay, IsPositiveSemidefiniteWithRowsThatSumToZero) {
+    for (const Mesh& mesh : brokenMeshes()) {
+        const Eigen::MatrixXd W = intrinsicStiffness(mesh);
+        const double scale = W.cwiseAbs().maxCoeff();
+        EXPECT_EQ(W, W.transpose());
+        EXPECT_LT(W.rowwise().sum().cwiseAbs().maxCoeff(), 1e-11 * scale);
+        const Eigen::VectorXd lambda =
+            Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(W, Eigen::EigenvaluesOnly).eigenvalues();
+        EXPECT_GT(lambda[0], -1e-11 * scale);
+    }
+}
+
+/// Least sum of the cotangents opposite to any edge.
+double leastEdgeCotangents(const Mesh& mesh) {
+    const IntrinsicTriangulation delaunay = IntrinsicDelaunay(mesh.V, mesh.F).triangulation(mesh.V);
+    double least = std::numeric_limits<double>::infinity();
+    for (int s = 0; s < delaunay.sideCount(); ++s)
+        least = std::min(least, delaunay.edgeCotangents(s));
+    return least;
+}
+
+/// Meshes with many edges that are diagonals of rectangles: both opposite angles are right ones.
+std::vector<Mesh> rectangularMeshes() {
+    std::vector<Mesh> meshes{testing::rectangle(1, 1, 1, 1),
+                             testing::rectangle(3, 1, 40, 7),
+                             testing::rectangle(1e-3, 1e4, 30, 2),
+                             testing::cube(9),
+                             testing::joined(testing::cube(4), testing::rectangle(5, 1, 50, 50)),
+                             testing::segmentedBall(9)};
+    const std::size_t count = meshes.size();
+    for (std::size_t i = 0; i < count; ++i) {
+        std::srand(static_cast<unsigned>(i));
+        for (int turn = 0; turn < 20; ++turn) {
+            Mesh turned = meshes[i];
+            const Eigen::Quaterniond q(Eigen::Vector4d(Eigen::Vector4d::Random()).normalized());
+            const double scale = std::pow(10.0, 3 * turn / 2 - 15);
+            turned.V = scale * (turned.V * q.toRotationMatrix());
+            turned.V.rowwise() += scale * Eigen::RowVector3d::Random();
+            if (turn % 3 == 0)  // as a file of floats has them
+                turned.V = turned.V.cast<float>().cast<double>().eval();
+            meshes.push_back(turned);
+        }
+    }
+    return meshes;
+}
+
+TEST(IntrinsicDelaunay, LeavesNoEdgeWithANegativeWeight) {
+    for (const Mesh& mesh : rectangularMeshes()) EXPECT_GT(leastEdgeCotangents(mesh), -1e-9);
+    for (const Mesh& mesh : brokenMeshes()) EXPECT_GT(leastEdgeCotangents(mesh), -1e-6);
+}
+
+TEST(IntrinsicDelaunay, OfARectangleIsThatOfItsGrid) {
+    // Whatever the diagonals are, their weights are 0: W is that of a grid of squares, with half
+    // the weight along the boundary.
+    Mesh mesh = testing::rectangle(8, 5, 8, 5);
+    const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()));
+    mesh.V = (mesh.V * turn.toRotationMatrix()).eval();
+    const SparseMatrix W = intrinsicStiffness(mesh);
+    for (int j = 0; j < W.outerSize(); ++j)
+        for (SparseMatrix::InnerIterator w(W, j); w; ++w) {
+            const double distance = (mesh.V.row(w.row()) - mesh.V.row(j)).norm();
+            if (distance < 0.5) continue;
+            const double weight = -w.value();
+            const double expected = distance > 1.2 ? 0.0 : weight > 0.75 ? 1.0 : 0.5;
+            EXPECT_NEAR(weight, expected, 1e-4);
+        }
+}
+
+TEST(IntrinsicDelaunay, EqualsTheCotangentMatrixWhereTheMeshIsDelaunay) {
+    // All triangles of an icosphere are acute; its triangulation is already the Delaunay one.
+    const Mesh mesh = testing::icosphere(3);
+    const Eigen::MatrixXd cotangent = cotangentLaplacian(mesh.V, mesh.F).W;
+    EXPECT_LT((Eigen::MatrixXd(intrinsicStiffness(mesh)) - cotangent).cwiseAbs().maxCoeff(), 1e-12);
+}
+
+TEST(IntrinsicDelaunay, FlipsTheLongDiagonalOfAKite) {
+    // Two obtuse triangles on the edge (0, 1), turned into the two on (2, 3): as by hand, on the
+    // double cover of a sheet with boundary.
+    Mesh kite{Vertices(4, 3), Faces(2, 3)};
+    kite.V << -2, 0, 0, 2, 0, 0, 0, 1, 0, 0, -1, 0;
+    kite.F << 0, 1, 2, 1, 0, 3;
+    const Eigen::MatrixXd W = intrinsicStiffness(kite);
+    EXPECT_NEAR(W(0, 1), 0.0, 1e-12);
+    // Opposite angles of (2, 3) at 0 and 1: tan of the half is 1/2, so cot is 3/4.
+    EXPECT_NEAR(W(2, 3), -0.75, 1e-12);
+    // Opposite angle of (0, 2) at 3: tan is 2.
+    EXPECT_NEAR(W(0, 2), -0.25, 1e-12);
+}
+
+TEST(IntrinsicDelaunay, TakesOneCopyOfAClosedOrientedSurfaceAndTwoOfAnyOther) {
+    const Mesh blob = testing::blob(), sheet = testing::rectangle(1, 1, 3, 3);
+    EXPECT_TRUE(IntrinsicDelaunay(blob.V, blob.F).isSingleCover());
+    EXPECT_FALSE(IntrinsicDelaunay(sheet.V, sheet.F).isSingleCover());
+}
+
+TEST(IntrinsicDelaunay, DoesNotCareForTheOrientationOfFaces) {
+    const Mesh mesh = testing::withNoise(testing::blob(), 0.05, 2);
+    Mesh turned = mesh;
+    for (Index t = 0; t < mesh.F.rows(); t += 3) std::swap(turned.F(t, 1), turned.F(t, 2));
+    const Eigen::MatrixXd one = intrinsicStiffness(mesh), two = intrinsicStiffness(turned);
+    EXPECT_LT((one - two).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(IntrinsicDelaunay, OfAPlaneDoesNotDependOnItsTriangulation) {
+    // Points in general position have one Delaunay triangulation, whichever they came with; inside,
+    // away from the mollified boundary, the weights are the same.
+    Mesh mesh = testing::rectangle(2, 1, 12, 6);
+    const Vertices shaken = testing::withNoise(mesh, 0.03, 8).V;
+    for (Index i = 0; i < mesh.V.rows(); ++i) {
+        const bool inside =
+            mesh.V(i, 0) > 0 && mesh.V(i, 0) < 2 && mesh.V(i, 1) > 0 && mesh.V(i, 1) < 1;
+        if (inside) mesh.V.row(i).head(2) = shaken.row(i).head(2);
+    }
+    Mesh other = mesh;  // every cell cut along its other diagonal
+    for (Index t = 0; t < mesh.F.rows(); t += 2) {
+        const int a = mesh.F(t, 0), b = mesh.F(t, 1), c = mesh.F(t, 2), d = mesh.F(t + 1, 2);
+        other.F.row(t) << a, b, d;
+        other.F.row(t + 1) << b, c, d;
+    }
+    const Eigen::MatrixXd one = intrinsicStiffness(mesh), two = intrinsicStiffness(other);
+    EXPECT_LT((one - two).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+}  // namespace
+}  // namespace spectral
