@@ -1,0 +1,117 @@
+"""The READMEs: their links lead somewhere, and the equations are computed where they say."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+NOT_OURS = {".git", ".venv", "build"}
+PLUGIN = REPOSITORY / "plugin" / "README.md"
+
+LINK = re.compile(r"\]\(([^)\s]+)\)")
+# [path](path) `function`
+PLACE = re.compile(r"\[[^\]]*\]\(([^)\s]+)\) `?(\w+)`?")
+NUMBERS = r"\d+(?:(?:, | and | to )\d+)*"
+EQUATIONS = re.compile(rf"\bEqs?\. ({NUMBERS})")
+
+
+def readmes() -> list[Path]:
+    """Every README.md of the project."""
+    found = []
+    for folder, folders, files in os.walk(REPOSITORY):
+        folders[:] = sorted(set(folders) - NOT_OURS)
+        found += [Path(folder, name) for name in files if name == "README.md"]
+    return found
+
+
+def links(readme: Path) -> Iterator[str]:
+    """The targets of its links within the project; links in code are none."""
+    text = re.sub(r"^```.*?^```|`[^`\n]*`", "", readme.read_text(), flags=re.DOTALL | re.MULTILINE)
+    return (link for link in LINK.findall(text) if not re.match(r"[a-z]+:", link))
+
+
+def anchors(readme: Path) -> set[str]:
+    """What `#...` may lead to: the headings, as GitHub spells them."""
+    headings = re.findall(r"^#+ (.*)$", readme.read_text(), flags=re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def numbers(text: str) -> set[int]:
+    """The numbers of "4", "4, 6 and 8", "6 to 8"."""
+    found = {int(number) for number in re.findall(r"\d+", text)}
+    for first, last in re.findall(r"(\d+) to (\d+)", text):
+        found |= set(range(int(first), int(last) + 1))
+    return found
+
+
+def equations_mentioned(source: Path) -> set[int]:
+    """The equations that a file, or the header next to it, mentions; comments may wrap."""
+    text = source.read_text()
+    if source.suffix == ".cpp" and source.with_suffix(".h").exists():
+        text += "\n" + source.with_suffix(".h").read_text()
+    running = re.sub(r"\s+", " ", re.sub(r"^\s*(///?|#)", "", text, flags=re.MULTILINE))
+    return {number for match in EQUATIONS.findall(running) for number in numbers(match)}
+
+
+def rows(readme: Path, last_column: str) -> list[list[str]]:
+    """The cells of all rows of the tables whose last column has this name."""
+    found: list[list[str]] = []
+    inside = False
+    for line in readme.read_text().splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split("|")]
+        if not line.startswith("|"):
+            inside = False
+        elif inside and not set(line) <= set("|-: "):
+            found.append(cells)
+        elif cells[-1] == last_column:
+            inside = True
+    return found
+
+
+ROWS = rows(PLUGIN, last_column="computed in")
+EQUATION_ROWS = [row for row in ROWS if re.fullmatch(NUMBERS, row[0])]
+
+
+def place(row: list[str]) -> tuple[Path, str]:
+    """The file that the last cell links to, and the function that it names."""
+    match = PLACE.fullmatch(row[-1])
+    assert match, f"no [file](file) `function` in: {row[-1]}"
+    return PLUGIN.parent / match[1], match[2]
+
+
+@pytest.mark.parametrize("readme", readmes(), ids=lambda path: str(path.relative_to(REPOSITORY)))
+def test_every_relative_link_leads_to_a_file_and_a_heading_of_it(readme: Path) -> None:
+    broken = []
+    for link in links(readme):
+        name, _, anchor = link.partition("#")
+        target = readme.parent / name if name else readme
+        if not target.exists() or (anchor and anchor not in anchors(target)):
+            broken.append(link)
+    assert not broken
+
+
+def test_the_main_readme_can_be_read_in_two_minutes() -> None:
+    assert len((REPOSITORY / "README.md").read_text().splitlines()) <= 115
+
+
+def test_the_table_covers_every_equation_of_the_paper_that_is_used() -> None:
+    covered = {number for row in EQUATION_ROWS for number in numbers(row[0])}
+    assert covered == {4, 6, 7, 8, 9, 10, 11}
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: f"{row[0]}, {row[-1].split()[-1]}")
+def test_a_function_of_the_table_is_in_the_file_beside_it(row: list[str]) -> None:
+    source, function = place(row)
+    assert source.is_file()
+    assert re.search(rf"\b{function}\(", source.read_text())
+
+
+@pytest.mark.parametrize("row", EQUATION_ROWS, ids=lambda row: f"{row[0]}, {row[-1].split()[-1]}")
+def test_an_equation_is_mentioned_where_the_table_says_that_it_is_computed(row: list[str]) -> None:
+    source, _ = place(row)
+    assert numbers(row[0]) <= equations_mentioned(source)
