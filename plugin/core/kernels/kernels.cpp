@@ -1,12 +1,32 @@
-// Compiled once for each instruction set: see kernels.h.
 #include "core/kernels/kernels.h"
 
-namespace spectral::SPECTRAL_INSTRUCTIONS {
+namespace spectral {
 
-extern const FrontElimination frontElimination;
-extern const TriangularSolves triangularSolves;
+// Defined once for each instruction set (frontal_elimination.cpp, triangular_solves.cpp).
+#define SPECTRAL_DECLARE_KERNELS(instructions)                                      \
+    namespace instructions {                                                        \
+    bool eliminateFront(const FrontalMatrix& front);                                \
+    void forward(const LdltFactor&, double*, int, std::ptrdiff_t, std::ptrdiff_t);  \
+    void backward(const LdltFactor&, double*, int, std::ptrdiff_t, std::ptrdiff_t); \
+    constexpr Kernels kernels{eliminateFront, forward, backward};                   \
+    }
 
-extern const Kernels kernels;
-const Kernels kernels{frontElimination, triangularSolves};
+SPECTRAL_DECLARE_KERNELS(baseline)
+#ifdef SPECTRAL_AVX2
+SPECTRAL_DECLARE_KERNELS(avx2)
+#endif
 
-}  // namespace spectral::SPECTRAL_INSTRUCTIONS
+const std::vector<Kernels>& availableKernels() {
+    static const std::vector<Kernels> available = [] {
+        std::vector<Kernels> sets;
+#ifdef SPECTRAL_AVX2
+        if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+            sets.push_back(avx2::kernels);
+#endif
+        sets.push_back(baseline::kernels);
+        return sets;
+    }();
+    return available;
+}
+
+}  // namespace spectral

@@ -1,23 +1,74 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
-
-#include "core/kernels/front_elimination.h"
-#include "core/kernels/triangular_solves.h"
 
 namespace spectral {
 
-/// What is compiled once for each instruction set, with SPECTRAL_INSTRUCTIONS for the namespace of
-/// the result. All of Eigen is then in a namespace of its own, too (-DEigen=...): its templates are
-/// compiled with other instructions there than elsewhere, and the linker must not take the one for
-/// the other. So pointers cross between them, not Eigen's types.
-struct Kernels {
-    const FrontElimination& fronts;
-    const TriangularSolves& triangular;
+/// The rows of a frontal matrix are padded to multiples of this many.
+inline constexpr std::ptrdiff_t kLane = 4;
+
+/// A frontal matrix of the multifrontal method: a dense symmetric matrix whose first rows and
+/// columns, the pivot columns, are to be eliminated. Its lower triangle, column by column.
+struct FrontalMatrix {
+    std::ptrdiff_t width = 0;  ///< Number of pivot columns.
+    std::ptrdiff_t below = 0;  ///< Number of the other columns.
+
+    /// The pivot columns, `stride` numbers apart. Their rows start `offset` numbers in, so that the
+    /// rows below the pivots start at a multiple of kLane; the padding is 0.
+    double* columns = nullptr;
+    std::ptrdiff_t stride = 0, offset = 0;
+
+    /// The contribution block: `below` columns of contributionStride() numbers each.
+    double* contribution = nullptr;
+    std::ptrdiff_t contributionStride() const { return stride - offset - width; }
+
+    double* scratch = nullptr;  ///< width * stride numbers.
+
+    /// Calls call(function, task) for all tasks below `count`, possibly on several threads.
+    void (*parallelFor)(std::ptrdiff_t count,
+                        void (*call)(const void* function, std::ptrdiff_t task),
+                        const void* function) = nullptr;
 };
 
-/// Those that this processor can run, the one with the widest vectors first: frontElimination() and
-/// triangularSolves() are of that one.
+/// L of a sparse factorization P A P^T = L D L^T, column by column.
+struct LdltFactor {
+    const int* starts = nullptr;     ///< n + 1: where the values of each column start; the diagonal
+                                     ///< of ones is not stored.
+    const int* rowStarts = nullptr;  ///< n: where its rows start, ascending.
+    const int* rows = nullptr;
+    const double* values = nullptr;
+    const char* joined = nullptr;  ///< n: whether columns j and j + 1 belong to one supernode: the
+                                   ///< rows of column j are j + 1 and those of column j + 1.
+};
+
+/// Most right-hand sides of a triangular solve.
+inline constexpr int kMostRightHandSides = 4;
+
+/// The inner loops of a factorization and its solves, compiled for one instruction set.
+///
+/// Right-hand sides are in the order of the factor, row by row: 1 to kMostRightHandSides columns.
+struct Kernels {
+    /// Replaces the pivot columns by those of L with the pivots on the diagonal, and the
+    /// contribution block by the Schur complement. False when a pivot is 0.
+    bool (*eliminateFront)(const FrontalMatrix& front);
+
+    /// Y <- L^-1 Y, the part of columns `begin` to `end` - 1 of L, whole supernodes.
+    void (*forward)(const LdltFactor& factor, double* Y, int columns, std::ptrdiff_t begin,
+                    std::ptrdiff_t end);
+
+    /// Y <- L^-T Y, likewise.
+    void (*backward)(const LdltFactor& factor, double* Y, int columns, std::ptrdiff_t begin,
+                     std::ptrdiff_t end);
+};
+
+/// Those that this processor can run, the fastest first.
 const std::vector<Kernels>& availableKernels();
+
+/// The fastest.
+inline const Kernels& kernels() {
+    static const Kernels& fastest = availableKernels().front();
+    return fastest;
+}
 
 }  // namespace spectral

@@ -1,7 +1,7 @@
-// Compiled once for each instruction set: see kernels.h.
-#include "core/kernels/triangular_solves.h"
-
+// Compiled once for each instruction set: see README.md.
 #include <Eigen/Core>
+
+#include "core/kernels/kernels.h"
 
 namespace spectral {
 
@@ -110,7 +110,7 @@ class UnitLower {
 constexpr int kMost = 4;
 
 template <int Columns>
-void eliminateColumns(const LdltFactor& factor, double* rows, Size begin, Size end) {
+void forwardColumns(const LdltFactor& factor, double* rows, Size begin, Size end) {
     const UnitLower L(factor);
     const Block<Columns> Y(rows);
     for (Size j = begin; j < end;) {
@@ -126,7 +126,7 @@ void eliminateColumns(const LdltFactor& factor, double* rows, Size begin, Size e
 }
 
 template <int Columns>
-void substituteColumns(const LdltFactor& factor, double* rows, Size begin, Size end) {
+void backwardColumns(const LdltFactor& factor, double* rows, Size begin, Size end) {
     const UnitLower L(factor);
     const Block<Columns> Y(rows);
     while (end > begin) {
@@ -141,33 +141,28 @@ void substituteColumns(const LdltFactor& factor, double* rows, Size begin, Size 
     }
 }
 
-void eliminate(const LdltFactor& factor, double* Y, int columns, Size begin, Size end) {
-    switch (columns) {
-        case 1: return eliminateColumns<1>(factor, Y, begin, end);
-        case 2: return eliminateColumns<2>(factor, Y, begin, end);
-        case 3: return eliminateColumns<3>(factor, Y, begin, end);
-        case 4: return eliminateColumns<4>(factor, Y, begin, end);
-        case 8: return eliminateColumns<8>(factor, Y, begin, end);
-        default: return eliminateColumns<kMostRightHandSides>(factor, Y, begin, end);
-    }
-}
-
-void substitute(const LdltFactor& factor, double* Y, int columns, Size begin, Size end) {
-    switch (columns) {
-        case 1: return substituteColumns<1>(factor, Y, begin, end);
-        case 2: return substituteColumns<2>(factor, Y, begin, end);
-        case 3: return substituteColumns<3>(factor, Y, begin, end);
-        case 4: return substituteColumns<4>(factor, Y, begin, end);
-        case 8: return substituteColumns<8>(factor, Y, begin, end);
-        default: return substituteColumns<kMostRightHandSides>(factor, Y, begin, end);
-    }
-}
-
 }  // namespace
 
 namespace SPECTRAL_INSTRUCTIONS {
-extern const TriangularSolves triangularSolves;
-const TriangularSolves triangularSolves{eliminate, substitute};
+
+void forward(const LdltFactor& factor, double* Y, int columns, Size begin, Size end) {
+    switch (columns) {
+        case 1: return forwardColumns<1>(factor, Y, begin, end);
+        case 2: return forwardColumns<2>(factor, Y, begin, end);
+        case 3: return forwardColumns<3>(factor, Y, begin, end);
+        default: return forwardColumns<kMostRightHandSides>(factor, Y, begin, end);
+    }
+}
+
+void backward(const LdltFactor& factor, double* Y, int columns, Size begin, Size end) {
+    switch (columns) {
+        case 1: return backwardColumns<1>(factor, Y, begin, end);
+        case 2: return backwardColumns<2>(factor, Y, begin, end);
+        case 3: return backwardColumns<3>(factor, Y, begin, end);
+        default: return backwardColumns<kMostRightHandSides>(factor, Y, begin, end);
+    }
+}
+
 }  // namespace SPECTRAL_INSTRUCTIONS
 
 }  // namespace spectral

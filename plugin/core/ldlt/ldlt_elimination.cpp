@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "core/kernels/front_elimination.h"
+#include "core/kernels/kernels.h"
 #include "core/support/threads.h"
 
 namespace spectral {
@@ -11,20 +11,15 @@ namespace spectral {
 namespace {
 
 /// The front of a supernode, without its memory.
-DenseFront shapeOf(const SymbolicLdlt::Front& supernode) {
-    const auto padded = [](Index rows) {
-        return (rows + kFrontLane - 1) / kFrontLane * kFrontLane;
-    };
-    DenseFront front;
+FrontalMatrix shapeOf(const SymbolicLdlt::Front& supernode) {
+    const auto padded = [](Index rows) { return (rows + kLane - 1) / kLane * kLane; };
+    FrontalMatrix front;
     front.width = supernode.width;
     front.below = supernode.below;
     front.offset = padded(front.width) - front.width;
     front.stride = front.offset + front.width + padded(front.below);
     return front;
 }
-
-/// From one column of a front's update to the next.
-Index updateStride(const DenseFront& front) { return front.stride - front.offset - front.width; }
 
 /// What a front has left in the rows below its columns, until it goes to the parent's.
 struct Waiting {
@@ -67,9 +62,9 @@ class Elimination {
         Index panel = 0, stack = 0;
         for (const Stretch& stretch : stretches) {
             for (int f = stretch.begin; f < stretch.end; ++f) {
-                const DenseFront front = shapeOf(symbolic_.fronts[f]);
+                const FrontalMatrix front = shapeOf(symbolic_.fronts[f]);
                 panel = std::max(panel, front.stride * front.width);
-                stack = std::max(stack, top_ + updateStride(front) * front.below);
+                stack = std::max(stack, top_ + front.contributionStride() * front.below);
                 push(symbolic_.fronts[f], front);
             }
             take(stretch);
@@ -82,18 +77,19 @@ class Elimination {
     }
 
     bool eliminateFront(const SymbolicLdlt::Front& supernode) {
-        DenseFront front = shapeOf(supernode);
-        front.panel = panel_.data();
+        FrontalMatrix front = shapeOf(supernode);
+        front.columns = panel_.data();
         front.scratch = scratch_.data();
-        front.update = stack_.data() + top_;
-        front.share = [](std::ptrdiff_t count, void (*call)(const void*, std::ptrdiff_t),
-                         const void* function) { ThreadTeam::run(count, {call, function}); };
+        front.contribution = stack_.data() + top_;
+        front.parallelFor = [](std::ptrdiff_t count, void (*call)(const void*, std::ptrdiff_t),
+                               const void* function) { ThreadTeam::run(count, {call, function}); };
         gather(supernode, front);
-        if (!frontElimination().eliminate(front)) return false;
+        if (!kernels().eliminateFront(front)) return false;
         store(supernode, front);
         const Index at = push(supernode, front);
-        if (stack_.data() + at != front.update)
-            std::copy_n(front.update, updateStride(front) * front.below, stack_.data() + at);
+        if (stack_.data() + at != front.contribution)
+            std::copy_n(front.contribution, front.contributionStride() * front.below,
+                        stack_.data() + at);
         return true;
     }
 
@@ -104,10 +100,10 @@ class Elimination {
     }
 
     /// Puts the front's part of W - sigma D into it, and what its children have left.
-    void gather(const SymbolicLdlt::Front& supernode, const DenseFront& front) {
-        std::fill_n(front.panel, front.stride * front.width, 0.0);
-        std::fill_n(front.update, updateStride(front) * front.below, 0.0);
-        double* rows = front.panel + front.offset;
+    void gather(const SymbolicLdlt::Front& supernode, const FrontalMatrix& front) {
+        std::fill_n(front.columns, front.stride * front.width, 0.0);
+        std::fill_n(front.contribution, front.contributionStride() * front.below, 0.0);
+        double* rows = front.columns + front.offset;
         for (int e = supernode.entriesBegin; e < supernode.entriesEnd; ++e) {
             const SymbolicLdlt::Entry& entry = symbolic_.entries[e];
             rows[entry.column * front.stride + entry.row] = W_[entry.source];
@@ -118,25 +114,26 @@ class Elimination {
             add(waiting_[i], front);
     }
 
-    void add(const Waiting& child, const DenseFront& front) {
+    void add(const Waiting& child, const FrontalMatrix& front) {
         const int below = child.supernode->below, width = static_cast<int>(front.width);
         const int* places = symbolic_.places.data() + child.supernode->firstPlace;
-        const Index stride = updateStride(shapeOf(*child.supernode));
+        const Index stride = shapeOf(*child.supernode).contributionStride();
         const double* left = child.elsewhere ? child.elsewhere : stack_.data() + child.at;
         for (int j = 0; j < below; ++j) {
             const double* from = left + j * stride;
             // The column of the front, and the row that it begins with.
             const bool isEliminated = places[j] < width;
-            double* to = isEliminated ? front.panel + places[j] * front.stride + front.offset
-                                      : front.update + (places[j] - width) * updateStride(front);
+            double* to = isEliminated ? front.columns + places[j] * front.stride + front.offset
+                                      : front.contribution +
+                                            (places[j] - width) * front.contributionStride();
             const int first = isEliminated ? 0 : width;
             for (int i = j; i < below; ++i) to[places[i] - first] += from[i];
         }
     }
 
-    void store(const SymbolicLdlt::Front& supernode, const DenseFront& front) {
+    void store(const SymbolicLdlt::Front& supernode, const FrontalMatrix& front) {
         for (Index j = 0; j < front.width; ++j) {
-            const double* diagonal = front.panel + j * front.stride + front.offset + j;
+            const double* diagonal = front.columns + j * front.stride + front.offset + j;
             const Index column = supernode.first + j;
             numbers_.pivots[column] = *diagonal;
             std::copy_n(diagonal + 1, front.width - 1 - j + front.below,
@@ -146,11 +143,11 @@ class Elimination {
 
     /// Takes the children from the stack, and room for what the front leaves in their place.
     /// Returns where that is.
-    Index push(const SymbolicLdlt::Front& supernode, const DenseFront& front) {
+    Index push(const SymbolicLdlt::Front& supernode, const FrontalMatrix& front) {
         for (int i = 0; i < supernode.children; ++i, waiting_.pop_back()) top_ = waiting_.back().at;
         const Index at = top_;
         if (front.below > 0) waiting_.push_back({&supernode, at, nullptr});
-        top_ += updateStride(front) * front.below;
+        top_ += front.contributionStride() * front.below;
         return at;
     }
 

@@ -4,7 +4,7 @@
 #include <sstream>
 #include <string>
 
-#include "core/kernels/triangular_solves.h"
+#include "core/kernels/kernels.h"
 #include "core/support/errors.h"
 #include "core/support/threads.h"
 
@@ -73,21 +73,17 @@ Eigen::MatrixXd ShiftedLdlt::solve(const Eigen::MatrixXd& B) const {
 }
 
 void ShiftedLdlt::applyResolvent(const Eigen::VectorXd& D, Eigen::Ref<Eigen::MatrixXd> U) const {
-    // The factor is far larger than the cache: each pass over it serves as many columns as it can.
-    // A few more than there are cost less than one pass more.
+    // The factor is far larger than the cache: each pass over it serves several columns.
     const Eigen::VectorXi& order = symbolic_->order;
-    std::vector<double> ordered;
+    std::vector<double> ordered(static_cast<std::size_t>(orderedRows() * kMostRightHandSides));
     for (Index first = 0; first < U.cols(); first += kMostRightHandSides) {
-        const auto used = static_cast<int>(std::min<Index>(kMostRightHandSides, U.cols() - first));
-        const int columns = used <= 4 ? used : used <= 8 ? 8 : kMostRightHandSides;
-        ordered.assign(static_cast<std::size_t>(orderedRows() * columns), 0.0);
+        const auto columns =
+            static_cast<int>(std::min<Index>(kMostRightHandSides, U.cols() - first));
         Eigen::Map<RowMajorMatrix> Y(ordered.data(), orderedRows(), columns);
         for (Index i = 0; i < U.rows(); ++i)
-            Y.row(order[i]).head(used) = D[i] * U.row(i).segment(first, used);
+            Y.row(order[i]) = D[i] * U.row(i).segment(first, columns);
         solveOrdered(ordered.data(), columns);
-        solves_ -= columns - used;  // columns that nobody has asked for
-        for (Index i = 0; i < U.rows(); ++i)
-            U.row(i).segment(first, used) = Y.row(order[i]).head(used);
+        for (Index i = 0; i < U.rows(); ++i) U.row(i).segment(first, columns) = Y.row(order[i]);
     }
 }
 
@@ -111,33 +107,31 @@ void ShiftedLdlt::solveOrdered(double* Y, int columns) const {
     // L Z = Y: the subtrees, each on its own rows and its copies of others', then what is above.
     rows.bottomRows(orderedRows() - n).setZero();
     parallelFor(count, [&](Index t) {
-        triangularSolves().eliminate(factor, Y, columns, subtrees[t].firstColumn,
-                                     subtrees[t].endColumn);
+        kernels().forward(factor, Y, columns, subtrees[t].firstColumn, subtrees[t].endColumn);
         divideByPivots(subtrees[t].firstColumn, subtrees[t].endColumn);
     });
     for (std::size_t k = 0; k < symbolic.copied.size(); ++k)
         rows.row(symbolic.copied[k]) += rows.row(n + static_cast<Index>(k));
     Index next = 0;
     for (const SymbolicLdlt::Subtree& tree : subtrees) {
-        triangularSolves().eliminate(factor, Y, columns, next, tree.firstColumn);
+        kernels().forward(factor, Y, columns, next, tree.firstColumn);
         divideByPivots(next, tree.firstColumn);
         next = tree.endColumn;
     }
-    triangularSolves().eliminate(factor, Y, columns, next, n);
+    kernels().forward(factor, Y, columns, next, n);
     divideByPivots(next, n);
 
     // L^T X = Z, the other way round.
     Index end = n;
     for (Index t = count - 1; t >= 0; --t) {
-        triangularSolves().substitute(factor, Y, columns, subtrees[t].endColumn, end);
+        kernels().backward(factor, Y, columns, subtrees[t].endColumn, end);
         end = subtrees[t].firstColumn;
     }
-    triangularSolves().substitute(factor, Y, columns, 0, end);
+    kernels().backward(factor, Y, columns, 0, end);
     for (std::size_t k = 0; k < symbolic.copied.size(); ++k)
         rows.row(n + static_cast<Index>(k)) = rows.row(symbolic.copied[k]);
     parallelFor(count, [&](Index t) {
-        triangularSolves().substitute(factor, Y, columns, subtrees[t].firstColumn,
-                                      subtrees[t].endColumn);
+        kernels().backward(factor, Y, columns, subtrees[t].firstColumn, subtrees[t].endColumn);
     });
 }
 

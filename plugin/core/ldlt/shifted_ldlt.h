@@ -59,7 +59,7 @@ class ShiftedLdlt {
     /// (W - sigma D)^-1 Y, in place and in the factor's order, on the threads of the caller's team.
     /// @param Y  orderedRows() rows of `columns` numbers each, contiguous; rows from n on are
     ///           scratch.
-    /// @param columns  1, 2, 3, 4, 8 or kMostRightHandSides.
+    /// @param columns  1 to kMostRightHandSides.
     void solveOrdered(double* Y, int columns) const;
 
     /// A factor of its own, yet empty, that shares the symbolic analysis of W's pattern.

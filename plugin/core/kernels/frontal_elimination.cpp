@@ -1,15 +1,15 @@
-// Compiled once for each instruction set: see kernels.h.
-#include "core/kernels/front_elimination.h"
-
+// Compiled once for each instruction set: see README.md.
 #include <Eigen/Core>
 #include <algorithm>
+
+#include "core/kernels/kernels.h"
 
 namespace spectral {
 
 namespace {
 
 using Size = std::ptrdiff_t;
-using Lane = Eigen::Array<double, kFrontLane, 1>;
+using Lane = Eigen::Array<double, kLane, 1>;
 using Matrix = Eigen::Map<Eigen::MatrixXd, Eigen::Unaligned, Eigen::OuterStride<>>;
 using ConstMatrix = Eigen::Map<const Eigen::MatrixXd, Eigen::Unaligned, Eigen::OuterStride<>>;
 
@@ -23,8 +23,8 @@ constexpr Size kMuchWork = 500000;
 auto lane(double* at) { return Eigen::Map<Lane>(at); }
 auto lane(const double* at) { return Eigen::Map<const Lane>(at); }
 
-/// The multiple of kFrontLane at or below i.
-Size aligned(Size i) { return i / kFrontLane * kFrontLane; }
+/// The multiple of kLane at or below i.
+Size aligned(Size i) { return i / kLane * kLane; }
 
 /// A lower half C -= L (L diag(pivots))^T: the columns of a front that have been eliminated, from
 /// the rows of the first column of C on, as they are in L and multiplied by the pivots.
@@ -34,7 +34,7 @@ struct Subtraction {
     Size inner = 0;   // columns of both
     double* C = nullptr;
     Size strideC = 0, columns = 0;
-    Size rows = 0;  // a multiple of kFrontLane
+    Size rows = 0;  // a multiple of kLane
 };
 
 template <int Inner, int Columns>
@@ -45,7 +45,7 @@ void subtractFew(const Subtraction& s, Size inner, Size column, Size row) {
             factor[a][j] = s.Lpivots[(inner + a) * s.stride + column + j];
     const double* L = s.L + inner * s.stride;
     double* C = s.C + column * s.strideC;
-    for (; row < s.rows; row += kFrontLane) {
+    for (; row < s.rows; row += kLane) {
         Lane l[Inner];
         for (int a = 0; a < Inner; ++a) l[a] = lane(L + a * s.stride + row);
         for (int j = 0; j < Columns; ++j) {
@@ -58,7 +58,7 @@ void subtractFew(const Subtraction& s, Size inner, Size column, Size row) {
 
 template <int Inner>
 void subtractInner(const Subtraction& s, Size inner) {
-    constexpr int kColumns = kFrontLane;
+    constexpr int kColumns = kLane;
     Size j = 0;
     for (; j + kColumns <= s.columns; j += kColumns) subtractFew<Inner, kColumns>(s, inner, j, j);
     for (Size rest = j; rest < s.columns; ++rest) subtractFew<Inner, 1>(s, inner, rest, j);
@@ -73,14 +73,14 @@ void subtractProduct(const Subtraction& s, Size j) {
         ConstMatrix(s.Lpivots + j, columns, s.inner, stride).transpose();
 }
 
-void subtract(const Subtraction& s, const DenseFront& front) {
+void subtract(const Subtraction& s, const FrontalMatrix& front) {
     if (s.inner >= kManyInner && s.columns >= kManyColumns) {
         const Size blocks = (s.columns + kManyColumns - 1) / kManyColumns;
         const auto one = [](const void* subtraction, Size block) {
             subtractProduct(*static_cast<const Subtraction*>(subtraction), block * kManyColumns);
         };
-        if (front.share != nullptr && s.inner * s.columns * s.rows >= kMuchWork)
-            return front.share(blocks, one, &s);
+        if (front.parallelFor != nullptr && s.inner * s.columns * s.rows >= kMuchWork)
+            return front.parallelFor(blocks, one, &s);
         for (Size block = 0; block < blocks; ++block) one(&s, block);
         return;
     }
@@ -95,30 +95,30 @@ void subtract(const Subtraction& s, const DenseFront& front) {
 }
 
 /// The elimination of a front's columns.
-class Panel {
+class PivotColumns {
   public:
-    explicit Panel(const DenseFront& front) : front_(front) {}
+    explicit PivotColumns(const FrontalMatrix& front) : front_(front) {}
 
     /// Of those from begin to end - 1, which have lost what all before contribute.
     bool eliminate(Size begin, Size end) const {
-        if (end - begin <= kFrontLane) return eliminateFew(begin, end);
+        if (end - begin <= kLane) return eliminateFew(begin, end);
         // One half, then what it contributes to the other, whose rows begin with a lane.
         Size middle = aligned(front_.offset + (begin + end) / 2) - front_.offset;
-        if (middle <= begin) middle += kFrontLane;
+        if (middle <= begin) middle += kLane;
         if (!eliminate(begin, middle)) return false;
         const Size from = begin * front_.stride + front_.offset + middle;
-        double* C = front_.panel + middle * front_.stride + front_.offset + middle;
-        subtract({front_.panel + from, front_.scratch + from, front_.stride, middle - begin, C,
+        double* C = front_.columns + middle * front_.stride + front_.offset + middle;
+        subtract({front_.columns + from, front_.scratch + from, front_.stride, middle - begin, C,
                   front_.stride, end - middle, front_.stride - front_.offset - middle},
                  front_);
         return eliminate(middle, end);
     }
 
     /// What is eliminated contributes to the rest.
-    void update() const {
+    void updateContribution() const {
         const Size from = front_.offset + front_.width, rows = front_.stride - from;
-        subtract({front_.panel + from, front_.scratch + from, front_.stride, front_.width,
-                  front_.update, rows, front_.below, rows},
+        subtract({front_.columns + from, front_.scratch + from, front_.stride, front_.width,
+                  front_.contribution, rows, front_.below, rows},
                  front_);
     }
 
@@ -126,18 +126,18 @@ class Panel {
     bool eliminateFew(Size begin, Size end) const {
         for (Size a = begin; a < end; ++a) {
             const Size diagonal = front_.offset + a;
-            double* column = front_.panel + a * front_.stride;
+            double* column = front_.columns + a * front_.stride;
             double* Lpivot = front_.scratch + a * front_.stride;
             for (Size b = begin; b < a; ++b) {
                 const double factor = front_.scratch[b * front_.stride + diagonal];
-                const double* L = front_.panel + b * front_.stride;
-                for (Size i = aligned(diagonal); i < front_.stride; i += kFrontLane)
+                const double* L = front_.columns + b * front_.stride;
+                for (Size i = aligned(diagonal); i < front_.stride; i += kLane)
                     lane(column + i) -= factor * lane(L + i);
             }
             const double pivot = column[diagonal];
             if (pivot == 0.0) return false;
             const double inverse = 1.0 / pivot;
-            for (Size i = aligned(diagonal); i < front_.stride; i += kFrontLane) {
+            for (Size i = aligned(diagonal); i < front_.stride; i += kLane) {
                 const Lane l = lane(column + i);
                 lane(Lpivot + i) = l;
                 lane(column + i) = inverse * l;
@@ -147,21 +147,20 @@ class Panel {
         return true;
     }
 
-    const DenseFront& front_;
+    const FrontalMatrix& front_;
 };
-
-bool eliminate(const DenseFront& front) {
-    const Panel panel(front);
-    if (!panel.eliminate(0, front.width)) return false;
-    panel.update();
-    return true;
-}
 
 }  // namespace
 
 namespace SPECTRAL_INSTRUCTIONS {
-extern const FrontElimination frontElimination;
-const FrontElimination frontElimination{eliminate};
+
+bool eliminateFront(const FrontalMatrix& front) {
+    const PivotColumns columns(front);
+    if (!columns.eliminate(0, front.width)) return false;
+    columns.updateContribution();
+    return true;
+}
+
 }  // namespace SPECTRAL_INSTRUCTIONS
 
 }  // namespace spectral
