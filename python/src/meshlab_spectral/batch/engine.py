@@ -29,8 +29,8 @@ from meshlab_spectral.batch.jobs import FileResult, Job
 from meshlab_spectral.batch.processes import processes
 from meshlab_spectral.batch.task import run_job
 from meshlab_spectral.errors import BatchError
-from meshlab_spectral.threads import threads_each
-from meshlab_spectral.versions import versions
+from meshlab_spectral.plugin.threads import threads_each
+from meshlab_spectral.plugin.versions import versions
 
 # What all workers together may take of the machine's memory.
 _SHARE_OF_MEMORY = 0.9

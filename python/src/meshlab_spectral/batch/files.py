@@ -16,7 +16,7 @@ from meshlab_spectral.batch.outputs import DEFAULT_PATTERN
 from meshlab_spectral.batch.plan import Batch, plan_batch
 from meshlab_spectral.batch.report import Report
 from meshlab_spectral.errors import OptionError
-from meshlab_spectral.options import FilterOptions
+from meshlab_spectral.filters.options import FilterOptions
 
 
 def filter_files(

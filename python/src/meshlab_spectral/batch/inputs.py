@@ -9,9 +9,9 @@ from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from meshlab_spectral.batch.formats import SEARCHED, ending_of
 from meshlab_spectral.batch.storage import file_system, is_url, located
 from meshlab_spectral.errors import InputError
+from meshlab_spectral.files.formats import SEARCHED, ending_of
 
 
 @dataclass(frozen=True)

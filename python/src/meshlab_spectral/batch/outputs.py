@@ -9,10 +9,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from meshlab_spectral.batch.formats import FALLBACK, POINTS_ONLY, WRITABLE, ending_of
 from meshlab_spectral.batch.inputs import Input
 from meshlab_spectral.batch.storage import is_url, joined
 from meshlab_spectral.errors import FormatError, InputError
+from meshlab_spectral.files.formats import FALLBACK, POINTS_ONLY, WRITABLE, ending_of
 
 DEFAULT_PATTERN = "{stem}"
 _FIELDS = ("stem", "ending", "folder")

@@ -15,9 +15,9 @@ from meshlab_spectral.batch.outputs import DEFAULT_PATTERN, plan_outputs
 from meshlab_spectral.batch.report import DEFAULT_NAME, check_report, read_report
 from meshlab_spectral.batch.resume import Records, done_records, proved_done
 from meshlab_spectral.errors import InputError, OptionError
-from meshlab_spectral.filter_script import script_filters
-from meshlab_spectral.options import FilterOptions
-from meshlab_spectral.versions import versions
+from meshlab_spectral.files.script import script_filters
+from meshlab_spectral.filters.options import FilterOptions
+from meshlab_spectral.plugin.versions import versions
 
 # Clocks of a file server and of this machine may differ by so many seconds.
 _CLOCK_SLACK = 2.0

@@ -7,7 +7,7 @@ import contextlib
 import threading
 from collections.abc import Iterator
 
-from meshlab_spectral.meshlab_process import JobLimits, MeshLabProcess
+from meshlab_spectral.process.parent import JobLimits, MeshLabProcess
 
 # pymeshlab leaks: a process is replaced after so many meshes, or when it holds more than this part
 # of what it may with nothing to do.

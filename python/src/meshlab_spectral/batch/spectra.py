@@ -16,8 +16,8 @@ from meshlab_spectral.batch.plan import Batch
 from meshlab_spectral.batch.report import check_report, read_report
 from meshlab_spectral.batch.resume import done_records, proved_done
 from meshlab_spectral.errors import InputError
-from meshlab_spectral.spectrum import GeometrySpectrum, spectrum_parameters
-from meshlab_spectral.versions import versions
+from meshlab_spectral.filters.spectrum import GeometrySpectrum, spectrum_parameters
+from meshlab_spectral.plugin.versions import versions
 
 COLUMNS = (
     "mesh",

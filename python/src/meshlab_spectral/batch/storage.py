@@ -14,8 +14,8 @@ from typing import Any
 from urllib.parse import unquote, urlsplit
 
 from meshlab_spectral.errors import InputError, MeshFileError
-from meshlab_spectral.meshfile import check_source
-from meshlab_spectral.whole_files import remove_leftovers, side_files, why_kept, writing_whole
+from meshlab_spectral.files.meshes import check_source
+from meshlab_spectral.files.whole_files import remove_leftovers, side_files, why_kept, writing_whole
 
 _SCHEME = re.compile(r"[a-z][a-z0-9+.-]*(::|://)", re.IGNORECASE)
 _PART = 2**20  # bytes that are read at once

@@ -10,11 +10,11 @@ from meshlab_spectral.batch import storage
 from meshlab_spectral.batch.jobs import FileResult, Job
 from meshlab_spectral.batch.processes import processes
 from meshlab_spectral.errors import MemoryLimitError, ProcessDiedError, SpectralError
-from meshlab_spectral.meshlab_process import Answer, JobLimits
-from meshlab_spectral.report import report_warnings
-from meshlab_spectral.threads import threads_each
-from meshlab_spectral.versions import versions
-from meshlab_spectral.whole_files import side_files
+from meshlab_spectral.files.whole_files import side_files
+from meshlab_spectral.filters.warnings import report_warnings
+from meshlab_spectral.plugin.threads import threads_each
+from meshlab_spectral.plugin.versions import versions
+from meshlab_spectral.process.parent import Answer, JobLimits
 
 # A mesh whose process dies gets a second, fresh one: it may have been another's fault.
 ATTEMPTS = 2

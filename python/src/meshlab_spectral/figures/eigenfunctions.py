@@ -17,12 +17,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from meshlab_spectral.arrays import lumped_areas
+from meshlab_spectral.figures.pictures import SIGNED_COLOURS, Frame, Panel, render, to_full_colours
 from meshlab_spectral.figures.sheet import Sheet
 from meshlab_spectral.figures.stability import LOW_PASS
 from meshlab_spectral.figures.subject import Subject, filter_name
-from meshlab_spectral.harmonics import manifold_harmonics
-from meshlab_spectral.pictures import SIGNED_COLOURS, Frame, Panel, render, to_full_colours
+from meshlab_spectral.filters.arrays import lumped_areas
+from meshlab_spectral.filters.harmonics import manifold_harmonics
 
 Array = NDArray[np.float64]
 

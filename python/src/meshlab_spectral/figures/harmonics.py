@@ -10,9 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshlab_spectral.errors import FormatError, OptionError
-from meshlab_spectral.figures.sheet import Sheet
-from meshlab_spectral.harmonics import Harmonics
-from meshlab_spectral.pictures import (
+from meshlab_spectral.figures.pictures import (
     SIGNED_COLOURS,
     Frame,
     Panel,
@@ -20,6 +18,8 @@ from meshlab_spectral.pictures import (
     render,
     to_full_colours,
 )
+from meshlab_spectral.figures.sheet import Sheet
+from meshlab_spectral.filters.harmonics import Harmonics
 
 # So many pictures unless others are asked for, and so many beside each other.
 _SHOWN = 12

@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from meshlab_spectral.figures.pictures import Frame, Panel, render
 from meshlab_spectral.figures.sheet import FONT_SIZE, INK, Sheet
 from meshlab_spectral.figures.stability import BAND, LOW_PASS
 from meshlab_spectral.figures.subject import Subject, filter_name
-from meshlab_spectral.options import BasisUpdate, FilterOptions
-from meshlab_spectral.pictures import Frame, Panel, render
-from meshlab_spectral.transfer import gain
+from meshlab_spectral.filters.options import BasisUpdate, FilterOptions
+from meshlab_spectral.filters.transfer import gain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from meshlab_spectral.errors import SpectralError
-from meshlab_spectral.pictures import Image
-from meshlab_spectral.whole_files import writing_whole
+from meshlab_spectral.figures.pictures import Image
+from meshlab_spectral.files.whole_files import writing_whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from meshlab_spectral.figures.pictures import Frame, Panel, render
 from meshlab_spectral.figures.sheet import FONT_SIZE, INK, Sheet
 from meshlab_spectral.figures.subject import Subject, filter_name, scheme_name
-from meshlab_spectral.options import FilterOptions, Length
-from meshlab_spectral.pictures import Frame, Panel, render
-from meshlab_spectral.transfer import gain
+from meshlab_spectral.filters.options import FilterOptions, Length
+from meshlab_spectral.filters.transfer import gain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from meshlab_spectral.meshfile import load_arrays
-from meshlab_spectral.options import FilterOptions
-from meshlab_spectral.pictures import View
-from meshlab_spectral.worker import filter_file_in_child
+from meshlab_spectral.figures.pictures import View
+from meshlab_spectral.files.meshes import load_arrays
+from meshlab_spectral.filters.options import FilterOptions
+from meshlab_spectral.process.single_file import filter_file_in_child
 
 Shape = NDArray[np.float64]
 

@@ -1,0 +1,113 @@
+"""Loading the plugin into pymeshlab."""
+
+import os
+from importlib.metadata import version as installed_version
+from pathlib import Path
+
+from meshlab_spectral.errors import PluginError
+
+FILTER_NAME = "apply_coord_spectral_filter_fractional"
+# The plugin's filters: name in MeshLab's menus and scripts -> name in Python.
+FILTERS = {
+    "Spectral Filter (Fractional)": FILTER_NAME,
+    "Spectral Artefacts": "compute_scalar_spectral_artefacts_per_vertex",
+    "Manifold Harmonics": "compute_scalar_manifold_harmonic_per_vertex",
+    "Geometry Spectrum": "get_geometry_spectrum",
+}
+PLUGIN_VARIABLE = "MESHLAB_SPECTRAL_PLUGIN"
+PYMESHLAB_VERSION = "2025.7.post1"
+
+_INSTALLED = Path(__file__).parent / "libfilter_spectral.so"
+_REINSTALL = "install this package again: pip install --force-reinstall ./python"
+
+
+def load() -> None:
+    """Make the plugin's filters known to pymeshlab; a second call changes nothing.
+
+    Afterwards every filter of the plugin is a method of `pymeshlab.MeshSet`, as MeshLab's own are:
+    `ms.apply_coord_spectral_filter_fractional(...)`. The plugin is the file that the environment
+    variable MESHLAB_SPECTRAL_PLUGIN names, else the one inside this package.
+
+    Raises
+    ------
+    PluginError
+        When the plugin's file is missing or damaged, was built for another MeshLab or another
+        floating-point precision, or when pymeshlab is absent or of another version.
+    """
+    try:
+        import pymeshlab
+    except ImportError as error:
+        raise PluginError(_pymeshlab_missing(error)) from error
+    if FILTER_NAME not in pymeshlab.filter_list():
+        _check_pymeshlab_version()
+        path = plugin_path()
+        try:
+            pymeshlab.load_plugin(str(path))
+        except pymeshlab.PyMeshLabException as error:
+            raise PluginError(_refused(path, str(error))) from error
+    # pymeshlab makes the methods at its import, for the filters that it knows by then.
+    for name in pymeshlab.filter_list():
+        if not hasattr(pymeshlab.MeshSet, name):
+            setattr(pymeshlab.MeshSet, name, pymeshlab.bind_function(name))
+
+
+def plugin_path() -> Path:
+    """Tell where the plugin's file is.
+
+    Returns
+    -------
+    Path
+        The existing file that the environment variable names, else the one inside this package.
+
+    Raises
+    ------
+    PluginError
+        When there is no such file.
+    """
+    named = os.environ.get(PLUGIN_VARIABLE)
+    # A named file that is missing is an error: another plugin than the wanted one would be worse.
+    path = Path(named).absolute() if named else _INSTALLED
+    if path.is_file():
+        return path
+    if named:
+        raise PluginError(
+            f"no plugin at {path}, which the environment variable {PLUGIN_VARIABLE} names: "
+            "correct the variable, or unset it to use the plugin of this package"
+        )
+    raise PluginError(
+        f"no plugin at {path}: {_REINSTALL}, or name a libfilter_spectral.so in the environment "
+        f"variable {PLUGIN_VARIABLE}"
+    )
+
+
+def _check_pymeshlab_version() -> None:
+    installed = installed_version("pymeshlab")
+    if installed != PYMESHLAB_VERSION:
+        raise PluginError(
+            f"pymeshlab {installed} is installed, but the plugin is built for pymeshlab "
+            f"{PYMESHLAB_VERSION}: pip install pymeshlab=={PYMESHLAB_VERSION}"
+        )
+
+
+def _pymeshlab_missing(error: ImportError) -> str:
+    if isinstance(error, ModuleNotFoundError):
+        return f"pymeshlab is not installed: pip install pymeshlab=={PYMESHLAB_VERSION}"
+    # The usual cause on a server: the wheel expects the system's OpenGL libraries.
+    return (
+        f"pymeshlab cannot be imported ({error}): if a library is missing, install it, on Debian "
+        "with: apt-get install libgl1 libopengl0"
+    )
+
+
+def _refused(path: Path, reason: str) -> str:
+    if "precision" in reason:
+        why = "is built for the other floating-point precision of MeshLab"
+        mend = f"pymeshlab needs the double-precision build; {_REINSTALL}"
+    elif "version" in reason and "different" in reason:
+        why = "is built for another version of MeshLab"
+        mend = f"pymeshlab {PYMESHLAB_VERSION} needs the build for MeshLab 2025.07; {_REINSTALL}"
+    else:
+        why = "is not a plugin that MeshLab can load"
+        mend = f"the file may be damaged, or a library that it needs is missing; {_REINSTALL}"
+    detail = " ".join(reason.split())
+    return f"the plugin {path} {why}: {mend}. MeshLab says: {detail}"
