@@ -20,7 +20,7 @@ FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
     reportWriting(input, mesh.cm, progress);
     setPositions(input.vertexIndex, result.V, mesh);
     return {reportDictionary(result),
-            reportText(options, result, spectral::boundingBoxDiagonal(input.V))};
+            reportText(options, result, spectral::boundingBoxDiagonal(input.V)), result.warnings};
 }
 
 }  // namespace

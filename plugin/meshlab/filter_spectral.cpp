@@ -10,6 +10,7 @@
 #include "apply_lock.h"
 #include "core/errors.h"
 #include "core/thread_team.h"
+#include "last_warnings.h"
 #include "late_close.h"
 #include "late_preview.h"
 
@@ -113,6 +114,7 @@ RichParameterList FilterSpectralPlugin::initParameterList(const QAction* action,
 std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
     const QAction* action, const RichParameterList& parameters, MeshDocument& document,
     unsigned int&, vcg::CallBackPos* callback) {
+    keepLastWarnings({});
     releaseGLContext();
     // In its callback MeshLab does whatever its user asks for, in the midst of this run: it
     // switches the preview off, applies the filter, closes its windows, starts the filter anew for
@@ -133,6 +135,7 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
         progress.report(0.0, "reading the mesh");
         FilterOutcome outcome = filterOf(action).apply(parameters, *document.mm(), progress);
         logLines(outcome.text);
+        keepLastWarnings(outcome.warnings);
         return std::move(outcome.report);
     } catch (const spectral::Cancelled& cancelled) {
         // Without an error's window: the result of the newer run stays, the project goes.

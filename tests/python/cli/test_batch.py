@@ -170,7 +170,7 @@ def test_results_that_fell_short_are_counted_and_their_warnings_kept(
         assert ", 1 with warnings in " in done.stdout
     warnings = {record["name"]: record["warnings"] for record in records(out / REPORT)}
     assert warnings["cow.obj"] == []
-    assert "nothing moved" in "".join(warnings["flat.ply"])
+    assert "nothing can move" in "".join(warnings["flat.ply"])
 
 
 def test_an_output_that_is_a_file_is_told(cow: Path, existing: Path) -> None:

@@ -81,3 +81,8 @@ def test_libraries_are_those_of_the_program_and_no_folder_is_built_in(host: Host
     assert all(re.match(system, name) for name in others)
     assert "RPATH" not in dynamic
     assert "RUNPATH" not in dynamic
+
+
+@each_host
+def test_the_function_that_tells_the_warnings_can_be_found_by_name(host: Host) -> None:
+    assert "meshlab_spectral_warnings" in symbols(plugin_of(host), "defined")

@@ -141,3 +141,31 @@ def test_another_pymeshlab_is_refused_with_the_version_to_install(
 def test_an_absent_pymeshlab_is_told_with_the_way_to_install_it() -> None:
     done = run_python("import sys\nsys.modules['pymeshlab'] = None\n" + LOAD_AND_SHOW)
     assert "pip install pymeshlab==2025.7.post1" in done.stdout, done.stderr
+
+
+FILTER_AND_SHOW = (
+    "import meshlab_spectral\n"
+    "triangle = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]\n"
+    "try: meshlab_spectral.filter_mesh(*triangle, boundary='fixed')\n"
+    "except meshlab_spectral.PluginError as error: print(error)\n"
+)
+
+
+def test_warnings_are_never_those_of_another_copy_of_the_plugin(tmp_path: Path) -> None:
+    copy = tmp_path / "libfilter_spectral_copy.so"
+    copy.write_bytes(loading.plugin_path().read_bytes())
+    by_hand = f"import pymeshlab\npymeshlab.load_plugin({str(copy)!r})\n"
+    message = run_python(by_hand + FILTER_AND_SHOW).stdout
+    assert str(loading.plugin_path()) in message
+    assert "meshlab_spectral.load()" in message
+
+
+def test_a_plugin_too_old_to_tell_its_warnings_is_refused(tmp_path: Path) -> None:
+    code = loading.plugin_path().read_bytes()
+    name = b"meshlab_spectral_warnings"
+    assert name in code
+    old = tmp_path / "old.so"
+    old.write_bytes(code.replace(name, b"meshlab_spectral_nothing_"))
+    message = run_python(FILTER_AND_SHOW, MESHLAB_SPECTRAL_PLUGIN=str(old)).stdout
+    assert str(old) in message
+    assert "older than this package" in message

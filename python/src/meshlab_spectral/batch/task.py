@@ -11,7 +11,6 @@ from meshlab_spectral.batch.jobs import FileResult, Job
 from meshlab_spectral.batch.processes import processes
 from meshlab_spectral.errors import MemoryLimitError, ProcessDiedError, SpectralError
 from meshlab_spectral.files.whole_files import side_files
-from meshlab_spectral.filters.warnings import report_warnings
 from meshlab_spectral.plugin.threads import threads_each
 from meshlab_spectral.plugin.versions import versions
 from meshlab_spectral.process.parent import Answer, JobLimits
@@ -71,14 +70,9 @@ def run_job(job: Job, memory_limit: int | None = None) -> FileResult:
 
 
 def _warnings(report: dict[str, Any]) -> list[str]:
-    """Tell the warnings of our filter, alone or in a script; other filters have no such report."""
+    """Collect the warnings of a filter, or of all the plugin's filters in a script."""
     parts = [one.get("report", {}) for one in report.get("filters", [])] or [report]
-    return [
-        warning
-        for part in parts
-        if "tolerance_reached" in part
-        for warning in report_warnings(part)
-    ]
+    return [warning for part in parts for warning in part.get("warnings", [])]
 
 
 def _digests(scratch: Path) -> dict[str, Any]:

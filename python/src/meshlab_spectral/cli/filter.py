@@ -15,7 +15,6 @@ from meshlab_spectral.cli.messages import MESSAGES, errors_reported, warn_of_poi
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.cli.report_table import report_table
 from meshlab_spectral.filters.options import FilterOptions
-from meshlab_spectral.filters.warnings import report_warnings
 from meshlab_spectral.plugin.versions import versions
 from meshlab_spectral.process.single_file import filter_file_in_child
 
@@ -57,8 +56,8 @@ def filter_command(
     with errors_reported(debug), progress_shown() as on_progress:
         report = filter_file_in_child(source, target, options, on_progress)
     warn_of_points_only(target.suffix)
-    for warning in report_warnings(report):
-        MESSAGES.print(f"Warning: {warning}.", highlight=False, soft_wrap=True)
+    for warning in report["warnings"]:
+        MESSAGES.print(f"Warning: {warning}.", markup=False, highlight=False, soft_wrap=True)
     if as_json:
         typer.echo(json.dumps(_record(source, target, options, report, time.monotonic() - begin)))
     else:

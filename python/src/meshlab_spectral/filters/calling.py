@@ -1,10 +1,11 @@
-"""Calling a filter of pymeshlab so that its refusal becomes an error of this package."""
+"""Calling the plugin's filters: with their warnings, and with errors of this package."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from meshlab_spectral.errors import FilterError
+from meshlab_spectral.plugin.last_warnings import last_warnings
 
 # After a filter has thrown, destroying its MeshSet makes pymeshlab 2025.7 crash at the next one
 # (MeshLab's own filters do the same). Such a MeshSet is therefore kept until the process ends.
@@ -12,7 +13,7 @@ _failed_mesh_sets: list[Any] = []
 
 
 def call_filter(mesh_set: Any, name: str, parameters: dict[str, Any]) -> dict[str, Any]:
-    """Apply a filter to the current mesh of a MeshSet.
+    """Apply a filter of the plugin to the current mesh of a MeshSet.
 
     Parameters
     ----------
@@ -26,20 +27,25 @@ def call_filter(mesh_set: Any, name: str, parameters: dict[str, Any]) -> dict[st
     Returns
     -------
     dict
-        The filter's report, as pymeshlab gives it.
+        The filter's report, as pymeshlab gives it, and "warnings": the list of what fell short
+        without being an error, in the plugin's words.
 
     Raises
     ------
     FilterError
         When the filter refuses the mesh or the parameters: with what is wrong and what to do.
+    PluginError
+        When the plugin cannot tell its warnings, see `last_warnings`.
     """
     import pymeshlab
 
+    last_warnings()  # raises before the work, not after it
     try:
         report: dict[str, Any] = mesh_set.apply_filter(name, **parameters)
     except pymeshlab.PyMeshLabException as error:
         keep_failed(mesh_set)
         raise FilterError(reason_of(error)) from error
+    report["warnings"] = last_warnings()
     return report
 
 
@@ -49,7 +55,7 @@ def keep_failed(mesh_set: Any) -> None:
 
 
 def plain_report(report: dict[str, Any]) -> dict[str, Any]:
-    """Turn the arrays of a filter's report into lists, which JSON can hold."""
+    """Turn the arrays of a filter's report into lists, for JSON."""
     return {
         name: value.tolist() if hasattr(value, "tolist") else value
         for name, value in report.items()

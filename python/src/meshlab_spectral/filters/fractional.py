@@ -33,7 +33,8 @@ def filter_mesh(
     V : array
         n x 3 coordinates after the filter; the faces stay as they are.
     report : dict
-        Numbers, and lists for vectors; lengths in the units of the mesh.
+        Numbers, and lists for vectors; lengths in the units of the mesh. "warnings" lists what fell
+        short of the options, and what to do.
 
     Raises
     ------

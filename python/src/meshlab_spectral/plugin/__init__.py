@@ -1,5 +1,5 @@
-"""The plugin's libraries, and what concerns each as a whole.
+"""The plugin: its libraries and everything that is not about a single filter.
 
-`loading` makes its filters known to pymeshlab, `installation` puts it where MeshLab looks for it,
-`threads` and `versions` set and tell what its results do and do not depend on.
+`loading` makes it known to pymeshlab, `installation` to MeshLab; `threads` sets how many it uses,
+`versions` identifies it, `last_warnings` asks it what fell short.
 """

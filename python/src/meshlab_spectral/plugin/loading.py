@@ -18,6 +18,7 @@ PLUGIN_VARIABLE = "MESHLAB_SPECTRAL_PLUGIN"
 PYMESHLAB_VERSION = "2025.7.post1"
 
 _INSTALLED = Path(__file__).parent / "libfilter_spectral.so"
+_loaded: Path | None = None
 _REINSTALL = "install this package again: pip install --force-reinstall ./python"
 
 
@@ -34,6 +35,7 @@ def load() -> None:
         When the plugin's file is missing or damaged, was built for another MeshLab or another
         floating-point precision, or when pymeshlab is absent or of another version.
     """
+    global _loaded
     try:
         import pymeshlab
     except ImportError as error:
@@ -45,6 +47,7 @@ def load() -> None:
             pymeshlab.load_plugin(str(path))
         except pymeshlab.PyMeshLabException as error:
             raise PluginError(_refused(path, str(error))) from error
+        _loaded = path
     # pymeshlab makes the methods at its import, for the filters that it knows by then.
     for name in pymeshlab.filter_list():
         if not hasattr(pymeshlab.MeshSet, name):
@@ -78,6 +81,11 @@ def plugin_path() -> Path:
         f"no plugin at {path}: {_REINSTALL}, or name a libfilter_spectral.so in the environment "
         f"variable {PLUGIN_VARIABLE}"
     )
+
+
+def loaded_plugin() -> Path:
+    """Tell which file `load` has loaded, or would load if it has not been needed."""
+    return _loaded or plugin_path()
 
 
 def _check_pymeshlab_version() -> None:
