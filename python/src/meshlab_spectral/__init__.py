@@ -1,4 +1,4 @@
-"""Spectral Filter (Fractional) for MeshLab 2025.07: the plugin, for pymeshlab and for the shell.
+"""Spectral Filter (Fractional) for MeshLab 2025.07: for pymeshlab and the shell.
 
 >>> import pymeshlab, meshlab_spectral
 >>> meshlab_spectral.load()
@@ -6,7 +6,7 @@
 >>> ms.load_new_mesh("scan.ply")
 >>> ms.apply_coord_spectral_filter_fractional(feature_size=pymeshlab.PercentageValue(2))
 
-The subpackages import only from those on their left, and all of them `errors`:
+Each subpackage imports only from those to its left; all of them import `errors`:
 
     plugin <- filters <- files <- process <- figures, batch <- cli
 """

@@ -114,4 +114,4 @@ def test_a_cluster_that_goes_in_the_middle_is_told_in_one_line(tmp_path: Path) -
             batch.communicate()
     assert batch.returncode == 1
     assert stdout == ""
-    assert re.fullmatch("Error: the Dask cluster has gone.*--resume\n", stderr)
+    assert re.fullmatch("Error: the Dask cluster is gone.*--resume\n", stderr)

@@ -47,7 +47,7 @@ def assert_resumes(meshes: Path, out: Path, undisturbed: dict[str, bytes]) -> No
     assert 2 <= done_before < MESHES
     done = command("batch", meshes, "--output", out, *OPTIONS, "--resume")
     assert done.returncode == 0, done.stderr
-    assert f"{done_before} done before" in done.stdout
+    assert f"{done_before} already done" in done.stdout
     assert contents(out) == undisturbed
     assert not list(out.rglob("*.partial"))
 
@@ -87,7 +87,7 @@ def test_an_interrupted_batch_ends_soon_with_130_and_resumes(
     stdout, stderr = running.communicate(timeout=20)
     assert running.returncode == 130
     assert stdout == ""
-    assert stderr == "Interrupted: what is done is in the report; go on with --resume.\n"
+    assert stderr == "Interrupted: finished files are in the report; continue with --resume.\n"
     wait_until(lambda: not alive(processes), seconds=5)
     assert not list((tmp_path / "out").rglob("*.partial"))
     assert_resumes(meshes, tmp_path / "out", undisturbed)

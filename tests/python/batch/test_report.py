@@ -86,7 +86,7 @@ def test_a_report_is_known_by_its_begin(content: str, tmp_path: Path) -> None:
 def test_a_file_that_is_no_report_is_not_added_to(content: str, tmp_path: Path) -> None:
     path = tmp_path / "precious.ply"
     path.write_text(content)
-    with pytest.raises(InputError, match=r"precious\.ply is no report"):
+    with pytest.raises(InputError, match=r"precious\.ply is not a batch report"):
         check_report(path)
 
 

@@ -97,7 +97,7 @@ def test_resume_restores_materials_and_textures(samples: Path, tmp_path: Path) -
     before = contents(out)
     material, texture = f"{source.name}.mtl", "TextureDouble_A.png"
     assert before.keys() == {source.name, material, texture}
-    assert "1 done before" in command(*batch, "--resume").stdout
+    assert "1 already done" in command(*batch, "--resume").stdout
     (out / texture).unlink()
     (out / material).write_bytes(PRECIOUS)
     done = command(*batch, "--resume")
@@ -113,13 +113,13 @@ def test_nothing_that_exists_is_replaced_unasked(tmp_path: Path) -> None:
     batch = ["batch", source, "--output", out, "--steps", 1, "--workers", 1]
     assert_fails(command(*batch), 2, str(out / paths[1].name), "--overwrite")
     assert contents(out) == {paths[1].name: PRECIOUS}
-    assert_fails(command(*batch, "--resume"), 2, "exist already", "report of the run", REPORT)
+    assert_fails(command(*batch, "--resume"), 2, "already exist", "report of the run", REPORT)
     done = command(*batch, "--overwrite")
     assert done.returncode == 0, done.stderr
     assert len(arrays_of(out / paths[1].name)[0]) == 144
     # A file that was there before the run is none of the run's.
     (out / REPORT).write_text('{"kind": "run", "begun": 32503680000.0}\n')
-    assert_fails(command(*batch, "--resume"), 2, "exist already")
+    assert_fails(command(*batch, "--resume"), 2, "already exist")
 
 
 def test_a_dry_run_tells_and_does_nothing(tmp_path: Path) -> None:
@@ -190,8 +190,8 @@ def test_a_report_takes_the_place_of_no_other_file(cow: Path, tmp_path: Path) ->
     out = tmp_path / "out"
     batch = ["batch", cow, "--output", out]
     before = cow.read_bytes()
-    assert_fails(command(*batch, "--report", cow), 2, f"{cow} is no report")
-    assert_fails(command(*batch, "--report", out / cow.name), 2, "is an output, too")
+    assert_fails(command(*batch, "--report", cow), 2, f"{cow} is not a batch report")
+    assert_fails(command(*batch, "--report", out / cow.name), 2, "is also an output")
     assert cow.read_bytes() == before
     assert not out.exists()
 
@@ -222,7 +222,7 @@ def test_outputs_beside_their_inputs_are_not_filtered_again(tmp_path: Path) -> N
     assert command(*batch).returncode == 0
     assert sorted(contents(source)) == ["torus_000.ply", "torus_000_x.ply"]
     done = command(*batch, "--resume")
-    assert "0 filtered, 0 failed, 1 done before" in done.stdout
+    assert "0 filtered, 0 failed, 1 already done" in done.stdout
     assert_fails(command("batch", source, "--output", source), 2, "input itself")
 
 
@@ -282,7 +282,7 @@ def test_a_wrong_value_in_a_script_is_named(cow: Path, tmp_path: Path) -> None:
     done = command("batch", cow, "--output", tmp_path / "out", "--script", script, "--workers", 1)
     assert done.returncode == 1
     assert "filter 1 of the script" in done.stderr
-    assert "steps is no RichInt: 'many'" in done.stderr
+    assert "steps is not a RichInt: 'many'" in done.stderr
     assert "please report it" not in done.stderr
 
 

@@ -146,8 +146,8 @@ def test_a_dry_run_tells_the_same_and_changes_nothing(
     [
         ("MeshLab 2025.07", "is MeshLab 2025.07, of single precision"),
         ("MeshLab 2025.07d", "is MeshLab 2025.07d, of double precision"),
-        ("MeshLab 2023.12", "Warning: .* is MeshLab 2023.12, which does not take the plugin"),
-        ("nothing of the kind", "does not tell its version"),
+        ("MeshLab 2023.12", "Warning: .* is MeshLab 2023.12, which cannot load the plugin"),
+        ("nothing of the kind", "does not report its version"),
     ],
 )
 def test_the_version_of_a_meshlab_on_the_path_is_checked(

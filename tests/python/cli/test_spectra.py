@@ -48,13 +48,13 @@ def test_a_mistake_leaves_the_old_table(cow: Path, existing: Path, tmp_path: Pat
 
 @pytest.mark.parametrize("table", [".", "/"])
 def test_a_table_that_is_a_folder_is_told(table: str, cow: Path) -> None:
-    assert_fails(command("spectra", cow, "--output", table), 1, "no file but a folder")
+    assert_fails(command("spectra", cow, "--output", table), 1, "is a folder or a device")
 
 
 def test_the_table_is_not_the_report(cow: Path, tmp_path: Path) -> None:
     table = tmp_path / "x.csv"
     done = command("spectra", cow, "--output", table, "--report", table)
-    assert_fails(done, 2, "is the table, too")
+    assert_fails(done, 2, "is also the table")
     assert not table.exists()
 
 
@@ -78,7 +78,7 @@ def test_resume_measures_only_what_the_report_does_not_hold(tmp_path: Path) -> N
     table.unlink()
     make_meshes(folder, 3)
     done = command(*spectra, "--resume")
-    assert "1 measured, 0 failed, 2 done before" in done.stdout
+    assert "1 measured, 0 failed, 2 already done" in done.stdout
     after = table.read_text()
     assert after.startswith(before)
     assert len({line.partition(",")[0] for line in after.splitlines()}) == 1 + 3

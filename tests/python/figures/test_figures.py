@@ -85,7 +85,7 @@ def test_a_place_where_no_picture_can_be_is_refused_before_the_work(
     taken.write_text("a file\n")
     picture = tmp_path / "out" / f"{FIGURES[5][0]}_{meshes[0].stem}.png"
     picture.mkdir(parents=True)  # a folder in its place
-    for output, words in ((taken, "choose another one"), (picture.parent, "is no file")):
+    for output, words in ((taken, "choose another one"), (picture.parent, "not a file")):
         done = command(meshes[0], "--output", output, "--only", "1,5")
         assert done.returncode == 1
         assert words in done.stderr

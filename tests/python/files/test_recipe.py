@@ -53,7 +53,7 @@ def test_options_that_a_recipe_leaves_out_have_their_defaults(tmp_path: Path) ->
         ("[filter]\n[other]\n", "other outside"),
         ("", "table"),
         ("filter = 3\n", "table"),
-        ("[filter\n", "no TOML"),
+        ("[filter\n", "not a TOML"),
         ("[filter]\norder = 2.5\n", "order = 2.5"),
         ("[filter]\nsteps = -1\n", "steps = -1"),
         ('[filter]\nfilter_type = "lowpass"\n', "low-pass"),
@@ -79,6 +79,6 @@ def test_a_recipe_replaces_a_recipe_and_nothing_else(tmp_path: Path) -> None:
     save_recipe(path, FilterOptions(steps=5))
     assert load_recipe(path)["steps"] == 5
     path.write_bytes(PRECIOUS)
-    with pytest.raises(InputError, match=r"recipe\.toml is no TOML file.*not replaced"):
+    with pytest.raises(InputError, match=r"recipe\.toml is not a TOML file.*not replaced"):
         save_recipe(path, FilterOptions())
     assert path.read_bytes() == PRECIOUS

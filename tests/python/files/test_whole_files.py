@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from commands import PRECIOUS
-from meshlab_spectral.batch.storage import beside
+from meshlab_spectral.batch.storage import sibling
 from meshlab_spectral.errors import MeshFileError
 from meshlab_spectral.files.whole_files import remove_leftovers, writing_whole
 
@@ -85,4 +85,4 @@ def test_a_link_is_written_through_side_files_included(overwrite: bool, tmp_path
         (scratch.parent / "skin.png").write_bytes(b"skin")
     assert link.is_symlink()
     assert real.read_bytes() == b"mesh"
-    assert Path(beside(str(link), "skin.png")).read_bytes() == b"skin"
+    assert Path(sibling(str(link), "skin.png")).read_bytes() == b"skin"

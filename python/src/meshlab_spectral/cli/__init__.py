@@ -1,1 +1,1 @@
-"""The command `meshlab-spectral`: `app` puts the commands together, each in a module of its own."""
+"""The command `meshlab-spectral`: `app` combines its subcommands, each in its own module."""

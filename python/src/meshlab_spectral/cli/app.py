@@ -1,4 +1,4 @@
-"""The command `meshlab-spectral`, of its commands."""
+"""The command `meshlab-spectral` and its subcommands."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ app = typer.Typer(
 
 
 def main() -> None:
-    """Run the command line; ends the process with the exit code."""
-    # A polite end (kill, a shutdown) tidies up like Ctrl-C does.
+    """Run the command line and exit with its exit code."""
+    # Clean up on SIGTERM (kill, shutdown) as on Ctrl-C.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     app()
 
@@ -45,7 +45,9 @@ def _print_version(wanted: bool) -> None:
 def _common(
     version: Annotated[
         bool,
-        typer.Option("--version", callback=_print_version, is_eager=True, help="Tell the version."),
+        typer.Option(
+            "--version", callback=_print_version, is_eager=True, help="Print the version."
+        ),
     ] = False,
 ) -> None:
     """Smooth, sharpen and band-filter meshes by the size of their details."""

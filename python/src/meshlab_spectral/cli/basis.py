@@ -18,9 +18,9 @@ from meshlab_spectral.process.single_file import basis_file_in_child
 # "\b" keeps a paragraph's lines as they are.
 BASIS_HELP = """Compute the manifold harmonics of a mesh, for scripts and as pictures.
 
-The output is an archive of NumPy with the arrays eigenvalues (k), frequencies (k, their square
-roots), harmonics (n x k), masses (n, the areas of the vertices: with these as weights the harmonics
-are orthonormal), and the mesh that their rows belong to, vertices (n x 3) and faces (m x 3).
+The output is a NumPy archive with the arrays eigenvalues (k), frequencies (k, their square roots),
+harmonics (n x k), masses (n, the vertex areas: with these as weights the harmonics are
+orthonormal), and the mesh that their rows belong to, vertices (n x 3) and faces (m x 3).
 
 \b
   meshlab-spectral basis scan.ply --basis-size 200 --output scan.npz
@@ -33,33 +33,34 @@ def basis_command(
         Path, typer.Argument(metavar="MESH", help="Mesh to read: .ply, .obj, .stl, .off, ...")
     ],
     output: Annotated[
-        Path, typer.Option(metavar="FILE", help="Archive of NumPy to write. Replaces a file.")
+        Path,
+        typer.Option(metavar="FILE", help="NumPy archive to write; replaces an existing file."),
     ] = Path("basis.npz"),
     basis_size: Annotated[
         int,
-        typer.Option("--basis-size", "-k", min=1, help="How many, the constant ones included."),
+        typer.Option("--basis-size", "-k", min=1, help="Number of harmonics, constants included."),
     ] = DEFAULT_BASIS_SIZE,
     laplacian: Annotated[
         LaplacianKind, typer.Option(help="As for the filter.")
     ] = "intrinsic delaunay",
     boundary: Annotated[
         Boundary,
-        typer.Option(help="At the rims of an open surface: free, or fixed to zero."),
+        typer.Option(help="At the boundary of an open surface: free, or fixed to zero."),
     ] = "free",
     pictures: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="Sheet of pictures to draw: a .png file.")
+        Path | None, typer.Option(metavar="FILE", help="Sheet of pictures to draw, a .png file.")
     ] = None,
     modes: Annotated[
         str | None,
-        typer.Option(metavar="NUMBERS", help="Harmonics in the pictures, such as 1,2,3,5,8."),
+        typer.Option(metavar="NUMBERS", help="Harmonics to draw, such as 1,2,3,5,8."),
     ] = None,
     scale: Annotated[
         float, typer.Option(min=0.1, max=10, help="Resolution of the pictures; 1 fills a screen.")
     ] = 1.0,
     debug: Annotated[bool, typer.Option("--debug", hidden=True)] = False,
 ) -> None:
-    """Compute manifold harmonics: `meshlab-spectral basis --help` tells more."""
-    with errors_reported(debug, "files that were finished are there, and whole"):
+    """Compute manifold harmonics: see `meshlab-spectral basis --help`."""
+    with errors_reported(debug, "finished files are complete"):
         shown = None if modes is None else _modes(modes, basis_size)
         if pictures is not None:
             check_picture(pictures)

@@ -25,27 +25,26 @@ from meshlab_spectral.cli.many_files import (
     Workers,
     planning_shown,
     run_shown,
-    told,
+    summary_of,
 )
 from meshlab_spectral.cli.messages import EXIT_FAILED, errors_reported, warn_of_points_only
 from meshlab_spectral.files.recipe import load_recipe, save_recipe
 from meshlab_spectral.filters.options import FilterOptions
 
 # "\b" keeps a paragraph's lines as they are.
-BATCH_HELP = """Filter many meshes, in worker processes; one that fails does not stop the others.
+BATCH_HELP = """Filter many meshes in worker processes; a failure does not stop the others.
 
 \b
 Denoise a folder of scans:
   meshlab-spectral batch scans --output smooth --feature-size 2%
-Go on after an interruption, or after more scans have come:
+Continue after an interruption, or with more scans:
   meshlab-spectral batch scans --output smooth --feature-size 2% --resume
-Keep the options for the next time:
+Save the options for next time:
   meshlab-spectral batch scans --output smooth --feature-size 2% --save-recipe denoise.toml
   meshlab-spectral batch more/*.obj --output more_smooth --recipe denoise.toml --format ply
 
-Every file gets a line in the report, DIR/batch_report.jsonl, as soon as it is done: its outcome,
-the options, the filter's report and warnings, SHA-256 of input and output, seconds, memory,
-versions.
+Each file gets a line in the report, DIR/batch_report.jsonl, as soon as it is done: outcome,
+options, the filter's report and warnings, SHA-256 of input and output, seconds, memory, versions.
 """
 
 
@@ -55,13 +54,13 @@ def batch_command(
     given: dict[str, Any],
     inputs: Inputs,
     output: Annotated[
-        str, typer.Option(metavar="DIR", help="Folder of the outputs, made if need be; or a URL.")
+        str, typer.Option(metavar="DIR", help="Output folder, created if needed; or a URL.")
     ],
     name: Annotated[
         str,
         typer.Option(
             metavar="PATTERN",
-            help="Names of the outputs, without ending, from those of the inputs: {stem}, "
+            help="Names of the outputs, without extension, made from those of the inputs: {stem}, "
             "{ending}, {folder}; such as {stem}_smooth or {folder}/{stem}.",
         ),
     ] = DEFAULT_PATTERN,
@@ -70,8 +69,8 @@ def batch_command(
         typer.Option(
             "--format",
             metavar="ENDING",
-            help="Format of the outputs, such as ply. By default that of the input, or ply where "
-            "MeshLab cannot write that with its faces.",
+            help="Format of the outputs, such as ply. By default that of the input, or ply if "
+            "MeshLab cannot write that with faces.",
             show_default=False,
         ),
     ] = None,
@@ -80,49 +79,50 @@ def batch_command(
         typer.Option(
             "--recursive",
             "-r",
-            help="Search folders in folders, too; the outputs lie in folders alike.",
+            help="Search subfolders, too, and recreate them in the output folder.",
         ),
     ] = False,
     overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Replace outputs that exist. Inputs never are.")
+        bool,
+        typer.Option("--overwrite", help="Replace existing outputs; inputs are never replaced."),
     ] = False,
     resume: Annotated[
         bool,
         typer.Option(
             "--resume",
-            help="Leave out what the report proves done, with this input, options and versions; "
-            "replace outputs that have been changed since.",
+            help="Skip what the report proves done with the same input, options and versions; "
+            "replace outputs changed since.",
         ),
     ] = False,
     dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Only tell which outputs would be written.")
+        bool, typer.Option("--dry-run", help="Only list the outputs that would be written.")
     ] = False,
     recipe: Annotated[
         Path | None,
         typer.Option(
             metavar="FILE",
-            help="Take the filter's options from a TOML file; those given here come first.",
+            help="Read the filter's options from a TOML file; options given here override it.",
         ),
     ] = None,
     save_recipe_as: Annotated[
         Path | None,
         typer.Option(
-            "--save-recipe", metavar="FILE", help="Write the filter's options into a TOML file."
+            "--save-recipe", metavar="FILE", help="Write the filter's options to a TOML file."
         ),
     ] = None,
     script: Annotated[
         Path | None,
         typer.Option(
             metavar="FILE",
-            help="Apply a filter script of MeshLab (.mlx), in place of the options. Sizes in it "
-            "are lengths, not percentages.",
+            help="Apply a MeshLab filter script (.mlx) instead of the options. Sizes in it are "
+            "lengths, not percentages.",
         ),
     ] = None,
     report: Annotated[
         Path | None,
         typer.Option(
             metavar="FILE",
-            help=f"The report, one JSON object a line; added to if it exists. By default "
+            help=f"The report, one JSON object per line; appended to if it exists. By default "
             f"DIR/{DEFAULT_NAME}.",
             show_default=False,
         ),
@@ -136,10 +136,10 @@ def batch_command(
     ] = False,
     debug: Debug = False,
 ) -> None:
-    """Filter many meshes: `meshlab-spectral batch --help` tells how."""
+    """Filter many meshes: see `meshlab-spectral batch --help`."""
     if script is not None and save_recipe_as is not None:
         raise typer.BadParameter(
-            "a script is kept as it is, a recipe holds options of the filter: leave out one",
+            "a recipe holds options of the filter, which a script replaces: leave out one of them",
             param_hint="--save-recipe",
         )
     with errors_reported(debug, INTERRUPTED):
@@ -183,7 +183,7 @@ def _options(
 
 def _tell_plan(batch: Batch) -> None:
     for result in batch.done:
-        typer.echo(f"{result.input} -> {result.output} (done already)")
+        typer.echo(f"{result.input} -> {result.output} (already done)")
     for job in batch.jobs:
         typer.echo(f"{job.source} -> {job.target}")
 
@@ -200,4 +200,4 @@ def _tell_summary(batch: Batch, counts: Counter[str], seconds: float, as_json: b
     if as_json:
         typer.echo(json.dumps(summary))
         return
-    typer.echo(f"{told(counts, 'filtered')} in {seconds:.1f} s; report: {batch.report}")
+    typer.echo(f"{summary_of(counts, 'filtered')} in {seconds:.1f} s; report: {batch.report}")

@@ -1,6 +1,6 @@
-"""A demonstration: `python -m meshlab_spectral.cli.demo DIR` smooths the Stanford bunny strongly.
+"""A demonstration: `python -m meshlab_spectral.cli.demo DIR` strongly smooths the Stanford bunny.
 
-It leaves bunny_filtered.ply and before_after.png in DIR, and prints the filter's report.
+It writes bunny_filtered.ply and before_after.png to DIR, and prints the filter's report.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ BUNNY_VIEW = View(direction=(0.25, 0.2, 1.0))
 
 
 def demonstrate(folder: Path) -> None:
-    """Filter the bunny that comes with pymeshlab; write the mesh and a picture into `folder`."""
+    """Filter the bunny that comes with pymeshlab; write the mesh and a picture to `folder`."""
     import pymeshlab
 
     load()
@@ -52,7 +52,7 @@ def _main() -> None:
     parser = argparse.ArgumentParser(
         prog="python -m meshlab_spectral.cli.demo", description=__doc__
     )
-    parser.add_argument("folder", metavar="DIR", type=Path, help="where to put the results")
+    parser.add_argument("folder", metavar="DIR", type=Path, help="folder for the results")
     folder = parser.parse_args().folder
     try:
         demonstrate(folder)

@@ -15,11 +15,11 @@ from meshlab_spectral.figures.paper import FIGURES, draw_figures
 FIGURES_HELP = """Draw the figures of the paper (Kovnatsky et al. 2012) from your meshes.
 
 \b
-1  one shot of a strong filter, and ten fractional steps of it
-4  eigenfunctions before a filter, after its 1/10 power, after all of it
-5  the fractional powers of two filters, and the shapes that they make
+1  a strong filter in one shot, and in ten fractional steps
+4  eigenfunctions before a filter, after its 1/10 power, and after the whole filter
+5  the fractional powers of two filters, and the shapes they produce
 
-Every mesh gets its own pictures. The paper's meshes, the dragon and the angel, are in the Stanford
+Each mesh gets its own pictures. The paper's meshes, the dragon and the angel, are in the Stanford
 3D Scanning Repository, https://graphics.stanford.edu/data/3Dscanrep/.
 
 \b
@@ -33,23 +33,23 @@ def figures_command(
         list[Path],
         typer.Argument(
             metavar="MESH",
-            help="Meshes to show. They are seen along their shortest axis, with y up, or z.",
+            help="Meshes to show, viewed along their shortest axis with y up, or z.",
         ),
     ],
     output: Annotated[
-        Path, typer.Option(metavar="DIR", help="Where to put the pictures; made if need be.")
+        Path, typer.Option(metavar="DIR", help="Folder for the pictures, created if needed.")
     ] = Path(),
     only: Annotated[
-        str, typer.Option(metavar="NUMBERS", help="The figures to draw, such as 1,5.")
+        str, typer.Option(metavar="NUMBERS", help="Figures to draw, such as 1,5.")
     ] = ",".join(map(str, FIGURES)),
     scale: Annotated[
-        float, typer.Option(min=0.1, max=10, help="Resolution: 2 has twice as many pixels a side.")
+        float, typer.Option(min=0.1, max=10, help="Resolution: 2 doubles the pixels per side.")
     ] = 1.0,
     debug: Annotated[bool, typer.Option("--debug", hidden=True)] = False,
 ) -> None:
-    """Draw the figures of the paper: `meshlab-spectral figures --help` tells more."""
+    """Draw the figures of the paper: see `meshlab-spectral figures --help`."""
     numbers = _figure_numbers(only)
-    interrupted = "pictures that were finished are there, and whole"
+    interrupted = "finished pictures are complete"
     with errors_reported(debug, interrupted), progress_shown() as on_progress:
         pictures = draw_figures(
             meshes, output, numbers, scale, lambda stage: on_progress(stage, None)
@@ -62,5 +62,5 @@ def _figure_numbers(text: str) -> list[int]:
     known = {str(number): number for number in FIGURES}
     numbers = [part.strip() for part in text.split(",")]
     if not known.keys() >= set(numbers):
-        raise typer.BadParameter(f"{text!r}: choose of {', '.join(known)}", param_hint="--only")
+        raise typer.BadParameter(f"{text!r}: choose from {', '.join(known)}", param_hint="--only")
     return [known[number] for number in numbers]

@@ -22,7 +22,7 @@ from meshlab_spectral.process.single_file import filter_file_in_child
 FILTER_HELP = """Filter one mesh by the size of its details.
 
 \b
-Smooth a scan, away with what is smaller than 1 % of it:
+Smooth a scan, removing what is smaller than 1 % of it:
   meshlab-spectral filter scan.ply smooth.ply --feature-size 2%
 Sharpen it:
   meshlab-spectral filter scan.ply sharp.ply --filter-type high-pass \\
@@ -39,7 +39,8 @@ def filter_command(
     target: Annotated[
         Path,
         typer.Argument(
-            metavar="OUTPUT", help="Mesh to write; its ending says the format. Replaces a file."
+            metavar="OUTPUT",
+            help="Mesh to write, in the format of its extension; replaces an existing file.",
         ),
     ],
     as_json: Annotated[
@@ -47,10 +48,10 @@ def filter_command(
     ] = False,
     debug: Annotated[bool, typer.Option("--debug", hidden=True)] = False,
 ) -> None:
-    """Filter one mesh: `meshlab-spectral filter --help` tells how."""
+    """Filter one mesh: see `meshlab-spectral filter --help`."""
     if target.exists() and source.exists() and target.samefile(source):
         raise typer.BadParameter(
-            f"{target} is INPUT itself, and would be lost: choose another name", param_hint="OUTPUT"
+            f"{target} is INPUT itself and would be lost: choose another name", param_hint="OUTPUT"
         )
     begin = time.monotonic()
     with errors_reported(debug), progress_shown() as on_progress:

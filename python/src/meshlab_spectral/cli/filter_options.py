@@ -1,4 +1,4 @@
-"""The filter's options on the command line, made from the fields of `FilterOptions`."""
+"""Command-line options generated from the fields of `FilterOptions`."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ Command = Callable[..., None]
 
 
 def with_filter_options(command: Command) -> Command:
-    """Give a command one option per field of FilterOptions, handed to it as `options`."""
+    """Add one option per field of FilterOptions to a command, passed as `options`."""
     return with_some_filter_options([option.name for option in fields(FilterOptions)])(command)
 
 
 def with_some_filter_options(names: Collection[str]) -> Callable[[Command], Command]:
-    """Give a command options for these fields of FilterOptions; the others have their defaults."""
+    """Add options for these fields of FilterOptions to a command; the rest keep their defaults."""
 
     def decorate(command: Command) -> Command:
         def run(given: dict[str, Any], arguments: dict[str, Any]) -> None:
@@ -33,10 +33,10 @@ def with_some_filter_options(names: Collection[str]) -> Callable[[Command], Comm
 
 
 def with_given_filter_options(command: Command) -> Command:
-    """Give a command one option per field of FilterOptions, handed to it as `given`.
+    """Add one option per field of FilterOptions to a command, passed as `given`.
 
-    `given` is a dict, as `FilterOptions.from_dict` takes it, of those options only that are on the
-    command line; they have been checked. The command has a parameter `context: typer.Context`.
+    `given` is a dict for `FilterOptions.from_dict` with only the options on the command line,
+    validated. The command needs a parameter `context: typer.Context`.
     """
 
     def run(values: dict[str, Any], arguments: dict[str, Any]) -> None:
@@ -64,9 +64,9 @@ def _with_options(
     place: str,
     call: Callable[[dict[str, Any], dict[str, Any]], None],
 ) -> Command:
-    """Make a command of the options `names` and those of `command` but `place`.
+    """Make a command with the options `names` and the parameters of `command` except `place`.
 
-    It hands the values of the first and of the second to `call`.
+    It passes the values of the former and of the latter to `call`.
     """
     types = get_type_hints(FilterOptions)
     own = [

@@ -17,11 +17,11 @@ from meshlab_spectral.plugin.installation import (
 )
 
 # "\b" keeps a paragraph's lines as they are.
-INSTALL_HELP = """Make the filters known to MeshLab 2025.07, for you alone.
+INSTALL_HELP = """Install the filters in MeshLab 2025.07, for the current user.
 
-Puts the plugin into the folders from which MeshLab reads extra plugins at its start: one for the
-usual MeshLab, of single precision, and one for MeshLab 2025.07d, of double precision. The filters
-are then in the menu Filters, Smoothing, Fairing and Deformation.
+Copies the plugin to the folders from which MeshLab loads extra plugins when it starts: one for the
+usual single-precision MeshLab, one for the double-precision MeshLab 2025.07d. The filters are then
+in the menu Filters, Smoothing, Fairing and Deformation.
 
 \b
   meshlab-spectral install
@@ -31,14 +31,14 @@ are then in the menu Filters, Smoothing, Fairing and Deformation.
 
 def install_command(
     remove: Annotated[
-        bool, typer.Option("--uninstall", help="Take the plugin out of these folders again.")
+        bool, typer.Option("--uninstall", help="Remove the plugin from these folders.")
     ] = False,
     dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Change nothing, only tell what would be done.")
+        bool, typer.Option("--dry-run", help="Change nothing, only show what would be done.")
     ] = False,
     debug: Annotated[bool, typer.Option("--debug", hidden=True)] = False,
 ) -> None:
-    """Make the filters known to MeshLab: `meshlab-spectral install --help` tells more."""
+    """Install the filters in MeshLab: see `meshlab-spectral install --help`."""
     with errors_reported(debug, "some files may have been changed"):
         changes = uninstall(dry_run) if remove else install(dry_run)
         for change in changes:
@@ -59,13 +59,13 @@ def _advice(found: FoundMeshLab | None) -> str:
     if found is None:
         return f"No MeshLab was found; the plugin is for MeshLab {wanted}."
     if found.version is None:
-        return f"{found.program} does not tell its version; the plugin is for MeshLab {wanted}."
+        return f"{found.program} does not report its version; the plugin is for MeshLab {wanted}."
     if found.host is None:
         return (
-            f"Warning: {found.program} is MeshLab {found.version}, which does not take the plugin: "
+            f"Warning: {found.program} is MeshLab {found.version}, which cannot load the plugin: "
             f"it is for MeshLab {wanted}."
         )
     return (
-        f"{found.program} is MeshLab {found.version}, of {found.host.precision} precision: start "
-        "it anew and look in Filters > Smoothing, Fairing and Deformation."
+        f"{found.program} is MeshLab {found.version}, of {found.host.precision} precision: restart "
+        "it and look in Filters > Smoothing, Fairing and Deformation."
     )

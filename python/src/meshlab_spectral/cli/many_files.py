@@ -1,4 +1,4 @@
-"""What the commands for many files share: their options, and a run with its progress shown."""
+"""Shared by the commands for many files: their options, and runs with a progress display."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from meshlab_spectral.batch.plan import Batch
 from meshlab_spectral.cli.messages import MESSAGES
 from meshlab_spectral.cli.progress import batch_progress
 
-INTERRUPTED = "what is done is in the report; go on with --resume"
+INTERRUPTED = "finished files are in the report; continue with --resume"
 
 _SIZE = re.compile(r"(?P<number>\d+(\.\d+)?)\s*(?P<unit>[KMGT]?)(i?B)?", re.IGNORECASE)
 _UNITS = {"": 1, "K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
@@ -36,12 +36,12 @@ Inputs = Annotated[
     list[str],
     typer.Argument(
         metavar="INPUT",
-        help="Mesh files, folders, patterns in quotes such as 'scans/*.ply', URLs.",
+        help="Mesh files, folders, quoted patterns such as 'scans/*.ply', URLs.",
     ),
 ]
 Workers = Annotated[
     int | None,
-    typer.Option("--workers", min=1, help="Files at once. By default one for each processor."),
+    typer.Option("--workers", min=1, help="Files processed at once. By default one per processor."),
 ]
 MemoryLimit = Annotated[
     int | None,
@@ -49,27 +49,27 @@ MemoryLimit = Annotated[
         "--memory-limit",
         parser=_bytes,
         metavar="SIZE",
-        help="Memory that a worker may use, such as 4GB. By default they share the machine's.",
+        help="Memory limit per worker, such as 4GB. By default they share the machine's.",
     ),
 ]
 Timeout = Annotated[
     float | None,
-    typer.Option("--timeout", min=1, help="Seconds that a file may take. By default any."),
+    typer.Option("--timeout", min=1, help="Time limit per file in seconds. By default none."),
 ]
 Scheduler = Annotated[
     str | None,
     typer.Option(
         "--scheduler",
         metavar="ADDRESS",
-        help="Use the workers of a Dask cluster that is running, such as tcp://host:8786; they "
-        "must see the files under the same names.",
+        help="Use the workers of a running Dask cluster, such as tcp://host:8786; they must see "
+        "the files under the same paths.",
     ),
 ]
 Debug = Annotated[bool, typer.Option("--debug", hidden=True)]
 
 
 def planning_shown(resume: bool) -> AbstractContextManager[object]:
-    """Say on a terminal that files are compared with the report; large ones take a while."""
+    """Show on a terminal that files are compared with the report, which may take a while."""
     if resume and MESSAGES.is_terminal:
         return MESSAGES.status("Comparing files with the report")
     return nullcontext()
@@ -82,18 +82,18 @@ def run_shown(
     scheduler: str | None,
     take: Callable[[FileResult], None] = lambda result: None,
 ) -> Counter[str]:
-    """Run a batch with its progress shown, and hand every result to `take`.
+    """Run a batch with a progress display, and pass each result to `take`.
 
     Returns
     -------
     Counter
-        How many results there were of every outcome, and "with warnings".
+        Number of results by outcome, and "with warnings".
     """
     counts: Counter[str] = Counter()
     running = run_batch(batch, workers=workers, memory_limit=memory_limit, scheduler=scheduler)
     with (
         batch_progress(MESSAGES, len(batch.jobs) + len(batch.done)) as on_result,
-        closing(running) as results,  # ends the workers when it is interrupted
+        closing(running) as results,  # ends the workers on an interrupt
     ):
         for result in results:
             counts[result.outcome] += 1
@@ -103,9 +103,9 @@ def run_shown(
     return counts
 
 
-def told(counts: Counter[str], done: str) -> str:
-    """Put the counts of `run_shown` into words; `done` is the outcome of a file that went well."""
+def summary_of(counts: Counter[str], done: str) -> str:
+    """Format the counts of `run_shown`; `done` is the outcome of a successful file."""
     always = f"{counts[done]} {done}, {counts['failed']} failed"
-    before = f", {counts['unchanged']} done before" if counts["unchanged"] else ""
+    before = f", {counts['unchanged']} already done" if counts["unchanged"] else ""
     warned = f", {counts['with warnings']} with warnings" if counts["with warnings"] else ""
     return always + before + warned

@@ -1,4 +1,4 @@
-"""What every command says in the same way: errors with their exit codes, and warnings."""
+"""Messages of all commands: errors with their exit codes, and warnings."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from meshlab_spectral.files.formats import POINTS_ONLY
 EXIT_FAILED, EXIT_USAGE, EXIT_INTERRUPTED = 1, 2, 130
 
 EXIT_CODES = (
-    "Exit codes: 0 all done; 1 a file could not be read, filtered or written; 2 the command line "
-    "is wrong; 130 interrupted."
+    "Exit codes: 0 all done; 1 a file could not be read, filtered or written; 2 invalid command "
+    "line; 130 interrupted."
 )
 
 MESSAGES = Console(stderr=True)
@@ -23,7 +23,7 @@ MESSAGES = Console(stderr=True)
 
 @contextlib.contextmanager
 def errors_reported(debug: bool, when_interrupted: str = "no output was written") -> Iterator[None]:
-    """Turn every error of this package into one message and an exit code."""
+    """Turn any error of this package into a message and an exit code."""
     try:
         yield
     except KeyboardInterrupt:
@@ -32,14 +32,14 @@ def errors_reported(debug: bool, when_interrupted: str = "no output was written"
     except SpectralError as error:
         if debug:
             MESSAGES.print_exception()
-        # No markup, no wrapping: file names hold brackets, and scripts search for messages.
+        # No markup or wrapping: file names may contain brackets, and scripts parse messages.
         MESSAGES.print(f"Error: {error}", markup=False, highlight=False, soft_wrap=True)
         usage = isinstance(error, OptionError | FormatError | InputError)
         raise typer.Exit(EXIT_USAGE if usage else EXIT_FAILED) from error
 
 
 def warn_of_points_only(ending: str) -> None:
-    """Warn of a format, such as .xyz, in which MeshLab keeps no faces and says nothing."""
+    """Warn of a format, such as .xyz, in which MeshLab silently drops the faces."""
     plain = ending.removeprefix(".")
     if plain.lower() in POINTS_ONLY:
         MESSAGES.print(

@@ -1,4 +1,4 @@
-"""Progress on a terminal: of one mesh, and of a batch."""
+"""Progress displays on a terminal, for one mesh and for a batch."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _FEWEST_PER_SECOND = 0.1
 
 @contextlib.contextmanager
 def progress_shown() -> Iterator[ProgressCallback]:
-    """Show on a terminal what MeshLab reports of its progress; elsewhere nothing."""
+    """Show MeshLab's progress on a terminal; elsewhere show nothing."""
     with Progress(
         SpinnerColumn(),
         BarColumn(),
@@ -48,7 +48,7 @@ def progress_shown() -> Iterator[ProgressCallback]:
                 progress.reset(task, start=False, total=None, description=stage)
                 progress.start_task(task)
             else:
-                # MeshLab's figure may fall back a little when a step turns out to need more work.
+                # MeshLab's fraction may drop a little when a step turns out to need more work.
                 done = max(fraction, progress.tasks[0].completed)
                 progress.update(task, total=1.0, completed=done, description=stage)
 
@@ -57,21 +57,21 @@ def progress_shown() -> Iterator[ProgressCallback]:
 
 @contextlib.contextmanager
 def batch_progress(console: Console, files: int) -> Iterator[Callable[[FileResult], None]]:
-    """Show on a terminal how many files are done and failed, the rate and the time left.
+    """Show on a terminal the number of files done and failed, the rate and the time left.
 
-    Failures are told everywhere, a line each.
+    Failures are printed in any case, one line each.
 
     Parameters
     ----------
     console
-        Where to.
+        The console to print to.
     files
-        How many results there will be.
+        Number of results expected.
 
     Yields
     ------
     callable
-        To be called with every result.
+        To be called with each result.
     """
     with Progress(
         SpinnerColumn(),
@@ -100,20 +100,20 @@ def batch_progress(console: Console, files: int) -> Iterator[Callable[[FileResul
                     soft_wrap=True,
                 )
             worked += result.outcome != "unchanged"
-            told = f"[red]{failed} failed[/red]" if failed else "0 failed"
-            progress.update(task, advance=1, failed=told, worked=worked)
+            failures = f"[red]{failed} failed[/red]" if failed else "0 failed"
+            progress.update(task, advance=1, failed=failures, worked=worked)
 
         yield update
 
 
 class _PaceColumn(ProgressColumn):
-    """Rate and time left; rich's own would count the files that an earlier run has done."""
+    """Rate and time left; rich's own column would count the files done by an earlier run."""
 
     def render(self, task: Task) -> Text:
         worked = task.fields["worked"]
         if not worked or not task.elapsed or task.remaining is None:
             return Text("")
         rate = worked / task.elapsed
-        told = f"{rate:.1f} files/s" if rate >= _FEWEST_PER_SECOND else f"{60 * rate:.1f} files/min"
+        pace = f"{rate:.1f} files/s" if rate >= _FEWEST_PER_SECOND else f"{60 * rate:.1f} files/min"
         left = timedelta(seconds=math.ceil(task.remaining / rate))
-        return Text(f"{told}, {left} left")
+        return Text(f"{pace}, {left} left")

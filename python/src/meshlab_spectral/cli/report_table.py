@@ -1,4 +1,4 @@
-"""The filter's report, for people: a table."""
+"""The filter's report as a table."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from rich.text import Text
 
 
 def report_table(report: dict[str, Any], title: str) -> Table:
-    """Lay out a report of the filter; lengths are in the units of the mesh.
+    """Format a report of the filter as a table; lengths are in the units of the mesh.
 
     Parameters
     ----------
     report
-        The dictionary that the filter returns.
+        The dictionary returned by the filter.
     title
-        Heading of the table, plain text.
+        Title of the table, plain text.
     """
-    # As Text: a name such as "[red].ply" is no markup.
+    # Text, not str: a name such as "[red].ply" is not markup.
     table = Table(title=Text(title), show_header=False, title_justify="left", title_style="bold")
     table.add_column(style="cyan", no_wrap=True)
     table.add_column(justify="right")
@@ -40,9 +40,9 @@ def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
         ("Components", f"{report['components']}"),
     ]
     if report.get("unreferenced_vertices"):
-        rows.append(("Vertices without faces", f"{report['unreferenced_vertices']}, left alone"))
+        rows.append(("Vertices without faces", f"{report['unreferenced_vertices']}, unchanged"))
     if report.get("fixed_vertices"):
-        rows.append(("Vertices on a fixed boundary", f"{report['fixed_vertices']}, left alone"))
+        rows.append(("Vertices on a fixed boundary", f"{report['fixed_vertices']}, unchanged"))
     if "eigenvalues" in report:
         rows.append(("Harmonics", f"{len(report['eigenvalues'])}"))
         rows.append(("Bases computed", f"{report['computed_bases']}"))

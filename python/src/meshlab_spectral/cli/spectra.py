@@ -20,7 +20,7 @@ from meshlab_spectral.cli.many_files import (
     Workers,
     planning_shown,
     run_shown,
-    told,
+    summary_of,
 )
 from meshlab_spectral.cli.messages import EXIT_FAILED, errors_reported
 from meshlab_spectral.files.whole_files import remove_leftovers, writing_whole
@@ -28,53 +28,53 @@ from meshlab_spectral.filters.options import Boundary, LaplacianKind
 from meshlab_spectral.filters.spectrum import DEFAULT_BASIS_SIZE
 
 # "\b" keeps a paragraph's lines as they are.
-SPECTRA_HELP = """Measure how much of many meshes is in details of which size: one table of all.
+SPECTRA_HELP = """Measure the geometry spectra of many meshes, in one table.
 
-The table has a row for every octave of every mesh, as comma-separated values: the feature size and
-the amplitude of the details of about this size, in percent of the diagonal and in the units of the
-mesh, and their share of the energy. The octaves are the same percentages for all meshes. `spectrum`
-plots one of them.
+The table has a row for each octave of each mesh, as comma-separated values: the feature size and
+the amplitude of details of about this size, in percent of the diagonal and in the units of the
+mesh, and their share of the energy. The octaves are at the same percentages for all meshes.
+`spectrum` plots a single mesh.
 
 \b
   meshlab-spectral spectra scans --output spectra.csv
-Go on after an interruption, or after more scans have come:
+Continue after an interruption, or with more scans:
   meshlab-spectral spectra scans --output spectra.csv --resume
 
-Every mesh gets a line in the report, spectra_report.jsonl, as soon as it is measured.
+Each mesh gets a line in the report, spectra_report.jsonl, as soon as it is measured.
 """
 
 
 def spectra_command(
     inputs: Inputs,
     output: Annotated[
-        Path, typer.Option(metavar="FILE", help="The table to write. Replaces a file.")
+        Path, typer.Option(metavar="FILE", help="Table to write; replaces an existing file.")
     ] = Path("spectra.csv"),
     recursive: Annotated[
-        bool, typer.Option("--recursive", "-r", help="Search folders in folders, too.")
+        bool, typer.Option("--recursive", "-r", help="Search subfolders, too.")
     ] = False,
     resume: Annotated[
         bool,
         typer.Option(
             "--resume",
-            help="Take from the report what it proves measured, of this input, with these options "
-            "and versions.",
+            help="Reuse what the report proves measured with the same input, options and versions.",
         ),
     ] = False,
     basis_size: Annotated[
-        int, typer.Option(min=1, help="How many of the lowest harmonics are measured one by one.")
+        int, typer.Option(min=1, help="Number of lowest harmonics to measure individually.")
     ] = DEFAULT_BASIS_SIZE,
     laplacian: Annotated[
         LaplacianKind, typer.Option(help="As for the filter.")
     ] = "intrinsic delaunay",
     boundary: Annotated[
-        Boundary, typer.Option(help="Whether the rims of open surfaces are part of their shape.")
+        Boundary,
+        typer.Option(help="Whether boundaries of open surfaces are part of the shape (free)."),
     ] = "free",
     report: Annotated[
         Path | None,
         typer.Option(
             metavar="FILE",
-            help="The report, one JSON object a line; added to if it exists. By default "
-            "spectra_report.jsonl beside spectra.csv.",
+            help="The report, one JSON object per line; appended to if it exists. By default "
+            "spectra_report.jsonl next to spectra.csv.",
             show_default=False,
         ),
     ] = None,
@@ -84,7 +84,7 @@ def spectra_command(
     scheduler: Scheduler = None,
     debug: Debug = False,
 ) -> None:
-    """Measure spectra of many meshes: `meshlab-spectral spectra --help` tells more."""
+    """Measure spectra of many meshes: see `meshlab-spectral spectra --help`."""
     with errors_reported(debug, INTERRUPTED):
         check_workers(scheduler, workers, memory_limit)
         with planning_shown(resume):
@@ -104,6 +104,6 @@ def spectra_command(
         with writing_whole(output) as scratch:
             counts = run_shown(batch, workers, memory_limit, scheduler, results.append)
             write_table(scratch, results)
-        typer.echo(f"{told(counts, 'measured')}; table: {output}, report: {batch.report}")
+        typer.echo(f"{summary_of(counts, 'measured')}; table: {output}, report: {batch.report}")
     if counts["failed"]:
         raise typer.Exit(EXIT_FAILED)

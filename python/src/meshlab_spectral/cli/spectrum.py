@@ -33,13 +33,13 @@ from meshlab_spectral.plugin.versions import versions
 from meshlab_spectral.process.single_file import measure_spectrum_in_child
 
 # "\b" keeps a paragraph's lines as they are.
-SPECTRUM_HELP = """Show how much of a mesh is in details of which size, to choose a filter by.
+SPECTRUM_HELP = """Plot the geometry spectrum of a mesh, to choose a filter.
 
-The plot has the amplitude of the details, their root mean square height, against their feature
-size: octave by octave, and for the lowest harmonics one by one. The filter's gain is drawn over it.
-Below is the height of random displacements of the vertices that would explain the details of each
-size: where it turns level there is noise, or what is too fine for the mesh to tell it from noise.
-The rim of an open mesh adds to all sizes; --boundary fixed leaves it out.
+The plot shows the amplitude of details, their root mean square height, by feature size: for octaves
+and, at the lowest frequencies, for single harmonics. The filter's gain is drawn over it. The lower
+plot shows the height of random vertex displacements that would explain the details of each size:
+where it levels off there is noise, or detail too fine for the mesh to tell from noise. The boundary
+of an open mesh contributes at all sizes; --boundary fixed leaves it out.
 
 \b
   meshlab-spectral spectrum scan.ply
@@ -48,7 +48,7 @@ The rim of an open mesh adds to all sizes; --boundary fixed leaves it out.
   meshlab-spectral spectrum scan.ply --json
 """
 
-# Those that make the curve, and those on which the spectrum depends.
+# The options that the filter's curve and the spectrum depend on.
 SHOWN_OPTIONS = (
     "filter_type",
     "feature_size",
@@ -73,27 +73,27 @@ def spectrum_command(
         Path | None,
         typer.Option(
             metavar="PLOT",
-            help="The plot: .png, .pdf or .svg. Replaces a file. By default MESH_spectrum.png in "
-            "the current folder, and none with --json.",
+            help="Plot to write: .png, .pdf or .svg; replaces an existing file. By default "
+            "MESH_spectrum.png in the current folder, or none with --json.",
             show_default=False,
         ),
     ] = None,
     basis_size: Annotated[
-        int, typer.Option(min=1, help="How many of the lowest harmonics are shown one by one.")
+        int, typer.Option(min=1, help="Number of lowest harmonics to show individually.")
     ] = DEFAULT_BASIS_SIZE,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print the spectrum as one JSON object.")
     ] = False,
     debug: Annotated[bool, typer.Option("--debug", hidden=True)] = False,
 ) -> None:
-    """Show the spectrum of a mesh: `meshlab-spectral spectrum --help` tells how."""
+    """Show the spectrum of a mesh: see `meshlab-spectral spectrum --help`."""
     if output is None and not as_json:
         output = Path(f"{source.stem}_spectrum.png")
     begin = time.monotonic()
     with errors_reported(debug), contextlib.ExitStack() as stack:
         check_source(source)
         scratch = None
-        if output is not None:  # what cannot be written is refused before the work
+        if output is not None:  # fail before the computation if it cannot be written
             check_format(output)
             scratch = stack.enter_context(writing_whole(output))
         with progress_shown() as on_progress:
@@ -128,19 +128,19 @@ def _record(
 
 def _noise_line(spectrum: GeometrySpectrum) -> str:
     if spectrum.noise_height == 0:
-        return "No noise is seen"
+        return "No noise found"
     percent = 100 / spectrum.diagonal
     return (
         f"Noise: details smaller than {spectrum.noise_feature_size:.3g} "
-        f"({percent * spectrum.noise_feature_size:.2g} %) are as vertices displaced at random by "
+        f"({percent * spectrum.noise_feature_size:.2g} %) look like random vertex displacements of "
         f"{spectrum.noise_height:.2g} ({percent * spectrum.noise_height:.2g} %)"
     )
 
 
 def _table(spectrum: GeometrySpectrum, options: FilterOptions, name: str) -> Table:
-    """Lay out the octaves, and the gain of the filter in their middles."""
+    """Format the octaves, with the gain of the filter at their centres."""
     size = feature_size_of(options, spectrum)
-    # As Text: a name such as "[red].ply" is no markup.
+    # Text, not str: a name such as "[red].ply" is not markup.
     title = Text(f"{name}: diagonal {spectrum.diagonal:.6g}, {options.filter_type} at {size:.6g}")
     table = Table(title=title, title_justify="left", title_style="bold")
     for heading in (

@@ -1,4 +1,4 @@
-"""The figures of the paper, of any meshes: the command `meshlab-spectral figures`."""
+"""The figures of the paper, for any meshes."""
 
 from __future__ import annotations
 
@@ -29,21 +29,21 @@ def draw_figures(
     scale: float = 1.0,
     on_stage: Callable[[str], None] = lambda stage: None,
 ) -> list[Path]:
-    """Draw figures of every mesh, one .png file each.
+    """Draw the figures of each mesh, one .png file per figure.
 
     Parameters
     ----------
     sources
-        The mesh files. A mesh is seen along the shortest axis of its bounding box, upright when y
-        is up, or z where y is the shortest.
+        The mesh files. A mesh is viewed along the shortest axis of its bounding box, with y up, or
+        z if y is the shortest axis.
     folder
-        Where the pictures go; made when it does not exist.
+        Folder for the pictures, created if needed.
     only
-        The numbers of the figures, as in the paper.
+        Numbers of the figures, as in the paper.
     scale
-        Of the pictures' resolution; 1 fills a screen.
+        Resolution of the pictures; 1 fills a screen.
     on_stage
-        Called with what is being done, for people.
+        Called with a description of each stage, to show to the user.
 
     Returns
     -------
@@ -57,7 +57,7 @@ def draw_figures(
     OptionError
         When two meshes have the same name.
     FilterError
-        When the filter refuses a mesh.
+        When the filter rejects a mesh.
     """
     for source in sources:
         if not source.is_file():
@@ -66,13 +66,13 @@ def draw_figures(
     for name in names:
         if names.count(name) > 1:
             raise OptionError(
-                f"two meshes are named {name}, as their pictures would be: rename one"
+                f"two meshes are named {name}, and so would be their pictures: rename one"
             )
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise MeshFileError(
-            f"the folder {folder} cannot be made ({error.strerror}): choose another one"
+            f"the folder {folder} cannot be created ({error.strerror}): choose another one"
         ) from error
     for name in names:
         for number in only:

@@ -1,4 +1,4 @@
-"""Pictures of meshes, drawn without a screen. Needs the extra `pictures` (PyVista)."""
+"""Off-screen rendering of meshes. Needs the extra `pictures` (PyVista)."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ if TYPE_CHECKING:
 
 Image = NDArray[np.uint8]
 
-SIGNED_COLOURS = "coolwarm"  # grey in the middle: white would be lost against the page
+SIGNED_COLOURS = "coolwarm"  # grey at zero, which stands out from the white page
 
 
 @dataclass(frozen=True)
 class Panel:
-    """One mesh of a picture.
+    """A mesh in a picture.
 
     Attributes
     ----------
@@ -35,7 +35,7 @@ class Panel:
     F
         m x 3 indices of the corners of triangles.
     signed
-        n values from -1 (blue) over 0 (grey, with a line) to 1 (red) to colour the mesh by.
+        n values to colour the mesh by, from -1 (blue) to 1 (red); a line marks 0 (grey).
     """
 
     label: str
@@ -45,20 +45,20 @@ class Panel:
 
     @classmethod
     def of(cls, label: str, mesh: pymeshlab.Mesh) -> Panel:
-        """Take the triangles of a mesh of pymeshlab."""
+        """Copy the triangles of a pymeshlab mesh."""
         return cls(label, mesh.vertex_matrix().copy(), mesh.face_matrix().astype(np.int64))
 
 
 @dataclass(frozen=True)
 class View:
-    """From where a mesh is seen.
+    """A viewpoint.
 
     Attributes
     ----------
     direction
-        From the mesh towards the camera.
+        Direction from the mesh to the camera.
     up
-        What is up in the picture; not along `direction`.
+        Up direction of the picture; not parallel to `direction`.
     """
 
     direction: tuple[float, float, float] = (0.0, 0.0, 1.0)
@@ -68,14 +68,14 @@ class View:
     def of_widest_side(cls, V: NDArray[np.float64]) -> View:
         """Look along the shortest axis of the bounding box, from its positive side.
 
-        Up is y, or z where y is the shortest axis: right for models that follow either custom.
+        Up is y, or z if y is the shortest axis: this suits models with either convention.
         """
         shortest = int(np.argmin(np.ptp(V, axis=0)))
         x, y, z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
         return cls((x, y, z)[shortest], z if shortest == 1 else y)
 
     def axes(self) -> NDArray[np.float64]:
-        """Give unit vectors to the right, upwards and to the camera, as rows."""
+        """Return unit vectors to the right, up and towards the camera, as rows."""
         back = np.asarray(self.direction) / np.linalg.norm(self.direction)
         right = np.cross(self.up, back)
         right /= np.linalg.norm(right)
@@ -84,16 +84,16 @@ class View:
 
 @dataclass(frozen=True)
 class Frame:
-    """The rectangle that a picture shows, in parallel projection.
+    """The rectangle shown by a picture, in parallel projection.
 
     Attributes
     ----------
     view
-        From where.
+        The viewpoint.
     middle
-        Point of the mesh's space that is in the middle of the picture.
+        Point at the centre of the picture.
     width, height
-        In the units of the mesh.
+        Size in the units of the mesh.
     """
 
     view: View
@@ -103,12 +103,12 @@ class Frame:
 
     @classmethod
     def around(cls, shapes: Sequence[NDArray[np.float64]], view: View) -> Frame:
-        """Fit all of some meshes, each n x 3 coordinates, with a narrow margin."""
+        """Fit several meshes, each n x 3 coordinates, with a narrow margin."""
         return cls.row_by_row([shapes], view)[0]
 
     @classmethod
     def row_by_row(cls, rows: Sequence[Sequence[NDArray[np.float64]]], view: View) -> list[Frame]:
-        """Fit rows of meshes: all frames have the same width, each row its own height."""
+        """Fit rows of meshes: all frames have the same width, each row has its own height."""
         axes = view.axes()
         boxes = [_box([V @ axes.T for V in row]) for row in rows]
         left = min(low[0] for low, _ in boxes)
@@ -129,18 +129,18 @@ def draw_side_by_side(
     view: View | None = None,
     panel_size: tuple[int, int] = (800, 800),
 ) -> None:
-    """Draw meshes beside each other, all from the same camera, so that sizes can be compared.
+    """Draw meshes side by side, with the same camera, so that sizes can be compared.
 
     Parameters
     ----------
     panels
-        The meshes from left to right. The first one sets where the camera looks.
+        The meshes from left to right; the camera is centred on the first.
     path
-        The picture to write, a .png file.
+        The .png file to write.
     view
-        Where the camera stands; by default in front of the xy plane.
+        The viewpoint; by default in front of the xy plane.
     panel_size
-        Width and height of one panel in pixels.
+        Width and height of each panel in pixels.
 
     Raises
     ------
@@ -172,14 +172,14 @@ def render(panel: Panel, frame: Frame, pixels: int) -> Image:
     panel
         The mesh.
     frame
-        What the picture shows.
+        The rectangle to show.
     pixels
-        Width of the picture; its height follows from the frame.
+        Width of the picture; the height follows from the frame.
 
     Returns
     -------
     array
-        Height x width x 3, 0 to 255.
+        Height x width x 3, values 0 to 255.
 
     Raises
     ------
@@ -193,18 +193,18 @@ def render(panel: Panel, frame: Frame, pixels: int) -> Image:
         fine = plotter.screenshot(return_img=True)
     finally:
         plotter.close()
-    # On top of VTK's own smoothing, for spikes that are thinner than a pixel.
+    # Supersampled in addition to VTK's antialiasing, for spikes thinner than a pixel.
     image: Image = fine.reshape(height, 2, pixels, 2, 3).mean(axis=(1, 3)).round().astype(np.uint8)
     return image
 
 
 def to_full_colours(values: NDArray[np.float64], areas: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Scale to -1 .. 1; the outermost hundredth of the area, mostly spikes, is cut off.
+    """Scale to -1 .. 1, clipping the extreme hundredth of the area, which is mostly spikes.
 
     Parameters
     ----------
     values, areas
-        Of the n vertices.
+        Values and areas of the n vertices.
     """
     order = np.argsort(np.abs(values))
     reached = np.searchsorted(np.cumsum(areas[order]), 0.99 * areas.sum())
@@ -215,7 +215,7 @@ def to_full_colours(values: NDArray[np.float64], areas: NDArray[np.float64]) -> 
 
 def _plotter(columns: int, panel_size: tuple[int, int]) -> Any:
     if sys.platform == "linux" and not os.environ.get("DISPLAY"):
-        # Without this VTK first tries, and warns about, the X server that is not there.
+        # Otherwise VTK first tries an X server, and warns that there is none.
         os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
     try:
         import pyvista
@@ -237,7 +237,7 @@ def _plotter(columns: int, panel_size: tuple[int, int]) -> Any:
 
 
 def _add(plotter: Any, panel: Panel, frame: Frame) -> None:
-    """Put a mesh, its lights and its camera into the plotter's current panel."""
+    """Add a mesh, its lights and its camera to the plotter's current panel."""
     surface = _surface(panel)
     if panel.signed is None:
         plotter.add_mesh(surface, color="#c9c2b4", smooth_shading=True, specular=0.05)
@@ -254,11 +254,11 @@ def _add(plotter: Any, panel: Panel, frame: Frame) -> None:
         )
         zero = surface.contour([0.0], scalars="signed")
         if zero.n_points:
-            # A hair before the surface, which would else hide half of the line.
+            # Slightly in front of the surface, which would otherwise hide half the line.
             zero.translate(2e-3 * frame.height * frame.view.axes()[2], inplace=True)
             plotter.add_mesh(zero, color="#404040", line_width=5, lighting=False)
     for light in _lights():
-        plotter.add_light(light, only_active=True)  # else every panel would light all others, too
+        plotter.add_light(light, only_active=True)  # else it lights all other panels, too
     back = frame.view.axes()[2]
     distance = 10 * max(frame.width, frame.height)
     plotter.camera_position = [
@@ -275,7 +275,7 @@ def _surface(panel: Panel) -> Any:
     import pyvista
 
     surface = pyvista.PolyData.from_regular_faces(panel.V, panel.F)
-    # Normals of our own, whole and unsplit: smooth_shading would cut the surface at sharp edges.
+    # Explicit vertex normals: smooth_shading would split the surface at sharp edges.
     return surface.compute_normals(
         cell_normals=False, split_vertices=False, consistent_normals=False
     )
@@ -290,9 +290,9 @@ def _box(shapes: Sequence[NDArray[np.float64]]) -> tuple[NDArray[Any], NDArray[A
 
 
 def _lights() -> list[Any]:
-    """Key light from the upper left, fill from the right: both move with the camera.
+    """Key light from the upper left, fill light from the right, both fixed to the camera.
 
-    No part of a surface faces both, so they stay below full white and no relief is lost.
+    No part of a surface faces both, so it never saturates and no relief is lost.
     """
     import pyvista
 

@@ -1,4 +1,4 @@
-"""The plot of a geometry spectrum: amplitude against feature size, a filter's gain, the noise."""
+"""The plot of a geometry spectrum: amplitude by feature size, a filter's gain, noise."""
 
 from __future__ import annotations
 
@@ -20,26 +20,26 @@ if TYPE_CHECKING:
 FORMATS = (".png", ".pdf", ".svg")
 
 _SIZE = (9.0, 7.5)  # inches
-_HEIGHTS = (3, 2)  # of the two parts
+_HEIGHTS = (3, 2)  # ratio of the two plots
 _DOTS_PER_INCH = 150
 _OCTAVES, _HARMONICS, _FILTER, _NOISE = "#3b6ea5", "#7a7a7a", "#c0504d", "#8a6d1d"
 
-# Octaves of less than this part of the largest amplitude, at the end, belong to a few slivers of
-# the mesh, and would take half of the plot.
+# The last octaves, below this fraction of the largest amplitude, come from a few slivers of the
+# mesh and would take up half the plot.
 _SHOWN = 1e-5
 
 
 def check_format(path: Path) -> None:
-    """Raise FormatError unless the name ends as a picture's does that can be written."""
+    """Raise FormatError unless the extension is one of FORMATS."""
     if path.suffix.lower() not in FORMATS:
         raise FormatError(
-            f"{path.name} ends in {path.suffix or 'nothing'}: end the name of the plot in "
-            f"{', '.join(FORMATS[:-1])} or {FORMATS[-1]}"
+            f"{path.name} ends in {path.suffix or 'nothing'}: a plot is a "
+            f"{', '.join(FORMATS[:-1])} or {FORMATS[-1]} file"
         )
 
 
 def feature_size_of(options: FilterOptions, spectrum: GeometrySpectrum) -> float:
-    """Give the filter's feature size in the units of the mesh."""
+    """Return the filter's feature size in the units of the mesh."""
     size = options.feature_size
     if size.automatic:
         return spectrum.default_feature_size
@@ -47,7 +47,7 @@ def feature_size_of(options: FilterOptions, spectrum: GeometrySpectrum) -> float
 
 
 def octave_gains(spectrum: GeometrySpectrum, options: FilterOptions) -> Array:
-    """Give the gains of a filter in the middles of the octaves."""
+    """Return the gains of a filter at the centres of the octaves."""
     cutoff = feature_size_of(options, spectrum)
     return gain(options, cutoff / spectrum.octave_feature_sizes)
 
@@ -55,22 +55,22 @@ def octave_gains(spectrum: GeometrySpectrum, options: FilterOptions) -> Array:
 def draw_spectrum(
     spectrum: GeometrySpectrum, options: FilterOptions, title: str, path: Path
 ) -> None:
-    """Draw the spectrum of a mesh, and a filter's transfer function over it.
+    """Plot the spectrum of a mesh with a filter's transfer function over it.
 
-    Large features are at the left, small ones at the right, as low and high notes are. Below is the
-    height of the noise of the vertices that would explain the details of each size: where it turns
-    level they are noise, and shaded.
+    Large features are on the left, small ones on the right, like low and high notes. The lower plot
+    has the height of the vertex noise that would explain the details of each size: where it levels
+    off they are noise, and shaded.
 
     Parameters
     ----------
     spectrum
-        Of the mesh.
+        Spectrum of the mesh.
     options
-        The filter.
+        Options of the filter.
     title
-        Of the plot, plain text.
+        Title of the plot, plain text.
     path
-        The file to write; its ending, one of FORMATS, says the format.
+        The file to write; its extension, one of FORMATS, sets the format.
 
     Raises
     ------
@@ -110,7 +110,7 @@ def _plot_amplitudes(axes: Axes, spectrum: GeometrySpectrum) -> None:
     axes.set_yscale("log")
     axes.stairs(heights, edges, baseline=floor, fill=True, color=_OCTAVES, alpha=0.18)
     axes.stairs(heights, edges, baseline=floor, color=_OCTAVES, linewidth=1.8, label="octaves")
-    # Two octaves of one height are two.
+    # Separate octaves of equal height.
     axes.vlines(edges[1:-1], floor, np.minimum(heights[:-1], heights[1:]), _OCTAVES, linewidth=0.6)
     waves = spectrum.frequencies > 0
     axes.plot(
@@ -150,7 +150,7 @@ def _plot_gain(
 def _plot_noise(axes: Axes, spectrum: GeometrySpectrum) -> None:
     axes.set_yscale("log")
     if len(spectrum.band_feature_sizes) == 0:
-        axes.plot([], [], " ", label="too few harmonics to tell noise by")
+        axes.plot([], [], " ", label="too few harmonics to detect noise")
         return
     axes.plot(
         spectrum.band_feature_sizes,
@@ -159,12 +159,12 @@ def _plot_noise(axes: Axes, spectrum: GeometrySpectrum) -> None:
         color=_OCTAVES,
         markersize=3.5,
         linewidth=1.4,
-        label="noise that would explain the details of this size (thirds of octaves)",
+        label="noise that would explain the details of this size (third octaves)",
     )
     heights = spectrum.noise_heights[spectrum.noise_heights > 0]
     axes.set_ylim(0.05 * heights.min(), 3 * heights.max())  # room for the legend
     if spectrum.noise_height == 0:
-        axes.plot([], [], " ", label="it does not turn level: no noise is seen")
+        axes.plot([], [], " ", label="it does not level off: no noise found")
         return
     size, percent = spectrum.noise_feature_size, 100 / spectrum.diagonal
     axes.axhline(
@@ -172,7 +172,7 @@ def _plot_noise(axes: Axes, spectrum: GeometrySpectrum) -> None:
         color=_NOISE,
         linewidth=1.2,
         linestyle=(0, (4, 3)),
-        label=f"noise of the height {spectrum.noise_height:.3g}"
+        label=f"noise of height {spectrum.noise_height:.3g}"
         f" ({percent * spectrum.noise_height:.2g} %)",
     )
     axes.annotate(
@@ -203,9 +203,9 @@ def _label(axes: Axes, gains: Axes, noise: Axes, spectrum: GeometrySpectrum, tit
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.10g}"))
         axis.set_minor_formatter(NullFormatter())
     noise.set_xlabel("feature size (wavelength), units of the mesh", fontsize=FONT_SIZE, color=INK)
-    percent.set_xlabel("% of the diagonal of the bounding box", fontsize=FONT_SIZE, color=INK)
+    percent.set_xlabel("% of the bounding box diagonal", fontsize=FONT_SIZE, color=INK)
     axes.set_ylabel("amplitude (rms height), units of the mesh", fontsize=FONT_SIZE, color=INK)
-    noise.set_ylabel("height of noise, units of the mesh", fontsize=FONT_SIZE, color=INK)
+    noise.set_ylabel("noise height, units of the mesh", fontsize=FONT_SIZE, color=INK)
     gains.set_ylabel("gain of the filter", fontsize=FONT_SIZE, color=_FILTER)
     axes.set_title(title, fontsize=FONT_SIZE + 1, color=INK, parse_math=False)
     for each in (axes, noise, percent, gains):

@@ -1,4 +1,4 @@
-"""Manifold harmonics of a mesh file, as an archive of NumPy."""
+"""Manifold harmonics of a mesh file, as a NumPy archive."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from meshlab_spectral.filters.options import Boundary, LaplacianKind
 
 
 def check_basis_target(target: Path) -> None:
-    """Raise FormatError unless the name of `target` ends in .npz."""
+    """Raise FormatError unless `target` is named .npz."""
     if target.suffix != ".npz":
-        raise FormatError(f"{target.name}: a basis is an archive of NumPy, end its name in .npz")
+        raise FormatError(f"{target.name}: a basis is a NumPy archive, name it .npz")
 
 
 def basis_to_scratch(
@@ -28,10 +28,10 @@ def basis_to_scratch(
     boundary: Boundary,
     on_stage: Callable[[str], None],
 ) -> dict[str, Any]:
-    """Write the harmonics of a mesh file into an archive of NumPy, `scratch` of `writing_whole`.
+    """Write the harmonics of a mesh file to a NumPy archive, `scratch` from `writing_whole`.
 
-    Its arrays are eigenvalues (k), frequencies (k), harmonics (n x k) and masses (n), as those of
-    `Harmonics`, and the mesh as it was read, to which their rows belong: vertices (n x 3), faces
+    Its arrays are eigenvalues (k), frequencies (k), harmonics (n x k) and masses (n) as in
+    `Harmonics`, and the mesh as read, whose vertices their rows follow: vertices (n x 3), faces
     (m x 3).
 
     Returns
@@ -47,7 +47,7 @@ def basis_to_scratch(
     on_stage("reading")
     V, F = load_arrays(source)
     on_stage("computing")
-    # Verbose: its log is the only source of progress.
+    # Verbose: MeshLab's log is the only source of progress.
     basis = compute(V, F, basis_size, laplacian, boundary, verbose=True)
     on_stage("writing")
     with scratch.open("wb") as file:

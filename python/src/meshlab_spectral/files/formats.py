@@ -1,4 +1,4 @@
-"""The endings of mesh files that pymeshlab reads and writes; it has no list of its own."""
+"""Extensions of the mesh files that pymeshlab reads and writes; it offers no such list."""
 
 from __future__ import annotations
 
@@ -6,15 +6,15 @@ _BOTH = {"3ds", "3mf", "ctm", "dae", "e57", "obj", "off", "ply", "stl", "wrl", "
 _READ_ONLY = {"apts", "asc", "bre", "fbx", "glb", "gltf", "pdb", "pts", "ptx", "qobj", "tri"}
 READABLE = frozenset(_BOTH | _READ_ONLY | {"txt", "vmi", "x3dv"})
 WRITABLE = frozenset(_BOTH | {"dxf", "idtf", "json", "nxs", "nxz"})
-# Written without an error, and without the faces.
+# MeshLab drops the faces in these without an error.
 POINTS_ONLY = frozenset({"e57", "xyz"})
-# What a folder is searched for. To MeshLab a .txt file is a list of points; it is seldom meant so.
+# Searched for in folders. MeshLab reads any .txt as a point list, which is rarely intended.
 SEARCHED = READABLE - {"txt"}
 
 FALLBACK = "ply"
 
 
 def ending_of(name: str) -> str:
-    """Tell the ending of a file's name, as it is written, without its dot."""
+    """Return the extension of a file name as it is written, without the dot."""
     stem, dot, ending = name.rpartition(".")
     return ending if stem and dot else ""

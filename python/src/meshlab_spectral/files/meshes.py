@@ -20,7 +20,7 @@ from meshlab_spectral.plugin.loading import FILTER_NAME, load
 
 StageCallback = Callable[[str], None]
 
-# In which MeshLab writes triangles that were read as one polygon as that polygon again.
+# Formats in which MeshLab joins triangles again that it read as one polygon.
 _POLYGON_FORMATS = (".obj", ".off")
 
 
@@ -30,32 +30,32 @@ def filter_file(
     options: FilterOptions,
     on_stage: StageCallback = lambda stage: None,
 ) -> dict[str, Any]:
-    """Filter the mesh of one file into another.
+    """Filter a mesh file into another.
 
     Parameters
     ----------
     source
-        A file that pymeshlab reads, with one mesh in it.
+        A file that pymeshlab can read, with one mesh in it.
     target
-        The file to write. It appears whole, in place of an existing one, or not at all.
+        The file to write, atomically. An existing one is replaced.
     options
         Options of the filter.
     on_stage
-        Called with "reading", "filtering" and "writing" when these begin.
+        Called with "reading", "filtering" and "writing" as these begin.
 
     Returns
     -------
     dict
-        The filter's report: numbers, and lists for vectors; lengths in the units of the mesh.
+        The filter's report, as from `filter_mesh`.
 
     Raises
     ------
     MeshFileError
         When `source` cannot be read or `target` cannot be written.
     FormatError
-        When pymeshlab has no writer for the ending of `target`.
+        When pymeshlab cannot write the extension of `target`.
     FilterError
-        When the filter refuses the mesh or the options.
+        When the filter rejects the mesh or the options.
     """
     check_source(source)
     with writing_whole(target) as scratch:
@@ -71,8 +71,8 @@ def filter_to_scratch(
 ) -> dict[str, Any]:
     """Filter `source` into `scratch`, a file from `writing_whole`.
 
-    Parameters and errors are those of `filter_file`; after an error `scratch` may be half-written.
-    With `verbose`, MeshLab writes its log, the only source of progress.
+    Parameters and errors as in `filter_file`; after an error `scratch` may be incomplete. With
+    `verbose`, MeshLab writes its log, the only source of progress.
     """
 
     def apply(mesh_set: Any) -> dict[str, Any]:
@@ -84,10 +84,10 @@ def filter_to_scratch(
 def script_to_scratch(
     source: Path, scratch: Path, script: str, on_stage: StageCallback, verbose: bool = True
 ) -> dict[str, Any]:
-    """Apply the text of a MeshLab script to `source`; write the result into `scratch`.
+    """Apply the text of a MeshLab script to `source` and write the result to `scratch`.
 
-    The result is the mesh that is the current one at the script's end. Errors are those of
-    `filter_file` and `script.apply_script`, which also tells of the report.
+    The result is the current mesh at the end of the script. Errors as in `filter_file` and
+    `script.apply_script`, which also describes the report.
     """
     return _process(
         source, scratch, lambda mesh_set: apply_script(mesh_set, script), on_stage, verbose
@@ -116,7 +116,7 @@ def _process(
 
 
 def load_arrays(source: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Read the mesh of one file: n x 3 coordinates, m x 3 indices of the corners of triangles.
+    """Read a mesh file: n x 3 coordinates, m x 3 vertex indices of triangles.
 
     Raises
     ------
@@ -133,11 +133,11 @@ def load_arrays(source: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
 
 
 def check_source(source: Path) -> None:
-    """Raise MeshFileError unless `source` is a file that can be read."""
+    """Raise MeshFileError unless `source` is a readable file."""
     if source.is_dir():
         raise MeshFileError(f"{source} is a folder: name a mesh file")
     if source.exists() and not source.is_file():
-        raise MeshFileError(f"{source} is no file but a device or a pipe: name a mesh file")
+        raise MeshFileError(f"{source} is a device or a pipe, not a file: name a mesh file")
     try:
         with source.open("rb"):
             pass
@@ -148,18 +148,17 @@ def check_source(source: Path) -> None:
 
 
 def _check_writable_format(path: Path) -> None:
-    """Find out before the long computation."""
+    """Fail before the long computation, not after it."""
     if not _is_writable(path.suffix):
-        ending = f"ends in {path.suffix}" if path.suffix else "has no ending"
+        ending = f"ends in {path.suffix}" if path.suffix else "has no extension"
         raise FormatError(
-            f"{path.name} {ending}, which MeshLab cannot write: end the name of the output in "
-            f"{USUAL_FORMATS}"
+            f"{path.name} {ending}, which MeshLab cannot write: choose {USUAL_FORMATS}"
         )
 
 
 @functools.cache
 def _is_writable(ending: str) -> bool:
-    """Try to write a triangle: pymeshlab offers no list of the formats that it writes."""
+    """Try to write a triangle: pymeshlab has no list of the formats it can write."""
     import pymeshlab
 
     mesh_set = pymeshlab.MeshSet()
@@ -186,13 +185,13 @@ def _read(mesh_set: Any, source: Path) -> None:
                 f"mesh: convert it to {USUAL_FORMATS}"
             ) from error
         raise MeshFileError(
-            f"{source} cannot be read as a mesh ({reason}): the file is damaged, or is not what "
-            "its ending says; export it again from the program that made it"
+            f"{source} cannot be read as a mesh ({reason}): the file is damaged or does not "
+            "match its extension; export it again from the program that made it"
         ) from error
     if mesh_set.mesh_number() > 1:
         raise MeshFileError(
             f"{source} holds {mesh_set.mesh_number()} meshes: merge them in MeshLab with 'Flatten "
-            "Visible Layers', or save them one by one"
+            "Visible Layers', or save them separately"
         )
 
 
@@ -201,7 +200,7 @@ def _write(mesh_set: Any, scratch: Path, source: Path) -> None:
 
     settings = {"save_textures": _textures_to_be_saved(mesh_set, scratch, source)}
     if scratch.suffix.lower() in _POLYGON_FORMATS and _has_non_manifold_edges(mesh_set):
-        # MeshLab would look for the ends of its polygons for ever, and take all of the memory.
+        # MeshLab would trace its polygons without end and use up all memory.
         settings["save_polygonal"] = False
     try:
         mesh_set.save_current_mesh(str(scratch), **settings)
@@ -213,7 +212,7 @@ def _write(mesh_set: Any, scratch: Path, source: Path) -> None:
 
 
 def _has_non_manifold_edges(mesh_set: Any) -> bool:
-    """Whether some edge has more than two faces."""
+    """Whether any edge has more than two faces."""
     F = mesh_set.current_mesh().face_matrix()
     edges = np.sort(np.vstack([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]]), axis=1)
     _, faces = np.unique(edges, axis=0, return_counts=True)
@@ -221,10 +220,10 @@ def _has_non_manifold_edges(mesh_set: Any) -> bool:
 
 
 def _textures_to_be_saved(mesh_set: Any, scratch: Path, source: Path) -> bool:
-    """Whether copies of the texture images belong beside the output.
+    """Whether to save copies of the texture images next to the output.
 
-    Beside the input they are there already. And an image that the mesh refers to outside of its own
-    folder would be written outside of the scratch folder, over whatever has its name there.
+    Not next to the input, where they already are. And not if the mesh refers to an image outside
+    its own folder, which would be written outside the scratch folder, over whatever is there.
     """
     names = [Path(name) for name in mesh_set.current_mesh().textures()]
     beside_input = scratch.parent.parent.samefile(source.resolve().parent)

@@ -1,4 +1,4 @@
-"""Recipes: the filter's options in a TOML file, to be kept and used again."""
+"""Recipes: the filter's options in a TOML file."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ _TABLE = "filter"
 
 
 def load_recipe(path: Path) -> dict[str, Any]:
-    """Read the options that a recipe gives; those that it leaves out have their defaults.
+    """Read the options in a recipe; options it leaves out keep their defaults.
 
     Returns
     -------
     dict
-        For `FilterOptions.from_dict`; checked.
+        Validated, for `FilterOptions.from_dict`.
 
     Raises
     ------
     InputError
         When the file cannot be read.
     OptionError
-        When it is no TOML, has a key that is unknown, or a value that an option cannot take.
+        When it is not TOML, or has an unknown key or an invalid value.
     """
     options = _table(path)
     try:
@@ -44,12 +44,12 @@ def load_recipe(path: Path) -> dict[str, Any]:
 
 
 def save_recipe(path: Path, options: FilterOptions) -> None:
-    """Write all options into a recipe; it may replace another recipe, and no other file.
+    """Write all options to a recipe, which may replace another recipe but no other file.
 
     Raises
     ------
     InputError
-        When there is a file that is no recipe.
+        When the file exists and is not a recipe.
     MeshFileError
         When it cannot be written.
     """
@@ -57,7 +57,7 @@ def save_recipe(path: Path, options: FilterOptions) -> None:
         try:
             _table(path)
         except OptionError as error:
-            raise InputError(f"{error}; so it is not replaced: give another name") from error
+            raise InputError(f"{error}; it is not replaced: choose another name") from error
     plain = {
         name: _number_or_text(getattr(options, name), value)
         for name, value in options.as_dict().items()
@@ -67,24 +67,22 @@ def save_recipe(path: Path, options: FilterOptions) -> None:
 
 
 def _table(path: Path) -> dict[str, Any]:
-    """Read the table that a recipe is."""
+    """Read the table of options."""
     try:
         content = tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise InputError(f"the recipe {path} cannot be read ({error.strerror})") from error
-    except ValueError as error:  # of TOML, or of UTF-8
-        raise OptionError(f"the recipe {path} is no TOML file: {error}") from error
+    except ValueError as error:  # invalid TOML or UTF-8
+        raise OptionError(f"the recipe {path} is not a TOML file: {error}") from error
     unknown = content.keys() - {_TABLE}
     if unknown or not isinstance(content.get(_TABLE), dict):
-        wrong = f"has {', '.join(sorted(unknown))} outside of it" if unknown else "has none"
-        raise OptionError(
-            f"the recipe {path} {wrong}: all options belong into one table, [{_TABLE}]"
-        )
+        wrong = f"has {', '.join(sorted(unknown))} outside it" if unknown else "has no such table"
+        raise OptionError(f"the recipe {path} {wrong}: all options belong in the table [{_TABLE}]")
     table: dict[str, Any] = content[_TABLE]
     return table
 
 
 def _number_or_text(value: Any, plain: Any) -> Any:
-    """Give a length in the units of the mesh as the number that it is."""
+    """Turn a length in the units of the mesh into a plain number."""
     is_number = isinstance(value, Length) and not (value.relative or value.automatic)
     return value.value if is_number else plain

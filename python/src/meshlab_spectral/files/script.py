@@ -1,4 +1,4 @@
-"""MeshLab's filter scripts (.mlx): checking one, and applying it filter by filter."""
+"""MeshLab's filter scripts (.mlx), validated and applied filter by filter."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from meshlab_spectral.filters.calling import call_filter, keep_failed, plain_rep
 from meshlab_spectral.plugin.loading import FILTERS, load
 
 _HEAD, _FOOT = "<!DOCTYPE FilterScript>\n<FilterScript>\n", "</FilterScript>\n"
-# All that pymeshlab says when it has no such filter.
+# pymeshlab's only message for an unknown filter.
 _UNKNOWN_FILTER = "Something really bad happened"
 
 
@@ -23,20 +23,20 @@ def apply_script(mesh_set: Any, text: str) -> dict[str, Any]:
     mesh_set
         A `pymeshlab.MeshSet`.
     text
-        Content of the .mlx file.
+        Contents of the .mlx file.
 
     Returns
     -------
     dict
-        "filters": for every filter its "name" and, for those of the plugin, its "report".
-        (pymeshlab gives no reports of filters that it applies from a script.)
+        "filters": a list with the "name" of each filter and, for the plugin's, its "report";
+        pymeshlab returns no reports of other filters in a script.
 
     Raises
     ------
     OptionError
-        When the text is no script, or an empty one.
+        When the text is not a filter script, or an empty one.
     FilterError
-        When a filter is unknown or refuses the mesh: it names the filter.
+        When a filter is unknown or rejects the mesh; names the filter.
     """
     load()
     done = []
@@ -50,27 +50,27 @@ def apply_script(mesh_set: Any, text: str) -> dict[str, Any]:
 
 
 def script_filters(text: str) -> list[str]:
-    """Tell the names of a script's filters, as in MeshLab's menus.
+    """Return the names of a script's filters, as in MeshLab's menus.
 
     Raises
     ------
     OptionError
-        When the text is no script, or an empty one.
+        When the text is not a filter script, or an empty one.
     """
     return [single.get("name", "") for single in _filters(text)]
 
 
 def _filters(text: str) -> list[ElementTree.Element]:
-    """Give the filters of a script; pymeshlab would take garbage for an empty script."""
+    """Parse the filters of a script; pymeshlab reads garbage as an empty script."""
     try:
         root = ElementTree.fromstring(text)
     except ElementTree.ParseError as error:
         raise OptionError(
-            f"the script is no filter script of MeshLab ({error}): save one there with Filters > "
-            "Show current filter script, or with pymeshlab's save_filter_script"
+            f"the script is not a MeshLab filter script ({error}): save one in MeshLab with "
+            "Filters > Show current filter script, or with pymeshlab's save_filter_script"
         ) from error
     if root.tag != "FilterScript":
-        raise OptionError(f"the script is no filter script of MeshLab but a <{root.tag}>")
+        raise OptionError(f"the script is not a MeshLab filter script but a <{root.tag}>")
     filters = [element for element in root if element.tag in ("filter", "xmlfilter")]
     if not filters:
         raise OptionError("the script has no filters: it would change nothing")
@@ -91,7 +91,7 @@ def _apply(mesh_set: Any, name: str, single: ElementTree.Element) -> dict[str, A
         keep_failed(mesh_set)
         reason = reason_of(error)
         if reason.startswith(_UNKNOWN_FILTER):
-            reason = "MeshLab fails to run it; does this version of MeshLab have it?"
+            reason = "MeshLab cannot run it: check that this version of MeshLab has it"
         raise FilterError(reason) from error
     return {}
 
@@ -104,12 +104,12 @@ def _load_single(mesh_set: Any, single: ElementTree.Element) -> None:
 
 
 def _parameter(element: ElementTree.Element) -> tuple[str, Any]:
-    """Give a parameter as pymeshlab's filters take it: its name, and its value."""
+    """Convert a parameter to the name and value that pymeshlab takes."""
     name, kind, value = (element.get(key, "") for key in ("name", "type", "value"))
     try:
         return name, _value(kind, value)
     except ValueError:
-        raise FilterError(f"its parameter {name} is no {kind}: {value!r}") from None
+        raise FilterError(f"its parameter {name} is not a {kind}: {value!r}") from None
 
 
 def _value(kind: str, text: str) -> Any:

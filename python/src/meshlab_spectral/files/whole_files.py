@@ -1,4 +1,4 @@
-"""Output files that are whole or absent, whatever happens while they are written."""
+"""Output files written atomically: complete or absent, whatever happens meanwhile."""
 
 from __future__ import annotations
 
@@ -18,25 +18,25 @@ USUAL_FORMATS = ".ply, .obj, .stl or .off"
 
 _SCRATCH_ENDING = ".partial"
 _SCRATCH_NAME = re.compile(r"\.(?P<target>.+)\.[a-z0-9_]{8}\.partial")
-_LONGEST_NAME = 200  # bytes of the output's name that the scratch folder's holds
+_LONGEST_NAME = 200  # bytes of the output's name used in that of the scratch folder
 
 
 @contextlib.contextmanager
 def writing_whole(target: Path, overwrite: bool = True) -> Iterator[Path]:
-    """Give a scratch file to write instead of `target`; put it in place when all went well.
+    """Yield a scratch file to write instead of `target`; move it into place on success.
 
-    The scratch file has the name of `target` and lies in a hidden folder beside it, so that files
-    that a format keeps beside the mesh (materials, textures) are caught, too, and refer to each
-    other by their final names. After an error, nothing of all this remains. Where the process is
-    killed, its scratch folder does: `remove_leftovers` knows it by its name.
+    The scratch file has the name of `target` and lies in a hidden folder next to it, which also
+    catches a format's side files (materials, textures) and lets them refer to each other by their
+    final names. Nothing of it remains after an error. If the process is killed, its scratch folder
+    remains: `remove_leftovers` recognizes it by its name.
 
     Parameters
     ----------
     target
         The file to write.
     overwrite
-        Whether it may take the place of another file, which may have appeared at any time until
-        the end. One of the same content is no other file.
+        Whether to replace an existing file, even one created meanwhile. A file with the same
+        contents does not count.
 
     Yields
     ------
@@ -46,10 +46,10 @@ def writing_whole(target: Path, overwrite: bool = True) -> Iterator[Path]:
     Raises
     ------
     MeshFileError
-        When the folder of `target` is missing or takes no files (before anything is yielded), when
-        the scratch file is not there at the end, or when a file is in the way then.
+        When the folder of `target` is missing or not writable (before the scratch file is yielded),
+        when the scratch file has not been written, or when another file is in the way.
     """
-    place = target.resolve()  # through a symbolic link, as cp does
+    place = target.resolve()  # follow symbolic links, as cp does
     with _scratch_folder(target, place) as folder:
         scratch = folder / target.name
         yield scratch
@@ -60,20 +60,20 @@ def writing_whole(target: Path, overwrite: bool = True) -> Iterator[Path]:
 
 
 def check_target(target: Path) -> None:
-    """Raise MeshFileError where `writing_whole` would: before work that would be lost."""
+    """Raise MeshFileError if `writing_whole` would, before any work is wasted."""
     with _scratch_folder(target, target.resolve()):
         pass
 
 
 def remove_leftovers(folder: Path, target_name: str | None = None) -> None:
-    """Remove what processes that were killed while they wrote into a folder have left there.
+    """Remove the scratch folders left by killed processes.
 
     Parameters
     ----------
     folder
-        A folder of outputs; it may be absent.
+        A folder of outputs, which need not exist.
     target_name
-        Only what belongs to the output of this name.
+        Only remove those of the output with this name.
     """
     try:
         entries = list(os.scandir(folder))
@@ -91,28 +91,26 @@ def remove_leftovers(folder: Path, target_name: str | None = None) -> None:
 
 @contextlib.contextmanager
 def _scratch_folder(target: Path, place: Path) -> Iterator[Path]:
-    """Make a hidden folder beside `place`, which `target` resolves to; remove it at the end."""
+    """Make a hidden folder next to `place`, which `target` resolves to; finally remove it."""
     folder = place.parent
     if place.exists() and not place.is_file():
-        raise MeshFileError(f"{target} is no file but a folder or a device: name a file to write")
+        raise MeshFileError(f"{target} is a folder or a device, not a file: name a file to write")
     if not folder.is_dir():
-        raise MeshFileError(
-            f"the folder {target.parent} of the output does not exist: create it first"
-        )
+        raise MeshFileError(f"the output folder {target.parent} does not exist: create it first")
     with contextlib.ExitStack() as stack:
         try:
             scratch = _make_locked(folder, target.name, stack)
         except OSError as error:
             raise MeshFileError(
-                f"the folder {target.parent} of the output cannot be written to "
-                f"({error.strerror}): choose another folder"
+                f"the output folder {target.parent} cannot be written to ({error.strerror}): "
+                "choose another folder"
             ) from error
         stack.callback(shutil.rmtree, scratch, ignore_errors=True)
         yield scratch
 
 
 def _make_locked(folder: Path, name: str, stack: contextlib.ExitStack) -> Path:
-    """Make a scratch folder whose lock says, as long as this process lives, that it is in use."""
+    """Make a scratch folder, locked for as long as this process lives."""
     while True:
         path = Path(
             tempfile.mkdtemp(prefix=f".{_shortened(name)}.", suffix=_SCRATCH_ENDING, dir=folder)
@@ -121,7 +119,7 @@ def _make_locked(folder: Path, name: str, stack: contextlib.ExitStack) -> Path:
             stack.enter_context(_locked(path))
         if path.is_dir():
             return path
-        # Another process has taken it for a leftover before it was locked: once more.
+        # Another process removed it as a leftover before it was locked: try again.
 
 
 @contextlib.contextmanager
@@ -131,7 +129,7 @@ def _locked(folder: Path) -> Iterator[None]:
     Raises
     ------
     OSError
-        When another process holds it, or the file system has none.
+        When another process holds it, or the file system does not support locks.
     """
     descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
@@ -146,7 +144,7 @@ def _shortened(name: str) -> str:
 
 
 def side_files(scratch: Path) -> list[Path]:
-    """Tell the files that a format keeps beside the mesh, in the folder of a scratch file."""
+    """Return the side files, such as textures, in the folder of a scratch file."""
     folder = scratch.parent
     return sorted(path for path in folder.rglob("*") if path.is_file() and path != scratch)
 
@@ -157,8 +155,8 @@ def _put_in_place(scratch: Path, place: Path, overwrite: bool) -> None:
             f"MeshLab wrote nothing for {scratch.name}: choose another format, {USUAL_FORMATS}"
         )
     moves = {path: place.parent / path.relative_to(scratch.parent) for path in side_files(scratch)}
-    moves[scratch] = place  # last: what the mesh refers to is there when it appears
-    # Such as out.obj.mtl to out.obj; a texture may be another mesh's, too.
+    moves[scratch] = place  # last, when everything it refers to is in place
+    # Such as out.obj.mtl of out.obj; a texture may belong to another mesh, too.
     replaceable = {path for path in moves if overwrite and path.name.startswith(scratch.name)}
     for path, final in moves.items():
         if path not in replaceable:
@@ -176,7 +174,7 @@ def _put_in_place(scratch: Path, place: Path, overwrite: bool) -> None:
 
 
 def _put_new(path: Path, place: Path, scratch: Path) -> None:
-    """Put a file in place, unless another process has just put one there."""
+    """Move a file into place unless another process has just created one there."""
     try:
         place.hardlink_to(path)
     except FileExistsError:
@@ -186,21 +184,21 @@ def _put_new(path: Path, place: Path, scratch: Path) -> None:
 
 
 def _refuse_another(path: Path, place: Path, scratch: Path) -> None:
-    """Refuse to replace a file that the user has not given up, such as another model's texture."""
+    """Refuse to replace a file not given up for it, such as another model's texture."""
     if not place.exists() or (place.is_file() and filecmp.cmp(path, place, shallow=False)):
         return
     if path == scratch:
         raise MeshFileError(why_kept(place))
     raise MeshFileError(
-        f"{scratch.name} needs a file {place.name} beside it, and another file has that name: "
+        f"{scratch.name} needs a file {place.name} next to it, but another file has that name: "
         "write the output to a folder of its own"
     )
 
 
 def why_kept(place: object) -> str:
-    """Say why a file that was not there when the work began is not replaced."""
+    """Message for a file that has appeared since the work began, and is not replaced."""
     return (
-        f"{place} has been written by another program meanwhile, and is kept: choose another "
+        f"{place} has meanwhile been written by another program and is kept: choose another "
         "folder, or replace it with --overwrite"
     )
 

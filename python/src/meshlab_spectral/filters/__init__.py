@@ -1,5 +1,5 @@
 """The plugin's filters, for meshes given as arrays.
 
-`fractional`, `artefacts`, `harmonics` and `spectrum` each call one filter; `options` is the table
-of the fractional filter's options, `transfer` its gain. All of them use `calling` and `arrays`.
+`fractional`, `artefacts`, `harmonics` and `spectrum` each call one filter, through `calling` and
+`arrays`; `options` is the table of the fractional filter's options, `transfer` its gain.
 """

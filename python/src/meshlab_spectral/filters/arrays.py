@@ -1,4 +1,4 @@
-"""Meshes given as arrays, checked."""
+"""Validation of meshes given as arrays, and their vertex areas."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 def mesh_arrays(
     vertices: ArrayLike, faces: ArrayLike
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    """Take a mesh's arrays as pymeshlab wants them; it would read others wrongly, or not say why.
+    """Validate and convert the arrays of a mesh; pymeshlab would misread or reject them silently.
 
     Parameters
     ----------
@@ -21,17 +21,17 @@ def mesh_arrays(
     Raises
     ------
     ValueError
-        When an array does not have the shape or the type above, or an index is out of range.
+        When an array has the wrong shape or type, or an index is out of range.
     """
     V, F = np.asarray(vertices, dtype=np.float64), np.asarray(faces)
     if V.ndim != 2 or V.shape[1] != 3:
-        raise ValueError(f"vertices have the shape {V.shape}: give n x 3 coordinates")
+        raise ValueError(f"vertices have shape {V.shape}: pass n x 3 coordinates")
     if len(V) == 0:
-        raise ValueError("there are no vertices: give a mesh")
+        raise ValueError("there are no vertices: pass a mesh")
     if F.ndim != 2 or F.shape[1] != 3 or not np.issubdtype(F.dtype, np.integer):
         raise ValueError(
-            f"faces have the shape {F.shape} and the type {F.dtype}: give m x 3 whole numbers, the "
-            "corners of triangles"
+            f"faces have shape {F.shape} and type {F.dtype}: pass m x 3 integers, the corners of "
+            "triangles"
         )
     if F.size and (F.min() < 0 or F.max() >= len(V)):
         wrong = F.min() if F.min() < 0 else F.max()
@@ -40,7 +40,7 @@ def mesh_arrays(
 
 
 def lumped_areas(V: NDArray[np.float64], F: NDArray[np.integer]) -> NDArray[np.float64]:
-    """Area of every vertex, a third of that of the triangles at it: the diagonal of D."""
+    """Vertex areas, a third of the area of the incident triangles each: the diagonal of D."""
     a, b, c = (V[F[:, corner]] for corner in range(3))
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
     lumped = np.zeros(len(V))

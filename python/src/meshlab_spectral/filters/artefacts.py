@@ -1,4 +1,4 @@
-"""Artefacts that a filter has left in a mesh, measured for users of NumPy."""
+"""The artefacts a filter leaves in a mesh, measured on NumPy arrays."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _FILTER_NAME = "compute_scalar_spectral_artefacts_per_vertex"
 
 @dataclass(frozen=True, eq=False)
 class Artefacts:
-    """How much of a shape lies above twice a cutoff, in the shape's own spectrum.
+    """The part of a shape above twice the cutoff frequency, in the shape's own spectrum.
 
     Attributes
     ----------
@@ -28,11 +28,11 @@ class Artefacts:
     maximum
         Largest `length`, length units.
     length
-        Length of the artefact part at each of the n vertices, length units; 0 at vertices of no
-        face.
+        Length of the artefact part at each of the n vertices, length units; 0 at unreferenced
+        vertices.
     diagonal
-        Of the bounding box of the measured mesh, length units. A filter may have changed it: to
-        compare results, divide by the diagonal of the filter's input.
+        Bounding box diagonal of the measured mesh, length units. The filter may have changed it:
+        to compare results, divide by the diagonal of the filter's input.
     """
 
     rms: float
@@ -47,12 +47,12 @@ def measure_artefacts(
     feature_size: float,
     laplacian: LaplacianKind = "intrinsic delaunay",
 ) -> Artefacts:
-    """Measure the artefacts that a filter has left in a mesh: spikes, creases, ripples.
+    """Measure the artefacts a filter has left in a mesh: spikes, creases, ripples.
 
     With X the coordinates and A the Laplacian of the mesh itself, the artefact part is
     ``X - g(A) X``, ``g(lambda) = 1 / (1 + (lambda / (4 lambda_c))**4)`` with
-    ``lambda_c = (2 pi / feature_size)**2``: what lies above twice the cutoff frequency
-    ``2 pi / feature_size``. It scales with the mesh, and does not change under rigid motion.
+    ``lambda_c = (2 pi / feature_size)**2``: everything above twice the cutoff frequency
+    ``2 pi / feature_size``. It scales with the mesh and is invariant under rigid motion.
 
     Parameters
     ----------
@@ -61,23 +61,23 @@ def measure_artefacts(
     faces
         m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
     feature_size
-        Of the low-pass or the band that was applied: a length in the units of the mesh, above 0.
+        Feature size of the applied low-pass or band, length units, > 0.
     laplacian
-        "intrinsic delaunay" works on any triangles; for "cotangent" every one needs an area.
+        "intrinsic delaunay" works with any triangles; "cotangent" needs non-degenerate ones.
 
     Returns
     -------
     Artefacts
-        Root mean square, maximum and the length at every vertex, in the units of the mesh.
+        Root mean square, maximum and the length at every vertex, length units.
 
     Raises
     ------
     ValueError
-        When an array does not have the shape or the type above, or an index is out of range.
+        When an array has the wrong shape or type, or an index is out of range.
     OptionError
-        When `feature_size` is not above 0, or there is no such `laplacian`.
+        When `feature_size` is not positive or `laplacian` is unknown.
     FilterError
-        When the mesh has no faces, no area, or coordinates that are not finite.
+        When the mesh has no faces, no area, or non-finite coordinates.
     PluginError
         When the plugin cannot be loaded.
 

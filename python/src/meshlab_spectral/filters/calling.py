@@ -1,4 +1,4 @@
-"""Calling the plugin's filters: with their warnings, and with errors of this package."""
+"""Calls of the plugin's filters: adds their warnings, translates their errors."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from typing import Any
 from meshlab_spectral.errors import FilterError
 from meshlab_spectral.plugin.last_warnings import last_warnings
 
-# After a filter has thrown, destroying its MeshSet makes pymeshlab 2025.7 crash at the next one
-# (MeshLab's own filters do the same). Such a MeshSet is therefore kept until the process ends.
+# pymeshlab 2025.7 crashes after a MeshSet in which any filter has thrown is destroyed. Such a
+# MeshSet is therefore kept alive until the process ends.
 _failed_mesh_sets: list[Any] = []
 
 
@@ -20,26 +20,26 @@ def call_filter(mesh_set: Any, name: str, parameters: dict[str, Any]) -> dict[st
     mesh_set
         A `pymeshlab.MeshSet`.
     name
-        The filter's Python name; its plugin has been loaded.
+        The filter's Python name; the plugin must be loaded.
     parameters
-        As pymeshlab takes them.
+        Keyword arguments for pymeshlab.
 
     Returns
     -------
     dict
-        The filter's report, as pymeshlab gives it, and "warnings": the list of what fell short
-        without being an error, in the plugin's words.
+        pymeshlab's report, and "warnings": a list of what fell short without being an error, in the
+        plugin's words.
 
     Raises
     ------
     FilterError
-        When the filter refuses the mesh or the parameters: with what is wrong and what to do.
+        When the filter rejects the mesh or the parameters; says what is wrong and what to do.
     PluginError
-        When the plugin cannot tell its warnings, see `last_warnings`.
+        When the plugin's warnings are not available, see `last_warnings`.
     """
     import pymeshlab
 
-    last_warnings()  # raises before the work, not after it
+    last_warnings()  # if this fails, fail before the computation
     try:
         report: dict[str, Any] = mesh_set.apply_filter(name, **parameters)
     except pymeshlab.PyMeshLabException as error:
@@ -50,12 +50,12 @@ def call_filter(mesh_set: Any, name: str, parameters: dict[str, Any]) -> dict[st
 
 
 def keep_failed(mesh_set: Any) -> None:
-    """Keep a MeshSet in which a filter has failed from being destroyed."""
+    """Keep a MeshSet alive in which a filter has failed."""
     _failed_mesh_sets.append(mesh_set)
 
 
 def plain_report(report: dict[str, Any]) -> dict[str, Any]:
-    """Turn the arrays of a filter's report into lists, for JSON."""
+    """Convert the arrays in a filter's report to lists, for JSON."""
     return {
         name: value.tolist() if hasattr(value, "tolist") else value
         for name, value in report.items()
@@ -63,7 +63,7 @@ def plain_report(report: dict[str, Any]) -> dict[str, Any]:
 
 
 def reason_of(error: Exception) -> str:
-    """Take what matters of pymeshlab's message, on one line."""
+    """Extract the relevant part of pymeshlab's message, as one line."""
     lines = [line.strip() for line in str(error).splitlines() if line.strip()]
     for start in ("Details: ", "Error details: "):
         for number, line in enumerate(lines):

@@ -1,4 +1,4 @@
-"""The filter, for users of NumPy."""
+"""The fractional filter, on NumPy arrays."""
 
 from __future__ import annotations
 
@@ -25,26 +25,25 @@ def filter_mesh(
     faces
         m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
     **options
-        Fields of `FilterOptions`; sizes as text such as "2%" of the bounding box's diagonal, or as
-        a length in the units of the mesh.
+        Fields of `FilterOptions`; sizes as a string such as "2%" of the bounding box diagonal, or
+        as a length in the units of the mesh.
 
     Returns
     -------
     V : array
-        n x 3 coordinates after the filter; the faces stay as they are.
+        n x 3 filtered coordinates; the faces do not change.
     report : dict
         Numbers, and lists for vectors; lengths in the units of the mesh. "warnings" lists what fell
-        short of the options, and what to do.
+        short of the options and what to do about it.
 
     Raises
     ------
     ValueError
-        When an array does not have the shape or the type above, or an index is out of range.
+        When an array has the wrong shape or type, or an index is out of range.
     OptionError
-        When an option is unknown, or has a value that it cannot take.
+        When an option is unknown or has an invalid value.
     FilterError
-        When the filter refuses the mesh: it has no faces, no area, or coordinates that are not
-        finite.
+        When the filter rejects the mesh: no faces, no area, or non-finite coordinates.
     PluginError
         When the plugin cannot be loaded.
 

@@ -1,4 +1,4 @@
-"""Manifold harmonics of a mesh, for users of NumPy."""
+"""Manifold harmonics of a mesh, as NumPy arrays."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ class Harmonics:
     Attributes
     ----------
     eigenvalues
-        k values lambda, ascending, 1 / length^2; exactly 0 for the constant of every component,
-        which a component with a fixed boundary does not have.
+        k values lambda, ascending, 1 / length^2; exactly 0 for the constant function of each
+        component without a fixed boundary.
     harmonics
         n x k, column i for eigenvalue i, 1 / length. Orthonormal with the masses as weights,
-        ``Phi.T @ (masses[:, None] * Phi) = 1``; 0 at vertices of no face and on a fixed boundary.
-        The value of each that is farthest from zero is positive.
+        ``Phi.T @ (masses[:, None] * Phi) = I``; 0 at unreferenced vertices and fixed boundaries.
+        The entry of largest magnitude in each column is positive.
     masses
-        Areas of the n vertices, the diagonal of D: a third of the triangles at each, length^2.
+        Areas of the n vertices, the diagonal of D: a third of their incident triangles, length^2.
     """
 
     eigenvalues: NDArray[np.float64]
@@ -42,7 +42,7 @@ class Harmonics:
 
     @property
     def frequencies(self) -> NDArray[np.float64]:
-        """Square roots of the eigenvalues, radians per length; 2 pi over them are wavelengths."""
+        """Square roots of the eigenvalues, radians per length unit; wavelengths are 2 pi / them."""
         roots: NDArray[np.float64] = np.sqrt(self.eigenvalues)
         return roots
 
@@ -54,7 +54,7 @@ def manifold_harmonics(
     laplacian: LaplacianKind = "intrinsic delaunay",
     boundary: Boundary = "free",
 ) -> Harmonics:
-    """Compute the manifold harmonics of a mesh with the lowest frequencies.
+    """Compute the manifold harmonics of lowest frequency of a mesh.
 
     Parameters
     ----------
@@ -63,26 +63,26 @@ def manifold_harmonics(
     faces
         m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
     basis_size
-        Their number k, the constants included: below the number of vertices that are not fixed.
+        Number of harmonics k, constants included; less than the number of vertices not fixed.
     laplacian
-        "intrinsic delaunay" works on any triangles; for "cotangent" every one needs an area.
+        "intrinsic delaunay" works with any triangles; "cotangent" needs non-degenerate ones.
     boundary
-        "free": without slope at the rims of an open surface; "fixed": zero there.
+        "free": Neumann conditions at the boundary of an open surface; "fixed": zero there.
 
     Returns
     -------
     Harmonics
-        Eigenvalues, eigenfunctions and the areas of the vertices, in the units of the mesh.
+        Eigenvalues, eigenfunctions and vertex areas, in the units of the mesh.
 
     Raises
     ------
     ValueError
-        When an array does not have the shape or the type above, or an index is out of range.
+        When an array has the wrong shape or type, or an index is out of range.
     OptionError
-        When there is no such `laplacian` or `boundary`.
+        When `laplacian` or `boundary` is unknown.
     FilterError
-        When the mesh has no faces, no area, coordinates that are not finite, or too few vertices
-        for `basis_size`.
+        When the mesh has no faces, no area, non-finite coordinates, or too few vertices for
+        `basis_size`.
     PluginError
         When the plugin cannot be loaded.
 
@@ -102,7 +102,7 @@ def compute(
     boundary: Boundary,
     verbose: bool = False,
 ) -> Harmonics:
-    """Compute harmonics of checked arrays. With `verbose`, MeshLab writes its log."""
+    """Compute the harmonics of validated arrays. With `verbose`, MeshLab writes its log."""
     for name, value, kind in (
         ("laplacian", laplacian, LaplacianKind),
         ("boundary", boundary, Boundary),
@@ -115,7 +115,7 @@ def compute(
     mesh_set = pymeshlab.MeshSet(verbose=verbose)
     mesh_set.add_mesh(pymeshlab.Mesh(V, F))
     parameters = {
-        "mode": 0,  # the one that every basis has
+        "mode": 0,  # in every basis
         "basis_size": basis_size,
         "store_basis": True,
         "laplacian": laplacian,

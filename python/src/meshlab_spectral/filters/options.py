@@ -1,7 +1,7 @@
-"""The one table of the filter's options: names, defaults, limits, help.
+"""The filter's options: names, defaults, limits, help.
 
-The command line, batch recipes and calls of pymeshlab all take theirs from `FilterOptions`; a test
-asserts that its names, choices and defaults are those of the plugin.
+`FilterOptions` is the only such table: the command line, recipes and calls of pymeshlab are derived
+from it. A test compares its names, choices and defaults with those of the plugin.
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ Boundary = Literal["free", "fixed"]
 
 @dataclass(frozen=True)
 class Length:
-    """A length in the units of the mesh, or as a percentage of the diagonal of its bounding box.
+    """A length in the units of the mesh, or a percentage of its bounding box diagonal.
 
     Attributes
     ----------
     value
-        Percent where `relative`, else a length in the units of the mesh; above 0, finite.
+        Percentage if `relative`, else a length in the units of the mesh; finite, > 0.
     relative
         Whether `value` is a percentage.
     automatic
-        Whether the filter chooses the length that suits the mesh; `value` is then without meaning.
+        Whether the filter chooses the length to suit the mesh; `value` is then meaningless.
     """
 
     value: float = 0.0
@@ -44,22 +44,22 @@ class Length:
             return
         if not (math.isfinite(self.value) and self.value > 0):
             raise OptionError(
-                f"{self}: must be above zero, a percentage of the diagonal of the bounding box "
-                "such as 5%, or a length such as 0.02"
+                f"{self}: must be above zero, a percentage of the bounding box diagonal such as "
+                "5%, or a length such as 0.02"
             )
         if self.relative and self.value > 100:
             raise OptionError(
-                f"{self}: a percentage of the diagonal goes up to 100%; give a length for more"
+                f"{self}: a percentage goes up to 100% of the diagonal; for more, give a length"
             )
 
     @classmethod
     def parse(cls, text: str) -> Length:
-        """Read `5%` as a percentage of the diagonal, `0.02` as a length, `auto` as automatic.
+        """Parse `5%` as a percentage of the diagonal, `0.02` as a length, `auto` as automatic.
 
         Raises
         ------
         OptionError
-            When `text` is neither, or not above zero.
+            When `text` is none of these, or not positive.
         """
         number = text.strip()
         if number == "auto":
@@ -69,8 +69,8 @@ class Length:
             value = float(number.removesuffix("%"))
         except ValueError:
             raise OptionError(
-                f"{text!r}: give a percentage of the diagonal of the bounding box such as 5%, or a "
-                "length such as 0.02"
+                f"{text!r}: give a percentage of the bounding box diagonal such as 5%, or a length "
+                "such as 0.02"
             ) from None
         return cls(value, relative)
 
@@ -80,14 +80,14 @@ class Length:
 
 @dataclass(frozen=True)
 class Limits:
-    """Numbers that an option may have: `low <= x <= high`, or `low < x <= high` if `low_open`."""
+    """Range of a number: `low <= x <= high`, or `low < x <= high` if `low_open`."""
 
     low: float
     high: float = math.inf
     low_open: bool = False
 
     def contain(self, value: float) -> bool:
-        """Whether a value lies within; never for NaN and infinities."""
+        """Whether a value is in range; never true for NaN and infinities."""
         above = value > self.low if self.low_open else value >= self.low
         return math.isfinite(value) and above and value <= self.high
 
@@ -103,7 +103,7 @@ def _option(default: Any, explanation: str, limits: Limits | None = None) -> Any
 
 
 def _is_of(value: Any, wanted: type) -> bool:
-    """Whether a value, perhaps of a recipe, has a type; whole numbers pass as floats."""
+    """Whether a value has a type; integers pass as floats, as in a recipe."""
     if wanted is float:
         return isinstance(value, int | float) and not isinstance(value, bool)
     return type(value) is wanted
@@ -111,26 +111,25 @@ def _is_of(value: Any, wanted: type) -> bool:
 
 @dataclass(frozen=True, kw_only=True)
 class FilterOptions:
-    """Options of the filter, under the names and with the defaults that it has in MeshLab.
+    """Options of the filter, with the names and defaults they have in MeshLab.
 
     Raises
     ------
     OptionError
-        When a value cannot be what its option takes: it names the option, the value and what is
-        allowed.
+        When a value is invalid; names the option, the value and what is allowed.
     """
 
     filter_type: FilterType = _option(
         "low-pass",
-        "What to do with details: low-pass keeps the large ones and smooths the rest away; "
+        "What to do with details: low-pass keeps the large ones and smooths away the rest; "
         "high-pass acts on the small ones (sharpen with --stop-gain 1 --pass-gain 2); band-pass "
         "and band-stop act on details of about the feature size.",
     )
     feature_size: Length = _option(
         Length(automatic=True),
-        "Size of the details where the filter turns over: 5% of the model's diagonal, a length in "
-        "the model's units such as 0.02, or auto: six mean edges, at most 5%. Try twice the width "
-        "of what you want to remove.",
+        "Size of the details at the filter's cutoff: a percentage of the model's diagonal such as "
+        "5%, a length in the model's units such as 0.02, or auto: six mean edge lengths, at most "
+        "5%. Try twice the width of what you want to remove.",
     )
     pass_gain: float = _option(
         1.0, "Factor for the details that pass: 1 keeps them, 2 doubles their height.", Limits(0)
@@ -140,64 +139,63 @@ class FilterOptions:
     )
     band_width: float = _option(
         1.0,
-        "Width of a band in octaves: 1 means that its largest details are twice as large as its "
+        "Width of a band in octaves: 1 means that its largest details are twice the size of its "
         "smallest.",
         Limits(0, low_open=True),
     )
     response: Response = _option(
         "gaussian",
-        "How sharply sizes are told apart: gaussian is gentle, butterworth sharper with --order, "
-        "ideal cuts at once and may leave ripples.",
+        "How sharply sizes are separated: gaussian is gentle, butterworth is sharper with a higher "
+        "--order, ideal cuts off abruptly and may leave ripples.",
     )
     order: int = _option(
         2, "Steepness of the butterworth response: 1 is gentle, 8 is steep.", Limits(1, 64)
     )
     power: float = _option(
         1.0,
-        "The part of the filter to apply, as a power of its gains: 0.5 is half of the filter, a "
-        "gain of 4 becomes 2.",
+        "Fractional power of the filter to apply: 0.5 is half the filter, a gain of 4 becomes 2.",
         Limits(0, 1, low_open=True),
     )
     steps: int = _option(
         0,
-        "Apply the filter as this many weak steps, so that thin parts survive: 0 takes as many as "
-        "--tolerance needs, 10 is the paper's scheme with ten, 1 the classical one-shot filter.",
+        "Apply the filter in this many weak steps, so that thin parts survive: 0 takes as many as "
+        "--tolerance requires, 10 is the paper's scheme, 1 the classical one-shot filter.",
         Limits(0),
     )
     tolerance: Length = _option(
         Length(0.05, relative=True),
-        "With 0 steps: how far the surface may be from where infinitely many steps would put it, "
+        "With --steps 0: maximum distance of the surface from the limit of infinitely many steps, "
         "e.g. 0.05% of the diagonal.",
     )
     basis_update: BasisUpdate = _option(
         "conformal",
-        "What a step learns from the one before: its areas (conformal; thin parts shrink "
+        "What a step takes over from the one before: its areas (conformal; thin parts shrink "
         "smoothly), everything (full; the paper's scheme) or nothing (none).",
     )
     conformal_share: float = _option(
         0.0,
-        "For the full update: from 0, the paper's, to 1, the conformal one; 0.1 draws in thin "
+        "Blends the full update (0, the paper's) with the conformal one (1); 0.1 draws in thin "
         "parts that a strong full update leaves as spikes.",
         Limits(0, 1),
     )
     spectrum: Spectrum = _option(
-        "full", "full filters every detail; truncated only the largest, as older methods do."
+        "full", "full filters every detail; truncated only the largest ones, as older methods do."
     )
     basis_size: int = _option(
-        300, "How many frequencies a truncated spectrum has, e.g. 300.", Limits(1)
+        300, "Number of harmonics in a truncated spectrum, e.g. 300.", Limits(1)
     )
     reinject_residual: bool = _option(
-        True, "Keep the details beyond a truncated spectrum, or drop them."
+        True, "Keep the details beyond a truncated spectrum instead of dropping them."
     )
     laplacian: LaplacianKind = _option(
         "intrinsic delaunay",
-        "How frequencies are measured: 'intrinsic delaunay' works on any triangles and stays "
-        "stable; cotangent is the paper's and needs triangles with an area.",
+        "Laplacian that defines the frequencies: 'intrinsic delaunay' is stable with any triangle, "
+        "cotangent is the paper's and needs triangles with an area.",
     )
     boundary: Boundary = _option(
         "free",
-        "Rims of an open surface and of its holes: free lets them move as the rest does, strong "
-        "smoothing draws them in; fixed keeps them exactly where they are.",
+        "Boundary of an open surface, holes included: free lets it move like the rest, so strong "
+        "smoothing draws it in; fixed keeps it exactly in place.",
     )
 
     def __post_init__(self) -> None:
@@ -217,7 +215,7 @@ class FilterOptions:
                 raise OptionError(f"{option.name} = {value}: must be {limits}")
 
     def as_dict(self) -> dict[str, Any]:
-        """All options as plain values: text, numbers, truth values."""
+        """All options as plain values: strings, numbers, booleans."""
         plain = {option.name: getattr(self, option.name) for option in fields(self)}
         return {
             name: str(value) if isinstance(value, Length) else value
@@ -226,7 +224,7 @@ class FilterOptions:
 
     @classmethod
     def from_dict(cls, plain: dict[str, Any]) -> FilterOptions:
-        """Make options from plain values, as `as_dict` gives them; the rest have their default."""
+        """Make options from plain values, as from `as_dict`; the rest keep their defaults."""
         values = dict(plain)
         for name, wanted in get_type_hints(cls).items():
             if wanted is Length and name in values:
@@ -238,12 +236,12 @@ class FilterOptions:
         for name in values:
             if name not in known:
                 similar = difflib.get_close_matches(name, known, n=1)
-                hint = f"did you mean {similar[0]}?" if similar else f"known are {', '.join(known)}"
+                hint = f"did you mean {similar[0]}?" if similar else f"choose {', '.join(known)}"
                 raise OptionError(f"there is no option {name}: {hint}")
         return cls(**values)
 
     def pymeshlab_parameters(self) -> dict[str, Any]:
-        """All that the filter is not to choose itself, as pymeshlab's keyword arguments."""
+        """Keyword arguments for pymeshlab; automatic options are left out."""
         import pymeshlab
 
         parameters = self.as_dict()

@@ -1,4 +1,4 @@
-"""The geometry spectrum of a mesh: how much of its shape is in details of which size."""
+"""The geometry spectrum of a mesh: its energy by feature size."""
 
 from __future__ import annotations
 
@@ -22,60 +22,58 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class GeometrySpectrum:
-    """How much of a shape is in details of which size.
+    """The distribution of a shape over feature sizes.
 
-    An amplitude is the root mean square height over the surface that a part of the spectrum
-    contributes to the shape, ``sqrt(energy / area)``; the amplitudes of all parts, squared, sum to
-    that of the shape. Feature sizes are wavelengths, those of the filter. Lengths are in the units
-    of the mesh.
+    An amplitude is the root mean square height that a part of the spectrum contributes to the
+    shape, ``sqrt(energy / area)``; the squared amplitudes of all parts sum to that of the shape.
+    Feature sizes are wavelengths, as in the filter. Lengths are in the units of the mesh.
 
-    The shape is what a filter with the same boundary acts on: the positions less the centroid of
-    their connected component; with a fixed boundary, less their harmonic extension from there.
+    The shape is what a filter with the same boundary acts on: the positions relative to the
+    centroid of their connected component or, with a fixed boundary, to the harmonic extension of
+    the boundary.
 
     Attributes
     ----------
     diagonal
-        Of the bounding box.
+        Diagonal of the bounding box.
     default_feature_size
-        What the filter takes when no feature size is given.
+        The filter's default feature size for this mesh.
     area
-        Of the surface, all of it.
+        Total surface area.
     total_energy
-        Integral over the surface of the squared lengths of the shape, length^4.
+        Surface integral of the squared length of the shape, length^4.
     frequencies
-        Of the lowest harmonics, ascending, in radians per length unit, 0 for the constant ones; at
-        least `basis_size` of them, as no group of equal frequencies is cut, or all there are.
+        Frequencies of the lowest harmonics, ascending, radians per length unit, 0 for constants. At
+        least `basis_size` of them, as groups of equal frequencies are not split, or all there are.
     amplitudes
-        Of these harmonics; 0 for the constant ones.
+        Amplitudes of these harmonics; 0 for constants.
     octave_feature_sizes
-        Middles of the octaves, from large to small: the diagonal times powers of two. The last one
-        is the last that holds anything of the shape.
+        Centres of the octaves, descending: the diagonal times powers of two, down to the last
+        octave with any energy.
     octave_energies
-        Of the octaves, length^4; they sum to `total_energy`. From one octave to the next it is half
-        an octave, over which a detail counts in parts to both.
+        Energies of the octaves, length^4; they sum to `total_energy`. Adjacent octaves overlap by
+        half an octave, in which a detail is shared between them.
     octave_amplitudes
         ``sqrt(octave_energies / area)``.
     cumulative_energy
-        Part of the energy in every octave and all larger ones, ascending to 1.
+        Fraction of the energy in each octave and all larger ones, ascending to 1.
     band_feature_sizes
-        Middles of thirds of octaves, from large to small: those that hold as much as 30 harmonics;
-        perhaps none.
+        Centres of the third-octave bands with at least 30 harmonics, descending; may be empty.
     band_amplitudes
-        Of the shape in these.
+        Amplitudes of the shape in these bands.
     band_noise
-        Amplitudes that white noise of the vertices, of height 1 across the surface, has in these;
-        above 0.
+        Amplitudes in these bands of white vertex noise of height 1 across the surface; > 0.
     noise_height
-        Root mean square height of the noise of which all details smaller than `noise_feature_size`
-        are no more: noise, or what is too fine for the mesh to tell it from noise. 0 where no such
-        details are seen. Up to 20 % too large, by what the shape itself has there.
+        Root mean square height of the vertex noise that accounts for all details smaller than
+        `noise_feature_size`: noise, or what the mesh is too coarse to tell from noise. 0 if there
+        are none. Up to 20 % too large because of the shape's own details.
     noise_feature_size
-        Where that begins; 0 where it is not seen.
+        Feature size at which this noise floor begins; 0 if there is none.
     feature_size_50, feature_size_90, feature_size_99
-        Feature sizes at and above which 50, 90 and 99 % of the energy are.
+        Feature sizes above which 50, 90 and 99 % of the energy lie.
     mismatch
-        Part by which the octave energies beyond the harmonics missed their known sum before they
-        were scaled to it: a measure of their error.
+        Relative deviation of the octave energies beyond the harmonics from their known sum, before
+        they are scaled to it: a measure of their error.
     """
 
     diagonal: float
@@ -100,16 +98,16 @@ class GeometrySpectrum:
 
     @property
     def noise_heights(self) -> Array:
-        """Heights of the vertex noise that would explain each band alone.
+        """Heights of the vertex noise that would explain each band on its own.
 
-        They fall towards small features, and turn level where there is noise.
+        They fall towards small features and level off at the noise floor.
         """
         heights: Array = self.band_amplitudes / self.band_noise
         return heights
 
     @classmethod
     def from_report(cls, report: dict[str, Any]) -> GeometrySpectrum:
-        """Take the filter's report, with arrays or with lists."""
+        """Convert the filter's report, with arrays or lists."""
         values: dict[str, Any] = {}
         for field in fields(cls):
             value = report[field.name]
@@ -124,11 +122,11 @@ def geometry_spectrum(
     laplacian: LaplacianKind = "intrinsic delaunay",
     boundary: Boundary = "free",
 ) -> GeometrySpectrum:
-    """Measure how much of a shape is in details of which size.
+    """Measure the geometry spectrum of a mesh.
 
-    With the harmonics ``W phi_i = omega_i^2 D phi_i`` of the mesh and its shape U, an energy
-    is a sum of ``|phi_i^T D U|^2``: of single harmonics for the lowest ones, and of octaves over
-    the whole spectrum.
+    With the harmonics ``W phi_i = omega_i^2 D phi_i`` of the mesh and its shape U, an energy is a
+    sum of ``|phi_i^T D U|^2``: over single harmonics for the lowest frequencies, and over octaves
+    for the whole spectrum.
 
     Parameters
     ----------
@@ -137,13 +135,13 @@ def geometry_spectrum(
     faces
         m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
     basis_size
-        How many harmonics are told one by one, the constant ones included; at least 1. Below the
-        number of vertices that are not fixed, unless these are 2,000 at most.
+        Number of harmonics measured individually, constants included; at least 1, and less than
+        the number of vertices not fixed if there are more than 2,000 of these.
     laplacian
-        "intrinsic delaunay" works on any triangles; for "cotangent" every one needs an area.
+        "intrinsic delaunay" works with any triangles; "cotangent" needs non-degenerate ones.
     boundary
-        Rims of an open surface and of its holes. "free": part of the shape, they add to the details
-        of every size; "fixed": only what they do not determine is measured.
+        Boundary of an open surface. "free": part of the shape, it contributes at every size;
+        "fixed": measures the shape relative to the harmonic extension of the boundary.
 
     Returns
     -------
@@ -153,12 +151,12 @@ def geometry_spectrum(
     Raises
     ------
     ValueError
-        When an array does not have the shape or the type above, or an index is out of range.
+        When an array has the wrong shape or type, or an index is out of range.
     OptionError
-        When there is no such `laplacian` or `boundary`, or `basis_size` is no whole number above 0.
+        When `laplacian` or `boundary` is unknown, or `basis_size` is not a positive integer.
     FilterError
-        When the mesh has no faces, no area, or coordinates that are not finite, `basis_size` is
-        too large for it, or a fixed boundary leaves nothing to measure, as in a flat mesh.
+        When the mesh has no faces, no area or non-finite coordinates, `basis_size` is too large, or
+        a fixed boundary leaves nothing to measure, as in a flat mesh.
     PluginError
         When the plugin cannot be loaded.
 
@@ -176,7 +174,7 @@ def geometry_spectrum(
 def measure(
     V: Array, F: NDArray[Any], parameters: dict[str, Any], verbose: bool = False
 ) -> dict[str, Any]:
-    """Apply the filter to a mesh; its report. With `verbose`, MeshLab writes its log."""
+    """Run the filter on a mesh and return its report. With `verbose`, MeshLab writes its log."""
     load()
     import pymeshlab
 
@@ -186,15 +184,15 @@ def measure(
 
 
 def spectrum_parameters(basis_size: int, laplacian: str, boundary: str) -> dict[str, Any]:
-    """Check the options of the filter, and name them as pymeshlab does.
+    """Validate the options; returns the parameters for pymeshlab.
 
     Raises
     ------
     OptionError
-        When one has a value that it cannot take.
+        When an option has an invalid value.
     """
     if isinstance(basis_size, bool) or not isinstance(basis_size, int) or basis_size < 1:
-        raise OptionError(f"basis_size = {basis_size}: must be a whole number, at least 1")
+        raise OptionError(f"basis_size = {basis_size}: must be an integer of at least 1")
     for name, value, kind in (
         ("laplacian", laplacian, LaplacianKind),
         ("boundary", boundary, Boundary),

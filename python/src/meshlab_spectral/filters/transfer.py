@@ -1,4 +1,4 @@
-"""The filter's gain against frequency, for drawing it: the prototypes of the plugin's help."""
+"""The filter's gain as a function of frequency, for plots; the same formulas as the plugin's."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ def gain(options: FilterOptions, x: Array) -> Array:
     Parameters
     ----------
     options
-        Of the filter; its feature size is where `x` is 1.
+        Options of the filter.
     x
-        Frequencies omega / omega_c, the feature size over the wavelength; at least 0.
+        Relative frequencies omega / omega_c = feature size / wavelength, >= 0.
 
     Returns
     -------
     array
-        The gains. The constant mode of a surface keeps gain 1 whatever F(0) is.
+        The gains. The constant mode of a surface always has gain 1, whatever F(0) is.
     """
     B = 1 - _prototype(options, x) if options.filter_type == "band-stop" else _prototype(options, x)
     whole: Array = options.stop_gain + (options.pass_gain - options.stop_gain) * B
@@ -31,8 +31,8 @@ def gain(options: FilterOptions, x: Array) -> Array:
 
 
 def _prototype(options: FilterOptions, x: Array) -> Array:
-    """B, -3 dB at the cutoff (1/sqrt 2); that of the band-pass for a band-stop."""
-    # The frequency as the low-pass sees it, with its cutoff at 1; at x = 0 it may be infinite.
+    """Prototype B(x), 1/sqrt(2) (-3 dB) at the cutoff; a band-stop uses the band-pass's."""
+    # Frequency of the equivalent low-pass, with its cutoff at 1; may be infinite at x = 0.
     with np.errstate(divide="ignore", over="ignore"):
         y = _as_low_pass(options, np.asarray(x, dtype=np.float64))
         if options.response == "gaussian":

@@ -1,4 +1,4 @@
-"""Putting the plugin where MeshLab looks for plugins that are not its own."""
+"""Install the plugin into MeshLab, for the current user."""
 
 from __future__ import annotations
 
@@ -21,18 +21,18 @@ _VERSION_SECONDS = 20
 
 @dataclass(frozen=True)
 class Host:
-    """One of the two kinds of MeshLab 2025.07; each takes plugins of its own precision only.
+    """One of the two builds of MeshLab 2025.07; each loads only plugins of its own precision.
 
     Attributes
     ----------
     precision
-        Of its coordinates: "single" or "double". The plugin computes in double for both.
+        Precision of its coordinates, "single" or "double". The plugin computes in double for both.
     version
-        As MeshLab calls itself.
+        Version that MeshLab reports.
     application
-        As MeshLab calls itself towards Qt, and with it the folder of its data.
+        Qt application name, which also names MeshLab's data folder.
     plugin
-        Name of the plugin's library, without what the system puts round it.
+        Base name of the plugin's library, without platform prefix and extension.
     """
 
     precision: str
@@ -48,14 +48,14 @@ HOSTS = (SINGLE, DOUBLE)
 
 @dataclass(frozen=True)
 class Change:
-    """What was done to one file, or would be.
+    """What was done to one file, or would be done in a dry run.
 
     Attributes
     ----------
     host
-        The MeshLab that reads the file.
+        The MeshLab that loads the file.
     path
-        Where the file is, or was.
+        The file.
     done
         "installed", "replaced", "up to date", "removed" or "not there".
     """
@@ -74,9 +74,9 @@ class FoundMeshLab:
     program
         Its executable.
     version
-        As it tells it; None when it did not.
+        Version it reports; None if it reports none.
     host
-        Which of the plugins it takes; None for other versions than 2025.07.
+        Its build; None if it is not MeshLab 2025.07.
     """
 
     program: Path
@@ -87,27 +87,26 @@ class FoundMeshLab:
 def extra_plugins_folder(
     host: Host, platform: str = sys.platform, environment: Mapping[str, str] = os.environ
 ) -> Path:
-    """Tell the folder of this user's from which a MeshLab reads extra plugins.
+    """Return the folder from which a MeshLab loads extra plugins for the current user.
 
     Parameters
     ----------
     host
-        The kind of MeshLab.
+        The build of MeshLab.
     platform
-        As `sys.platform` names it.
+        As in `sys.platform`.
     environment
-        Variables that say where the user's data is.
+        Environment variables, which locate the user's data folder.
 
     Returns
     -------
     Path
-        The folder, which need not exist: Qt's AppDataLocation of MeshLab, and below it a folder of
-        MeshLab's version.
+        A folder named after MeshLab's version in its AppDataLocation (Qt); it need not exist.
 
     Raises
     ------
     PluginError
-        When the environment does not say where the user's data is.
+        When the environment does not locate the user's data folder.
     """
     if platform == "win32":
         data = _folder_of(environment, "APPDATA")
@@ -121,17 +120,17 @@ def extra_plugins_folder(
 
 
 def library_name(host: Host, platform: str = sys.platform) -> str:
-    """Tell the file name of the plugin for a MeshLab."""
+    """Return the file name of the plugin for a MeshLab."""
     return f"{host.plugin}.dll" if platform == "win32" else f"lib{host.plugin}.so"
 
 
 def install(dry_run: bool = False) -> list[Change]:
-    """Copy the plugins of both precisions to where MeshLab finds them at its next start.
+    """Copy the plugins of both precisions to where MeshLab looks for them when it starts.
 
     Parameters
     ----------
     dry_run
-        Change nothing, only tell what would be done.
+        Change nothing, only return what would be done.
 
     Returns
     -------
@@ -141,18 +140,18 @@ def install(dry_run: bool = False) -> list[Change]:
     Raises
     ------
     PluginError
-        When this package lacks a plugin, or a folder cannot be written to.
+        When a plugin is missing from this package, or a folder is not writable.
     """
     return [_install(host, dry_run) for host in HOSTS]
 
 
 def uninstall(dry_run: bool = False) -> list[Change]:
-    """Take away what `install` has put there.
+    """Remove what `install` has copied.
 
     Parameters
     ----------
     dry_run
-        Change nothing, only tell what would be done.
+        Change nothing, only return what would be done.
 
     Returns
     -------
@@ -168,7 +167,7 @@ def uninstall(dry_run: bool = False) -> list[Change]:
 
 
 def find_meshlab() -> FoundMeshLab | None:
-    """Look for MeshLab where programs are, and ask it for its version."""
+    """Look for MeshLab in the usual places and query its version."""
     program = next((path for path in _usual_places() if path.is_file()), None)
     if program is None:
         return None
@@ -180,7 +179,9 @@ def find_meshlab() -> FoundMeshLab | None:
 def _folder_of(environment: Mapping[str, str], variable: str) -> Path:
     folder = environment.get(variable)
     if not folder:
-        raise PluginError(f"the environment variable {variable}, of the user's folder, is not set")
+        raise PluginError(
+            f"the environment variable {variable}, which locates your data folder, is not set"
+        )
     return Path(folder)
 
 
@@ -192,7 +193,7 @@ def _install(host: Host, dry_run: bool) -> Change:
             f"no plugin at {source}: install this package again: "
             "pip install --force-reinstall ./python"
         )
-    with _problems_told(target):
+    with _as_plugin_error(target):
         there = target.read_bytes() if target.exists() else None
         if there == source.read_bytes():
             return Change(host, target, "up to date")
@@ -202,7 +203,7 @@ def _install(host: Host, dry_run: bool) -> Change:
 
 
 def _copy_whole(source: Path, target: Path) -> None:
-    """Copy so that there is never half a file, nor a changed one under a running MeshLab."""
+    """Copy atomically: no partial file, and a running MeshLab keeps the old one."""
     target.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=".", dir=target.parent) as scratch:
         copy = Path(shutil.copy(source, scratch))
@@ -211,7 +212,7 @@ def _copy_whole(source: Path, target: Path) -> None:
 
 def _uninstall(host: Host, dry_run: bool) -> Change:
     target = extra_plugins_folder(host) / library_name(host)
-    with _problems_told(target):
+    with _as_plugin_error(target):
         if not target.exists():
             return Change(host, target, "not there")
         if not dry_run:
@@ -220,13 +221,13 @@ def _uninstall(host: Host, dry_run: bool) -> Change:
 
 
 @contextmanager
-def _problems_told(target: Path) -> Iterator[None]:
+def _as_plugin_error(target: Path) -> Iterator[None]:
     try:
         yield
     except OSError as error:
         raise PluginError(
-            f"{target} cannot be changed: {error.strerror}. It must be a file of yours; on Windows "
-            "close MeshLab first"
+            f"{target} cannot be changed: {error.strerror}. Check that you own the file; on "
+            "Windows, close MeshLab first"
         ) from error
 
 
@@ -254,5 +255,5 @@ def _version_of(program: Path) -> str | None:
         )
     except (OSError, subprocess.TimeoutExpired):
         return None
-    told = re.search(r"^MeshLab (\S+)", done.stdout, re.MULTILINE)
-    return told[1] if told else None
+    match = re.search(r"^MeshLab (\S+)", done.stdout, re.MULTILINE)
+    return match[1] if match else None

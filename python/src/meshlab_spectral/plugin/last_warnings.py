@@ -13,17 +13,17 @@ from meshlab_spectral.plugin.loading import loaded_plugin
 
 
 def last_warnings() -> list[str]:
-    """Give the warnings of the plugin's latest filter run in this thread.
+    """Return the warnings of the plugin's latest filter run in this thread.
 
     Returns
     -------
     list of str
-        Sentences without a full stop; empty when the run failed, or before the first one.
+        Sentences without the final full stop; empty before the first run and after a failed one.
 
     Raises
     ------
     PluginError
-        When pymeshlab has loaded the plugin from another file than `load` would, or the plugin is
+        When pymeshlab has loaded another copy of the plugin than `load` would, or the plugin is
         older than this package.
     """
     return _warnings_function(loaded_plugin())().decode().splitlines()
@@ -32,17 +32,17 @@ def last_warnings() -> list[str]:
 @functools.cache
 def _warnings_function(plugin: Path) -> Callable[[], bytes]:
     try:
-        # Never loads it: a second copy of the plugin would know of no run.
+        # NOLOAD: a second copy of the plugin would have no warnings to report.
         library = ctypes.CDLL(str(plugin), mode=os.RTLD_NOW | os.RTLD_NOLOAD)
         function = library.meshlab_spectral_warnings
     except OSError as error:
         raise PluginError(
-            f"pymeshlab has loaded the plugin from another file than {plugin}: load it with "
-            "meshlab_spectral.load(), before any other copy of it"
+            f"pymeshlab has loaded another copy of the plugin than {plugin}: call "
+            "meshlab_spectral.load() before loading any other copy"
         ) from error
     except AttributeError as error:
         raise PluginError(
-            f"the plugin {plugin} is older than this package: build it again, from the same sources"
+            f"the plugin {plugin} is older than this package: rebuild both from the same sources"
         ) from error
     function.restype = ctypes.c_char_p
     return function

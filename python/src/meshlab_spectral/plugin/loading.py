@@ -7,7 +7,7 @@ from pathlib import Path
 from meshlab_spectral.errors import PluginError
 
 FILTER_NAME = "apply_coord_spectral_filter_fractional"
-# The plugin's filters: name in MeshLab's menus and scripts -> name in Python.
+# The plugin's filters: name in MeshLab's menus and scripts -> Python name.
 FILTERS = {
     "Spectral Filter (Fractional)": FILTER_NAME,
     "Spectral Artefacts": "compute_scalar_spectral_artefacts_per_vertex",
@@ -23,17 +23,17 @@ _REINSTALL = "install this package again: pip install --force-reinstall ./python
 
 
 def load() -> None:
-    """Make the plugin's filters known to pymeshlab; a second call changes nothing.
+    """Load the plugin into pymeshlab; a second call changes nothing.
 
-    Afterwards every filter of the plugin is a method of `pymeshlab.MeshSet`, as MeshLab's own are:
-    `ms.apply_coord_spectral_filter_fractional(...)`. The plugin is the file that the environment
-    variable MESHLAB_SPECTRAL_PLUGIN names, else the one inside this package.
+    Its filters are then methods of `pymeshlab.MeshSet`, like MeshLab's own:
+    `ms.apply_coord_spectral_filter_fractional(...)`. The environment variable
+    MESHLAB_SPECTRAL_PLUGIN overrides the plugin that comes with this package.
 
     Raises
     ------
     PluginError
-        When the plugin's file is missing or damaged, was built for another MeshLab or another
-        floating-point precision, or when pymeshlab is absent or of another version.
+        When the plugin is missing, damaged, or built for another MeshLab version or precision, or
+        when pymeshlab is missing or of another version.
     """
     global _loaded
     try:
@@ -48,43 +48,43 @@ def load() -> None:
         except pymeshlab.PyMeshLabException as error:
             raise PluginError(_refused(path, str(error))) from error
         _loaded = path
-    # pymeshlab makes the methods at its import, for the filters that it knows by then.
+    # pymeshlab only creates methods on import, for the filters it knows by then.
     for name in pymeshlab.filter_list():
         if not hasattr(pymeshlab.MeshSet, name):
             setattr(pymeshlab.MeshSet, name, pymeshlab.bind_function(name))
 
 
 def plugin_path() -> Path:
-    """Tell where the plugin's file is.
+    """Return the path of the plugin.
 
     Returns
     -------
     Path
-        The existing file that the environment variable names, else the one inside this package.
+        The file named by the environment variable, or the one that comes with this package.
 
     Raises
     ------
     PluginError
-        When there is no such file.
+        When that file does not exist.
     """
     named = os.environ.get(PLUGIN_VARIABLE)
-    # A named file that is missing is an error: another plugin than the wanted one would be worse.
+    # No fallback if the named file is missing: using another plugin silently would be worse.
     path = Path(named).absolute() if named else _INSTALLED
     if path.is_file():
         return path
     if named:
         raise PluginError(
-            f"no plugin at {path}, which the environment variable {PLUGIN_VARIABLE} names: "
-            "correct the variable, or unset it to use the plugin of this package"
+            f"no plugin at {path}, named by the environment variable {PLUGIN_VARIABLE}: "
+            "correct the variable, or unset it to use the plugin that comes with this package"
         )
     raise PluginError(
-        f"no plugin at {path}: {_REINSTALL}, or name a libfilter_spectral.so in the environment "
-        f"variable {PLUGIN_VARIABLE}"
+        f"no plugin at {path}: {_REINSTALL}, or set the environment variable "
+        f"{PLUGIN_VARIABLE} to the path of a libfilter_spectral.so"
     )
 
 
 def loaded_plugin() -> Path:
-    """Tell which file `load` has loaded, or would load if it has not been needed."""
+    """Return the path that `load` has loaded, or would load."""
     return _loaded or plugin_path()
 
 
@@ -100,22 +100,22 @@ def _check_pymeshlab_version() -> None:
 def _pymeshlab_missing(error: ImportError) -> str:
     if isinstance(error, ModuleNotFoundError):
         return f"pymeshlab is not installed: pip install pymeshlab=={PYMESHLAB_VERSION}"
-    # The usual cause on a server: the wheel expects the system's OpenGL libraries.
+    # Usual cause on a server: the wheel needs the system's OpenGL libraries.
     return (
-        f"pymeshlab cannot be imported ({error}): if a library is missing, install it, on Debian "
-        "with: apt-get install libgl1 libopengl0"
+        f"pymeshlab cannot be imported ({error}): if a library is missing, install it; on Debian: "
+        "apt-get install libgl1 libopengl0"
     )
 
 
 def _refused(path: Path, reason: str) -> str:
     if "precision" in reason:
         why = "is built for the other floating-point precision of MeshLab"
-        mend = f"pymeshlab needs the double-precision build; {_REINSTALL}"
+        remedy = f"pymeshlab needs the double-precision build; {_REINSTALL}"
     elif "version" in reason and "different" in reason:
         why = "is built for another version of MeshLab"
-        mend = f"pymeshlab {PYMESHLAB_VERSION} needs the build for MeshLab 2025.07; {_REINSTALL}"
+        remedy = f"pymeshlab {PYMESHLAB_VERSION} needs the build for MeshLab 2025.07; {_REINSTALL}"
     else:
         why = "is not a plugin that MeshLab can load"
-        mend = f"the file may be damaged, or a library that it needs is missing; {_REINSTALL}"
+        remedy = f"the file may be damaged, or a library it needs is missing; {_REINSTALL}"
     detail = " ".join(reason.split())
-    return f"the plugin {path} {why}: {mend}. MeshLab says: {detail}"
+    return f"the plugin {path} {why}: {remedy}. MeshLab says: {detail}"

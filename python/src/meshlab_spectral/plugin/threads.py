@@ -1,4 +1,4 @@
-"""How many threads the plugin computes with: one setting for the whole program."""
+"""Number of threads the plugin uses: one setting for the whole process."""
 
 from __future__ import annotations
 
@@ -6,20 +6,20 @@ import os
 
 from meshlab_spectral.errors import OptionError
 
-# The plugin reads it when a filter begins.
+# The plugin reads it whenever a filter starts.
 VARIABLE = "MESHLAB_SPECTRAL_THREADS"
 
 
 def set_threads(count: int | None) -> None:
-    """Have all filters of the plugin that begin from now on compute with so many threads.
+    """Set the number of threads for all filters of the plugin started from now on.
 
-    Results do not depend on it. Processes that are started from here inherit it: it is the
-    environment variable MESHLAB_SPECTRAL_THREADS.
+    Results do not depend on it. It is stored in the environment variable MESHLAB_SPECTRAL_THREADS,
+    so child processes inherit it.
 
     Parameters
     ----------
     count
-        At least 1; None for one thread for each processor, as without a setting.
+        At least 1; None, the default, for one thread per processor.
 
     Raises
     ------
@@ -35,7 +35,7 @@ def set_threads(count: int | None) -> None:
 
 
 def threads() -> int | None:
-    """Tell what `set_threads` or the environment has set; None for one for each processor."""
+    """Return the number set by `set_threads` or the environment; None: one per processor."""
     text = os.environ.get(VARIABLE)
     if text is None:
         return None
@@ -45,5 +45,5 @@ def threads() -> int | None:
 
 
 def threads_each(processes: int) -> int:
-    """Give the share of each of some processes that compute at the same time on this machine."""
+    """Return the number of threads for each of several processes running at the same time."""
     return max(1, (threads() or os.cpu_count() or 1) // processes)

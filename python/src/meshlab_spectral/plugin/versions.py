@@ -1,4 +1,4 @@
-"""The versions that a result may depend on."""
+"""The versions a result may depend on."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from meshlab_spectral.plugin.loading import plugin_path
 
 @functools.cache
 def versions() -> dict[str, str]:
-    """Tell the versions of the package, of pymeshlab and of Python, and the plugin's SHA-256.
+    """Return the versions of this package, pymeshlab and Python, and the plugin's SHA-256.
 
-    The plugin's is empty where there is none to be loaded: an error that the loading explains.
+    The latter is empty when there is no plugin; `load` then explains why.
     """
     try:
         plugin = hashlib.sha256(plugin_path().read_bytes()).hexdigest()

@@ -1,5 +1,4 @@
-"""A child process in which MeshLab works on files.
+"""A child process that runs MeshLab.
 
-`child` is the program that runs there, `parent` starts and watches it, `single_file` uses one for
-a single call.
+`child` is its program, `parent` starts and watches it, `single_file` uses one per call.
 """

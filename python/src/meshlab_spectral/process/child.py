@@ -1,13 +1,11 @@
-"""The program of the child process in which MeshLab works.
+"""The program of the child process: `python -m meshlab_spectral.process.child FD`.
 
-It is started as `python -m meshlab_spectral.process.child FD`.
+It reads jobs from standard input, one JSON object per line, and answers each on standard output
+with JSON lines: {"stage": ...} as the work proceeds, then {"report": ...} with the peak memory, or
+{"error": ...}. MeshLab's own output goes to standard error.
 
-It reads jobs from its standard input, one JSON object a line, and answers each on its standard
-output with JSON lines: {"stage": ...} as the work goes on, then {"report": ...} with the peak of
-the memory, or {"error": ...}. What MeshLab itself says goes to the standard error stream.
-
-It ends when its standard input does, and at once, in the middle of whatever MeshLab does, when the
-pipe FD is closed: its parent's death leaves no orphan.
+It ends at the end of its input, and immediately, whatever MeshLab is doing, when the pipe FD is
+closed: it never outlives its parent.
 """
 
 from __future__ import annotations
@@ -43,7 +41,7 @@ _PEAK = re.compile(r"^VmHWM:\s+(\d+) kB$", re.MULTILINE)
 def _report_of(job: dict[str, Any], on_stage: StageCallback) -> dict[str, Any]:
     """Do a job."""
     source, task = Path(job["source"]), job["task"]
-    verbose = job.get("verbose", True)  # the log tells the progress within a mesh
+    verbose = job.get("verbose", True)  # the log has the progress within a mesh
     if task == "spectrum":
         on_stage("reading")
         V, F = load_arrays(source)
@@ -61,23 +59,23 @@ def _report_of(job: dict[str, Any], on_stage: StageCallback) -> dict[str, Any]:
 def _end_with_parent(lifeline: int) -> None:
     """Have the kernel end this process when the other end of a pipe is closed.
 
-    A thread that waits for it would have to wait for MeshLab, too, which holds the interpreter.
+    A thread could not: MeshLab holds the interpreter lock while it works.
     """
     fcntl.fcntl(lifeline, fcntl.F_SETOWN, os.getpid())
-    # From here on the closing raises SIGIO, whose default is the end.
+    # From here on, closing the pipe raises SIGIO, which by default ends the process.
     flags = fcntl.fcntl(lifeline, fcntl.F_GETFL)
     fcntl.fcntl(lifeline, fcntl.F_SETFL, flags | os.O_ASYNC)
-    if select.select([lifeline], [], [], 0)[0]:  # closed before that
+    if select.select([lifeline], [], [], 0)[0]:  # already closed
         os._exit(1)
 
 
-def _forget_peak_memory() -> None:
-    with contextlib.suppress(OSError):  # only Linux can
+def _reset_peak_memory() -> None:
+    with contextlib.suppress(OSError):  # Linux only
         Path("/proc/self/clear_refs").write_text("5")
 
 
 def _peak_memory() -> int:
-    """Bytes that this process held at most since the peak was forgotten; else since its start."""
+    """Peak memory in bytes since it was last reset, or else since the process started."""
     with contextlib.suppress(OSError):
         found = _PEAK.search(Path("/proc/self/status").read_text())
         if found:
@@ -86,23 +84,23 @@ def _peak_memory() -> int:
 
 
 def _described(error: Exception) -> dict[str, str]:
-    """Name an error by its kind and its message."""
+    """Describe an error by its class and message."""
     if isinstance(error, errors.SpectralError):
         return {"error": type(error).__name__, "message": str(error)}
     message = f"unexpected error: {error}; please report it"
     if isinstance(error, MemoryError):
         message = (
-            "the mesh needs more memory than there is; if it is not that large, the file is "
-            "damaged, and announces more than it holds"
+            "the mesh needs more memory than available; if it is not that large, the file is "
+            "damaged and declares more than it holds"
         )
     return {"error": "FilterError", "message": message}
 
 
 def _main() -> None:
-    # Ctrl-C reaches every process of the terminal; the parent decides what it means.
+    # Ctrl-C reaches every process of the terminal; the parent handles it.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     _end_with_parent(int(sys.argv[1]))
-    # Whatever C++ prints must not come between the answers.
+    # Keep C++ output out of the answers.
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8", buffering=1)
     os.dup2(2, 1)
 
@@ -110,14 +108,14 @@ def _main() -> None:
         answers.write(json.dumps(content) + "\n")
 
     for line in sys.stdin:
-        _forget_peak_memory()
+        _reset_peak_memory()
         try:
             report = _report_of(json.loads(line), lambda stage: answer(stage=stage))
             answer(report=report, peak_memory=_peak_memory())
         except Exception as error:
             answer(**_described(error), traceback=traceback.format_exc().strip())
     answers.flush()
-    # Without the interpreter's tidying up, in which pymeshlab may crash after an error.
+    # Skip the interpreter's shutdown, in which pymeshlab may crash after an error.
     os._exit(0)
 
 

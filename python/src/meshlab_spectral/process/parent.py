@@ -1,8 +1,8 @@
-"""A child process in which MeshLab works, seen from its parent.
+"""The child process that runs MeshLab, seen from its parent.
 
-MeshLab's code cannot be interrupted, tells its progress only on the standard error stream, and a
-crash in it takes its whole process along. In a child process it can be watched and ended, and even
-its crash becomes an error with a message. `child` is the program that runs there.
+MeshLab cannot be interrupted, reports progress only on standard error, and takes its whole process
+down when it crashes. In a child process (see `child`) it can be watched and ended, and even a crash
+becomes an error with a message.
 """
 
 from __future__ import annotations
@@ -29,12 +29,12 @@ ProgressCallback = Callable[[str, float | None], None]
 
 _LOG_LINE = re.compile(r"^LOG: \d+ (?P<stage>.*?)\s+\[ (?P<percent>\d+)% \]")
 _KEPT_LOG_LINES = 30
-# Seconds between looks at the clock and the memory. In this time memory can grow by some 100 MB.
+# Seconds between checks of the limits, in which memory can grow by some 100 MB.
 _LOOK_INTERVAL = 0.05
 _PAGE = os.sysconf("SC_PAGE_SIZE")
-# By default glibc gives the memory of every matrix back to the system, and takes it anew for the
-# next one: a tenth of the time of a small mesh, a fifth when two processes do so at once. These
-# keep up to 128 MiB at hand.
+# By default glibc returns the memory of every matrix to the system and requests it again for the
+# next one, which costs a tenth of the time for a small mesh, a fifth with two processes. These
+# settings keep up to 128 MiB.
 _ALLOCATOR = {
     "MALLOC_MMAP_THRESHOLD_": str(32 * 2**20),
     "MALLOC_TRIM_THRESHOLD_": str(128 * 2**20),
@@ -43,14 +43,14 @@ _ALLOCATOR = {
 
 @dataclass(frozen=True)
 class JobLimits:
-    """What one job may take before its process is ended.
+    """Limits of a job, beyond which its process is ended.
 
     Attributes
     ----------
     memory
         Resident memory of the process in bytes; None: no limit.
     seconds
-        Time from the start of the job; None: no limit.
+        Time since the start of the job; None: no limit.
     """
 
     memory: int | None = None
@@ -62,26 +62,26 @@ NO_LIMITS = JobLimits()
 
 @dataclass(frozen=True)
 class Answer:
-    """What a job gave: the report of MeshLab's filter, and the process's peak memory in bytes."""
+    """Result of a job: the filter's report and the peak memory of the process in bytes."""
 
     report: dict[str, Any]
     peak_memory: int
 
 
 class MeshLabProcess:
-    """A child process that does one job after the other.
+    """A child process that does jobs one at a time.
 
-    After an error it is of no more use: pymeshlab may crash, or be busy for ever, once a filter has
-    failed in it. Use as a context manager, or `end` it.
+    It cannot be used again after an error: pymeshlab may crash or hang once a filter has failed in
+    it. Use it as a context manager, or `end` it.
 
     Parameters
     ----------
     threads
-        That the plugin computes with in it; None: as here.
+        Number of threads for the plugin; None: as in this process.
     """
 
     def __init__(self, threads: int | None = None) -> None:
-        environment = {**os.environ, **_ALLOCATOR}  # of a Dask worker: it wants the opposite
+        environment = {**os.environ, **_ALLOCATOR}  # Dask workers have opposite settings
         if threads is not None:
             environment[THREADS_VARIABLE] = str(threads)
         lifeline, self._lifeline = os.pipe()
@@ -130,34 +130,33 @@ class MeshLabProcess:
         on_progress: ProgressCallback | None = None,
         limits: JobLimits = NO_LIMITS,
     ) -> Answer:
-        """Have a job done.
+        """Do a job.
 
         Parameters
         ----------
         job
-            As `child` wants it.
+            As `child` expects it.
         on_progress
-            Called with what is being done and the part that is done, from 0 to 1; None where
-            MeshLab tells no part.
+            Called with the current stage and the fraction done, 0 to 1, or None if unknown.
         limits
-            Of this job.
+            Limits for this job.
 
         Raises
         ------
         SpectralError
-            What MeshLab or the reading and writing of the files failed with.
+            When the filter, or reading or writing a file, failed in the child.
         ProcessDiedError
-            When the child ended without an answer.
+            When the child died without an answer.
         TimeLimitError, MemoryLimitError
-            When the child was ended for its limits.
+            When the child exceeded a limit and was ended.
         """
         self._log.clear()
         self._answer = None
         self._on_progress = on_progress or _ignore
         self.jobs += 1
-        self.usable = False  # until all has gone well
+        self.usable = False  # until the job has succeeded
         assert self._child.stdin is not None
-        with contextlib.suppress(BrokenPipeError):  # the child has died: said below
+        with contextlib.suppress(BrokenPipeError):  # the child has died: reported below
             self._child.stdin.write(json.dumps(job).encode() + b"\n")
             self._child.stdin.flush()
         answer = self._await_answer(limits)
@@ -167,13 +166,13 @@ class MeshLabProcess:
         return Answer(answer["report"], answer["peak_memory"])
 
     def end(self) -> None:
-        """End the child, whatever it does."""
+        """End the child, whatever it is doing."""
         self._child.kill()
         self._child.wait()
         self._streams.close()
         for stream in (self._child.stdin, self._child.stdout, self._child.stderr):
             assert stream is not None
-            with contextlib.suppress(BrokenPipeError):  # a job that it never took
+            with contextlib.suppress(BrokenPipeError):  # a job it never read
                 stream.close()
         if self._lifeline >= 0:
             os.close(self._lifeline)
@@ -185,7 +184,7 @@ class MeshLabProcess:
         return self._child.pid
 
     def memory(self) -> int:
-        """Resident memory of the child in bytes; 0 when it is gone, or cannot be known."""
+        """Resident memory of the child in bytes; 0 if it is gone or this is unknown."""
         try:
             return _PAGE * int(Path(f"/proc/{self.pid}/statm").read_text().split()[1])
         except (OSError, IndexError):
@@ -211,8 +210,8 @@ class MeshLabProcess:
         if limits.seconds is not None and seconds > limits.seconds:
             self._child.kill()
             raise errors.TimeLimitError(
-                f"not done after {limits.seconds:g} seconds, the time limit: raise it, or look "
-                "what is wrong with the mesh"
+                f"not done after {limits.seconds:g} seconds, the time limit: raise the limit, or "
+                "check the mesh"
             )
         if limits.memory is not None and self.memory() > limits.memory:
             self._child.kill()
@@ -226,9 +225,9 @@ class MeshLabProcess:
         status = self._child.wait()
         how = f"by signal {signal.Signals(-status).name}" if status < 0 else f"with status {status}"
         error = errors.ProcessDiedError(
-            f"the process that ran MeshLab ended {how} before it had finished. If that was not on "
-            "purpose, the mesh may need more memory than there is, or hits a fault in MeshLab or "
-            "in this filter: please report it, with the mesh"
+            f"the process running MeshLab was ended {how} before it had finished. Unless that was "
+            "intentional, the mesh may need more memory than available, or have hit a bug in "
+            "MeshLab or this filter: please report it, with the mesh"
         )
         tail = "\n".join(self._log)
         error.__cause__ = RuntimeError(f"the last lines of its log:\n{tail}")
@@ -250,7 +249,7 @@ class MeshLabProcess:
 
 
 class _Lines:
-    """Puts the parts that a pipe gives together into lines."""
+    """Assembles lines from the chunks read from a pipe."""
 
     def __init__(self, take: Callable[[str], None]) -> None:
         self._take = take
@@ -263,12 +262,12 @@ class _Lines:
 
 
 def _ignore(stage: str, fraction: float | None) -> None:
-    """Take no note of progress."""
+    """Ignore progress."""
 
 
 def _error_of(answer: dict[str, Any]) -> errors.SpectralError:
     kind = getattr(errors, answer["error"], errors.FilterError)
     error: errors.SpectralError = kind(answer["message"])
-    # Shown by --debug: where in the child it happened.
+    # For --debug: where it happened in the child.
     error.__cause__ = RuntimeError(answer["traceback"])
     return error

@@ -1,6 +1,6 @@
-"""Filtering and measuring in a process of its own, one for each call.
+"""Filtering and measuring a file in a child process, one per call.
 
-So the command itself stays answerable to Ctrl-C, shows real progress, and reports even a crash.
+The calling command can thus be interrupted, show progress, and report even a crash of MeshLab.
 """
 
 from __future__ import annotations
@@ -22,15 +22,14 @@ def filter_file_in_child(
     options: FilterOptions,
     on_progress: ProgressCallback = lambda stage, fraction: None,
 ) -> dict[str, Any]:
-    """Do what `meshes.filter_file` does, in a child process that can be interrupted.
+    """Filter a mesh file into another, in a child process that can be interrupted.
 
     Parameters
     ----------
     source, target, options
-        As for `filter_file`.
+        As for `meshes.filter_file`.
     on_progress
-        Called with what is being done and the part that is done, from 0 to 1;
-        None where MeshLab tells no part.
+        Called with the current stage and the fraction done, 0 to 1, or None if unknown.
 
     Returns
     -------
@@ -40,9 +39,9 @@ def filter_file_in_child(
     Raises
     ------
     SpectralError
-        As `filter_file`; also when the child process ended without an answer.
+        As `meshes.filter_file`; also when the child died without an answer.
     KeyboardInterrupt
-        After the child has been stopped and the scratch files are gone.
+        After the child has been ended and the scratch files removed.
     """
     return _write_in_child(
         source, target, {"task": "filter", "options": options.as_dict()}, on_progress
@@ -57,15 +56,15 @@ def basis_file_in_child(
     boundary: Boundary,
     on_progress: ProgressCallback = lambda stage, fraction: None,
 ) -> dict[str, Any]:
-    """Write the manifold harmonics of a mesh file into an archive of NumPy.
+    """Write the manifold harmonics of a mesh file to a NumPy archive.
 
     Parameters
     ----------
     source
-        A file that pymeshlab reads, with one mesh in it.
+        A file that pymeshlab can read, with one mesh in it.
     target
-        The .npz file to write, with the arrays of `basis.basis_to_scratch`. It appears whole,
-        in place of an existing one, or not at all.
+        The .npz file to write, atomically, with the arrays of `basis.basis_to_scratch`. An existing
+        one is replaced.
     basis_size, laplacian, boundary
         As for `harmonics.manifold_harmonics`.
     on_progress
@@ -79,10 +78,10 @@ def basis_file_in_child(
     Raises
     ------
     SpectralError
-        When `source` cannot be read, `target` cannot be written or does not end in .npz, or the
-        filter refuses the mesh or an option; also when the child ended without an answer.
+        When `source` cannot be read, `target` cannot be written or is not named .npz, or the filter
+        rejects the mesh or an option; also when the child died without an answer.
     KeyboardInterrupt
-        After the child has been stopped and the scratch files are gone.
+        After the child has been ended and the scratch files removed.
     """
     check_basis_target(target)
     options = {"basis_size": basis_size, "laplacian": laplacian, "boundary": boundary}
@@ -111,7 +110,7 @@ def measure_spectrum_in_child(
     Parameters
     ----------
     source
-        A file that pymeshlab reads, with one mesh in it.
+        A file that pymeshlab can read, with one mesh in it.
     basis_size, laplacian, boundary
         As for `spectrum.geometry_spectrum`.
     on_progress
@@ -120,9 +119,9 @@ def measure_spectrum_in_child(
     Raises
     ------
     SpectralError
-        As `load_arrays` and `geometry_spectrum`; also when the child ended without an answer.
+        As `load_arrays` and `geometry_spectrum`; also when the child died without an answer.
     KeyboardInterrupt
-        After the child has been stopped.
+        After the child has been ended.
     """
     check_source(source)
     job = {
