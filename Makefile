@@ -38,7 +38,7 @@ help:  ## list these commands
 
 demo: $(PACKAGE)  ## filter the Stanford bunny: report, mesh and picture in build/demo
 	@mkdir -p build/demo
-	$(BIN)/python -m meshlab_spectral.demo build/demo
+	$(BIN)/python -m meshlab_spectral.cli.demo build/demo
 
 test: build $(PACKAGE)  ## run every test, C++ and Python
 	ctest --test-dir build --output-on-failure --no-tests=error --parallel $$(nproc)

@@ -11,6 +11,7 @@
 #include "core/support/threads.h"
 #include "meshlab/error_messages.h"
 #include "meshlab/host_workarounds/apply_lock.h"
+#include "meshlab/host_workarounds/last_warnings.h"
 #include "meshlab/host_workarounds/late_close.h"
 #include "meshlab/host_workarounds/late_preview.h"
 
@@ -114,6 +115,7 @@ RichParameterList FilterSpectralPlugin::initParameterList(const QAction* action,
 std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
     const QAction* action, const RichParameterList& parameters, MeshDocument& document,
     unsigned int&, vcg::CallBackPos* callback) {
+    keepLastWarnings({});
     releaseGLContext();
     // In its callback MeshLab does whatever its user asks for, in the midst of this run: it
     // switches the preview off, applies the filter, closes its windows, starts the filter anew for
@@ -134,6 +136,7 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
         progress.report(0.0, "reading the mesh");
         FilterOutcome outcome = filterOf(action).apply(parameters, *document.mm(), progress);
         logLines(outcome.text);
+        keepLastWarnings(outcome.warnings);
         return std::move(outcome.report);
     } catch (const spectral::Cancelled& cancelled) {
         // Without an error's window: the result of the newer run stays, the project goes.

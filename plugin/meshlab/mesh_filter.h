@@ -14,9 +14,8 @@ struct FilterOutcome {
     /// What pymeshlab returns. Only int, bool, double and Eigen::VectorXd: other types (strings,
     /// unsigned) do not reach Python.
     std::map<std::string, QVariant> report;
-    std::string text;  ///< The same as lines for MeshLab's log.
-    std::vector<std::string>
-        warnings{};  ///< What fell short without being an error; in the log too.
+    std::string text;                     ///< The same as lines for MeshLab's log.
+    std::vector<std::string> warnings{};  ///< What fell short without being an error; sentences.
 };
 
 /// One filter of the plugin, as the plugin's class needs it.

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from desktop import Desktop
 from meshlab import MeshLab
-from meshlab_spectral.installation import DOUBLE, SINGLE, extra_plugins_folder, library_name
+from meshlab_spectral.plugin.installation import DOUBLE, SINGLE, extra_plugins_folder, library_name
 
 SMOOTHING = "Smoothing, Fairing and Deformation"
 MEASURES = "Quality Measure and Computations"

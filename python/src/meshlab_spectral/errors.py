@@ -1,20 +1,20 @@
-"""The errors that this package reports, by cause. Every message says how to mend it."""
+"""The errors this package raises, by cause. Every message says how to fix it."""
 
 
 class SpectralError(Exception):
-    """Base of all errors that this package reports."""
+    """Base class of all errors of this package."""
 
 
 class PluginError(SpectralError):
-    """The plugin, or the pymeshlab that should load it, is missing or of the wrong version."""
+    """The plugin or pymeshlab is missing, damaged or of the wrong version."""
 
 
 class OptionError(SpectralError, ValueError):
-    """An option of a filter has a value that it cannot take."""
+    """A filter option has an invalid value."""
 
 
 class FormatError(SpectralError, ValueError):
-    """The name of an output file ends in nothing that pymeshlab can write."""
+    """An output file has an extension that cannot be written."""
 
 
 class MeshFileError(SpectralError):
@@ -22,24 +22,24 @@ class MeshFileError(SpectralError):
 
 
 class FilterError(SpectralError):
-    """The filter refused a mesh, or failed on it."""
+    """The filter rejected a mesh or failed on it."""
 
 
 class ProcessDiedError(FilterError):
-    """The process in which MeshLab worked on a mesh ended without an answer."""
+    """The process running MeshLab died without an answer."""
 
 
 class TimeLimitError(FilterError):
-    """A mesh took more time than it was given."""
+    """A mesh took longer than its time limit."""
 
 
 class MemoryLimitError(FilterError):
-    """A mesh took more memory than it was given."""
+    """A mesh needed more than its memory limit."""
 
 
 class InputError(SpectralError, ValueError):
-    """The inputs and outputs of a batch do not fit together: nothing has been done."""
+    """A batch has unusable or conflicting inputs and outputs; nothing has been done."""
 
 
 class BatchError(SpectralError):
-    """A batch cannot be run as a whole: its report or its workers are out of reach."""
+    """A batch cannot run: its report or its workers are unavailable."""

@@ -1,4 +1,4 @@
-"""The engine of a batch: Dask, on workers of this machine or of an existing cluster."""
+"""Running jobs with Dask, on this machine or an existing cluster."""
 
 from __future__ import annotations
 
@@ -29,20 +29,20 @@ from meshlab_spectral.batch.jobs import FileResult, Job
 from meshlab_spectral.batch.processes import processes
 from meshlab_spectral.batch.task import run_job
 from meshlab_spectral.errors import BatchError
-from meshlab_spectral.threads import threads_each
-from meshlab_spectral.versions import versions
+from meshlab_spectral.plugin.threads import threads_each
+from meshlab_spectral.plugin.versions import versions
 
-# What all workers together may take of the machine's memory.
+# Share of the machine's memory for all workers together.
 _SHARE_OF_MEMORY = 0.9
 _SECONDS_TO_CONNECT = 10
 _SECONDS_TO_CLOSE = 5
 _FEWEST_SUBMITTED = 200
-# While MeshLab works on one mesh, the worker reads and writes the files of another.
+# While MeshLab filters one mesh, the worker copies and hashes the files of another.
 _JOBS_PER_WORKER = 2
-# Those that Dask gives a level of their own.
+# Loggers to which Dask gives their own levels.
 _LOGGERS = ("distributed", "distributed.client")
-# Dask watches itself for its dashboard, a hundred times a second; on small meshes and few
-# processors that is a tenth of the work.
+# Dask profiles itself for its dashboard a hundred times a second: a tenth of the work for small
+# meshes on few processors.
 _NO_STATISTICS = {
     "distributed.worker.profile.enabled": False,
     "distributed.admin.tick.interval": "1s",
@@ -56,25 +56,25 @@ _NO_STATISTICS = {
 
 @contextlib.contextmanager
 def local_workers(count: int | None = None, memory_limit: int | None = None) -> Iterator[Client]:
-    """Start worker processes on this machine, reachable from this machine only.
+    """Start worker processes on this machine, not reachable from outside.
 
     Parameters
     ----------
     count
-        Of workers, each with one mesh at a time and its share of the threads; by default that of
-        the processors.
+        Number of workers, each with one mesh at a time and its share of the threads; by default
+        one per processor.
     memory_limit
-        Bytes for each; by default they share nine tenths of the memory that this process may use.
+        Bytes per worker; by default they share nine tenths of the memory available to this process.
 
     Yields
     ------
     Client
-        For `run_jobs`. At the end the workers are ended, whatever they are doing.
+        For `run_jobs`. On exit the workers are ended, whatever they are doing.
 
     Raises
     ------
     BatchError
-        When they do not start.
+        When they fail to start.
     """
     count = count or CPU_COUNT
     limit = memory_limit or int(_SHARE_OF_MEMORY * MEMORY_LIMIT / count)
@@ -84,59 +84,59 @@ def local_workers(count: int | None = None, memory_limit: int | None = None) -> 
             stack.callback(_close, cluster)
             client = Client(cluster, set_as_default=False)
             stack.callback(_close, client)
-            stack.callback(_kill_workers, cluster)  # the last one is called first
+            stack.callback(_kill_workers, cluster)  # called first
             client.register_plugin(_LocalWorker(threads_each(count)))
         yield client
 
 
 @contextlib.contextmanager
 def workers_at(address: str) -> Iterator[Client]:
-    """Use the workers of a Dask cluster that is running.
+    """Use the workers of a running Dask cluster.
 
     Parameters
     ----------
     address
-        Of its scheduler, such as tcp://10.0.0.1:8786.
+        Address of its scheduler, such as tcp://10.0.0.1:8786.
 
     Raises
     ------
     BatchError
-        When it cannot be reached, has no workers, or these have not the same software as here.
+        When it cannot be reached, has no workers, or these have different software versions.
     """
     with _quiet_log():
         try:
             client = Client(address, timeout=_SECONDS_TO_CONNECT, set_as_default=False)
         except (OSError, ValueError, DaskTimeoutError) as error:
             raise BatchError(
-                f"no Dask scheduler can be reached at {address} ({error}): check the address, and "
+                f"no Dask scheduler can be reached at {address} ({error}): check the address and "
                 "that `dask scheduler` is running there"
             ) from error
         try:
             _check_workers(client, address)
             yield client
         finally:
-            with contextlib.suppress(OSError, DaskTimeoutError):  # a cluster that has gone
+            with contextlib.suppress(OSError, DaskTimeoutError):  # the cluster is gone
                 client.run(_end_idle_processes, on_error="ignore")
             _close(client)
 
 
 def run_jobs(client: Client, jobs: Sequence[Job]) -> Iterator[FileResult]:
-    """Have jobs done by workers.
+    """Run jobs on workers.
 
-    Dask gives the job of a worker that has died to another one, up to three times; a process of
-    MeshLab that dies is the worker's own matter, see `task`.
+    If a worker dies, Dask gives its job to another one, up to three times. The death of a MeshLab
+    process is handled by the worker, see `task`.
 
     Yields
     ------
     FileResult
-        Of every job, as soon as it is done.
+        The result of each job, as soon as it is done.
 
     Raises
     ------
     BatchError
-        When the cluster has gone.
+        When the cluster is gone.
     """
-    # A scheduler that knows of all at once would be slow at first, and large.
+    # Submitting all jobs at once would make the scheduler slow to start, and large.
     window = max(_FEWEST_SUBMITTED, 4 * sum(client.nthreads().values()))
     waiting = iter(jobs)
     job_of: dict[Future, Job] = {}
@@ -159,7 +159,7 @@ def run_jobs(client: Client, jobs: Sequence[Job]) -> Iterator[FileResult]:
             result = _failed(job, future.exception()) if failed else future.result()
         except (OSError, CancelledError, DaskTimeoutError) as error:
             raise BatchError(
-                "the Dask cluster has gone: start it again, then run the same command with --resume"
+                "the Dask cluster is gone: restart it, then run the same command with --resume"
             ) from error
         yield result
 
@@ -169,8 +169,8 @@ def _failed(job: Job, error: BaseException) -> FileResult:
     if isinstance(error, KilledWorker):
         attempts = error.allowed_failures + 1
         reason = (
-            "every worker that tried it was ended from outside: does the machine have too little "
-            "memory for that many workers?"
+            "every worker that tried it was ended from outside: if memory is short, use fewer "
+            "workers"
         )
     else:
         reason = f"unexpected error: {error!r}; please report it"
@@ -198,7 +198,7 @@ def _check_workers(client: Client, address: str) -> None:
         found: dict[str, Any] = client.run(versions)
     except ModuleNotFoundError as error:
         raise BatchError(
-            f"the workers at {address} cannot import {error.name}: install this package there, too"
+            f"the workers at {address} cannot import {error.name}: install this package there"
         ) from error
     here = versions()
     for worker, there in found.items():
@@ -209,8 +209,8 @@ def _check_workers(client: Client, address: str) -> None:
         ]
         if different:
             raise BatchError(
-                f"the worker {worker} has other software than this machine: "
-                f"{', '.join(different)}; install the same on both"
+                f"the worker {worker} has different software from this machine: "
+                f"{', '.join(different)}; install the same versions on both"
             )
 
 
@@ -227,19 +227,18 @@ def _start_cluster(count: int, memory_limit: int) -> LocalCluster:
         )
     except (OSError, RuntimeError) as error:
         raise BatchError(
-            f"the worker processes do not start ({error}): too little memory, or too many open "
-            'files? A script that calls filter_files does so below `if __name__ == "__main__":`, '
-            "as its workers import it, too"
+            f"the worker processes do not start ({error}): check memory and the limit of open "
+            'files. A script must call filter_files below `if __name__ == "__main__":`, because '
+            "the workers import it, too"
         ) from error
 
 
 @contextlib.contextmanager
 def _interrupts_held_back() -> Iterator[None]:
-    """Keep Ctrl-C from the processes that are started meanwhile, and from this one until the end.
+    """Block Ctrl-C in the processes started meanwhile, and defer it in this one.
 
-    It reaches every process of the terminal; only this one decides what it means. The threads that
-    are started here, and the workers that these start, keep the mask; unless they started Python's
-    resource tracker, which takes it off.
+    It reaches every process of the terminal, but this one alone handles it. Threads and workers
+    started here inherit the mask, unless they start Python's resource tracker, which clears it.
     """
     resource_tracker.ensure_running()
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
@@ -250,9 +249,9 @@ def _interrupts_held_back() -> Iterator[None]:
 
 
 def _kill_workers(cluster: LocalCluster) -> None:
-    """End workers at once; when closed, they would first finish the meshes that they are at."""
+    """End workers at once; closing would let them finish their current meshes."""
     for nanny in cluster.workers.values():
-        nanny.close_gracefully()  # else it would start a worker anew
+        nanny.close_gracefully()  # else it would restart the worker
         if nanny.pid is not None:
             with contextlib.suppress(ProcessLookupError):
                 os.kill(nanny.pid, signal.SIGKILL)
@@ -264,12 +263,12 @@ def _close(closable: Client | LocalCluster) -> None:
 
 
 def _end_idle_processes() -> None:
-    """Run in a worker: end the processes that wait for further meshes."""
+    """End the idle MeshLab processes; runs in a worker."""
     processes.end()
 
 
 class _LocalWorker(WorkerPlugin):  # type: ignore[misc]
-    """Prepares a worker of `local_workers`, also one that takes the place of another."""
+    """Sets up a worker of `local_workers`, or its replacement."""
 
     name = "meshlab-spectral"
 
@@ -283,7 +282,7 @@ class _LocalWorker(WorkerPlugin):  # type: ignore[misc]
 
 @contextlib.contextmanager
 def _quiet_log() -> Iterator[None]:
-    """Keep Dask's log of workers that come and go to itself; what matters is in the report."""
+    """Silence Dask's log of starting and stopping workers; what matters is in the report."""
     loggers = [logging.getLogger(name) for name in _LOGGERS]
     levels = [logger.level for logger in loggers]
     for logger in loggers:

@@ -1,4 +1,4 @@
-"""Filtering many files: `filter_files`, and the parts of it that the commands use."""
+"""Filtering many files: `filter_files`, and its parts for the commands."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from meshlab_spectral.batch.outputs import DEFAULT_PATTERN
 from meshlab_spectral.batch.plan import Batch, plan_batch
 from meshlab_spectral.batch.report import Report
 from meshlab_spectral.errors import OptionError
-from meshlab_spectral.options import FilterOptions
+from meshlab_spectral.filters.options import FilterOptions
 
 
 def filter_files(
@@ -36,58 +36,56 @@ def filter_files(
     scheduler: str | None = None,
     **options: Any,
 ) -> Generator[FileResult, None, None]:
-    """Filter many mesh files in worker processes; iterate over the results.
+    """Filter many mesh files in worker processes, and iterate over the results.
 
-    Nothing is done until the first result is asked for. Worker processes are started anew from the
-    main module of the program, so that a script has to be guarded, see the example. The workers
-    are ended when the iteration is, or by `close` of the iterator.
+    Work starts when the first result is requested. The workers import the main module of the
+    program, so a script needs a guard, see the example. They are ended with the iteration, or by
+    the iterator's `close`.
 
     Parameters
     ----------
     inputs
-        Files, folders, patterns such as "scans/*.ply", URLs that fsspec knows.
+        Files, folders, patterns such as "scans/*.ply", URLs supported by fsspec.
     output
-        Folder of the outputs, made as needed; a path or a URL.
+        Output folder, a path or a URL; created if needed.
     script
-        A filter script of MeshLab (.mlx) to apply, in place of `options`.
+        A MeshLab filter script (.mlx) to apply instead of `options`.
     recursive
-        Search the folders in folders, too; their structure is kept.
+        Search subfolders, too, and keep their structure.
     name
-        Pattern of the names of the outputs: {stem}, {ending} and {folder} of the input.
+        Pattern for output names, with {stem}, {ending} and {folder} of the input.
     ending
-        Format of the outputs, such as "ply"; by default that of each input.
+        Output format, such as "ply"; by default that of each input.
     overwrite
-        Replace files that are, or meanwhile appear, at the places of outputs. An input is never
-        replaced.
+        Replace existing outputs, even ones created meanwhile. Inputs are never replaced.
     resume
-        Take up an earlier run, if there was one: leave out what its report proves done with the
-        same options, the same inputs and the same versions; replace outputs that have been changed
-        since.
+        Continue an earlier run, if there was one: skip what its report proves done with the same
+        options, inputs and versions; replace outputs changed since.
     report
-        File that gets one JSON line a file, by default batch_report.jsonl in `output`.
+        File for one JSON line per file, by default batch_report.jsonl in `output`.
     timeout
-        Seconds that a file may take; by default any.
+        Time limit per file in seconds; by default none.
     workers
-        How many files are done at once; by default as many as there are processors.
+        Number of files processed at once; by default one per processor.
     memory_limit
-        Bytes for each worker; by default they share nine tenths of the machine's.
+        Bytes per worker; by default they share nine tenths of the machine's memory.
     scheduler
-        Address of a Dask scheduler whose workers do the work; to be given without the last two.
+        Address of a Dask scheduler whose workers to use; excludes `workers` and `memory_limit`.
     **options
-        Fields of `FilterOptions`; sizes as text such as "2%", or as a length.
+        Fields of `FilterOptions`; sizes as a string such as "2%", or as a length.
 
     Yields
     ------
     FileResult
-        Of every file, as soon as it is done; those of an earlier run first.
+        The result of each file, as soon as it is done; those of an earlier run first.
 
     Raises
     ------
     InputError, FormatError, OptionError
-        Before anything is done: when inputs are missing, outputs exist already or would have the
-        same name, or an option is wrong.
+        Before anything is done: when inputs are missing, outputs already exist or would share a
+        name, or an option is invalid.
     BatchError
-        When the report cannot be written, or the Dask cluster is out of reach.
+        When the report cannot be written, or the Dask cluster cannot be reached.
 
     Examples
     --------
@@ -114,10 +112,10 @@ def filter_files(
 
 
 def check_workers(scheduler: str | None, workers: int | None, memory_limit: int | None) -> None:
-    """Raise OptionError when a cluster is asked for other workers than it has."""
+    """Raise OptionError if workers are configured for an existing cluster."""
     if scheduler is not None and (workers is not None or memory_limit is not None):
         raise OptionError(
-            "the workers of a cluster are its own: with a scheduler, leave out the number of "
+            "a cluster configures its own workers: with a scheduler, leave out the number of "
             "workers and the memory limit"
         )
 
@@ -129,7 +127,7 @@ def run_batch(
     memory_limit: int | None = None,
     scheduler: str | None = None,
 ) -> Generator[FileResult, None, None]:
-    """Do what has been planned; see `filter_files`."""
+    """Run a planned batch; see `filter_files`."""
     with Report(batch.report) as report:
         counts = dict.fromkeys(get_args(Outcome), 0) | {"unchanged": len(batch.done)}
         begin = time.monotonic()
@@ -165,11 +163,11 @@ def _run(
 def workers_for(
     scheduler: str | None, workers: int | None = None, memory_limit: int | None = None
 ) -> Iterator[Callable[[Sequence[Job]], Iterator[FileResult]]]:
-    """Give what has jobs done: by the workers of a scheduler, else by ones that are started here.
+    """Yield a function that runs jobs, on the workers of a scheduler or on new local ones.
 
     See `engine.run_jobs`, `engine.workers_at` and `engine.local_workers`.
     """
-    # Here, as it takes a while: a command that only filters one file needs none of it.
+    # A slow import, not needed by commands for a single file.
     from meshlab_spectral.batch import engine
 
     cluster: AbstractContextManager[Any] = (

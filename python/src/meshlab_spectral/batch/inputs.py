@@ -1,4 +1,4 @@
-"""The files of a batch: found in folders, by patterns, one by one."""
+"""Finding the input files of a batch."""
 
 from __future__ import annotations
 
@@ -9,21 +9,21 @@ from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from meshlab_spectral.batch.formats import SEARCHED, ending_of
 from meshlab_spectral.batch.storage import file_system, is_url, located
 from meshlab_spectral.errors import InputError
+from meshlab_spectral.files.formats import SEARCHED, ending_of
 
 
 @dataclass(frozen=True)
 class Input:
-    """A file to be filtered.
+    """An input file.
 
     Attributes
     ----------
     place
-        An absolute path, or a URL. A file that cannot be read is an input, too: it will fail.
+        Absolute path or URL. An unreadable file is an input, too, and will fail.
     folder
-        Where it lies in the folder that was given, as a relative path; "" if right there.
+        Its folder relative to the one given by the user; "" if the same.
     """
 
     place: str
@@ -31,42 +31,42 @@ class Input:
 
     @property
     def name(self) -> str:
-        """Name of the file, without folders."""
+        """File name without folders."""
         return posixpath.basename(self.place)
 
 
 def find_inputs(
     arguments: Iterable[str], recursive: bool = False, leave_out: Collection[Path] = ()
 ) -> list[Input]:
-    """Find the files that are meant by files, folders, patterns such as scans/*.ply, and URLs.
+    """Find the files given by names, folders, patterns such as scans/*.ply, and URLs.
 
     Parameters
     ----------
     arguments
-        What was given. A file is taken whatever its ending; in folders those are that MeshLab
-        reads, hidden ones left out.
+        The user's arguments. A file is accepted whatever its extension; in folders, files that
+        MeshLab can read are, hidden ones excepted.
     recursive
-        Search the folders in the folders, too, and take ** in a pattern for any folders.
+        Search subfolders, too, and let ** in a pattern match any folders.
     leave_out
-        Files and folders that are no inputs where a search comes upon them: the outputs.
+        Files and folders to skip in a search: the outputs.
 
     Returns
     -------
     list of Input
-        In the order of the arguments, sorted within each; every file once.
+        In the order of the arguments, sorted within each, without duplicates.
 
     Raises
     ------
     InputError
-        When one of the arguments leads to no file.
+        When an argument matches no file.
     """
     outputs = {path.resolve() for path in leave_out}
     found: dict[str, Input] = {}
     for argument in arguments:
         of_this = list(_from_argument(argument, recursive, outputs))
         if not of_this:
-            hint = "" if recursive else "; --recursive searches the folders in it, too"
-            raise InputError(f"{argument} holds no mesh that MeshLab reads{hint}")
+            hint = "" if recursive else "; --recursive searches its subfolders, too"
+            raise InputError(f"{argument} holds no mesh that MeshLab can read{hint}")
         for file in of_this:
             key = file.place if is_url(file.place) else os.path.realpath(file.place)
             found.setdefault(key, file)
@@ -98,7 +98,7 @@ def _from_path(path: Path, recursive: bool, outputs: set[Path]) -> Iterator[Inpu
     within = list(_search(path, "", recursive, outputs))
     yield from within
     if not within and _looks_like_mesh(path.name):
-        yield Input(str(path))  # will be reported as a folder
+        yield Input(str(path))  # will fail as a folder
 
 
 def _search(folder: Path, relative: str, recursive: bool, outputs: set[Path]) -> Iterator[Input]:

@@ -1,4 +1,4 @@
-"""What is to be done with one file, and what came of it."""
+"""A job for one file, and its result."""
 
 from __future__ import annotations
 
@@ -11,24 +11,24 @@ Outcome = Literal["filtered", "measured", "failed", "unchanged"]
 
 @dataclass(frozen=True)
 class Job:
-    """What a worker needs to know to deal with one file; plain values, so that it can be sent.
+    """All that a worker needs to process one file; plain values, to be sent between processes.
 
     Attributes
     ----------
     source, target
-        Places of the input and the output: absolute paths, or URLs. No target: nothing is written,
+        Absolute paths or URLs of the input and the output. Without a target nothing is written and
         the report is the result.
     name
-        Of the output, relative to the folder of the outputs.
+        Name of the output, relative to the output folder.
     work
-        The job of `child`, without its files: "task", and what belongs to it.
+        The job for `child` without its files: "task" and its parameters.
     options
-        What the work depends on, for the report: two jobs with equal options and equal inputs have
+        What the result depends on, for the report: jobs with equal options and equal inputs have
         equal results.
     seconds
-        That it may take at most; None: any.
+        Time limit; None: no limit.
     overwrite
-        Whether the output may replace a file that is at its place by then.
+        Whether the output may replace an existing file.
     """
 
     source: str
@@ -42,38 +42,40 @@ class Job:
 
 @dataclass(frozen=True)
 class FileResult:
-    """What came of one file: a line of the report.
+    """The result for one file: a line of the report.
 
     Attributes
     ----------
     outcome
-        "filtered": the output is there, whole; "failed": it is as it was before; "unchanged": an
-        earlier run had made it, as its report proves. "measured": done, and without an output.
+        "filtered": the output has been written; "failed": the output path is untouched;
+        "unchanged": the report proves that an earlier run has written the output; "measured": done,
+        without an output.
     input, output
-        Places: absolute paths, or URLs.
+        Absolute paths or URLs.
     name
-        Of the output, relative to the folder of the outputs.
+        Name of the output, relative to the output folder.
     reason
-        Why it failed, and how to mend it; None if it did not.
+        Why it failed and how to fix it; None if it did not fail.
     options
-        Of the filter; for a MeshLab script its name, SHA-256 and filters.
+        Options of the filter; for a MeshLab script its name, SHA-256 and filters.
     report
-        Of the filter: numbers and lists, lengths in the units of the mesh. None if it failed.
+        The filter's report, as from `filter_mesh`; for a script see `script.apply_script`. None if
+        the filter failed.
     warnings
-        Where the result fell short of what was asked for, and what to do.
+        All warnings in the report: what fell short, and what to do about it.
     input_sha256, output_sha256
-        Of the files; None where there was none.
+        SHA-256 of the files; None if missing.
     side_files
-        What the format keeps beside the output, such as materials and textures: name, relative to
-        the output's folder -> SHA-256.
+        Files that belong to the output, such as materials and textures: name relative to the
+        output's folder -> SHA-256.
     attempts
-        How often it was tried.
+        Number of attempts.
     seconds
-        That it took, reading and writing included.
+        Time taken, reading and writing included.
     peak_memory
-        Bytes that MeshLab's process held at most; None where it was not started or died.
+        Peak memory of MeshLab's process in bytes; None if it did not start or died.
     versions
-        Of the package, the plugin, pymeshlab and Python, where it was filtered.
+        Versions of this package, the plugin, pymeshlab and Python that filtered the file.
     """
 
     outcome: Outcome
@@ -93,13 +95,13 @@ class FileResult:
     versions: dict[str, str] = field(default_factory=dict)
 
     def as_record(self) -> dict[str, Any]:
-        """Give all of it as plain values that JSON can hold."""
+        """Convert to plain values that JSON can represent."""
         record: dict[str, Any] = _finite(asdict(self))
         return record
 
 
 def _finite(value: Any) -> Any:
-    """Replace what JSON has no word for, NaN and infinities, by None."""
+    """Replace NaN and infinities, which JSON cannot represent, by None."""
     if isinstance(value, dict):
         return {key: _finite(part) for key, part in value.items()}
     if isinstance(value, list):

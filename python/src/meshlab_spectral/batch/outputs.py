@@ -1,4 +1,4 @@
-"""The names of a batch's outputs: made by a pattern, no two alike, none an input."""
+"""Naming the outputs of a batch: from a pattern, unique, never an input."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from meshlab_spectral.batch.formats import FALLBACK, POINTS_ONLY, WRITABLE, ending_of
 from meshlab_spectral.batch.inputs import Input
 from meshlab_spectral.batch.storage import is_url, joined
 from meshlab_spectral.errors import FormatError, InputError
+from meshlab_spectral.files.formats import FALLBACK, POINTS_ONLY, WRITABLE, ending_of
 
 DEFAULT_PATTERN = "{stem}"
 _FIELDS = ("stem", "ending", "folder")
@@ -21,16 +21,16 @@ _NAMED_AT_MOST = 5
 
 @dataclass(frozen=True)
 class Output:
-    """Where the result for an input goes.
+    """The output for an input.
 
     Attributes
     ----------
     source
-        Place of the input.
+        Path or URL of the input.
     name
-        Of the output, relative to the folder of the outputs, with "/" between folders.
+        Name of the output relative to the output folder, with "/" as separator.
     target
-        Place of the output.
+        Path or URL of the output.
     """
 
     source: str
@@ -41,28 +41,28 @@ class Output:
 def plan_outputs(
     inputs: Sequence[Input], folder: str, pattern: str = DEFAULT_PATTERN, ending: str | None = None
 ) -> list[Output]:
-    """Name the output of every input.
+    """Name the output for each input.
 
     Parameters
     ----------
     inputs
         From `find_inputs`.
     folder
-        Place of the folder of the outputs. The folders within the inputs' are kept in it.
+        Path or URL of the output folder. The inputs' subfolders are recreated in it.
     pattern
-        Of the names, without their ending: {stem} and {ending} stand for the parts of the input's
-        name before and after its last dot, {folder} for the name of the folder that it lies in. A
-        "/" makes folders.
+        Pattern for the names, without extension: {stem} and {ending} stand for the parts of the
+        input's name before and after its last dot, {folder} for the name of its folder. A "/"
+        creates folders.
     ending
-        Of the outputs; by default that of the input, or ply where MeshLab cannot write it, or
-        only without faces.
+        Extension of the outputs; by default that of the input, or ply if MeshLab cannot write that
+        with faces.
 
     Raises
     ------
     InputError
-        When the pattern is wrong, two outputs would have one name, or one would replace an input.
+        When the pattern is invalid, outputs would share a name, or one would replace an input.
     FormatError
-        When MeshLab cannot write files of that ending.
+        When MeshLab cannot write files with that extension.
     """
     check_pattern(pattern)
     if ending is not None:
@@ -78,15 +78,15 @@ def plan_outputs(
 
 
 def check_pattern(pattern: str) -> None:
-    """Raise InputError when a pattern does not lead to names within the folder of the outputs."""
+    """Raise InputError unless a pattern gives names inside the output folder."""
     try:
         parts = list(string.Formatter().parse(pattern))
     except ValueError as error:
-        raise InputError(f"the name {pattern!r} cannot be understood ({error})") from error
+        raise InputError(f"the name {pattern!r} is invalid ({error})") from error
     for _, field, spec, conversion in parts:
         if field is not None and (field not in _FIELDS or spec or conversion):
             known = ", ".join(f"{{{name}}}" for name in _FIELDS)
-            raise InputError(f"the name {pattern!r} has a field {{{field}}}: choose of {known}")
+            raise InputError(f"the name {pattern!r} has a field {{{field}}}: choose from {known}")
     _check_name(pattern.strip(), pattern)
 
 
@@ -94,8 +94,8 @@ def _check_name(name: str, pattern: str) -> None:
     if any(step in ("", ".", "..") or "\0" in step for step in name.split("/")):
         made = "" if name == pattern else f", here {name!r},"
         raise InputError(
-            f"the name {pattern!r}{made} does not lead to a file in the folder of the outputs: "
-            "give something like {stem}_smooth, or {folder}/{stem}"
+            f"the name {pattern!r}{made} does not name a file inside the output folder: give "
+            "something like {stem}_smooth or {folder}/{stem}"
         )
 
 
@@ -106,7 +106,7 @@ def _output(file: Input, folder: str, pattern: str, ending: str | None) -> Outpu
         ending = own if own.lower() in WRITABLE - POINTS_ONLY else FALLBACK
     parent = posixpath.basename(posixpath.dirname(file.place))
     made = pattern.format(stem=stem, ending=own, folder=parent)
-    _check_name(made, pattern)  # a file may have no ending, or lie in the topmost folder
+    _check_name(made, pattern)  # a field may be empty: no extension, or the root folder
     name = posixpath.join(file.folder, f"{made}.{ending}")
     return Output(file.place, name, joined(folder, name))
 
@@ -120,26 +120,26 @@ def _refuse_collisions(outputs: Sequence[Output]) -> None:
         target, of = next(iter(collisions.items()))
         raise InputError(
             f"{', '.join(of[:_NAMED_AT_MOST])} would all be written to {target} "
-            f"({len(collisions)} such names): tell them apart with --name, such as "
+            f"({len(collisions)} such names): distinguish them with --name, such as "
             "{stem}_{ending} or {folder}_{stem}, or filter them into different folders"
         )
 
 
 def refuse_inputs(targets: Iterable[str], sources: Iterable[str]) -> None:
-    """Raise InputError when an output is one of the inputs, under whatever name."""
+    """Raise InputError if an output is one of the inputs, under any name."""
     sources = list(sources)
     places = {source for source in sources if is_url(source)}
     files = {key for source in sources for key in _identities(source)}
     for target in targets:
         if target in places or not files.isdisjoint(_identities(target)):
             raise InputError(
-                f"{target} is an input itself, and would be lost: give the output another name or "
+                f"{target} is an input itself and would be lost: give the output another name or "
                 "another folder"
             )
 
 
 def _identities(place: str) -> list[object]:
-    """Tell by what a file would be known under another name: links, hard and symbolic."""
+    """Return keys that identify a file under any name, through hard and symbolic links."""
     if is_url(place):
         return []
     known: list[object] = [os.path.realpath(place)]

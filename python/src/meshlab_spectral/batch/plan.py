@@ -1,4 +1,4 @@
-"""What a batch is going to do, found out and checked before anything is done."""
+"""Planning a batch: everything is found and checked before any work is done."""
 
 from __future__ import annotations
 
@@ -15,27 +15,27 @@ from meshlab_spectral.batch.outputs import DEFAULT_PATTERN, plan_outputs
 from meshlab_spectral.batch.report import DEFAULT_NAME, check_report, read_report
 from meshlab_spectral.batch.resume import Records, done_records, proved_done
 from meshlab_spectral.errors import InputError, OptionError
-from meshlab_spectral.filter_script import script_filters
-from meshlab_spectral.options import FilterOptions
-from meshlab_spectral.versions import versions
+from meshlab_spectral.files.script import script_filters
+from meshlab_spectral.filters.options import FilterOptions
+from meshlab_spectral.plugin.versions import versions
 
-# Clocks of a file server and of this machine may differ by so many seconds.
+# Tolerated difference between the clocks of a file server and this machine, in seconds.
 _CLOCK_SLACK = 2.0
 _NAMED_AT_MOST = 5
 
 
 @dataclass(frozen=True)
 class Batch:
-    """What is to be done.
+    """A planned batch.
 
     Attributes
     ----------
     jobs
-        Left to be done, in the order of the inputs.
+        Jobs to do, in the order of the inputs.
     done
-        Results of an earlier run that stand.
+        Results of an earlier run that are still valid.
     report
-        File of the report.
+        Path of the report.
     """
 
     jobs: list[Job]
@@ -44,7 +44,7 @@ class Batch:
 
     @property
     def folders(self) -> list[str]:
-        """Folders that outputs go to."""
+        """Output folders of the jobs."""
         targets = [job.target for job in self.jobs if job.target is not None]
         return sorted({target.rpartition("/")[0] for target in targets})
 
@@ -63,9 +63,9 @@ def plan_batch(
     report: str | Path | None = None,
     timeout: float | None = None,
 ) -> Batch:
-    """Find the inputs of a batch, name its outputs, and check that nothing would be lost.
+    """Find the inputs of a batch, name its outputs, and check that no file would be lost.
 
-    The parameters and errors are those of `files.filter_files`.
+    Parameters and errors are those of `files.filter_files`.
     """
     work, described = _work(options, script)
     folder = storage.located(str(output))
@@ -98,12 +98,14 @@ def plan_batch(
     left = [job for job in jobs if job not in done]
     proved = {job.name for job in done}
     if str(report_path) in (output.target for output in planned):
-        raise InputError(f"the report {report_path} is an output, too: name another with --report")
+        raise InputError(
+            f"the report {report_path} is also an output: choose another with --report"
+        )
     if not overwrite:
         targets = [output.target for output in planned if output.name not in proved]
-        hint = "take up an earlier run with --resume"
+        hint = "continue an earlier run with --resume"
         if resume:
-            hint = f"give the report of the run that made them (--report): {report_path} is not it"
+            hint = f"pass the report of the run that made them (--report); {report_path} is not it"
         _refuse_to_replace(targets, begun if resume else None, hint)
     return Batch(left, list(done.values()), report_path)
 
@@ -111,13 +113,13 @@ def plan_batch(
 def _work(
     options: FilterOptions | None, script: str | Path | None
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Give the work of every job, and what describes it in the report."""
+    """Return the work of each job, and its description in the report."""
     if script is None:
         described = (options or FilterOptions()).as_dict()
         return {"task": "filter", "options": described}, described
     if options is not None:
         raise OptionError(
-            "a script has its parameters in itself: give either a script or options of the filter"
+            "a script contains its parameters: give either a script or options of the filter"
         )
     try:
         content = Path(script).read_bytes()
@@ -125,7 +127,7 @@ def _work(
     except OSError as error:
         raise InputError(f"the script {script} cannot be read ({error.strerror})") from error
     except UnicodeDecodeError:
-        raise OptionError(f"{script} is no filter script of MeshLab") from None
+        raise OptionError(f"{script} is not a MeshLab filter script") from None
     described = {
         "script": Path(script).name,
         "script_sha256": hashlib.sha256(content).hexdigest(),
@@ -138,7 +140,7 @@ def _report_path(folder: str, report: str | Path | None) -> Path:
     if report is not None:
         return Path(report).absolute()
     if storage.is_url(folder):
-        raise InputError("the outputs go to a URL, the report to a file here: name it (--report)")
+        raise InputError("the outputs go to a URL: name a local file for the report (--report)")
     return Path(folder, DEFAULT_NAME)
 
 
@@ -149,7 +151,7 @@ def _inputs(
     report: Path,
     records: Records,
 ) -> list[Input]:
-    """Find the inputs; outputs of an earlier run that lie among them are none."""
+    """Find the inputs, without the outputs of an earlier run among them."""
     leave_out = [report]
     given = {storage.located(str(place)) for place in inputs}
     if not storage.is_url(folder):
@@ -160,7 +162,7 @@ def _inputs(
 
 
 def _refuse_to_replace(targets: Sequence[str], begun: float | None, hint: str) -> None:
-    """Refuse to replace files; those that the run to be resumed has made may be."""
+    """Refuse to replace existing files, except those made by the run to be resumed."""
     taken = [
         target
         for target in storage.existing(list(targets))
@@ -169,7 +171,7 @@ def _refuse_to_replace(targets: Sequence[str], begun: float | None, hint: str) -
     if taken:
         more = ", ..." if len(taken) > _NAMED_AT_MOST else ""
         raise InputError(
-            f"{len(taken)} of the outputs exist already "
+            f"{len(taken)} of the outputs already exist "
             f"({', '.join(taken[:_NAMED_AT_MOST])}{more}): choose another folder, replace them "
             f"with --overwrite, or {hint}"
         )
@@ -177,6 +179,6 @@ def _refuse_to_replace(targets: Sequence[str], begun: float | None, hint: str) -
 
 def _made_since(target: str, begun: float) -> bool:
     if storage.is_url(target):
-        return True  # which tells no time that can be relied on
+        return True  # without a reliable modification time
     path = Path(target)
     return path.is_file() and path.stat().st_mtime >= begun - _CLOCK_SLACK

@@ -1,4 +1,4 @@
-"""MeshLab's processes of one worker: used again and again, replaced before they leak much."""
+"""The MeshLab processes of a worker: reused, and replaced before they leak too much memory."""
 
 from __future__ import annotations
 
@@ -7,23 +7,23 @@ import contextlib
 import threading
 from collections.abc import Iterator
 
-from meshlab_spectral.meshlab_process import JobLimits, MeshLabProcess
+from meshlab_spectral.process.parent import JobLimits, MeshLabProcess
 
-# pymeshlab leaks: a process is replaced after so many meshes, or when it holds more than this part
-# of what it may with nothing to do.
+# pymeshlab leaks memory: a process is replaced after this many jobs, or when it holds more than
+# this share of its memory limit while idle.
 _JOBS_PER_PROCESS = 250
 _IDLE_SHARE = 0.5
 
 
 class Processes:
-    """MeshLab's processes of a worker, for as many jobs at once as it has threads, or fewer.
+    """A pool of MeshLab processes, for the concurrent jobs of a worker.
 
     Attributes
     ----------
     at_once
-        How many may work at the same time; None: any number.
+        Maximum number of processes at work; None: no limit.
     threads
-        That the plugin computes with in each of them; None: not said yet.
+        Number of threads for the plugin in each process; None: not set yet.
     """
 
     def __init__(self) -> None:
@@ -34,13 +34,13 @@ class Processes:
         self._idle: list[MeshLabProcess] = []
 
     def limit(self, at_once: int) -> None:
-        """Let only so many work at the same time. To be called before the first job."""
+        """Set the maximum number of processes at work. Call it before the first job."""
         self.at_once = at_once
         self._turns = threading.BoundedSemaphore(at_once)
 
     @contextlib.contextmanager
     def one(self, limits: JobLimits) -> Iterator[MeshLabProcess]:
-        """Give a process for one job, as soon as one may work."""
+        """Yield a process for one job, as soon as one may work."""
         with self._turns:
             process = self._take()
             try:
@@ -49,7 +49,7 @@ class Processes:
                 self._give_back(process, limits)
 
     def end(self) -> None:
-        """End the processes that have nothing to do."""
+        """End the idle processes."""
         with self._lock:
             while self._idle:
                 self._idle.pop().end()

@@ -1,7 +1,7 @@
-"""The report of a batch: one JSON object a line, kept whatever happens.
+"""The report of a batch: one JSON object per line, safe on disk at any time.
 
-A line has a "kind": "run" when a batch begins, "file" for every file as soon as it is done (the
-attributes of `FileResult`), "summary" at the end. A later batch appends to it.
+Each line has a "kind": "run" when a batch starts, "file" for each file as soon as it is done (the
+attributes of `FileResult`), "summary" at the end. Later batches append to it.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from meshlab_spectral.errors import BatchError, InputError
 
 DEFAULT_NAME = "batch_report.jsonl"
 
-_BEGIN = b'{"kind": '  # of every line
+_BEGIN = b'{"kind": '  # start of every line
 
 
 def read_report(path: Path) -> Iterator[dict[str, Any]]:
-    """Give the lines of a report, from the first to the last.
+    """Yield the lines of a report in order.
 
-    A line that is cut off, as when the machine stopped while it was written, is left out.
+    Skips incomplete lines, such as after a power failure.
 
     Raises
     ------
     BatchError
-        When the file is there but cannot be read.
+        When the file exists but cannot be read.
     """
     try:
         with path.open("rb") as file:
@@ -45,9 +45,9 @@ def read_report(path: Path) -> Iterator[dict[str, Any]]:
 
 
 class Report:
-    """A report that lines are added to; only one process at a time can.
+    """A report open for appending, by one process at a time.
 
-    Every line is on the disk when `add` returns.
+    Every line is on disk when `add` returns.
 
     Raises
     ------
@@ -62,7 +62,7 @@ class Report:
             self._file = path.open("a+b", buffering=0)
         except OSError as error:
             raise BatchError(
-                f"the report {path} cannot be written ({error.strerror}): name another with "
+                f"the report {path} cannot be written ({error.strerror}): choose another with "
                 "--report"
             ) from error
         try:
@@ -84,20 +84,20 @@ class Report:
         self._file.close()
 
     def add(self, kind: str, content: dict[str, Any]) -> None:
-        """Add a line."""
+        """Append a line."""
         line = json.dumps({"kind": kind, **content}, ensure_ascii=False, allow_nan=False)
         self._write(line.encode("utf-8", errors="surrogateescape") + b"\n")
 
     def _write(self, text: bytes) -> None:
         try:
             rest = memoryview(text)
-            while rest:  # a disk that is nearly full takes a part
+            while rest:  # a nearly full disk may accept only part of it
                 rest = rest[self._file.write(rest) :]
             os.fsync(self._file.fileno())
         except OSError as error:
             raise BatchError(
-                f"the report {self.path} cannot be written ({error.strerror}): make room, then run "
-                "the same command with --resume"
+                f"the report {self.path} cannot be written ({error.strerror}): free some space, "
+                "then run the same command with --resume"
             ) from error
 
     def _lock(self) -> None:
@@ -105,14 +105,14 @@ class Report:
             fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             raise BatchError(
-                f"another batch is writing the report {self.path}: wait for its end, or name "
-                "another with --report"
+                f"another batch is writing the report {self.path}: wait for it to end, or choose "
+                "another report with --report"
             ) from None
         except OSError:
-            pass  # a file system without locks
+            pass  # the file system does not support locks
 
     def _end_line(self) -> None:
-        """End a line that was cut off, so that the next one stands for itself."""
+        """Terminate an incomplete last line, so that it does not spoil the next one."""
         if self._file.seek(0, io.SEEK_END) == 0:
             return
         self._file.seek(-1, io.SEEK_END)
@@ -121,17 +121,17 @@ class Report:
 
 
 def check_report(path: Path) -> None:
-    """Raise InputError when there is a file at `path` that no batch has written."""
-    if not path.is_file():  # what else there may be, `Report` complains of
+    """Raise InputError if `path` is a file not written by a batch."""
+    if not path.is_file():  # anything else is reported by `Report`
         return
     try:
         with path.open("rb") as file:
             begin = file.read(len(_BEGIN))
-    except OSError:  # `read_report` says why
+    except OSError:  # reported by `read_report`
         return
-    if not _BEGIN.startswith(begin):  # it may be cut off
+    if not _BEGIN.startswith(begin):  # an incomplete line may be shorter
         raise InputError(
-            f"{path} is no report of a batch, which would be added to it: name another file with "
+            f"{path} is not a batch report, so nothing is appended to it: choose another file with "
             "--report"
         )
 

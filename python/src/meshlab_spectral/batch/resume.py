@@ -1,4 +1,4 @@
-"""What a report proves done, so that it need not be done again."""
+"""Recognizing finished jobs in the report of an earlier run."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 from meshlab_spectral.batch.jobs import FileResult, Job
-from meshlab_spectral.batch.storage import beside, digest_at
+from meshlab_spectral.batch.storage import digest_at, sibling
 
 Records = dict[str, list[dict[str, Any]]]
 
 _DONE = ("filtered", "measured")
-# What a result depends on.
+# Versions a result depends on.
 _DECIDING_VERSIONS = ("meshlab_spectral", "plugin", "pymeshlab")
 
 
 def done_records(report: Iterable[Mapping[str, Any]]) -> Records:
-    """Collect the lines of a report that tell of a finished file, by the names of the outputs."""
+    """Collect the report lines of finished files, by output name."""
     records: Records = {}
     for record in report:
         if record.get("kind") == "file" and record.get("outcome") in _DONE:
@@ -28,10 +28,10 @@ def done_records(report: Iterable[Mapping[str, Any]]) -> Records:
 def proved_done(
     jobs: Iterable[Job], records: Records, versions: Mapping[str, str]
 ) -> dict[Job, FileResult]:
-    """Tell the jobs that need not be done.
+    """Find the jobs that are already done.
 
-    A job is done when a record has its options, the SHA-256 that its input has now, those that its
-    output and the files beside it have now, and the versions that would do it now.
+    A job is done if a record has its options and the current versions, and the SHA-256 of its
+    input, its output and the output's side files are still those in the record.
 
     Parameters
     ----------
@@ -45,10 +45,10 @@ def proved_done(
     Returns
     -------
     dict
-        For every such job what the record says of it, as "unchanged".
+        The recorded result of each such job, as "unchanged".
     """
     candidates = [job for job in jobs if job.name in records]
-    with ThreadPoolExecutor() as pool:  # reading is what takes the time
+    with ThreadPoolExecutor() as pool:  # most of the time goes into reading
         found = pool.map(lambda job: _proof(job, records[job.name], versions), candidates)
         return {job: result for job, result in zip(candidates, found, strict=True) if result}
 
@@ -91,7 +91,7 @@ def _proof(
 
 def _same_side_files(job: Job, recorded: Mapping[str, str]) -> bool:
     return all(
-        job.target is not None and digest_at(beside(job.target, name)) == sha256
+        job.target is not None and digest_at(sibling(job.target, name)) == sha256
         for name, sha256 in recorded.items()
     )
 

@@ -1,4 +1,4 @@
-"""The geometry spectra of many mesh files: what is to be measured, and the table of it."""
+"""The geometry spectra of many mesh files: planning the batch, and writing the table."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from meshlab_spectral.batch.plan import Batch
 from meshlab_spectral.batch.report import check_report, read_report
 from meshlab_spectral.batch.resume import done_records, proved_done
 from meshlab_spectral.errors import InputError
-from meshlab_spectral.spectrum import GeometrySpectrum, spectrum_parameters
-from meshlab_spectral.versions import versions
+from meshlab_spectral.filters.spectrum import GeometrySpectrum, spectrum_parameters
+from meshlab_spectral.plugin.versions import versions
 
 COLUMNS = (
     "mesh",
@@ -45,25 +45,25 @@ def plan_spectra(
     report: Path | None = None,
     timeout: float | None = None,
 ) -> Batch:
-    """Find the meshes whose spectra go into a table; the report of each is its spectrum.
+    """Plan to measure the spectra of many meshes; the report of each mesh is its spectrum.
 
     Parameters
     ----------
     inputs, recursive, resume, timeout
         As for `files.filter_files`.
     table
-        The file that `write_table` will write.
+        The file for `write_table`.
     basis_size, laplacian, boundary
         As for `spectrum.geometry_spectrum`.
     report
-        By default TABLE_report.jsonl, beside the table.
+        By default TABLE_report.jsonl, next to the table.
 
     Raises
     ------
     InputError
         When inputs are missing, or the table or the report would replace another file.
     OptionError
-        When a parameter has a value that it cannot take.
+        When a parameter has an invalid value.
     BatchError
         When an earlier report cannot be read.
     """
@@ -71,7 +71,7 @@ def plan_spectra(
     table = table.absolute()
     report = (report or table.parent / f"{table.stem}_report.jsonl").absolute()
     if report == table:
-        raise InputError(f"the report {report} is the table, too: name another with --report")
+        raise InputError(f"the report {report} is also the table: choose another with --report")
     check_report(report)
     places = [file.place for file in find_inputs(map(str, inputs), recursive, [table, report])]
     refuse_inputs([str(table)], places)
@@ -82,11 +82,11 @@ def plan_spectra(
 
 
 def write_table(path: Path, results: Iterable[FileResult]) -> None:
-    """Write measured spectra as comma-separated values: a row for every octave of every mesh.
+    """Write spectra as comma-separated values: a row for each octave of each mesh.
 
-    The octaves are those of `GeometrySpectrum`, the same percentages of the diagonal for all
-    meshes, so that rows of different meshes can be compared. Other lengths are in the units of the
-    mesh; noise_feature_size and noise_height are those of the whole mesh, 0 where none is seen.
+    The octaves are those of `GeometrySpectrum`, at the same percentages of the diagonal for all
+    meshes, so that rows of different meshes are comparable. Other lengths are in the units of the
+    mesh; noise_feature_size and noise_height are the same for all rows of a mesh, 0 without noise.
     """
     with path.open("w", newline="", encoding="utf-8", errors="surrogateescape") as file:
         table = csv.writer(file, lineterminator="\n")

@@ -1,4 +1,4 @@
-"""Files of a batch: paths on this machine, or URLs that fsspec knows (s3://, sftp://, ...)."""
+"""Files of a batch: local paths, or URLs supported by fsspec (s3://, sftp://, ...)."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from typing import Any
 from urllib.parse import unquote, urlsplit
 
 from meshlab_spectral.errors import InputError, MeshFileError
-from meshlab_spectral.meshfile import check_source
-from meshlab_spectral.whole_files import remove_leftovers, side_files, why_kept, writing_whole
+from meshlab_spectral.files.meshes import check_source
+from meshlab_spectral.files.whole_files import remove_leftovers, side_files, why_kept, writing_whole
 
 _SCHEME = re.compile(r"[a-z][a-z0-9+.-]*(::|://)", re.IGNORECASE)
-_PART = 2**20  # bytes that are read at once
+_PART = 2**20  # bytes per read
 _PARTIAL = re.compile(r"\..+\.[a-z0-9]{8}\.partial")
 
 
@@ -28,24 +28,24 @@ def is_url(place: str) -> bool:
 
 
 def located(place: str) -> str:
-    """Give a place as every process knows it: an absolute path, or a URL of another scheme."""
+    """Resolve a place to an absolute path, or to a URL other than file://."""
     if place.startswith("file://"):
         place = unquote(urlsplit(place).path)
     return place if is_url(place) else str(Path(place).absolute())
 
 
 def joined(folder: str, name: str) -> str:
-    """Give the place of a name, which may hold folders of its own, within a folder."""
+    """Join a folder and a relative name."""
     return f"{folder.rstrip('/')}/{name}" if is_url(folder) else str(Path(folder, name))
 
 
 def file_system(url: str) -> tuple[Any, str]:
-    """Give fsspec's file system of a URL, and the path in it.
+    """Return the fsspec file system of a URL and the path in it.
 
     Raises
     ------
     InputError
-        When there is none, or its package is not installed.
+        When the scheme is unknown or its package is not installed.
     """
     import fsspec
 
@@ -57,13 +57,13 @@ def file_system(url: str) -> tuple[Any, str]:
 
 
 def digest(path: Path) -> str:
-    """Give the SHA-256 of a file."""
+    """Return the SHA-256 of a file."""
     with path.open("rb") as file:
         return _digest_of(file)
 
 
 def digest_at(place: str) -> str | None:
-    """Give the SHA-256 of a file at a path or a URL; None where there is none to be read."""
+    """Return the SHA-256 of the file at a path or URL; None if it cannot be read."""
     try:
         if not is_url(place):
             return digest(Path(place)) if Path(place).is_file() else None
@@ -75,7 +75,7 @@ def digest_at(place: str) -> str | None:
 
 
 def existing(places: list[str]) -> list[str]:
-    """Tell which places are taken, by whatever it is."""
+    """Return the places that exist, as files or otherwise."""
     found = []
     for place in places:
         if is_url(place):
@@ -90,12 +90,12 @@ def existing(places: list[str]) -> list[str]:
 
 @contextlib.contextmanager
 def reading(place: str) -> Iterator[Path]:
-    """Give a file to read: the one at a path, or a copy of the one at a URL.
+    """Yield a local file to read: the one at a path, or a copy of the one at a URL.
 
     Raises
     ------
     MeshFileError
-        When there is none, or it cannot be read.
+        When it is missing or cannot be read.
     """
     if not is_url(place):
         check_source(Path(place))
@@ -115,22 +115,22 @@ def reading(place: str) -> Iterator[Path]:
 
 @contextlib.contextmanager
 def writing(place: str, overwrite: bool) -> Iterator[Path]:
-    """Give a scratch file to write; put it, and the files beside it, in place if all went well.
+    """Yield a scratch file to write; on success, move it and its side files into place.
 
-    Folders are made as needed. See `whole_files.writing_whole`; but a URL tells only shortly before
-    the file is put there whether another one is.
+    Folders are created as needed. See `whole_files.writing_whole`; at a URL, however, an existing
+    file is only detected shortly before the upload.
 
     Raises
     ------
     MeshFileError
-        When the place cannot be written to, or is taken and not to be overwritten.
+        When the place cannot be written to, or exists and must not be overwritten.
     """
     if not is_url(place):
         try:
             Path(place).parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise MeshFileError(
-                f"the folder of {place} cannot be made ({error.strerror})"
+                f"the folder of {place} cannot be created ({error.strerror})"
             ) from error
         with writing_whole(Path(place), overwrite) as scratch:
             yield scratch
@@ -144,7 +144,7 @@ def writing(place: str, overwrite: bool) -> Iterator[Path]:
         try:
             if not overwrite and fs.exists(path) and digest_at(place) != digest(scratch):
                 raise MeshFileError(why_kept(place))
-            # The mesh last: what it refers to is there when it appears.
+            # The mesh last, when everything it refers to is in place.
             for file in [*side_files(scratch), scratch]:
                 name = file.relative_to(folder).as_posix()
                 _upload(fs, file, posixpath.join(posixpath.dirname(path), name))
@@ -152,15 +152,15 @@ def writing(place: str, overwrite: bool) -> Iterator[Path]:
             raise MeshFileError(f"{place} cannot be written ({error})") from error
 
 
-def beside(place: str, name: str) -> str:
-    """Give the place of a file beside another one, by its name relative to that one's folder."""
+def sibling(place: str, name: str) -> str:
+    """Resolve a name relative to the folder of another file."""
     if is_url(place):
         return f"{place.rpartition('/')[0]}/{name}"
-    return str(Path(place).resolve().parent / name)  # through a symbolic link, as it was written
+    return str(Path(place).resolve().parent / name)  # follow symbolic links, as in writing
 
 
 def tidy(folder: str) -> None:
-    """Remove what a killed batch has left in a folder of outputs, half-written."""
+    """Remove incomplete files that a killed batch has left in an output folder."""
     if not is_url(folder):
         remove_leftovers(Path(folder))
         return
@@ -173,12 +173,12 @@ def tidy(folder: str) -> None:
 
 @contextlib.contextmanager
 def _scratch_folder() -> Iterator[Path]:
-    """Make a folder for copies, in that of the Dask worker: Dask tidies up after a killed one."""
+    """Make a folder for copies in that of the Dask worker, which Dask removes if it is killed."""
     from distributed import get_worker
 
     try:
         parent = get_worker().local_directory
-    except ValueError:  # outside of a worker
+    except ValueError:  # outside a worker
         parent = None
     with tempfile.TemporaryDirectory(prefix="meshlab-spectral-", dir=parent) as folder:
         yield Path(folder)

@@ -1,4 +1,4 @@
-"""What runs in a worker: one file from its input to its output, whatever happens."""
+"""The work on one file, in a worker: from input to output, whatever happens."""
 
 from __future__ import annotations
 
@@ -10,31 +10,30 @@ from meshlab_spectral.batch import storage
 from meshlab_spectral.batch.jobs import FileResult, Job
 from meshlab_spectral.batch.processes import processes
 from meshlab_spectral.errors import MemoryLimitError, ProcessDiedError, SpectralError
-from meshlab_spectral.meshlab_process import Answer, JobLimits
-from meshlab_spectral.report import report_warnings
-from meshlab_spectral.threads import threads_each
-from meshlab_spectral.versions import versions
-from meshlab_spectral.whole_files import side_files
+from meshlab_spectral.files.whole_files import side_files
+from meshlab_spectral.plugin.threads import threads_each
+from meshlab_spectral.plugin.versions import versions
+from meshlab_spectral.process.parent import Answer, JobLimits
 
-# A mesh whose process dies gets a second, fresh one: it may have been another's fault.
+# If its process dies, a mesh gets a second try in a new one: an earlier mesh may be to blame.
 ATTEMPTS = 2
 
 
 def run_job(job: Job, memory_limit: int | None = None) -> FileResult:
-    """Filter one file.
+    """Process one file.
 
     Parameters
     ----------
     job
-        What to do.
+        The job.
     memory_limit
-        Bytes that MeshLab's process may hold; by default the share of the Dask worker that this
-        runs in, None outside of one.
+        Memory limit of MeshLab's process in bytes; by default its share of the Dask worker's, or
+        none outside a worker.
 
     Returns
     -------
     FileResult
-        "filtered", "measured" or "failed": no error of a single file is raised.
+        "filtered", "measured" or "failed"; errors of a single file are not raised.
     """
     begin = time.monotonic()
     result: dict[str, Any] = {"outcome": "failed", "waited": 0.0}
@@ -42,7 +41,7 @@ def run_job(job: Job, memory_limit: int | None = None) -> FileResult:
     _share_threads()
     try:
         with storage.reading(job.source) as source:
-            # Before MeshLab reads it: one that is changed meanwhile is then not proved done.
+            # Hashed before MeshLab reads it: a file changed meanwhile does not count as done.
             result["input_sha256"] = storage.digest(source)
             work = job.work | {"source": str(source), "verbose": False}
             if job.target is None:
@@ -71,18 +70,13 @@ def run_job(job: Job, memory_limit: int | None = None) -> FileResult:
 
 
 def _warnings(report: dict[str, Any]) -> list[str]:
-    """Tell the warnings of our filter, alone or in a script; other filters have no such report."""
+    """Collect the warnings of a filter, or of all the plugin's filters in a script."""
     parts = [one.get("report", {}) for one in report.get("filters", [])] or [report]
-    return [
-        warning
-        for part in parts
-        if "tolerance_reached" in part
-        for warning in report_warnings(part)
-    ]
+    return [warning for part in parts for warning in part.get("warnings", [])]
 
 
 def _digests(scratch: Path) -> dict[str, Any]:
-    """Give the SHA-256 of an output and of the files beside it."""
+    """Return the SHA-256 of an output and its side files."""
     return {
         "output_sha256": storage.digest(scratch) if scratch.is_file() else None,
         "side_files": {
@@ -107,20 +101,20 @@ def _attempt(work: dict[str, Any], limits: JobLimits, result: dict[str, Any]) ->
 
 
 def _worker_memory() -> int | None:
-    """Tell the bytes that each thread of the Dask worker may use that this runs in."""
+    """Return the memory per concurrent job of this Dask worker in bytes, if limited."""
     worker = _worker()
     limit = worker.memory_manager.memory_limit if worker else None
     return int(limit / _at_once(worker)) if limit else None
 
 
 def _share_threads() -> None:
-    """Give each process its share of the threads, unless the worker's starter has said it."""
+    """Set each process's share of the threads, unless the number is already set."""
     if processes.threads is None:
         processes.threads = threads_each(_at_once(_worker()))
 
 
 def _at_once(worker: Any) -> int:
-    """Tell how many jobs may run at the same time in this worker."""
+    """Return the maximum number of concurrent jobs in this worker."""
     return processes.at_once or (worker.state.nthreads if worker else 1)
 
 

@@ -1,12 +1,12 @@
-"""Figure 4: a weak fractional power hardly changes the eigenfunctions, the whole filter does.
+"""Figure 4: a weak fractional power hardly changes the eigenfunctions; the whole filter does.
 
 Eigenfunctions of the Laplacian (manifold harmonics) of the input, of the shape after the tenth
 power of a low-pass, and of the shape after the whole low-pass in one shot (Kovnatsky et al. 2012,
-Figure 4). It is why the filter goes in weak steps: within one of them the basis holds.
+Figure 4). This is why the filter takes weak steps: the basis remains valid within each of them.
 
-A filter may swap eigenvalues. Beside an eigenfunction of the input therefore stands that one of the
-filtered shape that is most like it, with its sign: the one with the largest correlation, which the
-label tells with its number. A value of 1 is the same function, 0 an entirely different one.
+A filter may swap eigenvalues. Each eigenfunction of the input is therefore shown next to the most
+similar one of the filtered shape, with matching sign: the one with the largest correlation, given
+in the label with its number. 1 is the same function, 0 an entirely different one.
 """
 
 from __future__ import annotations
@@ -17,17 +17,17 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from meshlab_spectral.arrays import lumped_areas
+from meshlab_spectral.figures.pictures import SIGNED_COLOURS, Frame, Panel, render, to_full_colours
 from meshlab_spectral.figures.sheet import Sheet
 from meshlab_spectral.figures.stability import LOW_PASS
 from meshlab_spectral.figures.subject import Subject, filter_name
-from meshlab_spectral.harmonics import manifold_harmonics
-from meshlab_spectral.pictures import SIGNED_COLOURS, Frame, Panel, render, to_full_colours
+from meshlab_spectral.filters.arrays import lumped_areas
+from meshlab_spectral.filters.harmonics import manifold_harmonics
 
 Array = NDArray[np.float64]
 
 SHOWN = (5, 10, 20)
-# Those beyond the last shown are there to be found when a filter has swapped eigenvalues.
+# More than shown, to find an eigenfunction whose eigenvalue the filter has swapped.
 BASIS_SIZE = 40
 TENTH = replace(LOW_PASS, steps=1, basis_update="none", power=0.1)
 WHOLE = replace(TENTH, power=1.0)
@@ -39,7 +39,7 @@ COLUMNS = {
 
 
 def most_alike(phi: Array, Psi: Array, d: Array) -> tuple[int, float]:
-    """Find the column of `Psi` most like `phi`, both on the same n vertices.
+    """Find the column of `Psi` most similar to `phi`, both on the same n vertices.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def most_alike(phi: Array, Psi: Array, d: Array) -> tuple[int, float]:
     Returns
     -------
     tuple of int and float
-        The number of the column, and its correlation, from -1 to 1.
+        Index of the column, and its correlation, -1 to 1.
     """
     lengths = np.sqrt((d @ phi**2) * (d @ Psi**2))
     correlation = (d * phi) @ Psi / lengths
@@ -64,7 +64,7 @@ def most_alike(phi: Array, Psi: Array, d: Array) -> tuple[int, float]:
 def draw(subject: Subject, path: Path, scale: float = 1.0) -> None:
     """Draw the figure for one mesh into a .png file."""
     shapes = [subject.V if o is None else subject.filtered(o) for o in COLUMNS.values()]
-    # Of a mesh too small for the first one the filter itself says so.
+    # If the mesh is too small even for the first one, the filter reports it.
     size = max(SHOWN[0] + 1, min(BASIS_SIZE, len(subject.V) - 1))
     shown = [mode for mode in SHOWN if mode < size]
     frame = Frame.around(shapes, subject.view)

@@ -1,4 +1,4 @@
-"""A sheet of a mesh's manifold harmonics: the picture of `meshlab-spectral basis`."""
+"""A sheet of a mesh's manifold harmonics, for `meshlab-spectral basis`."""
 
 from __future__ import annotations
 
@@ -10,9 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshlab_spectral.errors import FormatError, OptionError
-from meshlab_spectral.figures.sheet import Sheet
-from meshlab_spectral.harmonics import Harmonics
-from meshlab_spectral.pictures import (
+from meshlab_spectral.figures.pictures import (
     SIGNED_COLOURS,
     Frame,
     Panel,
@@ -20,16 +18,18 @@ from meshlab_spectral.pictures import (
     render,
     to_full_colours,
 )
+from meshlab_spectral.figures.sheet import Sheet
+from meshlab_spectral.filters.harmonics import Harmonics
 
-# So many pictures unless others are asked for, and so many beside each other.
+# Default number of pictures, and how many in a row.
 _SHOWN = 12
 _COLUMNS, _COLUMNS_UPRIGHT = 4, 6
-# A page full of colours makes a larger file than other figures: to a megabyte again.
+# Colours compress worse than the other figures: this brings the file back to a megabyte.
 _RESOLUTION = 0.92
 
 
 def spread_modes(first: int, size: int) -> list[int]:
-    """Choose some numbers of harmonics, from `first` to the last of `size`, ever farther apart."""
+    """Choose harmonics from `first` to the last of `size`, geometrically spaced."""
     modes = [first]
     for ideal in np.geomspace(1, max(size - first, 1), _SHOWN)[1:]:
         modes.append(max(modes[-1] + 1, first - 1 + round(ideal)))
@@ -37,22 +37,22 @@ def spread_modes(first: int, size: int) -> list[int]:
 
 
 def check_modes(modes: Sequence[int], size: int) -> None:
-    """Raise OptionError unless every mode is the number of one of `size` harmonics."""
+    """Raise OptionError unless every mode is in a basis of `size` harmonics."""
     for mode in modes:
         if not 0 <= mode < size:
-            raise OptionError(f"mode {mode}: a basis of {size} harmonics has 0 to {size - 1}")
+            raise OptionError(f"mode {mode}: a basis of {size} harmonics has modes 0 to {size - 1}")
 
 
 def check_picture(path: Path) -> None:
-    """Raise FormatError unless the name of a picture ends in .png."""
+    """Raise FormatError unless a picture is named .png."""
     if path.suffix != ".png":
-        raise FormatError(f"{path.name}: the pictures are a .png file, end its name so")
+        raise FormatError(f"{path.name}: the pictures are one PNG file, name it .png")
 
 
 def draw_basis_file(
     archive: Path, path: Path, modes: Sequence[int] | None = None, scale: float = 1.0
 ) -> None:
-    """Draw harmonics of an archive that `meshlab-spectral basis` has written; see `draw`."""
+    """Draw harmonics from an archive written by `meshlab-spectral basis`; see `draw`."""
     with np.load(archive) as arrays:
         basis = Harmonics(arrays["eigenvalues"], arrays["harmonics"], arrays["masses"])
         draw(basis, arrays["vertices"], arrays["faces"], path, modes, scale)
@@ -66,21 +66,20 @@ def draw(
     modes: Sequence[int] | None = None,
     scale: float = 1.0,
 ) -> None:
-    """Draw harmonics into a .png file: red where positive, blue where negative, a line at zero.
+    """Draw harmonics to a .png file: red is positive, blue negative, a line marks zero.
 
     Parameters
     ----------
     basis
-        Of the mesh with these n x 3 coordinates and m x 3 triangles.
+        Harmonics of the mesh V, F.
     V, F
-        The mesh.
+        The mesh, n x 3 coordinates and m x 3 vertex indices.
     path
-        The picture; it appears whole, or not at all.
+        The picture, written atomically.
     modes
-        Numbers of the harmonics to show; without them a dozen from the first that is not constant
-        to the last of the basis.
+        Harmonics to show; by default a dozen from the first non-constant one to the last.
     scale
-        Of the resolution; 1 fills a screen.
+        Resolution; 1 fills a screen.
 
     Raises
     ------
@@ -112,7 +111,7 @@ def draw(
 
 
 def _wavelength(frequency: float, diagonal: float) -> str:
-    """Tell it as the filter takes a feature size."""
+    """Format a wavelength like a feature size of the filter."""
     if frequency == 0:
         return "constant"
     return f"wavelength {100 * 2 * np.pi / (frequency * diagonal):.3g} %"

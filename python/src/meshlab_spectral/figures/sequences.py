@@ -1,8 +1,8 @@
-"""Figure 5: the fractional powers of two filters, and the shapes that they make of the input.
+"""Figure 5: the fractional powers of two filters, and the shapes they produce.
 
-For a low-pass and for the enhancement of a band: the powers F^(i/K) as a family of curves, and
-beside them the shapes after some of the K steps, with the basis of the input throughout and with
-the basis taken anew after every step (Kovnatsky et al. 2012, Figure 5).
+For a low-pass and a band enhancement: the powers F^(i/K) as a family of curves, next to the shapes
+after some of the K steps, with the basis of the input throughout and with the basis recomputed
+after each step (Kovnatsky et al. 2012, Figure 5).
 """
 
 from __future__ import annotations
@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from meshlab_spectral.figures.pictures import Frame, Panel, render
 from meshlab_spectral.figures.sheet import FONT_SIZE, INK, Sheet
 from meshlab_spectral.figures.stability import BAND, LOW_PASS
 from meshlab_spectral.figures.subject import Subject, filter_name
-from meshlab_spectral.options import BasisUpdate, FilterOptions
-from meshlab_spectral.pictures import Frame, Panel, render
-from meshlab_spectral.transfer import gain
+from meshlab_spectral.filters.options import BasisUpdate, FilterOptions
+from meshlab_spectral.filters.transfer import gain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -36,8 +36,8 @@ _ROW_NAMES = {"none": "no update", "full": "full update", "conformal": "conforma
 
 
 def after(options: FilterOptions, i: int, update: BasisUpdate) -> FilterOptions:
-    """Give the first i of K steps of a filter: i steps of F^(1/K), which make F^(i/K)."""
-    # With one basis all powers commute: one step is as good as many.
+    """Options for the first i of K steps of a filter: i steps of F^(1/K), or F^(i/K)."""
+    # With a single basis all powers commute: one step equals i steps.
     steps = 1 if update == "none" else i
     return replace(options, power=i / K, steps=steps, basis_update=update)
 
@@ -67,7 +67,7 @@ def draw(subject: Subject, path: Path, scale: float = 1.0) -> None:
 
 
 def _plot_powers(axes: Axes, options: FilterOptions) -> None:
-    """Plot F^(i/K) against the frequency, for all i; those whose shapes are shown are thick."""
+    """Plot F^(i/K) against frequency for all i, thick where the shape is shown."""
     from matplotlib import colormaps
 
     x = np.linspace(0, 3, 301)

@@ -1,4 +1,4 @@
-"""The pages of the figures: pictures in rows and columns with labels, lengths in inches."""
+"""Pages of labelled pictures in rows and columns; lengths in inches."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from meshlab_spectral.errors import SpectralError
-from meshlab_spectral.pictures import Image
-from meshlab_spectral.whole_files import writing_whole
+from meshlab_spectral.figures.pictures import Image
+from meshlab_spectral.files.whole_files import writing_whole
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
 INK = "#202020"
 FONT_SIZE = 9.0
 
-# A page is drawn for this width: 900 pixels of it on a web page give letters of 12 pixels.
+# Width of a page: scaled to 900 pixels on a web page, its letters are 12 pixels high.
 _PAGE_WIDTH = 9.0
-# Pictures in a repository: pixels of one page, about a megabyte of a .png file, and per inch.
+# Kept small for a repository: pixels per page, about 1 MB as PNG, and dots per inch.
 _PAGE_PIXELS = 1.9e6
 _DOTS_PER_INCH = 200
 _LINE = 0.165
 _GAP = 0.07
-# Pictures of upright shapes are not as wide as the page allows, but as high as this.
+# Limits the height of pictures of upright shapes, and thus their width.
 _MAX_HEIGHT = 3.4
-# The longest labels need as much; narrower pictures stand in the middle of their cells.
+# Width of the longest labels; narrower pictures are centred in their cells.
 _MIN_CELL = 1.95
 
 
@@ -37,13 +37,13 @@ class Sheet:
     Parameters
     ----------
     aspects
-        For every row, the width of its pictures over their height.
+        For each row, width / height of its pictures.
     columns
         Number of columns.
     label_lines
-        Lines of the label under every picture.
+        Number of lines in the label under each picture.
     scale
-        Of the resolution; 1 fills a screen.
+        Resolution; 1 fills a screen.
     footer
         Height of the strip at the bottom of the page, for `colour_bar`.
 
@@ -104,7 +104,7 @@ class Sheet:
         )
 
     def plot(self, row: int, column: int) -> Axes:
-        """Give axes for curves in a cell: as wide as it allows, and not much higher than wide."""
+        """Add axes for curves to a cell: full width, and not much higher than wide."""
         left, below, right, above = 0.44, 0.34, 0.1, 0.2
         width = self._cell - left - right
         room = self._heights[row] + self._label - below - above
@@ -117,9 +117,9 @@ class Sheet:
         return axes
 
     def colour_bar(self, colour_map: str, labels: tuple[str, str, str], caption: str = "") -> None:
-        """Draw a scale into the footer, with labels for its left end, middle and right end.
+        """Draw a colour bar in the footer, with labels at its left end, middle and right end.
 
-        A caption goes under it, and adds a line to the footer that is needed.
+        A caption goes below it and needs one more line of footer.
         """
         width = min(2.4, 0.5 * self._width)
         bottom = 0.22 + (_LINE if caption else 0)
@@ -133,7 +133,7 @@ class Sheet:
             spine.set_visible(False)
 
     def save(self, path: Path) -> None:
-        """Write the page; the file appears whole, or not at all.
+        """Write the page, atomically.
 
         Raises
         ------
@@ -143,7 +143,7 @@ class Sheet:
         from PIL import Image as Picture
 
         self._canvas.draw()
-        # Without the alpha channel, and compressed as well as can be: a third smaller.
+        # No alpha channel and best compression: a third smaller.
         picture = Picture.fromarray(np.asarray(self._canvas.buffer_rgba())[:, :, :3])
         with writing_whole(path) as scratch:
             picture.save(scratch, optimize=True, dpi=(self._dpi, self._dpi))
@@ -152,7 +152,7 @@ class Sheet:
         return _GAP + column * (self._cell + _GAP)
 
     def _bottom(self, row: int) -> float:
-        """Lower edge of a row's pictures; their labels are below."""
+        """Bottom edge of a row's pictures; their labels are below it."""
         rows = row + 1
         return self._height - sum(self._heights[:rows]) - row * self._label - rows * _GAP
 

@@ -1,7 +1,7 @@
-"""Figure 1: one shot of a strong filter damages thin parts, fractional steps do not.
+"""Figure 1: a strong filter in one shot damages thin parts; fractional steps do not.
 
-A low-pass and an enhancement of one band, each in one shot, in ten steps of the paper's scheme, and
-in ten steps with the conformal update (Kovnatsky et al. 2012, Figure 1).
+A low-pass and a band enhancement, each in one shot, in ten steps of the paper's scheme, and in ten
+steps with the conformal update (Kovnatsky et al. 2012, Figure 1).
 """
 
 from __future__ import annotations
@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from meshlab_spectral.figures.pictures import Frame, Panel, render
 from meshlab_spectral.figures.sheet import FONT_SIZE, INK, Sheet
 from meshlab_spectral.figures.subject import Subject, filter_name, scheme_name
-from meshlab_spectral.options import FilterOptions, Length
-from meshlab_spectral.pictures import Frame, Panel, render
-from meshlab_spectral.transfer import gain
+from meshlab_spectral.filters.options import FilterOptions, Length
+from meshlab_spectral.filters.transfer import gain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -29,7 +29,7 @@ COLOURS = {LOW_PASS.filter_type: "#1c639f", BAND.filter_type: "#b04607"}
 
 
 def schemes(options: FilterOptions) -> list[FilterOptions]:
-    """Ways to apply a filter: in one shot, and in ten steps with either update."""
+    """Options for a filter in one shot, and in ten steps with either update."""
     return [
         replace(options, steps=1, basis_update="none"),
         replace(options, steps=10, basis_update="full"),
@@ -56,7 +56,7 @@ def draw(subject: Subject, path: Path, scale: float = 1.0) -> None:
 
 
 def _plot_gains(axes: Axes) -> None:
-    """Plot the gains of both filters, large details left: to the right the frequency grows."""
+    """Plot the gains of both filters by feature size, large ones on the left."""
     sizes = np.geomspace(200, 2, 400)
     for options, place in ((LOW_PASS, (180, 0.6)), (BAND, (180, 4.35))):
         colour = COLOURS[options.filter_type]

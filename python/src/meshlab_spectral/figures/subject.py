@@ -1,4 +1,4 @@
-"""A mesh that figures show, and what filters make of it."""
+"""The mesh of a figure, and the results of filters on it."""
 
 from __future__ import annotations
 
@@ -9,32 +9,32 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from meshlab_spectral.meshfile import load_arrays
-from meshlab_spectral.options import FilterOptions
-from meshlab_spectral.pictures import View
-from meshlab_spectral.worker import filter_file_in_child
+from meshlab_spectral.figures.pictures import View
+from meshlab_spectral.files.meshes import load_arrays
+from meshlab_spectral.filters.options import FilterOptions
+from meshlab_spectral.process.single_file import filter_file_in_child
 
 Shape = NDArray[np.float64]
 
 
 class Subject:
-    """One mesh file. Every filter runs once, however many figures show its result.
+    """A mesh file. Each filter runs once, however many figures show its result.
 
     Parameters
     ----------
     source
-        A file that pymeshlab reads.
+        A file that pymeshlab can read.
     on_stage
-        Called with what is being computed, for people.
+        Called with a description of each stage, to show to the user.
 
     Attributes
     ----------
     source, name
-        The file; its name without ending.
+        The file; its name without extension.
     V, F
         n x 3 coordinates, m x 3 indices of the corners of triangles.
     view
-        From where the figures look.
+        Viewpoint of the figures.
 
     Raises
     ------
@@ -50,16 +50,16 @@ class Subject:
         self._shapes: dict[FilterOptions, Shape] = {}
 
     def stage(self, what: str) -> None:
-        """Tell what is being done with this mesh."""
+        """Report a stage of the work on this mesh."""
         self._on_stage(f"{self.name}: {what}")
 
     def filtered(self, options: FilterOptions) -> Shape:
-        """Coordinates after a filter.
+        """Return the coordinates after a filter.
 
         Raises
         ------
         FilterError
-            When the filter refuses the mesh.
+            When the filter rejects the mesh.
         """
         if options not in self._shapes:
             self.stage(describe(options))
@@ -71,12 +71,12 @@ class Subject:
 
 
 def describe(options: FilterOptions) -> str:
-    """Name a filter and how it is applied: `low-pass 15 %, 10 steps, full update`."""
+    """Describe a filter and its scheme: `low-pass 15 %, 10 steps, full update`."""
     return f"{filter_name(options)}, {scheme_name(options)}"
 
 
 def filter_name(options: FilterOptions) -> str:
-    """Name a filter with its numbers, such as `low-pass 15 %`."""
+    """Describe a filter: `low-pass 15 %`."""
     size = str(options.feature_size).replace("%", " %")
     name = f"{options.filter_type} {size}"
     if options.stop_gain == 1:
@@ -85,7 +85,7 @@ def filter_name(options: FilterOptions) -> str:
 
 
 def scheme_name(options: FilterOptions) -> str:
-    """Name how a filter is applied: in one shot, or in steps."""
+    """Describe how a filter is applied: `one shot`, `10 steps, full update`."""
     if options.steps == 1:
         return "one shot"
     if options.basis_update == "none":

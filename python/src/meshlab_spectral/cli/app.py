@@ -1,0 +1,62 @@
+"""The command `meshlab-spectral` and its subcommands."""
+
+from __future__ import annotations
+
+import signal
+from importlib.metadata import version
+from typing import Annotated
+
+import typer
+
+from meshlab_spectral.cli.basis import BASIS_HELP, basis_command
+from meshlab_spectral.cli.batch import BATCH_HELP, batch_command
+from meshlab_spectral.cli.figures import FIGURES_HELP, figures_command
+from meshlab_spectral.cli.filter import FILTER_HELP, filter_command
+from meshlab_spectral.cli.install import INSTALL_HELP, install_command
+from meshlab_spectral.cli.messages import EXIT_CODES
+from meshlab_spectral.cli.spectra import SPECTRA_HELP, spectra_command
+from meshlab_spectral.cli.spectrum import SPECTRUM_HELP, spectrum_command
+
+app = typer.Typer(
+    help="Smooth, sharpen and band-filter meshes by the size of their details.",
+    epilog=EXIT_CODES,
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+)
+
+
+def main() -> None:
+    """Run the command line and exit with its exit code."""
+    # Clean up on SIGTERM (kill, shutdown) as on Ctrl-C.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    app()
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        own, host = version("meshlab-spectral"), version("pymeshlab")
+        typer.echo(f"meshlab-spectral {own}, pymeshlab {host}")
+        raise typer.Exit
+
+
+@app.callback()
+def _common(
+    version: Annotated[
+        bool,
+        typer.Option(
+            "--version", callback=_print_version, is_eager=True, help="Print the version."
+        ),
+    ] = False,
+) -> None:
+    """Smooth, sharpen and band-filter meshes by the size of their details."""
+
+
+app.command("filter", help=FILTER_HELP, epilog=EXIT_CODES)(filter_command)
+app.command("figures", help=FIGURES_HELP, epilog=EXIT_CODES)(figures_command)
+app.command("basis", help=BASIS_HELP, epilog=EXIT_CODES)(basis_command)
+app.command("batch", help=BATCH_HELP, epilog=EXIT_CODES)(batch_command)
+app.command("install", help=INSTALL_HELP, epilog=EXIT_CODES)(install_command)
+app.command("spectra", help=SPECTRA_HELP, epilog=EXIT_CODES)(spectra_command)
+app.command("spectrum", help=SPECTRUM_HELP, epilog=EXIT_CODES)(spectrum_command)

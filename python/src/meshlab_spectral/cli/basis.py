@@ -1,0 +1,86 @@
+"""The command `meshlab-spectral basis`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from meshlab_spectral.cli.messages import errors_reported
+from meshlab_spectral.cli.progress import progress_shown
+from meshlab_spectral.figures.harmonics import check_modes, check_picture, draw_basis_file
+from meshlab_spectral.files.whole_files import check_target
+from meshlab_spectral.filters.harmonics import DEFAULT_BASIS_SIZE
+from meshlab_spectral.filters.options import Boundary, LaplacianKind
+from meshlab_spectral.process.single_file import basis_file_in_child
+
+# "\b" keeps a paragraph's lines as they are.
+BASIS_HELP = """Compute the manifold harmonics of a mesh, for scripts and as pictures.
+
+The output is a NumPy archive with the arrays eigenvalues (k), frequencies (k, their square roots),
+harmonics (n x k), masses (n, the vertex areas: with these as weights the harmonics are
+orthonormal), and the mesh that their rows belong to, vertices (n x 3) and faces (m x 3).
+
+\b
+  meshlab-spectral basis scan.ply --basis-size 200 --output scan.npz
+  meshlab-spectral basis scan.ply --pictures scan.png --modes 1,2,3,5,8
+"""
+
+
+def basis_command(
+    source: Annotated[
+        Path, typer.Argument(metavar="MESH", help="Mesh to read: .ply, .obj, .stl, .off, ...")
+    ],
+    output: Annotated[
+        Path,
+        typer.Option(metavar="FILE", help="NumPy archive to write; replaces an existing file."),
+    ] = Path("basis.npz"),
+    basis_size: Annotated[
+        int,
+        typer.Option("--basis-size", "-k", min=1, help="Number of harmonics, constants included."),
+    ] = DEFAULT_BASIS_SIZE,
+    laplacian: Annotated[
+        LaplacianKind, typer.Option(help="As for the filter.")
+    ] = "intrinsic delaunay",
+    boundary: Annotated[
+        Boundary,
+        typer.Option(help="At the boundary of an open surface: free, or fixed to zero."),
+    ] = "free",
+    pictures: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="Sheet of pictures to draw, a .png file.")
+    ] = None,
+    modes: Annotated[
+        str | None,
+        typer.Option(metavar="NUMBERS", help="Harmonics to draw, such as 1,2,3,5,8."),
+    ] = None,
+    scale: Annotated[
+        float, typer.Option(min=0.1, max=10, help="Resolution of the pictures; 1 fills a screen.")
+    ] = 1.0,
+    debug: Annotated[bool, typer.Option("--debug", hidden=True)] = False,
+) -> None:
+    """Compute manifold harmonics: see `meshlab-spectral basis --help`."""
+    with errors_reported(debug, "finished files are complete"):
+        shown = None if modes is None else _modes(modes, basis_size)
+        if pictures is not None:
+            check_picture(pictures)
+            check_target(pictures)
+        with progress_shown() as on_progress:
+            basis_file_in_child(source, output, basis_size, laplacian, boundary, on_progress)
+            if pictures is not None:
+                on_progress("drawing", None)
+                draw_basis_file(output, pictures, shown, scale)
+    for path in (output, pictures):
+        if path is not None:
+            typer.echo(path)
+
+
+def _modes(text: str, basis_size: int) -> list[int]:
+    try:
+        modes = [int(part) for part in text.split(",")]
+    except ValueError:
+        raise typer.BadParameter(
+            f"{text!r}: give numbers such as 1,2,3,5,8", param_hint="--modes"
+        ) from None
+    check_modes(modes, basis_size)
+    return modes

@@ -1,0 +1,111 @@
+"""Command-line options generated from the fields of `FilterOptions`."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Collection
+from dataclasses import fields
+from typing import Annotated, Any, get_type_hints
+
+import typer
+
+from meshlab_spectral.errors import OptionError
+from meshlab_spectral.filters.options import FilterOptions, Length
+
+Command = Callable[..., None]
+
+
+def with_filter_options(command: Command) -> Command:
+    """Add one option per field of FilterOptions to a command, passed as `options`."""
+    return with_some_filter_options([option.name for option in fields(FilterOptions)])(command)
+
+
+def with_some_filter_options(names: Collection[str]) -> Callable[[Command], Command]:
+    """Add options for these fields of FilterOptions to a command; the rest keep their defaults."""
+
+    def decorate(command: Command) -> Command:
+        def run(given: dict[str, Any], arguments: dict[str, Any]) -> None:
+            command(options=_checked(given), **arguments)
+
+        return _with_options(names, command, "options", run)
+
+    return decorate
+
+
+def with_given_filter_options(command: Command) -> Command:
+    """Add one option per field of FilterOptions to a command, passed as `given`.
+
+    `given` is a dict for `FilterOptions.from_dict` with only the options on the command line,
+    validated. The command needs a parameter `context: typer.Context`.
+    """
+
+    def run(values: dict[str, Any], arguments: dict[str, Any]) -> None:
+        source = arguments["context"].get_parameter_source
+        given = {
+            name: value for name, value in values.items() if source(name).name == "COMMANDLINE"
+        }
+        _checked(given)
+        command(given=given, **arguments)
+
+    names = [option.name for option in fields(FilterOptions)]
+    return _with_options(names, command, "given", run)
+
+
+def _checked(given: dict[str, Any]) -> FilterOptions:
+    try:
+        return FilterOptions(**given)
+    except OptionError as error:
+        raise typer.BadParameter(str(error)) from error
+
+
+def _with_options(
+    names: Collection[str],
+    command: Command,
+    place: str,
+    call: Callable[[dict[str, Any], dict[str, Any]], None],
+) -> Command:
+    """Make a command with the options `names` and the parameters of `command` except `place`.
+
+    It passes the values of the former and of the latter to `call`.
+    """
+    types = get_type_hints(FilterOptions)
+    own = [
+        parameter
+        for parameter in inspect.signature(command, eval_str=True).parameters.values()
+        if parameter.name != place
+    ]
+    added = []
+    for option in fields(FilterOptions):
+        if option.name not in names:
+            continue
+        settings: dict[str, Any] = {"help": option.metadata["help"]}
+        type_, default = types[option.name], option.default
+        if type_ is Length:
+            settings |= {"parser": _length, "metavar": "SIZE"}
+            default = str(default)
+        added.append(
+            inspect.Parameter(
+                option.name,
+                inspect.Parameter.KEYWORD_ONLY,
+                default=default,
+                annotation=Annotated[type_, typer.Option(**settings)],
+            )
+        )
+
+    def run(**arguments: Any) -> None:
+        values = {parameter.name: arguments.pop(parameter.name) for parameter in added}
+        call(values, arguments)
+
+    parameters = [p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in [*own, *added]]
+    run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    run.__annotations__ = {p.name: p.annotation for p in parameters}
+    run.__doc__ = command.__doc__
+    run.__name__ = command.__name__
+    return run
+
+
+def _length(text: str | Length) -> Length:
+    try:
+        return text if isinstance(text, Length) else Length.parse(text)
+    except OptionError as error:
+        raise typer.BadParameter(str(error)) from error

@@ -1,0 +1,119 @@
+"""Progress displays on a terminal, for one mesh and for a batch."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+from collections.abc import Callable, Iterator
+from datetime import timedelta
+
+from rich.console import Console
+from rich.markup import escape
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    ProgressColumn,
+    SpinnerColumn,
+    Task,
+    TextColumn,
+    TimeElapsedColumn,
+)
+from rich.table import Column
+from rich.text import Text
+
+from meshlab_spectral.batch.jobs import FileResult
+from meshlab_spectral.cli.messages import MESSAGES
+from meshlab_spectral.process.parent import ProgressCallback
+
+_FEWEST_PER_SECOND = 0.1
+
+
+@contextlib.contextmanager
+def progress_shown() -> Iterator[ProgressCallback]:
+    """Show MeshLab's progress on a terminal; elsewhere show nothing."""
+    with Progress(
+        SpinnerColumn(),
+        BarColumn(),
+        TextColumn("{task.description}", markup=False),
+        TimeElapsedColumn(),
+        console=MESSAGES,
+        transient=True,
+        disable=not MESSAGES.is_terminal,
+    ) as progress:
+        task = progress.add_task("starting", total=None)
+
+        def update(stage: str, fraction: float | None) -> None:
+            if fraction is None:
+                progress.reset(task, start=False, total=None, description=stage)
+                progress.start_task(task)
+            else:
+                # MeshLab's fraction may drop a little when a step turns out to need more work.
+                done = max(fraction, progress.tasks[0].completed)
+                progress.update(task, total=1.0, completed=done, description=stage)
+
+        yield update
+
+
+@contextlib.contextmanager
+def batch_progress(console: Console, files: int) -> Iterator[Callable[[FileResult], None]]:
+    """Show on a terminal the number of files done and failed, the rate and the time left.
+
+    Failures are printed in any case, one line each.
+
+    Parameters
+    ----------
+    console
+        The console to print to.
+    files
+        Number of results expected.
+
+    Yields
+    ------
+    callable
+        To be called with each result.
+    """
+    with Progress(
+        SpinnerColumn(),
+        BarColumn(),
+        MofNCompleteColumn(),
+        TextColumn("{task.fields[failed]}"),
+        TimeElapsedColumn(),
+        _PaceColumn(table_column=Column(no_wrap=True)),  # a narrow terminal shortens the bar
+        console=console,
+        transient=True,
+        disable=not console.is_terminal,
+        redirect_stdout=False,
+    ) as progress:
+        task = progress.add_task("", total=files, failed="0 failed", worked=0)
+        worked = failed = 0
+
+        def update(result: FileResult) -> None:
+            nonlocal worked, failed
+            if result.outcome == "failed":
+                failed += 1
+                reason = result.reason or ""
+                named = reason if result.input in reason else f"{result.input}: {reason}"
+                console.print(
+                    f"[red]Failed:[/red] {escape(named)}",
+                    highlight=False,
+                    soft_wrap=True,
+                )
+            worked += result.outcome != "unchanged"
+            failures = f"[red]{failed} failed[/red]" if failed else "0 failed"
+            progress.update(task, advance=1, failed=failures, worked=worked)
+
+        yield update
+
+
+class _PaceColumn(ProgressColumn):
+    """Rate and time left; rich's own column would count the files done by an earlier run."""
+
+    def render(self, task: Task) -> Text:
+        worked = task.fields["worked"]
+        if not worked or not task.elapsed or task.remaining is None:
+            return Text("")
+        rate = worked / task.elapsed
+        pace = f"{rate:.1f} files/s" if rate >= _FEWEST_PER_SECOND else f"{60 * rate:.1f} files/min"
+        left = timedelta(seconds=math.ceil(task.remaining / rate))
+        return Text(f"{pace}, {left} left")

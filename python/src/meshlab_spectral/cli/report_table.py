@@ -1,0 +1,63 @@
+"""The filter's report as a table."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rich.table import Table
+from rich.text import Text
+
+
+def report_table(report: dict[str, Any], title: str) -> Table:
+    """Format a report of the filter as a table; lengths are in the units of the mesh.
+
+    Parameters
+    ----------
+    report
+        The dictionary returned by the filter.
+    title
+        Title of the table, plain text.
+    """
+    # Text, not str: a name such as "[red].ply" is not markup.
+    table = Table(title=Text(title), show_header=False, title_justify="left", title_style="bold")
+    table.add_column(style="cyan", no_wrap=True)
+    table.add_column(justify="right")
+    for label, value in _rows(report):
+        table.add_row(label, value)
+    return table
+
+
+def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
+    rows = [
+        ("Feature size", f"{report['feature_size']:.6g}"),
+        ("Cutoff frequency", f"{report['cutoff_frequency']:.6g} rad per unit"),
+        ("Steps", f"{report['steps']}"),
+        *_automatic(report),
+        ("Largest displacement", f"{report['max_displacement']:.4g}"),
+        ("RMS displacement", f"{report['rms_displacement']:.4g}"),
+        ("Area", _change(report["area_before"], report["area_after"])),
+        ("Volume", _change(report["volume_before"], report["volume_after"])),
+        ("Components", f"{report['components']}"),
+    ]
+    if report.get("unreferenced_vertices"):
+        rows.append(("Vertices without faces", f"{report['unreferenced_vertices']}, unchanged"))
+    if report.get("fixed_vertices"):
+        rows.append(("Vertices on a fixed boundary", f"{report['fixed_vertices']}, unchanged"))
+    if "eigenvalues" in report:
+        rows.append(("Harmonics", f"{len(report['eigenvalues'])}"))
+        rows.append(("Bases computed", f"{report['computed_bases']}"))
+    else:
+        rows.append(("Estimated relative error", f"{report['error_estimate']:.1e}"))
+    rows.append(("Work", f"{report['factorizations']} factorizations, {report['solves']} solves"))
+    return rows
+
+
+def _automatic(report: dict[str, Any]) -> list[tuple[str, str]]:
+    if not report["step_error"]:
+        return []
+    return [("Estimated error of the steps", f"{report['step_error']:.2g}")]
+
+
+def _change(before: float, after: float) -> str:
+    text = f"{before:.6g} -> {after:.6g}"
+    return f"{text} ({(after - before) / before:+.1%})" if before else text

@@ -1,0 +1,109 @@
+"""The command `meshlab-spectral spectra`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from meshlab_spectral.batch.files import check_workers
+from meshlab_spectral.batch.jobs import FileResult
+from meshlab_spectral.batch.spectra import plan_spectra, write_table
+from meshlab_spectral.cli.many_files import (
+    INTERRUPTED,
+    Debug,
+    Inputs,
+    MemoryLimit,
+    Scheduler,
+    Timeout,
+    Workers,
+    planning_shown,
+    run_shown,
+    summary_of,
+)
+from meshlab_spectral.cli.messages import EXIT_FAILED, errors_reported
+from meshlab_spectral.files.whole_files import remove_leftovers, writing_whole
+from meshlab_spectral.filters.options import Boundary, LaplacianKind
+from meshlab_spectral.filters.spectrum import DEFAULT_BASIS_SIZE
+
+# "\b" keeps a paragraph's lines as they are.
+SPECTRA_HELP = """Measure the geometry spectra of many meshes, in one table.
+
+The table has a row for each octave of each mesh, as comma-separated values: the feature size and
+the amplitude of details of about this size, in percent of the diagonal and in the units of the
+mesh, and their share of the energy. The octaves are at the same percentages for all meshes.
+`spectrum` plots a single mesh.
+
+\b
+  meshlab-spectral spectra scans --output spectra.csv
+Continue after an interruption, or with more scans:
+  meshlab-spectral spectra scans --output spectra.csv --resume
+
+Each mesh gets a line in the report, spectra_report.jsonl, as soon as it is measured.
+"""
+
+
+def spectra_command(
+    inputs: Inputs,
+    output: Annotated[
+        Path, typer.Option(metavar="FILE", help="Table to write; replaces an existing file.")
+    ] = Path("spectra.csv"),
+    recursive: Annotated[
+        bool, typer.Option("--recursive", "-r", help="Search subfolders, too.")
+    ] = False,
+    resume: Annotated[
+        bool,
+        typer.Option(
+            "--resume",
+            help="Reuse what the report proves measured with the same input, options and versions.",
+        ),
+    ] = False,
+    basis_size: Annotated[
+        int, typer.Option(min=1, help="Number of lowest harmonics to measure individually.")
+    ] = DEFAULT_BASIS_SIZE,
+    laplacian: Annotated[
+        LaplacianKind, typer.Option(help="As for the filter.")
+    ] = "intrinsic delaunay",
+    boundary: Annotated[
+        Boundary,
+        typer.Option(help="Whether boundaries of open surfaces are part of the shape (free)."),
+    ] = "free",
+    report: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="The report, one JSON object per line; appended to if it exists. By default "
+            "spectra_report.jsonl next to spectra.csv.",
+            show_default=False,
+        ),
+    ] = None,
+    workers: Workers = None,
+    memory_limit: MemoryLimit = None,
+    timeout: Timeout = None,
+    scheduler: Scheduler = None,
+    debug: Debug = False,
+) -> None:
+    """Measure spectra of many meshes: see `meshlab-spectral spectra --help`."""
+    with errors_reported(debug, INTERRUPTED):
+        check_workers(scheduler, workers, memory_limit)
+        with planning_shown(resume):
+            batch = plan_spectra(
+                inputs,
+                output,
+                basis_size,
+                laplacian,
+                boundary,
+                recursive=recursive,
+                resume=resume,
+                report=report,
+                timeout=timeout,
+            )
+        remove_leftovers(output.resolve().parent, output.name)
+        results: list[FileResult] = []
+        with writing_whole(output) as scratch:
+            counts = run_shown(batch, workers, memory_limit, scheduler, results.append)
+            write_table(scratch, results)
+        typer.echo(f"{summary_of(counts, 'measured')}; table: {output}, report: {batch.report}")
+    if counts["failed"]:
+        raise typer.Exit(EXIT_FAILED)

@@ -1,0 +1,177 @@
+"""The command `meshlab-spectral spectrum`."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import time
+from dataclasses import fields
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import typer
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from meshlab_spectral.cli.filter_options import with_some_filter_options
+from meshlab_spectral.cli.messages import errors_reported
+from meshlab_spectral.cli.progress import progress_shown
+from meshlab_spectral.figures.spectrum import (
+    check_format,
+    draw_spectrum,
+    feature_size_of,
+    octave_gains,
+)
+from meshlab_spectral.files.meshes import check_source
+from meshlab_spectral.files.whole_files import writing_whole
+from meshlab_spectral.filters.calling import plain_report
+from meshlab_spectral.filters.options import FilterOptions
+from meshlab_spectral.filters.spectrum import DEFAULT_BASIS_SIZE, GeometrySpectrum
+from meshlab_spectral.plugin.versions import versions
+from meshlab_spectral.process.single_file import measure_spectrum_in_child
+
+# "\b" keeps a paragraph's lines as they are.
+SPECTRUM_HELP = """Plot the geometry spectrum of a mesh, to choose a filter.
+
+The plot shows the amplitude of details, their root mean square height, by feature size: for octaves
+and, at the lowest frequencies, for single harmonics. The filter's gain is drawn over it. The lower
+plot shows the height of random vertex displacements that would explain the details of each size:
+where it levels off there is noise, or detail too fine for the mesh to tell from noise. The boundary
+of an open mesh contributes at all sizes; --boundary fixed leaves it out.
+
+\b
+  meshlab-spectral spectrum scan.ply
+  meshlab-spectral spectrum scan.ply --feature-size 2% --output scan.svg
+  meshlab-spectral spectrum scan.ply --boundary fixed
+  meshlab-spectral spectrum scan.ply --json
+"""
+
+# The options that the filter's curve and the spectrum depend on.
+SHOWN_OPTIONS = (
+    "filter_type",
+    "feature_size",
+    "response",
+    "order",
+    "band_width",
+    "pass_gain",
+    "stop_gain",
+    "power",
+    "laplacian",
+    "boundary",
+)
+
+
+@with_some_filter_options(SHOWN_OPTIONS)
+def spectrum_command(
+    options: FilterOptions,
+    source: Annotated[
+        Path, typer.Argument(metavar="MESH", help="Mesh to read: .ply, .obj, .stl, .off, ...")
+    ],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="PLOT",
+            help="Plot to write: .png, .pdf or .svg; replaces an existing file. By default "
+            "MESH_spectrum.png in the current folder, or none with --json.",
+            show_default=False,
+        ),
+    ] = None,
+    basis_size: Annotated[
+        int, typer.Option(min=1, help="Number of lowest harmonics to show individually.")
+    ] = DEFAULT_BASIS_SIZE,
+    as_json: Annotated[
+        bool, typer.Option("--json", help="Print the spectrum as one JSON object.")
+    ] = False,
+    debug: Annotated[bool, typer.Option("--debug", hidden=True)] = False,
+) -> None:
+    """Show the spectrum of a mesh: see `meshlab-spectral spectrum --help`."""
+    if output is None and not as_json:
+        output = Path(f"{source.stem}_spectrum.png")
+    begin = time.monotonic()
+    with errors_reported(debug), contextlib.ExitStack() as stack:
+        check_source(source)
+        scratch = None
+        if output is not None:  # fail before the computation if it cannot be written
+            check_format(output)
+            scratch = stack.enter_context(writing_whole(output))
+        with progress_shown() as on_progress:
+            spectrum = measure_spectrum_in_child(
+                source, basis_size, options.laplacian, options.boundary, on_progress
+            )
+        if scratch is not None:
+            draw_spectrum(spectrum, options, source.name, scratch)
+    if as_json:
+        record = _record(source, output, options, spectrum)
+        record |= {"seconds": round(time.monotonic() - begin, 3), "versions": versions()}
+        typer.echo(json.dumps(record))
+    else:
+        Console().print(_table(spectrum, options, source.name))
+        typer.echo(output)
+
+
+def _record(
+    source: Path, output: Path | None, options: FilterOptions, spectrum: GeometrySpectrum
+) -> dict[str, Any]:
+    chosen = options.as_dict()
+    return {
+        "input": str(source),
+        "output": None if output is None else str(output),
+        "options": {name: chosen[name] for name in SHOWN_OPTIONS},
+        "spectrum": plain_report(
+            {field.name: getattr(spectrum, field.name) for field in fields(spectrum)}
+        ),
+        "octave_gains": octave_gains(spectrum, options).tolist(),
+    }
+
+
+def _noise_line(spectrum: GeometrySpectrum) -> str:
+    if spectrum.noise_height == 0:
+        return "No noise found"
+    percent = 100 / spectrum.diagonal
+    return (
+        f"Noise: details smaller than {spectrum.noise_feature_size:.3g} "
+        f"({percent * spectrum.noise_feature_size:.2g} %) look like random vertex displacements of "
+        f"{spectrum.noise_height:.2g} ({percent * spectrum.noise_height:.2g} %)"
+    )
+
+
+def _table(spectrum: GeometrySpectrum, options: FilterOptions, name: str) -> Table:
+    """Format the octaves, with the gain of the filter at their centres."""
+    size = feature_size_of(options, spectrum)
+    # Text, not str: a name such as "[red].ply" is not markup.
+    title = Text(f"{name}: diagonal {spectrum.diagonal:.6g}, {options.filter_type} at {size:.6g}")
+    table = Table(title=title, title_justify="left", title_style="bold")
+    for heading in (
+        "Feature size",
+        "% of diagonal",
+        "Amplitude",
+        "% of diagonal",
+        "Energy",
+        "Gain",
+    ):
+        table.add_column(heading, justify="right")
+    for L, a, energy, g in zip(
+        spectrum.octave_feature_sizes,
+        spectrum.octave_amplitudes,
+        np.diff(spectrum.cumulative_energy, prepend=0.0),
+        octave_gains(spectrum, options),
+        strict=True,
+    ):
+        percent = 100 / spectrum.diagonal
+        table.add_row(
+            f"{L:.4g}",
+            f"{L * percent:.4g}",
+            f"{a:.3g}",
+            f"{a * percent:.3g}",
+            f"{energy:.2e}",
+            f"{g:.3f}",
+        )
+    table.caption = Text(
+        f"50, 90, 99 % of the energy are at feature sizes of at least "
+        f"{spectrum.feature_size_50:.4g}, {spectrum.feature_size_90:.4g}, "
+        f"{spectrum.feature_size_99:.4g}\n{_noise_line(spectrum)}"
+    )
+    table.caption_justify = "left"
+    return table

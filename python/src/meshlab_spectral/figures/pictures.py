@@ -1,0 +1,301 @@
+"""Off-screen rendering of meshes. Needs the extra `pictures` (PyVista)."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshlab_spectral.errors import SpectralError
+
+if TYPE_CHECKING:
+    import pymeshlab
+
+Image = NDArray[np.uint8]
+
+SIGNED_COLOURS = "coolwarm"  # grey at zero, which stands out from the white page
+
+
+@dataclass(frozen=True)
+class Panel:
+    """A mesh in a picture.
+
+    Attributes
+    ----------
+    label
+        Short text under the mesh.
+    V
+        n x 3 coordinates.
+    F
+        m x 3 indices of the corners of triangles.
+    signed
+        n values to colour the mesh by, from -1 (blue) to 1 (red); a line marks 0 (grey).
+    """
+
+    label: str
+    V: NDArray[np.float64]
+    F: NDArray[np.int64]
+    signed: NDArray[np.float64] | None = None
+
+    @classmethod
+    def of(cls, label: str, mesh: pymeshlab.Mesh) -> Panel:
+        """Copy the triangles of a pymeshlab mesh."""
+        return cls(label, mesh.vertex_matrix().copy(), mesh.face_matrix().astype(np.int64))
+
+
+@dataclass(frozen=True)
+class View:
+    """A viewpoint.
+
+    Attributes
+    ----------
+    direction
+        Direction from the mesh to the camera.
+    up
+        Up direction of the picture; not parallel to `direction`.
+    """
+
+    direction: tuple[float, float, float] = (0.0, 0.0, 1.0)
+    up: tuple[float, float, float] = (0.0, 1.0, 0.0)
+
+    @classmethod
+    def of_widest_side(cls, V: NDArray[np.float64]) -> View:
+        """Look along the shortest axis of the bounding box, from its positive side.
+
+        Up is y, or z if y is the shortest axis: this suits models with either convention.
+        """
+        shortest = int(np.argmin(np.ptp(V, axis=0)))
+        x, y, z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
+        return cls((x, y, z)[shortest], z if shortest == 1 else y)
+
+    def axes(self) -> NDArray[np.float64]:
+        """Return unit vectors to the right, up and towards the camera, as rows."""
+        back = np.asarray(self.direction) / np.linalg.norm(self.direction)
+        right = np.cross(self.up, back)
+        right /= np.linalg.norm(right)
+        return np.array([right, np.cross(back, right), back])
+
+
+@dataclass(frozen=True)
+class Frame:
+    """The rectangle shown by a picture, in parallel projection.
+
+    Attributes
+    ----------
+    view
+        The viewpoint.
+    middle
+        Point at the centre of the picture.
+    width, height
+        Size in the units of the mesh.
+    """
+
+    view: View
+    middle: NDArray[np.float64]
+    width: float
+    height: float
+
+    @classmethod
+    def around(cls, shapes: Sequence[NDArray[np.float64]], view: View) -> Frame:
+        """Fit several meshes, each n x 3 coordinates, with a narrow margin."""
+        return cls.row_by_row([shapes], view)[0]
+
+    @classmethod
+    def row_by_row(cls, rows: Sequence[Sequence[NDArray[np.float64]]], view: View) -> list[Frame]:
+        """Fit rows of meshes: all frames have the same width, each row has its own height."""
+        axes = view.axes()
+        boxes = [_box([V @ axes.T for V in row]) for row in rows]
+        left = min(low[0] for low, _ in boxes)
+        right = max(high[0] for _, high in boxes)
+        margin = 0.02 * (right - left)
+        frames = []
+        for low, high in boxes:
+            low[0], high[0] = left, right
+            width, height = (high - low)[:2] + margin
+            frames.append(cls(view, (low + high) / 2 @ axes, float(width), float(height)))
+        return frames
+
+
+def draw_side_by_side(
+    panels: Sequence[Panel],
+    path: Path,
+    *,
+    view: View | None = None,
+    panel_size: tuple[int, int] = (800, 800),
+) -> None:
+    """Draw meshes side by side, with the same camera, so that sizes can be compared.
+
+    Parameters
+    ----------
+    panels
+        The meshes from left to right; the camera is centred on the first.
+    path
+        The .png file to write.
+    view
+        The viewpoint; by default in front of the xy plane.
+    panel_size
+        Width and height of each panel in pixels.
+
+    Raises
+    ------
+    SpectralError
+        When PyVista is not installed.
+    """
+    # Half of the largest extent, with a margin for the label.
+    low, high = _box([panels[0].V])
+    height = 1.24 * float((high - low).max())
+    frame = Frame(view or View(), (low + high) / 2, height, height)
+    plotter = _plotter(len(panels), panel_size)
+    try:
+        for column, panel in enumerate(panels):
+            plotter.subplot(0, column)
+            _add(plotter, panel, frame)
+            plotter.add_text(
+                panel.label, position="lower_edge", font_size=15, color="#202020", shadow=False
+            )
+        plotter.screenshot(str(path))
+    finally:
+        plotter.close()
+
+
+def render(panel: Panel, frame: Frame, pixels: int) -> Image:
+    """Draw one mesh, without its label.
+
+    Parameters
+    ----------
+    panel
+        The mesh.
+    frame
+        The rectangle to show.
+    pixels
+        Width of the picture; the height follows from the frame.
+
+    Returns
+    -------
+    array
+        Height x width x 3, values 0 to 255.
+
+    Raises
+    ------
+    SpectralError
+        When PyVista is not installed.
+    """
+    height = max(1, round(pixels * frame.height / frame.width))
+    plotter = _plotter(1, (2 * pixels, 2 * height))
+    try:
+        _add(plotter, panel, frame)
+        fine = plotter.screenshot(return_img=True)
+    finally:
+        plotter.close()
+    # Supersampled in addition to VTK's antialiasing, for spikes thinner than a pixel.
+    image: Image = fine.reshape(height, 2, pixels, 2, 3).mean(axis=(1, 3)).round().astype(np.uint8)
+    return image
+
+
+def to_full_colours(values: NDArray[np.float64], areas: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Scale to -1 .. 1, clipping the extreme hundredth of the area, which is mostly spikes.
+
+    Parameters
+    ----------
+    values, areas
+        Values and areas of the n vertices.
+    """
+    order = np.argsort(np.abs(values))
+    reached = np.searchsorted(np.cumsum(areas[order]), 0.99 * areas.sum())
+    largest = np.abs(values)[order[min(reached, len(order) - 1)]]
+    scaled: NDArray[np.float64] = np.clip(values / largest, -1, 1)
+    return scaled
+
+
+def _plotter(columns: int, panel_size: tuple[int, int]) -> Any:
+    if sys.platform == "linux" and not os.environ.get("DISPLAY"):
+        # Otherwise VTK first tries an X server, and warns that there is none.
+        os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
+    try:
+        import pyvista
+    except ModuleNotFoundError as error:
+        raise SpectralError(
+            f"pictures need PyVista ({error}): pip install 'meshlab-spectral[pictures]'"
+        ) from error
+    width, height = panel_size
+    plotter = pyvista.Plotter(
+        off_screen=True,
+        shape=(1, columns),
+        window_size=[width * columns, height],
+        border=False,
+        lighting="none",
+    )
+    plotter.set_background("white")
+    plotter.enable_anti_aliasing("ssaa")
+    return plotter
+
+
+def _add(plotter: Any, panel: Panel, frame: Frame) -> None:
+    """Add a mesh, its lights and its camera to the plotter's current panel."""
+    surface = _surface(panel)
+    if panel.signed is None:
+        plotter.add_mesh(surface, color="#c9c2b4", smooth_shading=True, specular=0.05)
+    else:
+        surface["signed"] = panel.signed
+        plotter.add_mesh(
+            surface,
+            scalars="signed",
+            cmap=SIGNED_COLOURS,
+            clim=(-1, 1),
+            smooth_shading=True,
+            specular=0.0,
+            show_scalar_bar=False,
+        )
+        zero = surface.contour([0.0], scalars="signed")
+        if zero.n_points:
+            # Slightly in front of the surface, which would otherwise hide half the line.
+            zero.translate(2e-3 * frame.height * frame.view.axes()[2], inplace=True)
+            plotter.add_mesh(zero, color="#404040", line_width=5, lighting=False)
+    for light in _lights():
+        plotter.add_light(light, only_active=True)  # else it lights all other panels, too
+    back = frame.view.axes()[2]
+    distance = 10 * max(frame.width, frame.height)
+    plotter.camera_position = [
+        tuple(frame.middle + distance * back),
+        tuple(frame.middle),
+        frame.view.up,
+    ]
+    plotter.camera.parallel_projection = True
+    plotter.camera.parallel_scale = frame.height / 2
+    plotter.reset_camera_clipping_range()
+
+
+def _surface(panel: Panel) -> Any:
+    import pyvista
+
+    surface = pyvista.PolyData.from_regular_faces(panel.V, panel.F)
+    # Explicit vertex normals: smooth_shading would split the surface at sharp edges.
+    return surface.compute_normals(
+        cell_normals=False, split_vertices=False, consistent_normals=False
+    )
+
+
+def _box(shapes: Sequence[NDArray[np.float64]]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Corners of the bounding box of several meshes."""
+    return (
+        np.min([V.min(axis=0) for V in shapes], axis=0),
+        np.max([V.max(axis=0) for V in shapes], axis=0),
+    )
+
+
+def _lights() -> list[Any]:
+    """Key light from the upper left, fill light from the right, both fixed to the camera.
+
+    No part of a surface faces both, so it never saturates and no relief is lost.
+    """
+    import pyvista
+
+    key = pyvista.Light(position=(-0.9, 0.9, 0.6), light_type="camera light", intensity=1.15)
+    fill = pyvista.Light(position=(1.0, 0.0, 0.7), light_type="camera light", intensity=0.55)
+    return [key, fill]

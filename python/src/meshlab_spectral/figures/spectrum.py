@@ -1,0 +1,227 @@
+"""The plot of a geometry spectrum: amplitude by feature size, a filter's gain, noise."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from meshlab_spectral.errors import FormatError, SpectralError
+from meshlab_spectral.figures.sheet import FONT_SIZE, INK
+from meshlab_spectral.figures.subject import filter_name
+from meshlab_spectral.filters.options import FilterOptions
+from meshlab_spectral.filters.spectrum import Array, GeometrySpectrum
+from meshlab_spectral.filters.transfer import gain
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+FORMATS = (".png", ".pdf", ".svg")
+
+_SIZE = (9.0, 7.5)  # inches
+_HEIGHTS = (3, 2)  # ratio of the two plots
+_DOTS_PER_INCH = 150
+_OCTAVES, _HARMONICS, _FILTER, _NOISE = "#3b6ea5", "#7a7a7a", "#c0504d", "#8a6d1d"
+
+# The last octaves, below this fraction of the largest amplitude, come from a few slivers of the
+# mesh and would take up half the plot.
+_SHOWN = 1e-5
+
+
+def check_format(path: Path) -> None:
+    """Raise FormatError unless the extension is one of FORMATS."""
+    if path.suffix.lower() not in FORMATS:
+        raise FormatError(
+            f"{path.name} ends in {path.suffix or 'nothing'}: a plot is a "
+            f"{', '.join(FORMATS[:-1])} or {FORMATS[-1]} file"
+        )
+
+
+def feature_size_of(options: FilterOptions, spectrum: GeometrySpectrum) -> float:
+    """Return the filter's feature size in the units of the mesh."""
+    size = options.feature_size
+    if size.automatic:
+        return spectrum.default_feature_size
+    return size.value / 100 * spectrum.diagonal if size.relative else size.value
+
+
+def octave_gains(spectrum: GeometrySpectrum, options: FilterOptions) -> Array:
+    """Return the gains of a filter at the centres of the octaves."""
+    cutoff = feature_size_of(options, spectrum)
+    return gain(options, cutoff / spectrum.octave_feature_sizes)
+
+
+def draw_spectrum(
+    spectrum: GeometrySpectrum, options: FilterOptions, title: str, path: Path
+) -> None:
+    """Plot the spectrum of a mesh with a filter's transfer function over it.
+
+    Large features are on the left, small ones on the right, like low and high notes. The lower plot
+    has the height of the vertex noise that would explain the details of each size: where it levels
+    off they are noise, and shaded.
+
+    Parameters
+    ----------
+    spectrum
+        Spectrum of the mesh.
+    options
+        Options of the filter.
+    title
+        Title of the plot, plain text.
+    path
+        The file to write; its extension, one of FORMATS, sets the format.
+
+    Raises
+    ------
+    SpectralError
+        When Matplotlib is not installed.
+    """
+    try:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+    except ModuleNotFoundError as error:
+        raise SpectralError(
+            f"the plot needs Matplotlib ({error}): pip install 'meshlab-spectral[pictures]'"
+        ) from error
+    figure = Figure(_SIZE, dpi=_DOTS_PER_INCH, facecolor="white", layout="constrained")
+    FigureCanvasAgg(figure)
+    axes, noise = figure.subplots(2, 1, sharex=True, height_ratios=_HEIGHTS)
+    _plot_amplitudes(axes, spectrum)
+    gains = axes.twinx()
+    _plot_gain(gains, spectrum, options, axes.get_xlim())
+    _plot_noise(noise, spectrum)
+    for each in (axes, noise):
+        if spectrum.noise_height > 0:
+            smallest = min(axes.get_xlim())
+            each.axvspan(smallest, spectrum.noise_feature_size, color=_NOISE, alpha=0.12, zorder=0)
+    _label(axes, gains, noise, spectrum, title)
+    figure.savefig(path, format=path.suffix.lower().removeprefix("."))
+
+
+def _plot_amplitudes(axes: Axes, spectrum: GeometrySpectrum) -> None:
+    amplitudes = spectrum.octave_amplitudes
+    shown = np.flatnonzero(amplitudes > _SHOWN * amplitudes.max())
+    first, last = shown[0], shown[-1]
+    sizes, heights = spectrum.octave_feature_sizes[first : last + 1], amplitudes[first : last + 1]
+    edges = np.append(sizes * np.sqrt(2), sizes[-1] / np.sqrt(2))
+    floor = 0.3 * heights[heights > 0].min()
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.stairs(heights, edges, baseline=floor, fill=True, color=_OCTAVES, alpha=0.18)
+    axes.stairs(heights, edges, baseline=floor, color=_OCTAVES, linewidth=1.8, label="octaves")
+    # Separate octaves of equal height.
+    axes.vlines(edges[1:-1], floor, np.minimum(heights[:-1], heights[1:]), _OCTAVES, linewidth=0.6)
+    waves = spectrum.frequencies > 0
+    axes.plot(
+        2 * np.pi / spectrum.frequencies[waves],
+        spectrum.amplitudes[waves],
+        ".",
+        color=_HARMONICS,
+        markersize=3,
+        label=f"the {np.count_nonzero(waves)} lowest harmonics",
+    )
+    axes.set_xlim(edges[0], edges[-1])
+    axes.set_ylim(floor, 3 * heights.max())
+
+
+def _plot_gain(
+    axes: Axes, spectrum: GeometrySpectrum, options: FilterOptions, limits: tuple[float, float]
+) -> None:
+    cutoff = feature_size_of(options, spectrum)
+    sizes = np.geomspace(*limits, 1000)
+    gains = gain(options, cutoff / sizes)
+    axes.plot(sizes, gains, color=_FILTER, linewidth=1.8, label=filter_name(options))
+    axes.set_ylim(0, 1.25 * max(1.0, float(gains.max())))
+    if min(limits) < cutoff < max(limits):
+        axes.axvline(cutoff, color=_FILTER, linewidth=0.9, linestyle=(0, (4, 3)))
+        axes.annotate(
+            f"{cutoff:.3g}\n({100 * cutoff / spectrum.diagonal:.3g} %)",
+            (cutoff, 1),
+            xycoords=("data", "axes fraction"),
+            xytext=(4, -4),
+            textcoords="offset points",
+            va="top",
+            fontsize=FONT_SIZE,
+            color=_FILTER,
+        )
+
+
+def _plot_noise(axes: Axes, spectrum: GeometrySpectrum) -> None:
+    axes.set_yscale("log")
+    if len(spectrum.band_feature_sizes) == 0:
+        axes.plot([], [], " ", label="too few harmonics to detect noise")
+        return
+    axes.plot(
+        spectrum.band_feature_sizes,
+        spectrum.noise_heights,
+        "o-",
+        color=_OCTAVES,
+        markersize=3.5,
+        linewidth=1.4,
+        label="noise that would explain the details of this size (third octaves)",
+    )
+    heights = spectrum.noise_heights[spectrum.noise_heights > 0]
+    axes.set_ylim(0.05 * heights.min(), 3 * heights.max())  # room for the legend
+    if spectrum.noise_height == 0:
+        axes.plot([], [], " ", label="it does not level off: no noise found")
+        return
+    size, percent = spectrum.noise_feature_size, 100 / spectrum.diagonal
+    axes.axhline(
+        spectrum.noise_height,
+        color=_NOISE,
+        linewidth=1.2,
+        linestyle=(0, (4, 3)),
+        label=f"noise of height {spectrum.noise_height:.3g}"
+        f" ({percent * spectrum.noise_height:.2g} %)",
+    )
+    axes.annotate(
+        f"noise from {size:.3g} ({percent * size:.2g} %) down",
+        (size, 1),
+        xycoords=("data", "axes fraction"),
+        xytext=(-4, -5),
+        textcoords="offset points",
+        ha="right",
+        va="top",
+        fontsize=FONT_SIZE,
+        color=_NOISE,
+    )
+
+
+def _label(axes: Axes, gains: Axes, noise: Axes, spectrum: GeometrySpectrum, title: str) -> None:
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    def to_percent(size: Any) -> Any:
+        return 100 / spectrum.diagonal * size
+
+    def to_length(percent: Any) -> Any:
+        return spectrum.diagonal / 100 * percent
+
+    percent = axes.secondary_xaxis("top", functions=(to_percent, to_length))
+    for axis in (noise.xaxis, percent.xaxis):
+        axis.set_major_locator(LogLocator(10, subs=(1, 2, 5)))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.10g}"))
+        axis.set_minor_formatter(NullFormatter())
+    noise.set_xlabel("feature size (wavelength), units of the mesh", fontsize=FONT_SIZE, color=INK)
+    percent.set_xlabel("% of the bounding box diagonal", fontsize=FONT_SIZE, color=INK)
+    axes.set_ylabel("amplitude (rms height), units of the mesh", fontsize=FONT_SIZE, color=INK)
+    noise.set_ylabel("noise height, units of the mesh", fontsize=FONT_SIZE, color=INK)
+    gains.set_ylabel("gain of the filter", fontsize=FONT_SIZE, color=_FILTER)
+    axes.set_title(title, fontsize=FONT_SIZE + 1, color=INK, parse_math=False)
+    for each in (axes, noise, percent, gains):
+        each.tick_params(labelsize=FONT_SIZE - 1, colors=INK)
+    gains.tick_params(colors=_FILTER)
+    for each in (axes, noise):
+        each.grid(which="major", color="#e4e4e4", linewidth=0.6)
+        each.set_axisbelow(True)
+    (curves, names), (more, more_names) = (a.get_legend_handles_labels() for a in (axes, gains))
+    style: dict[str, Any] = {
+        "fontsize": FONT_SIZE - 1,
+        "loc": "lower left",
+        "frameon": True,
+        "framealpha": 0.9,
+        "edgecolor": "none",
+        "labelcolor": INK,
+    }
+    gains.legend([*curves, *more], [*names, *more_names], **style)
+    noise.legend(**style)

@@ -1,0 +1,20 @@
+"""Extensions of the mesh files that pymeshlab reads and writes; it offers no such list."""
+
+from __future__ import annotations
+
+_BOTH = {"3ds", "3mf", "ctm", "dae", "e57", "obj", "off", "ply", "stl", "wrl", "x3d", "xyz"}
+_READ_ONLY = {"apts", "asc", "bre", "fbx", "glb", "gltf", "pdb", "pts", "ptx", "qobj", "tri"}
+READABLE = frozenset(_BOTH | _READ_ONLY | {"txt", "vmi", "x3dv"})
+WRITABLE = frozenset(_BOTH | {"dxf", "idtf", "json", "nxs", "nxz"})
+# MeshLab drops the faces in these without an error.
+POINTS_ONLY = frozenset({"e57", "xyz"})
+# Searched for in folders. MeshLab reads any .txt as a point list, which is rarely intended.
+SEARCHED = READABLE - {"txt"}
+
+FALLBACK = "ply"
+
+
+def ending_of(name: str) -> str:
+    """Return the extension of a file name as it is written, without the dot."""
+    stem, dot, ending = name.rpartition(".")
+    return ending if stem and dot else ""

@@ -1,0 +1,211 @@
+"""Output files written atomically: complete or absent, whatever happens meanwhile."""
+
+from __future__ import annotations
+
+import contextlib
+import fcntl
+import filecmp
+import os
+import re
+import shutil
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from meshlab_spectral.errors import MeshFileError
+
+USUAL_FORMATS = ".ply, .obj, .stl or .off"
+
+_SCRATCH_ENDING = ".partial"
+_SCRATCH_NAME = re.compile(r"\.(?P<target>.+)\.[a-z0-9_]{8}\.partial")
+_LONGEST_NAME = 200  # bytes of the output's name used in that of the scratch folder
+
+
+@contextlib.contextmanager
+def writing_whole(target: Path, overwrite: bool = True) -> Iterator[Path]:
+    """Yield a scratch file to write instead of `target`; move it into place on success.
+
+    The scratch file has the name of `target` and lies in a hidden folder next to it, which also
+    catches a format's side files (materials, textures) and lets them refer to each other by their
+    final names. Nothing of it remains after an error. If the process is killed, its scratch folder
+    remains: `remove_leftovers` recognizes it by its name.
+
+    Parameters
+    ----------
+    target
+        The file to write.
+    overwrite
+        Whether to replace an existing file, even one created meanwhile. A file with the same
+        contents does not count.
+
+    Yields
+    ------
+    Path
+        The scratch file; it does not exist yet.
+
+    Raises
+    ------
+    MeshFileError
+        When the folder of `target` is missing or not writable (before the scratch file is yielded),
+        when the scratch file has not been written, or when another file is in the way.
+    """
+    place = target.resolve()  # follow symbolic links, as cp does
+    with _scratch_folder(target, place) as folder:
+        scratch = folder / target.name
+        yield scratch
+        try:
+            _put_in_place(scratch, place, overwrite)
+        except OSError as error:
+            raise MeshFileError(f"{target} cannot be written ({error.strerror})") from error
+
+
+def check_target(target: Path) -> None:
+    """Raise MeshFileError if `writing_whole` would, before any work is wasted."""
+    with _scratch_folder(target, target.resolve()):
+        pass
+
+
+def remove_leftovers(folder: Path, target_name: str | None = None) -> None:
+    """Remove the scratch folders left by killed processes.
+
+    Parameters
+    ----------
+    folder
+        A folder of outputs, which need not exist.
+    target_name
+        Only remove those of the output with this name.
+    """
+    try:
+        entries = list(os.scandir(folder))
+    except OSError:
+        return
+    for entry in entries:
+        match = _SCRATCH_NAME.fullmatch(entry.name)
+        if not match or not entry.is_dir(follow_symlinks=False):
+            continue
+        if target_name is not None and match["target"] != _shortened(target_name):
+            continue
+        with contextlib.suppress(OSError), _locked(Path(entry.path)):
+            shutil.rmtree(entry.path, ignore_errors=True)
+
+
+@contextlib.contextmanager
+def _scratch_folder(target: Path, place: Path) -> Iterator[Path]:
+    """Make a hidden folder next to `place`, which `target` resolves to; finally remove it."""
+    folder = place.parent
+    if place.exists() and not place.is_file():
+        raise MeshFileError(f"{target} is a folder or a device, not a file: name a file to write")
+    if not folder.is_dir():
+        raise MeshFileError(f"the output folder {target.parent} does not exist: create it first")
+    with contextlib.ExitStack() as stack:
+        try:
+            scratch = _make_locked(folder, target.name, stack)
+        except OSError as error:
+            raise MeshFileError(
+                f"the output folder {target.parent} cannot be written to ({error.strerror}): "
+                "choose another folder"
+            ) from error
+        stack.callback(shutil.rmtree, scratch, ignore_errors=True)
+        yield scratch
+
+
+def _make_locked(folder: Path, name: str, stack: contextlib.ExitStack) -> Path:
+    """Make a scratch folder, locked for as long as this process lives."""
+    while True:
+        path = Path(
+            tempfile.mkdtemp(prefix=f".{_shortened(name)}.", suffix=_SCRATCH_ENDING, dir=folder)
+        )
+        with contextlib.suppress(OSError):  # a file system without locks
+            stack.enter_context(_locked(path))
+        if path.is_dir():
+            return path
+        # Another process removed it as a leftover before it was locked: try again.
+
+
+@contextlib.contextmanager
+def _locked(folder: Path) -> Iterator[None]:
+    """Hold the lock of a folder.
+
+    Raises
+    ------
+    OSError
+        When another process holds it, or the file system does not support locks.
+    """
+    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        yield
+    finally:
+        os.close(descriptor)
+
+
+def _shortened(name: str) -> str:
+    return os.fsencode(name)[:_LONGEST_NAME].decode(errors="ignore")
+
+
+def side_files(scratch: Path) -> list[Path]:
+    """Return the side files, such as textures, in the folder of a scratch file."""
+    folder = scratch.parent
+    return sorted(path for path in folder.rglob("*") if path.is_file() and path != scratch)
+
+
+def _put_in_place(scratch: Path, place: Path, overwrite: bool) -> None:
+    if not scratch.is_file() or scratch.stat().st_size == 0:
+        raise MeshFileError(
+            f"MeshLab wrote nothing for {scratch.name}: choose another format, {USUAL_FORMATS}"
+        )
+    moves = {path: place.parent / path.relative_to(scratch.parent) for path in side_files(scratch)}
+    moves[scratch] = place  # last, when everything it refers to is in place
+    # Such as out.obj.mtl of out.obj; a texture may belong to another mesh, too.
+    replaceable = {path for path in moves if overwrite and path.name.startswith(scratch.name)}
+    for path, final in moves.items():
+        if path not in replaceable:
+            _refuse_another(path, final, scratch)
+    if place.exists():
+        shutil.copymode(place, scratch)
+    for path, final in moves.items():
+        final.parent.mkdir(parents=True, exist_ok=True)
+        _sync(path)
+        if path in replaceable:
+            path.replace(final)
+        else:
+            _put_new(path, final, scratch)
+    _sync(place.parent)
+
+
+def _put_new(path: Path, place: Path, scratch: Path) -> None:
+    """Move a file into place unless another process has just created one there."""
+    try:
+        place.hardlink_to(path)
+    except FileExistsError:
+        _refuse_another(path, place, scratch)
+    except OSError:  # a file system without hard links
+        path.replace(place)
+
+
+def _refuse_another(path: Path, place: Path, scratch: Path) -> None:
+    """Refuse to replace a file not given up for it, such as another model's texture."""
+    if not place.exists() or (place.is_file() and filecmp.cmp(path, place, shallow=False)):
+        return
+    if path == scratch:
+        raise MeshFileError(why_kept(place))
+    raise MeshFileError(
+        f"{scratch.name} needs a file {place.name} next to it, but another file has that name: "
+        "write the output to a folder of its own"
+    )
+
+
+def why_kept(place: object) -> str:
+    """Message for a file that has appeared since the work began, and is not replaced."""
+    return (
+        f"{place} has meanwhile been written by another program and is kept: choose another "
+        "folder, or replace it with --overwrite"
+    )
+
+
+def _sync(path: Path) -> None:
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

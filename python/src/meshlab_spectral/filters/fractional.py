@@ -1,0 +1,63 @@
+"""The fractional filter, on NumPy arrays."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from meshlab_spectral.filters.arrays import mesh_arrays
+from meshlab_spectral.filters.calling import call_filter, plain_report
+from meshlab_spectral.filters.options import FilterOptions
+from meshlab_spectral.plugin.loading import FILTER_NAME, load
+
+
+def filter_mesh(
+    vertices: ArrayLike, faces: ArrayLike, **options: Any
+) -> tuple[NDArray[np.float64], dict[str, Any]]:
+    """Filter a mesh by the size of its details.
+
+    Parameters
+    ----------
+    vertices
+        n x 3 coordinates, finite.
+    faces
+        m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
+    **options
+        Fields of `FilterOptions`; sizes as a string such as "2%" of the bounding box diagonal, or
+        as a length in the units of the mesh.
+
+    Returns
+    -------
+    V : array
+        n x 3 filtered coordinates; the faces do not change.
+    report : dict
+        Numbers, and lists for vectors; lengths in the units of the mesh. "warnings" lists what fell
+        short of the options and what to do about it.
+
+    Raises
+    ------
+    ValueError
+        When an array has the wrong shape or type, or an index is out of range.
+    OptionError
+        When an option is unknown or has an invalid value.
+    FilterError
+        When the filter rejects the mesh: no faces, no area, or non-finite coordinates.
+    PluginError
+        When the plugin cannot be loaded.
+
+    Examples
+    --------
+    >>> V, report = filter_mesh(vertices, faces, feature_size="2%", basis_update="conformal")
+    >>> report["max_displacement"]
+    """
+    V, F = mesh_arrays(vertices, faces)
+    parameters = FilterOptions.from_dict(options)
+    load()
+    import pymeshlab
+
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.add_mesh(pymeshlab.Mesh(V, F))
+    report = call_filter(mesh_set, FILTER_NAME, parameters.pymeshlab_parameters())
+    return mesh_set.current_mesh().vertex_matrix().copy(), plain_report(report)

@@ -1,0 +1,255 @@
+"""The filter's options: names, defaults, limits, help.
+
+`FilterOptions` is the only such table: the command line, recipes and calls of pymeshlab are derived
+from it. A test compares its names, choices and defaults with those of the plugin.
+"""
+
+from __future__ import annotations
+
+import difflib
+import math
+from dataclasses import dataclass, field, fields
+from typing import Any, Literal, get_args, get_type_hints
+
+from meshlab_spectral.errors import OptionError
+
+FilterType = Literal["low-pass", "high-pass", "band-pass", "band-stop"]
+Response = Literal["gaussian", "butterworth", "ideal"]
+BasisUpdate = Literal["full", "conformal", "none"]
+Spectrum = Literal["full", "truncated"]
+LaplacianKind = Literal["intrinsic delaunay", "cotangent"]
+Boundary = Literal["free", "fixed"]
+
+
+@dataclass(frozen=True)
+class Length:
+    """A length in the units of the mesh, or a percentage of its bounding box diagonal.
+
+    Attributes
+    ----------
+    value
+        Percentage if `relative`, else a length in the units of the mesh; finite, > 0.
+    relative
+        Whether `value` is a percentage.
+    automatic
+        Whether the filter chooses the length to suit the mesh; `value` is then meaningless.
+    """
+
+    value: float = 0.0
+    relative: bool = False
+    automatic: bool = False
+
+    def __post_init__(self) -> None:
+        if self.automatic:
+            return
+        if not (math.isfinite(self.value) and self.value > 0):
+            raise OptionError(
+                f"{self}: must be above zero, a percentage of the bounding box diagonal such as "
+                "5%, or a length such as 0.02"
+            )
+        if self.relative and self.value > 100:
+            raise OptionError(
+                f"{self}: a percentage goes up to 100% of the diagonal; for more, give a length"
+            )
+
+    @classmethod
+    def parse(cls, text: str) -> Length:
+        """Parse `5%` as a percentage of the diagonal, `0.02` as a length, `auto` as automatic.
+
+        Raises
+        ------
+        OptionError
+            When `text` is none of these, or not positive.
+        """
+        number = text.strip()
+        if number == "auto":
+            return cls(automatic=True)
+        relative = number.endswith("%")
+        try:
+            value = float(number.removesuffix("%"))
+        except ValueError:
+            raise OptionError(
+                f"{text!r}: give a percentage of the bounding box diagonal such as 5%, or a length "
+                "such as 0.02"
+            ) from None
+        return cls(value, relative)
+
+    def __str__(self) -> str:
+        return "auto" if self.automatic else f"{self.value:.12g}{'%' if self.relative else ''}"
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Range of a number: `low <= x <= high`, or `low < x <= high` if `low_open`."""
+
+    low: float
+    high: float = math.inf
+    low_open: bool = False
+
+    def contain(self, value: float) -> bool:
+        """Whether a value is in range; never true for NaN and infinities."""
+        above = value > self.low if self.low_open else value >= self.low
+        return math.isfinite(value) and above and value <= self.high
+
+    def __str__(self) -> str:
+        if math.isfinite(self.high) and not self.low_open:
+            return f"from {self.low:g} to {self.high:g}"
+        low = f"{'above' if self.low_open else 'at least'} {self.low:g}"
+        return f"{low}, at most {self.high:g}" if math.isfinite(self.high) else low
+
+
+def _option(default: Any, explanation: str, limits: Limits | None = None) -> Any:
+    return field(default=default, metadata={"help": explanation, "limits": limits})
+
+
+def _is_of(value: Any, wanted: type) -> bool:
+    """Whether a value has a type; integers pass as floats, as in a recipe."""
+    if wanted is float:
+        return isinstance(value, int | float) and not isinstance(value, bool)
+    return type(value) is wanted
+
+
+@dataclass(frozen=True, kw_only=True)
+class FilterOptions:
+    """Options of the filter, with the names and defaults they have in MeshLab.
+
+    Raises
+    ------
+    OptionError
+        When a value is invalid; names the option, the value and what is allowed.
+    """
+
+    filter_type: FilterType = _option(
+        "low-pass",
+        "What to do with details: low-pass keeps the large ones and smooths away the rest; "
+        "high-pass acts on the small ones (sharpen with --stop-gain 1 --pass-gain 2); band-pass "
+        "and band-stop act on details of about the feature size.",
+    )
+    feature_size: Length = _option(
+        Length(automatic=True),
+        "Size of the details at the filter's cutoff: a percentage of the model's diagonal such as "
+        "5%, a length in the model's units such as 0.02, or auto: six mean edge lengths, at most "
+        "5%. Try twice the width of what you want to remove.",
+    )
+    pass_gain: float = _option(
+        1.0, "Factor for the details that pass: 1 keeps them, 2 doubles their height.", Limits(0)
+    )
+    stop_gain: float = _option(
+        0.0, "Factor for all other details: 0 removes them, 0.5 halves their height.", Limits(0)
+    )
+    band_width: float = _option(
+        1.0,
+        "Width of a band in octaves: 1 means that its largest details are twice the size of its "
+        "smallest.",
+        Limits(0, low_open=True),
+    )
+    response: Response = _option(
+        "gaussian",
+        "How sharply sizes are separated: gaussian is gentle, butterworth is sharper with a higher "
+        "--order, ideal cuts off abruptly and may leave ripples.",
+    )
+    order: int = _option(
+        2, "Steepness of the butterworth response: 1 is gentle, 8 is steep.", Limits(1, 64)
+    )
+    power: float = _option(
+        1.0,
+        "Fractional power of the filter to apply: 0.5 is half the filter, a gain of 4 becomes 2.",
+        Limits(0, 1, low_open=True),
+    )
+    steps: int = _option(
+        0,
+        "Apply the filter in this many weak steps, so that thin parts survive: 0 takes as many as "
+        "--tolerance requires, 10 is the paper's scheme, 1 the classical one-shot filter.",
+        Limits(0),
+    )
+    tolerance: Length = _option(
+        Length(0.05, relative=True),
+        "With --steps 0: maximum distance of the surface from the limit of infinitely many steps, "
+        "e.g. 0.05% of the diagonal.",
+    )
+    basis_update: BasisUpdate = _option(
+        "conformal",
+        "What a step takes over from the one before: its areas (conformal; thin parts shrink "
+        "smoothly), everything (full; the paper's scheme) or nothing (none).",
+    )
+    conformal_share: float = _option(
+        0.0,
+        "Blends the full update (0, the paper's) with the conformal one (1); 0.1 draws in thin "
+        "parts that a strong full update leaves as spikes.",
+        Limits(0, 1),
+    )
+    spectrum: Spectrum = _option(
+        "full", "full filters every detail; truncated only the largest ones, as older methods do."
+    )
+    basis_size: int = _option(
+        300, "Number of harmonics in a truncated spectrum, e.g. 300.", Limits(1)
+    )
+    reinject_residual: bool = _option(
+        True, "Keep the details beyond a truncated spectrum instead of dropping them."
+    )
+    laplacian: LaplacianKind = _option(
+        "intrinsic delaunay",
+        "Laplacian that defines the frequencies: 'intrinsic delaunay' is stable with any triangle, "
+        "cotangent is the paper's and needs triangles with an area.",
+    )
+    boundary: Boundary = _option(
+        "free",
+        "Boundary of an open surface, holes included: free lets it move like the rest, so strong "
+        "smoothing draws it in; fixed keeps it exactly in place.",
+    )
+
+    def __post_init__(self) -> None:
+        types = get_type_hints(FilterOptions)
+        for option in fields(self):
+            value = getattr(self, option.name)
+            choices = get_args(types[option.name])
+            if choices and value not in choices:
+                raise OptionError(f"{option.name} = {value}: choose {', '.join(choices)}")
+            wanted = types[option.name]
+            if not choices and not _is_of(value, wanted):
+                raise OptionError(f"{option.name} = {value!r}: must be a {wanted.__name__}")
+            if isinstance(value, Length) and value.automatic and option.name != "feature_size":
+                raise OptionError(f"{option.name} = auto: only feature_size can be automatic")
+            limits: Limits | None = option.metadata["limits"]
+            if limits is not None and not limits.contain(value):
+                raise OptionError(f"{option.name} = {value}: must be {limits}")
+
+    def as_dict(self) -> dict[str, Any]:
+        """All options as plain values: strings, numbers, booleans."""
+        plain = {option.name: getattr(self, option.name) for option in fields(self)}
+        return {
+            name: str(value) if isinstance(value, Length) else value
+            for name, value in plain.items()
+        }
+
+    @classmethod
+    def from_dict(cls, plain: dict[str, Any]) -> FilterOptions:
+        """Make options from plain values, as from `as_dict`; the rest keep their defaults."""
+        values = dict(plain)
+        for name, wanted in get_type_hints(cls).items():
+            if wanted is Length and name in values:
+                try:
+                    values[name] = Length.parse(str(values[name]))
+                except OptionError as error:
+                    raise OptionError(f"{name} = {error}") from None
+        known = [option.name for option in fields(cls)]
+        for name in values:
+            if name not in known:
+                similar = difflib.get_close_matches(name, known, n=1)
+                hint = f"did you mean {similar[0]}?" if similar else f"choose {', '.join(known)}"
+                raise OptionError(f"there is no option {name}: {hint}")
+        return cls(**values)
+
+    def pymeshlab_parameters(self) -> dict[str, Any]:
+        """Keyword arguments for pymeshlab; automatic options are left out."""
+        import pymeshlab
+
+        parameters = self.as_dict()
+        for option in fields(self):
+            value = getattr(self, option.name)
+            if isinstance(value, Length) and value.automatic:
+                del parameters[option.name]
+            elif isinstance(value, Length):
+                kind = pymeshlab.PercentageValue if value.relative else pymeshlab.PureValue
+                parameters[option.name] = kind(value.value)
+        return parameters

@@ -1,0 +1,202 @@
+"""The geometry spectrum of a mesh: its energy by feature size."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Any, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from meshlab_spectral.errors import OptionError
+from meshlab_spectral.filters.arrays import mesh_arrays
+from meshlab_spectral.filters.calling import call_filter
+from meshlab_spectral.filters.options import Boundary, LaplacianKind
+from meshlab_spectral.plugin.loading import load
+
+FILTER_NAME = "get_geometry_spectrum"
+DEFAULT_BASIS_SIZE = 200
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class GeometrySpectrum:
+    """The distribution of a shape over feature sizes.
+
+    An amplitude is the root mean square height that a part of the spectrum contributes to the
+    shape, ``sqrt(energy / area)``; the squared amplitudes of all parts sum to that of the shape.
+    Feature sizes are wavelengths, as in the filter. Lengths are in the units of the mesh.
+
+    The shape is what a filter with the same boundary acts on: the positions relative to the
+    centroid of their connected component or, with a fixed boundary, to the harmonic extension of
+    the boundary.
+
+    Attributes
+    ----------
+    diagonal
+        Diagonal of the bounding box.
+    default_feature_size
+        The filter's default feature size for this mesh.
+    area
+        Total surface area.
+    total_energy
+        Surface integral of the squared length of the shape, length^4.
+    frequencies
+        Frequencies of the lowest harmonics, ascending, radians per length unit, 0 for constants. At
+        least `basis_size` of them, as groups of equal frequencies are not split, or all there are.
+    amplitudes
+        Amplitudes of these harmonics; 0 for constants.
+    octave_feature_sizes
+        Centres of the octaves, descending: the diagonal times powers of two, down to the last
+        octave with any energy.
+    octave_energies
+        Energies of the octaves, length^4; they sum to `total_energy`. Adjacent octaves overlap by
+        half an octave, in which a detail is shared between them.
+    octave_amplitudes
+        ``sqrt(octave_energies / area)``.
+    cumulative_energy
+        Fraction of the energy in each octave and all larger ones, ascending to 1.
+    band_feature_sizes
+        Centres of the third-octave bands with at least 30 harmonics, descending; may be empty.
+    band_amplitudes
+        Amplitudes of the shape in these bands.
+    band_noise
+        Amplitudes in these bands of white vertex noise of height 1 across the surface; > 0.
+    noise_height
+        Root mean square height of the vertex noise that accounts for all details smaller than
+        `noise_feature_size`: noise, or what the mesh is too coarse to tell from noise. 0 if there
+        are none. Up to 20 % too large because of the shape's own details.
+    noise_feature_size
+        Feature size at which this noise floor begins; 0 if there is none.
+    feature_size_50, feature_size_90, feature_size_99
+        Feature sizes above which 50, 90 and 99 % of the energy lie.
+    mismatch
+        Relative deviation of the octave energies beyond the harmonics from their known sum, before
+        they are scaled to it: a measure of their error.
+    """
+
+    diagonal: float
+    default_feature_size: float
+    area: float
+    total_energy: float
+    frequencies: Array
+    amplitudes: Array
+    octave_feature_sizes: Array
+    octave_energies: Array
+    octave_amplitudes: Array
+    cumulative_energy: Array
+    band_feature_sizes: Array
+    band_amplitudes: Array
+    band_noise: Array
+    noise_height: float
+    noise_feature_size: float
+    feature_size_50: float
+    feature_size_90: float
+    feature_size_99: float
+    mismatch: float
+
+    @property
+    def noise_heights(self) -> Array:
+        """Heights of the vertex noise that would explain each band on its own.
+
+        They fall towards small features and level off at the noise floor.
+        """
+        heights: Array = self.band_amplitudes / self.band_noise
+        return heights
+
+    @classmethod
+    def from_report(cls, report: dict[str, Any]) -> GeometrySpectrum:
+        """Convert the filter's report, with arrays or lists."""
+        values: dict[str, Any] = {}
+        for field in fields(cls):
+            value = report[field.name]
+            values[field.name] = np.array(value) if np.ndim(value) else float(value)
+        return cls(**values)
+
+
+def geometry_spectrum(
+    vertices: ArrayLike,
+    faces: ArrayLike,
+    basis_size: int = DEFAULT_BASIS_SIZE,
+    laplacian: LaplacianKind = "intrinsic delaunay",
+    boundary: Boundary = "free",
+) -> GeometrySpectrum:
+    """Measure the geometry spectrum of a mesh.
+
+    With the harmonics ``W phi_i = omega_i^2 D phi_i`` of the mesh and its shape U, an energy is a
+    sum of ``|phi_i^T D U|^2``: over single harmonics for the lowest frequencies, and over octaves
+    for the whole spectrum.
+
+    Parameters
+    ----------
+    vertices
+        n x 3 coordinates, finite.
+    faces
+        m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
+    basis_size
+        Number of harmonics measured individually, constants included; at least 1, and less than
+        the number of vertices not fixed if there are more than 2,000 of these.
+    laplacian
+        "intrinsic delaunay" works with any triangles; "cotangent" needs non-degenerate ones.
+    boundary
+        Boundary of an open surface. "free": part of the shape, it contributes at every size;
+        "fixed": measures the shape relative to the harmonic extension of the boundary.
+
+    Returns
+    -------
+    GeometrySpectrum
+        In the units of the mesh.
+
+    Raises
+    ------
+    ValueError
+        When an array has the wrong shape or type, or an index is out of range.
+    OptionError
+        When `laplacian` or `boundary` is unknown, or `basis_size` is not a positive integer.
+    FilterError
+        When the mesh has no faces, no area or non-finite coordinates, `basis_size` is too large, or
+        a fixed boundary leaves nothing to measure, as in a flat mesh.
+    PluginError
+        When the plugin cannot be loaded.
+
+    Examples
+    --------
+    >>> spectrum = geometry_spectrum(mesh.vertex_matrix(), mesh.face_matrix())
+    >>> for size, height in zip(spectrum.octave_feature_sizes, spectrum.octave_amplitudes):
+    ...     print(f"details of {size:.3g}: {height:.3g} high")
+    """
+    V, F = mesh_arrays(vertices, faces)
+    parameters = spectrum_parameters(basis_size, laplacian, boundary)
+    return GeometrySpectrum.from_report(measure(V, F, parameters))
+
+
+def measure(
+    V: Array, F: NDArray[Any], parameters: dict[str, Any], verbose: bool = False
+) -> dict[str, Any]:
+    """Run the filter on a mesh and return its report. With `verbose`, MeshLab writes its log."""
+    load()
+    import pymeshlab
+
+    mesh_set = pymeshlab.MeshSet(verbose=verbose)
+    mesh_set.add_mesh(pymeshlab.Mesh(V, F))
+    return call_filter(mesh_set, FILTER_NAME, parameters)
+
+
+def spectrum_parameters(basis_size: int, laplacian: str, boundary: str) -> dict[str, Any]:
+    """Validate the options; returns the parameters for pymeshlab.
+
+    Raises
+    ------
+    OptionError
+        When an option has an invalid value.
+    """
+    if isinstance(basis_size, bool) or not isinstance(basis_size, int) or basis_size < 1:
+        raise OptionError(f"basis_size = {basis_size}: must be an integer of at least 1")
+    for name, value, kind in (
+        ("laplacian", laplacian, LaplacianKind),
+        ("boundary", boundary, Boundary),
+    ):
+        if value not in get_args(kind):
+            raise OptionError(f"{name} = {value}: choose {', '.join(get_args(kind))}")
+    return {"basis_size": basis_size, "laplacian": laplacian, "boundary": boundary}

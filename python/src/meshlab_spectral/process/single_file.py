@@ -1,0 +1,137 @@
+"""Filtering and measuring a file in a child process, one per call.
+
+The calling command can thus be interrupted, show progress, and report even a crash of MeshLab.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from meshlab_spectral.files.basis import check_basis_target
+from meshlab_spectral.files.meshes import check_source
+from meshlab_spectral.files.whole_files import remove_leftovers, writing_whole
+from meshlab_spectral.filters.options import Boundary, FilterOptions, LaplacianKind
+from meshlab_spectral.filters.spectrum import GeometrySpectrum, spectrum_parameters
+from meshlab_spectral.process.parent import MeshLabProcess, ProgressCallback
+
+
+def filter_file_in_child(
+    source: Path,
+    target: Path,
+    options: FilterOptions,
+    on_progress: ProgressCallback = lambda stage, fraction: None,
+) -> dict[str, Any]:
+    """Filter a mesh file into another, in a child process that can be interrupted.
+
+    Parameters
+    ----------
+    source, target, options
+        As for `meshes.filter_file`.
+    on_progress
+        Called with the current stage and the fraction done, 0 to 1, or None if unknown.
+
+    Returns
+    -------
+    dict
+        The filter's report.
+
+    Raises
+    ------
+    SpectralError
+        As `meshes.filter_file`; also when the child died without an answer.
+    KeyboardInterrupt
+        After the child has been ended and the scratch files removed.
+    """
+    return _write_in_child(
+        source, target, {"task": "filter", "options": options.as_dict()}, on_progress
+    )
+
+
+def basis_file_in_child(
+    source: Path,
+    target: Path,
+    basis_size: int,
+    laplacian: LaplacianKind,
+    boundary: Boundary,
+    on_progress: ProgressCallback = lambda stage, fraction: None,
+) -> dict[str, Any]:
+    """Write the manifold harmonics of a mesh file to a NumPy archive.
+
+    Parameters
+    ----------
+    source
+        A file that pymeshlab can read, with one mesh in it.
+    target
+        The .npz file to write, atomically, with the arrays of `basis.basis_to_scratch`. An existing
+        one is replaced.
+    basis_size, laplacian, boundary
+        As for `harmonics.manifold_harmonics`.
+    on_progress
+        As for `filter_file_in_child`.
+
+    Returns
+    -------
+    dict
+        The numbers of "vertices" and "harmonics".
+
+    Raises
+    ------
+    SpectralError
+        When `source` cannot be read, `target` cannot be written or is not named .npz, or the filter
+        rejects the mesh or an option; also when the child died without an answer.
+    KeyboardInterrupt
+        After the child has been ended and the scratch files removed.
+    """
+    check_basis_target(target)
+    options = {"basis_size": basis_size, "laplacian": laplacian, "boundary": boundary}
+    return _write_in_child(source, target, {"task": "basis", "options": options}, on_progress)
+
+
+def _write_in_child(
+    source: Path, target: Path, job: dict[str, Any], on_progress: ProgressCallback
+) -> dict[str, Any]:
+    check_source(source)
+    remove_leftovers(target.resolve().parent, target.name)
+    with writing_whole(target) as scratch:
+        job |= {"source": str(source.absolute()), "scratch": str(scratch.absolute())}
+        return _run_in_child(job, on_progress)
+
+
+def measure_spectrum_in_child(
+    source: Path,
+    basis_size: int,
+    laplacian: LaplacianKind,
+    boundary: Boundary,
+    on_progress: ProgressCallback = lambda stage, fraction: None,
+) -> GeometrySpectrum:
+    """Measure the geometry spectrum of a mesh file, in a child process that can be interrupted.
+
+    Parameters
+    ----------
+    source
+        A file that pymeshlab can read, with one mesh in it.
+    basis_size, laplacian, boundary
+        As for `spectrum.geometry_spectrum`.
+    on_progress
+        As for `filter_file_in_child`.
+
+    Raises
+    ------
+    SpectralError
+        As `load_arrays` and `geometry_spectrum`; also when the child died without an answer.
+    KeyboardInterrupt
+        After the child has been ended.
+    """
+    check_source(source)
+    job = {
+        "task": "spectrum",
+        "source": str(source.absolute()),
+        "parameters": spectrum_parameters(basis_size, laplacian, boundary),
+    }
+    return GeometrySpectrum.from_report(_run_in_child(job, on_progress))
+
+
+def _run_in_child(job: dict[str, Any], on_progress: ProgressCallback) -> dict[str, Any]:
+    with MeshLabProcess() as process:
+        return process.run(job, on_progress).report

@@ -1,0 +1,130 @@
+"""Batches that are killed, interrupted, or whose workers are: nothing is lost."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from batches import REPORT, alive, below, contents, make_meshes, records, start_batch, wait_until
+from commands import command
+
+MESHES = 12
+OPTIONS = ["--steps", 60, "--workers", 2]
+
+
+@pytest.fixture(scope="module")
+def meshes(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("meshes")
+    make_meshes(folder, MESHES, rings=32)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def undisturbed(meshes: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str, bytes]:
+    out = tmp_path_factory.mktemp("undisturbed") / "out"
+    assert command("batch", meshes, "--output", out, *OPTIONS).returncode == 0
+    return contents(out)
+
+
+@pytest.fixture
+def running(meshes: Path, tmp_path: Path) -> Iterator[subprocess.Popen[str]]:
+    """A batch, some files of which are done and others at work."""
+    process = start_batch(meshes, "--output", tmp_path / "out", *OPTIONS)
+    try:
+        wait_until(lambda: len(records(tmp_path / "out" / REPORT)) >= 2)
+        yield process
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def assert_resumes(meshes: Path, out: Path, undisturbed: dict[str, bytes]) -> None:
+    done_before = len(records(out / REPORT))
+    assert 2 <= done_before < MESHES
+    done = command("batch", meshes, "--output", out, *OPTIONS, "--resume")
+    assert done.returncode == 0, done.stderr
+    assert f"{done_before} already done" in done.stdout
+    assert contents(out) == undisturbed
+    assert not list(out.rglob("*.partial"))
+
+
+@pytest.mark.parametrize("kind", ["worker", "MeshLab's process"])
+def test_a_killed_process_is_replaced(
+    kind: str,
+    running: subprocess.Popen[str],
+    undisturbed: dict[str, bytes],
+    tmp_path: Path,
+) -> None:
+    word = "spawn_main" if kind == "worker" else "meshlab_spectral.process.child"
+    below(running, word)[0].kill()
+    stdout, stderr = running.communicate(timeout=120)
+    assert running.returncode == 0, stderr
+    assert stderr == ""
+    assert f"{MESHES} filtered, 0 failed" in stdout
+    out = tmp_path / "out"
+    assert contents(out) == undisturbed
+    assert not list(out.rglob("*.partial"))
+
+
+@pytest.mark.parametrize("to", ["command", "terminal"])
+def test_an_interrupted_batch_ends_soon_with_130_and_resumes(
+    to: str,
+    running: subprocess.Popen[str],
+    meshes: Path,
+    undisturbed: dict[str, bytes],
+    tmp_path: Path,
+) -> None:
+    processes = below(running)
+    assert len(processes) >= 4
+    if to == "command":
+        running.send_signal(signal.SIGINT)
+    else:
+        os.killpg(running.pid, signal.SIGINT)
+    stdout, stderr = running.communicate(timeout=20)
+    assert running.returncode == 130
+    assert stdout == ""
+    assert stderr == "Interrupted: finished files are in the report; continue with --resume.\n"
+    wait_until(lambda: not alive(processes), seconds=5)
+    assert not list((tmp_path / "out").rglob("*.partial"))
+    assert_resumes(meshes, tmp_path / "out", undisturbed)
+
+
+def test_an_interrupted_batch_leaves_no_copies_of_files_at_urls(
+    meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    temporary = tmp_path / "tmp"
+    temporary.mkdir()
+    monkeypatch.setenv("TMPDIR", str(temporary))
+    # A chain of file systems is a URL to fsspec, not a path.
+    urls = [f"filecache::{path.as_uri()}" for path in meshes.iterdir()]
+    process = start_batch(*urls, "--output", tmp_path / "out", *OPTIONS)
+    try:
+        wait_until(lambda: bool(list(temporary.rglob("*.ply"))))
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=20)
+    finally:
+        process.kill()
+        process.communicate()
+    assert process.returncode == 130
+    assert not list(temporary.rglob("*.ply"))
+
+
+def test_a_killed_batch_leaves_no_process_and_resumes(
+    running: subprocess.Popen[str],
+    meshes: Path,
+    undisturbed: dict[str, bytes],
+    tmp_path: Path,
+) -> None:
+    processes = below(running)
+    assert len(processes) >= 4
+    running.kill()
+    wait_until(lambda: not alive(processes), seconds=10)
+    out = tmp_path / "out"
+    for name, content in contents(out).items():
+        if ".partial/" not in name:
+            assert content == undisturbed[name]
+    assert_resumes(meshes, out, undisturbed)

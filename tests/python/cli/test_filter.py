@@ -1,0 +1,98 @@
+"""The command `meshlab-spectral filter`: its results and its report."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pymeshlab
+import pytest
+from commands import arrays_of, command, write_ply
+from helpers import FILTER, percent
+from meshlab_spectral import FilterOptions
+
+
+def test_output_is_what_the_filter_computes(cow: Path, tmp_path: Path) -> None:
+    target = tmp_path / "cow.ply"
+    done = command("filter", cow, target, "--feature-size", "8%", "--steps", 3)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.load_new_mesh(str(cow))
+    mesh_set.apply_filter(FILTER, feature_size=percent(8), steps=3)
+    V, F = arrays_of(target)
+    np.testing.assert_array_equal(V, mesh_set.current_mesh().vertex_matrix())
+    np.testing.assert_array_equal(F, mesh_set.current_mesh().face_matrix())
+    assert list(tmp_path.iterdir()) == [target]
+
+
+def test_json_is_one_object_with_report_options_and_versions(cow: Path, tmp_path: Path) -> None:
+    target = tmp_path / "cow.ply"
+    done = command("filter", cow, target, "--json", "--feature-size", 0.15, "--steps", 2)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count("\n") == 1
+    record = json.loads(done.stdout)
+    assert record["input"] == str(cow)
+    assert record["output"] == str(target)
+    expected = {**FilterOptions().as_dict(), "feature_size": "0.15", "steps": 2}
+    assert record["options"] == expected
+    assert record["report"]["feature_size"] == pytest.approx(0.15, rel=1e-6)
+    assert record["report"]["step_sizes"] == [0.5, 0.5]
+    assert record["report"]["max_displacement"] > 0
+    assert record["versions"]["pymeshlab"] == "2025.7.post1"
+    assert {"meshlab_spectral", "python"} <= record["versions"].keys()
+
+
+def test_a_fixed_boundary_with_nothing_inside_is_a_warning(tmp_path: Path) -> None:
+    source = write_ply(tmp_path / "triangle.ply", "0 0 0\n1 0 0\n0 1 0", "3 0 1 2")
+    target = tmp_path / "out.ply"
+    done = command("filter", source, target, "--boundary", "fixed")
+    assert done.returncode == 0, done.stderr
+    assert "nothing can move" in done.stderr
+    assert "fixed boundary" in done.stdout
+    np.testing.assert_array_equal(arrays_of(target)[0], arrays_of(source)[0])
+
+
+@pytest.mark.parametrize(("feature_size", "warned"), [("5%", True), ("60%", False)])
+def test_harmonics_that_end_above_the_feature_size_are_a_warning(
+    cow: Path, tmp_path: Path, feature_size: str, warned: bool
+) -> None:
+    arguments = ["--spectrum", "truncated", "--basis-size", 30, "--steps", 1]
+    done = command("filter", cow, tmp_path / "cow.ply", *arguments, "--feature-size", feature_size)
+    assert done.returncode == 0, done.stderr
+    assert ("harmonics end at features of" in done.stderr) == warned
+
+
+def test_json_holds_the_eigenvalues_of_a_truncated_spectrum(cow: Path, tmp_path: Path) -> None:
+    arguments = ["--spectrum", "truncated", "--basis-size", 50, "--steps", 1, "--json"]
+    done = command("filter", cow, tmp_path / "cow.ply", *arguments, "--no-reinject-residual")
+    record = json.loads(done.stdout)
+    assert len(record["report"]["eigenvalues"]) >= 50
+    assert record["options"]["reinject_residual"] is False
+
+
+def test_report_is_a_table_with_the_input_and_the_output_as_they_are_called(
+    cow: Path, tmp_path: Path
+) -> None:
+    source = tmp_path / "[red] kühe.obj"
+    shutil.copy(cow, source)
+    done = command("filter", source, tmp_path / "[bold]öut.ply", "--steps", 1)
+    assert done.returncode == 0, done.stderr
+    assert "[red] kühe.obj -> [bold]öut.ply" in done.stdout
+    for row in ("Feature size", "Largest displacement", "Area", "Volume", "Work"):
+        assert row in done.stdout
+    assert len(arrays_of(tmp_path / "[bold]öut.ply")[0]) == len(arrays_of(cow)[0])
+
+
+def test_vertices_that_are_no_numbers_do_not_get_in_the_way(tmp_path: Path) -> None:
+    """MeshLab drops them when it reads a file; the rest is filtered."""
+    vertices = "0 0 0\n1 0 0\n0 1 0\n0 0 1\nnan 0 0"
+    faces = "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n3 0 1 4"
+    source, target = write_ply(tmp_path / "nan.ply", vertices, faces), tmp_path / "out.ply"
+    done = command("filter", source, target, "--steps", 1, "--feature-size", "20%")
+    assert done.returncode == 0, done.stderr
+    V, F = arrays_of(target)
+    assert np.isfinite(V).all()
+    assert F.shape == (4, 3)

@@ -1,0 +1,167 @@
+"""The command `meshlab-spectral spectrum`: its plot, its numbers, what it refuses."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import matplotlib.image
+import numpy as np
+import pymeshlab
+import pytest
+from helpers import lower_part, mesh_set_of
+from meshlab_spectral import FilterOptions, geometry_spectrum
+from meshlab_spectral.cli.spectrum import SHOWN_OPTIONS
+from meshlab_spectral.files.meshes import load_arrays
+
+
+def command(*arguments: object, folder: Path | None = None) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "meshlab_spectral.cli", "spectrum", *map(str, arguments)],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+
+
+def colours(path: Path) -> Any:
+    return np.asarray(matplotlib.image.imread(path))[:, :, :3]
+
+
+def test_the_plot_and_a_table_of_the_octaves_are_made(cow: Path, tmp_path: Path) -> None:
+    done = command(cow, "--basis-size", 20, "--feature-size", "10%", folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+    assert [path.name for path in tmp_path.iterdir()] == ["cow_spectrum.png"]
+    assert done.stdout.splitlines()[-1] == "cow_spectrum.png"
+    for word in ("cow.obj", "low-pass", "Amplitude", "Gain", "50, 90, 99 %", "oise"):
+        assert word in done.stdout
+    picture = colours(tmp_path / "cow_spectrum.png")
+    assert picture.shape[0] > 500
+    assert 0.1 < (picture < 0.98).any(axis=2).mean() < 0.9
+
+
+def test_noise_is_told_and_shaded(samples: Path, tmp_path: Path) -> None:
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.load_new_mesh(str(samples / "bunny.obj"))
+    mesh_set.meshing_decimation_quadric_edge_collapse(targetfacenum=12000)
+    mesh = mesh_set.current_mesh()
+    V, F = mesh.vertex_matrix(), mesh.face_matrix()
+    noisy = V + 0.002 * np.random.default_rng(3).standard_normal(V.shape)
+    mesh_set_of(noisy, F).save_current_mesh(str(tmp_path / "noisy.ply"))
+    done = command(tmp_path / "noisy.ply", "--basis-size", 50, folder=tmp_path)
+    assert "Noise: details smaller than" in done.stdout
+    shaded = colours(tmp_path / "noisy_spectrum.png")
+    # A pale brown that nothing else in the plot has, over the last part of its width.
+    brown = (shaded[:, :, 0] > shaded[:, :, 2] + 0.03) & (shaded.min(axis=2) > 0.8)
+    columns = np.flatnonzero(brown.sum(axis=0) > 200)
+    assert 0.5 * shaded.shape[1] < columns.min() < columns.max()
+
+
+def test_a_mesh_too_small_to_tell_noise_by_is_drawn(samples: Path, tmp_path: Path) -> None:
+    mesh_set_of(
+        np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]])
+    ).save_current_mesh(str(tmp_path / "triangle.ply"))
+    done = command("triangle.ply", folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "No noise found" in done.stdout
+
+
+def test_a_fixed_boundary_makes_another_spectrum(tmp_path: Path, decimated: Any) -> None:
+    mesh_set_of(*lower_part(*decimated("bunny.obj", 1500))).save_current_mesh(
+        str(tmp_path / "open.ply")
+    )
+    free, fixed = (
+        json.loads(
+            command(
+                "open.ply", "--json", "--boundary", b, "--basis-size", 9, folder=tmp_path
+            ).stdout
+        )
+        for b in ("free", "fixed")
+    )
+    assert fixed["options"]["boundary"] == "fixed"
+    assert fixed["spectrum"]["total_energy"] != free["spectrum"]["total_energy"]
+
+
+def test_another_filter_makes_another_plot(cow: Path, tmp_path: Path) -> None:
+    plots = [tmp_path / "low.png", tmp_path / "band.png"]
+    command(cow, "--output", plots[0], "--basis-size", 20)
+    command(cow, "--output", plots[1], "--basis-size", 20, "--filter-type", "band-pass")
+    low, band = map(colours, plots)
+    assert low.shape == band.shape
+    assert not np.array_equal(low, band)
+
+
+def test_json_holds_the_spectrum_the_options_and_the_gains(cow: Path, tmp_path: Path) -> None:
+    done = command(cow, "--json", "--basis-size", 20, "--stop-gain", 0.5, folder=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert list(tmp_path.iterdir()) == [], "no plot unless one is named"
+    record = json.loads(done.stdout)
+    assert record["output"] is None
+    assert set(record["options"]) == set(SHOWN_OPTIONS)
+    assert record["options"]["stop_gain"] == 0.5
+    assert record["versions"].keys() == {"meshlab_spectral", "plugin", "pymeshlab", "python"}
+    expected = geometry_spectrum(*load_arrays(cow), basis_size=20)
+    found = record["spectrum"]
+    np.testing.assert_allclose(found["octave_energies"], expected.octave_energies, rtol=1e-9)
+    np.testing.assert_allclose(found["frequencies"], expected.frequencies, rtol=1e-9)
+    assert found["feature_size_90"] == pytest.approx(expected.feature_size_90)
+    # The Gaussian low-pass of 5 %, that keeps at least one half.
+    x = 0.05 * expected.diagonal / expected.octave_feature_sizes
+    np.testing.assert_allclose(record["octave_gains"], 0.5 + 0.5 * 2 ** (-(x**2) / 2), rtol=1e-9)
+
+
+@pytest.mark.parametrize("ending", ["png", "pdf", "svg"])
+def test_json_and_every_kind_of_plot_go_together(ending: str, cow: Path, tmp_path: Path) -> None:
+    plot = tmp_path / f"cow.{ending}"
+    done = command(cow, "--json", "--output", plot, "--basis-size", 5)
+    assert json.loads(done.stdout)["output"] == str(plot)
+    start = {"png": b"\x89PNG", "pdf": b"%PDF", "svg": b"<?xml"}[ending]
+    assert plot.read_bytes().startswith(start)
+    assert list(tmp_path.iterdir()) == [plot]
+
+
+def test_help_names_the_options_that_make_the_curve_and_no_others() -> None:
+    done = command("--help")
+    assert done.returncode == 0
+    for name in FilterOptions().as_dict():
+        shown = f"--{name.replace('_', '-')} " in done.stdout
+        assert shown == (name in SHOWN_OPTIONS or name == "basis_size"), name
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code", "words"),
+    [
+        (["missing.ply"], 1, "missing.ply"),
+        (["COW", "--output", "plot.jpg"], 2, ".png, .pdf or .svg"),
+        (["COW", "--output", "plot"], 2, ".png, .pdf or .svg"),
+        (["COW", "--output", "nowhere/plot.png"], 1, "does not exist"),
+        (["COW", "--basis-size", "0"], 2, "basis-size"),
+        (["COW", "--basis-size", "100000"], 1, "choose at most"),
+        (["COW", "--feature-size", "0"], 2, "above zero"),
+        (["COW", "--laplacian", "graph"], 2, "intrinsic delaunay"),
+        (["COW", "--steps", "3"], 2, "--steps"),
+    ],
+)
+def test_what_cannot_be_done_is_refused_and_leaves_nothing(
+    arguments: list[str], code: int, words: str, cow: Path, tmp_path: Path
+) -> None:
+    done = command(*[cow if a == "COW" else a for a in arguments], folder=tmp_path)
+    assert done.returncode == code, done.stderr
+    assert done.stdout == ""
+    assert words in done.stderr
+    assert "Traceback" not in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_refusal_leaves_an_existing_plot_as_it_was(samples: Path, tmp_path: Path) -> None:
+    plot = tmp_path / "plot.png"
+    plot.write_bytes(b"precious")
+    assert command(samples / "cow.obj", "--output", plot, "--basis-size", 100000).returncode == 1
+    assert plot.read_bytes() == b"precious"
+    assert list(tmp_path.iterdir()) == [plot]

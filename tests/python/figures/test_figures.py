@@ -1,0 +1,187 @@
+"""The command `meshlab-spectral figures`: its pictures, and what it says when a mesh is missing."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import matplotlib.image
+import numpy as np
+import pytest
+import spectral_reference as reference
+from helpers import FILTER, diagonal, largest_distance, mesh_set_of
+from meshlab_spectral import manifold_harmonics
+from meshlab_spectral.figures.eigenfunctions import most_alike
+from meshlab_spectral.figures.paper import FIGURES
+from meshlab_spectral.figures.pictures import Frame, Panel, View, render
+from meshlab_spectral.figures.sequences import K, after
+from meshlab_spectral.figures.stability import BAND, LOW_PASS
+from meshlab_spectral.filters.arrays import lumped_areas
+from meshlab_spectral.filters.options import FilterOptions
+from numpy.typing import NDArray
+
+
+def command(*arguments: object) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "meshlab_spectral.cli", "figures", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+
+
+@pytest.fixture
+def meshes(decimated: Callable[..., Any], tmp_path: Path) -> list[Path]:
+    """In place of the dragon and the angel: one lying, y up, and one standing, z up."""
+    V, F = decimated("cow.obj", 1000)
+    x, y, z = V.T
+    standing = np.column_stack([y, z, x])  # turned: the longest axis upwards
+    paths = [tmp_path / "lying.ply", tmp_path / "standing.ply"]
+    for path, vertices in zip(paths, (V, standing), strict=True):
+        mesh_set_of(vertices, F).save_current_mesh(str(path))
+    return paths
+
+
+def test_every_figure_of_every_mesh_is_drawn(meshes: list[Path], tmp_path: Path) -> None:
+    folder = tmp_path / "new" / "folder"
+    done = command(*meshes, "--output", folder, "--scale", 0.2)
+    assert done.returncode == 0, done.stderr
+    assert "Traceback" not in done.stderr
+    expected = {f"{name}_{mesh.stem}.png" for mesh in meshes for name, _ in FIGURES.values()}
+    assert {path.name for path in folder.iterdir()} == expected
+    assert {Path(line).name for line in done.stdout.splitlines()} == expected
+    for path in folder.iterdir():
+        picture = np.asarray(matplotlib.image.imread(path))[:, :, :3]
+        assert 0.1 < (picture < 0.98).any(axis=2).mean() < 0.9, path.name
+        edges = [picture[0], picture[-1], picture[:, 0], picture[:, -1]]
+        assert all((edge > 0.98).all() for edge in edges), path.name
+
+
+def test_only_the_wanted_figures_are_drawn(meshes: list[Path], tmp_path: Path) -> None:
+    done = command(meshes[0], "--output", tmp_path / "out", "--only", "1", "--scale", 0.2)
+    assert done.returncode == 0, done.stderr
+    assert [path.name for path in (tmp_path / "out").iterdir()] == ["figure1_stability_lying.png"]
+
+
+def test_a_missing_mesh_is_named_with_a_place_to_get_it(meshes: list[Path], tmp_path: Path) -> None:
+    missing = tmp_path / "dragon.ply"
+    done = command(meshes[0], missing, "--output", tmp_path / "out")
+    assert done.returncode == 1
+    assert str(missing) in done.stderr
+    assert "Stanford 3D Scanning Repository" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_place_where_no_picture_can_be_is_refused_before_the_work(
+    meshes: list[Path], tmp_path: Path
+) -> None:
+    taken = tmp_path / "taken"
+    taken.write_text("a file\n")
+    picture = tmp_path / "out" / f"{FIGURES[5][0]}_{meshes[0].stem}.png"
+    picture.mkdir(parents=True)  # a folder in its place
+    for output, words in ((taken, "choose another one"), (picture.parent, "not a file")):
+        done = command(meshes[0], "--output", output, "--only", "1,5")
+        assert done.returncode == 1
+        assert words in done.stderr
+        assert "Traceback" not in done.stderr
+    assert taken.read_text() == "a file\n"
+    assert list(picture.parent.iterdir()) == [picture], "nothing was drawn"
+
+
+@pytest.mark.parametrize("only", ["2", "1,x", "", "1,,5"])
+def test_an_unknown_figure_is_refused_with_those_there_are(
+    only: str, meshes: list[Path], tmp_path: Path
+) -> None:
+    done = command(meshes[0], "--output", tmp_path / "out", "--only", only)
+    assert done.returncode == 2
+    for number in FIGURES:
+        assert str(number) in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_meshes_whose_pictures_would_have_one_name_are_refused(
+    meshes: list[Path], tmp_path: Path
+) -> None:
+    done = command(meshes[0], meshes[0], "--output", tmp_path / "out")
+    assert done.returncode == 2
+    assert "lying" in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("options", "update"), [(LOW_PASS, "conformal"), (BAND, "full")], ids=["low-pass", "band"]
+)
+def test_sequences_show_shapes_on_the_way_to_the_whole_filter(
+    options: FilterOptions, update: Any, decimated: Callable[..., Any]
+) -> None:
+    V, F = decimated("bunny.obj", 1000)
+
+    def shape(options: FilterOptions) -> NDArray[np.float64]:
+        mesh_set = mesh_set_of(V, F)
+        mesh_set.apply_filter(FILTER, **options.pymeshlab_parameters())
+        return mesh_set.current_mesh().vertex_matrix().copy()
+
+    shapes = [V, *(shape(after(options, i, update)) for i in (3, 6, K))]
+    ways = [largest_distance(a, b) for a, b in pairwise(shapes)]
+    assert min(ways) > 1e-3 * diagonal(V)
+    whole = shape(FilterOptions(**{**vars(options), "steps": K, "basis_update": update}))
+    np.testing.assert_array_equal(shapes[-1], whole)
+
+
+def test_harmonics_are_orthonormal_and_find_themselves_in_any_order_and_sign(
+    decimated: Callable[..., Any],
+) -> None:
+    V, F = decimated("bunny.obj", 1000)
+    d = lumped_areas(V, F)
+    np.testing.assert_allclose(d, reference.lumped_areas(V, F), rtol=1e-12)
+    Phi = manifold_harmonics(V, F, 12).harmonics
+    np.testing.assert_allclose(Phi.T @ (d[:, None] * Phi), np.eye(12), atol=1e-8)
+    number, correlation = most_alike(Phi[:, 7], -Phi[:, ::-1], d)
+    assert number == 11 - 7
+    assert correlation == pytest.approx(-1)
+
+
+def test_a_mesh_too_small_for_its_eigenfunctions_is_refused(tmp_path: Path) -> None:
+    corners = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    path = tmp_path / "tetrahedron.ply"
+    faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    mesh_set_of(corners, faces).save_current_mesh(str(path))
+    done = command(path, "--output", tmp_path, "--only", 4, "--scale", 0.2)
+    assert done.returncode == 1, done.stderr
+    assert "basis_size" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_a_frame_holds_all_of_its_shapes(decimated: Callable[..., Any]) -> None:
+    V, F = decimated("cow.obj", 1000)
+    view = View.of_widest_side(V)
+    large, small = Frame.row_by_row([[V, 1.5 * V], [0.5 * V]], view)
+    assert large.width == small.width
+    assert large.height > 2.5 * small.height
+    picture = render(Panel("", 1.5 * V, F), large, 200)
+    drawn = (picture < 250).any(axis=2)
+    assert drawn.shape[1] == 200
+    for edge in (drawn[0], drawn[-1], drawn[:, 0], drawn[:, -1]):
+        assert not edge.any()
+    assert drawn.any(axis=0).mean() > 0.94
+    assert drawn.any(axis=1).mean() > 0.9
+
+
+def test_signed_values_are_blue_and_red(decimated: Callable[..., Any]) -> None:
+    V, F = decimated("cow.obj", 1000)
+    view = View.of_widest_side(V)
+    frame = Frame.around([V], view)
+    x = V @ view.axes()[0]
+    picture = render(Panel("", V, F, np.clip(9 * (x - np.median(x)), -1, 1)), frame, 300)
+    red, blue = (picture[:, :, channel].astype(float) for channel in (0, 2))
+    columns = np.arange(300)
+    redder = (red - blue) > 40
+    bluer = (blue - red) > 40
+    assert (redder.sum(axis=0) @ columns) / redder.sum() > (
+        bluer.sum(axis=0) @ columns
+    ) / bluer.sum() + 60

@@ -1,0 +1,188 @@
+"""The package's table of options is the plugin's own table of parameters."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any, get_args, get_type_hints
+from xml.etree import ElementTree
+
+import numpy as np
+import pymeshlab
+import pytest
+from helpers import FILTER, mesh_set_of, refusal
+from meshlab_spectral import FilterOptions, OptionError
+from meshlab_spectral.filters.options import Length
+
+CHOICES = {
+    name: get_args(type_)
+    for name, type_ in get_type_hints(FilterOptions).items()
+    if get_args(type_)
+}
+
+
+@pytest.fixture
+def tetrahedron() -> pymeshlab.MeshSet:
+    return mesh_set_of(
+        [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+    )
+
+
+def test_names_order_and_defaults_are_those_of_the_plugin(tetrahedron: pymeshlab.MeshSet) -> None:
+    parameters = tetrahedron.filter_parameter_values(FILTER)
+    expected: dict[str, Any] = FilterOptions().as_dict()
+    assert list(parameters) == list(expected)
+    diagonal = tetrahedron.current_mesh().bounding_box().diagonal()
+    for name, value in parameters.items():
+        default = expected[name]
+        if name in CHOICES:
+            assert CHOICES[name][value] == default, name
+        elif name == "feature_size":
+            assert default == "auto"  # of a mesh as coarse as this: 5 %
+            assert value == pytest.approx(0.05 * diagonal)
+        elif name == "tolerance":
+            assert f"{100 * value / diagonal:g}%" == default
+        else:
+            assert value == default, name
+            assert type(value) is type(default), name
+
+
+def test_the_feature_size_of_a_fine_mesh_is_six_mean_edges(samples: Path) -> None:
+    ms = pymeshlab.MeshSet()
+    ms.load_new_mesh(str(samples / "bunny.obj"))
+    V, F = ms.current_mesh().vertex_matrix(), ms.current_mesh().face_matrix()
+    edges = np.linalg.norm(V[F] - V[np.roll(F, 1, axis=1)], axis=2)
+    size = ms.filter_parameter_values(FILTER)["feature_size"]
+    assert size == pytest.approx(6 * edges.mean(), rel=1e-6)
+    assert ms.apply_filter(FILTER)["feature_size"] == pytest.approx(size, rel=1e-6)
+
+
+def test_only_the_feature_size_can_be_automatic() -> None:
+    assert FilterOptions.from_dict({"feature_size": "auto"}) == FilterOptions()
+    with pytest.raises(OptionError, match="tolerance = auto: only feature_size"):
+        FilterOptions.from_dict({"tolerance": "auto"})
+
+
+@pytest.mark.parametrize("name", CHOICES)
+def test_choices_and_their_order_are_those_of_the_plugin(
+    name: str, tetrahedron: pymeshlab.MeshSet
+) -> None:
+    with pytest.raises(pymeshlab.InvalidEnumException) as error:
+        tetrahedron.apply_filter(FILTER, **{name: "no such choice"})
+    offered = str(error.value).split("Possible values are")[1]
+    assert tuple(re.findall(r"'([^']*)'", offered)) == CHOICES[name]
+
+
+OUT_OF_RANGE = [
+    ("order", 0, {"response": "butterworth"}),
+    ("order", 65, {"response": "butterworth"}),
+    ("band_width", 0.0, {"filter_type": "band-pass"}),
+    ("band_width", -1.0, {"filter_type": "band-pass"}),
+    ("pass_gain", -0.5, {}),
+    ("pass_gain", float("inf"), {}),
+    ("stop_gain", -0.5, {}),
+    ("stop_gain", float("nan"), {}),
+    ("power", 0.0, {}),
+    ("power", 1.5, {}),
+    ("conformal_share", 1.5, {}),
+    ("conformal_share", float("nan"), {}),
+    ("steps", -3, {}),
+    ("basis_size", 0, {"spectrum": "truncated"}),
+]
+
+
+@pytest.mark.parametrize(("name", "value", "where"), OUT_OF_RANGE)
+def test_table_and_plugin_refuse_the_same_values_and_name_the_option(
+    name: str, value: float, where: dict[str, Any], tetrahedron: pymeshlab.MeshSet
+) -> None:
+    with pytest.raises(OptionError, match=name):
+        FilterOptions(**{name: value})
+    assert name in refusal(tetrahedron, **where, **{name: value})
+
+
+@pytest.mark.parametrize("name", CHOICES)
+def test_an_unknown_choice_is_refused_with_the_choices(name: str) -> None:
+    with pytest.raises(OptionError, match=CHOICES[name][0]):
+        FilterOptions(**{name: "no such choice"})  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("steps", 2.5),
+        ("steps", "ten"),
+        ("steps", True),
+        ("order", None),
+        ("pass_gain", "2"),
+        ("band_width", True),
+        ("reinject_residual", 1),
+        ("feature_size", "5%"),
+    ],
+)
+def test_a_value_of_another_type_is_refused_by_the_name_of_the_option(
+    name: str, value: Any
+) -> None:
+    with pytest.raises(OptionError, match=name):
+        FilterOptions(**{name: value})
+
+
+@pytest.mark.parametrize(
+    ("text", "value", "relative"),
+    [("5%", 5, True), (" 2.5 % ", 2.5, True), ("0.02", 0.02, False), ("1e3", 1000, False)],
+)
+def test_a_feature_size_is_a_percentage_or_a_length(
+    text: str, value: float, relative: bool
+) -> None:
+    assert Length.parse(text) == Length(value, relative)
+
+
+@pytest.mark.parametrize("text", ["", "%", "five", "0", "0%", "-3%", "nan", "inf", "120%", "5 mm"])
+def test_another_feature_size_is_refused_with_an_example(text: str) -> None:
+    with pytest.raises(OptionError, match="percentage"):
+        Length.parse(text)
+
+
+def test_options_survive_the_way_through_plain_values() -> None:
+    options = FilterOptions(
+        filter_type="band-pass", feature_size=Length(0.3), pass_gain=2.5, stop_gain=1.0
+    )
+    assert FilterOptions.from_dict(options.as_dict()) == options
+
+
+def test_an_unknown_option_is_refused_by_name() -> None:
+    with pytest.raises(OptionError, match="feature_sise"):
+        FilterOptions.from_dict({"feature_sise": "5%"})
+
+
+def test_options_given_to_pymeshlab_reach_the_filter(
+    tetrahedron: pymeshlab.MeshSet, tmp_path: Path
+) -> None:
+    options = FilterOptions(
+        filter_type="band-stop",
+        feature_size=Length(0.75),
+        response="butterworth",
+        order=3,
+        band_width=2.0,
+        pass_gain=0.5,
+        stop_gain=0.25,
+        power=0.5,
+        steps=2,
+        tolerance=Length(0.25),
+        basis_update="conformal",
+        conformal_share=0.5,
+        boundary="fixed",
+    )
+    tetrahedron.apply_filter(FILTER, **options.pymeshlab_parameters())
+    script = tmp_path / "script.mlx"
+    tetrahedron.save_filter_script(str(script))
+    stored = {
+        element.attrib["name"]: element.attrib["value"]
+        for element in ElementTree.parse(script).iter("Param")
+    }
+    for name, value in options.as_dict().items():
+        if name in CHOICES:
+            assert stored[name] == str(CHOICES[name].index(value)), name
+        elif isinstance(value, bool):
+            assert stored[name] == str(value).lower(), name
+        else:
+            assert float(stored[name]) == pytest.approx(float(value)), name

@@ -1,0 +1,162 @@
+"""Warnings reach Python in the plugin's words, and only those of the run that caused them."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from batches import REPORT, make_meshes, records
+from commands import command, write_ply
+from helpers import FILTER, mesh_set_of, refusal
+from meshlab_spectral import FilterError, filter_files, filter_mesh, geometry_spectrum
+from meshlab_spectral.files.script import apply_script
+from meshlab_spectral.plugin.last_warnings import last_warnings
+
+TRIANGLE = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]])
+# Each falls short in its own way.
+INACCURATE = {"filter_type": "band-stop", "pass_gain": 1.0, "stop_gain": 0.0, "steps": 20}
+FEW_HARMONICS = {"spectrum": "truncated", "basis_size": 30, "steps": 1}
+EVERYTHING_FIXED = {"boundary": "fixed", "steps": 1}
+
+Decimated = Callable[..., tuple[np.ndarray, np.ndarray]]
+
+
+PROGRAM = """
+import json, sys
+import meshlab_spectral, pymeshlab
+from meshlab_spectral.filters.calling import call_filter
+meshlab_spectral.load()
+mesh_set = pymeshlab.MeshSet(verbose=True)
+mesh_set.load_new_mesh(sys.argv[1])
+report = call_filter(mesh_set, sys.argv[2], json.loads(sys.argv[3]))
+print("WARNINGS", json.dumps(report["warnings"]))
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "words"),
+    [
+        ("cow.obj", FEW_HARMONICS, "harmonics end at features of"),
+        ("triangle.ply", EVERYTHING_FIXED, "nothing can move"),
+        ("cow.obj", {"steps": 1}, None),
+    ],
+)
+def test_the_report_has_the_warnings_of_meshlabs_log(
+    name: str, options: dict[str, Any], words: str | None, samples: Path, tmp_path: Path
+) -> None:
+    triangle = write_ply(tmp_path / "triangle.ply", "0 0 0\n1 0 0\n0 1 0", "3 0 1 2")
+    source = triangle if name == triangle.name else samples / name
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM, str(source), FILTER, json.dumps(options)],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=True,
+    )
+    (line,) = (line for line in done.stdout.splitlines() if line.startswith("WARNINGS "))
+    warnings = json.loads(line.removeprefix("WARNINGS "))
+    in_log = re.findall(r"WARNING: (.*)", done.stdout + done.stderr)
+    assert [warning.strip() for warning in in_log] == warnings
+    assert len(warnings) == (words is not None)
+    assert (words or "") in "".join(warnings)
+
+
+def test_every_flag_of_a_shortfall_comes_with_a_warning(decimated: Decimated) -> None:
+    """The flags and the warnings are told by two ways, and must agree."""
+    V, F = decimated("cow.obj")
+    _, whole = filter_mesh(V, F)
+    assert whole["accuracy_reached"]
+    assert whole["tolerance_reached"]
+    assert whole["warnings"] == []
+    _, inaccurate = filter_mesh(V, F, **INACCURATE)
+    assert not inaccurate["accuracy_reached"]
+    assert "stop_gain" in inaccurate["warnings"][0]
+    _, few = filter_mesh(V, F, **FEW_HARMONICS)
+    assert not few["cutoff_reached"]
+    assert "basis_size" in few["warnings"][0]
+
+
+def test_an_earlier_runs_warnings_are_not_those_of_a_later_one(decimated: Decimated) -> None:
+    V, F = decimated("cow.obj")
+    assert filter_mesh(*TRIANGLE, **EVERYTHING_FIXED)[1]["warnings"]
+    assert last_warnings()
+    assert filter_mesh(V, F, steps=1)[1]["warnings"] == []
+    assert last_warnings() == []
+    assert filter_mesh(*TRIANGLE, **EVERYTHING_FIXED)[1]["warnings"]
+    geometry_spectrum(V, F, 10)  # another filter of the plugin
+    assert last_warnings() == []
+
+
+def test_a_run_that_fails_has_no_warnings() -> None:
+    assert filter_mesh(*TRIANGLE, **EVERYTHING_FIXED)[1]["warnings"]
+    with pytest.raises(FilterError, match="point cloud"):
+        filter_mesh(TRIANGLE[0], np.empty((0, 3), int))
+    assert last_warnings() == []
+    assert filter_mesh(*TRIANGLE, **EVERYTHING_FIXED)[1]["warnings"]
+    refusal(mesh_set_of(*TRIANGLE), order=0, response="butterworth")
+    assert last_warnings() == []
+
+
+def test_another_threads_run_leaves_a_threads_warnings_alone(decimated: Decimated) -> None:
+    assert filter_mesh(*TRIANGLE, **EVERYTHING_FIXED)[1]["warnings"]
+    own = last_warnings()
+    found: list[list[str]] = [last_warnings()]
+
+    def run() -> None:
+        found.append(last_warnings())
+        found.append(filter_mesh(*decimated("cow.obj"), steps=1)[1]["warnings"])
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    thread.join()
+    assert found == [own, [], []]
+    assert last_warnings() == own
+
+
+def script_of(folder: Path, name: str, **parameters: Any) -> Path:
+    mesh_set = mesh_set_of(*TRIANGLE)
+    mesh_set.apply_filter(FILTER, **parameters)
+    script = folder / name
+    mesh_set.save_filter_script(str(script))
+    return script
+
+
+def test_every_filter_of_a_script_has_its_own_warnings(tmp_path: Path) -> None:
+    fixed = script_of(tmp_path, "fixed.mlx", **EVERYTHING_FIXED).read_text()
+    free = script_of(tmp_path, "free.mlx", steps=1).read_text()
+    part = free[free.index("<filter ") : free.index("</FilterScript>")]
+    report = apply_script(
+        mesh_set_of(*TRIANGLE), fixed.replace("</FilterScript>", part + "</FilterScript>")
+    )
+    first, second = (one["report"]["warnings"] for one in report["filters"])
+    assert "nothing can move" in first[0]
+    assert second == []
+
+
+def test_a_batch_of_a_script_keeps_the_warnings_of_its_filters(tmp_path: Path) -> None:
+    script = script_of(tmp_path, "fixed.mlx", **EVERYTHING_FIXED)
+    flat = write_ply(tmp_path / "flat.ply", "0 0 0\n1 0 0\n0 1 0", "3 0 1 2")
+    (closed,) = make_meshes(tmp_path / "in", 1)
+    out = tmp_path / "out"
+    for resume in (False, True):
+        results = filter_files([flat, closed], out, script=script, workers=1, resume=resume)
+        warnings = {result.name: result.warnings for result in results}
+        assert warnings[closed.name] == []
+        assert "nothing can move" in warnings["flat.ply"][0]
+    kept = {record["name"]: record["warnings"] for record in records(out / REPORT)}
+    assert kept == warnings
+
+
+def test_json_has_the_warning_that_standard_error_shows(tmp_path: Path) -> None:
+    source = write_ply(tmp_path / "flat.ply", "0 0 0\n1 0 0\n0 1 0", "3 0 1 2")
+    done = command("filter", source, tmp_path / "out.ply", "--boundary", "fixed", "--json")
+    (warning,) = json.loads(done.stdout)["report"]["warnings"]
+    assert done.stderr == f"Warning: {warning}.\n"

@@ -1,0 +1,88 @@
+"""The plugin's files as the linker left them: for which MeshLab each is, and what it asks of it.
+
+The single-precision MeshLab is not to be had from PyPI. What can be seen without it is seen here;
+tests/gui loads the file into the program.
+"""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+
+import pymeshlab
+import pytest
+from meshlab_spectral.plugin import installation
+from meshlab_spectral.plugin.installation import DOUBLE, HOSTS, SINGLE, Host, library_name
+
+CORE_LIBRARY = Path(pymeshlab.__file__).parent / "lib" / "libmeshlab-common.so"
+SCALARS = {SINGLE: "float", DOUBLE: "double"}
+# Found in the other object files of every program, or left open on purpose.
+OF_THE_COMPILER = {"_ITM_deregisterTMCloneTable", "_ITM_registerTMCloneTable", "__gmon_start__"}
+
+each_host = pytest.mark.parametrize("host", HOSTS, ids=lambda host: host.precision)
+
+
+def plugin_of(host: Host) -> Path:
+    return Path(installation.__file__).parent / library_name(host)
+
+
+def output_of(*command: object) -> str:
+    return subprocess.run(
+        [*map(str, command)], capture_output=True, text=True, check=True, timeout=60
+    ).stdout
+
+
+def symbols(library: Path, kind: str) -> set[str]:
+    """Demangled symbols, "defined" or "undefined"; those of versioned libraries with an @."""
+    lines = output_of("nm", "--dynamic", "--demangle", f"--{kind}-only", library).splitlines()
+    return {re.sub(r"^[0-9a-f ]*[A-Za-z] ", "", line) for line in lines}
+
+
+def asked_of_meshlab(host: Host) -> set[str]:
+    undefined = symbols(plugin_of(host), "undefined")
+    return {name for name in undefined if "@" not in name} - OF_THE_COMPILER
+
+
+@each_host
+def test_numbers_go_to_meshlab_in_its_own_precision(host: Host) -> None:
+    constructors = [name for name in asked_of_meshlab(host) if "RichFloat::RichFloat(" in name]
+    assert constructors
+    for constructor in constructors:
+        assert f"(QString const&, {SCALARS[host]}, " in constructor
+
+
+@each_host
+def test_only_the_double_plugin_is_for_the_double_version_of_meshlab(host: Host) -> None:
+    assert (b"2025.07d" in plugin_of(host).read_bytes()) == (host is DOUBLE)
+
+
+@each_host
+def test_all_that_is_asked_of_meshlab_is_in_its_core_library(host: Host) -> None:
+    # The same library in the other precision has the same functions, but for their scalars.
+    def in_double(name: str) -> str:
+        return re.sub(r"\bfloat\b", "double", name)
+
+    offered = {in_double(name) for name in symbols(CORE_LIBRARY, "defined")}
+    asked = asked_of_meshlab(host)
+    assert asked
+    assert {name for name in asked if in_double(name) not in offered} == set()
+
+
+@each_host
+def test_libraries_are_those_of_the_program_and_no_folder_is_built_in(host: Host) -> None:
+    dynamic = output_of("readelf", "--dynamic", "--wide", plugin_of(host))
+    needed = set(re.findall(r"\(NEEDED\).*\[(.*)\]", dynamic))
+    # Python hides what it has loaded from what it loads later; the program does not.
+    assert ("libmeshlab-common.so" in needed) == (host is DOUBLE)
+    others = needed - {"libmeshlab-common.so"}
+    # The loader itself is asked for the variables of threads.
+    system = r"(lib(Qt5\w+|stdc\+\+|m|gcc_s|c|pthread)|ld-linux[\w-]*)\.so\."
+    assert all(re.match(system, name) for name in others)
+    assert "RPATH" not in dynamic
+    assert "RUNPATH" not in dynamic
+
+
+@each_host
+def test_the_function_that_tells_the_warnings_can_be_found_by_name(host: Host) -> None:
+    assert "meshlab_spectral_warnings" in symbols(plugin_of(host), "defined")

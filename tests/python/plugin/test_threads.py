@@ -1,0 +1,65 @@
+"""How many threads the plugin computes with."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from meshlab_spectral import FilterError, OptionError, filter_mesh, set_threads, threads
+from meshlab_spectral.batch.processes import Processes
+from meshlab_spectral.plugin.threads import VARIABLE, threads_each
+from meshlab_spectral.process.parent import NO_LIMITS
+
+
+class NotStartedError(Exception):
+    """Instead of a process."""
+
+
+@pytest.fixture(autouse=True)
+def _restored(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv(VARIABLE, raising=False)
+
+
+def test_results_have_the_same_bits_for_every_number_of_threads(
+    decimated: Callable[..., tuple[np.ndarray, np.ndarray]],
+) -> None:
+    V, F = decimated("bunny.obj", 20000)
+    results = []
+    for count in (1, 2, 3, None):
+        set_threads(count)
+        assert threads() == count
+        results.append(filter_mesh(V, F, feature_size="4%")[0])
+    for other in results[1:]:
+        np.testing.assert_array_equal(results[0], other)
+
+
+def test_a_number_that_is_none_is_refused(
+    monkeypatch: pytest.MonkeyPatch, decimated: Callable[..., tuple[np.ndarray, np.ndarray]]
+) -> None:
+    with pytest.raises(OptionError, match="threads = 0: give a number"):
+        set_threads(0)
+    V, F = decimated("cow.obj", 2000)
+    for value in ("0", "-3", "many", ""):
+        monkeypatch.setenv(VARIABLE, value)
+        with pytest.raises(FilterError, match=f"{VARIABLE} = {value}: give a number of threads"):
+            filter_mesh(V, F)
+        with pytest.raises(OptionError, match=f"{VARIABLE} = {value}: must be"):
+            threads()
+
+
+def test_processes_share_the_threads(monkeypatch: pytest.MonkeyPatch) -> None:
+    set_threads(8)
+    assert [threads_each(count) for count in (1, 2, 3, 8, 50)] == [8, 4, 2, 1, 1]
+    environments: list[dict[str, str]] = []
+
+    def start(*_: object, env: dict[str, str], **__: object) -> None:
+        environments.append(env)
+        raise NotStartedError
+
+    monkeypatch.setattr("meshlab_spectral.process.parent.subprocess.Popen", start)
+    processes = Processes()
+    processes.threads = 2
+    with pytest.raises(NotStartedError), processes.one(NO_LIMITS):
+        pass
+    assert [environment[VARIABLE] for environment in environments] == ["2"]

@@ -1,0 +1,75 @@
+"""MeshLab's process, seen from its parent: limits, its death and its parent's."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+from meshlab_spectral import FilterOptions
+from meshlab_spectral.errors import MemoryLimitError, ProcessDiedError, TimeLimitError
+from meshlab_spectral.process.parent import JobLimits, MeshLabProcess
+
+
+def long_work(samples: Path, tmp_path: Path) -> dict[str, Any]:
+    options = FilterOptions(steps=1000).as_dict()
+    files = {"source": str(samples / "bunny.obj"), "scratch": str(tmp_path / "out.ply")}
+    return {"task": "filter", "options": options, **files}
+
+
+def test_a_mesh_that_takes_too_long_is_given_up(samples: Path, tmp_path: Path) -> None:
+    with MeshLabProcess() as process:
+        with pytest.raises(TimeLimitError, match="after 1 seconds"):
+            process.run(long_work(samples, tmp_path), limits=JobLimits(seconds=1))
+        assert not process.usable
+
+
+def test_a_mesh_that_needs_too_much_memory_is_given_up(samples: Path, tmp_path: Path) -> None:
+    with (
+        MeshLabProcess() as process,
+        pytest.raises(MemoryLimitError, match="more than 60 MiB"),
+    ):
+        process.run(long_work(samples, tmp_path), limits=JobLimits(memory=60 * 2**20))
+
+
+def test_a_process_that_is_gone_before_its_job_is_told(samples: Path, tmp_path: Path) -> None:
+    with MeshLabProcess() as process:
+        os.kill(process.pid, signal.SIGKILL)
+        with pytest.raises(ProcessDiedError, match="SIGKILL"):
+            process.run(long_work(samples, tmp_path))
+
+
+PARENT = """
+import json, os, sys, threading, time
+from meshlab_spectral.process.parent import MeshLabProcess
+process = MeshLabProcess()
+def tell(stage, fraction):
+    if fraction:
+        print(process.pid, flush=True)
+        os.kill(os.getpid(), 9)
+process.run(json.loads(sys.argv[1]), tell)
+"""
+
+
+def test_a_killed_parent_leaves_no_process_at_work(samples: Path, tmp_path: Path) -> None:
+    work = json.dumps(long_work(samples, tmp_path))
+    done = subprocess.run(
+        [sys.executable, "-c", PARENT, work],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    assert done.returncode == -signal.SIGKILL, done.stderr
+    status = Path(f"/proc/{done.stdout.split()[0]}/status")
+    end = time.monotonic() + 5
+    while status.exists() and not re.search(r"State:\tZ", status.read_text()):
+        assert time.monotonic() < end
+        time.sleep(0.02)
