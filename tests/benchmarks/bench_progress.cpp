@@ -17,7 +17,7 @@
 #include "core/analysis/manifold_harmonics.h"
 #include "core/filter/fractional_filter.h"
 #include "core/mesh/measures.h"
-#include "core/support/steady_progress.h"
+#include "meshlab/host_workarounds/steady_progress.h"
 #include "support/ply.h"
 
 using namespace spectral;

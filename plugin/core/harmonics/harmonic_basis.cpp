@@ -12,7 +12,6 @@
 #include "core/laplacian/frequency.h"
 #include "core/mesh/mesh.h"
 #include "core/support/errors.h"
-#include "core/support/threads.h"
 
 namespace spectral {
 
@@ -23,26 +22,6 @@ namespace {
 constexpr Index kDenseVertices = 300;
 
 constexpr int kMaxRestarts = 300;
-
-/// The manifold harmonic transform Phi^T D X.
-Eigen::MatrixXd transform(const Eigen::MatrixXd& Phi, const Eigen::VectorXd& D,
-                          const Eigen::MatrixXd& X) {
-    const Eigen::MatrixXd zero = Eigen::MatrixXd::Zero(Phi.cols(), X.cols());
-    return parallelSum(X.rows(), zero, [&](Index begin, Index end) -> Eigen::MatrixXd {
-        const Index rows = end - begin;
-        return Phi.middleRows(begin, rows).transpose() *
-               (D.segment(begin, rows).asDiagonal() * X.middleRows(begin, rows));
-    });
-}
-
-/// Its inverse, Phi c.
-Eigen::MatrixXd inverseTransform(const Eigen::MatrixXd& Phi, const Eigen::MatrixXd& c) {
-    Eigen::MatrixXd X(Phi.rows(), c.cols());
-    parallelRows(X.rows(), [&](Index begin, Index end) {
-        X.middleRows(begin, end - begin).noalias() = Phi.middleRows(begin, end - begin) * c;
-    });
-    return X;
-}
 
 }  // namespace
 
@@ -78,13 +57,6 @@ double largestEigenvalue(const Laplacian& laplacian) {
     return solver.eigenvalues()[0];
 }
 
-Eigen::ArrayXd gainsOf(const HarmonicBasis& basis, const Gain& gain) {
-    Eigen::ArrayXd gains(basis.size());
-    for (Index i = 0; i < basis.size(); ++i)
-        gains[i] = gain(std::sqrt(std::max(0.0, basis.lambda[i])));
-    return gains;
-}
-
 Eigen::MatrixXd applyInBasis(const HarmonicBasis& basis, const Eigen::VectorXd& D,
                              const ConstantModes& constants, const Gain& gain, double residualGain,
                              const Eigen::MatrixXd& X) {
@@ -94,11 +66,11 @@ Eigen::MatrixXd applyInBasis(const HarmonicBasis& basis, const Eigen::VectorXd& 
 
     // With the manifold harmonic transform c = Phi^T D X:
     // Phi F c + F_h (X - Phi c) = F_h X + Phi (F - F_h) c.
-    const Eigen::MatrixXd c = transform(basis.Phi, D, centred);
-    const Eigen::VectorXd gains = gainsOf(basis, gain) - residualGain;
-    Eigen::MatrixXd Y =
-        residualGain * centred + inverseTransform(basis.Phi, gains.asDiagonal() * c);
-
+    const Eigen::MatrixXd c = basis.Phi.transpose() * (D.asDiagonal() * centred);
+    Eigen::VectorXd gains(basis.size());
+    for (Index i = 0; i < basis.size(); ++i)
+        gains[i] = gain(std::sqrt(std::max(0.0, basis.lambda[i]))) - residualGain;
+    Eigen::MatrixXd Y = residualGain * centred + basis.Phi * (gains.asDiagonal() * c);
     constants.remove(Y);
     constants.add(means, Y);
     return Y;

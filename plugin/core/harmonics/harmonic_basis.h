@@ -33,9 +33,6 @@ bool isDenseQuicker(Index n);
 /// Largest eigenvalue of W phi = lambda D phi, to about 1e-8 relative.
 double largestEigenvalue(const Laplacian& laplacian);
 
-/// F(Lambda^1/2): the gains of the harmonics, k.
-Eigen::ArrayXd gainsOf(const HarmonicBasis& basis, const Gain& gain);
-
 /// Y = Phi F(Lambda^1/2) Phi^T D X + residualGain (X - Phi Phi^T D X)
 /// (Vallet and Levy 2008; Kovnatsky et al. 2012, Eqs. 6 to 8).
 ///

@@ -1,11 +1,10 @@
 #include "core/harmonics/spectrum_slicing.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <string>
-#include <utility>
 
-#include "core/laplacian/constant_modes.h"
 #include "core/support/errors.h"
 #include "core/support/threads.h"
 
@@ -13,142 +12,109 @@ namespace spectral {
 
 namespace {
 
-/// The last cut aims at so many eigenvalues more than asked; once it has enough, so many tries are
-/// for at most twice as many. Tries in all, after which something must be wrong.
-constexpr Index kMorePairs = 4;
-constexpr int kTriesForFew = 6, kMaxTries = 60;
+/// Factor by which the end is moved up while it has too few eigenvalues below it; the second one
+/// where the last move has met none: a large part of few vertices has all of its eigenvalues far
+/// below those of small parts. Moves after which something must be wrong.
+constexpr double kFarther = 1.25, kAcrossGap = 4.0;
+constexpr int kMostMoves = 60;
 
-/// Factor by which a try goes farther at least, and where the last one has found no eigenvalue: a
-/// large part of few vertices has all of its own far below those of small parts.
-constexpr double kFarther = 1.02, kAcrossGap = 4.0;
-
-/// A slice with more than so many times the width wanted is halved, unless it is narrower than this
-/// part of its eigenvalues: these are copies of one, or as good as that.
-constexpr Index kTooWide = 2;
+/// Intervals with more than so many times the wanted eigenvalues are divided, unless they are
+/// narrower than this part of their eigenvalues: a cluster.
+constexpr Index kTooMany = 2;
 constexpr double kNarrowest = 1e-3;
 
-/// Eigenvalues below a shift.
+/// Number of eigenvalues below a shift.
 struct Count {
     double sigma = 0.0;
     Index below = 0;
 };
 
-bool operator<(const Count& a, const Count& b) { return a.sigma < b.sigma; }
+/// Counts the eigenvalues below more shifts.
+void countAt(const std::vector<double>& sigmas, const Laplacian& laplacian,
+             std::vector<ShiftedLdlt>& factors, const Progress& progress,
+             std::vector<Count>& counts) {
+    const std::size_t known = counts.size();
+    counts.resize(known + sigmas.size());
+    runTasks(
+        static_cast<Index>(sigmas.size()),
+        [&](Index task, int thread, const StopPoint&) {
+            const auto i = static_cast<std::size_t>(task);
+            ShiftedLdlt& factor = factors[static_cast<std::size_t>(thread)];
+            factor.factorize(laplacian.W, laplacian.D, sigmas[i]);
+            counts[known + i] = {factor.shift(), factor.eigenvaluesBelow()};
+        },
+        progress, "counting the harmonics");
+    std::sort(counts.begin(), counts.end(),
+              [](const Count& a, const Count& b) { return a.sigma < b.sigma; });
+}
 
-class Slicing {
-  public:
-    Slicing(const Laplacian& laplacian, Index constants, std::vector<ShiftedLdlt>& factors,
-            const Progress& progress)
-        : laplacian_(laplacian),
-          factors_(factors),
-          progress_(progress),
-          counts_{{0.0, constants}} {}
+/// A first division, by Weyl's law: lambda_i ~ 4 pi i / area.
+std::vector<double> firstCuts(Index constants, Index k, Index width, double area) {
+    std::vector<double> sigmas;
+    for (Index i = constants + width; i < k + width; i += width)
+        sigmas.push_back(4.0 * kPi / area * static_cast<double>(std::min(i, k)));
+    return sigmas;
+}
 
-    std::vector<SpectrumSlice> cut(Index k, Index width) {
-        findEnd(k);
-        const Index first = counts_.front().below, total = counts_.back().below - first;
-        std::vector<double> sigmas;
-        for (Index i = 1; i * width < total; ++i) sigmas.push_back(lambdaAt(first + i * width));
-        const Count end = counts_.back();
-        counts_ = {counts_.front(), end};  // those on the way to the end are anywhere
-        while (!sigmas.empty()) {
-            countAt(sigmas);
-            sigmas = middlesOfWide(kTooWide * width);
-        }
-        return slices(width);
+/// Cuts that divide the intervals with too many eigenvalues, if they were evenly spaced.
+std::vector<double> moreCuts(const std::vector<Count>& counts, Index width) {
+    std::vector<double> sigmas;
+    for (std::size_t i = 1; i < counts.size(); ++i) {
+        const Count &a = counts[i - 1], &b = counts[i];
+        const Index parts = (b.below - a.below) / width;
+        if (parts < kTooMany || b.sigma - a.sigma <= kNarrowest * b.sigma) continue;
+        for (Index j = 1; j < parts; ++j)
+            sigmas.push_back(a.sigma + (b.sigma - a.sigma) * static_cast<double>(j) /
+                                           static_cast<double>(parts));
     }
+    return sigmas;
+}
 
-  private:
-    /// By Weyl's law, lambda_N ~ 4 pi N / area, corrected by counts on the way.
-    void findEnd(Index k) {
-        const double top = weylSlope() * static_cast<double>(k);
-        countAt({0.25 * top, top});
-        int triesForFew = 0;
-        for (int i = 0; i < kMaxTries; ++i) {
-            const Count last = counts_.back();
-            const bool enough = last.below >= k;
-            if (enough && (last.below <= k + 2 * kMorePairs || triesForFew++ == kTriesForFew))
-                return;
-            const bool inGap = last.below == counts_[counts_.size() - 2].below;
-            const double sigma = lambdaAt(k + kMorePairs);
-            const double farther = (inGap ? kAcrossGap : kFarther) * last.sigma;
-            countAt({enough ? sigma : std::max(sigma, farther)});
-            while (counts_[counts_.size() - 2].below >= k) counts_.pop_back();
-        }
-        throw SolverFailure(ErrorCode::BasisIncomplete,
-                            "no shift beyond harmonic " + std::to_string(k) + " could be found");
-    }
-
-    void countAt(const std::vector<double>& sigmas) {
-        const double begin = std::exchange(done_, 0.5 * (1.0 + done_));
-        std::vector<Count> counts(sigmas.size());
-        runTasks(
-            static_cast<Index>(sigmas.size()),
-            [&](Index task, int worker, const StopPoint&) {
-                ShiftedLdlt& factor = factors_[static_cast<std::size_t>(worker)];
-                factor.factorize(laplacian_.W, laplacian_.D,
-                                 sigmas[static_cast<std::size_t>(task)]);
-                counts[static_cast<std::size_t>(task)] = {factor.shift(),
-                                                          factor.eigenvaluesBelow()};
-            },
-            progress_.part(begin, done_), "counting the harmonics");
-        counts_.insert(counts_.end(), counts.begin(), counts.end());
-        std::sort(counts_.begin(), counts_.end());
-    }
-
-    /// About the eigenvalue of this index, between the counts that are known.
-    double lambdaAt(Index index) const {
-        for (std::size_t i = 1; i < counts_.size(); ++i) {
-            const Count &a = counts_[i - 1], &b = counts_[i];
-            if (b.below > a.below && (index <= b.below || i + 1 == counts_.size()))
-                return a.sigma + (b.sigma - a.sigma) * static_cast<double>(index - a.below) /
-                                     static_cast<double>(b.below - a.below);
-        }
-        return weylSlope() * static_cast<double>(index);
-    }
-
-    std::vector<double> middlesOfWide(Index widest) const {
-        std::vector<double> middles;
-        for (std::size_t i = 1; i < counts_.size(); ++i) {
-            const Count &a = counts_[i - 1], &b = counts_[i];
-            if (b.below - a.below > widest && b.sigma - a.sigma > kNarrowest * b.sigma)
-                middles.push_back(0.5 * (a.sigma + b.sigma));
-        }
-        return middles;
-    }
-
-    /// Between the counts; neighbours with few eigenvalues make one.
-    std::vector<SpectrumSlice> slices(Index width) const {
-        std::vector<SpectrumSlice> slices;
-        for (std::size_t i = 1; i < counts_.size(); ++i) {
-            const Count &a = counts_[i - 1], &b = counts_[i];
-            const Index count = b.below - a.below;
-            const bool isFew = slices.empty() || slices.back().count + count <= width;
-            if (!slices.empty() && (isFew || count == 0 || slices.back().count == 0)) {
-                slices.back().to = b.sigma;
-                slices.back().count += count;
-            } else {
-                slices.push_back({a.sigma, b.sigma, a.below, count});
-            }
-        }
-        return slices;
-    }
-
-    double weylSlope() const { return 4.0 * kPi / laplacian_.D.sum(); }
-
-    const Laplacian& laplacian_;
-    std::vector<ShiftedLdlt>& factors_;
-    const Progress& progress_;
-    double done_ = 0.0;          // how many more counts there will be is not known
-    std::vector<Count> counts_;  // ascending
-};
+/// Drops the cuts beyond the first one with k eigenvalues below it.
+void dropBeyond(Index k, std::vector<Count>& counts) {
+    while (counts[counts.size() - 2].below >= k) counts.pop_back();
+}
 
 }  // namespace
 
-std::vector<SpectrumSlice> sliceSpectrum(const Laplacian& laplacian, const ConstantModes& constants,
-                                         Index k, Index width, std::vector<ShiftedLdlt>& factors,
-                                         const Progress& progress) {
-    return Slicing(laplacian, constants.count(), factors, progress).cut(k, width);
+std::vector<SpectralInterval> sliceSpectrum(const Laplacian& laplacian, Index constants, Index k,
+                                            Index width, std::vector<ShiftedLdlt>& factors,
+                                            const Progress& progress) {
+    std::vector<Count> counts{{0.0, constants}};
+    double done = 0.0;  // how many more rounds there will be is not known
+    const auto count = [&](const std::vector<double>& sigmas) {
+        const double half = 0.5 * (1.0 + done);
+        countAt(sigmas, laplacian, factors, progress.part(done, half), counts);
+        done = half;
+    };
+    count(firstCuts(constants, k, width, laplacian.D.sum()));
+    for (int move = 0; counts.back().below < k; ++move) {
+        if (move == kMostMoves)
+            throw SolverFailure(ErrorCode::BasisIncomplete,
+                                "no shift beyond harmonic " + std::to_string(k) + " was found");
+        const bool isGap = counts.back().below == counts[counts.size() - 2].below;
+        count({(isGap ? kAcrossGap : kFarther) * counts.back().sigma});
+    }
+    dropBeyond(k, counts);
+    for (std::vector<double> cuts = moreCuts(counts, width); !cuts.empty();
+         cuts = moreCuts(counts, width)) {
+        count(cuts);
+        dropBeyond(k, counts);
+    }
+
+    // Neighbours with few eigenvalues make one interval.
+    std::vector<SpectralInterval> intervals;
+    for (std::size_t i = 1; i < counts.size(); ++i) {
+        const Count &a = counts[i - 1], &b = counts[i];
+        const Index inside = b.below - a.below;
+        if (!intervals.empty() && (inside == 0 || intervals.back().count + inside <= width)) {
+            intervals.back().to = b.sigma;
+            intervals.back().count += inside;
+        } else {
+            intervals.push_back({a.sigma, b.sigma, a.below, inside});
+        }
+    }
+    return intervals;
 }
 
 }  // namespace spectral

@@ -1,8 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
-#include "core/laplacian/constant_modes.h"
 #include "core/laplacian/laplacian.h"
 #include "core/ldlt/shifted_ldlt.h"
 #include "core/support/progress.h"
@@ -10,26 +10,27 @@
 
 namespace spectral {
 
-/// A part of the spectrum of W phi = lambda D phi, and how many eigenvalues it holds.
-struct SpectrumSlice {
+/// An interval of the spectrum of W phi = lambda D phi.
+struct SpectralInterval {
     double from = 0.0, to = 0.0;  ///< from <= lambda < to.
-    Index first = 0, count = 0;  ///< Eigenvalues below `from`, and in the slice: exact, by inertia.
+    Index first = 0;              ///< Number of eigenvalues below `from`, exact.
+    Index count = 0;              ///< Number of eigenvalues in the interval, exact.
 
     double middle() const { return 0.5 * (from + to); }
 };
 
-/// Cuts the lowest part of the spectrum, at least k eigenvalues, into slices of about `width`
-/// eigenvalues: the bands of Vallet and Levy 2008, section 3.3.
+/// Divides the lowest part of the spectrum, at least k eigenvalues, into intervals of about `width`
+/// eigenvalues (spectrum slicing; the bands of Vallet and Levy 2008, section 3.3).
 ///
-/// The inertia of W - sigma D counts the eigenvalues below every cut (Sylvester's law), so that it
-/// is known how many harmonics a slice must give. The constant modes are in none of them.
+/// The inertia of W - sigma D counts the eigenvalues below every cut (Sylvester's law of inertia):
+/// it is known how many harmonics each interval must give. The constant modes are in none.
 ///
-/// @param k        constants.count() < k < n.
-/// @param factors  one for each worker; of W's pattern, or of none yet.
+/// @param constants  number of constant modes, < k; k < n.
+/// @param factors    one for each thread of the team.
 /// @return ascending, without gaps from the constant modes on.
-/// @throws SolverFailure  when there is no such cut; Cancelled.
-std::vector<SpectrumSlice> sliceSpectrum(const Laplacian& laplacian, const ConstantModes& constants,
-                                         Index k, Index width, std::vector<ShiftedLdlt>& factors,
-                                         const Progress& progress);
+/// @throws SolverFailure  when there is no such division; Cancelled.
+std::vector<SpectralInterval> sliceSpectrum(const Laplacian& laplacian, Index constants, Index k,
+                                            Index width, std::vector<ShiftedLdlt>& factors,
+                                            const Progress& progress);
 
 }  // namespace spectral

@@ -1,13 +1,14 @@
 #include "core/harmonics/truncated_basis.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "core/harmonics/slice_pairs.h"
+#include "core/harmonics/interval_pairs.h"
 #include "core/harmonics/spectrum_slicing.h"
 #include "core/laplacian/constant_modes.h"
 #include "core/mesh/mesh.h"
@@ -18,12 +19,9 @@ namespace spectral {
 
 namespace {
 
-/// Eigenvalues of a slice. Few are best: our factorization costs less than the orthogonalization
-/// of a large Krylov space (bench_basis).
-constexpr Index kWidth = 12;
-
-/// Times that slices are merged because an eigenvalue lies where they meet.
-constexpr int kMostMerges = 8;
+/// Eigenvalues of an interval, and again where one lies on a cut between intervals. Few are best:
+/// our factorization costs less than the orthogonalization of a large Krylov space (bench_basis).
+constexpr Index kWidths[] = {12, 17, 23, 31};
 
 /// Neighbouring eigenvalues nearer than this part of the mean spacing lambda_k / k (Weyl's law)
 /// belong to one cluster: equal ones by symmetry, told apart by the mesh or by round-off only.
@@ -31,120 +29,78 @@ constexpr double kClusterSpacing = 0.1;
 
 constexpr const char* kStage = "computing the harmonics";
 
-/// The lowest harmonics, slice by slice.
-class SlicedBasis {
-  public:
-    SlicedBasis(const Laplacian& laplacian, const ConstantModes& constants, ShiftedLdlt& ldlt)
-        : laplacian_(laplacian),
-          constants_(constants),
-          ldlt_(ldlt),
-          factors_(static_cast<std::size_t>(ThreadTeam::size()), ldlt.sibling(laplacian.W)) {}
+/// Orthogonalizes every second interval against its neighbours: eigenvectors of close eigenvalues
+/// from different Lanczos runs overlap by their residuals, divided by the distance.
+/// @return false where two intervals have found the same vector.
+bool separate(const std::vector<SpectralInterval>& intervals, const Eigen::VectorXd& D,
+              Eigen::MatrixXd& Phi, const Progress& progress) {
+    const auto columns = [&](std::size_t i) {
+        return Phi.middleCols(intervals[i].first, intervals[i].count);
+    };
+    std::atomic<bool> differ{true};
+    runTasks(
+        static_cast<Index>(intervals.size() / 2),
+        [&](Index task, int, const StopPoint&) {
+            const auto i = static_cast<std::size_t>(2 * task + 1);
+            for (const std::size_t j : {i - 1, i + 1})
+                if (j < intervals.size() && orthonormalize(D, columns(j), columns(i)) < kOwnPart)
+                    differ = false;
+        },
+        progress, kStage);
+    return differ;
+}
 
-    ~SlicedBasis() {
-        for (const ShiftedLdlt& factor : factors_) ldlt_.addWork(factor);
-    }
-
-    /// At least k pairs.
-    HarmonicBasis compute(Index k, const Progress& progress) {
-        slices_ =
-            sliceSpectrum(laplacian_, constants_, k, kWidth, factors_, progress.part(0.0, 0.1));
-        isComplete_.assign(slices_.size(), 0);
-        const Index c = constants_.count();
-        const Index size = slices_.back().first + slices_.back().count;
-        basis_.Phi.resize(laplacian_.D.size(), size);
-        basis_.Phi.leftCols(c) = constants_.orthonormal();
-        basis_.lambda = Eigen::VectorXd::Zero(size);
-        double done = 0.1;
-        for (int merges = 0; merges <= kMostMerges; ++merges) {
-            const double end = done + 0.8 * (1.0 - done);
-            computeIncomplete(progress.part(done, end));
-            separateNeighbours(progress.part(end, end));
-            done = end;
-            if (!mergeIncomplete()) return std::move(basis_);
-        }
-        throw SolverFailure(ErrorCode::BasisIncomplete,
-                            "not all harmonics were found: the inertia of W - sigma D counts more");
-    }
-
-  private:
-    auto columns(const SpectrumSlice& slice) {
-        return basis_.Phi.middleCols(slice.first, slice.count);
-    }
-
-    void computeIncomplete(const Progress& progress) {
-        std::vector<std::size_t> incomplete;
-        for (std::size_t i = 0; i < slices_.size(); ++i)
-            if (!isComplete_[i]) incomplete.push_back(i);
-        runTasks(
-            static_cast<Index>(incomplete.size()),
-            [&](Index task, int worker, const StopPoint& stopPoint) {
-                const std::size_t i = incomplete[static_cast<std::size_t>(task)];
-                const SpectrumSlice& slice = slices_[i];
-                const SlicePairs pairs =
-                    computeSlice(laplacian_, constants_, slice,
-                                 factors_[static_cast<std::size_t>(worker)], stopPoint);
-                if (!pairs.isComplete()) return;
-                columns(slice) = pairs.Phi;
-                basis_.lambda.segment(slice.first, slice.count) = pairs.lambda;
-                isComplete_[i] = 1;
-            },
-            progress, kStage);
-    }
-
-    /// Makes every second slice orthogonal to its neighbours: eigenvectors of near eigenvalues
-    /// from different runs overlap by their residuals, divided by the distance.
-    void separateNeighbours(const Progress& progress) {
-        // Slices that have a vector in common with the next one: an eigenvalue lies on the cut.
-        std::vector<char> meetsNext(slices_.size(), 0);
-        runTasks(
-            static_cast<Index>(slices_.size() / 2),
-            [&](Index task, int, const StopPoint&) {
-                const auto i = static_cast<std::size_t>(2 * task + 1);
-                if (!isComplete_[i]) return;
-                for (const std::size_t j : {i - 1, i + 1}) {
-                    if (j >= slices_.size() || !isComplete_[j]) continue;
-                    if (orthonormalize(laplacian_.D, columns(slices_[j]), columns(slices_[i])) <
-                        kOwnPart)
-                        meetsNext[std::min(i, j)] = 1;
-                }
-            },
-            progress, kStage);
-        for (std::size_t i = 0; i < slices_.size(); ++i)
-            if (meetsNext[i]) isComplete_[i] = 0;  // and is merged with the next one
-    }
-
-    /// Merges every slice that is incomplete with the next one, or the last with the one before;
-    /// returns whether there was one.
-    bool mergeIncomplete() {
-        std::vector<SpectrumSlice> slices;
-        std::vector<char> isComplete;
-        bool any = false, joins = false;
-        for (std::size_t i = 0; i < slices_.size(); ++i) {
-            const bool isLast = i + 1 == slices_.size();
-            any = any || !isComplete_[i];
-            if (!slices.empty() && (joins || (!isComplete_[i] && isLast))) {
-                slices.back().to = slices_[i].to;
-                slices.back().count += slices_[i].count;
-                isComplete.back() = 0;
-            } else {
-                slices.push_back(slices_[i]);
-                isComplete.push_back(isComplete_[i]);
+/// At least the k lowest pairs, in intervals of about `width`; empty where an eigenvalue lies on a
+/// cut between two of them.
+std::optional<HarmonicBasis> inIntervals(const Laplacian& laplacian, const ConstantModes& constants,
+                                         Index k, Index width, std::vector<ShiftedLdlt>& factors,
+                                         const Progress& progress) {
+    const std::vector<SpectralInterval> intervals =
+        sliceSpectrum(laplacian, constants.count(), k, width, factors, progress.part(0.0, 0.2));
+    const Index size = intervals.back().first + intervals.back().count;
+    HarmonicBasis basis;
+    basis.Phi.resize(laplacian.D.size(), size);
+    basis.Phi.leftCols(constants.count()) = constants.orthonormal();
+    basis.lambda = Eigen::VectorXd::Zero(size);
+    std::atomic<bool> isComplete{true};
+    runTasks(
+        static_cast<Index>(intervals.size()),
+        [&](Index task, int thread, const StopPoint& stopPoint) {
+            const SpectralInterval& interval = intervals[static_cast<std::size_t>(task)];
+            if (!isComplete) return;
+            const IntervalPairs pairs =
+                computeInterval(laplacian, constants, interval,
+                                factors[static_cast<std::size_t>(thread)], stopPoint);
+            if (!pairs.isComplete()) {
+                isComplete = false;
+                return;
             }
-            joins = !isComplete_[i];
-        }
-        slices_ = std::move(slices);
-        isComplete_ = std::move(isComplete);
-        return any;
-    }
+            basis.Phi.middleCols(interval.first, interval.count) = pairs.Phi;
+            basis.lambda.segment(interval.first, interval.count) = pairs.lambda;
+        },
+        progress.part(0.2, 0.95), kStage);
+    if (!isComplete || !separate(intervals, laplacian.D, basis.Phi, progress.part(0.95, 1.0)))
+        return {};
+    return basis;
+}
 
-    const Laplacian& laplacian_;
-    const ConstantModes& constants_;
-    ShiftedLdlt& ldlt_;
-    std::vector<ShiftedLdlt> factors_;
-    std::vector<SpectrumSlice> slices_;
-    std::vector<char> isComplete_;  // of the slices; not of bool: threads write to it
-    HarmonicBasis basis_;
-};
+HarmonicBasis lowestPairs(const Laplacian& laplacian, const ConstantModes& constants, Index k,
+                          ShiftedLdlt& ldlt, const Progress& progress) {
+    std::vector<ShiftedLdlt> factors(static_cast<std::size_t>(ThreadTeam::size()),
+                                     ldlt.sibling(laplacian.W));
+    double done = 0.0;
+    for (const Index width : kWidths) {
+        const double end = 0.9 + 0.1 * done;
+        std::optional<HarmonicBasis> basis =
+            inIntervals(laplacian, constants, k, width, factors, progress.part(done, end));
+        done = end;
+        if (!basis) continue;
+        for (const ShiftedLdlt& factor : factors) ldlt.addWork(factor);
+        return *std::move(basis);
+    }
+    throw SolverFailure(ErrorCode::BasisIncomplete,
+                        "not all harmonics were found: the inertia of W - sigma D counts more");
+}
 
 /// |D^-1/2 (W phi - lambda D phi)| / lambda of every harmonic but the constant ones.
 Eigen::VectorXd relativeResiduals(const Laplacian& laplacian, Index constants,
@@ -226,7 +182,7 @@ HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& co
     for (Index more = 8;; more *= 2) {
         const Index total = std::min(k + more, n - 1);
         HarmonicBasis basis =
-            SlicedBasis(laplacian, constants, ldlt).compute(total, progress.part(0.0, 0.95));
+            lowestPairs(laplacian, constants, total, ldlt, progress.part(0.0, 0.95));
         std::optional<Index> size = cutOutsideClusters(basis.lambda, k);
         if (!size) {
             if (total < n - 1) continue;

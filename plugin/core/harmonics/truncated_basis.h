@@ -11,8 +11,8 @@
 
 namespace spectral {
 
-/// At least the k lowest eigenpairs, certified: slice by slice (spectrum_slicing.h), each by
-/// Spectra (slice_pairs.h), or by the dense solver where that is quicker.
+/// At least the k lowest eigenpairs, certified: interval by interval (spectrum_slicing.h),
+/// each by Spectra (interval_pairs.h), or by the dense solver where that is quicker.
 ///
 /// The cut is never inside a cluster of equal eigenvalues: a few pairs more than k are taken where
 /// lambda_k and lambda_k+1 are equal or nearly so. The certificate: as many pairs as the inertia of

@@ -7,8 +7,8 @@
 #include "core/analysis/geometry_spectrum.h"
 #include "core/filter/transfer_function.h"
 #include "core/laplacian/frequency.h"
-#include "core/support/steady_progress.h"
 #include "meshlab/filters/common_parameters.h"
+#include "meshlab/host_workarounds/steady_progress.h"
 #include "meshlab/mesh_conversion.h"
 #include "meshlab/mesh_filter.h"
 

@@ -1,4 +1,4 @@
-#include "core/harmonics/slice_pairs.h"
+#include "core/harmonics/interval_pairs.h"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ double between(const Eigen::VectorXd& lambda, Index below) {
     return 0.5 * (lambda[below - 1] + lambda[below]);
 }
 
-SpectrumSlice sliceOf(const Eigen::VectorXd& lambda, Index first, Index count) {
+SpectralInterval intervalOf(const Eigen::VectorXd& lambda, Index first, Index count) {
     return {between(lambda, first), between(lambda, first + count), first, count};
 }
 
@@ -30,13 +30,14 @@ double outside(const Operator& A, const Eigen::MatrixXd& Phi, const Eigen::Matri
     return (A.laplacian.D.cwiseSqrt().asDiagonal() * rest).colwise().norm().maxCoeff();
 }
 
-TEST(ComputeSlice, FindsWhatTheDenseSolverFinds) {
+TEST(ComputeInterval, FindsWhatTheDenseSolverFinds) {
     const Operator A(testing::blob());
     const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
     ShiftedLdlt factor;
     for (const Index first : {1, 30, 200}) {
-        const SpectrumSlice slice = sliceOf(dense.lambda, first, 12);
-        const SlicePairs pairs = computeSlice(A.laplacian, A.constants, slice, factor, kNeverStops);
+        const SpectralInterval interval = intervalOf(dense.lambda, first, 12);
+        const IntervalPairs pairs =
+            computeInterval(A.laplacian, A.constants, interval, factor, kNeverStops);
         ASSERT_TRUE(pairs.isComplete()) << first;
         EXPECT_LT((pairs.lambda - dense.lambda.segment(first, 12)).cwiseAbs().maxCoeff(),
                   1e-10 * dense.lambda[first + 12]);
@@ -44,15 +45,15 @@ TEST(ComputeSlice, FindsWhatTheDenseSolverFinds) {
     }
 }
 
-TEST(ComputeSlice, IsIncompleteWhereItsCountIsWrong) {
+TEST(ComputeInterval, IsIncompleteWhereItsCountIsWrong) {
     const Operator A(testing::blob());
     const Eigen::VectorXd lambda = denseBasis(A.laplacian, A.constants).lambda;
     ShiftedLdlt factor;
     for (const Index wrong : {-1, 1}) {
-        SpectrumSlice slice = sliceOf(lambda, 30, 12);
-        slice.count += wrong;
+        SpectralInterval interval = intervalOf(lambda, 30, 12);
+        interval.count += wrong;
         EXPECT_FALSE(
-            computeSlice(A.laplacian, A.constants, slice, factor, kNeverStops).isComplete());
+            computeInterval(A.laplacian, A.constants, interval, factor, kNeverStops).isComplete());
     }
 }
 

@@ -1,4 +1,4 @@
-#include "core/support/steady_progress.h"
+#include "meshlab/host_workarounds/steady_progress.h"
 
 #include <atomic>
 #include <chrono>
