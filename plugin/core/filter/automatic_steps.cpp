@@ -14,15 +14,16 @@ namespace spectral {
 
 namespace {
 
-/// Shrinking of the distances from one pass to the next: of a second-order method, and the least
-/// that is still taken for convergence when the error is estimated.
-constexpr double kSecondOrder = 4.0, kSlowest = 1.25;
+/// Factor by which distances shrink from one pass to the next: that of a second-order method, and
+/// the least that counts as convergence. Below, a geometric series would promise more than four
+/// times the last distance.
+constexpr double kSecondOrder = 4.0, kLeastShrinking = 1.25;
 
-/// Fewer steps than this do not show that something has stopped converging. So many are taken for
-/// parts that shrink away, too.
+/// Steps after which a pass that has not converged is singular: an error of second order has shrunk
+/// 64 times since the first pass. Parts that shrink away are given as many.
 constexpr int kFewSteps = 8;
 
-/// Length of the rows of A - B.
+/// Norms of the rows of A - B.
 Eigen::VectorXd distances(const Vertices& A, const Vertices& B) {
     Eigen::VectorXd length(A.rows());
     parallelRows(A.rows(), [&](Index begin, Index end) {
@@ -31,12 +32,12 @@ Eigen::VectorXd distances(const Vertices& A, const Vertices& B) {
     return length;
 }
 
-/// The least length that only kNegligibleArea of the masses D exceeds.
+/// The least length that only a part of kNegligibleArea of the masses D exceeds.
 double largestButNegligible(const Eigen::VectorXd& length, const Eigen::VectorXd& D) {
     std::vector<int> order(static_cast<std::size_t>(length.size()));
     std::iota(order.begin(), order.end(), 0);
     const auto isLonger = [&](int i, int j) { return length[i] > length[j]; };
-    // The longest are mostly few: so many vertices are sorted, four times as many if need be.
+    // Usually a few vertices have that much mass: sorts these, four times as many if need be.
     for (std::size_t count = order.size() / 256 + 1;; count *= 4) {
         const auto end = order.begin() + static_cast<Index>(std::min(count, order.size()));
         std::nth_element(order.begin(), end - 1, order.end(), isLonger);
@@ -48,8 +49,8 @@ double largestButNegligible(const Eigen::VectorXd& length, const Eigen::VectorXd
     }
 }
 
-/// How far shapes are apart from pass to pass, over a surface but kNegligibleArea of it, and how
-/// these distances shrink.
+/// Distances between the shapes of successive passes, over all but kNegligibleArea of a surface,
+/// and how they shrink.
 class Convergence {
   public:
     /// @param D  masses of the surface, n.
@@ -58,14 +59,16 @@ class Convergence {
         shrinking_ = std::isfinite(before) && distance_ > 0.0 ? before / distance_ : kUnknown;
     }
 
-    /// What is still to come after a change, in parts of it: a geometric series.
-    double toCome() const { return 1.0 / (std::clamp(shrinking_, kSlowest, kSecondOrder) - 1.0); }
+    /// Sum of all later changes relative to the last one, as a geometric series.
+    double toCome() const {
+        return 1.0 / (std::clamp(shrinking_, kLeastShrinking, kSecondOrder) - 1.0);
+    }
 
-    double error() const { return toCome() * distance_; }  ///< Estimated, of the last shape.
-    bool stagnates() const { return shrinking_ < kSlowest; }
+    double error() const { return toCome() * distance_; }  ///< Estimated error of the last shape.
+    bool stagnates() const { return shrinking_ < kLeastShrinking; }
 
   private:
-    /// Of two shapes there is no rate yet: that they come nearer by a half is little to ask.
+    /// Assumed while two shapes give no rate yet: cautious, half of second order.
     static constexpr double kUnknown = 2.0;
 
     double distance_ = std::numeric_limits<double>::infinity(), shrinking_ = kUnknown;
@@ -74,7 +77,7 @@ class Convergence {
 /// The limit of shapes Y_1, Y_2, Y_4, ..., by Richardson's extrapolation.
 class Limit {
   public:
-    /// @param E1  what Y_1 is compared with.
+    /// @param E1  the shape that Y_1 is compared with.
     Limit(Vertices E1, const LaplacianBuilder& laplacians)
         : laplacians_(laplacians), E_(std::move(E1)) {}
 
@@ -90,7 +93,7 @@ class Limit {
     const Vertices& last() const { return Y_; }
     const Vertices& extrapolated() const { return E_; }
 
-    const Convergence& ofResult() const { return ofResult_; }  ///< Of extrapolated()'s surface.
+    const Convergence& ofResult() const { return ofResult_; }  ///< Over the extrapolated surface.
     const Convergence& ofInput() const { return ofInput_; }
 
     /// Part of the input's surface where the estimated error exceeds the tolerance.
@@ -102,11 +105,11 @@ class Limit {
   private:
     const LaplacianBuilder& laplacians_;
     Vertices Y_, E_;
-    Eigen::VectorXd change_;  // n, how far the vertices are from E_K/2 to E_K
+    Eigen::VectorXd change_;  // n, displacements of the vertices from E_K/2 to E_K
     Convergence ofResult_, ofInput_;
 };
 
-/// Number of steps of the pass that will probably be the last, after one with K steps.
+/// Estimated number of steps of the last pass.
 int expectedLastPass(int K, double error, const AutomaticOptions& options) {
     int last = K;
     for (double left = error; left > options.tolerance && last < options.maxSteps;
@@ -120,8 +123,8 @@ int expectedLastPass(int K, double error, const AutomaticOptions& options) {
 AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate,
                               const Vertices& X, const AutomaticOptions& options,
                               const Progress& progress) {
-    // From the Laplacian of the input: the paper's whole step, and the first half steps of the
-    // first two passes.
+    // The input's Laplacian gives the paper's single step, and the first half steps of the first
+    // two passes.
     constexpr double kFirstPasses = 0.1;
     std::vector<Eigen::MatrixXd> first =
         evaluate.predict(laplacians.input(), X, {1.0, 0.5, 0.25}, progress.part(0.0, kFirstPasses))
@@ -133,7 +136,7 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
     AutomaticSteps result;
     double done = kFirstPasses;
     for (int K = 1, last = 2;; K *= 2) {
-        // The passes from this one to the last take K + 2 K + ... + last steps.
+        // This pass and all later ones take K + 2 K + ... + last steps.
         const double end = done + (1.0 - done) * K / (2.0 * std::max(K, last) - K);
         const Vertices* firstHalf = K <= 2 ? &halves[K - 1] : nullptr;
         result.last = midpointSteps(laplacians, evaluate, X, K, options.maxSteps,
@@ -142,7 +145,7 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
         limit.add(std::move(result.last.X));
         result.error = limit.ofResult().error();
         const bool isReached = result.error <= options.tolerance;
-        // What shrinks away is worth a few passes only.
+        // Parts that shrink away are worth a few passes only.
         const bool isEnough =
             isReached && (K >= kFewSteps || limit.ofInput().error() <= options.tolerance);
         const bool stagnates = K >= kFewSteps && limit.ofResult().stagnates();

@@ -18,12 +18,12 @@ namespace spectral {
 
 namespace {
 
-/// Part of the tolerance of automatic steps that their evaluations may take up, in the root mean
-/// square over the surface.
+/// Part of the tolerance of automatic steps that is left to their evaluations, in the root mean
+/// square over the surface: small, so that single vertices may be several times worse.
 constexpr double kEvaluationShare = 0.05;
 
-/// Relative accuracy of evaluations, however large the tolerance.
-constexpr double kCoarsestAccuracy = 1e-4;
+/// Relative accuracy of evaluations at any tolerance: four digits that do not depend on it.
+constexpr double kLoosestAccuracy = 1e-4;
 
 void checkOptions(const FilterOptions& options) {
     if (options.steps < 0)
@@ -40,7 +40,7 @@ void checkOptions(const FilterOptions& options) {
         throw InvalidOption("accuracy must be between 1e-12 and 1");
 }
 
-/// Length of every row of `displacement`, as their maximum and their D-weighted root mean square.
+/// Sets the largest and the D-weighted root mean square row norm of `displacement`.
 void measureDisplacement(const Vertices& displacement, const Eigen::VectorXd& D,
                          FilterResult& result) {
     const Eigen::VectorXd squares = displacement.rowwise().squaredNorm();
@@ -48,14 +48,14 @@ void measureDisplacement(const Vertices& displacement, const Eigen::VectorXd& D,
     result.rmsDisplacement = std::sqrt(squares.dot(D) / D.sum());
 }
 
-/// The evaluations of automatic steps need not be much finer than the steps.
+/// The evaluations of automatic steps need not be much more accurate than the steps.
 EvaluationOptions evaluationFor(const FilterOptions& options, const Surface& surface) {
     EvaluationOptions evaluation = options.evaluation;
     if (options.steps > 0) return evaluation;
     const double size = std::sqrt(surface.X.rowwise().squaredNorm().mean());  // X is centred
     evaluation.accuracy =
         std::max(evaluation.accuracy,
-                 std::min(kEvaluationShare * options.tolerance / size, kCoarsestAccuracy));
+                 std::min(kEvaluationShare * options.tolerance / size, kLoosestAccuracy));
     evaluation.atEveryVertex = false;
     return evaluation;
 }

@@ -17,9 +17,9 @@ struct FilterOptions {
     TransferFunctionOptions transferFunction;
     double featureSize = 0.0;  ///< Wavelength of the cutoff, 2 pi / omega_c, length units, > 0.
     int steps = 0;             ///< K >= 1: K steps of F^(1/K), the paper's scheme; 0: automatic.
-    double tolerance = 0.0;  ///< For automatic steps: largest error against infinitely many steps,
-                             ///< over all but a thousandth of the filtered surface, length
-                             ///< units, > 0.
+    double tolerance = 0.0;    ///< For automatic steps: largest distance from the result of
+                               ///< infinitely many steps, over all but a thousandth of the filtered
+                               ///< surface, length units, > 0.
     LaplacianKind laplacian = LaplacianKind::IntrinsicDelaunay;
     BasisUpdate basisUpdate = BasisUpdate::Conformal;
     double conformalShare = 0.0;  ///< For BasisUpdate::Full, 0 to 1; see laplacian_builder.h.
@@ -34,17 +34,17 @@ struct FilterResult {
     double cutoffFrequency = 0.0;  ///< omega_c, radians per length unit.
     double featureSize = 0.0;      ///< 2 pi / omega_c, length units.
     double maxDisplacement = 0.0;  ///< Largest vertex displacement, length units.
-    double rmsDisplacement = 0.0;  ///< Root mean square over the surface of the input.
+    double rmsDisplacement = 0.0;  ///< Root mean square over the input's surface.
     double areaBefore = 0.0, areaAfter = 0.0;
     double volumeBefore = 0.0, volumeAfter = 0.0;  ///< Signed; a volume for closed meshes only.
     int components = 0;                            ///< Connected components of the surface.
-    int unreferencedVertices = 0;  ///< Vertices of no triangle; they were left alone.
-    int fixedVertices = 0;         ///< Of a fixed boundary: exactly where they were.
-    int factorizations = 0;        ///< Sparse Cholesky or LDL^T factorizations.
-    int solves = 0;                ///< Solves with one right-hand side.
-    double accuracy = 0.0;         ///< Requested of the evaluation of all steps, relative.
-    double errorEstimate = 0.0;    ///< Estimated error of the same.
-    bool accuracyReached = true;   ///< Whether every step was within its share of `accuracy`.
+    int unreferencedVertices = 0;                  ///< Vertices of no triangle, unchanged.
+    int fixedVertices = 0;                         ///< Vertices on a fixed boundary, unchanged.
+    int factorizations = 0;                        ///< Sparse LDL^T factorizations.
+    int solves = 0;                                ///< Solves with one right-hand side.
+    double accuracy = 0.0;        ///< Requested accuracy of the evaluation, relative, all steps.
+    double errorEstimate = 0.0;   ///< Estimated error of the evaluation, relative, all steps.
+    bool accuracyReached = true;  ///< Whether every step was within its share of `accuracy`.
     double stepError = 0.0;  ///< Automatic steps: estimated error over all but a thousandth of the
                              ///< filtered surface, length units.
     bool toleranceReached = true;  ///< Automatic steps: whether stepError is within it.
@@ -53,20 +53,19 @@ struct FilterResult {
     bool cutoffReached = true;  ///< Truncated spectrum: whether the harmonics reach omega_c.
     std::vector<double> stepSizes;  ///< The fractional powers alpha, in their order; sum 1.
 
-    // Where a basis is used, the last step's one.
+    // The basis of the last step, where one is used.
     Eigen::VectorXd eigenvalues;  ///< k, ascending; empty without a basis.
-    Eigen::VectorXd residuals;    ///< k, relative; see HarmonicBasis. Empty where an ideal response
-                                  ///< uses all harmonics of the mesh,
-    int inertiaCount = 0;         ///< and 0; else the harmonics that must be in it, by inertia.
-    int computedBases = 0;        ///< Bases of all steps.
+    Eigen::VectorXd residuals;    ///< k, relative (see HarmonicBasis); empty for a dense basis.
+    int inertiaCount = 0;         ///< Harmonics that the basis must hold; 0 for a dense basis.
+    int computedBases = 0;        ///< Bases computed in all steps.
 };
 
-/// Filters the geometry of a mesh: K steps X <- F^(1/K)(sqrt(A)) X, the Laplacian A taken anew from
-/// the current shape after every step (Kovnatsky et al. 2012, Eq. 11), or its limit for infinitely
-/// many steps, to a tolerance.
+/// Filters the geometry of a mesh: K steps X <- F^(1/K)(sqrt(A)) X, with the Laplacian A of the
+/// current shape in every step (Kovnatsky et al. 2012, Eq. 11), or the limit of infinitely many
+/// steps, to a tolerance.
 ///
-/// The result is exact to round-off under translation: every connected component keeps its centroid
-/// (area-weighted, of the shape that a step starts from), unless its boundary is fixed.
+/// Every connected component without a fixed boundary keeps its area-weighted centroid in each
+/// step, to round-off.
 ///
 /// @param V  n x 3 positions, finite.
 /// @param F  m x 3 vertex indices, m >= 1; any topology, unreferenced vertices allowed.

@@ -15,12 +15,12 @@ namespace {
 /// Relative accuracy of a step that round-off still allows.
 constexpr double kFinestAccuracy = 1e-13;
 
-/// Relative accuracy of a signal that is negligible compared with the shape.
+/// Relative accuracy of a signal that is negligible compared with the shape: two digits of it.
 constexpr double kCoarsestAccuracy = 1e-2;
 
-/// A shape that only a Laplacian is taken of may have so many times the error of a result, as its
-/// error matters only where the Laplacian changes; but three digits at least. bench_defaults:
-/// results change by less than a tenth of the tolerance.
+/// A shape that only a Laplacian is taken of may have so many times the error of a result, because
+/// its error enters the result through the change of the Laplacian alone; but three digits at
+/// least.
 constexpr double kPredictionLeeway = 20.0, kPredictionAccuracy = 1e-3;
 
 /// Relative error beyond which a result is useless.

@@ -18,7 +18,7 @@ struct TransferFunctionOptions {
     double bandWidth = 1.0;  ///< Full width of a band between its -3 dB points, octaves, > 0.
     double passGain = 1.0;   ///< Gain in the pass band, >= 0.
     double stopGain = 0.0;   ///< Gain in the stop band, >= 0.
-    double power = 1.0;      ///< The part of the filter to apply, 0 < power <= 1; 1 is the whole.
+    double power = 1.0;      ///< Fractional power of the filter, 0 < power <= 1; 1 is the whole.
 };
 
 /// Transfer function F(omega) = (stopGain + (passGain - stopGain) B(omega / omega_c))^power.
@@ -65,8 +65,7 @@ class TransferFunction {
 /// The gain F^alpha of one fractional step (Kovnatsky et al. 2012, Eq. 11).
 ///
 /// @param alpha  fractional power, 0 < alpha <= 1; 1 is the whole filter.
-/// The constant mode (omega = 0) is not this function's business: every evaluation removes it first
-/// and puts it back unchanged, whatever F(0) says.
+/// Evaluations keep the constant mode (omega = 0) whatever F(0) is.
 Gain fractionalPower(const TransferFunction& F, double alpha);
 
 /// Mean of F over the frequencies in [from, to], 0 <= from < to: for a whole F the gain of the

@@ -17,11 +17,12 @@ namespace spectral {
 
 namespace {
 
-/// Up to this many vertices the dense solver is about as quick as slices, whose Krylov spaces must
-/// be small beside all.
+/// Up to this many vertices the dense solver is about as fast as spectral intervals, whose Krylov
+/// spaces must be small compared with n.
 constexpr Index kDenseVertices = 300;
 
-constexpr int kMaxRestarts = 300;
+/// Restarts of Lanczos' method for the largest eigenvalue, which has no shift to speed it up.
+constexpr int kMostRestarts = 300;
 
 }  // namespace
 
@@ -50,7 +51,7 @@ double largestEigenvalue(const Laplacian& laplacian) {
     const Index dimension = std::min<Index>(A.rows(), 30);
     Spectra::SymEigsSolver<Spectra::SparseSymMatProd<double>> solver(op, 1, dimension);
     solver.init();
-    solver.compute(Spectra::SortRule::LargestAlge, kMaxRestarts, 1e-8);
+    solver.compute(Spectra::SortRule::LargestAlge, kMostRestarts, 1e-8);
     if (solver.info() != Spectra::CompInfo::Successful)
         throw SolverFailure(ErrorCode::SingularMatrix,
                             "the largest eigenvalue could not be computed");

@@ -107,14 +107,14 @@ class UnitLower {
 };
 
 /// Columns of L at once: as many as fit into the registers.
-constexpr int kMost = 4;
+constexpr int kMostColumns = 4;
 
 template <int Columns>
 void forwardColumns(const LdltFactor& factor, double* rows, Size begin, Size end) {
     const UnitLower L(factor);
     const Block<Columns> Y(rows);
     for (Size j = begin; j < end;) {
-        const int width = L.width(j, kMost);
+        const int width = L.width(j, kMostColumns);
         switch (width) {
             case 4: L.eliminate<4>(j, Y); break;
             case 3: L.eliminate<3>(j, Y); break;
@@ -130,7 +130,7 @@ void backwardColumns(const LdltFactor& factor, double* rows, Size begin, Size en
     const UnitLower L(factor);
     const Block<Columns> Y(rows);
     while (end > begin) {
-        const int width = L.widthBefore(end, kMost);
+        const int width = L.widthBefore(end, kMostColumns);
         switch (width) {
             case 4: L.substitute<4>(end - 4, Y); break;
             case 3: L.substitute<3>(end - 3, Y); break;

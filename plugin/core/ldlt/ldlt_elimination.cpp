@@ -10,7 +10,7 @@ namespace spectral {
 
 namespace {
 
-/// The front of a supernode, without its memory.
+/// The frontal matrix of a supernode, without memory.
 FrontalMatrix shapeOf(const SymbolicLdlt::Front& supernode) {
     const auto padded = [](Index rows) { return (rows + kLane - 1) / kLane * kLane; };
     FrontalMatrix front;
@@ -21,24 +21,23 @@ FrontalMatrix shapeOf(const SymbolicLdlt::Front& supernode) {
     return front;
 }
 
-/// What a front has left in the rows below its columns, until it goes to the parent's.
+/// A contribution block that its parent has not yet assembled.
 struct Waiting {
     const SymbolicLdlt::Front* supernode = nullptr;
-    Index at = 0;                       // on the stack of its elimination,
-    const double* elsewhere = nullptr;  // or here
+    Index at = 0;                       // on the stack of this elimination, or
+    const double* elsewhere = nullptr;  // on that of another one
 };
 
 class Elimination;
 
-/// Fronts that follow one another, and the subtree behind them that another elimination has done.
+/// Consecutive fronts, and the subtree after them that another elimination has done.
 struct Stretch {
     int begin = 0, end = 0;
     const Elimination* subtree = nullptr;
     const SymbolicLdlt::Front* root = nullptr;  // of the subtree
 };
 
-/// The elimination of some stretches of fronts, from the leaves up. What a front leaves for its
-/// parent waits on a stack.
+/// Eliminates stretches of fronts, from the leaves up. Contribution blocks wait on a stack.
 class Elimination {
   public:
     Elimination(const SymbolicLdlt& symbolic, const double* W, const Eigen::VectorXd& shifts,
@@ -57,13 +56,13 @@ class Elimination {
     }
 
   private:
-    /// Goes through the fronts as they will come, for the memory that they will take.
+    /// Allocates the memory that these fronts will need.
     void allocate(const std::vector<Stretch>& stretches) {
-        Index panel = 0, stack = 0;
+        Index columns = 0, stack = 0;
         for (const Stretch& stretch : stretches) {
             for (int f = stretch.begin; f < stretch.end; ++f) {
                 const FrontalMatrix front = shapeOf(symbolic_.fronts[f]);
-                panel = std::max(panel, front.stride * front.width);
+                columns = std::max(columns, front.stride * front.width);
                 stack = std::max(stack, top_ + front.contributionStride() * front.below);
                 push(symbolic_.fronts[f], front);
             }
@@ -71,19 +70,19 @@ class Elimination {
         }
         waiting_.clear();
         top_ = 0;
-        panel_.resize(panel);
-        scratch_.resize(panel);
+        columns_.resize(columns);
+        scratch_.resize(columns);
         stack_.resize(stack);
     }
 
     bool eliminateFront(const SymbolicLdlt::Front& supernode) {
         FrontalMatrix front = shapeOf(supernode);
-        front.columns = panel_.data();
+        front.columns = columns_.data();
         front.scratch = scratch_.data();
         front.contribution = stack_.data() + top_;
         front.parallelFor = [](std::ptrdiff_t count, void (*call)(const void*, std::ptrdiff_t),
                                const void* function) { ThreadTeam::run(count, {call, function}); };
-        gather(supernode, front);
+        assemble(supernode, front);
         if (!kernels().eliminateFront(front)) return false;
         store(supernode, front);
         const Index at = push(supernode, front);
@@ -93,14 +92,15 @@ class Elimination {
         return true;
     }
 
-    /// What the root of the subtree has left: alone on the stack of the elimination that did it.
+    /// Takes over the contribution block of a subtree's root, alone on the stack of its
+    /// elimination.
     void take(const Stretch& stretch) {
         if (stretch.subtree != nullptr && stretch.root->below > 0)
             waiting_.push_back({stretch.root, top_, stretch.subtree->stack_.data()});
     }
 
-    /// Puts the front's part of W - sigma D into it, and what its children have left.
-    void gather(const SymbolicLdlt::Front& supernode, const FrontalMatrix& front) {
+    /// Sets the front to its part of W - sigma D plus the contribution blocks of its children.
+    void assemble(const SymbolicLdlt::Front& supernode, const FrontalMatrix& front) {
         std::fill_n(front.columns, front.stride * front.width, 0.0);
         std::fill_n(front.contribution, front.contributionStride() * front.below, 0.0);
         double* rows = front.columns + front.offset;
@@ -111,17 +111,17 @@ class Elimination {
         for (Index j = 0; j < front.width; ++j)
             rows[j * front.stride + j] -= shifts_[supernode.first + j];
         for (std::size_t i = waiting_.size() - supernode.children; i < waiting_.size(); ++i)
-            add(waiting_[i], front);
+            assembleChild(waiting_[i], front);
     }
 
-    void add(const Waiting& child, const FrontalMatrix& front) {
+    void assembleChild(const Waiting& child, const FrontalMatrix& front) {
         const int below = child.supernode->below, width = static_cast<int>(front.width);
         const int* places = symbolic_.places.data() + child.supernode->firstPlace;
         const Index stride = shapeOf(*child.supernode).contributionStride();
         const double* left = child.elsewhere ? child.elsewhere : stack_.data() + child.at;
         for (int j = 0; j < below; ++j) {
             const double* from = left + j * stride;
-            // The column of the front, and the row that it begins with.
+            // The column of the front, and its first row.
             const bool isEliminated = places[j] < width;
             double* to = isEliminated ? front.columns + places[j] * front.stride + front.offset
                                       : front.contribution +
@@ -141,8 +141,7 @@ class Elimination {
         }
     }
 
-    /// Takes the children from the stack, and room for what the front leaves in their place.
-    /// Returns where that is.
+    /// Replaces the children on the stack by the front's contribution block; returns its position.
     Index push(const SymbolicLdlt::Front& supernode, const FrontalMatrix& front) {
         for (int i = 0; i < supernode.children; ++i, waiting_.pop_back()) top_ = waiting_.back().at;
         const Index at = top_;
@@ -155,7 +154,7 @@ class Elimination {
     const double* W_;
     const Eigen::VectorXd& shifts_;  // sigma D, in the order of the factor
     LdltNumbers& numbers_;
-    Eigen::VectorXd panel_, scratch_;
+    Eigen::VectorXd columns_, scratch_;
     Eigen::VectorXd stack_;
     std::vector<Waiting> waiting_;
     Index top_ = 0;  // of the stack

@@ -14,13 +14,13 @@ struct LdltNumbers {
     Eigen::VectorXd pivots;
 };
 
-/// Eliminates without pivoting, supernode by supernode, each in a dense front (the multifrontal
-/// method: Duff and Reid 1983; Davis, Direct Methods for Sparse Linear Systems, 2006, section 11).
-/// What a front leaves in the rows below its columns is added to the front of its parent.
+/// Factorizes without pivoting, each supernode in a dense frontal matrix whose contribution block
+/// is added to that of its parent (the multifrontal method: Duff and Reid 1983; Davis, Direct
+/// Methods for Sparse Linear Systems, 2006, section 11).
 ///
-/// @param symbolic  of W.
-/// @param numbers   keeps its memory from call to call.
-/// @return whether no pivot is 0, else the numbers have no meaning. They may be infinite.
+/// @param symbolic  of the pattern of W.
+/// @param numbers   its memory is reused.
+/// @return false when a pivot is 0: the numbers are then meaningless. They may be infinite.
 bool eliminate(const SymbolicLdlt& symbolic, const SparseMatrix& W, const Eigen::VectorXd& D,
                double sigma, LdltNumbers& numbers);
 

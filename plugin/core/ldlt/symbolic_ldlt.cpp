@@ -13,8 +13,8 @@ namespace spectral {
 
 namespace {
 
-/// Supernodes of up to so many columns may have so large a part of zeros in L: wider ones, with a
-/// smaller part of them, make elimination and solves quicker.
+/// Largest part of zeros in a relaxed supernode by its number of columns. Zeros cost memory, wide
+/// supernodes save indirect addressing: narrow ones may have more. (CHOLMOD relaxes alike.)
 struct Relaxation {
     Index width;
     double zeros;
@@ -22,13 +22,13 @@ struct Relaxation {
 constexpr Relaxation kRelaxations[] = {
     {4, 0.5}, {16, 0.2}, {48, 0.1}, {std::numeric_limits<Index>::max(), 0.05}};
 
-/// A subtree that is eliminated beside others has at most the first part of L, which leaves work
-/// for two threads at least, and little above the subtrees, where there is no other work; and at
-/// least the second, less is not worth a task. A factor with fewer entries than the third is not
-/// shared at all: a solve takes as long as waking a thread.
+/// Parallel subtrees have at most one of kLeastParts parts of L, so that there is work for several
+/// threads and little above the subtrees, and at least one of kMostParts, so that each is worth a
+/// task. A factor with fewer entries than kLeastShared is not split: a solve takes no longer than
+/// waking a thread.
 constexpr Index kLeastParts = 4, kMostParts = 200, kLeastShared = 30000;
 
-/// Approximate minimum degree; Eigen's own functor adds the transpose of what is symmetric.
+/// Approximate minimum degree; Eigen's own functor would add the transpose once more.
 struct SymmetricOrdering {
     using PermutationType = Eigen::AMDOrdering<int>::PermutationType;
     void operator()(const SparseMatrix& W, PermutationType& permutation) const {
@@ -36,21 +36,20 @@ struct SymmetricOrdering {
     }
 };
 
-/// What Eigen's analysis of a pattern keeps to itself.
+/// Gives access to the elimination tree of Eigen's analysis.
 struct Analysis : Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, SymmetricOrdering> {
     const auto& parent() const { return m_parent; }
     const auto& columnEntries() const { return m_nonZerosPerCol; }
 };
 
-/// Numbers the nodes of a forest so that children come before their parents and every subtree is in
-/// one piece.
-/// @param parent  of each node, with a larger number; -1 of roots.
+/// Postorder of a forest: children before their parents, subtrees contiguous.
+/// @param parent  of each node, a larger number; -1 for roots.
 std::vector<int> postorder(const std::vector<int>& parent) {
     const auto n = static_cast<int>(parent.size());
     std::vector<int> size(parent.size(), 1);  // of the subtrees
     for (int i = 0; i < n; ++i)
         if (parent[i] >= 0) size[parent[i]] += size[i];
-    // Subtrees take their places from the end of their parent's on; a node is the last of its own.
+    // Subtrees fill their parent's range from its end; a node is the last of its own.
     std::vector<int> number(parent.size()), next(parent.size());
     int end = n;
     for (int i = n - 1; i >= 0; --i) {
@@ -62,17 +61,17 @@ std::vector<int> postorder(const std::vector<int>& parent) {
     return number;
 }
 
-/// A supernode while others may still join it.
+/// A supernode that may still absorb others.
 struct Supernode {
     Index first = 0, width = 0, below = 0;
-    Index zeros = 0;  // that it has put into L
+    Index zeros = 0;  // added to L by relaxation
 
-    /// With its parent, whose first column follows its last.
+    /// Merged with its parent, whose first column follows its last.
     Supernode joinedTo(const Supernode& parent) const {
         const Index wider = width + parent.width, added = parent.width + parent.below - below;
         return {first, wider, parent.below, zeros + parent.zeros + width * added};
     }
-    /// Entries of L, with the diagonal.
+    /// Number of entries of L, including the diagonal.
     Index entries() const { return width * (width + 1) / 2 + width * below; }
 
     bool isWorthwhile() const {
@@ -119,12 +118,11 @@ void SymbolicLdlt::findFronts(const Columns& columns) {
     std::vector<Supernode> supernodes;
     for (int j = 0; j < n;) {
         Supernode supernode{j, 0, 0, 0};
-        // What is below the first row of a column fills that row's column: if there is one row less
-        // below that, the others are the same.
+        // The rows of a column are among those of its parent: equal if the parent has one less.
         do ++j, ++supernode.width;
         while (j < n && parent[j - 1] == j && count[j - 1] == count[j] + 1);
         supernode.below = count[j - 1];
-        // The last child of this one, the last child of both together, and so on.
+        // Merge with the last child, then with the last child of both, and so on.
         while (!supernodes.empty()) {
             const Supernode& child = supernodes.back();
             const Supernode both = child.joinedTo(supernode);
@@ -167,7 +165,7 @@ void SymbolicLdlt::findFronts(const Columns& columns) {
 }
 
 void SymbolicLdlt::findRows(const Columns& columns) {
-    std::vector<int> ends;  // of the rows of the fronts that are known
+    std::vector<int> ends;  // of the rows known so far, by front
     for (const Front& front : fronts) {
         const int last = front.first + front.width - 1, next = columns.parent[last];
         parentFront_.push_back(next < 0 ? -1 : frontOf_[next]);
@@ -175,7 +173,7 @@ void SymbolicLdlt::findRows(const Columns& columns) {
                   front.first);
         ends.push_back(front.firstRow + front.width);
     }
-    // A row of L has its entries where paths in the tree of fronts lead from those of W.
+    // The entries of a row of L are on the paths in the tree that start at the entries of W.
     std::vector<int> visited(fronts.size(), -1);
     for (int k = 0; k < static_cast<int>(inverse.size()); ++k) {
         visited[frontOf_[k]] = k;
@@ -190,8 +188,8 @@ void SymbolicLdlt::findRows(const Columns& columns) {
 }
 
 void SymbolicLdlt::findPlaces() {
-    std::vector<int> position(inverse.size());  // of a row in a front
-    std::vector<int> waiting;                   // fronts whose parents are still to come
+    std::vector<int> position(inverse.size());  // of each row in the current front
+    std::vector<int> waiting;                   // fronts whose parents are yet to come
     entries.reserve((rows.size() + inverse.size()) / 2);
     for (int f = 0; f < static_cast<int>(fronts.size()); ++f) {
         Front& front = fronts[f];
@@ -218,8 +216,8 @@ void SymbolicLdlt::findPlaces() {
 
 void SymbolicLdlt::findSubtrees() {
     const auto count = static_cast<int>(fronts.size());
-    std::vector<Index> size(fronts.size(), 0);  // of all that is below a front, with itself,
-    std::vector<int> frontsBelow(fronts.size(), 1);
+    std::vector<Index> size(fronts.size(), 0);       // entries of L in each front's subtree
+    std::vector<int> frontsBelow(fronts.size(), 1);  // number of fronts in it
     for (int f = 0; f < count; ++f) {
         size[f] += fronts[f].size();
         if (const int parent = parentFront_[f]; parent >= 0) {
@@ -244,7 +242,7 @@ void SymbolicLdlt::findSubtrees() {
         tree.firstCopy = static_cast<int>(copied.size());
         const auto below = frontRows.begin() + root.firstRow + root.width;
         copied.insert(copied.end(), below, below + root.below);
-        // The rows of a front within the subtree are its columns, or among those below the root.
+        // The rows of a subtree's fronts are its columns, or among those below the root.
         for (auto row = solveRows.begin() + fronts[tree.firstFront].firstRow;
              row != solveRows.begin() + root.firstRow + root.width + root.below; ++row)
             if (*row >= tree.endColumn)

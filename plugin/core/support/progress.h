@@ -16,15 +16,15 @@ class Progress {
     /// Called with the part done, in [0, 1], and the present stage; returns false to stop.
     using Callback = std::function<bool(double fraction, const std::string& stage)>;
 
-    /// Tells whether to stop even while the callback cannot, because it has not returned yet: a
-    /// window's may do other work of its user's. Any thread asks.
+    /// Returns true to stop even while the callback has not returned: a window's callback may be
+    /// busy with other work of its user. Called from any thread.
     using Interruption = std::function<bool()>;
 
     Progress() = default;
     explicit Progress(Callback callback, Interruption interruption = {})
         : callback_(std::move(callback)), interruption_(std::move(interruption)) {}
 
-    /// Whether anybody is told.
+    /// Whether anybody listens.
     bool isHeard() const { return static_cast<bool>(callback_); }
 
     bool isInterrupted() const { return interruption_ && interruption_(); }
@@ -37,7 +37,7 @@ class Progress {
         if (!goOn || isInterrupted()) throw Cancelled();
     }
 
-    /// A progress whose [0, 1] is [begin, end] of this one; `prefix` goes before its stages.
+    /// A progress whose [0, 1] is [begin, end] of this one; its stages get `prefix`.
     Progress part(double begin, double end, const std::string& prefix = {}) const {
         Progress sub(*this);
         sub.begin_ = begin_ + (end_ - begin_) * begin;
@@ -49,8 +49,7 @@ class Progress {
   private:
     Callback callback_;
     Interruption interruption_;
-    double begin_ = 0.0;
-    double end_ = 1.0;
+    double begin_ = 0.0, end_ = 1.0;
     std::string prefix_;
 };
 

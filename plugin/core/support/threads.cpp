@@ -18,8 +18,8 @@ namespace {
 
 std::atomic<int> chosenThreads{0};  // 0: one for each core
 
-/// Time that a thread stays awake for the next call: longer than the gaps between those of an
-/// evaluation, shorter than what a user would notice of a core that is busy for nothing.
+/// How long an idle thread spins before it sleeps: longer than the gaps between the calls of an
+/// evaluation, too short for a user to notice a busy core.
 constexpr std::chrono::microseconds kAwake{200};
 
 /// Whether the calling thread is within a task, and its number in its team.
@@ -36,8 +36,8 @@ int threadCount() {
 
 void setThreadCount(int count) { chosenThreads = std::max(0, count); }
 
-/// Tasks are claimed from one number, the ticket: that of the call, and of the tasks that nobody
-/// has claimed. A thread that wakes up late finds none left, and nobody waits for it.
+/// Tasks are claimed from one atomic number, the ticket: the number of the call and that of the
+/// unclaimed tasks. A thread that wakes up late finds none left, and nobody waits for it.
 class ThreadTeam::Implementation {
   public:
     explicit Implementation(int threads) {
@@ -47,7 +47,7 @@ class ThreadTeam::Implementation {
                     indexInTeam = i;
                     serve();
                 });
-        } catch (const std::system_error&) {  // a limit on threads: those that there are
+        } catch (const std::system_error&) {  // a limit on threads: use those there are
         } catch (const std::bad_alloc&) {
         }
     }
@@ -82,13 +82,13 @@ class ThreadTeam::Implementation {
     static constexpr std::uint64_t kCall = std::uint64_t{1} << 32;
     static Index unclaimed(std::uint64_t ticket) { return static_cast<Index>(ticket % kCall); }
 
-    /// Does tasks of the present call as long as there are some; returns whether there was one.
+    /// Does tasks of the current call while there are any; returns whether there was one.
     bool doTasks() {
         bool any = false;
         std::uint64_t ticket = ticket_;
         while (unclaimed(ticket) > 0) {
             if (!ticket_.compare_exchange_weak(ticket, ticket - 1)) continue;
-            // The call cannot end before this task: what belongs to it stays as it is.
+            // The call cannot end before this task: its function and counters stay valid.
             any = true;
             isInTask = true;
             try {
@@ -105,7 +105,7 @@ class ThreadTeam::Implementation {
         return any;
     }
 
-    /// What a thread of the team does.
+    /// The loop of a thread of the team.
     void serve() {
         auto last = std::chrono::steady_clock::now();
         while (!stop_) {
@@ -129,7 +129,7 @@ class ThreadTeam::Implementation {
     std::atomic<Index> done_{0};
     std::atomic<int> sleeping_{0};
     std::atomic<bool> failed_{false}, stop_{false};
-    std::mutex mutex_;  // guards failure_, and the way to sleep
+    std::mutex mutex_;  // guards failure_ and the decision to sleep
     std::condition_variable wakeUp_;
     std::exception_ptr failure_;
 };
@@ -162,7 +162,7 @@ void runTasks(Index count, const std::function<void(Index, int, const StopPoint&
               const Progress& progress, const std::string& stage) {
     std::atomic<Index> finished{0};
     std::atomic<bool> stop{false};
-    std::exception_ptr failure;  // of the task that has set `stop`
+    std::exception_ptr failure;  // of the task that set `stop`
     const StopPoint stopPoint = [&] {
         if (stop) throw Cancelled();
         if (ThreadTeam::threadIndex() == 0)

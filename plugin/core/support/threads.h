@@ -11,32 +11,32 @@
 
 namespace spectral {
 
-/// Number of threads that the program computes with: what was set, else one for each core.
+/// Number of threads of new teams: as set, else one for each core.
 int threadCount();
 
-/// Sets threadCount() for all that begins from now on.
+/// Sets threadCount().
 /// @param count  >= 1; 0 for one thread for each core.
 void setThreadCount(int count);
 
-/// Threads that parallelFor shares its tasks among, for as long as the team lives: one run of a
-/// filter. It serves the thread that has made it.
+/// The threads that parallelFor uses when called from the thread that made the team, during the
+/// team's lifetime: one run of a filter.
 ///
-/// Between calls the threads spin before they sleep, because an evaluation makes thousands of calls
-/// of some hundred microseconds each. A team made within another one has no threads of its own.
+/// Between calls they spin before they sleep, because an evaluation makes thousands of calls of
+/// some hundred microseconds each. A team made within another one has no threads of its own.
 class ThreadTeam {
   public:
-    /// @param threads  with the calling one; as many as the system gives.
+    /// @param threads  including the calling one; fewer if the system has no more.
     explicit ThreadTeam(int threads = threadCount());
     ~ThreadTeam();
     ThreadTeam(const ThreadTeam&) = delete;
     ThreadTeam& operator=(const ThreadTeam&) = delete;
 
-    /// A function of a task's number, without a copy of it.
+    /// A non-owning reference to a function of the task's number.
     struct TaskFunction {
         void (*call)(const void* function, Index task);
         const void* function;
     };
-    /// What parallelFor does.
+    /// See parallelFor.
     static void run(Index count, TaskFunction work);
 
     static int size();  ///< Threads of the calling thread's team, itself included; 1 without one.
@@ -50,12 +50,12 @@ class ThreadTeam {
     std::unique_ptr<Implementation> implementation_;  // null within another team
 };
 
-/// work(task) for all tasks from 0 to count - 1, on the threads of the calling thread's team, in no
-/// order; on the calling thread alone where there is no team, or within another parallelFor.
+/// Calls work(task) for 0 <= task < count, in any order, on the threads of the calling thread's
+/// team; on the calling thread alone without a team, or within another parallelFor.
 ///
-/// Results must not depend on which thread does what, nor on how many there are: tasks write to
-/// places of their own, and sums over tasks are made afterwards, in their order.
-/// @throws one of the exceptions of tasks, after all tasks that were begun have ended.
+/// Results must not depend on the number of threads: each task writes to its own memory, and sums
+/// over tasks are taken afterwards, in order.
+/// @throws one of the tasks' exceptions, after all running tasks have ended.
 template <class Work>
 void parallelFor(Index count, const Work& work) {
     ThreadTeam::run(count, {[](const void* function, Index task) {
@@ -64,10 +64,10 @@ void parallelFor(Index count, const Work& work) {
                             &work});
 }
 
-/// Rows at a time: enough to be worth a task, few enough for the cache.
+/// Rows of one task: enough to be worth its overhead, few enough for the cache.
 inline constexpr Index kRowsOfTask = 2048;
 
-/// work(begin, end) for all rows from 0 to count - 1, in blocks of kRowsOfTask.
+/// Calls work(begin, end) for blocks of kRowsOfTask rows out of `count`.
 template <class Work>
 void parallelRows(Index count, const Work& work) {
     parallelFor((count + kRowsOfTask - 1) / kRowsOfTask, [&](Index block) {
@@ -76,8 +76,8 @@ void parallelRows(Index count, const Work& work) {
     });
 }
 
-/// The sum of work(begin, end) over the same blocks, in their order.
-/// @param zero  what the sum begins with, of the type that `work` returns.
+/// The sum of work(begin, end) over the same blocks, in order.
+/// @param zero  initial value.
 template <class Value, class Work>
 Value parallelSum(Index count, Value zero, const Work& work) {
     std::vector<Value> parts(static_cast<std::size_t>((count + kRowsOfTask - 1) / kRowsOfTask),
@@ -89,16 +89,16 @@ Value parallelSum(Index count, Value zero, const Work& work) {
     return zero;
 }
 
-/// Ends a task by an exception when the others are to stop; to be called often.
+/// Throws when all tasks are to stop; to be called often within a long task.
 using StopPoint = std::function<void()>;
 
-/// parallelFor for tasks that take long: with progress, and stopped by the caller or by the first
-/// exception of a task.
+/// parallelFor for long tasks: reports progress, and stops all tasks when the caller cancels or a
+/// task throws.
 ///
-/// Tasks begin in ascending order. Only the calling thread reports, at its own stop points.
-/// @param work   work(task, thread, stopPoint), 0 <= thread < ThreadTeam::size(): for storage
-///               that a thread reuses from task to task. Results must not depend on it.
-/// @param stage  what is being done, for the report.
+/// Tasks start in ascending order. Only the calling thread reports, at its own stop points.
+/// @param work   work(task, thread, stopPoint), 0 <= thread < ThreadTeam::size(): the thread is
+///               for memory that is reused from task to task; results must not depend on it.
+/// @param stage  for the report.
 /// @throws the first exception of a task; Cancelled.
 void runTasks(Index count, const std::function<void(Index, int, const StopPoint&)>& work,
               const Progress& progress, const std::string& stage);
