@@ -31,7 +31,7 @@ PACKAGE_SOURCES := CMakeLists.txt $(shell find plugin python -not -path '*/__pyc
 # Two targets at once would fetch MeshLab's headers twice; ninja uses every core anyway.
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help demo test gui-test screenshots setup build bench bench-basis bench-batch bench-defaults lint format clean
+.PHONY: help demo test gui-test screenshots setup build bench bench-basis bench-batch bench-defaults bench-ldlt lint format clean
 
 help:  ## list these commands
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 20
@@ -71,6 +71,10 @@ bench-defaults: $(PACKAGE)  ## the run with every parameter at its default, on r
 bench-basis: BENCHMARKS := ON
 bench-basis: build $(PACKAGE) $(COMPETITORS)  ## compare the truncated basis with other programs
 	$(BIN)/python tests/benchmarks/bench_basis.py --mesh $(BENCH_MESH) $(BENCH_OPTIONS)
+
+bench-ldlt: BENCHMARKS := ON
+bench-ldlt: $(COMPETITORS) build  ## compare the factorization with Eigen's and CHOLMOD's
+	build/tests/benchmarks/bench_ldlt $(BENCH_MESH)
 
 bench-batch: $(PACKAGE)  ## measure a batch of 1,000 meshes against one process
 	$(BIN)/python tests/benchmarks/bench_batch.py
