@@ -19,7 +19,7 @@
 #include <utility>
 
 #include "core/harmonics/truncated_basis.h"
-#include "core/laplacian/mesh_laplacian.h"
+#include "core/laplacian/laplacian_builder.h"
 #include "core/ldlt/shifted_ldlt.h"
 #include "support/memory.h"
 #include "support/ply.h"

@@ -64,7 +64,7 @@ class Flow {
 
     Vertices paper(int K) const {
         StepEvaluator evaluate(evaluation_, interior_, F_);
-        return fixedSteps(laplacians_, evaluate, surface_.X, K, update_, {}).X;
+        return fixedSteps(laplacians_, evaluate, surface_.X, K_, {}).X;
     }
 
     Vertices midpoint(int K) const {

@@ -21,7 +21,7 @@ FullSpectrumResult filteredFullSpectrum(const Operator& A, const Gain& gain, dou
     FullSpectrumOptions options;
     options.accuracy = accuracy;
     options.resolution = pole.resolution;
-    return applyFullSpectrum(A.laplacian.D, A.constants, ldlt, gain, A.mesh.V, options);
+    return applyFullSpectrum(A.laplacian.D, A.constants, ldlt, {gain}, A.mesh.V, options).front();
 }
 
 double relativeError(const Operator& A, const Eigen::MatrixXd& difference) {

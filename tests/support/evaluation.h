@@ -6,8 +6,8 @@
 #include "core/laplacian/constant_modes.h"
 #include "core/laplacian/frequency.h"
 #include "core/laplacian/laplacian.h"
-#include "core/mesh/components.h"
 #include "core/mesh/mesh.h"
+#include "core/mesh/surface.h"
 #include "support/shapes.h"
 
 namespace spectral::testing {

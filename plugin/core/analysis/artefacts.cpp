@@ -4,21 +4,9 @@
 
 #include "core/krylov/full_spectrum.h"
 #include "core/krylov/pole_selection.h"
-#include "core/laplacian/frequency.h"
-#include "core/laplacian/mesh_laplacian.h"
-#include "core/ldlt/shifted_ldlt.h"
-#include "core/mesh/mesh.h"
 #include "core/support/threads.h"
 
 namespace spectral {
-
-namespace {
-
-/// Relative to the shape's size: good results are smooth to 1e-4 of it, and that is to be told
-/// exactly.
-constexpr double kAccuracy = 1e-8;
-
-}  // namespace
 
 double artefactFreeGain(double omega, double cutoff) {
     const double x = omega / (2.0 * cutoff);  // lambda / (4 lambda_c) = x^2
@@ -27,6 +15,8 @@ double artefactFreeGain(double omega, double cutoff) {
 
 Artefacts measureArtefacts(const Vertices& V, const Faces& F, const ArtefactOptions& options,
                            const Progress& progress) {
+    // Relative to the size of the shape. Artefacts of good results are 1e-4 of it: four digits.
+    constexpr double kAccuracy = 1e-8;
     const ThreadTeam team;
     const MeshLaplacian mesh = meshLaplacian(V, F, options.laplacian);
     const double cutoff = cutoffFrequency(options.featureSize);
@@ -35,7 +25,6 @@ Artefacts measureArtefacts(const Vertices& V, const Faces& F, const ArtefactOpti
 
     progress.report(0.0, "factorizing");
     ShiftedLdlt ldlt;
-    // The gain turns over at twice the cutoff.
     ldlt.factorizeDefinite(
         mesh.laplacian.W, D,
         selectPole(gain, 2.0 * cutoff, bulkSpectrum(mesh.laplacian), kAccuracy).shift);
@@ -43,13 +32,13 @@ Artefacts measureArtefacts(const Vertices& V, const Faces& F, const ArtefactOpti
     evaluation.accuracy = kAccuracy;
     const Vertices& X = mesh.surface.X;
     const FullSpectrumResult smooth =
-        applyFullSpectrum(D, mesh.constants, ldlt, gain, X, evaluation, progress);
+        applyFullSpectrum(D, mesh.constants, ldlt, {gain}, X, evaluation, progress).front();
 
     const Eigen::VectorXd length = (X - smooth.Y).rowwise().norm();
     Artefacts artefacts;
     artefacts.rms = std::sqrt(length.cwiseAbs2().dot(D) / D.sum());
     artefacts.maximum = length.maxCoeff();
-    artefacts.length = onMesh(mesh.surface, length, V.rows());
+    artefacts.length = extendedByZero(length, mesh.surface.vertex, V.rows());
     artefacts.errorEstimate = smooth.errorEstimate * X.cwiseAbs().maxCoeff();
     return artefacts;
 }

@@ -8,8 +8,8 @@ namespace spectral {
 
 namespace {
 
-/// Octaves over which one window gives way to the next, at most: narrower transitions tell sizes
-/// apart better, but quadrature resolves them worse.
+/// Largest overlap of two windows, in octaves: less separates sizes better, but needs more
+/// dimensions of the quadrature.
 constexpr double kTransition = 0.5;
 
 }  // namespace
@@ -43,7 +43,7 @@ double Bands::end(int j) const {
     return 2.0 * kPi / edge(j) * std::exp2(0.5 * transition_);
 }
 
-/// The part of a harmonic that counts as below the edge of bands `edge` and `edge` + 1.
+/// The part of a harmonic that is in the bands 0 to `edge`.
 double Bands::below(int edge, double omega) const {
     if (edge < 0) return 0.0;
     if (edge >= count_ - 1) return 1.0;

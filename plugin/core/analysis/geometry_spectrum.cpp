@@ -7,64 +7,62 @@
 #include <string>
 #include <utility>
 
-#include "core/analysis/band_energies.h"
 #include "core/analysis/bands.h"
 #include "core/analysis/noise_floor.h"
-#include "core/harmonics/harmonic_basis.h"
 #include "core/harmonics/truncated_basis.h"
-#include "core/laplacian/constant_modes.h"
+#include "core/krylov/krylov_spaces.h"
 #include "core/laplacian/harmonic_extension.h"
-#include "core/laplacian/interior.h"
-#include "core/laplacian/mesh_laplacian.h"
-#include "core/ldlt/shifted_ldlt.h"
 #include "core/mesh/measures.h"
-#include "core/mesh/mesh.h"
-#include "core/support/errors.h"
 #include "core/support/threads.h"
 
 namespace spectral {
 
 namespace {
 
-/// Vertices up to which the whole basis of a mesh is computed when no smaller one is wanted:
-/// seconds.
+/// Vertices up to which a basis as large as the mesh is computed: a dense problem, of seconds.
 constexpr Index kWholeBasis = 2000;
 
-/// Part of the progress at which the basis is done.
+/// Share of the progress bar for the basis; the energies beyond it have the rest.
 constexpr double kBasisDone = 0.6;
 
-/// What is left of the energy, relative to all of it, when there is nothing left.
-constexpr double kRoundOff = 1e-26;
+/// Relative energy that is round-off: the square of a relative amplitude of 1e-13.
+constexpr double kNoEnergy = 1e-26;
 
-/// Size of a signal beside the shape that is round-off of the harmonic extension.
+/// A signal of less relative size is round-off of the solve for the harmonic extension.
 constexpr double kNoShape = 1e-11;
 
-/// Fewer harmonics than this in a band, or as much of the noise, are too few to tell its height by.
+/// Harmonics, or as much of the noise, below which the noise height of a band is too uncertain:
+/// the amplitude of n random coefficients scatters by up to 1/sqrt(2 n), 13 %.
 constexpr double kFewHarmonics = 30.0;
 
-/// Of the noise that takes the place of all; any will do.
-constexpr unsigned kNoiseSeed = 1;
-
-/// The first frequency is no lower than this part of the scale 4 pi / area of the first
-/// eigenvalues, were the surface a hair of that proportion.
+/// Lower bound of the first eigenvalue relative to its scale 4 pi / area. Only a surface a million
+/// times as long as wide would fall below; it bounds the number of octaves.
 constexpr double kLowest = 1e-6;
 
-/// What can vibrate: the surface, or its interior where the boundary is fixed.
-struct Vibration {
+/// Krylov dimensions of an octave: between checks of its energies, at the first check, at most.
+constexpr int kEnergyCheckInterval = 4, kFirstEnergyCheck = 16, kMaxDimension = 120;
+
+/// Largest change of converged energies, relative to themselves. Octaves are scaled to their known
+/// sum; third octaves are only plotted, and fitted to noise: a loose tolerance suffices.
+constexpr double kConverged = 1e-4, kThirdsConverged = 1e-2;
+
+/// Smaller changes relative to the energy of all bands are ignored: an amplitude of 1e-5 of it.
+constexpr double kNegligible = 1e-10;
+
+/// The signal that is analysed, and the Laplacian of its vertices.
+struct Signal {
     Laplacian laplacian;
     ConstantModes constants;
-    Eigen::MatrixXd U;  ///< The shape that the harmonics make up; its constants are 0.
+    Eigen::MatrixXd U;  ///< Positions without their means, or without their harmonic extension.
 };
 
-/// The positions less their mean on every component.
-Vibration freeVibration(MeshLaplacian mesh) {
-    Eigen::MatrixXd U = std::move(mesh.surface.X);
-    mesh.constants.remove(U);
-    return {std::move(mesh.laplacian), std::move(mesh.constants), std::move(U)};
-}
-
-/// The positions less what those of the boundary determine.
-Vibration heldVibration(const MeshLaplacian& mesh, const Interior& interior) {
+Signal signalOf(MeshLaplacian mesh, Boundary boundary) {
+    const Interior interior(mesh.surface.F, mesh.components, boundary);
+    if (interior.isWhole()) {
+        Eigen::MatrixXd U = std::move(mesh.surface.X);
+        mesh.constants.remove(U);
+        return {std::move(mesh.laplacian), std::move(mesh.constants), std::move(U)};
+    }
     if (interior.size() == 0)
         throw InvalidOption(
             ErrorCode::BoundaryFixesAll,
@@ -74,20 +72,15 @@ Vibration heldVibration(const MeshLaplacian& mesh, const Interior& interior) {
     HarmonicExtension::Rest rest = extension.rest(mesh.surface.X);
     if (rest.relativeSize <= kNoShape)
         throw InvalidOption(ErrorCode::BoundaryFixesAll,
-                            "boundary = fixed leaves nothing to measure: the surface is what its "
-                            "boundary determines, as a flat one is");
+                            "boundary = fixed leaves nothing to measure: the boundary determines "
+                            "the whole surface, as it does a flat one");
     Laplacian laplacian = interior.restricted(mesh.laplacian);
     ConstantModes constants(interior.components(), laplacian.D);
     constants.remove(rest.U);
     return {std::move(laplacian), std::move(constants), std::move(rest.U)};
 }
 
-Vibration vibrationOf(MeshLaplacian mesh, Boundary boundary) {
-    const Interior interior(mesh.surface.F, mesh.components, boundary);
-    return interior.isWhole() ? freeVibration(std::move(mesh)) : heldVibration(mesh, interior);
-}
-
-/// The harmonics to compute, or all there are.
+/// Number of harmonics to compute; on a small mesh at most as many as it has.
 Index sizeOfBasis(int asked, Index vertices, int components) {
     if (asked < 1)
         throw InvalidOption("basis_size = " + std::to_string(asked) + ": must be at least 1");
@@ -100,51 +93,152 @@ double energyOf(const Eigen::MatrixXd& X, const Eigen::VectorXd& D) {
     return X.rowwise().squaredNorm().dot(D);
 }
 
-/// A value of 1 or -1 at every vertex, at random: noise whose energies vary least from one draw to
-/// the next.
+/// Random signs: the white noise whose energies have the least variance.
 Eigen::VectorXd noiseOfUnitHeight(Index vertices) {
-    std::mt19937 bits(kNoiseSeed);
+    std::mt19937 bits(1);  // fixed, for reproducible results
     return Eigen::VectorXd::NullaryExpr(vertices, [&] { return bits() & 1U ? 1.0 : -1.0; });
 }
 
-/// Energies sum_i e_i g(omega_i) of the harmonics in every band g, `first` the first of them.
-Eigen::VectorXd energiesWithin(const Bands& bands, const Eigen::VectorXd& omega,
-                               const Eigen::VectorXd& energies, Index first) {
-    Eigen::VectorXd sums = Eigen::VectorXd::Zero(bands.count());
-    for (int j = 0; j < bands.count(); ++j)
-        for (Index i = first; i < omega.size(); ++i)
-            sums[j] += energies[i] * bands.window(j, omega[i]);
-    return sums;
+/// Energies in octaves and in third octaves.
+struct BandEnergies {
+    Eigen::VectorXd octaves;  ///< Of the shape.
+    Eigen::VectorXd thirds;   ///< Of the shape.
+    Eigen::VectorXd noise;    ///< Of the noise, in third octaves.
+};
+
+/// Energy sum_i e_i g(omega_i) in the window g of band j.
+double energyIn(const Bands& bands, int j, const Quadrature& measure) {
+    double energy = 0.0;
+    for (Index i = 0; i < measure.omega.size(); ++i)
+        energy += measure.weight[i] * bands.window(j, measure.omega[i]);
+    return energy;
 }
 
-/// The energies of the shape in every band, and those that noise of height 1 has on average.
+Eigen::VectorXd energiesIn(const Bands& bands, const Quadrature& measure) {
+    Eigen::VectorXd energies(bands.count());
+    for (int j = 0; j < bands.count(); ++j) energies[j] = energyIn(bands, j, measure);
+    return energies;
+}
+
+/// The bands that share a Krylov space.
+struct Bundle {
+    int octave = 0;
+    std::vector<int> thirds;
+};
+
+std::vector<Bundle> bundles(const Bands& octaves, const Bands& thirds, double lastOfBasis) {
+    std::vector<Bundle> all;
+    for (int j = 0; j < octaves.count(); ++j) {
+        Bundle bundle{j, {}};
+        for (int t = 0; t < thirds.count(); ++t)
+            if (thirds.end(t) > lastOfBasis && octaves.nearest(thirds.featureSize(t)) == j)
+                bundle.thirds.push_back(t);
+        if (octaves.end(j) > lastOfBasis || !bundle.thirds.empty()) all.push_back(bundle);
+    }
+    return all;
+}
+
+/// The energy of the octave, then those of the shape and of the noise in all third octaves.
+Eigen::ArrayXd energiesOf(const Bundle& bundle, const Bands& octaves, const Bands& thirds,
+                          const KrylovSpaces& signals) {
+    const auto count = static_cast<Index>(bundle.thirds.size());
+    Eigen::ArrayXd energies = Eigen::ArrayXd::Zero(1 + 2 * count);
+    for (int c = 0; c < signals.columns(); ++c) {
+        const Quadrature measure = signals.quadrature(c);
+        const bool isNoise = c + 1 == signals.columns();
+        if (!isNoise) energies[0] += energyIn(octaves, bundle.octave, measure);
+        for (Index t = 0; t < count; ++t)
+            energies[1 + t + (isNoise ? count : 0)] += energyIn(thirds, bundle.thirds[t], measure);
+    }
+    return energies;
+}
+
+/// The same, converged.
+/// @param total  energies of the shape and of the noise in all bands.
+Eigen::ArrayXd convergedEnergies(const Bundle& bundle, const Bands& octaves, const Bands& thirds,
+                                 const Signal& signal, const Eigen::MatrixXd& signals,
+                                 const Eigen::Array2d& total, ShiftedLdlt& ldlt) {
+    const Eigen::VectorXd& D = signal.laplacian.D;
+    const double omega = 2.0 * kPi / octaves.featureSize(bundle.octave);
+    ldlt.factorizeDefinite(signal.laplacian.W, D, omega * omega);
+    KrylovSpaces spaces(ldlt, D, signal.constants, signals);
+
+    const auto count = static_cast<Index>(bundle.thirds.size());
+    Eigen::ArrayXd negligible(1 + 2 * count), relative(1 + 2 * count);
+    negligible << kNegligible * total[0], Eigen::ArrayXd::Constant(count, kNegligible * total[0]),
+        Eigen::ArrayXd::Constant(count, kNegligible * total[1]);
+    relative << kConverged, Eigen::ArrayXd::Constant(2 * count, kThirdsConverged);
+    Eigen::ArrayXd energies = Eigen::ArrayXd::Zero(1 + 2 * count), change = energies;
+    for (int m = 1; m <= kMaxDimension; ++m) {
+        if (!spaces.extend()) return energiesOf(bundle, octaves, thirds, spaces);
+        if (m % kEnergyCheckInterval != 0) continue;
+        const Eigen::ArrayXd before = energies, changeBefore = change;
+        energies = energiesOf(bundle, octaves, thirds, spaces);
+        change = (energies - before).abs();
+        // Two in a row: one small change may be a coincidence.
+        if (m >= kFirstEnergyCheck &&
+            (change.max(changeBefore) <= (relative * energies).max(negligible)).all())
+            break;
+    }
+    return energies;
+}
+
+/// The energies x^T D g(sqrt(A)) x of signals orthogonal to a basis, by Gauss quadrature in
+/// shift-invert Krylov spaces with poles at the centres of the octaves.
+/// @param lastOfBasis  highest frequency of the basis; bands that end below it get 0.
+BandEnergies energiesBeyond(const Bands& octaves, const Bands& thirds, const Signal& signal,
+                            double lastOfBasis, const Eigen::MatrixXd& shape,
+                            const Eigen::VectorXd& noise, ShiftedLdlt& ldlt,
+                            const Progress& progress) {
+    const Eigen::VectorXd& D = signal.laplacian.D;
+    Eigen::MatrixXd signals(shape.rows(), shape.cols() + 1);
+    signals << shape, noise;
+    const Eigen::Array2d total(energyOf(shape, D), noise.cwiseAbs2().dot(D));
+
+    BandEnergies beyond{Eigen::VectorXd::Zero(octaves.count()),
+                        Eigen::VectorXd::Zero(thirds.count()),
+                        Eigen::VectorXd::Zero(thirds.count())};
+    const std::vector<Bundle> all = bundles(octaves, thirds, lastOfBasis);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        progress.report(static_cast<double>(i) / static_cast<double>(all.size()),
+                        "energies of the octaves");
+        const Eigen::ArrayXd energies =
+            convergedEnergies(all[i], octaves, thirds, signal, signals, total, ldlt);
+        const auto count = static_cast<Index>(all[i].thirds.size());
+        beyond.octaves[all[i].octave] = energies[0];
+        for (Index t = 0; t < count; ++t) {
+            beyond.thirds[all[i].thirds[t]] = energies[1 + t];
+            beyond.noise[all[i].thirds[t]] = energies[1 + count + t];
+        }
+    }
+    return beyond;
+}
+
+/// The energies of the shape in all bands, and the expected ones of noise of height 1.
 ///
-/// In the basis the mean over all draws of the noise is known, sum_v (phi_i(v) D_v)^2; beyond, one
-/// draw is near enough to it, for there are many harmonics in a band.
-BandEnergies bandEnergies(const Bands& octaves, const Bands& thirds, const Vibration& vibration,
+/// In the basis, the expectation is sum_v (phi_i(v) D_v)^2. Beyond it, a band has so many harmonics
+/// that a single sample is close enough.
+BandEnergies bandEnergies(const Bands& octaves, const Bands& thirds, const Signal& signal,
                           const HarmonicBasis& basis, ShiftedLdlt& ldlt, const Progress& progress,
                           GeometrySpectrum& spectrum) {
-    const Eigen::VectorXd& D = vibration.laplacian.D;
-    const Index constants = vibration.constants.count();
+    const Eigen::VectorXd& D = signal.laplacian.D;
     const Eigen::MatrixXd Dphi = D.asDiagonal() * basis.Phi;
-    const Eigen::VectorXd shapeWithin = spectrum.amplitudes.cwiseAbs2() * spectrum.area;
-    const Eigen::VectorXd noiseWithin = Dphi.colwise().squaredNorm();
-    BandEnergies energies{
-        energiesWithin(octaves, spectrum.frequencies, shapeWithin, constants),
-        energiesWithin(thirds, spectrum.frequencies, shapeWithin, constants),
-        energiesWithin(thirds, spectrum.frequencies, noiseWithin, constants),
-    };
+    const Index varying = basis.size() - signal.constants.count();
+    Quadrature measure{spectrum.frequencies.tail(varying),
+                       spectrum.amplitudes.tail(varying).cwiseAbs2() * spectrum.area};
+    BandEnergies energies{energiesIn(octaves, measure), energiesIn(thirds, measure), {}};
+    measure.weight = Dphi.rightCols(varying).colwise().squaredNorm();
+    energies.noise = energiesIn(thirds, measure);
     if (basis.size() == D.size()) return energies;
 
-    Eigen::MatrixXd R = vibration.U;
+    Eigen::MatrixXd R = signal.U;
     R.noalias() -= basis.Phi * (Dphi.transpose() * R);
     const double energyOfR = energyOf(R, D);
-    if (energyOfR <= kRoundOff * spectrum.totalEnergy) R.setZero();
+    if (energyOfR <= kNoEnergy * spectrum.totalEnergy) R.setZero();
     Eigen::VectorXd noise = noiseOfUnitHeight(D.size());
     noise -= basis.Phi * (Dphi.transpose() * noise);
-    BandEnergies beyond =
-        energiesBeyond(octaves, thirds, vibration.laplacian, vibration.constants,
-                       spectrum.frequencies[basis.size() - 1], R, noise, ldlt, progress);
+    BandEnergies beyond = energiesBeyond(
+        octaves, thirds, signal, spectrum.frequencies[basis.size() - 1], R, noise, ldlt, progress);
     if (const double sum = beyond.octaves.sum(); sum > 0.0) {
         spectrum.mismatch = std::abs(sum / energyOfR - 1.0);
         beyond.octaves *= energyOfR / sum;
@@ -156,12 +250,12 @@ BandEnergies bandEnergies(const Bands& octaves, const Bands& thirds, const Vibra
 }
 
 void setOctaves(const Bands& octaves, const Eigen::VectorXd& energies, GeometrySpectrum& spectrum) {
-    // A triangle almost without area has frequencies far beyond all others, and nothing in them.
+    // A triangle of nearly no area has very high frequencies, and no energy in them.
     Index filled = octaves.count();
-    while (energies[filled - 1] <= kRoundOff * spectrum.totalEnergy) --filled;
+    while (energies[filled - 1] <= kNoEnergy * spectrum.totalEnergy) --filled;
     spectrum.octaveFeatureSizes.resize(filled);
     for (int j = 0; j < filled; ++j) spectrum.octaveFeatureSizes[j] = octaves.featureSize(j);
-    const double sum = energies.head(filled).sum();  // totalEnergy, but for round-off
+    const double sum = energies.head(filled).sum();  // totalEnergy, up to round-off
     spectrum.octaveEnergies = energies.head(filled) * (spectrum.totalEnergy / sum);
     spectrum.octaveAmplitudes = (spectrum.octaveEnergies / spectrum.area).cwiseSqrt();
     spectrum.cumulativeEnergy.resize(filled);
@@ -170,7 +264,7 @@ void setOctaves(const Bands& octaves, const Eigen::VectorXd& energies, GeometryS
     spectrum.cumulativeEnergy /= spectrum.cumulativeEnergy[filled - 1];
 }
 
-/// The thirds of octaves that have enough harmonics.
+/// The third octaves with enough harmonics, and their noise floor.
 void setBands(const Bands& thirds, const BandEnergies& energies, Index vertices,
               GeometrySpectrum& spectrum) {
     const double least = kFewHarmonics / static_cast<double>(vertices) * spectrum.area;
@@ -192,7 +286,7 @@ void setBands(const Bands& thirds, const BandEnergies& energies, Index vertices,
     spectrum.noiseFeatureSize = floor.featureSize;
 }
 
-/// Feature size at and above which a part of the energy is.
+/// Feature size at and above which this part of the energy is.
 double featureSizeHolding(double part, const GeometrySpectrum& spectrum, const Bands& octaves) {
     const double wanted = part * spectrum.totalEnergy;
     const Eigen::VectorXd& omega = spectrum.frequencies;
@@ -201,7 +295,7 @@ double featureSizeHolding(double part, const GeometrySpectrum& spectrum, const B
         energy += std::pow(spectrum.amplitudes[i], 2) * spectrum.area;
         if (omega[i] > 0.0 && energy >= wanted) return 2.0 * kPi / omega[i];
     }
-    // Beyond the basis along straight lines, over octaves, between what is known at the edges.
+    // Beyond the basis, interpolated in octaves between the edges.
     double size = 2.0 * kPi / omega[omega.size() - 1];
     for (int j = 0; j < spectrum.cumulativeEnergy.size(); ++j) {
         const double next = octaves.edge(j);
@@ -224,23 +318,22 @@ GeometrySpectrum geometrySpectrum(const Vertices& V, const Faces& F, const Spect
     spectrum.diagonal = boundingBoxDiagonal(V);
     spectrum.meanEdge = meanEdgeLength(V, F);
     spectrum.area = mesh.laplacian.D.sum();
-    const Vibration vibration = vibrationOf(std::move(mesh), options.boundary);
-    const Laplacian& laplacian = vibration.laplacian;
+    const Signal signal = signalOf(std::move(mesh), options.boundary);
+    const Laplacian& laplacian = signal.laplacian;
     const Eigen::VectorXd& D = laplacian.D;
-    const Index n = D.size(), constants = vibration.constants.count();
-    const Index k = sizeOfBasis(options.basisSize, n, vibration.constants.count());
+    const Index n = D.size(), constants = signal.constants.count();
+    const Index k = sizeOfBasis(options.basisSize, n, signal.constants.count());
 
     const ThreadTeam team;
     ShiftedLdlt ldlt;
-    const HarmonicBasis basis = k == n && n <= kWholeBasis
-                                    ? denseBasis(laplacian, vibration.constants)
-                                    : truncatedBasis(laplacian, vibration.constants, k, ldlt,
-                                                     progress.part(0.0, kBasisDone));
-    spectrum.totalEnergy = energyOf(vibration.U, D);
+    const HarmonicBasis basis =
+        k == n && n <= kWholeBasis
+            ? denseBasis(laplacian, signal.constants)
+            : truncatedBasis(laplacian, signal.constants, k, ldlt, progress.part(0.0, kBasisDone));
+    spectrum.totalEnergy = energyOf(signal.U, D);
     spectrum.frequencies = basis.lambda.cwiseMax(0.0).cwiseSqrt();
-    spectrum.amplitudes =
-        (basis.Phi.transpose() * (D.asDiagonal() * vibration.U)).rowwise().norm() /
-        std::sqrt(spectrum.area);
+    spectrum.amplitudes = (basis.Phi.transpose() * (D.asDiagonal() * signal.U)).rowwise().norm() /
+                          std::sqrt(spectrum.area);
     spectrum.amplitudes.head(constants).setZero();
 
     const double lowest = std::max(basis.lambda[constants], kLowest * 4.0 * kPi / spectrum.area);
@@ -248,7 +341,7 @@ GeometrySpectrum geometrySpectrum(const Vertices& V, const Faces& F, const Spect
         std::max(lowest, k == n ? basis.lambda[n - 1] : largestEigenvalue(laplacian));
     const Bands octaves(spectrum.diagonal, std::sqrt(lowest), std::sqrt(highest));
     const Bands thirds(spectrum.diagonal, std::sqrt(lowest), std::sqrt(highest), 3);
-    const BandEnergies energies = bandEnergies(octaves, thirds, vibration, basis, ldlt,
+    const BandEnergies energies = bandEnergies(octaves, thirds, signal, basis, ldlt,
                                                progress.part(kBasisDone, 1.0), spectrum);
     setOctaves(octaves, energies.octaves, spectrum);
     setBands(thirds, energies, n, spectrum);

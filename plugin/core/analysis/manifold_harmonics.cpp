@@ -4,27 +4,16 @@
 #include <string>
 #include <utility>
 
-#include "core/harmonics/harmonic_basis.h"
 #include "core/harmonics/truncated_basis.h"
-#include "core/laplacian/constant_modes.h"
-#include "core/laplacian/interior.h"
-#include "core/laplacian/mesh_laplacian.h"
-#include "core/ldlt/shifted_ldlt.h"
-#include "core/mesh/mesh.h"
 #include "core/support/errors.h"
 #include "core/support/threads.h"
 
 namespace spectral {
 
-namespace {
-
-/// Relative difference of absolute values that are taken for equal: well above the accuracy of an
-/// eigenvector, well below what tells entries apart where there is no symmetry.
-constexpr double kTie = 1e-6;
-
-}  // namespace
-
 void fixSigns(Eigen::MatrixXd& Phi) {
+    // Relative difference of entries that count as equal: well above the error of an eigenvector,
+    // well below the differences on a mesh without symmetry.
+    constexpr double kTie = 1e-6;
     for (Index j = 0; j < Phi.cols(); ++j) {
         const double extreme = Phi.col(j).cwiseAbs().maxCoeff();
         Index first = 0;
@@ -40,8 +29,8 @@ ManifoldHarmonics manifoldHarmonics(const Vertices& V, const Faces& F,
     const Index k = options.basisSize;
     if (interior.size() < 2)
         throw InvalidOption(ErrorCode::BoundaryFixesAll,
-                            "boundary = fixed leaves nothing that could vibrate: " +
-                                std::to_string(interior.size()) + " vertices are not on it");
+                            "boundary = fixed leaves too few vertices for a harmonic: " +
+                                std::to_string(interior.size()));
     const ThreadTeam team;
 
     const Laplacian laplacian = interior.restricted(mesh.laplacian);
@@ -55,7 +44,8 @@ ManifoldHarmonics manifoldHarmonics(const Vertices& V, const Faces& F,
     harmonics.lambda = basis.lambda.head(k);
     harmonics.residuals = basis.residuals.head(k);
     harmonics.inertiaCount = static_cast<int>(basis.inertiaCount);
-    harmonics.Phi = onMesh(mesh.surface, interior.extended(std::move(basis.Phi)), V.rows());
+    harmonics.Phi =
+        extendedByZero(interior.extended(std::move(basis.Phi)), mesh.surface.vertex, V.rows());
     return harmonics;
 }
 

@@ -5,41 +5,37 @@
 #include <limits>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "core/krylov/krylov_spaces.h"
 #include "core/krylov/pole_selection.h"
-#include "core/laplacian/constant_modes.h"
-#include "core/laplacian/frequency.h"
 
 namespace spectral {
 
 namespace {
 
-/// Dimensions from one check of the error to the next.
+/// Dimensions between checks of the error.
 constexpr int kCheckInterval = 3;
 
-/// Below this dimension a difference says nothing: a narrow band has not been seen yet.
+/// Smallest dimension at which to stop: before, a narrow band may not have been resolved.
 constexpr int kFirstCheck = 6;
 
-/// At this multiple of the requested accuracy over the surface the single vertices are looked at
-/// too.
-constexpr double kNearlyThere = 30.0;
+/// Multiple of the accuracy at which the error at the vertices is estimated as well: a pass over
+/// the basis that would be wasted far from convergence, but needs some checks for its rate.
+constexpr double kNearlyConverged = 30.0;
 
-/// Factor on the estimate where it stops short: at a cusp the changes shrink more slowly than any
-/// geometric series, and add up to more.
-constexpr double kStoppedShort = 3.0;
+/// Factor on the error estimate without convergence: at a cusp the changes decay more slowly than
+/// any geometric series. A bound for all cusps of full_spectrum_test.
+constexpr double kNotConverged = 3.0;
 
 /// Estimates the error of the newest approximation from the changes between checks, in one norm.
 ///
-/// With changes that shrink by a factor q from check to check, what is still to come is their
-/// geometric series, change q / (1 - q). Where convergence is fast the last change itself is taken,
-/// which is more; where it is slow the series is, which can be far more than the last change.
+/// If changes decay by a factor q per check, the remaining ones sum to change q / (1 - q). The
+/// estimate is the larger of this, for slow convergence, and the last change, for fast.
 class ErrorEstimate {
   public:
     double operator()(double change) {
         changes_.push_back(change);
-        constexpr std::size_t kMemory = 4;  // the rate is a mean over so many checks
+        constexpr std::size_t kMemory = 4;  // checks that the rate is averaged over
         const std::size_t span = std::min(kMemory, changes_.size() - 1);
         if (span == 0) return std::numeric_limits<double>::infinity();
         if (change <= 0.0) return 0.0;
@@ -49,11 +45,11 @@ class ErrorEstimate {
     }
 
   private:
-    static constexpr double kSlowest = 0.9;  // changes that do not shrink at all are scatter
+    static constexpr double kSlowest = 0.9;  // larger rates are scatter, and the sum diverges at 1
     std::vector<double> changes_;
 };
 
-/// The approximation of one gain's signals in growing spaces.
+/// Successive approximations of F(sqrt(A)) X for one gain.
 class Approximation {
   public:
     Approximation(const KrylovSpaces& spaces, const Gain& gain, double pole,
@@ -68,8 +64,8 @@ class Approximation {
 
     bool isSufficient(int dimension) const { return sufficient_ && dimension >= *sufficient_; }
 
-    /// Renews the coefficients of all columns; returns the estimated error.
-    double renew() {
+    /// Updates the coefficients of all columns; returns the estimated error.
+    double update() {
         double squares = 0.0;
         for (int c = 0; c < spaces_.columns(); ++c) {
             change_[c] = spaces_.coefficients(c, gain_);
@@ -79,9 +75,9 @@ class Approximation {
             squares += change_[c].squaredNorm();
         }
         const double error = overSurface_(std::sqrt(squares) / spaces_.norms().matrix().norm());
-        if (!options_.atEveryVertex || error > kNearlyThere * options_.accuracy) return error;
-        // A norm over the surface hardly sees a vertex of small mass; its error can be larger, and
-        // shrink more slowly and less evenly: so the larger one of two changes counts.
+        if (!options_.atEveryVertex || error > kNearlyConverged * options_.accuracy) return error;
+        // Vertices of small mass hardly affect the norm over the surface. Their errors can be
+        // larger, and decay more slowly and less evenly: the larger of two changes counts.
         const double before = std::exchange(largest_, spaces_.largestEntryOf(change_));
         return std::max(error, atVertices_(std::max(before, largest_) / spaces_.largestEntry()));
     }
@@ -100,25 +96,12 @@ class Approximation {
 
 }  // namespace
 
-FullSpectrumResult applyFullSpectrum(const Eigen::VectorXd& D, const ConstantModes& constants,
-                                     const ShiftedLdlt& ldlt, const Gain& gain,
-                                     const Eigen::MatrixXd& X, const FullSpectrumOptions& options,
-                                     const Progress& progress) {
-    return std::move(
-        applyFullSpectrum(D, constants, ldlt, std::vector{gain}, X, options, progress).front());
-}
-
 std::vector<FullSpectrumResult> applyFullSpectrum(
     const Eigen::VectorXd& D, const ConstantModes& constants, const ShiftedLdlt& ldlt,
     const std::vector<Gain>& gains, const Eigen::MatrixXd& X, const FullSpectrumOptions& options,
     const Progress& progress) {
     KrylovSpaces spaces(ldlt, D, constants, X);
-    if (!(spaces.largestEntry() > 0.0)) {
-        FullSpectrumResult same;
-        same.Y = X;
-        same.converged = true;
-        return std::vector<FullSpectrumResult>(gains.size(), same);
-    }
+    if (!(spaces.largestEntry() > 0.0)) return {gains.size(), {X, 0.0, 0, true}};
     std::vector<FullSpectrumResult> results(gains.size());
     std::vector<Approximation> approximations;
     for (const Gain& gain : gains)
@@ -141,8 +124,8 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
         for (std::size_t g = 0; g < gains.size(); ++g) {
             FullSpectrumResult& result = results[g];
             result.dimension = isInvariant ? m - 1 : m;
-            result.errorEstimate = approximations[g].renew();
-            // An invariant space leaves no error but round-off.
+            result.errorEstimate = approximations[g].update();
+            // In an invariant space, round-off is the only error.
             if (isInvariant) result.errorEstimate = std::numeric_limits<double>::epsilon();
             if (isSufficient)
                 result.errorEstimate = std::min(result.errorEstimate, options.accuracy);
@@ -153,18 +136,18 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
         isDone = isDone || allConverged;
         if (isDone || !std::isfinite(largestError)) continue;
 
-        // Convergence is geometric: the logarithm of the error tells how far it is.
+        // Convergence is geometric: progress is linear in the logarithm of the error.
         if (firstError <= 0.0) firstError = std::max(largestError, options.accuracy * 10);
         const double done =
             std::log(firstError / largestError) / std::log(firstError / options.accuracy);
-        furthest = std::clamp(done, furthest, 1.0);  // an estimate may be worse than the one before
+        furthest = std::clamp(done, furthest, 1.0);  // the estimate may increase
         progress.report(furthest, "filtering");
     }
 
     const Eigen::MatrixXd means = constants.means(X);
     for (std::size_t g = 0; g < gains.size(); ++g) {
         FullSpectrumResult& result = results[g];
-        if (!result.converged) result.errorEstimate *= kStoppedShort;
+        if (!result.converged) result.errorEstimate *= kNotConverged;
         result.Y = approximations[g].Y();
         constants.remove(result.Y);
         constants.add(means, result.Y);

@@ -1,28 +1,47 @@
 #include "core/krylov/krylov_spaces.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <type_traits>
 #include <utility>
 
-#include "core/krylov/tridiagonal.h"
-#include "core/laplacian/constant_modes.h"
-#include "core/laplacian/frequency.h"
+#include "core/support/errors.h"
 #include "core/support/threads.h"
 
 namespace spectral {
 
 namespace {
 
-/// Norm below which a new direction is round-off: the space is invariant, the result exact.
+/// Relative norm below which a new direction is round-off: the space is invariant.
 constexpr double kBreakdown = 1e-13;
 
-/// Inner products of basis vectors up to which the basis counts as orthogonal, and what round-off
-/// makes of one that is 0.
-constexpr double kOrthogonal = 1e-10, kRoundOff = 1e-15;
+/// Largest inner product of an orthogonal basis. Semiorthogonality, 1e-8 (Simon 1984), would keep T
+/// accurate, but not combinations of the basis.
+constexpr double kOrthogonal = 1e-10;
 
-/// The numbers of a row, one for each signal.
+/// Inner product of orthogonalized vectors: a few units of round-off.
+constexpr double kRoundOff = 1e-15;
+
+/// Calls a function with the number of columns as a compile-time constant.
+template <class Call>
+void withColumns(int columns, const Call& call) {
+    switch (columns) {
+        case 1: return call(std::integral_constant<int, 1>());
+        case 2: return call(std::integral_constant<int, 2>());
+        case 3: return call(std::integral_constant<int, 3>());
+        default: return call(std::integral_constant<int, KrylovSpaces::kMostSignals>());
+    }
+}
+
+/// Number of tasks of parallelRows.
+std::size_t taskCount(Index rows) {
+    return static_cast<std::size_t>((rows + kRowsOfTask - 1) / kRowsOfTask);
+}
+
+/// The values of all signals at a vertex.
 template <int Columns>
 using Row = Eigen::Array<double, 1, Columns, Eigen::RowMajor | Eigen::DontAlign>;
 
@@ -43,27 +62,26 @@ Row<Columns> lastOf(const std::vector<std::vector<double>>& ofColumns) {
     return last;
 }
 
-/// What a task has summed, over the rows of one component after the other.
+/// Partial sum of a task, over consecutive rows of one component.
 template <int Columns>
 struct ComponentSum {
     int label;
     Row<Columns> sum;
 };
 
-/// D-weighted means on every component, count x Columns, and sums of squares without them.
+/// D-weighted means on every component, count x Columns, and squared D-norms without them.
 template <int Columns>
 struct Moments {
     Eigen::Array<double, Eigen::Dynamic, Columns> means;
     Row<Columns> squares;
 };
 
-/// Those of the rows that `row` makes and returns. The means are to be small: their squares are
-/// subtracted.
+/// Moments of the rows that `row` returns. The squared norms are accurate for small means only,
+/// whose squares are subtracted.
 template <int Columns, class MakeRow>
 Moments<Columns> momentsOf(const Eigen::VectorXd& D, const Eigen::VectorXi& label,
                            const Eigen::VectorXd& mass, const MakeRow& row) {
-    std::vector<std::vector<ComponentSum<Columns>>> parts(
-        static_cast<std::size_t>((D.size() + kRowsOfTask - 1) / kRowsOfTask));
+    std::vector<std::vector<ComponentSum<Columns>>> parts(taskCount(D.size()));
     Moments<Columns> moments;
     moments.squares =
         parallelSum(D.size(), Row<Columns>::Zero().eval(), [&](Index begin, Index end) {
@@ -112,22 +130,12 @@ KrylovSpaces::KrylovSpaces(const ShiftedLdlt& ldlt, const Eigen::VectorXd& D,
             label_[order[i]] = constants.label()[i];
         }
     });
-    switch (columns_) {
-        case 1: start<1>(X); break;
-        case 2: start<2>(X); break;
-        case 3: start<3>(X); break;
-        default: start<4>(X); break;
-    }
+    withColumns(columns_, [&](auto columns) { start<columns>(X); });
 }
 
 bool KrylovSpaces::extend() {
     if (std::find(exhausted_.begin(), exhausted_.end(), false) == exhausted_.end()) return false;
-    switch (columns_) {
-        case 1: extendColumns<1>(); break;
-        case 2: extendColumns<2>(); break;
-        case 3: extendColumns<3>(); break;
-        default: extendColumns<4>(); break;
-    }
+    withColumns(columns_, [&](auto columns) { extendColumns<columns>(); });
     return true;
 }
 
@@ -142,7 +150,7 @@ void KrylovSpaces::start(const Eigen::MatrixXd& X) {
     const auto mean = momentsOf<Columns>(D_, label_, constants_.masses(), [&](Index i) {
                           return Row<Columns>(rowOf<Columns>(work_, i));
                       }).means;
-    std::vector<double> largest(static_cast<std::size_t>((n + kRowsOfTask - 1) / kRowsOfTask));
+    std::vector<double> largest(taskCount(n));
     const Row<Columns> squares =
         parallelSum(n, Row<Columns>::Zero().eval(), [&](Index begin, Index end) {
             Row<Columns> sum = Row<Columns>::Zero();
@@ -185,8 +193,8 @@ void KrylovSpaces::extendColumns() {
             return sum;
         });
 
-    // w = S q - alpha q - beta p, with the vector p before q. That keeps the complement of the
-    // constants; round-off does not, and would grow from step to step.
+    // w = S q - alpha q - beta p, with p the vector before q. Constants do not arise, except from
+    // round-off, and would be amplified by every step.
     const Row<Columns> before = lastOf<Columns>(beta_);
     const Block& p = basis_[basis_.size() > 1 ? basis_.size() - 2 : 0];
     const Moments<Columns> w = momentsOf<Columns>(D_, label_, constants_.masses(), [&](Index i) {
@@ -223,9 +231,9 @@ void KrylovSpaces::extendColumns() {
     basis_.push_back(std::move(next));
 }
 
-/// Follows the inner products of the vector to come with all before, by the recurrence that they
-/// obey themselves (Simon 1984), and says whether they have become too large. As round-off grows in
-/// the vector after the next one, too, that is then orthogonalized as well.
+/// Whether the next vector must be orthogonalized: updates the estimated inner products with all
+/// others by their own recurrence (Simon 1984). If so, the vector after it must be, too: it
+/// inherits the errors of the current one.
 bool KrylovSpaces::losesOrthogonality(const Eigen::Ref<const Eigen::ArrayXd>& beta) {
     bool loses = false;
     for (int c = 0; c < columns_; ++c) {
@@ -250,7 +258,7 @@ bool KrylovSpaces::losesOrthogonality(const Eigen::Ref<const Eigen::ArrayXd>& be
     return std::exchange(orthogonalizesNext_, loses) || loses;
 }
 
-/// Subtracts from the vectors in `work_` what they have of the basis; returns their norms.
+/// Orthogonalizes the vectors in `work_` against the basis; returns their norms.
 template <int Columns>
 Eigen::Array<double, 1, Columns> KrylovSpaces::orthogonalize(
     Eigen::Array<double, 1, Columns> norm) {
@@ -281,7 +289,7 @@ Eigen::Array<double, 1, Columns> KrylovSpaces::orthogonalize(
                 return sum;
             });
         const Row<Columns> before = std::exchange(norm, squares.sqrt());
-        if ((norm >= 0.5 * before).all()) break;  // else round-off has left something of it
+        if ((norm >= 0.5 * before).all()) break;  // else cancellation requires a second pass
     }
     for (std::vector<double>& overlaps : overlap_)
         if (!overlaps.empty()) std::fill(overlaps.begin(), overlaps.end() - 1, kRoundOff);
@@ -291,13 +299,23 @@ Eigen::Array<double, 1, Columns> KrylovSpaces::orthogonalize(
 KrylovSpaces::Ritz KrylovSpaces::ritz(int column) const {
     const auto m = static_cast<Index>(alpha_[column].size());
     if (m == 0) return {};
-    std::vector<double> beta = beta_[column];
-    beta.resize(static_cast<std::size_t>(m - 1));  // the last one leads out of the space
-    TridiagonalEigenpairs T = eigenpairsOfTridiagonal(alpha_[column], beta);
-    Ritz pairs{Eigen::VectorXd(m), std::move(T.vectors)};
+    Eigen::VectorXd a = Eigen::Map<const Eigen::VectorXd>(alpha_[column].data(), m);
+    Eigen::VectorXd b = Eigen::Map<const Eigen::VectorXd>(beta_[column].data(), m - 1);
+    // Eigen scales a full matrix to entries up to 1, but not a tridiagonal one, although its test
+    // for convergence, |b| <= eps sqrt(|a|), assumes that scale.
+    const double scale = std::max(a.cwiseAbs().maxCoeff(), m > 1 ? b.cwiseAbs().maxCoeff() : 0.0);
+    if (scale > 0.0) {
+        a /= scale;
+        b /= scale;
+    }
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> T;
+    T.computeFromTridiagonal(a, b);
+    if (T.info() != Eigen::Success)
+        throw SolverFailure("the tridiagonal eigenproblem of the Krylov space did not converge");
+    Ritz pairs{Eigen::VectorXd(m), T.eigenvectors()};
     for (Index i = 0; i < m; ++i) {
-        // theta = 1/(lambda + pole); round-off may push it out of (0, 1/pole].
-        const double theta = T.values[i];
+        // theta = 1/(lambda + lambda_p); round-off may push it out of (0, 1/lambda_p].
+        const double theta = scale * T.eigenvalues()[i];
         const double lambda = theta > 0.0 ? std::max(0.0, 1.0 / theta + ldlt_.shift())
                                           : std::numeric_limits<double>::infinity();
         pairs.omega[i] = std::sqrt(lambda);
@@ -308,8 +326,7 @@ KrylovSpaces::Ritz KrylovSpaces::ritz(int column) const {
 Eigen::VectorXd KrylovSpaces::coefficients(int column, const Gain& gain) const {
     const Ritz pairs = ritz(column);
     if (pairs.omega.size() == 0) return {};
-    Eigen::VectorXd gains(pairs.omega.size());
-    for (Index i = 0; i < gains.size(); ++i) gains[i] = gain(pairs.omega[i]);
+    const Eigen::VectorXd gains = pairs.omega.unaryExpr(gain);
     return norms_[column] * (pairs.Q * gains.cwiseProduct(pairs.Q.row(0).transpose()));
 }
 
@@ -323,35 +340,28 @@ Quadrature KrylovSpaces::quadrature(int column) const {
 Eigen::MatrixXd KrylovSpaces::combine(const std::vector<Eigen::VectorXd>& coefficients) const {
     Eigen::MatrixXd Y(D_.size(), columns_);
     const std::vector<int>& inverse = ldlt_.inverseOrder();
-    combineRows(coefficients, [&](Index i, const auto& row) { Y.row(inverse[i]) = row.matrix(); });
+    withColumns(columns_, [&](auto columns) {
+        combineColumns<columns>(
+            coefficients, [&](Index i, const auto& row) { Y.row(inverse[i]) = row.matrix(); });
+    });
     return Y;
 }
 
 double KrylovSpaces::largestEntryOf(const std::vector<Eigen::VectorXd>& coefficients) const {
-    std::vector<double> largest(
-        static_cast<std::size_t>((D_.size() + kRowsOfTask - 1) / kRowsOfTask));
-    combineRows(coefficients, [&](Index i, const auto& row) {
-        double& ofTask = largest[i / kRowsOfTask];
-        ofTask = std::max(ofTask, row.abs().maxCoeff());
+    std::vector<double> largest(taskCount(D_.size()));
+    withColumns(columns_, [&](auto columns) {
+        combineColumns<columns>(coefficients, [&](Index i, const auto& row) {
+            double& ofTask = largest[i / kRowsOfTask];
+            ofTask = std::max(ofTask, row.abs().maxCoeff());
+        });
     });
     return *std::max_element(largest.begin(), largest.end());
-}
-
-template <class TakeRow>
-void KrylovSpaces::combineRows(const std::vector<Eigen::VectorXd>& coefficients,
-                               const TakeRow& takeRow) const {
-    switch (columns_) {
-        case 1: return combineColumns<1>(coefficients, takeRow);
-        case 2: return combineColumns<2>(coefficients, takeRow);
-        case 3: return combineColumns<3>(coefficients, takeRow);
-        default: return combineColumns<4>(coefficients, takeRow);
-    }
 }
 
 template <int Columns, class TakeRow>
 void KrylovSpaces::combineColumns(const std::vector<Eigen::VectorXd>& coefficients,
                                   const TakeRow& takeRow) const {
-    // Filled up with zeros: spaces may have ended at different dimensions.
+    // Padded with zeros: spaces may have different dimensions.
     std::vector<Row<Columns>> factors(basis_.size(), Row<Columns>::Zero());
     for (int c = 0; c < Columns; ++c)
         for (Index j = 0; j < coefficients[c].size(); ++j) factors[j][c] = coefficients[c][j];

@@ -9,68 +9,65 @@
 
 namespace spectral {
 
-/// A sum of point masses on the frequencies.
+/// Quadrature nodes and weights on the frequencies.
 struct Quadrature {
-    Eigen::VectorXd omega;   ///< m nodes, >= 0, in no order, radians per length unit.
+    Eigen::VectorXd omega;   ///< m nodes, >= 0, radians per length unit, in no particular order.
     Eigen::VectorXd weight;  ///< m weights, >= 0.
 };
 
-/// Shift-invert Lanczos recurrences of a few signals, in step: one pass over the factor of W +
+/// Shift-invert Lanczos recurrences of several signals in step: each pass over the factor of W +
 /// lambda_p D extends all of their Krylov spaces.
 ///
 /// S = (W + lambda_p D)^-1 D is self-adjoint in the D-inner product and has the eigenvectors of A
 /// with eigenvalues theta = 1/(lambda + lambda_p). With U the D-orthonormal basis of the Krylov
-/// space of S and a signal x, and T = U^T D S U, a tridiagonal matrix,
+/// space of S and a signal x, and the tridiagonal T = U^T D S U,
 ///     f(A) x       ~ |x|_D U f(T^-1 - lambda_p) e_1,
 ///     x^T D f(A) x ~ |x|_D^2 e_1^T f(T^-1 - lambda_p) e_1.
 /// The second is Gauss quadrature of the spectral measure of x (Golub and Meurant 1994): m
 /// dimensions are exact for polynomials in theta of degree 2m - 1, twice that of the first.
 ///
-/// The recurrence keeps the basis orthogonal as long as no Ritz value has converged; only then is
-/// it orthogonalized again, which takes more time than all the rest (partial reorthogonalization,
-/// Simon 1984).
+/// The recurrence keeps the basis orthogonal until a Ritz value converges. Only then is it
+/// reorthogonalized, which costs more than all the rest (partial reorthogonalization, Simon 1984).
 ///
-/// Vectors are kept in the order of the factor, the numbers of a row next to each other; work is
-/// shared by the threads of the caller's team.
+/// Vectors are stored in factor order, the values of all signals at a vertex next to each other.
+/// Work is shared by the threads of the caller's team.
 class KrylovSpaces {
   public:
     static constexpr int kMostSignals = 4;
 
-    /// @param ldlt   factorization of W + lambda_p D; kept by reference, as D and constants
-    /// are.
-    /// @param constants  removed from everything.
-    /// @param X          n x c signals, 1 <= c <= kMostSignals.
+    /// @param ldlt  factorization of W + lambda_p D; kept by reference, like constants.
+    /// @param constants  removed from all vectors.
+    /// @param X  n x c signals, 1 <= c <= kMostSignals.
     KrylovSpaces(const ShiftedLdlt& ldlt, const Eigen::VectorXd& D, const ConstantModes& constants,
                  const Eigen::MatrixXd& X);
 
     int columns() const { return columns_; }
 
-    /// Extends all spaces by one dimension that can be; returns whether there was one. A space that
-    /// is invariant under S cannot: what is computed from it is exact.
+    /// Extends by one dimension all spaces that are not yet invariant under S; returns whether
+    /// there were any. Results from an invariant space are exact.
     bool extend();
 
     /// Coefficients |x|_D F(sqrt(T^-1 - lambda_p)) e_1 of F(sqrt(A)) x in the basis.
     /// @throws SolverFailure  when the eigenproblem of T does not converge.
     Eigen::VectorXd coefficients(int column, const Gain& gain) const;
 
-    /// Nodes and weights of the Gauss quadrature; the weights sum to |x|_D^2.
-    /// @throws SolverFailure  when the eigenproblem of T does not converge.
+    /// Nodes and weights of the Gauss quadrature, likewise; the weights sum to |x|_D^2.
     Quadrature quadrature(int column) const;
 
-    /// The signals with these coefficients in their bases, n x c, in the order of the mesh.
-    /// @param coefficients  of every column; no more of them than its dimension.
+    /// The signals with these coefficients in their bases, n x c, in mesh order.
+    /// @param coefficients  of every column, at most as many as its dimension.
     Eigen::MatrixXd combine(const std::vector<Eigen::VectorXd>& coefficients) const;
 
-    /// Largest modulus of an entry of what combine would give.
+    /// Largest modulus of the entries of combine(coefficients).
     double largestEntryOf(const std::vector<Eigen::VectorXd>& coefficients) const;
 
     /// D-norm of each signal without its constants, c.
     const Eigen::ArrayXd& norms() const { return norms_; }
-    /// Largest entry of the signals without their constants.
+    /// Largest modulus of the entries of the signals without their constants.
     double largestEntry() const { return largestEntry_; }
 
   private:
-    using Block = Eigen::VectorXd;  // n rows of columns_ numbers
+    using Block = Eigen::VectorXd;  // n rows of columns_ values
 
     /// Eigenpairs of T: frequencies of the Ritz values, and eigenvectors as columns.
     struct Ritz {
@@ -89,23 +86,20 @@ class KrylovSpaces {
     template <int Columns, class TakeRow>
     void combineColumns(const std::vector<Eigen::VectorXd>& coefficients,
                         const TakeRow& takeRow) const;
-    template <class TakeRow>
-    void combineRows(const std::vector<Eigen::VectorXd>& coefficients,
-                     const TakeRow& takeRow) const;
 
     const ShiftedLdlt& ldlt_;
     const ConstantModes& constants_;
     int columns_;
-    Eigen::VectorXd D_;      // in the order of the factor, as all that follows
+    Eigen::VectorXd D_;      // in factor order, like all that follow
     Eigen::VectorXi label_;  // components; see ConstantModes
     std::vector<Block> basis_;
-    Block work_;  // D times the newest vectors; S times them while they are extended
-    std::vector<std::vector<double>> alpha_, beta_;
+    Block work_;  // D times the newest vectors; S times them during an extension
+    std::vector<std::vector<double>> alpha_, beta_;  // diagonal and off-diagonal of T, by column
 
-    /// Estimated inner products of the newest vector with all of them, and of the one before.
+    /// Estimated inner products of the newest vector with all others, and of the one before.
     std::vector<std::vector<double>> overlap_, overlapBefore_;
     bool orthogonalizesNext_ = false;
-    std::vector<bool> exhausted_;
+    std::vector<bool> exhausted_;  // whether the space of a column is invariant
     Eigen::ArrayXd norms_;
     double largestEntry_ = 0.0;
 };

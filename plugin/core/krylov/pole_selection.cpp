@@ -4,23 +4,21 @@
 #include <cmath>
 #include <vector>
 
-#include "core/laplacian/frequency.h"
-
 namespace spectral {
 
 namespace {
 
-/// Chebyshev nodes: degrees up to half of them are told apart. More are taken only for gains that
-/// need them.
+/// Chebyshev nodes: they resolve degrees up to half their number; the most only where needed.
 constexpr int kFewestNodes = 32, kMostNodes = 256;
 
-/// Poles that are tried: powers of two times the cutoff's lambda.
+/// Poles that are tried, powers of two times omega_c^2: a wide range, as a trial costs no solve.
 constexpr int kLowestPower = -6, kHighestPower = 12;
 
-/// Part of its span to which a gain must be approximated for a space to tell where it varies.
+/// Error, relative to the range of a gain, at which its variation is resolved: a tenth shows where
+/// a band is, a smaller one would keep spaces growing for no better error estimate.
 constexpr double kResolved = 0.1;
 
-/// Approximation of a gain by polynomials in theta, on an interval of it.
+/// Chebyshev series of a gain on an interval of theta.
 class ChebyshevSeries {
   public:
     ChebyshevSeries(const Gain& gain, double pole, double first, double last, int nodes)
@@ -43,18 +41,18 @@ class ChebyshevSeries {
         }
     }
 
-    /// Number of coefficients, from the first, without which the error would exceed the accuracy.
+    /// Number of leading coefficients needed for the accuracy.
     int requiredDimension(double accuracy) const {
         return static_cast<int>(std::partition_point(tail_.begin(), tail_.end(),
                                                      [&](double t) { return t > accuracy; }) -
                                 tail_.begin());
     }
 
-    /// From the least value to the largest.
+    /// Largest minus smallest value.
     double span() const { return span_; }
 
   private:
-    std::vector<double> tail_;  // sums of moduli, from a degree on: bound the error below it
+    std::vector<double> tail_;  // sums of moduli from a degree on: bound the truncation error
     double span_ = 0.0;
 };
 
@@ -76,8 +74,8 @@ Pole selectPole(const Gain& gain, double cutoff, const SpectrumRange& range, dou
             best.resolution = std::max(1, series.requiredDimension(kResolved * series.span()));
         }
         if (fewest <= nodes / 2) break;
-        // Aliasing spoils the upper half of the coefficients of a gain that is not resolved: with
-        // the most nodes, such a gain is judged at the finest accuracy that some pole does reach.
+        // Aliasing makes the upper half of the coefficients meaningless where a gain is not
+        // resolved. With the most nodes, the finest accuracy that a pole reaches decides instead.
         if (nodes < kMostNodes)
             nodes *= 2;
         else
@@ -89,11 +87,10 @@ Pole selectPole(const Gain& gain, double cutoff, const SpectrumRange& range, dou
 std::optional<int> sufficientDimension(const Gain& gain, double pole, double accuracy) {
     constexpr int kMost = 32;
     const ChebyshevSeries series(gain, pole, 0.0, 1.0, 4 * kMost);
-    // Twice as accurate: the space's own approximation may be worse than the best polynomial by
-    // that factor.
+    // Half the error: that of the Krylov approximation is at most twice that of the best
+    // polynomial.
     const int dimension = std::max(1, series.requiredDimension(0.5 * accuracy));
-    if (dimension > kMost) return {};
-    return dimension;
+    return dimension <= kMost ? std::optional(dimension) : std::nullopt;
 }
 
 SpectrumRange bulkSpectrum(const Laplacian& laplacian) {

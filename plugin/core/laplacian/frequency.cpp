@@ -11,14 +11,12 @@ namespace spectral {
 double cutoffFrequency(double featureSize) {
     if (!std::isfinite(featureSize) || featureSize <= 0.0)
         throw InvalidOption("feature_size = " + std::to_string(featureSize) +
-                            ": must be a length above zero, e.g. 5 % of the diagonal of the "
-                            "bounding box");
+                            ": must be a length above zero, e.g. 5 % of the bounding box diagonal");
     return 2.0 * kPi / featureSize;
 }
 
 double defaultFeatureSize(double meanEdge, double diagonal) {
-    constexpr double kEdges = 6.0, kShare = 0.05;
-    const double size = kEdges * meanEdge, most = kShare * diagonal;
+    const double size = 6.0 * meanEdge, most = 0.05 * diagonal;
     return size > 0.0 && size < most ? size : most;
 }
 

@@ -4,8 +4,7 @@
 
 namespace spectral {
 
-/// Gain of a harmonic by its frequency omega = sqrt(lambda) >= 0, in radians per length unit; e.g.
-/// a fractional power of a transfer function.
+/// Gain at a frequency omega = sqrt(lambda) >= 0, in radians per length unit.
 using Gain = std::function<double(double omega)>;
 
 /// The cutoff frequency omega_c = 2 pi / featureSize, radians per length unit.
@@ -14,12 +13,12 @@ using Gain = std::function<double(double omega)>;
 /// @throws InvalidOption  when it is not a finite length above zero.
 double cutoffFrequency(double featureSize);
 
-/// The feature size that suits a mesh when nobody says another: six mean edges, at most 5 % of the
-/// diagonal of the bounding box. Six edges take the noise of the sampling away (a wave of two
-/// edges, the finest that a mesh can carry, keeps 4 % of its height in a Gaussian low-pass); the
-/// bound keeps the shape of a coarse model.
+/// Default feature size: six mean edges, at most 5 % of the diagonal of the bounding box.
 ///
-/// @param meanEdge, diagonal  length units; without edges (0) it is the bound.
+/// At six edges a Gaussian low-pass removes sampling noise: it leaves 4 % of the shortest wave that
+/// a mesh can represent, two edges long. The bound preserves the shape of a coarse mesh.
+///
+/// @param meanEdge, diagonal  length units; meanEdge = 0 gives the bound.
 double defaultFeatureSize(double meanEdge, double diagonal);
 
 }  // namespace spectral

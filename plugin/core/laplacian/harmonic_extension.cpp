@@ -8,8 +8,8 @@ void HarmonicExtension::setLaplacian(const Laplacian& surface) {
     surface_ = surface;
     means_.emplace(interior_.surfaceComponents(), surface.D);
     Laplacian interior = interior_.restricted(surface);
-    // W_II is singular where nothing is fixed: there, and only there, the masses make it definite.
-    // These components need no solve.
+    // W_II is singular on components without fixed vertices: there, and only there, masses make it
+    // definite. Their H is the mean, not the solution.
     interior.D = (interior_.components().label.array() < 0).select(0.0, interior.D);
     ldlt_.factorizeDefinite(interior.W, interior.D, 4.0 * kPi / surface.D.sum());
 }
@@ -18,7 +18,7 @@ HarmonicExtension::Rest HarmonicExtension::rest(const Eigen::MatrixXd& X) const 
     Eigen::MatrixXd centred = X;
     means_->remove(centred);
 
-    // X - H = W_II^-1 (W X)_I: nothing is left to cancel where X is harmonic.
+    // X - H = W_II^-1 (W X)_I: no cancellation where X is nearly harmonic.
     Rest rest{ldlt_.solve(interior_.restricted(Eigen::MatrixXd(surface_.W * centred)))};
     const Eigen::MatrixXd moving = interior_.restricted(centred);
     for (Index i = 0; i < moving.rows(); ++i)

@@ -4,33 +4,31 @@
 
 #include "core/laplacian/constant_modes.h"
 #include "core/laplacian/interior.h"
-#include "core/laplacian/laplacian.h"
 #include "core/ldlt/shifted_ldlt.h"
 
 namespace spectral {
 
-/// Splits signals on a surface into what the values at its fixed boundary determine and the rest.
+/// Splits signals on a surface with a fixed boundary into their harmonic extension H and the rest.
 ///
-/// The former is their harmonic extension H, the function without detail that has these values:
+/// H is determined by the boundary values, and has no detail of its own:
 ///     W_II H_I = -W_IB X_B,  H_B = X_B.
-/// The rest is zero on the boundary: a filter with a fixed boundary acts on it alone,
+/// The rest is zero on the boundary; a filter with a fixed boundary acts on it alone,
 ///     Y = H + F(sqrt(A_II)) (X - H).
-/// On a component without boundary H is the D-weighted mean, which every filter keeps.
+/// On a component without boundary H is the D-weighted mean, which every filter preserves.
 class HarmonicExtension {
   public:
-    /// The argument is kept by reference.
+    /// @param interior  kept by reference.
     explicit HarmonicExtension(const Interior& interior) : interior_(interior) {}
 
-    /// Takes the Laplacian of the splits to come.
+    /// Sets the Laplacian of all following splits.
     /// @throws SolverFailure  when W_II is not positive definite to working precision.
     void setLaplacian(const Laplacian& surface);
 
-    /// A part of a signal.
     struct Rest {
-        Eigen::MatrixXd U;  ///< X - H on the interior, rows as there.
+        Eigen::MatrixXd U;  ///< X - H at the vertices of the interior.
 
-        /// How large U is beside X - mean of each component: the larger of the ratios of the
-        /// D-norms and of the largest entries, over all columns together.
+        /// Size of U relative to X minus the mean of each component: the larger of the ratios of
+        /// D-norms and of largest entries, over all columns together.
         double relativeSize = 0.0;
     };
 

@@ -1,48 +1,54 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "core/laplacian/laplacian.h"
-#include "core/mesh/components.h"
-#include "core/mesh/mesh.h"
+#include "core/mesh/surface.h"
 
 namespace spectral {
 
-/// What happens at the boundary of a surface.
+/// Boundary conditions of a surface.
 enum class Boundary {
-    Free,  ///< Natural (Neumann) conditions: it moves as the rest does.
-    Fixed  ///< Dirichlet conditions: its vertices stay where they are, harmonics are zero there.
+    Free,  ///< Natural (Neumann) conditions: the boundary moves like the rest.
+    Fixed  ///< Dirichlet conditions: boundary vertices do not move, harmonics vanish there.
 };
 
-/// The part of a surface that can move: all of it, or all but a fixed boundary.
+/// Whether each vertex lies on the boundary, that is on an edge of exactly one triangle.
 ///
-/// On the interior the eigenproblem is W_II phi = lambda D_II phi, phi = 0 on the boundary; all
-/// that works on a Laplacian works on this one.
+/// @param F  m x 3 indices in [0, vertexCount).
+std::vector<bool> boundaryVertices(const Faces& F, Index vertexCount);
+
+/// The vertices of a surface that can move: all, or all but a fixed boundary.
+///
+/// The eigenproblem of the interior is W_II phi = lambda D_II phi, phi = 0 on the boundary.
 class Interior {
   public:
     /// @param F           m x 3 triangles of the surface.
     /// @param components  of the surface, n vertices.
     Interior(const Faces& F, Components components, Boundary boundary);
 
-    Index size() const { return static_cast<Index>(vertex_.size()); }  ///< Vertices that can move.
+    Index size() const { return static_cast<Index>(vertex_.size()); }
     Index fixedVertices() const { return surfaceComponents_.label.size() - size(); }
     bool isWhole() const { return fixedVertices() == 0; }
 
-    /// Components without any fixed vertex, which have a constant mode, with labels for the rows of
-    /// the interior; the other vertices have the label -1.
+    /// The components without fixed vertices, which have a constant mode, as labels of the interior
+    /// vertices; -1 on the other components.
     const Components& components() const { return components_; }
 
-    /// All components, with labels for the rows of the surface.
+    /// All components, as labels of the vertices of the surface.
     const Components& surfaceComponents() const { return surfaceComponents_; }
 
     /// W_II and D_II.
     Laplacian restricted(const Laplacian& surface) const;
 
-    /// The rows of the interior of a signal X (n x c).
+    /// The rows of a signal X (n x c) that belong to interior vertices.
     Eigen::MatrixXd restricted(const Eigen::MatrixXd& X) const;
 
-    /// Values of the interior (rows of `values`) on the surface, 0 at fixed vertices: n x c.
-    Eigen::MatrixXd extended(Eigen::MatrixXd values) const;
+    /// Extends values at interior vertices to the surface by zero: n x c.
+    Eigen::MatrixXd extended(Eigen::MatrixXd values) const {
+        return extendedByZero(std::move(values), vertex_, surfaceComponents_.label.size());
+    }
 
   private:
     Components surfaceComponents_;

@@ -6,18 +6,17 @@
 #include <numeric>
 #include <utility>
 
-#include "core/mesh/mesh.h"
 #include "core/support/threads.h"
 
 namespace spectral {
 
 namespace {
 
-/// Mollification, in mean edge lengths: by how much two sides of a triangle are at least longer
-/// than the third. Sharp and Crane's value.
+/// Mollification: two sides of a triangle are longer than the third by at least this many mean edge
+/// lengths. The value of Sharp and Crane.
 constexpr double kMollification = 1e-5;
 
-/// A triangle's side, in the mesh, with the edge that it lies on.
+/// A side of a triangle of the mesh, and its edge.
 struct EdgeSide {
     int low, high;  // vertices, low < high
     int side;
@@ -26,9 +25,9 @@ struct EdgeSide {
     }
 };
 
-/// All sides, those of an edge next to each other, in ascending order.
+/// All sides, sorted by edge.
 std::vector<EdgeSide> sidesByEdge(const Faces& F, Index vertexCount) {
-    // In buckets by their lower vertex first: few sides share it.
+    // A bucket sort by the lower vertex, which few sides share.
     std::vector<int> begin(static_cast<std::size_t>(vertexCount) + 1, 0);
     const auto forEachSide = [&F](const auto& visit) {
         for (int t = 0; t < F.rows(); ++t)
@@ -49,7 +48,7 @@ std::vector<EdgeSide> sidesByEdge(const Faces& F, Index vertexCount) {
     return sides;
 }
 
-/// Orders the sides of one edge by the angle of their triangles round it.
+/// Sorts the sides of one edge by the angles of their triangles around it.
 void sortByAngle(const Vertices& V, const Faces& F, EdgeSide* first, EdgeSide* last) {
     const Eigen::RowVector3d origin = V.row(first->low);
     const Eigen::RowVector3d axis = (V.row(first->high) - origin).normalized();
@@ -57,10 +56,10 @@ void sortByAngle(const Vertices& V, const Faces& F, EdgeSide* first, EdgeSide* l
     const auto angle = [&](const EdgeSide& s) {
         const Eigen::RowVector3d spoke = V.row(F(s.side / 3, (s.side + 2) % 3)) - origin;
         const double theta = std::atan2(spoke.dot(up), spoke.dot(right));
-        return std::isfinite(theta) ? theta : 0.0;  // an edge without length has no angles
+        return std::isfinite(theta) ? theta : 0.0;  // an edge of length zero has no angles
     };
-    // Duplicates of a triangle lie at the same angle. They are layered alike on all three edges, by
-    // their index along the normal of their sorted corners: the sheets between them stay apart.
+    // Duplicate triangles have equal angles. They are stacked in the same order at all three edges,
+    // by index along the normal of their sorted corners, so that the sheets do not cross.
     const auto layer = [&](const EdgeSide& s) {
         const int opposite = F(s.side / 3, (s.side + 2) % 3);
         const bool againstNormal = s.low < opposite && opposite < s.high;
@@ -71,9 +70,9 @@ void sortByAngle(const Vertices& V, const Faces& F, EdgeSide* first, EdgeSide* l
     });
 }
 
-/// W_ij = -weight, W_ii = -sum_j W_ij. An entry for each pair of ends, also where the weight is 0.
-/// @param forEachEdge  calls its argument with (i, j, weight) of every edge, the same each time;
-///                     several edges may have the same ends.
+/// W_ij = -weight, W_ii = -sum_j W_ij; zero weights are stored, too.
+/// @param forEachEdge  calls its argument with (i, j, weight) for every edge, the same each time;
+///                     several edges may join i and j.
 template <class ForEachEdge>
 SparseMatrix stiffnessOf(const ForEachEdge& forEachEdge, Index vertexCount) {
     struct Entry {
@@ -97,7 +96,7 @@ SparseMatrix stiffnessOf(const ForEachEdge& forEachEdge, Index vertexCount) {
         entries[begin[j]].value += weight;
     });
     parallelRows(vertexCount, [&](Index first, Index last) {
-        // By value, too: entries of the same ends are summed alike in both columns.
+        // By value, too: W_ij and W_ji then sum in the same order, and W is symmetric to the bit.
         for (Index j = first; j < last; ++j)
             std::sort(entries.begin() + begin[j], entries.begin() + begin[j + 1],
                       [](const Entry& a, const Entry& b) {
@@ -147,26 +146,21 @@ IntrinsicDelaunay::IntrinsicDelaunay(const Vertices& V, const Faces& F) : vertex
     tail_.resize(static_cast<std::size_t>(copies_) * front);
     twin_.resize(tail_.size());
     for (int s = 0; s < front; ++s) tail_[s] = F(s / 3, s % 3);
-    if (copies_ == 1) {
-        for (std::size_t e = 0; e < sides.size(); e += 2) {
-            twin_[sides[e].side] = sides[e + 1].side;
-            twin_[sides[e + 1].side] = sides[e].side;
-        }
-        return;
-    }
 
-    // The back of a triangle (a, b, c) is (a, c, b): its side 2 - s lies on the front's side s.
+    // The back of a triangle (a, b, c) is (a, c, b): its side 2 - s lies on side s of the front.
     const auto back = [front](int side) { return front + 3 * (side / 3) + 2 - side % 3; };
-    for (int s = 0; s < front; ++s) tail_[back(s)] = F(s / 3, (s + 1 - 3 * (s / 3)) % 3);
+    if (copies_ == 2)
+        for (int s = 0; s < front; ++s) tail_[back(s)] = F(s / 3, (s + 1 - 3 * (s / 3)) % 3);
     for (std::size_t begin = 0; begin < sides.size();) {
         const std::size_t end = endOfEdge(begin);
         if (end - begin > 2) sortByAngle(V, F, sides.data() + begin, sides.data() + end);
-        // The copy that runs up the edge faces growing angles, so it meets the next triangle's copy
-        // that runs down. The only triangle of a boundary edge meets its own back.
+        // The copy that runs up the edge faces larger angles: it is glued to the copy of the next
+        // triangle that runs down. The triangle of a boundary edge is glued to its own back.
         for (std::size_t e = begin; e < end; ++e) {
             const EdgeSide& here = sides[e];
             const EdgeSide& there = sides[e + 1 < end ? e + 1 : begin];
             const int up = runsUp(here) ? here.side : back(here.side);
+            if (copies_ == 1 && up >= front) continue;
             const int down = runsUp(there) ? back(there.side) : there.side;
             twin_[up] = down;
             twin_[down] = up;
@@ -182,7 +176,7 @@ IntrinsicTriangulation IntrinsicDelaunay::triangulation(const Vertices& V) const
             length[s] = (V.row(tail_[nextSide(static_cast<int>(s))]) - V.row(tail_[s])).norm();
     });
 
-    // Mollification: the least that makes every triangle inequality hold by the margin.
+    // The smallest mollification that makes every triangle inequality hold by the margin.
     double meanLength = 0.0;
     for (const int s : oneSide_) meanLength += length[s];
     meanLength /= static_cast<double>(oneSide_.size());
@@ -202,8 +196,7 @@ SparseMatrix IntrinsicDelaunay::stiffness(const Vertices& V) const {
     const auto forEachEdge = [&](const auto& visit) {
         for (int s = 0; s < delaunay.sideCount(); ++s) {
             const int t = delaunay.twin(s), i = delaunay.tail(s), j = delaunay.tail(t);
-            // An edge from a vertex to itself carries no difference.
-            if (s > t || i == j) continue;
+            if (s > t || i == j) continue;  // every edge once, loops not at all
             visit(i, j, 0.5 / copies_ * std::max(0.0, delaunay.edgeCotangents(s)));
         }
     };

@@ -13,17 +13,16 @@ namespace spectral {
 
 namespace {
 
-/// An edge is flipped when the sum of its two cotangents is below minus this: nearly cocircular
-/// corners would otherwise be flipped to and fro by round-off. The absolute part, which is right
-/// because cotangents have no unit, is for rectangles: both cotangents are round-off alone. The
-/// relative part is for needles, whose large cotangents have larger errors.
+/// An edge is flipped when its two cotangents sum to less than minus this; otherwise round-off
+/// would flip nearly cocircular corners back and forth. The absolute part is for rectangles, whose
+/// cotangents are zero up to round-off; the relative part is for needles, whose large cotangents
+/// have larger errors. Both are far above round-off, and bound the resulting error of W.
 double flipTolerance(double a, double b) { return 1e-10 + 1e-11 * (std::abs(a) + std::abs(b)); }
 
-/// Flips per edge after which the triangulation is given up; one or two are usual.
+/// Flips per edge before giving up; one or two are usual.
 constexpr long kMaxFlipsPerEdge = 100;
 
-/// Area of a triangle with these sides: Heron's formula, in Kahan's form that keeps its digits for
-/// needles.
+/// Area of a triangle with these sides, by Kahan's form of Heron's formula, stable for needles.
 double triangleArea(double a, double b, double c) {
     if (a < b) std::swap(a, b);
     if (a < c) std::swap(a, c);
@@ -66,10 +65,10 @@ void IntrinsicTriangulation::makeDelaunay() {
         if (isDelaunay(s)) continue;
         if (flips++ == kMaxFlipsPerEdge * edges)
             throw SolverFailure(ErrorCode::NoDelaunay,
-                                "the intrinsic Delaunay triangulation did not end after " +
+                                "no intrinsic Delaunay triangulation after " +
                                     std::to_string(flips) + " flips of " + std::to_string(edges) +
                                     " edges: triangles are degenerate");
-        // A side that waits may now be another edge; the edge that it was is pushed again.
+        // A flip renumbers sides: the waiting edges around it are pushed again.
         const int t = twin_[s];
         flip(s);
         push(s);
@@ -83,16 +82,16 @@ void IntrinsicTriangulation::setCotangents(int side) {
     const int s = side - side % 3;
     const double a = length_[s], b = length_[s + 1], c = length_[s + 2];
     const double fourAreas = 4.0 * triangleArea(a, b, c);
-    // b^2 + c^2 - a^2 without cancelling the digits of a needle's short side
+    // b^2 + c^2 - a^2 without cancellation for the short side of a needle
     cotangent_[s] = (b * b + (c - a) * (c + a)) / fourAreas;
     cotangent_[s + 1] = (c * c + (a - b) * (a + b)) / fourAreas;
     cotangent_[s + 2] = (a * a + (b - c) * (b + c)) / fourAreas;
 }
 
 bool IntrinsicTriangulation::isDelaunay(int side) const {
-    if (side / 3 == twin_[side] / 3) return true;  // a triangle glued to itself: nothing to flip
+    if (side / 3 == twin_[side] / 3) return true;  // glued to itself, cannot flip
     const double a = cotangent_[side], b = cotangent_[twin_[side]];
-    return !(a + b < -flipTolerance(a, b));  // a flip does not mend what is not finite
+    return !(a + b < -flipTolerance(a, b));  // false for NaN, which no flip repairs
 }
 
 /// Turns the edge of side s = (i, j), with triangles (i, j, k) and (j, i, l), into (k, l).
@@ -104,7 +103,7 @@ void IntrinsicTriangulation::flip(int s) {
     const double ljk = length_[nextSide(s)], lki = length_[previousSide(s)];
     const double lil = length_[nextSide(t)], llj = length_[previousSide(t)];
 
-    // Both triangles laid out in the plane, i in the origin, j on the first axis.
+    // Both triangles in the plane, i at the origin, j on the first axis.
     const double kx = 0.5 * (lij + (lki - ljk) * (lki + ljk) / lij);
     const double lx = 0.5 * (lij + (lil - llj) * (lil + llj) / lij);
     const double ky = 2.0 * triangleArea(lij, ljk, lki) / lij;
@@ -122,7 +121,7 @@ void IntrinsicTriangulation::flip(int s) {
     for (int q = 0; q < 4; ++q) {
         tail_[slot[q]] = tails[q];
         length_[slot[q]] = lengths[q];
-        // An outer side may be glued to another one of the four, which has moved too.
+        // The twin may be another of the four outer sides, and have moved, too.
         const auto moved = std::find(old.begin(), old.end(), twins[q]);
         if (moved != old.end()) {
             twin_[slot[q]] = slot[moved - old.begin()];

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <vector>
 
-#include "core/mesh/mesh.h"
 #include "core/support/threads.h"
 
 namespace spectral {

@@ -1,9 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
-
 #include "core/mesh/mesh.h"
-#include "core/support/types.h"
 
 namespace spectral {
 
@@ -13,22 +10,22 @@ namespace spectral {
 /// Sign: W is positive semidefinite, lambda >= 0 (the paper writes Delta = -div grad).
 /// A frequency is omega = sqrt(lambda), in radians per length unit; its wavelength is 2 pi / omega.
 struct Laplacian {
-    SparseMatrix W;     ///< Stiffness or cotangent matrix, n x n, symmetric, both triangles stored;
-                        ///< no unit. Natural (Neumann) conditions at the boundary.
+    SparseMatrix W;     ///< Stiffness (cotangent) matrix, n x n, symmetric, both triangles stored,
+                        ///< dimensionless; natural (Neumann) boundary conditions.
     Eigen::VectorXd D;  ///< Lumped mass matrix, n diagonal entries > 0, length units squared.
 };
 
-/// W_ij = -(cot a_ij + cot b_ij)/2, W_ii = -sum_j W_ij, and D_ii = one third of the area of the
-/// triangles at vertex i, from one pass over the triangles.
+/// W_ij = -(cot a_ij + cot b_ij)/2, W_ii = -sum_j W_ij; D_ii is a third of the area of the
+/// triangles at vertex i.
 ///
 /// A triangle without area gives entries that are not finite; see `isUsable`.
 /// @param F  every vertex is in some triangle.
 Laplacian cotangentLaplacian(const Vertices& V, const Faces& F);
 
-/// D alone, for a W that is kept.
+/// D alone.
 Eigen::VectorXd lumpedMass(const Vertices& V, const Faces& F);
 
-/// Whether every entry is finite and every mass positive: false when triangles have collapsed.
+/// Whether all entries are finite and all masses positive; false when triangles have collapsed.
 bool isUsable(const Laplacian& laplacian);
 
 }  // namespace spectral

@@ -1,7 +1,9 @@
 #include "core/laplacian/laplacian_builder.h"
 
-#include "core/mesh/mesh.h"
+#include <utility>
+
 #include "core/mesh/mesh_check.h"
+#include "core/support/errors.h"
 
 namespace spectral {
 
@@ -41,15 +43,28 @@ SparseMatrix LaplacianBuilder::stiffness(const Vertices& X) const {
     return intrinsic_ ? intrinsic_->stiffness(X) : cotangentLaplacian(X, surface_.F).W;
 }
 
-/// The areas of the mesh's own triangles, for both kinds: those of the intrinsic ones jump where an
-/// edge flips, and steps of second order need a D that follows the shape continuously.
+/// From the triangles of the mesh for both kinds: intrinsic areas jump where an edge flips, while
+/// second-order steps need D continuous in the shape.
 Eigen::VectorXd LaplacianBuilder::mass(const Vertices& X) const {
-    // Thin parts shrink to a line or a point. A mass this far below the others no longer moves
-    // anything (its vertex is the harmonic mean of its neighbours), but the D-inner product needs
-    // it positive.
+    // Smallest mass, in mean masses, of parts that have shrunk to a line or a point. The D-inner
+    // product needs it positive; its value does not matter, as such a vertex is at the harmonic
+    // mean of its neighbours.
     constexpr double kFloor = 1e-12;
     const Eigen::VectorXd D = lumpedMass(X, surface_.F);
     return D.cwiseMax(kFloor * D.mean());
+}
+
+MeshLaplacian meshLaplacian(const Vertices& V, const Faces& F, LaplacianKind kind) {
+    checkMesh(V, F, kind);
+    Surface surface = surfaceOf(V, F);
+    Components components = connectedComponents(surface.F, surface.X.rows());
+    Laplacian laplacian = LaplacianBuilder(surface, kind, BasisUpdate::None).input();
+    if (!isUsable(laplacian))
+        throw SolverFailure(
+            ErrorCode::DegenerateTriangles,
+            "some triangles have hardly any area: a cotangent or a mass is not finite");
+    ConstantModes constants(components, laplacian.D);
+    return {std::move(surface), std::move(components), std::move(laplacian), std::move(constants)};
 }
 
 }  // namespace spectral

@@ -2,50 +2,50 @@
 
 #include <optional>
 
+#include "core/laplacian/constant_modes.h"
 #include "core/laplacian/intrinsic_delaunay.h"
 #include "core/laplacian/laplacian.h"
-#include "core/mesh/mesh.h"
 #include "core/mesh/surface.h"
 
 namespace spectral {
 
 enum class LaplacianKind {
-    IntrinsicDelaunay,  ///< Robust: any triangles, all weights non-negative (intrinsic_delaunay.h).
+    IntrinsicDelaunay,  ///< Any triangles, non-negative weights (intrinsic_delaunay.h).
     Cotangent           ///< The paper's: plain cotangents, every triangle needs an area.
 };
 
-/// Refuses a mesh that has no Laplacian of this kind: see mesh_check.h.
-/// @throws InvalidMesh
+/// Rejects a mesh that has no Laplacian of this kind.
+/// @throws InvalidMesh  as mesh_check.h says.
 void checkMesh(const Vertices& V, const Faces& F, LaplacianKind kind);
 
-/// What a step takes from the current shape.
+/// What a step updates from the current shape.
 enum class BasisUpdate {
     Full,       ///< W and D: the paper's scheme.
     Conformal,  ///< D only, W stays that of the input (Kazhdan, Solomon, Ben-Chen 2012).
     None        ///< Neither: one basis for all steps (Vallet and Levy 2008).
 };
 
-/// Makes the Laplacians of the shapes that a surface takes on in the course of a filter.
+/// Builds the Laplacians of the shapes that a filter passes through.
 class LaplacianBuilder {
   public:
-    /// @param surface  kept by reference; its X is the input's shape.
-    /// @param conformalShare  for BasisUpdate::Full: part of W, 0 to 1, that stays the input's,
-    ///                        W = (1 - share) W(X) + share W(X_0); 0 is the paper's scheme, 1 the
-    ///                        conformal update. Where a part has pinched to a line, the mass of the
-    ///                        line vanishes but this share of W does not, and draws the line in.
+    /// @param surface  kept by reference; its X is the input shape X_0.
+    /// @param conformalShare  for BasisUpdate::Full, from 0, the paper's scheme, to 1, conformal:
+    ///                        W = (1 - share) W(X) + share W(X_0). Where a part has shrunk to a
+    ///                        line, its mass vanishes but this share of W does not, and contracts
+    ///                        the line.
     LaplacianBuilder(const Surface& surface, LaplacianKind kind, BasisUpdate update,
                      double conformalShare = 0.0);
 
-    /// The Laplacian of the input; until the next call of this or of the next function.
+    /// The Laplacian of the input; valid until the next Laplacian is built.
     const Laplacian& input();
 
-    /// The Laplacian of the shape X (n x 3), as far as the update takes it from there; likewise.
+    /// The Laplacian of the shape X (n x 3), updated as BasisUpdate says; valid likewise.
     const Laplacian& operator()(const Vertices& X);
 
-    /// The masses of the input.
+    /// D of the input.
     const Eigen::VectorXd& inputMass() const { return inputMass_; }
 
-    /// Its D alone: a third of the area of the triangles at every vertex, > 0.
+    /// D of the shape X, > 0.
     Eigen::VectorXd mass(const Vertices& X) const;
 
   private:
@@ -59,5 +59,19 @@ class LaplacianBuilder {
     Eigen::VectorXd inputMass_;
     Laplacian current_;
 };
+
+/// The Laplacian of a mesh as it is, for the filters of `analysis`.
+struct MeshLaplacian {
+    Surface surface;  ///< Its rows are those of W and D.
+    Components components;
+    Laplacian laplacian;
+    ConstantModes constants;
+};
+
+/// @param V  n x 3 positions, finite; unreferenced vertices allowed.
+/// @param F  m x 3 vertex indices, m >= 1; any topology.
+/// @throws InvalidMesh  as checkMesh.
+/// @throws SolverFailure  when a cotangent or a mass is not finite.
+MeshLaplacian meshLaplacian(const Vertices& V, const Faces& F, LaplacianKind kind);
 
 }  // namespace spectral

@@ -2,8 +2,6 @@
 
 #include <Eigen/Geometry>
 
-#include "core/mesh/mesh.h"
-
 namespace spectral {
 
 double boundingBoxDiagonal(const Vertices& V) {
@@ -27,7 +25,7 @@ double surfaceArea(const Vertices& V, const Faces& F) {
 }
 
 double signedVolume(const Vertices& V, const Faces& F) {
-    // About the middle: far from the origin the tetrahedra would cancel each other's digits.
+    // Far from the origin, tetrahedra with an apex there would cancel.
     const Eigen::RowVector3d o = 0.5 * (V.colwise().maxCoeff() + V.colwise().minCoeff());
     double sixfoldVolume = 0.0;
     for (Index t = 0; t < F.rows(); ++t) {

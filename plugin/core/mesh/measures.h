@@ -1,22 +1,20 @@
 #pragma once
 
 #include "core/mesh/mesh.h"
-#include "core/support/types.h"
 
 namespace spectral {
 
-/// Length of the diagonal of the axis-parallel bounding box.
+/// Diagonal of the axis-aligned bounding box.
 double boundingBoxDiagonal(const Vertices& V);
 
-/// Mean length of the triangles' sides: about that of the edges, most of which are two sides. 0
-/// without triangles.
+/// Mean side length over all triangles, which counts interior edges twice; 0 without triangles.
 double meanEdgeLength(const Vertices& V, const Faces& F);
 
-/// Area of all triangles.
+/// Total area of the triangles.
 double surfaceArea(const Vertices& V, const Faces& F);
 
-/// Signed volume by the divergence theorem, positive for outward orientation. A volume only where
-/// the surface is closed; taken about the middle of the bounding box otherwise.
+/// Signed volume by the divergence theorem, positive for outward orientation. For an open surface,
+/// that of its cone over the centre of the bounding box.
 double signedVolume(const Vertices& V, const Faces& F);
 
 }  // namespace spectral

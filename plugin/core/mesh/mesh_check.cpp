@@ -4,15 +4,14 @@
 #include <algorithm>
 #include <string>
 
-#include "core/mesh/mesh.h"
 #include "core/support/errors.h"
 
 namespace spectral {
 
 namespace {
 
-/// Height over longest edge below which the cotangents of a triangle, about its inverse, leave too
-/// few digits for the factorization.
+/// Smallest ratio of height to longest edge. Its inverse bounds the cotangents: at 1e10 they leave
+/// six digits to the other entries of a row of W.
 constexpr double kDegenerateAspect = 1e-10;
 
 bool isDegenerate(const Vertices& V, const Faces& F, Index t) {
@@ -30,15 +29,15 @@ std::string counted(Index count, const char* one, const char* many) {
 
 void checkMesh(const Vertices& V, const Faces& F) {
     if (V.rows() == 0) throw InvalidMesh(ErrorCode::EmptyMesh, "the mesh is empty: no vertices");
+    const std::string vertices = counted(V.rows(), "vertex", "vertices");
     if (F.rows() == 0)
-        throw InvalidMesh(ErrorCode::NoFaces,
-                          "the mesh has " + counted(V.rows(), "vertex", "vertices") +
-                              " but no faces: a point cloud has no surface to take frequencies of");
+        throw InvalidMesh(ErrorCode::NoFaces, "the mesh has " + vertices +
+                                                  " but no faces: a point cloud has no surface");
     if (F.minCoeff() < 0 || F.maxCoeff() >= V.rows())
         throw InvalidMesh(ErrorCode::BadIndex,
                           "a triangle refers to vertex " +
                               std::to_string(F.minCoeff() < 0 ? F.minCoeff() : F.maxCoeff()) +
-                              ", but the mesh has " + counted(V.rows(), "vertex", "vertices"));
+                              ", but the mesh has " + vertices);
 
     Index notFinite = 0, first = -1;
     for (Index i = 0; i < V.rows(); ++i)
@@ -46,8 +45,8 @@ void checkMesh(const Vertices& V, const Faces& F) {
     if (notFinite > 0)
         throw InvalidMesh(ErrorCode::NotFinite,
                           counted(notFinite, "vertex has", "vertices have") +
-                              " coordinates that are not finite numbers (NaN or infinity), the "
-                              "first is vertex " +
+                              " coordinates that are not finite (NaN or infinity), the first is "
+                              "vertex " +
                               std::to_string(first));
 
     for (Index t = 0; t < F.rows(); ++t)

@@ -4,16 +4,16 @@
 
 namespace spectral {
 
-/// Refuses a mesh that has no Laplacian of any kind.
+/// Rejects a mesh that no Laplacian exists for.
 ///
-/// @throws InvalidMesh  without a vertex or a triangle, with an index out of range, a coordinate
-///                      that is not finite, or no triangle with an area.
+/// @throws InvalidMesh  without vertices or triangles, with an index out of range, a coordinate
+///                      that is not finite, or no triangle of positive area.
 void checkMesh(const Vertices& V, const Faces& F);
 
-/// Refuses a mesh whose cotangents are not all finite.
+/// Rejects a mesh with infinite cotangents.
 ///
-/// @throws InvalidMesh  when a triangle is degenerate: two equal corners, or no area compared with
-///                      its longest edge.
+/// @throws InvalidMesh  when a triangle is degenerate: its area vanishes relative to its longest
+///                      edge.
 void checkAreas(const Vertices& V, const Faces& F);
 
 }  // namespace spectral

@@ -1,6 +1,7 @@
 #include "core/mesh/surface.h"
 
-#include "core/mesh/mesh.h"
+#include <algorithm>
+#include <numeric>
 
 namespace spectral {
 
@@ -31,6 +32,38 @@ Surface surfaceOf(const Vertices& V, const Faces& F) {
         surface.X.rowwise() -= middle;
     }
     return surface;
+}
+
+Eigen::MatrixXd extendedByZero(Eigen::MatrixXd values, const std::vector<Index>& vertex, Index n) {
+    if (values.rows() == n) return values;
+    Eigen::MatrixXd extended = Eigen::MatrixXd::Zero(n, values.cols());
+    for (Index i = 0; i < values.rows(); ++i) extended.row(vertex[i]) = values.row(i);
+    return extended;
+}
+
+Components connectedComponents(const Faces& F, Index vertexCount) {
+    // Union-find with path halving.
+    std::vector<int> parent(static_cast<std::size_t>(vertexCount));
+    std::iota(parent.begin(), parent.end(), 0);
+    const auto root = [&](int i) {
+        while (parent[i] != i) i = parent[i] = parent[parent[i]];
+        return i;
+    };
+    // The smaller index becomes the root: components are numbered by their first vertices.
+    const auto unite = [&](int i, int j) {
+        const auto [first, second] = std::minmax({root(i), root(j)});
+        parent[second] = first;
+    };
+    for (Index t = 0; t < F.rows(); ++t) {
+        unite(F(t, 0), F(t, 1));
+        unite(F(t, 0), F(t, 2));
+    }
+    Components components{Eigen::VectorXi(vertexCount), 0};
+    for (int i = 0; i < vertexCount; ++i) {
+        const int first = root(i);
+        components.label[i] = first == i ? components.count++ : components.label[first];
+    }
+    return components;
 }
 
 }  // namespace spectral

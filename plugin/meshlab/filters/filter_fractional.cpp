@@ -20,8 +20,7 @@ FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
     reportWriting(input, mesh.cm, progress);
     setPositions(input.vertexIndex, result.V, mesh);
     return {reportDictionary(result),
-            reportText(options, result, spectral::boundingBoxDiagonal(input.V)),
-            warningsOf(options, result)};
+            reportText(options, result, spectral::boundingBoxDiagonal(input.V))};
 }
 
 }  // namespace

@@ -11,7 +11,6 @@
 #include "core/laplacian/frequency.h"
 #include "core/laplacian/harmonic_extension.h"
 #include "core/laplacian/interior.h"
-#include "core/mesh/boundary.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/surface.h"

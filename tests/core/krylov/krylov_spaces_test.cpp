@@ -12,6 +12,7 @@
 namespace spectral {
 namespace {
 
+using testing::Mesh;
 using testing::Operator;
 
 /// The spectral measure of the x coordinate of a mesh from a space of some dimensions.
@@ -102,6 +103,22 @@ TEST(LanczosQuadrature, OfAnInvariantSpaceIsTheSpectralMeasure) {
     ASSERT_EQ(measure.omega.size(), 1);
     EXPECT_NEAR(measure.omega[0], std::sqrt(dense.lambda[1]), 1e-12);
     EXPECT_NEAR(measure.weight[0], A.mesh.V.col(0).cwiseAbs2().dot(A.laplacian.D), 1e-12);
+}
+
+TEST(LanczosQuadrature, IsTheSameAtAnyScaleOfTheMesh) {
+    const double pole = 20.0;
+    const Quadrature expected = measured(Operator(testing::blob()), pole, 12).measure;
+    for (const double scale : {1e-7, 1e7}) {
+        Mesh mesh = testing::blob();
+        mesh.V *= scale;
+        const Quadrature measure = measured(Operator(mesh), pole / (scale * scale), 12).measure;
+        ASSERT_EQ(measure.omega.size(), expected.omega.size());
+        // Energies of coordinates are lengths to the fourth power.
+        EXPECT_LT((scale * measure.omega - expected.omega).cwiseAbs().maxCoeff(),
+                  1e-12 * expected.omega.maxCoeff());
+        EXPECT_LT((measure.weight / std::pow(scale, 4) - expected.weight).cwiseAbs().maxCoeff(),
+                  1e-12 * expected.weight.sum());
+    }
 }
 
 TEST(LanczosQuadrature, OfNothingHasNoNodes) {

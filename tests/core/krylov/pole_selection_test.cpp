@@ -19,7 +19,7 @@ int dimensionWithPole(const Operator& A, const Gain& gain, double pole) {
     ShiftedLdlt ldlt;
     ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, pole);
     const FullSpectrumResult result =
-        applyFullSpectrum(A.laplacian.D, A.constants, ldlt, gain, A.mesh.V, {});
+        applyFullSpectrum(A.laplacian.D, A.constants, ldlt, {gain}, A.mesh.V, {}).front();
     return result.converged ? result.dimension : 1000;
 }
 
@@ -77,8 +77,10 @@ TEST(SufficientDimension, IsEnoughForAnySignal) {
                 FullSpectrumOptions evaluation;
                 evaluation.accuracy = 1e-12;  // never reached
                 evaluation.maxDimension = *dimension;
-                const FullSpectrumResult result = applyFullSpectrum(
-                    A.laplacian.D, A.constants, ldlt, gain, noise.mesh.V, evaluation);
+                const FullSpectrumResult result =
+                    applyFullSpectrum(A.laplacian.D, A.constants, ldlt, {gain}, noise.mesh.V,
+                                      evaluation)
+                        .front();
                 EXPECT_EQ(result.dimension, *dimension);
                 EXPECT_LE(testing::relativeError(
                               noise, result.Y - testing::filteredDense(noise, dense, gain)),

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "core/laplacian/constant_modes.h"
-#include "core/mesh/components.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/mesh.h"
+#include "core/mesh/surface.h"
 #include "support/shapes.h"
 
 namespace spectral {

@@ -5,9 +5,11 @@
 #include <Eigen/SparseCholesky>
 #include <cstdlib>
 #include <limits>
+#include <vector>
 
 #include "core/harmonics/harmonic_basis.h"
 #include "core/support/errors.h"
+#include "core/support/threads.h"
 #include "support/evaluation.h"
 #include "support/shapes.h"
 
@@ -42,6 +44,24 @@ TEST(ShiftedLdlt, SolvesWithinTheSpectrumAndBelowIt) {
             EXPECT_LT(relativeResidual(ldlt, A.laplacian), 1e-9) << subdivisions << ' ' << sigma;
         }
     }
+}
+
+TEST(ShiftedLdlt, SolvesForEveryPattern) {
+    std::srand(5);
+    SparseMatrix diagonal(5, 5);
+    diagonal.setIdentity();
+    std::vector<Laplacian> all{{diagonal, Eigen::VectorXd::Ones(5)}};
+    for (const auto& mesh :
+         {testing::icosphere(0), testing::rectangle(2.0, 1.0, 23, 9), testing::cube(40),
+          testing::joined(testing::torus(2.0, 1.0, 17, 9), testing::cube(3))})
+        all.push_back(Operator(mesh).laplacian);
+    for (const Laplacian& laplacian : all)
+        for (const int threads : {1, 3}) {
+            const ThreadTeam team(threads);
+            ShiftedLdlt ldlt;
+            ldlt.factorize(laplacian.W, laplacian.D, -0.7);
+            EXPECT_LT(relativeResidual(ldlt, laplacian), 1e-12);
+        }
 }
 
 TEST(ShiftedLdlt, CountsAsEigenDoes) {
