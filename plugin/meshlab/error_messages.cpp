@@ -13,7 +13,7 @@ bool hasChoice(const RichParameterList& parameters, const char* name, int choice
     return parameters.hasParameter(name) && parameters.getEnum(name) == choice;
 }
 
-/// What helps where a basis does not fit.
+/// Alternatives to changing the basis size.
 std::string otherThanThisBasis(const RichParameterList& parameters) {
     std::string text;
     if (hasChoice(parameters, "boundary", 1)) text += ", or boundary = free";
@@ -21,7 +21,7 @@ std::string otherThanThisBasis(const RichParameterList& parameters) {
     return text;
 }
 
-/// Where the shape has collapsed in the course of the filter.
+/// Remedy for a shape that has collapsed during the filter.
 std::string stablerFilter(const RichParameterList& parameters) {
     if (hasChoice(parameters, "laplacian", 1)) return "choose laplacian = intrinsic delaunay";
     if (hasChoice(parameters, "basis_update", 0))
@@ -75,6 +75,6 @@ std::string remedy(const spectral::Error& error, const RichParameterList& parame
 }  // namespace
 
 std::string errorMessage(const spectral::Error& error, const RichParameterList& parameters) {
-    const std::string mend = remedy(error, parameters);
-    return mend.empty() ? error.what() : error.what() + (": " + mend);
+    const std::string help = remedy(error, parameters);
+    return help.empty() ? error.what() : error.what() + (": " + help);
 }

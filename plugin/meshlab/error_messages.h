@@ -6,7 +6,7 @@
 
 #include "core/support/errors.h"
 
-/// What is wrong, from the core, and which parameter or MeshLab filter mends it.
+/// The text of a core error, and the parameter or MeshLab filter that helps.
 ///
-/// @param parameters  of the filter that failed: only those that it has are recommended.
+/// @param parameters  of the filter that failed; no others are recommended.
 std::string errorMessage(const spectral::Error& error, const RichParameterList& parameters);

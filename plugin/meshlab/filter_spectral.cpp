@@ -2,7 +2,6 @@
 
 #include <common/ml_shared_data_context/ml_plugin_gl_context.h>
 
-#include <atomic>
 #include <functional>
 #include <sstream>
 #include <utility>
@@ -16,7 +15,7 @@
 
 namespace {
 
-/// MeshLab's callback as a progress; `isWanted` is asked after every call.
+/// MeshLab's callback as a Progress, which also stops once `isWanted` returns false.
 spectral::Progress meshlabProgress(vcg::CallBackPos* callback, std::function<bool()> isWanted,
                                    spectral::Progress::Interruption isOvertaken) {
     if (callback == nullptr) return {};
@@ -27,8 +26,8 @@ spectral::Progress meshlabProgress(vcg::CallBackPos* callback, std::function<boo
     return spectral::Progress(report, std::move(isOvertaken));
 }
 
-/// The number of threads that MESHLAB_SPECTRAL_THREADS asks for; 0, one for each core, without it.
-/// @throws spectral::InvalidOption  when it is no number above zero.
+/// The number of threads in MESHLAB_SPECTRAL_THREADS; 0, one per core, if it is not set.
+/// @throws spectral::InvalidOption  when it is not a number above zero.
 int threadsOfEnvironment() {
     const char* const variable = "MESHLAB_SPECTRAL_THREADS";
     if (!qEnvironmentVariableIsSet(variable)) return 0;
@@ -57,7 +56,7 @@ const MeshFilter& FilterSpectralPlugin::filterOf(const QAction* action) const {
     return filters_.at(static_cast<std::size_t>(ID(action)));
 }
 
-// Line by line: MeshLab's log runs the lines of one entry together.
+// Line by line: MeshLab's log joins the lines of an entry.
 void FilterSpectralPlugin::logLines(const std::string& text) const {
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);) log(line);
@@ -83,14 +82,14 @@ FilterPlugin::FilterClass FilterSpectralPlugin::getClass(const QAction* action) 
     return filterOf(action).category;
 }
 
-// None: what a filter writes it allocates itself, when there is a result to write.
+// None: a filter allocates what it writes, once there is a result.
 int FilterSpectralPlugin::getRequirements(const QAction*) { return MeshModel::MM_NONE; }
 
-// None, although faces are needed: the core's message says more than "missing items: faces".
+// None, although faces are needed: the core's message is clearer than "missing items: faces".
 int FilterSpectralPlugin::getPreConditions(const QAction*) const { return MeshModel::MM_NONE; }
 
-// Nothing is drawn here. MeshLab 2025.07 makes a context for every run, and after one from a dialog
-// forgets it: 9 MB a preview, where pictures are made in software. It takes none for an answer.
+// MeshLab 2025.07 creates a GL context for every run, which nothing here uses, and leaks it after a
+// run from a dialog: 9 MB per preview with software rendering. It accepts null.
 void FilterSpectralPlugin::releaseGLContext() {
     if (glContext == nullptr) return;
     glContext->removePerViewRenderindData();
@@ -115,9 +114,9 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
     const QAction* action, const RichParameterList& parameters, MeshDocument& document,
     unsigned int&, vcg::CallBackPos* callback) {
     releaseGLContext();
-    // In its callback MeshLab does whatever its user asks for, in the midst of this run: it
-    // switches the preview off, applies the filter, closes its windows, starts the filter anew for
-    // a preview with other parameters, or deletes the mesh.
+    // MeshLab handles user input in its callback, in the middle of this run: it may switch the
+    // preview off, apply the filter, close its windows, restart the filter for a preview with other
+    // parameters, or delete the mesh.
     const LatePreview latePreview;
     const ApplyLock applyLock;
     const LateClose lateClose;
@@ -126,8 +125,8 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
     const auto isWanted = [&document, &lateClose, mesh = document.mm()->id()] {
         return document.getMesh(mesh) != nullptr && !lateClose.isAsked();
     };
-    // The one place where the core's errors become MeshLab's. MeshLab ends the program on anything
-    // but MLException and bad_alloc.
+    // The only place that translates errors of the core. MeshLab terminates on any exception but
+    // MLException and bad_alloc.
     try {
         const spectral::Progress progress = meshlabProgress(callback, isWanted, isOvertaken);
         spectral::setThreadCount(threadsOfEnvironment());
@@ -136,7 +135,7 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
         logLines(outcome.text);
         return std::move(outcome.report);
     } catch (const spectral::Cancelled& cancelled) {
-        // Without an error's window: the result of the newer run stays, the project goes.
+        // No error message: the newer run's result stays, or the project is closed.
         if (isOvertaken())
             log("stopped: the filter was started anew meanwhile");
         else if (lateClose.isAsked())

@@ -7,11 +7,10 @@
 
 #include "meshlab/mesh_filter.h"
 
-/// MeshLab's view of the project: one plugin with several filters.
+/// The plugin as MeshLab sees it: describes the filters, and runs them.
 ///
-/// An adapter: every filter reads parameters and mesh, calls the core, and writes the result back
-/// only after the whole computation has succeeded. This class tells MeshLab about the filters, and
-/// calls them.
+/// Every filter reads parameters and mesh, calls the core, and writes the result only after the
+/// whole computation has succeeded.
 class FilterSpectralPlugin : public QObject, public FilterPlugin {
     Q_OBJECT
     MESHLAB_PLUGIN_IID_EXPORTER(FILTER_PLUGIN_IID)
@@ -32,7 +31,7 @@ class FilterSpectralPlugin : public QObject, public FilterPlugin {
     FilterArity filterArity(const QAction* action) const override;
     RichParameterList initParameterList(const QAction* action, const MeshModel& mesh) override;
 
-    /// @throws MLException  saying what is wrong and what to do; the mesh is then as it was.
+    /// @throws MLException  saying what is wrong and what to do; the mesh is then unchanged.
     std::map<std::string, QVariant> applyFilter(const QAction* action,
                                                 const RichParameterList& parameters,
                                                 MeshDocument& document,
@@ -44,6 +43,6 @@ class FilterSpectralPlugin : public QObject, public FilterPlugin {
     void releaseGLContext();
     void logLines(const std::string& text) const;
 
-    const std::vector<MeshFilter> filters_;  // a filter's ActionIDType is its index here
-    std::vector<std::atomic<int>> runs_;     // of every filter, so far
+    const std::vector<MeshFilter> filters_;  // indexed by ActionIDType
+    std::vector<std::atomic<int>> runs_;     // started so far, of each filter
 };

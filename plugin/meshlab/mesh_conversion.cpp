@@ -2,8 +2,6 @@
 
 #include <common/mlexception.h>
 
-#include "core/mesh/mesh.h"
-
 MeshMatrices toMatrices(const CMeshO& mesh) {
     MeshMatrices matrices;
     matrices.vertexIndex.reserve(mesh.vn);
@@ -36,8 +34,8 @@ void reportWriting(const MeshMatrices& input, const CMeshO& mesh,
     if (now.vertexIndex != input.vertexIndex || now.F.rows() != input.F.rows() ||
         now.F != input.F || now.V != input.V)
         throw MLException(
-            "the mesh was changed while the filter was at work, which has left it alone: apply the "
-            "filter again");
+            "the mesh was edited while the filter was running, and has not been filtered: "
+            "apply the filter again");
 }
 
 void setPositions(const std::vector<std::size_t>& vertexIndex, const spectral::Vertices& V,
@@ -64,9 +62,9 @@ void setAttributes(const std::vector<std::size_t>& vertexIndex, const std::strin
         return Attributes::DeletePerVertexAttribute(mesh.cm, name + std::to_string(j));
     };
     Eigen::Index older = values.cols();
-    while (remove(older)) ++older;  // a longer series would look like the end of this one
+    while (remove(older)) ++older;  // the rest of a longer series
     for (Eigen::Index j = 0; j < values.cols(); ++j) {
-        remove(j);  // VCG must never get a second attribute of a name, of whatever type
+        remove(j);  // names of VCG attributes must be unique, whatever their types
         auto attribute =
             Attributes::AddPerVertexAttribute<Scalarm>(mesh.cm, name + std::to_string(j));
         for (std::size_t i = 0; i < mesh.cm.vert.size(); ++i) attribute[i] = 0;

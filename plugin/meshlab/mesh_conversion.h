@@ -7,23 +7,23 @@
 
 #include "core/mesh/mesh.h"
 #include "core/support/progress.h"
-#include "core/support/types.h"
 
-/// A mesh of MeshLab's as matrices, without the deleted elements that stay in its containers.
+/// A mesh of MeshLab as matrices, without the deleted elements in its containers.
 struct MeshMatrices {
     spectral::Vertices V;
     spectral::Faces F;
-    std::vector<std::size_t> vertexIndex;  ///< Index in the container of every row of V.
+    std::vector<std::size_t> vertexIndex;  ///< Container index of every row of V.
 };
 
 MeshMatrices toMatrices(const CMeshO& mesh);
 
-/// Reports that the mesh is to be written next, the last moment to stop.
-/// @throws MLException  when it is not `input` any more: MeshLab lets its user edit it meanwhile.
+/// Reports progress before the mesh is written, the last opportunity to cancel.
+/// @throws MLException  when the mesh is no longer `input`: MeshLab lets the user edit it
+/// meanwhile.
 void reportWriting(const MeshMatrices& input, const CMeshO& mesh,
                    const spectral::Progress& progress);
 
-/// Moves the vertices to the rows of V and updates bounding box and normals; all else is kept.
+/// Moves the vertices to the rows of V, and updates bounding box and normals.
 void setPositions(const std::vector<std::size_t>& vertexIndex, const spectral::Vertices& V,
                   MeshModel& mesh);
 
@@ -31,7 +31,7 @@ void setPositions(const std::vector<std::size_t>& vertexIndex, const spectral::V
 void setQuality(const std::vector<std::size_t>& vertexIndex, const Eigen::VectorXd& values,
                 MeshModel& mesh);
 
-/// Stores the columns of `values` as scalar vertex attributes `name`0, `name`1, ..., in place of
-/// all that had such a name. Other vertices, those deleted, have 0.
+/// Stores the columns of `values` as scalar vertex attributes `name`0, `name`1, ..., replacing all
+/// of such names; 0 at deleted vertices.
 void setAttributes(const std::vector<std::size_t>& vertexIndex, const std::string& name,
                    const Eigen::MatrixXd& values, MeshModel& mesh);

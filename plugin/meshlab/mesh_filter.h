@@ -9,34 +9,34 @@
 
 #include "core/support/progress.h"
 
-/// What a filter tells after its work.
+/// What a filter reports.
 struct FilterOutcome {
-    /// What pymeshlab returns. Only int, bool, double and Eigen::VectorXd: other types (strings,
-    /// unsigned) do not reach Python.
+    /// Returned by pymeshlab. Only int, bool, double and Eigen::VectorXd reach Python, not strings
+    /// or unsigned integers.
     std::map<std::string, QVariant> report;
     std::string text;  ///< The same as lines for MeshLab's log.
     std::vector<std::string>
         warnings{};  ///< What fell short without being an error; in the log too.
 };
 
-/// One filter of the plugin, as the plugin's class needs it.
+/// One filter of the plugin.
 struct MeshFilter {
-    QString name;        ///< In MeshLab's menus and in filter scripts: unique, never changed.
-    QString pythonName;  ///< Of the method in pymeshlab: unique, never changed.
-    QString help;        ///< The HTML that the dialog shows.
+    QString name;        ///< In menus and filter scripts: unique, must never change.
+    QString pythonName;  ///< The method of pymeshlab: unique, must never change.
+    QString help;        ///< HTML for the dialog.
     FilterPlugin::FilterClass category = FilterPlugin::Other;
     int changes = MeshModel::MM_NONE;  ///< Mask of what the filter writes.
 
-    /// The dialog's parameters with their defaults.
+    /// The parameters of the dialog, with defaults.
     RichParameterList (*parameters)(const MeshModel& mesh) = nullptr;
 
-    /// Computes, then writes into the mesh: it may throw only while the mesh is as it was.
-    /// @throws spectral::Error  saying what is wrong and what to do.
+    /// Computes, then writes into the mesh; throws only while the mesh is unchanged.
+    /// @throws spectral::Error
     FilterOutcome (*apply)(const RichParameterList& parameters, MeshModel& mesh,
                            const spectral::Progress& progress) = nullptr;
 };
 
-// One function for each filter, in a file of its own.
+// One function and one file for each filter.
 MeshFilter fractionalMeshFilter();        ///< filter_fractional.cpp
 MeshFilter artefactsMeshFilter();         ///< filter_artefacts.cpp
 MeshFilter harmonicsMeshFilter();         ///< filter_harmonics.cpp

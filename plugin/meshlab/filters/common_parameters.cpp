@@ -2,9 +2,7 @@
 
 #include <common/parameters/rich_parameters.h>
 
-#include "core/filter/transfer_function.h"
 #include "core/laplacian/frequency.h"
-#include "core/laplacian/interior.h"
 #include "core/mesh/measures.h"
 #include "meshlab/mesh_conversion.h"
 
@@ -25,7 +23,7 @@ double featureSize(const RichParameterList& parameters) {
 }
 
 RichEnum laplacianParameter(const QString& help) {
-    // The order of the entries is that of the core's enumeration.
+    // In the order of the core's enumeration.
     return {"laplacian",
             static_cast<int>(spectral::LaplacianKind::IntrinsicDelaunay),
             {"intrinsic delaunay", "cotangent"},
@@ -39,7 +37,7 @@ spectral::LaplacianKind laplacianKind(const RichParameterList& parameters) {
 }
 
 RichEnum boundaryParameter(const QString& help) {
-    // The order of the entries is that of the core's enumeration.
+    // In the order of the core's enumeration.
     return {
         "boundary", static_cast<int>(spectral::Boundary::Free), {"free", "fixed"}, "Boundary", help,
         true};

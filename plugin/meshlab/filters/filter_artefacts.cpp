@@ -14,14 +14,14 @@
 namespace {
 
 const char* const kHelp =
-    "Measures the <b>artefacts</b> that a filter has left in the shape: spikes, creases and "
-    "ripples that are much finer than what it should have left."
+    "Measures the <b>artefacts</b> that a filter has left in a shape: spikes, creases and ripples "
+    "that are much finer than the details it should have left."
     "<br><br>Apply it to the filtered mesh, with the feature size of the filter, as the same "
-    "length. The part of the shape above twice the cutoff frequency, in the frequencies of the "
-    "filtered surface itself, is split off; its length at every vertex goes into the vertex "
-    "quality and is shown in colours, from red (none) to blue (the most). The log tells its root "
-    "mean square over the surface and its maximum."
-    "<br><br>Nothing moves. A strong smoothing should leave next to nothing; on a mesh that was "
+    "length. The part of the shape above twice the cutoff frequency, measured on the filtered "
+    "surface itself, is split off; its length at every vertex becomes the vertex quality and is "
+    "shown in colours, from red (none) to blue (largest). The log reports its root mean square "
+    "over the surface and its maximum."
+    "<br><br>No vertex moves. Strong smoothing should leave next to nothing; on a mesh that was "
     "not smoothed, its own fine details are measured."
     "<br><br>For more information see:"
     "<br><i>A. Kovnatsky, M. M. Bronstein, A. M. Bronstein</i>, <b>Stable Spectral Mesh "
@@ -31,11 +31,10 @@ RichParameterList parameters(const MeshModel& mesh) {
     RichParameterList list;
     list.addParam(featureSizeParameter(
         mesh,
-        "The feature size of the low-pass or of the band that was applied. Mind that a percentage "
-        "refers to this mesh, whose diagonal the filter may have changed: give the length that the "
-        "filter has reported."));
+        "Feature size of the low-pass or band that was applied. A percentage refers to this mesh, "
+        "whose diagonal the filter may have changed: enter the length that the filter reported."));
     list.addParam(
-        laplacianParameter("How the frequencies of the surface are measured: as in the filter. "
+        laplacianParameter("How the frequencies of the surface are measured, as in the filter. "
                            "<b>intrinsic delaunay</b> works on any triangles; for <b>cotangent</b> "
                            "every triangle needs an area."));
     return list;
@@ -43,7 +42,7 @@ RichParameterList parameters(const MeshModel& mesh) {
 
 std::string textOf(const spectral::Artefacts& artefacts, double featureSize, double diagonal) {
     std::ostringstream text;
-    text << std::setprecision(4) << "Spectral Artefacts: above twice the cutoff of feature size "
+    text << std::setprecision(4) << "Spectral Artefacts above twice the cutoff of feature size "
          << featureSize << "\n  root mean square " << artefacts.rms << " ("
          << artefacts.rms / diagonal << " diagonals), largest " << artefacts.maximum << " ("
          << artefacts.maximum / diagonal << " diagonals), estimated error of these lengths "

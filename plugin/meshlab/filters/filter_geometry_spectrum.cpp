@@ -17,24 +17,22 @@ namespace {
 using spectral::GeometrySpectrum;
 
 const char* const kHelp =
-    "Measures how much of a shape is in details of which size: what an equalizer shows of sound. "
-    "Look at it to <b>choose a feature size</b> for the spectral filters; nothing moves."
-    "<br><br>The shape is taken apart into its manifold harmonics, the standing waves of its own "
-    "surface. Those of one octave of feature sizes, that is wavelengths, add up to details of a "
-    "certain height: the <b>amplitude</b> of the octave, the root mean square over the surface, in "
-    "the units of the mesh. The log lists it for every octave, down to the smallest details that "
-    "the mesh can carry; a smooth shape falls off steadily towards small ones."
-    "<br><br>Where the details are no more than those of vertices displaced at random, there is "
-    "<b>noise</b>, or what is too fine for the mesh to tell it from noise. The log says from which "
-    "feature size down, and how high that noise is: a low-pass with a somewhat larger feature size "
-    "removes it."
-    "<br><br>Squares of amplitudes are energies. The log also tells the feature sizes at and above "
-    "which 50, 90 and 99 % of the energy are: nearly all is in the largest features, which make "
-    "the overall shape."
-    "<br><br>An open boundary adds to the details of every size, the more so the longer and the "
-    "more ragged it is. With <b>boundary</b> <i>fixed</i> it does not: what its position "
-    "determines is taken out first, and what is left is measured. That is also all that a filter "
-    "with a fixed boundary acts on."
+    "Measures how much of a shape is in details of which size, like the display of an equalizer. "
+    "Use it to <b>choose a feature size</b> for the spectral filters; no vertex moves."
+    "<br><br>The shape is decomposed into its manifold harmonics, the standing waves of its own "
+    "surface. Those of one octave of feature sizes (wavelengths) add up to details of a certain "
+    "height: the <b>amplitude</b> of the octave, the root mean square over the surface, in mesh "
+    "units. The log lists it for every octave, down to the smallest details that the mesh can "
+    "represent; for a smooth shape it decreases steadily towards small sizes."
+    "<br><br>Details that look like random displacements of the vertices are <b>noise</b>, or too "
+    "fine for the mesh to distinguish them from noise. The log reports the feature size at which "
+    "they begin, and their height: a low-pass with a somewhat larger feature size removes them."
+    "<br><br>Squared amplitudes are energies. The log also reports the feature sizes at and above "
+    "which 50, 90 and 99 % of the energy are: nearly all is in the largest features, the overall "
+    "shape."
+    "<br><br>An open boundary adds to the details of every size, more so the longer and more "
+    "ragged it is. With <b>boundary</b> <i>fixed</i> it does not: what it determines is removed "
+    "first, and the rest is measured, which is all that a filter with a fixed boundary acts on."
     "<br><br>For more information see:"
     "<br><i>B. Vallet, B. L&eacute;vy</i>, <b>Spectral Geometry Processing with Manifold "
     "Harmonics</b>, Computer Graphics Forum 27(2), 2008"
@@ -45,23 +43,22 @@ RichParameterList parameters(const MeshModel&) {
     RichParameterList list;
     list.addParam(
         RichInt("basis_size", spectral::SpectrumOptions().basisSize, "Basis size",
-                "How many of the largest features (manifold harmonics) are told one by one, the "
+                "Number of the largest features (manifold harmonics) that are computed one by one, "
                 "constant ones included; time and memory grow with it. The octaves cover all "
-                "features whatever this is. A small mesh gets all that it has."));
+                "features in any case. A small mesh gets all it has."));
     list.addParam(
-        laplacianParameter("How the frequencies of the surface are measured: as in the filter. "
+        laplacianParameter("How the frequencies of the surface are measured, as in the filter. "
                            "<b>intrinsic delaunay</b> works on any triangles; for <b>cotangent</b> "
                            "every triangle needs an area."));
     list.addParam(boundaryParameter(
-        "Rims of an open surface and of its holes: as in the filter. <b>free</b>: they are part of "
-        "the shape. <b>fixed</b>: only what the position of the rims does not determine is "
-        "measured."));
+        "The boundary of an open surface, holes included, as in the filter. <b>free</b>: it is "
+        "part of the shape. <b>fixed</b>: only what it does not determine is measured."));
     return list;
 }
 
 QVariant vectorVariant(const Eigen::VectorXd& v) { return QVariant::fromValue(v); }
 
-/// A length, and what it is in percent of the diagonal.
+/// A length, also in percent of the diagonal.
 std::string withPercent(double length, double diagonal) {
     std::ostringstream text;
     text << std::setprecision(4) << length << " (" << std::setprecision(3)
@@ -75,7 +72,7 @@ std::string textOf(const GeometrySpectrum& spectrum) {
          << " harmonics, octaves of all details; in brackets percent of the diagonal, "
          << spectrum.diagonal << "\n"
          << std::left << "  " << std::setw(24) << "feature size" << std::setw(24) << "amplitude"
-         << "energy in this and larger ones";
+         << "cumulative energy";
     for (Eigen::Index j = 0; j < spectrum.octaveEnergies.size(); ++j)
         text << "\n  " << std::setw(24)
              << withPercent(spectrum.octaveFeatureSizes[j], spectrum.diagonal) << std::setw(24)
@@ -85,7 +82,7 @@ std::string textOf(const GeometrySpectrum& spectrum) {
     if (spectrum.noiseHeight > 0.0)
         text << "\n  details smaller than "
              << withPercent(spectrum.noiseFeatureSize, spectrum.diagonal)
-             << " are as noise of the vertices, of a root mean square height of "
+             << " are like noise of the vertices, of root mean square height "
              << withPercent(spectrum.noiseHeight, spectrum.diagonal);
     text << "\n  50 % of the energy at feature sizes of at least "
          << withPercent(spectrum.featureSize50, spectrum.diagonal) << ", 90 % "

@@ -15,25 +15,25 @@
 
 namespace {
 
-constexpr int kDefaultMode = 1;  // the first that is not constant, on a connected surface
+constexpr int kDefaultMode = 1;  // the first that is not constant on a connected surface
 
-/// Name of the vertex attribute of harmonic i: this and the number.
+/// Prefix of the names of the vertex attributes, followed by the mode.
 const char* const kAttribute = "harmonic_";
 
 const char* const kHelp =
-    "Computes the <b>manifold harmonics</b> of the surface: its own standing waves, from the "
-    "slowest to finer and finer ones, as a drum of this shape would show them. They are the "
-    "eigenfunctions of its Laplace-Beltrami operator, which the spectral filters work with."
-    "<br><br>The harmonic that you choose by its number, the <b>mode</b>, goes into the vertex "
-    "quality and is shown in colours: red where it is positive, blue where it is negative, white "
-    "in between. Its sign, which is arbitrary, is chosen so that the value farthest from zero is "
-    "positive; of several such values (to within one millionth) that of the first vertex. Modes "
-    "of equal eigenvalue, on symmetric shapes, may come in any mixture."
+    "Computes the <b>manifold harmonics</b> of a surface: its standing waves, from low to high "
+    "frequencies, like those of a drum of this shape. They are the eigenfunctions of its "
+    "Laplace-Beltrami operator, which the spectral filters work with."
+    "<br><br>The harmonic with the number <b>mode</b> becomes the vertex quality and is shown in "
+    "colours: red where it is positive, blue where it is negative, white in between. Its sign, "
+    "which is arbitrary, makes the value of largest modulus positive; of several such values (to "
+    "within one millionth) that of the first vertex. Modes of a multiple eigenvalue, on symmetric "
+    "shapes, are an arbitrary mixture."
     "<br><br>None is missing: their number is checked against the inertia of a factorization "
     "(Sylvester's law). The report holds that count, the relative residuals and the eigenvalues; "
-    "the frequency of a harmonic is the square root of its eigenvalue, and 2 pi over the frequency "
-    "its wavelength. <b>Store basis</b> keeps all harmonics in the mesh, as the vertex attributes "
-    "harmonic_0, harmonic_1 and so on."
+    "the frequency of a harmonic is the square root of its eigenvalue, and its wavelength 2 pi "
+    "over the frequency. <b>Store basis</b> keeps all harmonics in the mesh, as the vertex "
+    "attributes harmonic_0, harmonic_1 and so on."
     "<br><br>For more information see:"
     "<br><i>B. Vallet, B. L&eacute;vy</i>, <b>Spectral Geometry Processing with Manifold "
     "Harmonics</b>, Computer Graphics Forum 27(2), 2008";
@@ -42,32 +42,29 @@ RichParameterList parameters(const MeshModel&) {
     RichParameterList list;
     list.addParam(RichInt(
         "mode", kDefaultMode, "Mode",
-        "Number of the harmonic to show, below the basis size. 0 is the constant one (every "
-        "connected component has its own, they come first; with a fixed boundary it has none), "
-        "higher ones are finer."));
+        "Number of the harmonic to show, below the basis size. The constant ones come first, one "
+        "for each component (none with a fixed boundary); higher ones are finer."));
     list.addParam(
         RichInt("basis_size", spectral::HarmonicsOptions().basisSize, "Basis size",
-                "How many harmonics are computed, the constant ones included. Must be below the "
-                "number of vertices that are not fixed; time and memory grow with it."));
+                "Number of harmonics to compute, constant ones included. Must be below the number "
+                "of vertices that are not fixed; time and memory grow with it."));
     list.addParam(RichBool(
         "store_basis", false, "Store basis",
         "Keep all harmonics as vertex attributes named harmonic_0, harmonic_1 and so on, one "
-        "number per vertex each. Those of an earlier run are replaced. With the areas that belong "
-        "to the vertices as weights they are orthonormal."));
+        "number per vertex each. Those of an earlier run are replaced. They are orthonormal with "
+        "the vertex areas as weights."));
     list.addParam(laplacianParameter(
         "How the frequencies of the surface are measured. <b>intrinsic delaunay</b> works on any "
-        "triangles, also needles, holes, doubled or crossing sheets. <b>cotangent</b> is the "
-        "classical formula; every triangle needs an area."));
-    list.addParam(
-        boundaryParameter("What the waves do at the rims of an open surface and of its holes. "
-                          "<b>free</b>: they swing there, too, and meet the rim without "
-                          "slope. <b>fixed</b>: they are zero there, as a drum's skin is held by "
-                          "its rim."));
+        "triangles, including slivers, holes, duplicate or intersecting sheets. <b>cotangent</b> "
+        "is the classical formula; every triangle needs an area."));
+    list.addParam(boundaryParameter(
+        "Boundary conditions of an open surface, holes included. <b>free</b>: the waves have zero "
+        "slope across the boundary. <b>fixed</b>: they are zero there, like the skin of a drum."));
     return list;
 }
 
 void checkMode(int mode, int basisSize) {
-    if (mode >= 0 && (mode < basisSize || basisSize < 1)) return;  // a size below 1 has its own say
+    if (mode >= 0 && (mode < basisSize || basisSize < 1)) return;  // truncatedBasis rejects it
     throw spectral::InvalidOption("mode = " + std::to_string(mode) +
                                   ": a basis of basis_size = " + std::to_string(basisSize) +
                                   " has the modes 0 to " + std::to_string(basisSize - 1));
@@ -81,11 +78,10 @@ std::string textOf(const spectral::ManifoldHarmonics& harmonics, int mode) {
          << ", eigenvalue " << lambda;
     if (lambda > 0.0) text << ", wavelength " << 2.0 * spectral::kPi / std::sqrt(lambda);
     if (harmonics.wholeSize > size)
-        text << "\n  the basis ends within a group of equal eigenvalues; basis_size = "
-             << harmonics.wholeSize << " would hold all of it";
-    text << "\n  none of the lowest is missing: a count of its own (the inertia of W - sigma D) "
-            "finds "
-         << harmonics.inertiaCount << ", too; largest relative residual "
+        text << "\n  the basis splits a multiple eigenvalue; basis_size = " << harmonics.wholeSize
+             << " would not";
+    text << "\n  none of the lowest is missing: the inertia of W - sigma D counts "
+         << harmonics.inertiaCount << "; largest relative residual "
          << harmonics.residuals.maxCoeff();
     return text.str();
 }

@@ -2,14 +2,13 @@
 
 #include <common/parameters/rich_parameters.h>
 
-#include "core/filter/transfer_function.h"
 #include "meshlab/filters/common_parameters.h"
 
 using spectral::FilterOptions;
 
 namespace {
 
-/// In parts of the diagonal of the bounding box.
+/// Relative to the bounding box diagonal: half a pixel of a mesh shown 1,000 pixels wide.
 constexpr double kDefaultTolerance = 0.0005;
 
 }  // namespace
@@ -20,99 +19,94 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
     const Scalarm diagonal = mesh.cm.bbox.Diag();
     RichParameterList list;
 
-    // The order of the entries is that of the core's enumerations.
-    list.addParam(RichEnum(
-        "filter_type", static_cast<int>(transfer.type),
-        {"low-pass", "high-pass", "band-pass", "band-stop"}, "Filter type",
-        "What to do with details, by their size. <b>low-pass</b> keeps what is larger than the "
-        "feature size and removes the rest. <b>high-pass</b> acts on what is smaller: with stop "
-        "gain 1 and pass gain 2 it sharpens. <b>band-pass</b> acts on details of about the feature "
-        "size: with stop gain 1 and pass gain above 1 it enhances them. <b>band-stop</b> removes "
-        "them."));
+    // Choices are in the order of the core's enumerations.
+    list.addParam(
+        RichEnum("filter_type", static_cast<int>(transfer.type),
+                 {"low-pass", "high-pass", "band-pass", "band-stop"}, "Filter type",
+                 "Which details to change, by their size. <b>low-pass</b> keeps details larger "
+                 "than the feature size and removes the rest. <b>high-pass</b> acts on smaller "
+                 "ones: with stop gain 1 and pass gain 2 it sharpens. <b>band-pass</b> acts on "
+                 "details of about the feature size: with stop gain 1 and pass gain above 1 it "
+                 "enhances them. <b>band-stop</b> removes them."));
     list.addParam(featureSizeParameter(
         mesh,
-        "Size of the details where the filter turns over: the wavelength of a wave along the "
-        "surface, a bump and the hollow next to it. To remove bumps, try twice their width. "
-        "By default six mean edges of this mesh, at most 5 % of its diagonal: enough to remove the "
-        "noise of a scan."));
-    list.addParam(RichFloat(
-        "pass_gain", static_cast<Scalarm>(transfer.passGain), "Pass gain",
-        "Factor for the details that the filter passes: 1 keeps them, 2 doubles their height, 0 "
-        "removes them. Not negative."));
+        "Size at which the filter cuts off: the wavelength of a wave along the surface, a bump and "
+        "the hollow next to it. To remove bumps, try twice their width. Default: six mean edges of "
+        "this mesh, at most 5 % of its diagonal, which removes the noise of a scan."));
+    list.addParam(RichFloat("pass_gain", static_cast<Scalarm>(transfer.passGain), "Pass gain",
+                            "Factor for the details that the filter passes: 1 keeps them, 2 "
+                            "doubles their height, 0 removes them. Not negative."));
     list.addParam(RichFloat(
         "stop_gain", static_cast<Scalarm>(transfer.stopGain), "Stop gain",
         "Factor for all other details: 0 removes them, 0.5 halves their height, 1 keeps them. Not "
         "negative."));
-    list.addParam(RichFloat(
-        "band_width", static_cast<Scalarm>(transfer.bandWidth), "Band width (octaves)",
-        "Width of the band of band-pass and band-stop, in octaves: 1 means that its largest "
-        "details are twice as large as its smallest.",
-        true));
-    list.addParam(RichEnum(
-        "response", static_cast<int>(transfer.response), {"gaussian", "butterworth", "ideal"},
-        "Response",
-        "How sharply the filter tells sizes apart. <b>gaussian</b> changes over gently and never "
-        "rings; <b>butterworth</b> is sharper the higher its order; <b>ideal</b> cuts at once and "
-        "may leave ripples.",
-        true));
+    list.addParam(
+        RichFloat("band_width", static_cast<Scalarm>(transfer.bandWidth), "Band width (octaves)",
+                  "Width of the band for band-pass and band-stop, in octaves: with 1, its "
+                  "largest details are twice as large as its smallest.",
+                  true));
+    list.addParam(RichEnum("response", static_cast<int>(transfer.response),
+                           {"gaussian", "butterworth", "ideal"}, "Response",
+                           "How sharply the filter separates sizes. <b>gaussian</b> is gradual and "
+                           "never rings; <b>butterworth</b> is sharper the higher its order; "
+                           "<b>ideal</b> cuts off abruptly and may leave ripples.",
+                           true));
     list.addParam(RichInt(
         "order", transfer.order, "Butterworth order",
         "Steepness of the butterworth response, from 1 (gentle) to 64 (nearly ideal).", true));
-    list.addParam(RichFloat(
-        "power", static_cast<Scalarm>(transfer.power), "Power",
-        "The part of the filter to apply, as a power of its gains: 0.5 is half of the filter (a "
-        "gain of 4 becomes 2). Above 0, at most 1.",
-        true));
+    list.addParam(RichFloat("power", static_cast<Scalarm>(transfer.power), "Power",
+                            "Fraction of the filter to apply, as a power of its gains: 0.5 is half "
+                            "of the filter (a gain of 4 becomes 2). Above 0, at most 1.",
+                            true));
     list.addParam(RichInt(
         "steps", defaults.steps, "Steps (0 = automatic)",
-        "The filter is applied as this many weak steps, because a single strong one turns thin "
-        "parts into spikes or balloons. 0 takes as many as the tolerance needs; 10 is the scheme "
-        "of the paper [1] with ten steps; 1 is the classical one-shot filter.",
+        "The filter is applied in this many weak steps, because a single strong one turns thin "
+        "parts into spikes or balloons. 0 takes as many as the tolerance needs; 10 is the "
+        "scheme of the paper [1] with ten steps; 1 is the classical one-shot filter.",
         true));
     list.addParam(RichPercentage(
         "tolerance", static_cast<Scalarm>(kDefaultTolerance) * diagonal, 0, diagonal, "Tolerance",
-        "With 0 steps: how far the surface may be from where infinitely many steps would put it "
-        "(but a thousandth of it, where thin parts pinch off). More is faster.",
+        "With 0 steps: largest distance of the surface from that of infinitely many steps "
+        "(except for a thousandth of it, where thin parts pinch off). Larger is faster.",
         true));
     list.addParam(RichEnum(
         "basis_update", static_cast<int>(defaults.basisUpdate), {"full", "conformal", "none"},
         "Basis update",
-        "What every step learns from the shape that the step before has made. <b>full</b>, the "
-        "paper's scheme, takes its frequencies anew. <b>conformal</b> takes its areas anew [4]: "
-        "thin parts shrink instead of turning into spikes. <b>none</b> keeps the frequencies of "
-        "the input; then the number of steps does not matter.",
+        "What every step recomputes from the current shape. <b>full</b>, the paper's scheme: all "
+        "of its frequencies. <b>conformal</b>: its areas only [4]; thin parts shrink instead of "
+        "turning into spikes. <b>none</b>: nothing; the number of steps then makes no difference.",
         true));
     list.addParam(RichFloat(
         "conformal_share", static_cast<Scalarm>(defaults.conformalShare), "Conformal share",
-        "For the full update: from 0, the scheme of the paper, to 1, the conformal update. 0.1 is "
-        "enough to draw in thin parts that a strong full update leaves as hair-thin spikes.",
+        "For the full update: from 0, the paper's scheme, to 1, the conformal update. 0.1 is "
+        "enough to contract thin parts that a strong full update leaves as hair-thin spikes.",
         true));
     list.addParam(RichEnum(
         "spectrum", static_cast<int>(defaults.evaluation.spectrum), {"full", "truncated"},
         "Spectrum",
-        "<b>full</b> filters all frequencies that the mesh can carry, and is fast. "
-        "<b>truncated</b> computes only the lowest frequencies (as many as the basis size) and "
-        "treats all the others alike, as older methods do; each step computes them, so give a "
-        "number of steps, e.g. 10.",
+        "<b>full</b> filters all frequencies of the mesh, and is fast. <b>truncated</b> computes "
+        "only the lowest frequencies (as many as the basis size) and treats all others alike, as "
+        "older methods do; it does so in every step, so set a number of steps, e.g. 10.",
         true));
-    list.addParam(RichInt(
-        "basis_size", defaults.evaluation.truncation.basisSize, "Basis size",
-        "How many frequencies (manifold harmonics) a truncated spectrum has, e.g. 300. Must be "
-        "below the number of vertices; time and memory grow with it.",
-        true));
-    list.addParam(RichBool(
-        "reinject_residual", defaults.evaluation.truncation.reinjectResidual, "Reinject residual",
-        "For a truncated spectrum: keep the details beyond the basis, with the mean gain of their "
-        "frequencies. Off: drop them.",
-        true));
+    list.addParam(
+        RichInt("basis_size", defaults.evaluation.truncation.basisSize, "Basis size",
+                "Number of frequencies (manifold harmonics) of a truncated spectrum, e.g. 300. "
+                "Must be below the number of vertices; time and memory grow with it.",
+                true));
+    list.addParam(RichBool("reinject_residual", defaults.evaluation.truncation.reinjectResidual,
+                           "Reinject residual",
+                           "For a truncated spectrum: keep the details beyond the basis, with the "
+                           "mean gain of their frequencies. Off: drop them.",
+                           true));
     list.addParam(laplacianParameter(
         "How the frequencies of the surface are measured. <b>intrinsic delaunay</b> works on any "
-        "triangles, also needles, holes, doubled or crossing sheets, and stays stable in strong "
-        "filters. <b>cotangent</b> is the formula of the paper; every triangle needs an area."));
+        "triangles, including slivers, holes, duplicate or intersecting sheets, and is stable for "
+        "strong filters. <b>cotangent</b> is the formula of the paper; every triangle needs an "
+        "area."));
     list.addParam(boundaryParameter(
-        "What happens at the rims of an open surface and of its holes. <b>free</b>: they move as "
-        "the rest does; a strong smoothing rounds them off and draws them in. <b>fixed</b>: every "
-        "rim stays exactly where it is, and the surface between is filtered."));
+        "What happens at the boundary of an open surface, holes included. <b>free</b>: it moves "
+        "like the rest; strong smoothing rounds it off and pulls it in. <b>fixed</b>: it stays "
+        "exactly in place, and the surface in between is filtered."));
     return list;
 }
 

@@ -5,7 +5,7 @@
 
 #include "core/filter/fractional_filter.h"
 
-/// The dialog's parameters, in the order in which one thinks: what, how big, how strong, how.
+/// The parameters of the dialog, in the order of decisions: what, which size, how strong, how.
 RichParameterList fractionalFilterParameters(const MeshModel& mesh);
 
 /// The values of the dialog, or of a script, as the core's options.

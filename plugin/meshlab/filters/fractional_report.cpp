@@ -7,7 +7,6 @@
 #include <sstream>
 
 #include "core/filter/automatic_steps.h"
-#include "core/laplacian/frequency.h"
 #include "core/support/types.h"
 
 namespace {
@@ -55,8 +54,7 @@ std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& r
 
 namespace {
 
-/// What a user wants to know, in one line: what was done to which size, how far the surface moved,
-/// and how far the result can be trusted.
+/// The most important facts in one line: filter and size, displacement, accuracy.
 std::string headline(const spectral::FilterOptions& options, const spectral::FilterResult& result,
                      double diagonal) {
     static const char* const types[] = {"low-pass", "high-pass", "band-pass", "band-stop"};
@@ -66,10 +64,10 @@ std::string headline(const spectral::FilterOptions& options, const spectral::Fil
          << "Spectral Filter: " << types[static_cast<int>(options.transferFunction.type)]
          << " at feature size " << result.featureSize << " (" << percent * result.featureSize
          << " % of the diagonal); the surface moved by " << result.rmsDisplacement
-         << " in the root mean square, by " << result.maxDisplacement << " at most; ";
+         << " (root mean square), by " << result.maxDisplacement << " at most; ";
     text << std::setprecision(2);
     if (options.steps > 0)
-        text << result.steps << (result.steps == 1 ? " step" : " steps") << ", as asked for";
+        text << result.steps << (result.steps == 1 ? " step" : " steps") << ", as requested";
     else if (result.toleranceReached)
         text << "accurate to " << result.stepError << " (" << percent * result.stepError << " %)";
     else
@@ -80,7 +78,7 @@ std::string headline(const spectral::FilterOptions& options, const spectral::Fil
     return text.str();
 }
 
-/// @param last  frequency of the basis' last harmonic.
+/// @param last  frequency of the last harmonic.
 std::string cutoffWarning(const spectral::FilterResult& result, double last) {
     std::ostringstream text;
     text << std::setprecision(4) << "the " << result.eigenvalues.size()
@@ -106,8 +104,7 @@ std::vector<std::string> warningsOf(const spectral::FilterOptions& options,
         result.fixedVertices + result.unreferencedVertices == result.V.rows())
         warnings.emplace_back(
             "nothing can move: every vertex lies on the boundary, which is fixed. Choose boundary "
-            "= free; where the triangles of the mesh are not connected, apply 'Merge Close "
-            "Vertices' first");
+            "= free; if the triangles are not connected, apply 'Merge Close Vertices' first");
     if (!result.accuracyReached) {
         text << "the requested relative accuracy of " << result.accuracy
              << " was not reached, the estimated error is " << result.errorEstimate
@@ -121,7 +118,7 @@ std::vector<std::string> warningsOf(const spectral::FilterOptions& options,
              << 100.0 * result.singularPart
              << " % of the surface, where the estimated error is at least " << result.stepError
              << ": parts of it shrink away. Choose a smaller feature_size, or basis_update = "
-                "conformal if it is another one";
+                "conformal instead of full";
         warnings.push_back(text.str());
     }
     if (!result.cutoffReached) warnings.push_back(cutoffWarning(result, lastFrequency(result)));
@@ -140,9 +137,9 @@ std::string reportText(const spectral::FilterOptions& options, const spectral::F
          << "  surface: " << result.components
          << (result.components == 1 ? " component" : " components");
     if (result.unreferencedVertices > 0)
-        text << ", " << result.unreferencedVertices << " unreferenced vertices left alone";
+        text << ", " << result.unreferencedVertices << " unreferenced vertices unchanged";
     if (result.fixedVertices > 0)
-        text << ", " << result.fixedVertices << " vertices fixed on its boundary";
+        text << ", " << result.fixedVertices << " boundary vertices fixed";
     text << "\n  work: " << result.factorizations << " factorizations, " << result.solves
          << " solves";
     if (result.eigenvalues.size() > 0)

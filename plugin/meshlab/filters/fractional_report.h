@@ -7,14 +7,14 @@
 
 #include "core/filter/fractional_filter.h"
 
-/// The report as the dictionary that pymeshlab returns.
+/// The dictionary that pymeshlab returns.
 std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& result);
 
-/// The same as lines for MeshLab's log; the first says what most users want to know.
-/// @param diagonal  of the input's bounding box.
+/// The same as lines for MeshLab's log, the most important facts first.
+/// @param diagonal  of the bounding box of the input.
 std::string reportText(const spectral::FilterOptions& options, const spectral::FilterResult& result,
                        double diagonal);
 
-/// What a user should act on: sentences, each with its remedy; empty where all is well.
+/// What the user should act on: sentences, each with its remedy; empty if there is nothing.
 std::vector<std::string> warningsOf(const spectral::FilterOptions& options,
                                     const spectral::FilterResult& result);

@@ -5,10 +5,10 @@
 #include <Eigen/Core>
 #include <vector>
 
-/// Colours a function of two signs: blue where it is lowest, white at 0, red where it is highest.
-/// Symmetric about 0: the largest absolute value has the full colour.
+/// Colours a signed function: blue below 0, white at 0, red above; the largest modulus has the full
+/// colour.
 ///
-/// @param vertexIndex  index in the container of every entry of `values`.
+/// @param vertexIndex  container index of every entry of `values`.
 /// @param values       finite.
 void setDivergingColors(const std::vector<std::size_t>& vertexIndex, const Eigen::VectorXd& values,
                         MeshModel& mesh);

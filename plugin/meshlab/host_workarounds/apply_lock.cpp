@@ -8,20 +8,20 @@ ApplyLock::ApplyLock() {
     const QWidget* dialog = openFilterDialog();
     if (dialog == nullptr) return;
     auto* button = dialog->findChild<QAbstractButton*>("applyPushButton");
-    if (button == nullptr || !button->isEnabled()) return;  // the lock of a run around this one
+    if (button == nullptr || !button->isEnabled()) return;  // locked by an outer run
     button_ = button;
-    const bool hasKeys = button->hasFocus();
+    const bool hadFocus = button->hasFocus();
     button->setEnabled(false);
-    if (hasKeys) focusAfter_ = QApplication::focusWidget();
+    if (hadFocus) focusAfter_ = QApplication::focusWidget();
     button->installEventFilter(this);
 }
 
 ApplyLock::~ApplyLock() {
     if (button_.isNull()) return;
     button_->setEnabled(true);
-    // The keys come back to the button, unless they were directed elsewhere meanwhile.
+    // The focus returns to the button, unless the user has moved it meanwhile.
     if (!focusAfter_.isNull() && focusAfter_ == QApplication::focusWidget()) button_->setFocus();
-    // Posted: the press of this click reaches the button only when MeshLab is done with the run.
+    // Posted: the button receives the press of this click only after the run.
     if (release_ != nullptr) QCoreApplication::postEvent(button_, release_.release());
 }
 

@@ -7,18 +7,17 @@
 #include <QWidget>
 #include <memory>
 
-/// Keeps Apply in the filter's dialog from being pressed while the filter runs: an object for one
-/// run.
+/// Disables Apply in the filter's dialog for the duration of a run.
 ///
-/// In the filter's callback MeshLab handles its widgets. Who presses Apply there a second time has
-/// the filter begin anew on the same mesh, within its first run. The mesh would be filtered once,
-/// but MeshLab 2025.07 would note two runs, and do both when the filter script is applied.
+/// MeshLab handles user input in the filter's callback. Pressing Apply there would start the filter
+/// again within its first run: the mesh would be filtered once, but MeshLab 2025.07 would record
+/// two runs, and repeat both when the filter script is applied.
 ///
-/// A click on Apply that has itself begun the run is not lost: who types a value and clicks Apply
-/// leaves the field with it, which starts a preview before the button gets to know of the click. It
-/// is then done after the preview.
+/// A click on Apply that has itself started the run is not lost: clicking it after typing a value
+/// takes the focus from the field, which starts a preview before the button receives the click. The
+/// click is delivered after the preview.
 ///
-/// Does nothing where no dialog is open: in pymeshlab, for a filter script.
+/// Does nothing without an open dialog, as in pymeshlab and for filter scripts.
 class ApplyLock : public QObject {
   public:
     ApplyLock();
@@ -27,8 +26,8 @@ class ApplyLock : public QObject {
     bool eventFilter(QObject* object, QEvent* event) override;
 
   private:
-    QPointer<QAbstractButton> button_;  // null unless this object has locked it
-    QPointer<QWidget> focusAfter_;      // where the keys went; null unless they were the button's
-    bool isPressed_ = false;            // during the run
+    QPointer<QAbstractButton> button_;      // null unless disabled by this object
+    QPointer<QWidget> focusAfter_;          // new focus; null unless the button had it
+    bool isPressed_ = false;                // during the run
     std::unique_ptr<QMouseEvent> release_;  // of a click that began before the run
 };

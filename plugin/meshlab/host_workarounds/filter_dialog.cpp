@@ -6,7 +6,7 @@
 QWidget* openFilterDialog() {
     const auto* program = qobject_cast<QApplication*>(QCoreApplication::instance());
     if (program == nullptr || program->thread() != QThread::currentThread()) return nullptr;
-    // MeshLab hides a dialog that is closed, and keeps it.
+    // MeshLab hides closed dialogs instead of deleting them.
     for (QWidget* widget : QApplication::allWidgets())
         if (widget->inherits("FilterDockDialog") && widget->isVisible()) return widget;
     return nullptr;

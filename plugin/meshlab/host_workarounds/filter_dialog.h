@@ -2,8 +2,6 @@
 
 #include <QWidget>
 
-/// The dialog of a filter that is open in MeshLab's window.
-///
-/// Null where there is none: in pymeshlab, for a filter script, on another thread than the
-/// window's.
+/// The filter dialog that is open in MeshLab; null without one, as in pymeshlab and for filter
+/// scripts, and on any thread but that of the GUI.
 QWidget* openFilterDialog();

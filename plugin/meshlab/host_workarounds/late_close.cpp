@@ -14,7 +14,7 @@ LateClose::LateClose() {
 }
 
 LateClose::~LateClose() {
-    // Queued: MeshLab has yet to finish with the run.
+    // Queued: MeshLab has not finished the run yet.
     if (isAsked()) QMetaObject::invokeMethod(window_, "close", Qt::QueuedConnection);
 }
 

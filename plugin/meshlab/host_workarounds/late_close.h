@@ -4,25 +4,24 @@
 #include <QPointer>
 #include <QWidget>
 
-/// Puts the closing of a project, or of MeshLab, off until the filter has stopped: an object for
-/// one run.
+/// Postpones closing a project, or MeshLab, until the running filter has stopped.
 ///
-/// In the filter's callback MeshLab handles its windows. Who closes the project there deletes it
-/// under the filter, and MeshLab 2025.07 crashes when the run ends, whatever the filter; and a
-/// MeshLab that is closed computes on, unseen, to the end of the run. Here the window is closed
-/// once the run is over, which is to stop for it.
+/// MeshLab handles user input in the filter's callback. Closing the project there deletes it during
+/// the run, and MeshLab 2025.07 crashes at the end of the run of any filter; closing MeshLab leaves
+/// it computing without a window. Instead, the run is stopped (see isAsked), and then the window is
+/// closed.
 ///
-/// Does nothing in a program without windows, and on another thread than theirs: in pymeshlab.
+/// Does nothing without windows or on any thread but theirs, as in pymeshlab.
 class LateClose : public QObject {
   public:
     LateClose();
     ~LateClose() override;
 
-    /// Whether a window was to be closed since the run began.
+    /// Whether the user has tried to close a window during the run.
     bool isAsked() const { return !window_.isNull(); }
 
     bool eventFilter(QObject* object, QEvent* event) override;
 
   private:
-    QPointer<QWidget> window_;  // that was to be closed
+    QPointer<QWidget> window_;  // to be closed after the run
 };

@@ -12,7 +12,7 @@ LatePreview::LatePreview() : dialog_(openFilterDialog()) {
 
 LatePreview::~LatePreview() {
     if (dialog_.isNull() || box_.isNull() || box_->isChecked()) return;
-    // Queued: MeshLab has yet to note what the run has left as the mesh with this preview.
+    // Queued: MeshLab has not recorded the result as the mesh with this preview yet.
     QMetaObject::invokeMethod(dialog_, "on_previewCheckBox_stateChanged", Qt::QueuedConnection,
                               Q_ARG(int, Qt::Unchecked));
 }

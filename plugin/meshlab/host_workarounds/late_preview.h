@@ -4,14 +4,14 @@
 #include <QPointer>
 #include <QWidget>
 
-/// Takes a preview back that was switched off while the filter ran: an object for one run.
+/// Reverts a preview that was switched off while the filter was running.
 ///
-/// In the filter's callback MeshLab handles its widgets. Who unticks Preview there sees the mesh as
-/// it was, but MeshLab 2025.07 then leaves it with the result of the run that ends later, whatever
-/// the filter. Its dialog is therefore told once more, after the run, that Preview is off. After an
-/// Apply that changes nothing: the dialog has by then noted the result as the mesh without preview.
+/// MeshLab handles user input in the filter's callback. Switching Preview off there restores the
+/// mesh, but the run of any filter then ends with its result on the mesh, in MeshLab 2025.07.
+/// Therefore the dialog is told again, after the run, that Preview is off. After Apply this changes
+/// nothing: by then the dialog has recorded the result as the mesh without preview.
 ///
-/// Does nothing where no dialog is open: in pymeshlab, for a filter script.
+/// Does nothing without an open dialog, as in pymeshlab and for filter scripts.
 class LatePreview {
   public:
     LatePreview();
@@ -21,5 +21,5 @@ class LatePreview {
 
   private:
     QPointer<QWidget> dialog_;
-    QPointer<QAbstractButton> box_;  // null unless it was ticked when the run began
+    QPointer<QAbstractButton> box_;  // null unless checked at the start of the run
 };
