@@ -5,6 +5,7 @@
 #include <QVariant>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "core/support/progress.h"
 
@@ -13,8 +14,9 @@ struct FilterOutcome {
     /// Returned by pymeshlab. Only int, bool, double and Eigen::VectorXd reach Python, not strings
     /// or unsigned integers.
     std::map<std::string, QVariant> report;
-    std::string text;                     ///< Lines for MeshLab's log.
-    std::vector<std::string> warnings{};  ///< What fell short without being an error; sentences.
+    std::string text;  ///< The same as lines for MeshLab's log.
+    std::vector<std::string>
+        warnings{};  ///< What fell short without being an error; in the log too.
 };
 
 /// One filter of the plugin.

@@ -59,12 +59,11 @@ class Flow {
         : surface_(surface),
           interior_(surface.F, connectedComponents(surface.F, surface.X.rows()), Boundary::Free),
           F_(options.transferFunction, 2.0 * kPi / options.featureSize),
-          laplacians_(surface, options.laplacian, options.basisUpdate),
-          update_(options.basisUpdate) {}
+          laplacians_(surface, options.laplacian, options.basisUpdate) {}
 
     Vertices paper(int K) const {
         StepEvaluator evaluate(evaluation_, interior_, F_);
-        return fixedSteps(laplacians_, evaluate, surface_.X, K_, {}).X;
+        return fixedSteps(laplacians_, evaluate, surface_.X, K, {}).X;
     }
 
     Vertices midpoint(int K) const {
@@ -78,7 +77,6 @@ class Flow {
     Interior interior_;
     TransferFunction F_;
     mutable LaplacianBuilder laplacians_;
-    BasisUpdate update_;
 };
 
 double largestDifference(const Vertices& A, const Vertices& B) {

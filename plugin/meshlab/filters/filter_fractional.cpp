@@ -1,9 +1,9 @@
 #include "core/filter/fractional_filter.h"
 #include "core/mesh/measures.h"
+#include "core/support/steady_progress.h"
 #include "meshlab/filters/fractional_help.h"
 #include "meshlab/filters/fractional_parameters.h"
 #include "meshlab/filters/fractional_report.h"
-#include "meshlab/host_workarounds/steady_progress.h"
 #include "meshlab/mesh_conversion.h"
 #include "meshlab/mesh_filter.h"
 
@@ -20,7 +20,8 @@ FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
     reportWriting(input, mesh.cm, progress);
     setPositions(input.vertexIndex, result.V, mesh);
     return {reportDictionary(result),
-            reportText(options, result, spectral::boundingBoxDiagonal(input.V))};
+            reportText(options, result, spectral::boundingBoxDiagonal(input.V)),
+            warningsOf(options, result)};
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <iomanip>
 #include <sstream>
-#include <vector>
 
 #include "core/filter/automatic_steps.h"
 #include "core/support/types.h"
@@ -94,7 +93,8 @@ double lastFrequency(const spectral::FilterResult& result) {
     return std::sqrt(result.eigenvalues[result.eigenvalues.size() - 1]);
 }
 
-/// What the user should act on: sentences, each with its remedy; empty if there is nothing.
+}  // namespace
+
 std::vector<std::string> warningsOf(const spectral::FilterOptions& options,
                                     const spectral::FilterResult& result) {
     std::vector<std::string> warnings;
@@ -124,8 +124,6 @@ std::vector<std::string> warningsOf(const spectral::FilterOptions& options,
     if (!result.cutoffReached) warnings.push_back(cutoffWarning(result, lastFrequency(result)));
     return warnings;
 }
-
-}  // namespace
 
 std::string reportText(const spectral::FilterOptions& options, const spectral::FilterResult& result,
                        double diagonal) {

@@ -3,6 +3,7 @@
 #include <QVariant>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "core/filter/fractional_filter.h"
 
@@ -13,3 +14,7 @@ std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& r
 /// @param diagonal  of the bounding box of the input.
 std::string reportText(const spectral::FilterOptions& options, const spectral::FilterResult& result,
                        double diagonal);
+
+/// What the user should act on: sentences, each with its remedy; empty if there is nothing.
+std::vector<std::string> warningsOf(const spectral::FilterOptions& options,
+                                    const spectral::FilterResult& result);
