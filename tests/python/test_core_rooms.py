@@ -1,0 +1,36 @@
+"""The folders of plugin/core include one another in one direction, as plugin/README.md says."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+CORE = Path(__file__).resolve().parents[2] / "plugin" / "core"
+# What a folder may include besides itself.
+ARROWS = {
+    "support": set(),
+    "kernels": set(),
+    "mesh": {"support"},
+    "ldlt": {"kernels", "support"},
+    "laplacian": {"mesh", "ldlt", "support"},
+    "krylov": {"laplacian", "ldlt", "mesh", "support"},
+    "harmonics": {"laplacian", "ldlt", "mesh", "support"},
+    "filter": {"krylov", "harmonics", "laplacian", "ldlt", "mesh", "support"},
+    "analysis": {"krylov", "harmonics", "laplacian", "ldlt", "mesh", "support"},
+}
+
+
+def test_every_folder_of_the_core_has_its_arrows() -> None:
+    assert {path.name for path in CORE.iterdir() if path.is_dir()} == ARROWS.keys()
+
+
+def test_folders_of_the_core_include_only_what_their_arrows_lead_to() -> None:
+    offending = []
+    for source in [*CORE.rglob("*.h"), *CORE.rglob("*.cpp")]:
+        folder = source.parent.name
+        for included in re.findall(r'#include "([^"]+)"', source.read_text(encoding="utf-8")):
+            root, _, rest = included.partition("/")
+            assert root == "core", f"{source}: write {included} from core/ on"
+            if rest.partition("/")[0] not in ARROWS[folder] | {folder}:
+                offending.append(f"{source.relative_to(CORE)} includes {included}")
+    assert offending == []
