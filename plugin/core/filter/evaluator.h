@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <vector>
 
 #include "core/harmonics/harmonic_basis.h"
@@ -17,6 +18,13 @@ struct Evaluation {
     double errorEstimate = 0.0;      ///< The largest one, relative to the size of X.
     bool accuracyReached = true;
 };
+
+/// The share of a step of size alpha in the accuracy of the whole filter, as errors of steps add
+/// up; at least what round-off allows.
+inline double accuracyOfStep(double accuracy, double alpha) {
+    constexpr double kFinestAccuracy = 1e-13;
+    return std::max(accuracy * alpha, kFinestAccuracy);
+}
 
 /// Evaluates powers of a transfer function, for one Laplacian after another.
 class Evaluator {

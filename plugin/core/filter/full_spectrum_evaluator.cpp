@@ -8,12 +8,12 @@
 namespace spectral {
 
 /// The pole is chosen for the spectrum of the first Laplacian: those that follow are much alike.
-const Pole& FullSpectrumEvaluator::poleFor(const Laplacian& laplacian, double alpha,
-                                           double accuracy) {
+const Pole& FullSpectrumEvaluator::poleFor(const Laplacian& laplacian, double alpha) {
     if (!spectrum_) spectrum_ = bulkSpectrum(laplacian);
     const auto [place, isNew] = poles_.try_emplace(alpha);
     if (isNew)
-        place->second = selectPole(fractionalPower(F_, alpha), F_.cutoff(), *spectrum_, accuracy);
+        place->second = selectPole(fractionalPower(F_, alpha), F_.cutoff(), *spectrum_,
+                                   accuracyOfStep(accuracy_, alpha));
     return place->second;
 }
 
@@ -22,7 +22,7 @@ Evaluation FullSpectrumEvaluator::evaluate(const Laplacian& laplacian,
                                            const std::vector<double>& alphas, double accuracy,
                                            const Progress& progress) {
     progress.report(0.0, "factorizing");
-    const Pole& pole = poleFor(laplacian, alphas[alphas.size() / 2], accuracy);
+    const Pole& pole = poleFor(laplacian, alphas[alphas.size() / 2]);
     ldlt_.factorizeDefinite(laplacian.W, laplacian.D, pole.shift);
 
     FullSpectrumOptions options;

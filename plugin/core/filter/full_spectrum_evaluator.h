@@ -14,18 +14,20 @@ namespace spectral {
 class FullSpectrumEvaluator : public Evaluator {
   public:
     /// @param F  kept by reference.
+    /// @param accuracy  of the whole filter, which the poles are chosen for.
     /// @param atEveryVertex  whether the accuracy is that of every vertex, or over the surface.
-    FullSpectrumEvaluator(const TransferFunction& F, bool atEveryVertex)
-        : F_(F), atEveryVertex_(atEveryVertex) {}
+    FullSpectrumEvaluator(const TransferFunction& F, double accuracy, bool atEveryVertex)
+        : F_(F), accuracy_(accuracy), atEveryVertex_(atEveryVertex) {}
 
     Evaluation evaluate(const Laplacian& laplacian, const ConstantModes& constants,
                         const Eigen::MatrixXd& X, const std::vector<double>& alphas,
                         double accuracy, const Progress& progress) override;
 
   private:
-    const Pole& poleFor(const Laplacian& laplacian, double alpha, double accuracy);
+    const Pole& poleFor(const Laplacian& laplacian, double alpha);
 
     const TransferFunction& F_;
+    double accuracy_;
     bool atEveryVertex_;
     std::optional<SpectrumRange> spectrum_;  // of the first Laplacian
     std::map<double, Pole> poles_;           // for the powers asked for so far

@@ -12,9 +12,6 @@ namespace spectral {
 
 namespace {
 
-/// Relative accuracy of a step that round-off still allows.
-constexpr double kFinestAccuracy = 1e-13;
-
 /// Relative accuracy of a signal that is negligible compared with the shape: two digits of it.
 constexpr double kCoarsestAccuracy = 1e-2;
 
@@ -32,7 +29,7 @@ std::unique_ptr<Evaluator> evaluatorFor(const EvaluationOptions& options,
         return std::make_unique<BasisEvaluator>(F, options.truncation);
     // A rational Krylov space approximates smooth gains; a jump needs the eigenvectors below it.
     if (!F.discontinuities().empty()) return std::make_unique<BasisEvaluator>(F, std::nullopt);
-    return std::make_unique<FullSpectrumEvaluator>(F, options.atEveryVertex);
+    return std::make_unique<FullSpectrumEvaluator>(F, options.accuracy, options.atEveryVertex);
 }
 
 }  // namespace
@@ -46,8 +43,7 @@ StepEvaluator::StepEvaluator(const EvaluationOptions& options, const Interior& i
 
 Evaluation StepEvaluator::operator()(const Laplacian& surface, const Eigen::MatrixXd& X,
                                      double alpha, const Progress& progress) {
-    // The errors of the steps add up to the requested one: each has its share.
-    return evaluate(surface, X, {alpha}, std::max(accuracy_ * alpha, kFinestAccuracy), progress);
+    return evaluate(surface, X, {alpha}, accuracyOfStep(accuracy_, alpha), progress);
 }
 
 Evaluation StepEvaluator::predict(const Laplacian& surface, const Eigen::MatrixXd& X,
