@@ -6,7 +6,6 @@
 
 #include "core/harmonics/truncated_basis.h"
 #include "core/support/errors.h"
-#include "core/support/threads.h"
 
 namespace spectral {
 
@@ -31,7 +30,6 @@ ManifoldHarmonics manifoldHarmonics(const Vertices& V, const Faces& F,
         throw InvalidOption(ErrorCode::BoundaryFixesAll,
                             "boundary = fixed leaves too few vertices for a harmonic: " +
                                 std::to_string(interior.size()));
-    const ThreadTeam team;
 
     const Laplacian laplacian = interior.restricted(mesh.laplacian);
     const ConstantModes constants(interior.components(), laplacian.D);

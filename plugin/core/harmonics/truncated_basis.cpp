@@ -173,6 +173,7 @@ HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& co
                              ShiftedLdlt& ldlt, const Progress& progress) {
     const Index n = laplacian.D.size();
     checkSize(k, n, constants.count());
+    const ThreadTeam team;
     if (isDenseQuicker(n)) {
         HarmonicBasis all = denseBasis(laplacian, constants);
         const Index size = cutOutsideClusters(all.lambda, k).value_or(n);
