@@ -252,7 +252,10 @@ BandEnergies bandEnergies(const Bands& octaves, const Bands& thirds, const Signa
 void setOctaves(const Bands& octaves, const Eigen::VectorXd& energies, GeometrySpectrum& spectrum) {
     // A triangle of nearly no area has very high frequencies, and no energy in them.
     Index filled = octaves.count();
-    while (energies[filled - 1] <= kNoEnergy * spectrum.totalEnergy) --filled;
+    while (filled > 0 && !(energies[filled - 1] > kNoEnergy * spectrum.totalEnergy)) --filled;
+    if (filled == 0)
+        throw SolverFailure(
+            "round-off leaves nothing of the shape: its parts are tiny compared with their distance");
     spectrum.octaveFeatureSizes.resize(filled);
     for (int j = 0; j < filled; ++j) spectrum.octaveFeatureSizes[j] = octaves.featureSize(j);
     const double sum = energies.head(filled).sum();  // totalEnergy, up to round-off

@@ -211,6 +211,26 @@ TEST(GeometrySpectrum, EndsWhereTheShapeDoesEvenIfATriangleHasNoArea) {
     EXPECT_NEAR(spectrum.octaveEnergies.sum() / spectrum.totalEnergy, 1.0, 1e-12);
 }
 
+TEST(GeometrySpectrum, IsRefusedWhereRoundOffLeavesNothingOfTheShape) {
+    // Components of a few vertices so far apart that their coordinates hold no shape any more.
+    for (const double distance : {1e9, 1e13, 1e16}) {
+        Mesh mesh = testing::icosphere(0);
+        for (int i = 1; i < 4; ++i) {
+            Mesh far = testing::icosphere(0);
+            far.V.col(i % 3).array() += i * distance;
+            mesh = testing::joined(mesh, far);
+        }
+        try {
+            const GeometrySpectrum spectrum =
+                geometrySpectrum(mesh.V, mesh.F, withBasis(20, LaplacianKind::IntrinsicDelaunay));
+            EXPECT_TRUE(spectrum.octaveEnergies.allFinite()) << distance;
+            EXPECT_GT(spectrum.octaveEnergies.size(), 0) << distance;
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()), "") << distance;
+        }
+    }
+}
+
 TEST(GeometrySpectrum, RefusesBadMeshesAndSizes) {
     const Mesh mesh = testing::icosphere(2);
     for (const int basisSize : {0, -3}) EXPECT_THROW(spectrumOf(mesh, basisSize), InvalidOption);

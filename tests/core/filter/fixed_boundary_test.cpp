@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
@@ -15,6 +14,7 @@
 #include "core/mesh/mesh.h"
 #include "core/mesh/surface.h"
 #include "core/support/errors.h"
+#include "support/dense_eigenpairs.h"
 #include "support/evaluation.h"
 
 namespace spectral {
@@ -82,17 +82,16 @@ class DenseFilter {
             if (I.empty()) continue;
             const Eigen::MatrixXd W_II = W(I, I);
             const Eigen::VectorXd D = A.laplacian.D(I);
+            const auto [lambda, Phi] = testing::denseEigenpairs(W_II, D);
             Vertices H_I(I.size(), 3);
             if (B.empty())
                 H_I.rowwise() = Eigen::RowVector3d(A.constants.means(mesh.V).row(c));
-            else
-                H_I = W_II.ldlt().solve(-W(I, B) * mesh.V(B, Eigen::all));
-            const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> harmonics(
-                W_II, Eigen::MatrixXd(D.asDiagonal()));
+            else  // W_II^-1 = Phi Lambda^-1 Phi^T
+                H_I = Phi * lambda.cwiseInverse().asDiagonal() * Phi.transpose() * -W(I, B) *
+                      mesh.V(B, Eigen::all);
             const Vertices U = mesh.V(I, Eigen::all) - H_I;
-            parts_.push_back({I, H_I, harmonics.eigenvalues().cwiseMax(0.0).cwiseSqrt(),
-                              harmonics.eigenvectors(),
-                              harmonics.eigenvectors().transpose() * D.asDiagonal() * U});
+            parts_.push_back({I, H_I, lambda.cwiseMax(0.0).cwiseSqrt(), Phi,
+                              Phi.transpose() * D.asDiagonal() * U});
         }
     }
 

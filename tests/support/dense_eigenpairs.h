@@ -1,0 +1,22 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace spectral::testing {
+
+/// All eigenpairs of A x = lambda D x, by Eigen's dense solver.
+struct DenseEigenpairs {
+    Eigen::VectorXd values;   ///< n, ascending.
+    Eigen::MatrixXd vectors;  ///< n x n, D-orthonormal columns.
+};
+
+/// @param A  n x n, symmetric.
+/// @param D  n diagonal entries > 0.
+DenseEigenpairs denseEigenpairs(const Eigen::MatrixXd& A, const Eigen::VectorXd& D);
+
+/// The eigenvalues of A, ascending.
+inline Eigen::VectorXd denseEigenvalues(const Eigen::MatrixXd& A) {
+    return denseEigenpairs(A, Eigen::VectorXd::Ones(A.rows())).values;
+}
+
+}  // namespace spectral::testing
