@@ -17,6 +17,7 @@
 #include "core/laplacian/laplacian.h"
 #include "core/ldlt/shifted_ldlt.h"
 #include "core/mesh/measures.h"
+#include "core/support/threads.h"
 #include "support/ply.h"
 
 using namespace spectral;
@@ -62,6 +63,7 @@ FilterOptions optionsOf(const Case& c, double featureSize) {
 double secondsOfWorkAlone(const testing::Mesh& mesh, const FilterResult& result) {
     const Laplacian laplacian = cotangentLaplacian(mesh.V, mesh.F);
     const double shift = result.cutoffFrequency * result.cutoffFrequency;
+    const ThreadTeam team;  // as many threads as the filter
     return medianSeconds([&] {
         ShiftedLdlt ldlt;
         for (int i = 0; i < result.factorizations; ++i)
