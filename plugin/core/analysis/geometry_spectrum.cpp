@@ -255,7 +255,8 @@ void setOctaves(const Bands& octaves, const Eigen::VectorXd& energies, GeometryS
     while (filled > 0 && !(energies[filled - 1] > kNoEnergy * spectrum.totalEnergy)) --filled;
     if (filled == 0)
         throw SolverFailure(
-            "round-off leaves nothing of the shape: its parts are tiny compared with their distance");
+            "round-off leaves nothing of the shape: its parts are tiny compared with their "
+            "distance");
     spectrum.octaveFeatureSizes.resize(filled);
     for (int j = 0; j < filled; ++j) spectrum.octaveFeatureSizes[j] = octaves.featureSize(j);
     const double sum = energies.head(filled).sum();  // totalEnergy, up to round-off
