@@ -6,11 +6,15 @@
 #   WARNINGS_AS_ERRORS  ON: a compiler warning fails the build
 #   BENCH_MESH          the mesh of the C++ benchmark, skipped when there is no such file
 #   BENCH_OPTIONS       of `make bench-basis` and `make bench-defaults`; --help lists them
+#   FUZZ_OPTIONS        of `make fuzz`; tests/fuzz/fuzz_core.cpp lists them
+#   SANITIZE            ON: `make fuzz` with AddressSanitizer and UndefinedBehaviorSanitizer
 PYTHON ?= python3
 MESHLAB_SOURCE_DIR ?=
 WARNINGS_AS_ERRORS ?= OFF
 BENCH_MESH ?= ../shared/data/dragon_40k.ply
 BENCH_OPTIONS ?=
+FUZZ_OPTIONS ?= --cases 100000
+SANITIZE ?= OFF
 
 BENCHMARKS := OFF
 BIN := .venv/bin
@@ -31,7 +35,7 @@ PACKAGE_SOURCES := CMakeLists.txt $(shell find plugin python -not -path '*/__pyc
 # Two targets at once would fetch MeshLab's headers twice; ninja uses every core anyway.
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help demo test gui-test screenshots setup build bench bench-basis bench-batch bench-defaults bench-ldlt lint format clean
+.PHONY: help demo test gui-test screenshots setup build bench bench-basis bench-batch bench-defaults bench-ldlt fuzz lint format clean
 
 help:  ## list these commands
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 20
@@ -78,6 +82,12 @@ bench-ldlt: $(COMPETITORS) build  ## compare the factorization with Eigen's and 
 
 bench-batch: $(PACKAGE)  ## measure a batch of 1,000 meshes against one process
 	$(BIN)/python tests/benchmarks/bench_batch.py
+
+fuzz: setup  ## try the core with random meshes and options; about an hour
+	cmake -S . -B build/fuzz-sanitize-$(SANITIZE) -G Ninja -DSPECTRAL_BUILD_PLUGIN=OFF \
+	  -DSPECTRAL_SANITIZE=$(SANITIZE)
+	cmake --build build/fuzz-sanitize-$(SANITIZE) --target fuzz_core
+	build/fuzz-sanitize-$(SANITIZE)/tests/fuzz/fuzz_core $(FUZZ_OPTIONS)
 
 lint: setup  ## check style and types, change nothing
 	$(CPP_FILES) | xargs $(BIN)/clang-format --dry-run -Werror

@@ -1,0 +1,219 @@
+#include "fuzz/accuracy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "core/analysis/bands.h"
+#include "core/mesh/measures.h"
+#include "fuzz/dense_reference.h"
+
+namespace spectral::fuzz {
+
+namespace {
+
+/// Most vertices of a reference, whose time is cubic.
+constexpr Index kMostVertices = 420;
+
+/// Errors beyond so many times the claim are failures.
+constexpr double kLeeway = 3.0;
+
+/// So many times the difference of two references is what nobody can know.
+constexpr double kUncertainty = 10.0;
+
+/// A harmonic with a larger residual is none.
+constexpr double kUselessResidual = 1e-2;
+
+template <class... Parts>
+std::pair<std::string, std::string> failure(const char* kind, const Parts&... parts) {
+    std::ostringstream text;
+    text.precision(3);
+    (text << ... << parts);
+    return {kind, text.str()};
+}
+
+/// Compares what was computed with a reference, first in double precision, and if need be in
+/// extended precision, twice.
+/// @param ofReference  maps a DenseSpectrum to a matrix of the size of `computed`.
+/// @param size         of a difference of two such matrices: a number.
+/// @return             whether a difference above `tolerance` is the fault of `computed`.
+template <class OfReference, class Size>
+void compare(const char* kind, const Eigen::MatrixXd& computed, double tolerance, double unit,
+             DenseReference& reference, const OfReference& ofReference, const Size& size,
+             Accuracy& accuracy) {
+    accuracy.isCompared = true;
+    const auto error = [&](Precision precision) {
+        return size(computed - ofReference(reference.at(precision)));
+    };
+    if (error(Precision::Double) <= tolerance) return;
+    const double exact = error(Precision::Extended);
+    if (exact <= tolerance) return;
+    const double unknown = size(ofReference(reference.at(Precision::Perturbed)) -
+                                ofReference(reference.at(Precision::Extended)));
+    if (!(exact > tolerance + kUncertainty * unknown)) {
+        accuracy.isExcused = true;
+        return;
+    }
+    accuracy.failures.push_back(failure(kind, "error ", exact / unit, ", allowed ",
+                                        tolerance / unit, ", uncertainty of the reference ",
+                                        unknown / unit));
+}
+
+/// F at all frequencies of the reference.
+Eigen::VectorXd gainsOf(const FilterOptions& options, const FilterResult& result,
+                        const Eigen::VectorXd& lambda) {
+    const TransferFunction F(options.transferFunction, result.cutoffFrequency);
+    const Eigen::VectorXd omega = lambda.cwiseSqrt();
+    Eigen::VectorXd gains = omega.unaryExpr([&F](double w) { return F(w); });
+    if (options.evaluation.spectrum != Spectrum::Truncated) return gains;
+    const Index k = result.eigenvalues.size(), beyond = omega.size() - k;
+    double residual = 0.0;
+    if (options.evaluation.truncation.reinjectResidual) {
+        const TransferFunction whole = F.whole();
+        const double from = omega[k - 1], to = omega[omega.size() - 1];
+        residual = std::pow(from < to ? meanGain(whole, from, to) : whole(to), F.appliedPower());
+    }
+    gains.tail(beyond).setConstant(residual);
+    return gains;
+}
+
+double largestRow(const Eigen::MatrixXd& X) { return X.rowwise().norm().maxCoeff(); }
+
+/// Rows of the mesh that belong to vertices of the interior.
+Eigen::MatrixXd interiorRows(const DenseReference& reference, const Eigen::MatrixXd& ofMesh) {
+    const std::vector<Index>& vertex = reference.mesh().surface.vertex;
+    return reference.interior().restricted(Eigen::MatrixXd(ofMesh(vertex, Eigen::all)));
+}
+
+}  // namespace
+
+Accuracy accuracyOf(const testing::Mesh& mesh, const FilterOptions& options,
+                    const FilterResult& result) {
+    Accuracy accuracy;
+    const bool isOneStep = options.steps == 1 || options.basisUpdate == BasisUpdate::None;
+    if (!isOneStep || !result.accuracyReached || mesh.V.rows() > kMostVertices) return accuracy;
+    DenseReference reference(mesh.V, mesh.F, options.laplacian, options.boundary);
+    if (reference.size() == 0) return accuracy;
+
+    const double diagonal = boundingBoxDiagonal(reference.mesh().surface.X);
+    const double roundOff = 1e-15 * mesh.V.cwiseAbs().maxCoeff();
+    const Eigen::MatrixXd moved = interiorRows(reference, result.V - mesh.V);
+    const auto change = [&](const DenseSpectrum& spectrum) {
+        return spectrum.change(gainsOf(options, result, spectrum.lambda));
+    };
+    const double claimed = std::max(result.errorEstimate, result.accuracy);
+    const double tolerance = kLeeway * claimed * diagonal + roundOff;
+    const bool isBasis = result.eigenvalues.size() > 0;
+    if (options.steps > 0 || isBasis) {
+        compare(isBasis ? "basis accuracy" : "accuracy", moved, tolerance, diagonal, reference,
+                change, largestRow, accuracy);
+        return accuracy;
+    }
+    // Automatic steps promise accuracy over the surface alone.
+    const Eigen::VectorXd& D = reference.laplacian().D;
+    const double area = reference.mesh().laplacian.D.sum();
+    const auto overSurface = [&](const Eigen::MatrixXd& Y) {
+        return std::sqrt(Y.rowwise().squaredNorm().dot(D) / area);
+    };
+    compare("accuracy", moved, tolerance, diagonal, reference, change, overSurface, accuracy);
+    return accuracy;
+}
+
+Accuracy accuracyOf(const testing::Mesh& mesh, const ArtefactOptions& options,
+                    const Artefacts& result) {
+    Accuracy accuracy;
+    if (mesh.V.rows() > kMostVertices) return accuracy;
+    DenseReference reference(mesh.V, mesh.F, options.laplacian, Boundary::Free);
+    const double cutoff = cutoffFrequency(options.featureSize);
+    const auto lengths = [&](const DenseSpectrum& spectrum) {
+        const Eigen::VectorXd gains = spectrum.lambda.cwiseSqrt().unaryExpr(
+            [&](double omega) { return artefactFreeGain(omega, cutoff); });
+        return Eigen::MatrixXd(spectrum.change(gains).rowwise().norm());
+    };
+    constexpr double kAccuracy = 1e-8;  // that measureArtefacts asks for
+    const double diagonal = boundingBoxDiagonal(reference.mesh().surface.X);
+    compare("accuracy of artefacts", interiorRows(reference, result.length),
+            kLeeway * std::max(result.errorEstimate, kAccuracy * diagonal), diagonal, reference,
+            lengths, largestRow, accuracy);
+    return accuracy;
+}
+
+Accuracy accuracyOf(const testing::Mesh& mesh, const HarmonicsOptions& options,
+                    const ManifoldHarmonics& result) {
+    Accuracy accuracy;
+    DenseReference reference(mesh.V, mesh.F, options.laplacian, options.boundary);
+    const auto& [W, D] = reference.laplacian();
+    const Eigen::MatrixXd Phi = interiorRows(reference, result.Phi);
+    if (result.Phi.squaredNorm() > Phi.squaredNorm() * (1.0 + 1e-9))
+        accuracy.failures.push_back(failure("support", "harmonics at vertices that cannot move"));
+    const Index k = Phi.cols(), constants = reference.interior().components().count;
+    const Eigen::MatrixXd gram = Phi.transpose() * (D.asDiagonal() * Phi);
+    const double overlap = (gram - Eigen::MatrixXd::Identity(k, k)).cwiseAbs().maxCoeff();
+    if (!(overlap <= 1e-8))
+        accuracy.failures.push_back(failure("orthogonality", "Phi^T D Phi - I has ", overlap));
+    for (Index i = 0; i < k; ++i) {
+        if (i < constants) {
+            if (result.lambda[i] != 0.0)
+                accuracy.failures.push_back(failure("constants", "lambda ", result.lambda[i]));
+            continue;
+        }
+        const Eigen::VectorXd r = W * Phi.col(i) - result.lambda[i] * D.cwiseProduct(Phi.col(i));
+        const double residual = r.cwiseQuotient(D.cwiseSqrt()).norm() / result.lambda[i];
+        if (!(residual <= kLeeway * result.residuals[i] + 1e-9)) {
+            accuracy.failures.push_back(
+                failure("residual", residual, " instead of ", result.residuals[i], " at ", i));
+            break;
+        }
+    }
+    const double worst = result.residuals.maxCoeff();
+    if (worst > kUselessResidual) {
+        accuracy.failures.push_back(failure("useless residual", worst));
+        return accuracy;
+    }
+    if (reference.size() > kMostVertices) return accuracy;
+    // Relative errors, of which the residuals are a bound.
+    const auto values = [&](const DenseSpectrum& spectrum) {
+        return Eigen::MatrixXd(spectrum.lambda.head(k));
+    };
+    const auto relative = [&](const Eigen::MatrixXd& difference) {
+        double largest = 0.0;
+        for (Index i = constants; i < k; ++i)
+            largest = std::max(largest, std::abs(difference(i, 0)) / result.lambda[i]);
+        return largest;
+    };
+    compare("eigenvalues", result.lambda, kLeeway * worst + 1e-7, 1.0, reference, values, relative,
+            accuracy);
+    return accuracy;
+}
+
+Accuracy accuracyOf(const testing::Mesh& mesh, const SpectrumOptions& options,
+                    const GeometrySpectrum& result) {
+    Accuracy accuracy;
+    if (mesh.V.rows() > kMostVertices) return accuracy;
+    DenseReference reference(mesh.V, mesh.F, options.laplacian, options.boundary);
+    const auto frequencyOf = [&](Index octave) {
+        return 2.0 * kPi / result.octaveFeatureSizes[octave];
+    };
+    const Index count = result.octaveEnergies.size();
+    const Bands bands(result.diagonal, frequencyOf(0), frequencyOf(count - 1));
+    if (bands.count() != count) {
+        accuracy.failures.push_back(failure("octaves", bands.count(), " instead of ", count));
+        return accuracy;
+    }
+    const auto energies = [&](const DenseSpectrum& spectrum) {
+        Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(count, 1);
+        for (Index i = 0; i < spectrum.lambda.size(); ++i)
+            for (int j = 0; j < count; ++j)
+                sums(j, 0) += spectrum.energies[i] * bands.window(j, std::sqrt(spectrum.lambda[i]));
+        return sums;
+    };
+    const auto largest = [](const Eigen::MatrixXd& difference) {
+        return difference.cwiseAbs().maxCoeff();
+    };
+    const double tolerance = (1e-3 + kLeeway * result.mismatch) * result.totalEnergy;
+    compare("octave energies", result.octaveEnergies, tolerance, result.totalEnergy, reference,
+            energies, largest, accuracy);
+    return accuracy;
+}
+
+}  // namespace spectral::fuzz

@@ -1,0 +1,295 @@
+#include "fuzz/cases.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "core/mesh/measures.h"
+#include "core/support/threads.h"
+#include "support/evaluation.h"
+
+namespace spectral::fuzz {
+
+namespace {
+
+LaplacianKind kindOf(Choices& choices) {
+    return choices.oneIn(3) ? LaplacianKind::Cotangent : LaplacianKind::IntrinsicDelaunay;
+}
+
+Boundary boundaryOf(Choices& choices) {
+    return choices.oneIn(3) ? Boundary::Fixed : Boundary::Free;
+}
+
+double featureSizeOf(Choices& choices, double diagonal) {
+    const double share =
+        choices.oneIn(3) ? choices.logUniform(1e-9, 1e3) : choices.logUniform(0.01, 1.0);
+    return share * diagonal;
+}
+
+/// From 1 to beyond the number of vertices.
+int basisSizeOf(Choices& choices, Index vertices) {
+    const auto n = static_cast<int>(vertices);
+    switch (choices.below(4)) {
+        case 0: return choices.between(1, 12);
+        case 1: return choices.between(std::max(1, n - 3), n + 3);
+        default: return choices.between(1, std::max(2, n));
+    }
+}
+
+TransferFunctionOptions transferFunctionOf(Choices& choices) {
+    TransferFunctionOptions options;
+    options.type = static_cast<FilterType>(choices.below(4));
+    options.response = choices.oneIn(6) ? Response::Ideal : static_cast<Response>(choices.below(2));
+    options.order = choices.pick({1, 2, 2, 4, 8, 64});
+    options.bandWidth =
+        choices.oneIn(3) ? choices.logUniform(0.02, 0.1) : choices.logUniform(0.1, 4.0);
+    options.passGain = choices.pick({1.0, 1.0, 0.0, 0.5, 2.0, 3.0});
+    options.stopGain = choices.pick({0.0, 0.0, 0.05, 1.0, 1.0, 3.0});
+    options.power = choices.pick({1.0, 1.0, 1.0, 0.5, 0.01});
+    return options;
+}
+
+/// Puts one option out of its range.
+void spoil(Choices& choices, FilterOptions& options) {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    TransferFunctionOptions& F = options.transferFunction;
+    switch (choices.below(9)) {
+        case 0: options.featureSize = choices.pick({0.0, -1.0, kNan, kInfinity}); return;
+        case 1: options.steps = -1; return;
+        case 2:
+            options.steps = 0;
+            options.tolerance = choices.pick({0.0, -1.0, kNan, kInfinity});
+            return;
+        case 3: options.conformalShare = choices.pick({-0.1, 1.1, kNan}); return;
+        case 4: F.order = choices.pick({0, -1, 65}); return;
+        case 5: F.bandWidth = choices.pick({0.0, -1.0, kNan, kInfinity}); return;
+        case 6: F.passGain = choices.pick({-1.0, kNan, kInfinity}); return;
+        case 7: F.stopGain = choices.pick({-1e-9, kNan, kInfinity}); return;
+        default: F.power = choices.pick({0.0, -1.0, 1.5, kNan}); return;
+    }
+}
+
+FilterOptions filterOptions(Choices& choices, double diagonal, Index vertices) {
+    FilterOptions options;
+    options.transferFunction = transferFunctionOf(choices);
+    options.featureSize = featureSizeOf(choices, diagonal);
+    options.steps = choices.pick({0, 0, 1, 1, 1, 1, 2, 3, 12});
+    options.tolerance = choices.logUniform(1e-8, 0.1) * diagonal;
+    options.laplacian = kindOf(choices);
+    options.basisUpdate = static_cast<BasisUpdate>(choices.below(3));
+    options.conformalShare = choices.pick({0.0, 0.0, 0.1, 1.0});
+    options.boundary = boundaryOf(choices);
+    if (choices.oneIn(4)) options.evaluation.spectrum = Spectrum::Truncated;
+    options.evaluation.truncation.basisSize = basisSizeOf(choices, vertices);
+    options.evaluation.truncation.reinjectResidual = !choices.oneIn(3);
+    return options;
+}
+
+/// `text` of every number, in order.
+class Numbers {
+  public:
+    Numbers& operator<<(double x) {
+        all.push_back(x);
+        return *this;
+    }
+    template <class Derived>
+    Numbers& operator<<(const Eigen::DenseBase<Derived>& X) {
+        all.push_back(static_cast<double>(X.size()));
+        for (Index j = 0; j < X.cols(); ++j)
+            for (Index i = 0; i < X.rows(); ++i) all.push_back(X(i, j));
+        return *this;
+    }
+    std::vector<double> all;
+};
+
+void append(const FilterResult& r, Numbers& to) {
+    to << r.V << r.steps << r.cutoffFrequency << r.featureSize << r.maxDisplacement
+       << r.rmsDisplacement << r.areaBefore << r.areaAfter << r.volumeBefore << r.volumeAfter
+       << r.components << r.unreferencedVertices << r.fixedVertices << r.factorizations << r.solves
+       << r.accuracy << r.errorEstimate << r.accuracyReached << r.stepError << r.toleranceReached
+       << r.singularPart << r.cutoffReached << r.eigenvalues << r.residuals << r.inertiaCount
+       << r.computedBases;
+    for (const double alpha : r.stepSizes) to << alpha;
+}
+
+void append(const Artefacts& r, Numbers& to) {
+    to << r.rms << r.maximum << r.length << r.errorEstimate;
+}
+
+void append(const ManifoldHarmonics& r, Numbers& to) {
+    to << r.lambda << r.Phi << r.wholeSize << r.residuals << r.inertiaCount;
+}
+
+void append(const GeometrySpectrum& r, Numbers& to) {
+    to << r.diagonal << r.meanEdge << r.area << r.totalEnergy << r.frequencies << r.amplitudes
+       << r.octaveFeatureSizes << r.octaveEnergies << r.octaveAmplitudes << r.cumulativeEnergy
+       << r.featureSize50 << r.featureSize90 << r.featureSize99 << r.bandFeatureSizes
+       << r.bandAmplitudes << r.bandNoise << r.noiseHeight << r.noiseFeatureSize << r.mismatch;
+}
+
+const char* nameOf(LaplacianKind kind) {
+    return kind == LaplacianKind::Cotangent ? "cotangent" : "delaunay";
+}
+const char* nameOf(Boundary boundary) { return boundary == Boundary::Fixed ? "fixed" : "free"; }
+
+/// Writes the options of each entry point; feature sizes in diagonals.
+struct Describe {
+    std::ostream& text;
+    double diagonal;
+
+    void operator()(const FilterOptions& o) const {
+        const char* updates[] = {"full", "conformal", "none"};
+        text << "filter " << testing::describe(o.transferFunction) << " power "
+             << o.transferFunction.power << ", size " << o.featureSize / diagonal << ", steps "
+             << o.steps << ", tolerance " << o.tolerance / diagonal << ", " << nameOf(o.laplacian)
+             << ", " << nameOf(o.boundary) << ", update "
+             << updates[static_cast<int>(o.basisUpdate)] << " share " << o.conformalShare;
+        if (o.evaluation.spectrum == Spectrum::Truncated)
+            text << ", truncated to " << o.evaluation.truncation.basisSize
+                 << (o.evaluation.truncation.reinjectResidual ? "" : " without residual");
+    }
+    void operator()(const ArtefactOptions& o) const {
+        text << "artefacts, size " << o.featureSize / diagonal << ", " << nameOf(o.laplacian);
+    }
+    void operator()(const HarmonicsOptions& o) const {
+        text << "harmonics " << o.basisSize << ", " << nameOf(o.laplacian) << ", "
+             << nameOf(o.boundary);
+    }
+    void operator()(const SpectrumOptions& o) const {
+        text << "spectrum " << o.basisSize << ", " << nameOf(o.laplacian) << ", "
+             << nameOf(o.boundary);
+    }
+    void operator()(const BandsOptions& o) const {
+        text << "bands " << o.lowest << " to " << o.highest << ", " << o.perOctave
+             << " per octave, diagonal " << o.diagonal;
+    }
+};
+
+/// Calls the entry point of each kind of options.
+struct Call {
+    const testing::Mesh& mesh;
+    const Progress& progress;
+
+    Result operator()(const FilterOptions& o) const {
+        return fractionalFilter(mesh.V, mesh.F, o, progress);
+    }
+    Result operator()(const ArtefactOptions& o) const {
+        return measureArtefacts(mesh.V, mesh.F, o, progress);
+    }
+    Result operator()(const HarmonicsOptions& o) const {
+        return manifoldHarmonics(mesh.V, mesh.F, o, progress);
+    }
+    Result operator()(const SpectrumOptions& o) const {
+        return geometrySpectrum(mesh.V, mesh.F, o, progress);
+    }
+    Result operator()(const BandsOptions&) const { return {}; }
+};
+
+}  // namespace
+
+Case makeCase(Choices& choices) {
+    Case made;
+    made.repeats = choices.oneIn(8);
+    if (choices.oneIn(50)) made.cancelAt = choices.between(1, 20);
+    const int entry = choices.below(20);
+    if (entry == 19) {
+        BandsOptions bands{choices.logUniform(1e-60, 1e75), choices.logUniform(1e-3, 1.0), 1.0,
+                           choices.pick({1, 3, 12})};
+        bands.lowest /= bands.diagonal;
+        bands.highest = bands.lowest * choices.logUniform(1.0, 1e9);
+        made.options = bands;
+        return made;
+    }
+    made.mesh = makeMesh(choices);
+    const Vertices& V = made.mesh.mesh.V;
+    double diagonal = V.rows() > 0 ? boundingBoxDiagonal(V) : 1.0;
+    if (!(std::isfinite(diagonal) && diagonal > 0.0)) diagonal = 1.0;
+    if (entry < 12) {
+        FilterOptions filter = filterOptions(choices, diagonal, V.rows());
+        made.mustThrow = choices.oneIn(40);
+        if (made.mustThrow) spoil(choices, filter);
+        made.options = filter;
+    } else if (entry < 14) {
+        made.options = ArtefactOptions{featureSizeOf(choices, diagonal), kindOf(choices)};
+    } else if (entry < 17) {
+        const int size = basisSizeOf(choices, V.rows());
+        const LaplacianKind kind = kindOf(choices);
+        made.options = HarmonicsOptions{size, kind, boundaryOf(choices)};
+    } else {
+        const int size = basisSizeOf(choices, V.rows());
+        const LaplacianKind kind = kindOf(choices);
+        made.options = SpectrumOptions{size, kind, boundaryOf(choices)};
+    }
+    return made;
+}
+
+std::string describe(const Case& of) {
+    const testing::Mesh& mesh = of.mesh.mesh;
+    std::ostringstream text;
+    text.precision(4);
+    double diagonal = mesh.V.rows() > 0 ? boundingBoxDiagonal(mesh.V) : 1.0;
+    if (!(std::isfinite(diagonal) && diagonal > 0.0)) diagonal = 1.0;
+    if (!std::holds_alternative<BandsOptions>(of.options))
+        text << of.mesh.name << " (" << mesh.V.rows() << " vertices, " << mesh.F.rows()
+             << " triangles); ";
+    std::visit(Describe{text, diagonal}, of.options);
+    if (of.mustThrow) text << ", an option out of range";
+    if (of.cancelAt > 0) text << ", cancelled at report " << of.cancelAt;
+    return text.str();
+}
+
+Outcome run(const Case& of, int threads) {
+    setThreadCount(threads);
+    Outcome outcome;
+    int reports = 0;
+    const Progress progress([&](double fraction, const std::string&) {
+        if (!(fraction >= 0.0 && fraction <= 1.0)) outcome.isProgressSound = false;
+        return ++reports != of.cancelAt;
+    });
+    try {
+        outcome.result = std::visit(Call{of.mesh.mesh, progress}, of.options);
+    } catch (const Error& error) {
+        outcome.code = error.code();
+        outcome.text = error.what();
+    } catch (const std::exception& error) {
+        outcome.text = error.what();
+    } catch (...) {
+        outcome.text = "not an exception";
+    }
+    return outcome;
+}
+
+std::vector<double> numbersOf(const Result& result) {
+    Numbers numbers;
+    std::visit([&](const auto& r) { append(r, numbers); }, result);
+    return numbers.all;
+}
+
+const char* nameOf(ErrorCode code) {
+    switch (code) {
+        case ErrorCode::OptionOutOfRange: return "OptionOutOfRange";
+        case ErrorCode::EmptyMesh: return "EmptyMesh";
+        case ErrorCode::NoFaces: return "NoFaces";
+        case ErrorCode::BadIndex: return "BadIndex";
+        case ErrorCode::NotFinite: return "NotFinite";
+        case ErrorCode::NoArea: return "NoArea";
+        case ErrorCode::DegenerateTriangles: return "DegenerateTriangles";
+        case ErrorCode::ShapeCollapsed: return "ShapeCollapsed";
+        case ErrorCode::NoDelaunay: return "NoDelaunay";
+        case ErrorCode::SingularMatrix: return "SingularMatrix";
+        case ErrorCode::TooManyVertices: return "TooManyVertices";
+        case ErrorCode::BasisTooLarge: return "BasisTooLarge";
+        case ErrorCode::BasisTooSmall: return "BasisTooSmall";
+        case ErrorCode::BasisIncomplete: return "BasisIncomplete";
+        case ErrorCode::TooManyHarmonics: return "TooManyHarmonics";
+        case ErrorCode::BoundaryFixesAll: return "BoundaryFixesAll";
+        case ErrorCode::TooSteep: return "TooSteep";
+        case ErrorCode::SolverFailed: return "SolverFailed";
+        case ErrorCode::Cancelled: return "Cancelled";
+    }
+    return "unknown";
+}
+
+}  // namespace spectral::fuzz

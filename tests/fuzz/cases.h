@@ -1,0 +1,58 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/analysis/artefacts.h"
+#include "core/analysis/geometry_spectrum.h"
+#include "core/analysis/manifold_harmonics.h"
+#include "core/filter/fractional_filter.h"
+#include "core/support/errors.h"
+#include "fuzz/choices.h"
+#include "fuzz/meshes.h"
+
+namespace spectral::fuzz {
+
+/// Arguments of `Bands`, which has no mesh.
+struct BandsOptions {
+    double diagonal, lowest, highest;
+    int perOctave;
+};
+
+using Options =
+    std::variant<FilterOptions, ArtefactOptions, HarmonicsOptions, SpectrumOptions, BandsOptions>;
+using Result = std::variant<FilterResult, Artefacts, ManifoldHarmonics, GeometrySpectrum>;
+
+/// One call of an entry point of the core.
+struct Case {
+    NamedMesh mesh;
+    Options options;
+    bool mustThrow = false;  ///< An option is out of its range.
+    bool repeats = false;    ///< Is to be run again, with one thread and with two.
+    int cancelAt = 0;        ///< The report at which the caller cancels; 0: never.
+};
+
+Case makeCase(Choices& choices);
+
+/// The call with all its options, in one line.
+std::string describe(const Case& of);
+
+/// What came of a call.
+struct Outcome {
+    std::optional<Result> result;
+    std::optional<ErrorCode> code;  ///< Of an Error of the core.
+    std::string text;               ///< Of whatever was thrown.
+    bool isProgressSound = true;    ///< All reports were in [0, 1].
+};
+
+/// Calls the core; any exception is caught. Not for BandsOptions.
+Outcome run(const Case& of, int threads);
+
+/// All numbers of a result, to be compared to the bit.
+std::vector<double> numbersOf(const Result& result);
+
+const char* nameOf(ErrorCode code);
+
+}  // namespace spectral::fuzz

@@ -1,0 +1,158 @@
+#include "fuzz/dense_reference.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <limits>
+#include <numeric>
+#include <random>
+#include <utility>
+
+#include "support/dense_eigenpairs.h"
+
+namespace spectral::fuzz {
+
+namespace {
+
+template <class Scalar>
+using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
+template <class Scalar>
+using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
+
+template <class Scalar>
+struct Pairs {
+    Vector<Scalar> values;
+    Matrix<Scalar> vectors;
+};
+
+Pairs<double> eigenpairs(const Matrix<double>& W, const Vector<double>& D) {
+    testing::DenseEigenpairs pairs = testing::denseEigenpairs(W, D);
+    return {std::move(pairs.values), std::move(pairs.vectors)};
+}
+
+Pairs<long double> eigenpairs(const Matrix<long double>& W, const Vector<long double>& D) {
+    const Vector<long double> scale = D.cwiseSqrt().cwiseInverse();
+    const Eigen::SelfAdjointEigenSolver<Matrix<long double>> solver(scale.asDiagonal() * W *
+                                                                    scale.asDiagonal());
+    return {solver.eigenvalues(), scale.asDiagonal() * solver.eigenvectors()};
+}
+
+/// W, D and X in another precision, and in another order; rows of W sum to zero without round-off.
+template <class Scalar>
+struct Problem {
+    Matrix<Scalar> W, X;
+    Vector<Scalar> D;
+    std::vector<Index> order;  ///< Vertex of each row.
+
+    Problem(const MeshLaplacian& mesh, bool isPerturbed) : order(mesh.laplacian.D.size()) {
+        const auto n = static_cast<Index>(order.size());
+        std::iota(order.begin(), order.end(), Index{0});
+        std::mt19937 bits(1);
+        if (isPerturbed)
+            for (Index i = n - 1; i > 0; --i) std::swap(order[i], order[bits() % (i + 1)]);
+        // A few units of double precision, whatever that of the scalar.
+        const auto factor = [&] {
+            constexpr Scalar kUnit = std::numeric_limits<double>::epsilon();
+            const Scalar random = static_cast<Scalar>(bits()) / Scalar{4294967296} - Scalar{0.5};
+            return isPerturbed ? 1 + 4 * kUnit * random : Scalar{1};
+        };
+        const Eigen::MatrixXd dense(mesh.laplacian.W);
+        W = Matrix<Scalar>::Zero(n, n);
+        X.resize(n, 3);
+        D.resize(n);
+        for (Index i = 0; i < n; ++i) {
+            D[i] = static_cast<Scalar>(mesh.laplacian.D[order[i]]) * factor();
+            X.row(i) = mesh.surface.X.row(order[i]).template cast<Scalar>();
+            for (Index j = 0; j < i; ++j)
+                W(i, j) = W(j, i) = static_cast<Scalar>(dense(order[i], order[j])) * factor();
+        }
+        const Vector<Scalar> sums = W.rowwise().sum();
+        for (Index i = 0; i < n; ++i) W(i, i) = -sums[i] * factor();
+    }
+};
+
+/// Subtracts the D-weighted mean of every component from its rows.
+template <class Scalar>
+void centre(const Vector<Scalar>& D, const std::vector<int>& label, Matrix<Scalar>& X) {
+    const int count = label.empty() ? 0 : 1 + *std::max_element(label.begin(), label.end());
+    for (int component = 0; component < count; ++component) {
+        Eigen::Matrix<Scalar, 1, 3> mean = Eigen::Matrix<Scalar, 1, 3>::Zero();
+        Scalar mass = 0;
+        for (Index i = 0; i < X.rows(); ++i)
+            if (label[i] == component) {
+                mean += D[i] * X.row(i);
+                mass += D[i];
+            }
+        for (Index i = 0; i < X.rows(); ++i)
+            if (label[i] == component) X.row(i) -= mean / mass;
+    }
+}
+
+template <class Scalar>
+DenseSpectrum spectrumOf(const MeshLaplacian& mesh, const Interior& interior, bool isPerturbed) {
+    Problem<Scalar> all(mesh, isPerturbed);
+    std::vector<Index> rowOf(all.order.size(), -1);  // in the interior
+    const Eigen::MatrixXd marks = interior.extended(Eigen::MatrixXd::Ones(interior.size(), 1));
+    for (Index i = 0, m = 0; i < marks.rows(); ++i)
+        if (marks(i, 0) > 0.0) rowOf[i] = m++;
+    std::vector<Index> rows;  // of `all`, that can move
+    std::vector<int> label, surfaceLabel;
+    for (std::size_t i = 0; i < all.order.size(); ++i) {
+        surfaceLabel.push_back(interior.surfaceComponents().label[all.order[i]]);
+        if (rowOf[all.order[i]] < 0) continue;
+        rows.push_back(static_cast<Index>(i));
+        label.push_back(interior.components().label[rowOf[all.order[i]]]);
+    }
+    const auto m = static_cast<Index>(rows.size());
+    const Matrix<Scalar> W = all.W(rows, rows);
+    const Vector<Scalar> D = all.D(rows);
+    centre(all.D, surfaceLabel, all.X);
+    Matrix<Scalar> U = all.X(rows, Eigen::all);
+
+    // X - H where a boundary is fixed: W_II U = (W X)_I.
+    std::vector<Index> held;
+    for (Index i = 0; i < m; ++i)
+        if (label[i] < 0) held.push_back(i);
+    if (!held.empty()) {
+        const Matrix<Scalar> WX = (all.W * all.X)(rows, Eigen::all);
+        const Matrix<Scalar> right = WX(held, Eigen::all), left = W(held, held);
+        const Matrix<Scalar> solution = left.ldlt().solve(right);
+        U(held, Eigen::all) = solution;
+    }
+    centre(D, label, U);
+
+    const Pairs<Scalar> pairs = eigenpairs(W, D);
+    const Matrix<Scalar> c = pairs.vectors.transpose() * (D.asDiagonal() * U);
+    DenseSpectrum spectrum;
+    spectrum.lambda = pairs.values.cwiseMax(Scalar{0}).template cast<double>();
+    spectrum.c = c.template cast<double>();
+    spectrum.energies = c.rowwise().squaredNorm().template cast<double>();
+    spectrum.Phi.resize(m, m);
+    for (Index i = 0; i < m; ++i)
+        spectrum.Phi.row(rowOf[all.order[rows[i]]]) = pairs.vectors.row(i).template cast<double>();
+    return spectrum;
+}
+
+}  // namespace
+
+Eigen::MatrixXd DenseSpectrum::change(const Eigen::VectorXd& gains) const {
+    return Phi * ((gains.array() - 1.0).matrix().asDiagonal() * c);
+}
+
+DenseReference::DenseReference(const Vertices& V, const Faces& F, LaplacianKind kind,
+                               Boundary boundary)
+    : mesh_(meshLaplacian(V, F, kind)),
+      interior_(mesh_.surface.F, mesh_.components, boundary),
+      laplacian_(interior_.restricted(mesh_.laplacian)) {}
+
+const DenseSpectrum& DenseReference::at(Precision precision) {
+    std::optional<DenseSpectrum>& spectrum = spectra_[static_cast<std::size_t>(precision)];
+    if (!spectrum)
+        spectrum =
+            precision == Precision::Double
+                ? spectrumOf<double>(mesh_, interior_, false)
+                : spectrumOf<long double>(mesh_, interior_, precision == Precision::Perturbed);
+    return *spectrum;
+}
+
+}  // namespace spectral::fuzz

@@ -1,0 +1,259 @@
+#include "fuzz/meshes.h"
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "core/mesh/measures.h"
+#include "core/support/types.h"
+#include "support/shapes.h"
+
+namespace spectral::fuzz {
+
+namespace {
+
+using testing::Mesh;
+
+/// A wheel, or with two hubs a double cone: vertices of high valence.
+Mesh fan(int rim, bool isClosed, double height) {
+    const int hubs = isClosed ? 2 : 1;
+    Mesh mesh{Vertices(rim + hubs, 3), Faces(rim * hubs, 3)};
+    for (int i = 0; i < rim; ++i) {
+        const double angle = 2.0 * kPi * i / rim;
+        mesh.V.row(i) << std::cos(angle), std::sin(angle), 0.0;
+        mesh.F.row(i) << i, (i + 1) % rim, rim;
+        if (isClosed) mesh.F.row(rim + i) << (i + 1) % rim, i, rim + 1;
+    }
+    for (int h = 0; h < hubs; ++h) mesh.V.row(rim + h) << 0.0, 0.0, h == 0 ? height : -height;
+    return mesh;
+}
+
+/// Random triangles between random points; a corner may be there twice.
+Mesh soup(Choices& choices) {
+    const int n = choices.between(3, 40), m = choices.between(1, 80);
+    Mesh mesh{Vertices::Zero(n, 3), Faces(m, 3)};
+    mesh = testing::withNoise(mesh, 1.0, choices.bits(4));
+    for (Index t = 0; t < m; ++t)
+        for (int c = 0; c < 3; ++c) mesh.F(t, c) = choices.below(n);
+    return mesh;
+}
+
+Mesh triangle() {
+    Mesh mesh{Vertices(3, 3), Faces(1, 3)};
+    mesh.V << 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.3, 0.8, 0.0;
+    mesh.F << 0, 1, 2;
+    return mesh;
+}
+
+Mesh tetrahedron() { return fan(3, false, 1.2); }
+
+/// Tiny components far from one another.
+Mesh crumbs(Choices& choices) {
+    const int count = choices.between(2, 30);
+    const double distance = choices.logUniform(1e7, 1e16);
+    Mesh mesh;
+    for (int i = 0; i < count; ++i) {
+        Mesh crumb = choices.pick<int>({0, 1, 2}) == 0 ? testing::icosphere(0)
+                     : choices.oneIn(2)                ? tetrahedron()
+                                                       : triangle();
+        for (int c = 0; c < 3; ++c) crumb.V.col(c).array() += distance * choices.uniform(-1.0, 1.0);
+        mesh = i == 0 ? crumb : testing::joined(mesh, crumb);
+    }
+    return mesh;
+}
+
+/// A shape of about unit size, and its name.
+NamedMesh baseShape(Choices& choices) {
+    switch (choices.below(13)) {
+        case 0:
+        case 1: return {testing::icosphere(choices.pick({0, 1, 1, 2})), "sphere"};
+        case 2: {
+            const int n = choices.between(3, 14);
+            return {testing::torus(1.0, choices.logUniform(0.01, 0.9), n, choices.between(3, 14)),
+                    "torus"};
+        }
+        case 3: return {testing::cube(choices.between(1, 5)), "box"};
+        case 4: {
+            const int nx = choices.between(1, 14);
+            return {
+                testing::rectangle(1.0, choices.logUniform(0.05, 1.0), nx, choices.between(1, 14)),
+                "grid"};
+        }
+        case 5: return {testing::hemisphere(choices.between(1, 7)), "hemisphere"};
+        case 6: return {testing::segmentedBall(choices.between(2, 3)), "voxels"};
+        case 7: return {triangle(), "triangle"};
+        case 8: {
+            const int rim = choices.pick({3, 5, 17, 60, 250});
+            const bool isClosed = choices.oneIn(2);
+            return {fan(rim, isClosed, choices.pick({0.0, 1e-4, 1.0, 30.0})),
+                    isClosed ? "double cone" : "wheel"};
+        }
+        case 9: return {soup(choices), "soup"};
+        case 10: return {crumbs(choices), "crumbs"};
+        case 11:
+            return {testing::rectangle(1.0, choices.logUniform(1e-9, 1e-2), choices.between(2, 40),
+                                       choices.between(1, 2)),
+                    "ribbon"};
+        default:
+            // More than the dense solver of the core takes.
+            switch (choices.below(3)) {
+                case 0: return {testing::torus(1.0, 0.4, 19, choices.between(16, 20)), "torus"};
+                case 1: return {testing::cube(8), "box"};
+                default: return {testing::rectangle(1.0, 0.8, 18, choices.between(16, 20)), "grid"};
+            }
+    }
+}
+
+int anyVertex(Choices& choices, const Mesh& mesh) {
+    return choices.below(static_cast<int>(mesh.V.rows()));
+}
+int anyFace(Choices& choices, const Mesh& mesh) {
+    return choices.below(static_cast<int>(mesh.F.rows()));
+}
+
+void addVertex(Mesh& mesh, const Eigen::RowVector3d& at) {
+    mesh.V.conservativeResize(mesh.V.rows() + 1, Eigen::NoChange);
+    mesh.V.bottomRows(1) = at;
+}
+
+void addFace(Mesh& mesh, int a, int b, int c) {
+    mesh.F.conservativeResize(mesh.F.rows() + 1, Eigen::NoChange);
+    mesh.F.bottomRows(1) << a, b, c;
+}
+
+/// One change to a mesh with triangles; returns its name.
+std::string change(Choices& choices, Mesh& mesh) {
+    const int i = anyVertex(choices, mesh), j = anyVertex(choices, mesh);
+    const int t = anyFace(choices, mesh), count = choices.between(1, 6);
+    switch (choices.below(17)) {
+        case 0: {
+            const double length = choices.logUniform(10.0, 1e7);
+            mesh.V.row(i) *= length;
+            std::ostringstream name;
+            name.precision(2);
+            name << "spike of " << length;
+            return name.str();
+        }
+        case 1: mesh.V.row(mesh.F(t, 0)) = mesh.V.row(mesh.F(t, 1)); return "collapsed edge";
+        case 2: {
+            const double share = choices.logUniform(1e-15, 1e-3);
+            const int a = mesh.F(t, 0), b = mesh.F(t, 1);
+            mesh.V.row(a) = (1.0 - share) * mesh.V.row(b) + share * mesh.V.row(a);
+            return "short edge";
+        }
+        case 3:
+            mesh.V.row(mesh.F(t, 0)) = 0.5 * (mesh.V.row(mesh.F(t, 1)) + mesh.V.row(mesh.F(t, 2)));
+            return "flat triangle";
+        case 4:
+            for (int k = 0; k < count; ++k) {
+                const int f = anyFace(choices, mesh);
+                if (choices.oneIn(2))
+                    addFace(mesh, mesh.F(f, 0), mesh.F(f, 1), mesh.F(f, 2));
+                else
+                    addFace(mesh, mesh.F(f, 1), mesh.F(f, 0), mesh.F(f, 2));
+            }
+            return "duplicate faces";
+        case 5:
+            for (int k = 0; k < count; ++k) {
+                const int f = anyFace(choices, mesh), c = choices.below(3);
+                addVertex(mesh, mesh.V.row(mesh.F(f, c)));
+                mesh.F(f, c) = static_cast<int>(mesh.V.rows()) - 1;
+            }
+            return "duplicate vertices";
+        case 6:
+            for (int k = 0; k < count && mesh.F.rows() > 1; ++k) {
+                mesh.F.row(anyFace(choices, mesh)) = mesh.F.bottomRows(1).eval();
+                mesh.F.conservativeResize(mesh.F.rows() - 1, Eigen::NoChange);
+            }
+            return "holes";
+        case 7:
+            for (int k = 0; k < count; ++k) {
+                const int f = anyFace(choices, mesh);
+                std::swap(mesh.F(f, 0), mesh.F(f, 1));
+            }
+            return "flipped faces";
+        case 8:
+            mesh.F = mesh.F.unaryExpr([i, j](int v) { return v == i ? j : v; }).eval();
+            return "welded vertices";
+        case 9:
+            for (int k = 0; k < count; ++k) {
+                addVertex(mesh, mesh.V.row(i) + Eigen::RowVector3d(0.1, 0.2, 0.3 * k));
+                addFace(mesh, mesh.F(t, 0), mesh.F(t, 1), static_cast<int>(mesh.V.rows()) - 1);
+            }
+            return "fins";
+        case 10:
+            for (int k = 0; k < count; ++k)
+                addVertex(mesh, Eigen::RowVector3d(choices.uniform(-1.0, 1.0), k, 0.5));
+            return "isolated vertices";
+        case 11:
+            addVertex(mesh, Eigen::RowVector3d(choices.logUniform(1e3, 1e20), 1.0, -1.0));
+            return "stray vertex";
+        case 12: mesh.V.col(2) *= choices.pick({0.0, 1e-12, 1e-6}); return "flattened";
+        case 13: mesh.V.col(0) *= choices.logUniform(1e-6, 1e6); return "stretched";
+        case 14: {
+            const double grid = choices.pick({0.5, 0.1, 1e-3, 1e-6});
+            mesh.V = (mesh.V / grid).array().round().matrix() * grid;
+            return "on a lattice";
+        }
+        case 15: mesh.V.row(i) = mesh.V.row(j); return "coincident vertices";
+        default: {
+            Mesh other = baseShape(choices).mesh;
+            other.V *= choices.logUniform(1e-6, 10.0);
+            other.V.col(0).array() += choices.pick({0.0, 2.5, 100.0});
+            if (mesh.V.rows() + other.V.rows() < 350) mesh = testing::joined(mesh, other);
+            return "second component";
+        }
+    }
+}
+
+/// Makes what the core must reject.
+std::string spoil(Choices& choices, Mesh& mesh) {
+    switch (choices.below(6)) {
+        case 0:
+            mesh.V(anyVertex(choices, mesh), choices.below(3)) =
+                std::numeric_limits<double>::quiet_NaN();
+            return "NaN";
+        case 1:
+            mesh.V(anyVertex(choices, mesh), choices.below(3)) =
+                -std::numeric_limits<double>::infinity();
+            return "infinity";
+        case 2: mesh.F(anyFace(choices, mesh), 1) = static_cast<int>(mesh.V.rows()); return "index";
+        case 3: mesh.F(anyFace(choices, mesh), 2) = -1; return "negative index";
+        case 4: mesh.F.resize(0, 3); return "no faces";
+        default:
+            mesh.V.resize(0, 3);
+            mesh.F.resize(0, 3);
+            return "empty";
+    }
+}
+
+}  // namespace
+
+NamedMesh makeMesh(Choices& choices) {
+    NamedMesh made = baseShape(choices);
+    if (choices.oneIn(400)) made = {testing::rectangle(1.0, 0.7, 50, 45), "large grid"};
+    Mesh& mesh = made.mesh;
+    if (!choices.oneIn(3)) {
+        const double noise = choices.pick({0.0, 1e-13, 1e-8, 1e-3, 0.02, 0.1});
+        if (noise > 0.0 && made.name != "ribbon") {
+            mesh = testing::withNoise(mesh, noise, choices.bits(4));
+            made.name += " with noise";
+        }
+    }
+    for (int changes = choices.pick({0, 0, 1, 1, 2, 3}); changes > 0; --changes)
+        made.name += ", " + change(choices, mesh);
+    if (choices.oneIn(5)) {
+        const double exponent = choices.uniform(-60.0, 75.0);
+        mesh.V *= std::pow(10.0, exponent);
+        made.name += ", scaled by 1e" + std::to_string(static_cast<int>(exponent));
+    }
+    if (choices.oneIn(10)) {
+        const double far = choices.logUniform(1.0, 1e7) * boundingBoxDiagonal(mesh.V);
+        mesh.V.rowwise() += Eigen::RowVector3d(far, -0.3 * far, 0.1 * far);
+        made.name += ", offset";
+    }
+    if (choices.oneIn(40)) made.name += ", " + spoil(choices, mesh);
+    return made;
+}
+
+}  // namespace spectral::fuzz
