@@ -24,7 +24,7 @@ double Choices::logUniform(double from, double to) {
 }
 
 std::vector<std::uint8_t> bytesOf(std::uint64_t seed) {
-    constexpr std::size_t kBytes = 512;
+    constexpr std::size_t kBytes = 8 * kSeedDistance;
     std::vector<std::uint8_t> bytes;
     // splitmix64
     for (std::uint64_t state = seed * 0x9e3779b97f4a7c15ULL; bytes.size() < kBytes;) {

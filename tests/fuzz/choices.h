@@ -29,6 +29,9 @@ class Choices {
     const std::uint8_t *next_, *end_;
 };
 
+/// Seeds nearer to one another have bytes in common.
+inline constexpr std::uint64_t kSeedDistance = 64;
+
 /// The bytes of a seed, the same on every platform.
 std::vector<std::uint8_t> bytesOf(std::uint64_t seed);
 

@@ -5,8 +5,9 @@
 //                  [--errors yes] [--compare no]
 //        fuzz_core --seed S    one seed, in this process, with everything that came of it
 //
-// --limit is for one case; --errors prints the errors that are allowed, too; --compare no leaves
-// out the dense solver, for sanitizers.
+// Cases have seeds S, S + 64, ...: nearer ones share bytes. --limit is for one case; --errors
+// prints the errors that are allowed, too; --compare no leaves out the dense solver, for
+// sanitizers.
 //
 // A file of seeds has one in each line, with a remark after it. Seeds mean the same on every
 // platform, but not after a change of meshes.cpp or cases.cpp.
@@ -165,7 +166,7 @@ int runAll(const Arguments& arguments) {
     const auto begin = Clock::now();
     auto* counts = static_cast<Counts*>(sharedMemory(sizeof(Counts)));
     const auto seedOf = [&](std::uint64_t i) {
-        return arguments.seeds ? (*arguments.seeds)[i] : arguments.firstSeed + i;
+        return arguments.seeds ? (*arguments.seeds)[i] : arguments.firstSeed + i * kSeedDistance;
     };
     runInChildren(
         0, arguments.seeds ? arguments.seeds->size() : arguments.cases, arguments.limit,
