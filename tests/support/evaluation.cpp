@@ -14,13 +14,13 @@ Vertices filteredDense(const Operator& A, const HarmonicBasis& dense, const Gain
 }
 
 FullSpectrumResult filteredFullSpectrum(const Operator& A, const Gain& gain, double cutoff,
-                                        double accuracy) {
+                                        double accuracy, const std::vector<double>& samples) {
     ShiftedLdlt ldlt;
-    const Pole pole = selectPole(gain, cutoff, bulkSpectrum(A.laplacian), accuracy);
-    ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, pole.shift);
+    ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D,
+                           selectPole(gain, cutoff, bulkSpectrum(A.laplacian), accuracy));
     FullSpectrumOptions options;
     options.accuracy = accuracy;
-    options.resolution = pole.resolution;
+    options.samples = samples;
     return applyFullSpectrum(A.laplacian.D, A.constants, ldlt, {gain}, A.mesh.V, options).front();
 }
 

@@ -30,8 +30,9 @@ struct Operator {
 Vertices filteredDense(const Operator& A, const HarmonicBasis& dense, const Gain& gain);
 
 /// The same by the rational Krylov method, with a pole as the filter chooses it.
+/// @param samples  see FullSpectrumOptions.
 FullSpectrumResult filteredFullSpectrum(const Operator& A, const Gain& gain, double cutoff,
-                                        double accuracy);
+                                        double accuracy, const std::vector<double>& samples = {});
 
 /// |difference|_D / |V - mean|_D over all columns together, as FullSpectrumResult measures it.
 double relativeError(const Operator& A, const Eigen::MatrixXd& difference);

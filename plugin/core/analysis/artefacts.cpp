@@ -25,9 +25,8 @@ Artefacts measureArtefacts(const Vertices& V, const Faces& F, const ArtefactOpti
 
     progress.report(0.0, "factorizing");
     ShiftedLdlt ldlt;
-    ldlt.factorizeDefinite(
-        mesh.laplacian.W, D,
-        selectPole(gain, 2.0 * cutoff, bulkSpectrum(mesh.laplacian), kAccuracy).shift);
+    ldlt.factorizeDefinite(mesh.laplacian.W, D,
+                           selectPole(gain, 2.0 * cutoff, bulkSpectrum(mesh.laplacian), kAccuracy));
     FullSpectrumOptions evaluation;
     evaluation.accuracy = kAccuracy;
     const Vertices& X = mesh.surface.X;

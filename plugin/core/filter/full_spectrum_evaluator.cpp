@@ -8,7 +8,7 @@
 namespace spectral {
 
 /// The pole is chosen for the spectrum of the first Laplacian: those that follow are much alike.
-const Pole& FullSpectrumEvaluator::poleFor(const Laplacian& laplacian, double alpha) {
+double FullSpectrumEvaluator::poleFor(const Laplacian& laplacian, double alpha) {
     if (!spectrum_) spectrum_ = bulkSpectrum(laplacian);
     const auto [place, isNew] = poles_.try_emplace(alpha);
     if (isNew)
@@ -22,13 +22,13 @@ Evaluation FullSpectrumEvaluator::evaluate(const Laplacian& laplacian,
                                            const std::vector<double>& alphas, double accuracy,
                                            const Progress& progress) {
     progress.report(0.0, "factorizing");
-    const Pole& pole = poleFor(laplacian, alphas[alphas.size() / 2]);
-    ldlt_.factorizeDefinite(laplacian.W, laplacian.D, pole.shift);
+    const double pole = poleFor(laplacian, alphas[alphas.size() / 2]);
+    ldlt_.factorizeDefinite(laplacian.W, laplacian.D, pole);
 
     FullSpectrumOptions options;
     options.accuracy = accuracy;
-    options.resolution = pole.resolution;
     options.atEveryVertex = atEveryVertex_;
+    options.samples = F_.samples();
     std::vector<Gain> gains;
     for (const double alpha : alphas) gains.push_back(fractionalPower(F_, alpha));
     Evaluation evaluation;

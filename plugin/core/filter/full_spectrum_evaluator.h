@@ -24,13 +24,13 @@ class FullSpectrumEvaluator : public Evaluator {
                         double accuracy, const Progress& progress) override;
 
   private:
-    const Pole& poleFor(const Laplacian& laplacian, double alpha);
+    double poleFor(const Laplacian& laplacian, double alpha);
 
     const TransferFunction& F_;
     double accuracy_;
     bool atEveryVertex_;
     std::optional<SpectrumRange> spectrum_;  // of the first Laplacian
-    std::map<double, Pole> poles_;           // for the powers asked for so far
+    std::map<double, double> poles_;         // for the powers asked for so far
 };
 
 }  // namespace spectral

@@ -18,7 +18,7 @@ constexpr double kCoarsestAccuracy = 1e-2;
 /// A shape that only a Laplacian is taken of may have so many times the error of a result, because
 /// its error enters the result through the change of the Laplacian alone; but three digits at
 /// least.
-constexpr double kPredictionLeeway = 20.0, kPredictionAccuracy = 1e-3;
+constexpr double kPredictionLeeway = 5.0, kPredictionAccuracy = 1e-3;
 
 /// Relative error beyond which a result is useless.
 constexpr double kUselessError = 0.1;

@@ -104,6 +104,20 @@ std::vector<double> TransferFunction::discontinuities() const {
     return {cutoff_ / half, cutoff_ * half};
 }
 
+std::vector<double> TransferFunction::samples() const {
+    // A Butterworth filter of order m falls from its pass band within 1/m octaves, or 1/m of the
+    // width of a band; a Gaussian one matters up to four widths away.
+    constexpr int kPerFall = 8;
+    const bool isBand =
+        options_.type == FilterType::BandPass || options_.type == FilterType::BandStop;
+    const double width = isBand ? options_.bandWidth : 1.0;
+    const int order = options_.response == Response::Butterworth ? options_.order : 2;
+    std::vector<double> samples;
+    for (int i = -2 * kPerFall * order; i <= 2 * kPerFall * order; ++i)
+        samples.push_back(cutoff_ * std::exp2(width * i / (kPerFall * order)));
+    return samples;
+}
+
 Gain fractionalPower(const TransferFunction& F, double alpha) {
     return [F, alpha](double omega) { return F.power(omega, alpha); };
 }

@@ -54,6 +54,9 @@ class TransferFunction {
     /// Frequencies at which F jumps, ascending; empty for a continuous F.
     std::vector<double> discontinuities() const;
 
+    /// Frequencies around the cutoff, so close that F varies little between two of them.
+    std::vector<double> samples() const;
+
   private:
     double prototype(double x) const;
     double octavesDown(double x) const;

@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include "core/krylov/krylov_spaces.h"
-#include "core/krylov/pole_selection.h"
 
 namespace spectral {
 
@@ -15,9 +13,6 @@ namespace {
 
 /// Dimensions between checks of the error.
 constexpr int kCheckInterval = 3;
-
-/// Smallest dimension at which to stop: before, a narrow band may not have been resolved.
-constexpr int kFirstCheck = 6;
 
 /// Multiple of the accuracy at which the error at the vertices is estimated as well: a pass over
 /// the basis that would be wasted far from convergence, but needs some checks for its rate.
@@ -27,7 +22,17 @@ constexpr double kNearlyConverged = 30.0;
 /// any geometric series. A bound for all cusps of full_spectrum_test.
 constexpr double kNotConverged = 3.0;
 
-/// Estimates the error of the newest approximation from the changes between checks, in one norm.
+/// Frequencies at which gains are sampled, ascending: those asked for, and eighths of octaves on
+/// both sides of the one that belongs to the pole.
+Eigen::VectorXd sampleFrequencies(double pole, std::vector<double> samples) {
+    constexpr int kOctaves = 32, kPerOctave = 8;
+    for (int i = -kOctaves * kPerOctave; i <= kOctaves * kPerOctave; ++i)
+        samples.push_back(std::sqrt(pole) * std::exp2(static_cast<double>(i) / kPerOctave));
+    std::sort(samples.begin(), samples.end());
+    return Eigen::Map<const Eigen::VectorXd>(samples.data(), static_cast<Index>(samples.size()));
+}
+
+/// Estimates the error of the newest approximation from the changes between checks.
 ///
 /// If changes decay by a factor q per check, the remaining ones sum to change q / (1 - q). The
 /// estimate is the larger of this, for slow convergence, and the last change, for fast.
@@ -52,17 +57,16 @@ class ErrorEstimate {
 /// Successive approximations of F(sqrt(A)) X for one gain.
 class Approximation {
   public:
-    Approximation(const KrylovSpaces& spaces, const Gain& gain, double pole,
+    /// @param omega  frequencies at which the gain is sampled.
+    Approximation(const KrylovSpaces& spaces, const Gain& gain, const Eigen::VectorXd& omega,
                   const FullSpectrumOptions& options)
         : spaces_(spaces),
           gain_(gain),
+          omega_(omega),
+          gains_(omega.unaryExpr(gain)),
           options_(options),
-          sufficient_(options.atEveryVertex ? std::nullopt
-                                            : sufficientDimension(gain, pole, options.accuracy)),
           coefficients_(static_cast<std::size_t>(spaces.columns())),
           change_(coefficients_.size()) {}
-
-    bool isSufficient(int dimension) const { return sufficient_ && dimension >= *sufficient_; }
 
     /// Updates the coefficients of all columns; returns the estimated error.
     double update() {
@@ -72,9 +76,9 @@ class Approximation {
             coefficients_[c].conservativeResizeLike(Eigen::VectorXd::Zero(change_[c].size()));
             std::swap(coefficients_[c], change_[c]);
             change_[c] = coefficients_[c] - change_[c];
-            squares += change_[c].squaredNorm();
+            squares += spaces_.squaredErrorBound(c, coefficients_[c], omega_, gains_);
         }
-        const double error = overSurface_(std::sqrt(squares) / spaces_.norms().matrix().norm());
+        const double error = std::sqrt(squares) / spaces_.norms().matrix().norm();
         if (!options_.atEveryVertex || error > kNearlyConverged * options_.accuracy) return error;
         // Vertices of small mass hardly affect the norm over the surface. Their errors can be
         // larger, and decay more slowly and less evenly: the larger of two changes counts.
@@ -87,10 +91,11 @@ class Approximation {
   private:
     const KrylovSpaces& spaces_;
     const Gain& gain_;
+    const Eigen::VectorXd& omega_;
+    Eigen::VectorXd gains_;
     const FullSpectrumOptions& options_;
-    std::optional<int> sufficient_;
     std::vector<Eigen::VectorXd> coefficients_, change_;
-    ErrorEstimate overSurface_, atVertices_;
+    ErrorEstimate atVertices_;
     double largest_ = 0.0;
 };
 
@@ -103,23 +108,18 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
     KrylovSpaces spaces(ldlt, D, constants, X);
     if (!(spaces.largestEntry() > 0.0)) return {gains.size(), {X, 0.0, 0, true}};
     std::vector<FullSpectrumResult> results(gains.size());
+    const Eigen::VectorXd omega = sampleFrequencies(-ldlt.shift(), options.samples);
     std::vector<Approximation> approximations;
-    for (const Gain& gain : gains)
-        approximations.emplace_back(spaces, gain, -ldlt.shift(), options);
+    for (const Gain& gain : gains) approximations.emplace_back(spaces, gain, omega, options);
 
-    const int first = std::max(kFirstCheck, std::min(options.resolution, options.maxDimension));
     double firstError = 0.0, furthest = 0.0;
     bool isDone = false;
     for (int m = 1; !isDone; ++m) {
         const bool isInvariant = !spaces.extend();
-        bool isSufficient = m >= options.resolution;
-        for (const Approximation& approximation : approximations)
-            isSufficient = isSufficient && approximation.isSufficient(m);
         const bool isLast = m >= options.maxDimension;
-        if (!isInvariant && !isSufficient && !isLast && m % kCheckInterval != 0) continue;
+        if (!isInvariant && !isLast && m % kCheckInterval != 0) continue;
 
-        isDone = isInvariant || isSufficient || isLast;
-        bool allConverged = m >= first;
+        bool allConverged = true;
         double largestError = 0.0;
         for (std::size_t g = 0; g < gains.size(); ++g) {
             FullSpectrumResult& result = results[g];
@@ -127,13 +127,11 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
             result.errorEstimate = approximations[g].update();
             // In an invariant space, round-off is the only error.
             if (isInvariant) result.errorEstimate = std::numeric_limits<double>::epsilon();
-            if (isSufficient)
-                result.errorEstimate = std::min(result.errorEstimate, options.accuracy);
             result.converged = result.errorEstimate <= options.accuracy;
             allConverged = allConverged && result.converged;
             largestError = std::max(largestError, result.errorEstimate);
         }
-        isDone = isDone || allConverged;
+        isDone = isInvariant || isLast || allConverged;
         if (isDone || !std::isfinite(largestError)) continue;
 
         // Convergence is geometric: progress is linear in the logarithm of the error.

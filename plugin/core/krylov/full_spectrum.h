@@ -12,8 +12,10 @@ namespace spectral {
 struct FullSpectrumOptions {
     double accuracy = 1e-6;     ///< Requested error of Y, relative as in FullSpectrumResult.
     int maxDimension = 200;     ///< Krylov dimension at which to give up.
-    int resolution = 1;         ///< Smallest dimension with a meaningful error estimate; see Pole.
     bool atEveryVertex = true;  ///< Else only |dY|_D / |X|_D, over the surface, is bounded.
+
+    /// Frequencies between which the gains vary little; eighths of octaves are always among them.
+    std::vector<double> samples;
 };
 
 struct FullSpectrumResult {
@@ -34,9 +36,9 @@ struct FullSpectrumResult {
 /// The same as with all n harmonics, Y = Phi F(Lambda^1/2) Phi^T D X (Kovnatsky et al. 2012, Eq.
 /// 6), by a shift-invert Lanczos method with one repeated real pole (krylov_spaces.h).
 ///
-/// The stopping rule is a posteriori, from the differences between approximations a few dimensions
-/// apart and their rate of decay, over the surface and at every vertex. Over the surface, it also
-/// stops at the dimension that suffices for any signal.
+/// The stopping rule is a posteriori: over the surface by a bound from the spectral measure
+/// (KrylovSpaces::squaredErrorBound), at every vertex from the differences between approximations a
+/// few dimensions apart and their rate of decay.
 ///
 /// @param D      n lumped masses of the Laplacian.
 /// @param ldlt   factorization of W + lambda_p D; see selectPole for lambda_p.

@@ -330,6 +330,35 @@ Eigen::VectorXd KrylovSpaces::coefficients(int column, const Gain& gain) const {
     return norms_[column] * (pairs.Q * gains.cwiseProduct(pairs.Q.row(0).transpose()));
 }
 
+double KrylovSpaces::squaredErrorBound(int column, const Eigen::VectorXd& c,
+                                       const Eigen::VectorXd& omega,
+                                       const Eigen::VectorXd& gains) const {
+    constexpr double kHuge = 1e100;  // p_k grows geometrically where the signal has nothing
+    if (exhausted_[column]) return 0.0;
+    const std::vector<double>&alpha = alpha_[column], &beta = beta_[column];
+    double sum = 0.0, largest = 0.0;
+    bool wasNegative = false;
+    for (Index s = 0; s < omega.size(); ++s) {
+        const double theta = 1.0 / (omega[s] * omega[s] - ldlt_.shift());
+        double before = 0.0, p = 1.0, polynomial = 0.0, squares = 0.0, unit = norms_[column];
+        for (std::size_t k = 0; k < alpha.size(); ++k) {
+            polynomial += c[static_cast<Index>(k)] * p;
+            squares += p * p;
+            const double coupled = k > 0 ? beta[k - 1] * before : 0.0;
+            before = std::exchange(p, ((theta - alpha[k]) * p - coupled) / beta[k]);
+            if (std::abs(p) > kHuge) {
+                for (double* value : {&before, &p, &polynomial, &unit}) *value /= kHuge;
+                squares /= kHuge * kHuge;
+            }
+        }
+        // The last polynomial, p_m, changes its sign at the Ritz values.
+        if (std::exchange(wasNegative, p < 0.0) != wasNegative) sum += std::exchange(largest, 0.0);
+        const double mismatch = unit * gains[s] - polynomial;
+        largest = std::max(largest, mismatch * mismatch / squares);
+    }
+    return sum + largest;
+}
+
 Quadrature KrylovSpaces::quadrature(int column) const {
     Ritz pairs = ritz(column);
     if (pairs.omega.size() == 0) return {};

@@ -51,6 +51,20 @@ class KrylovSpaces {
     /// @throws SolverFailure  when the eigenproblem of T does not converge.
     Eigen::VectorXd coefficients(int column, const Gain& gain) const;
 
+    /// Bound of the squared error |F(sqrt(A)) x - U c|_D^2 of coefficients c, from F at samples.
+    ///
+    /// U c is p(S) x, with p = sum_k c_k p_k in the polynomials p_k that are orthonormal for the
+    /// spectral measure of x: those of the recurrence T. So an eigenvalue of S at theta adds (F -
+    /// p)(theta)^2 times its mass, which is at most the Christoffel function 1 / sum_k p_k(theta)^2
+    /// of the measure, between two Ritz values and beyond them all alike. The bound is the largest
+    /// of these products between neighbouring Ritz values, summed. It sees a band of F that lies
+    /// between Ritz values, and passes one over where the signal has nothing.
+    ///
+    /// @param omega  frequencies, ascending or descending, so dense that F has no band between two.
+    /// @param gains  F at them.
+    double squaredErrorBound(int column, const Eigen::VectorXd& c, const Eigen::VectorXd& omega,
+                             const Eigen::VectorXd& gains) const;
+
     /// Nodes and weights of the Gauss quadrature, likewise; the weights sum to |x|_D^2.
     Quadrature quadrature(int column) const;
 

@@ -14,9 +14,11 @@ constexpr int kFewestNodes = 32, kMostNodes = 256;
 /// Poles that are tried, powers of two times omega_c^2: a wide range, as a trial costs no solve.
 constexpr int kLowestPower = -6, kHighestPower = 12;
 
-/// Error, relative to the range of a gain, at which its variation is resolved: a tenth shows where
-/// a band is, a smaller one would keep spaces growing for no better error estimate.
-constexpr double kResolved = 0.1;
+/// Part of the range of a gain by which nodes may miss its peak.
+constexpr double kReached = 0.25;
+
+/// A pole is at most this far outside of the range of eigenvalues.
+constexpr double kFarthest = 64.0;
 
 /// Chebyshev series of a gain on an interval of theta.
 class ChebyshevSeries {
@@ -32,7 +34,8 @@ class ChebyshevSeries {
             value[i] = gain(std::sqrt(std::max(0.0, pole / theta - pole)));
         }
         const auto [least, largest] = std::minmax_element(value.begin(), value.end());
-        span_ = *largest - *least;
+        least_ = *least;
+        largest_ = *largest;
         for (int degree = nodes - 1; degree >= 0; --degree) {
             double coefficient = 0.0;
             for (int i = 0; i < nodes; ++i)
@@ -48,49 +51,45 @@ class ChebyshevSeries {
                                 tail_.begin());
     }
 
-    /// Largest minus smallest value.
-    double span() const { return span_; }
+    /// Whether a value of the gain is about within the range of those at the nodes.
+    bool reaches(double value, double accuracy) const {
+        const double margin = kReached * (largest_ - least_) + accuracy;
+        return value >= least_ - margin && value <= largest_ + margin;
+    }
 
   private:
     std::vector<double> tail_;  // sums of moduli from a degree on: bound the truncation error
-    double span_ = 0.0;
+    double least_ = 0.0, largest_ = 0.0;
 };
 
 }  // namespace
 
-Pole selectPole(const Gain& gain, double cutoff, const SpectrumRange& range, double accuracy) {
-    Pole best;
+double selectPole(const Gain& gain, double cutoff, const SpectrumRange& range, double accuracy) {
+    const double atCutoff =
+        std::clamp(cutoff * cutoff, range.lowest / kFarthest, range.highest * kFarthest);
+    double best = atCutoff;
     int nodes = kFewestNodes;
     for (double target = accuracy;;) {
         int fewest = nodes + 1;
         for (int power = kLowestPower; power <= kHighestPower; ++power) {
-            const double pole = std::exp2(power) * cutoff * cutoff;
+            const double pole = std::min(std::exp2(power) * atCutoff, range.highest * kFarthest);
             const ChebyshevSeries series(gain, pole, pole / (range.highest + pole),
                                          pole / (range.lowest + pole), nodes);
             const int dimension = series.requiredDimension(target);
-            if (dimension >= fewest) continue;
+            if (dimension >= fewest || !series.reaches(gain(cutoff), accuracy)) continue;
             fewest = dimension;
-            best.shift = pole;
-            best.resolution = std::max(1, series.requiredDimension(kResolved * series.span()));
+            best = pole;
         }
-        if (fewest <= nodes / 2) break;
         // Aliasing makes the upper half of the coefficients meaningless where a gain is not
         // resolved. With the most nodes, the finest accuracy that a pole reaches decides instead.
+        if (fewest <= nodes / 2) return best;
         if (nodes < kMostNodes)
             nodes *= 2;
+        else if (fewest > nodes)
+            return atCutoff;  // every series has missed the band
         else
             target *= 10.0;
     }
-    return best;
-}
-
-std::optional<int> sufficientDimension(const Gain& gain, double pole, double accuracy) {
-    constexpr int kMost = 32;
-    const ChebyshevSeries series(gain, pole, 0.0, 1.0, 4 * kMost);
-    // Half the error: that of the Krylov approximation is at most twice that of the best
-    // polynomial.
-    const int dimension = std::max(1, series.requiredDimension(0.5 * accuracy));
-    return dimension <= kMost ? std::optional(dimension) : std::nullopt;
 }
 
 SpectrumRange bulkSpectrum(const Laplacian& laplacian) {

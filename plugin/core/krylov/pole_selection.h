@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-
 #include "core/laplacian/frequency.h"
 #include "core/laplacian/laplacian.h"
 
@@ -13,14 +11,6 @@ struct SpectrumRange {
     double highest;  ///< Upper end of the bulk, > lowest.
 };
 
-struct Pole {
-    double shift = 0.0;  ///< lambda_p > 0, in units of lambda.
-
-    /// Smallest dimension at which a space distinguishes the gain from a smoother one: below it,
-    /// changes between dimensions say nothing about the error.
-    int resolution = 1;
-};
-
 /// The pole with which a rational Krylov space resolves a gain with the fewest dimensions.
 ///
 /// In the variable theta = lambda_p / (lambda + lambda_p) the Krylov method with the repeated pole
@@ -30,19 +20,15 @@ struct Pole {
 /// (half the solves); a small fractional power of a slowly decaying gain one in between.
 ///
 /// A gain that no such polynomial resolves (with a cusp where it vanishes, say) gets the pole that
-/// comes closest.
+/// comes closest; one with a band so narrow that it lies between the nodes, the pole at the cutoff.
+/// No pole is far beyond the range: (W + lambda_p D)^-1 D would be a constant to round-off.
 ///
 /// @param gain      continuous on the range.
 /// @param cutoff    omega_c > 0, around which poles are tried.
 /// @param range     the part of the spectrum that matters; see `bulkSpectrum`.
 /// @param accuracy  absolute error of the gain, > 0.
-Pole selectPole(const Gain& gain, double cutoff, const SpectrumRange& range, double accuracy);
-
-/// Dimension of a Krylov space that suffices for any signal, over the whole spectrum.
-///
-/// @param accuracy  error relative to the D-norm of the signal, > 0.
-/// @return  empty above 32: few signals need as many, so that stopping a posteriori is faster.
-std::optional<int> sufficientDimension(const Gain& gain, double pole, double accuracy);
+/// @return  lambda_p > 0, in units of lambda.
+double selectPole(const Gain& gain, double cutoff, const SpectrumRange& range, double accuracy);
 
 /// The range of the bulk of the eigenvalues of W phi = lambda D phi.
 ///

@@ -87,6 +87,50 @@ TEST(FullSpectrum, OfANarrowBandIsNotStoppedBeforeTheBandIsSeen) {
         }
 }
 
+TEST(FullSpectrum, DoesNotClaimAnAccuracyForABandThatItsSpacesHaveNotSeen) {
+    // So narrow that it lies between Ritz values, on both sides of which the gain is 1: all
+    // approximations without the band agree.
+    const Operator A(testing::joined(testing::blob(), testing::torus(2, 0.7, 24, 12)));
+    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    TransferFunctionOptions options;
+    options.type = FilterType::BandPass;
+    options.stopGain = 1.0;
+    options.passGain = 3.0;
+    int claims = 0, all = 0;
+    for (const double width : {0.001, 0.005, 0.02, 0.1})
+        for (double feature = 0.08; feature < 8.0; feature *= 1.3, ++all) {
+            options.bandWidth = width;
+            const TransferFunction F(options, 2.0 * kPi / feature);
+            const Gain gain = fractionalPower(F, 1.0);
+            const double accuracy = 1e-6;
+            const FullSpectrumResult result =
+                testing::filteredFullSpectrum(A, gain, F.cutoff(), accuracy, F.samples());
+            if (!result.converged) continue;
+            ++claims;
+            EXPECT_LE(testing::relativeError(A, result.Y - testing::filteredDense(A, dense, gain)),
+                      accuracy)
+                << "width " << width << ", feature " << feature;
+        }
+    EXPECT_GT(claims, all / 2);
+}
+
+TEST(FullSpectrum, OfAFeatureSizeFarFromAllSizesOfTheMeshReportsItsAccuracy) {
+    const Operator A(testing::blob());
+    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    for (const double feature : {1e-7, 1e-3, 1e3, 1e7})
+        for (const auto& options : testing::smoothTransferFunctions()) {
+            const TransferFunction F(options, 2.0 * kPi / feature);
+            const Gain gain = fractionalPower(F, 1.0);
+            const FullSpectrumResult result =
+                testing::filteredFullSpectrum(A, gain, F.cutoff(), 1e-6, F.samples());
+            const Vertices expected = testing::filteredDense(A, dense, gain);
+            EXPECT_TRUE(result.converged);
+            EXPECT_LE(testing::relativeError(A, result.Y - expected),
+                      result.errorEstimate + kRoundOff)
+                << testing::describe(options) << ", feature " << feature;
+        }
+}
+
 TEST(FullSpectrum, KeepsConstantModesWhateverTheGainAtZero) {
     const Operator A(testing::joined(testing::blob(), testing::torus(3, 1, 16, 8)));
     for (const double gainAtAll : {0.0, 3.0}) {
