@@ -1,6 +1,8 @@
 #include "meshlab/error_messages.h"
 
 #include <QString>
+#include <iomanip>
+#include <sstream>
 
 namespace {
 
@@ -48,6 +50,7 @@ std::string remedy(const spectral::Error& error, const RichParameterList& parame
         case ErrorCode::NoDelaunay:
         case ErrorCode::SingularMatrix: return kRemesh;
         case ErrorCode::ShapeCollapsed: return stablerFilter(parameters);
+        case ErrorCode::ShrinksToNothing: return "choose a smaller feature_size";
         case ErrorCode::TooManyVertices:
             return "apply 'Simplification: Quadric Edge Collapse Decimation' first";
         case ErrorCode::BasisTooLarge:
@@ -77,4 +80,17 @@ std::string remedy(const spectral::Error& error, const RichParameterList& parame
 std::string errorMessage(const spectral::Error& error, const RichParameterList& parameters) {
     const std::string help = remedy(error, parameters);
     return help.empty() ? error.what() : error.what() + (": " + help);
+}
+
+std::vector<std::string> residualWarnings(const Eigen::VectorXd& residuals) {
+    constexpr double kAccurate = 1e-6;
+    Eigen::Index worst = 0;
+    if (residuals.size() == 0 || residuals.maxCoeff(&worst) <= kAccurate) return {};
+    std::ostringstream text;
+    text << std::setprecision(2) << "the relative residual of "
+         << (residuals.array() > kAccurate).count() << " of " << residuals.size()
+         << " harmonics is above " << kAccurate << ", at most " << residuals[worst] << " (number "
+         << worst << "): triangles are needles, or parts of the mesh are far away. To mend it, "
+         << kRemesh;
+    return {text.str()};
 }

@@ -2,7 +2,9 @@
 
 #include <common/parameters/rich_parameter_list.h>
 
+#include <Eigen/Core>
 #include <string>
+#include <vector>
 
 #include "core/support/errors.h"
 
@@ -10,3 +12,7 @@
 ///
 /// @param parameters  of the filter that failed; no others are recommended.
 std::string errorMessage(const spectral::Error& error, const RichParameterList& parameters);
+
+/// A warning of the least accurate harmonic, where it has fewer than six digits.
+/// @param residuals  relative, of a basis of harmonics; may be empty.
+std::vector<std::string> residualWarnings(const Eigen::VectorXd& residuals);

@@ -135,6 +135,7 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
         progress.report(0.0, "reading the mesh");
         FilterOutcome outcome = filterOf(action).apply(parameters, *document.mm(), progress);
         logLines(outcome.text);
+        for (const std::string& warning : outcome.warnings) logLines("  WARNING: " + warning);
         keepLastWarnings(outcome.warnings);
         return std::move(outcome.report);
     } catch (const spectral::Cancelled& cancelled) {

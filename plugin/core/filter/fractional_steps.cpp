@@ -44,8 +44,9 @@ void midpointStep(LaplacianBuilder& laplacians, StepEvaluator& evaluate, double 
 
 /// The failure of a step that starts from a shape the filter has made.
 SolverFailure inCourse(const SolverFailure& failure, const std::string& where) {
-    const bool isSteep = failure.code() == ErrorCode::TooSteep;
-    return {isSteep ? ErrorCode::TooSteep : ErrorCode::ShapeCollapsed, where + failure.what()};
+    const bool hasOwnRemedy =
+        failure.code() == ErrorCode::TooSteep || failure.code() == ErrorCode::ShrinksToNothing;
+    return {hasOwnRemedy ? failure.code() : ErrorCode::ShapeCollapsed, where + failure.what()};
 }
 
 std::string nameOf(int step, int K) {

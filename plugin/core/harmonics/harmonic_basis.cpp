@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <string>
 
 #include "core/laplacian/constant_modes.h"
@@ -50,12 +51,13 @@ double largestEigenvalue(const Laplacian& laplacian) {
     Spectra::SparseSymMatProd<double> op(A);
     const Index dimension = std::min<Index>(A.rows(), 30);
     Spectra::SymEigsSolver<Spectra::SparseSymMatProd<double>> solver(op, 1, dimension);
-    solver.init();
-    solver.compute(Spectra::SortRule::LargestAlge, kMostRestarts, 1e-8);
-    if (solver.info() != Spectra::CompInfo::Successful)
-        throw SolverFailure(ErrorCode::SingularMatrix,
-                            "the largest eigenvalue could not be computed");
-    return solver.eigenvalues()[0];
+    try {
+        solver.init();
+        if (solver.compute(Spectra::SortRule::LargestAlge, kMostRestarts, 1e-8) == 1)
+            return solver.eigenvalues()[0];
+    } catch (const std::exception&) {  // Spectra's own, of a breakdown
+    }
+    throw SolverFailure(ErrorCode::SingularMatrix, "the largest eigenvalue could not be computed");
 }
 
 Eigen::MatrixXd applyInBasis(const HarmonicBasis& basis, const Eigen::VectorXd& D,

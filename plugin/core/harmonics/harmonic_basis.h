@@ -31,6 +31,7 @@ HarmonicBasis denseBasis(const Laplacian& laplacian, const ConstantModes& consta
 bool isDenseQuicker(Index n);
 
 /// Largest eigenvalue of W phi = lambda D phi, to about 1e-8 relative.
+/// @throws SolverFailure  when it does not converge.
 double largestEigenvalue(const Laplacian& laplacian);
 
 /// Y = Phi F(Lambda^1/2) Phi^T D X + residualGain (X - Phi Phi^T D X)

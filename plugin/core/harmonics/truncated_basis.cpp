@@ -4,6 +4,8 @@
 #include <atomic>
 #include <cmath>
 #include <cstddef>
+#include <iomanip>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -26,6 +28,9 @@ constexpr Index kWidths[] = {12, 17, 23, 31};
 /// Neighbouring eigenvalues nearer than this part of the mean spacing lambda_k / k (Weyl's law)
 /// belong to one cluster: equal ones by symmetry, told apart by the mesh or by round-off only.
 constexpr double kClusterSpacing = 0.1;
+
+/// Relative residual beyond which a vector is none of the harmonics.
+constexpr double kUselessResidual = 1e-2;
 
 constexpr const char* kStage = "computing the harmonics";
 
@@ -103,6 +108,7 @@ HarmonicBasis lowestPairs(const Laplacian& laplacian, const ConstantModes& const
 }
 
 /// |D^-1/2 (W phi - lambda D phi)| / lambda of every harmonic but the constant ones.
+/// @throws SolverFailure  when one is useless.
 Eigen::VectorXd relativeResiduals(const Laplacian& laplacian, Index constants,
                                   const HarmonicBasis& basis, const Progress& progress) {
     const auto& [W, D] = laplacian;
@@ -116,8 +122,15 @@ Eigen::VectorXd relativeResiduals(const Laplacian& laplacian, Index constants,
             residuals[i] = r.cwiseQuotient(D.cwiseSqrt()).norm() / basis.lambda[i];
         },
         progress, "checking the harmonics");
-    if (!residuals.allFinite())
-        throw SolverFailure(ErrorCode::SingularMatrix, "the harmonics are not finite numbers");
+    Index worst = 0;
+    const double largest = residuals.maxCoeff<Eigen::PropagateNaN>(&worst);
+    if (!(largest <= kUselessResidual)) {
+        std::ostringstream text;
+        text << "round-off leaves nothing of harmonic " << worst << ", whose relative residual is "
+             << std::setprecision(2) << largest
+             << ": triangles are needles, or parts of the mesh are far away";
+        throw SolverFailure(ErrorCode::SingularMatrix, text.str());
+    }
     return residuals;
 }
 

@@ -17,7 +17,7 @@ namespace spectral {
 /// The cut is never inside a cluster of equal eigenvalues: a few pairs more than k are taken where
 /// lambda_k and lambda_k+1 are equal or nearly so. The certificate: as many pairs as the inertia of
 /// W - sigma D counts below the cut (Sylvester's law of inertia), or an error; residuals as
-/// reported (1e-9 is usual, more where triangles have collapsed).
+/// reported (1e-9 is usual, more where triangles have collapsed; from 1e-2 on an error).
 ///
 /// @param k         constants.count() < k < n.
 /// @param ldlt      shares its symbolic analysis and counts the work; its factor stays.

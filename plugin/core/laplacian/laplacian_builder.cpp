@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "core/mesh/measures.h"
 #include "core/mesh/mesh_check.h"
 #include "core/support/errors.h"
 
@@ -29,13 +30,18 @@ const Laplacian& LaplacianBuilder::input() {
 
 const Laplacian& LaplacianBuilder::operator()(const Vertices& X) {
     if (update_ == BasisUpdate::None) return input();
+    current_.D = mass(X);
+    // Relative to the input; a surface that has shrunk to a line has edges, but no area.
+    constexpr double kNothing = 1e-10;
+    if (current_.D.sum() <= kNothing * kNothing * inputMass_.sum() &&
+        meanEdgeLength(X, surface_.F) <= kNothing * meanEdgeLength(surface_.X, surface_.F))
+        throw SolverFailure(ErrorCode::ShrinksToNothing, "the whole surface shrinks to nothing");
     if (update_ == BasisUpdate::Full) {
         current_.W = stiffness(X);
         if (conformalShare_ > 0.0)
             current_.W =
                 ((1.0 - conformalShare_) * current_.W + conformalShare_ * inputStiffness_).eval();
     }
-    current_.D = mass(X);
     return current_;
 }
 

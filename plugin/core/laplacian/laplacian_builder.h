@@ -40,6 +40,7 @@ class LaplacianBuilder {
     const Laplacian& input();
 
     /// The Laplacian of the shape X (n x 3), updated as BasisUpdate says; valid likewise.
+    /// @throws SolverFailure  when nothing of the shape is left.
     const Laplacian& operator()(const Vertices& X);
 
     /// D of the input.

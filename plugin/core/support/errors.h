@@ -16,7 +16,9 @@ enum class ErrorCode {
     DegenerateTriangles,  ///< Some triangles have no area, or too little for their cotangents.
     ShapeCollapsed,       ///< The same, in the course of the filter.
     NoDelaunay,           ///< The intrinsic Delaunay flips did not terminate.
-    SingularMatrix,       ///< W - sigma D is singular, or not definite where it must be.
+    SingularMatrix,       ///< W - sigma D is singular, not definite where it must be, or so
+                          ///< ill-conditioned that a result would be useless.
+    ShrinksToNothing,     ///< The filter leaves nothing of the surface.
     TooManyVertices,      ///< The sparse factor has more entries than an int can count.
     BasisTooLarge,        ///< limit(): the largest basis size possible.
     BasisTooSmall,        ///< limit(): the least basis size that makes sense.

@@ -91,6 +91,16 @@ std::string textOf(const GeometrySpectrum& spectrum) {
     return text.str();
 }
 
+std::vector<std::string> warningsOf(const GeometrySpectrum& spectrum) {
+    constexpr double kAccurate = 0.01;
+    if (spectrum.mismatch <= kAccurate) return {};
+    std::ostringstream text;
+    text << std::setprecision(2) << "the energies of details finer than the harmonics are off by "
+         << 100.0 * spectrum.mismatch
+         << " % in sum: triangles are needles, or parts of the mesh are far away";
+    return {text.str()};
+}
+
 FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
                     const spectral::Progress& progress) {
     const MeshMatrices input = toMatrices(mesh.cm);
@@ -122,7 +132,8 @@ FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
              {"feature_size_90", spectrum.featureSize90},
              {"feature_size_99", spectrum.featureSize99},
              {"mismatch", spectrum.mismatch}},
-            textOf(spectrum)};
+            textOf(spectrum),
+            warningsOf(spectrum)};
 }
 
 }  // namespace

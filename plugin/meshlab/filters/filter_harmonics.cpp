@@ -7,6 +7,7 @@
 
 #include "core/analysis/manifold_harmonics.h"
 #include "core/support/errors.h"
+#include "meshlab/error_messages.h"
 #include "meshlab/filters/common_parameters.h"
 #include "meshlab/filters/vertex_colors.h"
 #include "meshlab/host_workarounds/steady_progress.h"
@@ -108,7 +109,8 @@ FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
     return {{{"eigenvalues", QVariant::fromValue(harmonics.lambda)},
              {"residuals", QVariant::fromValue(harmonics.residuals)},
              {"inertia_count", harmonics.inertiaCount}},
-            textOf(harmonics, mode)};
+            textOf(harmonics, mode),
+            residualWarnings(harmonics.residuals)};
 }
 
 }  // namespace

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <iomanip>
 #include <sstream>
+#include <utility>
 
 #include "core/filter/automatic_steps.h"
 #include "core/support/types.h"
+#include "meshlab/error_messages.h"
 
 namespace {
 
@@ -122,6 +124,8 @@ std::vector<std::string> warningsOf(const spectral::FilterOptions& options,
         warnings.push_back(text.str());
     }
     if (!result.cutoffReached) warnings.push_back(cutoffWarning(result, lastFrequency(result)));
+    for (std::string& warning : residualWarnings(result.residuals))
+        warnings.push_back(std::move(warning));
     return warnings;
 }
 
@@ -147,7 +151,5 @@ std::string reportText(const spectral::FilterOptions& options, const spectral::F
              << lastFrequency(result) << ", computed " << result.computedBases << " times";
     else
         text << ", estimated relative error " << result.errorEstimate;
-    for (const std::string& warning : warningsOf(options, result))
-        text << "\n  WARNING: " << warning;
     return text.str();
 }

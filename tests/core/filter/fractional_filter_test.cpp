@@ -406,7 +406,7 @@ TEST(FractionalFilter, SaysInWhichStepThinPartsCollapsed) {
     Mesh mesh = testing::icosphere(4);
     mesh.V.col(0) *= 60.0;
     FilterOptions options;
-    options.featureSize = 400.0;
+    options.featureSize = 300.0;
     options.laplacian = LaplacianKind::Cotangent;
     options.basisUpdate = BasisUpdate::Full;
     options.steps = 60;
@@ -418,6 +418,24 @@ TEST(FractionalFilter, SaysInWhichStepThinPartsCollapsed) {
         EXPECT_NE(text.find("step "), std::string::npos) << text;
         EXPECT_EQ(failure.code(), ErrorCode::ShapeCollapsed);
     }
+}
+
+TEST(FractionalFilter, SaysThatAFeatureSizeBeyondTheShapeLeavesNothing) {
+    const Mesh mesh = testing::withNoise(testing::icosphere(3), 0.03, 5);
+    FilterOptions options;
+    options.tolerance = 1e-3;
+    for (const BasisUpdate update : {BasisUpdate::Conformal, BasisUpdate::Full})
+        for (const double size : {1e1, 1e3, 1e9}) {
+            options.featureSize = size;
+            options.basisUpdate = update;
+            try {
+                fractionalFilter(mesh.V, mesh.F, options);
+                ADD_FAILURE() << "feature size " << size;
+            } catch (const SolverFailure& failure) {
+                EXPECT_EQ(failure.code(), ErrorCode::ShrinksToNothing)
+                    << failure.what() << ", feature size " << size;
+            }
+        }
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/filter/transfer_function.h"
 #include "core/harmonics/truncated_basis.h"
@@ -197,6 +198,16 @@ TEST(ApplyInBasis, ResidualGainActsOnWhatIsBeyondTheBasis) {
     const Vertices expected =
         testing::filteredDense(A, dense, [cut](double omega) { return omega < cut ? 1.0 : 0.25; });
     EXPECT_LT((Y - expected).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(LargestEigenvalue, OfAnOperatorThatOverflowsIsAnErrorOfOurOwn) {
+    const Operator A(testing::blob());
+    for (const double factor : {1e200, 1e308, std::numeric_limits<double>::quiet_NaN()}) {
+        Laplacian huge = A.laplacian;
+        huge.W *= factor;
+        huge.D *= 1e-200;
+        EXPECT_THROW(largestEigenvalue(huge), SolverFailure) << factor;
+    }
 }
 
 }  // namespace

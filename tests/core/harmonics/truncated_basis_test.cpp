@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/analysis/manifold_harmonics.h"
 #include "core/filter/fractional_filter.h"
 #include "core/support/errors.h"
 #include "support/evaluation.h"
@@ -118,6 +119,21 @@ TEST(TruncatedSteps, ComputeTheBasisOfEveryShape) {
     EXPECT_EQ(result.computedBases, 3);
     EXPECT_EQ(result.inertiaCount, result.eigenvalues.size());
     EXPECT_LT(result.residuals.maxCoeff(), 1e-7);
+}
+
+TEST(TruncatedBasis, RefusesHarmonicsOfWhichRoundOffLeavesNothing) {
+    for (const int levels : {2, 3}) {  // by the dense solver, and in intervals
+        Mesh mesh = testing::withNoise(testing::icosphere(levels), 0.03, 4);
+        mesh.V.row(7) *= 1e7;
+        HarmonicsOptions options;
+        options.basisSize = 20;
+        try {
+            manifoldHarmonics(mesh.V, mesh.F, options);
+            ADD_FAILURE() << levels;
+        } catch (const SolverFailure& failure) {
+            EXPECT_EQ(failure.code(), ErrorCode::SingularMatrix) << failure.what();
+        }
+    }
 }
 
 }  // namespace
