@@ -59,6 +59,19 @@ def test_a_file_that_is_given_twice_is_taken_once(tmp_path: Path) -> None:
     assert names(find_inputs(arguments), tmp_path) == ["a.ply"]
 
 
+@pytest.mark.parametrize("recursive", [False, True])
+def test_a_loop_of_links_is_an_input_that_will_fail_alone(recursive: bool, tmp_path: Path) -> None:
+    files(tmp_path, "a.ply", "deep/b.ply")
+    (tmp_path / "self.ply").symlink_to("self.ply")
+    (tmp_path / "there.ply").symlink_to("back")
+    (tmp_path / "back").symlink_to("there.ply")
+    (tmp_path / "deep" / "up").symlink_to("..")
+    expected = ["a.ply", *["deep/b.ply"] * recursive, "self.ply", "there.ply"]
+    for argument in (tmp_path, tmp_path / "*"):
+        found = find_inputs([str(argument)], recursive, leave_out=[tmp_path / "self.ply" / "out"])
+        assert [name for name in names(found, tmp_path) if name in expected] == expected
+
+
 def test_a_relative_path_is_one_from_the_working_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -114,6 +114,31 @@ def test_a_record_holds_no_numbers_that_json_has_not() -> None:
     assert record["report"] == {"a": None, "b": [1.0, None], "c": {"d": None}}
 
 
+FOREIGN_LINES = {
+    "run without a begin": '{"kind": "run", "files": 1}',
+    "begin that is no time": '{"kind": "run", "begun": "today"}',
+    "begin without end": '{"kind": "run", "begun": NaN}',
+    "side files in a list": '{"kind": "file", "name": "a.ply", "side_files": []}',
+    "no side files": '{"kind": "file", "name": "a.ply", "side_files": null}',
+    "name that is none": '{"kind": "file", "name": ["a.ply"]}',
+    "name with a zero byte": '{"kind": "file", "name": "a\\u0000.ply"}',
+    "name that no file can have": '{"kind": "file", "name": "\\ud800.ply"}',
+    "warnings as a number": '{"kind": "file", "warnings": 3}',
+    "report as a list": '{"kind": "file", "report": [1]}',
+    "deep nesting": '{"kind": "file", "x": ' + 10_000 * "[" + 10_000 * "]" + "}",
+}
+
+
+@pytest.mark.parametrize("case", FOREIGN_LINES)
+def test_a_line_that_no_batch_writes_is_named_with_the_file(case: str, tmp_path: Path) -> None:
+    path = tmp_path / "report.jsonl"
+    path.write_text('{"kind": "run", "begun": 3.0}\n' + FOREIGN_LINES[case] + "\n")
+    with pytest.raises(BatchError, match="line 2 of the report") as error:
+        list(read_report(path))
+    assert str(path) in str(error.value)
+    assert "--report" in str(error.value)
+
+
 @pytest.fixture
 def done(tmp_path: Path) -> tuple[Job, dict[str, Any]]:
     """A job, and the record that proves it done."""

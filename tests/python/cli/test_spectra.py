@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 import shutil
 from pathlib import Path
 
@@ -84,3 +85,17 @@ def test_resume_measures_only_what_the_report_does_not_hold(tmp_path: Path) -> N
     assert len({line.partition(",")[0] for line in after.splitlines()}) == 1 + 3
     other = command(*spectra, "--resume", "--boundary", "fixed", "--basis-size", 21)
     assert "3 measured" in other.stdout
+
+
+def test_a_recorded_spectrum_that_cannot_be_written_is_measured_again(tmp_path: Path) -> None:
+    table, report = tmp_path / "spectra.csv", tmp_path / "spectra_report.jsonl"
+    spectra = ["spectra", *make_meshes(tmp_path, 2), "--output", table, "--workers", 1]
+    assert command(*spectra).returncode == 0
+    before = table.read_text()
+    run, first, second, *_ = map(json.loads, report.read_text().splitlines())
+    first["report"] = {"diagonal": 0}
+    second["report"]["octave_amplitudes"] = None
+    report.write_text("".join(json.dumps(line) + "\n" for line in (run, first, second)))
+    done = command(*spectra, "--resume")
+    assert "2 measured, 0 failed" in done.stdout, done.stderr
+    assert table.read_text() == before

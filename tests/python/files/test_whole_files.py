@@ -75,6 +75,14 @@ def test_an_output_that_has_appeared_is_kept_unless_it_is_the_same(
     assert list(tmp_path.iterdir()) == [target]
 
 
+def test_a_loop_of_links_is_not_replaced(tmp_path: Path) -> None:
+    loop = tmp_path / "loop.ply"
+    loop.symlink_to("loop.ply")
+    with pytest.raises(MeshFileError, match="loop"), writing_whole(loop):
+        pass
+    assert list(tmp_path.iterdir()) == [loop]
+
+
 @pytest.mark.parametrize("overwrite", [True, False])
 def test_a_link_is_written_through_side_files_included(overwrite: bool, tmp_path: Path) -> None:
     link, real = tmp_path / "link.obj", tmp_path / "far" / "real.obj"

@@ -114,8 +114,8 @@ def test_a_point_cloud_is_refused_and_left_as_it_was(decimated: Decimated) -> No
     assert_same(before, snapshot(mesh_set.current_mesh()))
 
 
-@pytest.mark.parametrize("feature_size", [0.0, -1.0, float("nan"), float("inf")])
-def test_another_feature_size_is_refused_by_name(feature_size: float) -> None:
+@pytest.mark.parametrize("feature_size", [0.0, -1.0, float("nan"), float("inf"), 1e39, "5%"])
+def test_another_feature_size_is_refused_by_name(feature_size: Any) -> None:
     with pytest.raises(OptionError, match="feature_size"):
         measure_artefacts(*TRIANGLE, feature_size)
 

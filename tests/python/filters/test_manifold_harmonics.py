@@ -13,6 +13,7 @@ import scipy.sparse
 import scipy.sparse.linalg
 import spectral_reference as reference
 from helpers import assert_same, lower_part, mesh_set_of, refusal, snapshot
+from meshlab_spectral import OptionError, manifold_harmonics
 from numpy.typing import NDArray
 
 HARMONICS = "compute_scalar_manifold_harmonic_per_vertex"
@@ -216,6 +217,12 @@ def test_a_refused_parameter_is_named_and_leaves_the_mesh_as_it_was(
     assert named in refusal(mesh_set, HARMONICS, store_basis=True, **parameters)
     assert_same(before, snapshot(mesh))
     assert not has_attribute(mesh, "harmonic_0")
+
+
+@pytest.mark.parametrize("basis_size", [0, 2.5, True, "ten", 2**31])
+def test_a_basis_size_that_is_no_number_of_harmonics_is_refused(basis_size: Any) -> None:
+    with pytest.raises(OptionError, match="basis_size"):
+        manifold_harmonics([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], basis_size)
 
 
 def test_a_point_cloud_is_refused_and_left_as_it_was(decimated: Decimated) -> None:

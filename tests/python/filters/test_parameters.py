@@ -86,6 +86,8 @@ OUT_OF_RANGE = [
     ("power", 1.5, {}),
     ("conformal_share", 1.5, {}),
     ("conformal_share", float("nan"), {}),
+    ("power", 1e-60, {}),
+    ("pass_gain", 1e39, {}),
     ("steps", -3, {}),
     ("basis_size", 0, {"spectrum": "truncated"}),
 ]

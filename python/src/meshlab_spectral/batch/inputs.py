@@ -12,6 +12,7 @@ from pathlib import Path
 from meshlab_spectral.batch.storage import file_system, is_url, located
 from meshlab_spectral.errors import InputError
 from meshlab_spectral.files.formats import SEARCHED, ending_of
+from meshlab_spectral.files.whole_files import resolved
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,7 @@ def find_inputs(
     InputError
         When an argument matches no file.
     """
-    outputs = {path.resolve() for path in leave_out}
+    outputs = {resolved(path) for path in leave_out}
     found: dict[str, Input] = {}
     for argument in arguments:
         of_this = list(_from_argument(argument, recursive, outputs))
@@ -84,7 +85,7 @@ def _from_argument(argument: str, recursive: bool, outputs: set[Path]) -> Iterat
         if not matches:
             raise InputError(f"{argument} matches no file: check the pattern and the folder")
         for match in matches:
-            path = Path(match).resolve()
+            path = resolved(Path(match))
             if outputs.isdisjoint([path, *path.parents]):
                 yield from _from_path(Path(match), recursive, outputs)
     else:
@@ -108,7 +109,7 @@ def _search(folder: Path, relative: str, recursive: bool, outputs: set[Path]) ->
         raise InputError(f"{folder} cannot be searched ({error.strerror})") from error
     for entry in entries:
         path = Path(entry.path)
-        if entry.name.startswith(".") or path.resolve() in outputs:
+        if entry.name.startswith(".") or resolved(path) in outputs:
             continue
         if entry.is_dir(follow_symlinks=False) and recursive:
             within = list(_search(path, posixpath.join(relative, entry.name), recursive, outputs))

@@ -10,7 +10,7 @@ import fcntl
 import io
 import json
 import os
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -20,6 +20,7 @@ from meshlab_spectral.errors import BatchError, InputError
 DEFAULT_NAME = "batch_report.jsonl"
 
 _BEGIN = b'{"kind": '  # start of every line
+_END_OF_TIME = 1e12  # seconds since 1970; NaN and infinity are beyond it, too
 
 
 def read_report(path: Path) -> Iterator[dict[str, Any]]:
@@ -30,12 +31,19 @@ def read_report(path: Path) -> Iterator[dict[str, Any]]:
     Raises
     ------
     BatchError
-        When the file exists but cannot be read.
+        When the file exists but cannot be read, or has a line that no batch has written.
     """
     try:
         with path.open("rb") as file:
-            for line in file:
-                record = _record(line)
+            for number, line in enumerate(file, start=1):
+                try:
+                    record = _record(line)
+                except (RecursionError, _ForeignLineError) as error:
+                    reason = str(error) if isinstance(error, _ForeignLineError) else "too nested"
+                    raise BatchError(
+                        f"line {number} of the report {path} was not written by a batch "
+                        f"({reason}): delete that line, or choose another report with --report"
+                    ) from error
                 if record is not None:
                     yield record
     except FileNotFoundError:
@@ -136,9 +144,48 @@ def check_report(path: Path) -> None:
         )
 
 
+class _ForeignLineError(Exception):
+    """A whole line with values that a batch does not write; says which."""
+
+
 def _record(line: bytes) -> dict[str, Any] | None:
     try:
         record = json.loads(line.decode("utf-8", errors="surrogateescape"))
     except ValueError:
         return None
-    return record if isinstance(record, dict) else None
+    if not isinstance(record, dict):
+        return None
+    kind = record.get("kind")
+    if kind == "run" and "begun" not in record:
+        raise _ForeignLineError("begun is missing")
+    for name, fits in _FITTING.items():
+        if kind in ("run", "file") and name in record and not fits(record[name]):
+            raise _ForeignLineError(f"{name} has a wrong value")
+    return record
+
+
+def _is_time(value: Any) -> bool:
+    return isinstance(value, int | float) and 0 <= value < _END_OF_TIME
+
+
+def _is_name(value: Any) -> bool:
+    """Whether a value can be part of a path."""
+    try:
+        return isinstance(value, str) and b"\0" not in os.fsencode(value)
+    except UnicodeEncodeError:
+        return False
+
+
+def _is_digests(value: Any) -> bool:
+    return isinstance(value, dict) and all(map(_is_name, value))
+
+
+# Values that other modules rely on.
+_FITTING: dict[str, Callable[[Any], bool]] = {
+    "begun": _is_time,
+    "name": _is_name,
+    "outcome": lambda value: isinstance(value, str),
+    "side_files": _is_digests,
+    "warnings": lambda value: isinstance(value, list),
+    "report": lambda value: value is None or isinstance(value, dict),
+}

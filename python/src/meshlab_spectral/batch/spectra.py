@@ -77,7 +77,8 @@ def plan_spectra(
     refuse_inputs([str(table)], places)
     work = {"task": "spectrum", "parameters": parameters}
     jobs = [Job(place, None, place, work, parameters, timeout) for place in places]
-    done = proved_done(jobs, done_records(read_report(report)), versions()) if resume else {}
+    proved = proved_done(jobs, done_records(read_report(report)), versions()) if resume else {}
+    done = {job: result for job, result in proved.items() if _is_whole(result)}
     return Batch([job for job in jobs if job not in done], list(done.values()), report)
 
 
@@ -94,6 +95,15 @@ def write_table(path: Path, results: Iterable[FileResult]) -> None:
         for result in sorted(results, key=lambda result: result.input):
             if result.report is not None:
                 table.writerows(_rows(result.input, GeometrySpectrum.from_report(result.report)))
+
+
+def _is_whole(result: FileResult) -> bool:
+    """Whether a recorded spectrum can be written to the table; else it is measured again."""
+    try:
+        _rows(result.input, GeometrySpectrum.from_report(result.report or {}))
+    except (ArithmeticError, LookupError, TypeError, ValueError):
+        return False
+    return True
 
 
 def _rows(mesh: str, spectrum: GeometrySpectrum) -> list[list[Any]]:

@@ -15,7 +15,13 @@ from urllib.parse import unquote, urlsplit
 
 from meshlab_spectral.errors import InputError, MeshFileError
 from meshlab_spectral.files.meshes import check_source
-from meshlab_spectral.files.whole_files import remove_leftovers, side_files, why_kept, writing_whole
+from meshlab_spectral.files.whole_files import (
+    remove_leftovers,
+    resolved,
+    side_files,
+    why_kept,
+    writing_whole,
+)
 
 _SCHEME = re.compile(r"[a-z][a-z0-9+.-]*(::|://)", re.IGNORECASE)
 _PART = 2**20  # bytes per read
@@ -156,7 +162,7 @@ def sibling(place: str, name: str) -> str:
     """Resolve a name relative to the folder of another file."""
     if is_url(place):
         return f"{place.rpartition('/')[0]}/{name}"
-    return str(Path(place).resolve().parent / name)  # follow symbolic links, as in writing
+    return str(resolved(Path(place)).parent / name)  # follow symbolic links, as in writing
 
 
 def tidy(folder: str) -> None:

@@ -23,7 +23,7 @@ from meshlab_spectral.cli.many_files import (
     summary_of,
 )
 from meshlab_spectral.cli.messages import EXIT_FAILED, errors_reported
-from meshlab_spectral.files.whole_files import remove_leftovers, writing_whole
+from meshlab_spectral.files.whole_files import remove_leftovers, resolved, writing_whole
 from meshlab_spectral.filters.options import Boundary, LaplacianKind
 from meshlab_spectral.filters.spectrum import DEFAULT_BASIS_SIZE
 
@@ -99,7 +99,7 @@ def spectra_command(
                 report=report,
                 timeout=timeout,
             )
-        remove_leftovers(output.resolve().parent, output.name)
+        remove_leftovers(resolved(output).parent, output.name)
         results: list[FileResult] = []
         with writing_whole(output) as scratch:
             counts = run_shown(batch, workers, memory_limit, scheduler, results.append)

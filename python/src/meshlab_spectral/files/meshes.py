@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from meshlab_spectral.errors import FormatError, MeshFileError
 from meshlab_spectral.files.script import apply_script
-from meshlab_spectral.files.whole_files import USUAL_FORMATS, writing_whole
+from meshlab_spectral.files.whole_files import USUAL_FORMATS, resolved, writing_whole
 from meshlab_spectral.filters.calling import call_filter, plain_report, reason_of
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.plugin.loading import FILTER_NAME, load
@@ -226,6 +226,6 @@ def _textures_to_be_saved(mesh_set: Any, scratch: Path, source: Path) -> bool:
     its own folder, which would be written outside the scratch folder, over whatever is there.
     """
     names = [Path(name) for name in mesh_set.current_mesh().textures()]
-    beside_input = scratch.parent.parent.samefile(source.resolve().parent)
+    beside_input = scratch.parent.parent.samefile(resolved(source).parent)
     within = all(not name.is_absolute() and ".." not in name.parts for name in names)
     return within and not beside_input

@@ -74,6 +74,10 @@ def _table(path: Path) -> dict[str, Any]:
         raise InputError(f"the recipe {path} cannot be read ({error.strerror})") from error
     except ValueError as error:  # invalid TOML or UTF-8
         raise OptionError(f"the recipe {path} is not a TOML file: {error}") from error
+    except RecursionError as error:
+        raise OptionError(
+            f"the recipe {path} is nested too deeply: all options belong in the table [{_TABLE}]"
+        ) from error
     unknown = content.keys() - {_TABLE}
     if unknown or not isinstance(content.get(_TABLE), dict):
         wrong = f"has {', '.join(sorted(unknown))} outside it" if unknown else "has no such table"

@@ -49,7 +49,7 @@ def writing_whole(target: Path, overwrite: bool = True) -> Iterator[Path]:
         When the folder of `target` is missing or not writable (before the scratch file is yielded),
         when the scratch file has not been written, or when another file is in the way.
     """
-    place = target.resolve()  # follow symbolic links, as cp does
+    place = resolved(target)  # follow symbolic links, as cp does
     with _scratch_folder(target, place) as folder:
         scratch = folder / target.name
         yield scratch
@@ -59,9 +59,14 @@ def writing_whole(target: Path, overwrite: bool = True) -> Iterator[Path]:
             raise MeshFileError(f"{target} cannot be written ({error.strerror})") from error
 
 
+def resolved(path: Path) -> Path:
+    """Follow symbolic links, and stop at a loop of them, where Path.resolve raises an error."""
+    return Path(os.path.realpath(path))
+
+
 def check_target(target: Path) -> None:
     """Raise MeshFileError if `writing_whole` would, before any work is wasted."""
-    with _scratch_folder(target, target.resolve()):
+    with _scratch_folder(target, resolved(target)):
         pass
 
 
@@ -93,8 +98,11 @@ def remove_leftovers(folder: Path, target_name: str | None = None) -> None:
 def _scratch_folder(target: Path, place: Path) -> Iterator[Path]:
     """Make a hidden folder next to `place`, which `target` resolves to; finally remove it."""
     folder = place.parent
-    if place.exists() and not place.is_file():
-        raise MeshFileError(f"{target} is a folder or a device, not a file: name a file to write")
+    if os.path.lexists(place) and not place.is_file():
+        raise MeshFileError(
+            f"{target} is a folder or a device, or a loop of links, not a file: name a file to "
+            "write"
+        )
     if not folder.is_dir():
         raise MeshFileError(f"the output folder {target.parent} does not exist: create it first")
     with contextlib.ExitStack() as stack:

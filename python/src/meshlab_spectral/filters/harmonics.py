@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.filters.arrays import lumped_areas, mesh_arrays
 from meshlab_spectral.filters.calling import call_filter
-from meshlab_spectral.filters.options import Boundary, LaplacianKind
+from meshlab_spectral.filters.options import Boundary, LaplacianKind, checked_basis_size
 from meshlab_spectral.plugin.loading import load
 
 DEFAULT_BASIS_SIZE = 100
@@ -79,7 +79,7 @@ def manifold_harmonics(
     ValueError
         When an array has the wrong shape or type, or an index is out of range.
     OptionError
-        When `laplacian` or `boundary` is unknown.
+        When `laplacian` or `boundary` is unknown, or `basis_size` is not a positive integer.
     FilterError
         When the mesh has no faces, no area, non-finite coordinates, or too few vertices for
         `basis_size`.
@@ -103,6 +103,7 @@ def compute(
     verbose: bool = False,
 ) -> Harmonics:
     """Compute the harmonics of validated arrays. With `verbose`, MeshLab writes its log."""
+    basis_size = checked_basis_size(basis_size)
     for name, value, kind in (
         ("laplacian", laplacian, LaplacianKind),
         ("boundary", boundary, Boundary),

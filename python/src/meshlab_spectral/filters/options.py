@@ -7,8 +7,8 @@ from it. A test compares its names, choices and defaults with those of the plugi
 from __future__ import annotations
 
 import difflib
-import math
 from dataclasses import dataclass, field, fields
+from numbers import Integral, Real
 from typing import Any, Literal, get_args, get_type_hints
 
 from meshlab_spectral.errors import OptionError
@@ -19,6 +19,43 @@ BasisUpdate = Literal["full", "conformal", "none"]
 Spectrum = Literal["full", "truncated"]
 LaplacianKind = Literal["intrinsic delaunay", "cotangent"]
 Boundary = Literal["free", "fixed"]
+
+
+# What pymeshlab can pass on: 32-bit integers, and floats of single precision.
+_LARGEST_INTEGER = 2**31 - 1
+_SMALLEST_FLOAT, _LARGEST_FLOAT = 2.0**-126, (2 - 2.0**-23) * 2.0**127
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Range of a number: `low <= x <= high`, or `low < x <= high` if `low_open`."""
+
+    low: float
+    high: float = _LARGEST_FLOAT
+    low_open: bool = False
+
+    def contain(self, value: Any) -> bool:
+        """Whether a number is in range; never true for NaN and infinities."""
+        # Numbers closer to zero reach the plugin as zero.
+        above = value >= self.low + _SMALLEST_FLOAT if self.low_open else value >= self.low
+        return bool(above and value <= self.high)
+
+    def __str__(self) -> str:
+        high = str(self.high) if isinstance(self.high, int) else f"{self.high:.2g}"
+        if not self.low_open:
+            return f"from {self.low:g} to {high}"
+        return f"above {self.low:g}, at most {high}"
+
+
+_LENGTHS = Limits(0, low_open=True)
+
+
+def checked_basis_size(value: Any) -> int:
+    """Return a basis size as an integer; raise OptionError unless it is one from 1 on."""
+    limits = Limits(1, _LARGEST_INTEGER)
+    if not isinstance(value, Integral) or isinstance(value, bool) or not limits.contain(value):
+        raise OptionError(f"basis_size = {value}: must be an integer {limits}")
+    return int(value)
 
 
 @dataclass(frozen=True)
@@ -42,9 +79,9 @@ class Length:
     def __post_init__(self) -> None:
         if self.automatic:
             return
-        if not (math.isfinite(self.value) and self.value > 0):
+        if not isinstance(self.value, Real) or not _LENGTHS.contain(self.value):
             raise OptionError(
-                f"{self}: must be above zero, a percentage of the bounding box diagonal such as "
+                f"{self}: must be {_LENGTHS}, a percentage of the bounding box diagonal such as "
                 "5%, or a length such as 0.02"
             )
         if self.relative and self.value > 100:
@@ -75,31 +112,17 @@ class Length:
         return cls(value, relative)
 
     def __str__(self) -> str:
-        return "auto" if self.automatic else f"{self.value:.12g}{'%' if self.relative else ''}"
-
-
-@dataclass(frozen=True)
-class Limits:
-    """Range of a number: `low <= x <= high`, or `low < x <= high` if `low_open`."""
-
-    low: float
-    high: float = math.inf
-    low_open: bool = False
-
-    def contain(self, value: float) -> bool:
-        """Whether a value is in range; never true for NaN and infinities."""
-        above = value > self.low if self.low_open else value >= self.low
-        return math.isfinite(value) and above and value <= self.high
-
-    def __str__(self) -> str:
-        if math.isfinite(self.high) and not self.low_open:
-            return f"from {self.low:g} to {self.high:g}"
-        low = f"{'above' if self.low_open else 'at least'} {self.low:g}"
-        return f"{low}, at most {self.high:g}" if math.isfinite(self.high) else low
+        if self.automatic:
+            return "auto"
+        number = f"{self.value:.12g}" if isinstance(self.value, Real) else repr(self.value)
+        return number + "%" * self.relative
 
 
 def _option(default: Any, explanation: str, limits: Limits | None = None) -> Any:
     return field(default=default, metadata={"help": explanation, "limits": limits})
+
+
+_NAMED = {int: "an integer", float: "a number", bool: "true or false", Length: "a length"}
 
 
 def _is_of(value: Any, wanted: type) -> bool:
@@ -160,7 +183,7 @@ class FilterOptions:
         0,
         "Apply the filter in this many weak steps, so that thin parts survive: 0 takes as many as "
         "--tolerance requires, 10 is the paper's scheme, 1 the classical one-shot filter.",
-        Limits(0),
+        Limits(0, _LARGEST_INTEGER),
     )
     tolerance: Length = _option(
         Length(0.05, relative=True),
@@ -182,7 +205,7 @@ class FilterOptions:
         "full", "full filters every detail; truncated only the largest ones, as older methods do."
     )
     basis_size: int = _option(
-        300, "Number of harmonics in a truncated spectrum, e.g. 300.", Limits(1)
+        300, "Number of harmonics in a truncated spectrum, e.g. 300.", Limits(1, _LARGEST_INTEGER)
     )
     reinject_residual: bool = _option(
         True, "Keep the details beyond a truncated spectrum instead of dropping them."
@@ -207,7 +230,7 @@ class FilterOptions:
                 raise OptionError(f"{option.name} = {value}: choose {', '.join(choices)}")
             wanted = types[option.name]
             if not choices and not _is_of(value, wanted):
-                raise OptionError(f"{option.name} = {value!r}: must be a {wanted.__name__}")
+                raise OptionError(f"{option.name} = {value!r}: must be {_NAMED[wanted]}")
             if isinstance(value, Length) and value.automatic and option.name != "feature_size":
                 raise OptionError(f"{option.name} = auto: only feature_size can be automatic")
             limits: Limits | None = option.metadata["limits"]

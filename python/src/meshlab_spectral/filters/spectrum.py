@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.filters.arrays import mesh_arrays
 from meshlab_spectral.filters.calling import call_filter
-from meshlab_spectral.filters.options import Boundary, LaplacianKind
+from meshlab_spectral.filters.options import Boundary, LaplacianKind, checked_basis_size
 from meshlab_spectral.plugin.loading import load
 
 FILTER_NAME = "get_geometry_spectrum"
@@ -191,8 +191,7 @@ def spectrum_parameters(basis_size: int, laplacian: str, boundary: str) -> dict[
     OptionError
         When an option has an invalid value.
     """
-    if isinstance(basis_size, bool) or not isinstance(basis_size, int) or basis_size < 1:
-        raise OptionError(f"basis_size = {basis_size}: must be an integer of at least 1")
+    basis_size = checked_basis_size(basis_size)
     for name, value, kind in (
         ("laplacian", laplacian, LaplacianKind),
         ("boundary", boundary, Boundary),

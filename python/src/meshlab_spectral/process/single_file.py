@@ -10,7 +10,7 @@ from typing import Any
 
 from meshlab_spectral.files.basis import check_basis_target
 from meshlab_spectral.files.meshes import check_source
-from meshlab_spectral.files.whole_files import remove_leftovers, writing_whole
+from meshlab_spectral.files.whole_files import remove_leftovers, resolved, writing_whole
 from meshlab_spectral.filters.options import Boundary, FilterOptions, LaplacianKind
 from meshlab_spectral.filters.spectrum import GeometrySpectrum, spectrum_parameters
 from meshlab_spectral.process.parent import MeshLabProcess, ProgressCallback
@@ -92,7 +92,7 @@ def _write_in_child(
     source: Path, target: Path, job: dict[str, Any], on_progress: ProgressCallback
 ) -> dict[str, Any]:
     check_source(source)
-    remove_leftovers(target.resolve().parent, target.name)
+    remove_leftovers(resolved(target).parent, target.name)
     with writing_whole(target) as scratch:
         job |= {"source": str(source.absolute()), "scratch": str(scratch.absolute())}
         return _run_in_child(job, on_progress)
