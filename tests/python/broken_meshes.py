@@ -40,7 +40,7 @@ def make_broken_meshes(folder: Path, whole: Path) -> dict[str, str]:
         "cut_off.ply": "damaged",
         "empty.ply": "damaged",
         "text.ply": "damaged",
-        "nan.ply": "empty",
+        "nan.ply": "not finite",
         "points.ply": "point cloud",
         "zero_area.ply": "area",
         "folder.ply": "is a folder",

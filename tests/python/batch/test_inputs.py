@@ -9,6 +9,7 @@ import fsspec
 import pytest
 from meshlab_spectral import InputError
 from meshlab_spectral.batch.inputs import Input, find_inputs
+from meshlab_spectral.batch.storage import is_url
 
 
 def files(folder: Path, *names: str) -> None:
@@ -121,6 +122,16 @@ def test_urls_are_found_as_files_are() -> None:
 def test_a_url_of_an_unknown_kind_is_refused() -> None:
     with pytest.raises(InputError, match="nokind"):
         find_inputs(["nokind://scans"])
+
+
+def test_a_file_with_colons_in_its_name_is_no_url(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    names_ = ["a::b.ply", "a:b.ply", "memory::c/d.ply"]
+    files(tmp_path, *names_)
+    monkeypatch.chdir(tmp_path)
+    assert names(find_inputs(names_), tmp_path) == names_
+    assert is_url("filecache::s3://bucket/a.ply")
 
 
 def test_a_file_url_is_a_path(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 from pathlib import Path
 
 import pytest
@@ -59,6 +60,21 @@ def test_a_basis_as_large_as_the_mesh_is_refused(cow: Path, existing: Path) -> N
 def test_a_missing_plugin_is_told_without_traceback(cow: Path, existing: Path) -> None:
     done = command("filter", cow, existing, MESHLAB_SPECTRAL_PLUGIN="/no/such/plugin.so")
     assert_fails(done, 1, "/no/such/plugin.so", "MESHLAB_SPECTRAL_PLUGIN")
+
+
+def test_names_that_are_not_utf_8_are_told(cow: Path, existing: Path, tmp_path: Path) -> None:
+    source = tmp_path / "caf\udce9.obj"
+    shutil.copy(cow, source)
+    folder = tmp_path / "d\udce9"
+    folder.mkdir()
+    for files in ((source, existing), (cow, folder / "out.ply"), (cow, tmp_path / "o\udce9.ply")):
+        assert_fails(command("filter", *files), 1, "\\udce9", "not UTF-8", "rename")
+    done = command("batch", source, cow, "--output", tmp_path / "smooth", "--workers", 1)
+    assert done.returncode == 1
+    assert "1 filtered, 1 failed" in done.stdout
+    assert "not UTF-8" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert not list(tmp_path.rglob("*.partial"))
 
 
 def test_debug_shows_where_an_error_arose(existing: Path, tmp_path: Path) -> None:

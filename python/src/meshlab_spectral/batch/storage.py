@@ -23,7 +23,8 @@ from meshlab_spectral.files.whole_files import (
     writing_whole,
 )
 
-_SCHEME = re.compile(r"[a-z][a-z0-9+.-]*(::|://)", re.IGNORECASE)
+# With schemes chained in front, such as filecache::s3://; a file may be called a::b.ply.
+_SCHEME = re.compile(r"([a-z][a-z0-9+.-]*::)*[a-z][a-z0-9+.-]*://", re.IGNORECASE)
 _PART = 2**20  # bytes per read
 _PARTIAL = re.compile(r"\..+\.[a-z0-9]{8}\.partial")
 

@@ -12,6 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshlab_spectral.errors import FormatError, MeshFileError
+from meshlab_spectral.files.claims import check_claims
+from meshlab_spectral.files.dropped import check_nothing_dropped
 from meshlab_spectral.files.script import apply_script
 from meshlab_spectral.files.whole_files import USUAL_FORMATS, resolved, writing_whole
 from meshlab_spectral.filters.calling import call_filter, plain_report, reason_of
@@ -105,6 +107,8 @@ def _process(
 
     load()
     on_stage("reading")
+    check_source(source)
+    _check_name(scratch, scratch.parent.parent / scratch.name)
     _check_writable_format(scratch)
     mesh_set = pymeshlab.MeshSet(verbose=verbose)
     _read(mesh_set, source)
@@ -138,6 +142,7 @@ def check_source(source: Path) -> None:
         raise MeshFileError(f"{source} is a folder: name a mesh file")
     if source.exists() and not source.is_file():
         raise MeshFileError(f"{source} is a device or a pipe, not a file: name a mesh file")
+    _check_name(source, source)
     try:
         with source.open("rb"):
             pass
@@ -145,6 +150,17 @@ def check_source(source: Path) -> None:
         raise MeshFileError(f"{source} does not exist: check the name and the folder") from None
     except OSError as error:
         raise MeshFileError(f"{source} cannot be read ({error.strerror})") from error
+
+
+def _check_name(path: Path, shown: Path) -> None:
+    """Raise MeshFileError, with the path `shown`, when pymeshlab cannot take a path."""
+    try:
+        str(path).encode()
+    except UnicodeEncodeError as error:
+        raise MeshFileError(
+            f"{shown} is in a folder or has a name that is not UTF-8, which MeshLab cannot open: "
+            "rename it"
+        ) from error
 
 
 def _check_writable_format(path: Path) -> None:
@@ -175,6 +191,7 @@ def _is_writable(ending: str) -> bool:
 def _read(mesh_set: Any, source: Path) -> None:
     import pymeshlab
 
+    check_claims(source)
     try:
         mesh_set.load_new_mesh(str(source))
     except pymeshlab.PyMeshLabException as error:
@@ -193,6 +210,8 @@ def _read(mesh_set: Any, source: Path) -> None:
             f"{source} holds {mesh_set.mesh_number()} meshes: merge them in MeshLab with 'Flatten "
             "Visible Layers', or save them separately"
         )
+    mesh = mesh_set.current_mesh()
+    check_nothing_dropped(source, mesh.vertex_number(), mesh.face_number())
 
 
 def _write(mesh_set: Any, scratch: Path, source: Path) -> None:

@@ -8,6 +8,7 @@ import filecmp
 import os
 import re
 import shutil
+import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -148,7 +149,7 @@ def _locked(folder: Path) -> Iterator[None]:
 
 
 def _shortened(name: str) -> str:
-    return os.fsencode(name)[:_LONGEST_NAME].decode(errors="ignore")
+    return os.fsencode(name)[:_LONGEST_NAME].decode(sys.getfilesystemencoding(), "ignore")
 
 
 def side_files(scratch: Path) -> list[Path]:
