@@ -13,6 +13,7 @@
 #include "meshlab/host_workarounds/last_warnings.h"
 #include "meshlab/host_workarounds/late_close.h"
 #include "meshlab/host_workarounds/late_preview.h"
+#include "meshlab/mesh_conversion.h"
 
 namespace {
 
@@ -133,6 +134,7 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
         const spectral::Progress progress = meshlabProgress(callback, isWanted, isOvertaken);
         spectral::setThreadCount(threadsOfEnvironment());
         progress.report(0.0, "reading the mesh");
+        checkExtent(document.mm()->cm);
         FilterOutcome outcome = filterOf(action).apply(parameters, *document.mm(), progress);
         logLines(outcome.text);
         for (const std::string& warning : outcome.warnings) logLines("  WARNING: " + warning);

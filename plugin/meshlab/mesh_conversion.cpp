@@ -2,6 +2,8 @@
 
 #include <common/mlexception.h>
 
+#include <cmath>
+
 MeshMatrices toMatrices(const CMeshO& mesh) {
     MeshMatrices matrices;
     matrices.vertexIndex.reserve(mesh.vn);
@@ -25,6 +27,22 @@ MeshMatrices toMatrices(const CMeshO& mesh) {
         ++t;
     }
     return matrices;
+}
+
+void checkExtent(const CMeshO& mesh) {
+    // MeshLab squares coordinates in its own precision for the diagonal of the bounding box.
+    constexpr double largest = sizeof(Scalarm) == sizeof(float) ? 1e18 : 1e37;
+    for (const CVertexO& vertex : mesh.vert)
+        for (int c = 0; c < 3 && !vertex.IsD(); ++c) {
+            const double x = vertex.cP()[c];
+            if (std::isfinite(x) && std::abs(x) > largest)
+                throw MLException(QString("vertex %1 has a coordinate of %2, and the largest that "
+                                          "can be filtered is %3: apply 'Transform: Scale, "
+                                          "Normalize' first")
+                                      .arg(vcg::tri::Index(mesh, vertex))
+                                      .arg(x)
+                                      .arg(largest));
+        }
 }
 
 void reportWriting(const MeshMatrices& input, const CMeshO& mesh,

@@ -17,6 +17,10 @@ struct MeshMatrices {
 
 MeshMatrices toMatrices(const CMeshO& mesh);
 
+/// @throws MLException  when coordinates are so large that the lengths among the parameters, which
+/// MeshLab keeps in single precision, would be infinite.
+void checkExtent(const CMeshO& mesh);
+
 /// Reports progress before the mesh is written, the last opportunity to cancel.
 /// @throws MLException  when the mesh is no longer `input`: MeshLab lets the user edit it
 /// meanwhile.

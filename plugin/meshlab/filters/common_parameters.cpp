@@ -4,7 +4,26 @@
 
 #include "core/laplacian/frequency.h"
 #include "core/mesh/measures.h"
+#include "core/support/errors.h"
 #include "meshlab/mesh_conversion.h"
+
+namespace {
+
+// In the order of the core's enumerations.
+QStringList laplacians() { return {"intrinsic delaunay", "cotangent"}; }
+QStringList boundaries() { return {"free", "fixed"}; }
+
+}  // namespace
+
+int choice(const RichParameterList& parameters, const char* name, const QStringList& choices) {
+    const int value = parameters.getEnum(name);
+    if (value >= 0 && value < choices.size()) return value;
+    QStringList numbered;
+    for (int i = 0; i < choices.size(); ++i)
+        numbered.push_back(QString("%1 (%2)").arg(i).arg(choices[i]));
+    throw spectral::InvalidOption(std::string(name) + " = " + std::to_string(value) + ": choose " +
+                                  numbered.join(", ").toStdString());
+}
 
 RichPercentage featureSizeParameter(const MeshModel& mesh, const QString& help) {
     const Scalarm diagonal = mesh.cm.bbox.Diag();
@@ -23,26 +42,20 @@ double featureSize(const RichParameterList& parameters) {
 }
 
 RichEnum laplacianParameter(const QString& help) {
-    // In the order of the core's enumeration.
-    return {"laplacian",
-            static_cast<int>(spectral::LaplacianKind::IntrinsicDelaunay),
-            {"intrinsic delaunay", "cotangent"},
-            "Laplacian",
-            help,
-            true};
+    return {"laplacian",  static_cast<int>(spectral::LaplacianKind::IntrinsicDelaunay),
+            laplacians(), "Laplacian",
+            help,         true};
 }
 
 spectral::LaplacianKind laplacianKind(const RichParameterList& parameters) {
-    return static_cast<spectral::LaplacianKind>(parameters.getEnum("laplacian"));
+    return static_cast<spectral::LaplacianKind>(choice(parameters, "laplacian", laplacians()));
 }
 
 RichEnum boundaryParameter(const QString& help) {
-    // In the order of the core's enumeration.
-    return {
-        "boundary", static_cast<int>(spectral::Boundary::Free), {"free", "fixed"}, "Boundary", help,
-        true};
+    return {"boundary", static_cast<int>(spectral::Boundary::Free), boundaries(), "Boundary", help,
+            true};
 }
 
 spectral::Boundary boundaryCondition(const RichParameterList& parameters) {
-    return static_cast<spectral::Boundary>(parameters.getEnum("boundary"));
+    return static_cast<spectral::Boundary>(choice(parameters, "boundary", boundaries()));
 }

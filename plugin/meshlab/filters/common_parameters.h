@@ -3,8 +3,15 @@
 #include <common/ml_document/mesh_model.h>
 #include <common/parameters/rich_parameter_list.h>
 
+#include <QStringList>
+
 #include "core/laplacian/interior.h"
 #include "core/laplacian/laplacian_builder.h"
+
+/// The value of an enumeration, in which a script can have any number.
+/// @param choices  in the order of the core's enumeration.
+/// @throws spectral::InvalidOption  when it is none of the choices.
+int choice(const RichParameterList& parameters, const char* name, const QStringList& choices);
 
 // Parameters that several filters share, with the same names and defaults.
 

@@ -11,6 +11,12 @@ namespace {
 /// Relative to the bounding box diagonal: half a pixel of a mesh shown 1,000 pixels wide.
 constexpr double kDefaultTolerance = 0.0005;
 
+// In the order of the core's enumerations.
+QStringList filterTypes() { return {"low-pass", "high-pass", "band-pass", "band-stop"}; }
+QStringList responses() { return {"gaussian", "butterworth", "ideal"}; }
+QStringList basisUpdates() { return {"full", "conformal", "none"}; }
+QStringList spectra() { return {"full", "truncated"}; }
+
 }  // namespace
 
 RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
@@ -19,10 +25,8 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
     const Scalarm diagonal = mesh.cm.bbox.Diag();
     RichParameterList list;
 
-    // Choices are in the order of the core's enumerations.
     list.addParam(
-        RichEnum("filter_type", static_cast<int>(transfer.type),
-                 {"low-pass", "high-pass", "band-pass", "band-stop"}, "Filter type",
+        RichEnum("filter_type", static_cast<int>(transfer.type), filterTypes(), "Filter type",
                  "Which details to change, by their size. <b>low-pass</b> keeps details larger "
                  "than the feature size and removes the rest. <b>high-pass</b> acts on smaller "
                  "ones: with stop gain 1 and pass gain 2 it sharpens. <b>band-pass</b> acts on "
@@ -45,8 +49,7 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
                   "Width of the band for band-pass and band-stop, in octaves: with 1, its "
                   "largest details are twice as large as its smallest.",
                   true));
-    list.addParam(RichEnum("response", static_cast<int>(transfer.response),
-                           {"gaussian", "butterworth", "ideal"}, "Response",
+    list.addParam(RichEnum("response", static_cast<int>(transfer.response), responses(), "Response",
                            "How sharply the filter separates sizes. <b>gaussian</b> is gradual and "
                            "never rings; <b>butterworth</b> is sharper the higher its order; "
                            "<b>ideal</b> cuts off abruptly and may leave ripples.",
@@ -70,8 +73,7 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "(except for a thousandth of it, where thin parts pinch off). Larger is faster.",
         true));
     list.addParam(RichEnum(
-        "basis_update", static_cast<int>(defaults.basisUpdate), {"full", "conformal", "none"},
-        "Basis update",
+        "basis_update", static_cast<int>(defaults.basisUpdate), basisUpdates(), "Basis update",
         "What every step recomputes from the current shape. <b>full</b>, the paper's scheme: all "
         "of its frequencies. <b>conformal</b>: its areas only [4]; thin parts shrink instead of "
         "turning into spikes. <b>none</b>: nothing; the number of steps then makes no difference.",
@@ -82,8 +84,7 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "enough to contract thin parts that a strong full update leaves as hair-thin spikes.",
         true));
     list.addParam(RichEnum(
-        "spectrum", static_cast<int>(defaults.evaluation.spectrum), {"full", "truncated"},
-        "Spectrum",
+        "spectrum", static_cast<int>(defaults.evaluation.spectrum), spectra(), "Spectrum",
         "<b>full</b> filters all frequencies of the mesh, and is fast. <b>truncated</b> computes "
         "only the lowest frequencies (as many as the basis size) and treats all others alike, as "
         "older methods do; it does so in every step, so set a number of steps, e.g. 10.",
@@ -113,8 +114,10 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
 FilterOptions fractionalFilterOptions(const RichParameterList& parameters) {
     FilterOptions options;
     spectral::TransferFunctionOptions& transfer = options.transferFunction;
-    transfer.type = static_cast<spectral::FilterType>(parameters.getEnum("filter_type"));
-    transfer.response = static_cast<spectral::Response>(parameters.getEnum("response"));
+    transfer.type =
+        static_cast<spectral::FilterType>(choice(parameters, "filter_type", filterTypes()));
+    transfer.response =
+        static_cast<spectral::Response>(choice(parameters, "response", responses()));
     transfer.order = parameters.getInt("order");
     transfer.bandWidth = parameters.getFloat("band_width");
     transfer.passGain = parameters.getFloat("pass_gain");
@@ -123,9 +126,11 @@ FilterOptions fractionalFilterOptions(const RichParameterList& parameters) {
     options.featureSize = featureSize(parameters);
     options.steps = parameters.getInt("steps");
     options.tolerance = parameters.getAbsPerc("tolerance");
-    options.basisUpdate = static_cast<spectral::BasisUpdate>(parameters.getEnum("basis_update"));
+    options.basisUpdate =
+        static_cast<spectral::BasisUpdate>(choice(parameters, "basis_update", basisUpdates()));
     options.conformalShare = parameters.getFloat("conformal_share");
-    options.evaluation.spectrum = static_cast<spectral::Spectrum>(parameters.getEnum("spectrum"));
+    options.evaluation.spectrum =
+        static_cast<spectral::Spectrum>(choice(parameters, "spectrum", spectra()));
     options.evaluation.truncation.basisSize = parameters.getInt("basis_size");
     options.evaluation.truncation.reinjectResidual = parameters.getBool("reinject_residual");
     options.laplacian = laplacianKind(parameters);

@@ -10,6 +10,7 @@ import numpy as np
 import pymeshlab
 import pytest
 from helpers import FILTER, assert_same, length, mesh_set_of, percent, refusal, snapshot
+from meshlab_spectral.plugin.loading import FILTERS
 
 REFUSED_OPTIONS: dict[str, tuple[dict[str, Any], str]] = {
     "basis as large as the mesh": (
@@ -83,6 +84,21 @@ def test_coordinates_that_are_no_numbers_are_counted_and_located(
     assert "2 vertices" in message
     assert "vertex 17" in message
     assert "Delete Selected Vertices" in message
+    assert_same(before, snapshot(mesh_set.current_mesh()))
+
+
+@pytest.mark.parametrize("name", FILTERS.values())
+def test_coordinates_beyond_single_precision_are_refused_as_such(
+    name: str, decimated: Callable[..., Any]
+) -> None:
+    V, F = decimated("cow.obj")
+    V = V.copy()
+    V[17, 1] = -1e39
+    mesh_set = mesh_set_of(V, F)
+    before = snapshot(mesh_set.current_mesh())
+    message = refusal(mesh_set, name)
+    assert "vertex 17 has a coordinate of -1e+39" in message
+    assert "Scale, Normalize" in message
     assert_same(before, snapshot(mesh_set.current_mesh()))
 
 

@@ -74,6 +74,13 @@ def _filters(text: str) -> list[ElementTree.Element]:
     filters = [element for element in root if element.tag in ("filter", "xmlfilter")]
     if not filters:
         raise OptionError("the script has no filters: it would change nothing")
+    try:
+        for single in filters:
+            ElementTree.tostring(single)
+    except RecursionError as error:
+        raise OptionError(
+            "the script is not a MeshLab filter script: its filters are nested too deeply"
+        ) from error
     return filters
 
 
@@ -116,6 +123,8 @@ def _value(kind: str, text: str) -> Any:
     import pymeshlab
 
     if kind == "RichBool":
+        if text not in ("true", "false"):
+            raise ValueError(text)
         return text == "true"
     if kind in ("RichInt", "RichEnum"):
         return int(text)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 from meshlab_spectral.errors import FilterError
@@ -10,6 +11,10 @@ from meshlab_spectral.plugin.last_warnings import last_warnings
 # pymeshlab 2025.7 crashes after a MeshSet in which any filter has thrown is destroyed. Such a
 # MeshSet is therefore kept alive until the process ends.
 _failed_mesh_sets: list[Any] = []
+
+_PLAIN_SIZE = re.compile(r"Parameter (\w+): must be a pymeshlab\.Percentage")
+_RANGE = re.compile(r"Must be a value between 0 and (\d+)")
+_TOO_LARGE = 2**31
 
 
 def call_filter(mesh_set: Any, name: str, parameters: dict[str, Any]) -> dict[str, Any]:
@@ -44,9 +49,55 @@ def call_filter(mesh_set: Any, name: str, parameters: dict[str, Any]) -> dict[st
         report: dict[str, Any] = mesh_set.apply_filter(name, **parameters)
     except pymeshlab.PyMeshLabException as error:
         keep_failed(mesh_set)
-        raise FilterError(reason_of(error)) from error
+        raise FilterError(_size_wanted(reason_of(error))) from error
+    except pymeshlab.InvalidEnumException as error:
+        keep_failed(mesh_set)
+        raise FilterError(_no_such_choice(parameters, str(error))) from error
+    except (RuntimeError, TypeError) as error:  # a type that pymeshlab cannot convert
+        keep_failed(mesh_set)
+        defaults = mesh_set.filter_parameter_values(name)
+        raise FilterError(_wrong_types(parameters, defaults) or reason_of(error)) from error
     report["warnings"] = last_warnings()
     return report
+
+
+def _size_wanted(reason: str) -> str:
+    """Replace pymeshlab's message for a size given as a plain number."""
+    found = _PLAIN_SIZE.match(reason)
+    if found is None:
+        return reason
+    return f"{found[1]}: must be a percentage or a length (RichPercentage in a script)"
+
+
+def _no_such_choice(parameters: dict[str, Any], reason: str) -> str:
+    """Add the parameter to pymeshlab's message, and correct its range."""
+    named = [
+        name
+        for name, value in parameters.items()
+        if reason.startswith((f"Enum {value} not valid", f"Enum '{value}' not found"))
+    ]
+    found = _RANGE.search(reason)
+    choices = f"choose 0 to {int(found[1]) - 1}" if found else reason
+    return f"{' or '.join(named)} = {parameters[named[0]]}: {choices}" if named else reason
+
+
+def _wrong_types(parameters: dict[str, Any], defaults: dict[str, Any]) -> str:
+    """Name the parameters that have not the types of their defaults, as pymeshlab does not."""
+    kinds = {bool: "true or false", int: "an integer of 32 bits", float: "a number"}
+    wrong = [
+        f"{name} = {value}: must be {kinds.get(type(defaults[name]), 'of another type')}"
+        for name, value in parameters.items()
+        if name in defaults and not _fits(value, type(defaults[name]))
+    ]
+    return "; ".join(wrong)
+
+
+def _fits(value: Any, wanted: type) -> bool:
+    if wanted is int:
+        return isinstance(value, int) and abs(value) < _TOO_LARGE
+    if wanted is float:
+        return value is not None and not isinstance(value, str)
+    return isinstance(value, wanted)
 
 
 def keep_failed(mesh_set: Any) -> None:
