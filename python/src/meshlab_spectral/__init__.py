@@ -11,25 +11,27 @@ Each subpackage imports only from those to its left; all of them import `errors`
     plugin <- filters <- files <- process <- figures, batch <- cli
 """
 
-from importlib.metadata import version
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
-from meshlab_spectral.batch.files import filter_files
-from meshlab_spectral.batch.jobs import FileResult
-from meshlab_spectral.errors import (
-    BatchError,
-    FilterError,
-    InputError,
-    MeshFileError,
-    OptionError,
-    PluginError,
-)
-from meshlab_spectral.filters.artefacts import Artefacts, measure_artefacts
-from meshlab_spectral.filters.fractional import filter_mesh
-from meshlab_spectral.filters.harmonics import Harmonics, manifold_harmonics
-from meshlab_spectral.filters.options import FilterOptions
-from meshlab_spectral.filters.spectrum import GeometrySpectrum, geometry_spectrum
-from meshlab_spectral.plugin.loading import load
-from meshlab_spectral.plugin.threads import set_threads, threads
+if TYPE_CHECKING:
+    from meshlab_spectral.batch.files import filter_files
+    from meshlab_spectral.batch.jobs import FileResult
+    from meshlab_spectral.errors import (
+        BatchError,
+        FilterError,
+        InputError,
+        MeshFileError,
+        OptionError,
+        PluginError,
+    )
+    from meshlab_spectral.filters.artefacts import Artefacts, measure_artefacts
+    from meshlab_spectral.filters.fractional import filter_mesh
+    from meshlab_spectral.filters.harmonics import Harmonics, manifold_harmonics
+    from meshlab_spectral.filters.options import FilterOptions
+    from meshlab_spectral.filters.spectrum import GeometrySpectrum, geometry_spectrum
+    from meshlab_spectral.plugin.loading import load
+    from meshlab_spectral.plugin.threads import set_threads, threads
 
 __all__ = [
     "Artefacts",
@@ -52,4 +54,39 @@ __all__ = [
     "set_threads",
     "threads",
 ]
-__version__ = version("meshlab-spectral")
+# Imported when first used: the command must not wait for them before it can handle Ctrl-C.
+_MODULES = {
+    "Artefacts": "filters.artefacts",
+    "BatchError": "errors",
+    "FileResult": "batch.jobs",
+    "FilterError": "errors",
+    "FilterOptions": "filters.options",
+    "GeometrySpectrum": "filters.spectrum",
+    "Harmonics": "filters.harmonics",
+    "InputError": "errors",
+    "MeshFileError": "errors",
+    "OptionError": "errors",
+    "PluginError": "errors",
+    "filter_files": "batch.files",
+    "filter_mesh": "filters.fractional",
+    "geometry_spectrum": "filters.spectrum",
+    "load": "plugin.loading",
+    "manifold_harmonics": "filters.harmonics",
+    "measure_artefacts": "filters.artefacts",
+    "set_threads": "plugin.threads",
+    "threads": "plugin.threads",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name == "__version__":
+        from importlib.metadata import version
+
+        return version("meshlab-spectral")
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return [*globals(), *__all__, "__version__"]

@@ -62,6 +62,48 @@ def test_an_interruption_ends_with_130_at_once_and_leaves_nothing_behind(
     assert not Path(f"/proc/{child}").exists()
 
 
+# Sends the command Ctrl-C when it imports a module; its children have another command line.
+INTERRUPT_AT_IMPORT = """
+import os, signal, sys
+
+class Interrupt:
+    def find_spec(name, path=None, target=None):
+        if name == os.environ["INTERRUPT_AT"] and "meshlab_spectral.cli" in sys.orig_argv:
+            os.kill(os.getpid(), signal.SIGINT)
+
+sys.meta_path.insert(0, Interrupt)
+"""
+IMPORTS = {
+    "numpy": ["filter", "COW", "out/cow.ply"],
+    "typer": ["batch", "COW", "--output", "out"],
+    "rich.progress": ["basis", "COW", "--output", "out/cow.npz"],
+    "meshlab_spectral.cli.app": ["--help"],
+    "meshlab_spectral.batch.engine": ["batch", "COW", "--output", "out"],
+    "distributed": ["batch", "COW", "--output", "out"],
+    "distributed.worker": ["spectra", "COW", "--output", "out/spectra.csv"],
+    "pymeshlab": ["figures", "COW", "--output", "out", "--only", "5"],
+    "pyvista": ["figures", "COW", "--output", "out", "--only", "5", "--scale", "0.1"],
+    "matplotlib": ["spectrum", "COW", "--output", "out/cow.png"],
+}
+
+
+@pytest.mark.parametrize("module", IMPORTS)
+def test_an_interruption_in_an_import_ends_with_130_and_leaves_nothing_half_written(
+    module: str, cow: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "sitecustomize.py").write_text(INTERRUPT_AT_IMPORT)
+    out = tmp_path / "out"
+    out.mkdir()
+    monkeypatch.chdir(tmp_path)
+    arguments = [str(cow) if argument == "COW" else argument for argument in IMPORTS[module]]
+    done = command(*arguments, PYTHONPATH=str(tmp_path), INTERRUPT_AT=module)
+    assert done.returncode == 130, done.stderr
+    assert done.stdout == ""
+    assert done.stderr.startswith("Interrupted: ")
+    assert len(done.stderr.splitlines()) == 1
+    assert not [path for path in out.rglob("*") if not path.name.endswith("report.jsonl")]
+
+
 def test_the_death_of_the_working_process_is_told(long_run: subprocess.Popen[str]) -> None:
     os.kill(child_of(long_run), signal.SIGKILL)
     stdout, stderr = long_run.communicate(timeout=20)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 from importlib.metadata import version
 from typing import Annotated
 
@@ -25,13 +24,6 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )
-
-
-def main() -> None:
-    """Run the command line and exit with its exit code."""
-    # Clean up on SIGTERM (kill, shutdown) as on Ctrl-C.
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
-    app()
 
 
 def _print_version(wanted: bool) -> None:

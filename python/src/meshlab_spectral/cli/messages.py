@@ -8,10 +8,11 @@ from collections.abc import Iterator
 import typer
 from rich.console import Console
 
+from meshlab_spectral.cli.interrupts import EXIT_INTERRUPTED, raise_interrupts
 from meshlab_spectral.errors import FormatError, InputError, OptionError, SpectralError
 from meshlab_spectral.files.formats import POINTS_ONLY
 
-EXIT_FAILED, EXIT_USAGE, EXIT_INTERRUPTED = 1, 2, 130
+EXIT_FAILED, EXIT_USAGE = 1, 2
 
 EXIT_CODES = (
     "Exit codes: 0 all done; 1 a file could not be read, filtered or written; 2 invalid command "
@@ -25,6 +26,7 @@ MESSAGES = Console(stderr=True)
 def errors_reported(debug: bool, when_interrupted: str = "no output was written") -> Iterator[None]:
     """Turn any error of this package into a message and an exit code."""
     try:
+        raise_interrupts()
         yield
     except KeyboardInterrupt:
         MESSAGES.print(f"Interrupted: {when_interrupted}.")
