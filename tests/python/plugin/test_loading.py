@@ -48,7 +48,8 @@ def test_loading_twice_changes_nothing() -> None:
 def test_load_binds_methods_also_when_the_plugin_was_loaded_by_hand() -> None:
     done = run_python(
         "import pymeshlab, meshlab_spectral\n"
-        "pymeshlab.load_plugin(str(meshlab_spectral.plugin.loading.plugin_path()))\n"
+        "from meshlab_spectral.plugin.loading import plugin_path\n"
+        "pymeshlab.load_plugin(str(plugin_path()))\n"
         "meshlab_spectral.load()\n"
         f"print(pymeshlab.MeshSet.{FILTER}.__name__)\n"
     )
