@@ -277,6 +277,7 @@ const char* nameOf(ErrorCode code) {
         case ErrorCode::NoArea: return "NoArea";
         case ErrorCode::DegenerateTriangles: return "DegenerateTriangles";
         case ErrorCode::ShapeCollapsed: return "ShapeCollapsed";
+        case ErrorCode::ShrinksToNothing: return "ShrinksToNothing";
         case ErrorCode::NoDelaunay: return "NoDelaunay";
         case ErrorCode::SingularMatrix: return "SingularMatrix";
         case ErrorCode::TooManyVertices: return "TooManyVertices";
