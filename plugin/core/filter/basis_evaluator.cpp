@@ -14,6 +14,10 @@ namespace {
 /// More harmonics than this for a discontinuous gain take minutes: almost certainly unintended.
 constexpr Index kMaxExactBasis = 1000;
 
+/// Error of dense eigenvalues relative to the largest, and what is tolerable relative to the one at
+/// an edge, below which an eigenvalue belongs or not.
+constexpr double kDenseError = 1e-15, kEdgeAccuracy = 1e-6;
+
 }  // namespace
 
 Evaluation BasisEvaluator::evaluate(const Laplacian& laplacian, const ConstantModes& constants,
@@ -52,7 +56,14 @@ HarmonicBasis BasisEvaluator::upToLastJump(const Laplacian& laplacian,
                                            const Progress& progress) {
     const double last = F_.discontinuities().back();
     const Index n = laplacian.D.size();
-    if (isDenseQuicker(n)) return denseBasis(laplacian, constants);
+    if (isDenseQuicker(n)) {
+        HarmonicBasis all = denseBasis(laplacian, constants);
+        if (all.lambda[n - 1] * kDenseError > kEdgeAccuracy * last * last)
+            throw SolverFailure(ErrorCode::SingularMatrix,
+                                "round-off leaves nothing of the harmonics at the edge of the "
+                                "filter: triangles are needles");
+        return all;
+    }
     const Index below = countEigenvaluesBelow(laplacian.W, laplacian.D, last * last, ldlt_);
     if (below > kMaxExactBasis)
         throw InvalidOption(ErrorCode::TooManyHarmonics,

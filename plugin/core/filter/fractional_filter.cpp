@@ -45,7 +45,7 @@ void measureDisplacement(const Vertices& displacement, const Eigen::VectorXd& D,
                          FilterResult& result) {
     const Eigen::VectorXd squares = displacement.rowwise().squaredNorm();
     result.maxDisplacement = std::sqrt(squares.maxCoeff());
-    result.rmsDisplacement = std::sqrt(squares.dot(D) / D.sum());
+    result.rmsDisplacement = std::sqrt(squares.dot(D / D.sum()));
 }
 
 /// The evaluations of automatic steps need not be much more accurate than the steps.
@@ -96,11 +96,14 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     const Vertices& X = steps.last.X;
     if (!X.allFinite()) throw SolverFailure("the filtered coordinates are not finite numbers");
 
-    // The displacement is added to the input: what does not move keeps its coordinates to the bit.
+    // The displacement is added to the input: what does not move keeps its coordinates to the bit,
+    // the sign of a zero included.
     FilterResult result;
     const Vertices displacement = X - surface.X;
     result.V = V;
-    for (Index i = 0; i < X.rows(); ++i) result.V.row(surface.vertex[i]) += displacement.row(i);
+    for (Index i = 0; i < X.rows(); ++i)
+        if ((displacement.row(i).array() != 0.0).any())
+            result.V.row(surface.vertex[i]) += displacement.row(i);
 
     result.steps = static_cast<int>(steps.last.sizes.size());
     result.stepSizes = steps.last.sizes;

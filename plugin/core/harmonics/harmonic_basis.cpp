@@ -28,18 +28,27 @@ constexpr int kMostRestarts = 300;
 }  // namespace
 
 HarmonicBasis denseBasis(const Laplacian& laplacian, const ConstantModes& constants) {
-    const Eigen::VectorXd invSqrtD = laplacian.D.cwiseSqrt().cwiseInverse();
-    const Eigen::MatrixXd A =
+    const Eigen::VectorXd sqrtD = laplacian.D.cwiseSqrt(), invSqrtD = sqrtD.cwiseInverse();
+    Eigen::MatrixXd A =
         invSqrtD.asDiagonal() * Eigen::MatrixXd(laplacian.W) * invSqrtD.asDiagonal();
+    // The constants, which are known, become the last: eigenvectors of eigenvalues near theirs
+    // would be mixtures with them.
+    const Index varying = A.rows() - constants.count();
+    const double bound = A.cwiseAbs().rowwise().sum().maxCoeff();
+    const Eigen::MatrixXd C = sqrtD.asDiagonal() * constants.orthonormal();
+    A -= C * (C.transpose() * A);
+    A -= (A * C) * C.transpose();
+    A += 2.0 * bound * C * C.transpose();
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(A);
     if (solver.info() != Eigen::Success)
         throw SolverFailure("the dense eigenproblem of " + std::to_string(A.rows()) +
                             " vertices did not converge");
     HarmonicBasis basis;
-    basis.Phi = invSqrtD.asDiagonal() * solver.eigenvectors();
-    basis.lambda = solver.eigenvalues();
-    basis.lambda.head(constants.count()).setZero();
-    basis.Phi.leftCols(constants.count()) = constants.orthonormal();
+    basis.Phi.resize(A.rows(), A.rows());
+    basis.Phi << constants.orthonormal(),
+        invSqrtD.asDiagonal() * solver.eigenvectors().leftCols(varying);
+    basis.lambda.resize(A.rows());
+    basis.lambda << Eigen::VectorXd::Zero(constants.count()), solver.eigenvalues().head(varying);
     return basis;
 }
 
@@ -47,14 +56,17 @@ bool isDenseQuicker(Index n) { return n <= kDenseVertices; }
 
 double largestEigenvalue(const Laplacian& laplacian) {
     const Eigen::VectorXd invSqrtD = laplacian.D.cwiseSqrt().cwiseInverse();
-    const SparseMatrix A = invSqrtD.asDiagonal() * laplacian.W * invSqrtD.asDiagonal();
+    SparseMatrix A = invSqrtD.asDiagonal() * laplacian.W * invSqrtD.asDiagonal();
+    // Spectra's test for convergence assumes eigenvalues of about 1. Gershgorin's bound:
+    const double bound = (A.cwiseAbs() * Eigen::VectorXd::Ones(A.cols())).maxCoeff();
+    A /= bound;
     Spectra::SparseSymMatProd<double> op(A);
     const Index dimension = std::min<Index>(A.rows(), 30);
     Spectra::SymEigsSolver<Spectra::SparseSymMatProd<double>> solver(op, 1, dimension);
     try {
         solver.init();
         if (solver.compute(Spectra::SortRule::LargestAlge, kMostRestarts, 1e-8) == 1)
-            return solver.eigenvalues()[0];
+            return bound * solver.eigenvalues()[0];
     } catch (const std::exception&) {  // Spectra's own, of a breakdown
     }
     throw SolverFailure(ErrorCode::SingularMatrix, "the largest eigenvalue could not be computed");

@@ -32,19 +32,21 @@ constexpr int kMaxRestarts = 100;
 /// Lanczos runs without a pair in the interval after which its count must be wrong.
 constexpr int kFruitless = 3;
 
-/// u -> D^1/2 (W - sigma D)^-1 D^1/2 u on the complement of the constants and of known vectors:
-/// symmetric, with eigenvalues 1 / (lambda - sigma).
+/// u -> h D^1/2 (W - sigma D)^-1 D^1/2 u on the complement of the constants and of known vectors:
+/// symmetric, with eigenvalues h / (lambda - sigma). With h the half of an interval around sigma
+/// those inside are above 1, as Spectra's test for convergence assumes.
 class DeflatedResolvent {
   public:
     using Scalar = double;
 
     DeflatedResolvent(const Laplacian& laplacian, const ConstantModes& constants,
-                      const ShiftedLdlt& factor, const Eigen::MatrixXd& known,
+                      const ShiftedLdlt& factor, double half, const Eigen::MatrixXd& known,
                       const StopPoint& stopPoint)
         : D_(laplacian.D),
           sqrtD_(D_.cwiseSqrt()),
           constants_(constants),
           factor_(factor),
+          half_(half),
           known_(known),
           stopPoint_(stopPoint) {}
 
@@ -57,7 +59,7 @@ class DeflatedResolvent {
         factor_.applyResolvent(D_, u);
         constants_.remove(u);
         u -= known_ * (known_.transpose() * D_.cwiseProduct(u)).eval();
-        Eigen::Map<Eigen::VectorXd>(out, rows()) = u.cwiseProduct(sqrtD_);
+        Eigen::Map<Eigen::VectorXd>(out, rows()) = half_ * u.cwiseProduct(sqrtD_);
     }
 
   private:
@@ -65,6 +67,7 @@ class DeflatedResolvent {
     Eigen::VectorXd sqrtD_;
     const ConstantModes& constants_;
     const ShiftedLdlt& factor_;
+    double half_;
     const Eigen::MatrixXd& known_;
     const StopPoint& stopPoint_;
 };
@@ -127,6 +130,7 @@ IntervalPairs computeInterval(const Laplacian& laplacian, const ConstantModes& c
     const Eigen::VectorXd& D = laplacian.D;
     const Index n = D.size();
     factor.factorize(laplacian.W, D, interval.middle());
+    const double half = 0.5 * (interval.to - interval.from);
     Eigen::MatrixXd known(n, 0);
     Eigen::VectorXd lambda(0);
     std::vector<Index> inside;  // columns of `known`
@@ -137,7 +141,7 @@ IntervalPairs computeInterval(const Laplacian& laplacian, const ConstantModes& c
         if (wanted < 1) return {};
         const Index dimension =
             std::min(std::max(2 * wanted + kSpareDimension, kLeastDimension), free);
-        DeflatedResolvent op(laplacian, constants, factor, known, stopPoint);
+        DeflatedResolvent op(laplacian, constants, factor, half, known, stopPoint);
         const Eigenpairs nearest = nearestPairs(op, wanted, dimension);
         Eigen::MatrixXd U = D.cwiseSqrt().cwiseInverse().asDiagonal() * nearest.vectors;
         // One more inverse iteration removes what is not in the Krylov space.
@@ -145,7 +149,7 @@ IntervalPairs computeInterval(const Laplacian& laplacian, const ConstantModes& c
         constants.remove(U);
         if (orthonormalize(D, known, U) < kOwnPart) return {};
         append(known, U);
-        append(lambda, factor.shift() + nearest.values.cwiseInverse().array());
+        append(lambda, factor.shift() + half * nearest.values.inverse());
         const std::size_t before = inside.size();
         for (Index i = lambda.size() - U.cols(); i < lambda.size(); ++i)
             if (lambda[i] >= interval.from && lambda[i] < interval.to) inside.push_back(i);

@@ -107,7 +107,8 @@ std::vector<SpectralInterval> sliceSpectrum(const Laplacian& laplacian, Index co
     for (std::size_t i = 1; i < counts.size(); ++i) {
         const Count &a = counts[i - 1], &b = counts[i];
         const Index inside = b.below - a.below;
-        if (!intervals.empty() && (inside == 0 || intervals.back().count + inside <= width)) {
+        if (inside == 0) continue;  // a gap: the middle of an interval is near its eigenvalues
+        if (!intervals.empty() && intervals.back().count + inside <= width) {
             intervals.back().to = b.sigma;
             intervals.back().count += inside;
         } else {

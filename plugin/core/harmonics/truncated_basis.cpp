@@ -119,7 +119,7 @@ Eigen::VectorXd relativeResiduals(const Laplacian& laplacian, Index constants,
             const Index i = constants + task;
             const Eigen::VectorXd r =
                 W * basis.Phi.col(i) - basis.lambda[i] * D.cwiseProduct(basis.Phi.col(i));
-            residuals[i] = r.cwiseQuotient(D.cwiseSqrt()).norm() / basis.lambda[i];
+            residuals[i] = r.cwiseQuotient(D.cwiseSqrt()).norm() / std::abs(basis.lambda[i]);
         },
         progress, "checking the harmonics");
     Index worst = 0;

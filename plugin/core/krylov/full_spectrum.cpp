@@ -11,8 +11,8 @@ namespace spectral {
 
 namespace {
 
-/// Dimensions between checks of the error.
-constexpr int kCheckInterval = 3;
+/// Dimensions between checks of the error: as they grow, so does the cost of a check.
+int nextCheck(int m) { return m + std::max(3, m / 10); }
 
 /// Multiple of the accuracy at which the error at the vertices is estimated as well: a pass over
 /// the basis that would be wasted far from convergence, but needs some checks for its rate.
@@ -114,10 +114,11 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
 
     double firstError = 0.0, furthest = 0.0;
     bool isDone = false;
-    for (int m = 1; !isDone; ++m) {
+    for (int m = 1, check = 3; !isDone; ++m) {
         const bool isInvariant = !spaces.extend();
         const bool isLast = m >= options.maxDimension;
-        if (!isInvariant && !isLast && m % kCheckInterval != 0) continue;
+        if (!isInvariant && !isLast && m < check) continue;
+        check = nextCheck(m);
 
         bool allConverged = true;
         double largestError = 0.0;

@@ -14,6 +14,9 @@ namespace {
 /// six digits to the other entries of a row of W.
 constexpr double kDegenerateAspect = 1e-10;
 
+/// Largest modulus of a coordinate: the fourth power of a length is still finite.
+constexpr double kLargest = 1e75;
+
 bool isDegenerate(const Vertices& V, const Faces& F, Index t) {
     const Eigen::RowVector3d a = V.row(F(t, 0)), b = V.row(F(t, 1)), c = V.row(F(t, 2));
     const Eigen::RowVector3d ab = b - a, ac = c - a, bc = c - b;
@@ -41,11 +44,12 @@ void checkMesh(const Vertices& V, const Faces& F) {
 
     Index notFinite = 0, first = -1;
     for (Index i = 0; i < V.rows(); ++i)
-        if (!V.row(i).allFinite() && notFinite++ == 0) first = i;
+        if (!(V.row(i).array().abs() <= kLargest).all() && notFinite++ == 0) first = i;
     if (notFinite > 0)
         throw InvalidMesh(ErrorCode::NotFinite,
                           counted(notFinite, "vertex has", "vertices have") +
-                              " coordinates that are not finite (NaN or infinity), the first is "
+                              " coordinates that are not finite (NaN, infinity or beyond 1e75), "
+                              "the first is "
                               "vertex " +
                               std::to_string(first));
 
