@@ -61,6 +61,7 @@ Signal signalOf(MeshLaplacian mesh, Boundary boundary) {
     if (interior.isWhole()) {
         Eigen::MatrixXd U = std::move(mesh.surface.X);
         mesh.constants.remove(U);
+        mesh.constants.remove(U);  // again: the round-off of components far apart
         return {std::move(mesh.laplacian), std::move(mesh.constants), std::move(U)};
     }
     if (interior.size() == 0)

@@ -438,5 +438,32 @@ TEST(FractionalFilter, SaysThatAFeatureSizeBeyondTheShapeLeavesNothing) {
         }
 }
 
+TEST(FractionalFilter, OfATruncatedSpectrumDoesNotDependOnTheScale) {
+    const Mesh mesh = testing::blob();
+    FilterOptions options;
+    options.evaluation.spectrum = Spectrum::Truncated;
+    options.evaluation.truncation.basisSize = 60;
+    options.steps = 1;
+    options.featureSize = 0.6;
+    const Vertices expected = fractionalFilter(mesh.V, mesh.F, options).V;
+    for (const double scale : {1e10, 1e-10}) {
+        options.featureSize = 0.6 * scale;
+        const Vertices V = fractionalFilter(mesh.V * scale, mesh.F, options).V / scale;
+        EXPECT_LT(largestDifference(V, expected), 1e-8) << scale;
+    }
+}
+
+TEST(FractionalFilter, KeepsTheNegativeZerosOfWhatDoesNotMove) {
+    Mesh mesh = testing::withNoise(testing::rectangle(1, 1, 6, 6), 0.01, 3);
+    mesh.V.row(0).setConstant(-0.0);  // a corner
+    FilterOptions options;
+    options.boundary = Boundary::Fixed;
+    options.steps = 1;
+    options.featureSize = 0.5;
+    const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_GT(result.maxDisplacement, 0.0);
+    for (int c = 0; c < 3; ++c) EXPECT_TRUE(std::signbit(result.V(0, c)));
+}
+
 }  // namespace
 }  // namespace spectral

@@ -200,6 +200,30 @@ TEST(ApplyInBasis, ResidualGainActsOnWhatIsBeyondTheBasis) {
     EXPECT_LT((Y - expected).cwiseAbs().maxCoeff(), 1e-9);
 }
 
+TEST(DenseBasis, IsOrthogonalToTheConstantsOfEveryComponent) {
+    // The largest eigenvalue, of the small one, is 1e10 times the lowest: those of the constants
+    // are round-off of about its size.
+    Mesh small = testing::icosphere(1);
+    small.V *= 1e-5;
+    const Operator A(testing::joined(testing::joined(testing::icosphere(2), small), small));
+    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    const Index n = dense.size();
+    const Eigen::MatrixXd gram = dense.Phi.transpose() * A.laplacian.D.asDiagonal() * dense.Phi;
+    EXPECT_LT((gram - Eigen::MatrixXd::Identity(n, n)).cwiseAbs().maxCoeff(), 1e-10);
+    EXPECT_EQ(dense.lambda.head(A.constants.count()).cwiseAbs().maxCoeff(), 0.0);
+}
+
+TEST(LargestEigenvalue, ScalesWithTheMesh) {
+    Mesh mesh = testing::torus(2, 0.7, 24, 12);
+    const double expected = largestEigenvalue(Operator(mesh).laplacian);
+    for (const double scale : {1e9, 1e-9, 1e30}) {
+        Mesh scaled = mesh;
+        scaled.V *= scale;
+        EXPECT_NEAR(largestEigenvalue(Operator(scaled).laplacian) * scale * scale, expected,
+                    1e-7 * expected);
+    }
+}
+
 TEST(LargestEigenvalue, OfAnOperatorThatOverflowsIsAnErrorOfOurOwn) {
     const Operator A(testing::blob());
     for (const double factor : {1e200, 1e308, std::numeric_limits<double>::quiet_NaN()}) {
