@@ -53,6 +53,12 @@ std::string remedy(const spectral::Error& error, const RichParameterList& parame
         case ErrorCode::ShrinksToNothing: return "choose a smaller feature_size";
         case ErrorCode::TooManyVertices:
             return "apply 'Simplification: Quadric Edge Collapse Decimation' first";
+        case ErrorCode::OutOfMemory:
+            return "simplify it" +
+                   (error.limit() > 0 ? " to " + limit + " vertices or fewer" : std::string()) +
+                   " ('Simplification: Quadric Edge Collapse Decimation'), or raise the memory "
+                   "limit";
+        case ErrorCode::BasisOutOfMemory:
         case ErrorCode::BasisTooLarge:
             return "choose at most " + limit + otherThanThisBasis(parameters);
         case ErrorCode::BasisTooSmall:

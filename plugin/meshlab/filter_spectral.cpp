@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/support/errors.h"
+#include "core/support/memory.h"
 #include "core/support/threads.h"
 #include "meshlab/error_messages.h"
 #include "meshlab/host_workarounds/apply_lock.h"
@@ -40,6 +41,20 @@ int threadsOfEnvironment() {
                                       qgetenv(variable).toStdString() +
                                       ": give a number of threads above zero, or unset it");
     return count;
+}
+
+/// The limit in MESHLAB_SPECTRAL_MEMORY, bytes; 0, as much as there is, if it is not set.
+/// @throws spectral::InvalidOption  when it is not a number above zero.
+double memoryLimitOfEnvironment() {
+    const char* const variable = "MESHLAB_SPECTRAL_MEMORY";
+    if (!qEnvironmentVariableIsSet(variable)) return 0.0;
+    bool isNumber = false;
+    const double bytes = qgetenv(variable).toDouble(&isNumber);
+    if (!isNumber || !(bytes > 0.0))
+        throw spectral::InvalidOption(std::string("the environment variable ") + variable + " = " +
+                                      qgetenv(variable).toStdString() +
+                                      ": give a number of bytes above zero, or unset it");
+    return bytes;
 }
 
 }  // namespace
@@ -133,6 +148,7 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
     try {
         const spectral::Progress progress = meshlabProgress(callback, isWanted, isOvertaken);
         spectral::setThreadCount(threadsOfEnvironment());
+        spectral::setMemoryLimit(memoryLimitOfEnvironment());
         progress.report(0.0, "reading the mesh");
         checkExtent(document.mm()->cm);
         FilterOutcome outcome = filterOf(action).apply(parameters, *document.mm(), progress);

@@ -281,6 +281,8 @@ const char* nameOf(ErrorCode code) {
         case ErrorCode::NoDelaunay: return "NoDelaunay";
         case ErrorCode::SingularMatrix: return "SingularMatrix";
         case ErrorCode::TooManyVertices: return "TooManyVertices";
+        case ErrorCode::OutOfMemory: return "OutOfMemory";
+        case ErrorCode::BasisOutOfMemory: return "BasisOutOfMemory";
         case ErrorCode::BasisTooLarge: return "BasisTooLarge";
         case ErrorCode::BasisTooSmall: return "BasisTooSmall";
         case ErrorCode::BasisIncomplete: return "BasisIncomplete";

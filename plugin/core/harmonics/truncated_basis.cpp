@@ -15,6 +15,7 @@
 #include "core/laplacian/constant_modes.h"
 #include "core/mesh/mesh.h"
 #include "core/support/errors.h"
+#include "core/support/memory.h"
 #include "core/support/threads.h"
 
 namespace spectral {
@@ -155,6 +156,20 @@ HarmonicBasis certified(const Laplacian& laplacian, const ConstantModes& constan
     return basis;
 }
 
+/// Refuses a basis that there is no memory for, before it is taken.
+void requireMemory(Index k, Index n) {
+    // Phi, its copies for the certificate, and the vectors of the intervals in work.
+    const double ofHarmonic = 1.3 * sizeof(double) * static_cast<double>(n);
+    const double available = availableMemory();
+    if (ofHarmonic * static_cast<double>(k) <= available) return;
+    std::ostringstream text;
+    text << k << " harmonics of " << n << " vertices need about "
+         << Bytes{ofHarmonic * static_cast<double>(k)} << " of memory, " << Bytes{available}
+         << " are free";
+    throw Error(ErrorCode::BasisOutOfMemory, text.str(),
+                static_cast<long>(0.9 * available / ofHarmonic));
+}
+
 void checkSize(Index k, Index n, Index constants) {
     const std::string size = "basis_size = " + std::to_string(k);
     if (k >= n)
@@ -186,6 +201,7 @@ HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& co
                              ShiftedLdlt& ldlt, const Progress& progress) {
     const Index n = laplacian.D.size();
     checkSize(k, n, constants.count());
+    requireMemory(k, n);
     const ThreadTeam team;
     if (isDenseQuicker(n)) {
         HarmonicBasis all = denseBasis(laplacian, constants);

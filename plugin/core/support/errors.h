@@ -20,6 +20,8 @@ enum class ErrorCode {
                           ///< ill-conditioned that a result would be useless.
     ShrinksToNothing,     ///< The filter leaves nothing of the surface.
     TooManyVertices,      ///< The sparse factor has more entries than an int can count.
+    OutOfMemory,          ///< The factor or a Krylov space; limit(): vertices that would do.
+    BasisOutOfMemory,     ///< limit(): the largest basis size that there is memory for.
     BasisTooLarge,        ///< limit(): the largest basis size possible.
     BasisTooSmall,        ///< limit(): the least basis size that makes sense.
     BasisIncomplete,      ///< Eigenvectors could not be computed, or not all of them.

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from meshlab_spectral.filters.options import FilterOptions
     from meshlab_spectral.filters.spectrum import GeometrySpectrum, geometry_spectrum
     from meshlab_spectral.plugin.loading import load
+    from meshlab_spectral.plugin.memory import set_memory_limit
     from meshlab_spectral.plugin.threads import set_threads, threads
 
 __all__ = [
@@ -51,6 +52,7 @@ __all__ = [
     "load",
     "manifold_harmonics",
     "measure_artefacts",
+    "set_memory_limit",
     "set_threads",
     "threads",
 ]
@@ -73,6 +75,7 @@ _MODULES = {
     "load": "plugin.loading",
     "manifold_harmonics": "filters.harmonics",
     "measure_artefacts": "filters.artefacts",
+    "set_memory_limit": "plugin.memory",
     "set_threads": "plugin.threads",
     "threads": "plugin.threads",
 }

@@ -34,7 +34,10 @@ from meshlab_spectral.files.meshes import (
 from meshlab_spectral.filters.calling import plain_report
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.filters.spectrum import measure
+from meshlab_spectral.plugin.memory import set_memory_limit
 
+# In every error of the plugin about memory.
+_TOO_MUCH_MEMORY = re.compile(r"memory, (of which )?\S+ \w+ are free")
 _PEAK = re.compile(r"^VmHWM:\s+(\d+) kB$", re.MULTILINE)
 
 
@@ -86,6 +89,8 @@ def _peak_memory() -> int:
 def _described(error: Exception) -> dict[str, str]:
     """Describe an error by its class and message."""
     if isinstance(error, errors.SpectralError):
+        if _TOO_MUCH_MEMORY.search(str(error)):
+            return {"error": "MemoryLimitError", "message": str(error)}
         return {"error": type(error).__name__, "message": str(error)}
     message = f"unexpected error: {error}; please report it"
     if isinstance(error, MemoryError):
@@ -110,7 +115,9 @@ def _main() -> None:
     for line in sys.stdin:
         _reset_peak_memory()
         try:
-            report = _report_of(json.loads(line), lambda stage: answer(stage=stage))
+            job = json.loads(line)
+            set_memory_limit(job.get("memory"))
+            report = _report_of(job, lambda stage: answer(stage=stage))
             answer(report=report, peak_memory=_peak_memory())
         except Exception as error:
             answer(**_described(error), traceback=traceback.format_exc().strip())

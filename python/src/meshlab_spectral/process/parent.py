@@ -157,9 +157,13 @@ class MeshLabProcess:
         self.usable = False  # until the job has succeeded
         assert self._child.stdin is not None
         with contextlib.suppress(BrokenPipeError):  # the child has died: reported below
-            self._child.stdin.write(json.dumps(job).encode() + b"\n")
+            # The plugin refuses what it knows to need more; what it does not know of is seen here.
+            limited = {**job, "memory": limits.memory}
+            self._child.stdin.write(json.dumps(limited).encode() + b"\n")
             self._child.stdin.flush()
         answer = self._await_answer(limits)
+        if limits.memory is not None and answer.get("error") == "MemoryLimitError":
+            raise _too_much_memory(limits.memory, answer["message"])
         if "error" in answer:
             raise _error_of(answer)
         self.usable = True
@@ -215,11 +219,7 @@ class MeshLabProcess:
             )
         if limits.memory is not None and self.memory() > limits.memory:
             self._child.kill()
-            raise errors.MemoryLimitError(
-                f"needs more than {limits.memory / 2**20:.0f} MiB of memory, the limit of a "
-                "worker: raise the memory limit, with fewer workers if need be; the file may be "
-                "damaged"
-            )
+            raise _too_much_memory(limits.memory, "the file may be damaged")
 
     def _death(self) -> errors.ProcessDiedError:
         status = self._child.wait()
@@ -263,6 +263,13 @@ class _Lines:
 
 def _ignore(stage: str, fraction: float | None) -> None:
     """Ignore progress."""
+
+
+def _too_much_memory(limit: int, detail: str) -> errors.MemoryLimitError:
+    return errors.MemoryLimitError(
+        f"needs more than {limit / 2**20:.0f} MiB of memory, the limit of a worker: raise the "
+        f"memory limit, with fewer workers if need be; {detail}"
+    )
 
 
 def _error_of(answer: dict[str, Any]) -> errors.SpectralError:

@@ -1,0 +1,78 @@
+#include "core/support/memory.h"
+
+#include <gtest/gtest.h>
+
+#include "core/filter/fractional_filter.h"
+#include "core/harmonics/truncated_basis.h"
+#include "core/support/errors.h"
+#include "support/evaluation.h"
+#include "support/memory.h"
+
+namespace spectral {
+namespace {
+
+using testing::Operator;
+
+/// Limits the memory to what the program has, and some more.
+class Memory : public ::testing::Test {
+  protected:
+    static void limitTo(double megabytesMore) {
+        if (testing::peakMegabytes() == 0.0) GTEST_SKIP() << "this system does not tell";
+        setMemoryLimit(0.0);
+        setMemoryLimit(1e6 * (testing::peakMegabytes() + megabytesMore));
+    }
+    void TearDown() override { setMemoryLimit(0.0); }
+};
+
+TEST_F(Memory, IsThatOfTheSystemWithoutALimit) {
+    EXPECT_GT(availableMemory(), 1e6);
+    limitTo(1.0);
+    EXPECT_LT(availableMemory(), 1e9);
+    setMemoryLimit(1.0);
+    EXPECT_EQ(availableMemory(), 0.0);
+}
+
+TEST_F(Memory, OfAFactorIsAskedForBeforeItIsTaken) {
+    const Operator A(testing::blob());
+    setMemoryLimit(1.0);
+    ShiftedLdlt ldlt;
+    try {
+        ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, 1.0);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::OutOfMemory) << error.what();
+    }
+    setMemoryLimit(0.0);
+    ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, 1.0);
+}
+
+TEST_F(Memory, EndsAutomaticStepsAtOnce) {
+    const testing::Mesh mesh = testing::blob();
+    FilterOptions options;
+    options.featureSize = 0.3;
+    options.tolerance = 1e-3;
+    setMemoryLimit(1.0);
+    try {
+        fractionalFilter(mesh.V, mesh.F, options);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::OutOfMemory) << error.what();
+    }
+}
+
+TEST_F(Memory, OfABasisIsAskedForAndTheSizeThatFitsIsTold) {
+    const Operator A(testing::icosphere(5));  // 10,242 vertices: 10 MB for 100 harmonics
+    limitTo(50.0);
+    ShiftedLdlt ldlt;
+    try {
+        truncatedBasis(A.laplacian, A.constants, 5000, ldlt);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::BasisOutOfMemory) << error.what();
+        EXPECT_GT(error.limit(), 10);
+        EXPECT_LT(error.limit(), 5000);
+    }
+}
+
+}  // namespace
+}  // namespace spectral
