@@ -348,6 +348,11 @@ GeometrySpectrum geometrySpectrum(const Vertices& V, const Faces& F, const Spect
     const Bands thirds(spectrum.diagonal, std::sqrt(lowest), std::sqrt(highest), 3);
     const BandEnergies energies = bandEnergies(octaves, thirds, signal, basis, ldlt,
                                                progress.part(kBasisDone, 1.0), spectrum);
+    const Eigen::VectorXd residuals =
+        relativeResiduals(laplacian, constants, basis, progress.part(1.0, 1.0));
+    for (Index i = constants; i < basis.size(); ++i)
+        spectrum.mismatch += std::min(1.0, residuals[i]) * std::pow(spectrum.amplitudes[i], 2) *
+                             spectrum.area / spectrum.totalEnergy;
     setOctaves(octaves, energies.octaves, spectrum);
     setBands(thirds, energies, n, spectrum);
     spectrum.featureSize50 = featureSizeHolding(0.50, spectrum, octaves);

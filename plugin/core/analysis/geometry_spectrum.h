@@ -58,8 +58,9 @@ struct GeometrySpectrum {
     double noiseHeight = 0.0;       ///< Root mean square height, length units.
     double noiseFeatureSize = 0.0;  ///< All smaller details are indistinguishable from noise.
 
-    /// Relative error of the quadrature beyond the basis, whose energies are then scaled to their
-    /// known sum; 0 where the basis is complete.
+    /// Part of the energy that may be in another octave. Beyond the basis, the relative error of
+    /// the quadrature, whose energies are then scaled to their known sum; in it, the energies of
+    /// the harmonics times their relative residuals, which matter where triangles are needles.
     double mismatch = 0.0;
 };
 

@@ -108,31 +108,16 @@ HarmonicBasis lowestPairs(const Laplacian& laplacian, const ConstantModes& const
                         "not all harmonics were found: the inertia of W - sigma D counts more");
 }
 
-/// |D^-1/2 (W phi - lambda D phi)| / lambda of every harmonic but the constant ones.
-/// @throws SolverFailure  when one is useless.
-Eigen::VectorXd relativeResiduals(const Laplacian& laplacian, Index constants,
-                                  const HarmonicBasis& basis, const Progress& progress) {
-    const auto& [W, D] = laplacian;
-    Eigen::VectorXd residuals = Eigen::VectorXd::Zero(basis.size());
-    runTasks(
-        basis.size() - constants,
-        [&](Index task, int, const StopPoint&) {
-            const Index i = constants + task;
-            const Eigen::VectorXd r =
-                W * basis.Phi.col(i) - basis.lambda[i] * D.cwiseProduct(basis.Phi.col(i));
-            residuals[i] = r.cwiseQuotient(D.cwiseSqrt()).norm() / std::abs(basis.lambda[i]);
-        },
-        progress, "checking the harmonics");
+/// @throws SolverFailure  when a harmonic is useless.
+void requireUseful(const Eigen::VectorXd& residuals) {
     Index worst = 0;
     const double largest = residuals.maxCoeff<Eigen::PropagateNaN>(&worst);
-    if (!(largest <= kUselessResidual)) {
-        std::ostringstream text;
-        text << "round-off leaves nothing of harmonic " << worst << ", whose relative residual is "
-             << std::setprecision(2) << largest
-             << ": triangles are needles, or parts of the mesh are far away";
-        throw SolverFailure(ErrorCode::SingularMatrix, text.str());
-    }
-    return residuals;
+    if (largest <= kUselessResidual) return;
+    std::ostringstream text;
+    text << "round-off leaves nothing of harmonic " << worst << ", whose relative residual is "
+         << std::setprecision(2) << largest
+         << ": triangles are needles, or parts of the mesh are far away";
+    throw SolverFailure(ErrorCode::SingularMatrix, text.str());
 }
 
 /// The first `size` pairs of a basis, with their certificate.
@@ -152,6 +137,7 @@ HarmonicBasis certified(const Laplacian& laplacian, const ConstantModes& constan
     basis.Phi.conservativeResize(Eigen::NoChange, size);
     basis.lambda.conservativeResize(size);
     basis.residuals = relativeResiduals(laplacian, constants.count(), basis, progress);
+    requireUseful(basis.residuals);
     progress.report(1.0, kStage);
     return basis;
 }
@@ -189,6 +175,22 @@ void checkSize(Index k, Index n, Index constants) {
 }
 
 }  // namespace
+
+Eigen::VectorXd relativeResiduals(const Laplacian& laplacian, Index constants,
+                                  const HarmonicBasis& basis, const Progress& progress) {
+    const auto& [W, D] = laplacian;
+    Eigen::VectorXd residuals = Eigen::VectorXd::Zero(basis.size());
+    runTasks(
+        basis.size() - constants,
+        [&](Index task, int, const StopPoint&) {
+            const Index i = constants + task;
+            const Eigen::VectorXd r =
+                W * basis.Phi.col(i) - basis.lambda[i] * D.cwiseProduct(basis.Phi.col(i));
+            residuals[i] = r.cwiseQuotient(D.cwiseSqrt()).norm() / std::abs(basis.lambda[i]);
+        },
+        progress, "checking the harmonics");
+    return residuals;
+}
 
 std::optional<Index> cutOutsideClusters(const Eigen::VectorXd& lambda, Index asked) {
     const double spacing = lambda[asked - 1] / static_cast<double>(asked);

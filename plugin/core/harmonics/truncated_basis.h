@@ -26,6 +26,10 @@ namespace spectral {
 HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& constants, Index k,
                              ShiftedLdlt& ldlt, const Progress& progress = {});
 
+/// |D^-1/2 (W phi - lambda D phi)| / |lambda| of every harmonic but the first `constants`; 0 there.
+Eigen::VectorXd relativeResiduals(const Laplacian& laplacian, Index constants,
+                                  const HarmonicBasis& basis, const Progress& progress);
+
 /// The number of pairs, from `asked` on, at which a spectrum may be cut: where the next eigenvalue
 /// is not equal to the last one or nearly so. Empty when every candidate lies inside a cluster.
 ///

@@ -1,5 +1,6 @@
 #include <common/parameters/rich_parameters.h>
 
+#include <algorithm>
 #include <iomanip>
 #include <sstream>
 #include <string>
@@ -95,9 +96,9 @@ std::vector<std::string> warningsOf(const GeometrySpectrum& spectrum) {
     constexpr double kAccurate = 0.01;
     if (spectrum.mismatch <= kAccurate) return {};
     std::ostringstream text;
-    text << std::setprecision(2) << "the energies of details finer than the harmonics are off by "
-         << 100.0 * spectrum.mismatch
-         << " % in sum: triangles are needles, or parts of the mesh are far away";
+    text << std::setprecision(2) << "up to " << 100.0 * std::min(1.0, spectrum.mismatch)
+         << " % of the energy may belong to other sizes: triangles are needles, or parts of the "
+            "mesh are far away";
     return {text.str()};
 }
 

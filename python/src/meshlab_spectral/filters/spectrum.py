@@ -72,8 +72,9 @@ class GeometrySpectrum:
     feature_size_50, feature_size_90, feature_size_99
         Feature sizes above which 50, 90 and 99 % of the energy lie.
     mismatch
-        Relative deviation of the octave energies beyond the harmonics from their known sum, before
-        they are scaled to it: a measure of their error.
+        Part of the energy that may belong to another octave: the deviation of the energies beyond
+        the harmonics from their known sum, before they are scaled to it, and the energies of
+        harmonics times their relative residuals. A warning above 0.01.
     """
 
     diagonal: float
