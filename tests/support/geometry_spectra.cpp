@@ -21,7 +21,7 @@ GeometrySpectrum spectrumOf(const Mesh& mesh, int basisSize, Boundary boundary) 
 
 void expectWhatAllEigenvectorsSay(const Mesh& mesh, Boundary boundary) {
     const GeometrySpectrum dense = spectrumOf(mesh, static_cast<int>(mesh.V.rows()), boundary);
-    EXPECT_EQ(dense.mismatch, 0.0);
+    EXPECT_LT(dense.mismatch, 1e-9);  // the residuals of the harmonics alone
     EXPECT_NEAR(dense.amplitudes.squaredNorm() * dense.area / dense.totalEnergy, 1.0, 1e-12);
     for (const int basisSize : {4, 20, 100}) {
         const GeometrySpectrum spectrum = spectrumOf(mesh, basisSize, boundary);
