@@ -21,9 +21,10 @@ Evaluation FullSpectrumEvaluator::evaluate(const Laplacian& laplacian,
                                            const ConstantModes& constants, const Eigen::MatrixXd& X,
                                            const std::vector<double>& alphas, double accuracy,
                                            const Progress& progress) {
-    progress.report(0.0, "factorizing");
+    const StopPoint stop = [&] { progress.report(0.0, "factorizing"); };
+    stop();
     const double pole = poleFor(laplacian, alphas[alphas.size() / 2]);
-    ldlt_.factorizeDefinite(laplacian.W, laplacian.D, pole);
+    ldlt_.factorizeDefinite(laplacian.W, laplacian.D, pole, stop);
 
     FullSpectrumOptions options;
     options.accuracy = accuracy;

@@ -129,7 +129,7 @@ IntervalPairs computeInterval(const Laplacian& laplacian, const ConstantModes& c
                               const StopPoint& stopPoint) {
     const Eigen::VectorXd& D = laplacian.D;
     const Index n = D.size();
-    factor.factorize(laplacian.W, D, interval.middle());
+    factor.factorize(laplacian.W, D, interval.middle(), stopPoint);
     const double half = 0.5 * (interval.to - interval.from);
     Eigen::MatrixXd known(n, 0);
     Eigen::VectorXd lambda(0);

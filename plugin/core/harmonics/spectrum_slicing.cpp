@@ -37,10 +37,10 @@ void countAt(const std::vector<double>& sigmas, const Laplacian& laplacian,
     counts.resize(known + sigmas.size());
     runTasks(
         static_cast<Index>(sigmas.size()),
-        [&](Index task, int thread, const StopPoint&) {
+        [&](Index task, int thread, const StopPoint& stopPoint) {
             const auto i = static_cast<std::size_t>(task);
             ShiftedLdlt& factor = factors[static_cast<std::size_t>(thread)];
-            factor.factorize(laplacian.W, laplacian.D, sigmas[i]);
+            factor.factorize(laplacian.W, laplacian.D, sigmas[i], stopPoint);
             counts[known + i] = {factor.shift(), factor.eigenvaluesBelow()};
         },
         progress, "counting the harmonics");

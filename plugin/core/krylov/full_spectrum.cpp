@@ -115,6 +115,7 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
     double firstError = 0.0, furthest = 0.0;
     bool isDone = false;
     for (int m = 1, check = 3; !isDone; ++m) {
+        progress.report(furthest, "filtering");
         const bool isInvariant = !spaces.extend();
         const bool isLast = m >= options.maxDimension;
         if (!isInvariant && !isLast && m < check) continue;
@@ -140,7 +141,6 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
         const double done =
             std::log(firstError / largestError) / std::log(firstError / options.accuracy);
         furthest = std::clamp(done, furthest, 1.0);  // the estimate may increase
-        progress.report(furthest, "filtering");
     }
 
     const Eigen::MatrixXd means = constants.means(X);

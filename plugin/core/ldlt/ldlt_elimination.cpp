@@ -10,6 +10,9 @@ namespace spectral {
 
 namespace {
 
+/// Fronts between two calls of a stop point: a fraction of a millisecond.
+constexpr int kFrontsToStop = 64;
+
 /// The frontal matrix of a supernode, without memory.
 FrontalMatrix shapeOf(const SymbolicLdlt::Front& supernode) {
     const auto padded = [](Index rows) { return (rows + kLane - 1) / kLane * kLane; };
@@ -41,15 +44,17 @@ struct Stretch {
 class Elimination {
   public:
     Elimination(const SymbolicLdlt& symbolic, const double* W, const Eigen::VectorXd& shifts,
-                LdltNumbers& numbers)
-        : symbolic_(symbolic), W_(W), shifts_(shifts), numbers_(numbers) {}
+                LdltNumbers& numbers, const StopPoint& stop)
+        : symbolic_(symbolic), W_(W), shifts_(shifts), numbers_(numbers), stop_(stop) {}
 
     /// False when a pivot is 0.
     bool run(const std::vector<Stretch>& stretches) {
         allocate(stretches);
         for (const Stretch& stretch : stretches) {
-            for (int f = stretch.begin; f < stretch.end; ++f)
+            for (int f = stretch.begin; f < stretch.end; ++f) {
+                if (stop_ && f % kFrontsToStop == 0 && ThreadTeam::threadIndex() == 0) stop_();
                 if (!eliminateFront(symbolic_.fronts[f])) return false;
+            }
             take(stretch);
         }
         return true;
@@ -154,6 +159,7 @@ class Elimination {
     const double* W_;
     const Eigen::VectorXd& shifts_;  // sigma D, in the order of the factor
     LdltNumbers& numbers_;
+    const StopPoint& stop_;
     Eigen::VectorXd columns_, scratch_;
     Eigen::VectorXd stack_;
     std::vector<Waiting> waiting_;
@@ -163,13 +169,13 @@ class Elimination {
 }  // namespace
 
 bool eliminate(const SymbolicLdlt& symbolic, const SparseMatrix& W, const Eigen::VectorXd& D,
-               double sigma, LdltNumbers& numbers) {
+               double sigma, LdltNumbers& numbers, const StopPoint& stop) {
     Eigen::VectorXd shifts(D.size());
     for (Index i = 0; i < shifts.size(); ++i) shifts[symbolic.order[i]] = sigma * D[i];
     numbers.values.resize(static_cast<std::size_t>(symbolic.valueStarts.back()));
     numbers.pivots.resize(shifts.size());
 
-    const Elimination none(symbolic, W.valuePtr(), shifts, numbers);
+    const Elimination none(symbolic, W.valuePtr(), shifts, numbers, stop);
     std::vector<Elimination> ofSubtree(symbolic.subtrees.size(), none);
     std::vector<Stretch> above;
     int next = 0;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/ldlt/symbolic_ldlt.h"
+#include "core/support/threads.h"
 
 namespace spectral {
 
@@ -20,8 +21,9 @@ struct LdltNumbers {
 ///
 /// @param symbolic  of the pattern of W.
 /// @param numbers   its memory is reused.
+/// @param stop      called every now and then on the caller's thread; may throw. May be empty.
 /// @return false when a pivot is 0: the numbers are then meaningless. They may be infinite.
 bool eliminate(const SymbolicLdlt& symbolic, const SparseMatrix& W, const Eigen::VectorXd& D,
-               double sigma, LdltNumbers& numbers);
+               double sigma, LdltNumbers& numbers, const StopPoint& stop);
 
 }  // namespace spectral

@@ -55,7 +55,8 @@ ShiftedLdlt ShiftedLdlt::sibling(const SparseMatrix& W) {
     return empty;
 }
 
-void ShiftedLdlt::factorize(const SparseMatrix& W, const Eigen::VectorXd& D, double sigma) {
+void ShiftedLdlt::factorize(const SparseMatrix& W, const Eigen::VectorXd& D, double sigma,
+                            const StopPoint& stop) {
     analyze(W);
     symbolic_ = analysis_;
     if (numbers_.values.empty())
@@ -65,7 +66,7 @@ void ShiftedLdlt::factorize(const SparseMatrix& W, const Eigen::VectorXd& D, dou
     ++factorizations_;
     for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
         shift_ = sigma * (1.0 + attempt * kNudge);
-        if (!eliminate(*symbolic_, W, D, shift_, numbers_)) continue;
+        if (!eliminate(*symbolic_, W, D, shift_, numbers_, stop)) continue;
         if (!numbers_.pivots.allFinite()) continue;
         below_ = (numbers_.pivots.array() < 0.0).count();
         return;
@@ -76,8 +77,9 @@ void ShiftedLdlt::factorize(const SparseMatrix& W, const Eigen::VectorXd& D, dou
     throw SolverFailure(ErrorCode::SingularMatrix, text.str());
 }
 
-void ShiftedLdlt::factorizeDefinite(const SparseMatrix& W, const Eigen::VectorXd& D, double shift) {
-    factorize(W, D, -shift);
+void ShiftedLdlt::factorizeDefinite(const SparseMatrix& W, const Eigen::VectorXd& D, double shift,
+                                    const StopPoint& stop) {
+    factorize(W, D, -shift, stop);
     if (below_ > 0)
         throw SolverFailure(ErrorCode::SingularMatrix,
                             "W + s D (" + std::to_string(W.rows()) +

@@ -27,11 +27,14 @@ class ShiftedLdlt {
     /// @throws Error  of code OutOfMemory, when the factor needs more than is free.
     /// @throws SolverFailure  when pivots vanish, or are not finite, at every shift nearby, or the
     ///                        factor has more entries than an int counts: some 1e7 rows.
-    void factorize(const SparseMatrix& W, const Eigen::VectorXd& D, double sigma);
+    /// @param stop   called every now and then on the caller's thread; may throw.
+    void factorize(const SparseMatrix& W, const Eigen::VectorXd& D, double sigma,
+                   const StopPoint& stop = {});
 
     /// The same, of W + shift D.
     /// @throws SolverFailure  also when that is not positive definite to working precision.
-    void factorizeDefinite(const SparseMatrix& W, const Eigen::VectorXd& D, double shift);
+    void factorizeDefinite(const SparseMatrix& W, const Eigen::VectorXd& D, double shift,
+                           const StopPoint& stop = {});
 
     double shift() const { return shift_; }  ///< sigma, of W - sigma D.
 
