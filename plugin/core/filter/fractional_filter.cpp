@@ -83,13 +83,11 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     const ThreadTeam team;
     checkMesh(V, F, options.laplacian);  // first: of an infinite diagonal no feature size is right
     checkOptions(options);
-    progress.report(0.0, "reading the surface");
     const Surface surface = surfaceOf(V, F);
     const TransferFunction transfer(options.transferFunction, cutoffFrequency(options.featureSize));
     const Interior interior(surface.F, connectedComponents(surface.F, surface.X.rows()),
                             options.boundary);
 
-    progress.report(0.0, "measuring angles");
     LaplacianBuilder laplacians(surface, options.laplacian, options.basisUpdate,
                                 options.conformalShare);
     const EvaluationOptions evaluation = evaluationFor(options, surface);
