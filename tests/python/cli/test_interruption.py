@@ -66,6 +66,9 @@ def test_an_interruption_ends_with_130_at_once_and_leaves_nothing_behind(
 INTERRUPT_AT_IMPORT = """
 import os, signal, sys
 
+# The background jobs of a shell ignore Ctrl-C.
+signal.signal(signal.SIGINT, signal.default_int_handler)
+
 class Interrupt:
     def find_spec(name, path=None, target=None):
         if name == os.environ["INTERRUPT_AT"] and "meshlab_spectral.cli" in sys.orig_argv:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -12,15 +13,15 @@ import pytest
 from helpers import refusal
 from meshlab_spectral import FilterOptions, OptionError, set_memory_limit
 from meshlab_spectral.errors import MemoryLimitError
-from meshlab_spectral.plugin.memory import VARIABLE
 from meshlab_spectral.process.parent import JobLimits, MeshLabProcess
 
 MEBIBYTE = 2**20
 
 
 @pytest.fixture(autouse=True)
-def _restored(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv(VARIABLE, raising=False)
+def _restored() -> Iterator[None]:
+    yield
+    set_memory_limit(None)
 
 
 def test_a_limit_that_is_none_is_refused() -> None:

@@ -44,7 +44,7 @@ class Limits:
         high = str(self.high) if isinstance(self.high, int) else f"{self.high:.2g}"
         if not self.low_open:
             return f"from {self.low:g} to {high}"
-        return f"above {self.low:g}, at most {high}"
+        return f"above {self.low or 'zero'}, at most {high}"
 
 
 _LENGTHS = Limits(0, low_open=True)
