@@ -7,6 +7,7 @@
 #   BENCH_MESH          the mesh of the C++ benchmark, skipped when there is no such file
 #   BENCH_OPTIONS       of `make bench-basis` and `make bench-defaults`; --help lists them
 #   FUZZ_OPTIONS        of `make fuzz`; tests/fuzz/fuzz_core.cpp lists them
+#   FUZZ_EXAMPLES       of `make fuzz-python`: how many, about 20 a second
 #   SANITIZE            ON: `make fuzz` with AddressSanitizer and UndefinedBehaviorSanitizer
 PYTHON ?= python3
 MESHLAB_SOURCE_DIR ?=
@@ -14,6 +15,7 @@ WARNINGS_AS_ERRORS ?= OFF
 BENCH_MESH ?= ../shared/data/dragon_40k.ply
 BENCH_OPTIONS ?=
 FUZZ_OPTIONS ?= --cases 100000
+FUZZ_EXAMPLES ?= 5000
 SANITIZE ?= OFF
 
 BENCHMARKS := OFF
@@ -35,7 +37,7 @@ PACKAGE_SOURCES := CMakeLists.txt $(shell find plugin python -not -path '*/__pyc
 # Two targets at once would fetch MeshLab's headers twice; ninja uses every core anyway.
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help demo test gui-test screenshots setup build bench bench-basis bench-batch bench-defaults bench-ldlt fuzz lint format clean
+.PHONY: help demo test gui-test screenshots setup build bench bench-basis bench-batch bench-defaults bench-ldlt fuzz fuzz-python lint format clean
 
 help:  ## list these commands
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 20
@@ -88,6 +90,10 @@ fuzz: setup  ## try the core with random meshes and options; about an hour
 	  -DSPECTRAL_SANITIZE=$(SANITIZE)
 	cmake --build build/fuzz-sanitize-$(SANITIZE) --target fuzz_core
 	build/fuzz-sanitize-$(SANITIZE)/tests/fuzz/fuzz_core $(FUZZ_OPTIONS)
+
+fuzz-python: $(PACKAGE)  ## try filters and commands with random meshes, parameters, arguments
+	MESHLAB_SPECTRAL_FUZZ=$(FUZZ_EXAMPLES) $(BIN)/python -m pytest -c python/pyproject.toml \
+	  --rootdir . tests/python/fuzz
 
 lint: setup  ## check style and types, change nothing
 	$(CPP_FILES) | xargs $(BIN)/clang-format --dry-run -Werror

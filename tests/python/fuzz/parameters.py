@@ -1,0 +1,95 @@
+"""Parameters of every filter, within, at and beyond their limits, as hypothesis draws them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pymeshlab
+from hypothesis import strategies as st
+
+NAN, INFINITY = float("nan"), float("inf")
+LARGEST_INTEGER = 2**31 - 1
+
+# A size is ("%", percent of the diagonal) or ("length", in units of the mesh): plain for JSON.
+
+
+def _of(within: tuple[Any, ...], beyond: tuple[Any, ...]) -> st.SearchStrategy[Any]:
+    """Draw mostly values that are within the limits or at them."""
+    one_in_twenty = st.integers(0, 19)
+    return one_in_twenty.flatmap(lambda k: st.sampled_from(beyond if k == 19 else within))
+
+
+_PERCENTAGES = _of((5.0, 15.0, 50.0, 100.0, 1.0, 0.01, 1e-9), (150.0, 1e6, 0.0, -5.0, NAN))
+_LENGTHS = _of((1.0, 0.1, 1e-3, 1e-30, 1e-300, 1e30, 1e300), (0.0, -1.0, NAN, INFINITY))
+# ("%", percent of the diagonal) or ("length", in units of the mesh): plain, for JSON.
+_SIZES = st.one_of(st.tuples(st.just("%"), _PERCENTAGES), st.tuples(st.just("length"), _LENGTHS))
+_GAINS = _of(
+    (1.0, 0.0, 0.05, 0.5, 2.0, 10.0, 1e-30, 1e-60, 1e6, 1e30, -0.0),
+    (1e39, -1e-9, -1.0, NAN, INFINITY),
+)
+_STEPS = _of((0, 1, 2, 3, 10, 20), (-1, -LARGEST_INTEGER))
+_BASIS_SIZES = _of((5, 2, 3, 20, 49, 100), (1, 0, -1, 10_000, LARGEST_INTEGER))
+
+
+def _choice(count: int) -> st.SearchStrategy[int]:
+    return _of(tuple(range(count)), (-1, count))
+
+
+_LAPLACIAN, _BOUNDARY = _choice(2), _choice(2)
+
+PARAMETERS: dict[str, dict[str, st.SearchStrategy[Any]]] = {
+    "apply_coord_spectral_filter_fractional": {
+        "filter_type": _choice(4),
+        "feature_size": _SIZES,
+        "pass_gain": _GAINS,
+        "stop_gain": _GAINS,
+        "band_width": _of((1.0, 2.0, 0.3, 1e-6, 60.0, 1e30), (1e-60, 0.0, -1.0, NAN)),
+        "response": _choice(3),
+        "order": _of((2, 1, 8, 64), (0, 65, -1, LARGEST_INTEGER)),
+        "power": _of((1.0, 0.5, 0.1, 1e-9), (1e-60, 0.0, -0.1, 1.000001, 2.0, NAN)),
+        "steps": _STEPS,
+        "tolerance": _SIZES,
+        "basis_update": _choice(3),
+        "conformal_share": _of((1.0, 0.5, 0.1, 1e-9, 1e-60, 0.0), (-0.1, 1.000001, 2.0, NAN)),
+        "spectrum": _choice(2),
+        "basis_size": _BASIS_SIZES,
+        "reinject_residual": st.booleans(),
+        "laplacian": _LAPLACIAN,
+        "boundary": _BOUNDARY,
+    },
+    "compute_scalar_spectral_artefacts_per_vertex": {
+        "feature_size": _SIZES,
+        "laplacian": _LAPLACIAN,
+    },
+    "compute_scalar_manifold_harmonic_per_vertex": {
+        "mode": _of((1, 0, 2, 4), (19, -1, LARGEST_INTEGER)),
+        "basis_size": _BASIS_SIZES,
+        "store_basis": st.booleans(),
+        "laplacian": _LAPLACIAN,
+        "boundary": _BOUNDARY,
+    },
+    "get_geometry_spectrum": {
+        "basis_size": _BASIS_SIZES,
+        "laplacian": _LAPLACIAN,
+        "boundary": _BOUNDARY,
+    },
+}
+
+
+@st.composite
+def calls(draw: st.DrawFn) -> tuple[str, dict[str, Any]]:
+    """Draw the name of a filter and some of its parameters; half of the calls are the first's."""
+    names = tuple(PARAMETERS)
+    name = draw(st.sampled_from((*names[:1] * 3, *names[1:])))
+    # One at a time: with all of them drawn, hardly a call would be valid.
+    chosen = draw(st.lists(st.sampled_from(tuple(PARAMETERS[name])), max_size=5, unique=True))
+    return name, {parameter: draw(PARAMETERS[name][parameter]) for parameter in chosen}
+
+
+def for_pymeshlab(parameters: dict[str, Any]) -> dict[str, Any]:
+    """Turn the sizes among the parameters into pymeshlab's types."""
+    kinds = {"%": pymeshlab.PercentageValue, "length": pymeshlab.PureValue}
+    return {
+        name: kinds[value[0]](value[1]) if isinstance(value, tuple | list) else value
+        for name, value in parameters.items()
+    }

@@ -1,0 +1,39 @@
+"""Any mesh, any filter, any parameters: a result or an error that helps, and nothing in between.
+
+`worker.py` has the contract. `make fuzz-python` tries other examples, and more of them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Any
+
+import pytest
+from fuzz.judge import Judge
+from fuzz.meshes import Description, descriptions
+from fuzz.parameters import PARAMETERS, calls
+from fuzz.runs import as_many_as
+from hypothesis import event, given
+from meshlab_spectral.plugin.loading import FILTERS
+
+
+@pytest.fixture(scope="module")
+def judge() -> Iterator[Judge]:
+    judge = Judge()
+    yield judge
+    judge.end()
+
+
+def test_every_filter_is_called() -> None:
+    assert PARAMETERS.keys() == set(FILTERS.values())
+
+
+@as_many_as(150)
+@given(descriptions(), calls())
+def test_a_filter_gives_a_finite_result_or_an_error_that_leaves_the_mesh_as_it_was(
+    judge: Judge, mesh: Description, call: tuple[str, dict[str, Any]]
+) -> None:
+    name, parameters = call
+    verdict = judge({"mesh": mesh, "filter": name, "parameters": parameters})
+    event(f"{name}: {verdict['outcome']}")
+    assert verdict["failures"] == [], verdict
