@@ -11,6 +11,9 @@ using spectral::ErrorCode;
 const char* const kRemesh =
     "apply 'Remove Zero Area Faces' or 'Remeshing: Isotropic Explicit Remeshing' first";
 
+const char* const kKeepLargeParts =
+    "parts are tiny compared with the mesh: apply 'Remove Isolated pieces (wrt Diameter)' first";
+
 bool hasChoice(const RichParameterList& parameters, const char* name, int choice) {
     return parameters.hasParameter(name) && parameters.getEnum(name) == choice;
 }
@@ -23,13 +26,35 @@ std::string otherThanThisBasis(const RichParameterList& parameters) {
     return text;
 }
 
+/// Remedy for triangles without area, or hardly any.
+std::string largerTriangles(const RichParameterList& parameters) {
+    // The default Laplacian accepts them; what defeats it is only tiny compared with the mesh.
+    if (!hasChoice(parameters, "laplacian", 1)) return kKeepLargeParts;
+    return std::string(
+               "choose laplacian = intrinsic delaunay, or apply 'Merge Close Vertices' and 'Remove "
+               "Duplicate Faces', or ") +
+           kRemesh;
+}
+
 /// Remedy for a shape that has collapsed during the filter.
 std::string stablerFilter(const RichParameterList& parameters) {
     if (hasChoice(parameters, "laplacian", 1)) return "choose laplacian = intrinsic delaunay";
     if (hasChoice(parameters, "basis_update", 0))
         return "a strong filter with basis_update = full pinches thin parts off: basis_update = "
                "conformal is the more stable choice";
-    return "choose a smaller feature_size";
+    return std::string("choose a smaller feature_size, or ") + kRemesh;
+}
+
+/// Remedy for a filter that leaves nothing.
+std::string weakerFilter(const RichParameterList& parameters) {
+    constexpr double kSmall = 0.01;
+    // The gain of the largest details: a high-pass or band-pass stops them.
+    const bool isStopped =
+        hasChoice(parameters, "filter_type", 1) || hasChoice(parameters, "filter_type", 2);
+    const char* const name = isStopped ? "stop_gain" : "pass_gain";
+    if (!parameters.hasParameter(name) || parameters.getFloat(name) >= kSmall)
+        return "choose a smaller feature_size";
+    return std::string("choose ") + name + " = 1, which keeps the large details";
 }
 
 std::string remedy(const spectral::Error& error, const RichParameterList& parameters) {
@@ -42,15 +67,11 @@ std::string remedy(const spectral::Error& error, const RichParameterList& parame
         case ErrorCode::NotFinite:
             return "delete them, e.g. with 'Conditional Vertex Selection' (x != x) and 'Delete "
                    "Selected Vertices'";
-        case ErrorCode::DegenerateTriangles:
-            return std::string(
-                       "choose laplacian = intrinsic delaunay, or apply 'Merge Close "
-                       "Vertices' and 'Remove Duplicate Faces', or ") +
-                   kRemesh;
+        case ErrorCode::DegenerateTriangles: return largerTriangles(parameters);
         case ErrorCode::NoDelaunay:
         case ErrorCode::SingularMatrix: return kRemesh;
         case ErrorCode::ShapeCollapsed: return stablerFilter(parameters);
-        case ErrorCode::ShrinksToNothing: return "choose a smaller feature_size";
+        case ErrorCode::ShrinksToNothing: return weakerFilter(parameters);
         case ErrorCode::TooManyVertices:
             return "apply 'Simplification: Quadric Edge Collapse Decimation' first";
         case ErrorCode::OutOfMemory:

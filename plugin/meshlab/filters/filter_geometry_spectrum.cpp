@@ -96,7 +96,7 @@ std::vector<std::string> warningsOf(const GeometrySpectrum& spectrum) {
     constexpr double kAccurate = 0.01;
     if (spectrum.mismatch <= kAccurate) return {};
     std::ostringstream text;
-    text << std::setprecision(2) << "up to " << 100.0 * std::min(1.0, spectrum.mismatch)
+    text << std::setprecision(3) << "up to " << 100.0 * std::min(1.0, spectrum.mismatch)
          << " % of the energy may belong to other sizes: triangles are needles, or parts of the "
             "mesh are far away";
     return {text.str()};

@@ -2,6 +2,7 @@
 
 #include <common/plugins/interfaces/filter_plugin.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
@@ -56,6 +57,13 @@ std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& r
 
 namespace {
 
+/// A share in percent, to two or three digits.
+std::string percentOf(double share) {
+    std::ostringstream text;
+    text << std::setprecision(share < 0.1 ? 2 : 3) << 100.0 * share << " %";
+    return text.str();
+}
+
 /// The most important facts in one line: filter and size, displacement, accuracy.
 std::string headline(const spectral::FilterOptions& options, const spectral::FilterResult& result,
                      double diagonal) {
@@ -76,7 +84,7 @@ std::string headline(const spectral::FilterOptions& options, const spectral::Fil
         text << "NOT accurate: estimated error " << result.stepError << " ("
              << percent * result.stepError << " %)";
     if (options.steps == 0 && result.singularPart > spectral::kNegligibleArea)
-        text << "; " << 100.0 * result.singularPart << " % of the input shrinks away";
+        text << "; " << percentOf(result.singularPart) << " of the input shrinks away";
     return text.str();
 }
 
@@ -88,6 +96,32 @@ std::string cutoffWarning(const spectral::FilterResult& result, double last) {
          << ", above the feature size of " << result.featureSize
          << ": details between the two are treated like all finer ones. Choose a larger "
             "feature_size, a larger basis_size, or spectrum = full";
+    return text.str();
+}
+
+/// What to change where the steps do not converge.
+std::string convergingFilter(const spectral::FilterOptions& options) {
+    const spectral::TransferFunctionOptions& transfer = options.transferFunction;
+    const bool stopsLargeDetails = transfer.type == spectral::FilterType::HighPass ||
+                                   transfer.type == spectral::FilterType::BandPass;
+    std::string text = "parts of it shrink away. Choose ";
+    if (std::max(transfer.passGain, transfer.stopGain) > 1.0)
+        text = "parts of it grow too fast. Choose smaller gains";
+    else if (stopsLargeDetails && transfer.stopGain < 0.1)
+        text += "stop_gain = 1, which keeps the large details";
+    else
+        text += "a smaller feature_size";
+    if (options.basisUpdate == spectral::BasisUpdate::Full) text += ", basis_update = conformal";
+    return text + ", or a larger tolerance";
+}
+
+std::string toleranceWarning(const spectral::FilterOptions& options,
+                             const spectral::FilterResult& result) {
+    std::ostringstream text;
+    text << std::setprecision(2) << "the tolerance of " << options.tolerance
+         << " was not reached on " << percentOf(result.singularPart)
+         << " of the surface, where the estimated error is at least " << result.stepError << ": "
+         << convergingFilter(options);
     return text.str();
 }
 
@@ -115,14 +149,7 @@ std::vector<std::string> warningsOf(const spectral::FilterOptions& options,
         warnings.push_back(text.str());
         text.str("");
     }
-    if (!result.toleranceReached) {
-        text << "the tolerance of " << options.tolerance << " was not reached on "
-             << 100.0 * result.singularPart
-             << " % of the surface, where the estimated error is at least " << result.stepError
-             << ": parts of it shrink away. Choose a smaller feature_size, or basis_update = "
-                "conformal instead of full";
-        warnings.push_back(text.str());
-    }
+    if (!result.toleranceReached) warnings.push_back(toleranceWarning(options, result));
     if (!result.cutoffReached) warnings.push_back(cutoffWarning(result, lastFrequency(result)));
     for (std::string& warning : residualWarnings(result.residuals))
         warnings.push_back(std::move(warning));

@@ -148,6 +148,35 @@ def test_a_failure_in_the_middle_of_the_steps_leaves_the_mesh_as_it_was(
     assert_same(before, snapshot(mesh_set.current_mesh()))
 
 
+@pytest.mark.parametrize(
+    ("parameters", "advice"),
+    [
+        ({"pass_gain": 0.0}, "choose pass_gain = 1"),
+        ({"filter_type": "high-pass", "steps": 3}, "choose stop_gain = 1"),
+        ({"feature_size": length(1e6)}, "choose a smaller feature_size"),
+    ],
+)
+def test_a_filter_that_leaves_nothing_is_told_which_option_keeps_the_shape(
+    parameters: dict[str, Any], advice: str
+) -> None:
+    tetrahedron = mesh_set_of(
+        [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+    )
+    message = refusal(tetrahedron, **{"basis_update": "full", "steps": 10, **parameters})
+    assert "shrinks to nothing" in message
+    assert advice in message
+
+
+def test_the_laplacian_in_use_is_no_advice_against_parts_that_round_off_destroys() -> None:
+    # Unit tetrahedra, two of them where neighbouring numbers differ by 16.
+    places = np.vstack([1e17 * np.random.default_rng(101).uniform(size=(2, 3)), np.zeros(3)])
+    V = np.vstack([np.vstack([np.zeros(3), np.eye(3)]) + place for place in places])
+    F = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    message = refusal(mesh_set_of(V, np.vstack([F, F + 4, F + 8])))
+    assert "intrinsic delaunay" not in message
+    assert "'Remove Isolated pieces (wrt Diameter)'" in message
+
+
 def test_a_mesh_can_be_filtered_after_a_refusal(decimated: Callable[..., Any]) -> None:
     mesh_set = mesh_set_of(*decimated("cow.obj"))
     refusal(mesh_set, steps=-1)

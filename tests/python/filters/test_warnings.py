@@ -84,6 +84,26 @@ def test_every_flag_of_a_shortfall_comes_with_a_warning(decimated: Decimated) ->
     assert "basis_size" in few["warnings"][0]
 
 
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"filter_type": "high-pass"}, "stop_gain = 1"),
+        ({"feature_size": "20%", "basis_update": "full"}, "basis_update = conformal"),
+        ({"filter_type": "band-pass", "stop_gain": 1.0, "pass_gain": 1e6}, "smaller gains"),
+    ],
+)
+def test_steps_that_do_not_converge_come_with_an_option_that_is_not_yet_chosen(
+    options: dict[str, Any], words: str, decimated: Decimated
+) -> None:
+    _, report = filter_mesh(*decimated("cow.obj"), **options)
+    assert not report["tolerance_reached"]
+    (warning,) = (text for text in report["warnings"] if "tolerance" in text)
+    assert words in warning
+    assert warning.endswith("or a larger tolerance")
+    assert ("conformal" in warning) == ("basis_update" in options)
+    assert not re.search(r"e\+\d+ %", warning)
+
+
 def test_an_earlier_runs_warnings_are_not_those_of_a_later_one(decimated: Decimated) -> None:
     V, F = decimated("cow.obj")
     assert filter_mesh(*TRIANGLE, **EVERYTHING_FIXED)[1]["warnings"]
