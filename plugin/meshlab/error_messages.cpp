@@ -57,6 +57,16 @@ std::string weakerFilter(const RichParameterList& parameters) {
     return std::string("choose ") + name + " = 1, which keeps the large details";
 }
 
+/// Remedy for a gain that is too steep.
+std::string gentlerFilter(const RichParameterList& parameters) {
+    constexpr float kLarge = 100.0f;
+    for (const char* const name : {"pass_gain", "stop_gain"})
+        if (parameters.hasParameter(name) && parameters.getFloat(name) > kLarge)
+            return std::string("choose a smaller ") + name;
+    return "choose a stop_gain of 0.05 instead of 0, a lower order or a wider band, response = "
+           "gaussian, fewer steps, or spectrum = truncated";
+}
+
 std::string remedy(const spectral::Error& error, const RichParameterList& parameters) {
     const std::string limit = std::to_string(error.limit());
     switch (error.code()) {
@@ -90,9 +100,7 @@ std::string remedy(const spectral::Error& error, const RichParameterList& parame
             return "choose a larger feature_size, response = butterworth with order = 8, or "
                    "spectrum = truncated with reinject_residual";
         case ErrorCode::BoundaryFixesAll: return "choose boundary = free";
-        case ErrorCode::TooSteep:
-            return "choose a stop_gain of 0.05 instead of 0, a lower order or a wider band, "
-                   "response = gaussian, fewer steps, or spectrum = truncated";
+        case ErrorCode::TooSteep: return gentlerFilter(parameters);
         case ErrorCode::OptionOutOfRange:
         case ErrorCode::BadIndex:
         case ErrorCode::NoArea:

@@ -2,7 +2,7 @@
 
 #include <common/mlexception.h>
 
-#include <cmath>
+#include <Eigen/Geometry>
 
 MeshMatrices toMatrices(const CMeshO& mesh) {
     MeshMatrices matrices;
@@ -30,19 +30,34 @@ MeshMatrices toMatrices(const CMeshO& mesh) {
 }
 
 void checkExtent(const CMeshO& mesh) {
-    // MeshLab squares coordinates in its own precision for the diagonal of the bounding box.
-    constexpr double largest = sizeof(Scalarm) == sizeof(float) ? 1e18 : 1e37;
-    for (const CVertexO& vertex : mesh.vert)
-        for (int c = 0; c < 3 && !vertex.IsD(); ++c) {
-            const double x = vertex.cP()[c];
-            if (std::isfinite(x) && std::abs(x) > largest)
-                throw MLException(QString("vertex %1 has a coordinate of %2, and the largest that "
-                                          "can be filtered is %3: apply 'Transform: Scale, "
-                                          "Normalize' first")
-                                      .arg(vcg::tri::Index(mesh, vertex))
-                                      .arg(x)
-                                      .arg(largest));
-        }
+    // MeshLab squares coordinates in its own precision for the diagonal of the bounding box, and
+    // keeps lengths, such as a tolerance of a thousandth of it, in single precision.
+    constexpr bool isFloat = sizeof(Scalarm) == sizeof(float);
+    constexpr double largest = isFloat ? 1e18 : 1e37, smallest = isFloat ? 1e-18 : 1e-33;
+    // 'Transform: Scale, Normalize' leaves some such meshes as they are, or makes them NaN.
+    const char* const remedy =
+        "scale the mesh first, e.g. with 'Per Vertex Geometric Function', x * 1e%1";
+    Eigen::AlignedBox3d box;
+    for (const CVertexO& vertex : mesh.vert) {
+        if (vertex.IsD()) continue;
+        const Eigen::Vector3d p(vertex.cP()[0], vertex.cP()[1], vertex.cP()[2]);
+        if (!p.allFinite()) continue;  // the core counts these
+        if (p.cwiseAbs().maxCoeff() > largest)
+            throw MLException(QString("vertex %1 has a coordinate of %2, and the largest that can "
+                                      "be filtered is %3: %4")
+                                  .arg(vcg::tri::Index(mesh, vertex))
+                                  .arg(p.maxCoeff() > largest ? p.maxCoeff() : p.minCoeff())
+                                  .arg(largest)
+                                  .arg(QString(remedy).arg(-30)));
+        box.extend(p);
+    }
+    const double extent = box.isEmpty() ? 0.0 : box.sizes().maxCoeff();
+    if (extent > 0.0 && extent < smallest)
+        throw MLException(QString("the mesh is only %1 wide, and the smallest that can be filtered "
+                                  "is %2: %3")
+                              .arg(extent)
+                              .arg(smallest)
+                              .arg(QString(remedy).arg("+30")));
 }
 
 void reportWriting(const MeshMatrices& input, const CMeshO& mesh,

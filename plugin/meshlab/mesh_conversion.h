@@ -17,8 +17,8 @@ struct MeshMatrices {
 
 MeshMatrices toMatrices(const CMeshO& mesh);
 
-/// @throws MLException  when coordinates are so large that the lengths among the parameters, which
-/// MeshLab keeps in single precision, would be infinite.
+/// @throws MLException  when coordinates are so large, or the mesh so small, that the lengths among
+/// the parameters, which MeshLab keeps in single precision, would be infinite or zero.
 void checkExtent(const CMeshO& mesh);
 
 /// Reports progress before the mesh is written, the last opportunity to cancel.

@@ -98,8 +98,22 @@ def test_coordinates_beyond_single_precision_are_refused_as_such(
     before = snapshot(mesh_set.current_mesh())
     message = refusal(mesh_set, name)
     assert "vertex 17 has a coordinate of -1e+39" in message
-    assert "Scale, Normalize" in message
+    assert "'Per Vertex Geometric Function', x * 1e-30" in message
     assert_same(before, snapshot(mesh_set.current_mesh()))
+
+
+@pytest.mark.parametrize("scale", [1e75, 1e-60])
+def test_the_advice_against_numbers_beyond_single_precision_helps(
+    scale: float, decimated: Callable[..., Any]
+) -> None:
+    V, F = decimated("cow.obj")
+    mesh_set = mesh_set_of(scale * V, F)
+    message = refusal(mesh_set)
+    assert ("has a coordinate of" if scale > 1 else "the mesh is only") in message
+    assert "'Per Vertex Geometric Function'" in message
+    scaled = {axis: f"{axis} * {1 / scale}" for axis in "xyz"}
+    mesh_set.apply_filter("compute_coord_by_function", **scaled)
+    assert mesh_set.apply_filter(FILTER, steps=1)["max_displacement"] > 0
 
 
 def test_faces_without_area_are_counted_with_a_way_to_mend_them(
@@ -165,6 +179,12 @@ def test_a_filter_that_leaves_nothing_is_told_which_option_keeps_the_shape(
     message = refusal(tetrahedron, **{"basis_update": "full", "steps": 10, **parameters})
     assert "shrinks to nothing" in message
     assert advice in message
+
+
+def test_too_large_a_gain_is_named_as_too_steep(decimated: Callable[..., Any]) -> None:
+    assert refusal(mesh_set_of(*decimated("cow.obj")), pass_gain=1e30).endswith(
+        "choose a smaller pass_gain"
+    )
 
 
 def test_the_laplacian_in_use_is_no_advice_against_parts_that_round_off_destroys() -> None:
