@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import json
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -86,3 +89,43 @@ def test_conformal_steps_leave_the_dragon_lower_spikes_than_one_shot(
     one_shot, conformal = left
     assert conformal.rms < one_shot.rms
     assert conformal.maximum < 0.75 * one_shot.maximum
+
+
+BENCHMARK = Path(__file__).resolve().parents[2] / "benchmarks" / "bench_contract.py"
+# Mesh -> the calls that end with an error, and words of it. `make bench-contract` has all meshes.
+ERRORS: dict[str, dict[str, str]] = {
+    "T.ply": dict.fromkeys(
+        ("filter truncated", "harmonics default", "harmonics large", "harmonics fixed"),
+        "choose at most 19",
+    ),
+    "bunny16k_points.ply": {"": "point cloud"},
+    "office_chair.obj": {"artefacts cotangent": "24 triangles have no area"},
+    "non_manif_hole.ply": {},
+    "many_small_holes.ply": {},
+    "conrod.stl": {},
+    "greek_helmet.obj": {},
+    "fandisk.off": {},
+    "camelhead.off": {},
+}
+
+
+@pytest.mark.parametrize("name", ERRORS)
+def test_every_filter_takes_a_real_mesh_at_three_settings_or_says_what_to_choose(
+    name: str, shared_mesh: Callable[[str], Path], tmp_path: Path
+) -> None:
+    table = tmp_path / "rows.json"
+    done = subprocess.run(
+        [sys.executable, str(BENCHMARK), str(shared_mesh(name)), "--json", str(table)],
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    rows = [json.loads(line) for line in table.read_text().splitlines()]
+    assert len(rows) == 12
+    expected = ERRORS[name]
+    for row in rows:
+        words = expected.get(f"{row['filter']} {row['setting']}", expected.get(""))
+        assert (row["outcome"] == "error") == (words is not None), row
+        assert words is None or words in row["texts"][0]
