@@ -15,10 +15,10 @@ namespace {
 /// Relative accuracy of a signal that is negligible compared with the shape: two digits of it.
 constexpr double kCoarsestAccuracy = 1e-2;
 
-/// A shape that only a Laplacian is taken of may have so many times the error of a result, because
-/// its error enters the result through the change of the Laplacian alone; but three digits at
-/// least.
-constexpr double kPredictionLeeway = 5.0, kPredictionAccuracy = 1e-3;
+/// Error of a shape that a Laplacian is taken of, relative to that of a result, and three digits at
+/// least. It enters the result through the change of the Laplacian alone, but where parts shrink
+/// away that change is large; a digit costs two solves.
+constexpr double kPredictionShare = 0.1, kPredictionAccuracy = 1e-3;
 
 /// Relative error beyond which a result is useless.
 constexpr double kUselessError = 0.1;
@@ -48,8 +48,8 @@ Evaluation StepEvaluator::operator()(const Laplacian& surface, const Eigen::Matr
 
 Evaluation StepEvaluator::predict(const Laplacian& surface, const Eigen::MatrixXd& X,
                                   const std::vector<double>& alphas, const Progress& progress) {
-    return evaluate(surface, X, alphas,
-                    std::min(kPredictionLeeway * accuracy_, kPredictionAccuracy), progress);
+    return evaluate(surface, X, alphas, std::min(kPredictionShare * accuracy_, kPredictionAccuracy),
+                    progress);
 }
 
 Evaluation StepEvaluator::evaluate(const Laplacian& surface, const Eigen::MatrixXd& X,

@@ -47,8 +47,8 @@ class StepEvaluator {
     Evaluation operator()(const Laplacian& surface, const Eigen::MatrixXd& X, double alpha,
                           const Progress& progress);
 
-    /// The same for several powers, with fewer digits: for shapes that only Laplacians are taken
-    /// of, not in the result themselves.
+    /// The same for several powers: for shapes that Laplacians are taken of, not in the result
+    /// themselves.
     Evaluation predict(const Laplacian& surface, const Eigen::MatrixXd& X,
                        const std::vector<double>& alphas, const Progress& progress);
 

@@ -67,6 +67,8 @@ class ChebyshevSeries {
 double selectPole(const Gain& gain, double cutoff, const SpectrumRange& range, double accuracy) {
     const double atCutoff =
         std::clamp(cutoff * cutoff, range.lowest / kFarthest, range.highest * kFarthest);
+    // Where in the range a band would be; a cutoff beyond it leaves no band to miss.
+    const double atBand = gain(std::sqrt(std::clamp(cutoff * cutoff, range.lowest, range.highest)));
     double best = atCutoff;
     int nodes = kFewestNodes;
     for (double target = accuracy;;) {
@@ -76,7 +78,7 @@ double selectPole(const Gain& gain, double cutoff, const SpectrumRange& range, d
             const ChebyshevSeries series(gain, pole, pole / (range.highest + pole),
                                          pole / (range.lowest + pole), nodes);
             const int dimension = series.requiredDimension(target);
-            if (dimension >= fewest || !series.reaches(gain(cutoff), accuracy)) continue;
+            if (dimension >= fewest || !series.reaches(atBand, accuracy)) continue;
             fewest = dimension;
             best = pole;
         }
