@@ -24,6 +24,8 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
+from bench_defaults import forget_peak, peak_megabytes
+
 
 class Call(NamedTuple):
     """A filter and its parameters; a feature size is in percent of the diagonal."""
@@ -57,18 +59,6 @@ CALLS = [
 MOVES = {"filter"}
 
 _failed: list[Any] = []  # pymeshlab may crash when a MeshSet with an error is destroyed
-
-
-def peak_megabytes() -> float:
-    """Return the peak resident memory of this process."""
-    status = pathlib.Path("/proc/self/status").read_text()
-    return int(status.split("VmHWM:")[1].split()[0]) / 1024
-
-
-def forget_peak() -> float:
-    """Have the peak begin anew; return the memory that is resident now, in megabytes."""
-    pathlib.Path("/proc/self/clear_refs").write_text("5")
-    return peak_megabytes()
 
 
 def called(path: str, call: Call) -> dict[str, Any]:

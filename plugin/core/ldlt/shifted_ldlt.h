@@ -24,10 +24,10 @@ class ShiftedLdlt {
     /// @param W      n x n, symmetric, both triangles stored.
     /// @param D      n diagonal entries > 0.
     /// @param sigma  perturbed by parts of 1e-7 where a pivot vanishes; see shift().
+    /// @param stop   called every now and then on the caller's thread; may throw.
     /// @throws Error  of code OutOfMemory, when the factor needs more than is free.
     /// @throws SolverFailure  when pivots vanish, or are not finite, at every shift nearby, or the
     ///                        factor has more entries than an int counts: some 1e7 rows.
-    /// @param stop   called every now and then on the caller's thread; may throw.
     void factorize(const SparseMatrix& W, const Eigen::VectorXd& D, double sigma,
                    const StopPoint& stop = {});
 

@@ -34,13 +34,16 @@ void setMemoryLimit(double bytes) { memoryLimit = bytes; }
 
 double availableMemory() {
     double available = 1024.0 * numberAfter("/proc/meminfo", "MemAvailable:");
-    const double group = numberIn("/sys/fs/cgroup/memory.max");
-    if (group < kUnknown)
-        available = std::min(available, group - numberIn("/sys/fs/cgroup/memory.current"));
+    const auto leaveAtMost = [&available](double limit, double used) {
+        if (used < kUnknown) available = std::min(available, std::max(0.0, limit - used));
+    };
+    // What files take of a group's memory is given back when it is needed.
+    const double inFiles = numberAfter("/sys/fs/cgroup/memory.stat", "inactive_file");
+    leaveAtMost(numberIn("/sys/fs/cgroup/memory.max"),
+                numberIn("/sys/fs/cgroup/memory.current") - (inFiles < kUnknown ? inFiles : 0.0));
     if (memoryLimit > 0.0)
-        available =
-            std::min(available, memoryLimit - 1024.0 * numberAfter("/proc/self/status", "VmRSS:"));
-    return std::max(0.0, available);
+        leaveAtMost(memoryLimit, 1024.0 * numberAfter("/proc/self/status", "VmRSS:"));
+    return available;
 }
 
 }  // namespace spectral

@@ -16,9 +16,10 @@ using testing::Operator;
 /// Limits the memory to what the program has, and some more.
 class Memory : public ::testing::Test {
   protected:
-    static void limitTo(double megabytesMore) {
+    void SetUp() override {
         if (testing::peakMegabytes() == 0.0) GTEST_SKIP() << "this system does not tell";
-        setMemoryLimit(0.0);
+    }
+    static void limitTo(double megabytesMore) {
         setMemoryLimit(1e6 * (testing::peakMegabytes() + megabytesMore));
     }
     void TearDown() override { setMemoryLimit(0.0); }
