@@ -66,7 +66,7 @@ def called(path: str, call: Call) -> dict[str, Any]:
     import numpy as np
     import pymeshlab
     from meshlab_spectral.filters.calling import reason_of
-    from meshlab_spectral.plugin.last_warnings import last_warnings
+    from meshlab_spectral.plugin.library import last_warnings
 
     mesh_set = pymeshlab.MeshSet()
     mesh_set.load_new_mesh(path)

@@ -11,13 +11,13 @@
 #include <vector>
 
 #include "core/filter/fractional_filter.h"
-#include "core/filter/transfer_function.h"
 #include "core/krylov/pole_selection.h"
 #include "core/laplacian/frequency.h"
 #include "core/laplacian/laplacian.h"
 #include "core/ldlt/shifted_ldlt.h"
 #include "core/mesh/measures.h"
 #include "core/support/threads.h"
+#include "core/transfer/transfer_function.h"
 #include "support/ply.h"
 
 using namespace spectral;

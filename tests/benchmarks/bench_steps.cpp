@@ -15,11 +15,11 @@
 #include "core/filter/automatic_steps.h"
 #include "core/filter/fractional_filter.h"
 #include "core/filter/fractional_steps.h"
-#include "core/filter/transfer_function.h"
 #include "core/laplacian/interior.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/surface.h"
+#include "core/transfer/transfer_function.h"
 #include "support/ply.h"
 
 using namespace spectral;

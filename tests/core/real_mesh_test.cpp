@@ -12,13 +12,13 @@
 
 #include "core/analysis/geometry_spectrum.h"
 #include "core/filter/fractional_filter.h"
-#include "core/filter/transfer_function.h"
 #include "core/harmonics/truncated_basis.h"
 #include "core/laplacian/frequency.h"
 #include "core/laplacian/interior.h"
 #include "core/laplacian/intrinsic_delaunay.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/mesh.h"
+#include "core/transfer/transfer_function.h"
 #include "support/evaluation.h"
 
 namespace spectral {

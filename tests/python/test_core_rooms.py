@@ -13,9 +13,10 @@ ARROWS = {
     "mesh": {"support"},
     "ldlt": {"kernels", "support"},
     "laplacian": {"mesh", "ldlt", "support"},
+    "transfer": {"laplacian", "support"},
     "krylov": {"laplacian", "ldlt", "mesh", "support"},
     "harmonics": {"laplacian", "ldlt", "mesh", "support"},
-    "filter": {"krylov", "harmonics", "laplacian", "ldlt", "mesh", "support"},
+    "filter": {"transfer", "krylov", "harmonics", "laplacian", "ldlt", "mesh", "support"},
     "analysis": {"krylov", "harmonics", "laplacian", "ldlt", "mesh", "support"},
 }
 

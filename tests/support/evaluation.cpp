@@ -2,10 +2,10 @@
 
 #include <sstream>
 
-#include "core/filter/transfer_function.h"
 #include "core/krylov/pole_selection.h"
 #include "core/laplacian/frequency.h"
 #include "core/mesh/mesh.h"
+#include "core/transfer/transfer_function.h"
 
 namespace spectral::testing {
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "core/filter/transfer_function.h"
 #include "core/harmonics/harmonic_basis.h"
 #include "core/krylov/full_spectrum.h"
 #include "core/laplacian/constant_modes.h"
@@ -8,6 +7,7 @@
 #include "core/laplacian/laplacian.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/surface.h"
+#include "core/transfer/transfer_function.h"
 #include "support/shapes.h"
 
 namespace spectral::testing {

@@ -1,9 +1,9 @@
 #include "support/filter_of_blob.h"
 
-#include "core/filter/transfer_function.h"
 #include "core/laplacian/frequency.h"
 #include "core/laplacian/interior.h"
 #include "core/mesh/mesh.h"
+#include "core/transfer/transfer_function.h"
 #include "support/shapes.h"
 
 namespace spectral::testing {

@@ -1,11 +1,11 @@
 #pragma once
 
 #include "core/filter/step_evaluator.h"
-#include "core/filter/transfer_function.h"
 #include "core/laplacian/interior.h"
 #include "core/laplacian/laplacian_builder.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/surface.h"
+#include "core/transfer/transfer_function.h"
 
 namespace spectral::testing {
 

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "core/filter/evaluator.h"
-#include "core/filter/transfer_function.h"
+#include "core/transfer/transfer_function.h"
 
 namespace spectral {
 

@@ -3,13 +3,13 @@
 #include <vector>
 
 #include "core/filter/step_evaluator.h"
-#include "core/filter/transfer_function.h"
 #include "core/laplacian/frequency.h"
 #include "core/laplacian/interior.h"
 #include "core/laplacian/laplacian_builder.h"
 #include "core/mesh/mesh.h"
 #include "core/support/progress.h"
 #include "core/support/types.h"
+#include "core/transfer/transfer_function.h"
 
 namespace spectral {
 

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "core/filter/evaluator.h"
-#include "core/filter/transfer_function.h"
 #include "core/krylov/pole_selection.h"
+#include "core/transfer/transfer_function.h"
 
 namespace spectral {
 

@@ -23,12 +23,25 @@ constexpr double kPredictionShare = 0.1, kPredictionAccuracy = 1e-3;
 /// Relative error beyond which a result is useless.
 constexpr double kUselessError = 0.1;
 
+/// @throws InvalidOption  when neither a Krylov space nor a basis evaluates F.
+void requireOneResidualGain(const TransferFunction& F) {
+    if (F.isConstantBeyondJumps()) return;
+    std::ostringstream text;
+    text << "transfer_function jumps at w = " << F.discontinuities().back() / F.cutoff()
+         << " and is not constant beyond: make the jump a smooth fall, e.g. 1/(1 + w^16) for "
+            "w < 1, or choose spectrum = truncated";
+    throw InvalidOption(text.str());
+}
+
 std::unique_ptr<Evaluator> evaluatorFor(const EvaluationOptions& options,
                                         const TransferFunction& F) {
     if (options.spectrum == Spectrum::Truncated)
         return std::make_unique<BasisEvaluator>(F, options.truncation);
     // A rational Krylov space approximates smooth gains; a jump needs the eigenvectors below it.
-    if (!F.discontinuities().empty()) return std::make_unique<BasisEvaluator>(F, std::nullopt);
+    if (!F.discontinuities().empty()) {
+        requireOneResidualGain(F);
+        return std::make_unique<BasisEvaluator>(F, std::nullopt);
+    }
     return std::make_unique<FullSpectrumEvaluator>(F, options.accuracy, options.atEveryVertex);
 }
 

@@ -6,11 +6,11 @@
 
 #include "core/filter/basis_evaluator.h"
 #include "core/filter/evaluator.h"
-#include "core/filter/transfer_function.h"
 #include "core/laplacian/harmonic_extension.h"
 #include "core/laplacian/interior.h"
 #include "core/laplacian/laplacian.h"
 #include "core/support/progress.h"
+#include "core/transfer/transfer_function.h"
 
 namespace spectral {
 

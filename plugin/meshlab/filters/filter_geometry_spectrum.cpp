@@ -6,8 +6,8 @@
 #include <string>
 
 #include "core/analysis/geometry_spectrum.h"
-#include "core/filter/transfer_function.h"
 #include "core/laplacian/frequency.h"
+#include "core/transfer/transfer_function.h"
 #include "meshlab/filters/common_parameters.h"
 #include "meshlab/host_workarounds/steady_progress.h"
 #include "meshlab/mesh_conversion.h"
@@ -114,6 +114,7 @@ FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
             return spectral::geometrySpectrum(input.V, input.F, options, steady);
         });
     return {{{"diagonal", spectrum.diagonal},
+             {"mean_edge", spectrum.meanEdge},
              {"default_feature_size",
               spectral::defaultFeatureSize(spectrum.meanEdge, spectrum.diagonal)},
              {"area", spectrum.area},

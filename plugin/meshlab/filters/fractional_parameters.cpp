@@ -2,6 +2,9 @@
 
 #include <common/parameters/rich_parameters.h>
 
+#include "core/laplacian/frequency.h"
+#include "core/mesh/measures.h"
+#include "core/transfer/custom_gain.h"
 #include "meshlab/filters/common_parameters.h"
 
 using spectral::FilterOptions;
@@ -12,7 +15,7 @@ namespace {
 constexpr double kDefaultTolerance = 0.0005;
 
 // In the order of the core's enumerations.
-QStringList filterTypes() { return {"low-pass", "high-pass", "band-pass", "band-stop"}; }
+QStringList filterTypes() { return {"low-pass", "high-pass", "band-pass", "band-stop", "custom"}; }
 QStringList responses() { return {"gaussian", "butterworth", "ideal"}; }
 QStringList basisUpdates() { return {"full", "conformal", "none"}; }
 QStringList spectra() { return {"full", "truncated"}; }
@@ -25,13 +28,14 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
     const Scalarm diagonal = mesh.cm.bbox.Diag();
     RichParameterList list;
 
-    list.addParam(
-        RichEnum("filter_type", static_cast<int>(transfer.type), filterTypes(), "Filter type",
-                 "Which details to change, by their size. <b>low-pass</b> keeps details larger "
-                 "than the feature size and removes the rest. <b>high-pass</b> acts on smaller "
-                 "ones: with stop gain 1 and pass gain 2 it sharpens. <b>band-pass</b> acts on "
-                 "details of about the feature size: with stop gain 1 and pass gain above 1 it "
-                 "enhances them. <b>band-stop</b> removes them."));
+    list.addParam(RichEnum(
+        "filter_type", static_cast<int>(transfer.type), filterTypes(), "Filter type",
+        "Which details to change, by their size. <b>low-pass</b> keeps details larger "
+        "than the feature size and removes the rest. <b>high-pass</b> acts on smaller "
+        "ones: with stop gain 1 and pass gain 2 it sharpens. <b>band-pass</b> acts on "
+        "details of about the feature size: with stop gain 1 and pass gain above 1 it "
+        "enhances them. <b>band-stop</b> removes them. <b>custom</b>: the transfer function "
+        "below."));
     list.addParam(featureSizeParameter(
         mesh,
         "Size at which the filter cuts off: the wavelength of a wave along the surface, a bump and "
@@ -44,6 +48,13 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "stop_gain", static_cast<Scalarm>(transfer.stopGain), "Stop gain",
         "Factor for all other details: 0 removes them, 0.5 halves their height, 1 keeps them. Not "
         "negative."));
+    list.addParam(RichString(
+        "transfer_function", "20%:1, 5%:2, 1%:0.1", "Transfer function",
+        "For the type custom: gains at feature sizes, like an equalizer, as size:gain with sizes "
+        "in "
+        "percent of the diagonal (5%), mean edges (6e) or as lengths; or an expression of w, the "
+        "feature size over the wavelength, such as 1/(1 + w^4) (f is the frequency, l = f^2).",
+        true));
     list.addParam(
         RichFloat("band_width", static_cast<Scalarm>(transfer.bandWidth), "Band width (octaves)",
                   "Width of the band for band-pass and band-stop, in octaves: with 1, its "
@@ -111,7 +122,8 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
     return list;
 }
 
-FilterOptions fractionalFilterOptions(const RichParameterList& parameters) {
+FilterOptions fractionalFilterOptions(const RichParameterList& parameters,
+                                      const MeshMatrices& mesh) {
     FilterOptions options;
     spectral::TransferFunctionOptions& transfer = options.transferFunction;
     transfer.type =
@@ -124,6 +136,14 @@ FilterOptions fractionalFilterOptions(const RichParameterList& parameters) {
     transfer.stopGain = parameters.getFloat("stop_gain");
     transfer.power = parameters.getFloat("power");
     options.featureSize = featureSize(parameters);
+    if (transfer.type == spectral::FilterType::Custom) {
+        const spectral::CustomGain custom = spectral::parseGain(
+            parameters.getString("transfer_function").toStdString(),
+            spectral::cutoffFrequency(options.featureSize),
+            {spectral::boundingBoxDiagonal(mesh.V), spectral::meanEdgeLength(mesh.V, mesh.F)});
+        transfer.custom = custom.gain;
+        options.featureSize = 2.0 * spectral::kPi / custom.cutoff;
+    }
     options.steps = parameters.getInt("steps");
     options.tolerance = parameters.getAbsPerc("tolerance");
     options.basisUpdate =

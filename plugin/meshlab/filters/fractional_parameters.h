@@ -4,9 +4,13 @@
 #include <common/parameters/rich_parameter_list.h>
 
 #include "core/filter/fractional_filter.h"
+#include "meshlab/mesh_conversion.h"
 
 /// The parameters of the dialog, in the order of decisions: what, which size, how strong, how.
 RichParameterList fractionalFilterParameters(const MeshModel& mesh);
 
 /// The values of the dialog, or of a script, as the core's options.
-spectral::FilterOptions fractionalFilterOptions(const RichParameterList& parameters);
+/// @param mesh  what sizes are relative to.
+/// @throws spectral::InvalidOption  when a value is none that the dialog could have.
+spectral::FilterOptions fractionalFilterOptions(const RichParameterList& parameters,
+                                                const MeshMatrices& mesh);

@@ -67,7 +67,8 @@ std::string percentOf(double share) {
 /// The most important facts in one line: filter and size, displacement, accuracy.
 std::string headline(const spectral::FilterOptions& options, const spectral::FilterResult& result,
                      double diagonal) {
-    static const char* const types[] = {"low-pass", "high-pass", "band-pass", "band-stop"};
+    static const char* const types[] = {"low-pass", "high-pass", "band-pass", "band-stop",
+                                        "custom"};
     const double percent = 100.0 / diagonal;
     std::ostringstream text;
     text << std::setprecision(4)
@@ -105,7 +106,9 @@ std::string convergingFilter(const spectral::FilterOptions& options) {
     const bool stopsLargeDetails = transfer.type == spectral::FilterType::HighPass ||
                                    transfer.type == spectral::FilterType::BandPass;
     std::string text = "parts of it shrink away. Choose ";
-    if (std::max(transfer.passGain, transfer.stopGain) > 1.0)
+    if (transfer.type == spectral::FilterType::Custom)
+        text += "gains closer to 1";
+    else if (std::max(transfer.passGain, transfer.stopGain) > 1.0)
         text = "parts of it grow too fast. Choose smaller gains";
     else if (stopsLargeDetails && transfer.stopGain < 0.1)
         text += "stop_gain = 1, which keeps the large details";

@@ -7,13 +7,13 @@
 #include <string>
 
 #include "core/filter/fractional_filter.h"
-#include "core/filter/transfer_function.h"
 #include "core/laplacian/constant_modes.h"
 #include "core/laplacian/frequency.h"
 #include "core/laplacian/interior.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/surface.h"
 #include "core/support/errors.h"
+#include "core/transfer/transfer_function.h"
 #include "support/evaluation.h"
 #include "support/geometry_spectra.h"
 

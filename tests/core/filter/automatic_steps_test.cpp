@@ -5,10 +5,10 @@
 #include <numeric>
 
 #include "core/filter/fractional_steps.h"
-#include "core/filter/transfer_function.h"
 #include "core/laplacian/frequency.h"
 #include "core/laplacian/interior.h"
 #include "core/mesh/mesh.h"
+#include "core/transfer/transfer_function.h"
 #include "support/filter_of_blob.h"
 #include "support/shapes.h"
 

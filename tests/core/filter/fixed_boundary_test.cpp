@@ -5,7 +5,6 @@
 
 #include "core/analysis/manifold_harmonics.h"
 #include "core/filter/fractional_filter.h"
-#include "core/filter/transfer_function.h"
 #include "core/laplacian/constant_modes.h"
 #include "core/laplacian/frequency.h"
 #include "core/laplacian/harmonic_extension.h"
@@ -14,6 +13,7 @@
 #include "core/mesh/mesh.h"
 #include "core/mesh/surface.h"
 #include "core/support/errors.h"
+#include "core/transfer/transfer_function.h"
 #include "support/dense_eigenpairs.h"
 #include "support/evaluation.h"
 

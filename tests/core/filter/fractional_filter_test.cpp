@@ -7,7 +7,6 @@
 #include <limits>
 #include <numeric>
 
-#include "core/filter/transfer_function.h"
 #include "core/laplacian/constant_modes.h"
 #include "core/laplacian/frequency.h"
 #include "core/laplacian/interior.h"
@@ -16,6 +15,7 @@
 #include "core/mesh/mesh.h"
 #include "core/support/errors.h"
 #include "core/support/threads.h"
+#include "core/transfer/transfer_function.h"
 #include "support/evaluation.h"
 
 namespace spectral {

@@ -4,8 +4,8 @@
 
 #include <numeric>
 
-#include "core/filter/transfer_function.h"
 #include "core/mesh/mesh.h"
+#include "core/transfer/transfer_function.h"
 #include "support/filter_of_blob.h"
 
 namespace spectral {

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <limits>
 
-#include "core/filter/transfer_function.h"
 #include "core/harmonics/truncated_basis.h"
 #include "core/laplacian/constant_modes.h"
 #include "core/laplacian/frequency.h"
 #include "core/laplacian/laplacian_builder.h"
 #include "core/mesh/mesh.h"
 #include "core/support/errors.h"
+#include "core/transfer/transfer_function.h"
 #include "support/evaluation.h"
 
 namespace spectral {

@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "core/filter/transfer_function.h"
 #include "core/laplacian/constant_modes.h"
 #include "core/laplacian/frequency.h"
 #include "core/mesh/mesh.h"
+#include "core/transfer/transfer_function.h"
 #include "support/evaluation.h"
 
 namespace spectral {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "core/filter/transfer_function.h"
 #include "core/laplacian/frequency.h"
+#include "core/transfer/transfer_function.h"
 #include "support/evaluation.h"
 
 namespace spectral {

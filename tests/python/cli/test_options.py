@@ -21,6 +21,7 @@ def test_every_option_reaches_the_filter(cow: Path, tmp_path: Path) -> None:
     options: dict[str, Any] = {
         "filter_type": "band-pass",
         "feature_size": "12%",
+        "transfer_function": "5%:1, 1%:0.5",
         "response": "butterworth",
         "order": 3,
         "band_width": 1.5,

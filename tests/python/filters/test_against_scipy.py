@@ -10,6 +10,7 @@ import pytest
 import spectral_reference as reference
 from helpers import diagonal, filter_arrays, largest_distance, lower_part, percent
 from numpy.typing import NDArray
+from scipy.special import betainc
 
 Decimated = Callable[..., tuple[NDArray[Any], NDArray[Any]]]
 
@@ -73,6 +74,65 @@ def test_one_step_agrees_for_every_type_and_smooth_response(
 ) -> None:
     options = {**TYPES[filter_type], **RESPONSES[response], "steps": 1}
     assert_full_spectrum_agrees(decimated("cow.obj", 2000), options, record_property)
+
+
+@pytest.mark.parametrize("basis_update", ["full", "conformal"])
+def test_a_custom_expression_agrees(
+    basis_update: str, decimated: Decimated, record_property: Callable[..., None]
+) -> None:
+    V, F = decimated("cow.obj", 2000)
+    options = {
+        "filter_type": "custom",
+        "transfer_function": "0.2 + 1.5*w/(1 + w^3)",
+        "feature_size": percent(15),
+        "laplacian": "cotangent",
+        "steps": 3,
+        "basis_update": basis_update,
+    }
+    Y, report = filter_arrays(V, F, **options)
+    cutoff = 2 * np.pi / report["feature_size"]
+
+    def gain(omega: NDArray[Any]) -> NDArray[Any]:
+        w = omega / cutoff
+        return 0.2 + 1.5 * w / (1 + w**3)
+
+    expected = reference.full_filter(V, F, gain, 3, basis_update, "cotangent")
+    error = largest_distance(Y, expected) / diagonal(V)
+    record_property("largest_distance_in_diagonals", error)
+    assert largest_distance(expected, V) > 1e-3 * diagonal(V), "a test that moves nothing"
+    assert error < AGREEMENT
+
+
+def test_an_equalizer_agrees(decimated: Decimated, record_property: Callable[..., None]) -> None:
+    V, F = decimated("cow.obj", 2000)
+    options = {
+        "filter_type": "custom",
+        "transfer_function": "40%:1, 20%:1.5, 10%:0.8, 5%:0.2",
+        "laplacian": "cotangent",
+        "steps": 2,
+        "basis_update": "conformal",
+    }
+    Y, report = filter_arrays(V, F, **options)
+    # In log-log coordinates, from the tangent at one point to that at the next; the slopes are
+    # those of the lesser secants.
+    octaves = -np.log2(diagonal(V) * np.array([0.4, 0.2, 0.1, 0.05]))
+    levels = np.log2([1, 1.5, 0.8, 0.2])
+    secants = np.diff(levels) / np.diff(octaves)
+    slopes = np.array([0, 0, max(secants[1], secants[2]), 0])
+
+    def gain(omega: NDArray[Any]) -> NDArray[Any]:
+        octave = np.clip(np.log2(np.maximum(omega, 1e-9) / (2 * np.pi)), octaves[0], octaves[-1])
+        i = np.clip(np.searchsorted(octaves, octave) - 1, 0, 2)
+        tangents = [levels[k] + (octave - octaves[k]) * slopes[k] for k in (i, i + 1)]
+        blend = betainc(4, 4, (octave - octaves[i]) / (octaves[i + 1] - octaves[i]))
+        return np.asarray(2 ** (tangents[0] + blend * (tangents[1] - tangents[0])))
+
+    assert report["feature_size"] == pytest.approx(diagonal(V) * np.sqrt(0.4 * 0.05))
+    expected = reference.full_filter(V, F, gain, 2, "conformal", "cotangent")
+    error = largest_distance(Y, expected) / diagonal(V)
+    record_property("largest_distance_in_diagonals", error)
+    assert largest_distance(expected, V) > 1e-3 * diagonal(V), "a test that moves nothing"
+    assert error < AGREEMENT
 
 
 @pytest.mark.parametrize("filter_type", ["low-pass", "enhancement"])

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import itertools
 from typing import Any
 
 import numpy as np
 import pytest
 import spectral_reference as reference
+from meshlab_spectral.errors import OptionError
 from meshlab_spectral.filters.options import FilterOptions, Length
-from meshlab_spectral.filters.transfer import gain
+from meshlab_spectral.filters.transfer import MeshLengths, gain
+
+LENGTHS = MeshLengths(feature_size=0.4, diagonal=8.0, mean_edge=0.05)
 
 
 @pytest.mark.parametrize("response", ["gaussian", "butterworth", "ideal"])
@@ -44,3 +48,40 @@ def test_the_gain_at_frequency_zero_is_the_limit(
 ) -> None:
     options = FilterOptions(filter_type=filter_type, response=response)
     assert gain(options, np.array([0.0])) == [expected]
+
+
+def test_a_custom_expression_is_evaluated_as_python_would() -> None:
+    options = FilterOptions(filter_type="custom", transfer_function="0.5 + exp(-w) + l/f^2")
+    x = np.geomspace(0.02, 30, 200)
+    np.testing.assert_allclose(gain(options, x, LENGTHS), 1.5 + np.exp(-x), rtol=1e-14)
+
+
+def test_custom_points_are_interpolated_between_their_gains() -> None:
+    options = FilterOptions(
+        filter_type="custom", transfer_function="50%:1, 20%:3, 1:2.5, 6e:0, 2e:0.5", power=0.5
+    )
+    sizes, levels = [4, 1.6, 1, 0.3, 0.1], np.sqrt([1, 3, 2.5, 0.001, 0.5])
+    np.testing.assert_allclose(gain(options, 0.4 / np.array(sizes), LENGTHS), levels, rtol=1e-12)
+    for i, (large, small) in enumerate(itertools.pairwise(sizes)):
+        between = gain(options, 0.4 / np.geomspace(large, small, 100), LENGTHS)
+        assert np.all(np.diff(between) * (levels[i + 1] - levels[i]) >= 0)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("1/(1 + q)", "character 8"),
+        ("5%:1, 2%", "character 6"),
+        ("1 - w", "transfer_function is -"),
+        ("", "character 1"),
+    ],
+)
+def test_a_wrong_custom_function_is_told(text: str, words: str) -> None:
+    options = FilterOptions(filter_type="custom", transfer_function=text)
+    with pytest.raises(OptionError, match=words):
+        gain(options, np.ones(1), LENGTHS)
+
+
+def test_a_custom_function_needs_the_lengths_of_a_mesh() -> None:
+    with pytest.raises(OptionError, match="needs a mesh"):
+        gain(FilterOptions(filter_type="custom"), np.ones(1))

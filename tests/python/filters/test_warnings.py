@@ -18,7 +18,7 @@ from commands import command, write_ply
 from helpers import FILTER, mesh_set_of, refusal
 from meshlab_spectral import FilterError, filter_files, filter_mesh, geometry_spectrum
 from meshlab_spectral.files.script import apply_script
-from meshlab_spectral.plugin.last_warnings import last_warnings
+from meshlab_spectral.plugin.library import last_warnings
 
 TRIANGLE = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]])
 # Each falls short in its own way.

@@ -39,7 +39,11 @@ _LAPLACIAN, _BOUNDARY = _choice(2), _choice(2)
 
 PARAMETERS: dict[str, dict[str, st.SearchStrategy[Any]]] = {
     "apply_coord_spectral_filter_fractional": {
-        "filter_type": _choice(4),
+        "filter_type": _choice(5),
+        "transfer_function": _of(
+            ("20%:1, 5%:2, 1%:0.1", "6e:0.5", "1/(1 + w^4)", "w < 1", "1 + exp(-l/f)", "0"),
+            ("", ":", "5%", "1 - w", "q", "5%:1,5%:2", "0*log(-w)", "w/0", "(" * 500, "1e999"),
+        ),
         "feature_size": _SIZES,
         "pass_gain": _GAINS,
         "stop_gain": _GAINS,

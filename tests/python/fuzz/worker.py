@@ -25,7 +25,7 @@ from fuzz.meshes import ATTRIBUTE, mesh_set_of
 from fuzz.parameters import for_pymeshlab
 from helpers import snapshot
 from meshlab_spectral.filters.calling import reason_of
-from meshlab_spectral.plugin.last_warnings import last_warnings
+from meshlab_spectral.plugin.library import last_warnings
 
 # What a filter may write; nothing else changes, even where it succeeds.
 TARGETS = {

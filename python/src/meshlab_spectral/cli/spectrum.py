@@ -52,6 +52,7 @@ of an open mesh contributes at all sizes; --boundary fixed leaves it out.
 SHOWN_OPTIONS = (
     "filter_type",
     "feature_size",
+    "transfer_function",
     "response",
     "order",
     "band_width",

@@ -12,7 +12,7 @@ from meshlab_spectral.figures.sheet import FONT_SIZE, INK
 from meshlab_spectral.figures.subject import filter_name
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.filters.spectrum import Array, GeometrySpectrum
-from meshlab_spectral.filters.transfer import gain
+from meshlab_spectral.filters.transfer import MeshLengths, gain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -48,8 +48,13 @@ def feature_size_of(options: FilterOptions, spectrum: GeometrySpectrum) -> float
 
 def octave_gains(spectrum: GeometrySpectrum, options: FilterOptions) -> Array:
     """Return the gains of a filter at the centres of the octaves."""
+    return _gains_at(spectrum.octave_feature_sizes, spectrum, options)
+
+
+def _gains_at(sizes: Array, spectrum: GeometrySpectrum, options: FilterOptions) -> Array:
     cutoff = feature_size_of(options, spectrum)
-    return gain(options, cutoff / spectrum.octave_feature_sizes)
+    lengths = MeshLengths(cutoff, spectrum.diagonal, spectrum.mean_edge)
+    return gain(options, cutoff / sizes, lengths)
 
 
 def draw_spectrum(
@@ -130,10 +135,10 @@ def _plot_gain(
 ) -> None:
     cutoff = feature_size_of(options, spectrum)
     sizes = np.geomspace(*limits, 1000)
-    gains = gain(options, cutoff / sizes)
+    gains = _gains_at(sizes, spectrum, options)
     axes.plot(sizes, gains, color=_FILTER, linewidth=1.8, label=filter_name(options))
     axes.set_ylim(0, 1.25 * max(1.0, float(gains.max())))
-    if min(limits) < cutoff < max(limits):
+    if options.filter_type != "custom" and min(limits) < cutoff < max(limits):
         axes.axvline(cutoff, color=_FILTER, linewidth=0.9, linestyle=(0, (4, 3)))
         axes.annotate(
             f"{cutoff:.3g}\n({100 * cutoff / spectrum.diagonal:.3g} %)",

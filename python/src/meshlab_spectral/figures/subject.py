@@ -77,6 +77,8 @@ def describe(options: FilterOptions) -> str:
 
 def filter_name(options: FilterOptions) -> str:
     """Describe a filter: `low-pass 15 %`."""
+    if options.filter_type == "custom":
+        return f"custom {options.transfer_function}"
     size = str(options.feature_size).replace("%", " %")
     name = f"{options.filter_type} {size}"
     if options.stop_gain == 1:

@@ -6,7 +6,7 @@ import re
 from typing import Any
 
 from meshlab_spectral.errors import FilterError
-from meshlab_spectral.plugin.last_warnings import last_warnings
+from meshlab_spectral.plugin.library import last_warnings
 
 # pymeshlab 2025.7 crashes after a MeshSet in which any filter has thrown is destroyed. Such a
 # MeshSet is therefore kept alive until the process ends.

@@ -13,7 +13,7 @@ from typing import Any, Literal, get_args, get_type_hints
 
 from meshlab_spectral.errors import OptionError
 
-FilterType = Literal["low-pass", "high-pass", "band-pass", "band-stop"]
+FilterType = Literal["low-pass", "high-pass", "band-pass", "band-stop", "custom"]
 Response = Literal["gaussian", "butterworth", "ideal"]
 BasisUpdate = Literal["full", "conformal", "none"]
 Spectrum = Literal["full", "truncated"]
@@ -122,7 +122,13 @@ def _option(default: Any, explanation: str, limits: Limits | None = None) -> Any
     return field(default=default, metadata={"help": explanation, "limits": limits})
 
 
-_NAMED = {int: "an integer", float: "a number", bool: "true or false", Length: "a length"}
+_NAMED = {
+    int: "an integer",
+    float: "a number",
+    bool: "true or false",
+    str: "a text",
+    Length: "a length",
+}
 
 
 def _is_of(value: Any, wanted: type) -> bool:
@@ -146,7 +152,7 @@ class FilterOptions:
         "low-pass",
         "What to do with details: low-pass keeps the large ones and smooths away the rest; "
         "high-pass acts on the small ones (sharpen with --stop-gain 1 --pass-gain 2); band-pass "
-        "and band-stop act on details of about the feature size.",
+        "and band-stop act on details of about the feature size; custom takes --transfer-function.",
     )
     feature_size: Length = _option(
         Length(automatic=True),
@@ -159,6 +165,12 @@ class FilterOptions:
     )
     stop_gain: float = _option(
         0.0, "Factor for all other details: 0 removes them, 0.5 halves their height.", Limits(0)
+    )
+    transfer_function: str = _option(
+        "20%:1, 5%:2, 1%:0.1",
+        "For --filter-type custom: gains at feature sizes as size:gain, with sizes such as 5% of "
+        "the diagonal, 6e (mean edges) or 0.02, as on an equalizer; or an expression of w, the "
+        "feature size over the wavelength, such as '1/(1 + w^4)'.",
     )
     band_width: float = _option(
         1.0,

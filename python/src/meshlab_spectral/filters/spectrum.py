@@ -36,6 +36,8 @@ class GeometrySpectrum:
     ----------
     diagonal
         Diagonal of the bounding box.
+    mean_edge
+        Mean edge length.
     default_feature_size
         The filter's default feature size for this mesh.
     area
@@ -78,6 +80,7 @@ class GeometrySpectrum:
     """
 
     diagonal: float
+    mean_edge: float
     default_feature_size: float
     area: float
     total_energy: float

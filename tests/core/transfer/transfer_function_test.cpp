@@ -1,4 +1,4 @@
-#include "core/filter/transfer_function.h"
+#include "core/transfer/transfer_function.h"
 
 #include <gtest/gtest.h>
 

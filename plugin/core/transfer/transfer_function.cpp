@@ -1,8 +1,9 @@
-#include "core/filter/transfer_function.h"
+#include "core/transfer/transfer_function.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <string>
 
 #include "core/laplacian/frequency.h"
@@ -16,11 +17,25 @@ namespace {
 /// Beyond this order x^2m overflows within an octave or two and the filter is ideal to round-off.
 constexpr int kMaxOrder = 64;
 
+/// Range of a custom transfer function, octaves on both sides of the cutoff: wider than the
+/// spectrum of any mesh whose sizes matter.
+constexpr int kOctaves = 16;
+
 void requireGain(double gain, const char* name) {
     if (!std::isfinite(gain) || gain < 0.0)
         throw InvalidOption(std::string(name) + " = " + std::to_string(gain) +
                             ": a gain must be finite and not negative, because a fractional power "
                             "of a negative gain does not exist; 0 removes, 1 keeps, 2 doubles");
+}
+
+/// The same of a custom gain at a frequency.
+void requireGain(double gain, double omega, double cutoff) {
+    if (std::isfinite(gain) && gain >= 0.0) return;
+    std::ostringstream text;
+    text << "transfer_function is " << gain << " at w = " << omega / cutoff << ", details of "
+         << 2.0 * kPi / omega
+         << ": a gain must be finite and not negative; max(0, ...) keeps it from being negative";
+    throw InvalidOption(text.str());
 }
 
 }  // namespace
@@ -43,12 +58,14 @@ TransferFunction::TransferFunction(const TransferFunctionOptions& options, doubl
         throw InvalidOption("power = " + std::to_string(options.power) +
                             ": the part of the filter to apply is above 0 and at most 1, the whole "
                             "filter");
+    options.type == FilterType::Custom ? sampleCustom() : sample();
 }
 
 double TransferFunction::operator()(double omega) const { return power(omega, 1.0); }
 
 double TransferFunction::power(double omega, double alpha) const {
     const double x = omega / cutoff_, exponent = alpha * options_.power;
+    if (options_.type == FilterType::Custom) return std::pow(custom(omega), exponent);
     const double stop = options_.stopGain, pass = options_.passGain;
     const bool passesOnly = stop == 0.0 && options_.type != FilterType::BandStop;
     if (!passesOnly) return std::pow(stop + (pass - stop) * prototype(x), exponent);
@@ -56,9 +73,9 @@ double TransferFunction::power(double omega, double alpha) const {
 }
 
 TransferFunction TransferFunction::whole() const {
-    TransferFunctionOptions options = options_;
-    options.power = 1.0;
-    return TransferFunction(options, cutoff_);
+    TransferFunction whole = *this;
+    whole.options_.power = 1.0;
+    return whole;
 }
 
 double TransferFunction::prototype(double x) const {
@@ -81,6 +98,7 @@ double TransferFunction::octavesDown(double x) const {
                                                            : 2.0 * std::abs(std::log2(x)) / b;
             break;
         }
+        case FilterType::Custom: break;  // has no prototype
     }
     switch (options_.response) {
         case Response::Gaussian: return 0.5 * y * y;
@@ -96,15 +114,12 @@ double TransferFunction::octavesDown(double x) const {
     return y <= 1.0 ? 0.0 : std::numeric_limits<double>::infinity();
 }
 
-std::vector<double> TransferFunction::discontinuities() const {
-    if (options_.response != Response::Ideal || options_.passGain == options_.stopGain) return {};
-    if (options_.type == FilterType::LowPass || options_.type == FilterType::HighPass)
-        return {cutoff_};
-    const double half = std::exp2(0.5 * options_.bandWidth);
-    return {cutoff_ / half, cutoff_ * half};
+double TransferFunction::custom(double omega) const {
+    const double farthest = std::exp2(kOctaves);
+    return options_.custom(std::clamp(omega, cutoff_ / farthest, cutoff_ * farthest));
 }
 
-std::vector<double> TransferFunction::samples() const {
+void TransferFunction::sample() {
     // A Butterworth filter of order m falls from its pass band within 1/m octaves, or 1/m of the
     // width of a band; a Gaussian one matters up to four widths away.
     constexpr int kPerFall = 8;
@@ -112,10 +127,56 @@ std::vector<double> TransferFunction::samples() const {
         options_.type == FilterType::BandPass || options_.type == FilterType::BandStop;
     const double width = isBand ? options_.bandWidth : 1.0;
     const int order = options_.response == Response::Butterworth ? options_.order : 2;
-    std::vector<double> samples;
     for (int i = -2 * kPerFall * order; i <= 2 * kPerFall * order; ++i)
-        samples.push_back(cutoff_ * std::exp2(width * i / (kPerFall * order)));
-    return samples;
+        samples_.push_back(cutoff_ * std::exp2(width * i / (kPerFall * order)));
+    if (options_.response != Response::Ideal || options_.passGain == options_.stopGain) return;
+    const double half = std::exp2(0.5 * options_.bandWidth);
+    if (isBand)
+        jumps_ = {cutoff_ / half, cutoff_ * half};
+    else
+        jumps_ = {cutoff_};
+}
+
+void TransferFunction::sampleCustom() {
+    constexpr int kPerOctave = 16;
+    constexpr double kResolved = 0.02;  // change between samples, relative to the range of F
+    std::vector<double> omega;
+    for (int i = -kOctaves * kPerOctave; i <= kOctaves * kPerOctave; ++i)
+        omega.push_back(cutoff_ * std::exp2(static_cast<double>(i) / kPerOctave));
+    double least = std::numeric_limits<double>::infinity(), largest = 0.0;
+    for (const double frequency : omega) {
+        const double gain = custom(frequency);
+        requireGain(gain, frequency, cutoff_);
+        least = std::min(least, gain);
+        largest = std::max(largest, gain);
+    }
+    for (std::size_t i = 0; i + 1 < omega.size(); ++i) {
+        samples_.push_back(omega[i]);
+        sampleBetween(omega[i], omega[i + 1], kResolved * (largest - least));
+    }
+    samples_.push_back(omega.back());
+}
+
+/// Appends samples and jumps in the interval (from, to).
+void TransferFunction::sampleBetween(double from, double to, double tolerance) {
+    constexpr double kJump = 1e-9;  // relative width of an interval that no smooth gain varies in
+    if (!(std::abs(custom(to) - custom(from)) > tolerance)) return;
+    const double middle = std::sqrt(from * to);
+    if (to - from <= kJump * to) {
+        jumps_.push_back(middle);
+        return;
+    }
+    requireGain(custom(middle), middle, cutoff_);
+    sampleBetween(from, middle, tolerance);
+    samples_.push_back(middle);
+    sampleBetween(middle, to, tolerance);
+}
+
+bool TransferFunction::isConstantBeyondJumps() const {
+    if (options_.type != FilterType::Custom || jumps_.empty()) return true;
+    const double last = custom(samples_.back());
+    return std::all_of(std::upper_bound(samples_.begin(), samples_.end(), jumps_.back()),
+                       samples_.end(), [&](double omega) { return custom(omega) == last; });
 }
 
 Gain fractionalPower(const TransferFunction& F, double alpha) {

@@ -7,7 +7,7 @@
 
 namespace spectral {
 
-enum class FilterType { LowPass, HighPass, BandPass, BandStop };
+enum class FilterType { LowPass, HighPass, BandPass, BandStop, Custom };
 enum class Response { Gaussian, Butterworth, Ideal };
 
 /// Shape of a transfer function; the frequency axis is set by TransferFunction.
@@ -19,6 +19,7 @@ struct TransferFunctionOptions {
     double passGain = 1.0;   ///< Gain in the pass band, >= 0.
     double stopGain = 0.0;   ///< Gain in the stop band, >= 0.
     double power = 1.0;      ///< Fractional power of the filter, 0 < power <= 1; 1 is the whole.
+    Gain custom;             ///< For FilterType::Custom, which needs nothing else but the power.
 };
 
 /// Transfer function F(omega) = (stopGain + (passGain - stopGain) B(omega / omega_c))^power.
@@ -29,12 +30,14 @@ struct TransferFunctionOptions {
 ///   band-pass  Gaussian 2^(-(2 log2(x)/b)^2/2), Butterworth 1/sqrt(1 + ((x - 1/x)/q)^2m) with
 ///              q = 2^(b/2) - 2^(-b/2), ideal 1 inside |log2 x| <= b/2;
 ///   band-stop  1 minus the band-pass.
-/// F is finite and >= 0 everywhere, so that every fractional power of it exists.
+/// A custom F is custom(omega)^power, with omega limited to sixteen octaves on both sides of
+/// omega_c. F is finite and >= 0 everywhere, so that every fractional power of it exists.
 class TransferFunction {
   public:
     /// @param cutoff  omega_c, radians per length unit, > 0: the cutoff (low-pass, high-pass) or
     ///                the centre of the band.
-    /// @throws InvalidOption  when an option is out of its range.
+    /// @throws InvalidOption  when an option is out of its range; a custom gain is negative or not
+    ///                        finite, which the text tells the frequency of.
     TransferFunction(const TransferFunctionOptions& options, double cutoff);
 
     /// Gain F(omega) at the frequency omega >= 0 (radians per length unit; infinity is allowed).
@@ -52,17 +55,25 @@ class TransferFunction {
     TransferFunction whole() const;
 
     /// Frequencies at which F jumps, ascending; empty for a continuous F.
-    std::vector<double> discontinuities() const;
+    const std::vector<double>& discontinuities() const { return jumps_; }
+
+    /// Whether F has one value beyond its last jump.
+    bool isConstantBeyondJumps() const;
 
     /// Frequencies around the cutoff, so close that F varies little between two of them.
-    std::vector<double> samples() const;
+    const std::vector<double>& samples() const { return samples_; }
 
   private:
     double prototype(double x) const;
     double octavesDown(double x) const;
+    double custom(double omega) const;
+    void sample();
+    void sampleCustom();
+    void sampleBetween(double from, double to, double tolerance);
 
     TransferFunctionOptions options_;
     double cutoff_;
+    std::vector<double> jumps_, samples_;  // ascending
 };
 
 /// The gain F^alpha of one fractional step (Kovnatsky et al. 2012, Eq. 11).

@@ -1,0 +1,104 @@
+"""Functions that the plugin's library offers besides its filters."""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import os
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshlab_spectral.errors import OptionError, PluginError
+from meshlab_spectral.plugin.loading import load, loaded_plugin
+
+_NUMBERS = ctypes.POINTER(ctypes.c_double)
+
+
+def last_warnings() -> list[str]:
+    """Return the warnings of the plugin's latest filter run in this thread, in its own words.
+
+    pymeshlab drops the strings of a filter's report.
+
+    Returns
+    -------
+    list of str
+        Sentences without the final full stop; empty before the first run and after a failed one.
+
+    Raises
+    ------
+    PluginError
+        When pymeshlab has loaded another copy of the plugin than `load` would, or the plugin is
+        older than this package.
+    """
+    function = _function(loaded_plugin(), "meshlab_spectral_warnings", ())
+    text: bytes = function()
+    return text.decode().splitlines()
+
+
+def custom_gains(
+    text: str,
+    feature_size: float,
+    diagonal: float,
+    mean_edge: float,
+    sizes: NDArray[np.float64],
+) -> NDArray[np.float64]:
+    """Return the gains of a custom transfer function, as the filter applies it.
+
+    Parameters
+    ----------
+    text
+        The filter's option `transfer_function`.
+    feature_size, diagonal, mean_edge
+        What sizes are relative to, in the units of the mesh, > 0.
+    sizes
+        Feature sizes in the units of the mesh, > 0.
+
+    Returns
+    -------
+    array
+        The gains, >= 0, in the shape of `sizes`.
+
+    Raises
+    ------
+    OptionError
+        When the text is wrong, or a gain negative or not finite; the message says where.
+    PluginError
+        When the plugin cannot be loaded, or as `last_warnings`.
+    """
+    load()
+    double, integer = ctypes.c_double, ctypes.c_int
+    arguments = (ctypes.c_char_p, double, double, double, _NUMBERS, integer, _NUMBERS)
+    function = _function(loaded_plugin(), "meshlab_spectral_gains", arguments)
+    flat = np.ascontiguousarray(sizes, dtype=np.float64).ravel()
+    gains = np.empty_like(flat)
+    pointers = (array.ctypes.data_as(_NUMBERS) for array in (flat, gains))
+    mistake: bytes | None = function(
+        text.encode(), feature_size, diagonal, mean_edge, next(pointers), flat.size, next(pointers)
+    )
+    if mistake is not None:
+        raise OptionError(mistake.decode())
+    return gains.reshape(np.shape(sizes))
+
+
+@functools.cache
+def _function(plugin: Path, name: str, arguments: Sequence[Any]) -> Any:
+    """Return a function of the loaded plugin that returns a text."""
+    try:
+        # NOLOAD: a second copy of the plugin would have no warnings to report.
+        function = getattr(ctypes.CDLL(str(plugin), mode=os.RTLD_NOW | os.RTLD_NOLOAD), name)
+    except OSError as error:
+        raise PluginError(
+            f"pymeshlab has loaded another copy of the plugin than {plugin}: call "
+            "meshlab_spectral.load() before loading any other copy"
+        ) from error
+    except AttributeError as error:
+        raise PluginError(
+            f"the plugin {plugin} is older than this package: rebuild both from the same sources"
+        ) from error
+    function.restype = ctypes.c_char_p
+    function.argtypes = arguments
+    return function
