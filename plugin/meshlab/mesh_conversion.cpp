@@ -3,6 +3,7 @@
 #include <common/mlexception.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 
 MeshMatrices toMatrices(const CMeshO& mesh) {
     MeshMatrices matrices;
@@ -27,6 +28,32 @@ MeshMatrices toMatrices(const CMeshO& mesh) {
         ++t;
     }
     return matrices;
+}
+
+std::vector<bool> selectedVertices(const CMeshO& mesh, const MeshMatrices& matrices) {
+    std::vector<bool> selected;
+    for (const std::size_t i : matrices.vertexIndex) selected.push_back(mesh.vert[i].IsS());
+    Eigen::Index t = 0;
+    for (const CFaceO& face : mesh.face) {
+        if (face.IsD()) continue;
+        if (face.IsS())
+            for (int c = 0; c < 3; ++c) selected[matrices.F(t, c)] = true;
+        ++t;
+    }
+    return selected;
+}
+
+bool hasSelection(const CMeshO& mesh) {
+    const auto isSelected = [](const auto& element) { return !element.IsD() && element.IsS(); };
+    return std::any_of(mesh.face.begin(), mesh.face.end(), isSelected) ||
+           std::any_of(mesh.vert.begin(), mesh.vert.end(), isSelected);
+}
+
+Eigen::VectorXd vertexQuality(const CMeshO& mesh, const MeshMatrices& matrices) {
+    Eigen::VectorXd quality(matrices.V.rows());
+    for (Eigen::Index i = 0; i < quality.size(); ++i)
+        quality[i] = mesh.vert[matrices.vertexIndex[i]].cQ();
+    return quality;
 }
 
 void checkExtent(const CMeshO& mesh) {

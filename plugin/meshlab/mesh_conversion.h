@@ -21,6 +21,15 @@ MeshMatrices toMatrices(const CMeshO& mesh);
 /// the parameters, which MeshLab keeps in single precision, would be infinite or zero.
 void checkExtent(const CMeshO& mesh);
 
+/// Whether each row of `matrices` is selected: a vertex itself, or a face that it is a corner of.
+std::vector<bool> selectedVertices(const CMeshO& mesh, const MeshMatrices& matrices);
+
+/// Whether any vertex or face is selected.
+bool hasSelection(const CMeshO& mesh);
+
+/// The vertex quality of each row.
+Eigen::VectorXd vertexQuality(const CMeshO& mesh, const MeshMatrices& matrices);
+
 /// Reports progress before the mesh is written, the last opportunity to cancel.
 /// @throws MLException  when the mesh is no longer `input`: MeshLab lets the user edit it
 /// meanwhile.

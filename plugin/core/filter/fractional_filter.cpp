@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <string>
 
 #include "core/filter/automatic_steps.h"
 #include "core/filter/fractional_steps.h"
 #include "core/laplacian/frequency.h"
 #include "core/laplacian/interior.h"
+#include "core/mesh/creases.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/surface.h"
@@ -38,6 +40,19 @@ void checkOptions(const FilterOptions& options) {
                             ": must be between 0 (the paper's update) and 1 (conformal)");
     if (!(options.evaluation.accuracy >= 1e-12 && options.evaluation.accuracy < 1.0))
         throw InvalidOption("accuracy must be between 1e-12 and 1");
+    if (!(options.creaseAngle >= 0.0 && options.creaseAngle <= 180.0))
+        throw InvalidOption("crease_angle = " + std::to_string(options.creaseAngle) +
+                            ": must be between 0 (no creases) and 180 degrees");
+    checkWeights(options.part);
+}
+
+/// Vertices on a fixed boundary or a crease.
+std::vector<bool> verticesAtRest(const Surface& surface, const FilterOptions& options) {
+    std::vector<bool> rest = verticesAtRest(surface.F, surface.X.rows(), options.boundary);
+    if (options.creaseAngle <= 0.0) return rest;
+    const std::vector<bool> onCrease = creaseVertices(surface.X, surface.F, options.creaseAngle);
+    std::transform(rest.begin(), rest.end(), onCrease.begin(), rest.begin(), std::logical_or<>());
+    return rest;
 }
 
 /// Sets the largest and the D-weighted root mean square row norm of `displacement`.
@@ -85,21 +100,29 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     checkOptions(options);
     const Surface surface = surfaceOf(V, F);
     const TransferFunction transfer(options.transferFunction, cutoffFrequency(options.featureSize));
-    const Interior interior(surface.F, connectedComponents(surface.F, surface.X.rows()),
-                            options.boundary);
+    const Interior interior(connectedComponents(surface.F, surface.X.rows()),
+                            verticesAtRest(surface, options));
 
     LaplacianBuilder laplacians(surface, options.laplacian, options.basisUpdate,
                                 options.conformalShare);
     const EvaluationOptions evaluation = evaluationFor(options, surface);
     StepEvaluator evaluate(evaluation, interior, transfer);
     const AutomaticSteps steps = filterInSteps(laplacians, evaluate, surface.X, options, progress);
-    const Vertices& X = steps.last.X;
-    if (!X.allFinite()) throw SolverFailure("the filtered coordinates are not finite numbers");
+    if (!steps.last.X.allFinite())
+        throw SolverFailure("the filtered coordinates are not finite numbers");
+    const Eigen::VectorXd weight =
+        vertexWeight(options.part, surface, interior, laplacians.input(), options.featureSize);
+    Vertices displacement = weight.asDiagonal() * (steps.last.X - surface.X);
+    Vertices X = surface.X + displacement;
+    FilterResult result;
+    if (options.preserveVolume) {
+        result.volumes =
+            preserveVolumes(surface.X, surface.F, interior.surfaceComponents(), weight, X);
+        displacement = X - surface.X;
+    }
 
     // The displacement is added to the input: what does not move keeps its coordinates to the bit,
     // the sign of a zero included.
-    FilterResult result;
-    const Vertices displacement = X - surface.X;
     result.V = V;
     for (Index i = 0; i < X.rows(); ++i)
         if ((displacement.row(i).array() != 0.0).any())

@@ -3,6 +3,8 @@
 #include <vector>
 
 #include "core/filter/step_evaluator.h"
+#include "core/filter/vertex_weight.h"
+#include "core/filter/volume.h"
 #include "core/laplacian/frequency.h"
 #include "core/laplacian/interior.h"
 #include "core/laplacian/laplacian_builder.h"
@@ -24,7 +26,12 @@ struct FilterOptions {
     BasisUpdate basisUpdate = BasisUpdate::Conformal;
     double conformalShare = 0.0;  ///< For BasisUpdate::Full, 0 to 1; see laplacian_builder.h.
     Boundary boundary = Boundary::Free;
+    double creaseAngle = 0.0;  ///< Edges of a larger dihedral angle stay where they are, and
+                               ///< nothing is filtered across them, degrees; 0: no edge.
     EvaluationOptions evaluation;
+
+    WeightOptions part;           ///< Where to filter.
+    bool preserveVolume = false;  ///< Gives closed components their volume back (volume.h).
 };
 
 struct FilterResult {
@@ -39,7 +46,8 @@ struct FilterResult {
     double volumeBefore = 0.0, volumeAfter = 0.0;  ///< Signed; a volume for closed meshes only.
     int components = 0;                            ///< Connected components of the surface.
     int unreferencedVertices = 0;                  ///< Vertices of no triangle, unchanged.
-    int fixedVertices = 0;                         ///< Vertices on a fixed boundary, unchanged.
+    int fixedVertices = 0;                         ///< On a fixed boundary or a crease, unchanged.
+    PreservedVolumes volumes;                      ///< With preserveVolume.
     int factorizations = 0;                        ///< Sparse LDL^T factorizations.
     int solves = 0;                                ///< Solves with one right-hand side.
     double accuracy = 0.0;        ///< Requested accuracy of the evaluation, relative, all steps.

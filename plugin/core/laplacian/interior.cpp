@@ -21,11 +21,17 @@ std::vector<bool> boundaryVertices(const Faces& F, Index vertexCount) {
     return onBoundary;
 }
 
+std::vector<bool> verticesAtRest(const Faces& F, Index vertexCount, Boundary boundary) {
+    if (boundary == Boundary::Fixed) return boundaryVertices(F, vertexCount);
+    return std::vector<bool>(static_cast<std::size_t>(vertexCount), false);
+}
+
 Interior::Interior(const Faces& F, Components components, Boundary boundary)
+    : Interior(components, verticesAtRest(F, components.label.size(), boundary)) {}
+
+Interior::Interior(Components components, const std::vector<bool>& fixed)
     : surfaceComponents_(std::move(components)) {
     const Eigen::VectorXi& label = surfaceComponents_.label;
-    std::vector<bool> fixed(static_cast<std::size_t>(label.size()), false);
-    if (boundary == Boundary::Fixed) fixed = boundaryVertices(F, label.size());
     std::vector<bool> hasFixed(static_cast<std::size_t>(surfaceComponents_.count), false);
     for (Index i = 0; i < label.size(); ++i) {
         if (fixed[i])

@@ -19,6 +19,9 @@ enum class Boundary {
 /// @param F  m x 3 indices in [0, vertexCount).
 std::vector<bool> boundaryVertices(const Faces& F, Index vertexCount);
 
+/// The boundary vertices, if the boundary is fixed; else none.
+std::vector<bool> verticesAtRest(const Faces& F, Index vertexCount, Boundary boundary);
+
 /// The vertices of a surface that can move: all, or all but a fixed boundary.
 ///
 /// The eigenproblem of the interior is W_II phi = lambda D_II phi, phi = 0 on the boundary.
@@ -27,6 +30,9 @@ class Interior {
     /// @param F           m x 3 triangles of the surface.
     /// @param components  of the surface, n vertices.
     Interior(const Faces& F, Components components, Boundary boundary);
+
+    /// @param fixed  n, the vertices that cannot move.
+    Interior(Components components, const std::vector<bool>& fixed);
 
     Index size() const { return static_cast<Index>(vertex_.size()); }
     Index fixedVertices() const { return surfaceComponents_.label.size() - size(); }

@@ -41,6 +41,14 @@ double featureSize(const RichParameterList& parameters) {
     return parameters.getAbsPerc("feature_size");
 }
 
+RichBool selectedParameter(const MeshModel& mesh) {
+    const bool isAnySelected = hasSelection(mesh.cm);
+    return {"selected", isAnySelected, "Only the selection",
+            "Filter the selected faces and vertices. Around them the filter fades out within about "
+            "a feature size, so that no crease is left; everything beyond stays where it is.",
+            !isAnySelected};
+}
+
 RichEnum laplacianParameter(const QString& help) {
     return {"laplacian",  static_cast<int>(spectral::LaplacianKind::IntrinsicDelaunay),
             laplacians(), "Laplacian",

@@ -22,6 +22,9 @@ RichPercentage featureSizeParameter(const MeshModel& mesh, const QString& help);
 /// The feature size as a length.
 double featureSize(const RichParameterList& parameters);
 
+/// `selected`; default: whether anything is.
+RichBool selectedParameter(const MeshModel& mesh);
+
 /// `laplacian`; default: intrinsic Delaunay.
 RichEnum laplacianParameter(const QString& help);
 

@@ -12,7 +12,7 @@ namespace {
 FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
                     const spectral::Progress& progress) {
     const MeshMatrices input = toMatrices(mesh.cm);
-    const spectral::FilterOptions options = fractionalFilterOptions(parameters, input);
+    const spectral::FilterOptions options = fractionalFilterOptions(parameters, mesh, input);
     const spectral::FilterResult result =
         spectral::withSteadyProgress(progress, [&](const spectral::Progress& steady) {
             return spectral::fractionalFilter(input.V, input.F, options, steady);

@@ -4,6 +4,7 @@
 
 #include "core/laplacian/frequency.h"
 #include "core/mesh/measures.h"
+#include "core/support/errors.h"
 #include "core/transfer/custom_gain.h"
 #include "meshlab/filters/common_parameters.h"
 
@@ -18,6 +19,7 @@ constexpr double kDefaultTolerance = 0.0005;
 QStringList filterTypes() { return {"low-pass", "high-pass", "band-pass", "band-stop", "custom"}; }
 QStringList responses() { return {"gaussian", "butterworth", "ideal"}; }
 QStringList basisUpdates() { return {"full", "conformal", "none"}; }
+QStringList weights() { return {"none", "vertex quality"}; }
 QStringList spectra() { return {"full", "truncated"}; }
 
 }  // namespace
@@ -48,6 +50,7 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "stop_gain", static_cast<Scalarm>(transfer.stopGain), "Stop gain",
         "Factor for all other details: 0 removes them, 0.5 halves their height, 1 keeps them. Not "
         "negative."));
+    list.addParam(selectedParameter(mesh));
     list.addParam(RichString(
         "transfer_function", "20%:1, 5%:2, 1%:0.1", "Transfer function",
         "For the type custom: gains at feature sizes, like an equalizer, as size:gain with sizes "
@@ -119,11 +122,25 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "What happens at the boundary of an open surface, holes included. <b>free</b>: it moves "
         "like the rest; strong smoothing rounds it off and pulls it in. <b>fixed</b>: it stays "
         "exactly in place, and the surface in between is filtered."));
+    list.addParam(RichFloat(
+        "crease_angle", static_cast<Scalarm>(defaults.creaseAngle), "Crease angle (0 = off)",
+        "Edges whose two faces meet at more than this angle, in degrees, stay where they are, and "
+        "nothing is filtered across them: the edges of a machine part, at e.g. 40.",
+        true));
+    list.addParam(RichBool("preserve_volume", defaults.preserveVolume, "Preserve volume",
+                           "Move the surface along its normals until every closed component has "
+                           "its volume back. Open ones have none.",
+                           true));
+    list.addParam(RichEnum(
+        "weight", 0, weights(), "Weight",
+        "<b>vertex quality</b>: how much of the filter each vertex gets, from 0 (nothing) to 1 "
+        "(all), to paint where to filter. <b>none</b>: all of it.",
+        true));
     return list;
 }
 
-FilterOptions fractionalFilterOptions(const RichParameterList& parameters,
-                                      const MeshMatrices& mesh) {
+FilterOptions fractionalFilterOptions(const RichParameterList& parameters, const MeshModel& mesh,
+                                      const MeshMatrices& matrices) {
     FilterOptions options;
     spectral::TransferFunctionOptions& transfer = options.transferFunction;
     transfer.type =
@@ -137,10 +154,11 @@ FilterOptions fractionalFilterOptions(const RichParameterList& parameters,
     transfer.power = parameters.getFloat("power");
     options.featureSize = featureSize(parameters);
     if (transfer.type == spectral::FilterType::Custom) {
-        const spectral::CustomGain custom = spectral::parseGain(
-            parameters.getString("transfer_function").toStdString(),
-            spectral::cutoffFrequency(options.featureSize),
-            {spectral::boundingBoxDiagonal(mesh.V), spectral::meanEdgeLength(mesh.V, mesh.F)});
+        const spectral::CustomGain custom =
+            spectral::parseGain(parameters.getString("transfer_function").toStdString(),
+                                spectral::cutoffFrequency(options.featureSize),
+                                {spectral::boundingBoxDiagonal(matrices.V),
+                                 spectral::meanEdgeLength(matrices.V, matrices.F)});
         transfer.custom = custom.gain;
         options.featureSize = 2.0 * spectral::kPi / custom.cutoff;
     }
@@ -155,5 +173,15 @@ FilterOptions fractionalFilterOptions(const RichParameterList& parameters,
     options.evaluation.truncation.reinjectResidual = parameters.getBool("reinject_residual");
     options.laplacian = laplacianKind(parameters);
     options.boundary = boundaryCondition(parameters);
+    options.creaseAngle = parameters.getFloat("crease_angle");
+    options.preserveVolume = parameters.getBool("preserve_volume");
+    if (parameters.getBool("selected")) options.part.selected = selectedVertices(mesh.cm, matrices);
+    if (choice(parameters, "weight", weights()) == 1) {
+        if (!mesh.hasPerVertexQuality())
+            throw spectral::InvalidOption(
+                "weight = vertex quality: the mesh has no vertex "
+                "quality; compute one, or choose weight = none");
+        options.part.weight = vertexQuality(mesh.cm, matrices);
+    }
     return options;
 }

@@ -10,7 +10,8 @@
 RichParameterList fractionalFilterParameters(const MeshModel& mesh);
 
 /// The values of the dialog, or of a script, as the core's options.
-/// @param mesh  what sizes are relative to.
+/// @param matrices  of the mesh.
 /// @throws spectral::InvalidOption  when a value is none that the dialog could have.
 spectral::FilterOptions fractionalFilterOptions(const RichParameterList& parameters,
-                                                const MeshMatrices& mesh);
+                                                const MeshModel& mesh,
+                                                const MeshMatrices& matrices);

@@ -32,6 +32,7 @@ std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& r
         {"components", result.components},
         {"unreferenced_vertices", result.unreferencedVertices},
         {"fixed_vertices", result.fixedVertices},
+        {"preserved_volumes", result.volumes.preserved},
         {"factorizations", result.factorizations},
         {"solves", result.solves},
         {"error_estimate", result.errorEstimate},
@@ -128,6 +129,16 @@ std::string toleranceWarning(const spectral::FilterOptions& options,
     return text.str();
 }
 
+std::string volumeWarning(const spectral::FilterResult& result) {
+    std::ostringstream text;
+    text << "the volume of " << result.volumes.preserved << " of " << result.components
+         << " components is preserved: " << result.volumes.open
+         << " are open, or not consistently oriented";
+    if (result.volumes.lost > 0)
+        text << ", and " << result.volumes.lost << " have shrunk too far, or may not move";
+    return text.str() + ". Close holes and orient the faces first, or leave preserve_volume off";
+}
+
 double lastFrequency(const spectral::FilterResult& result) {
     return std::sqrt(result.eigenvalues[result.eigenvalues.size() - 1]);
 }
@@ -142,8 +153,14 @@ std::vector<std::string> warningsOf(const spectral::FilterOptions& options,
     if (result.fixedVertices > 0 &&
         result.fixedVertices + result.unreferencedVertices == result.V.rows())
         warnings.emplace_back(
-            "nothing can move: every vertex lies on the boundary, which is fixed. Choose boundary "
-            "= free; if the triangles are not connected, apply 'Merge Close Vertices' first");
+            options.creaseAngle > 0.0
+                ? "nothing can move: every vertex lies on a crease or a fixed boundary. Choose a "
+                  "larger crease_angle"
+                : "nothing can move: every vertex lies on the boundary, which is fixed. Choose "
+                  "boundary = free; if the triangles are not connected, apply 'Merge Close "
+                  "Vertices' first");
+    if (options.preserveVolume && result.volumes.preserved < result.components)
+        warnings.push_back(volumeWarning(result));
     if (!result.accuracyReached) {
         text << "the requested relative accuracy of " << result.accuracy
              << " was not reached, the estimated error is " << result.errorEstimate
@@ -173,7 +190,9 @@ std::string reportText(const spectral::FilterOptions& options, const spectral::F
     if (result.unreferencedVertices > 0)
         text << ", " << result.unreferencedVertices << " unreferenced vertices unchanged";
     if (result.fixedVertices > 0)
-        text << ", " << result.fixedVertices << " boundary vertices fixed";
+        text << ", " << result.fixedVertices << " vertices fixed, on the boundary or a crease";
+    if (options.preserveVolume)
+        text << ", " << result.volumes.preserved << " with the volume preserved";
     text << "\n  work: " << result.factorizations << " factorizations, " << result.solves
          << " solves";
     if (result.eigenvalues.size() > 0)

@@ -21,6 +21,7 @@ def test_every_option_reaches_the_filter(cow: Path, tmp_path: Path) -> None:
     options: dict[str, Any] = {
         "filter_type": "band-pass",
         "feature_size": "12%",
+        "selected": False,
         "transfer_function": "5%:1, 1%:0.5",
         "response": "butterworth",
         "order": 3,
@@ -37,6 +38,9 @@ def test_every_option_reaches_the_filter(cow: Path, tmp_path: Path) -> None:
         "reinject_residual": False,
         "laplacian": "cotangent",
         "boundary": "fixed",
+        "crease_angle": 120.0,
+        "preserve_volume": True,
+        "weight": "none",
     }
     assert options.keys() == FilterOptions().as_dict().keys()
     arguments: list[object] = []

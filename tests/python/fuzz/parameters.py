@@ -60,6 +60,10 @@ PARAMETERS: dict[str, dict[str, st.SearchStrategy[Any]]] = {
         "reinject_residual": st.booleans(),
         "laplacian": _LAPLACIAN,
         "boundary": _BOUNDARY,
+        "selected": st.booleans(),
+        "crease_angle": _of((0.0, 30.0, 90.0, 180.0, 1e-30), (-1.0, 180.1, NAN, INFINITY)),
+        "preserve_volume": st.booleans(),
+        "weight": _choice(2),
     },
     "compute_scalar_spectral_artefacts_per_vertex": {
         "feature_size": _SIZES,

@@ -19,6 +19,7 @@ BasisUpdate = Literal["full", "conformal", "none"]
 Spectrum = Literal["full", "truncated"]
 LaplacianKind = Literal["intrinsic delaunay", "cotangent"]
 Boundary = Literal["free", "fixed"]
+Weight = Literal["none", "vertex quality"]
 
 
 # What pymeshlab can pass on: 32-bit integers, and floats of single precision.
@@ -166,6 +167,11 @@ class FilterOptions:
     stop_gain: float = _option(
         0.0, "Factor for all other details: 0 removes them, 0.5 halves their height.", Limits(0)
     )
+    selected: bool = _option(
+        False,
+        "Filter only the selected faces and vertices, fading out around them within about a "
+        "feature size.",
+    )
     transfer_function: str = _option(
         "20%:1, 5%:2, 1%:0.1",
         "For --filter-type custom: gains at feature sizes as size:gain, with sizes such as 5% of "
@@ -231,6 +237,20 @@ class FilterOptions:
         "free",
         "Boundary of an open surface, holes included: free lets it move like the rest, so strong "
         "smoothing draws it in; fixed keeps it exactly in place.",
+    )
+
+    crease_angle: float = _option(
+        0.0,
+        "Edges whose faces meet at more than this angle in degrees, e.g. 40, stay in place and let "
+        "nothing across; 0 is off.",
+        Limits(0, 180),
+    )
+    preserve_volume: bool = _option(
+        False, "Move the surface along its normals until every closed component has its volume."
+    )
+    weight: Weight = _option(
+        "none",
+        "'vertex quality': how much of the filter each vertex gets, from 0 (nothing) to 1 (all).",
     )
 
     def __post_init__(self) -> None:

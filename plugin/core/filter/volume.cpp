@@ -1,0 +1,96 @@
+#include "core/filter/volume.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/mesh/measures.h"
+
+namespace spectral {
+
+namespace {
+
+/// The triangles of each component.
+std::vector<Faces> facesByComponent(const Faces& F, const Components& components) {
+    std::vector<Index> count(static_cast<std::size_t>(components.count), 0);
+    for (Index t = 0; t < F.rows(); ++t) ++count[components.label[F(t, 0)]];
+    std::vector<Faces> faces;
+    for (const Index size : count) faces.emplace_back(size, 3);
+    for (Index t = F.rows() - 1; t >= 0; --t) {
+        const int c = components.label[F(t, 0)];
+        faces[c].row(--count[c]) = F.row(t);
+    }
+    return faces;
+}
+
+/// Whether every directed edge has as many opposite ones.
+bool isClosed(const Faces& F) {
+    std::vector<std::pair<int, int>> there, back;
+    for (Index t = 0; t < F.rows(); ++t)
+        for (int c = 0; c < 3; ++c) {
+            const int i = F(t, c), j = F(t, (c + 1) % 3);
+            there.emplace_back(i, j);
+            back.emplace_back(j, i);
+        }
+    std::sort(there.begin(), there.end());
+    std::sort(back.begin(), back.end());
+    return there == back;
+}
+
+/// Gradient of six times the volume of a closed surface, n x 3: multiples of the normals.
+Vertices volumeGradient(const Vertices& X, const Faces& F) {
+    Vertices gradient = Vertices::Zero(X.rows(), 3);
+    for (Index t = 0; t < F.rows(); ++t)
+        for (int c = 0; c < 3; ++c) {
+            const Eigen::RowVector3d a = X.row(F(t, (c + 1) % 3)), b = X.row(F(t, (c + 2) % 3));
+            gradient.row(F(t, c)) += a.cross(b);
+        }
+    return gradient;
+}
+
+/// Moves a closed component until it has the volume; returns whether it does.
+bool offsetTo(double volume, const Faces& F, const Eigen::VectorXd& weight, Vertices& X) {
+    constexpr int kMostSteps = 50;
+    constexpr double kAccuracy = 1e-12;
+    for (int step = 0; step < kMostSteps; ++step) {
+        const double missing = volume - signedVolume(X, F);
+        if (std::abs(missing) <= kAccuracy * std::abs(volume)) return true;
+        // Newton's method, along the current normals.
+        const Vertices gradient = volumeGradient(X, F);
+        const Eigen::VectorXd length = gradient.rowwise().norm();
+        const double slope = length.dot(weight) / 6.0;
+        const Eigen::VectorXd offset =
+            (length.array() > 0.0).select(missing / slope * weight.array() / length.array(), 0.0);
+        if (!offset.allFinite()) return false;
+        X += offset.asDiagonal() * gradient;
+    }
+    return false;
+}
+
+}  // namespace
+
+PreservedVolumes preserveVolumes(const Vertices& X0, const Faces& F, const Components& components,
+                                 const Eigen::VectorXd& weight, Vertices& X) {
+    PreservedVolumes volumes;
+    for (const Faces& component : facesByComponent(F, components)) {
+        if (!isClosed(component)) {
+            ++volumes.open;
+            continue;
+        }
+        const Surface before = surfaceOf(X, component);  // alone, and near the origin
+        Eigen::VectorXd itsWeight(before.X.rows());
+        for (Index i = 0; i < itsWeight.size(); ++i) itsWeight[i] = weight[before.vertex[i]];
+        Vertices moved = before.X;
+        if (!offsetTo(signedVolume(X0, component), before.F, itsWeight, moved)) {
+            ++volumes.lost;
+            continue;
+        }
+        ++volumes.preserved;
+        for (Index i = 0; i < itsWeight.size(); ++i)
+            if (itsWeight[i] > 0.0) X.row(before.vertex[i]) += moved.row(i) - before.X.row(i);
+    }
+    return volumes;
+}
+
+}  // namespace spectral

@@ -1,0 +1,153 @@
+"""Selections, weights, creases and volumes, as pymeshlab's users give them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pymeshlab
+import pytest
+from helpers import (
+    FILTER,
+    assert_same,
+    diagonal,
+    filter_arrays,
+    mesh_set_of,
+    percent,
+    refusal,
+    snapshot,
+)
+from numpy.typing import NDArray
+
+Decimated = Callable[..., tuple[NDArray[Any], NDArray[Any]]]
+
+SIZE = {"feature_size": percent(6), "steps": 2}
+
+
+@pytest.fixture
+def small(decimated: Decimated) -> tuple[NDArray[Any], NDArray[Any]]:
+    return decimated("cow.obj", 2400)
+
+
+def head_of(V: NDArray[Any]) -> str:
+    """Return a condition on x that the front third of the mesh meets."""
+    return f"{np.quantile(V[:, 0], 2 / 3)}"
+
+
+def test_a_selection_is_filtered_by_default_and_all_beyond_stays_to_the_bit(
+    small: tuple[NDArray[Any], NDArray[Any]],
+) -> None:
+    V, F = small
+    whole, _ = filter_arrays(V, F, **SIZE)
+    mesh_set = mesh_set_of(V, F)
+    cut = head_of(V)
+    mesh_set.compute_selection_by_condition_per_face(
+        condselect=f"(x0 > {cut}) && (x1 > {cut}) && (x2 > {cut})"
+    )
+    faces = mesh_set.current_mesh().face_selection_array()
+    mesh_set.apply_filter(FILTER, **SIZE)
+    part = mesh_set.current_mesh().vertex_matrix()
+    selected = np.zeros(len(V), dtype=bool)
+    selected[F[faces]] = True
+    np.testing.assert_allclose(part[selected], whole[selected], atol=1e-14 * diagonal(V))
+    distance = np.linalg.norm(V[:, None] - V[selected][None], axis=2).min(axis=1)
+    beyond = distance > 1.25 * 0.06 * diagonal(V)  # on a coarse mesh it falls more slowly
+    assert np.count_nonzero(beyond) > 300
+    np.testing.assert_array_equal(part[beyond], V[beyond])
+    around = ~selected & np.any(part != V, axis=1)
+    assert np.count_nonzero(around) > 10
+    assert np.array_equal(faces, mesh_set.current_mesh().face_selection_array())
+
+
+def test_selected_vertices_are_a_selection_too(small: tuple[NDArray[Any], NDArray[Any]]) -> None:
+    V, F = small
+    mesh_set = mesh_set_of(V, F)
+    mesh_set.compute_selection_by_condition_per_vertex(condselect=f"x > {head_of(V)}")
+    vertices = mesh_set.current_mesh().vertex_selection_array()
+    mesh_set.apply_filter(FILTER, **SIZE)
+    moved = np.any(mesh_set.current_mesh().vertex_matrix() != V, axis=1)
+    assert np.all(moved[vertices])
+    assert not np.all(moved)
+
+
+def test_a_selection_is_ignored_on_request(small: tuple[NDArray[Any], NDArray[Any]]) -> None:
+    V, F = small
+    whole, _ = filter_arrays(V, F, **SIZE)
+    mesh_set = mesh_set_of(V, F)
+    mesh_set.compute_selection_by_condition_per_vertex(condselect=f"x > {head_of(V)}")
+    mesh_set.apply_filter(FILTER, selected=False, **SIZE)
+    np.testing.assert_array_equal(mesh_set.current_mesh().vertex_matrix(), whole)
+
+
+def test_an_empty_selection_is_refused(small: tuple[NDArray[Any], NDArray[Any]]) -> None:
+    mesh_set = mesh_set_of(*small)
+    before = snapshot(mesh_set.current_mesh())
+    assert "nothing is selected" in refusal(mesh_set, selected=True)
+    assert_same(before, snapshot(mesh_set.current_mesh()))
+
+
+def weighted(small: tuple[NDArray[Any], NDArray[Any]], quality: Any) -> pymeshlab.MeshSet:
+    V, F = small
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.add_mesh(
+        pymeshlab.Mesh(V, F, v_scalar_array=np.broadcast_to(quality, len(V)).astype(float))
+    )
+    return mesh_set
+
+
+def test_quality_weighs_the_filter_at_every_vertex(
+    small: tuple[NDArray[Any], NDArray[Any]],
+) -> None:
+    V, F = small
+    whole, _ = filter_arrays(V, F, **SIZE)
+    for quality in (0.0, 1.0, np.linspace(0, 1, len(V))):
+        mesh_set = weighted(small, quality)
+        mesh_set.apply_filter(FILTER, weight="vertex quality", **SIZE)
+        mesh = mesh_set.current_mesh()
+        expected = V + np.broadcast_to(quality, len(V))[:, None] * (whole - V)
+        np.testing.assert_allclose(mesh.vertex_matrix(), expected, atol=1e-14 * diagonal(V))
+        np.testing.assert_array_equal(mesh.vertex_scalar_array(), np.broadcast_to(quality, len(V)))
+
+
+@pytest.mark.parametrize("quality", [-0.5, 1.5, np.nan])
+def test_a_quality_that_is_no_weight_is_refused(
+    small: tuple[NDArray[Any], NDArray[Any]], quality: float
+) -> None:
+    qualities = np.full(len(small[0]), 0.5)
+    qualities[7] = quality
+    message = refusal(weighted(small, qualities), weight="vertex quality", **SIZE)
+    assert "vertex 7" in message
+    assert "between 0" in message
+
+
+def test_a_mesh_without_quality_has_no_weights(cow: Path) -> None:
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.load_new_mesh(str(cow))
+    assert "no vertex quality" in refusal(mesh_set, weight="vertex quality", **SIZE)
+
+
+def test_the_volume_of_a_closed_mesh_is_preserved(
+    small: tuple[NDArray[Any], NDArray[Any]],
+) -> None:
+    _, shrunk = filter_arrays(*small, **SIZE)
+    assert shrunk["volume_after"] < 0.999 * shrunk["volume_before"]
+    _, report = filter_arrays(*small, preserve_volume=True, **SIZE)
+    assert report["preserved_volumes"] == report["components"] == 1
+    assert report["volume_after"] == pytest.approx(report["volume_before"], rel=1e-9)
+
+
+def test_edges_of_a_box_stay(decimated: Decimated) -> None:
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.create_cube()
+    mesh_set.meshing_surface_subdivision_midpoint(iterations=4, threshold=percent(0.1))
+    V = mesh_set.current_mesh().vertex_matrix()
+    report = mesh_set.apply_filter(
+        FILTER, crease_angle=40.0, feature_size=percent(20), basis_update="none"
+    )
+    Y = mesh_set.current_mesh().vertex_matrix()
+    assert 8 < report["fixed_vertices"] < len(V)
+    np.testing.assert_allclose(Y, V, atol=1e-9)  # its faces are plane
+    report = mesh_set.apply_filter(FILTER, feature_size=percent(20), basis_update="none")
+    assert report["max_displacement"] > 0.01 * diagonal(V)
