@@ -274,6 +274,7 @@ const char* nameOf(ErrorCode code) {
         case ErrorCode::NoFaces: return "NoFaces";
         case ErrorCode::BadIndex: return "BadIndex";
         case ErrorCode::NotFinite: return "NotFinite";
+        case ErrorCode::ValueNotFinite: return "ValueNotFinite";
         case ErrorCode::NoArea: return "NoArea";
         case ErrorCode::DegenerateTriangles: return "DegenerateTriangles";
         case ErrorCode::ShapeCollapsed: return "ShapeCollapsed";

@@ -1,0 +1,88 @@
+#include "core/filter/signal_filter.h"
+
+#include <cassert>
+#include <cmath>
+#include <string>
+
+#include "core/filter/step_evaluator.h"
+#include "core/krylov/krylov_spaces.h"
+#include "core/mesh/surface.h"
+#include "core/support/errors.h"
+#include "core/support/threads.h"
+
+namespace spectral {
+
+namespace {
+
+void checkSignal(const Eigen::MatrixXd& Q) {
+    Index notFinite = 0, first = -1;
+    for (Index i = 0; i < Q.rows(); ++i)
+        if (!Q.row(i).allFinite() && notFinite++ == 0) first = i;
+    if (notFinite > 0)
+        throw InvalidMesh(
+            ErrorCode::ValueNotFinite,
+            std::to_string(notFinite) + (notFinite == 1 ? " vertex has" : " vertices have") +
+                " a value that is not finite (NaN or infinity), the first is vertex " +
+                std::to_string(first));
+}
+
+/// Whether each component has one value, to round-off: there is nothing to filter, and an error
+/// relative to the size of the signal would be meaningless.
+/// @param X  entries in [-1, 1].
+bool isConstant(Eigen::MatrixXd X, const ConstantModes& constants) {
+    constexpr double kRoundOff = 1e-13;
+    constants.remove(X);
+    return X.cwiseAbs().maxCoeff() <= kRoundOff;
+}
+
+}  // namespace
+
+FilteredSignal filterSignal(const Vertices& V, const Faces& F, const Eigen::MatrixXd& Q,
+                            const SignalFilterOptions& options, const Progress& progress) {
+    assert(Q.rows() == V.rows() && Q.cols() >= 1 && Q.cols() <= KrylovSpaces::kMostSignals);
+    const ThreadTeam team;
+    checkMesh(V, F, options.laplacian);
+    checkSignal(Q);
+    const Surface surface = surfaceOf(V, F);
+    const TransferFunction transfer(options.transferFunction, cutoffFrequency(options.featureSize));
+    const Interior interior(surface.F, connectedComponents(surface.F, surface.X.rows()),
+                            options.boundary);
+    LaplacianBuilder laplacians(surface, options.laplacian, BasisUpdate::None);
+    const EvaluationOptions evaluation;
+    StepEvaluator evaluate(evaluation, interior, transfer);
+
+    // About the middle of the range and scaled to 1: no digit is lost to a large mean, and no
+    // square overflows.
+    Eigen::MatrixXd X(surface.X.rows(), Q.cols());
+    for (Index i = 0; i < X.rows(); ++i) X.row(i) = Q.row(surface.vertex[i]);
+    X.rowwise() -= (0.5 * X.colwise().minCoeff() + 0.5 * X.colwise().maxCoeff()).eval();
+    const double scale = X.cwiseAbs().maxCoeff();
+    if (scale > 0.0) X /= scale;
+
+    FilteredSignal result;
+    result.Y = Q;
+    result.accuracy = evaluation.accuracy;
+    const Eigen::VectorXd& D = laplacians.inputMass();
+    if (!isConstant(X, ConstantModes(interior.surfaceComponents(), D))) {
+        const Evaluation filtered = evaluate(laplacians.input(), X, 1.0, progress);
+        const Eigen::MatrixXd change = scale * (filtered.Y.front() - X);
+        for (Index i = 0; i < X.rows(); ++i)
+            for (Index c = 0; c < X.cols(); ++c)  // -0 + 0 would not be -0
+                if (change(i, c) != 0.0) result.Y(surface.vertex[i], c) += change(i, c);
+        result.maxChange = change.cwiseAbs().maxCoeff();
+        result.rmsChange = (D.cwiseSqrt().asDiagonal() * change).eval().stableNorm() /
+                           std::sqrt(D.sum() * static_cast<double>(Q.cols()));
+        result.errorEstimate = filtered.errorEstimate;
+        result.accuracyReached = filtered.accuracyReached;
+    }
+    result.cutoffFrequency = transfer.cutoff();
+    result.components = interior.surfaceComponents().count;
+    result.unreferencedVertices = static_cast<int>(V.rows() - X.rows());
+    result.fixedVertices = static_cast<int>(interior.fixedVertices());
+    result.factorizations = evaluate.factorizations();
+    result.solves = evaluate.solves();
+    result.residuals = evaluate.basis().residuals;
+    return result;
+}
+
+}  // namespace spectral

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/transfer/transfer_function.h"
+#include "core/laplacian/interior.h"
+#include "core/laplacian/laplacian_builder.h"
+#include "core/mesh/mesh.h"
+#include "core/support/progress.h"
+
+namespace spectral {
+
+struct SignalFilterOptions {
+    TransferFunctionOptions transferFunction;
+    double featureSize = 0.0;  ///< Wavelength of the cutoff, 2 pi / omega_c, length units, > 0.
+    LaplacianKind laplacian = LaplacianKind::IntrinsicDelaunay;
+    Boundary boundary = Boundary::Free;
+};
+
+struct FilteredSignal {
+    Eigen::MatrixXd Y;  ///< n x c, the filtered signals; Q at unreferenced vertices.
+
+    double cutoffFrequency = 0.0;  ///< omega_c, radians per length unit.
+    double rmsChange = 0.0;        ///< Of Y - Q over the surface and all signals, units of Q.
+    double maxChange = 0.0;        ///< Largest modulus of an entry of Y - Q.
+    double accuracy = 0.0;         ///< Requested error, as errorEstimate.
+    double errorEstimate = 0.0;    ///< Estimated error of Y, relative to the largest modulus of Q
+                                   ///< without its means, over all signals together.
+    bool accuracyReached = true;   ///< Whether errorEstimate is within the accuracy.
+    int components = 0;            ///< Connected components of the surface.
+    int unreferencedVertices = 0;  ///< Vertices of no triangle, unchanged.
+    int fixedVertices = 0;         ///< Vertices on a fixed boundary, unchanged.
+    int factorizations = 0;        ///< Sparse LDL^T factorizations.
+    int solves = 0;                ///< Solves with one right-hand side.
+    Eigen::VectorXd residuals;     ///< Of the harmonics, where F needs any (see HarmonicBasis).
+};
+
+/// Filters signals on a mesh, such as vertex qualities or colours: Y = F(sqrt(A)) Q over the whole
+/// spectrum of the Laplacian A (Kovnatsky et al. 2012, Eq. 6). The shape does not change, so there
+/// is one evaluation, without steps.
+///
+/// Every connected component keeps the area-weighted mean of each signal, whatever F(0) is. With a
+/// fixed boundary the values there are kept instead, and F acts on the rest of the signal
+/// (harmonic_extension.h). What F does not change keeps its value to the bit.
+///
+/// @param V  n x 3 positions, finite.
+/// @param F  m x 3 vertex indices, m >= 1; any topology, unreferenced vertices allowed.
+/// @param Q  n x c values, finite, 1 <= c <= KrylovSpaces::kMostSignals.
+/// @throws InvalidMesh  as checkMesh, and when a value is not finite.
+/// @throws InvalidOption, SolverFailure, Cancelled
+FilteredSignal filterSignal(const Vertices& V, const Faces& F, const Eigen::MatrixXd& Q,
+                            const SignalFilterOptions& options, const Progress& progress = {});
+
+}  // namespace spectral

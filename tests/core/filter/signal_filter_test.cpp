@@ -1,0 +1,278 @@
+#include "core/filter/signal_filter.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "core/harmonics/harmonic_basis.h"
+#include "core/mesh/measures.h"
+#include "core/support/errors.h"
+#include "support/evaluation.h"
+
+namespace spectral {
+namespace {
+
+using testing::Mesh;
+using testing::Operator;
+
+constexpr double kAccuracy = 1e-6;
+
+/// A low-pass that does something in every octave of these meshes.
+SignalFilterOptions lowPass(const Mesh& mesh, double part = 0.2) {
+    SignalFilterOptions options;
+    options.featureSize = part * boundingBoxDiagonal(mesh.V);
+    options.laplacian = LaplacianKind::Cotangent;
+    return options;
+}
+
+std::vector<Mesh> classesOfMeshes() {
+    return {testing::blob(), testing::withNoise(testing::rectangle(2, 1, 20, 10), 0.03, 3),
+            testing::joined(testing::blob(), testing::torus(2, 0.7, 24, 12))};
+}
+
+Eigen::MatrixXd noise(Index rows, Index columns, unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return uniform(random); });
+}
+
+double range(const Eigen::MatrixXd& Q) { return Q.maxCoeff() - Q.minCoeff(); }
+double largest(const Eigen::MatrixXd& Q) { return Q.cwiseAbs().maxCoeff(); }
+
+Eigen::MatrixXd filtered(const Mesh& mesh, const Eigen::MatrixXd& Q,
+                         const SignalFilterOptions& options) {
+    return filterSignal(mesh.V, mesh.F, Q, options).Y;
+}
+
+TEST(SignalFilter, MultipliesEveryEigenfunctionByItsGain) {
+    for (const Mesh& mesh : classesOfMeshes()) {
+        const Operator A(mesh);
+        const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+        for (TransferFunctionOptions transfer : testing::smoothTransferFunctions()) {
+            SignalFilterOptions options = lowPass(mesh);
+            options.transferFunction = transfer;
+            const TransferFunction F(transfer, cutoffFrequency(options.featureSize));
+            for (const Index k : {A.constants.count(), 17, 90}) {
+                const Eigen::VectorXd phi = dense.Phi.col(k);
+                const FilteredSignal result = filterSignal(mesh.V, mesh.F, phi, options);
+                const double gain = F(std::sqrt(dense.lambda[k]));
+                EXPECT_LT(largest(result.Y - gain * phi), kAccuracy * range(phi))
+                    << testing::describe(transfer) << ", harmonic " << k;
+            }
+        }
+    }
+}
+
+TEST(SignalFilter, IsWhatAllEigenvectorsGive) {
+    for (const Mesh& mesh : classesOfMeshes()) {
+        const Operator A(mesh);
+        const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+        const Eigen::MatrixXd Q = noise(mesh.V.rows(), 4, 5);
+        const SignalFilterOptions options = lowPass(mesh);
+        const TransferFunction F(options.transferFunction, cutoffFrequency(options.featureSize));
+        const Eigen::MatrixXd expected =
+            applyInBasis(dense, A.laplacian.D, A.constants, fractionalPower(F, 1.0), 0.0, Q);
+        const FilteredSignal result = filterSignal(mesh.V, mesh.F, Q, options);
+        EXPECT_TRUE(result.accuracyReached);
+        EXPECT_LT(largest(result.Y - expected), kAccuracy * largest(Q));
+        const Eigen::MatrixXd change = expected - Q;
+        EXPECT_NEAR(result.maxChange, largest(change), kAccuracy);
+        const Eigen::VectorXd squares = change.rowwise().squaredNorm() / 4.0;
+        EXPECT_NEAR(result.rmsChange, std::sqrt(A.laplacian.D.dot(squares) / A.area()), kAccuracy);
+    }
+}
+
+/// Root mean square error, over both signals, of the closed form on a sphere of radius r: x and x y
+/// are harmonics of degree 1 and 2, whose eigenvalues are l (l + 1) / r^2.
+double sphereError(int levels) {
+    const double r = 3.0;
+    Mesh sphere = testing::icosphere(levels);
+    sphere.V *= r;
+    Eigen::MatrixXd Q(sphere.V.rows(), 2), expected = Q;
+    Q << sphere.V.col(0), sphere.V.col(0).cwiseProduct(sphere.V.col(1));
+    SignalFilterOptions options;
+    options.featureSize = 2.0 * r;  // x = omega / omega_c = sqrt(l (l + 1)) / pi
+    const auto gain = [](double l) { return std::exp2(-0.5 * l * (l + 1.0) / (kPi * kPi)); };
+    expected << gain(1.0) * Q.col(0), gain(2.0) * Q.col(1);
+    return (filtered(sphere, Q, options) - expected).norm() / Q.norm();
+}
+
+TEST(SignalFilter, OfASphereConvergesToTheClosedFormAtSecondOrder) {
+    const double coarse = sphereError(2), middle = sphereError(3), fine = sphereError(4);
+    EXPECT_LT(coarse, 0.01);
+    EXPECT_GT(coarse / middle, 3.5);
+    EXPECT_GT(middle / fine, 3.5);
+}
+
+/// The same on a flat a x b rectangle, whose harmonics with a free boundary are products of cosines
+/// and with a fixed one of sines.
+double rectangleError(int cells, Boundary boundary) {
+    const double a = 2.0, b = 1.0;
+    const Mesh mesh = testing::rectangle(a, b, 2 * cells, cells);
+    const double p = 3.0 * kPi / a, q = 2.0 * kPi / b;
+    Eigen::VectorXd Q(mesh.V.rows());
+    for (Index i = 0; i < Q.size(); ++i) {
+        const double x = p * mesh.V(i, 0), y = q * mesh.V(i, 1);
+        Q[i] = boundary == Boundary::Free ? std::cos(x) * std::cos(y) : std::sin(x) * std::sin(y);
+    }
+    SignalFilterOptions options;
+    options.featureSize = 0.8;
+    options.boundary = boundary;
+    const double x = std::hypot(p, q) * options.featureSize / (2.0 * kPi);
+    return largest(filtered(mesh, Q, options) - std::exp2(-0.5 * x * x) * Q);
+}
+
+TEST(SignalFilter, OfAFlatRectangleConvergesToTheClosedForm) {
+    for (const Boundary boundary : {Boundary::Free, Boundary::Fixed}) {
+        const double coarse = rectangleError(16, boundary), fine = rectangleError(32, boundary);
+        EXPECT_LT(fine, 0.01);
+        EXPECT_GT(coarse / fine, 3.0);
+    }
+}
+
+TEST(SignalFilter, IsLinear) {
+    for (const Mesh& mesh : classesOfMeshes()) {
+        const Eigen::MatrixXd P = noise(mesh.V.rows(), 1, 1), Q = noise(mesh.V.rows(), 1, 2);
+        for (const Boundary boundary : {Boundary::Free, Boundary::Fixed}) {
+            SignalFilterOptions options = lowPass(mesh);
+            options.boundary = boundary;
+            const Eigen::MatrixXd sum = filtered(mesh, 3.0 * P - 0.5 * Q, options);
+            EXPECT_LT(
+                largest(sum - 3.0 * filtered(mesh, P, options) + 0.5 * filtered(mesh, Q, options)),
+                4.0 * kAccuracy * range(P));
+        }
+    }
+}
+
+TEST(SignalFilter, KeepsTheMeanOfEveryComponentWhateverTheGainThere) {
+    for (const Mesh& mesh : classesOfMeshes()) {
+        const Operator A(mesh);
+        Eigen::MatrixXd Q = noise(mesh.V.rows(), 2, 4);
+        Q.col(0).array() += 3.0;
+        SignalFilterOptions highPass = lowPass(mesh);
+        highPass.transferFunction.type = FilterType::HighPass;
+        for (const SignalFilterOptions& options : {lowPass(mesh), highPass})
+            EXPECT_LT(largest(A.constants.means(filtered(mesh, Q, options)) - A.constants.means(Q)),
+                      1e-12);
+    }
+}
+
+TEST(SignalFilter, KeepsWhatIsConstantOnEveryComponentToTheBit) {
+    for (const Mesh& mesh : classesOfMeshes())
+        for (const Boundary boundary : {Boundary::Free, Boundary::Fixed}) {
+            const Components components = connectedComponents(mesh.F, mesh.V.rows());
+            Eigen::VectorXd Q(mesh.V.rows());
+            for (Index i = 0; i < Q.size(); ++i) Q[i] = 0.1 + 0.7 * components.label[i];
+            SignalFilterOptions options = lowPass(mesh);
+            options.boundary = boundary;
+            const FilteredSignal result = filterSignal(mesh.V, mesh.F, Q, options);
+            EXPECT_TRUE((result.Y.array() == Q.array()).all());
+            EXPECT_EQ(result.errorEstimate, 0.0);
+            EXPECT_TRUE(result.accuracyReached);
+        }
+}
+
+TEST(SignalFilter, DoesNotDependOnScaleAndOffsetOfTheValues) {
+    const Mesh mesh = testing::blob();
+    const Eigen::MatrixXd Q = noise(mesh.V.rows(), 1, 6), Y = filtered(mesh, Q, lowPass(mesh));
+    for (const double scale : {1e-300, 1e-20, 1e20, 1e300})
+        EXPECT_LT(largest(filtered(mesh, scale * Q, lowPass(mesh)) / scale - Y), 1e-12);
+    const Eigen::MatrixXd offset = (Q.array() + 1e6).matrix();
+    EXPECT_LT(largest((filtered(mesh, offset, lowPass(mesh)).array() - 1e6).matrix() - Y), 1e-8);
+}
+
+TEST(SignalFilter, WithIdealResponseIsExact) {
+    for (const Mesh& mesh : classesOfMeshes()) {
+        const Operator A(mesh);
+        const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+        SignalFilterOptions options = lowPass(mesh, 0.4);
+        options.transferFunction.response = Response::Ideal;
+        const TransferFunction F(options.transferFunction, cutoffFrequency(options.featureSize));
+        const Eigen::MatrixXd Q = noise(mesh.V.rows(), 3, 7);
+        const Eigen::MatrixXd expected =
+            applyInBasis(dense, A.laplacian.D, A.constants, fractionalPower(F, 1.0), 0.0, Q);
+        EXPECT_LT(largest(filtered(mesh, Q, options) - expected), kAccuracy);
+    }
+}
+
+TEST(SignalFilter, KeepsUnreferencedAndFixedVerticesToTheBit) {
+    const Mesh mesh = testing::rectangle(2, 1, 20, 10);
+    Mesh with{Vertices(mesh.V.rows() + 2, 3), (mesh.F.array() + 1).matrix()};
+    with.V << Eigen::RowVector3d(9, 9, 9), mesh.V, Eigen::RowVector3d(-50, 0, 0);
+    Eigen::MatrixXd Q = noise(with.V.rows(), 1, 8);
+    Q(0, 0) = 0.1;
+    Q(Q.rows() - 1, 0) = 1e12;  // must not count in the scale of the signal either
+    const std::vector<bool> onBoundary = boundaryVertices(with.F, with.V.rows());
+    for (Index i = 0; i < Q.rows(); ++i)
+        if (onBoundary[i] && i % 2 == 0) Q(i, 0) = -0.0;
+    SignalFilterOptions options = lowPass(mesh);
+    options.boundary = Boundary::Fixed;
+    const FilteredSignal result = filterSignal(with.V, with.F, Q, options);
+    EXPECT_EQ(result.unreferencedVertices, 2);
+    EXPECT_EQ(result.fixedVertices, 60);
+    for (Index i = 0; i < Q.rows(); ++i) {
+        const bool isKept = i == 0 || i == Q.rows() - 1 || onBoundary[i];
+        EXPECT_EQ(result.Y(i, 0) == Q(i, 0), isKept) << i;
+        EXPECT_TRUE(!isKept || std::signbit(result.Y(i, 0)) == std::signbit(Q(i, 0))) << i;
+    }
+    const Eigen::MatrixXd alone = filtered(mesh, Q.middleRows(1, mesh.V.rows()), options);
+    EXPECT_LT(largest(result.Y.middleRows(1, mesh.V.rows()) - alone), 1e-12);
+}
+
+TEST(SignalFilter, CountsAndLocatesValuesThatAreNotFinite) {
+    const Mesh mesh = testing::icosphere(2);
+    Eigen::MatrixXd Q = noise(mesh.V.rows(), 2, 9);
+    Q(40, 1) = std::nan("");
+    const auto message = [&] {
+        try {
+            filterSignal(mesh.V, mesh.F, Q, lowPass(mesh));
+        } catch (const InvalidMesh& error) {
+            EXPECT_EQ(error.code(), ErrorCode::ValueNotFinite);
+            return std::string(error.what());
+        }
+        return std::string("no error");
+    };
+    EXPECT_EQ(message(),
+              "1 vertex has a value that is not finite (NaN or infinity), the first is "
+              "vertex 40");
+    Q(17, 0) = -std::numeric_limits<double>::infinity();
+    Q(17, 1) = std::nan("");
+    EXPECT_EQ(message(),
+              "2 vertices have a value that is not finite (NaN or infinity), the first "
+              "is vertex 17");
+}
+
+TEST(SignalFilter, RefusesBadMeshesAndOptions) {
+    const Mesh mesh = testing::icosphere(2);
+    const Eigen::MatrixXd Q = noise(mesh.V.rows(), 1, 9);
+    SignalFilterOptions options = lowPass(mesh);
+    EXPECT_THROW(filterSignal(mesh.V, Faces(0, 3), Q, options), InvalidMesh);
+    options.featureSize = 0.0;
+    EXPECT_THROW(filterSignal(mesh.V, mesh.F, Q, options), InvalidOption);
+    options = lowPass(mesh);
+    options.transferFunction.power = 2.0;
+    EXPECT_THROW(filterSignal(mesh.V, mesh.F, Q, options), InvalidOption);
+}
+
+TEST(SignalFilter, TellsOfAGainThatItCannotReach) {
+    const Mesh mesh = testing::blob();
+    SignalFilterOptions options = lowPass(mesh);
+    options.transferFunction.type = FilterType::BandStop;
+    options.transferFunction.power = 0.05;  // a cusp at the centre of the band
+    const FilteredSignal result =
+        filterSignal(mesh.V, mesh.F, noise(mesh.V.rows(), 1, 10), options);
+    EXPECT_FALSE(result.accuracyReached);
+    EXPECT_GT(result.errorEstimate, result.accuracy);
+}
+
+TEST(SignalFilter, CanBeInterrupted) {
+    const Mesh mesh = testing::blob();
+    const Progress progress([](double, const std::string&) { return false; });
+    EXPECT_THROW(filterSignal(mesh.V, mesh.F, noise(mesh.V.rows(), 1, 11), lowPass(mesh), progress),
+                 Cancelled);
+}
+
+}  // namespace
+}  // namespace spectral
