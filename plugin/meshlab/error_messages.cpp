@@ -63,8 +63,10 @@ std::string gentlerFilter(const RichParameterList& parameters) {
     for (const char* const name : {"pass_gain", "stop_gain"})
         if (parameters.hasParameter(name) && parameters.getFloat(name) > kLarge)
             return std::string("choose a smaller ") + name;
-    return "choose a stop_gain of 0.05 instead of 0, a lower order or a wider band, response = "
-           "gaussian, fewer steps, or spectrum = truncated";
+    return std::string("choose a stop_gain of 0.05 instead of 0, a lower order or a wider band, ") +
+           (parameters.hasParameter("spectrum")
+                ? "response = gaussian, fewer steps, or spectrum = truncated"
+                : "or response = gaussian");
 }
 
 std::string remedy(const spectral::Error& error, const RichParameterList& parameters) {
@@ -77,6 +79,9 @@ std::string remedy(const spectral::Error& error, const RichParameterList& parame
         case ErrorCode::NotFinite:
             return "delete them, e.g. with 'Conditional Vertex Selection' (x != x) and 'Delete "
                    "Selected Vertices'";
+        case ErrorCode::ValueNotFinite:
+            return "apply 'Per Vertex Quality Function', abs(q) < 1e30 ? q : 0, first, which sets "
+                   "them to 0";
         case ErrorCode::DegenerateTriangles: return largerTriangles(parameters);
         case ErrorCode::NoDelaunay:
         case ErrorCode::SingularMatrix: return kRemesh;
@@ -97,8 +102,10 @@ std::string remedy(const spectral::Error& error, const RichParameterList& parame
         case ErrorCode::BasisIncomplete:
             return "choose another basis_size" + otherThanThisBasis(parameters);
         case ErrorCode::TooManyHarmonics:
-            return "choose a larger feature_size, response = butterworth with order = 8, or "
-                   "spectrum = truncated with reinject_residual";
+            return parameters.hasParameter("spectrum")
+                       ? "choose a larger feature_size, response = butterworth with order = 8, or "
+                         "spectrum = truncated with reinject_residual"
+                       : "choose a larger feature_size, or response = butterworth with order = 8";
         case ErrorCode::BoundaryFixesAll: return "choose boundary = free";
         case ErrorCode::TooSteep: return gentlerFilter(parameters);
         case ErrorCode::OptionOutOfRange:
@@ -115,6 +122,14 @@ std::string remedy(const spectral::Error& error, const RichParameterList& parame
 std::string errorMessage(const spectral::Error& error, const RichParameterList& parameters) {
     const std::string help = remedy(error, parameters);
     return help.empty() ? error.what() : error.what() + (": " + help);
+}
+
+std::string accuracyWarning(double accuracy, double errorEstimate) {
+    std::ostringstream text;
+    text << std::setprecision(2) << "the requested relative accuracy of " << accuracy
+         << " was not reached, the estimated error is " << errorEstimate
+         << ". Choose a stop_gain of 0.05 instead of 0, a lower order or a wider band";
+    return text.str();
 }
 
 std::vector<std::string> residualWarnings(const Eigen::VectorXd& residuals) {

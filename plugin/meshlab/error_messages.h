@@ -13,6 +13,10 @@
 /// @param parameters  of the filter that failed; no others are recommended.
 std::string errorMessage(const spectral::Error& error, const RichParameterList& parameters);
 
+/// A warning of an evaluation that stopped short of the accuracy, both relative; what to choose
+/// instead comes last.
+std::string accuracyWarning(double accuracy, double errorEstimate);
+
 /// A warning of the least accurate harmonic, where it has fewer than six digits.
 /// @param residuals  relative, of a basis of harmonics; may be empty.
 std::vector<std::string> residualWarnings(const Eigen::VectorXd& residuals);

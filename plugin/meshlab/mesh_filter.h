@@ -36,8 +36,10 @@ struct MeshFilter {
                            const spectral::Progress& progress) = nullptr;
 };
 
-// One function and one file for each filter.
+// One function for each filter, and one file but for the two of signals.
 MeshFilter fractionalMeshFilter();        ///< filter_fractional.cpp
+MeshFilter qualityMeshFilter();           ///< filter_signals.cpp
+MeshFilter colorMeshFilter();             ///< filter_signals.cpp
 MeshFilter artefactsMeshFilter();         ///< filter_artefacts.cpp
 MeshFilter harmonicsMeshFilter();         ///< filter_harmonics.cpp
 MeshFilter geometrySpectrumMeshFilter();  ///< filter_geometry_spectrum.cpp

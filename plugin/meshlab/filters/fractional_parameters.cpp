@@ -2,11 +2,9 @@
 
 #include <common/parameters/rich_parameters.h>
 
-#include "core/laplacian/frequency.h"
-#include "core/mesh/measures.h"
 #include "core/support/errors.h"
-#include "core/transfer/custom_gain.h"
 #include "meshlab/filters/common_parameters.h"
+#include "meshlab/filters/transfer_parameters.h"
 
 using spectral::FilterOptions;
 
@@ -16,8 +14,6 @@ namespace {
 constexpr double kDefaultTolerance = 0.0005;
 
 // In the order of the core's enumerations.
-QStringList filterTypes() { return {"low-pass", "high-pass", "band-pass", "band-stop", "custom"}; }
-QStringList responses() { return {"gaussian", "butterworth", "ideal"}; }
 QStringList basisUpdates() { return {"full", "conformal", "none"}; }
 QStringList weights() { return {"none", "vertex quality"}; }
 QStringList spectra() { return {"full", "truncated"}; }
@@ -26,55 +22,11 @@ QStringList spectra() { return {"full", "truncated"}; }
 
 RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
     const FilterOptions defaults;
-    const spectral::TransferFunctionOptions& transfer = defaults.transferFunction;
     const Scalarm diagonal = mesh.cm.bbox.Diag();
     RichParameterList list;
 
-    list.addParam(RichEnum(
-        "filter_type", static_cast<int>(transfer.type), filterTypes(), "Filter type",
-        "Which details to change, by their size. <b>low-pass</b> keeps details larger "
-        "than the feature size and removes the rest. <b>high-pass</b> acts on smaller "
-        "ones: with stop gain 1 and pass gain 2 it sharpens. <b>band-pass</b> acts on "
-        "details of about the feature size: with stop gain 1 and pass gain above 1 it "
-        "enhances them. <b>band-stop</b> removes them. <b>custom</b>: the transfer function "
-        "below."));
-    list.addParam(featureSizeParameter(
-        mesh,
-        "Size at which the filter cuts off: the wavelength of a wave along the surface, a bump and "
-        "the hollow next to it. To remove bumps, try twice their width. Default: six mean edges of "
-        "this mesh, at most 5 % of its diagonal, which removes the noise of a scan."));
-    list.addParam(RichFloat("pass_gain", static_cast<Scalarm>(transfer.passGain), "Pass gain",
-                            "Factor for the details that the filter passes: 1 keeps them, 2 "
-                            "doubles their height, 0 removes them. Not negative."));
-    list.addParam(RichFloat(
-        "stop_gain", static_cast<Scalarm>(transfer.stopGain), "Stop gain",
-        "Factor for all other details: 0 removes them, 0.5 halves their height, 1 keeps them. Not "
-        "negative."));
+    addTransferParameters(mesh, list);
     list.addParam(selectedParameter(mesh));
-    list.addParam(RichString(
-        "transfer_function", "20%:1, 5%:2, 1%:0.1", "Transfer function",
-        "For the type custom: gains at feature sizes, like an equalizer, as size:gain with sizes "
-        "in "
-        "percent of the diagonal (5%), mean edges (6e) or as lengths; or an expression of w, the "
-        "feature size over the wavelength, such as 1/(1 + w^4) (f is the frequency, l = f^2).",
-        true));
-    list.addParam(
-        RichFloat("band_width", static_cast<Scalarm>(transfer.bandWidth), "Band width (octaves)",
-                  "Width of the band for band-pass and band-stop, in octaves: with 1, its "
-                  "largest details are twice as large as its smallest.",
-                  true));
-    list.addParam(RichEnum("response", static_cast<int>(transfer.response), responses(), "Response",
-                           "How sharply the filter separates sizes. <b>gaussian</b> is gradual and "
-                           "never rings; <b>butterworth</b> is sharper the higher its order; "
-                           "<b>ideal</b> cuts off abruptly and may leave ripples.",
-                           true));
-    list.addParam(RichInt(
-        "order", transfer.order, "Butterworth order",
-        "Steepness of the butterworth response, from 1 (gentle) to 64 (nearly ideal).", true));
-    list.addParam(RichFloat("power", static_cast<Scalarm>(transfer.power), "Power",
-                            "Fraction of the filter to apply, as a power of its gains: 0.5 is half "
-                            "of the filter (a gain of 4 becomes 2). Above 0, at most 1.",
-                            true));
     list.addParam(RichInt(
         "steps", defaults.steps, "Steps (0 = automatic)",
         "The filter is applied in this many weak steps, because a single strong one turns thin "
@@ -142,26 +94,9 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
 FilterOptions fractionalFilterOptions(const RichParameterList& parameters, const MeshModel& mesh,
                                       const MeshMatrices& matrices) {
     FilterOptions options;
-    spectral::TransferFunctionOptions& transfer = options.transferFunction;
-    transfer.type =
-        static_cast<spectral::FilterType>(choice(parameters, "filter_type", filterTypes()));
-    transfer.response =
-        static_cast<spectral::Response>(choice(parameters, "response", responses()));
-    transfer.order = parameters.getInt("order");
-    transfer.bandWidth = parameters.getFloat("band_width");
-    transfer.passGain = parameters.getFloat("pass_gain");
-    transfer.stopGain = parameters.getFloat("stop_gain");
-    transfer.power = parameters.getFloat("power");
-    options.featureSize = featureSize(parameters);
-    if (transfer.type == spectral::FilterType::Custom) {
-        const spectral::CustomGain custom =
-            spectral::parseGain(parameters.getString("transfer_function").toStdString(),
-                                spectral::cutoffFrequency(options.featureSize),
-                                {spectral::boundingBoxDiagonal(matrices.V),
-                                 spectral::meanEdgeLength(matrices.V, matrices.F)});
-        transfer.custom = custom.gain;
-        options.featureSize = 2.0 * spectral::kPi / custom.cutoff;
-    }
+    const ChosenTransfer transfer = chosenTransfer(parameters, matrices);
+    options.transferFunction = transfer.options;
+    options.featureSize = transfer.featureSize;
     options.steps = parameters.getInt("steps");
     options.tolerance = parameters.getAbsPerc("tolerance");
     options.basisUpdate =

@@ -11,6 +11,7 @@
 #include "core/filter/automatic_steps.h"
 #include "core/support/types.h"
 #include "meshlab/error_messages.h"
+#include "meshlab/filters/transfer_parameters.h"
 
 namespace {
 
@@ -68,12 +69,9 @@ std::string percentOf(double share) {
 /// The most important facts in one line: filter and size, displacement, accuracy.
 std::string headline(const spectral::FilterOptions& options, const spectral::FilterResult& result,
                      double diagonal) {
-    static const char* const types[] = {"low-pass", "high-pass", "band-pass", "band-stop",
-                                        "custom"};
     const double percent = 100.0 / diagonal;
     std::ostringstream text;
-    text << std::setprecision(4)
-         << "Spectral Filter: " << types[static_cast<int>(options.transferFunction.type)]
+    text << std::setprecision(4) << "Spectral Filter: " << nameOf(options.transferFunction.type)
          << " at feature size " << result.featureSize << " (" << percent * result.featureSize
          << " % of the diagonal); the surface moved by " << result.rmsDisplacement
          << " (root mean square), by " << result.maxDisplacement << " at most; ";
@@ -148,8 +146,6 @@ double lastFrequency(const spectral::FilterResult& result) {
 std::vector<std::string> warningsOf(const spectral::FilterOptions& options,
                                     const spectral::FilterResult& result) {
     std::vector<std::string> warnings;
-    std::ostringstream text;
-    text << std::setprecision(2);
     if (result.fixedVertices > 0 &&
         result.fixedVertices + result.unreferencedVertices == result.V.rows())
         warnings.emplace_back(
@@ -161,14 +157,9 @@ std::vector<std::string> warningsOf(const spectral::FilterOptions& options,
                   "Vertices' first");
     if (options.preserveVolume && result.volumes.preserved < result.components)
         warnings.push_back(volumeWarning(result));
-    if (!result.accuracyReached) {
-        text << "the requested relative accuracy of " << result.accuracy
-             << " was not reached, the estimated error is " << result.errorEstimate
-             << ". Choose a stop_gain of 0.05 instead of 0, a lower order or a wider band, or "
-                "fewer steps";
-        warnings.push_back(text.str());
-        text.str("");
-    }
+    if (!result.accuracyReached)
+        warnings.push_back(accuracyWarning(result.accuracy, result.errorEstimate) +
+                           ", or fewer steps");
     if (!result.toleranceReached) warnings.push_back(toleranceWarning(options, result));
     if (!result.cutoffReached) warnings.push_back(cutoffWarning(result, lastFrequency(result)));
     for (std::string& warning : residualWarnings(result.residuals))

@@ -1,0 +1,209 @@
+#include <common/mlexception.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <limits>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "core/filter/signal_filter.h"
+#include "core/mesh/measures.h"
+#include "meshlab/error_messages.h"
+#include "meshlab/filters/common_parameters.h"
+#include "meshlab/filters/transfer_parameters.h"
+#include "meshlab/host_workarounds/steady_progress.h"
+#include "meshlab/mesh_conversion.h"
+#include "meshlab/mesh_filter.h"
+
+// Two filters of signals on a shape that does not change: vertex quality, and vertex colours.
+
+namespace {
+
+const char* const kQualityName = "Spectral Filter: Vertex Quality";
+const char* const kColorName = "Spectral Filter: Vertex Color";
+
+constexpr double kWhite = 255.0;
+
+const char* const kQualityHelp =
+    "Filters the <b>vertex quality</b>, any number at every vertex, by the size of its details on "
+    "the surface: removes noise, enhances details of one size, or removes them. The filter is that "
+    "of <i>Spectral Filter (Fractional)</i>, with the same parameters; the shape stays as it is."
+    "<br><br>A low-pass leaves a quarter of the height of waves half as long as the <b>feature "
+    "size</b>, and nine tenths of waves twice as long. The area-weighted mean of every connected "
+    "component is kept. Values are not clamped, so they may leave their old range; colours do not "
+    "follow: to see the result, apply <i>Colorize by vertex Quality</i>."
+    "<br><br><small>Kovnatsky, Bronstein, Bronstein 2012; Vallet, L&eacute;vy 2008</small>";
+
+const char* const kColorHelp =
+    "Filters the <b>vertex colours</b> by the size of their details on the surface: removes the "
+    "noise of a scanner's colours, sharpens a painting, or enhances details of one size. The "
+    "filter is that of <i>Spectral Filter (Fractional)</i>, with the same parameters; the shape "
+    "stays as it is."
+    "<br><br>A low-pass leaves a quarter of the contrast of patterns half as long as the "
+    "<b>feature size</b>, and nine tenths of patterns twice as long. Red, green and blue are "
+    "filtered alike, then rounded, and clamped to 0 to 255; alpha is kept. Up to that, so is the "
+    "area-weighted mean colour of every connected component."
+    "<br><br><small>Kovnatsky, Bronstein, Bronstein 2012; Vallet, L&eacute;vy 2008</small>";
+
+RichParameterList parameters(const MeshModel& mesh) {
+    RichParameterList list;
+    addTransferParameters(mesh, list);
+    list.addParam(laplacianParameter(
+        "How the frequencies of the surface are measured. <b>intrinsic delaunay</b> works on any "
+        "triangles, including slivers, holes, duplicate or intersecting sheets. <b>cotangent</b> "
+        "is the classical formula; every triangle needs an area."));
+    list.addParam(boundaryParameter(
+        "What happens at the boundary of an open surface, holes included. <b>free</b>: values "
+        "there are filtered like the rest. <b>fixed</b>: they are kept exactly, and the values in "
+        "between are filtered."));
+    return list;
+}
+
+spectral::FilteredSignal filtered(const RichParameterList& parameters, const MeshMatrices& input,
+                                  const Eigen::MatrixXd& Q, const spectral::Progress& progress) {
+    spectral::SignalFilterOptions options;
+    const ChosenTransfer transfer = chosenTransfer(parameters, input);
+    options.transferFunction = transfer.options;
+    options.featureSize = transfer.featureSize;
+    options.laplacian = laplacianKind(parameters);
+    options.boundary = boundaryCondition(parameters);
+    return spectral::withSteadyProgress(progress, [&](const spectral::Progress& steady) {
+        return spectral::filterSignal(input.V, input.F, Q, options, steady);
+    });
+}
+
+std::vector<std::string> warningsOf(const spectral::FilteredSignal& result) {
+    std::vector<std::string> warnings;
+    if (result.fixedVertices > 0 &&
+        result.fixedVertices + result.unreferencedVertices == result.Y.rows())
+        warnings.emplace_back(
+            "nothing can change: every vertex lies on the boundary, which is fixed. Choose "
+            "boundary = free; if the triangles are not connected, apply 'Merge Close Vertices' "
+            "first");
+    if (!result.accuracyReached)
+        warnings.push_back(accuracyWarning(result.accuracy, result.errorEstimate));
+    for (std::string& warning : residualWarnings(result.residuals))
+        warnings.push_back(std::move(warning));
+    return warnings;
+}
+
+/// What both filters report.
+/// @param signal  "quality changed", ...
+FilterOutcome outcomeOf(const char* name, const char* signal, const RichParameterList& parameters,
+                        const MeshMatrices& input, const spectral::FilteredSignal& result) {
+    const ChosenTransfer transfer = chosenTransfer(parameters, input);
+    const double size = transfer.featureSize;
+    std::ostringstream text;
+    text << std::setprecision(4) << name << ": " << nameOf(transfer.options.type)
+         << " at feature size " << size << " ("
+         << 100.0 * size / spectral::boundingBoxDiagonal(input.V) << " % of the diagonal); "
+         << signal << " by " << result.rmsChange << " (root mean square), by " << result.maxChange
+         << " at most; estimated relative error " << std::setprecision(2) << result.errorEstimate
+         << "\n  surface: " << result.components
+         << (result.components == 1 ? " component" : " components");
+    if (result.unreferencedVertices > 0)
+        text << ", " << result.unreferencedVertices << " unreferenced vertices unchanged";
+    if (result.fixedVertices > 0)
+        text << ", " << result.fixedVertices << " boundary vertices fixed";
+    text << "\n  work: " << result.factorizations << " factorizations, " << result.solves
+         << " solves";
+    return {{{"feature_size", size},
+             {"cutoff_frequency", result.cutoffFrequency},
+             {"rms_change", result.rmsChange},
+             {"max_change", result.maxChange},
+             {"error_estimate", result.errorEstimate},
+             {"accuracy_reached", result.accuracyReached},
+             {"components", result.components},
+             {"unreferenced_vertices", result.unreferencedVertices},
+             {"fixed_vertices", result.fixedVertices},
+             {"factorizations", result.factorizations},
+             {"solves", result.solves}},
+            text.str(),
+            warningsOf(result)};
+}
+
+std::string rangeOf(const Eigen::MatrixXd& values) {
+    std::ostringstream text;
+    text << std::setprecision(4) << values.minCoeff() << " to " << values.maxCoeff();
+    return text.str();
+}
+
+FilterOutcome applyToQuality(const RichParameterList& parameters, MeshModel& mesh,
+                             const spectral::Progress& progress) {
+    if (!mesh.hasPerVertexQuality())
+        throw MLException(
+            "the mesh has no vertex quality to filter: apply a filter that computes one first, "
+            "e.g. 'Per Vertex Quality Function'");
+    const MeshMatrices input = toMatrices(mesh.cm);
+    Eigen::VectorXd Q(input.V.rows());
+    for (Eigen::Index i = 0; i < Q.size(); ++i) Q[i] = mesh.cm.vert[input.vertexIndex[i]].cQ();
+    const spectral::FilteredSignal result = filtered(parameters, input, Q, progress);
+    if (!(result.Y.cwiseAbs().maxCoeff() <= std::numeric_limits<Scalarm>::max()))
+        throw MLException(
+            "the filtered quality is too large for a number: choose smaller gains, or apply "
+            "'Per Vertex Quality Function', q / 1000, first");
+
+    reportWriting(input, mesh.cm, progress);
+    setQuality(input.vertexIndex, result.Y.col(0), mesh);
+    FilterOutcome outcome = outcomeOf(kQualityName, "quality changed", parameters, input, result);
+    outcome.text += "\n  quality: " + rangeOf(Q) + " -> " + rangeOf(result.Y);
+    return outcome;
+}
+
+FilterOutcome applyToColor(const RichParameterList& parameters, MeshModel& mesh,
+                           const spectral::Progress& progress) {
+    if (!mesh.hasPerVertexColor())
+        throw MLException(
+            "the mesh has no vertex colours to filter: apply a filter that sets them first, e.g. "
+            "'Per Vertex Color Function' or 'Transfer Color: Texture to Vertex'");
+    const MeshMatrices input = toMatrices(mesh.cm);
+    Eigen::MatrixXd Q(input.V.rows(), 3);
+    for (Eigen::Index i = 0; i < Q.rows(); ++i)
+        for (int c = 0; c < 3; ++c) Q(i, c) = mesh.cm.vert[input.vertexIndex[i]].cC()[c];
+    const spectral::FilteredSignal result = filtered(parameters, input, Q, progress);
+
+    reportWriting(input, mesh.cm, progress);
+    mesh.updateDataMask(MeshModel::MM_VERTCOLOR);
+    const Eigen::ArrayXXd levels = result.Y.array().round();
+    for (Eigen::Index i = 0; i < Q.rows(); ++i)
+        for (int c = 0; c < 3; ++c)
+            mesh.cm.vert[input.vertexIndex[i]].C()[c] =
+                static_cast<unsigned char>(std::clamp(levels(i, c), 0.0, kWhite));
+    const auto clamped = static_cast<int>((levels < 0.0 || levels > kWhite).count());
+    FilterOutcome outcome =
+        outcomeOf(kColorName, "colours changed (in levels of 0 to 255, before rounding)",
+                  parameters, input, result);
+    outcome.report["clamped_values"] = clamped;
+    outcome.text +=
+        "\n  clamped: " + std::to_string(clamped) + " of " + std::to_string(Q.size()) + " values";
+    return outcome;
+}
+
+}  // namespace
+
+MeshFilter qualityMeshFilter() {
+    MeshFilter filter;
+    filter.name = kQualityName;
+    filter.pythonName = "apply_scalar_spectral_filter_per_vertex";
+    filter.help = kQualityHelp;
+    filter.category = FilterPlugin::FilterClass(FilterPlugin::Smoothing | FilterPlugin::Quality);
+    filter.changes = MeshModel::MM_VERTQUALITY;
+    filter.parameters = parameters;
+    filter.apply = applyToQuality;
+    return filter;
+}
+
+MeshFilter colorMeshFilter() {
+    MeshFilter filter;
+    filter.name = kColorName;
+    filter.pythonName = "apply_color_spectral_filter_per_vertex";
+    filter.help = kColorHelp;
+    filter.category =
+        FilterPlugin::FilterClass(FilterPlugin::Smoothing | FilterPlugin::VertexColoring);
+    filter.changes = MeshModel::MM_VERTCOLOR;
+    filter.parameters = parameters;
+    filter.apply = applyToColor;
+    return filter;
+}
