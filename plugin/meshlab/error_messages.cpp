@@ -80,7 +80,7 @@ std::string remedy(const spectral::Error& error, const RichParameterList& parame
             return "delete them, e.g. with 'Conditional Vertex Selection' (x != x) and 'Delete "
                    "Selected Vertices'";
         case ErrorCode::ValueNotFinite:
-            return "apply 'Per Vertex Quality Function', abs(q) < 1e30 ? q : 0, first, which sets "
+            return "apply 'Per Vertex Quality Function' with abs(q) < 1e30 ? q : 0 first, to set "
                    "them to 0";
         case ErrorCode::DegenerateTriangles: return largerTriangles(parameters);
         case ErrorCode::NoDelaunay:

@@ -37,6 +37,8 @@ class Call(NamedTuple):
 
 NAMES = {
     "filter": "apply_coord_spectral_filter_fractional",
+    "quality": "apply_scalar_spectral_filter_per_vertex",
+    "color": "apply_color_spectral_filter_per_vertex",
     "artefacts": "compute_scalar_spectral_artefacts_per_vertex",
     "harmonics": "compute_scalar_manifold_harmonic_per_vertex",
     "spectrum": "get_geometry_spectrum",
@@ -45,6 +47,12 @@ CALLS = [
     Call("filter", "default", {}),
     Call("filter", "strong", {"feature_size": 15.0}),
     Call("filter", "truncated", {"spectrum": "truncated", "basis_size": 300, "steps": 1}),
+    Call("quality", "default", {}),
+    Call("quality", "strong", {"feature_size": 15.0}),
+    Call("quality", "fixed", {"boundary": "fixed"}),
+    Call("color", "default", {}),
+    Call("color", "sharpen", {"filter_type": "high-pass", "stop_gain": 1.0, "pass_gain": 2.0}),
+    Call("color", "fixed", {"boundary": "fixed"}),
     Call("artefacts", "default", {}),
     Call("artefacts", "strong", {"feature_size": 15.0}),
     Call("artefacts", "cotangent", {"laplacian": "cotangent"}),
@@ -57,6 +65,8 @@ CALLS = [
 ]
 # What a filter may change; of the rest, positions and faces are compared to the bit.
 MOVES = {"filter"}
+# Filters of a signal that the files need not have: it is the height.
+SIGNALS = {"quality", "color"}
 
 _failed: list[Any] = []  # pymeshlab may crash when a MeshSet with an error is destroyed
 
@@ -75,6 +85,9 @@ def called(path: str, call: Call) -> dict[str, Any]:
     parameters = dict(call.parameters)
     if "feature_size" in parameters:
         parameters["feature_size"] = pymeshlab.PercentageValue(parameters["feature_size"])
+    if call.short in SIGNALS:
+        mesh_set.compute_scalar_by_function_per_vertex(q="z")
+        mesh_set.compute_color_from_scalar_per_vertex()
     row: dict[str, Any] = {
         "mesh": pathlib.Path(path).name,
         "vertices": len(V),

@@ -16,6 +16,7 @@
 #include "core/analysis/geometry_spectrum.h"
 #include "core/analysis/manifold_harmonics.h"
 #include "core/filter/fractional_filter.h"
+#include "core/filter/signal_filter.h"
 #include "core/mesh/measures.h"
 #include "meshlab/host_workarounds/steady_progress.h"
 #include "support/ply.h"
@@ -90,6 +91,12 @@ const std::vector<Setting> kSettings{
          options.steps = 2;
          options.evaluation.spectrum = Spectrum::Truncated;
          fractionalFilter(mesh.V, mesh.F, options, progress);
+     }},
+    {"Vertex Quality, low-pass 5 %",
+     [](const testing::Mesh& mesh, double diagonal, const Progress& progress) {
+         SignalFilterOptions options;
+         options.featureSize = 0.05 * diagonal;
+         filterSignal(mesh.V, mesh.F, mesh.V.col(2), options, progress);
      }},
     {"Manifold Harmonics",
      [](const testing::Mesh& mesh, double, const Progress& progress) {

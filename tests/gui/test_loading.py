@@ -13,6 +13,8 @@ SMOOTHING = "Smoothing, Fairing and Deformation"
 MEASURES = "Quality Measure and Computations"
 ENTRIES = [
     (SMOOTHING, "Spectral Filter (Fractional)"),
+    (SMOOTHING, "Spectral Filter: Vertex Quality"),
+    (SMOOTHING, "Spectral Filter: Vertex Color"),
     (MEASURES, "Spectral Artefacts"),
     (MEASURES, "Manifold Harmonics"),
     (MEASURES, "Geometry Spectrum"),

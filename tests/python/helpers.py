@@ -20,6 +20,43 @@ def mesh_set_of(V: NDArray[Any], F: NDArray[Any]) -> pymeshlab.MeshSet:
     return mesh_set
 
 
+def decorated(V: NDArray[Any], F: NDArray[Any]) -> pymeshlab.MeshSet:
+    """Make a mesh with one of every attribute that pymeshlab shows."""
+    rng = np.random.default_rng(1)
+    n, m = len(V), len(F)
+    mesh = pymeshlab.Mesh(
+        V,
+        F,
+        v_scalar_array=rng.random(n),
+        f_scalar_array=rng.random(m),
+        v_color_matrix=rng.random((n, 4)),
+        f_color_matrix=rng.random((m, 4)),
+        v_tex_coords_matrix=rng.random((n, 2)),
+        w_tex_coords_matrix=rng.random((3 * m, 2)),
+    )
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.add_mesh(mesh)
+    mesh = mesh_set.current_mesh()
+    mesh.add_vertex_custom_scalar_attribute(rng.random(n), "age")
+    mesh.add_vertex_custom_point_attribute(rng.random((n, 3)), "wind")
+    mesh.add_face_custom_scalar_attribute(rng.random(m), "part")
+    mesh.add_face_custom_point_attribute(rng.random((m, 3)), "grain")
+    mesh_set.compute_selection_by_condition_per_vertex(condselect="(x > 0)")
+    mesh_set.compute_selection_by_condition_per_face(condselect="(y0 > 0)")
+    return mesh_set
+
+
+def custom_attributes(mesh: pymeshlab.Mesh) -> dict[str, NDArray[Any]]:
+    """The custom attributes of a decorated mesh, by name."""
+    arrays = {
+        "age": mesh.vertex_custom_scalar_attribute_array("age"),
+        "wind": mesh.vertex_custom_point_attribute_matrix("wind"),
+        "part": mesh.face_custom_scalar_attribute_array("part"),
+        "grain": mesh.face_custom_point_attribute_matrix("grain"),
+    }
+    return {name: np.array(array) for name, array in arrays.items()}
+
+
 def filter_arrays(
     V: NDArray[Any], F: NDArray[Any], **parameters: Any
 ) -> tuple[NDArray[np.float64], dict[str, Any]]:

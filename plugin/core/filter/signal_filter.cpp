@@ -63,7 +63,8 @@ FilteredSignal filterSignal(const Vertices& V, const Faces& F, const Eigen::Matr
     result.Y = Q;
     result.accuracy = evaluation.accuracy;
     const Eigen::VectorXd& D = laplacians.inputMass();
-    if (!isConstant(X, ConstantModes(interior.surfaceComponents(), D))) {
+    result.isConstant = isConstant(X, ConstantModes(interior.surfaceComponents(), D));
+    if (!result.isConstant) {
         const Evaluation filtered = evaluate(laplacians.input(), X, 1.0, progress);
         const Eigen::MatrixXd change = scale * (filtered.Y.front() - X);
         for (Index i = 0; i < X.rows(); ++i)

@@ -20,6 +20,7 @@ struct SignalFilterOptions {
 struct FilteredSignal {
     Eigen::MatrixXd Y;  ///< n x c, the filtered signals; Q at unreferenced vertices.
 
+    bool isConstant = false;       ///< Each component has one value: nothing to filter.
     double cutoffFrequency = 0.0;  ///< omega_c, radians per length unit.
     double rmsChange = 0.0;        ///< Of Y - Q over the surface and all signals, units of Q.
     double maxChange = 0.0;        ///< Largest modulus of an entry of Y - Q.

@@ -76,8 +76,12 @@ spectral::FilteredSignal filtered(const RichParameterList& parameters, const Mes
 
 std::vector<std::string> warningsOf(const spectral::FilteredSignal& result) {
     std::vector<std::string> warnings;
-    if (result.fixedVertices > 0 &&
-        result.fixedVertices + result.unreferencedVertices == result.Y.rows())
+    if (result.isConstant)
+        warnings.emplace_back(
+            "nothing to filter: every connected component has one value throughout. Apply a filter "
+            "that computes qualities or colours first");
+    else if (result.fixedVertices > 0 &&
+             result.fixedVertices + result.unreferencedVertices == result.Y.rows())
         warnings.emplace_back(
             "nothing can change: every vertex lies on the boundary, which is fixed. Choose "
             "boundary = free; if the triangles are not connected, apply 'Merge Close Vertices' "

@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from meshlab_spectral.filters.fractional import filter_mesh
     from meshlab_spectral.filters.harmonics import Harmonics, manifold_harmonics
     from meshlab_spectral.filters.options import FilterOptions
+    from meshlab_spectral.filters.signals import filter_scalars
     from meshlab_spectral.filters.spectrum import GeometrySpectrum, geometry_spectrum
     from meshlab_spectral.plugin.loading import load
     from meshlab_spectral.plugin.memory import set_memory_limit
@@ -48,6 +49,7 @@ __all__ = [
     "PluginError",
     "filter_files",
     "filter_mesh",
+    "filter_scalars",
     "geometry_spectrum",
     "load",
     "manifold_harmonics",
@@ -71,6 +73,7 @@ _MODULES = {
     "PluginError": "errors",
     "filter_files": "batch.files",
     "filter_mesh": "filters.fractional",
+    "filter_scalars": "filters.signals",
     "geometry_spectrum": "filters.spectrum",
     "load": "plugin.loading",
     "manifold_harmonics": "filters.harmonics",

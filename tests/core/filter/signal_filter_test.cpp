@@ -75,6 +75,7 @@ TEST(SignalFilter, IsWhatAllEigenvectorsGive) {
         const Eigen::MatrixXd expected =
             applyInBasis(dense, A.laplacian.D, A.constants, fractionalPower(F, 1.0), 0.0, Q);
         const FilteredSignal result = filterSignal(mesh.V, mesh.F, Q, options);
+        EXPECT_FALSE(result.isConstant);
         EXPECT_TRUE(result.accuracyReached);
         EXPECT_LT(largest(result.Y - expected), kAccuracy * largest(Q));
         const Eigen::MatrixXd change = expected - Q;
@@ -168,6 +169,7 @@ TEST(SignalFilter, KeepsWhatIsConstantOnEveryComponentToTheBit) {
             SignalFilterOptions options = lowPass(mesh);
             options.boundary = boundary;
             const FilteredSignal result = filterSignal(mesh.V, mesh.F, Q, options);
+            EXPECT_TRUE(result.isConstant);
             EXPECT_TRUE((result.Y.array() == Q.array()).all());
             EXPECT_EQ(result.errorEstimate, 0.0);
             EXPECT_TRUE(result.accuracyReached);

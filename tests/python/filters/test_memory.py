@@ -31,6 +31,8 @@ meshlab_spectral.load()
 ms = pymeshlab.MeshSet()
 ms.load_new_mesh(sys.argv[1])
 name = sys.argv[2]
+ms.compute_scalar_by_function_per_vertex(q="sin(9 * x)")
+ms.compute_color_from_scalar_per_vertex()
 known = ms.filter_parameter_values(name)
 used = []
 for run in range(int(sys.argv[3])):

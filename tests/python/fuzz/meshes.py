@@ -214,7 +214,9 @@ def descriptions() -> st.SearchStrategy[Description]:
             "changes": st.lists(changes, max_size=3),
             "exponent": exponents,
             "offset": _seldom(0.0, 1.0, 1e3, 1e7, 1e12),
-            "spoiled": _seldom("", "", "", "nan", "inf", "-inf", "empty", "no faces"),
+            "spoiled": _seldom(
+                "", "", "", "nan", "inf", "-inf", "empty", "no faces", "nan quality"
+            ),
             "where": seeds,
             "polygons": st.booleans(),
             "deleted": _seldom("", "vertices", "faces", "everything"),
@@ -249,6 +251,8 @@ def mesh_set_of(description: Description) -> pymeshlab.MeshSet:
         "v_scalar_array": rng.random(n),
         "v_color_matrix": rng.random((n, 4)),
     }
+    if description["spoiled"] == "nan quality":
+        attributes["v_scalar_array"][description["where"] % n] = np.nan
     if description["polygons"] and shape.polygons:
         faces: Any = [np.array(p, np.uint32) for p in shape.polygons]
         mesh = pymeshlab.Mesh(shape.V, faces, **attributes)

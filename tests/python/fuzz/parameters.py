@@ -37,20 +37,25 @@ def _choice(count: int) -> st.SearchStrategy[int]:
 
 _LAPLACIAN, _BOUNDARY = _choice(2), _choice(2)
 
+_TRANSFER: dict[str, st.SearchStrategy[Any]] = {
+    "filter_type": _choice(5),
+    "transfer_function": _of(
+        ("20%:1, 5%:2, 1%:0.1", "6e:0.5", "1/(1 + w^4)", "w < 1", "1 + exp(-l/f)", "0"),
+        ("", ":", "5%", "1 - w", "q", "5%:1,5%:2", "0*log(-w)", "w/0", "(" * 500, "1e999"),
+    ),
+    "feature_size": _SIZES,
+    "pass_gain": _GAINS,
+    "stop_gain": _GAINS,
+    "band_width": _of((1.0, 2.0, 0.3, 1e-6, 60.0, 1e30), (1e-60, 0.0, -1.0, NAN)),
+    "response": _choice(3),
+    "order": _of((2, 1, 8, 64), (0, 65, -1, LARGEST_INTEGER)),
+    "power": _of((1.0, 0.5, 0.1, 1e-9), (1e-60, 0.0, -0.1, 1.000001, 2.0, NAN)),
+}
+_SIGNALS = {**_TRANSFER, "laplacian": _LAPLACIAN, "boundary": _BOUNDARY}
+
 PARAMETERS: dict[str, dict[str, st.SearchStrategy[Any]]] = {
     "apply_coord_spectral_filter_fractional": {
-        "filter_type": _choice(5),
-        "transfer_function": _of(
-            ("20%:1, 5%:2, 1%:0.1", "6e:0.5", "1/(1 + w^4)", "w < 1", "1 + exp(-l/f)", "0"),
-            ("", ":", "5%", "1 - w", "q", "5%:1,5%:2", "0*log(-w)", "w/0", "(" * 500, "1e999"),
-        ),
-        "feature_size": _SIZES,
-        "pass_gain": _GAINS,
-        "stop_gain": _GAINS,
-        "band_width": _of((1.0, 2.0, 0.3, 1e-6, 60.0, 1e30), (1e-60, 0.0, -1.0, NAN)),
-        "response": _choice(3),
-        "order": _of((2, 1, 8, 64), (0, 65, -1, LARGEST_INTEGER)),
-        "power": _of((1.0, 0.5, 0.1, 1e-9), (1e-60, 0.0, -0.1, 1.000001, 2.0, NAN)),
+        **_TRANSFER,
         "steps": _STEPS,
         "tolerance": _SIZES,
         "basis_update": _choice(3),
@@ -65,6 +70,8 @@ PARAMETERS: dict[str, dict[str, st.SearchStrategy[Any]]] = {
         "preserve_volume": st.booleans(),
         "weight": _choice(2),
     },
+    "apply_scalar_spectral_filter_per_vertex": _SIGNALS,
+    "apply_color_spectral_filter_per_vertex": _SIGNALS,
     "compute_scalar_spectral_artefacts_per_vertex": {
         "feature_size": _SIZES,
         "laplacian": _LAPLACIAN,

@@ -1,5 +1,6 @@
 """The plugin's filters, for meshes given as arrays.
 
-`fractional`, `artefacts`, `harmonics` and `spectrum` each call one filter, through `calling` and
-`arrays`; `options` is the table of the fractional filter's options, `transfer` its gain.
+`fractional`, `signals`, `artefacts`, `harmonics` and `spectrum` each call one filter, through
+`calling` and `arrays`; `options` is the table of the fractional filter's options, `transfer` its
+gain.
 """

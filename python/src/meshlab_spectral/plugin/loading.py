@@ -10,6 +10,8 @@ FILTER_NAME = "apply_coord_spectral_filter_fractional"
 # The plugin's filters: name in MeshLab's menus and scripts -> Python name.
 FILTERS = {
     "Spectral Filter (Fractional)": FILTER_NAME,
+    "Spectral Filter: Vertex Quality": "apply_scalar_spectral_filter_per_vertex",
+    "Spectral Filter: Vertex Color": "apply_color_spectral_filter_per_vertex",
     "Spectral Artefacts": "compute_scalar_spectral_artefacts_per_vertex",
     "Manifold Harmonics": "compute_scalar_manifold_harmonic_per_vertex",
     "Geometry Spectrum": "get_geometry_spectrum",

@@ -1,0 +1,82 @@
+"""Filters of numbers at the vertices of a mesh, on NumPy arrays."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from meshlab_spectral.errors import OptionError
+from meshlab_spectral.filters.arrays import mesh_arrays
+from meshlab_spectral.filters.calling import call_filter, plain_report
+from meshlab_spectral.filters.options import FilterOptions
+from meshlab_spectral.plugin.loading import load
+
+_FILTER_NAME = "apply_scalar_spectral_filter_per_vertex"
+
+
+def filter_scalars(
+    vertices: ArrayLike, faces: ArrayLike, values: ArrayLike, **options: Any
+) -> tuple[NDArray[np.float64], dict[str, Any]]:
+    """Filter a scalar field on a mesh by the size of its details; the shape stays as it is.
+
+    With A the Laplacian of the mesh and F the transfer function that `filter_mesh` would apply to
+    the coordinates, the result is ``F(sqrt(A)) values`` over the whole spectrum. The area-weighted
+    mean of every connected component is kept; values are not clamped.
+
+    Parameters
+    ----------
+    vertices
+        n x 3 coordinates, finite.
+    faces
+        m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
+    values
+        n numbers, finite. Those at vertices without faces are kept to the bit.
+    **options
+        Fields of `FilterOptions` that describe the transfer function, `laplacian` and `boundary`:
+        "fixed" keeps the values on the boundary. Sizes as a string such as "2%" of the bounding box
+        diagonal, or as a length in the units of the mesh.
+
+    Returns
+    -------
+    values : array
+        The n filtered values.
+    report : dict
+        Numbers: `rms_change` over the surface and `max_change`, in the units of the values;
+        `error_estimate`, relative to their largest deviation from the means; and others.
+        "warnings" lists what fell short and what to do about it.
+
+    Raises
+    ------
+    ValueError
+        When an array has the wrong shape or type, or an index is out of range.
+    OptionError
+        When an option is unknown, has an invalid value, or is not for values on a fixed shape.
+    FilterError
+        When the mesh has no faces, no area or non-finite coordinates, or a value is not finite.
+    PluginError
+        When the plugin cannot be loaded.
+
+    Examples
+    --------
+    >>> smooth, report = filter_scalars(vertices, faces, curvature, feature_size="2%")
+    >>> report["rms_change"], report["max_change"]
+    """
+    V, F = mesh_arrays(vertices, faces)
+    Q = np.asarray(values, dtype=np.float64)
+    if Q.shape != (len(V),):
+        raise ValueError(f"values have shape {Q.shape}: pass {len(V)} numbers, one for each vertex")
+    parameters = FilterOptions.from_dict(options)
+    load()
+    import pymeshlab
+
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.add_mesh(pymeshlab.Mesh(V, F, v_scalar_array=Q))
+    known = mesh_set.filter_parameter_values(_FILTER_NAME)
+    for name in options:
+        if name not in known:
+            raise OptionError(f"{name}: not for values on a fixed shape; choose {', '.join(known)}")
+    given = {k: v for k, v in parameters.pymeshlab_parameters().items() if k in known}
+    report = call_filter(mesh_set, _FILTER_NAME, given)
+    return mesh_set.current_mesh().vertex_scalar_array().copy(), plain_report(report)

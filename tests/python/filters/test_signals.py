@@ -1,0 +1,362 @@
+"""Vertex quality and colours are filtered as an independent implementation with SciPy does."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pymeshlab
+import pytest
+import spectral_reference as reference
+from helpers import (
+    FILTER,
+    assert_same,
+    custom_attributes,
+    decorated,
+    length,
+    lower_part,
+    mesh_set_of,
+    percent,
+    refusal,
+    snapshot,
+)
+from meshlab_spectral import FilterError, OptionError, filter_scalars
+from numpy.typing import NDArray
+from transfer_functions import RESPONSES, TYPES, gain_of
+
+QUALITY = "apply_scalar_spectral_filter_per_vertex"
+COLOR = "apply_color_spectral_filter_per_vertex"
+TARGETS = {QUALITY: "vertex_scalar_array", COLOR: "vertex_color_matrix"}
+AGREEMENT = 1e-6  # of the range of the field
+
+Array = NDArray[np.float64]
+Decimated = Callable[..., tuple[NDArray[Any], NDArray[Any]]]
+
+TRIANGLE = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]])
+
+
+def noisy_field(V: Array) -> Array:
+    """A smooth field with white noise, far from zero."""
+    x, y, z = ((V - V.mean(axis=0)) / np.ptp(V)).T
+    noise = np.random.default_rng(3).standard_normal(len(V))
+    return 100 + np.sin(9 * x) + np.cos(7 * y) * z + 0.2 * noise
+
+
+def colours(V: Array) -> NDArray[np.uint8]:
+    """Colours of all levels, alpha included."""
+    noise = np.random.default_rng(4).integers(-60, 60, (len(V), 4))
+    waves = 128 + 100 * np.sin(np.outer(V[:, 0] / np.ptp(V), [5, 6, 7, 8]))
+    return np.clip(waves + noise, 0, 255).astype(np.uint8)
+
+
+def coloured(V: Array, F: NDArray[Any], levels: NDArray[np.uint8]) -> pymeshlab.MeshSet:
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.add_mesh(pymeshlab.Mesh(V, F, v_color_matrix=levels / 255))
+    assert np.array_equal(levels_of(mesh_set), levels)
+    return mesh_set
+
+
+def levels_of(mesh_set: pymeshlab.MeshSet) -> NDArray[np.int64]:
+    levels = 255 * mesh_set.current_mesh().vertex_color_matrix()
+    return np.rint(levels).astype(np.int64)
+
+
+def expected_signals(
+    V: Array, F: NDArray[Any], Q: Array, options: dict[str, Any], report: dict[str, Any]
+) -> Array:
+    """F(sqrt(A)) Q with all eigenvectors."""
+    W, d = reference.matrices(V, F, options["laplacian"])
+    spectrum = reference.spectra(W, d, reference.components(len(V), F))
+    return reference.apply_gain(Q, spectrum, gain_of(options, report))
+
+
+@pytest.mark.parametrize("kind", TYPES)
+def test_quality_is_that_of_scipy(
+    kind: str, sample_name: str, decimated: Decimated, record_property: Callable[..., None]
+) -> None:
+    V, F = decimated(sample_name)
+    Q = noisy_field(V)
+    for name, response in RESPONSES.items():
+        options = {"laplacian": "cotangent", **TYPES[kind], **response}
+        Y, report = filter_scalars(V, F, Q, feature_size="15%", **options)
+        expected = expected_signals(V, F, Q[:, None], options, report)[:, 0]
+        error = np.abs(Y - expected).max() / np.ptp(Q)
+        record_property(f"error, {name}", error)
+        assert error <= AGREEMENT, name
+        assert report["warnings"] == []
+        change, d = expected - Q, reference.lumped_areas(V, F)
+        near = {"abs": AGREEMENT * np.ptp(Q)}
+        assert report["max_change"] == pytest.approx(np.abs(change).max(), **near)
+        assert report["rms_change"] == pytest.approx(np.sqrt(d @ change**2 / d.sum()), **near)
+
+
+def test_the_default_laplacian_is_that_of_its_inventors(
+    sample_name: str, decimated: Decimated
+) -> None:
+    V, F = decimated(sample_name)
+    Q = noisy_field(V)
+    Y, report = filter_scalars(V, F, Q, feature_size="15%")
+    expected = expected_signals(V, F, Q[:, None], {"laplacian": "intrinsic delaunay"}, report)
+    np.testing.assert_allclose(Y, expected[:, 0], rtol=0, atol=AGREEMENT * np.ptp(Q))
+
+
+def test_ideal_responses_are_exact(decimated: Decimated) -> None:
+    V, F = decimated("cow.obj")
+    Q = noisy_field(V)
+    options = {"laplacian": "cotangent", "response": "ideal"}
+    Y, report = filter_scalars(V, F, Q, feature_size="30%", **options)
+    expected = expected_signals(V, F, Q[:, None], options, report)
+    np.testing.assert_allclose(Y, expected[:, 0], rtol=0, atol=AGREEMENT * np.ptp(Q))
+
+
+def test_a_power_is_that_of_the_gains(decimated: Decimated) -> None:
+    V, F = decimated("cow.obj")
+    Q = noisy_field(V)
+    half, _ = filter_scalars(V, F, Q, feature_size="15%", power=0.5)
+    twice, _ = filter_scalars(V, F, half, feature_size="15%", power=0.5)
+    whole, _ = filter_scalars(V, F, Q, feature_size="15%")
+    np.testing.assert_allclose(twice, whole, rtol=0, atol=3 * AGREEMENT * np.ptp(Q))
+
+
+@pytest.mark.parametrize("kind", ["low-pass", "sharpening", "enhancement"])
+def test_colours_are_those_of_scipy_to_one_level_and_alpha_is_kept(
+    kind: str, sample_name: str, decimated: Decimated
+) -> None:
+    V, F = decimated(sample_name)
+    levels = colours(V)
+    mesh_set = coloured(V, F, levels)
+    options = {"laplacian": "cotangent", **TYPES[kind]}
+    report = mesh_set.apply_filter(COLOR, feature_size=percent(15), **options)
+    found = levels_of(mesh_set)
+    expected = expected_signals(V, F, levels[:, :3].astype(float), options, report)
+    np.testing.assert_allclose(found[:, :3], np.clip(expected, 0, 255), rtol=0, atol=0.5001)
+    np.testing.assert_array_equal(found[:, 3], levels[:, 3])
+    beyond = np.rint(expected)
+    assert report["clamped_values"] == ((beyond < 0) | (beyond > 255)).sum()
+    assert (report["clamped_values"] > 0) == (kind != "low-pass")
+    assert report["max_change"] == pytest.approx(np.abs(expected - levels[:, :3]).max(), abs=1e-3)
+
+
+def test_a_fixed_boundary_keeps_its_values_and_the_rest_is_filtered(decimated: Decimated) -> None:
+    V, F = lower_part(*decimated("bunny.obj"))
+    V, F = V[np.unique(F)], np.unique(F, return_inverse=True)[1].reshape(-1, 3)
+    Q = noisy_field(V)
+    rim = reference.boundary_vertices(F)
+    Y, report = filter_scalars(V, F, Q, feature_size="15%", boundary="fixed", laplacian="cotangent")
+    np.testing.assert_array_equal(Y[rim], Q[rim])
+    assert report["fixed_vertices"] == len(rim)
+    interior = np.setdiff1d(np.arange(len(V)), rim)
+    W, d = reference.matrices(V, F, "cotangent")
+    spectrum = reference.fixed_spectrum(W, d, interior)
+    rows = W[interior]
+    H = np.linalg.solve(rows[:, interior].toarray(), -(rows[:, rim] @ Q[rim]))
+    gain = gain_of({}, report)(np.sqrt(spectrum.lam))
+    detail = spectrum.Phi @ (gain * (spectrum.Phi.T @ (spectrum.d * (Q[interior] - H))))
+    np.testing.assert_allclose(Y[interior], H + detail, rtol=0, atol=AGREEMENT * np.ptp(Q))
+
+
+def test_the_mean_of_every_component_is_kept_by_any_filter(decimated: Decimated) -> None:
+    (V, F), (V2, F2) = decimated("cow.obj"), decimated("bone.ply")
+    both, faces = np.vstack([V, V2 + 5]), np.vstack([F, F2 + len(V)])
+    Q = noisy_field(both)
+    Q[len(V) :] -= 300
+    for options in TYPES.values():
+        Y, report = filter_scalars(both, faces, Q, feature_size="5%", **options)
+        for part in reference.components(len(both), faces):
+            d = reference.lumped_areas(both, faces)[part]
+            assert d @ Y[part] / d.sum() == pytest.approx(d @ Q[part] / d.sum(), abs=1e-10)
+        assert report["components"] == len(reference.components(len(both), faces))
+
+
+def test_noise_is_removed_and_the_field_below_it_is_kept(samples: Path) -> None:
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.load_new_mesh(str(samples / "bunny.obj"))
+    V, F = mesh_set.current_mesh().vertex_matrix(), mesh_set.current_mesh().face_matrix()
+    field = np.sin(6 * (V / np.ptp(V)) @ [1.0, 2.0, -1.0])
+    noise = 0.3 * np.random.default_rng(5).standard_normal(len(V))
+    Y, _ = filter_scalars(V, F, field + noise, feature_size="8%")
+    assert np.std(Y - field) < 0.25 * np.std(noise)
+
+
+@pytest.mark.parametrize("name", TARGETS)
+def test_every_other_attribute_is_kept(name: str, decimated: Decimated) -> None:
+    mesh_set = decorated(*decimated("cow.obj"))
+    mesh = mesh_set.current_mesh()
+    before, custom_before = snapshot(mesh), custom_attributes(mesh)
+    assert 0 < mesh.selected_vertex_number() < mesh.vertex_number()
+    assert {"wedge_tex_coord_matrix", "face_scalar_array", *TARGETS.values()} <= before.keys()
+    box = mesh.bounding_box()
+    mesh_set.apply_filter(name)
+    after = snapshot(mesh)
+    assert not np.array_equal(before[TARGETS[name]], after[TARGETS[name]])
+    del before[TARGETS[name]], after[TARGETS[name]]
+    assert len(before) == 11
+    assert_same(before, after)
+    assert_same(custom_before, custom_attributes(mesh))
+    np.testing.assert_array_equal(mesh.bounding_box().max(), box.max())
+
+
+@pytest.mark.parametrize("name", TARGETS)
+def test_vertices_without_faces_keep_their_values(name: str, decimated: Decimated) -> None:
+    V, F = decimated("cow.obj")
+    with_lonely = np.vstack([V, V[:2] + 0.01])
+    levels = colours(with_lonely)
+    mesh_set = pymeshlab.MeshSet()
+    Q = noisy_field(with_lonely)
+    mesh_set.add_mesh(pymeshlab.Mesh(with_lonely, F, v_color_matrix=levels / 255, v_scalar_array=Q))
+    before = snapshot(mesh_set.current_mesh())[TARGETS[name]]
+    report = mesh_set.apply_filter(name, feature_size=percent(15))
+    after = snapshot(mesh_set.current_mesh())[TARGETS[name]]
+    np.testing.assert_array_equal(after[len(V) :], before[len(V) :])
+    assert not np.array_equal(after, before)
+    assert report["unreferenced_vertices"] == 2
+
+
+def test_after_a_deletion_only_what_is_left_counts(decimated: Decimated) -> None:
+    V, F = decimated("cow.obj")
+    Q = noisy_field(V)
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.add_mesh(pymeshlab.Mesh(V, F, v_scalar_array=Q))
+    mesh_set.compute_selection_by_condition_per_vertex(condselect="(z > 0.4)")
+    mesh_set.meshing_remove_selected_vertices()
+    mesh_set.apply_filter(QUALITY, feature_size=length(0.25))
+    mesh = mesh_set.current_mesh()
+    left = V[:, 2] <= 0.4
+    assert 0 < left.sum() < len(V)
+    expected, _ = filter_scalars(
+        mesh.vertex_matrix(), mesh.face_matrix(), Q[left], feature_size=0.25
+    )
+    np.testing.assert_allclose(mesh.vertex_scalar_array(), expected, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+def test_values_that_are_no_numbers_are_counted_and_located_and_the_advice_helps(
+    value: float, decimated: Decimated
+) -> None:
+    V, F = decimated("cow.obj")
+    Q = noisy_field(V)
+    Q[[17, 40]] = value
+    with pytest.raises(FilterError, match=r"2 vertices have a value .* the first is vertex 17"):
+        filter_scalars(V, F, Q)
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.add_mesh(pymeshlab.Mesh(V, F, v_scalar_array=Q))
+    before = snapshot(mesh_set.current_mesh())
+    advice = "'Per Vertex Quality Function' with abs(q) < 1e30 ? q : 0"
+    assert advice in refusal(mesh_set, QUALITY)
+    assert_same(before, snapshot(mesh_set.current_mesh()))
+
+    advised = pymeshlab.MeshSet()
+    advised.add_mesh(pymeshlab.Mesh(V, F, v_scalar_array=Q))
+    advised.compute_scalar_by_function_per_vertex(q="abs(q) < 1e30 ? q : 0")
+    mended = advised.current_mesh().vertex_scalar_array()
+    np.testing.assert_array_equal(mended, np.where(np.isfinite(Q), Q, 0))
+    advised.apply_filter(QUALITY)
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        (QUALITY, "no vertex quality to filter: apply .*'Per Vertex Quality Function'"),
+        (COLOR, "no vertex colours to filter: apply .*'Per Vertex Color Function'"),
+    ],
+)
+def test_a_mesh_without_the_signal_is_refused_with_a_filter_that_makes_one(
+    name: str, words: str, cow: Path
+) -> None:
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.load_new_mesh(str(cow))
+    message = refusal(mesh_set, name)
+    assert re.search(words, message)
+
+
+@pytest.mark.parametrize("name", TARGETS)
+def test_a_point_cloud_is_refused(name: str, decimated: Decimated) -> None:
+    V, _ = decimated("cow.obj")
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.add_mesh(
+        pymeshlab.Mesh(V, v_scalar_array=noisy_field(V), v_color_matrix=colours(V) / 255)
+    )
+    assert "point cloud" in refusal(mesh_set, name)
+
+
+@pytest.mark.parametrize("name", TARGETS)
+def test_the_transfer_functions_parameters_are_those_of_the_main_filter(
+    name: str, decimated: Decimated
+) -> None:
+    mesh_set = mesh_set_of(*decimated("cow.obj"))
+    ours, main = (mesh_set.filter_parameter_values(each) for each in (name, FILTER))
+    assert ours.items() <= main.items()
+    assert [each for each in main if each in ours] == list(ours)
+    assert list(ours)[: list(ours).index("laplacian")] == list(main)[: list(main).index("steps")]
+
+
+def test_arrays_of_another_shape_are_refused() -> None:
+    V, F = TRIANGLE
+    for values in (np.zeros(2), np.zeros((3, 1)), 1.0):
+        with pytest.raises(ValueError, match="pass 3 numbers"):
+            filter_scalars(V, F, values)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"steps": 3}, "steps: not for values"),
+        ({"spectrum": "full"}, "spectrum: not for values"),
+        ({"feature_sise": "2%"}, "did you mean feature_size"),
+        ({"order": 65}, "order = 65"),
+    ],
+)
+def test_options_of_other_filters_and_unknown_ones_are_refused(
+    options: dict[str, Any], words: str
+) -> None:
+    V, F = TRIANGLE
+    with pytest.raises(OptionError, match=words):
+        filter_scalars(V, F, np.arange(3.0), **options)
+
+
+def test_what_falls_short_is_a_warning(decimated: Decimated) -> None:
+    V, F = TRIANGLE
+    Y, report = filter_scalars(V, F, [1.0, 2.0, 4.0], boundary="fixed")
+    np.testing.assert_array_equal(Y, [1.0, 2.0, 4.0])
+    assert len(report["warnings"]) == 1
+    assert report["warnings"][0].startswith("nothing can change")
+
+    Y, report = filter_scalars(V, F, [0.1, 0.1, 0.1])
+    np.testing.assert_array_equal(Y, [0.1, 0.1, 0.1])
+    assert len(report["warnings"]) == 1
+    assert report["warnings"][0].startswith("nothing to filter")
+
+    V, F = decimated("cow.obj")
+    steep = {"filter_type": "band-stop", "power": 0.05, "feature_size": "15%"}
+    _, report = filter_scalars(V, F, noisy_field(V), **steep)
+    assert not report["accuracy_reached"]
+    assert "accuracy of 1e-06 was not reached" in report["warnings"][0]
+    assert "steps" not in report["warnings"][0]
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        {"pass_gain": 1e30},
+        {"filter_type": "band-pass", "band_width": 1e-3, "pass_gain": 90.0, "stop_gain": 1.0},
+        {"response": "ideal"},
+    ],
+    ids=str,
+)
+def test_a_gain_out_of_reach_is_an_error_that_recommends_only_what_the_filter_has(
+    options: dict[str, Any], samples: Path
+) -> None:
+    loaded = pymeshlab.MeshSet()
+    loaded.load_new_mesh(str(samples / "bunny.obj"))
+    V, F = loaded.current_mesh().vertex_matrix(), loaded.current_mesh().face_matrix()
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.add_mesh(pymeshlab.Mesh(V, F, v_scalar_array=noisy_field(V)))
+    main, ours = (mesh_set.filter_parameter_values(name) for name in (FILTER, QUALITY))
+    before = snapshot(mesh_set.current_mesh())
+    message = refusal(mesh_set, QUALITY, **options)
+    assert_same(before, snapshot(mesh_set.current_mesh()))
+    assert "choose" in message
+    assert not [name for name in main.keys() - ours.keys() if re.search(rf"\b{name}\b", message)]
