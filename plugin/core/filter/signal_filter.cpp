@@ -43,6 +43,7 @@ FilteredSignal filterSignal(const Vertices& V, const Faces& F, const Eigen::Matr
     const ThreadTeam team;
     checkMesh(V, F, options.laplacian);
     checkSignal(Q);
+    checkWeights(options.part);
     const Surface surface = surfaceOf(V, F);
     const TransferFunction transfer(options.transferFunction, cutoffFrequency(options.featureSize));
     const Interior interior(surface.F, connectedComponents(surface.F, surface.X.rows()),
@@ -66,7 +67,10 @@ FilteredSignal filterSignal(const Vertices& V, const Faces& F, const Eigen::Matr
     result.isConstant = isConstant(X, ConstantModes(interior.surfaceComponents(), D));
     if (!result.isConstant) {
         const Evaluation filtered = evaluate(laplacians.input(), X, 1.0, progress);
-        const Eigen::MatrixXd change = scale * (filtered.Y.front() - X);
+        const Eigen::MatrixXd change =
+            vertexWeight(options.part, surface, interior, laplacians.input(), options.featureSize)
+                .asDiagonal() *
+            (scale * (filtered.Y.front() - X));
         for (Index i = 0; i < X.rows(); ++i)
             for (Index c = 0; c < X.cols(); ++c)  // -0 + 0 would not be -0
                 if (change(i, c) != 0.0) result.Y(surface.vertex[i], c) += change(i, c);

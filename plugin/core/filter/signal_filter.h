@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "core/transfer/transfer_function.h"
+#include "core/filter/vertex_weight.h"
 #include "core/laplacian/interior.h"
 #include "core/laplacian/laplacian_builder.h"
 #include "core/mesh/mesh.h"
@@ -15,6 +16,7 @@ struct SignalFilterOptions {
     double featureSize = 0.0;  ///< Wavelength of the cutoff, 2 pi / omega_c, length units, > 0.
     LaplacianKind laplacian = LaplacianKind::IntrinsicDelaunay;
     Boundary boundary = Boundary::Free;
+    WeightOptions part;  ///< Where to filter.
 };
 
 struct FilteredSignal {

@@ -50,6 +50,7 @@ const char* const kColorHelp =
 RichParameterList parameters(const MeshModel& mesh) {
     RichParameterList list;
     addTransferParameters(mesh, list);
+    list.addParam(selectedParameter(mesh));
     list.addParam(laplacianParameter(
         "How the frequencies of the surface are measured. <b>intrinsic delaunay</b> works on any "
         "triangles, including slivers, holes, duplicate or intersecting sheets. <b>cotangent</b> "
@@ -61,14 +62,17 @@ RichParameterList parameters(const MeshModel& mesh) {
     return list;
 }
 
-spectral::FilteredSignal filtered(const RichParameterList& parameters, const MeshMatrices& input,
-                                  const Eigen::MatrixXd& Q, const spectral::Progress& progress) {
+spectral::FilteredSignal filtered(const RichParameterList& parameters, const MeshModel& mesh,
+                                  const MeshMatrices& input, const Eigen::MatrixXd& Q,
+                                  const spectral::Progress& progress) {
     spectral::SignalFilterOptions options;
     const ChosenTransfer transfer = chosenTransfer(parameters, input);
     options.transferFunction = transfer.options;
     options.featureSize = transfer.featureSize;
     options.laplacian = laplacianKind(parameters);
     options.boundary = boundaryCondition(parameters);
+    if (parameters.getBool("selected"))
+        options.part.selected = selectedVertices(mesh.cm, input);
     return spectral::withSteadyProgress(progress, [&](const spectral::Progress& steady) {
         return spectral::filterSignal(input.V, input.F, Q, options, steady);
     });
@@ -141,9 +145,8 @@ FilterOutcome applyToQuality(const RichParameterList& parameters, MeshModel& mes
             "the mesh has no vertex quality to filter: apply a filter that computes one first, "
             "e.g. 'Per Vertex Quality Function'");
     const MeshMatrices input = toMatrices(mesh.cm);
-    Eigen::VectorXd Q(input.V.rows());
-    for (Eigen::Index i = 0; i < Q.size(); ++i) Q[i] = mesh.cm.vert[input.vertexIndex[i]].cQ();
-    const spectral::FilteredSignal result = filtered(parameters, input, Q, progress);
+    const Eigen::VectorXd Q = vertexQuality(mesh.cm, input);
+    const spectral::FilteredSignal result = filtered(parameters, mesh, input, Q, progress);
     if (!(result.Y.cwiseAbs().maxCoeff() <= std::numeric_limits<Scalarm>::max()))
         throw MLException(
             "the filtered quality is too large for a number: choose smaller gains, or apply "
@@ -166,7 +169,7 @@ FilterOutcome applyToColor(const RichParameterList& parameters, MeshModel& mesh,
     Eigen::MatrixXd Q(input.V.rows(), 3);
     for (Eigen::Index i = 0; i < Q.rows(); ++i)
         for (int c = 0; c < 3; ++c) Q(i, c) = mesh.cm.vert[input.vertexIndex[i]].cC()[c];
-    const spectral::FilteredSignal result = filtered(parameters, input, Q, progress);
+    const spectral::FilteredSignal result = filtered(parameters, mesh, input, Q, progress);
 
     reportWriting(input, mesh.cm, progress);
     mesh.updateDataMask(MeshModel::MM_VERTCOLOR);

@@ -51,7 +51,7 @@ _TRANSFER: dict[str, st.SearchStrategy[Any]] = {
     "order": _of((2, 1, 8, 64), (0, 65, -1, LARGEST_INTEGER)),
     "power": _of((1.0, 0.5, 0.1, 1e-9), (1e-60, 0.0, -0.1, 1.000001, 2.0, NAN)),
 }
-_SIGNALS = {**_TRANSFER, "laplacian": _LAPLACIAN, "boundary": _BOUNDARY}
+_SIGNALS = {**_TRANSFER, "selected": st.booleans(), "laplacian": _LAPLACIAN, "boundary": _BOUNDARY}
 
 PARAMETERS: dict[str, dict[str, st.SearchStrategy[Any]]] = {
     "apply_coord_spectral_filter_fractional": {

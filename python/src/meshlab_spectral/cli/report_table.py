@@ -42,7 +42,8 @@ def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
     if report.get("unreferenced_vertices"):
         rows.append(("Vertices without faces", f"{report['unreferenced_vertices']}, unchanged"))
     if report.get("fixed_vertices"):
-        rows.append(("Vertices on a fixed boundary or crease", f"{report['fixed_vertices']}, unchanged"))
+        fixed = f"{report['fixed_vertices']}, unchanged"
+        rows.append(("Vertices on a fixed boundary or crease", fixed))
     if "eigenvalues" in report:
         rows.append(("Harmonics", f"{len(report['eigenvalues'])}"))
         rows.append(("Bases computed", f"{report['computed_bases']}"))
