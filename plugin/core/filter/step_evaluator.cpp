@@ -97,7 +97,8 @@ Evaluation StepEvaluator::evaluate(const Laplacian& surface, const Eigen::Matrix
 void requireUsefulAccuracy(double errorEstimate) {
     if (!(errorEstimate > kUselessError)) return;
     std::ostringstream text;
-    text << "the transfer function is too steep: the relative error is about "
+    text << "the transfer function is too steep for spectrum = full, or triangles are needles: the "
+            "relative error is about "
          << std::setprecision(2) << errorEstimate;
     throw SolverFailure(ErrorCode::TooSteep, text.str());
 }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/krylov/krylov_spaces.h"
+#include "core/support/errors.h"
 
 namespace spectral {
 
@@ -21,6 +22,9 @@ constexpr double kNearlyConverged = 30.0;
 /// Factor on the error estimate without convergence: at a cusp the changes decay more slowly than
 /// any geometric series. A bound for all cusps of full_spectrum_test.
 constexpr double kNotConverged = 3.0;
+
+/// Relative round-off of solves beyond which results are useless.
+constexpr double kUselessRoundOff = 0.03;
 
 /// Frequencies at which gains are sampled, ascending: those asked for, and eighths of octaves on
 /// both sides of the one that belongs to the pole.
@@ -54,19 +58,41 @@ class ErrorEstimate {
     std::vector<double> changes_;
 };
 
+/// Error of F(sqrt(A)) X, relative to X, that comes of a relative error of S: an error of lambda
+/// relative to lambda + lambda_p, however small lambda is.
+double roundOffError(const KrylovSpaces& spaces, const Gain& gain, double pole) {
+    const double roundOff = spaces.roundOff();
+    double squares = 0.0;
+    for (int c = 0; c < spaces.columns(); ++c) {
+        const auto [omega, weight] = spaces.quadrature(c);
+        for (Index i = 0; i < omega.size(); ++i) {
+            if (!std::isfinite(omega[i])) continue;
+            const double lambda = omega[i] * omega[i], error = roundOff * (lambda + pole);
+            const double F = gain(omega[i]), above = gain(std::sqrt(lambda + error)),
+                         below = gain(std::sqrt(std::max(0.0, lambda - error)));
+            const double most = std::max(std::abs(above - F), std::abs(below - F));
+            squares += weight[i] * most * most;
+        }
+    }
+    return std::max(std::sqrt(squares) / spaces.norms().matrix().norm(), roundOff);
+}
+
 /// Successive approximations of F(sqrt(A)) X for one gain.
 class Approximation {
   public:
-    /// @param omega  frequencies at which the gain is sampled.
+    /// @param omega         frequencies at which the gain is sampled.
+    /// @param smallestMass  of a vertex.
     Approximation(const KrylovSpaces& spaces, const Gain& gain, const Eigen::VectorXd& omega,
-                  const FullSpectrumOptions& options)
+                  double smallestMass, const FullSpectrumOptions& options)
         : spaces_(spaces),
           gain_(gain),
           omega_(omega),
           gains_(omega.unaryExpr(gain)),
           options_(options),
           coefficients_(static_cast<std::size_t>(spaces.columns())),
-          change_(coefficients_.size()) {}
+          change_(coefficients_.size()),
+          mostAtVertices_(spaces.norms().matrix().norm() /
+                          (std::sqrt(smallestMass) * spaces.largestEntry())) {}
 
     /// Updates the coefficients of all columns; returns the estimated error.
     double update() {
@@ -83,7 +109,8 @@ class Approximation {
         // Vertices of small mass hardly affect the norm over the surface. Their errors can be
         // larger, and decay more slowly and less evenly: the larger of two changes counts.
         const double before = std::exchange(largest_, spaces_.largestEntryOf(change_));
-        return std::max(error, atVertices_(std::max(before, largest_) / spaces_.largestEntry()));
+        const double estimate = atVertices_(std::max(before, largest_) / spaces_.largestEntry());
+        return std::max(error, std::min(estimate, error * mostAtVertices_));
     }
 
     Eigen::MatrixXd Y() const { return spaces_.combine(coefficients_); }
@@ -95,6 +122,7 @@ class Approximation {
     Eigen::VectorXd gains_;
     const FullSpectrumOptions& options_;
     std::vector<Eigen::VectorXd> coefficients_, change_;
+    double mostAtVertices_;  // the error at a vertex, relative to that over the surface
     ErrorEstimate atVertices_;
     double largest_ = 0.0;
 };
@@ -110,25 +138,35 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
     std::vector<FullSpectrumResult> results(gains.size());
     const Eigen::VectorXd omega = sampleFrequencies(-ldlt.shift(), options.samples);
     std::vector<Approximation> approximations;
-    for (const Gain& gain : gains) approximations.emplace_back(spaces, gain, omega, options);
+    for (const Gain& gain : gains)
+        approximations.emplace_back(spaces, gain, omega, D.minCoeff(), options);
 
+    // A space of all dimensions need not be invariant: where eigenvalues span many decades, its
+    // last vectors are round-off.
+    const Index largest = std::min<Index>(options.maxDimension, D.size() - constants.count());
     double firstError = 0.0, furthest = 0.0;
     bool isDone = false;
     for (int m = 1, check = 3; !isDone; ++m) {
         progress.report(furthest, "filtering");
         const bool isInvariant = !spaces.extend();
-        const bool isLast = m >= options.maxDimension;
+        const bool isLast = m >= largest;
         if (!isInvariant && !isLast && m < check) continue;
         check = nextCheck(m);
+        if (spaces.roundOff() > kUselessRoundOff)
+            throw SolverFailure(ErrorCode::SingularMatrix,
+                                "round-off leaves nothing of the solutions with W + s D: triangles "
+                                "are needles, or parts of the mesh are far away");
 
         bool allConverged = true;
         double largestError = 0.0;
         for (std::size_t g = 0; g < gains.size(); ++g) {
             FullSpectrumResult& result = results[g];
             result.dimension = isInvariant ? m - 1 : m;
-            result.errorEstimate = approximations[g].update();
             // In an invariant space, round-off is the only error.
-            if (isInvariant) result.errorEstimate = std::numeric_limits<double>::epsilon();
+            result.errorEstimate = approximations[g].update();
+            if (isInvariant || isLast || result.errorEstimate <= options.accuracy)
+                result.errorEstimate =
+                    std::max(result.errorEstimate, roundOffError(spaces, gains[g], -ldlt.shift()));
             result.converged = result.errorEstimate <= options.accuracy;
             allConverged = allConverged && result.converged;
             largestError = std::max(largestError, result.errorEstimate);

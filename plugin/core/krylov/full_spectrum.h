@@ -45,7 +45,8 @@ struct FullSpectrumResult {
 /// @param gains  continuous, finite and >= 0 on [0, infinity]; constant modes keep gain 1.
 /// @param X      n x c signals, e.g. the three coordinates.
 /// @return       one result for each gain, all from the same Krylov spaces.
-/// @throws SolverFailure  when the tridiagonal eigenproblem does not converge.
+/// @throws SolverFailure  when the tridiagonal eigenproblem does not converge, or round-off leaves
+///                        nothing of the solves (KrylovSpaces::roundOff).
 std::vector<FullSpectrumResult> applyFullSpectrum(
     const Eigen::VectorXd& D, const ConstantModes& constants, const ShiftedLdlt& ldlt,
     const std::vector<Gain>& gains, const Eigen::MatrixXd& X, const FullSpectrumOptions& options,

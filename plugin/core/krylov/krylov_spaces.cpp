@@ -202,6 +202,8 @@ void KrylovSpaces::extendColumns() {
         row -= alpha * rowOf<Columns>(q, i) + before * rowOf<Columns>(p, i);
         return Row<Columns>(row);
     });
+    const auto constants = w.means.colwise() * constants_.masses().array().sqrt();
+    roundOff_ = std::max(roundOff_, -ldlt_.shift() * constants.matrix().norm());
     Row<Columns> beta = w.squares.sqrt();
     for (int c = 0; c < Columns; ++c)
         if (!exhausted_[c]) alpha_[c].push_back(alpha[c]);
@@ -211,9 +213,11 @@ void KrylovSpaces::extendColumns() {
     for (int c = 0; c < Columns; ++c) {
         if (exhausted_[c]) continue;
         const double scale = std::hypot(alpha[c], before[c]);
-        exhausted_[c] =
-            !(beta[c] > kBreakdown * scale) || static_cast<Index>(alpha_[c].size()) == n;
-        if (exhausted_[c]) continue;
+        exhausted_[c] = !(beta[c] > kBreakdown * scale);
+        if (exhausted_[c]) {
+            roundOff_ = std::max(roundOff_, kBreakdown);
+            continue;
+        }
         beta_[c].push_back(beta[c]);
         inverse[c] = 1.0 / beta[c];
     }
@@ -336,27 +340,32 @@ double KrylovSpaces::squaredErrorBound(int column, const Eigen::VectorXd& c,
     constexpr double kHuge = 1e100;  // p_k grows geometrically where the signal has nothing
     if (exhausted_[column]) return 0.0;
     const std::vector<double>&alpha = alpha_[column], &beta = beta_[column];
-    double sum = 0.0, largest = 0.0;
-    bool wasNegative = false;
-    for (Index s = 0; s < omega.size(); ++s) {
-        const double theta = 1.0 / (omega[s] * omega[s] - ldlt_.shift());
-        double before = 0.0, p = 1.0, polynomial = 0.0, squares = 0.0, unit = norms_[column];
-        for (std::size_t k = 0; k < alpha.size(); ++k) {
-            polynomial += c[static_cast<Index>(k)] * p;
-            squares += p * p;
-            const double coupled = k > 0 ? beta[k - 1] * before : 0.0;
-            before = std::exchange(p, ((theta - alpha[k]) * p - coupled) / beta[k]);
-            if (std::abs(p) > kHuge) {
-                for (double* value : {&before, &p, &polynomial, &unit}) *value /= kHuge;
-                squares /= kHuge * kHuge;
-            }
-        }
-        // The last polynomial, p_m, changes its sign at the Ritz values.
-        if (std::exchange(wasNegative, p < 0.0) != wasNegative) sum += std::exchange(largest, 0.0);
-        const double mismatch = unit * gains[s] - polynomial;
-        largest = std::max(largest, mismatch * mismatch / squares);
+    using Values = Eigen::ArrayXd;  // at all samples
+    const Index count = omega.size();
+    const double norm = norms_[column];
+    const Values theta = (omega.array().square() - ldlt_.shift()).inverse();
+    Values before = Values::Zero(count), p = Values::Ones(count), polynomial = before,
+           squares = before, unit = p;
+    for (std::size_t k = 0; k < alpha.size(); ++k) {
+        polynomial += c[static_cast<Index>(k)] / norm * p;
+        squares += p.square();
+        const double inverse = 1.0 / beta[k], coupled = k > 0 ? beta[k - 1] * inverse : 0.0;
+        before = (theta - alpha[k]) * (inverse * p) - coupled * before;
+        before.swap(p);
+        if (!(p.abs().maxCoeff() > kHuge)) continue;
+        const Values scale = (p.abs() > kHuge).select(1.0 / kHuge, Values::Ones(count));
+        for (Values* values : {&before, &p, &polynomial, &unit}) *values *= scale;
+        squares *= scale.square();
     }
-    return sum + largest;
+    const Values mismatch = unit * gains.array() - polynomial;
+    const Values bound = mismatch.square() / (squares + p.square());
+    double sum = 0.0, largest = 0.0;
+    for (Index s = 0; s < count; ++s) {
+        // The last polynomial, p_m, changes its sign at the Ritz values.
+        if (s > 0 && (p[s] < 0.0) != (p[s - 1] < 0.0)) sum += std::exchange(largest, 0.0);
+        largest = std::max(largest, bound[s]);
+    }
+    return norm * norm * (sum + largest);
 }
 
 Quadrature KrylovSpaces::quadrature(int column) const {

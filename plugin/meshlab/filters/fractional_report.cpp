@@ -159,7 +159,8 @@ std::vector<std::string> warningsOf(const spectral::FilterOptions& options,
         warnings.push_back(volumeWarning(result));
     if (!result.accuracyReached)
         warnings.push_back(accuracyWarning(result.accuracy, result.errorEstimate) +
-                           ", or fewer steps");
+                           ", or fewer steps; if triangles are needles, apply 'Remeshing: "
+                           "Isotropic Explicit Remeshing' first");
     if (!result.toleranceReached) warnings.push_back(toleranceWarning(options, result));
     if (!result.cutoffReached) warnings.push_back(cutoffWarning(result, lastFrequency(result)));
     for (std::string& warning : residualWarnings(result.residuals))
