@@ -14,7 +14,7 @@ MESHLAB_SOURCE_DIR ?=
 WARNINGS_AS_ERRORS ?= OFF
 BENCH_MESH ?= ../shared/data/dragon_40k.ply
 BENCH_OPTIONS ?=
-FUZZ_OPTIONS ?= --cases 100000
+FUZZ_OPTIONS ?= --cases 1000000
 FUZZ_EXAMPLES ?= 5000
 SANITIZE ?= OFF
 
@@ -88,7 +88,7 @@ bench-ldlt: $(COMPETITORS) build  ## compare the factorization with Eigen's and 
 bench-batch: $(PACKAGE)  ## measure a batch of 1,000 meshes against one process
 	$(BIN)/python tests/benchmarks/bench_batch.py
 
-fuzz: setup  ## try the core with random meshes and options; about an hour
+fuzz: setup  ## try the core with random meshes and options; about half an hour
 	cmake -S . -B build/fuzz-sanitize-$(SANITIZE) -G Ninja -DSPECTRAL_BUILD_PLUGIN=OFF \
 	  -DSPECTRAL_SANITIZE=$(SANITIZE)
 	cmake --build build/fuzz-sanitize-$(SANITIZE) --target fuzz_core

@@ -189,7 +189,7 @@ struct Call {
 
 }  // namespace
 
-Case makeCase(Choices& choices) {
+Case makeCase(Choices& choices, Sizes sizes) {
     Case made;
     made.repeats = choices.oneIn(8);
     if (choices.oneIn(50)) made.cancelAt = choices.between(1, 20);
@@ -202,7 +202,7 @@ Case makeCase(Choices& choices) {
         made.options = bands;
         return made;
     }
-    made.mesh = makeMesh(choices);
+    made.mesh = makeMesh(choices, sizes);
     const Vertices& V = made.mesh.mesh.V;
     double diagonal = V.rows() > 0 ? boundingBoxDiagonal(V) : 1.0;
     if (!(std::isfinite(diagonal) && diagonal > 0.0)) diagonal = 1.0;

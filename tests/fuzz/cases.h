@@ -34,7 +34,7 @@ struct Case {
     int cancelAt = 0;        ///< The report at which the caller cancels; 0: never.
 };
 
-Case makeCase(Choices& choices);
+Case makeCase(Choices& choices, Sizes sizes = Sizes::MostlySmall);
 
 /// The call with all its options, in one line.
 std::string describe(const Case& of);

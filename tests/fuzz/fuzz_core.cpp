@@ -5,8 +5,10 @@
 //                  [--errors yes] [--compare no]
 //        fuzz_core --seed S    one seed, in this process, with everything that came of it
 //
-// Cases have seeds S, S + 64, ...: nearer ones share bytes. --limit is for one case; --errors
-// prints the errors that are allowed, too; --compare no leaves out the dense solver, for
+// Cases have seeds S, S + 64, ...: nearer ones share bytes. Seeds below 1e12 make meshes of any
+// size, larger ones mostly small meshes, of which there are more in an hour. --limit is for one
+// case;
+// --errors prints the errors that are allowed, too; --compare no leaves out the dense solver, for
 // sanitizers.
 //
 // A file of seeds has one in each line, with a remark after it. Seeds mean the same on every
@@ -31,8 +33,11 @@ namespace {
 
 using namespace spectral::fuzz;
 
+/// Seeds from here on make mostly small meshes.
+constexpr std::uint64_t kFirstOfSmall = 1000000000000;
+
 struct Arguments {
-    std::uint64_t cases = 1000, firstSeed = 1;
+    std::uint64_t cases = 1000, firstSeed = kFirstOfSmall;
     double seconds = std::numeric_limits<double>::infinity(), limit = 60.0;
     std::optional<std::vector<std::uint64_t>> seeds;  ///< Instead of a range.
     bool isVerbose = false, showsErrors = false, compares = true;
@@ -79,7 +84,7 @@ Arguments argumentsOf(int count, char** values) {
 Case caseOf(std::uint64_t seed) {
     const std::vector<std::uint8_t> bytes = bytesOf(seed);
     Choices choices(bytes.data(), bytes.size());
-    return makeCase(choices);
+    return makeCase(choices, seed < kFirstOfSmall ? Sizes::Any : Sizes::MostlySmall);
 }
 
 /// What is counted, in memory that all processes share.

@@ -1,5 +1,6 @@
 #include "fuzz/meshes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -29,8 +30,9 @@ Mesh fan(int rim, bool isClosed, double height) {
 }
 
 /// Random triangles between random points; a corner may be there twice.
-Mesh soup(Choices& choices) {
-    const int n = choices.between(3, 40), m = choices.between(1, 80);
+Mesh soup(Choices& choices, int most) {
+    const int n = choices.between(3, std::min(40, most));
+    const int m = choices.between(1, std::min(80, 2 * most));
     Mesh mesh{Vertices::Zero(n, 3), Faces(m, 3)};
     mesh = testing::withNoise(mesh, 1.0, choices.bits(4));
     for (Index t = 0; t < m; ++t)
@@ -48,8 +50,8 @@ Mesh triangle() {
 Mesh tetrahedron() { return fan(3, false, 1.2); }
 
 /// Tiny components far from one another.
-Mesh crumbs(Choices& choices) {
-    const int count = choices.between(2, 30);
+Mesh crumbs(Choices& choices, int most) {
+    const int count = choices.between(2, std::clamp(most / 6, 2, 30));
     const double distance = choices.logUniform(1e7, 1e16);
     Mesh mesh;
     for (int i = 0; i < count; ++i) {
@@ -63,38 +65,51 @@ Mesh crumbs(Choices& choices) {
 }
 
 /// A shape of about unit size, and its name.
-NamedMesh baseShape(Choices& choices) {
+/// @param most  about so many vertices at most, >= 4.
+NamedMesh baseShape(Choices& choices, int most) {
+    const int side = static_cast<int>(std::sqrt(most));
     switch (choices.below(13)) {
         case 0:
-        case 1: return {testing::icosphere(choices.pick({0, 1, 1, 2})), "sphere"};
+        case 1:
+            return {testing::icosphere(std::min(choices.pick({0, 1, 1, 2}), most < 42    ? 0
+                                                                            : most < 162 ? 1
+                                                                                         : 2)),
+                    "sphere"};
         case 2: {
-            const int n = choices.between(3, 14);
-            return {testing::torus(1.0, choices.logUniform(0.01, 0.9), n, choices.between(3, 14)),
-                    "torus"};
-        }
-        case 3: return {testing::cube(choices.between(1, 5)), "box"};
-        case 4: {
-            const int nx = choices.between(1, 14);
+            const int longest = std::clamp(side, 3, 14), n = choices.between(3, longest);
             return {
-                testing::rectangle(1.0, choices.logUniform(0.05, 1.0), nx, choices.between(1, 14)),
-                "grid"};
+                testing::torus(1.0, choices.logUniform(0.01, 0.9), n, choices.between(3, longest)),
+                "torus"};
         }
-        case 5: return {testing::hemisphere(choices.between(1, 7)), "hemisphere"};
-        case 6: return {testing::segmentedBall(choices.between(2, 3)), "voxels"};
+        case 3: return {testing::cube(choices.between(1, std::clamp(side / 3, 1, 5))), "box"};
+        case 4: {
+            const int longest = std::clamp(side - 1, 1, 14), nx = choices.between(1, longest);
+            return {testing::rectangle(1.0, choices.logUniform(0.05, 1.0), nx,
+                                       choices.between(1, longest)),
+                    "grid"};
+        }
+        case 5:
+            return {testing::hemisphere(choices.between(1, std::clamp(side / 2, 1, 7))),
+                    "hemisphere"};
+        case 6:
+            if (most < 100) return {testing::cube(1), "box"};
+            return {testing::segmentedBall(choices.between(2, 3)), "voxels"};
         case 7: return {triangle(), "triangle"};
         case 8: {
-            const int rim = choices.pick({3, 5, 17, 60, 250});
+            const int rim = std::min(choices.pick({3, 5, 17, 60, 250}), most);
             const bool isClosed = choices.oneIn(2);
             return {fan(rim, isClosed, choices.pick({0.0, 1e-4, 1.0, 30.0})),
                     isClosed ? "double cone" : "wheel"};
         }
-        case 9: return {soup(choices), "soup"};
-        case 10: return {crumbs(choices), "crumbs"};
+        case 9: return {soup(choices, most), "soup"};
+        case 10: return {crumbs(choices, most), "crumbs"};
         case 11:
-            return {testing::rectangle(1.0, choices.logUniform(1e-9, 1e-2), choices.between(2, 40),
+            return {testing::rectangle(1.0, choices.logUniform(1e-9, 1e-2),
+                                       choices.between(2, std::clamp(most / 2, 2, 40)),
                                        choices.between(1, 2)),
                     "ribbon"};
         default:
+            if (most < 300) return {tetrahedron(), "wheel"};
             // More than the dense solver of the core takes.
             switch (choices.below(3)) {
                 case 0: return {testing::torus(1.0, 0.4, 19, choices.between(16, 20)), "torus"};
@@ -122,7 +137,7 @@ void addFace(Mesh& mesh, int a, int b, int c) {
 }
 
 /// One change to a mesh with triangles; returns its name.
-std::string change(Choices& choices, Mesh& mesh) {
+std::string change(Choices& choices, Mesh& mesh, int most) {
     const int i = anyVertex(choices, mesh), j = anyVertex(choices, mesh);
     const int t = anyFace(choices, mesh), count = choices.between(1, 6);
     switch (choices.below(17)) {
@@ -197,7 +212,7 @@ std::string change(Choices& choices, Mesh& mesh) {
         }
         case 15: mesh.V.row(i) = mesh.V.row(j); return "coincident vertices";
         default: {
-            Mesh other = baseShape(choices).mesh;
+            Mesh other = baseShape(choices, most).mesh;
             other.V *= choices.logUniform(1e-6, 10.0);
             other.V.col(0).array() += choices.pick({0.0, 2.5, 100.0});
             if (mesh.V.rows() + other.V.rows() < 350) mesh = testing::joined(mesh, other);
@@ -229,9 +244,13 @@ std::string spoil(Choices& choices, Mesh& mesh) {
 
 }  // namespace
 
-NamedMesh makeMesh(Choices& choices) {
-    NamedMesh made = baseShape(choices);
-    if (choices.oneIn(400)) made = {testing::rectangle(1.0, 0.7, 50, 45), "large grid"};
+NamedMesh makeMesh(Choices& choices, Sizes sizes) {
+    int most = 1000;
+    if (sizes == Sizes::MostlySmall)
+        most = choices.oneIn(30) ? 300 : static_cast<int>(choices.logUniform(4.0, 60.0));
+    NamedMesh made = baseShape(choices, most);
+    if (choices.oneIn(400) && most >= 300)
+        made = {testing::rectangle(1.0, 0.7, 50, 45), "large grid"};
     Mesh& mesh = made.mesh;
     if (!choices.oneIn(3)) {
         const double noise = choices.pick({0.0, 1e-13, 1e-8, 1e-3, 0.02, 0.1});
@@ -241,7 +260,7 @@ NamedMesh makeMesh(Choices& choices) {
         }
     }
     for (int changes = choices.pick({0, 0, 1, 1, 2, 3}); changes > 0; --changes)
-        made.name += ", " + change(choices, mesh);
+        made.name += ", " + change(choices, mesh, most);
     if (choices.oneIn(5)) {
         const double exponent = choices.uniform(-60.0, 75.0);
         mesh.V *= std::pow(10.0, exponent);

@@ -12,8 +12,14 @@ struct NamedMesh {
     std::string name;  ///< The shape and what has been done to it.
 };
 
+/// How many vertices meshes have: their number decides how many cases there are in an hour.
+enum class Sizes {
+    Any,         ///< Up to about 400, seldom more.
+    MostlySmall  ///< One in 30 like that, the others 4 to about 60, small ones as often as large.
+};
+
 /// A mesh of any quality: smooth surfaces, soups, needles, spikes, any scale, some that are no
-/// meshes at all. Up to about 400 vertices, seldom more.
-NamedMesh makeMesh(Choices& choices);
+/// meshes at all.
+NamedMesh makeMesh(Choices& choices, Sizes sizes);
 
 }  // namespace spectral::fuzz
