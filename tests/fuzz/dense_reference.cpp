@@ -44,10 +44,11 @@ struct Problem {
     Vector<Scalar> D;
     std::vector<Index> order;  ///< Vertex of each row.
 
-    Problem(const MeshLaplacian& mesh, bool isPerturbed) : order(mesh.laplacian.D.size()) {
+    Problem(const MeshLaplacian& mesh, Precision precision) : order(mesh.laplacian.D.size()) {
         const auto n = static_cast<Index>(order.size());
         std::iota(order.begin(), order.end(), Index{0});
-        std::mt19937 bits(1);
+        std::mt19937 bits(static_cast<unsigned>(precision));
+        const bool isPerturbed = precision >= Precision::Perturbed;
         if (isPerturbed)
             for (Index i = n - 1; i > 0; --i) std::swap(order[i], order[bits() % (i + 1)]);
         // A few units of double precision, whatever that of the scalar.
@@ -89,8 +90,8 @@ void centre(const Vector<Scalar>& D, const std::vector<int>& label, Matrix<Scala
 }
 
 template <class Scalar>
-DenseSpectrum spectrumOf(const MeshLaplacian& mesh, const Interior& interior, bool isPerturbed) {
-    Problem<Scalar> all(mesh, isPerturbed);
+DenseSpectrum spectrumOf(const MeshLaplacian& mesh, const Interior& interior, Precision precision) {
+    Problem<Scalar> all(mesh, precision);
     std::vector<Index> rowOf(all.order.size(), -1);  // in the interior
     const Eigen::MatrixXd marks = interior.extended(Eigen::MatrixXd::Ones(interior.size(), 1));
     for (Index i = 0, m = 0; i < marks.rows(); ++i)
@@ -148,10 +149,9 @@ DenseReference::DenseReference(const Vertices& V, const Faces& F, LaplacianKind 
 const DenseSpectrum& DenseReference::at(Precision precision) {
     std::optional<DenseSpectrum>& spectrum = spectra_[static_cast<std::size_t>(precision)];
     if (!spectrum)
-        spectrum =
-            precision == Precision::Double
-                ? spectrumOf<double>(mesh_, interior_, false)
-                : spectrumOf<long double>(mesh_, interior_, precision == Precision::Perturbed);
+        spectrum = precision == Precision::Double
+                       ? spectrumOf<double>(mesh_, interior_, precision)
+                       : spectrumOf<long double>(mesh_, interior_, precision);
     return *spectrum;
 }
 

@@ -12,8 +12,9 @@ namespace spectral::fuzz {
 /// one decides; what the perturbed one differs from it, nobody can know.
 enum class Precision {
     Double,
-    Extended,  ///< long double.
-    Perturbed  ///< Extended, with all vertices in another order and round-off in every number.
+    Extended,   ///< long double.
+    Perturbed,  ///< Extended, with all vertices in another order and round-off in every number.
+    PerturbedAgain
 };
 
 /// All eigenpairs of a Laplacian, and the shape in them.
@@ -44,7 +45,7 @@ class DenseReference {
     MeshLaplacian mesh_;
     Interior interior_;
     Laplacian laplacian_;
-    std::array<std::optional<DenseSpectrum>, 3> spectra_;
+    std::array<std::optional<DenseSpectrum>, 4> spectra_;
 };
 
 }  // namespace spectral::fuzz

@@ -162,11 +162,7 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
         for (std::size_t g = 0; g < gains.size(); ++g) {
             FullSpectrumResult& result = results[g];
             result.dimension = isInvariant ? m - 1 : m;
-            // In an invariant space, round-off is the only error.
             result.errorEstimate = approximations[g].update();
-            if (isInvariant || isLast || result.errorEstimate <= options.accuracy)
-                result.errorEstimate =
-                    std::max(result.errorEstimate, roundOffError(spaces, gains[g], -ldlt.shift()));
             result.converged = result.errorEstimate <= options.accuracy;
             allConverged = allConverged && result.converged;
             largestError = std::max(largestError, result.errorEstimate);
@@ -184,6 +180,10 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
     const Eigen::MatrixXd means = constants.means(X);
     for (std::size_t g = 0; g < gains.size(); ++g) {
         FullSpectrumResult& result = results[g];
+        // In an invariant space, this is the only error.
+        result.errorEstimate =
+            std::max(result.errorEstimate, roundOffError(spaces, gains[g], -ldlt.shift()));
+        result.converged = result.errorEstimate <= options.accuracy;
         if (!result.converged) result.errorEstimate *= kNotConverged;
         result.Y = approximations[g].Y();
         constants.remove(result.Y);

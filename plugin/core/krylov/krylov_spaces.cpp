@@ -121,7 +121,8 @@ KrylovSpaces::KrylovSpaces(const ShiftedLdlt& ldlt, const Eigen::VectorXd& D,
       beta_(X.cols()),
       overlap_(X.cols()),
       overlapBefore_(X.cols()),
-      exhausted_(X.cols()) {
+      exhausted_(X.cols()),
+      roundOff_(kBreakdown) {
     assert(columns_ >= 1 && columns_ <= kMostSignals);
     const Eigen::VectorXi& order = ldlt.factorOrder();
     parallelRows(D.size(), [&](Index begin, Index end) {
@@ -214,10 +215,7 @@ void KrylovSpaces::extendColumns() {
         if (exhausted_[c]) continue;
         const double scale = std::hypot(alpha[c], before[c]);
         exhausted_[c] = !(beta[c] > kBreakdown * scale);
-        if (exhausted_[c]) {
-            roundOff_ = std::max(roundOff_, kBreakdown);
-            continue;
-        }
+        if (exhausted_[c]) continue;
         beta_[c].push_back(beta[c]);
         inverse[c] = 1.0 / beta[c];
     }

@@ -80,8 +80,8 @@ class KrylovSpaces {
     /// Largest modulus of the entries of the signals without their constants.
     double largestEntry() const { return largestEntry_; }
 
-    /// Round-off in S, relative to its norm: the largest constant part of S q for any vector q of
-    /// the bases, which would be zero, or what counts as such in an invariant space.
+    /// Round-off in S, relative to its norm: the largest constant part of S q, which should be
+    /// zero, for any vector q of the bases; at least what counts as zero in a breakdown.
     double roundOff() const { return roundOff_; }
 
   private:
@@ -119,7 +119,8 @@ class KrylovSpaces {
     bool orthogonalizesNext_ = false;
     std::vector<bool> exhausted_;  // whether the space of a column is invariant
     Eigen::ArrayXd norms_;
-    double largestEntry_ = 0.0, roundOff_ = 1e-15;
+    double largestEntry_ = 0.0;
+    double roundOff_;
 };
 
 }  // namespace spectral
