@@ -84,6 +84,7 @@ std::string remedy(const spectral::Error& error, const RichParameterList& parame
                    "them to 0";
         case ErrorCode::DegenerateTriangles: return largerTriangles(parameters);
         case ErrorCode::NoDelaunay:
+        case ErrorCode::SolverFailed:
         case ErrorCode::SingularMatrix: return kRemesh;
         case ErrorCode::ShapeCollapsed: return stablerFilter(parameters);
         case ErrorCode::ShrinksToNothing: return weakerFilter(parameters);
@@ -111,7 +112,6 @@ std::string remedy(const spectral::Error& error, const RichParameterList& parame
         case ErrorCode::OptionOutOfRange:
         case ErrorCode::BadIndex:
         case ErrorCode::NoArea:
-        case ErrorCode::SolverFailed:
         case ErrorCode::Cancelled: break;
     }
     return "";

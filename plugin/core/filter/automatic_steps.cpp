@@ -135,6 +135,7 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
 
     AutomaticSteps result;
     double done = kFirstPasses;
+    bool wasEven = true;
     for (int K = 1, last = 2;; K *= 2) {
         // This pass and all later ones take K + 2 K + ... + last steps.
         const double end = done + (1.0 - done) * K / (2.0 * std::max(K, last) - K);
@@ -144,11 +145,14 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
         done = end;
         limit.add(std::move(result.last.X));
         result.error = limit.ofResult().error();
-        const bool isReached = result.error <= options.tolerance;
+        // Of two passes, of which one had to take smaller steps, both may have taken the same ones.
+        const bool isEven = result.last.sizes.size() == static_cast<std::size_t>(K);
+        const bool isComparable = std::exchange(wasEven, isEven) && isEven;
+        const bool isReached = isComparable && result.error <= options.tolerance;
         // Parts that shrink away are worth a few passes only.
         const bool isEnough =
             isReached && (K >= kFewSteps || limit.ofInput().error() <= options.tolerance);
-        const bool stagnates = K >= kFewSteps && limit.ofResult().stagnates();
+        const bool stagnates = isComparable && K >= kFewSteps && limit.ofResult().stagnates();
         if (isEnough || stagnates || 2 * K > options.maxSteps) {
             result.last.X = isReached ? limit.extrapolated() : limit.last();
             result.singularPart = limit.partBeyond(options.tolerance);

@@ -27,16 +27,20 @@ constexpr double kEvaluationShare = 0.05;
 /// Relative accuracy of evaluations at any tolerance: four digits that do not depend on it.
 constexpr double kLoosestAccuracy = 1e-4;
 
+/// More steps make no difference, and take hours.
+constexpr int kMostSteps = 1000;
+
 void checkOptions(const FilterOptions& options) {
-    if (options.steps < 0)
+    if (options.steps < 0 || options.steps > kMostSteps)
         throw InvalidOption("steps = " + std::to_string(options.steps) +
-                            ": must be at least 1, e.g. 10, or 0 for automatic steps");
+                            ": must be between 1 and " + std::to_string(kMostSteps) +
+                            ", e.g. 10, or 0 for automatic steps");
     if (options.steps == 0 && !(std::isfinite(options.tolerance) && options.tolerance > 0.0))
-        throw InvalidOption("tolerance = " + std::to_string(options.tolerance) +
+        throw InvalidOption("tolerance = " + textOf(options.tolerance) +
                             ": automatic steps need a length above zero, e.g. 0.05 % of the "
                             "diagonal of the bounding box");
     if (!(options.conformalShare >= 0.0 && options.conformalShare <= 1.0))
-        throw InvalidOption("conformal_share = " + std::to_string(options.conformalShare) +
+        throw InvalidOption("conformal_share = " + textOf(options.conformalShare) +
                             ": must be between 0 (the paper's update) and 1 (conformal)");
     if (!(options.evaluation.accuracy >= 1e-12 && options.evaluation.accuracy < 1.0))
         throw InvalidOption("accuracy must be between 1e-12 and 1");

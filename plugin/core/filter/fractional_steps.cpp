@@ -20,6 +20,11 @@ void append(Evaluation step, double h, FractionalSteps& steps) {
     steps.sizes.push_back(h);
 }
 
+/// Part of its area that a surface must keep in a half step: the Laplacian of one that has
+/// collapsed says nothing about the step. A high-pass would leave the shape as it is, at any number
+/// of steps.
+constexpr double kLeastArea = 1e-2;
+
 /// One step of the midpoint rule, or several smaller ones.
 /// @param half  the shape at the half step, where it is known.
 void midpointStep(LaplacianBuilder& laplacians, StepEvaluator& evaluate, double h, double smallest,
@@ -32,6 +37,9 @@ void midpointStep(LaplacianBuilder& laplacians, StepEvaluator& evaluate, double 
                     .Y.front();
             half = &predicted;
         }
+        if (laplacians.mass(*half).sum() < kLeastArea * laplacians.mass(steps.X).sum())
+            throw SolverFailure(ErrorCode::ShrinksToNothing,
+                                "the whole surface shrinks to nothing in half a step");
         append(evaluate(laplacians(*half), steps.X, h, progress.part(0.5, 1.0)), h, steps);
     } catch (const SolverFailure&) {
         if (0.5 * h < smallest) throw;

@@ -1,9 +1,8 @@
 #include "core/filter/step_evaluator.h"
 
 #include <algorithm>
-#include <iomanip>
+#include <cmath>
 #include <optional>
-#include <sstream>
 
 #include "core/filter/full_spectrum_evaluator.h"
 #include "core/support/errors.h"
@@ -96,11 +95,11 @@ Evaluation StepEvaluator::evaluate(const Laplacian& surface, const Eigen::Matrix
 
 void requireUsefulAccuracy(double errorEstimate) {
     if (!(errorEstimate > kUselessError)) return;
-    std::ostringstream text;
-    text << "the transfer function is too steep for spectrum = full, or triangles are needles: the "
-            "relative error is about "
-         << std::setprecision(2) << errorEstimate;
-    throw SolverFailure(ErrorCode::TooSteep, text.str());
+    throw SolverFailure(
+        ErrorCode::TooSteep,
+        "the transfer function is too steep for spectrum = full, or triangles are needles: the "
+        "relative error is " +
+            (std::isfinite(errorEstimate) ? "about " + textOf(errorEstimate) : "unknown"));
 }
 
 }  // namespace spectral

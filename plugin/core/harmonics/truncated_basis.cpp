@@ -167,10 +167,9 @@ void checkSize(Index k, Index n, Index constants) {
     if (k <= constants)
         throw InvalidOption(ErrorCode::BasisTooSmall,
                             size +
-                                " leaves no room for more than the constant modes, one of each "
-                                "of the " +
-                                std::to_string(constants) +
-                                " connected components without a fixed boundary",
+                                " leaves no room for more than the constant modes, one for each "
+                                "connected component without a fixed boundary: " +
+                                std::to_string(constants),
                             constants + 1);
 }
 

@@ -10,7 +10,7 @@ namespace spectral {
 
 double cutoffFrequency(double featureSize) {
     if (!std::isfinite(featureSize) || featureSize <= 0.0)
-        throw InvalidOption("feature_size = " + std::to_string(featureSize) +
+        throw InvalidOption("feature_size = " + textOf(featureSize) +
                             ": must be a length above zero, e.g. 5 % of the bounding box diagonal");
     return 2.0 * kPi / featureSize;
 }

@@ -56,8 +56,7 @@ void checkMesh(const Vertices& V, const Faces& F) {
     for (Index t = 0; t < F.rows(); ++t)
         if (!isDegenerate(V, F, t)) return;
     throw InvalidMesh(ErrorCode::NoArea,
-                      "none of the " + counted(F.rows(), "triangle", "triangles") +
-                          " has an area: the mesh is a line or a point, not a surface");
+                      "no triangle has an area: the mesh is a line or a point, not a surface");
 }
 
 void checkAreas(const Vertices& V, const Faces& F) {

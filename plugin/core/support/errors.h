@@ -1,5 +1,6 @@
 #pragma once
 
+#include <sstream>
 #include <stdexcept>
 #include <string>
 
@@ -32,6 +33,13 @@ enum class ErrorCode {
     SolverFailed,         ///< A numerical method failed; the text says which.
     Cancelled,
 };
+
+/// A number in the text of an error: 1e-09 where std::to_string has 0.000000.
+inline std::string textOf(double number) {
+    std::ostringstream text;
+    text << number;
+    return text.str();
+}
 
 /// Base of everything that the core throws. The text says what is wrong and where, with numbers.
 class Error : public std::runtime_error {

@@ -23,7 +23,7 @@ constexpr int kOctaves = 16;
 
 void requireGain(double gain, const char* name) {
     if (!std::isfinite(gain) || gain < 0.0)
-        throw InvalidOption(std::string(name) + " = " + std::to_string(gain) +
+        throw InvalidOption(std::string(name) + " = " + textOf(gain) +
                             ": a gain must be finite and not negative, because a fractional power "
                             "of a negative gain does not exist; 0 removes, 1 keeps, 2 doubles");
 }
@@ -44,18 +44,18 @@ TransferFunction::TransferFunction(const TransferFunctionOptions& options, doubl
     : options_(options), cutoff_(cutoff) {
     if (!std::isfinite(cutoff) || cutoff <= 0.0)
         throw InvalidOption("the cutoff frequency must be finite and positive, it is " +
-                            std::to_string(cutoff) + ": choose a feature size above zero");
+                            textOf(cutoff) + ": choose a feature size above zero");
     if (options.order < 1 || options.order > kMaxOrder)
         throw InvalidOption("order = " + std::to_string(options.order) +
                             ": a Butterworth order lies between 1 and " +
                             std::to_string(kMaxOrder));
     if (!std::isfinite(options.bandWidth) || options.bandWidth <= 0.0)
-        throw InvalidOption("band_width = " + std::to_string(options.bandWidth) +
+        throw InvalidOption("band_width = " + textOf(options.bandWidth) +
                             ": the width of a band is a positive number of octaves");
     requireGain(options.passGain, "pass_gain");
     requireGain(options.stopGain, "stop_gain");
     if (!(options.power > 0.0 && options.power <= 1.0))
-        throw InvalidOption("power = " + std::to_string(options.power) +
+        throw InvalidOption("power = " + textOf(options.power) +
                             ": the part of the filter to apply is above 0 and at most 1, the whole "
                             "filter");
     options.type == FilterType::Custom ? sampleCustom() : sample();

@@ -370,6 +370,7 @@ TEST(FractionalFilter, RefusesOptionsOutOfTheirRange) {
         EXPECT_THROW(fractionalFilter(mesh.V, mesh.F, options), InvalidOption);
     };
     refuses([](FilterOptions& o) { o.steps = -1; });
+    refuses([](FilterOptions& o) { o.steps = 1001; });
     refuses([](FilterOptions& o) { o.steps = 0; });  // automatic, without a tolerance
     refuses([](FilterOptions& o) { o.conformalShare = -0.1; });
     refuses([](FilterOptions& o) { o.conformalShare = 1.1; });
@@ -381,6 +382,32 @@ TEST(FractionalFilter, RefusesOptionsOutOfTheirRange) {
         o.evaluation.spectrum = Spectrum::Truncated;
         o.evaluation.truncation.basisSize = 162;
     });
+}
+
+TEST(FractionalFilter, TellsSmallNumbersInErrors) {
+    const Mesh mesh = testing::icosphere(1);
+    FilterOptions options = smoothing(mesh, 2, BasisUpdate::Full);
+    options.transferFunction.passGain = -1e-9;
+    try {
+        fractionalFilter(mesh.V, mesh.F, options);
+        FAIL() << "a negative gain is no gain";
+    } catch (const InvalidOption& error) {
+        EXPECT_EQ(std::string(error.what()).find("pass_gain = -1e-09: "), 0U) << error.what();
+    }
+}
+
+TEST(FractionalFilter, InAutomaticStepsDoesNotTakeACollapseForNoChange) {
+    // The half step of this high-pass shrinks the tetrahedron to 1e-8 of its size, whose
+    // frequencies all pass.
+    Mesh mesh{Vertices(4, 3), Faces(4, 3)};
+    mesh.V << 1, 1, 1, 1, -1, -1, -1, 1, -1, -1, -1, 1;
+    mesh.F << 0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2;
+    FilterOptions options;
+    options.transferFunction.type = FilterType::HighPass;
+    options.featureSize = 0.5;
+    options.tolerance = 1e-3;
+    const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_LT(result.areaAfter, 0.1 * result.areaBefore);
 }
 
 TEST(FractionalFilter, ConformalShareLeadsFromTheFullToTheConformalUpdate) {
