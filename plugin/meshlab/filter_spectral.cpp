@@ -10,6 +10,7 @@
 #include "core/support/memory.h"
 #include "core/support/threads.h"
 #include "meshlab/error_messages.h"
+#include "meshlab/free_memory.h"
 #include "meshlab/host_workarounds/apply_lock.h"
 #include "meshlab/host_workarounds/last_warnings.h"
 #include "meshlab/host_workarounds/late_close.h"
@@ -148,7 +149,8 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
     try {
         const spectral::Progress progress = meshlabProgress(callback, isWanted, isOvertaken);
         spectral::setThreadCount(threadsOfEnvironment());
-        spectral::setMemoryLimit(memoryLimitOfEnvironment());
+        setMemoryLimit(memoryLimitOfEnvironment());
+        spectral::setMemoryMeasure(freeMemory);
         progress.report(0.0, "reading the mesh");
         checkExtent(document.mm()->cm);
         FilterOutcome outcome = filterOf(action).apply(parameters, *document.mm(), progress);

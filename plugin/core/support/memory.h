@@ -2,11 +2,13 @@
 
 namespace spectral {
 
-/// Most resident memory that this process shall have, bytes; 0, the default: as much as there is.
-void setMemoryLimit(double bytes);
+/// Memory that this process may still take, bytes; infinite where that is not known.
+using MemoryMeasure = double (*)();
 
-/// Memory that this process may still take, bytes: what the system has free, what its control group
-/// leaves, what the limit leaves. Infinite where the system does not tell (Linux does).
+/// Sets the host's measure; without one nothing is refused for want of memory.
+void setMemoryMeasure(MemoryMeasure measure);
+
+/// What the host measures, bytes.
 double availableMemory();
 
 /// "1.5 GiB"; for texts of errors.

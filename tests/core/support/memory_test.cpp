@@ -5,6 +5,7 @@
 #include "core/filter/fractional_filter.h"
 #include "core/harmonics/truncated_basis.h"
 #include "core/support/errors.h"
+#include "meshlab/free_memory.h"
 #include "support/evaluation.h"
 #include "support/memory.h"
 
@@ -18,11 +19,15 @@ class Memory : public ::testing::Test {
   protected:
     void SetUp() override {
         if (testing::peakMegabytes() == 0.0) GTEST_SKIP() << "this system does not tell";
+        setMemoryMeasure(freeMemory);
     }
     static void limitTo(double megabytesMore) {
         setMemoryLimit(1e6 * (testing::peakMegabytes() + megabytesMore));
     }
-    void TearDown() override { setMemoryLimit(0.0); }
+    void TearDown() override {
+        setMemoryLimit(0.0);
+        setMemoryMeasure(nullptr);
+    }
 };
 
 TEST_F(Memory, IsThatOfTheSystemWithoutALimit) {
