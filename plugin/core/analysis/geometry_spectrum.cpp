@@ -6,6 +6,7 @@
 #include <random>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/analysis/bands.h"
 #include "core/analysis/noise_floor.h"
@@ -121,65 +122,51 @@ Eigen::VectorXd energiesIn(const Bands& bands, const Quadrature& measure) {
     return energies;
 }
 
-/// The bands that share a Krylov space.
-struct Bundle {
-    int octave = 0;
-    std::vector<int> thirds;
+/// An energy to be computed: of the shape or of the noise, in one band.
+struct WantedEnergy {
+    const Bands& bands;
+    int band;
+    bool isNoise;
+    double tolerance;   ///< Largest change of a converged energy, relative to itself.
+    double negligible;  ///< Smaller changes are ignored.
+    double& energy;     ///< Set to the result.
 };
 
-std::vector<Bundle> bundles(const Bands& octaves, const Bands& thirds, double lastOfBasis) {
-    std::vector<Bundle> all;
-    for (int j = 0; j < octaves.count(); ++j) {
-        Bundle bundle{j, {}};
-        for (int t = 0; t < thirds.count(); ++t)
-            if (thirds.end(t) > lastOfBasis && octaves.nearest(thirds.featureSize(t)) == j)
-                bundle.thirds.push_back(t);
-        if (octaves.end(j) > lastOfBasis || !bundle.thirds.empty()) all.push_back(bundle);
-    }
-    return all;
-}
-
-/// The energy of the octave, then those of the shape and of the noise in all third octaves.
-Eigen::ArrayXd energiesOf(const Bundle& bundle, const Bands& octaves, const Bands& thirds,
-                          const KrylovSpaces& signals) {
-    const auto count = static_cast<Index>(bundle.thirds.size());
-    Eigen::ArrayXd energies = Eigen::ArrayXd::Zero(1 + 2 * count);
+/// @param signals  the shape, then the noise in the last column.
+Eigen::ArrayXd energiesOf(const std::vector<WantedEnergy>& wanted, const KrylovSpaces& signals) {
+    Eigen::ArrayXd energies = Eigen::ArrayXd::Zero(static_cast<Index>(wanted.size()));
     for (int c = 0; c < signals.columns(); ++c) {
         const Quadrature measure = signals.quadrature(c);
         const bool isNoise = c + 1 == signals.columns();
-        if (!isNoise) energies[0] += energyIn(octaves, bundle.octave, measure);
-        for (Index t = 0; t < count; ++t)
-            energies[1 + t + (isNoise ? count : 0)] += energyIn(thirds, bundle.thirds[t], measure);
+        for (std::size_t i = 0; i < wanted.size(); ++i)
+            if (wanted[i].isNoise == isNoise)
+                energies[static_cast<Index>(i)] +=
+                    energyIn(wanted[i].bands, wanted[i].band, measure);
     }
     return energies;
 }
 
-/// The same, converged.
-/// @param total  energies of the shape and of the noise in all bands.
-Eigen::ArrayXd convergedEnergies(const Bundle& bundle, const Bands& octaves, const Bands& thirds,
-                                 const Signal& signal, const Eigen::MatrixXd& signals,
-                                 const Eigen::Array2d& total, ShiftedLdlt& ldlt) {
-    const Eigen::VectorXd& D = signal.laplacian.D;
-    const double omega = 2.0 * kPi / octaves.featureSize(bundle.octave);
-    ldlt.factorizeDefinite(signal.laplacian.W, D, omega * omega);
-    KrylovSpaces spaces(ldlt, D, signal.constants, signals);
-
-    const auto count = static_cast<Index>(bundle.thirds.size());
-    Eigen::ArrayXd negligible(1 + 2 * count), relative(1 + 2 * count);
-    negligible << kNegligible * total[0], Eigen::ArrayXd::Constant(count, kNegligible * total[0]),
-        Eigen::ArrayXd::Constant(count, kNegligible * total[1]);
-    relative << kConverged, Eigen::ArrayXd::Constant(2 * count, kThirdsConverged);
-    Eigen::ArrayXd energies = Eigen::ArrayXd::Zero(1 + 2 * count), change = energies;
+/// The same, in spaces that grow until they have converged.
+Eigen::ArrayXd convergedEnergies(const std::vector<WantedEnergy>& wanted, KrylovSpaces signals) {
+    const auto haveConverged = [&wanted](const Eigen::ArrayXd& energies,
+                                         const Eigen::ArrayXd& change) {
+        for (std::size_t i = 0; i < wanted.size(); ++i) {
+            const auto e = static_cast<Index>(i);
+            if (!(change[e] <= std::max(wanted[i].tolerance * energies[e], wanted[i].negligible)))
+                return false;
+        }
+        return true;
+    };
+    Eigen::ArrayXd energies = Eigen::ArrayXd::Zero(static_cast<Index>(wanted.size()));
+    Eigen::ArrayXd change = energies;
     for (int m = 1; m <= kMaxDimension; ++m) {
-        if (!spaces.extend()) return energiesOf(bundle, octaves, thirds, spaces);
+        if (!signals.extend()) return energiesOf(wanted, signals);
         if (m % kEnergyCheckInterval != 0) continue;
         const Eigen::ArrayXd before = energies, changeBefore = change;
-        energies = energiesOf(bundle, octaves, thirds, spaces);
+        energies = energiesOf(wanted, signals);
         change = (energies - before).abs();
         // Two in a row: one small change may be a coincidence.
-        if (m >= kFirstEnergyCheck &&
-            (change.max(changeBefore) <= (relative * energies).max(negligible)).all())
-            break;
+        if (m >= kFirstEnergyCheck && haveConverged(energies, change.max(changeBefore))) break;
     }
     return energies;
 }
@@ -191,26 +178,33 @@ BandEnergies energiesBeyond(const Bands& octaves, const Bands& thirds, const Sig
                             double lastOfBasis, const Eigen::MatrixXd& shape,
                             const Eigen::VectorXd& noise, ShiftedLdlt& ldlt,
                             const Progress& progress) {
-    const Eigen::VectorXd& D = signal.laplacian.D;
+    const auto& [W, D] = signal.laplacian;
     Eigen::MatrixXd signals(shape.rows(), shape.cols() + 1);
     signals << shape, noise;
-    const Eigen::Array2d total(energyOf(shape, D), noise.cwiseAbs2().dot(D));
+    const double negligible = kNegligible * energyOf(shape, D);
+    const double negligibleNoise = kNegligible * energyOf(noise, D);
 
     BandEnergies beyond{Eigen::VectorXd::Zero(octaves.count()),
                         Eigen::VectorXd::Zero(thirds.count()),
                         Eigen::VectorXd::Zero(thirds.count())};
-    const std::vector<Bundle> all = bundles(octaves, thirds, lastOfBasis);
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        progress.report(static_cast<double>(i) / static_cast<double>(all.size()),
-                        "energies of the octaves");
-        const Eigen::ArrayXd energies =
-            convergedEnergies(all[i], octaves, thirds, signal, signals, total, ldlt);
-        const auto count = static_cast<Index>(all[i].thirds.size());
-        beyond.octaves[all[i].octave] = energies[0];
-        for (Index t = 0; t < count; ++t) {
-            beyond.thirds[all[i].thirds[t]] = energies[1 + t];
-            beyond.noise[all[i].thirds[t]] = energies[1 + count + t];
+    for (int j = 0; j < octaves.count(); ++j) {
+        // The octave and the third octaves around its centre share Krylov spaces.
+        std::vector<WantedEnergy> wanted{
+            {octaves, j, false, kConverged, negligible, beyond.octaves[j]}};
+        for (int t = 0; t < thirds.count(); ++t) {
+            if (thirds.end(t) <= lastOfBasis || octaves.nearest(thirds.featureSize(t)) != j)
+                continue;
+            wanted.push_back({thirds, t, false, kThirdsConverged, negligible, beyond.thirds[t]});
+            wanted.push_back({thirds, t, true, kThirdsConverged, negligibleNoise, beyond.noise[t]});
         }
+        if (octaves.end(j) <= lastOfBasis && wanted.size() == 1) continue;
+        progress.report(static_cast<double>(j) / octaves.count(), "energies of the octaves");
+        const double omega = 2.0 * kPi / octaves.featureSize(j);
+        ldlt.factorizeDefinite(W, D, omega * omega);
+        const Eigen::ArrayXd energies =
+            convergedEnergies(wanted, KrylovSpaces(ldlt, D, signal.constants, signals));
+        for (std::size_t i = 0; i < wanted.size(); ++i)
+            wanted[i].energy = energies[static_cast<Index>(i)];
     }
     return beyond;
 }

@@ -9,7 +9,6 @@ namespace spectral {
 
 Laplacian cotangentLaplacian(const Vertices& V, const Faces& F) {
     const Index n = V.rows();
-    Eigen::VectorXd D = Eigen::VectorXd::Zero(n);
     Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(n);
     std::vector<Eigen::Triplet<double>> entries;
     entries.reserve(static_cast<std::size_t>(6 * F.rows() + n));
@@ -28,14 +27,13 @@ Laplacian cotangentLaplacian(const Vertices& V, const Faces& F) {
             entries.emplace_back(j, i, -w);
             diagonal[i] += w;
             diagonal[j] += w;
-            D[F(t, c)] += twiceArea / 6.0;
         }
     }
     for (int i = 0; i < n; ++i) entries.emplace_back(i, i, diagonal[i]);
 
     SparseMatrix W(n, n);
     W.setFromTriplets(entries.begin(), entries.end());
-    return {std::move(W), std::move(D)};
+    return {std::move(W), lumpedMass(V, F)};
 }
 
 Eigen::VectorXd lumpedMass(const Vertices& V, const Faces& F) {
