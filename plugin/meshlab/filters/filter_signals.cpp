@@ -71,8 +71,7 @@ spectral::FilteredSignal filtered(const RichParameterList& parameters, const Mes
     options.featureSize = transfer.featureSize;
     options.laplacian = laplacianKind(parameters);
     options.boundary = boundaryCondition(parameters);
-    if (parameters.getBool("selected"))
-        options.part.selected = selectedVertices(mesh.cm, input);
+    if (parameters.getBool("selected")) options.part.selected = selectedVertices(mesh.cm, input);
     return spectral::withSteadyProgress(progress, [&](const spectral::Progress& steady) {
         return spectral::filterSignal(input.V, input.F, Q, options, steady);
     });

@@ -17,14 +17,14 @@ QStringList responses() { return {"gaussian", "butterworth", "ideal"}; }
 
 void addTransferParameters(const MeshModel& mesh, RichParameterList& list) {
     const spectral::TransferFunctionOptions transfer;
-    list.addParam(
-        RichEnum("filter_type", static_cast<int>(transfer.type), filterTypes(), "Filter type",
-                 "Which details to change, by their size. <b>low-pass</b> keeps details larger "
-                 "than the feature size and removes the rest. <b>high-pass</b> acts on smaller "
-                 "ones: with stop gain 1 and pass gain 2 it sharpens. <b>band-pass</b> acts on "
-                 "details of about the feature size: with stop gain 1 and pass gain above 1 it "
-                 "enhances them. <b>band-stop</b> removes them. <b>custom</b>: the transfer function "
-                 "below."));
+    list.addParam(RichEnum(
+        "filter_type", static_cast<int>(transfer.type), filterTypes(), "Filter type",
+        "Which details to change, by their size. <b>low-pass</b> keeps details larger "
+        "than the feature size and removes the rest. <b>high-pass</b> acts on smaller "
+        "ones: with stop gain 1 and pass gain 2 it sharpens. <b>band-pass</b> acts on "
+        "details of about the feature size: with stop gain 1 and pass gain above 1 it "
+        "enhances them. <b>band-stop</b> removes them. <b>custom</b>: the transfer function "
+        "below."));
     list.addParam(featureSizeParameter(
         mesh,
         "Size at which the filter cuts off: the wavelength of a wave along the surface, a bump and "
