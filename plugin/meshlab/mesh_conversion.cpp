@@ -43,10 +43,9 @@ std::vector<bool> selectedVertices(const CMeshO& mesh, const MeshMatrices& matri
     return selected;
 }
 
-bool hasSelection(const CMeshO& mesh) {
-    const auto isSelected = [](const auto& element) { return !element.IsD() && element.IsS(); };
-    return std::any_of(mesh.face.begin(), mesh.face.end(), isSelected) ||
-           std::any_of(mesh.vert.begin(), mesh.vert.end(), isSelected);
+bool hasSelectedFaces(const CMeshO& mesh) {
+    return std::any_of(mesh.face.begin(), mesh.face.end(),
+                       [](const CFaceO& face) { return !face.IsD() && face.IsS(); });
 }
 
 Eigen::VectorXd vertexQuality(const CMeshO& mesh, const MeshMatrices& matrices) {

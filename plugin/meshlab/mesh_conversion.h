@@ -24,8 +24,8 @@ void checkExtent(const CMeshO& mesh);
 /// Whether each row of `matrices` is selected: a vertex itself, or a face that it is a corner of.
 std::vector<bool> selectedVertices(const CMeshO& mesh, const MeshMatrices& matrices);
 
-/// Whether any vertex or face is selected.
-bool hasSelection(const CMeshO& mesh);
+/// Whether any face is selected.
+bool hasSelectedFaces(const CMeshO& mesh);
 
 /// The vertex quality of each row.
 Eigen::VectorXd vertexQuality(const CMeshO& mesh, const MeshMatrices& matrices);

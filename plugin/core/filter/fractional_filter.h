@@ -3,12 +3,12 @@
 #include <vector>
 
 #include "core/filter/step_evaluator.h"
-#include "core/filter/vertex_weight.h"
-#include "core/filter/volume.h"
 #include "core/laplacian/frequency.h"
 #include "core/laplacian/interior.h"
 #include "core/laplacian/laplacian_builder.h"
+#include "core/laplacian/vertex_weight.h"
 #include "core/mesh/mesh.h"
+#include "core/mesh/volume.h"
 #include "core/support/progress.h"
 #include "core/support/types.h"
 #include "core/transfer/transfer_function.h"

@@ -2,9 +2,9 @@
 
 #include <Eigen/Core>
 
-#include "core/filter/vertex_weight.h"
 #include "core/laplacian/interior.h"
 #include "core/laplacian/laplacian_builder.h"
+#include "core/laplacian/vertex_weight.h"
 #include "core/mesh/mesh.h"
 #include "core/support/progress.h"
 #include "core/transfer/transfer_function.h"

@@ -97,8 +97,7 @@ void requireUsefulAccuracy(double errorEstimate) {
     if (!(errorEstimate > kUselessError)) return;
     throw SolverFailure(
         ErrorCode::TooSteep,
-        "the transfer function is too steep for a full spectrum, or triangles are needles: the "
-        "relative error is " +
+        "the transfer function is too steep, or triangles are needles: the relative error is " +
             (std::isfinite(errorEstimate) ? "about " + textOf(errorEstimate) : "unknown"));
 }
 

@@ -42,7 +42,7 @@ double featureSize(const RichParameterList& parameters) {
 }
 
 RichBool selectedParameter(const MeshModel& mesh) {
-    const bool isAnySelected = hasSelection(mesh.cm);
+    const bool isAnySelected = hasSelectedFaces(mesh.cm);
     return {"selected", isAnySelected, "Only the selection",
             "Filter the selected faces and vertices. Around them the filter fades out within about "
             "a feature size, so that no crease is left; everything beyond stays where it is.",

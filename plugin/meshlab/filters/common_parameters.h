@@ -22,7 +22,7 @@ RichPercentage featureSizeParameter(const MeshModel& mesh, const QString& help);
 /// The feature size as a length.
 double featureSize(const RichParameterList& parameters);
 
-/// `selected`; default: whether anything is.
+/// `selected`; default: whether a face is, as in MeshLab's own filters.
 RichBool selectedParameter(const MeshModel& mesh);
 
 /// `laplacian`; default: intrinsic Delaunay.

@@ -66,7 +66,7 @@ def test_selected_vertices_are_a_selection_too(small: tuple[NDArray[Any], NDArra
     mesh_set = mesh_set_of(V, F)
     mesh_set.compute_selection_by_condition_per_vertex(condselect=f"x > {head_of(V)}")
     vertices = mesh_set.current_mesh().vertex_selection_array()
-    mesh_set.apply_filter(FILTER, **SIZE)
+    mesh_set.apply_filter(FILTER, selected=True, **SIZE)
     moved = np.any(mesh_set.current_mesh().vertex_matrix() != V, axis=1)
     assert np.all(moved[vertices])
     assert not np.all(moved)
@@ -76,7 +76,7 @@ def test_a_selection_is_ignored_on_request(small: tuple[NDArray[Any], NDArray[An
     V, F = small
     whole, _ = filter_arrays(V, F, **SIZE)
     mesh_set = mesh_set_of(V, F)
-    mesh_set.compute_selection_by_condition_per_vertex(condselect=f"x > {head_of(V)}")
+    mesh_set.set_selection_all()
     mesh_set.apply_filter(FILTER, selected=False, **SIZE)
     np.testing.assert_array_equal(mesh_set.current_mesh().vertex_matrix(), whole)
 

@@ -167,11 +167,6 @@ class FilterOptions:
     stop_gain: float = _option(
         0.0, "Factor for all other details: 0 removes them, 0.5 halves their height.", Limits(0)
     )
-    selected: bool = _option(
-        False,
-        "Filter only the selected faces and vertices, fading out around them within about a "
-        "feature size.",
-    )
     transfer_function: str = _option(
         "20%:1, 5%:2, 1%:0.1",
         "For --filter-type custom: gains at feature sizes as size:gain, with sizes such as 5% of "
@@ -196,6 +191,11 @@ class FilterOptions:
         1.0,
         "Fractional power of the filter to apply: 0.5 is half the filter, a gain of 4 becomes 2.",
         Limits(0, 1, low_open=True),
+    )
+    selected: bool = _option(
+        False,
+        "Filter only the selected faces and vertices, fading out around them within about a "
+        "feature size.",
     )
     steps: int = _option(
         0,

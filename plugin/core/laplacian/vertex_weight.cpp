@@ -1,4 +1,4 @@
-#include "core/filter/vertex_weight.h"
+#include "core/laplacian/vertex_weight.h"
 
 #include <algorithm>
 #include <string>

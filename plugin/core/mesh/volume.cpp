@@ -1,4 +1,4 @@
-#include "core/filter/volume.h"
+#include "core/mesh/volume.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
