@@ -15,6 +15,7 @@ import pytest
 from commands import arrays_of, assert_fails, command
 from helpers import FILTER, percent
 from meshlab_spectral import FilterOptions
+from meshlab_spectral.filters.presets import PRESETS
 
 
 def test_every_option_reaches_the_filter(cow: Path, tmp_path: Path) -> None:
@@ -115,3 +116,36 @@ def test_pip_installs_the_command_under_its_name() -> None:
         [installed, "--version"], capture_output=True, text=True, timeout=60, check=True
     )
     assert done.stdout.startswith("meshlab-spectral ")
+
+
+def test_a_preset_is_its_options(cow: Path, tmp_path: Path) -> None:
+    for name, given in PRESETS.items():
+        spelled = [f"--{key.replace('_', '-')}={value}" for key, value in given.items()]
+        one, other = tmp_path / f"{name}.ply", tmp_path / f"{name}_spelled.ply"
+        command("filter", cow, one, "--preset", name)
+        command("filter", cow, other, *spelled)
+        assert one.read_bytes() == other.read_bytes(), name
+
+
+def test_options_given_besides_a_preset_replace_its_own(cow: Path, tmp_path: Path) -> None:
+    one, other = tmp_path / "one.ply", tmp_path / "other.ply"
+    command("filter", cow, one, "--pass-gain", "1.5", "--preset", "sharpen")
+    sharpened = ["--filter-type=high-pass", "--feature-size=3%", "--stop-gain=1"]
+    command("filter", cow, other, *sharpened, "--pass-gain", "1.5")
+    assert one.read_bytes() == other.read_bytes()
+
+
+def test_a_batch_takes_a_preset_over_a_recipe(cow: Path, tmp_path: Path) -> None:
+    recipe = tmp_path / "recipe.toml"
+    recipe.write_text('[filter]\nfeature_size = "20%"\nsteps = 1\n', encoding="utf-8")
+    saved = tmp_path / "saved.toml"
+    arguments = ["--recipe", recipe, "--preset", "sharpen", "--save-recipe", saved]
+    command("batch", cow, "--output", tmp_path / "out", *arguments)
+    written = saved.read_text(encoding="utf-8")
+    assert 'feature_size = "3%"' in written
+    assert "steps = 1" in written
+
+
+def test_an_unknown_preset_is_refused_with_the_known_ones(cow: Path, tmp_path: Path) -> None:
+    done = command("filter", cow, tmp_path / "out.ply", "--preset", "beautify")
+    assert_fails(done, 2, "beautify", "caricature")

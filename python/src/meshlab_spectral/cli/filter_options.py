@@ -1,4 +1,4 @@
-"""Command-line options generated from the fields of `FilterOptions`."""
+"""Command-line options generated from the fields of `FilterOptions`, and `--preset`."""
 
 from __future__ import annotations
 
@@ -11,8 +11,27 @@ import typer
 
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.filters.options import FilterOptions, Length
+from meshlab_spectral.filters.presets import PRESETS, Preset
 
 Command = Callable[..., None]
+
+
+def _use_preset(context: typer.Context, name: Preset | None) -> Preset | None:
+    """Make the values of a preset the defaults of the command's other options."""
+    if name is not None:
+        context.default_map = {**(context.default_map or {}), **PRESETS[name]}
+    return name
+
+
+_PRESET = Annotated[
+    Preset | None,
+    typer.Option(
+        is_eager=True,
+        callback=_use_preset,
+        help="Start from the options for a purpose; those given besides replace its own.",
+        show_default=False,
+    ),
+]
 
 
 def with_filter_options(command: Command) -> Command:
@@ -35,14 +54,16 @@ def with_some_filter_options(names: Collection[str]) -> Callable[[Command], Comm
 def with_given_filter_options(command: Command) -> Command:
     """Add one option per field of FilterOptions to a command, passed as `given`.
 
-    `given` is a dict for `FilterOptions.from_dict` with only the options on the command line,
-    validated. The command needs a parameter `context: typer.Context`.
+    `given` is a dict for `FilterOptions.from_dict` with only the options on the command line and
+    of its preset, validated. The command needs a parameter `context: typer.Context`.
     """
 
     def run(values: dict[str, Any], arguments: dict[str, Any]) -> None:
         source = arguments["context"].get_parameter_source
         given = {
-            name: value for name, value in values.items() if source(name).name == "COMMANDLINE"
+            name: value
+            for name, value in values.items()
+            if source(name).name in ("COMMANDLINE", "DEFAULT_MAP")
         }
         _checked(given)
         command(given=given, **arguments)
@@ -74,7 +95,10 @@ def _with_options(
         for parameter in inspect.signature(command, eval_str=True).parameters.values()
         if parameter.name != place
     ]
-    added = []
+    preset = inspect.Parameter(
+        "preset", inspect.Parameter.KEYWORD_ONLY, default=None, annotation=_PRESET
+    )
+    added = [preset]
     for option in fields(FilterOptions):
         if option.name not in names:
             continue
@@ -94,6 +118,7 @@ def _with_options(
 
     def run(**arguments: Any) -> None:
         values = {parameter.name: arguments.pop(parameter.name) for parameter in added}
+        del values["preset"]  # has done its work
         call(values, arguments)
 
     parameters = [p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in [*own, *added]]
