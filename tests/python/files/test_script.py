@@ -14,12 +14,13 @@ from meshlab_spectral.files.script import apply_script
 from meshlab_spectral.filters.calling import call_filter, keep_failed
 
 ENUMERATIONS = {
-    "filter_type": 4,
+    "filter_type": 5,
     "response": 3,
     "basis_update": 3,
     "spectrum": 2,
     "laplacian": 2,
     "boundary": 2,
+    "weight": 2,
 }
 WRONG = [
     ("steps", "RichInt", "2.5", "steps is not a RichInt"),
@@ -30,8 +31,8 @@ WRONG = [
     ("pass_gain", "RichString", "x", "pass_gain = x: must be a number"),
     ("pass_gain", "RichFloat", "nan", "pass_gain = nan"),
     ("pass_gain", "RichFloat", "1e300", "pass_gain = inf"),
-    ("filter_type", "RichEnum", "4", "filter_type = 4: choose 0 to 3"),
-    ("filter_type", "RichEnum", "-1", "filter_type = -1: choose 0 to 3"),
+    ("filter_type", "RichEnum", "5", "filter_type = 5: choose 0 to 4"),
+    ("filter_type", "RichEnum", "-1", "filter_type = -1: choose 0 to 4"),
     ("filter_type", "RichString", "lowpass", "filter_type = lowpass.*low-pass"),
     ("feature_size", "RichFloat", "0.3", "feature_size: must be a percentage or a length"),
     ("feature_size", "RichPercentage", "inf", "feature_size = inf"),
@@ -67,7 +68,7 @@ def test_a_wrong_parameter_is_named(
         ({"steps": "ten"}, "steps = ten: must be an integer"),
         ({"steps": 10**24, "pass_gain": None}, "steps = 1000.*; pass_gain = None: must be a num"),
         ({"feature_size": None}, "feature_size = None: must be a number"),
-        ({"filter_type": 99}, "filter_type = 99: choose 0 to 3"),
+        ({"filter_type": 99}, "filter_type = 99: choose 0 to 4"),
     ],
 )
 def test_a_wrong_type_is_named(
