@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <sstream>
 
 #include "core/filter/full_spectrum_evaluator.h"
 #include "core/support/errors.h"
