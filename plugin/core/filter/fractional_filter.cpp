@@ -45,7 +45,7 @@ void checkOptions(const FilterOptions& options) {
     if (!(options.evaluation.accuracy >= 1e-12 && options.evaluation.accuracy < 1.0))
         throw InvalidOption("accuracy must be between 1e-12 and 1");
     if (!(options.creaseAngle >= 0.0 && options.creaseAngle <= 180.0))
-        throw InvalidOption("crease_angle = " + std::to_string(options.creaseAngle) +
+        throw InvalidOption("crease_angle = " + textOf(options.creaseAngle) +
                             ": must be between 0 (no creases) and 180 degrees");
     checkWeights(options.part);
 }

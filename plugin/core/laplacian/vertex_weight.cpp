@@ -24,8 +24,7 @@ void checkWeights(const WeightOptions& options) {
     for (Index i = 0; i < options.weight.size(); ++i)
         if (!(options.weight[i] >= 0.0 && options.weight[i] <= 1.0))
             throw InvalidOption(
-                "the weight of vertex " + std::to_string(i) + " is " +
-                std::to_string(options.weight[i]) +
+                "the weight of vertex " + std::to_string(i) + " is " + textOf(options.weight[i]) +
                 ": it must be between 0, which leaves a vertex alone, and 1, the whole filter");
 }
 

@@ -114,8 +114,8 @@ FilterOptions fractionalFilterOptions(const RichParameterList& parameters, const
     if (choice(parameters, "weight", weights()) == 1) {
         if (!mesh.hasPerVertexQuality())
             throw spectral::InvalidOption(
-                "weight = vertex quality: the mesh has no vertex "
-                "quality; compute one, or choose weight = none");
+                "weight = vertex quality: the mesh has no vertex quality; compute one, or choose "
+                "weight = none");
         options.part.weight = vertexQuality(mesh.cm, matrices);
     }
     return options;
