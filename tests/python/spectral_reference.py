@@ -144,11 +144,29 @@ def apply_gain(X: Array, spectrum: list[Spectrum], gain: Gain) -> Array:
 
 
 def matrices(V: Array, F: Indices, laplacian: str) -> tuple[scipy.sparse.csr_array, Array]:
-    """W of either kind of Laplacian, and the diagonal of D."""
+    """W of any kind of Laplacian, and the diagonal of D."""
+    d = masses(V, F, laplacian)
     if laplacian == "cotangent":
-        return cotangent_matrix(V, F), lumped_areas(V, F)
+        return cotangent_matrix(V, F), d
+    if laplacian == "uniform":
+        return uniform_matrix(len(V), F), d
     W, _ = robust_laplacian.mesh_laplacian(V, F)
-    return scipy.sparse.csr_array(W), lumped_areas(V, F)
+    return scipy.sparse.csr_array(W), d
+
+
+def uniform_matrix(n: int, F: Indices) -> scipy.sparse.csr_array:
+    """W of a mesh of equilateral triangles, whatever their shapes are."""
+    sides = np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
+    ends = (sides[:, 0], sides[:, 1])
+    once = scipy.sparse.coo_array((np.full(len(sides), 0.5 / np.sqrt(3)), ends), shape=(n, n))
+    adjacency = (once + once.T).tocsr()
+    return scipy.sparse.csr_array(scipy.sparse.csgraph.laplacian(adjacency))
+
+
+def masses(V: Array, F: Indices, laplacian: str) -> Array:
+    """Diagonal of D: vertex areas, or for the uniform Laplacian their mean."""
+    d = lumped_areas(V, F)
+    return np.full_like(d, d[d > 0].mean()) if laplacian == "uniform" else d
 
 
 def full_filter(
@@ -170,7 +188,7 @@ def full_filter(
             now, d = matrices(X, F, laplacian)
             spectrum = spectra((1 - conformal_share) * now + conformal_share * W, d, parts)
         if step > 0 and basis_update == "conformal":
-            spectrum = spectra(W, lumped_areas(X, F), parts)
+            spectrum = spectra(W, masses(X, F, laplacian), parts)
         X = apply_gain(X, spectrum, lambda omega: gain(omega) ** (1 / steps))
     return X
 

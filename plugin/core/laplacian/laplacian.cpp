@@ -1,28 +1,28 @@
 #include "core/laplacian/laplacian.h"
 
 #include <Eigen/Geometry>
+#include <cmath>
+#include <utility>
 #include <vector>
 
 #include "core/support/threads.h"
 
 namespace spectral {
 
-Laplacian cotangentLaplacian(const Vertices& V, const Faces& F) {
-    const Index n = V.rows();
+namespace {
+
+/// W with the weights (cot a_ij + cot b_ij)/2.
+/// @param cotangents  (t, c) -> cotangent of the angle at corner c of triangle t.
+template <class Cotangents>
+SparseMatrix stiffnessOf(Index n, const Faces& F, const Cotangents& cotangents) {
     Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(n);
     std::vector<Eigen::Triplet<double>> entries;
     entries.reserve(static_cast<std::size_t>(6 * F.rows() + n));
-
     for (Index t = 0; t < F.rows(); ++t) {
-        Eigen::RowVector3d corner[3];
-        for (int c = 0; c < 3; ++c) corner[c] = V.row(F(t, c));
-        const double twiceArea = (corner[1] - corner[0]).cross(corner[2] - corner[0]).norm();
         for (int c = 0; c < 3; ++c) {
             // The angle at corner c lies opposite to the edge (i, j).
             const int i = F(t, (c + 1) % 3), j = F(t, (c + 2) % 3);
-            const double cotangent =
-                (corner[(c + 1) % 3] - corner[c]).dot(corner[(c + 2) % 3] - corner[c]) / twiceArea;
-            const double w = 0.5 * cotangent;
+            const double w = 0.5 * cotangents(t, c);
             entries.emplace_back(i, j, -w);
             entries.emplace_back(j, i, -w);
             diagonal[i] += w;
@@ -30,10 +30,28 @@ Laplacian cotangentLaplacian(const Vertices& V, const Faces& F) {
         }
     }
     for (int i = 0; i < n; ++i) entries.emplace_back(i, i, diagonal[i]);
-
     SparseMatrix W(n, n);
     W.setFromTriplets(entries.begin(), entries.end());
-    return {std::move(W), lumpedMass(V, F)};
+    return W;
+}
+
+}  // namespace
+
+Laplacian cotangentLaplacian(const Vertices& V, const Faces& F) {
+    const auto cotangent = [&](Index t, int c) {
+        const Eigen::RowVector3d corner = V.row(F(t, c));
+        const Eigen::RowVector3d a = V.row(F(t, (c + 1) % 3)) - corner;
+        const Eigen::RowVector3d b = V.row(F(t, (c + 2) % 3)) - corner;
+        return a.dot(b) / a.cross(b).norm();
+    };
+    return {stiffnessOf(V.rows(), F, cotangent), lumpedMass(V, F)};
+}
+
+Laplacian uniformLaplacian(const Vertices& V, const Faces& F) {
+    const double cotangentOf60Degrees = 1.0 / std::sqrt(3.0);
+    SparseMatrix W = stiffnessOf(V.rows(), F, [=](Index, int) { return cotangentOf60Degrees; });
+    const double mean = lumpedMass(V, F).mean();
+    return {std::move(W), Eigen::VectorXd::Constant(V.rows(), mean)};
 }
 
 Eigen::VectorXd lumpedMass(const Vertices& V, const Faces& F) {

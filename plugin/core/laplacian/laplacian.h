@@ -22,7 +22,14 @@ struct Laplacian {
 /// @param F  every vertex is in some triangle.
 Laplacian cotangentLaplacian(const Vertices& V, const Faces& F);
 
-/// D alone.
+/// As if all triangles were equilateral and of one size: W_ij = -1/sqrt(3) (half of that on a
+/// boundary), D_ii the mean vertex area. Frequencies are those of the surface where the sampling is
+/// even. Noise that is independent at every vertex has the same energy in every harmonic, since D
+/// is constant, and cannot hide in weights that were taken from noisy triangles.
+/// @param F  every vertex is in some triangle.
+Laplacian uniformLaplacian(const Vertices& V, const Faces& F);
+
+/// D of the cotangent Laplacian.
 Eigen::VectorXd lumpedMass(const Vertices& V, const Faces& F);
 
 /// Whether all entries are finite and all masses positive; false when triangles have collapsed.

@@ -15,7 +15,7 @@ void checkMesh(const Vertices& V, const Faces& F, LaplacianKind kind) {
 
 LaplacianBuilder::LaplacianBuilder(const Surface& surface, LaplacianKind kind, BasisUpdate update,
                                    double conformalShare)
-    : surface_(surface), update_(update), conformalShare_(conformalShare) {
+    : surface_(surface), kind_(kind), update_(update), conformalShare_(conformalShare) {
     if (kind == LaplacianKind::IntrinsicDelaunay) intrinsic_.emplace(surface.X, surface.F);
     current_ = {stiffness(surface.X), mass(surface.X)};
     inputMass_ = current_.D;
@@ -46,10 +46,11 @@ const Laplacian& LaplacianBuilder::operator()(const Vertices& X) {
 }
 
 SparseMatrix LaplacianBuilder::stiffness(const Vertices& X) const {
+    if (kind_ == LaplacianKind::Uniform) return uniformLaplacian(X, surface_.F).W;
     return intrinsic_ ? intrinsic_->stiffness(X) : cotangentLaplacian(X, surface_.F).W;
 }
 
-/// From the triangles of the mesh for both kinds: intrinsic areas jump where an edge flips, while
+/// From the triangles of the mesh for every kind: intrinsic areas jump where an edge flips, while
 /// second-order steps need D continuous in the shape.
 Eigen::VectorXd LaplacianBuilder::mass(const Vertices& X) const {
     // Smallest mass, in mean masses, of parts that have shrunk to a line or a point. The D-inner
@@ -57,6 +58,7 @@ Eigen::VectorXd LaplacianBuilder::mass(const Vertices& X) const {
     // mean of its neighbours.
     constexpr double kFloor = 1e-12;
     const Eigen::VectorXd D = lumpedMass(X, surface_.F);
+    if (kind_ == LaplacianKind::Uniform) return Eigen::VectorXd::Constant(D.size(), D.mean());
     return D.cwiseMax(kFloor * D.mean());
 }
 

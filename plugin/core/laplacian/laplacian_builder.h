@@ -11,7 +11,8 @@ namespace spectral {
 
 enum class LaplacianKind {
     IntrinsicDelaunay,  ///< Any triangles, non-negative weights (intrinsic_delaunay.h).
-    Cotangent           ///< The paper's: plain cotangents, every triangle needs an area.
+    Cotangent,          ///< The paper's: plain cotangents, every triangle needs an area.
+    Uniform             ///< That of sampled noise: depends on the connectivity and the area alone.
 };
 
 /// Rejects a mesh that has no Laplacian of this kind.
@@ -53,6 +54,7 @@ class LaplacianBuilder {
     SparseMatrix stiffness(const Vertices& X) const;
 
     const Surface& surface_;
+    LaplacianKind kind_;
     BasisUpdate update_;
     double conformalShare_;
     std::optional<IntrinsicDelaunay> intrinsic_;

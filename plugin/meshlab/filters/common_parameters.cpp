@@ -10,7 +10,7 @@
 namespace {
 
 // In the order of the core's enumerations.
-QStringList laplacians() { return {"intrinsic delaunay", "cotangent"}; }
+QStringList laplacians() { return {"intrinsic delaunay", "cotangent", "uniform"}; }
 QStringList boundaries() { return {"free", "fixed"}; }
 
 }  // namespace

@@ -36,7 +36,8 @@ RichParameterList parameters(const MeshModel& mesh) {
     list.addParam(
         laplacianParameter("How the frequencies of the surface are measured, as in the filter. "
                            "<b>intrinsic delaunay</b> works on any triangles; for <b>cotangent</b> "
-                           "every triangle needs an area."));
+                           "every triangle needs an area; <b>uniform</b> looks at the connections "
+                           "only."));
     return list;
 }
 

@@ -50,7 +50,8 @@ RichParameterList parameters(const MeshModel&) {
     list.addParam(
         laplacianParameter("How the frequencies of the surface are measured, as in the filter. "
                            "<b>intrinsic delaunay</b> works on any triangles; for <b>cotangent</b> "
-                           "every triangle needs an area."));
+                           "every triangle needs an area; <b>uniform</b> looks at the connections "
+                           "only."));
     list.addParam(boundaryParameter(
         "The boundary of an open surface, holes included, as in the filter. <b>free</b>: it is "
         "part of the shape. <b>fixed</b>: only what it does not determine is measured."));

@@ -57,7 +57,8 @@ RichParameterList parameters(const MeshModel&) {
     list.addParam(laplacianParameter(
         "How the frequencies of the surface are measured. <b>intrinsic delaunay</b> works on any "
         "triangles, including slivers, holes, duplicate or intersecting sheets. <b>cotangent</b> "
-        "is the classical formula; every triangle needs an area."));
+        "is the classical formula; every triangle needs an area. <b>uniform</b> looks at the "
+        "connections only, as if the vertices were evenly spaced."));
     list.addParam(boundaryParameter(
         "Boundary conditions of an open surface, holes included. <b>free</b>: the waves have zero "
         "slope across the boundary. <b>fixed</b>: they are zero there, like the skin of a drum."));

@@ -54,7 +54,8 @@ RichParameterList parameters(const MeshModel& mesh) {
     list.addParam(laplacianParameter(
         "How the frequencies of the surface are measured. <b>intrinsic delaunay</b> works on any "
         "triangles, including slivers, holes, duplicate or intersecting sheets. <b>cotangent</b> "
-        "is the classical formula; every triangle needs an area."));
+        "is the classical formula; every triangle needs an area. <b>uniform</b> looks at the "
+        "connections only, as if the vertices were evenly spaced."));
     list.addParam(boundaryParameter(
         "What happens at the boundary of an open surface, holes included. <b>free</b>: values "
         "there are filtered like the rest. <b>fixed</b>: they are kept exactly, and the values in "

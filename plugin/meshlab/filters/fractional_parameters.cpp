@@ -69,7 +69,9 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "How the frequencies of the surface are measured. <b>intrinsic delaunay</b> works on any "
         "triangles, including slivers, holes, duplicate or intersecting sheets, and is stable for "
         "strong filters. <b>cotangent</b> is the formula of the paper; every triangle needs an "
-        "area."));
+        "area. <b>uniform</b> looks at the connections only, as if the vertices were evenly "
+        "spaced: "
+        "for noise that differs from vertex to vertex."));
     list.addParam(boundaryParameter(
         "What happens at the boundary of an open surface, holes included. <b>free</b>: it moves "
         "like the rest; strong smoothing rounds it off and pulls it in. <b>fixed</b>: it stays "

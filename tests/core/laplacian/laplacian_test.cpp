@@ -34,6 +34,24 @@ TEST(CotangentLaplacian, OfARightTriangleIsAsByHand) {
     EXPECT_LT((laplacian.D.array() - 1.0 / 3.0).abs().maxCoeff(), 1e-15);
 }
 
+TEST(UniformLaplacian, OfEquilateralTrianglesOfOneSizeIsTheCotangentOne) {
+    const Mesh mesh = testing::icosphere(0);
+    const Laplacian uniform = uniformLaplacian(mesh.V, mesh.F);
+    const Laplacian cotangent = cotangentLaplacian(mesh.V, mesh.F);
+    EXPECT_LT(Eigen::MatrixXd(uniform.W - cotangent.W).cwiseAbs().maxCoeff(), 1e-14);
+    EXPECT_LT((uniform.D - cotangent.D).cwiseAbs().maxCoeff(), 1e-14);
+}
+
+TEST(UniformLaplacian, DependsOnTheConnectivityAndTheAreaAlone) {
+    Mesh mesh = testing::blob();
+    const Laplacian before = uniformLaplacian(mesh.V, mesh.F);
+    mesh.V = testing::withNoise(mesh, 0.2, 1).V;
+    const Laplacian after = uniformLaplacian(mesh.V, mesh.F);
+    EXPECT_EQ(Eigen::MatrixXd(before.W), Eigen::MatrixXd(after.W));
+    EXPECT_NEAR(after.D.sum(), surfaceArea(mesh.V, mesh.F), 1e-12 * after.D.sum());
+    EXPECT_EQ(after.D.minCoeff(), after.D.maxCoeff());
+}
+
 TEST(CotangentLaplacian, MassesSumToTheArea) {
     for (const Mesh& mesh : {testing::blob(), testing::rectangle(2, 3, 7, 5), testing::cube(4)}) {
         const Laplacian laplacian = cotangentLaplacian(mesh.V, mesh.F);

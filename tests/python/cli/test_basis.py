@@ -170,7 +170,7 @@ def test_arrays_and_options_that_do_not_fit_are_refused() -> None:
     with pytest.raises(OptionError, match="free, fixed"):
         manifold_harmonics(V, F, 2, boundary="loose")  # type: ignore[arg-type]
     with pytest.raises(OptionError, match="intrinsic delaunay, cotangent"):
-        manifold_harmonics(V, F, 2, laplacian="uniform")  # type: ignore[arg-type]
+        manifold_harmonics(V, F, 2, laplacian="graph")  # type: ignore[arg-type]
     with pytest.raises(FilterError, match="at most 2"):
         manifold_harmonics(V, F, 3)
     with pytest.raises(FilterError, match="boundary = free"):

@@ -78,6 +78,25 @@ def test_a_custom_expression_agrees(
     assert error < AGREEMENT
 
 
+@pytest.mark.parametrize("basis_update", ["conformal", "full"])
+def test_the_uniform_laplacian_agrees(
+    basis_update: str, decimated: Decimated, record_property: Callable[..., None]
+) -> None:
+    V, F = decimated("bunny.obj", 2400)  # which has a boundary
+    options = {
+        "feature_size": percent(8),
+        "laplacian": "uniform",
+        "steps": 4,
+        "basis_update": basis_update,
+    }
+    Y, report = filter_arrays(V, F, **options)
+    expected = reference.full_filter(V, F, gain_of(options, report), 4, basis_update, "uniform")
+    error = largest_distance(Y, expected) / diagonal(V)
+    record_property("largest_distance_in_diagonals", error)
+    assert largest_distance(expected, V) > 1e-3 * diagonal(V), "a test that moves nothing"
+    assert error < AGREEMENT
+
+
 def test_an_equalizer_agrees(decimated: Decimated, record_property: Callable[..., None]) -> None:
     V, F = decimated("cow.obj", 2000)
     options = {

@@ -63,7 +63,8 @@ def measure_artefacts(
     feature_size
         Feature size of the applied low-pass or band, length units, > 0.
     laplacian
-        "intrinsic delaunay" works with any triangles; "cotangent" needs non-degenerate ones.
+        "intrinsic delaunay" works with any triangles; "cotangent" needs non-degenerate ones;
+        "uniform" looks at the connections only.
 
     Returns
     -------

@@ -65,7 +65,8 @@ def manifold_harmonics(
     basis_size
         Number of harmonics k, constants included; less than the number of vertices not fixed.
     laplacian
-        "intrinsic delaunay" works with any triangles; "cotangent" needs non-degenerate ones.
+        "intrinsic delaunay" works with any triangles; "cotangent" needs non-degenerate ones;
+        "uniform" looks at the connections only.
     boundary
         "free": Neumann conditions at the boundary of an open surface; "fixed": zero there.
 

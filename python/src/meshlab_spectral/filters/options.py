@@ -17,7 +17,7 @@ FilterType = Literal["low-pass", "high-pass", "band-pass", "band-stop", "custom"
 Response = Literal["gaussian", "butterworth", "ideal"]
 BasisUpdate = Literal["full", "conformal", "none"]
 Spectrum = Literal["full", "truncated"]
-LaplacianKind = Literal["intrinsic delaunay", "cotangent"]
+LaplacianKind = Literal["intrinsic delaunay", "cotangent", "uniform"]
 Boundary = Literal["free", "fixed"]
 Weight = Literal["none", "vertex quality"]
 
@@ -231,7 +231,8 @@ class FilterOptions:
     laplacian: LaplacianKind = _option(
         "intrinsic delaunay",
         "Laplacian that defines the frequencies: 'intrinsic delaunay' is stable with any triangle, "
-        "cotangent is the paper's and needs triangles with an area.",
+        "cotangent is the paper's and needs triangles with an area, uniform looks at the "
+        "connections only, as if vertices were evenly spaced.",
     )
     boundary: Boundary = _option(
         "free",

@@ -142,7 +142,8 @@ def geometry_spectrum(
         Number of harmonics measured individually, constants included; at least 1, and less than
         the number of vertices not fixed if there are more than 2,000 of these.
     laplacian
-        "intrinsic delaunay" works with any triangles; "cotangent" needs non-degenerate ones.
+        "intrinsic delaunay" works with any triangles; "cotangent" needs non-degenerate ones;
+        "uniform" looks at the connections only.
     boundary
         Boundary of an open surface. "free": part of the shape, it contributes at every size;
         "fixed": measures the shape relative to the harmonic extension of the boundary.
