@@ -55,7 +55,7 @@ def test_good_meshes_are_filtered_and_bad_ones_reported(cow: Path, tmp_path: Pat
         assert word in by_name[name]["reason"]
         assert "please report it" not in by_name[name]["reason"]
         assert name in done.stderr
-    options = FilterOptions(feature_size=Length(8, relative=True), steps=1).as_dict()
+    options = FilterOptions(feature_size=Length(8, "%"), steps=1).as_dict()
     for record in by_name.values():
         assert record["options"] == options
     mesh_set = pymeshlab.MeshSet()

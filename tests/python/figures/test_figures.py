@@ -123,7 +123,7 @@ def test_sequences_show_shapes_on_the_way_to_the_whole_filter(
 
     def shape(options: FilterOptions) -> NDArray[np.float64]:
         mesh_set = mesh_set_of(V, F)
-        mesh_set.apply_filter(FILTER, **options.pymeshlab_parameters())
+        mesh_set.apply_filter(FILTER, **options.pymeshlab_parameters(mesh_set.current_mesh()))
         return mesh_set.current_mesh().vertex_matrix().copy()
 
     shapes = [V, *(shape(after(options, i, update)) for i in (3, 6, K))]

@@ -15,7 +15,7 @@ from meshlab_spectral.filters.options import Length
 OPTIONS = st.builds(
     FilterOptions,
     filter_type=st.sampled_from(["low-pass", "high-pass", "band-pass", "band-stop"]),
-    feature_size=st.builds(Length, st.floats(0.001, 100), st.booleans()),
+    feature_size=st.builds(Length, st.floats(0.001, 100), st.sampled_from(["", "%", "e"])),
     order=st.integers(1, 64),
     stop_gain=st.floats(0, 10),
     steps=st.integers(0, 1000),
@@ -40,7 +40,7 @@ def write(tmp_path: Path, text: str) -> Path:
 
 def test_options_that_a_recipe_leaves_out_have_their_defaults(tmp_path: Path) -> None:
     options = load_recipe(write(tmp_path, '[filter]\nfeature_size = "2%"\nsteps = 4\n'))
-    expected = FilterOptions(feature_size=Length(2, relative=True), steps=4)
+    expected = FilterOptions(feature_size=Length(2, "%"), steps=4)
     assert FilterOptions.from_dict(options) == expected
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, get_args, get_type_hints
 from xml.etree import ElementTree
@@ -11,7 +12,7 @@ import numpy as np
 import pymeshlab
 import pytest
 from helpers import FILTER, mesh_set_of, refusal
-from meshlab_spectral import FilterOptions, OptionError
+from meshlab_spectral import FilterOptions, OptionError, filter_mesh
 from meshlab_spectral.filters.options import Length
 
 CHOICES = {
@@ -129,16 +130,25 @@ def test_a_value_of_another_type_is_refused_by_the_name_of_the_option(
 
 
 @pytest.mark.parametrize(
-    ("text", "value", "relative"),
-    [("5%", 5, True), (" 2.5 % ", 2.5, True), ("0.02", 0.02, False), ("1e3", 1000, False)],
+    ("text", "value", "unit"),
+    [("5%", 5, "%"), (" 2.5 % ", 2.5, "%"), ("0.02", 0.02, ""), ("1e3", 1000, ""), ("6e", 6, "e")],
 )
-def test_a_feature_size_is_a_percentage_or_a_length(
-    text: str, value: float, relative: bool
+def test_a_feature_size_is_a_percentage_mean_edges_or_a_length(
+    text: str, value: float, unit: Any
 ) -> None:
-    assert Length.parse(text) == Length(value, relative)
+    assert Length.parse(text) == Length(value, unit)
 
 
-@pytest.mark.parametrize("text", ["", "%", "five", "0", "0%", "-3%", "nan", "inf", "120%", "5 mm"])
+def test_a_size_in_mean_edges_is_that_length(decimated: Callable[..., Any]) -> None:
+    V, F = decimated("bunny.obj", 1000)
+    edges = [np.linalg.norm(V[F[:, i]] - V[F[:, (i + 1) % 3]], axis=1) for i in range(3)]
+    _, report = filter_mesh(V, F, feature_size="7.5e", steps=1)
+    assert report["feature_size"] == pytest.approx(7.5 * np.mean(edges), rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    "text", ["", "%", "five", "0", "0%", "-3%", "nan", "inf", "120%", "5 mm", "e", "6ee"]
+)
 def test_another_feature_size_is_refused_with_an_example(text: str) -> None:
     with pytest.raises(OptionError, match="percentage"):
         Length.parse(text)
@@ -174,7 +184,7 @@ def test_options_given_to_pymeshlab_reach_the_filter(
         conformal_share=0.5,
         boundary="fixed",
     )
-    tetrahedron.apply_filter(FILTER, **options.pymeshlab_parameters())
+    tetrahedron.apply_filter(FILTER, **options.pymeshlab_parameters(tetrahedron.current_mesh()))
     script = tmp_path / "script.mlx"
     tetrahedron.save_filter_script(str(script))
     stored = {

@@ -18,7 +18,7 @@ from meshlab_spectral.files.whole_files import writing_whole
 from meshlab_spectral.filters.options import FilterOptions, Length
 from meshlab_spectral.plugin.loading import FILTER_NAME, load
 
-OPTIONS = FilterOptions(feature_size=Length(15, relative=True), steps=10, basis_update="conformal")
+OPTIONS = FilterOptions(feature_size=Length(15, "%"), steps=10, basis_update="conformal")
 BUNNY_VIEW = View(direction=(0.25, 0.2, 1.0))
 
 
@@ -31,7 +31,8 @@ def demonstrate(folder: Path) -> None:
     mesh_set = pymeshlab.MeshSet()
     mesh_set.load_new_mesh(str(bunny))
     before = Panel.of("Stanford bunny", mesh_set.current_mesh())
-    report = mesh_set.apply_filter(FILTER_NAME, **OPTIONS.pymeshlab_parameters())
+    parameters = OPTIONS.pymeshlab_parameters(mesh_set.current_mesh())
+    report = mesh_set.apply_filter(FILTER_NAME, **parameters)
     after = Panel.of(
         f"low-pass, {OPTIONS.feature_size} of the diagonal, {OPTIONS.steps} steps",
         mesh_set.current_mesh(),

@@ -43,7 +43,7 @@ def feature_size_of(options: FilterOptions, spectrum: GeometrySpectrum) -> float
     size = options.feature_size
     if size.automatic:
         return spectrum.default_feature_size
-    return size.value / 100 * spectrum.diagonal if size.relative else size.value
+    return size.in_units_of_mesh(spectrum.diagonal, spectrum.mean_edge)
 
 
 def octave_gains(spectrum: GeometrySpectrum, options: FilterOptions) -> Array:

@@ -21,9 +21,9 @@ from meshlab_spectral.filters.transfer import gain
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-LOW_PASS = FilterOptions(feature_size=Length(15, relative=True))
+LOW_PASS = FilterOptions(feature_size=Length(15, "%"))
 BAND = FilterOptions(
-    filter_type="band-pass", feature_size=Length(15, relative=True), stop_gain=1, pass_gain=4
+    filter_type="band-pass", feature_size=Length(15, "%"), stop_gain=1, pass_gain=4
 )
 COLOURS = {LOW_PASS.filter_type: "#1c639f", BAND.filter_type: "#b04607"}
 

@@ -78,7 +78,8 @@ def filter_to_scratch(
     """
 
     def apply(mesh_set: Any) -> dict[str, Any]:
-        return plain_report(call_filter(mesh_set, FILTER_NAME, options.pymeshlab_parameters()))
+        parameters = options.pymeshlab_parameters(mesh_set.current_mesh())
+        return plain_report(call_filter(mesh_set, FILTER_NAME, parameters))
 
     return _process(source, scratch, apply, on_stage, verbose)
 

@@ -88,5 +88,5 @@ def _table(path: Path) -> dict[str, Any]:
 
 def _number_or_text(value: Any, plain: Any) -> Any:
     """Turn a length in the units of the mesh into a plain number."""
-    is_number = isinstance(value, Length) and not (value.relative or value.automatic)
+    is_number = isinstance(value, Length) and not (value.unit or value.automatic)
     return value.value if is_number else plain

@@ -1,6 +1,8 @@
-"""Validation of meshes given as arrays, and their vertex areas."""
+"""Validation of meshes given as arrays; vertex areas and edges."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -46,3 +48,11 @@ def lumped_areas(V: NDArray[np.float64], F: NDArray[np.integer]) -> NDArray[np.f
     lumped = np.zeros(len(V))
     np.add.at(lumped, F, areas[:, None] / 3)
     return lumped
+
+
+def mean_edge(mesh: Any) -> float:
+    """Mean side length over all triangles of a `pymeshlab.Mesh`; 0 without triangles."""
+    V, F = mesh.vertex_matrix(), mesh.face_matrix()
+    if len(F) == 0:
+        return 0.0
+    return float(np.linalg.norm(V[F] - V[np.roll(F, 1, axis=1)], axis=2).mean())

@@ -25,8 +25,8 @@ def filter_mesh(
     faces
         m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
     **options
-        Fields of `FilterOptions`; sizes as a string such as "2%" of the bounding box diagonal, or
-        as a length in the units of the mesh.
+        Fields of `FilterOptions`; sizes as a string such as "2%" of the bounding box diagonal or
+        "6e" (mean edges), or as a length in the units of the mesh.
 
     Returns
     -------
@@ -59,5 +59,6 @@ def filter_mesh(
 
     mesh_set = pymeshlab.MeshSet()
     mesh_set.add_mesh(pymeshlab.Mesh(V, F))
-    report = call_filter(mesh_set, FILTER_NAME, parameters.pymeshlab_parameters())
+    given = parameters.pymeshlab_parameters(mesh_set.current_mesh())
+    report = call_filter(mesh_set, FILTER_NAME, given)
     return mesh_set.current_mesh().vertex_matrix().copy(), plain_report(report)

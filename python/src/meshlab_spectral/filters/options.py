@@ -12,6 +12,7 @@ from numbers import Integral, Real
 from typing import Any, Literal, get_args, get_type_hints
 
 from meshlab_spectral.errors import OptionError
+from meshlab_spectral.filters.arrays import mean_edge
 
 FilterType = Literal["low-pass", "high-pass", "band-pass", "band-stop", "custom"]
 Response = Literal["gaussian", "butterworth", "ideal"]
@@ -49,6 +50,10 @@ class Limits:
 
 
 _LENGTHS = Limits(0, low_open=True)
+_SIZES = (
+    "a percentage of the bounding box diagonal such as 5%, mean edges such as 6e, or a length such "
+    "as 0.02"
+)
 
 
 def checked_basis_size(value: Any) -> int:
@@ -59,40 +64,40 @@ def checked_basis_size(value: Any) -> int:
     return int(value)
 
 
+Unit = Literal["", "%", "e"]
+
+
 @dataclass(frozen=True)
 class Length:
-    """A length in the units of the mesh, or a percentage of its bounding box diagonal.
+    """A length in the units of the mesh, its mean edges, or percent of its bounding box diagonal.
 
     Attributes
     ----------
     value
-        Percentage if `relative`, else a length in the units of the mesh; finite, > 0.
-    relative
-        Whether `value` is a percentage.
+        In units of `unit`; finite, > 0.
+    unit
+        "" for the units of the mesh, "%" for percent of the diagonal, "e" for mean edges.
     automatic
         Whether the filter chooses the length to suit the mesh; `value` is then meaningless.
     """
 
     value: float = 0.0
-    relative: bool = False
+    unit: Unit = ""
     automatic: bool = False
 
     def __post_init__(self) -> None:
         if self.automatic:
             return
         if not isinstance(self.value, Real) or not _LENGTHS.contain(self.value):
-            raise OptionError(
-                f"{self}: must be {_LENGTHS}, a percentage of the bounding box diagonal such as "
-                "5%, or a length such as 0.02"
-            )
-        if self.relative and self.value > 100:
+            raise OptionError(f"{self}: must be {_LENGTHS}, {_SIZES}")
+        if self.unit == "%" and self.value > 100:
             raise OptionError(
                 f"{self}: a percentage goes up to 100% of the diagonal; for more, give a length"
             )
 
     @classmethod
     def parse(cls, text: str) -> Length:
-        """Parse `5%` as a percentage of the diagonal, `0.02` as a length, `auto` as automatic.
+        """Parse `5%` (of the diagonal), `6e` (mean edges), `0.02` (a length), or `auto`.
 
         Raises
         ------
@@ -102,21 +107,22 @@ class Length:
         number = text.strip()
         if number == "auto":
             return cls(automatic=True)
-        relative = number.endswith("%")
+        unit: Unit = "%" if number.endswith("%") else "e" if number.endswith("e") else ""
         try:
-            value = float(number.removesuffix("%"))
+            value = float(number.removesuffix(unit))
         except ValueError:
-            raise OptionError(
-                f"{text!r}: give a percentage of the bounding box diagonal such as 5%, or a length "
-                "such as 0.02"
-            ) from None
-        return cls(value, relative)
+            raise OptionError(f"{text!r}: give {_SIZES}") from None
+        return cls(value, unit)
+
+    def in_units_of_mesh(self, diagonal: float, mean_edge: float) -> float:
+        """Convert to the units of a mesh, from its lengths in them."""
+        return self.value * {"": 1.0, "%": diagonal / 100, "e": mean_edge}[self.unit]
 
     def __str__(self) -> str:
         if self.automatic:
             return "auto"
         number = f"{self.value:.12g}" if isinstance(self.value, Real) else repr(self.value)
-        return number + "%" * self.relative
+        return number + self.unit
 
 
 def _option(default: Any, explanation: str, limits: Limits | None = None) -> Any:
@@ -158,8 +164,8 @@ class FilterOptions:
     feature_size: Length = _option(
         Length(automatic=True),
         "Size of the details at the filter's cutoff: a percentage of the model's diagonal such as "
-        "5%, a length in the model's units such as 0.02, or auto: six mean edge lengths, at most "
-        "5%. Try twice the width of what you want to remove.",
+        "5%, mean edge lengths such as 6e, a length in the model's units such as 0.02, or auto: "
+        "6e, at most 5%. Try twice the width of what you want to remove.",
     )
     pass_gain: float = _option(
         1.0, "Factor for the details that pass: 1 keeps them, 2 doubles their height.", Limits(0)
@@ -204,7 +210,7 @@ class FilterOptions:
         Limits(0, _LARGEST_INTEGER),
     )
     tolerance: Length = _option(
-        Length(0.05, relative=True),
+        Length(0.05, "%"),
         "With --steps 0: maximum distance of the surface from the limit of infinitely many steps, "
         "e.g. 0.05% of the diagonal.",
     )
@@ -296,16 +302,27 @@ class FilterOptions:
                 raise OptionError(f"there is no option {name}: {hint}")
         return cls(**values)
 
-    def pymeshlab_parameters(self) -> dict[str, Any]:
-        """Keyword arguments for pymeshlab; automatic options are left out."""
+    def pymeshlab_parameters(self, mesh: Any) -> dict[str, Any]:
+        """Keyword arguments for pymeshlab; automatic options are left out.
+
+        Parameters
+        ----------
+        mesh
+            The `pymeshlab.Mesh` to filter, which says how long a mean edge is.
+        """
         import pymeshlab
 
         parameters = self.as_dict()
         for option in fields(self):
             value = getattr(self, option.name)
-            if isinstance(value, Length) and value.automatic:
+            if not isinstance(value, Length):
+                continue
+            if value.automatic:
                 del parameters[option.name]
-            elif isinstance(value, Length):
-                kind = pymeshlab.PercentageValue if value.relative else pymeshlab.PureValue
-                parameters[option.name] = kind(value.value)
+            elif value.unit == "%":
+                parameters[option.name] = pymeshlab.PercentageValue(value.value)
+            else:
+                edge = mean_edge(mesh) if value.unit == "e" else 0.0
+                length = value.in_units_of_mesh(0.0, edge)
+                parameters[option.name] = pymeshlab.PureValue(length)
         return parameters

@@ -36,7 +36,7 @@ def filter_scalars(
     **options
         Fields of `FilterOptions` that describe the transfer function, `laplacian` and `boundary`:
         "fixed" keeps the values on the boundary. Sizes as a string such as "2%" of the bounding box
-        diagonal, or as a length in the units of the mesh.
+        diagonal or "6e" (mean edges), or as a length in the units of the mesh.
 
     Returns
     -------
@@ -77,6 +77,7 @@ def filter_scalars(
     for name in options:
         if name not in known:
             raise OptionError(f"{name}: not for values on a fixed shape; choose {', '.join(known)}")
-    given = {k: v for k, v in parameters.pymeshlab_parameters().items() if k in known}
+    all_given = parameters.pymeshlab_parameters(mesh_set.current_mesh())
+    given = {name: value for name, value in all_given.items() if name in known}
     report = call_filter(mesh_set, _FILTER_NAME, given)
     return mesh_set.current_mesh().vertex_scalar_array().copy(), plain_report(report)
