@@ -22,7 +22,7 @@ from commands import (
 )
 from helpers import FILTER, diagonal, largest_distance, percent
 from meshlab_spectral import FilterOptions
-from meshlab_spectral.filters.options import Length
+from meshlab_spectral.filters.option_types import Length
 
 
 def test_good_meshes_are_filtered_and_bad_ones_reported(cow: Path, tmp_path: Path) -> None:

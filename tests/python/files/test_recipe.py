@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from meshlab_spectral import FilterOptions, InputError, OptionError
 from meshlab_spectral.files.recipe import load_recipe, save_recipe
-from meshlab_spectral.filters.options import Length
+from meshlab_spectral.filters.option_types import Length
 
 OPTIONS = st.builds(
     FilterOptions,
@@ -29,7 +29,7 @@ def test_a_recipe_keeps_every_option(
 ) -> None:
     path = tmp_path_factory.mktemp("recipe") / "recipe.toml"
     save_recipe(path, options)
-    assert FilterOptions.from_dict(load_recipe(path)).as_dict() == options.as_dict()
+    assert FilterOptions.from_dict(load_recipe(path)[1]).as_dict() == options.as_dict()
 
 
 def write(tmp_path: Path, text: str) -> Path:
@@ -39,7 +39,7 @@ def write(tmp_path: Path, text: str) -> Path:
 
 
 def test_options_that_a_recipe_leaves_out_have_their_defaults(tmp_path: Path) -> None:
-    options = load_recipe(write(tmp_path, '[filter]\nfeature_size = "2%"\nsteps = 4\n'))
+    _, options = load_recipe(write(tmp_path, '[filter]\nfeature_size = "2%"\nsteps = 4\n'))
     expected = FilterOptions(feature_size=Length(2, "%"), steps=4)
     assert FilterOptions.from_dict(options) == expected
 
@@ -87,7 +87,7 @@ def test_a_missing_recipe_is_named(tmp_path: Path) -> None:
 def test_a_recipe_replaces_a_recipe_and_nothing_else(tmp_path: Path) -> None:
     path = write(tmp_path, "[filter]\nsteps = 4\n")
     save_recipe(path, FilterOptions(steps=5))
-    assert load_recipe(path)["steps"] == 5
+    assert load_recipe(path)[1]["steps"] == 5
     path.write_bytes(PRECIOUS)
     with pytest.raises(InputError, match=r"recipe\.toml is not a TOML file.*not replaced"):
         save_recipe(path, FilterOptions())

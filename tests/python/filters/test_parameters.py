@@ -13,7 +13,7 @@ import pymeshlab
 import pytest
 from helpers import FILTER, mesh_set_of, refusal
 from meshlab_spectral import FilterOptions, OptionError, filter_mesh
-from meshlab_spectral.filters.options import Length
+from meshlab_spectral.filters.option_types import Length
 
 CHOICES = {
     name: get_args(type_)

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 import spectral_reference as reference
 from meshlab_spectral.errors import OptionError
-from meshlab_spectral.filters.options import FilterOptions, Length
+from meshlab_spectral.filters.option_types import Length
+from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.filters.transfer import MeshLengths, gain
 
 LENGTHS = MeshLengths(feature_size=0.4, diagonal=8.0, mean_edge=0.05)

@@ -16,6 +16,7 @@ from meshlab_spectral.batch.report import DEFAULT_NAME, check_report, read_repor
 from meshlab_spectral.batch.resume import Records, done_records, proved_done
 from meshlab_spectral.errors import InputError, OptionError
 from meshlab_spectral.files.script import script_filters
+from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.plugin.versions import versions
 
@@ -52,7 +53,7 @@ class Batch:
 def plan_batch(
     inputs: Sequence[str | Path],
     output: str | Path,
-    options: FilterOptions | None = None,
+    options: Options | None = None,
     *,
     script: str | Path | None = None,
     recursive: bool = False,
@@ -111,12 +112,13 @@ def plan_batch(
 
 
 def _work(
-    options: FilterOptions | None, script: str | Path | None
+    options: Options | None, script: str | Path | None
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the work of each job, and its description in the report."""
     if script is None:
-        described = (options or FilterOptions()).as_dict()
-        return {"task": "filter", "options": described}, described
+        options = options or FilterOptions()
+        described = options.as_dict()
+        return {"task": options.TABLE, "options": described}, described
     if options is not None:
         raise OptionError(
             "a script contains its parameters: give either a script or options of the filter"

@@ -28,7 +28,9 @@ from meshlab_spectral.cli.many_files import (
     summary_of,
 )
 from meshlab_spectral.cli.messages import EXIT_FAILED, errors_reported, warn_of_points_only
+from meshlab_spectral.errors import OptionError
 from meshlab_spectral.files.recipe import load_recipe, save_recipe
+from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import FilterOptions
 
 # "\b" keeps a paragraph's lines as they are.
@@ -172,13 +174,18 @@ def batch_command(
         raise typer.Exit(EXIT_FAILED)
 
 
-def _options(
-    given: dict[str, Any], recipe: Path | None, script: Path | None
-) -> FilterOptions | None:
+def _options(given: dict[str, Any], recipe: Path | None, script: Path | None) -> Options | None:
     if script is not None and not given and recipe is None:
         return None
-    options = load_recipe(recipe) if recipe is not None else {}
-    return FilterOptions.from_dict({**options, **given})
+    if recipe is None:
+        return FilterOptions.from_dict(given)
+    table, options = load_recipe(recipe)
+    if table is not FilterOptions and given:
+        raise OptionError(
+            f"{', '.join(given)}: not for the recipe {recipe}, which is for another filter; write "
+            f"its options into the table [{table.TABLE}] there"
+        )
+    return table.from_dict({**options, **given})
 
 
 def _tell_plan(batch: Batch) -> None:

@@ -15,7 +15,8 @@ from meshlab_spectral.cli.report_table import report_table
 from meshlab_spectral.errors import SpectralError
 from meshlab_spectral.figures.pictures import Panel, View, draw_side_by_side
 from meshlab_spectral.files.whole_files import writing_whole
-from meshlab_spectral.filters.options import FilterOptions, Length
+from meshlab_spectral.filters.option_types import Length
+from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.plugin.loading import FILTER_NAME, load
 
 OPTIONS = FilterOptions(feature_size=Length(15, "%"), steps=10, basis_update="conformal")

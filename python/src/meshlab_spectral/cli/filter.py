@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import typer
 from rich.console import Console
 
-from meshlab_spectral.cli.filter_options import with_filter_options
+from meshlab_spectral.cli.filter_options import with_options
 from meshlab_spectral.cli.messages import MESSAGES, errors_reported, warn_of_points_only
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.cli.report_table import report_table
@@ -30,7 +30,7 @@ Sharpen it:
 """
 
 
-@with_filter_options
+@with_options(FilterOptions)
 def filter_command(
     options: FilterOptions,
     source: Annotated[

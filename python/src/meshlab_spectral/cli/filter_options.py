@@ -1,4 +1,4 @@
-"""Command-line options generated from the fields of `FilterOptions`, and `--preset`."""
+"""Command-line options generated from tables of options, and `--preset`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,8 @@ from typing import Annotated, Any, get_type_hints
 import typer
 
 from meshlab_spectral.errors import OptionError
-from meshlab_spectral.filters.options import FilterOptions, Length
+from meshlab_spectral.filters.option_types import AnyOptions, Length, Options
+from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.filters.presets import PRESETS, Preset
 
 Command = Callable[..., None]
@@ -34,19 +35,24 @@ _PRESET = Annotated[
 ]
 
 
-def with_filter_options(command: Command) -> Command:
-    """Add one option per field of FilterOptions to a command, passed as `options`."""
-    return with_some_filter_options([option.name for option in fields(FilterOptions)])(command)
+def with_options(
+    table: type[Options], names: Collection[str] | None = None
+) -> Callable[[Command], Command]:
+    """Add one option per field of a table to a command, passed as `options`.
 
-
-def with_some_filter_options(names: Collection[str]) -> Callable[[Command], Command]:
-    """Add options for these fields of FilterOptions to a command; the rest keep their defaults."""
+    Parameters
+    ----------
+    table
+        The table; a command with FilterOptions gets `--preset`, too.
+    names
+        Only these fields; the rest keep their defaults.
+    """
 
     def decorate(command: Command) -> Command:
         def run(given: dict[str, Any], arguments: dict[str, Any]) -> None:
-            command(options=_checked(given), **arguments)
+            command(options=_checked(table, given), **arguments)
 
-        return _with_options(names, command, "options", run)
+        return _with_options(table, names, command, "options", run)
 
     return decorate
 
@@ -65,22 +71,22 @@ def with_given_filter_options(command: Command) -> Command:
             for name, value in values.items()
             if source(name).name in ("COMMANDLINE", "DEFAULT_MAP")
         }
-        _checked(given)
+        _checked(FilterOptions, given)
         command(given=given, **arguments)
 
-    names = [option.name for option in fields(FilterOptions)]
-    return _with_options(names, command, "given", run)
+    return _with_options(FilterOptions, None, command, "given", run)
 
 
-def _checked(given: dict[str, Any]) -> FilterOptions:
+def _checked(table: type[AnyOptions], given: dict[str, Any]) -> AnyOptions:
     try:
-        return FilterOptions(**given)
+        return table(**given)
     except OptionError as error:
         raise typer.BadParameter(str(error)) from error
 
 
 def _with_options(
-    names: Collection[str],
+    table: type[Options],
+    names: Collection[str] | None,
     command: Command,
     place: str,
     call: Callable[[dict[str, Any], dict[str, Any]], None],
@@ -89,7 +95,7 @@ def _with_options(
 
     It passes the values of the former and of the latter to `call`.
     """
-    types = get_type_hints(FilterOptions)
+    types = get_type_hints(table)
     own = [
         parameter
         for parameter in inspect.signature(command, eval_str=True).parameters.values()
@@ -98,9 +104,9 @@ def _with_options(
     preset = inspect.Parameter(
         "preset", inspect.Parameter.KEYWORD_ONLY, default=None, annotation=_PRESET
     )
-    added = [preset]
-    for option in fields(FilterOptions):
-        if option.name not in names:
+    added = [preset] if table is FilterOptions else []
+    for option in fields(table):
+        if names is not None and option.name not in names:
             continue
         settings: dict[str, Any] = {"help": option.metadata["help"]}
         type_, default = types[option.name], option.default
@@ -118,7 +124,7 @@ def _with_options(
 
     def run(**arguments: Any) -> None:
         values = {parameter.name: arguments.pop(parameter.name) for parameter in added}
-        del values["preset"]  # has done its work
+        values.pop("preset", None)  # has done its work
         call(values, arguments)
 
     parameters = [p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in [*own, *added]]

@@ -15,7 +15,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from meshlab_spectral.cli.filter_options import with_some_filter_options
+from meshlab_spectral.cli.filter_options import with_options
 from meshlab_spectral.cli.messages import errors_reported
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.figures.spectrum import (
@@ -64,7 +64,7 @@ SHOWN_OPTIONS = (
 )
 
 
-@with_some_filter_options(SHOWN_OPTIONS)
+@with_options(FilterOptions, SHOWN_OPTIONS)
 def spectrum_command(
     options: FilterOptions,
     source: Annotated[

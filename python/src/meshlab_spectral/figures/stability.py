@@ -15,7 +15,8 @@ import numpy as np
 from meshlab_spectral.figures.pictures import Frame, Panel, render
 from meshlab_spectral.figures.sheet import FONT_SIZE, INK, Sheet
 from meshlab_spectral.figures.subject import Subject, filter_name, scheme_name
-from meshlab_spectral.filters.options import FilterOptions, Length
+from meshlab_spectral.filters.option_types import Length
+from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.filters.transfer import gain
 
 if TYPE_CHECKING:

@@ -17,8 +17,8 @@ from meshlab_spectral.files.dropped import check_nothing_dropped
 from meshlab_spectral.files.script import apply_script
 from meshlab_spectral.files.whole_files import USUAL_FORMATS, resolved, writing_whole
 from meshlab_spectral.filters.calling import call_filter, plain_report, reason_of
-from meshlab_spectral.filters.options import FilterOptions
-from meshlab_spectral.plugin.loading import FILTER_NAME, load
+from meshlab_spectral.filters.option_types import Options
+from meshlab_spectral.plugin.loading import load
 
 StageCallback = Callable[[str], None]
 
@@ -29,7 +29,7 @@ _POLYGON_FORMATS = (".obj", ".off")
 def filter_file(
     source: Path,
     target: Path,
-    options: FilterOptions,
+    options: Options,
     on_stage: StageCallback = lambda stage: None,
 ) -> dict[str, Any]:
     """Filter a mesh file into another.
@@ -67,7 +67,7 @@ def filter_file(
 def filter_to_scratch(
     source: Path,
     scratch: Path,
-    options: FilterOptions,
+    options: Options,
     on_stage: StageCallback,
     verbose: bool = True,
 ) -> dict[str, Any]:
@@ -79,7 +79,7 @@ def filter_to_scratch(
 
     def apply(mesh_set: Any) -> dict[str, Any]:
         parameters = options.pymeshlab_parameters(mesh_set.current_mesh())
-        return plain_report(call_filter(mesh_set, FILTER_NAME, parameters))
+        return plain_report(call_filter(mesh_set, options.FILTER, parameters))
 
     return _process(source, scratch, apply, on_stage, verbose)
 

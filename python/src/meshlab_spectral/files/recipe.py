@@ -1,4 +1,4 @@
-"""Recipes: the filter's options in a TOML file."""
+"""Recipes: a filter's options in a TOML file, in a table named after the filter."""
 
 from __future__ import annotations
 
@@ -10,23 +10,24 @@ import tomli_w
 
 from meshlab_spectral.errors import InputError, OptionError
 from meshlab_spectral.files.whole_files import writing_whole
-from meshlab_spectral.filters.options import FilterOptions, Length
+from meshlab_spectral.filters.option_types import Length, Options
+from meshlab_spectral.filters.tables import TABLES
 
 if sys.version_info >= (3, 11):
     import tomllib
 else:
     import tomli as tomllib
 
-_TABLE = "filter"
 
-
-def load_recipe(path: Path) -> dict[str, Any]:
+def load_recipe(path: Path) -> tuple[type[Options], dict[str, Any]]:
     """Read the options in a recipe; options it leaves out keep their defaults.
 
     Returns
     -------
-    dict
-        Validated, for `FilterOptions.from_dict`.
+    table : type
+        The table that the options are of.
+    options : dict
+        Validated, for its `from_dict`.
 
     Raises
     ------
@@ -35,15 +36,15 @@ def load_recipe(path: Path) -> dict[str, Any]:
     OptionError
         When it is not TOML, or has an unknown key or an invalid value.
     """
-    options = _table(path)
+    table, options = _content(path)
     try:
-        FilterOptions.from_dict(options)
+        table.from_dict(options)
     except OptionError as error:
         raise OptionError(f"the recipe {path}: {error}") from error
-    return options
+    return table, options
 
 
-def save_recipe(path: Path, options: FilterOptions) -> None:
+def save_recipe(path: Path, options: Options) -> None:
     """Write all options to a recipe, which may replace another recipe but no other file.
 
     Raises
@@ -55,7 +56,7 @@ def save_recipe(path: Path, options: FilterOptions) -> None:
     """
     if path.is_file():
         try:
-            _table(path)
+            _content(path)
         except OptionError as error:
             raise InputError(f"{error}; it is not replaced: choose another name") from error
     plain = {
@@ -63,11 +64,12 @@ def save_recipe(path: Path, options: FilterOptions) -> None:
         for name, value in options.as_dict().items()
     }
     with writing_whole(path) as scratch:
-        scratch.write_text(tomli_w.dumps({_TABLE: plain}), encoding="utf-8")
+        scratch.write_text(tomli_w.dumps({options.TABLE: plain}), encoding="utf-8")
 
 
-def _table(path: Path) -> dict[str, Any]:
-    """Read the table of options."""
+def _content(path: Path) -> tuple[type[Options], dict[str, Any]]:
+    """Read the one table of options."""
+    names = " or ".join(f"[{name}]" for name in TABLES)
     try:
         content = tomllib.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
@@ -76,14 +78,16 @@ def _table(path: Path) -> dict[str, Any]:
         raise OptionError(f"the recipe {path} is not a TOML file: {error}") from error
     except RecursionError as error:
         raise OptionError(
-            f"the recipe {path} is nested too deeply: all options belong in the table [{_TABLE}]"
+            f"the recipe {path} is nested too deeply: all options belong in one table, {names}"
         ) from error
-    unknown = content.keys() - {_TABLE}
-    if unknown or not isinstance(content.get(_TABLE), dict):
-        wrong = f"has {', '.join(sorted(unknown))} outside it" if unknown else "has no such table"
-        raise OptionError(f"the recipe {path} {wrong}: all options belong in the table [{_TABLE}]")
-    table: dict[str, Any] = content[_TABLE]
-    return table
+    unknown = content.keys() - TABLES.keys()
+    if unknown or len(content) != 1 or not all(isinstance(v, dict) for v in content.values()):
+        wrong = "has not one such table"
+        if unknown:
+            wrong = f"has {', '.join(sorted(unknown))} outside it"
+        raise OptionError(f"the recipe {path} {wrong}: all options belong in one table, {names}")
+    ((name, options),) = content.items()
+    return TABLES[name], options
 
 
 def _number_or_text(value: Any, plain: Any) -> Any:

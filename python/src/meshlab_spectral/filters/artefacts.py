@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.filters.arrays import mesh_arrays
 from meshlab_spectral.filters.calling import call_filter
-from meshlab_spectral.filters.options import LaplacianKind, Length
+from meshlab_spectral.filters.option_types import Length
+from meshlab_spectral.filters.options import LaplacianKind
 from meshlab_spectral.plugin.loading import load
 
 _FILTER_NAME = "compute_scalar_spectral_artefacts_per_vertex"

@@ -32,8 +32,8 @@ from meshlab_spectral.files.meshes import (
     script_to_scratch,
 )
 from meshlab_spectral.filters.calling import plain_report
-from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.filters.spectrum import measure
+from meshlab_spectral.filters.tables import TABLES
 from meshlab_spectral.plugin.memory import set_memory_limit
 
 # In every error of the plugin about memory.
@@ -55,7 +55,7 @@ def _report_of(job: dict[str, Any], on_stage: StageCallback) -> dict[str, Any]:
         return basis_to_scratch(source, scratch, **job["options"], on_stage=on_stage)
     if task == "script":
         return script_to_scratch(source, scratch, job["script"], on_stage, verbose)
-    options = FilterOptions.from_dict(job["options"])
+    options = TABLES[task].from_dict(job["options"])
     return filter_to_scratch(source, scratch, options, on_stage, verbose)
 
 

@@ -11,7 +11,8 @@ from typing import Any
 from meshlab_spectral.files.basis import check_basis_target
 from meshlab_spectral.files.meshes import check_source
 from meshlab_spectral.files.whole_files import remove_leftovers, resolved, writing_whole
-from meshlab_spectral.filters.options import Boundary, FilterOptions, LaplacianKind
+from meshlab_spectral.filters.option_types import Options
+from meshlab_spectral.filters.options import Boundary, LaplacianKind
 from meshlab_spectral.filters.spectrum import GeometrySpectrum, spectrum_parameters
 from meshlab_spectral.process.parent import MeshLabProcess, ProgressCallback
 
@@ -19,7 +20,7 @@ from meshlab_spectral.process.parent import MeshLabProcess, ProgressCallback
 def filter_file_in_child(
     source: Path,
     target: Path,
-    options: FilterOptions,
+    options: Options,
     on_progress: ProgressCallback = lambda stage, fraction: None,
 ) -> dict[str, Any]:
     """Filter a mesh file into another, in a child process that can be interrupted.
@@ -43,9 +44,8 @@ def filter_file_in_child(
     KeyboardInterrupt
         After the child has been ended and the scratch files removed.
     """
-    return _write_in_child(
-        source, target, {"task": "filter", "options": options.as_dict()}, on_progress
-    )
+    job = {"task": options.TABLE, "options": options.as_dict()}
+    return _write_in_child(source, target, job, on_progress)
 
 
 def basis_file_in_child(

@@ -1,0 +1,215 @@
+"""Kinds of options, and tables of them: what is given is checked and converted for pymeshlab."""
+
+from __future__ import annotations
+
+import difflib
+from dataclasses import dataclass, field, fields
+from numbers import Real
+from typing import Any, Literal, TypeVar, get_args, get_type_hints
+
+from meshlab_spectral.errors import OptionError
+from meshlab_spectral.filters.arrays import mean_edge
+
+AnyOptions = TypeVar("AnyOptions", bound="Options")
+
+# What pymeshlab can pass on: 32-bit integers, and floats of single precision.
+LARGEST_INTEGER = 2**31 - 1
+_SMALLEST_FLOAT, _LARGEST_FLOAT = 2.0**-126, (2 - 2.0**-23) * 2.0**127
+
+
+@dataclass(frozen=True)
+class Limits:
+    """Range of a number: `low <= x <= high`, or `low < x <= high` if `low_open`."""
+
+    low: float
+    high: float = _LARGEST_FLOAT
+    low_open: bool = False
+
+    def contain(self, value: Any) -> bool:
+        """Whether a number is in range; never true for NaN and infinities."""
+        # Numbers closer to zero reach the plugin as zero.
+        above = value >= self.low + _SMALLEST_FLOAT if self.low_open else value >= self.low
+        return bool(above and value <= self.high)
+
+    def __str__(self) -> str:
+        high = str(self.high) if isinstance(self.high, int) else f"{self.high:.2g}"
+        if not self.low_open:
+            return f"from {self.low:g} to {high}"
+        return f"above {self.low or 'zero'}, at most {high}"
+
+
+_LENGTHS = Limits(0, low_open=True)
+_SIZES = (
+    "a percentage of the bounding box diagonal such as 5%, mean edges such as 6e, or a length such "
+    "as 0.02"
+)
+Unit = Literal["", "%", "e"]
+
+
+@dataclass(frozen=True)
+class Length:
+    """A length in the units of the mesh, its mean edges, or percent of its bounding box diagonal.
+
+    Attributes
+    ----------
+    value
+        In units of `unit`; finite, > 0.
+    unit
+        "" for the units of the mesh, "%" for percent of the diagonal, "e" for mean edges.
+    automatic
+        Whether the filter chooses the length to suit the mesh; `value` is then meaningless.
+    """
+
+    value: float = 0.0
+    unit: Unit = ""
+    automatic: bool = False
+
+    def __post_init__(self) -> None:
+        if self.automatic:
+            return
+        if not isinstance(self.value, Real) or not _LENGTHS.contain(self.value):
+            raise OptionError(f"{self}: must be {_LENGTHS}, {_SIZES}")
+        if self.unit == "%" and self.value > 100:
+            raise OptionError(
+                f"{self}: a percentage goes up to 100% of the diagonal; for more, give a length"
+            )
+
+    @classmethod
+    def parse(cls, text: str) -> Length:
+        """Parse `5%` (of the diagonal), `6e` (mean edges), `0.02` (a length), or `auto`.
+
+        Raises
+        ------
+        OptionError
+            When `text` is none of these, or not positive.
+        """
+        number = text.strip()
+        if number == "auto":
+            return cls(automatic=True)
+        unit: Unit = "%" if number.endswith("%") else "e" if number.endswith("e") else ""
+        try:
+            value = float(number.removesuffix(unit))
+        except ValueError:
+            raise OptionError(f"{text!r}: give {_SIZES}") from None
+        return cls(value, unit)
+
+    def in_units_of_mesh(self, diagonal: float, mean_edge: float) -> float:
+        """Convert to the units of a mesh, from its lengths in them."""
+        return self.value * {"": 1.0, "%": diagonal / 100, "e": mean_edge}[self.unit]
+
+    def __str__(self) -> str:
+        if self.automatic:
+            return "auto"
+        number = f"{self.value:.12g}" if isinstance(self.value, Real) else repr(self.value)
+        return number + self.unit
+
+
+def option(default: Any, explanation: str, limits: Limits | None = None) -> Any:
+    """Make a field of a table of options."""
+    return field(default=default, metadata={"help": explanation, "limits": limits})
+
+
+_NAMED = {
+    int: "an integer",
+    float: "a number",
+    bool: "true or false",
+    str: "a text",
+    Length: "a length",
+}
+
+
+def _is_of(value: Any, wanted: type) -> bool:
+    """Whether a value has a type; integers pass as floats, as in a recipe."""
+    if wanted is float:
+        return isinstance(value, int | float) and not isinstance(value, bool)
+    return type(value) is wanted
+
+
+@dataclass(frozen=True, kw_only=True)
+class Options:
+    """Base of the tables of options: a frozen dataclass with a field for each, made by `option`.
+
+    Attributes
+    ----------
+    FILTER
+        Python name of the plugin's filter.
+    TABLE
+        Name of the table in a recipe.
+
+    Raises
+    ------
+    OptionError
+        When a value is invalid; names the option, the value and what is allowed.
+    """
+
+    FILTER = ""
+    TABLE = ""
+
+    def __post_init__(self) -> None:
+        types = get_type_hints(type(self))
+        for one in fields(self):
+            value = getattr(self, one.name)
+            choices = get_args(types[one.name])
+            if choices and value not in choices:
+                raise OptionError(f"{one.name} = {value}: choose {', '.join(choices)}")
+            wanted = types[one.name]
+            if not choices and not _is_of(value, wanted):
+                raise OptionError(f"{one.name} = {value!r}: must be {_NAMED[wanted]}")
+            default: Any = one.default
+            is_automatic = isinstance(value, Length) and value.automatic
+            if is_automatic and not default.automatic:
+                raise OptionError(f"{one.name} = auto: cannot be automatic, give a length")
+            limits: Limits | None = one.metadata["limits"]
+            if limits is not None and not limits.contain(value):
+                raise OptionError(f"{one.name} = {value}: must be {limits}")
+
+    def as_dict(self) -> dict[str, Any]:
+        """All options as plain values: strings, numbers, booleans."""
+        plain = {one.name: getattr(self, one.name) for one in fields(self)}
+        return {
+            name: str(value) if isinstance(value, Length) else value
+            for name, value in plain.items()
+        }
+
+    @classmethod
+    def from_dict(cls: type[AnyOptions], plain: dict[str, Any]) -> AnyOptions:
+        """Make options from plain values, as from `as_dict`; the rest keep their defaults."""
+        values = dict(plain)
+        for name, wanted in get_type_hints(cls).items():
+            if wanted is Length and name in values:
+                try:
+                    values[name] = Length.parse(str(values[name]))
+                except OptionError as error:
+                    raise OptionError(f"{name} = {error}") from None
+        known = [one.name for one in fields(cls)]
+        for name in values:
+            if name not in known:
+                similar = difflib.get_close_matches(name, known, n=1)
+                hint = f"did you mean {similar[0]}?" if similar else f"choose {', '.join(known)}"
+                raise OptionError(f"there is no option {name}: {hint}")
+        return cls(**values)
+
+    def pymeshlab_parameters(self, mesh: Any) -> dict[str, Any]:
+        """Keyword arguments for pymeshlab; automatic options are left out.
+
+        Parameters
+        ----------
+        mesh
+            The `pymeshlab.Mesh` to filter, which says how long a mean edge is.
+        """
+        import pymeshlab
+
+        parameters = self.as_dict()
+        for one in fields(self):
+            value = getattr(self, one.name)
+            if not isinstance(value, Length):
+                continue
+            if value.automatic:
+                del parameters[one.name]
+            elif value.unit == "%":
+                parameters[one.name] = pymeshlab.PercentageValue(value.value)
+            else:
+                edge = mean_edge(mesh) if value.unit == "e" else 0.0
+                length = value.in_units_of_mesh(0.0, edge)
+                parameters[one.name] = pymeshlab.PureValue(length)
+        return parameters
