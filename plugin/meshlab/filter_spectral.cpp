@@ -61,8 +61,9 @@ double memoryLimitOfEnvironment() {
 }  // namespace
 
 FilterSpectralPlugin::FilterSpectralPlugin()
-    : filters_{fractionalMeshFilter(), qualityMeshFilter(),   colorMeshFilter(),
-               artefactsMeshFilter(),  harmonicsMeshFilter(), geometrySpectrumMeshFilter()},
+    : filters_{fractionalMeshFilter(),      denoiseMeshFilter(),   qualityMeshFilter(),
+               colorMeshFilter(),           artefactsMeshFilter(), harmonicsMeshFilter(),
+               geometrySpectrumMeshFilter()},
       runs_(filters_.size()) {
     for (std::size_t i = 0; i < filters_.size(); ++i) {
         typeList.push_back(static_cast<ActionIDType>(i));

@@ -11,9 +11,9 @@ namespace {
 
 // In the order of the core's enumerations.
 QStringList laplacians() { return {"intrinsic delaunay", "cotangent", "uniform"}; }
-QStringList boundaries() { return {"free", "fixed"}; }
-
 }  // namespace
+
+QStringList boundaries() { return {"free", "fixed"}; }
 
 int choice(const RichParameterList& parameters, const char* name, const QStringList& choices) {
     const int value = parameters.getEnum(name);

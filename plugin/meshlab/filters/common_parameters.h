@@ -30,6 +30,9 @@ RichEnum laplacianParameter(const QString& help);
 
 spectral::LaplacianKind laplacianKind(const RichParameterList& parameters);
 
+/// The choices of `boundary`, in the order of the core's enumeration.
+QStringList boundaries();
+
 /// `boundary`; default: free.
 RichEnum boundaryParameter(const QString& help);
 

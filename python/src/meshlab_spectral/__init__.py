@@ -26,6 +26,7 @@ if TYPE_CHECKING:
         PluginError,
     )
     from meshlab_spectral.filters.artefacts import Artefacts, measure_artefacts
+    from meshlab_spectral.filters.denoise import DenoiseOptions, denoise_mesh
     from meshlab_spectral.filters.fractional import filter_mesh
     from meshlab_spectral.filters.harmonics import Harmonics, manifold_harmonics
     from meshlab_spectral.filters.options import FilterOptions
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Artefacts",
     "BatchError",
+    "DenoiseOptions",
     "FileResult",
     "FilterError",
     "FilterOptions",
@@ -47,6 +49,7 @@ __all__ = [
     "MeshFileError",
     "OptionError",
     "PluginError",
+    "denoise_mesh",
     "filter_files",
     "filter_mesh",
     "filter_scalars",
@@ -62,6 +65,7 @@ __all__ = [
 _MODULES = {
     "Artefacts": "filters.artefacts",
     "BatchError": "errors",
+    "DenoiseOptions": "filters.denoise",
     "FileResult": "batch.jobs",
     "FilterError": "errors",
     "FilterOptions": "filters.options",
@@ -71,6 +75,7 @@ _MODULES = {
     "MeshFileError": "errors",
     "OptionError": "errors",
     "PluginError": "errors",
+    "denoise_mesh": "filters.denoise",
     "filter_files": "batch.files",
     "filter_mesh": "filters.fractional",
     "filter_scalars": "filters.signals",

@@ -9,6 +9,7 @@ import typer
 
 from meshlab_spectral.cli.basis import BASIS_HELP, basis_command
 from meshlab_spectral.cli.batch import BATCH_HELP, batch_command
+from meshlab_spectral.cli.denoise import DENOISE_HELP, denoise_command
 from meshlab_spectral.cli.figures import FIGURES_HELP, figures_command
 from meshlab_spectral.cli.filter import FILTER_HELP, filter_command
 from meshlab_spectral.cli.install import INSTALL_HELP, install_command
@@ -17,7 +18,7 @@ from meshlab_spectral.cli.spectra import SPECTRA_HELP, spectra_command
 from meshlab_spectral.cli.spectrum import SPECTRUM_HELP, spectrum_command
 
 app = typer.Typer(
-    help="Smooth, sharpen and band-filter meshes by the size of their details.",
+    help="Denoise, smooth, sharpen and band-filter meshes by the size of their details.",
     epilog=EXIT_CODES,
     no_args_is_help=True,
     add_completion=False,
@@ -42,10 +43,11 @@ def _common(
         ),
     ] = False,
 ) -> None:
-    """Smooth, sharpen and band-filter meshes by the size of their details."""
+    """Denoise, smooth, sharpen and band-filter meshes by the size of their details."""
 
 
 app.command("filter", help=FILTER_HELP, epilog=EXIT_CODES)(filter_command)
+app.command("denoise", help=DENOISE_HELP, epilog=EXIT_CODES)(denoise_command)
 app.command("figures", help=FIGURES_HELP, epilog=EXIT_CODES)(figures_command)
 app.command("basis", help=BASIS_HELP, epilog=EXIT_CODES)(basis_command)
 app.command("batch", help=BATCH_HELP, epilog=EXIT_CODES)(batch_command)

@@ -1,4 +1,4 @@
-"""The command `meshlab-spectral filter`."""
+"""The command `meshlab-spectral filter`, and what it shares with `denoise`."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from meshlab_spectral.cli.filter_options import with_options
 from meshlab_spectral.cli.messages import MESSAGES, errors_reported, warn_of_points_only
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.cli.report_table import report_table
+from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.plugin.versions import versions
 from meshlab_spectral.process.single_file import filter_file_in_child
@@ -30,25 +31,36 @@ Sharpen it:
 """
 
 
+Source = Annotated[
+    Path, typer.Argument(metavar="INPUT", help="Mesh to read: .ply, .obj, .stl, .off, ...")
+]
+Target = Annotated[
+    Path,
+    typer.Argument(
+        metavar="OUTPUT",
+        help="Mesh to write, in the format of its extension; replaces an existing file.",
+    ),
+]
+AsJson = Annotated[bool, typer.Option("--json", help="Print the report as one JSON object.")]
+Debug = Annotated[bool, typer.Option("--debug", hidden=True)]
+
+
 @with_options(FilterOptions)
 def filter_command(
     options: FilterOptions,
-    source: Annotated[
-        Path, typer.Argument(metavar="INPUT", help="Mesh to read: .ply, .obj, .stl, .off, ...")
-    ],
-    target: Annotated[
-        Path,
-        typer.Argument(
-            metavar="OUTPUT",
-            help="Mesh to write, in the format of its extension; replaces an existing file.",
-        ),
-    ],
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print the report as one JSON object.")
-    ] = False,
-    debug: Annotated[bool, typer.Option("--debug", hidden=True)] = False,
+    source: Source,
+    target: Target,
+    as_json: AsJson = False,
+    debug: Debug = False,
 ) -> None:
     """Filter one mesh: see `meshlab-spectral filter --help`."""
+    filter_one_file(source, target, options, as_json, debug)
+
+
+def filter_one_file(
+    source: Path, target: Path, options: Options, as_json: bool, debug: bool
+) -> None:
+    """Filter one mesh, in a child process, and print the report."""
     if target.exists() and source.exists() and target.samefile(source):
         raise typer.BadParameter(
             f"{target} is INPUT itself and would be lost: choose another name", param_hint="OUTPUT"
@@ -66,7 +78,7 @@ def filter_command(
 
 
 def _record(
-    source: Path, target: Path, options: FilterOptions, report: dict[str, Any], seconds: float
+    source: Path, target: Path, options: Options, report: dict[str, Any], seconds: float
 ) -> dict[str, Any]:
     return {
         "input": str(source),

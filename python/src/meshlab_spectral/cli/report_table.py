@@ -28,14 +28,14 @@ def report_table(report: dict[str, Any], title: str) -> Table:
 
 
 def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
-    rows = [
-        ("Feature size", f"{report['feature_size']:.6g}"),
-        ("Cutoff frequency", f"{report['cutoff_frequency']:.6g} rad per unit"),
-        ("Steps", f"{report['steps']}"),
-        *_automatic(report),
+    if "noise_height" in report:
+        edges = report["noise_height"] / report["mean_edge"]
+        rows = [("Noise height", f"{report['noise_height']:.4g} ({edges:.2g} mean edges)")]
+    else:
+        rows = _rows_of_filter(report)
+    rows += [
         ("Largest displacement", f"{report['max_displacement']:.4g}"),
         ("RMS displacement", f"{report['rms_displacement']:.4g}"),
-        ("Area", _change(report["area_before"], report["area_after"])),
         ("Volume", _change(report["volume_before"], report["volume_after"])),
         ("Components", f"{report['components']}"),
     ]
@@ -44,6 +44,21 @@ def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
     if report.get("fixed_vertices"):
         fixed = f"{report['fixed_vertices']}, unchanged"
         rows.append(("Vertices on a fixed boundary or crease", fixed))
+    return rows + (_work(report) if "noise_height" not in report else [])
+
+
+def _rows_of_filter(report: dict[str, Any]) -> list[tuple[str, str]]:
+    return [
+        ("Feature size", f"{report['feature_size']:.6g}"),
+        ("Cutoff frequency", f"{report['cutoff_frequency']:.6g} rad per unit"),
+        ("Steps", f"{report['steps']}"),
+        *_automatic(report),
+        ("Area", _change(report["area_before"], report["area_after"])),
+    ]
+
+
+def _work(report: dict[str, Any]) -> list[tuple[str, str]]:
+    rows = []
     if "eigenvalues" in report:
         rows.append(("Harmonics", f"{len(report['eigenvalues'])}"))
         rows.append(("Bases computed", f"{report['computed_bases']}"))

@@ -7,9 +7,11 @@ from pathlib import Path
 from meshlab_spectral.errors import PluginError
 
 FILTER_NAME = "apply_coord_spectral_filter_fractional"
+DENOISE_NAME = "apply_coord_spectral_denoise"
 # The plugin's filters: name in MeshLab's menus and scripts -> Python name.
 FILTERS = {
     "Spectral Filter (Fractional)": FILTER_NAME,
+    "Spectral Denoise": DENOISE_NAME,
     "Spectral Filter: Vertex Quality": "apply_scalar_spectral_filter_per_vertex",
     "Spectral Filter: Vertex Color": "apply_color_spectral_filter_per_vertex",
     "Spectral Artefacts": "compute_scalar_spectral_artefacts_per_vertex",

@@ -1,0 +1,109 @@
+#include "core/denoise/denoise.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/denoise/face_graph.h"
+#include "core/denoise/noise_height.h"
+#include "core/denoise/normal_filter.h"
+#include "core/denoise/vertex_update.h"
+#include "core/mesh/measures.h"
+#include "core/mesh/mesh_check.h"
+#include "core/mesh/surface.h"
+#include "core/support/errors.h"
+#include "core/support/threads.h"
+
+namespace spectral {
+
+namespace {
+
+void checkOptions(const DenoiseOptions& options) {
+    if (!(options.strength >= 0.0 && std::isfinite(options.strength)))
+        throw InvalidOption("strength = " + textOf(options.strength) +
+                            ": must be 0 (nothing) or above, e.g. 1 for the noise as estimated");
+    if (!(options.noiseHeight >= 0.0 && std::isfinite(options.noiseHeight)))
+        throw InvalidOption("noise_height = " + textOf(options.noiseHeight) +
+                            ": must be a length, or 0 to have it estimated");
+}
+
+/// How the noise is removed.
+struct Plan {
+    int rounds = 0;
+    NormalFilterOptions filter;
+    int sweeps = 0;
+};
+
+// Chosen on four pairs of noisy and clean meshes, and seen to hold on four others: see
+// tests/benchmarks/README.md. Noise is measured in mean edges.
+constexpr double kNone = 0.02, kMost = 1.0;  // less is no noise, more is filtered no more
+constexpr double kRoundsPerEdge = 20.0, kFewestRounds = 3.0, kMostRounds = 12.0;
+constexpr double kTime = 1.7, kHalfTimeAt = 0.08;  // less noise takes less than one whole round
+constexpr double kFewestSweeps = 6.0, kSweepsPerEdge = 15.0;
+constexpr double kEdgeScale = 0.22;
+
+/// @param noise  standard deviation along the normals, in mean edges.
+Plan planFor(double noise, bool keepCreases) {
+    Plan plan;
+    if (!(noise >= kNone)) return plan;
+    noise = std::min(noise, kMost);
+    plan.rounds =
+        static_cast<int>(std::clamp(std::ceil(kRoundsPerEdge * noise), kFewestRounds, kMostRounds));
+    plan.filter.time = kTime / (1.0 + std::pow(kHalfTimeAt / noise, 3));
+    plan.filter.edgeScale = keepCreases ? kEdgeScale : std::numeric_limits<double>::infinity();
+    plan.sweeps = static_cast<int>(std::lround(kFewestSweeps + kSweepsPerEdge * noise));
+    return plan;
+}
+
+}  // namespace
+
+DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& options,
+                      const Progress& progress) {
+    const ThreadTeam team;
+    checkMesh(V, F);
+    checkOptions(options);
+    const Surface surface = surfaceOf(V, F);
+    const FaceGraph graph = faceGraph(surface.F, surface.X.rows());
+    const NoiseEstimate noise = estimateNoise(graph, surface.X);
+
+    DenoiseResult result;
+    result.estimatedHeight = noise.height;
+    result.noiseHeight =
+        options.strength * (options.noiseHeight > 0.0 ? options.noiseHeight : noise.height);
+    result.meanEdge = noise.meanEdge;
+    const Plan plan = planFor(result.noiseHeight / noise.meanEdge, options.keepCreases);
+    result.rounds = plan.rounds;
+
+    std::vector<bool> isFixed(graph.onRim.size(), false);
+    if (options.boundary == Boundary::Fixed) isFixed = graph.onRim;
+    Vertices X = surface.X;
+    for (int round = 0; round < plan.rounds; ++round) {
+        progress.report(static_cast<double>(round) / plan.rounds, "denoising");
+        // From the input: it is the normals that are filtered, the vertices only show them.
+        X = followNormals(graph, surface.X, filterNormals(graph, X, plan.filter), isFixed,
+                          plan.sweeps);
+    }
+
+    const Components components = connectedComponents(surface.F, X.rows());
+    Eigen::VectorXd mayMove(X.rows());
+    for (Index i = 0; i < X.rows(); ++i) mayMove[i] = isFixed[i] ? 0.0 : 1.0;
+    if (plan.rounds > 0)
+        result.volumes = preserveVolumes(surface.X, surface.F, components, mayMove, X);
+    if (!X.allFinite()) throw SolverFailure("the denoised coordinates are not finite numbers");
+
+    const Vertices displacement = X - surface.X;
+    result.V = V;
+    for (Index i = 0; i < X.rows(); ++i)
+        if ((displacement.row(i).array() != 0.0).any())
+            result.V.row(surface.vertex[i]) += displacement.row(i);
+    result.maxDisplacement = displacement.rowwise().norm().maxCoeff();
+    result.rmsDisplacement = displacement.stableNorm() / std::sqrt(static_cast<double>(X.rows()));
+    result.volumeBefore = signedVolume(surface.X, surface.F);
+    result.volumeAfter = signedVolume(X, surface.F);
+    result.components = components.count;
+    result.unreferencedVertices = static_cast<int>(V.rows() - X.rows());
+    result.fixedVertices = static_cast<int>(std::count(isFixed.begin(), isFixed.end(), true));
+    return result;
+}
+
+}  // namespace spectral

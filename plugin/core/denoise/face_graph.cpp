@@ -1,0 +1,136 @@
+#include "core/denoise/face_graph.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "core/support/threads.h"
+
+namespace spectral {
+
+namespace {
+
+/// A side of a face, from its lower to its higher vertex.
+struct Side {
+    int low, high, face;
+    bool isReversed;  ///< The face runs through it from `high` to `low`.
+    bool isOfEdge(const Side& other) const { return low == other.low && high == other.high; }
+    bool operator<(const Side& other) const {
+        return std::tie(low, high, face) < std::tie(other.low, other.high, other.face);
+    }
+};
+
+std::vector<Side> sortedSides(const Faces& F) {
+    std::vector<Side> sides;
+    sides.reserve(static_cast<std::size_t>(3 * F.rows()));
+    for (Index t = 0; t < F.rows(); ++t)
+        for (int c = 0; c < 3; ++c) {
+            const int i = F(t, c), j = F(t, (c + 1) % 3);
+            sides.push_back({std::min(i, j), std::max(i, j), static_cast<int>(t), i > j});
+        }
+    std::sort(sides.begin(), sides.end());
+    return sides;
+}
+
+/// The neighbours of a face, at most one for each side.
+struct Neighbours {
+    int count = 0;
+    int face[3];
+    bool isOpposite[3];  ///< Whether it is oriented against the face.
+    void add(int neighbour, bool opposite) {
+        face[count] = neighbour;
+        isOpposite[count++] = opposite;
+    }
+};
+
+/// Reverses faces until neighbours are oriented alike, from the first face of each component on.
+void orient(const std::vector<Neighbours>& neighbours, Faces& F) {
+    std::vector<char> isReached(static_cast<std::size_t>(F.rows()), 0);
+    std::vector<std::pair<int, bool>> left;
+    for (int first = 0; first < F.rows(); ++first) {
+        if (!isReached[first]) left.emplace_back(first, false);
+        isReached[first] = 1;
+        while (!left.empty()) {
+            const auto [face, isReversed] = left.back();
+            left.pop_back();
+            if (isReversed) std::swap(F(face, 1), F(face, 2));
+            const Neighbours& around = neighbours[face];
+            for (int k = 0; k < around.count; ++k) {
+                if (isReached[around.face[k]]) continue;
+                isReached[around.face[k]] = 1;
+                left.emplace_back(around.face[k], isReversed != around.isOpposite[k]);
+            }
+        }
+    }
+}
+
+}  // namespace
+
+FaceGraph faceGraph(const Faces& F, Index vertexCount) {
+    FaceGraph graph;
+    graph.F = F;
+    graph.onRim.assign(static_cast<std::size_t>(vertexCount), false);
+    std::vector<Neighbours> neighbours(static_cast<std::size_t>(F.rows()));
+    const std::vector<Side> sides = sortedSides(F);
+    for (auto first = sides.begin(); first != sides.end();) {
+        const auto next = std::find_if(first, sides.end(),
+                                       [&](const Side& side) { return !side.isOfEdge(*first); });
+        if (next - first == 2) {
+            const auto second = first + 1;
+            graph.edges.push_back({{first->face, second->face}, {first->low, first->high}});
+            const bool isOpposite = first->isReversed == second->isReversed;
+            neighbours[first->face].add(second->face, isOpposite);
+            neighbours[second->face].add(first->face, isOpposite);
+        } else {
+            graph.onRim[first->low] = graph.onRim[first->high] = true;
+        }
+        first = next;
+    }
+    orient(neighbours, graph.F);
+
+    graph.firstFace.assign(static_cast<std::size_t>(vertexCount) + 1, 0);
+    for (Index t = 0; t < F.rows(); ++t)
+        for (int c = 0; c < 3; ++c) ++graph.firstFace[F(t, c) + 1];
+    for (Index i = 0; i < vertexCount; ++i) graph.firstFace[i + 1] += graph.firstFace[i];
+    graph.faceAt.resize(static_cast<std::size_t>(3 * F.rows()));
+    std::vector<Index> end(graph.firstFace.begin(), graph.firstFace.end() - 1);
+    for (Index t = 0; t < F.rows(); ++t)
+        for (int c = 0; c < 3; ++c) graph.faceAt[end[F(t, c)]++] = static_cast<int>(t);
+    return graph;
+}
+
+Vertices areaNormals(const Vertices& X, const Faces& F) {
+    Vertices N(F.rows(), 3);
+    parallelRows(F.rows(), [&](Index begin, Index end) {
+        for (Index t = begin; t < end; ++t) {
+            const Eigen::RowVector3d a = X.row(F(t, 0)), b = X.row(F(t, 1)), c = X.row(F(t, 2));
+            N.row(t) = (b - a).cross(c - a);
+        }
+    });
+    return N;
+}
+
+Normals faceNormals(const Vertices& X, const Faces& F) {
+    Normals N = areaNormals(X, F);
+    normalizeRows(N);
+    return N;
+}
+
+void normalizeRows(Normals& N) {
+    parallelRows(N.rows(), [&](Index begin, Index end) {
+        for (Index t = begin; t < end; ++t) N.row(t).stableNormalize();
+    });
+}
+
+Normals averagedNormals(const FaceGraph& graph, const Vertices& N) {
+    Normals sum = N;
+    for (const FaceGraph::Edge& edge : graph.edges) {
+        sum.row(edge.faces[0]) += N.row(edge.faces[1]);
+        sum.row(edge.faces[1]) += N.row(edge.faces[0]);
+    }
+    normalizeRows(sum);
+    return sum;
+}
+
+}  // namespace spectral

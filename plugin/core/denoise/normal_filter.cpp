@@ -1,0 +1,78 @@
+#include "core/denoise/normal_filter.h"
+
+#include <Eigen/IterativeLinearSolvers>
+#include <cmath>
+#include <vector>
+
+#include "core/support/threads.h"
+
+namespace spectral {
+
+namespace {
+
+/// How often a normal is averaged with its neighbours before the weights are taken from it.
+constexpr int kAverages = 2;
+
+/// Of a face, relative to the mean: bounds the condition of the system.
+constexpr double kSmallestArea = 0.05;
+
+/// Relative residual of the solves: a thousandth of a radian.
+constexpr double kAccuracy = 1e-3;
+
+/// M + t L.
+/// @param N     normals of length twice the area.
+/// @param mass  M.
+SparseMatrix system(const FaceGraph& graph, const Vertices& X, const Vertices& N,
+                    const Eigen::VectorXd& mass, const NormalFilterOptions& options) {
+    Normals q = averagedNormals(graph, N);
+    for (int k = 1; k < kAverages; ++k) q = averagedNormals(graph, q);
+    const auto count = static_cast<Index>(graph.edges.size());
+    Eigen::VectorXd length(count), weight(count);
+    parallelRows(count, [&](Index begin, Index end) {
+        for (Index e = begin; e < end; ++e) {
+            const auto& [faces, ends] = graph.edges[e];
+            length[e] = (X.row(ends[0]) - X.row(ends[1])).norm();
+            const double distance = (q.row(faces[0]) - q.row(faces[1])).norm() / options.edgeScale;
+            weight[e] = length[e] * std::exp(-0.5 * distance * distance);
+        }
+    });
+    weight *= options.time / length.mean();
+
+    Eigen::VectorXd diagonal = mass;
+    std::vector<Eigen::Triplet<double>> entries;
+    entries.reserve(static_cast<std::size_t>(2 * count + graph.faceCount()));
+    for (Index e = 0; e < count; ++e) {
+        const auto& [a, b] = graph.edges[e].faces;
+        entries.emplace_back(a, b, -weight[e]);
+        entries.emplace_back(b, a, -weight[e]);
+        diagonal[a] += weight[e];
+        diagonal[b] += weight[e];
+    }
+    for (Index f = 0; f < graph.faceCount(); ++f)
+        entries.emplace_back(static_cast<int>(f), static_cast<int>(f), diagonal[f]);
+    SparseMatrix A(graph.faceCount(), graph.faceCount());
+    A.setFromTriplets(entries.begin(), entries.end());
+    return A;
+}
+
+}  // namespace
+
+Normals filterNormals(const FaceGraph& graph, const Vertices& X,
+                      const NormalFilterOptions& options) {
+    Vertices N = areaNormals(X, graph.F);
+    const Eigen::VectorXd area = N.rowwise().norm();
+    const Eigen::VectorXd mass = (area / area.mean()).cwiseMax(kSmallestArea).cwiseSqrt();
+    const SparseMatrix A = system(graph, X, N, mass, options);
+    normalizeRows(N);
+    Normals filtered(N.rows(), 3);
+    parallelFor(3, [&](Index c) {
+        // Few iterations: the eigenvalues are those of M and 6 t.
+        Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower | Eigen::Upper> solver(A);
+        solver.setTolerance(kAccuracy);
+        filtered.col(c) = solver.solveWithGuess(mass.cwiseProduct(N.col(c)), N.col(c));
+    });
+    normalizeRows(filtered);
+    return filtered;
+}
+
+}  // namespace spectral

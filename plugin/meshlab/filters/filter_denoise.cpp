@@ -1,0 +1,135 @@
+#include <common/parameters/rich_parameters.h>
+
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "core/denoise/denoise.h"
+#include "meshlab/filters/common_parameters.h"
+#include "meshlab/host_workarounds/steady_progress.h"
+#include "meshlab/mesh_conversion.h"
+#include "meshlab/mesh_filter.h"
+
+namespace {
+
+const char* const kHelp =
+    "Removes the noise of a scan, with <b>nothing to choose</b>: measures how high the noise is, "
+    "and filters as strongly as it needs. Creases become sharp, soft forms stay soft, and "
+    "triangles do not drift within the surface; a mesh without noise stays as it is."
+    "<br><br>The faces' normals are filtered in weak fractional steps [1], on a Laplacian that is "
+    "taken anew from the shape after each and hardly connects faces across a crease; the vertices "
+    "follow the normals [2]. Closed components keep their volume."
+    "<br><br>The noise it knows differs from vertex to vertex. Ripples over many vertices are "
+    "shape to it: remove those with <i>Spectral Filter (Fractional)</i>."
+    "<br><br><small>[1] Kovnatsky, Bronstein, Bronstein 2012; [2] Sun, Rosin, Martin, Langbein "
+    "2007</small>";
+
+RichParameterList parameters(const MeshModel& mesh) {
+    const spectral::DenoiseOptions defaults;
+    const Scalarm diagonal = mesh.cm.bbox.Diag();
+    RichParameterList list;
+    list.addParam(RichFloat("strength", static_cast<Scalarm>(defaults.strength), "Strength",
+                            "1 removes the noise as measured. More removes finer details, too; "
+                            "less leaves some noise; 0 changes nothing."));
+    list.addParam(RichPercentage(
+        "noise_height", static_cast<Scalarm>(defaults.noiseHeight), 0, diagonal,
+        "Noise height (0 = measured)",
+        "Standard deviation of the noise along the normals. 0 has it measured: the log then says "
+        "how high it is. Give it where fine details were taken for noise, or noise for details."));
+    list.addParam(RichBool("keep_creases", defaults.keepCreases, "Keep creases",
+                           "Do not smooth across edges. Off: rounds them; for shapes that have "
+                           "none."));
+    list.addParam(RichEnum("boundary", static_cast<int>(defaults.boundary), boundaries(),
+                           "Boundary",
+                           "The boundary of an open surface, holes included. <b>fixed</b>: it "
+                           "stays exactly in place. <b>free</b>: it is denoised, too.",
+                           true));
+    return list;
+}
+
+std::string headline(const spectral::DenoiseResult& result) {
+    std::ostringstream text;
+    text << std::setprecision(3) << "Spectral Denoise: ";
+    if (result.rounds == 0)
+        text << "no noise found (less than half a percent of an edge); nothing changed";
+    else
+        text << "the noise is " << result.noiseHeight << " high (standard deviation; "
+             << result.noiseHeight / result.meanEdge << " mean edges); the vertices moved by "
+             << result.rmsDisplacement << " (root mean square), by " << result.maxDisplacement
+             << " at most";
+    return text.str();
+}
+
+std::string reportText(const spectral::DenoiseResult& result) {
+    std::ostringstream text;
+    text << headline(result) << std::setprecision(6) << "\n  volume: " << result.volumeBefore
+         << " -> " << result.volumeAfter
+         << " (of closed surfaces)\n  surface: " << result.components
+         << (result.components == 1 ? " component" : " components");
+    if (result.unreferencedVertices > 0)
+        text << ", " << result.unreferencedVertices << " unreferenced vertices unchanged";
+    if (result.fixedVertices > 0)
+        text << ", " << result.fixedVertices << " boundary vertices fixed";
+    text << "\n  work: " << result.rounds << " rounds";
+    return text.str();
+}
+
+std::vector<std::string> warningsOf(const spectral::DenoiseResult& result) {
+    std::vector<std::string> warnings;
+    if (result.rounds > 0 && result.fixedVertices + result.unreferencedVertices == result.V.rows())
+        warnings.emplace_back(
+            "nothing can move: every vertex lies on the boundary, which is fixed. Choose boundary "
+            "= free; if the triangles are not connected, apply 'Merge Close Vertices' first");
+    constexpr double kHalf = 0.5;
+    if (result.estimatedHeight > kHalf * result.meanEdge)
+        warnings.emplace_back(
+            "the noise is higher than half an edge: what it hides cannot be told from it. Look at "
+            "the result, or remesh more coarsely first");
+    return warnings;
+}
+
+FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
+                    const spectral::Progress& progress) {
+    const MeshMatrices input = toMatrices(mesh.cm);
+    spectral::DenoiseOptions options;
+    options.strength = parameters.getFloat("strength");
+    options.noiseHeight = parameters.getAbsPerc("noise_height");
+    options.keepCreases = parameters.getBool("keep_creases");
+    options.boundary = boundaryCondition(parameters);
+    const spectral::DenoiseResult result =
+        spectral::withSteadyProgress(progress, [&](const spectral::Progress& steady) {
+            return spectral::denoise(input.V, input.F, options, steady);
+        });
+    reportWriting(input, mesh.cm, progress);
+    setPositions(input.vertexIndex, result.V, mesh);
+    return {{{"noise_height", result.noiseHeight},
+             {"estimated_noise_height", result.estimatedHeight},
+             {"mean_edge", result.meanEdge},
+             {"rms_displacement", result.rmsDisplacement},
+             {"max_displacement", result.maxDisplacement},
+             {"volume_before", result.volumeBefore},
+             {"volume_after", result.volumeAfter},
+             {"preserved_volumes", result.volumes.preserved},
+             {"components", result.components},
+             {"unreferenced_vertices", result.unreferencedVertices},
+             {"fixed_vertices", result.fixedVertices},
+             {"rounds", result.rounds}},
+            reportText(result),
+            warningsOf(result)};
+}
+
+}  // namespace
+
+MeshFilter denoiseMeshFilter() {
+    MeshFilter filter;
+    filter.name = "Spectral Denoise";
+    filter.pythonName = "apply_coord_spectral_denoise";
+    filter.help = kHelp;
+    filter.category = FilterPlugin::Smoothing;
+    filter.changes = MeshModel::MM_VERTCOORD | MeshModel::MM_VERTNORMAL | MeshModel::MM_FACENORMAL;
+    filter.parameters = parameters;
+    filter.apply = apply;
+    return filter;
+}

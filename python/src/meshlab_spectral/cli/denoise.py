@@ -1,0 +1,28 @@
+"""The command `meshlab-spectral denoise`."""
+
+from __future__ import annotations
+
+from meshlab_spectral.cli.filter import AsJson, Debug, Source, Target, filter_one_file
+from meshlab_spectral.cli.filter_options import with_options
+from meshlab_spectral.filters.denoise import DenoiseOptions
+
+# "\b" keeps a paragraph's lines as they are.
+DENOISE_HELP = """Remove the noise of a scan, as strongly as its height requires.
+
+\b
+  meshlab-spectral denoise scan.ply clean.ply
+A folder of scans, with a recipe that has the line [denoise] alone:
+  meshlab-spectral batch scans --output clean --recipe denoise.toml
+"""
+
+
+@with_options(DenoiseOptions)
+def denoise_command(
+    options: DenoiseOptions,
+    source: Source,
+    target: Target,
+    as_json: AsJson = False,
+    debug: Debug = False,
+) -> None:
+    """Denoise one mesh: see `meshlab-spectral denoise --help`."""
+    filter_one_file(source, target, options, as_json, debug)

@@ -1,0 +1,97 @@
+"""Spectral Denoise: its options, and the filter on NumPy arrays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from meshlab_spectral.filters.arrays import mesh_arrays
+from meshlab_spectral.filters.calling import call_filter, plain_report
+from meshlab_spectral.filters.option_types import Length, Limits, Options, option
+from meshlab_spectral.filters.options import Boundary
+from meshlab_spectral.plugin.loading import DENOISE_NAME, load
+
+
+@dataclass(frozen=True, kw_only=True)
+class DenoiseOptions(Options):
+    """Options of Spectral Denoise, with the names and defaults they have in MeshLab.
+
+    Raises
+    ------
+    OptionError
+        When a value is invalid; names the option, the value and what is allowed.
+    """
+
+    FILTER = DENOISE_NAME
+    TABLE = "denoise"
+
+    strength: float = option(
+        1.0,
+        "1 removes the noise as measured; more removes finer details, too; less leaves some noise.",
+        Limits(0),
+    )
+    noise_height: Length = option(
+        Length(automatic=True),
+        "Standard deviation of the noise: a length such as 0.02, mean edge lengths such as 0.2e, a "
+        "percentage of the model's diagonal, or auto: as measured.",
+    )
+    keep_creases: bool = option(True, "Do not smooth across edges.")
+    boundary: Boundary = option(
+        "fixed",
+        "Boundary of an open surface, holes included: fixed keeps it exactly in place, free "
+        "denoises it, too.",
+    )
+
+
+def denoise_mesh(
+    vertices: ArrayLike, faces: ArrayLike, **options: Any
+) -> tuple[NDArray[np.float64], dict[str, Any]]:
+    """Remove noise that differs from vertex to vertex, as strongly as its height requires.
+
+    Parameters
+    ----------
+    vertices
+        n x 3 coordinates, finite.
+    faces
+        m x 3 indices of the corners of triangles, from 0 to n - 1; any topology and orientation.
+    **options
+        Fields of `DenoiseOptions`.
+
+    Returns
+    -------
+    V : array
+        n x 3 denoised coordinates; the faces do not change.
+    report : dict
+        Numbers: `noise_height`, the standard deviation of the noise that was removed,
+        `estimated_noise_height` and `mean_edge` (without the noise), `rms_displacement` and others,
+        in the units of the mesh. "warnings" lists what fell short and what to do about it.
+
+    Raises
+    ------
+    ValueError
+        When an array has the wrong shape or type, or an index is out of range.
+    OptionError
+        When an option is unknown or has an invalid value.
+    FilterError
+        When the filter rejects the mesh: no faces, no area, or non-finite coordinates.
+    PluginError
+        When the plugin cannot be loaded.
+
+    Examples
+    --------
+    >>> V, report = denoise_mesh(vertices, faces)
+    >>> report["noise_height"] / report["mean_edge"]
+    """
+    V, F = mesh_arrays(vertices, faces)
+    parameters = DenoiseOptions.from_dict(options)
+    load()
+    import pymeshlab
+
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.add_mesh(pymeshlab.Mesh(V, F))
+    given = parameters.pymeshlab_parameters(mesh_set.current_mesh())
+    report = call_filter(mesh_set, DENOISE_NAME, given)
+    return mesh_set.current_mesh().vertex_matrix().copy(), plain_report(report)
