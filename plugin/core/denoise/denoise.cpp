@@ -88,7 +88,7 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
     Eigen::VectorXd mayMove(X.rows());
     for (Index i = 0; i < X.rows(); ++i) mayMove[i] = isFixed[i] ? 0.0 : 1.0;
     if (plan.rounds > 0)
-        result.volumes = preserveVolumes(surface.X, surface.F, components, mayMove, X);
+        result.volumes = preserveVolumes(surface.X, graph.F, components, mayMove, X);
     if (!X.allFinite()) throw SolverFailure("the denoised coordinates are not finite numbers");
 
     const Vertices displacement = X - surface.X;
