@@ -5,7 +5,7 @@
 #                       package is fetched into build/
 #   WARNINGS_AS_ERRORS  ON: a compiler warning fails the build
 #   BENCH_MESH          the mesh of the C++ benchmark, skipped when there is no such file
-#   BENCH_OPTIONS       of `make bench-basis`, `bench-contract`, `bench-defaults`; --help lists them
+#   BENCH_OPTIONS       of `make bench-basis`, `bench-contract`, `bench-defaults`, `bench-denoise`; --help lists them
 #   FUZZ_OPTIONS        of `make fuzz`; tests/fuzz/fuzz_core.cpp lists them
 #   FUZZ_EXAMPLES       of `make fuzz-python`: how many, about 20 a second
 #   SANITIZE            ON: `make fuzz` with AddressSanitizer and UndefinedBehaviorSanitizer
@@ -37,7 +37,7 @@ PACKAGE_SOURCES := CMakeLists.txt $(shell find plugin python -not -path '*/__pyc
 # Two targets at once would fetch MeshLab's headers twice; ninja uses every core anyway.
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help demo test gui-test screenshots setup build bench bench-basis bench-batch bench-contract bench-defaults bench-ldlt fuzz fuzz-python lint format clean
+.PHONY: help demo test gui-test screenshots setup build bench bench-basis bench-batch bench-contract bench-defaults bench-denoise bench-ldlt fuzz fuzz-python lint format clean
 
 help:  ## list these commands
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 20
@@ -73,6 +73,9 @@ bench: build $(PACKAGE)  ## measure time, memory and artefacts
 
 bench-defaults: $(PACKAGE)  ## the run with every parameter at its default, on real meshes
 	$(BIN)/python tests/benchmarks/bench_defaults.py $(BENCH_OPTIONS)
+
+bench-denoise: $(PACKAGE)  ## denoising against MeshLab's, VTK's and bilateral normals, by ground truth
+	$(BIN)/python tests/benchmarks/bench_denoise.py $(BENCH_OPTIONS)
 
 bench-contract: $(PACKAGE)  ## every filter at three settings on real meshes: outcomes, texts
 	$(BIN)/python tests/benchmarks/bench_contract.py $(BENCH_OPTIONS)

@@ -37,8 +37,8 @@ struct Plan {
 // Chosen on four pairs of noisy and clean meshes, and seen to hold on four others: see
 // tests/benchmarks/README.md. Noise is measured in mean edges.
 constexpr double kNone = 0.02, kMost = 1.0;  // less is no noise, more is filtered no more
-constexpr double kRoundsPerEdge = 20.0, kFewestRounds = 3.0, kMostRounds = 12.0;
-constexpr double kTime = 1.7, kHalfTimeAt = 0.08;  // less noise takes less than one whole round
+constexpr double kRoundsPerEdge = 22.0, kFewestRounds = 3.0, kMostRounds = 12.0;
+constexpr double kTime = 1.5, kHalfTimeAt = 0.07;  // less noise takes less than one whole round
 constexpr double kFewestSweeps = 6.0, kSweepsPerEdge = 15.0;
 constexpr double kEdgeScale = 0.22;
 

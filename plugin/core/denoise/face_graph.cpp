@@ -123,14 +123,16 @@ void normalizeRows(Normals& N) {
     });
 }
 
-Normals averagedNormals(const FaceGraph& graph, const Vertices& N) {
-    Normals sum = N;
-    for (const FaceGraph::Edge& edge : graph.edges) {
-        sum.row(edge.faces[0]) += N.row(edge.faces[1]);
-        sum.row(edge.faces[1]) += N.row(edge.faces[0]);
+Vertices blurredNormals(const FaceGraph& graph, Vertices N, int times) {
+    for (int k = 0; k < times; ++k) {
+        Vertices sum = N;
+        for (const FaceGraph::Edge& edge : graph.edges) {
+            sum.row(edge.faces[0]) += N.row(edge.faces[1]);
+            sum.row(edge.faces[1]) += N.row(edge.faces[0]);
+        }
+        N = std::move(sum);
     }
-    normalizeRows(sum);
-    return sum;
+    return N;
 }
 
 }  // namespace spectral

@@ -39,8 +39,9 @@ Vertices areaNormals(const Vertices& X, const Faces& F);
 /// The same, of length 1.
 Normals faceNormals(const Vertices& X, const Faces& F);
 
-/// Each normal averaged with those of the neighbours of its face, each with its length as weight.
-Normals averagedNormals(const FaceGraph& graph, const Vertices& N);
+/// Adds the normals of the neighbours of its face to each normal, `times` over.
+/// @param N  as from areaNormals: large faces count for more.
+Vertices blurredNormals(const FaceGraph& graph, Vertices N, int times);
 
 /// Scales each row to length 1; zeros stay.
 void normalizeRows(Normals& N);

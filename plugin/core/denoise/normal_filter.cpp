@@ -10,8 +10,9 @@ namespace spectral {
 
 namespace {
 
-/// How often a normal is averaged with its neighbours before the weights are taken from it.
-constexpr int kAverages = 2;
+/// How often the normals are blurred before the weights are taken from them: with less, the noise
+/// makes creases; with more, creases vanish.
+constexpr int kBlurs = 2;
 
 /// Of a face, relative to the mean: bounds the condition of the system.
 constexpr double kSmallestArea = 0.05;
@@ -24,8 +25,8 @@ constexpr double kAccuracy = 1e-5;
 /// @param mass  M.
 SparseMatrix system(const FaceGraph& graph, const Vertices& X, const Vertices& N,
                     const Eigen::VectorXd& mass, const NormalFilterOptions& options) {
-    Normals q = averagedNormals(graph, N);
-    for (int k = 1; k < kAverages; ++k) q = averagedNormals(graph, q);
+    Normals q = blurredNormals(graph, N, kBlurs);
+    normalizeRows(q);
     const auto count = static_cast<Index>(graph.edges.size());
     Eigen::VectorXd length(count), weight(count);
     parallelRows(count, [&](Index begin, Index end) {

@@ -15,7 +15,7 @@ struct NormalFilterOptions {
 ///     N' = (M + t L)^-1 M N, scaled to length 1,
 ///
 /// L the Laplacian of the face graph with the weights |e| / mean |e| exp(-|q_a - q_b|^2 / (2 s^2))
-/// between faces a and b with the common edge e, q the normals averaged with their neighbours; M
+/// between faces a and b with the common edge e, q the normals blurred over the neighbours; M
 /// the roots of the areas over the mean area, as the normal of a small face is the less certain. L
 /// is thus taken from the shape as it is: one weak part of a fractional filter (Kovnatsky et al.
 /// 2012, Eq. 11) whose signal is the field of normals.
