@@ -114,6 +114,26 @@ void setQuality(const std::vector<std::size_t>& vertexIndex, const Eigen::Vector
             static_cast<Scalarm>(values[static_cast<Eigen::Index>(i)]);
 }
 
+void setDetails(const std::vector<std::size_t>& vertexIndex, const std::string& name,
+                const spectral::Vertices& details, MeshModel& mesh) {
+    using Attributes = vcg::tri::Allocator<CMeshO>;
+    Attributes::DeletePerVertexAttribute(mesh.cm, name);
+    auto attribute = Attributes::AddPerVertexAttribute<Point3m>(mesh.cm, name);
+    for (std::size_t i = 0; i < mesh.cm.vert.size(); ++i) attribute[i] = Point3m(0, 0, 0);
+    Eigen::VectorXd outward = Eigen::VectorXd::Zero(details.rows());
+    for (Eigen::Index i = 0; i < details.rows(); ++i) {
+        const Eigen::RowVector3d detail = details.row(i);
+        attribute[vertexIndex[i]] =
+            Point3m(static_cast<Scalarm>(detail[0]), static_cast<Scalarm>(detail[1]),
+                    static_cast<Scalarm>(detail[2]));
+        const Point3m& n = mesh.cm.vert[vertexIndex[i]].cN();
+        const Eigen::RowVector3d normal(n[0], n[1], n[2]);
+        // MeshLab's normals need not have unit length, and are zero where there are no faces.
+        if (normal.norm() > 0.0) outward[i] = detail.dot(normal.normalized());
+    }
+    setQuality(vertexIndex, outward, mesh);
+}
+
 void setAttributes(const std::vector<std::size_t>& vertexIndex, const std::string& name,
                    const Eigen::MatrixXd& values, MeshModel& mesh) {
     using Attributes = vcg::tri::Allocator<CMeshO>;

@@ -44,6 +44,11 @@ void setPositions(const std::vector<std::size_t>& vertexIndex, const spectral::V
 void setQuality(const std::vector<std::size_t>& vertexIndex, const Eigen::VectorXd& values,
                 MeshModel& mesh);
 
+/// Stores the rows of `details` as the vector vertex attribute `name`, zero at deleted vertices,
+/// and their components along the vertex normals as the vertex quality.
+void setDetails(const std::vector<std::size_t>& vertexIndex, const std::string& name,
+                const spectral::Vertices& details, MeshModel& mesh);
+
 /// Stores the columns of `values` as scalar vertex attributes `name`0, `name`1, ..., replacing all
 /// of such names; 0 at deleted vertices.
 void setAttributes(const std::vector<std::size_t>& vertexIndex, const std::string& name,

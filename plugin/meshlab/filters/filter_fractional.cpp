@@ -9,19 +9,28 @@
 
 namespace {
 
+/// Name of the vertex attribute with the details.
+const char* const kDetails = "spectral_details";
+
 FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
                     const spectral::Progress& progress) {
     const MeshMatrices input = toMatrices(mesh.cm);
     const spectral::FilterOptions options = fractionalFilterOptions(parameters, mesh, input);
+    const bool detailsOnly = areDetailsWanted(parameters);
     const spectral::FilterResult result =
         spectral::withSteadyProgress(progress, [&](const spectral::Progress& steady) {
             return spectral::fractionalFilter(input.V, input.F, options, steady);
         });
     reportWriting(input, mesh.cm, progress);
-    setPositions(input.vertexIndex, result.V, mesh);
-    return {reportDictionary(result),
-            reportText(options, result, spectral::boundingBoxDiagonal(input.V)),
-            warningsOf(options, result)};
+    std::string text = reportText(options, result, spectral::boundingBoxDiagonal(input.V));
+    if (detailsOnly) {
+        setDetails(input.vertexIndex, kDetails, input.V - result.V, mesh);
+        text += "\n  no vertex has moved: the details are the vertex quality, and the attribute ";
+        text += kDetails;
+    } else {
+        setPositions(input.vertexIndex, result.V, mesh);
+    }
+    return {reportDictionary(result), text, warningsOf(options, result)};
 }
 
 }  // namespace
@@ -32,7 +41,8 @@ MeshFilter fractionalMeshFilter() {
     filter.pythonName = "apply_coord_spectral_filter_fractional";
     filter.help = fractionalFilterHelp();
     filter.category = FilterPlugin::Smoothing;
-    filter.changes = MeshModel::MM_VERTCOORD | MeshModel::MM_VERTNORMAL | MeshModel::MM_FACENORMAL;
+    filter.changes = MeshModel::MM_VERTCOORD | MeshModel::MM_VERTNORMAL | MeshModel::MM_FACENORMAL |
+                     MeshModel::MM_VERTQUALITY;
     filter.parameters = fractionalFilterParameters;
     filter.apply = apply;
     return filter;

@@ -16,6 +16,7 @@ constexpr double kDefaultTolerance = 0.0005;
 // In the order of the core's enumerations.
 QStringList basisUpdates() { return {"full", "conformal", "none"}; }
 QStringList weights() { return {"none", "vertex quality"}; }
+QStringList results() { return {"filtered shape", "details"}; }
 QStringList spectra() { return {"full", "truncated"}; }
 
 }  // namespace
@@ -90,7 +91,17 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "<b>vertex quality</b>: how much of the filter each vertex gets, from 0 (nothing) to 1 "
         "(all), to paint where to filter. <b>none</b>: all of it.",
         true));
+    list.addParam(RichEnum(
+        "result", 0, results(), "Result",
+        "<b>details</b>: no vertex moves. What the filter would take away, input minus result, is "
+        "stored as the vertex attribute spectral_details, and its length along the normal, "
+        "positive outwards, replaces the vertex quality (after it has served as the weight).",
+        true));
     return list;
+}
+
+bool areDetailsWanted(const RichParameterList& parameters) {
+    return choice(parameters, "result", results()) == 1;
 }
 
 FilterOptions fractionalFilterOptions(const RichParameterList& parameters, const MeshModel& mesh,

@@ -9,6 +9,10 @@
 /// The parameters of the dialog, in the order of decisions: what, which size, how strong, how.
 RichParameterList fractionalFilterParameters(const MeshModel& mesh);
 
+/// Whether only the details are wanted that the filter takes away, `result` = `details`.
+/// @throws spectral::InvalidOption  when a value is none that the dialog could have.
+bool areDetailsWanted(const RichParameterList& parameters);
+
 /// The values of the dialog, or of a script, as the core's options.
 /// @param matrices  of the mesh.
 /// @throws spectral::InvalidOption  when a value is none that the dialog could have.

@@ -73,7 +73,7 @@ std::string headline(const spectral::FilterOptions& options, const spectral::Fil
     std::ostringstream text;
     text << std::setprecision(4) << "Spectral Filter: " << nameOf(options.transferFunction.type)
          << " at feature size " << result.featureSize << " (" << percent * result.featureSize
-         << " % of the diagonal); the surface moved by " << result.rmsDisplacement
+         << " % of the diagonal); it moves the surface by " << result.rmsDisplacement
          << " (root mean square), by " << result.maxDisplacement << " at most; ";
     text << std::setprecision(2);
     if (options.steps > 0)

@@ -42,6 +42,7 @@ def test_every_option_reaches_the_filter(cow: Path, tmp_path: Path) -> None:
         "crease_angle": 120.0,
         "preserve_volume": True,
         "weight": "none",
+        "result": "filtered shape",
     }
     assert options.keys() == FilterOptions().as_dict().keys()
     arguments: list[object] = []
@@ -125,6 +126,23 @@ def test_a_preset_is_its_options(cow: Path, tmp_path: Path) -> None:
         command("filter", cow, one, "--preset", name)
         command("filter", cow, other, *spelled)
         assert one.read_bytes() == other.read_bytes(), name
+
+
+def test_details_are_saved_with_the_shape_they_were_taken_from(cow: Path, tmp_path: Path) -> None:
+    target = tmp_path / "details.ply"
+    command("filter", cow, target, "--preset", "extract-details", "--feature-size", "8%")
+    assert b" spectral_details\n" in target.read_bytes().partition(b"end_header")[0]
+    saved, mesh_set = pymeshlab.MeshSet(), pymeshlab.MeshSet()
+    saved.load_new_mesh(str(target))
+    mesh_set.load_new_mesh(str(cow))
+    mesh, before = saved.current_mesh(), mesh_set.current_mesh().vertex_matrix().copy()
+    np.testing.assert_array_equal(mesh.vertex_matrix(), before)
+    mesh_set.apply_filter(FILTER, result="details", feature_size=percent(8))
+    np.testing.assert_array_equal(
+        mesh.vertex_scalar_array(), mesh_set.current_mesh().vertex_scalar_array()
+    )
+    done = command("filter", cow, tmp_path / "details.obj", "--result", "details")
+    assert_fails(done, 2, "details.obj", ".ply")
 
 
 def test_options_given_besides_a_preset_replace_its_own(cow: Path, tmp_path: Path) -> None:

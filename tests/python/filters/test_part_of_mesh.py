@@ -12,6 +12,8 @@ import pytest
 from helpers import (
     FILTER,
     assert_same,
+    custom_attributes,
+    decorated,
     diagonal,
     filter_arrays,
     mesh_set_of,
@@ -19,6 +21,7 @@ from helpers import (
     refusal,
     snapshot,
 )
+from meshlab_spectral import filter_mesh
 from numpy.typing import NDArray
 
 Decimated = Callable[..., tuple[NDArray[Any], NDArray[Any]]]
@@ -136,6 +139,62 @@ def test_the_volume_of_a_closed_mesh_is_preserved(
     _, report = filter_arrays(*small, preserve_volume=True, **SIZE)
     assert report["preserved_volumes"] == report["components"] == 1
     assert report["volume_after"] == pytest.approx(report["volume_before"], rel=1e-9)
+
+
+def test_details_are_what_the_filter_takes_away_and_the_shape_stays(
+    small: tuple[NDArray[Any], NDArray[Any]],
+) -> None:
+    V, F = small
+    filtered, report = filter_arrays(V, F, **SIZE)
+    mesh_set = decorated(V, F)
+    mesh = mesh_set.current_mesh()
+    before, custom = snapshot(mesh), custom_attributes(mesh)
+    for _ in range(2):  # the second run replaces the details of the first
+        again = mesh_set.apply_filter(FILTER, result="details", selected=False, **SIZE)
+    assert again["max_displacement"] == report["max_displacement"]
+    after = snapshot(mesh)
+    details = mesh.vertex_custom_point_attribute_matrix("spectral_details")
+    np.testing.assert_array_equal(details, V - filtered)
+    N = before["vertex_normal_matrix"]
+    N = N / np.linalg.norm(N, axis=1, keepdims=True)
+    outward = after.pop("vertex_scalar_array")
+    np.testing.assert_allclose(outward, np.sum(details * N, axis=1), atol=1e-15 * diagonal(V))
+    assert outward.min() < 0 < outward.max()
+    del before["vertex_scalar_array"]
+    assert_same(before, after)
+    assert_same(custom, custom_attributes(mesh))
+    taken, _ = filter_mesh(V, F, result="details", feature_size="6%", steps=2)
+    np.testing.assert_array_equal(taken, details)
+
+
+def test_bumps_are_positive_details_whichever_part_and_weight(
+    small: tuple[NDArray[Any], NDArray[Any]],
+) -> None:
+    V, F = small
+    whole, _ = filter_mesh(V, F, result="details", feature_size="6%", steps=2)
+    mesh_set = weighted(small, 0.25)
+    options = {"weight": "vertex quality", "result": "details"}
+    mesh_set.apply_filter(FILTER, **options, **SIZE)
+    mesh = mesh_set.current_mesh()
+    found = mesh.vertex_custom_point_attribute_matrix("spectral_details")
+    np.testing.assert_allclose(found, whole / 4, atol=1e-14 * diagonal(V))
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.create_sphere(radius=1, subdiv=3)  # a low-pass shrinks it
+    mesh_set.apply_filter(FILTER, result="details", feature_size=percent(60), steps=1)
+    assert mesh_set.current_mesh().vertex_scalar_array().min() > 0
+
+
+def test_there_are_no_details_where_nothing_moves(samples: Path) -> None:
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.load_new_mesh(str(samples / "bone.ply"))  # with vertices without faces
+    mesh = mesh_set.current_mesh()
+    lonely = np.setdiff1d(np.arange(mesh.vertex_number()), mesh.face_matrix())
+    mesh_set.apply_filter(FILTER, result="details", steps=1)
+    assert len(lonely) > 100
+    assert not mesh.vertex_scalar_array()[lonely].any()
+    mesh_set.apply_filter(FILTER, result="details", steps=1, crease_angle=1e-9)
+    details = mesh.vertex_custom_point_attribute_matrix("spectral_details")
+    assert np.abs(details).max() < 1e-2 * diagonal(mesh.vertex_matrix())
 
 
 def test_edges_of_a_box_stay(decimated: Decimated) -> None:

@@ -69,6 +69,7 @@ PARAMETERS: dict[str, dict[str, st.SearchStrategy[Any]]] = {
         "crease_angle": _of((0.0, 30.0, 90.0, 180.0, 1e-30), (-1.0, 180.1, NAN, INFINITY)),
         "preserve_volume": st.booleans(),
         "weight": _choice(2),
+        "result": _choice(2),
     },
     "apply_scalar_spectral_filter_per_vertex": _SIGNALS,
     "apply_color_spectral_filter_per_vertex": _SIGNALS,

@@ -17,6 +17,7 @@ from meshlab_spectral.files.dropped import check_nothing_dropped
 from meshlab_spectral.files.script import apply_script
 from meshlab_spectral.files.whole_files import USUAL_FORMATS, resolved, writing_whole
 from meshlab_spectral.filters.calling import call_filter, plain_report, reason_of
+from meshlab_spectral.filters.fractional import DETAILS
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.plugin.loading import load
 
@@ -81,7 +82,11 @@ def filter_to_scratch(
         parameters = options.pymeshlab_parameters(mesh_set.current_mesh())
         return plain_report(call_filter(mesh_set, options.FILTER, parameters))
 
-    return _process(source, scratch, apply, on_stage, verbose)
+    if options.result != "details":
+        return _process(source, scratch, apply, on_stage, verbose)
+    if scratch.suffix.lower() != ".ply":
+        raise FormatError(f"{scratch.name} cannot hold details: choose .ply")
+    return _process(source, scratch, apply, on_stage, verbose, {f"__ca_vp__{DETAILS}": True})
 
 
 def script_to_scratch(
@@ -103,6 +108,7 @@ def _process(
     apply: Callable[[Any], dict[str, Any]],
     on_stage: StageCallback,
     verbose: bool,
+    settings: dict[str, bool] | None = None,
 ) -> dict[str, Any]:
     import pymeshlab
 
@@ -116,7 +122,7 @@ def _process(
     on_stage("filtering")
     report = apply(mesh_set)
     on_stage("writing")
-    _write(mesh_set, scratch, source)
+    _write(mesh_set, scratch, source, settings or {})
     return report
 
 
@@ -215,10 +221,13 @@ def _read(mesh_set: Any, source: Path) -> None:
     check_nothing_dropped(source, mesh.vertex_number(), mesh.face_number())
 
 
-def _write(mesh_set: Any, scratch: Path, source: Path) -> None:
+def _write(mesh_set: Any, scratch: Path, source: Path, settings: dict[str, bool]) -> None:
     import pymeshlab
 
-    settings = {"save_textures": _textures_to_be_saved(mesh_set, scratch, source)}
+    settings = {
+        **settings,
+        "save_textures": _textures_to_be_saved(mesh_set, scratch, source),
+    }
     if scratch.suffix.lower() in _POLYGON_FORMATS and _has_non_manifold_edges(mesh_set):
         # MeshLab would trace its polygons without end and use up all memory.
         settings["save_polygonal"] = False

@@ -12,6 +12,9 @@ from meshlab_spectral.filters.calling import call_filter, plain_report
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.plugin.loading import FILTER_NAME, load
 
+# The vertex attribute in which the filter stores the details.
+DETAILS = "spectral_details"
+
 
 def filter_mesh(
     vertices: ArrayLike, faces: ArrayLike, **options: Any
@@ -31,7 +34,8 @@ def filter_mesh(
     Returns
     -------
     V : array
-        n x 3 filtered coordinates; the faces do not change.
+        n x 3 filtered coordinates; the faces do not change. With result="details", what the
+        filter takes away instead: the coordinates minus the filtered ones.
     report : dict
         Numbers, and lists for vectors; lengths in the units of the mesh. "warnings" lists what fell
         short of the options and what to do about it.
@@ -61,4 +65,7 @@ def filter_mesh(
     mesh_set.add_mesh(pymeshlab.Mesh(V, F))
     given = parameters.pymeshlab_parameters(mesh_set.current_mesh())
     report = call_filter(mesh_set, FILTER_NAME, given)
-    return mesh_set.current_mesh().vertex_matrix().copy(), plain_report(report)
+    mesh = mesh_set.current_mesh()
+    if parameters.result == "details":
+        return mesh.vertex_custom_point_attribute_matrix(DETAILS).copy(), plain_report(report)
+    return mesh.vertex_matrix().copy(), plain_report(report)

@@ -21,6 +21,7 @@ Spectrum = Literal["full", "truncated"]
 LaplacianKind = Literal["intrinsic delaunay", "cotangent", "uniform"]
 Boundary = Literal["free", "fixed"]
 Weight = Literal["none", "vertex quality"]
+Result = Literal["filtered shape", "details"]
 
 
 def checked_basis_size(value: Any) -> int:
@@ -147,4 +148,10 @@ class FilterOptions(Options):
     weight: Weight = option(
         "none",
         "'vertex quality': how much of the filter each vertex gets, from 0 (nothing) to 1 (all).",
+    )
+    result: Result = option(
+        "filtered shape",
+        "details leaves the shape as it is, and stores what the filter takes away: input minus "
+        "result as the vertex attribute spectral_details, and along the normal, positive outwards, "
+        "as vertex quality. Files: .ply only.",
     )

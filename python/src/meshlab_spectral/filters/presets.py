@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Literal, get_args
 
-Preset = Literal["denoise", "remove-details", "sharpen", "enhance", "caricature"]
+Preset = Literal["denoise", "remove-details", "sharpen", "enhance", "caricature", "extract-details"]
 
 # Values as on the command line. Sizes are left to the user where the wish contains one.
 PRESETS: dict[Preset, dict[str, str]] = {
@@ -30,5 +30,6 @@ PRESETS: dict[Preset, dict[str, str]] = {
         "stop_gain": "1",
         "pass_gain": "2",
     },
+    "extract-details": {"filter_type": "low-pass", "feature_size": "5%", "result": "details"},
 }
 assert get_args(Preset) == tuple(PRESETS)
