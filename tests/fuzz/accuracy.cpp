@@ -114,6 +114,9 @@ Accuracy accuracyOf(const testing::Mesh& mesh, const FilterOptions& options,
     Accuracy accuracy;
     const bool isOneStep = options.steps == 1 || options.basisUpdate == BasisUpdate::None;
     if (!isOneStep || !result.accuracyReached || mesh.V.rows() > kMostVertices) return accuracy;
+    if (!options.part.selected.empty() || options.part.weight.size() > 0 ||
+        options.creaseAngle > 0.0 || options.preserveVolume)
+        return accuracy;  // the reference is that of a whole mesh
     DenseReference reference(mesh.V, mesh.F, options.laplacian, options.boundary);
     if (reference.size() == 0) return accuracy;
 

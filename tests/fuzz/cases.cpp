@@ -7,6 +7,7 @@
 
 #include "core/mesh/measures.h"
 #include "core/support/threads.h"
+#include "core/transfer/custom_gain.h"
 #include "support/evaluation.h"
 
 namespace spectral::fuzz {
@@ -87,6 +88,34 @@ FilterOptions filterOptions(Choices& choices, double diagonal, Index vertices) {
     return options;
 }
 
+double sizeOf(Choices& choices) { return choices.logUniform(1e-3, 200.0); }
+
+/// A transfer function as a user may write it; some are negative or infinite somewhere.
+std::string gainText(Choices& choices) {
+    std::ostringstream text;
+    const double a = choices.uniform(0.0, 3.0), b = choices.logUniform(1e-3, 30.0);
+    switch (choices.below(8)) {
+        case 0: text << "1 / (1 + " << b << " * w^" << choices.between(1, 8) << ")"; break;
+        case 1: text << a << " + exp(-" << b << " * l / f)"; break;
+        case 2: text << "w < " << b << " ? " << a << " : " << choices.pick({0.0, 0.5, 1.0}); break;
+        case 3: text << "1 + " << a / 3.0 << " * sin(" << b << " * log2(w + 1e-9))"; break;
+        case 4: text << a << " - log(w / " << b << ")"; break;
+        default:
+            for (int i = choices.between(1, 6); i > 0; --i)
+                text << sizeOf(choices) << choices.pick({"%", "%", "e"}) << ":"
+                     << choices.pick({0.0, 0.01, 0.5, 1.0, 1.0, 2.0, 4.0}) << (i > 1 ? "," : "");
+    }
+    return text.str();
+}
+
+std::vector<bool> selectionOf(Choices& choices, Index vertices) {
+    const int n = static_cast<int>(std::min<Index>(vertices, 65536));
+    std::vector<bool> selected(static_cast<std::size_t>(vertices), choices.oneIn(8));
+    const int from = n > 0 ? choices.below(n) : 0, until = n > 0 ? choices.between(from, n) : 0;
+    for (int i = from; i < until; ++i) selected[i] = true;
+    return selected;
+}
+
 /// `text` of every number, in order.
 class Numbers {
   public:
@@ -110,7 +139,7 @@ void append(const FilterResult& r, Numbers& to) {
        << r.components << r.unreferencedVertices << r.fixedVertices << r.factorizations << r.solves
        << r.accuracy << r.errorEstimate << r.accuracyReached << r.stepError << r.toleranceReached
        << r.singularPart << r.cutoffReached << r.eigenvalues << r.residuals << r.inertiaCount
-       << r.computedBases;
+       << r.computedBases << r.volumes.preserved << r.volumes.open << r.volumes.lost;
     for (const double alpha : r.stepSizes) to << alpha;
 }
 
@@ -149,6 +178,13 @@ struct Describe {
         if (o.evaluation.spectrum == Spectrum::Truncated)
             text << ", truncated to " << o.evaluation.truncation.basisSize
                  << (o.evaluation.truncation.reinjectResidual ? "" : " without residual");
+        if (!o.part.selected.empty())
+            text << ", " << std::count(o.part.selected.begin(), o.part.selected.end(), true)
+                 << " selected";
+        if (o.part.weight.size() > 0)
+            text << ", weights " << o.part.weight.minCoeff() << " to " << o.part.weight.maxCoeff();
+        if (o.creaseAngle != 0.0) text << ", creases " << o.creaseAngle;
+        if (o.preserveVolume) text << ", volume preserved";
     }
     void operator()(const ArtefactOptions& o) const {
         text << "artefacts, size " << o.featureSize / diagonal << ", " << nameOf(o.laplacian);
@@ -225,6 +261,42 @@ Case makeCase(Choices& choices, Sizes sizes) {
     return made;
 }
 
+void addPart(Choices& choices, Case& to) {
+    auto* const options = std::get_if<FilterOptions>(&to.options);
+    if (options == nullptr) return;
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    const auto& [V, F] = to.mesh.mesh;
+    to.gain = choices.oneIn(2) ? gainText(choices) : "";
+    const bool isMesh = V.rows() > 0 && V.allFinite() && F.rows() > 0 && F.minCoeff() >= 0 &&
+                        F.maxCoeff() < V.rows();
+    if (!to.gain.empty() && isMesh && options->featureSize > 0.0) try {
+            const CustomGain gain = parseGain(to.gain, cutoffFrequency(options->featureSize),
+                                              {boundingBoxDiagonal(V), meanEdgeLength(V, F)});
+            options->transferFunction.type = FilterType::Custom;
+            options->transferFunction.custom = gain.gain;
+            options->featureSize = 2.0 * kPi / gain.cutoff;
+        } catch (const Error&) {  // two points at one size, or a mesh without one
+        }
+    if (choices.oneIn(3)) options->part.selected = selectionOf(choices, V.rows());
+    if (choices.oneIn(3)) {
+        options->part.weight = Eigen::VectorXd::Constant(V.rows(), choices.uniform(0.0, 1.0));
+        for (double& w : options->part.weight)
+            if (choices.oneIn(3)) w = choices.pick({0.0, 1.0, 0.5, 1e-300});
+        if (V.rows() > 0 && choices.oneIn(10))
+            options->part.weight[V.rows() / 2] = choices.pick({kNan, -0.1, 1.0001});
+    }
+    if (choices.oneIn(3))
+        options->creaseAngle = choices.pick({10.0, 30.0, 40.0, 60.0, 90.0, 179.0, 180.0, 1e-30});
+    if (choices.oneIn(40)) options->creaseAngle = choices.pick({-1.0, 180.1, kNan});
+    options->preserveVolume = choices.oneIn(3);
+    const std::vector<bool>& selected = options->part.selected;
+    const Eigen::VectorXd& weight = options->part.weight;
+    to.mustThrow |=
+        !(options->creaseAngle >= 0.0 && options->creaseAngle <= 180.0) ||
+        !((weight.array() >= 0.0) && (weight.array() <= 1.0)).all() ||
+        (!selected.empty() && std::find(selected.begin(), selected.end(), true) == selected.end());
+}
+
 std::string describe(const Case& of) {
     const testing::Mesh& mesh = of.mesh.mesh;
     std::ostringstream text;
@@ -235,6 +307,7 @@ std::string describe(const Case& of) {
         text << of.mesh.name << " (" << mesh.V.rows() << " vertices, " << mesh.F.rows()
              << " triangles); ";
     std::visit(Describe{text, diagonal}, of.options);
+    if (!of.gain.empty()) text << ", gain " << of.gain;
     if (of.mustThrow) text << ", an option out of range";
     if (of.cancelAt > 0) text << ", cancelled at report " << of.cancelAt;
     return text.str();

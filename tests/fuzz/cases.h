@@ -32,9 +32,14 @@ struct Case {
     bool mustThrow = false;  ///< An option is out of its range.
     bool repeats = false;    ///< Is to be run again, with one thread and with two.
     int cancelAt = 0;        ///< The report at which the caller cancels; 0: never.
+    std::string gain;        ///< The text of a custom transfer function.
 };
 
 Case makeCase(Choices& choices, Sizes sizes = Sizes::MostlySmall);
+
+/// Gives a filter what seeds had no bytes for at first: custom gains, a part of the mesh, creases,
+/// volumes. The bytes are those of another stream; other entry points stay as they are.
+void addPart(Choices& choices, Case& to);
 
 /// The call with all its options, in one line.
 std::string describe(const Case& of);

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <functional>
 #include <sstream>
 
 #include "core/analysis/bands.h"
+#include "core/mesh/creases.h"
 #include "core/mesh/measures.h"
 #include "fuzz/accuracy.h"
 
@@ -75,8 +77,19 @@ void checkFilter(const Case& of, const FilterOptions& options, const FilterResul
     std::vector<bool> isFixed(surface.vertex.size(), false);
     if (options.boundary == Boundary::Fixed)
         isFixed = boundaryVertices(surface.F, surface.X.rows());
+    if (options.creaseAngle > 0.0) {
+        const auto onCrease = creaseVertices(surface.X, surface.F, options.creaseAngle);
+        std::transform(isFixed.begin(), isFixed.end(), onCrease.begin(), isFixed.begin(),
+                       std::logical_or<>());
+    }
     std::vector<bool> mustStay(static_cast<std::size_t>(V.rows()), true);
-    for (std::size_t i = 0; i < isFixed.size(); ++i) mustStay[surface.vertex[i]] = isFixed[i];
+    const auto& [selected, weight] = options.part;
+    std::vector<bool> isReached(static_cast<std::size_t>(components.count), selected.empty());
+    for (std::size_t i = 0; i < isFixed.size() && !selected.empty(); ++i)
+        if (selected[surface.vertex[i]]) isReached[components.label[i]] = true;
+    for (std::size_t i = 0; i < isFixed.size(); ++i)
+        mustStay[surface.vertex[i]] = isFixed[i] || !isReached[components.label[i]] ||
+                                      (weight.size() > 0 && weight[surface.vertex[i]] == 0.0);
     for (Index i = 0; i < V.rows(); ++i) {
         const Eigen::RowVector3d before = V.row(i), after = result.V.row(i);
         if (!mustStay[i] || isSame(before, after)) continue;
@@ -98,7 +111,15 @@ void checkFilter(const Case& of, const FilterOptions& options, const FilterResul
         result.unreferencedVertices != V.rows() - surface.X.rows())
         failures.push_back(failure("counts", "of fixed or unreferenced vertices"));
 
+    const auto& [preserved, open, lost] = result.volumes;
+    if (preserved + open + lost != (options.preserveVolume ? components.count : 0))
+        failures.push_back(failure("volumes", preserved, ", ", open, ", ", lost));
     const double roundOff = 1e-15 * V.cwiseAbs().maxCoeff();
+    const double before = result.volumeBefore;
+    if (preserved == 1 && components.count == 1 &&
+        !(std::abs(result.volumeAfter - before) <=
+          1e-9 * std::abs(before) + 4.0 * roundOff * (result.areaBefore + result.areaAfter)))
+        failures.push_back(failure("volumes", before, " becomes ", result.volumeAfter));
     const double moved = (result.V - V).rowwise().norm().maxCoeff();
     if (std::abs(moved - result.maxDisplacement) > 1e-9 * moved + 4.0 * roundOff)
         failures.push_back(failure("displacement", moved, " instead of ", result.maxDisplacement));

@@ -6,8 +6,8 @@
 //        fuzz_core --seed S    one seed, in this process, with everything that came of it
 //
 // Cases have seeds S, S + 64, ...: nearer ones share bytes. Seeds below 1e12 make meshes of any
-// size, larger ones mostly small meshes, of which there are more in an hour. --limit is for one
-// case;
+// size, larger ones mostly small meshes, of which there are more in an hour; those from 1e15 on
+// also give filters custom gains, parts of the mesh, creases and volumes. --limit is for one case;
 // --errors prints the errors that are allowed, too; --compare no leaves out the dense solver, for
 // sanitizers.
 //
@@ -35,6 +35,10 @@ using namespace spectral::fuzz;
 
 /// Seeds from here on make mostly small meshes.
 constexpr std::uint64_t kFirstOfSmall = 1000000000000;
+
+/// Seeds from here on call `addPart`, with a stream of its own: the others keep their meaning.
+constexpr std::uint64_t kFirstOfParts = 1000000000000000;
+constexpr std::uint64_t kStreamOfParts = 1ULL << 62;
 
 struct Arguments {
     std::uint64_t cases = 1000, firstSeed = kFirstOfSmall;
@@ -84,7 +88,13 @@ Arguments argumentsOf(int count, char** values) {
 Case caseOf(std::uint64_t seed) {
     const std::vector<std::uint8_t> bytes = bytesOf(seed);
     Choices choices(bytes.data(), bytes.size());
-    return makeCase(choices, seed < kFirstOfSmall ? Sizes::Any : Sizes::MostlySmall);
+    Case made = makeCase(choices, seed < kFirstOfSmall ? Sizes::Any : Sizes::MostlySmall);
+    if (seed >= kFirstOfParts) {
+        const std::vector<std::uint8_t> more = bytesOf(seed + kStreamOfParts);
+        Choices parts(more.data(), more.size());
+        addPart(parts, made);
+    }
+    return made;
 }
 
 /// What is counted, in memory that all processes share.

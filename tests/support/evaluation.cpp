@@ -51,7 +51,7 @@ std::vector<TransferFunctionOptions> smoothTransferFunctions() {
 }
 
 std::string describe(const TransferFunctionOptions& options) {
-    const char* types[] = {"low-pass", "high-pass", "band-pass", "band-stop"};
+    const char* types[] = {"low-pass", "high-pass", "band-pass", "band-stop", "custom"};
     const char* responses[] = {"gaussian", "butterworth", "ideal"};
     std::ostringstream text;
     text << types[static_cast<int>(options.type)] << " "
