@@ -15,7 +15,7 @@ import pymeshlab
 import pytest
 from desktop import Desktop, save_picture
 from filter_dialog import FilterDialog
-from fractional import MENU
+from fractional import HEAD, MENU, WEIGHT
 from meshlab import MeshLab
 
 ROOT_VARIABLE = "MESHLAB_SPECTRAL_GUI_ROOT"
@@ -98,6 +98,24 @@ def meshlab(install: Callable[[], None], start: Callable[[Path], MeshLab], bunny
     """A MeshLab in which the plugin was installed, with the bunny."""
     install()
     return start(bunny)
+
+
+@pytest.fixture
+def with_selection(
+    install: Callable[[], None], start: Callable[[Path], MeshLab], bunny: Path
+) -> MeshLab:
+    """A MeshLab with the bunny, weights as its quality, and the head selected by a filter."""
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.load_new_mesh(str(bunny))
+    mesh_set.compute_scalar_by_function_per_vertex(q=WEIGHT)
+    mesh_set.save_current_mesh(str(bunny), save_vertex_color=False, save_vertex_normal=False)
+    install()
+    meshlab = start(bunny)
+    condition = meshlab.open_filter("Selection", "Conditional Face Selection")
+    condition.set_value(condition.rows()[0], HEAD)
+    condition.apply()
+    condition.close()
+    return meshlab
 
 
 @pytest.fixture

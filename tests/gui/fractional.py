@@ -16,6 +16,10 @@ MENU = ("Smoothing, Fairing and Deformation", "Spectral Filter (Fractional)")
 FILTER = "apply_coord_spectral_filter_fractional"
 PARAMETERS = [option.name for option in fields(FilterOptions)]
 
+# Of the bunny: the condition for the faces of its head, and qualities from 0 to 1.
+HEAD = "y0 > 0.33"
+WEIGHT = "0.5 + 0.5 * sin(40 * z)"
+
 # Half a unit in the last place of a float near 1, the bunny's size, with room for rounding the
 # filter's own parameters, which MeshLab holds as floats, too.
 FLOAT_PRECISION = 4 * 2.0**-24

@@ -54,6 +54,15 @@ def test_the_dialog(meshlab: MeshLab, desktop: Desktop) -> None:
     save_picture(desktop.picture(), SCREENSHOTS / "meshlab_dialog.png")
 
 
+def test_the_dialog_with_a_selection(with_selection: MeshLab, desktop: Desktop) -> None:
+    dialog = with_selection.open_filter(SMOOTHING, FILTER)
+    dialog.move(1020, 60)
+    dialog.set_value(dialog.rows()[1], "10")  # the feature size
+    dialog.preview(True)
+    desktop.settled_picture(middle_of(with_selection))
+    save_picture(desktop.picture(), SCREENSHOTS / "meshlab_selection.png")
+
+
 def test_the_dragon_before_and_after(
     install: Callable[[], None], start: Callable[[Path], MeshLab], home: Path, desktop: Desktop
 ) -> None:

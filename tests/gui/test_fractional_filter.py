@@ -13,6 +13,7 @@ from desktop import Desktop, Picture
 from filter_dialog import FilterDialog
 from fractional import (
     FILTER,
+    HEAD,
     MENU,
     PARAMETERS,
     assert_same_in_floats,
@@ -50,6 +51,7 @@ OTHER_VALUES = {
     "crease_angle": "150",
     "preserve_volume": "false",
     "weight": "none",
+    "result": "filtered shape",
 }
 
 
@@ -171,6 +173,57 @@ def test_scripts_and_the_dialog_take_turns(
             sizes.append(default_feature_size(ms))
             apply(sizes[-1])
     assert_same_in_floats(saved_vertices(meshlab), vertices(ms))
+
+
+def test_a_selection_of_meshlabs_own_is_filtered_with_all_that_acts_on_a_part(
+    with_selection: MeshLab, bunny: Path
+) -> None:
+    dialog = with_selection.open_filter(*MENU)
+    rows = dict(zip(PARAMETERS, dialog.rows(), strict=True))
+    assert rows["selected"].showing
+    assert rows["selected"].editors[-1].checked
+    dialog.show_advanced()
+    # Weights come from the quality, which a preview of the details replaces for a while.
+    chosen = {
+        "filter_type": "custom",
+        "transfer_function": "20%:1, 8%:0.2",
+        "crease_angle": "60",
+        "preserve_volume": "true",
+        "weight": "vertex quality",
+        "result": "details",
+    }
+    for name, value in chosen.items():
+        dialog.set_value(rows[name], value)
+    dialog.preview(True)
+    dialog.preview(False)
+    dialog.set_value(rows["result"], "filtered shape")
+    log = dialog.apply()
+    dialog.close()
+    assert "1 with the volume preserved" in log
+    saved = with_selection.home / "part.ply"
+    with_selection.save_mesh(saved)
+
+    ms, before = load(bunny), vertices(load(bunny))
+    ms.compute_selection_by_condition_per_face(condselect=HEAD)
+    faces = ms.current_mesh().face_selection_array()
+    ms.apply_filter(
+        FILTER,
+        filter_type="custom",
+        transfer_function="20%:1, 8%:0.2",
+        crease_angle=60.0,
+        preserve_volume=True,
+        weight="vertex quality",
+    )
+    in_meshlab, was = load(saved), load(bunny)
+    mesh = in_meshlab.current_mesh()
+    after = mesh.vertex_matrix()
+    assert np.abs(after - vertices(ms)).max() <= 1e-6 * diagonal(before)
+    weights = was.current_mesh().vertex_scalar_array().astype(np.float32)
+    np.testing.assert_array_equal(mesh.vertex_scalar_array().astype(np.float32), weights)
+    moved = np.any(after != before, axis=1)
+    head = np.unique(mesh.face_matrix()[faces])
+    assert 0.02 < len(head) / len(before) < np.mean(moved) < 0.5
+    assert np.mean(moved[head]) > 0.9
 
 
 def test_apply_logs_the_report_and_the_saved_mesh_is_that_of_pymeshlab(
