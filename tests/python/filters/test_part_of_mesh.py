@@ -64,6 +64,44 @@ def test_a_selection_is_filtered_by_default_and_all_beyond_stays_to_the_bit(
     assert np.array_equal(faces, mesh_set.current_mesh().face_selection_array())
 
 
+def bends(V: NDArray[Any], F: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Edges with two faces, as pairs of vertices, and the angles of these faces' normals."""
+    sides = np.sort(F[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    order = np.lexsort(sides.T)
+    first = np.flatnonzero(np.all(sides[order[1:]] == sides[order[:-1]], axis=1))
+    a, b = order[first] // 3, order[first + 1] // 3
+    N = np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]])
+    N /= np.linalg.norm(N, axis=1, keepdims=True)
+    cosines = np.clip(np.sum(N[a] * N[b], axis=1), -1, 1)
+    return sides[order[first]], np.degrees(np.arccos(cosines))
+
+
+@pytest.mark.parametrize("name", ["igea.ply", "stanford-bunny.obj"])
+def test_no_crease_is_left_at_the_border_of_a_selection(
+    name: str, shared_mesh: Callable[[str], Path]
+) -> None:
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.load_new_mesh(str(shared_mesh(name)))
+    mesh = mesh_set.current_mesh()
+    V, F = mesh.vertex_matrix().copy(), mesh.face_matrix()
+    size = {"feature_size": percent(7)}
+    whole, _ = filter_arrays(V, F, **size)
+    head = np.quantile(V[:, 1], 0.7)
+    mesh_set.compute_selection_by_condition_per_face(condselect=f"y0 > {head} && y1 > {head}")
+    selected = np.zeros(len(V), dtype=bool)
+    selected[F[mesh.face_selection_array()]] = True
+    mesh_set.apply_filter(FILTER, **size)
+    part = mesh.vertex_matrix()
+    edges, before = bends(V, F)
+    (_, of_part), (_, of_whole) = bends(part, F), bends(whole, F)
+    border = selected[edges[:, 0]] != selected[edges[:, 1]]
+    assert of_part[border].mean() <= of_whole[border].mean() < 0.6 * before[border].mean()
+    assert np.quantile(of_part[border], 0.99) <= 1.1 * np.quantile(of_whole[border], 0.99)
+    around = (np.any(part != V, axis=1) & ~selected)[edges].any(axis=1)
+    assert of_part[around].mean() < before[around].mean()
+    assert np.quantile(of_part[around], 0.99) < np.quantile(before[around], 0.99)
+
+
 def test_selected_vertices_are_a_selection_too(small: tuple[NDArray[Any], NDArray[Any]]) -> None:
     V, F = small
     mesh_set = mesh_set_of(V, F)
