@@ -17,6 +17,7 @@ from helpers import FILTER, diagonal, largest_distance, mesh_set_of
 from meshlab_spectral import manifold_harmonics
 from meshlab_spectral.figures.eigenfunctions import most_alike
 from meshlab_spectral.figures.paper import FIGURES
+from meshlab_spectral.figures.parts import PICTURES
 from meshlab_spectral.figures.pictures import Frame, Panel, View, render
 from meshlab_spectral.figures.sequences import K, after
 from meshlab_spectral.figures.stability import BAND, LOW_PASS
@@ -60,6 +61,24 @@ def test_every_figure_of_every_mesh_is_drawn(meshes: list[Path], tmp_path: Path)
         assert 0.1 < (picture < 0.98).any(axis=2).mean() < 0.9, path.name
         edges = [picture[0], picture[-1], picture[:, 0], picture[:, -1]]
         assert all((edge > 0.98).all() for edge in edges), path.name
+
+
+def test_the_pictures_of_parts_are_drawn_and_errors_of_normals_printed(
+    decimated: Callable[..., Any], tmp_path: Path
+) -> None:
+    mesh_set = mesh_set_of(*decimated("cow.obj", 1000))
+    for name in ("dragon_40k.ply", "stanford-bunny.obj", "fandisk.off", "gears.stl"):
+        mesh_set.save_current_mesh(str(tmp_path / name))
+    module = "meshlab_spectral.figures.parts"
+    done = subprocess.run(
+        [sys.executable, "-m", module, tmp_path, tmp_path],
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=True,
+    )
+    assert {path.stem for path in tmp_path.glob("*.png")} == PICTURES.keys()
+    assert done.stdout.count("mean error of the normals") == 6
 
 
 def test_only_the_wanted_figures_are_drawn(meshes: list[Path], tmp_path: Path) -> None:
