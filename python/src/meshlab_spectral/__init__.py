@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from meshlab_spectral.filters.fractional import filter_mesh
     from meshlab_spectral.filters.harmonics import Harmonics, manifold_harmonics
     from meshlab_spectral.filters.options import FilterOptions
-    from meshlab_spectral.filters.signals import filter_scalars
+    from meshlab_spectral.filters.signals import filter_colors, filter_scalars
     from meshlab_spectral.filters.spectrum import GeometrySpectrum, geometry_spectrum
     from meshlab_spectral.plugin.loading import load
     from meshlab_spectral.plugin.memory import set_memory_limit
@@ -50,6 +50,7 @@ __all__ = [
     "OptionError",
     "PluginError",
     "denoise_mesh",
+    "filter_colors",
     "filter_files",
     "filter_mesh",
     "filter_scalars",
@@ -76,6 +77,7 @@ _MODULES = {
     "OptionError": "errors",
     "PluginError": "errors",
     "denoise_mesh": "filters.denoise",
+    "filter_colors": "filters.signals",
     "filter_files": "batch.files",
     "filter_mesh": "filters.fractional",
     "filter_scalars": "filters.signals",

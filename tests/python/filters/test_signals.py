@@ -23,7 +23,7 @@ from helpers import (
     refusal,
     snapshot,
 )
-from meshlab_spectral import FilterError, OptionError, filter_scalars
+from meshlab_spectral import FilterError, OptionError, filter_colors, filter_scalars
 from numpy.typing import NDArray
 from transfer_functions import RESPONSES, TYPES, gain_of
 
@@ -101,6 +101,23 @@ def test_the_default_laplacian_is_that_of_its_inventors(
     Y, report = filter_scalars(V, F, Q, feature_size="15%")
     expected = expected_signals(V, F, Q[:, None], {"laplacian": "intrinsic delaunay"}, report)
     np.testing.assert_allclose(Y, expected[:, 0], rtol=0, atol=AGREEMENT * np.ptp(Q))
+
+
+def test_colours_in_arrays_are_those_of_the_filter(decimated: Decimated) -> None:
+    V, F = decimated("cow.obj")
+    C = colours(V)
+    mesh_set = coloured(V, F, C)
+    mesh_set.apply_filter(COLOR, feature_size=percent(15))
+    found, report = filter_colors(V, F, C, feature_size="15%")
+    np.testing.assert_array_equal(found, levels_of(mesh_set))
+    np.testing.assert_array_equal(found[:, 3], C[:, 3])
+    assert report["max_change"] > 10
+    without_alpha, _ = filter_colors(V, F, C[:, :3], feature_size="15%")
+    np.testing.assert_array_equal(without_alpha, found[:, :3])
+    with pytest.raises(ValueError, match="from 0 to 255"):
+        filter_colors(V, F, C[:, :2])
+    with pytest.raises(ValueError, match="from 0 to 255"):
+        filter_colors(V, F, C.astype(float) * 2)
 
 
 def test_ideal_responses_are_exact(decimated: Decimated) -> None:

@@ -44,7 +44,7 @@ TARGETS = {
 REMEDY = re.compile(
     r"choose|apply |load or create|scale the mesh|reconstruct|delete them|must be|lies between|"
     r"has the modes|a positive number|must be finite|above zero|[Mm]ust be a value between|"
-    r"Possible values|between 0 and 100"
+    r"Possible values|between 0 and 100|select faces or"
 )
 # There is nothing to do about these but to look at the mesh.
 PLAIN = re.compile(r"has an area: the mesh is a line or a point")

@@ -1,4 +1,4 @@
-"""Filters of numbers at the vertices of a mesh, on NumPy arrays."""
+"""Filters of numbers and colours at the vertices of a mesh, on NumPy arrays."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ from meshlab_spectral.filters.calling import call_filter, plain_report
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.plugin.loading import load
 
-_FILTER_NAME = "apply_scalar_spectral_filter_per_vertex"
+_SCALARS = "apply_scalar_spectral_filter_per_vertex"
+_COLORS = "apply_color_spectral_filter_per_vertex"
 
 
 def filter_scalars(
@@ -67,17 +68,55 @@ def filter_scalars(
     Q = np.asarray(values, dtype=np.float64)
     if Q.shape != (len(V),):
         raise ValueError(f"values have shape {Q.shape}: pass {len(V)} numbers, one for each vertex")
+    mesh_set, report = _filtered(_SCALARS, V, F, options, v_scalar_array=Q)
+    return mesh_set.current_mesh().vertex_scalar_array().copy(), report
+
+
+def filter_colors(
+    vertices: ArrayLike, faces: ArrayLike, colors: ArrayLike, **options: Any
+) -> tuple[NDArray[np.uint8], dict[str, Any]]:
+    """Filter colours at the vertices, as `filter_scalars` does red, green and blue.
+
+    Parameters
+    ----------
+    vertices, faces, **options
+        As for `filter_scalars`.
+    colors
+        n x 3 or n x 4 levels from 0 to 255; the fourth, alpha, is kept.
+
+    Returns
+    -------
+    colors : array
+        The filtered levels, rounded and clamped to 0 to 255, of the shape that was given.
+    report : dict
+        As from `filter_scalars`, changes in levels; and `clamped_values`.
+    """
+    V, F = mesh_arrays(vertices, faces)
+    C = np.asarray(colors)
+    if C.shape not in ((len(V), 3), (len(V), 4)) or not ((C >= 0) & (C <= 255)).all():
+        raise ValueError(f"colors: pass {len(V)} x 3 or {len(V)} x 4 levels from 0 to 255")
+    levels = np.column_stack([C, np.full((len(V), 4 - C.shape[1]), 255)])
+    mesh_set, report = _filtered(_COLORS, V, F, options, v_color_matrix=levels / 255)
+    filtered = np.round(255 * mesh_set.current_mesh().vertex_color_matrix()).astype(np.uint8)
+    return filtered[:, : C.shape[1]], report
+
+
+def _filtered(
+    name: str, V: Any, F: Any, options: dict[str, Any], **signal: NDArray[Any]
+) -> tuple[Any, dict[str, Any]]:
+    """Apply a filter of signals to a mesh with one: a MeshSet with the result, and the report."""
     parameters = FilterOptions.from_dict(options)
     load()
     import pymeshlab
 
     mesh_set = pymeshlab.MeshSet()
-    mesh_set.add_mesh(pymeshlab.Mesh(V, F, v_scalar_array=Q))
-    known = mesh_set.filter_parameter_values(_FILTER_NAME)
-    for name in options:
-        if name not in known:
-            raise OptionError(f"{name}: not for values on a fixed shape; choose {', '.join(known)}")
+    mesh_set.add_mesh(pymeshlab.Mesh(V, F, **signal))
+    known = mesh_set.filter_parameter_values(name)
+    for option in options:
+        if option not in known:
+            raise OptionError(
+                f"{option}: not for values on a fixed shape; choose {', '.join(known)}"
+            )
     all_given = parameters.pymeshlab_parameters(mesh_set.current_mesh())
-    given = {name: value for name, value in all_given.items() if name in known}
-    report = call_filter(mesh_set, _FILTER_NAME, given)
-    return mesh_set.current_mesh().vertex_scalar_array().copy(), plain_report(report)
+    given = {option: value for option, value in all_given.items() if option in known}
+    return mesh_set, plain_report(call_filter(mesh_set, name, given))
