@@ -37,6 +37,7 @@ class Call(NamedTuple):
 
 NAMES = {
     "filter": "apply_coord_spectral_filter_fractional",
+    "denoise": "apply_coord_spectral_denoise",
     "quality": "apply_scalar_spectral_filter_per_vertex",
     "color": "apply_color_spectral_filter_per_vertex",
     "artefacts": "compute_scalar_spectral_artefacts_per_vertex",
@@ -47,6 +48,9 @@ CALLS = [
     Call("filter", "default", {}),
     Call("filter", "strong", {"feature_size": 15.0}),
     Call("filter", "truncated", {"spectrum": "truncated", "basis_size": 300, "steps": 1}),
+    Call("denoise", "default", {}),
+    Call("denoise", "strong", {"strength": 5.0}),
+    Call("denoise", "free", {"boundary": "free", "keep_creases": False}),
     Call("quality", "default", {}),
     Call("quality", "strong", {"feature_size": 15.0}),
     Call("quality", "fixed", {"boundary": "fixed"}),
@@ -64,7 +68,7 @@ CALLS = [
     Call("spectrum", "fixed", {"boundary": "fixed"}),
 ]
 # What a filter may change; of the rest, positions and faces are compared to the bit.
-MOVES = {"filter"}
+MOVES = {"filter", "denoise"}
 # Filters of a signal that the files need not have: it is the height.
 SIGNALS = {"quality", "color"}
 

@@ -16,6 +16,7 @@ ARROWS = {
     "transfer": {"laplacian", "support"},
     "krylov": {"laplacian", "ldlt", "mesh", "support"},
     "harmonics": {"laplacian", "ldlt", "mesh", "support"},
+    "denoise": {"laplacian", "mesh", "support"},
     "filter": {"transfer", "krylov", "harmonics", "laplacian", "ldlt", "mesh", "support"},
     "analysis": {"krylov", "harmonics", "laplacian", "ldlt", "mesh", "support"},
 }

@@ -35,7 +35,7 @@ def _choice(count: int) -> st.SearchStrategy[int]:
     return _of(tuple(range(count)), (-1, count))
 
 
-_LAPLACIAN, _BOUNDARY = _choice(2), _choice(2)
+_LAPLACIAN, _BOUNDARY = _choice(3), _choice(2)
 
 _TRANSFER: dict[str, st.SearchStrategy[Any]] = {
     "filter_type": _choice(5),
@@ -70,6 +70,12 @@ PARAMETERS: dict[str, dict[str, st.SearchStrategy[Any]]] = {
         "preserve_volume": st.booleans(),
         "weight": _choice(2),
         "result": _choice(2),
+    },
+    "apply_coord_spectral_denoise": {
+        "strength": _of((1.0, 0.5, 3.0, 0.0, 1e-30, 1e30), (-1.0, NAN, INFINITY)),
+        "noise_height": _SIZES,
+        "keep_creases": st.booleans(),
+        "boundary": _BOUNDARY,
     },
     "apply_scalar_spectral_filter_per_vertex": _SIGNALS,
     "apply_color_spectral_filter_per_vertex": _SIGNALS,

@@ -19,6 +19,7 @@ from meshlab_spectral.files.whole_files import USUAL_FORMATS, resolved, writing_
 from meshlab_spectral.filters.calling import call_filter, plain_report, reason_of
 from meshlab_spectral.filters.fractional import DETAILS
 from meshlab_spectral.filters.option_types import Options
+from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.plugin.loading import load
 
 StageCallback = Callable[[str], None]
@@ -82,7 +83,7 @@ def filter_to_scratch(
         parameters = options.pymeshlab_parameters(mesh_set.current_mesh())
         return plain_report(call_filter(mesh_set, options.FILTER, parameters))
 
-    if options.result != "details":
+    if not isinstance(options, FilterOptions) or options.result != "details":
         return _process(source, scratch, apply, on_stage, verbose)
     if scratch.suffix.lower() != ".ply":
         raise FormatError(f"{scratch.name} cannot hold details: choose .ply")
