@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/mesh/measures.h"
 #include "core/support/threads.h"
 
 namespace spectral {
@@ -28,16 +29,16 @@ SparseMatrix system(const FaceGraph& graph, const Vertices& X, const Vertices& N
     Normals q = blurredNormals(graph, N, kBlurs);
     normalizeRows(q);
     const auto count = static_cast<Index>(graph.edges.size());
-    Eigen::VectorXd length(count), weight(count);
+    const double scale = options.time / meanEdgeLength(X, graph.F);
+    Eigen::VectorXd weight(count);
     parallelRows(count, [&](Index begin, Index end) {
         for (Index e = begin; e < end; ++e) {
             const auto& [faces, ends] = graph.edges[e];
-            length[e] = (X.row(ends[0]) - X.row(ends[1])).norm();
+            const double length = (X.row(ends[0]) - X.row(ends[1])).norm();
             const double distance = (q.row(faces[0]) - q.row(faces[1])).norm() / options.edgeScale;
-            weight[e] = length[e] * std::exp(-0.5 * distance * distance);
+            weight[e] = scale * length * std::exp(-0.5 * distance * distance);
         }
     });
-    weight *= options.time / length.mean();
 
     Eigen::VectorXd diagonal = mass;
     std::vector<Eigen::Triplet<double>> entries;
