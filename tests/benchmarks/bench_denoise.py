@@ -1,6 +1,7 @@
 """Denoising against ground truth: noisy meshes whose clean originals are known.
 
 usage: bench_denoise.py [--pairs FOLDER] [--pictures FOLDER] [NAME ...]
+       bench_denoise.py --estimates [MESH ...]
 
 For every pair NAME_noisy.ply, NAME_clean.ply and every method: mean angle between the normals of
 the faces in degrees / mean distance to the clean surface / mean distance of a vertex to its clean
@@ -8,6 +9,10 @@ place, both in mean edges. Methods with a parameter have two lines: at its defau
 the value with the least angle, chosen for each mesh by its clean original. Spectral Denoise has
 nothing to choose. FOLDER defaults to ../shared/denoise beside the repository, the measure is
 denoise_score.py beside FOLDER. --pictures writes a picture of four of the meshes side by side.
+
+--estimates: for every MESH, by default some of ../shared/data, without noise and with noise of
+known kind and height: the estimate, and the root mean square distance of the vertices to where they
+were without it, before and after; all in mean edges.
 """
 
 from __future__ import annotations
@@ -42,6 +47,15 @@ GROUPS = {
     "impulsive": ("pierrot_i3",),
 }
 PICTURED = ("trimstar_n3", "Fandisk0.3", "child_n3", "julius_n2")
+ESTIMATED = (
+    "rocker-arm.obj",
+    "fandisk.off",
+    "gears.stl",
+    "stanford-bunny.obj",
+    "dragon_40k.ply",
+    "lionstatue.obj",
+    "rangescan_lato000.ply",
+)
 _SCORE = re.compile(r"angle (\S+)  surface (\S+)  vertex (\S+)")
 
 
@@ -64,9 +78,9 @@ def windowed_sinc(V: Array, F: Any, pass_band: float | None = None) -> Array:
     return np.asarray(surface.smooth_taubin(n_iter=50, pass_band=band).points, float)
 
 
-def bilateral_normals(V: Array, F: Any, sigma: float | None = None) -> Array:
+def bilateral_normals(V: Array, F: Any, chosen: tuple[float, int] = (0.35, 20)) -> Array:
     """Bilateral normal filtering, local scheme (Zheng, Fu, Au, Tai 2011), from its equations."""
-    sigma = 0.35 if sigma is None else sigma
+    sigma, iterations = chosen
     rows = np.repeat(np.arange(len(F)), 3)
     of_vertex = sp.csr_matrix((np.ones(F.size), (F.ravel(), rows)), (len(V), len(F)))
     pairs = (of_vertex.T @ of_vertex).tocoo()  # faces with a common vertex
@@ -76,7 +90,7 @@ def bilateral_normals(V: Array, F: Any, sigma: float | None = None) -> Array:
     N, centre = sides / np.maximum(area, 1e-300)[:, None], V[F].mean(1)
     distance = np.linalg.norm(centre[a] - centre[b], axis=1)
     near = area[b] * np.exp(-((distance / distance.mean()) ** 2) / 2)
-    for _ in range(20):
+    for _ in range(iterations):
         w = near * np.exp(-(((N[a] - N[b]) ** 2).sum(1)) / (2 * sigma**2))
         N = sp.csr_matrix((w, (a, b)), (len(F), len(F))) @ N
         N /= np.maximum(np.linalg.norm(N, axis=1), 1e-300)[:, None]
@@ -109,7 +123,10 @@ METHODS: dict[str, tuple[Method, list[Any]]] = {
         [None, 20.0, 40.0, 90.0],
     ),
     "VTK windowed sinc": (windowed_sinc, [None, 0.02, 0.05, 0.15, 0.2, 0.3]),
-    "bilateral normals": (bilateral_normals, [None, 0.2, 0.25, 0.3, 0.45, 0.6]),
+    "bilateral normals": (
+        bilateral_normals,
+        [None, *((sigma, k) for sigma in (0.2, 0.3, 0.45, 0.6) for k in (1, 2, 5, 10, 20))],
+    ),
 }
 
 
@@ -137,6 +154,56 @@ class Pair:
         return np.array([[float(x) for x in found] for found in _SCORE.findall(text)])
 
 
+def noise_of(kind: str, height: float, V: Array, F: Any) -> Array:
+    """Seeded noise along the normals of the vertices, `height` mean edges high."""
+    random = np.random.default_rng(1)
+    sides = np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]])
+    N = np.zeros_like(V)
+    for corner in range(3):
+        np.add.at(N, F[:, corner], sides)
+    N /= np.maximum(np.linalg.norm(N, axis=1), 1e-300)[:, None]
+    values = random.standard_normal(len(V))
+    if kind == "correlated":  # over about three edges
+        i, j = F.ravel(), np.roll(F, 1, axis=1).ravel()
+        A = sp.csr_matrix((np.ones(len(i)), (i, j)), (len(V), len(V)))
+        A = A + A.T
+        degree = np.maximum(np.asarray(A.sum(1)).ravel(), 1)
+        for _ in range(6):
+            values = (values + A @ values / degree) / 2
+        values /= values.std()
+    if kind == "outliers":  # one vertex in a hundred
+        values *= random.random(len(V)) < 0.01
+    return N * (height * mean_edge(V, F) * values)[:, None]
+
+
+def mean_edge(V: Array, F: Any) -> float:
+    """Mean side length over all triangles."""
+    return float(np.linalg.norm(V[F] - V[np.roll(F, 1, axis=1)], axis=2).mean())
+
+
+def print_estimates(files: list[Path]) -> None:
+    """Print what is found, moved and left on meshes with noise of known height."""
+    for file in files:
+        meshes = pymeshlab.MeshSet()
+        meshes.load_new_mesh(str(file))
+        V = meshes.current_mesh().vertex_matrix().copy()
+        F = meshes.current_mesh().face_matrix().copy()
+        edge = mean_edge(V, F)
+        print(f"\n{file.name}: {len(V)} vertices")
+        kinds = [("none", 0.0), *(("white", height) for height in (0.05, 0.1, 0.2, 0.4))]
+        for kind, height in [*kinds, ("correlated", 0.2), ("outliers", 1.0)]:
+            X = V + (noise_of(kind, height, V, F) if height else 0.0)
+            start = time.perf_counter()
+            Y, report = meshlab_spectral.denoise_mesh(X, F)
+            seconds = time.perf_counter() - start
+            before, after = (np.sqrt(((Z - V) ** 2).sum(1).mean()) / edge for Z in (X, Y))
+            found, rounds = report["estimated_noise_height"] / edge, report["rounds"]
+            print(
+                f"  {kind:10} {height:4.2f}: estimated {found:.3f}, "
+                f"distance {before:.4f} -> {after:.4f}, {rounds:2} rounds, {seconds:.2f} s"
+            )
+
+
 def told(scores: Array) -> str:
     """Format three scores."""
     return f"{scores[0]:.1f} / {scores[1]:.3f} / {scores[2]:.3f}"
@@ -148,8 +215,13 @@ def main() -> None:
     parser.add_argument("names", nargs="*", metavar="NAME")
     parser.add_argument("--pairs", type=Path, default=SHARED / "denoise")
     parser.add_argument("--pictures", type=Path)
+    parser.add_argument("--estimates", action="store_true")
     arguments = parser.parse_args()
     meshlab_spectral.load()
+    if arguments.estimates:
+        given = [Path(name) for name in arguments.names]
+        print_estimates(given or [SHARED / "data" / name for name in ESTIMATED])
+        return
     names = arguments.names or [
         file.name.removesuffix("_noisy.ply") for file in sorted(arguments.pairs.glob("*_noisy.ply"))
     ]
@@ -176,8 +248,9 @@ def main() -> None:
             clean = pyvista.read(pair.clean)
             panels.append(Panel("clean", np.asarray(clean.points, float), pair.F))
             arguments.pictures.mkdir(parents=True, exist_ok=True)
-            picture = arguments.pictures / f"{name}.png"
-            draw_side_by_side(panels, picture, view=View.of_widest_side(pair.V))
+            picture = arguments.pictures / f"denoise_{name}.png"
+            view = View.of_widest_side(pair.V)
+            draw_side_by_side(panels, picture, view=view, panel_size=(400, 400))
     for group, members in GROUPS.items():
         present = [name for name in members if name in names]
         if present:

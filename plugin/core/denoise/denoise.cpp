@@ -32,6 +32,7 @@ struct Plan {
     int rounds = 0;
     NormalFilterOptions filter;
     int sweeps = 0;
+    double farthest = 0.0;  ///< That a vertex moves, in mean edges.
 };
 
 // Chosen on four pairs of noisy and clean meshes, and seen to hold on four others: see
@@ -41,6 +42,9 @@ constexpr double kRoundsPerEdge = 22.0, kFewestRounds = 3.0, kMostRounds = 12.0;
 constexpr double kTime = 1.5, kHalfTimeAt = 0.07;  // less noise takes less than one whole round
 constexpr double kFewestSweeps = 6.0, kSweepsPerEdge = 15.0;
 constexpr double kEdgeScale = 0.22;
+// Where triangles are narrower than the noise is high, normals mean little: no vertex moves farther
+// than noise of this many standard deviations, or impulses of this many mean edges, had moved it.
+constexpr double kMostDeviations = 3.5, kMostEdges = 0.3;
 
 /// @param noise  standard deviation along the normals, in mean edges.
 Plan planFor(double noise, bool keepCreases) {
@@ -51,8 +55,18 @@ Plan planFor(double noise, bool keepCreases) {
         static_cast<int>(std::clamp(std::ceil(kRoundsPerEdge * noise), kFewestRounds, kMostRounds));
     plan.filter.time = kTime / (1.0 + std::pow(kHalfTimeAt / noise, 3));
     plan.filter.edgeScale = keepCreases ? kEdgeScale : std::numeric_limits<double>::infinity();
+    plan.farthest = std::max(kMostDeviations * noise, kMostEdges);
     plan.sweeps = static_cast<int>(std::lround(kFewestSweeps + kSweepsPerEdge * noise));
     return plan;
+}
+
+/// Draws the vertices of X back to within `farthest` of where they were.
+void limitDisplacement(const Vertices& X0, double farthest, Vertices& X) {
+    for (Index i = 0; i < X.rows(); ++i) {
+        const Eigen::RowVector3d displacement = X.row(i) - X0.row(i);
+        const double length = displacement.norm();
+        if (length > farthest) X.row(i) = X0.row(i) + farthest / length * displacement;
+    }
 }
 
 }  // namespace
@@ -82,6 +96,7 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
         // From the input: it is the normals that are filtered, the vertices only show them.
         X = followNormals(graph, surface.X, filterNormals(graph, X, plan.filter), isFixed,
                           plan.sweeps);
+        limitDisplacement(surface.X, plan.farthest * noise.meanEdge, X);
     }
 
     const Components components = connectedComponents(surface.F, X.rows());

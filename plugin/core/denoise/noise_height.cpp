@@ -15,6 +15,9 @@ namespace {
 /// 0.5 on real meshes.
 constexpr double kShapeRatio = 0.17;
 
+/// Vertices off the rim; among fewer, noise and corners are the same.
+constexpr Index kFewest = 100;
+
 /// How often the normals are blurred: they are to vary less than the noise does.
 constexpr int kBlurs = 3;
 
@@ -71,7 +74,7 @@ double heightFrom(const SparseMatrix& S, const FaceGraph& graph, const Vertices&
     std::vector<double> heights;
     for (Index i = 0; i < S.rows(); ++i)
         if (!graph.onRim[i]) heights.push_back(std::abs(residual[i]) / std::sqrt(squares[i]));
-    return robustDeviation(std::move(heights));
+    return static_cast<Index>(heights.size()) < kFewest ? 0.0 : robustDeviation(std::move(heights));
 }
 
 Normals vertexNormals(const FaceGraph& graph, const Vertices& X) {

@@ -17,7 +17,8 @@ struct NoiseEstimate {
 ///
 /// The normal parts of L X and of L^2 X, each divided by what noise of height 1 would be there, are
 /// equal where there is noise alone; the shape adds to the former more than to the latter. Medians
-/// over the vertices leave creases and single outliers out.
+/// over the vertices leave creases and single outliers out. Fewer than a hundred vertices do not
+/// tell.
 /// @param X  n x 3 positions.
 NoiseEstimate estimateNoise(const FaceGraph& graph, const Vertices& X);
 

@@ -53,7 +53,11 @@ std::string headline(const spectral::DenoiseResult& result) {
     std::ostringstream text;
     text << std::setprecision(3) << "Spectral Denoise: ";
     if (result.rounds == 0)
-        text << "no noise found (less than half a percent of an edge); nothing changed";
+        text << "nothing changed: no noise that differs from vertex to vertex, above 2 % of a mean "
+                "edge of "
+             << result.meanEdge
+             << ". Against ripples over several vertices, give a noise height, e.g. a tenth of an "
+                "edge, or use Spectral Filter (Fractional)";
     else
         text << "the noise is " << result.noiseHeight << " high (standard deviation; "
              << result.noiseHeight / result.meanEdge << " mean edges); the vertices moved by "

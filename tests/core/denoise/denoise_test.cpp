@@ -82,6 +82,21 @@ TEST(Denoise, LeavesACleanShapeToTheBit) {
     }
 }
 
+TEST(Denoise, LeavesAFewVerticesAlone) {
+    const Mesh box = testing::cube(1);
+    EXPECT_EQ(denoise(box.V, box.F, {}).V, box.V);
+}
+
+TEST(Denoise, MovesNoVertexFarAmongNeedles) {
+    Mesh mesh = testing::cube(12);
+    mesh.V.col(0) *= 30.0;
+    const Mesh noisy = withGaussianNoise(mesh, 0.1, 1);
+    const DenoiseResult result = denoise(noisy.V, noisy.F, {});
+    EXPECT_GT(result.rounds, 0);
+    const double allowed = std::max(3.5 * result.noiseHeight, 0.3 * result.meanEdge);
+    EXPECT_LE(result.maxDisplacement, 1.1 * allowed) << "but for the volume";
+}
+
 TEST(Denoise, KeepsARimUnlessItIsFree) {
     const Mesh mesh = withGaussianNoise(testing::hemisphere(20), 0.2, 1);
     const FaceGraph graph = faceGraph(mesh.F, mesh.V.rows());

@@ -113,6 +113,8 @@ class Reference:
         X = X0
         for _ in range(rounds):
             X = self.followed(X0, self.filtered_normals(X, time, 0.22), round(6 + 15 * noise))
+            away = np.linalg.norm(X - X0, axis=1, keepdims=True)
+            X = X0 + np.minimum(1, edge * max(3.5 * noise, 0.3) / away) * (X - X0)
         for _ in range(4):  # Newton's method for the volume, along the normals of the vertices
             G = self.incidence @ self.area_normals(X)
             size = np.linalg.norm(G, axis=1).sum() / 6
