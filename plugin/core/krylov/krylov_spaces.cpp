@@ -278,18 +278,17 @@ Eigen::Array<double, 1, Columns> KrylovSpaces::orthogonalize(
                 }
                 return sums;
             });
-        const Row<Columns> squares =
-            parallelSum(n, Row<Columns>::Zero().eval(), [&](Index begin, Index end) {
-                for (Index j = 0; j < m; ++j) {
-                    const Row<Columns> overlap = overlaps.row(j);
-                    for (Index i = begin; i < end; ++i)
-                        rowOf<Columns>(work_, i) -= overlap * rowOf<Columns>(basis_[j], i);
-                }
-                Row<Columns> sum = Row<Columns>::Zero();
+        parallelRows(n, [&](Index begin, Index end) {
+            for (Index j = 0; j < m; ++j) {
+                const Row<Columns> overlap = overlaps.row(j);
                 for (Index i = begin; i < end; ++i)
-                    sum += D_[i] * rowOf<Columns>(work_, i).square();
-                return sum;
-            });
+                    rowOf<Columns>(work_, i) -= overlap * rowOf<Columns>(basis_[j], i);
+            }
+        });
+        const Row<Columns> squares =  // without the means, which are still to be removed
+            momentsOf<Columns>(D_, label_, constants_.masses(), [&](Index i) {
+                return Row<Columns>(rowOf<Columns>(work_, i));
+            }).squares;
         const Row<Columns> before = std::exchange(norm, squares.sqrt());
         if ((norm >= 0.5 * before).all()) break;  // else cancellation requires a second pass
     }

@@ -51,6 +51,19 @@ TEST(KrylovSpaces, StayOrthogonalToConstantsAndToThemselves) {
     }
 }
 
+TEST(KrylovSpaces, AreNormalizedWhereSolvesHaveConstantsOfRoundOff) {
+    // A ribbon: new directions are about as small as the round-off of S.
+    const Operator A(testing::rectangle(1.0, 1e-7, 7, 2));
+    ShiftedLdlt ldlt;
+    ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, 1e9);
+    KrylovSpaces spaces(ldlt, A.laplacian.D, A.constants, A.mesh.V.leftCols(1));
+    for (int m = 0; m < 6; ++m) spaces.extend();
+    for (int m = 0; m < 6; ++m) {
+        const Eigen::VectorXd q = spaces.combine({Eigen::VectorXd::Unit(6, m)});
+        EXPECT_NEAR(q.dot(A.laplacian.D.cwiseProduct(q)), 1.0, 1e-10) << m;
+    }
+}
+
 TEST(KrylovSpaces, TellTheLargestEntryOfACombination) {
     const Operator A(testing::blob());
     ShiftedLdlt ldlt;
