@@ -5,6 +5,7 @@
 #include <limits>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "core/laplacian/frequency.h"
 #include "core/support/errors.h"
@@ -66,21 +67,21 @@ double TransferFunction::operator()(double omega) const { return power(omega, 1.
 double TransferFunction::power(double omega, double alpha) const {
     const double x = omega / cutoff_, exponent = alpha * options_.power;
     if (options_.type == FilterType::Custom) return std::pow(custom(omega), exponent);
-    const double stop = options_.stopGain, pass = options_.passGain;
-    const bool passesOnly = stop == 0.0 && options_.type != FilterType::BandStop;
-    if (!passesOnly) return std::pow(stop + (pass - stop) * prototype(x), exponent);
-    return std::pow(pass, exponent) * std::exp2(-exponent * octavesDown(x));
+    // A band-stop is 1 minus the band-pass B: it stops where B is 1.
+    double at0 = options_.stopGain, at1 = options_.passGain;
+    if (options_.type == FilterType::BandStop) std::swap(at0, at1);
+    const double octaves = octavesDown(x), B = std::exp2(-octaves);
+    if (at0 == 0.0) return std::pow(at1, exponent) * std::exp2(-exponent * octaves);
+    // 1 - B without cancellation: a small power of its round-off would be large.
+    const double gain =
+        B < 0.5 ? at0 + (at1 - at0) * B : at1 + (at1 - at0) * std::expm1(-std::log(2.0) * octaves);
+    return std::pow(gain, exponent);
 }
 
 TransferFunction TransferFunction::whole() const {
     TransferFunction whole = *this;
     whole.options_.power = 1.0;
     return whole;
-}
-
-double TransferFunction::prototype(double x) const {
-    const double B = std::exp2(-octavesDown(x));
-    return options_.type == FilterType::BandStop ? 1.0 - B : B;
 }
 
 /// -log2 of the prototype B, >= 0; of the band-pass for a band-stop.

@@ -64,7 +64,6 @@ class TransferFunction {
     const std::vector<double>& samples() const { return samples_; }
 
   private:
-    double prototype(double x) const;
     double octavesDown(double x) const;
     double custom(double omega) const;
     void sample();

@@ -158,6 +158,24 @@ TEST(TransferFunction, FractionalPowersSurviveWhereTheGainUnderflows) {
             }
 }
 
+TEST(TransferFunction, SmallGainsAreNoDifferencesOfLargeOnes) {
+    // Where a band-stop passes nothing, it stops all but a band.
+    for (const Response r : {Response::Gaussian, Response::Butterworth}) {
+        TransferFunctionOptions band = options(FilterType::BandPass, r);
+        TransferFunctionOptions stop = options(FilterType::BandStop, r);
+        stop.passGain = 0.0;
+        stop.stopGain = 1.0;
+        for (const double x : {1e-8, 1e-3, 0.5, 1.0, 2.0, 1e3, 1e8})
+            EXPECT_EQ(TransferFunction(stop, 1.0).power(x, 0.01),
+                      TransferFunction(band, 1.0).power(x, 0.01));
+    }
+    TransferFunctionOptions high = options(FilterType::LowPass, Response::Butterworth);
+    high.passGain = 0.0;
+    high.stopGain = 1.0;
+    high.order = 1;
+    EXPECT_NEAR(TransferFunction(high, 1.0)(1e-7) / (0.5 * 1e-14), 1.0, 1e-9);
+}
+
 TEST(TransferFunction, RefusesWhatHasNoFractionalPower) {
     TransferFunctionOptions o;
     o.passGain = -0.5;
