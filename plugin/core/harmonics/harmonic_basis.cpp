@@ -25,6 +25,46 @@ constexpr Index kDenseVertices = 300;
 /// Restarts of Lanczos' method for the largest eigenvalue, which has no shift to speed it up.
 constexpr int kMostRestarts = 300;
 
+using DenseSolver = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
+
+DenseSolver solved(const Eigen::MatrixXd& A) {
+    DenseSolver solver(A);
+    if (solver.info() == Eigen::Success) return solver;
+    throw SolverFailure("the dense eigenproblem of " + std::to_string(A.rows()) +
+                        " vertices did not converge");
+}
+
+/// Makes eigenvectors accurate whose errors are round-off relative to the largest eigenvalue, by
+/// Rayleigh-Ritz; returns their eigenvalues. Phi^T W Phi is computed from differences along edges:
+/// among needles, most digits of W Phi would cancel.
+Eigen::VectorXd refine(const SparseMatrix& W, const ConstantModes& constants,
+                       Eigen::MatrixXd& Phi) {
+    constexpr double kRoundOff = 1e-14;
+    const Index n = W.rows();
+    const Eigen::VectorXd sums = W * Eigen::VectorXd::Ones(n);
+    Eigen::MatrixXd differences((W.nonZeros() + n) / 2, Phi.cols());
+    Eigen::VectorXd weight(differences.rows());
+    Index edge = 0;
+    for (Index j = 0; j < n; ++j) {
+        for (SparseMatrix::InnerIterator entry(W, j); entry.row() < j; ++entry, ++edge) {
+            differences.row(edge) = Phi.row(j) - Phi.row(entry.row());
+            weight[edge] = -entry.value();
+        }
+        differences.row(edge) = Phi.row(j);
+        weight[edge++] = constants.label()[j] < 0 ? sums[j] : 0.0;
+    }
+    Eigen::MatrixXd ritz = differences.transpose() * weight.asDiagonal() * differences;
+    // Round-off of the largest eigenvalues must not spread over all.
+    const Eigen::ArrayXd lambda = ritz.diagonal().array().abs();
+    for (Index j = 0; j < ritz.cols(); ++j)
+        ritz.col(j) = (ritz.col(j).array().abs() > kRoundOff * lambda.max(lambda[j]))
+                          .select(ritz.col(j), 0.0)
+                          .eval();
+    const DenseSolver solver = solved(ritz);
+    Phi *= solver.eigenvectors();
+    return solver.eigenvalues();
+}
+
 }  // namespace
 
 HarmonicBasis denseBasis(const Laplacian& laplacian, const ConstantModes& constants) {
@@ -39,16 +79,13 @@ HarmonicBasis denseBasis(const Laplacian& laplacian, const ConstantModes& consta
     A -= C * (C.transpose() * A);
     A -= (A * C) * C.transpose();
     A += 2.0 * bound * C * C.transpose();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(A);
-    if (solver.info() != Eigen::Success)
-        throw SolverFailure("the dense eigenproblem of " + std::to_string(A.rows()) +
-                            " vertices did not converge");
+    Eigen::MatrixXd Phi = invSqrtD.asDiagonal() * solved(A).eigenvectors().leftCols(varying);
+    const Eigen::VectorXd lambda = refine(laplacian.W, constants, Phi);
     HarmonicBasis basis;
     basis.Phi.resize(A.rows(), A.rows());
-    basis.Phi << constants.orthonormal(),
-        invSqrtD.asDiagonal() * solver.eigenvectors().leftCols(varying);
+    basis.Phi << constants.orthonormal(), Phi;
     basis.lambda.resize(A.rows());
-    basis.lambda << Eigen::VectorXd::Zero(constants.count()), solver.eigenvalues().head(varying);
+    basis.lambda << Eigen::VectorXd::Zero(constants.count()), lambda;
     return basis;
 }
 

@@ -213,6 +213,15 @@ TEST(DenseBasis, IsOrthogonalToTheConstantsOfEveryComponent) {
     EXPECT_EQ(dense.lambda.head(A.constants.count()).cwiseAbs().maxCoeff(), 0.0);
 }
 
+TEST(DenseBasis, OfARibbonIsThatOfAnInterval) {
+    // The largest eigenvalue is 1e14 times the lowest, and its round-off as large as that.
+    const auto lowestOf = [](double height) {
+        const Operator A(testing::rectangle(1.0, height, 10, 1));
+        return Eigen::VectorXd(denseBasis(A.laplacian, A.constants).lambda.segment(1, 9));
+    };
+    EXPECT_LT((lowestOf(1e-7).cwiseQuotient(lowestOf(1e-4)).array() - 1.0).abs().maxCoeff(), 1e-6);
+}
+
 TEST(LargestEigenvalue, ScalesWithTheMesh) {
     Mesh mesh = testing::torus(2, 0.7, 24, 12);
     const double expected = largestEigenvalue(Operator(mesh).laplacian);
