@@ -60,8 +60,7 @@ class ErrorEstimate {
 
 /// Error of F(sqrt(A)) X, relative to X, that comes of a relative error of S: an error of lambda
 /// relative to lambda + lambda_p, however small lambda is.
-double roundOffError(const KrylovSpaces& spaces, const Gain& gain, double pole) {
-    const double roundOff = spaces.roundOff();
+double roundOffError(const KrylovSpaces& spaces, double roundOff, const Gain& gain, double pole) {
     double squares = 0.0;
     for (int c = 0; c < spaces.columns(); ++c) {
         const auto [omega, weight] = spaces.quadrature(c);
@@ -144,7 +143,7 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
     // A space of all dimensions need not be invariant: where eigenvalues span many decades, its
     // last vectors are round-off.
     const Index largest = std::min<Index>(options.maxDimension, D.size() - constants.count());
-    double firstError = 0.0, furthest = 0.0;
+    double firstError = 0.0, furthest = 0.0, roundOff = options.roundOff;
     bool isDone = false;
     for (int m = 1, check = 3; !isDone; ++m) {
         progress.report(furthest, "filtering");
@@ -152,7 +151,8 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
         const bool isLast = m >= largest;
         if (!isInvariant && !isLast && m < check) continue;
         check = nextCheck(m);
-        if (spaces.roundOff() > kUselessRoundOff)
+        roundOff = std::max(roundOff, spaces.roundOff());
+        if (roundOff > kUselessRoundOff)
             throw SolverFailure(ErrorCode::SingularMatrix,
                                 "round-off leaves nothing of the solutions with W + s D: triangles "
                                 "are needles, or parts of the mesh are far away");
@@ -181,8 +181,8 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
     for (std::size_t g = 0; g < gains.size(); ++g) {
         FullSpectrumResult& result = results[g];
         // In an invariant space, this is the only error.
-        result.errorEstimate =
-            std::max(result.errorEstimate, roundOffError(spaces, gains[g], -ldlt.shift()));
+        result.errorEstimate = std::max(result.errorEstimate,
+                                        roundOffError(spaces, roundOff, gains[g], -ldlt.shift()));
         result.converged = result.errorEstimate <= options.accuracy;
         if (!result.converged) result.errorEstimate *= kNotConverged;
         result.Y = approximations[g].Y();

@@ -14,6 +14,10 @@ struct FullSpectrumOptions {
     int maxDimension = 200;     ///< Krylov dimension at which to give up.
     bool atEveryVertex = true;  ///< Else only |dY|_D / |X|_D, over the surface, is bounded.
 
+    /// Round-off of solves, relative to the largest eigenvalue of the inverse, where it is known to
+    /// be more than KrylovSpaces::roundOff.
+    double roundOff = 0.0;
+
     /// Frequencies between which the gains vary little; eighths of octaves are always among them.
     std::vector<double> samples;
 };

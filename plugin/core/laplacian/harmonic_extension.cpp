@@ -4,6 +4,19 @@
 
 namespace spectral {
 
+namespace {
+
+/// W X from differences along edges, which no digit cancels in where X varies little.
+Eigen::MatrixXd applied(const SparseMatrix& W, const Eigen::MatrixXd& X) {
+    Eigen::MatrixXd WX = Eigen::MatrixXd::Zero(X.rows(), X.cols());
+    for (Index j = 0; j < W.cols(); ++j)
+        for (SparseMatrix::InnerIterator entry(W, j); entry; ++entry)
+            WX.row(j) += entry.value() * (X.row(entry.row()) - X.row(j));
+    return WX;
+}
+
+}  // namespace
+
 void HarmonicExtension::setLaplacian(const Laplacian& surface) {
     surface_ = surface;
     means_.emplace(interior_.surfaceComponents(), surface.D);
@@ -18,8 +31,12 @@ HarmonicExtension::Rest HarmonicExtension::rest(const Eigen::MatrixXd& X) const 
     Eigen::MatrixXd centred = X;
     means_->remove(centred);
 
-    // X - H = W_II^-1 (W X)_I: no cancellation where X is nearly harmonic.
-    Rest rest{ldlt_.solve(interior_.restricted(Eigen::MatrixXd(surface_.W * centred)))};
+    // X - H = W_II^-1 (W X)_I: no cancellation where X is nearly harmonic. The second solve, of
+    // what the first has left, matters among needles.
+    Rest rest{Eigen::MatrixXd::Zero(interior_.size(), X.cols())};
+    for (int pass = 0; pass < 2; ++pass)
+        rest.U += ldlt_.solve(
+            interior_.restricted(applied(surface_.W, centred - interior_.extended(rest.U))));
     const Eigen::MatrixXd moving = interior_.restricted(centred);
     for (Index i = 0; i < moving.rows(); ++i)
         if (interior_.components().label[i] >= 0) rest.U.row(i) = moving.row(i);
