@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <numeric>
 #include <random>
@@ -34,7 +35,25 @@ Pairs<long double> eigenpairs(const Matrix<long double>& W, const Vector<long do
     const Vector<long double> scale = D.cwiseSqrt().cwiseInverse();
     const Eigen::SelfAdjointEigenSolver<Matrix<long double>> solver(scale.asDiagonal() * W *
                                                                     scale.asDiagonal());
-    return {solver.eigenvalues(), scale.asDiagonal() * solver.eigenvectors()};
+    // Errors relative to the largest eigenvalue become errors relative to their own, by
+    // Rayleigh-Ritz with differences along edges.
+    Matrix<long double> Phi = scale.asDiagonal() * solver.eigenvectors();
+    const Index n = W.rows();
+    const Vector<long double> sums = W.rowwise().sum();
+    Matrix<long double> ritz = Phi.transpose() * sums.asDiagonal() * Phi;
+    for (Index j = 0; j < n; ++j)
+        for (Index i = 0; i < j; ++i) {
+            if (W(i, j) == 0) continue;
+            const Vector<long double> difference = (Phi.row(j) - Phi.row(i)).transpose();
+            ritz -= (W(i, j) * difference) * difference.transpose();
+        }
+    constexpr long double kRoundOff = 1e-17L;
+    const Vector<long double> lambda = ritz.diagonal().cwiseAbs();
+    for (Index j = 0; j < n; ++j)
+        for (Index i = 0; i < n; ++i)
+            if (std::abs(ritz(i, j)) <= kRoundOff * std::max(lambda[i], lambda[j])) ritz(i, j) = 0;
+    const Eigen::SelfAdjointEigenSolver<Matrix<long double>> again(ritz);
+    return {again.eigenvalues(), Phi * again.eigenvectors()};
 }
 
 /// W, D and X in another precision, and in another order; rows of W sum to zero without round-off.
