@@ -23,8 +23,9 @@ struct HarmonicBasis {
 };
 
 /// All n eigenpairs by a dense solver: O(n^3) time, 3 n^2 numbers of memory. The yardstick of the
-/// tests, and what is quickest for a few hundred vertices. Eigenvalues have an error of about
-/// 1e-15 times the largest one, whatever their size.
+/// tests, and what is quickest for a few hundred vertices. Eigenvalues have an error relative to
+/// their own size, and with a fixed boundary one of about 1e-15 times the largest, whatever that
+/// size.
 /// @throws SolverFailure  when the solver does not converge.
 HarmonicBasis denseBasis(const Laplacian& laplacian, const ConstantModes& constants);
 
