@@ -8,7 +8,8 @@ the faces in degrees / mean distance to the clean surface / mean distance of a v
 place, both in mean edges. Methods with a parameter have two lines: at its default, and at its best,
 the value with the least angle, chosen for each mesh by its clean original. Spectral Denoise has
 nothing to choose. FOLDER defaults to ../shared/denoise beside the repository, the measure is
-denoise_score.py beside FOLDER. --pictures writes a picture of four of the meshes side by side.
+denoise_score.py beside FOLDER. --pictures writes pictures of four of the meshes
+side by side, and of a raw scan.
 
 --estimates: for every MESH, by default some of ../shared/data, without noise and with noise of
 known kind and height: the estimate, and the root mean square distance of the vertices to where they
@@ -204,6 +205,30 @@ def print_estimates(files: list[Path]) -> None:
             )
 
 
+def draw_scan(file: Path, picture: Path) -> None:
+    """Draw the middle of a raw scan before and after, and print what is left of its noise."""
+    meshes = pymeshlab.MeshSet()
+    meshes.load_new_mesh(str(file))
+    V = meshes.current_mesh().vertex_matrix().copy()
+    F = meshes.current_mesh().face_matrix().copy()
+    middle = np.abs(V[:, :2] - V[:, :2].mean(0)) < 0.12 * np.ptp(V, axis=0).max()
+    near = F[middle.all(1)[F].all(1)]
+    used, faces = np.unique(near, return_inverse=True)
+    panels = [Panel("range scan", V[used], faces.reshape(-1, 3))]
+    print(f"\n{file.name}")
+    for label, options in {"default": {}, "noise_height 0.1e": {"noise_height": "0.1e"}}.items():
+        X, report = meshlab_spectral.denoise_mesh(V, F, **options)
+        left = meshlab_spectral.denoise_mesh(X, F)[1]["estimated_noise_height"]
+        edge = report["mean_edge"]
+        print(
+            f"  {label}: noise {report['estimated_noise_height'] / edge:.3f} -> {left / edge:.3f} "
+            f"edges, moved by {report['rms_displacement'] / edge:.3f}; {report['fixed_vertices']} "
+            f"vertices on rims, of {(X == V).all(1).sum()} that have not moved"
+        )
+        panels.append(Panel(label, X[used], faces.reshape(-1, 3)))
+    draw_side_by_side(panels, picture, panel_size=(400, 400))
+
+
 def told(scores: Array) -> str:
     """Format three scores."""
     return f"{scores[0]:.1f} / {scores[1]:.3f} / {scores[2]:.3f}"
@@ -251,6 +276,9 @@ def main() -> None:
             picture = arguments.pictures / f"denoise_{name}.png"
             view = View.of_widest_side(pair.V)
             draw_side_by_side(panels, picture, view=view, panel_size=(400, 400))
+    scan = SHARED / "data" / "rangescan_lato000.ply"
+    if arguments.pictures and scan.exists():
+        draw_scan(scan, arguments.pictures / "denoise_rangescan.png")
     for group, members in GROUPS.items():
         present = [name for name in members if name in names]
         if present:

@@ -37,13 +37,15 @@ from meshlab_spectral.filters.options import FilterOptions
 BATCH_HELP = """Filter many meshes in worker processes; a failure does not stop the others.
 
 \b
-Denoise a folder of scans:
+Smooth a folder of scans:
   meshlab-spectral batch scans --output smooth --feature-size 2%
+Denoise it: a recipe with the line [denoise] alone
+  meshlab-spectral batch scans --output clean --recipe denoise.toml
 Continue after an interruption, or with more scans:
   meshlab-spectral batch scans --output smooth --feature-size 2% --resume
 Save the options for next time:
-  meshlab-spectral batch scans --output smooth --feature-size 2% --save-recipe denoise.toml
-  meshlab-spectral batch more/*.obj --output more_smooth --recipe denoise.toml --format ply
+  meshlab-spectral batch scans --output smooth --feature-size 2% --save-recipe smooth.toml
+  meshlab-spectral batch more/*.obj --output more_smooth --recipe smooth.toml --format ply
 
 Each file gets a line in the report, DIR/batch_report.jsonl, as soon as it is done: outcome,
 options, the filter's report and warnings, SHA-256 of input and output, seconds, memory, versions.
