@@ -82,7 +82,7 @@ def _content(path: Path) -> tuple[type[Options], dict[str, Any]]:
         ) from error
     unknown = content.keys() - TABLES.keys()
     if unknown or len(content) != 1 or not all(isinstance(v, dict) for v in content.values()):
-        wrong = "has not one such table"
+        wrong = "has several tables" if len(content) > 1 else "has no table"
         if unknown:
             wrong = f"has {', '.join(sorted(unknown))} outside it"
         raise OptionError(f"the recipe {path} {wrong}: all options belong in one table, {names}")

@@ -1,0 +1,160 @@
+"""The command `meshlab-spectral denoise`, and batches with a recipe for it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pymeshlab
+import pytest
+from batches import REPORT, contents, make_meshes, records
+from commands import arrays_of, assert_fails, command
+from meshlab_spectral import DenoiseOptions
+from numpy.testing import assert_array_equal
+
+FILTER = "apply_coord_spectral_denoise"
+
+
+@pytest.fixture
+def scan(tmp_path: Path) -> Path:
+    """A noisy torus."""
+    return make_meshes(tmp_path, 1, rings=24)[0]
+
+
+def denoised(path: Path, noise_height: float = 0.0) -> np.ndarray:
+    """Positions that pymeshlab computes; a height of 0 has it measured."""
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.load_new_mesh(str(path))
+    mesh_set.apply_filter(FILTER, noise_height=pymeshlab.PureValue(noise_height))
+    return mesh_set.current_mesh().vertex_matrix().copy()
+
+
+def recipe_in(folder: Path, text: str) -> Path:
+    path = folder / "denoise.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def test_the_output_is_what_pymeshlab_computes(scan: Path, tmp_path: Path) -> None:
+    target = tmp_path / "clean.ply"
+    done = command("denoise", scan, target)
+    assert done.returncode == 0, done.stderr
+    assert done.stderr == ""
+    (V, F), (noisy, faces) = arrays_of(target), arrays_of(scan)
+    assert_array_equal(V, denoised(scan))
+    assert_array_equal(F, faces)
+    assert np.abs(V - noisy).max() > 0.01
+
+
+def test_json_is_one_object_with_report_options_and_versions(scan: Path, tmp_path: Path) -> None:
+    target = tmp_path / "clean.ply"
+    done = command("denoise", scan, target, "--json")
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.count("\n") == 1
+    record = json.loads(done.stdout)
+    assert (record["input"], record["output"]) == (str(scan), str(target))
+    assert record["options"] == DenoiseOptions().as_dict()
+    report = record["report"]
+    assert report["noise_height"] == report["estimated_noise_height"]
+    assert report["noise_height"] == pytest.approx(0.02, rel=0.3)
+    assert 0 < report["rms_displacement"] <= report["max_displacement"]
+    assert {"meshlab_spectral", "pymeshlab", "python"} <= record["versions"].keys()
+
+
+def test_a_height_is_given_in_mean_edges(scan: Path, tmp_path: Path) -> None:
+    target = tmp_path / "clean.ply"
+    done = command("denoise", scan, target, "--noise-height", "0.2e", "--json")
+    record = json.loads(done.stdout)
+    assert record["options"]["noise_height"] == "0.2e"
+    V, F = arrays_of(scan)
+    height = 0.2 * np.linalg.norm(V[F] - V[np.roll(F, 1, axis=1)], axis=2).mean()
+    assert record["report"]["noise_height"] == pytest.approx(height, rel=1e-6)
+    assert_array_equal(arrays_of(target)[0], denoised(scan, height))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "word"),
+    [
+        (["--strength", "-1"], "strength"),
+        (["--strength", "strong"], "strength"),
+        (["--noise-height", "-0.2e"], "noise-height"),
+        (["--noise-height", "0"], "noise-height"),
+        (["--boundary", "loose"], "fixed"),
+        (["--feature-size", "2%"], "--feature-size"),
+    ],
+    ids=" ".join,
+)
+def test_a_wrong_option_is_named_before_any_file_is_touched(
+    arguments: list[str], word: str, existing: Path, tmp_path: Path
+) -> None:
+    done = command("denoise", tmp_path / "no such.ply", existing, *arguments)
+    assert_fails(done, 2, word)
+
+
+def test_a_recipe_denoises_a_folder(tmp_path: Path) -> None:
+    source, out = tmp_path / "scans", tmp_path / "clean"
+    scans = make_meshes(source, 2, rings=24)
+    recipe = recipe_in(tmp_path, "[denoise]\n")
+    batch = ["batch", source, "--output", out, "--recipe", recipe, "--workers", 1]
+    done = command(*batch)
+    assert done.returncode == 0, done.stderr
+    assert "2 filtered, 0 failed" in done.stdout
+    for scan in scans:
+        assert_array_equal(arrays_of(out / scan.name)[0], denoised(scan))
+    for record in records(out / REPORT):
+        assert record["options"] == DenoiseOptions().as_dict()
+        assert record["report"]["noise_height"] > 0
+    before = contents(out)
+    assert "2 already done" in command(*batch, "--resume").stdout
+    # Another option is another result.
+    recipe_in(tmp_path, "[denoise]\nstrength = 0.5\n")
+    assert "2 filtered, 0 failed" in command(*batch, "--resume").stdout
+    after = contents(out)
+    assert after.keys() == before.keys()
+    assert all(after[name] != before[name] for name in after)
+
+
+def test_a_dry_run_lists_the_outputs_and_saves_the_whole_recipe(scan: Path, tmp_path: Path) -> None:
+    recipe, saved = recipe_in(tmp_path, '[denoise]\nnoise_height = "0.2e"\n'), tmp_path / "a.toml"
+    out = tmp_path / "clean"
+    arguments = ["--recipe", recipe, "--dry-run", "--save-recipe", saved]
+    done = command("batch", scan, "--output", out, *arguments)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == f"{scan} -> {out / scan.name}\n"
+    assert not out.exists()
+    text = saved.read_text(encoding="utf-8")
+    assert text.startswith("[denoise]\n")
+    assert 'noise_height = "0.2e"' in text
+    assert "strength = 1.0" in text
+
+
+@pytest.mark.parametrize(
+    "arguments", [["--feature-size", "2%"], ["--boundary", "fixed"], ["--preset", "sharpen"]]
+)
+def test_options_of_the_other_filter_are_refused_next_to_the_recipe(
+    arguments: list[str], scan: Path, tmp_path: Path
+) -> None:
+    recipe, out = recipe_in(tmp_path, "[denoise]\n"), tmp_path / "clean"
+    done = command("batch", scan, "--output", out, "--recipe", recipe, *arguments)
+    assert_fails(done, 2, "for another filter", "[denoise] there", str(recipe))
+    assert not out.exists()
+
+
+@pytest.mark.parametrize(
+    ("text", "word"),
+    [
+        ("[denoise]\n[filter]\n", "has several tables"),
+        ("[denoise]\nfeature_size = '2%'\n", "there is no option feature_size"),
+        ("[denoise]\nstrength = -1\n", "strength = -1"),
+        ("strength = 1\n", "strength outside it"),
+        ("[denoising]\n", "[filter] or [denoise]"),
+    ],
+)
+def test_a_wrong_recipe_is_refused_with_what_is_wrong_in_it(
+    text: str, word: str, scan: Path, tmp_path: Path
+) -> None:
+    recipe, out = recipe_in(tmp_path, text), tmp_path / "clean"
+    done = command("batch", scan, "--output", out, "--recipe", recipe)
+    assert_fails(done, 2, word, str(recipe))
+    assert not out.exists()
