@@ -15,14 +15,14 @@
 namespace {
 
 const char* const kHelp =
-    "Removes the noise of a scan, with <b>nothing to choose</b>: measures how high the noise is, "
-    "and filters as strongly as it needs. Creases become sharp, soft forms stay soft, and "
-    "triangles do not drift within the surface; a mesh without noise stays as it is."
-    "<br><br>The faces' normals are filtered in weak fractional steps [1], on a Laplacian that is "
-    "taken anew from the shape after each and hardly connects faces across a crease; the vertices "
-    "follow the normals [2]. Closed components keep their volume."
-    "<br><br>The noise it knows differs from vertex to vertex. Ripples over many vertices are "
-    "shape to it: remove those with <i>Spectral Filter (Fractional)</i>."
+    "Removes the noise of a scan, with <b>nothing to choose</b>: measures how high the noise is "
+    "(<i>noise height</i> 0), and filters as strongly as that takes. Creases become sharp, soft "
+    "forms stay soft; a mesh without noise stays as it is."
+    "<br><br>Face normals are filtered in weak fractional steps [1], with the Laplacian taken anew "
+    "from the shape after each; it hardly connects faces across creases. The vertices follow the "
+    "normals [2] and do not drift within the surface. Closed components keep their volume."
+    "<br><br>Only noise that differs from vertex to vertex is removed. Ripples over many vertices "
+    "are taken for shape: for those, use <i>Spectral Filter (Fractional)</i>."
     "<br><br><small>[1] Kovnatsky, Bronstein, Bronstein 2012; [2] Sun, Rosin, Martin, Langbein "
     "2007</small>";
 
@@ -34,10 +34,9 @@ RichParameterList parameters(const MeshModel& mesh) {
                             "1 removes the noise as measured. More removes finer details, too; "
                             "less leaves some noise; 0 changes nothing."));
     list.addParam(RichPercentage(
-        "noise_height", static_cast<Scalarm>(defaults.noiseHeight), 0, diagonal,
-        "Noise height (0 = measured)",
-        "Standard deviation of the noise along the normals. 0 has it measured: the log then says "
-        "how high it is. Give it where fine details were taken for noise, or noise for details."));
+        "noise_height", static_cast<Scalarm>(defaults.noiseHeight), 0, diagonal, "Noise height",
+        "Standard deviation of the noise along the normals. 0: as measured; the log then says how "
+        "high it is. Give it where fine details were taken for noise, or noise for details."));
     list.addParam(RichBool("keep_creases", defaults.keepCreases, "Keep creases",
                            "Do not smooth across edges. Off: rounds them; for shapes that have "
                            "none."));
@@ -50,19 +49,22 @@ RichParameterList parameters(const MeshModel& mesh) {
 }
 
 std::string headline(const spectral::DenoiseResult& result) {
+    const bool isAsMeasured = result.noiseHeight == result.estimatedHeight;
     std::ostringstream text;
     text << std::setprecision(3) << "Spectral Denoise: ";
-    if (result.rounds == 0)
-        text << "nothing changed: no noise that differs from vertex to vertex, above 2 % of a mean "
-                "edge of "
-             << result.meanEdge
-             << ". Against ripples over several vertices, give a noise height, e.g. a tenth of an "
-                "edge, or use Spectral Filter (Fractional)";
+    if (result.rounds == 0 && isAsMeasured)
+        text << "no noise found (measured: " << result.estimatedHeight / result.meanEdge
+             << " mean edges)";
     else
-        text << "the noise is " << result.noiseHeight << " high (standard deviation; "
-             << result.noiseHeight / result.meanEdge << " mean edges); the vertices moved by "
-             << result.rmsDisplacement << " (root mean square), by " << result.maxDisplacement
-             << " at most";
+        text << "the noise is " << result.estimatedHeight << " high (standard deviation; "
+             << result.estimatedHeight / result.meanEdge << " mean edges)";
+    if (!isAsMeasured) text << ", filtered as if it were " << result.noiseHeight << " high";
+    if (result.rounds == 0)
+        text << "; nothing changed. Against ripples over several vertices, give a noise height, "
+                "e.g. a tenth of an edge, or use Spectral Filter (Fractional)";
+    else
+        text << "; the vertices moved by " << result.rmsDisplacement << " (root mean square), by "
+             << result.maxDisplacement << " at most";
     return text.str();
 }
 
