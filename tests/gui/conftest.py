@@ -15,7 +15,7 @@ import pymeshlab
 import pytest
 from desktop import Desktop, save_picture
 from filter_dialog import FilterDialog
-from fractional import HEAD, MENU, WEIGHT
+from fractional import HEAD, MENU, WEIGHT, load, mean_edge, vertices
 from meshlab import MeshLab
 
 ROOT_VARIABLE = "MESHLAB_SPECTRAL_GUI_ROOT"
@@ -70,6 +70,20 @@ def bunny(home: Path) -> Path:
     mesh_set.add_mesh(pymeshlab.Mesh(V, mesh.face_matrix()))
     path = home / "bunny.ply"
     # Nothing but the shape: MeshLab then shows it in its own colour, grey.
+    mesh_set.save_current_mesh(
+        str(path), save_vertex_color=False, save_vertex_quality=False, save_vertex_normal=False
+    )
+    return path
+
+
+@pytest.fixture
+def noisy_bunny(bunny: Path) -> Path:
+    """The bunny with noise of a fifth of an edge along every axis, as a scanner leaves it."""
+    mesh_set = load(bunny)
+    V, F = vertices(mesh_set), mesh_set.current_mesh().face_matrix()
+    noise = 0.2 * mean_edge(mesh_set) * np.random.default_rng(1).standard_normal(V.shape)
+    mesh_set.add_mesh(pymeshlab.Mesh((V + noise).astype(np.float32), F))
+    path = bunny.with_name("scan.ply")
     mesh_set.save_current_mesh(
         str(path), save_vertex_color=False, save_vertex_quality=False, save_vertex_normal=False
     )

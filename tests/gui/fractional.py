@@ -41,11 +41,14 @@ def saved_vertices(meshlab: MeshLab, name: str = "saved.ply") -> NDArray[np.floa
     return vertices(load(path))
 
 
+def mean_edge(mesh_set: pymeshlab.MeshSet) -> float:
+    V, F = vertices(mesh_set), mesh_set.current_mesh().face_matrix()
+    return float(np.linalg.norm(V[F] - V[np.roll(F, 1, axis=1)], axis=2).mean())
+
+
 def default_feature_size(mesh_set: pymeshlab.MeshSet) -> float:
     """Tell the feature size that the filter has by default: six mean edges, at most 5 %."""
-    V, F = vertices(mesh_set), mesh_set.current_mesh().face_matrix()
-    sides = np.linalg.norm(V[F] - V[np.roll(F, 1, axis=1)], axis=2)
-    return min(6 * float(sides.mean()), 0.05 * diagonal(V))
+    return min(6 * mean_edge(mesh_set), 0.05 * diagonal(vertices(mesh_set)))
 
 
 def diagonal(V: NDArray[Any]) -> float:

@@ -12,6 +12,7 @@ from meshlab_spectral.plugin.installation import DOUBLE, SINGLE, extra_plugins_f
 SMOOTHING = "Smoothing, Fairing and Deformation"
 MEASURES = "Quality Measure and Computations"
 ENTRIES = [
+    (SMOOTHING, "Spectral Denoise"),
     (SMOOTHING, "Spectral Filter (Fractional)"),
     (SMOOTHING, "Spectral Filter: Vertex Quality"),
     (SMOOTHING, "Spectral Filter: Vertex Color"),
