@@ -81,6 +81,26 @@ def test_the_dragon_before_and_after(
     save_picture(both, SCREENSHOTS / "meshlab_dragon_before_after.png")
 
 
+def test_a_scan_before_and_with_the_preview_of_denoising(
+    install: Callable[[], None],
+    start: Callable[[Path], MeshLab],
+    noisy_bunny: Path,
+    desktop: Desktop,
+) -> None:
+    install()
+    meshlab = start(noisy_bunny)
+    dialog = meshlab.open_filter(SMOOTHING, "Spectral Denoise")
+    dialog.move(1020, 170)
+    dialog.show_advanced()
+    window = meshlab.main_window().box
+    scene = Box(window.x + 285, window.y + 150, 560, 730)  # where the bunny is seen
+    before = desktop.settled_picture(scene)
+    dialog.preview(True)
+    desktop.settled_picture(scene)
+    after = desktop.picture(scene._replace(width=window.x + window.width - scene.x))
+    save_picture(np.concatenate([before, after], axis=1), SCREENSHOTS / "meshlab_denoise.png")
+
+
 def test_a_manifold_harmonic(meshlab: MeshLab, desktop: Desktop) -> None:
     dialog = meshlab.open_filter(MEASURES, "Manifold Harmonics")
     mode = next(row for row in dialog.rows() if row.label == "Mode")
