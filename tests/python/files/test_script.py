@@ -18,7 +18,7 @@ ENUMERATIONS = {
     "response": 3,
     "basis_update": 3,
     "spectrum": 2,
-    "laplacian": 2,
+    "laplacian": 3,
     "boundary": 2,
     "weight": 2,
 }
