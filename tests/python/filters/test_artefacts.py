@@ -121,8 +121,8 @@ def test_another_feature_size_is_refused_by_name(feature_size: Any) -> None:
 
 
 def test_another_laplacian_is_refused_with_the_choices() -> None:
-    with pytest.raises(OptionError, match="intrinsic delaunay, cotangent"):
-        measure_artefacts(*TRIANGLE, 1.0, "uniform")  # type: ignore[arg-type]
+    with pytest.raises(OptionError, match="intrinsic delaunay, cotangent, uniform"):
+        measure_artefacts(*TRIANGLE, 1.0, "umbrella")  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(

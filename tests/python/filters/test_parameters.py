@@ -60,7 +60,7 @@ def test_the_feature_size_of_a_fine_mesh_is_six_mean_edges(samples: Path) -> Non
 
 def test_only_the_feature_size_can_be_automatic() -> None:
     assert FilterOptions.from_dict({"feature_size": "auto"}) == FilterOptions()
-    with pytest.raises(OptionError, match="tolerance = auto: only feature_size"):
+    with pytest.raises(OptionError, match="tolerance = auto: cannot be automatic"):
         FilterOptions.from_dict({"tolerance": "auto"})
 
 
