@@ -7,6 +7,7 @@
 #include "core/denoise/face_graph.h"
 #include "core/denoise/noise_height.h"
 #include "core/denoise/normal_filter.h"
+#include "core/denoise/unfold.h"
 #include "core/denoise/vertex_update.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/mesh_check.h"
@@ -45,6 +46,7 @@ constexpr double kEdgeScale = 0.22;
 // Where triangles are narrower than the noise is high, normals mean little: no vertex moves farther
 // than noise of this many standard deviations, or impulses of this many mean edges, had moved it.
 constexpr double kMostDeviations = 3.5, kMostEdges = 0.3;
+constexpr double kMostAlongSurface = 2.5;  // standard deviations, to turn folded faces back
 
 /// @param noise  standard deviation along the normals, in mean edges.
 Plan planFor(double noise, bool keepCreases) {
@@ -91,11 +93,17 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
     std::vector<bool> isFixed(graph.onRim.size(), false);
     if (options.boundary == Boundary::Fixed) isFixed = graph.onRim;
     Vertices X = surface.X;
+    Normals N;
     for (int round = 0; round < plan.rounds; ++round) {
         progress.report(static_cast<double>(round) / plan.rounds, "denoising");
         // From the input: it is the normals that are filtered, the vertices only show them.
-        X = followNormals(graph, surface.X, filterNormals(graph, X, plan.filter), isFixed,
-                          plan.sweeps);
+        N = filterNormals(graph, X, plan.filter);
+        X = followNormals(graph, surface.X, N, isFixed, plan.sweeps);
+        limitDisplacement(surface.X, plan.farthest * noise.meanEdge, X);
+    }
+
+    if (plan.rounds > 0) {
+        unfoldFaces(graph, N, kMostAlongSurface * result.noiseHeight, isFixed, X);
         limitDisplacement(surface.X, plan.farthest * noise.meanEdge, X);
     }
 

@@ -36,7 +36,8 @@ struct DenoiseResult {
 /// faces, in which faces across a crease hardly mix. Its low-pass is applied in weak parts, with
 /// the operator taken anew from the shape after each, as in Kovnatsky et al. 2012, Eq. 11
 /// (normal_filter.h); the vertices then follow the normals (vertex_update.h). Vertices move along
-/// normals alone, and closed components keep their volume.
+/// normals alone, but for those of folded faces (unfold.h), and closed components keep their
+/// volume.
 ///
 /// @param V  n x 3 positions, finite.
 /// @param F  m x 3 vertex indices, m >= 1; any topology and orientation.

@@ -97,6 +97,17 @@ TEST(Denoise, MovesNoVertexFarAmongNeedles) {
     EXPECT_LE(result.maxDisplacement, 1.1 * allowed) << "but for the volume";
 }
 
+TEST(Denoise, TurnsFoldedFacesBack) {
+    const Mesh mesh = testing::icosphere(4);
+    const auto folded = [&](const Vertices& X) {
+        const Vertices N = areaNormals(mesh.V, mesh.F);
+        return (areaNormals(X, mesh.F).cwiseProduct(N).rowwise().sum().array() < 0.0).count();
+    };
+    const Mesh noisy = withGaussianNoise(mesh, 0.3, 2);
+    ASSERT_GT(folded(noisy.V), 100);
+    EXPECT_LT(folded(denoise(noisy.V, noisy.F, {}).V), folded(noisy.V) / 4);
+}
+
 TEST(Denoise, KeepsARimUnlessItIsFree) {
     const Mesh mesh = withGaussianNoise(testing::hemisphere(20), 0.2, 1);
     const FaceGraph graph = faceGraph(mesh.F, mesh.V.rows());

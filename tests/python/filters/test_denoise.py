@@ -34,6 +34,11 @@ def noisy(V: Array, F: NDArray[Any], height: float, seed: int = 1) -> Array:
     return np.asarray(V + height * mean_edge(V, F) * noise)
 
 
+def limited(X0: Array, X: Array, farthest: float) -> Array:
+    away = np.linalg.norm(X - X0, axis=1, keepdims=True)
+    return np.asarray(X0 + np.minimum(1, farthest / np.maximum(away, 1e-300)) * (X - X0))
+
+
 def upper_median(values: Array) -> float:
     return float(np.sort(values)[len(values) // 2])
 
@@ -101,6 +106,21 @@ class Reference:
             X = X + pull / faces[:, None]
         return X
 
+    def unfolded(self, X: Array, N: Array, farthest: float) -> Array:
+        faces = self.incidence.sum(axis=1)
+        normal = unit(self.incidence @ N)
+        for _ in range(10):
+            folded = (self.area_normals(X) * N).sum(axis=1) < 0
+            if not folded.any():
+                break
+            corners = np.unique(self.F[folded])
+            way = (self.incidence @ X[self.F].sum(axis=1) / faces[:, None] - 3 * X) / 2
+            way -= (way * normal).sum(axis=1, keepdims=True) * normal
+            corners = corners[np.linalg.norm(way[corners], axis=1) <= farthest]
+            X = X.copy()
+            X[corners] += way[corners]
+        return X
+
     def volume(self, X: Array) -> float:
         a, b, c = (X[self.F[:, k]] for k in range(3))
         return float((np.cross(a, b) * c).sum() / 6)
@@ -112,9 +132,10 @@ class Reference:
         time = 1.5 / (1 + (0.07 / noise) ** 3)
         X = X0
         for _ in range(rounds):
-            X = self.followed(X0, self.filtered_normals(X, time, 0.22), round(6 + 15 * noise))
-            away = np.linalg.norm(X - X0, axis=1, keepdims=True)
-            X = X0 + np.minimum(1, edge * max(3.5 * noise, 0.3) / away) * (X - X0)
+            N = self.filtered_normals(X, time, 0.22)
+            X = self.followed(X0, N, round(6 + 15 * noise))
+            X = limited(X0, X, edge * max(3.5 * noise, 0.3))
+        X = limited(X0, self.unfolded(X, N, 2.5 * height), edge * max(3.5 * noise, 0.3))
         for _ in range(4):  # Newton's method for the volume, along the normals of the vertices
             G = self.incidence @ self.area_normals(X)
             size = np.linalg.norm(G, axis=1).sum() / 6
