@@ -29,8 +29,10 @@ def report_table(report: dict[str, Any], title: str) -> Table:
 
 def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
     if "noise_height" in report:
-        edges = report["noise_height"] / report["mean_edge"]
-        rows = [("Noise height", f"{report['noise_height']:.4g} ({edges:.2g} mean edges)")]
+        found, removed = report["estimated_noise_height"], report["noise_height"]
+        rows = [("Noise height", f"{found:.4g} ({found / report['mean_edge']:.2g} mean edges)")]
+        if removed != found:
+            rows.append(("Filtered as if it were", f"{removed:.4g}"))
     else:
         rows = _rows_of_filter(report)
     rows += [
