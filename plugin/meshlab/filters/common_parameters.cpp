@@ -25,16 +25,27 @@ int choice(const RichParameterList& parameters, const char* name, const QStringL
                                   numbered.join(", ").toStdString());
 }
 
+namespace {
+
+double meanEdge(const MeshModel& mesh) {
+    const MeshMatrices matrices = toMatrices(mesh.cm);
+    return spectral::meanEdgeLength(matrices.V, matrices.F);
+}
+
+}  // namespace
+
+QString meanEdgeTold(const MeshModel& mesh) {
+    return QString(" A mean edge of this mesh is %1 long.").arg(meanEdge(mesh), 0, 'g', 3);
+}
+
 RichPercentage featureSizeParameter(const MeshModel& mesh, const QString& help) {
     const Scalarm diagonal = mesh.cm.bbox.Diag();
-    const MeshMatrices matrices = toMatrices(mesh.cm);
-    const double meanEdge = spectral::meanEdgeLength(matrices.V, matrices.F);
     return {"feature_size",
-            static_cast<Scalarm>(spectral::defaultFeatureSize(meanEdge, diagonal)),
+            static_cast<Scalarm>(spectral::defaultFeatureSize(meanEdge(mesh), diagonal)),
             0,
             diagonal,
             "Feature size",
-            help};
+            help + meanEdgeTold(mesh)};
 }
 
 double featureSize(const RichParameterList& parameters) {

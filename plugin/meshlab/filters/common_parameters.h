@@ -15,6 +15,9 @@ int choice(const RichParameterList& parameters, const char* name, const QStringL
 
 // Parameters that several filters share, with the same names and defaults.
 
+/// A sentence for the help of sizes: how long a mean edge of the mesh is.
+QString meanEdgeTold(const MeshModel& mesh);
+
 /// `feature_size`, a percentage of the bounding box diagonal; default:
 /// spectral::defaultFeatureSize.
 RichPercentage featureSizeParameter(const MeshModel& mesh, const QString& help);

@@ -36,7 +36,8 @@ RichParameterList parameters(const MeshModel& mesh) {
     list.addParam(RichPercentage(
         "noise_height", static_cast<Scalarm>(defaults.noiseHeight), 0, diagonal, "Noise height",
         "Standard deviation of the noise along the normals. 0: as measured; the log then says how "
-        "high it is. Give it where fine details were taken for noise, or noise for details."));
+        "high it is. Give it where fine details were taken for noise, or noise for details." +
+            meanEdgeTold(mesh)));
     list.addParam(RichBool("keep_creases", defaults.keepCreases, "Keep creases",
                            "Do not smooth across edges. Off: rounds them; for shapes that have "
                            "none."));
