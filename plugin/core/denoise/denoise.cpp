@@ -48,6 +48,9 @@ constexpr double kEdgeScale = 0.22;
 constexpr double kMostDeviations = 3.5, kMostEdges = 0.3;
 constexpr double kMostAlongSurface = 2.5;  // standard deviations, to turn folded faces back
 
+/// Share of the time that the estimate takes, for the progress.
+constexpr double kMeasuring = 0.2;
+
 /// @param noise  standard deviation along the normals, in mean edges.
 Plan planFor(double noise, bool keepCreases) {
     Plan plan;
@@ -79,6 +82,7 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
     checkMesh(V, F);
     checkOptions(options);
     const Surface surface = surfaceOf(V, F);
+    progress.report(0.0, "measuring the noise");
     const FaceGraph graph = faceGraph(surface.F, surface.X.rows());
     const NoiseEstimate noise = estimateNoise(graph, surface.X);
 
@@ -95,9 +99,11 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
     Vertices X = surface.X;
     Normals N;
     for (int round = 0; round < plan.rounds; ++round) {
-        progress.report(static_cast<double>(round) / plan.rounds, "denoising");
+        const double done = kMeasuring + (1.0 - kMeasuring) * round / plan.rounds;
+        progress.report(done, "filtering the normals");
         // From the input: it is the normals that are filtered, the vertices only show them.
         N = filterNormals(graph, X, plan.filter);
+        progress.report(done + 0.5 * (1.0 - kMeasuring) / plan.rounds, "moving the vertices");
         X = followNormals(graph, surface.X, N, isFixed, plan.sweeps);
         limitDisplacement(surface.X, plan.farthest * noise.meanEdge, X);
     }
