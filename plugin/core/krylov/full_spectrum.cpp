@@ -79,12 +79,15 @@ double roundOffError(const KrylovSpaces& spaces, double roundOff, const Gain& ga
 /// Successive approximations of F(sqrt(A)) X for one gain.
 class Approximation {
   public:
+    /// @param pole          lambda_p.
     /// @param omega         frequencies at which the gain is sampled.
     /// @param smallestMass  of a vertex.
-    Approximation(const KrylovSpaces& spaces, const Gain& gain, const Eigen::VectorXd& omega,
-                  double smallestMass, const FullSpectrumOptions& options)
+    Approximation(const KrylovSpaces& spaces, const Gain& gain, double pole,
+                  const Eigen::VectorXd& omega, double smallestMass,
+                  const FullSpectrumOptions& options)
         : spaces_(spaces),
           gain_(gain),
+          pole_(pole),
           omega_(omega),
           gains_(omega.unaryExpr(gain)),
           options_(options),
@@ -109,14 +112,35 @@ class Approximation {
         // larger, and decay more slowly and less evenly: the larger of two changes counts.
         const double before = std::exchange(largest_, spaces_.largestEntryOf(change_));
         const double estimate = atVertices_(std::max(before, largest_) / spaces_.largestEntry());
-        return std::max(error, std::min(estimate, error * mostAtVertices_));
+        const double surest = std::max(error, mixingError()) * mostAtVertices_;
+        return std::max(error, std::min(estimate, surest));
     }
 
     Eigen::MatrixXd Y() const { return spaces_.combine(coefficients_); }
 
   private:
+    /// Error of F(sqrt(A)) X, relative to X, where round-off in S mixes eigenvectors: to first
+    /// order, the divided differences of F, as a function of theta, times that round-off.
+    double mixingError() const {
+        constexpr double kRoundOff = 1e-15;  // of each theta
+        const Eigen::ArrayXd theta = (omega_.array().square() + pole_).inverse();
+        double squares = 0.0;
+        for (int c = 0; c < spaces_.columns(); ++c) {
+            const auto [omega, weight] = spaces_.quadrature(c);
+            for (Index i = 0; i < omega.size(); ++i) {
+                const double ritz = 1.0 / (omega[i] * omega[i] + pole_), error = kRoundOff * ritz;
+                const Eigen::ArrayXd distance = (theta - ritz).abs() + error;
+                const double most =
+                    ((gains_.array() - gain_(omega[i])).abs() / distance).maxCoeff() * error;
+                squares += weight[i] * most * most;
+            }
+        }
+        return std::sqrt(squares) / spaces_.norms().matrix().norm();
+    }
+
     const KrylovSpaces& spaces_;
     const Gain& gain_;
+    double pole_;
     const Eigen::VectorXd& omega_;
     Eigen::VectorXd gains_;
     const FullSpectrumOptions& options_;
@@ -138,7 +162,7 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
     const Eigen::VectorXd omega = sampleFrequencies(-ldlt.shift(), options.samples);
     std::vector<Approximation> approximations;
     for (const Gain& gain : gains)
-        approximations.emplace_back(spaces, gain, omega, D.minCoeff(), options);
+        approximations.emplace_back(spaces, gain, -ldlt.shift(), omega, D.minCoeff(), options);
 
     // A space of all dimensions need not be invariant: where eigenvalues span many decades, its
     // last vectors are round-off.

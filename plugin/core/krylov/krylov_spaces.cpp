@@ -15,14 +15,16 @@ namespace spectral {
 
 namespace {
 
-/// Relative norm below which a new direction is round-off: the space is invariant.
+/// Relative norm below which a new direction may be round-off.
 constexpr double kBreakdown = 1e-13;
 
 /// Largest inner product of an orthogonal basis. Semiorthogonality, 1e-8 (Simon 1984), would keep T
 /// accurate, but not combinations of the basis.
 constexpr double kOrthogonal = 1e-10;
 
-/// Inner product of orthogonalized vectors: a few units of round-off.
+/// Inner product of orthogonalized vectors: a few units of round-off. New directions of this
+/// relative norm are nothing else: the space is invariant. Longer ones may be all that is known of
+/// vertices whose share of the mass is 1e-12.
 constexpr double kRoundOff = 1e-15;
 
 /// Calls a function with the number of columns as a compile-time constant.
@@ -214,7 +216,7 @@ void KrylovSpaces::extendColumns() {
     for (int c = 0; c < Columns; ++c) {
         if (exhausted_[c]) continue;
         const double scale = std::hypot(alpha[c], before[c]);
-        exhausted_[c] = !(beta[c] > kBreakdown * scale);
+        exhausted_[c] = !(beta[c] > kRoundOff * scale);
         if (exhausted_[c]) continue;
         beta_[c].push_back(beta[c]);
         inverse[c] = 1.0 / beta[c];

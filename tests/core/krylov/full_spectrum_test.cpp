@@ -150,6 +150,19 @@ TEST(FullSpectrum, IsExactWhenTheKrylovSpaceIsInvariant) {
     EXPECT_LT((result.Y - expected).cwiseAbs().maxCoeff(), 1e-12);
 }
 
+TEST(FullSpectrum, IsAccurateAtVerticesOfHardlyAnyMass) {
+    Mesh tiny = testing::icosphere(0);  // the larger one alone has an invariant space
+    tiny.V *= 1e-6;
+    const Operator A(testing::joined(testing::icosphere(0), tiny));
+    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    const double cutoff = 1.5e6;
+    const Gain gain = fractionalPower(TransferFunction({}, cutoff), 1.0);
+    const FullSpectrumResult result = testing::filteredFullSpectrum(A, gain, cutoff, 1e-8);
+    const Vertices expected = testing::filteredDense(A, dense, gain);
+    EXPECT_GT((expected - A.mesh.V).cwiseAbs().maxCoeff(), 1e-7);
+    EXPECT_LT((result.Y - expected).cwiseAbs().maxCoeff(), 1e-8);
+}
+
 TEST(FullSpectrum, LeavesASignalOfConstantsAlone) {
     const Operator A(testing::blob());
     ShiftedLdlt ldlt;
