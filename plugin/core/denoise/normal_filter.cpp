@@ -63,6 +63,7 @@ Normals filterNormals(const FaceGraph& graph, const Vertices& X,
                       const NormalFilterOptions& options) {
     Vertices N = areaNormals(X, graph.F);
     const Eigen::VectorXd area = N.rowwise().norm();
+    if (!(area.maxCoeff() > 0.0)) return N;  // needles all, without normals
     const Eigen::VectorXd mass = (area / area.mean()).cwiseMax(kSmallestArea).cwiseSqrt();
     const SparseMatrix A = system(graph, X, N, mass, options);
     normalizeRows(N);

@@ -49,6 +49,11 @@ Vertices volumeGradient(const Vertices& X, const Faces& F) {
     return gradient;
 }
 
+/// An offset is at most so many times the largest displacement that it makes up for: a surface that
+/// moves by a length changes its volume by at most its area times that. Next to no volume, Newton's
+/// method goes anywhere.
+constexpr double kMostOffset = 2.0;
+
 /// Moves a closed component until it has the volume; returns whether it does.
 bool offsetTo(double volume, const Faces& F, const Eigen::VectorXd& weight, Vertices& X) {
     constexpr int kMostSteps = 50;
@@ -72,6 +77,7 @@ bool offsetTo(double volume, const Faces& F, const Eigen::VectorXd& weight, Vert
 
 PreservedVolumes preserveVolumes(const Vertices& X0, const Faces& F, const Components& components,
                                  const Eigen::VectorXd& weight, Vertices& X) {
+    constexpr double kRoundOff = 1e-9;  // of volumes, as a displacement of the vertices
     PreservedVolumes volumes;
     for (const Faces& component : facesByComponent(F, components)) {
         if (!isClosed(component)) {
@@ -80,9 +86,15 @@ PreservedVolumes preserveVolumes(const Vertices& X0, const Faces& F, const Compo
         }
         const Surface before = surfaceOf(X, component);  // alone, and near the origin
         Eigen::VectorXd itsWeight(before.X.rows());
-        for (Index i = 0; i < itsWeight.size(); ++i) itsWeight[i] = weight[before.vertex[i]];
+        double most = kRoundOff * before.X.cwiseAbs().maxCoeff();
+        for (Index i = 0; i < itsWeight.size(); ++i) {
+            const Index v = before.vertex[i];
+            itsWeight[i] = weight[v];
+            most = std::max(most, kMostOffset * (X.row(v) - X0.row(v)).norm());
+        }
         Vertices moved = before.X;
-        if (!offsetTo(signedVolume(X0, component), before.F, itsWeight, moved)) {
+        if (!offsetTo(signedVolume(X0, component), before.F, itsWeight, moved) ||
+            (moved - before.X).rowwise().norm().maxCoeff() > most) {
             ++volumes.lost;
             continue;
         }

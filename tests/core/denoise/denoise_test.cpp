@@ -220,6 +220,12 @@ TEST(NormalFilter, SolvesItsEquation) {
     EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 1e-4);
 }
 
+TEST(NormalFilter, LeavesNeedlesWithoutNormals) {
+    const Mesh needles{(Vertices(4, 3) << 0, 0, 0, 1, 0, 0, 2, 0, 0, 4, 0, 0).finished(),
+                       (Faces(2, 3) << 0, 1, 2, 1, 3, 2).finished()};
+    EXPECT_EQ(filterNormals(faceGraph(needles.F, 4), needles.V, {}), Normals::Zero(2, 3));
+}
+
 TEST(VertexUpdate, GivesAPlaneItsNormalAndMovesNothingElse) {
     Mesh mesh = testing::rectangle(1, 1, 12, 12);
     const Normals up = faceNormals(mesh.V, mesh.F);
