@@ -158,6 +158,11 @@ void append(const GeometrySpectrum& r, Numbers& to) {
        << r.bandAmplitudes << r.bandNoise << r.noiseHeight << r.noiseFeatureSize << r.mismatch;
 }
 
+void append(const DenoiseResult& r, Numbers& to) {
+    to << r.V << r.estimatedHeight << r.noiseHeight << r.meanEdge << r.rounds << r.maxDisplacement
+       << r.rmsDisplacement << r.volumeBefore << r.volumeAfter << r.volumes.preserved;
+}
+
 const char* nameOf(LaplacianKind kind) {
     return kind == LaplacianKind::Cotangent ? "cotangent" : "delaunay";
 }
@@ -201,6 +206,10 @@ struct Describe {
         text << "bands " << o.lowest << " to " << o.highest << ", " << o.perOctave
              << " per octave, diagonal " << o.diagonal;
     }
+    void operator()(const DenoiseOptions& o) const {
+        text << "denoise, strength " << o.strength << ", noise " << o.noiseHeight / diagonal
+             << (o.keepCreases ? "" : ", creases smoothed") << ", " << nameOf(o.boundary);
+    }
 };
 
 /// Calls the entry point of each kind of options.
@@ -219,6 +228,9 @@ struct Call {
     }
     Result operator()(const SpectrumOptions& o) const {
         return geometrySpectrum(mesh.V, mesh.F, o, progress);
+    }
+    Result operator()(const DenoiseOptions& o) const {
+        return denoise(mesh.V, mesh.F, o, progress);
     }
     Result operator()(const BandsOptions&) const { return {}; }
 };
@@ -258,6 +270,25 @@ Case makeCase(Choices& choices, Sizes sizes) {
         const LaplacianKind kind = kindOf(choices);
         made.options = SpectrumOptions{size, kind, boundaryOf(choices)};
     }
+    return made;
+}
+
+Case makeDenoiseCase(Choices& choices) {
+    Case made;
+    made.repeats = choices.oneIn(4);
+    if (choices.oneIn(50)) made.cancelAt = choices.between(1, 12);
+    made.mesh = makeMesh(choices, choices.oneIn(4) ? Sizes::Any : Sizes::MostlySmall);
+    const Vertices& V = made.mesh.mesh.V;
+    const double diagonal = V.rows() > 0 ? boundingBoxDiagonal(V) : 1.0;
+    DenoiseOptions options;
+    options.strength = choices.pick({0.0, 1.0, 1.0, 0.5, 3.0, 1e3});
+    if (!choices.oneIn(3))  // few vertices do not tell the noise
+        options.noiseHeight = choices.logUniform(1e-4, 10.0) * diagonal;
+    options.keepCreases = !choices.oneIn(3);
+    options.boundary = boundaryOf(choices);
+    made.mustThrow = choices.oneIn(40);
+    if (made.mustThrow) options.strength = choices.pick({-1.0, std::nan(""), HUGE_VAL});
+    made.options = options;
     return made;
 }
 

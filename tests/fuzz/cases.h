@@ -8,6 +8,7 @@
 #include "core/analysis/artefacts.h"
 #include "core/analysis/geometry_spectrum.h"
 #include "core/analysis/manifold_harmonics.h"
+#include "core/denoise/denoise.h"
 #include "core/filter/fractional_filter.h"
 #include "core/support/errors.h"
 #include "fuzz/choices.h"
@@ -21,9 +22,10 @@ struct BandsOptions {
     int perOctave;
 };
 
-using Options =
-    std::variant<FilterOptions, ArtefactOptions, HarmonicsOptions, SpectrumOptions, BandsOptions>;
-using Result = std::variant<FilterResult, Artefacts, ManifoldHarmonics, GeometrySpectrum>;
+using Options = std::variant<FilterOptions, ArtefactOptions, HarmonicsOptions, SpectrumOptions,
+                             BandsOptions, DenoiseOptions>;
+using Result =
+    std::variant<FilterResult, Artefacts, ManifoldHarmonics, GeometrySpectrum, DenoiseResult>;
 
 /// One call of an entry point of the core.
 struct Case {
@@ -36,6 +38,8 @@ struct Case {
 };
 
 Case makeCase(Choices& choices, Sizes sizes = Sizes::MostlySmall);
+
+Case makeDenoiseCase(Choices& choices);
 
 /// Gives a filter what seeds had no bytes for at first: custom gains, a part of the mesh, creases,
 /// volumes. The bytes are those of another stream; other entry points stay as they are.

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "core/analysis/bands.h"
+#include "core/denoise/face_graph.h"
 #include "core/mesh/creases.h"
 #include "core/mesh/measures.h"
 #include "fuzz/accuracy.h"
@@ -65,6 +66,17 @@ void checkRepeated(const Case& of, Verdict& verdict) {
         verdict.failures.push_back(failure("depends on threads", "two threads differ from one"));
 }
 
+void checkUnmoved(const Vertices& V, const Vertices& moved, const std::vector<bool>& mustStay,
+                  std::vector<Failure>& failures) {
+    for (Index i = 0; i < V.rows(); ++i) {
+        const Eigen::RowVector3d before = V.row(i), after = moved.row(i);
+        if (!mustStay[i] || isSame(before, after)) continue;
+        failures.push_back(failure(before == after ? "negative zero" : "moved", "vertex ", i,
+                                   " must stay where it is"));
+        return;
+    }
+}
+
 void checkFilter(const Case& of, const FilterOptions& options, const FilterResult& result,
                  std::vector<Failure>& failures) {
     const auto& [V, F] = of.mesh.mesh;
@@ -90,13 +102,7 @@ void checkFilter(const Case& of, const FilterOptions& options, const FilterResul
     for (std::size_t i = 0; i < isFixed.size(); ++i)
         mustStay[surface.vertex[i]] = isFixed[i] || !isReached[components.label[i]] ||
                                       (weight.size() > 0 && weight[surface.vertex[i]] == 0.0);
-    for (Index i = 0; i < V.rows(); ++i) {
-        const Eigen::RowVector3d before = V.row(i), after = result.V.row(i);
-        if (!mustStay[i] || isSame(before, after)) continue;
-        failures.push_back(failure(before == after ? "negative zero" : "moved", "vertex ", i,
-                                   " must stay where it is"));
-        break;
-    }
+    checkUnmoved(V, result.V, mustStay, failures);
 
     const double sum = Eigen::Map<const Eigen::VectorXd>(
                            result.stepSizes.data(), static_cast<Index>(result.stepSizes.size()))
@@ -132,6 +138,24 @@ void checkArtefacts(const Case& of, const Artefacts& result, std::vector<Failure
              result.rms > result.maximum * (1.0 + 1e-12))
         failures.push_back(failure("lengths", "root mean square ", result.rms, ", maximum ",
                                    result.maximum, ", largest ", result.length.maxCoeff()));
+}
+
+void checkDenoise(const Case& of, const DenoiseOptions& options, const DenoiseResult& result,
+                  std::vector<Failure>& failures) {
+    const auto& [V, F] = of.mesh.mesh;
+    const Surface surface = surfaceOf(V, F);
+    const std::vector<bool> onRim = faceGraph(surface.F, surface.X.rows()).onRim;
+    std::vector<bool> mustStay(static_cast<std::size_t>(V.rows()), true);
+    for (std::size_t i = 0; i < onRim.size(); ++i)
+        mustStay[surface.vertex[i]] =
+            options.strength == 0.0 || (options.boundary == Boundary::Fixed && onRim[i]);
+    checkUnmoved(V, result.V, mustStay, failures);
+    // To preserve volumes, it may be made up for by an offset of twice the size.
+    const double most =
+        std::max(3.5 * std::min(result.noiseHeight, result.meanEdge), 0.3 * result.meanEdge) *
+        (result.volumes.preserved > 0 ? 3.0 : 1.0);
+    if (!(result.maxDisplacement <= most * (1.0 + 1e-9) + 1e-15 * V.cwiseAbs().maxCoeff()))
+        failures.push_back(failure("displacement", result.maxDisplacement, " of at most ", most));
 }
 
 bool isAscending(const Eigen::VectorXd& v) { return std::is_sorted(v.begin(), v.end()); }
@@ -217,6 +241,10 @@ struct CheckResult {
         const auto& result = std::get<GeometrySpectrum>(*verdict.outcome.result);
         checkSpectrum(result, verdict.failures);
         if (compares) add(accuracyOf(of.mesh.mesh, options, result));
+    }
+    void operator()(const DenoiseOptions& options) const {
+        checkDenoise(of, options, std::get<DenoiseResult>(*verdict.outcome.result),
+                     verdict.failures);
     }
     void operator()(const BandsOptions&) const {}
 

@@ -7,9 +7,9 @@
 //
 // Cases have seeds S, S + 64, ...: nearer ones share bytes. Seeds below 1e12 make meshes of any
 // size, larger ones mostly small meshes, of which there are more in an hour; those from 1e15 on
-// also give filters custom gains, parts of the mesh, creases and volumes. --limit is for one case;
-// --errors prints the errors that are allowed, too; --compare no leaves out the dense solver, for
-// sanitizers.
+// also give filters custom gains, parts of the mesh, creases and volumes; those from 2e15 denoise.
+// --limit is for one case; --errors prints the errors that are allowed, too; --compare no leaves
+// out the dense solver, for sanitizers.
 //
 // A file of seeds has one in each line, with a remark after it. Seeds mean the same on every
 // platform, but not after a change of meshes.cpp or cases.cpp.
@@ -39,6 +39,9 @@ constexpr std::uint64_t kFirstOfSmall = 1000000000000;
 /// Seeds from here on call `addPart`, with a stream of its own: the others keep their meaning.
 constexpr std::uint64_t kFirstOfParts = 1000000000000000;
 constexpr std::uint64_t kStreamOfParts = 1ULL << 62;
+
+/// Seeds from here on denoise.
+constexpr std::uint64_t kFirstOfDenoise = 2000000000000000;
 
 struct Arguments {
     std::uint64_t cases = 1000, firstSeed = kFirstOfSmall;
@@ -88,6 +91,7 @@ Arguments argumentsOf(int count, char** values) {
 Case caseOf(std::uint64_t seed) {
     const std::vector<std::uint8_t> bytes = bytesOf(seed);
     Choices choices(bytes.data(), bytes.size());
+    if (seed >= kFirstOfDenoise) return makeDenoiseCase(choices);
     Case made = makeCase(choices, seed < kFirstOfSmall ? Sizes::Any : Sizes::MostlySmall);
     if (seed >= kFirstOfParts) {
         const std::vector<std::uint8_t> more = bytesOf(seed + kStreamOfParts);
