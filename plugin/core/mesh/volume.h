@@ -11,7 +11,7 @@ struct PreservedVolumes {
     int preserved = 0;  ///< Closed components that have their volume back.
     int open = 0;       ///< Components that have no volume: open, or of inconsistent orientation.
     int lost = 0;       ///< Closed components that no offset gives their volume back, but one of
-                        ///< more than twice their largest displacement.
+                        ///< more than ten times their displacement.
 };
 
 /// Gives every closed component its volume back, by an offset along the normals of its shape.
