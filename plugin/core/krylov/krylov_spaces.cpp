@@ -124,6 +124,7 @@ KrylovSpaces::KrylovSpaces(const ShiftedLdlt& ldlt, const Eigen::VectorXd& D,
       overlap_(X.cols()),
       overlapBefore_(X.cols()),
       exhausted_(X.cols()),
+      isOfRoundOff_(X.cols()),
       roundOff_(kBreakdown) {
     assert(columns_ >= 1 && columns_ <= kMostSignals);
     const Eigen::VectorXi& order = ldlt.factorOrder();
@@ -167,10 +168,12 @@ void KrylovSpaces::start(const Eigen::MatrixXd& X) {
             return sum;
         });
     norms_ = squares.sqrt().transpose();
+    const Row<Columns> constants =
+        (mean.square().colwise() * constants_.masses().array()).colwise().sum().sqrt();
     for (const double entry : largest) largestEntry_ = std::max(largestEntry_, entry);
     Row<Columns> inverse = Row<Columns>::Zero();
     for (int c = 0; c < Columns; ++c) {
-        exhausted_[c] = !(norms_[c] > 0.0);
+        exhausted_[c] = !(norms_[c] > kBreakdown * constants[c]);  // what is left is round-off
         if (!exhausted_[c]) inverse[c] = 1.0 / norms_[c];
     }
     basis_.emplace_back(n * Columns);
@@ -205,7 +208,10 @@ void KrylovSpaces::extendColumns() {
         row -= alpha * rowOf<Columns>(q, i) + before * rowOf<Columns>(p, i);
         return Row<Columns>(row);
     });
-    const auto constants = w.means.colwise() * constants_.masses().array().sqrt();
+    Eigen::Array<double, Eigen::Dynamic, Columns> constants =
+        w.means.colwise() * constants_.masses().array().sqrt();
+    for (int c = 0; c < Columns; ++c)
+        if (isOfRoundOff_[c]) constants.col(c).setZero();  // says nothing about the signal
     roundOff_ = std::max(roundOff_, -ldlt_.shift() * constants.matrix().norm());
     Row<Columns> beta = w.squares.sqrt();
     for (int c = 0; c < Columns; ++c)
@@ -216,6 +222,7 @@ void KrylovSpaces::extendColumns() {
     for (int c = 0; c < Columns; ++c) {
         if (exhausted_[c]) continue;
         const double scale = std::hypot(alpha[c], before[c]);
+        isOfRoundOff_[c] = isOfRoundOff_[c] || !(beta[c] > kBreakdown * scale);
         exhausted_[c] = !(beta[c] > kRoundOff * scale);
         if (exhausted_[c]) continue;
         beta_[c].push_back(beta[c]);

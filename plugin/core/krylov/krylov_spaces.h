@@ -117,7 +117,8 @@ class KrylovSpaces {
     /// Estimated inner products of the newest vector with all others, and of the one before.
     std::vector<std::vector<double>> overlap_, overlapBefore_;
     bool orthogonalizesNext_ = false;
-    std::vector<bool> exhausted_;  // whether the space of a column is invariant
+    std::vector<bool> exhausted_;     // whether the space of a column is invariant
+    std::vector<bool> isOfRoundOff_;  // whether its newest vectors may be round-off
     Eigen::ArrayXd norms_;
     double largestEntry_ = 0.0;
     double roundOff_;

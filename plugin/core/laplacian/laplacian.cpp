@@ -12,17 +12,18 @@ namespace spectral {
 namespace {
 
 /// W with the weights (cot a_ij + cot b_ij)/2.
-/// @param cotangents  (t, c) -> cotangent of the angle at corner c of triangle t.
+/// @param cotangentsOf  t -> cotangents of the angles at the corners of triangle t.
 template <class Cotangents>
-SparseMatrix stiffnessOf(Index n, const Faces& F, const Cotangents& cotangents) {
+SparseMatrix stiffnessOf(Index n, const Faces& F, const Cotangents& cotangentsOf) {
     Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(n);
     std::vector<Eigen::Triplet<double>> entries;
     entries.reserve(static_cast<std::size_t>(6 * F.rows() + n));
     for (Index t = 0; t < F.rows(); ++t) {
+        const Eigen::Vector3d cotangents = cotangentsOf(t);
         for (int c = 0; c < 3; ++c) {
             // The angle at corner c lies opposite to the edge (i, j).
             const int i = F(t, (c + 1) % 3), j = F(t, (c + 2) % 3);
-            const double w = 0.5 * cotangents(t, c);
+            const double w = 0.5 * cotangents[c];
             entries.emplace_back(i, j, -w);
             entries.emplace_back(j, i, -w);
             diagonal[i] += w;
@@ -38,18 +39,22 @@ SparseMatrix stiffnessOf(Index n, const Faces& F, const Cotangents& cotangents) 
 }  // namespace
 
 Laplacian cotangentLaplacian(const Vertices& V, const Faces& F) {
-    const auto cotangent = [&](Index t, int c) {
-        const Eigen::RowVector3d corner = V.row(F(t, c));
-        const Eigen::RowVector3d a = V.row(F(t, (c + 1) % 3)) - corner;
-        const Eigen::RowVector3d b = V.row(F(t, (c + 2) % 3)) - corner;
-        return a.dot(b) / a.cross(b).norm();
+    const auto cotangents = [&](Index t) {
+        Eigen::RowVector3d corner[3];
+        for (int c = 0; c < 3; ++c) corner[c] = V.row(F(t, c));
+        const double twiceArea = (corner[1] - corner[0]).cross(corner[2] - corner[0]).norm();
+        Eigen::Vector3d result;
+        for (int c = 0; c < 3; ++c)
+            result[c] =
+                (corner[(c + 1) % 3] - corner[c]).dot(corner[(c + 2) % 3] - corner[c]) / twiceArea;
+        return result;
     };
-    return {stiffnessOf(V.rows(), F, cotangent), lumpedMass(V, F)};
+    return {stiffnessOf(V.rows(), F, cotangents), lumpedMass(V, F)};
 }
 
 Laplacian uniformLaplacian(const Vertices& V, const Faces& F) {
-    const double cotangentOf60Degrees = 1.0 / std::sqrt(3.0);
-    SparseMatrix W = stiffnessOf(V.rows(), F, [=](Index, int) { return cotangentOf60Degrees; });
+    const Eigen::Vector3d of60Degrees = Eigen::Vector3d::Constant(1.0 / std::sqrt(3.0));
+    SparseMatrix W = stiffnessOf(V.rows(), F, [&](Index) { return of60Degrees; });
     const double mean = lumpedMass(V, F).mean();
     return {std::move(W), Eigen::VectorXd::Constant(V.rows(), mean)};
 }

@@ -50,8 +50,8 @@ Vertices volumeGradient(const Vertices& X, const Faces& F) {
 }
 
 /// An offset is at most so many times the largest displacement that it makes up for: a surface that
-/// moves by a length changes its volume by at most its area times that, and its area may shrink to a
-/// small part. Next to no volume, Newton's method goes anywhere.
+/// moves by a length changes its volume by at most its area times that, and its area may shrink to
+/// a small part. Next to no volume, Newton's method goes anywhere.
 constexpr double kMostOffset = 10.0;
 
 /// Moves a closed component until it has the volume; returns whether it does.
