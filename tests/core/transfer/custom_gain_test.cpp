@@ -195,27 +195,38 @@ TEST(CustomGain, FiltersByPointsAsByTheResponseTheyAreTakenFrom) {
     const testing::Mesh mesh = testing::blob();
     const double diagonal = boundingBoxDiagonal(mesh.V);
     FilterOptions options;
-    options.transferFunction.response = Response::Butterworth;
     options.featureSize = 0.3 * diagonal;
     options.steps = 2;
-    const Vertices expected = fractionalFilter(mesh.V, mesh.F, options).V;
+    for (const FilterType type :
+         {FilterType::LowPass, FilterType::HighPass, FilterType::BandPass, FilterType::BandStop})
+        for (const Response response : {Response::Gaussian, Response::Butterworth}) {
+            TransferFunctionOptions builtIn;
+            builtIn.type = type;
+            builtIn.response = response;
+            builtIn.passGain = 1.6;
+            builtIn.stopGain = 0.4;  // points have no gain of 0
+            options.transferFunction = builtIn;
+            const Vertices expected = fractionalFilter(mesh.V, mesh.F, options).V;
 
-    const TransferFunction F(options.transferFunction, cutoffFrequency(options.featureSize));
-    std::ostringstream points;
-    points << std::setprecision(12);
-    constexpr int kCount = 1000, kPerOctave = 256;
-    for (int i = -kCount; i <= kCount; ++i) {
-        const double size = options.featureSize * std::exp2(-static_cast<double>(i) / kPerOctave);
-        points << (i > -kCount ? ", " : "") << size << ":" << F(cutoffFrequency(size));
-    }
-    const CustomGain equalizer = parseGain(points.str(), 1.0, {diagonal, 1.0});
-    options.transferFunction = {};
-    options.transferFunction.type = FilterType::Custom;
-    options.transferFunction.custom = equalizer.gain;
-    EXPECT_NEAR(equalizer.cutoff, cutoffFrequency(options.featureSize), 1e-3);
-    const FilterResult actual = fractionalFilter(mesh.V, mesh.F, options);
-    EXPECT_TRUE(actual.accuracyReached);
-    EXPECT_LT((actual.V - expected).rowwise().norm().maxCoeff(), 1e-6 * diagonal);
+            const TransferFunction F(builtIn, cutoffFrequency(options.featureSize));
+            std::ostringstream points;
+            points << std::setprecision(12);
+            constexpr int kCount = 1000, kPerOctave = 256;
+            for (int i = -kCount; i <= kCount; ++i) {
+                const double octaves = -static_cast<double>(i) / kPerOctave;
+                const double size = options.featureSize * std::exp2(octaves);
+                points << (i > -kCount ? ", " : "") << size << ":" << F(cutoffFrequency(size));
+            }
+            const CustomGain equalizer = parseGain(points.str(), 1.0, {diagonal, 1.0});
+            options.transferFunction = {};
+            options.transferFunction.type = FilterType::Custom;
+            options.transferFunction.custom = equalizer.gain;
+            EXPECT_NEAR(equalizer.cutoff, cutoffFrequency(options.featureSize), 1e-3);
+            const FilterResult actual = fractionalFilter(mesh.V, mesh.F, options);
+            EXPECT_TRUE(actual.accuracyReached);
+            EXPECT_LT((actual.V - expected).rowwise().norm().maxCoeff(), 1e-6 * diagonal)
+                << static_cast<int>(type) << ", " << static_cast<int>(response);
+        }
 }
 
 TEST(CustomGain, JumpsThatNothingEvaluatesAreToldBeforeTheWork) {
