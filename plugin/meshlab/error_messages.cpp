@@ -40,8 +40,8 @@ std::string largerTriangles(const RichParameterList& parameters) {
 std::string stablerFilter(const RichParameterList& parameters) {
     if (hasChoice(parameters, "laplacian", 1)) return "choose laplacian = intrinsic delaunay";
     if (hasChoice(parameters, "basis_update", 0))
-        return "a strong filter with basis_update = full pinches thin parts off: basis_update = "
-               "conformal is the more stable choice";
+        return "a strong filter with basis_update = full pinches thin parts off: choose "
+               "basis_update = conformal";
     return std::string("choose a smaller feature_size, or ") + kRemesh;
 }
 
