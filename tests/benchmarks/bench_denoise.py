@@ -34,6 +34,7 @@ import pymeshlab
 import pyvista
 import scipy.sparse as sp
 from meshlab_spectral.figures.pictures import Panel, View, draw_side_by_side
+from meshlab_spectral.filters.arrays import mean_edge
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -175,11 +176,6 @@ def noise_of(kind: str, height: float, V: Array, F: Any) -> Array:
     if kind == "outliers":  # one vertex in a hundred
         values *= random.random(len(V)) < 0.01
     return N * (height * mean_edge(V, F) * values)[:, None]
-
-
-def mean_edge(V: Array, F: Any) -> float:
-    """Mean side length over all triangles."""
-    return float(np.linalg.norm(V[F] - V[np.roll(F, 1, axis=1)], axis=2).mean())
 
 
 def print_estimates(files: list[Path]) -> None:

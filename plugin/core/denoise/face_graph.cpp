@@ -1,37 +1,14 @@
 #include "core/denoise/face_graph.h"
 
 #include <Eigen/Geometry>
-#include <algorithm>
-#include <tuple>
 #include <utility>
 
+#include "core/mesh/sides.h"
 #include "core/support/threads.h"
 
 namespace spectral {
 
 namespace {
-
-/// A side of a face, from its lower to its higher vertex.
-struct Side {
-    int low, high, face;
-    bool isReversed;  ///< The face runs through it from `high` to `low`.
-    bool isOfEdge(const Side& other) const { return low == other.low && high == other.high; }
-    bool operator<(const Side& other) const {
-        return std::tie(low, high, face) < std::tie(other.low, other.high, other.face);
-    }
-};
-
-std::vector<Side> sortedSides(const Faces& F) {
-    std::vector<Side> sides;
-    sides.reserve(static_cast<std::size_t>(3 * F.rows()));
-    for (Index t = 0; t < F.rows(); ++t)
-        for (int c = 0; c < 3; ++c) {
-            const int i = F(t, c), j = F(t, (c + 1) % 3);
-            sides.push_back({std::min(i, j), std::max(i, j), static_cast<int>(t), i > j});
-        }
-    std::sort(sides.begin(), sides.end());
-    return sides;
-}
 
 /// The neighbours of a face, at most one for each side.
 struct Neighbours {
@@ -72,21 +49,21 @@ FaceGraph faceGraph(const Faces& F, Index vertexCount) {
     graph.F = F;
     graph.onRim.assign(static_cast<std::size_t>(vertexCount), false);
     std::vector<Neighbours> neighbours(static_cast<std::size_t>(F.rows()));
-    const std::vector<Side> sides = sortedSides(F);
-    for (auto first = sides.begin(); first != sides.end();) {
-        const auto next = std::find_if(first, sides.end(),
-                                       [&](const Side& side) { return !side.isOfEdge(*first); });
-        if (next - first == 2) {
-            const auto second = first + 1;
-            graph.edges.push_back({{first->face, second->face}, {first->low, first->high}});
-            const bool isOpposite = first->isReversed == second->isReversed;
-            neighbours[first->face].add(second->face, isOpposite);
-            neighbours[second->face].add(first->face, isOpposite);
-        } else {
+    // Whether the face runs through the side from its higher to its lower vertex.
+    const auto isReversed = [&](const Side& side) {
+        return F(side.face, (side.opposite + 1) % 3) == side.high;
+    };
+    forEachEdge(sidesByEdge(F), [&](auto first, auto end) {
+        if (end - first != 2) {
             graph.onRim[first->low] = graph.onRim[first->high] = true;
+            return;
         }
-        first = next;
-    }
+        const Side &a = *first, &b = *(first + 1);
+        graph.edges.push_back({{a.face, b.face}, {a.low, a.high}});
+        const bool isOpposite = isReversed(a) == isReversed(b);
+        neighbours[a.face].add(b.face, isOpposite);
+        neighbours[b.face].add(a.face, isOpposite);
+    });
     orient(neighbours, graph.F);
 
     graph.firstFace.assign(static_cast<std::size_t>(vertexCount) + 1, 0);

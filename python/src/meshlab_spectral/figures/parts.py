@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from meshlab_spectral.figures.pictures import Frame, Panel, View, render
 from meshlab_spectral.figures.sheet import FONT_SIZE, INK, Sheet
 from meshlab_spectral.files.meshes import load_arrays
-from meshlab_spectral.filters.arrays import lumped_areas
+from meshlab_spectral.filters.arrays import lumped_areas, mean_edge
 from meshlab_spectral.filters.fractional import filter_mesh
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.filters.signals import filter_scalars
@@ -41,10 +41,6 @@ def _diagonal(V: Array) -> float:
     return float(np.linalg.norm(np.ptp(V, axis=0)))
 
 
-def _mean_edge(V: Array, F: Indices) -> float:
-    return float(np.linalg.norm(V[F] - V[np.roll(F, 1, axis=1)], axis=2).mean())
-
-
 def _row(panels: list[Panel], view: View, curves: int = 0) -> Sheet:
     """Draw panels side by side; `curves` columns to the right stay empty."""
     frame = Frame.around([panel.V for panel in panels], view)
@@ -62,7 +58,7 @@ def equalizer(meshes: Path, path: Path) -> None:
     Y, _ = filter_mesh(V, F, **options.as_dict())
     panels = [Panel("original", V, F), Panel(f"transfer_function\n{points}", Y, F)]
     sheet = _row(panels, View.of_widest_side(V), 1)
-    lengths = MeshLengths(0.05 * _diagonal(V), _diagonal(V), _mean_edge(V, F))
+    lengths = MeshLengths(0.05 * _diagonal(V), _diagonal(V), mean_edge(V, F))
     _plot_bands(sheet.plot(0, 2), options, lengths)
     sheet.save(path)
 
@@ -130,7 +126,7 @@ def _creases(source: Path, noise: float, view: View) -> tuple[list[Panel], View]
     mesh_set.meshing_remove_duplicate_vertices()  # an .stl file has three for each triangle
     V = mesh_set.current_mesh().vertex_matrix().copy()
     F = mesh_set.current_mesh().face_matrix().astype(np.int64)
-    edge = _mean_edge(V, F)
+    edge = mean_edge(V, F)
     X = V + noise * edge * np.random.default_rng(1).standard_normal(V.shape)
     size = {"feature_size": str(6 * edge)}
     shapes = {

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -50,9 +48,8 @@ def lumped_areas(V: NDArray[np.float64], F: NDArray[np.integer]) -> NDArray[np.f
     return lumped
 
 
-def mean_edge(mesh: Any) -> float:
-    """Mean side length over all triangles of a `pymeshlab.Mesh`; 0 without triangles."""
-    V, F = mesh.vertex_matrix(), mesh.face_matrix()
+def mean_edge(V: NDArray[np.float64], F: NDArray[np.integer]) -> float:
+    """Mean side length over all triangles; 0 without triangles."""
     if len(F) == 0:
         return 0.0
     return float(np.linalg.norm(V[F] - V[np.roll(F, 1, axis=1)], axis=2).mean())

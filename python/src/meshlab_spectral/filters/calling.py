@@ -5,8 +5,13 @@ from __future__ import annotations
 import re
 from typing import Any
 
+from numpy.typing import ArrayLike
+
 from meshlab_spectral.errors import FilterError
+from meshlab_spectral.filters.arrays import mesh_arrays
+from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.plugin.library import last_warnings
+from meshlab_spectral.plugin.loading import load
 
 # pymeshlab 2025.7 crashes after a MeshSet in which any filter has thrown is destroyed. Such a
 # MeshSet is therefore kept alive until the process ends.
@@ -59,6 +64,34 @@ def call_filter(mesh_set: Any, name: str, parameters: dict[str, Any]) -> dict[st
         raise FilterError(_wrong_types(parameters, defaults) or reason_of(error)) from error
     report["warnings"] = last_warnings()
     return report
+
+
+def filtered_arrays(
+    vertices: ArrayLike, faces: ArrayLike, options: Options
+) -> tuple[Any, dict[str, Any]]:
+    """Apply the filter of a table of options to a mesh from arrays.
+
+    Returns
+    -------
+    mesh_set : pymeshlab.MeshSet
+        With the result.
+    report : dict
+        As from `call_filter`, with lists instead of arrays.
+
+    Raises
+    ------
+    ValueError, FilterError, PluginError
+        As `mesh_arrays`, `call_filter` and `load`.
+    """
+    V, F = mesh_arrays(vertices, faces)
+    load()
+    import pymeshlab
+
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.add_mesh(pymeshlab.Mesh(V, F))
+    parameters = options.pymeshlab_parameters(mesh_set.current_mesh())
+    report = call_filter(mesh_set, options.FILTER, parameters)
+    return mesh_set, plain_report(report)
 
 
 def _size_wanted(reason: str) -> str:

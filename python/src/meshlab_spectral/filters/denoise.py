@@ -8,11 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshlab_spectral.filters.arrays import mesh_arrays
-from meshlab_spectral.filters.calling import call_filter, plain_report
+from meshlab_spectral.filters.calling import filtered_arrays
 from meshlab_spectral.filters.option_types import Length, Limits, Options, option
 from meshlab_spectral.filters.options import Boundary
-from meshlab_spectral.plugin.loading import DENOISE_NAME, load
+from meshlab_spectral.plugin.loading import DENOISE_NAME
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -85,13 +84,5 @@ def denoise_mesh(
     >>> V, report = denoise_mesh(vertices, faces)
     >>> report["noise_height"] / report["mean_edge"]
     """
-    V, F = mesh_arrays(vertices, faces)
-    parameters = DenoiseOptions.from_dict(options)
-    load()
-    import pymeshlab
-
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.add_mesh(pymeshlab.Mesh(V, F))
-    given = parameters.pymeshlab_parameters(mesh_set.current_mesh())
-    report = call_filter(mesh_set, DENOISE_NAME, given)
-    return mesh_set.current_mesh().vertex_matrix().copy(), plain_report(report)
+    mesh_set, report = filtered_arrays(vertices, faces, DenoiseOptions.from_dict(options))
+    return mesh_set.current_mesh().vertex_matrix().copy(), report

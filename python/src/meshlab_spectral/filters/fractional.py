@@ -7,10 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshlab_spectral.filters.arrays import mesh_arrays
-from meshlab_spectral.filters.calling import call_filter, plain_report
+from meshlab_spectral.filters.calling import filtered_arrays
 from meshlab_spectral.filters.options import FilterOptions
-from meshlab_spectral.plugin.loading import FILTER_NAME, load
 
 # The vertex attribute in which the filter stores the details.
 DETAILS = "spectral_details"
@@ -56,16 +54,9 @@ def filter_mesh(
     >>> V, report = filter_mesh(vertices, faces, feature_size="2%", basis_update="conformal")
     >>> report["max_displacement"]
     """
-    V, F = mesh_arrays(vertices, faces)
     parameters = FilterOptions.from_dict(options)
-    load()
-    import pymeshlab
-
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.add_mesh(pymeshlab.Mesh(V, F))
-    given = parameters.pymeshlab_parameters(mesh_set.current_mesh())
-    report = call_filter(mesh_set, FILTER_NAME, given)
+    mesh_set, report = filtered_arrays(vertices, faces, parameters)
     mesh = mesh_set.current_mesh()
     if parameters.result == "details":
-        return mesh.vertex_custom_point_attribute_matrix(DETAILS).copy(), plain_report(report)
-    return mesh.vertex_matrix().copy(), plain_report(report)
+        return mesh.vertex_custom_point_attribute_matrix(DETAILS).copy(), report
+    return mesh.vertex_matrix().copy(), report

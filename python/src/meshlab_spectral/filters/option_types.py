@@ -209,7 +209,9 @@ class Options:
             elif value.unit == "%":
                 parameters[one.name] = pymeshlab.PercentageValue(value.value)
             else:
-                edge = mean_edge(mesh) if value.unit == "e" else 0.0
+                edge = 0.0
+                if value.unit == "e":
+                    edge = mean_edge(mesh.vertex_matrix(), mesh.face_matrix())
                 length = value.in_units_of_mesh(0.0, edge)
                 parameters[one.name] = pymeshlab.PureValue(length)
         return parameters
