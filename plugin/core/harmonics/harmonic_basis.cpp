@@ -96,14 +96,18 @@ double largestEigenvalue(const Laplacian& laplacian) {
     SparseMatrix A = invSqrtD.asDiagonal() * laplacian.W * invSqrtD.asDiagonal();
     // Spectra's test for convergence assumes eigenvalues of about 1. Gershgorin's bound:
     const double bound = (A.cwiseAbs() * Eigen::VectorXd::Ones(A.cols())).maxCoeff();
-    A /= bound;
+    // Spectra starts from A times a random vector: where one eigenvalue is far above all others, an
+    // eigenvector, with a residual of round-off (yixuan/spectra#159). Those of A + I are in [1, 2].
+    SparseMatrix I(A.rows(), A.cols());
+    I.setIdentity();
+    A = A / bound + I;
     Spectra::SparseSymMatProd<double> op(A);
     const Index dimension = std::min<Index>(A.rows(), 30);
     Spectra::SymEigsSolver<Spectra::SparseSymMatProd<double>> solver(op, 1, dimension);
     try {
         solver.init();
         if (solver.compute(Spectra::SortRule::LargestAlge, kMostRestarts, 1e-8) == 1)
-            return bound * solver.eigenvalues()[0];
+            return bound * (solver.eigenvalues()[0] - 1.0);
     } catch (const std::exception&) {  // Spectra's own, of a breakdown
     }
     throw SolverFailure(ErrorCode::SingularMatrix, "the largest eigenvalue could not be computed");

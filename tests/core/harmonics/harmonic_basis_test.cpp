@@ -233,6 +233,15 @@ TEST(LargestEigenvalue, ScalesWithTheMesh) {
     }
 }
 
+TEST(LargestEigenvalue, OfAVertexOfHardlyAnyMassIsThatOfItsRow) {
+    for (const int levels : {0, 3}) {
+        Laplacian light = Operator(testing::icosphere(levels)).laplacian;
+        for (light.D[0] *= 1e-9; light.D[0] > 1e-24; light.D[0] *= 0.3)
+            EXPECT_NEAR(largestEigenvalue(light) * light.D[0] / light.W.coeff(0, 0), 1.0, 1e-7)
+                << light.D[0];
+    }
+}
+
 TEST(LargestEigenvalue, OfAnOperatorThatOverflowsIsAnErrorOfOurOwn) {
     const Operator A(testing::blob());
     for (const double factor : {1e200, 1e308, std::numeric_limits<double>::quiet_NaN()}) {
