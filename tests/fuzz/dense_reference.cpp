@@ -47,7 +47,7 @@ Pairs<long double> eigenpairs(const Matrix<long double>& W, const Vector<long do
             const Vector<long double> difference = (Phi.row(j) - Phi.row(i)).transpose();
             ritz -= (W(i, j) * difference) * difference.transpose();
         }
-    constexpr long double kRoundOff = 1e-17L;
+    constexpr long double kRoundOff = 100 * std::numeric_limits<long double>::epsilon();
     const Vector<long double> lambda = ritz.diagonal().cwiseAbs();
     for (Index j = 0; j < n; ++j)
         for (Index i = 0; i < n; ++i)

@@ -12,7 +12,7 @@ namespace spectral::fuzz {
 /// one decides; what the perturbed one differs from it, nobody can know.
 enum class Precision {
     Double,
-    Extended,   ///< long double.
+    Extended,   ///< long double, which on some systems is double.
     Perturbed,  ///< Extended, with all vertices in another order and round-off in every number.
     PerturbedAgain
 };

@@ -17,12 +17,12 @@ namespace {
 /// Merges corners that coincide; `tolerance` is far below any edge.
 Mesh welded(const Mesh& soup) {
     constexpr double kTolerance = 1e-9;
-    std::map<std::array<long, 3>, int> seen;
+    std::map<std::array<long long, 3>, int> seen;
     std::vector<int> index(static_cast<std::size_t>(soup.V.rows()));
     std::vector<Index> first;
     for (Index i = 0; i < soup.V.rows(); ++i) {
-        std::array<long, 3> key;
-        for (int c = 0; c < 3; ++c) key[c] = std::lround(soup.V(i, c) / kTolerance);
+        std::array<long long, 3> key;
+        for (int c = 0; c < 3; ++c) key[c] = std::llround(soup.V(i, c) / kTolerance);
         const auto [entry, isNew] = seen.emplace(key, static_cast<int>(first.size()));
         if (isNew) first.push_back(i);
         index[i] = entry->second;

@@ -1,7 +1,9 @@
-#include "thread_shortage.h"
+#include "support/thread_shortage.h"
 
+#ifdef __GLIBC__
 #include <dlfcn.h>
 #include <pthread.h>
+#endif
 
 #include <atomic>
 #include <cerrno>
@@ -14,6 +16,7 @@ std::atomic<int> threadsLeft{kNoLimit};
 
 }  // namespace
 
+#ifdef __GLIBC__
 // Stands before the C library's for the whole program, the C++ library's threads included.
 extern "C" __attribute__((visibility("default"))) int pthread_create(
     pthread_t* thread, const pthread_attr_t* attributes, void* (*start)(void*),
@@ -23,6 +26,7 @@ extern "C" __attribute__((visibility("default"))) int pthread_create(
     if (threadsLeft != kNoLimit && threadsLeft-- <= 0) return EAGAIN;
     return create(thread, attributes, start, argument);
 }
+#endif
 
 namespace spectral::testing {
 

@@ -153,7 +153,7 @@ void requireMemory(Index k, Index n) {
          << Bytes{ofHarmonic * static_cast<double>(k)} << " of memory, " << Bytes{available}
          << " are free";
     throw Error(ErrorCode::BasisOutOfMemory, text.str(),
-                static_cast<long>(0.9 * available / ofHarmonic));
+                static_cast<Index>(0.9 * available / ofHarmonic));
 }
 
 void checkSize(Index k, Index n, Index constants) {
@@ -177,7 +177,8 @@ void checkSize(Index k, Index n, Index constants) {
 
 Eigen::VectorXd relativeResiduals(const Laplacian& laplacian, Index constants,
                                   const HarmonicBasis& basis, const Progress& progress) {
-    const auto& [W, D] = laplacian;
+    const SparseMatrix& W = laplacian.W;
+    const Eigen::VectorXd& D = laplacian.D;
     Eigen::VectorXd residuals = Eigen::VectorXd::Zero(basis.size());
     runTasks(
         basis.size() - constants,

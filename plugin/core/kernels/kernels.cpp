@@ -1,5 +1,9 @@
 #include "core/kernels/kernels.h"
 
+#if defined(SPECTRAL_AVX2) && defined(_WIN32)
+#include <windows.h>
+#endif
+
 namespace spectral {
 
 // Defined once for each instruction set (frontal_elimination.cpp, triangular_solves.cpp).
@@ -16,12 +20,26 @@ SPECTRAL_DECLARE_KERNELS(baseline)
 SPECTRAL_DECLARE_KERNELS(avx2)
 #endif
 
+namespace {
+
+#ifdef SPECTRAL_AVX2
+/// Whether the processor has AVX2 and FMA, and the system saves their registers.
+bool hasAvx2() {
+#ifdef _WIN32  // MSVC has no such builtin, and takes FMA for a part of AVX2
+    return IsProcessorFeaturePresent(PF_AVX2_INSTRUCTIONS_AVAILABLE) != 0;
+#else
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+#endif
+}
+#endif
+
+}  // namespace
+
 const std::vector<Kernels>& availableKernels() {
     static const std::vector<Kernels> available = [] {
         std::vector<Kernels> sets;
 #ifdef SPECTRAL_AVX2
-        if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-            sets.push_back(avx2::kernels);
+        if (hasAvx2()) sets.push_back(avx2::kernels);
 #endif
         sets.push_back(baseline::kernels);
         return sets;

@@ -8,6 +8,7 @@
 
 #include "core/support/errors.h"
 #include "core/support/threads.h"
+#include "core/support/types.h"
 
 namespace spectral {
 
@@ -20,7 +21,7 @@ namespace {
 double flipTolerance(double a, double b) { return 1e-10 + 1e-11 * (std::abs(a) + std::abs(b)); }
 
 /// Flips per edge before giving up; one or two are usual.
-constexpr long kMaxFlipsPerEdge = 100;
+constexpr Index kMaxFlipsPerEdge = 100;
 
 /// Area of a triangle with these sides, by Kahan's form of Heron's formula, stable for needles.
 double triangleArea(double a, double b, double c) {
@@ -56,8 +57,8 @@ void IntrinsicTriangulation::makeDelaunay() {
     };
     for (int s = sideCount() - 1; s >= 0; --s)
         if (!isDelaunay(s)) push(s);
-    const long edges = sideCount() / 2;
-    long flips = 0;
+    const Index edges = sideCount() / 2;
+    Index flips = 0;
     while (!stack.empty()) {
         const int s = stack.back();
         stack.pop_back();

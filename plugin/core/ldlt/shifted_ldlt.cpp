@@ -31,7 +31,7 @@ void requireMemory(double bytes, Index rows) {
     text << "a surface of " << rows << " vertices needs about " << Bytes{bytes}
          << " more memory, of which " << Bytes{available} << " are free";
     throw Error(ErrorCode::OutOfMemory, text.str(),
-                static_cast<long>(0.9 * available / bytes * static_cast<double>(rows)));
+                static_cast<Index>(0.9 * available / bytes * static_cast<double>(rows)));
 }
 
 using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;

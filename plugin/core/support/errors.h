@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -44,15 +45,15 @@ inline std::string textOf(double number) {
 /// Base of everything that the core throws. The text says what is wrong and where, with numbers.
 class Error : public std::runtime_error {
   public:
-    Error(ErrorCode code, const std::string& text, long limit = 0)
+    Error(ErrorCode code, const std::string& text, std::ptrdiff_t limit = 0)
         : std::runtime_error(text), code_(code), limit_(limit) {}
 
     ErrorCode code() const { return code_; }
-    long limit() const { return limit_; }  ///< As the code says; else 0.
+    std::ptrdiff_t limit() const { return limit_; }  ///< As the code says; else 0.
 
   private:
     ErrorCode code_;
-    long limit_;
+    std::ptrdiff_t limit_;
 };
 
 /// The mesh cannot be filtered: no triangles, coordinates that are not finite, ...

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cmath>
+
 namespace spectral {
 
 /// Memory that this process may still take, bytes; infinite where that is not known.
@@ -19,9 +21,9 @@ template <class Stream>
 Stream& operator<<(Stream& stream, const Bytes& bytes) {
     const double gibi = bytes.count / (1 << 30);
     if (gibi >= 1.0)
-        stream << 0.1 * static_cast<long>(10.0 * gibi) << " GiB";
+        stream << 0.1 * std::floor(10.0 * gibi) << " GiB";
     else
-        stream << static_cast<long>(1024.0 * gibi) << " MiB";
+        stream << std::floor(1024.0 * gibi) << " MiB";
     return stream;
 }
 

@@ -97,6 +97,7 @@ TEST(SteadyProgress, AFailureOfTheWorkReachesTheCaller) {
 }
 
 TEST(SteadyProgress, WithoutThreadsTheCallerDoesTheWork) {
+    if (!spectral::testing::ThreadShortage::kIsPossible) GTEST_SKIP() << "only with glibc";
     const spectral::testing::ThreadShortage noThreads(0);
     std::vector<std::string> stages;
     const Progress noting([&](double, const std::string& stage) {

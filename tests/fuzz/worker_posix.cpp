@@ -1,5 +1,3 @@
-#include "fuzz/worker.h"
-
 #include <sys/mman.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -10,6 +8,8 @@
 #include <cstdio>
 #include <new>
 #include <system_error>
+
+#include "fuzz/worker.h"
 
 namespace spectral::fuzz {
 

@@ -1,0 +1,42 @@
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <string>
+
+#include "meshlab/system_memory.h"
+
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::infinity();
+
+/// The number after a word in a file of words and numbers; infinity if there is none.
+double numberAfter(const char* file, const std::string& word) {
+    std::ifstream in(file);
+    for (std::string read; in >> read;)
+        if (double number = 0.0; read == word && in >> number) return number;
+    return kUnknown;
+}
+
+/// The only number of a file; infinity if it has none.
+double numberIn(const char* file) {
+    double number = 0.0;
+    return std::ifstream(file) >> number ? number : kUnknown;
+}
+
+/// What the control group leaves.
+double availableInGroup() {
+    const double used = numberIn("/sys/fs/cgroup/memory.current");
+    if (used == kUnknown) return kUnknown;
+    // What files take of a group's memory is given back when it is needed.
+    const double inFiles = numberAfter("/sys/fs/cgroup/memory.stat", "inactive_file");
+    const double held = used - (inFiles < kUnknown ? inFiles : 0.0);
+    return std::max(0.0, numberIn("/sys/fs/cgroup/memory.max") - held);
+}
+
+}  // namespace
+
+double availableSystemMemory() {
+    return std::min(1024.0 * numberAfter("/proc/meminfo", "MemAvailable:"), availableInGroup());
+}
+
+double residentMemory() { return 1024.0 * numberAfter("/proc/self/status", "VmRSS:"); }

@@ -1,0 +1,29 @@
+#define NOMINMAX
+#include <windows.h>
+// After windows.h, which it needs.
+#include <psapi.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "meshlab/system_memory.h"
+
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+double availableSystemMemory() {
+    MEMORYSTATUSEX status{};
+    status.dwLength = sizeof status;
+    if (!GlobalMemoryStatusEx(&status)) return kUnknown;
+    // The second is the rest of what Windows has promised to back, with pages on disk included.
+    return static_cast<double>(std::min(status.ullAvailPhys, status.ullAvailPageFile));
+}
+
+double residentMemory() {
+    PROCESS_MEMORY_COUNTERS counters{};
+    if (!K32GetProcessMemoryInfo(GetCurrentProcess(), &counters, sizeof counters)) return kUnknown;
+    return static_cast<double>(counters.WorkingSetSize);
+}
