@@ -152,7 +152,7 @@ void checkDenoise(const Case& of, const DenoiseOptions& options, const DenoiseRe
     checkUnmoved(V, result.V, mustStay, failures);
     // To preserve volumes, it may be made up for by an offset of twice the size.
     const double most =
-        std::max(3.5 * std::min(result.noiseHeight, result.meanEdge), 0.3 * result.meanEdge) *
+        std::max(3.0 * std::min(result.noiseHeight, result.meanEdge), 0.3 * result.meanEdge) *
         (result.volumes.preserved > 0 ? 3.0 : 1.0);
     if (!(result.maxDisplacement <= most * (1.0 + 1e-9) + 1e-15 * V.cwiseAbs().maxCoeff()))
         failures.push_back(failure("displacement", result.maxDisplacement, " of at most ", most));

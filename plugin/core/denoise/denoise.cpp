@@ -28,41 +28,42 @@ void checkOptions(const DenoiseOptions& options) {
                             ": must be a length, or 0 to have it estimated");
 }
 
-/// How the noise is removed.
-struct Plan {
-    int rounds = 0;
-    NormalFilterOptions filter;
-    int sweeps = 0;
-    double farthest = 0.0;  ///< That a vertex moves, in mean edges.
-};
-
-// Chosen on four pairs of noisy and clean meshes, and seen to hold on four others: see
-// tests/benchmarks/README.md. Noise is measured in mean edges.
-constexpr double kNone = 0.02, kMost = 1.0;  // less is no noise, more is filtered no more
-constexpr double kRoundsPerEdge = 22.0, kFewestRounds = 3.0, kMostRounds = 12.0;
-constexpr double kTime = 1.5, kHalfTimeAt = 0.07;  // less noise takes less than one whole round
-constexpr double kFewestSweeps = 6.0, kSweepsPerEdge = 15.0;
+// Chosen on four pairs of noisy and clean meshes: see tests/benchmarks/README.md. Noise is measured
+// in mean edges.
+constexpr double kNone = 0.02, kMost = 1.0;        // less is no noise, more is filtered no more
+constexpr double kTime = 1.5, kHalfTimeAt = 0.13;  // less noise takes weaker rounds
+constexpr int kMostRounds = 12, kSweeps = 12;
 constexpr double kEdgeScale = 0.22;
+/// Share of the noise that the displacement has to reach. More rounds would take the shape for
+/// noise (Morozov's discrepancy principle).
+constexpr double kEnough = 0.96;
 // Where triangles are narrower than the noise is high, normals mean little: no vertex moves farther
 // than noise of this many standard deviations, or impulses of this many mean edges, had moved it.
-constexpr double kMostDeviations = 3.5, kMostEdges = 0.3;
+constexpr double kMostDeviations = 3.0, kMostEdges = 0.3;
 constexpr double kMostAlongSurface = 2.5;  // standard deviations, to turn folded faces back
 
 /// Share of the time that the estimate takes, for the progress.
 constexpr double kMeasuring = 0.2;
 
 /// @param noise  standard deviation along the normals, in mean edges.
-Plan planFor(double noise, bool keepCreases) {
-    Plan plan;
-    if (!(noise >= kNone)) return plan;
-    noise = std::min(noise, kMost);
-    plan.rounds =
-        static_cast<int>(std::clamp(std::ceil(kRoundsPerEdge * noise), kFewestRounds, kMostRounds));
-    plan.filter.time = kTime / (1.0 + std::pow(kHalfTimeAt / noise, 3));
-    plan.filter.edgeScale = keepCreases ? kEdgeScale : std::numeric_limits<double>::infinity();
-    plan.farthest = std::max(kMostDeviations * noise, kMostEdges);
-    plan.sweeps = static_cast<int>(std::lround(kFewestSweeps + kSweepsPerEdge * noise));
-    return plan;
+NormalFilterOptions filterFor(double noise, bool keepCreases) {
+    NormalFilterOptions filter;
+    filter.time = kTime / (1.0 + std::pow(kHalfTimeAt / noise, 3));
+    filter.edgeScale = keepCreases ? kEdgeScale : std::numeric_limits<double>::infinity();
+    return filter;
+}
+
+/// The height of the noise that had moved the vertices from X to X0, by its median.
+double removedHeight(const Vertices& X0, const Vertices& X, const std::vector<bool>& isFixed) {
+    constexpr double kMedian = 0.6745;  // of the modulus, for variance 1
+    std::vector<double> displacements;
+    for (Index i = 0; i < X.rows(); ++i)
+        if (!isFixed[i]) displacements.push_back((X.row(i) - X0.row(i)).norm());
+    if (displacements.empty()) return 0.0;
+    const auto middle =
+        displacements.begin() + static_cast<std::ptrdiff_t>(displacements.size()) / 2;
+    std::nth_element(displacements.begin(), middle, displacements.end());
+    return *middle / kMedian;
 }
 
 /// Draws the vertices of X back to within `farthest` of where they were.
@@ -91,33 +92,35 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
     result.noiseHeight =
         options.strength * (options.noiseHeight > 0.0 ? options.noiseHeight : noise.height);
     result.meanEdge = noise.meanEdge;
-    const Plan plan = planFor(result.noiseHeight / noise.meanEdge, options.keepCreases);
-    result.rounds = plan.rounds;
+    const double height = std::min(result.noiseHeight, kMost * noise.meanEdge);
+    const bool isNoisy = height > 0.0 && height >= kNone * noise.meanEdge;
+    const double farthest = std::max(kMostDeviations * height, kMostEdges * noise.meanEdge);
 
     std::vector<bool> isFixed(graph.onRim.size(), false);
     if (options.boundary == Boundary::Fixed) isFixed = graph.onRim;
     Vertices X = surface.X;
-    Normals N;
-    for (int round = 0; round < plan.rounds; ++round) {
-        const double done = kMeasuring + (1.0 - kMeasuring) * round / plan.rounds;
-        progress.report(done, "filtering the normals");
-        // From the input: it is the normals that are filtered, the vertices only show them.
-        N = filterNormals(graph, X, plan.filter);
-        progress.report(done + 0.5 * (1.0 - kMeasuring) / plan.rounds, "moving the vertices");
-        X = followNormals(graph, surface.X, N, isFixed, plan.sweeps);
-        limitDisplacement(surface.X, plan.farthest * noise.meanEdge, X);
-    }
-
-    if (plan.rounds > 0) {
+    if (isNoisy) {
+        const NormalFilterOptions filter = filterFor(height / noise.meanEdge, options.keepCreases);
+        Normals N;
+        double removed = 0.0;  // share of the noise
+        while (removed < kEnough && result.rounds < kMostRounds) {
+            const double done = std::max(removed, double(result.rounds) / kMostRounds);
+            progress.report(kMeasuring + (1.0 - kMeasuring) * done, "removing the noise");
+            // From the input: it is the normals that are filtered, the vertices only show them.
+            N = filterNormals(graph, X, filter);
+            X = followNormals(graph, surface.X, N, isFixed, kSweeps);
+            limitDisplacement(surface.X, farthest, X);
+            removed = removedHeight(surface.X, X, isFixed) / height;
+            ++result.rounds;
+        }
         unfoldFaces(graph, N, kMostAlongSurface * result.noiseHeight, isFixed, X);
-        limitDisplacement(surface.X, plan.farthest * noise.meanEdge, X);
+        limitDisplacement(surface.X, farthest, X);
     }
 
     const Components components = connectedComponents(surface.F, X.rows());
     Eigen::VectorXd mayMove(X.rows());
     for (Index i = 0; i < X.rows(); ++i) mayMove[i] = isFixed[i] ? 0.0 : 1.0;
-    if (plan.rounds > 0)
-        result.volumes = preserveVolumes(surface.X, graph.F, components, mayMove, X);
+    if (isNoisy) result.volumes = preserveVolumes(surface.X, graph.F, components, mayMove, X);
     if (!X.allFinite()) throw SolverFailure("the denoised coordinates are not finite numbers");
 
     const Vertices displacement = X - surface.X;

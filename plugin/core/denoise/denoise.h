@@ -35,9 +35,11 @@ struct DenoiseResult {
 /// The signal is the field of the face normals, the operator the Laplacian of the graph of the
 /// faces, in which faces across a crease hardly mix. Its low-pass is applied in weak parts, with
 /// the operator taken anew from the shape after each, as in Kovnatsky et al. 2012, Eq. 11
-/// (normal_filter.h); the vertices then follow the normals (vertex_update.h). Vertices move along
-/// normals alone, but for those of folded faces (unfold.h), and closed components keep their
-/// volume.
+/// (normal_filter.h); the vertices then follow the normals (vertex_update.h). The filter stops when
+/// the vertices have moved as far as the noise had moved them, by their median: Morozov's
+/// discrepancy principle. Vertices move along normals alone, but for those of folded faces
+/// (unfold.h), by at most three times the noise or 0.3 mean edges, and closed components keep
+/// their volume.
 ///
 /// @param V  n x 3 positions, finite.
 /// @param F  m x 3 vertex indices, m >= 1; any topology and orientation.

@@ -127,15 +127,15 @@ class Reference:
 
     def denoised(self, X0: Array) -> Array:
         height, edge = self.noise(X0)
-        noise = height / edge
-        rounds = int(np.clip(np.ceil(22 * noise), 3, 12))
-        time = 1.5 / (1 + (0.07 / noise) ** 3)
+        time = 1.5 / (1 + (0.13 * edge / height) ** 3)
+        farthest = max(3 * height, 0.3 * edge)
         X = X0
-        for _ in range(rounds):
+        for _ in range(12):
             N = self.filtered_normals(X, time, 0.22)
-            X = self.followed(X0, N, round(6 + 15 * noise))
-            X = limited(X0, X, edge * max(3.5 * noise, 0.3))
-        X = limited(X0, self.unfolded(X, N, 2.5 * height), edge * max(3.5 * noise, 0.3))
+            X = limited(X0, self.followed(X0, N, 12), farthest)
+            if upper_median(np.linalg.norm(X - X0, axis=1)) / 0.6745 >= 0.96 * height:
+                break
+        X = limited(X0, self.unfolded(X, N, 2.5 * height), farthest)
         for _ in range(4):  # Newton's method for the volume, along the normals of the vertices
             G = self.incidence @ self.area_normals(X)
             size = np.linalg.norm(G, axis=1).sum() / 6
