@@ -60,11 +60,13 @@ double memoryLimitOfEnvironment() {
 
 }  // namespace
 
-FilterSpectralPlugin::FilterSpectralPlugin()
-    : filters_{fractionalMeshFilter(),      denoiseMeshFilter(),   qualityMeshFilter(),
-               colorMeshFilter(),           artefactsMeshFilter(), harmonicsMeshFilter(),
-               geometrySpectrumMeshFilter()},
-      runs_(filters_.size()) {
+std::vector<MeshFilter> allMeshFilters() {
+    return {fractionalMeshFilter(),      denoiseMeshFilter(),   qualityMeshFilter(),
+            colorMeshFilter(),           artefactsMeshFilter(), harmonicsMeshFilter(),
+            geometrySpectrumMeshFilter()};
+}
+
+FilterSpectralPlugin::FilterSpectralPlugin() : filters_(allMeshFilters()), runs_(filters_.size()) {
     for (std::size_t i = 0; i < filters_.size(); ++i) {
         typeList.push_back(static_cast<ActionIDType>(i));
         actionList.push_back(new QAction(filters_[i].name, this));

@@ -44,3 +44,6 @@ MeshFilter colorMeshFilter();             ///< filter_signals.cpp
 MeshFilter artefactsMeshFilter();         ///< filter_artefacts.cpp
 MeshFilter harmonicsMeshFilter();         ///< filter_harmonics.cpp
 MeshFilter geometrySpectrumMeshFilter();  ///< filter_geometry_spectrum.cpp
+
+/// All of them; their positions are MeshLab's ids. In filter_spectral.cpp.
+std::vector<MeshFilter> allMeshFilters();

@@ -35,6 +35,7 @@ double meanEdge(const MeshModel& mesh) {
 }  // namespace
 
 QString meanEdgeTold(const MeshModel& mesh) {
+    if (mesh.cm.fn == 0) return {};
     return QString(" A mean edge of this mesh is %1 long.").arg(meanEdge(mesh), 0, 'g', 3);
 }
 

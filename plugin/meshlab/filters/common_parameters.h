@@ -15,7 +15,7 @@ int choice(const RichParameterList& parameters, const char* name, const QStringL
 
 // Parameters that several filters share, with the same names and defaults.
 
-/// A sentence for the help of sizes: how long a mean edge of the mesh is.
+/// A sentence for the help of sizes: how long a mean edge of the mesh is; none without faces.
 QString meanEdgeTold(const MeshModel& mesh);
 
 /// `feature_size`, a percentage of the bounding box diagonal; default:

@@ -89,7 +89,7 @@ def test_libraries_are_those_of_the_program_and_no_folder_is_built_in(host: Host
 
 @each_host
 def test_the_functions_for_python_can_be_found_by_name(host: Host) -> None:
-    functions = {"meshlab_spectral_warnings", "meshlab_spectral_gains"}
+    functions = {f"meshlab_spectral_{name}" for name in ("warnings", "gains", "filters")}
     assert functions <= symbols(plugin_of(host), "defined")
 
 

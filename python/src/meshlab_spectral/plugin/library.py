@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import functools
+import json
 import os
 from collections.abc import Sequence
 from pathlib import Path
@@ -82,6 +83,27 @@ def custom_gains(
     if mistake is not None:
         raise OptionError(mistake.decode())
     return gains.reshape(np.shape(sizes))
+
+
+def filter_descriptions() -> list[dict[str, Any]]:
+    """Return what the plugin's dialogs say about its filters.
+
+    Returns
+    -------
+    list of dict
+        For each filter its "name" in the menus, "python_name", "menus", "help" in HTML and
+        "parameters": for each its "name", "label", "type" (MeshLab's, such as "RichInt"), "help" in
+        HTML, whether it "is_advanced", and the "choices" of an enumeration.
+
+    Raises
+    ------
+    PluginError
+        When the plugin cannot be loaded, or as `last_warnings`.
+    """
+    load()
+    text: bytes = _function(loaded_plugin(), "meshlab_spectral_filters", ())()
+    described: list[dict[str, Any]] = json.loads(text)
+    return described
 
 
 @functools.cache

@@ -1,0 +1,55 @@
+#include "meshlab/descriptions.h"
+
+#include <common/parameters/rich_parameters.h>
+
+#include <QJsonArray>
+#include <QJsonDocument>
+#include <QJsonObject>
+
+#include "meshlab/mesh_filter.h"
+
+namespace {
+
+/// The submenus of MeshLab's menu Filters that show filters of these classes.
+QJsonArray menusOf(FilterPlugin::FilterClass classes) {
+    QJsonArray menus;
+    if (classes & FilterPlugin::VertexColoring) menus.append("Color Creation and Processing");
+    if (classes & FilterPlugin::Smoothing) menus.append("Smoothing, Fairing and Deformation");
+    if (classes & (FilterPlugin::Quality | FilterPlugin::Measure))
+        menus.append("Quality Measure and Computations");
+    return menus;
+}
+
+QJsonObject described(const RichParameter& parameter) {
+    const auto* choices = dynamic_cast<const RichEnum*>(&parameter);
+    return {{"name", parameter.name()},
+            {"label", parameter.fieldDescription()},
+            {"type", parameter.stringType()},
+            {"help", parameter.toolTip()},
+            {"is_advanced", parameter.isAdvanced()},
+            {"choices", QJsonArray::fromStringList(choices ? choices->enumvalues : QStringList())}};
+}
+
+QJsonObject described(const MeshFilter& filter) {
+    QJsonArray parameters;
+    for (const RichParameter& parameter : filter.parameters(MeshModel(-1, "", "")))
+        parameters.append(described(parameter));
+    return {{"name", filter.name},
+            {"python_name", filter.pythonName},
+            {"menus", menusOf(filter.category)},
+            {"help", filter.help},
+            {"parameters", parameters}};
+}
+
+QByteArray allDescribed() {
+    QJsonArray filters;
+    for (const MeshFilter& filter : allMeshFilters()) filters.append(described(filter));
+    return QJsonDocument(filters).toJson();
+}
+
+}  // namespace
+
+const char* meshlab_spectral_filters() {
+    static const QByteArray json = allDescribed();
+    return json.constData();
+}
