@@ -1,8 +1,8 @@
 """What the filters do beyond a low-pass of a whole mesh, in one picture each.
 
 `python -m meshlab_spectral.figures.parts MESHES PICTURES [NAME ...]` draws equalizer, selection,
-creases and quality into the folder PICTURES, from dragon_40k.ply, stanford-bunny.obj, fandisk.off
-and gears.stl in the folder MESHES.
+creases, quality, colors and artefacts into the folder PICTURES, from dragon_40k.ply,
+stanford-bunny.obj, fandisk.off and gears.stl in the folder MESHES.
 """
 
 from __future__ import annotations
@@ -18,9 +18,10 @@ from meshlab_spectral.figures.pictures import Frame, Panel, View, render
 from meshlab_spectral.figures.sheet import FONT_SIZE, INK, Sheet
 from meshlab_spectral.files.meshes import load_arrays
 from meshlab_spectral.filters.arrays import lumped_areas, mean_edge
+from meshlab_spectral.filters.artefacts import measure_artefacts
 from meshlab_spectral.filters.fractional import filter_mesh
 from meshlab_spectral.filters.options import FilterOptions
-from meshlab_spectral.filters.signals import filter_scalars
+from meshlab_spectral.filters.signals import filter_colors, filter_scalars
 from meshlab_spectral.filters.transfer import MeshLengths, gain
 from meshlab_spectral.plugin.loading import FILTER_NAME, load
 
@@ -35,6 +36,7 @@ BANDS = ((30, 1.0), (12, 2.2), (5, 0.25), (2, 1.5))
 SCALE = 0.5  # of the pages: small files
 
 SHADES = (0.02, 1.0)  # without 0, at which a line would be drawn
+FULL_RED = 0.005  # length of artefacts, in diagonals
 
 
 def _diagonal(V: Array) -> float:
@@ -167,11 +169,51 @@ def quality(meshes: Path, path: Path) -> None:
     _row(panels, View()).save(path)
 
 
+def colors(meshes: Path, path: Path) -> None:
+    """Draw a painting on the bunny, with noise, and the noisy one after a low-pass."""
+    V, F = load_arrays(meshes / "stanford-bunny.obj")
+    x, y, z = (V - V.min(axis=0)).T / _diagonal(V)
+    patches = np.tanh(12 * np.sin(14 * x + 4 * np.sin(9 * y)) * np.cos(11 * z + 9 * y))[:, None]
+    brown, cream = np.array([120.0, 70.0, 40.0]), np.array([235.0, 220.0, 190.0])
+    painting = (brown + cream) / 2 + patches * (cream - brown) / 2
+    noisy = np.clip(painting + 30 * np.random.default_rng(1).standard_normal(V.shape), 0, 255)
+    clean, _ = filter_colors(V, F, noisy, feature_size="6%")
+    areas = lumped_areas(V, F)
+    panels = []
+    for label, levels in (("painting", painting), ("with noise", noisy), ("low-pass 6 %", clean)):
+        error = np.sqrt(np.average(np.mean((levels - painting) ** 2, axis=1), weights=areas))
+        label = label if levels is painting else f"{label}\nrms error {error:.0f} of 255"
+        panels.append(Panel(label, V, F, colors=np.round(levels).astype(np.uint8)))
+    _row(panels, View()).save(path)
+
+
+def artefacts(meshes: Path, path: Path) -> None:
+    """Draw the dragon after three ways of a low-pass, coloured by the artefacts they have left."""
+    V, F = load_arrays(meshes / "dragon_40k.ply")
+    size, shapes = 0.15 * _diagonal(V), {}
+    for label, scheme in (
+        ("one shot", {"steps": 1}),
+        ("10 steps, full update", {"steps": 10, "basis_update": "full"}),
+        ("10 steps, conformal update", {"steps": 10, "basis_update": "conformal"}),
+    ):
+        shapes[label] = filter_mesh(V, F, feature_size=str(size), **scheme)[0]
+    panels = []
+    for label, Y in shapes.items():
+        found = measure_artefacts(Y, F, size)
+        rms, most = (f"{100 * one / _diagonal(V):.2g} %" for one in (found.rms, found.maximum))
+        shares = found.length / _diagonal(V) / FULL_RED
+        label = f"{label}\nartefacts: rms {rms}, largest {most}"
+        panels.append(Panel(label, Y, F, np.clip(shares, *SHADES)))
+    _row(panels, View.of_widest_side(V)).save(path)
+
+
 PICTURES = {
     "equalizer": equalizer,
     "selection": selection,
     "creases": creases,
     "quality": quality,
+    "colors": colors,
+    "artefacts": artefacts,
 }
 
 

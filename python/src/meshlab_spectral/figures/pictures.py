@@ -36,12 +36,15 @@ class Panel:
         m x 3 indices of the corners of triangles.
     signed
         n values to colour the mesh by, from -1 (blue) to 1 (red); a line marks 0 (grey).
+    colors
+        n x 3 levels of red, green and blue, 0 to 255, instead.
     """
 
     label: str
     V: NDArray[np.float64]
     F: NDArray[np.int64]
     signed: NDArray[np.float64] | None = None
+    colors: NDArray[np.uint8] | None = None
 
     @classmethod
     def of(cls, label: str, mesh: pymeshlab.Mesh) -> Panel:
@@ -239,7 +242,9 @@ def _plotter(columns: int, panel_size: tuple[int, int]) -> Any:
 def _add(plotter: Any, panel: Panel, frame: Frame) -> None:
     """Add a mesh, its lights and its camera to the plotter's current panel."""
     surface = _surface(panel)
-    if panel.signed is None:
+    if panel.colors is not None:
+        plotter.add_mesh(surface, scalars=panel.colors, rgb=True, smooth_shading=True, specular=0.0)
+    elif panel.signed is None:
         plotter.add_mesh(surface, color="#c9c2b4", smooth_shading=True, specular=0.05)
     else:
         surface["signed"] = panel.signed
