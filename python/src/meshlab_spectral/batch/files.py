@@ -45,7 +45,7 @@ def filter_files(
     Parameters
     ----------
     inputs
-        Files, folders, patterns such as "scans/*.ply", URLs supported by fsspec.
+        Files, folders, patterns such as ``"scans/*.ply"``, URLs supported by fsspec.
     output
         Output folder, a path or a URL; created if needed.
     script

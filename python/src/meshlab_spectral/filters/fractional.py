@@ -51,7 +51,7 @@ def filter_mesh(
 
     Examples
     --------
-    >>> V, report = filter_mesh(vertices, faces, feature_size="2%", basis_update="conformal")
+    >>> V, report = filter_mesh(vertices, faces, feature_size="2%")
     >>> report["max_displacement"]
     """
     parameters = FilterOptions.from_dict(options)
