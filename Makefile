@@ -32,12 +32,13 @@ COMPETITORS := .venv/.competitors
 CPP_FILES = find plugin tests -name '*.h' -o -name '*.cpp'
 PYTHON_FILES = python tests
 # With the folders themselves, whose time changes when a file in them goes.
-PACKAGE_SOURCES := CMakeLists.txt $(shell find plugin python -not -path '*/__pycache__*')
+PACKAGE_SOURCES := CMakeLists.txt $(shell find plugin python -not -path '*/__pycache__*' \
+  -not -path 'python/docs*')
 
 # Two targets at once would fetch MeshLab's headers twice; ninja uses every core anyway.
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help demo test gui-test screenshots setup build bench bench-basis bench-batch bench-contract bench-defaults bench-denoise bench-ldlt fuzz fuzz-python lint format clean
+.PHONY: help demo test docs gui-test screenshots setup build bench bench-basis bench-batch bench-contract bench-defaults bench-denoise bench-ldlt fuzz fuzz-python lint format clean
 
 help:  ## list these commands
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 20
@@ -49,6 +50,10 @@ demo: $(PACKAGE)  ## filter the Stanford bunny: report, mesh and picture in buil
 test: build $(PACKAGE)  ## run every test, C++ and Python
 	ctest --test-dir build --output-on-failure --no-tests=error --parallel $$(nproc)
 	$(BIN)/python -m pytest -c python/pyproject.toml --rootdir . tests/python
+
+docs: $(PACKAGE)  ## write the reference of filters and Python API: build/docs/index.html
+	rm -rf build/docs
+	$(BIN)/python -m sphinx --fail-on-warning --keep-going --quiet python/docs build/docs
 
 gui-test: $(PACKAGE)  ## test in the real MeshLab 2025.07, made once (Linux, root or sudo)
 	tests/gui/run.sh

@@ -1,0 +1,43 @@
+"""Sphinx: the reference pages, from the plugin and the docstrings. `make docs` builds them."""
+
+import sys
+from importlib.metadata import version as installed_version
+from pathlib import Path
+
+# The extensions next to this file.
+sys.path.insert(0, str(Path(__file__).parent))
+
+project = "Spectral Filter (Fractional)"
+author = "meshlab-spectral"
+version = release = installed_version("meshlab-spectral")
+
+extensions = ["sphinx.ext.autodoc", "sphinx.ext.napoleon", "filter_pages", "docstrings"]
+default_role = "py:obj"  # `x` in a docstring: a link where there is an x, else code
+smartquotes_action = "D"  # dashes alone: quotes are often those of code
+exclude_patterns = ["**/__pycache__"]
+
+# Everything is in the pages themselves: they are read from a disk, without a network.
+html_theme = "furo"
+html_title = f"{project} {version}"
+html_static_path = ["static"]
+html_css_files = ["narrow.css"]
+html_copy_source = False
+html_show_copyright = False
+
+autodoc_member_order = "bysource"
+autodoc_typehints = "none"  # those of functions are kept as they are written, by docstrings.py
+python_use_unqualified_type_names = True
+python_maximum_signature_line_length = 80
+napoleon_google_docstring = False
+# Attributes may share a line, as feature_size_50, feature_size_90.
+napoleon_custom_sections = [("Attributes", "params_style")]
+napoleon_use_rtype = False
+
+nitpicky = True
+# Other projects' names, and the words that docstrings use for types.
+nitpick_ignore_regex = [
+    ("py:.*", r"(numpy|np|pymeshlab|pathlib|collections|typing|npt)\..*"),
+    ("py:class", r"array|ArrayLike|NDArray|Any|Path|Sequence|Generator|LaplacianKind|Boundary"),
+    ("py:class", r"np\..*|Outcome"),
+    ("py:obj", r".*"),
+]

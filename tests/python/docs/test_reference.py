@@ -1,0 +1,197 @@
+"""The reference pages: complete, as the plugin is, and without dead links."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+from urllib.parse import urlsplit
+
+import meshlab_spectral
+import numpy as np
+import plugin_facts
+import pymeshlab
+import pytest
+from built_pages import Page, Site
+from meshlab_spectral import DenoiseOptions, FilterOptions
+from meshlab_spectral.filters.option_types import Limits, Options
+from meshlab_spectral.plugin.loading import FILTERS
+from plugin_facts import WORDS, filters
+
+SOURCES = Path(plugin_facts.__file__).parent
+each_filter = pytest.mark.parametrize("name", FILTERS.values())
+
+
+@pytest.fixture(scope="session")
+def site(tmp_path_factory: pytest.TempPathFactory) -> Site:
+    """The pages as `make docs` builds them."""
+    folder = tmp_path_factory.mktemp("docs")
+    command = [sys.executable, "-m", "sphinx", "--fail-on-warning", "--keep-going", "--quiet"]
+    done = subprocess.run(
+        [*command, SOURCES, folder], capture_output=True, text=True, timeout=300, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return Site(folder)
+
+
+def page_of(name: str, site: Site) -> Page:
+    return site.pages[f"filters/{name}.html"]
+
+
+def test_no_link_is_dead(site: Site) -> None:
+    assert site.dead_links() == []
+
+
+def test_a_browser_loads_nothing_from_the_network(site: Site) -> None:
+    loaded = {link for page in site.pages.values() for link in page.files}
+    assert {link for link in loaded if urlsplit(link).netloc} == set()
+
+
+def test_links_to_the_network_are_complete_addresses(site: Site) -> None:
+    links = {link for page in site.pages.values() for link in page.links}
+    outside = [urlsplit(link) for link in links if urlsplit(link).scheme]
+    assert all(parts.scheme == "https" and "." in parts.netloc for parts in outside)
+
+
+def test_the_plugin_describes_every_filter() -> None:
+    described = {each.name: each.python_name for each in filters().values()}
+    assert described == FILTERS
+
+
+@each_filter
+def test_a_filter_has_a_page_with_its_name_and_a_picture(name: str, site: Site) -> None:
+    page = page_of(name, site)
+    assert page.title == filters()[name].name
+    assert len(page.pictures) == 1
+    assert f"{name}.html" in site.pages["filters/index.html"].links
+
+
+def test_no_two_filters_have_the_same_picture(site: Site) -> None:
+    pictures = [page_of(name, site).pictures[0] for name in FILTERS.values()]
+    assert len(set(pictures)) == len(pictures)
+
+
+@each_filter
+def test_a_filter_and_all_its_parameters_have_help(name: str) -> None:
+    described = filters()[name]
+    assert described.menus
+    assert described.help
+    for parameter in described.parameters:
+        assert parameter.label, parameter.name
+        assert len(parameter.help.split()) >= 5, f"{parameter.name}: {parameter.help!r}"
+        assert parameter.help.endswith("."), f"{parameter.name}: {parameter.help!r}"
+
+
+@each_filter
+def test_a_page_has_all_parameters_that_pymeshlab_takes(name: str, site: Site) -> None:
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.create_sphere(subdiv=2)
+    taken = mesh_set.filter_parameter_values(name)
+    assert [parameter.name for parameter in filters()[name].parameters] == list(taken)
+    anchors = {f"{name}.{parameter}".replace("_", "-").replace(".", "-") for parameter in taken}
+    assert anchors <= page_of(name, site).ids
+
+
+def test_help_is_shown_without_markup_or_escapes(site: Site) -> None:
+    for name in FILTERS.values():
+        assert not re.search(r"</?\w+>|\*\*|\\|&\w+;|``", page_of(name, site).text), name
+
+
+def all_parameters() -> list[plugin_facts.Parameter]:
+    return [parameter for each in filters().values() for parameter in each.parameters]
+
+
+def test_every_number_has_a_unit_and_no_unit_is_left_over() -> None:
+    assert WORDS["units"].keys() == {each.name for each in all_parameters() if each.is_number}
+    for parameter in all_parameters():
+        if parameter.is_length:
+            assert WORDS["units"][parameter.name].startswith("length, ")
+
+
+def range_in_words(limits: Limits) -> str:
+    low = f"above {limits.low:g}" if limits.low_open else f"at least {limits.low:g}"
+    if limits.high > 1e6:
+        return low
+    if limits.low_open:
+        return f"{low}, at most {limits.high:g}"
+    return f"{limits.low:g} to {limits.high:g}"
+
+
+@pytest.mark.parametrize("table", [FilterOptions, DenoiseOptions])
+def test_ranges_are_those_of_the_options(table: type[Options]) -> None:
+    for name, one in table.__dataclass_fields__.items():
+        if one.metadata["limits"]:
+            assert WORDS["units"][name].endswith(f", {range_in_words(one.metadata['limits'])}")
+
+
+def test_defaults_in_words_are_those_that_depend_on_the_mesh() -> None:
+    in_words = {
+        each.name for each in all_parameters() if each.default == WORDS["defaults"].get(each.name)
+    }
+    assert in_words == WORDS["defaults"].keys()
+
+
+def test_defaults_are_those_of_the_options() -> None:
+    shown = {each.name: each.default for each in filters()[FilterOptions.FILTER].parameters}
+    for name, value in FilterOptions().as_dict().items():
+        if name not in WORDS["defaults"]:
+            words = {True: "on", False: "off"}.get(value) if isinstance(value, bool) else None
+            expected = words or (value if isinstance(value, str) else f"{value:g}")
+            assert shown[name] == expected.replace("0.05%", "0.05 % of the diagonal")
+
+
+def test_every_entry_of_a_report_is_explained_and_no_other() -> None:
+    assert WORDS["report"].keys() == {key for each in filters().values() for key in each.report}
+
+
+def test_every_public_name_is_on_the_page_of_the_python_api(site: Site) -> None:
+    ids = site.pages["api.html"].ids
+    assert {f"meshlab_spectral.{name}" for name in meshlab_spectral.__all__} <= ids
+
+
+def test_options_are_listed_with_their_help(site: Site) -> None:
+    text = " ".join(site.pages["api.html"].text.split())
+    for table in (FilterOptions, DenoiseOptions):
+        for one in table.__dataclass_fields__.values():
+            assert f"{one.name} = " in text
+            assert one.metadata["help"].split("--")[0].strip() in text
+
+
+# In Python's spelling, of the plugin and the package.
+NAME = re.compile(r"`([a-z]+(?:_[a-z]+)+)`")
+OTHER_NAMES = {"spectral_details"}  # a vertex attribute
+
+
+@pytest.mark.parametrize("readme", ["README.md", "python/README.md"])
+def test_names_in_the_readmes_are_those_of_the_plugin_and_the_package(readme: str) -> None:
+    known = {*meshlab_spectral.__all__, *filters(), *WORDS["report"], *OTHER_NAMES}
+    known |= {parameter.name for parameter in all_parameters()}
+    text = (SOURCES.parents[1] / readme).read_text(encoding="utf-8")
+    assert set(NAME.findall(text)) - known == set()
+
+
+CODE = re.compile(r"^( *)\.\. code-block:: python\n\n((?:\1   .*\n|\n)+)", re.MULTILINE)
+EXAMPLES = {
+    path: [textwrap.dedent(code) for _, code in CODE.findall(path.read_text())]
+    for path in sorted(SOURCES.rglob("*.rst"))
+}
+
+
+def test_every_filter_has_an_example() -> None:
+    assert {path.stem for path, codes in EXAMPLES.items() if codes} >= set(FILTERS.values())
+
+
+@pytest.mark.parametrize(
+    "path", [path for path, codes in EXAMPLES.items() if codes], ids=lambda path: path.stem
+)
+def test_examples_run(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.create_sphere(subdiv=4)
+    mesh_set.apply_coord_random_displacement(displacement=pymeshlab.PureValue(0.01))
+    mesh_set.compute_color_by_function_per_vertex(x="100 * (1 + x)")
+    monkeypatch.chdir(tmp_path)
+    mesh_set.save_current_mesh("scan.ply")
+    for code in EXAMPLES[path]:
+        exec(code, {"ms": mesh_set, "pymeshlab": pymeshlab, "numpy": np})
