@@ -101,7 +101,7 @@ class FilterListDirective(SphinxDirective):
     def run(self) -> list[nodes.Node]:
         """Write the table."""
         rows = (
-            (f":doc:`{each.name} <{name}>`", ", ".join(each.menus), f"``{name}``")
+            (f":doc:`{each.name} </filters/{name}>`", ", ".join(each.menus), f"``{name}``")
             for name, each in filters().items()
         )
         header = ("Filter", "Submenu of Filters", "Python")
