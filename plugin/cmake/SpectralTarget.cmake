@@ -80,9 +80,21 @@ function(spectral_plugin_target target)
     # Functions hidden, types not: macOS compares types by address, and MeshLab catches what a
     # plugin throws.
     target_compile_options(${target} PRIVATE -fvisibility-ms-compat)
-    set_target_properties(${target} PROPERTIES CXX_VISIBILITY_PRESET "")
+    # What MeshLab::float does not link is found in the host.
+    target_link_options(${target} PRIVATE -undefined dynamic_lookup)
+    # The host's own Qt and core library, by the paths by which it has loaded them: those next to this
+    # package in Python, those of the application in MeshLab.
+    set_target_properties(${target} PROPERTIES
+      BUILD_WITH_INSTALL_RPATH ON
+      INSTALL_RPATH "@loader_path/../../pymeshlab/Frameworks;@executable_path/../Frameworks")
+    add_custom_command(TARGET ${target} POST_BUILD
+      COMMAND ${CMAKE_COMMAND} -DPLUGIN=$<TARGET_FILE:${target}>
+              -P ${PROJECT_SOURCE_DIR}/plugin/cmake/relocate_qt.cmake)
   else()
     # Link only the libraries that are used, to require no others of the host.
     target_link_options(${target} PRIVATE LINKER:--as-needed)
+    # Resolved by the host at run time: MeshLab loads its core library and Qt before any plugin, and
+    # their names depend on the MeshLab package.
+    set_target_properties(${target} PROPERTIES SKIP_BUILD_RPATH ON)
   endif()
 endfunction()

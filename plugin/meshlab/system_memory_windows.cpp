@@ -1,4 +1,3 @@
-#define NOMINMAX
 #include <windows.h>
 // After windows.h, which it needs.
 #include <psapi.h>
