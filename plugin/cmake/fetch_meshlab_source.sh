@@ -1,43 +1,11 @@
 #!/bin/sh
-# Fetches the sources of MeshLab 2025.07 (headers and vcglib) into a folder, once.
+# Fetches the sources of MeshLab 2025.07 (headers and vcglib) into a folder, once, from Debian's
+# source package.
 #
 # usage: fetch_meshlab_source.sh FOLDER
-#
-# They come from Debian's source package, through apt but without touching the machine's own apt
-# set-up: the mirror is the one that the machine already uses, the lists go to a private folder.
 set -eu
 
-version='2025.07~dfsg-4'
-archive='meshlab_2025.07~dfsg.orig.tar.xz'
-sha256='d22c98d362f2a284e481af8dbfc272b2222f5b9c67b3cf8bec57d1c3161886f4'
-
 [ $# -eq 1 ] || { echo "usage: $0 FOLDER" >&2; exit 2; }
-folder=$1
-[ ! -f "$folder/.complete" ] || exit 0
-command -v apt-get >/dev/null || {
-    echo "$0: no apt-get here: this is no Debian system." >&2; exit 1; }
-
-mkdir -p "$(dirname "$folder")"
-# Absolute, as apt takes a relative path to be one below its own folders.
-work=$(mktemp -d "$(cd "$(dirname "$folder")" && pwd)/meshlab-source.XXXXXX")
-trap 'rm -rf "$work"' EXIT
-trap 'exit 130' INT TERM
-
-mirror=$("$(dirname "$0")/debian_mirror.sh")
-mkdir -p "$work/lists/partial" "$work/tree"
-echo "deb-src $mirror forky main" > "$work/sources.list"
-(
-    cd "$work"
-    # No package caches: they would be the machine's, which a user who is not root cannot write.
-    set -- -o "Dir::Etc::SourceList=$work/sources.list" -o Dir::Etc::SourceParts=/dev/null \
-           -o "Dir::State::Lists=$work/lists" -o APT::Sandbox::User=root \
-           -o Dir::Cache::pkgcache= -o Dir::Cache::srcpkgcache= -qq
-    apt-get "$@" update
-    # --tar-only: the .dsc and the packaging are missing on some mirrors, and not needed.
-    apt-get "$@" source --download-only --tar-only "meshlab=$version"
-)
-echo "$sha256  $work/$archive" | sha256sum --check --quiet
-tar -xf "$work/$archive" -C "$work/tree" --strip-components=1
-touch "$work/tree/.complete"
-rm -rf "$folder"
-mv "$work/tree" "$folder"
+exec "$(dirname "$0")/fetch_debian_source.sh" "$1" forky 'meshlab=2025.07~dfsg-4' \
+    'meshlab_2025.07~dfsg.orig.tar.xz' \
+    'd22c98d362f2a284e481af8dbfc272b2222f5b9c67b3cf8bec57d1c3161886f4'

@@ -1,0 +1,15 @@
+# Finds MeshLab's core library in unpacked wheels of pymeshlab: -DWHEELS=<folder of linux, macos_arm64,
+# macos_x86_64 and windows>. What CMake knows of a system it does not know in a script.
+include(${CMAKE_CURRENT_LIST_DIR}/../../plugin/cmake/MeshLabLibrary.cmake)
+function(expect system prefix suffix file)
+  set(CMAKE_FIND_LIBRARY_PREFIXES "${prefix}")
+  set(CMAKE_FIND_LIBRARY_SUFFIXES "${suffix}")
+  find_meshlab_library(found_${system} ${WHEELS}/${system})
+  if(NOT found_${system} STREQUAL "${WHEELS}/${system}/${file}")
+    message(SEND_ERROR "${system}: ${found_${system}} instead of ${file}")
+  endif()
+endfunction()
+expect(linux lib .so lib/libmeshlab-common.so)
+expect(macos_arm64 lib .dylib Frameworks/libmeshlab-common.dylib)
+expect(macos_x86_64 lib .dylib Frameworks/libmeshlab-common.dylib)
+expect(windows "" .lib meshlab-common.lib)

@@ -1,0 +1,3 @@
+# macOS on Intel, by Zig's Clang, headers and linker: nothing here runs what is built.
+set(zig_target x86_64-macos.11.0)
+include(${CMAKE_CURRENT_LIST_DIR}/zig_macos.cmake)
