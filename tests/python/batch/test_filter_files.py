@@ -173,3 +173,9 @@ def test_workers_that_do_not_start_leave_ctrl_c_as_it_was(
 def test_the_public_names_are_there() -> None:
     for name in meshlab_spectral.__all__:
         assert hasattr(meshlab_spectral, name)
+
+
+def test_workers_leave_an_interruption_to_the_program() -> None:
+    with engine.local_workers(1) as client:
+        handlers = client.run(signal.getsignal, signal.SIGINT)
+    assert list(handlers.values()) == [signal.SIG_IGN]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -30,6 +31,25 @@ def test_leftovers_of_killed_processes_are_removed_and_nothing_else(tmp_path: Pa
         scratch.write_bytes(b"whole")
     remove_leftovers(tmp_path)
     assert sorted(tmp_path.iterdir()) == sorted([target, *kept])
+
+
+def test_a_scratch_folder_that_another_process_takes_for_a_leftover_is_given_up(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folders = []
+
+    @contextlib.contextmanager
+    def held_at_first(folder: Path) -> Iterator[None]:
+        folders.append(folder)
+        if len(folders) == 1:
+            raise BlockingIOError
+        yield
+
+    monkeypatch.setattr("meshlab_spectral.files.whole_files._locked", held_at_first)
+    with writing_whole(tmp_path / "out.ply") as scratch:
+        assert scratch.parent == folders[1]
+        scratch.write_bytes(b"whole")
+    assert list(tmp_path.iterdir()) == [tmp_path / "out.ply"]
 
 
 def put_there_meanwhile(monkeypatch: pytest.MonkeyPatch, path: Path, content: bytes) -> None:

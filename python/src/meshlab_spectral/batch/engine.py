@@ -5,13 +5,14 @@ from __future__ import annotations
 import contextlib
 import itertools
 import logging
-import os
 import signal
+import sys
 from collections.abc import Iterator, Sequence
 from multiprocessing import resource_tracker
 from typing import Any
 
 import dask
+import psutil
 from dask.system import CPU_COUNT
 from distributed import (
     CancelledError,
@@ -239,7 +240,11 @@ def _interrupts_held_back() -> Iterator[None]:
 
     It reaches every process of the terminal, but this one alone handles it. Threads and workers
     started here inherit the mask, unless they start Python's resource tracker, which clears it.
+    Windows has no masks: there, workers ignore Ctrl-C from their setup on.
     """
+    if sys.platform == "win32":
+        yield
+        return
     resource_tracker.ensure_running()
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
@@ -253,8 +258,8 @@ def _kill_workers(cluster: LocalCluster) -> None:
     for nanny in cluster.workers.values():
         nanny.close_gracefully()  # else it would restart the worker
         if nanny.pid is not None:
-            with contextlib.suppress(ProcessLookupError):
-                os.kill(nanny.pid, signal.SIGKILL)
+            with contextlib.suppress(psutil.Error):
+                psutil.Process(nanny.pid).kill()
 
 
 def _close(closable: Client | LocalCluster) -> None:
@@ -276,6 +281,7 @@ class _LocalWorker(WorkerPlugin):  # type: ignore[misc]
         self.threads = threads
 
     def setup(self, worker: Any) -> None:
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
         processes.limit(1)
         processes.threads = self.threads
 

@@ -22,7 +22,7 @@ class Input:
     Attributes
     ----------
     place
-        Absolute path or URL. An unreadable file is an input, too, and will fail.
+        Absolute path with "/", or URL. An unreadable file is an input, too, and will fail.
     folder
         Its folder relative to the one given by the user; "" if the same.
     """
@@ -94,12 +94,12 @@ def _from_argument(argument: str, recursive: bool, outputs: set[Path]) -> Iterat
 
 def _from_path(path: Path, recursive: bool, outputs: set[Path]) -> Iterator[Input]:
     if not path.is_dir():
-        yield Input(str(path))
+        yield Input(path.as_posix())
         return
     within = list(_search(path, "", recursive, outputs))
     yield from within
     if not within and _looks_like_mesh(path.name):
-        yield Input(str(path))  # will fail as a folder
+        yield Input(path.as_posix())  # will fail as a folder
 
 
 def _search(folder: Path, relative: str, recursive: bool, outputs: set[Path]) -> Iterator[Input]:
@@ -117,7 +117,7 @@ def _search(folder: Path, relative: str, recursive: bool, outputs: set[Path]) ->
             if within:
                 continue
         if _looks_like_mesh(entry.name):
-            yield Input(entry.path, relative)
+            yield Input(path.as_posix(), relative)
 
 
 def _from_url(url: str, recursive: bool) -> Iterator[Input]:

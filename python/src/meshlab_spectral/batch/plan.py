@@ -98,7 +98,7 @@ def plan_batch(
     done = proved_done(jobs, records, versions()) if resume else {}
     left = [job for job in jobs if job not in done]
     proved = {job.name for job in done}
-    if str(report_path) in (output.target for output in planned):
+    if report_path.as_posix() in (output.target for output in planned):
         raise InputError(
             f"the report {report_path} is also an output: choose another with --report"
         )

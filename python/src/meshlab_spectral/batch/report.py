@@ -6,7 +6,7 @@ attributes of `FileResult`), "summary" at the end. Later batches append to it.
 
 from __future__ import annotations
 
-import fcntl
+import contextlib
 import io
 import json
 import os
@@ -109,15 +109,16 @@ class Report:
             ) from error
 
     def _lock(self) -> None:
-        try:
-            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
+        from filelock import lock_descriptor  # a slow import
+
+        locked = True
+        with contextlib.suppress(OSError):  # a file system that does not support locks
+            locked = lock_descriptor(self._file.fileno(), blocking=False)
+        if not locked:
             raise BatchError(
                 f"another batch is writing the report {self.path}: wait for it to end, or choose "
                 "another report with --report"
-            ) from None
-        except OSError:
-            pass  # the file system does not support locks
+            )
 
     def _end_line(self) -> None:
         """Terminate an incomplete last line, so that it does not spoil the next one."""

@@ -11,7 +11,7 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
-from urllib.parse import unquote, urlsplit
+from urllib.parse import urlsplit
 
 from meshlab_spectral.errors import InputError, MeshFileError
 from meshlab_spectral.files.meshes import check_source
@@ -35,15 +35,17 @@ def is_url(place: str) -> bool:
 
 
 def located(place: str) -> str:
-    """Resolve a place to an absolute path, or to a URL other than file://."""
+    """Resolve a place to an absolute path with "/", or to a URL other than file://."""
     if place.startswith("file://"):
-        place = unquote(urlsplit(place).path)
-    return place if is_url(place) else str(Path(place).absolute())
+        from urllib.request import url2pathname  # a slow import
+
+        place = url2pathname(urlsplit(place).path)
+    return place if is_url(place) else Path(place).absolute().as_posix()
 
 
 def joined(folder: str, name: str) -> str:
     """Join a folder and a relative name."""
-    return f"{folder.rstrip('/')}/{name}" if is_url(folder) else str(Path(folder, name))
+    return f"{folder.rstrip('/')}/{name}" if is_url(folder) else Path(folder, name).as_posix()
 
 
 def file_system(url: str) -> tuple[Any, str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
@@ -104,10 +105,11 @@ def _apply(mesh_set: Any, name: str, single: ElementTree.Element) -> dict[str, A
 
 
 def _load_single(mesh_set: Any, single: ElementTree.Element) -> None:
-    with tempfile.NamedTemporaryFile("w", suffix=".mlx", encoding="utf-8") as file:
-        file.write(_HEAD + ElementTree.tostring(single, encoding="unicode") + _FOOT)
-        file.flush()
-        mesh_set.load_filter_script(file.name)
+    content = _HEAD + ElementTree.tostring(single, encoding="unicode") + _FOOT
+    with tempfile.TemporaryDirectory() as folder:  # Windows reads no temporary file that is open
+        file = Path(folder, "script.mlx")
+        file.write_text(content, encoding="utf-8")
+        mesh_set.load_filter_script(str(file))
 
 
 def _parameter(element: ElementTree.Element) -> tuple[str, Any]:

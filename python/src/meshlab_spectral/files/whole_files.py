@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import fcntl
 import filecmp
 import os
 import re
@@ -19,6 +18,7 @@ USUAL_FORMATS = ".ply, .obj, .stl or .off"
 
 _SCRATCH_ENDING = ".partial"
 _SCRATCH_NAME = re.compile(r"\.(?P<target>.+)\.[a-z0-9_]{8}\.partial")
+_LOCK = ".lock"  # in a scratch folder
 _LONGEST_NAME = 200  # bytes of the output's name used in that of the scratch folder
 
 
@@ -91,7 +91,10 @@ def remove_leftovers(folder: Path, target_name: str | None = None) -> None:
             continue
         if target_name is not None and match["target"] != _shortened(target_name):
             continue
-        with contextlib.suppress(OSError), _locked(Path(entry.path)):
+        with contextlib.suppress(OSError):
+            with _locked(Path(entry.path)):
+                shutil.rmtree(entry.path, ignore_errors=True)
+            # Windows keeps the lock file as long as it is open.
             shutil.rmtree(entry.path, ignore_errors=True)
 
 
@@ -114,38 +117,44 @@ def _scratch_folder(target: Path, place: Path) -> Iterator[Path]:
                 f"the output folder {target.parent} cannot be written to ({error.strerror}): "
                 "choose another folder"
             ) from error
-        stack.callback(shutil.rmtree, scratch, ignore_errors=True)
         yield scratch
 
 
 def _make_locked(folder: Path, name: str, stack: contextlib.ExitStack) -> Path:
-    """Make a scratch folder, locked for as long as this process lives."""
+    """Make a scratch folder, locked for as long as this process lives, and removed by `stack`."""
     while True:
         path = Path(
             tempfile.mkdtemp(prefix=f".{_shortened(name)}.", suffix=_SCRATCH_ENDING, dir=folder)
         )
-        with contextlib.suppress(OSError):  # a file system without locks
+        stack.callback(shutil.rmtree, path, ignore_errors=True)
+        try:
             stack.enter_context(_locked(path))
+        except BlockingIOError:
+            continue  # another process is removing it as a leftover
+        except OSError:
+            pass  # a file system without locks
         if path.is_dir():
             return path
-        # Another process removed it as a leftover before it was locked: try again.
+        # Another process has removed it as a leftover.
 
 
 @contextlib.contextmanager
 def _locked(folder: Path) -> Iterator[None]:
-    """Hold the lock of a folder.
+    """Hold the lock of a scratch folder.
 
     Raises
     ------
+    BlockingIOError
+        When another process holds it.
     OSError
-        When another process holds it, or the file system does not support locks.
+        When the file system does not support locks.
     """
-    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-    try:
-        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    from filelock import lock_descriptor  # a slow import
+
+    with (folder / _LOCK).open("ab") as file:
+        if not lock_descriptor(file.fileno(), blocking=False):
+            raise BlockingIOError
         yield
-    finally:
-        os.close(descriptor)
 
 
 def _shortened(name: str) -> str:
@@ -155,7 +164,8 @@ def _shortened(name: str) -> str:
 def side_files(scratch: Path) -> list[Path]:
     """Return the side files, such as textures, in the folder of a scratch file."""
     folder = scratch.parent
-    return sorted(path for path in folder.rglob("*") if path.is_file() and path != scratch)
+    ours = (scratch, folder / _LOCK)
+    return sorted(path for path in folder.rglob("*") if path.is_file() and path not in ours)
 
 
 def _put_in_place(scratch: Path, place: Path, overwrite: bool) -> None:
@@ -170,16 +180,17 @@ def _put_in_place(scratch: Path, place: Path, overwrite: bool) -> None:
     for path, final in moves.items():
         if path not in replaceable:
             _refuse_another(path, final, scratch)
+    for path in moves:
+        _sync(path)
     if place.exists():
         shutil.copymode(place, scratch)
     for path, final in moves.items():
         final.parent.mkdir(parents=True, exist_ok=True)
-        _sync(path)
         if path in replaceable:
             path.replace(final)
         else:
             _put_new(path, final, scratch)
-    _sync(place.parent)
+    _sync_folder(place.parent)
 
 
 def _put_new(path: Path, place: Path, scratch: Path) -> None:
@@ -213,8 +224,15 @@ def why_kept(place: object) -> str:
 
 
 def _sync(path: Path) -> None:
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
+    # Windows flushes only what is open for writing; a copy of a texture may be read-only.
+    with contextlib.suppress(PermissionError), path.open("r+b") as file:
+        os.fsync(file.fileno())
+
+
+def _sync_folder(folder: Path) -> None:
+    with contextlib.suppress(PermissionError):  # Windows opens no folders
+        descriptor = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(descriptor)
+        finally:
+            os.close(descriptor)

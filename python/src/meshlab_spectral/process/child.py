@@ -1,24 +1,21 @@
-"""The program of the child process: `python -m meshlab_spectral.process.child FD`.
+"""The program of the child process: `python -m meshlab_spectral.process.child`.
 
 It reads jobs from standard input, one JSON object per line, and answers each on standard output
-with JSON lines: {"stage": ...} as the work proceeds, then {"report": ...} with the peak memory, or
-{"error": ...}. MeshLab's own output goes to standard error.
+with JSON lines: {"stage": ...} as the work proceeds, then {"report": ...} or {"error": ...}.
+MeshLab's own output goes to standard error.
 
-It ends at the end of its input, and immediately, whatever MeshLab is doing, when the pipe FD is
-closed: it never outlives its parent.
+It ends at the end of its input, whatever MeshLab is doing: it never outlives its parent.
 """
 
 from __future__ import annotations
 
-import contextlib
-import fcntl
 import json
 import os
+import queue
 import re
-import resource
-import select
 import signal
 import sys
+import threading
 import traceback
 from pathlib import Path
 from typing import Any
@@ -38,7 +35,6 @@ from meshlab_spectral.plugin.memory import set_memory_limit
 
 # In every error of the plugin about memory.
 _TOO_MUCH_MEMORY = re.compile(r"memory, (of which )?\S+ \w+ are free")
-_PEAK = re.compile(r"^VmHWM:\s+(\d+) kB$", re.MULTILINE)
 
 
 def _report_of(job: dict[str, Any], on_stage: StageCallback) -> dict[str, Any]:
@@ -59,31 +55,15 @@ def _report_of(job: dict[str, Any], on_stage: StageCallback) -> dict[str, Any]:
     return filter_to_scratch(source, scratch, options, on_stage, verbose)
 
 
-def _end_with_parent(lifeline: int) -> None:
-    """Have the kernel end this process when the other end of a pipe is closed.
+def _read(jobs: queue.SimpleQueue[str]) -> None:
+    """Take jobs from standard input, and end the process with it.
 
-    A thread could not: MeshLab holds the interpreter lock while it works.
+    A thread can, although MeshLab cannot be interrupted: pymeshlab releases the interpreter lock.
     """
-    fcntl.fcntl(lifeline, fcntl.F_SETOWN, os.getpid())
-    # From here on, closing the pipe raises SIGIO, which by default ends the process.
-    flags = fcntl.fcntl(lifeline, fcntl.F_GETFL)
-    fcntl.fcntl(lifeline, fcntl.F_SETFL, flags | os.O_ASYNC)
-    if select.select([lifeline], [], [], 0)[0]:  # already closed
-        os._exit(1)
-
-
-def _reset_peak_memory() -> None:
-    with contextlib.suppress(OSError):  # Linux only
-        Path("/proc/self/clear_refs").write_text("5")
-
-
-def _peak_memory() -> int:
-    """Peak memory in bytes since it was last reset, or else since the process started."""
-    with contextlib.suppress(OSError):
-        found = _PEAK.search(Path("/proc/self/status").read_text())
-        if found:
-            return 1024 * int(found[1])
-    return 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    for line in sys.stdin:
+        jobs.put(line)
+    # Skip the interpreter's shutdown, which would wait for MeshLab.
+    os._exit(0)
 
 
 def _described(error: Exception) -> dict[str, str]:
@@ -104,7 +84,6 @@ def _described(error: Exception) -> dict[str, str]:
 def _main() -> None:
     # Ctrl-C reaches every process of the terminal; the parent handles it.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    _end_with_parent(int(sys.argv[1]))
     # Keep C++ output out of the answers.
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8", buffering=1)
     os.dup2(2, 1)
@@ -112,18 +91,15 @@ def _main() -> None:
     def answer(**content: Any) -> None:
         answers.write(json.dumps(content) + "\n")
 
-    for line in sys.stdin:
-        _reset_peak_memory()
+    jobs: queue.SimpleQueue[str] = queue.SimpleQueue()
+    threading.Thread(target=_read, args=[jobs], daemon=True).start()
+    while True:
         try:
-            job = json.loads(line)
+            job = json.loads(jobs.get())
             set_memory_limit(job.get("memory"))
-            report = _report_of(job, lambda stage: answer(stage=stage))
-            answer(report=report, peak_memory=_peak_memory())
+            answer(report=_report_of(job, lambda stage: answer(stage=stage)))
         except Exception as error:
             answer(**_described(error), traceback=traceback.format_exc().strip())
-    answers.flush()
-    # Skip the interpreter's shutdown, in which pymeshlab may crash after an error.
-    os._exit(0)
 
 
 if __name__ == "__main__":

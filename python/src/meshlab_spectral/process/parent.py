@@ -10,15 +10,16 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import queue
 import re
-import selectors
 import signal
 import subprocess
 import sys
+import threading
 import time
+from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from types import TracebackType
 from typing import Any
 
@@ -29,9 +30,8 @@ ProgressCallback = Callable[[str, float | None], None]
 
 _LOG_LINE = re.compile(r"^LOG: \d+ (?P<stage>.*?)\s+\[ (?P<percent>\d+)% \]")
 _KEPT_LOG_LINES = 30
-# Seconds between checks of the limits, in which memory can grow by some 100 MB.
+# Seconds between looks at the child, in which its memory can grow by some 100 MB.
 _LOOK_INTERVAL = 0.05
-_PAGE = os.sysconf("SC_PAGE_SIZE")
 # By default glibc returns the memory of every matrix to the system and requests it again for the
 # next one, which costs a tenth of the time for a small mesh, a fifth with two processes. These
 # settings keep up to 128 MiB.
@@ -62,7 +62,10 @@ NO_LIMITS = JobLimits()
 
 @dataclass(frozen=True)
 class Answer:
-    """Result of a job: the filter's report and the peak memory of the process in bytes."""
+    """Result of a job: the filter's report and the peak memory of the process in bytes.
+
+    The peak is the highest of the looks at the process, which are 0.05 s apart or closer.
+    """
 
     report: dict[str, Any]
     peak_memory: int
@@ -84,32 +87,25 @@ class MeshLabProcess:
         environment = {**os.environ, **_ALLOCATOR}  # Dask workers have opposite settings
         if threads is not None:
             environment[THREADS_VARIABLE] = str(threads)
-        lifeline, self._lifeline = os.pipe()
-        try:
-            self._child = subprocess.Popen(
-                [sys.executable, "-m", "meshlab_spectral.process.child", str(lifeline)],
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.PIPE,
-                pass_fds=[lifeline],
-                env=environment,
-            )
-        except BaseException:
-            os.close(self._lifeline)
-            raise
-        finally:
-            os.close(lifeline)
-        self._log: list[str] = []
-        self._on_progress: ProgressCallback = _ignore
-        self._answer: dict[str, Any] | None = None
-        self._streams = selectors.DefaultSelector()
-        for stream, take in (
-            (self._child.stdout, self._take_answer),
-            (self._child.stderr, self._take_log),
-        ):
-            assert stream is not None
-            os.set_blocking(stream.fileno(), False)
-            self._streams.register(stream, selectors.EVENT_READ, _Lines(take))
+        self._child = subprocess.Popen(
+            [sys.executable, "-m", "meshlab_spectral.process.child"],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            encoding="utf-8",
+            errors="replace",
+            env=environment,
+        )
+        self._log: deque[str] = deque(maxlen=_KEPT_LOG_LINES)
+        # What the child sends: stages and the answer of a job; None at its end.
+        self._messages: queue.SimpleQueue[dict[str, Any] | None] = queue.SimpleQueue()
+        self._readers = [
+            threading.Thread(target=read, daemon=True)
+            for read in (self._read_answers, self._read_log)
+        ]
+        for reader in self._readers:
+            reader.start()
         self.jobs = 0
         self.usable = True
 
@@ -151,36 +147,29 @@ class MeshLabProcess:
             When the child exceeded a limit and was ended.
         """
         self._log.clear()
-        self._answer = None
-        self._on_progress = on_progress or _ignore
         self.jobs += 1
         self.usable = False  # until the job has succeeded
         assert self._child.stdin is not None
-        with contextlib.suppress(BrokenPipeError):  # the child has died: reported below
+        with contextlib.suppress(OSError):  # the child has died: reported below
             # The plugin refuses what it knows to need more; what it does not know of is seen here.
-            limited = {**job, "memory": limits.memory}
-            self._child.stdin.write(json.dumps(limited).encode() + b"\n")
+            self._child.stdin.write(json.dumps({**job, "memory": limits.memory}) + "\n")
             self._child.stdin.flush()
-        answer = self._await_answer(limits)
+        answer, peak_memory = self._await_answer(on_progress or _ignore, limits)
         if limits.memory is not None and answer.get("error") == "MemoryLimitError":
             raise _too_much_memory(limits.memory, answer["message"])
         if "error" in answer:
             raise _error_of(answer)
         self.usable = True
-        return Answer(answer["report"], answer["peak_memory"])
+        return Answer(answer["report"], peak_memory)
 
     def end(self) -> None:
         """End the child, whatever it is doing."""
         self._child.kill()
-        self._child.wait()
-        self._streams.close()
+        self._await_end()
         for stream in (self._child.stdin, self._child.stdout, self._child.stderr):
             assert stream is not None
-            with contextlib.suppress(BrokenPipeError):  # a job it never read
+            with contextlib.suppress(OSError):  # a job it never read
                 stream.close()
-        if self._lifeline >= 0:
-            os.close(self._lifeline)
-            self._lifeline = -1
 
     @property
     def pid(self) -> int:
@@ -188,41 +177,47 @@ class MeshLabProcess:
         return self._child.pid
 
     def memory(self) -> int:
-        """Resident memory of the child in bytes; 0 if it is gone or this is unknown."""
+        """Resident memory of the child in bytes; 0 if it is gone."""
+        import psutil  # takes a while, as does the start of the child
+
         try:
-            return _PAGE * int(Path(f"/proc/{self.pid}/statm").read_text().split()[1])
-        except (OSError, IndexError):
+            return int(psutil.Process(self.pid).memory_info().rss)
+        except psutil.Error:
             return 0
 
-    def _await_answer(self, limits: JobLimits) -> dict[str, Any]:
+    def _await_answer(
+        self, on_progress: ProgressCallback, limits: JobLimits
+    ) -> tuple[dict[str, Any], int]:
+        """Return the answer to a job and the peak memory meanwhile."""
         begin = time.monotonic()
-        limited = limits != NO_LIMITS
-        while self._answer is None:
-            for key, _ in self._streams.select(_LOOK_INTERVAL if limited else None):
-                part = os.read(key.fd, 65536)
-                if part:
-                    key.data.feed(part)
-                else:
-                    self._streams.unregister(key.fileobj)
-            if self._answer is None and not self._streams.get_map():
+        peak_memory = 0
+        while True:
+            message: dict[str, Any] | None = {}
+            with contextlib.suppress(queue.Empty):
+                message = self._messages.get(timeout=_LOOK_INTERVAL)
+            if message is None:
                 raise self._death()
-            if self._answer is None and limited:
-                self._enforce(limits, time.monotonic() - begin)
-        return self._answer
+            memory = self.memory()
+            peak_memory = max(peak_memory, memory)
+            if "stage" in message:
+                on_progress(message["stage"], message.get("fraction"))
+            elif message:
+                return message, peak_memory
+            self._enforce(limits, time.monotonic() - begin, memory)
 
-    def _enforce(self, limits: JobLimits, seconds: float) -> None:
+    def _enforce(self, limits: JobLimits, seconds: float, memory: int) -> None:
         if limits.seconds is not None and seconds > limits.seconds:
             self._child.kill()
             raise errors.TimeLimitError(
                 f"not done after {limits.seconds:g} seconds, the time limit: raise the limit, or "
                 "check the mesh"
             )
-        if limits.memory is not None and self.memory() > limits.memory:
+        if limits.memory is not None and memory > limits.memory:
             self._child.kill()
             raise _too_much_memory(limits.memory, "the file may be damaged")
 
     def _death(self) -> errors.ProcessDiedError:
-        status = self._child.wait()
+        status = self._await_end()
         how = f"by signal {signal.Signals(-status).name}" if status < 0 else f"with status {status}"
         error = errors.ProcessDiedError(
             f"the process running MeshLab was ended {how} before it had finished. Unless that was "
@@ -233,32 +228,27 @@ class MeshLabProcess:
         error.__cause__ = RuntimeError(f"the last lines of its log:\n{tail}")
         return error
 
-    def _take_answer(self, line: str) -> None:
-        content = json.loads(line)
-        if "stage" in content:
-            self._on_progress(content["stage"], None)
-        else:
-            self._answer = content
+    def _await_end(self) -> int:
+        """Return the exit status of the child, once all that it has sent is read."""
+        status = self._child.wait()
+        for reader in self._readers:
+            reader.join()
+        return status
 
-    def _take_log(self, line: str) -> None:
-        self._log.append(line.rstrip())
-        del self._log[:-_KEPT_LOG_LINES]
-        match = _LOG_LINE.match(line)
-        if match:
-            self._on_progress(match["stage"], int(match["percent"]) / 100)
+    def _read_answers(self) -> None:
+        assert self._child.stdout is not None
+        for line in self._child.stdout:
+            self._messages.put(json.loads(line))
+        self._messages.put(None)
 
-
-class _Lines:
-    """Assembles lines from the chunks read from a pipe."""
-
-    def __init__(self, take: Callable[[str], None]) -> None:
-        self._take = take
-        self._rest = b""
-
-    def feed(self, part: bytes) -> None:
-        *lines, self._rest = (self._rest + part).split(b"\n")
-        for line in lines:
-            self._take(line.decode("utf-8", errors="replace"))
+    def _read_log(self) -> None:
+        assert self._child.stderr is not None
+        for line in self._child.stderr:
+            self._log.append(line.rstrip())
+            match = _LOG_LINE.match(line)
+            if match:
+                fraction = int(match["percent"]) / 100
+                self._messages.put({"stage": match["stage"], "fraction": fraction})
 
 
 def _ignore(stage: str, fraction: float | None) -> None:
