@@ -12,7 +12,14 @@ from pathlib import Path, PurePosixPath
 import pytest
 from meshlab_spectral import PluginError
 from meshlab_spectral.plugin import installation
-from meshlab_spectral.plugin.installation import DOUBLE, HOSTS, SINGLE, extra_plugins_folder
+from meshlab_spectral.plugin.installation import (
+    DOUBLE,
+    HOSTS,
+    SINGLE,
+    extra_plugins_folder,
+    find_meshlab,
+)
+from meshlab_spectral.plugin.loading import library_name
 
 Command = Callable[..., subprocess.CompletedProcess[str]]
 
@@ -65,8 +72,9 @@ def packaged(path: Path) -> bytes:
     return (Path(installation.__file__).parent / path.name).read_bytes()
 
 
-def meshlab_that_tells(programs: Path, version: str) -> Path:
-    program = programs / "meshlab"
+def meshlab_that_tells(folder: Path, version: str, name: str = "meshlab") -> Path:
+    folder.mkdir(parents=True, exist_ok=True)
+    program = folder / name
     program.write_text(f"#!/bin/sh\n[ \"$1\" = --version ] && echo '{version}'\n")
     program.chmod(0o755)
     return program
@@ -160,6 +168,33 @@ def test_the_version_of_a_meshlab_on_the_path_is_checked(
     assert re.search(expected, line), line
 
 
+@pytest.mark.parametrize(
+    ("platform", "place"),
+    [
+        ("win32", "Program Files/VCG/MeshLab/meshlab.exe"),
+        ("darwin", "Applications/MeshLab2025.07.app/Contents/MacOS/meshlab"),
+    ],
+)
+def test_a_meshlab_is_found_on_the_path_or_where_its_installer_puts_it(
+    platform: str, place: str, home: Path, programs: Path
+) -> None:
+    environment = {
+        "PATH": str(programs),
+        "HOME": str(home),
+        "PROGRAMFILES": str(home / "Program Files"),
+    }
+    assert find_meshlab(platform, environment) is None
+    path = home / place
+    meshlab_that_tells(path.parent, "MeshLab 2025.07", path.name)
+    found = find_meshlab(platform, environment)
+    assert found is not None
+    assert (found.program, found.host) == (path, SINGLE)
+    on_path = meshlab_that_tells(programs, "MeshLab 2025.07d")
+    found = find_meshlab(platform, environment)
+    assert found is not None
+    assert (found.program, found.host) == (on_path, DOUBLE)
+
+
 def test_without_a_meshlab_the_wanted_versions_are_told(command: Command) -> None:
     assert "No MeshLab was found; the plugin is for MeshLab 2025.07 or 2025.07d." in (
         command().stdout
@@ -218,7 +253,7 @@ def test_the_folders_follow_the_rules_of_the_system(
 def test_the_names_are_those_that_meshlab_takes_for_plugins(
     platform: str, names: list[str]
 ) -> None:
-    assert [installation.library_name(host, platform) for host in (SINGLE, DOUBLE)] == names
+    assert [library_name(host.plugin, platform) for host in (SINGLE, DOUBLE)] == names
 
 
 def test_a_user_without_a_folder_is_told_the_variable() -> None:

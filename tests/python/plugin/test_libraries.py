@@ -14,7 +14,8 @@ from pathlib import Path
 import pymeshlab
 import pytest
 from meshlab_spectral.plugin import installation
-from meshlab_spectral.plugin.installation import DOUBLE, HOSTS, SINGLE, Host, library_name
+from meshlab_spectral.plugin.installation import DOUBLE, HOSTS, SINGLE, Host
+from meshlab_spectral.plugin.loading import library_name
 
 CORE_LIBRARY = Path(pymeshlab.__file__).parent / "lib" / "libmeshlab-common.so"
 SCALARS = {SINGLE: "float", DOUBLE: "double"}
@@ -25,7 +26,7 @@ each_host = pytest.mark.parametrize("host", HOSTS, ids=lambda host: host.precisi
 
 
 def plugin_of(host: Host) -> Path:
-    return Path(installation.__file__).parent / library_name(host)
+    return Path(installation.__file__).parent / library_name(host.plugin)
 
 
 def output_of(*command: object) -> str:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from meshlab_spectral.errors import PluginError
+from meshlab_spectral.plugin.loading import library_name
 
 _PLUGINS = Path(__file__).parent
 _VERSION_SECONDS = 20
@@ -119,11 +120,6 @@ def extra_plugins_folder(
     return data / "VCG" / host.application / "MeshLabExtraPlugins" / host.version
 
 
-def library_name(host: Host, platform: str = sys.platform) -> str:
-    """Return the file name of the plugin for a MeshLab."""
-    return f"{host.plugin}.dll" if platform == "win32" else f"lib{host.plugin}.so"
-
-
 def install(dry_run: bool = False) -> list[Change]:
     """Copy the plugins of both precisions to where MeshLab looks for them when it starts.
 
@@ -166,9 +162,18 @@ def uninstall(dry_run: bool = False) -> list[Change]:
     return [_uninstall(host, dry_run) for host in HOSTS]
 
 
-def find_meshlab() -> FoundMeshLab | None:
-    """Look for MeshLab in the usual places and query its version."""
-    program = next((path for path in _usual_places() if path.is_file()), None)
+def find_meshlab(
+    platform: str = sys.platform, environment: Mapping[str, str] = os.environ
+) -> FoundMeshLab | None:
+    """Look for MeshLab on the path, then where its installer puts it, and query its version.
+
+    Parameters
+    ----------
+    platform, environment
+        As for `extra_plugins_folder`.
+    """
+    places = _usual_places(platform, environment)
+    program = next((path for path in places if path.is_file()), None)
     if program is None:
         return None
     version = _version_of(program)
@@ -186,7 +191,7 @@ def _folder_of(environment: Mapping[str, str], variable: str) -> Path:
 
 
 def _install(host: Host, dry_run: bool) -> Change:
-    source = _PLUGINS / library_name(host)
+    source = _PLUGINS / library_name(host.plugin)
     target = extra_plugins_folder(host) / source.name
     if not source.is_file():
         raise PluginError(
@@ -211,7 +216,7 @@ def _copy_whole(source: Path, target: Path) -> None:
 
 
 def _uninstall(host: Host, dry_run: bool) -> Change:
-    target = extra_plugins_folder(host) / library_name(host)
+    target = extra_plugins_folder(host) / library_name(host.plugin)
     with _as_plugin_error(target):
         if not target.exists():
             return Change(host, target, "not there")
@@ -231,16 +236,20 @@ def _as_plugin_error(target: Path) -> Iterator[None]:
         ) from error
 
 
-def _usual_places() -> Iterator[Path]:
+def _usual_places(platform: str, environment: Mapping[str, str]) -> Iterator[Path]:
     for name in ("meshlab", "MeshLab"):
-        if on_path := shutil.which(name):
+        if on_path := shutil.which(name, path=environment.get("PATH")):
             yield Path(on_path)
-    if sys.platform == "win32":
-        programs = os.environ.get("PROGRAMFILES", r"C:\Program Files")
+    if platform == "win32":
+        programs = environment.get("PROGRAMFILES", r"C:\Program Files")
         yield Path(programs) / "VCG" / "MeshLab" / "meshlab.exe"
-    elif sys.platform == "darwin":
-        for folder in sorted(Path("/Applications").glob("MeshLab*.app"), reverse=True):
-            yield folder / "Contents" / "MacOS" / "meshlab"
+    elif platform == "darwin":
+        for applications in (
+            Path("/Applications"),
+            _folder_of(environment, "HOME") / "Applications",
+        ):
+            for folder in sorted(applications.glob("MeshLab*.app"), reverse=True):
+                yield folder / "Contents" / "MacOS" / "meshlab"
 
 
 def _version_of(program: Path) -> str | None:

@@ -6,6 +6,7 @@ import ctypes
 import functools
 import json
 import os
+import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -110,8 +111,7 @@ def filter_descriptions() -> list[dict[str, Any]]:
 def _function(plugin: Path, name: str, arguments: Sequence[Any]) -> Any:
     """Return a function of the loaded plugin that returns a text."""
     try:
-        # NOLOAD: a second copy of the plugin would have no warnings to report.
-        function = getattr(ctypes.CDLL(str(plugin), mode=os.RTLD_NOW | os.RTLD_NOLOAD), name)
+        function = getattr(_opened(plugin), name)
     except OSError as error:
         raise PluginError(
             f"pymeshlab has loaded another copy of the plugin than {plugin}: call "
@@ -124,3 +124,21 @@ def _function(plugin: Path, name: str, arguments: Sequence[Any]) -> Any:
     function.restype = ctypes.c_char_p
     function.argtypes = arguments
     return function
+
+
+def _opened(plugin: Path) -> ctypes.CDLL:
+    """Open a library if it is loaded: a second copy of the plugin would have no warnings to report.
+
+    Raises
+    ------
+    OSError
+        When it is not loaded.
+    """
+    if sys.platform == "win32":
+        find = ctypes.WinDLL("kernel32").GetModuleHandleW
+        find.argtypes, find.restype = [ctypes.c_wchar_p], ctypes.c_void_p
+        handle = find(str(plugin))
+        if handle is None:
+            raise OSError
+        return ctypes.CDLL(str(plugin), handle=handle)
+    return ctypes.CDLL(str(plugin), mode=os.RTLD_NOW | os.RTLD_NOLOAD)

@@ -1,6 +1,7 @@
 """Loading the plugin into pymeshlab."""
 
 import os
+import sys
 from importlib.metadata import version as installed_version
 from pathlib import Path
 
@@ -21,7 +22,13 @@ FILTERS = {
 PLUGIN_VARIABLE = "MESHLAB_SPECTRAL_PLUGIN"
 PYMESHLAB_VERSION = "2025.7.post1"
 
-_INSTALLED = Path(__file__).parent / "libfilter_spectral.so"
+
+def library_name(plugin: str, platform: str = sys.platform) -> str:
+    """Return the file name of a plugin's library, like those of MeshLab's own on a platform."""
+    return f"{plugin}.dll" if platform == "win32" else f"lib{plugin}.so"
+
+
+_INSTALLED = Path(__file__).parent / library_name("filter_spectral")
 _loaded: Path | None = None
 _REINSTALL = "install this package again: pip install --force-reinstall ./python"
 
@@ -83,7 +90,7 @@ def plugin_path() -> Path:
         )
     raise PluginError(
         f"no plugin at {path}: {_REINSTALL}, or set the environment variable "
-        f"{PLUGIN_VARIABLE} to the path of a libfilter_spectral.so"
+        f"{PLUGIN_VARIABLE} to the path of a {_INSTALLED.name}"
     )
 
 
