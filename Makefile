@@ -4,6 +4,7 @@
 #   MESHLAB_SOURCE_DIR  a checkout of MeshLab 2025.07 with its submodules; else Debian's source
 #                       package is fetched into build/
 #   WARNINGS_AS_ERRORS  ON: a compiler warning fails the build
+#   TEST_OPTIONS        of pytest in `make test`, such as --without-posix: as on Windows
 #   BENCH_MESH          the mesh of the C++ benchmark, skipped when there is no such file
 #   BENCH_OPTIONS       of `make bench-basis`, `bench-contract`, `bench-defaults`, `bench-denoise`; --help lists them
 #   FUZZ_OPTIONS        of `make fuzz`; tests/fuzz/fuzz_core.cpp lists them
@@ -14,6 +15,7 @@ MESHLAB_SOURCE_DIR ?=
 WARNINGS_AS_ERRORS ?= OFF
 BENCH_MESH ?= ../shared/data/dragon_40k.ply
 BENCH_OPTIONS ?=
+TEST_OPTIONS ?=
 FUZZ_OPTIONS ?= --cases 1000000
 FUZZ_EXAMPLES ?= 5000
 SANITIZE ?= OFF
@@ -49,7 +51,7 @@ demo: $(PACKAGE)  ## filter the Stanford bunny: report, mesh and picture in buil
 
 test: build $(PACKAGE)  ## run every test, C++ and Python
 	ctest --test-dir build --output-on-failure --no-tests=error --parallel $$(nproc)
-	$(BIN)/python -m pytest -c python/pyproject.toml --rootdir . tests/python
+	$(BIN)/python -m pytest -c python/pyproject.toml --rootdir . $(TEST_OPTIONS) tests/python
 
 docs: $(PACKAGE)  ## write the reference of filters and Python API: build/docs/index.html
 	rm -rf build/docs
@@ -110,7 +112,9 @@ lint: setup  ## check style and types, change nothing
 	$(CPP_FILES) | xargs $(BIN)/clang-format --dry-run -Werror
 	$(BIN)/ruff check --config python/pyproject.toml $(PYTHON_FILES)
 	$(BIN)/ruff format --check --config python/pyproject.toml $(PYTHON_FILES)
-	$(BIN)/mypy --strict --config-file python/pyproject.toml python/src
+	for platform in linux win32 darwin; do \
+	  $(BIN)/mypy --strict --platform $$platform --config-file python/pyproject.toml python/src \
+	  || exit; done
 
 format: setup  ## rewrite the sources in the project's style
 	$(CPP_FILES) | xargs $(BIN)/clang-format -i

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import os
+import runpy
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -30,6 +31,22 @@ settings.register_profile(
 settings.load_profile("seeded")
 
 Arrays = tuple[NDArray[Any], NDArray[Any]]
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption(
+        "--without-posix",
+        action="store_true",
+        help="refuse the package the modules that only POSIX systems have",
+    )
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    if config.getoption("--without-posix"):
+        folder = Path(__file__).parent / "without_posix"
+        runpy.run_path(str(folder / "sitecustomize.py"))
+        paths = [str(folder), *filter(None, [os.environ.get("PYTHONPATH")])]
+        os.environ["PYTHONPATH"] = os.pathsep.join(paths)
 
 
 @pytest.fixture(scope="session", autouse=True)
