@@ -14,14 +14,15 @@ SOURCE = Path(meshlab_spectral.__file__).parent
 # A room imports only from rooms of lower levels; the package itself may import from all of them.
 LEVELS = {
     "errors": 0,
-    "plugin": 1,
-    "filters": 2,
-    "files": 3,
-    "process": 4,
-    "figures": 5,
-    "batch": 5,
-    "cli": 6,
-    "": 7,
+    "extras": 1,
+    "plugin": 2,
+    "filters": 3,
+    "files": 4,
+    "process": 5,
+    "figures": 6,
+    "batch": 6,
+    "cli": 7,
+    "": 8,
 }
 
 

@@ -9,6 +9,10 @@ class PluginError(SpectralError):
     """The plugin or pymeshlab is missing, damaged or of the wrong version."""
 
 
+class MissingPackageError(SpectralError):
+    """A package of an extra is not installed."""
+
+
 class OptionError(SpectralError, ValueError):
     """A filter option has an invalid value."""
 

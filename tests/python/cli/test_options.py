@@ -167,3 +167,20 @@ def test_a_batch_takes_a_preset_over_a_recipe(cow: Path, tmp_path: Path) -> None
 def test_an_unknown_preset_is_refused_with_the_known_ones(cow: Path, tmp_path: Path) -> None:
     done = command("filter", cow, tmp_path / "out.ply", "--preset", "beautify")
     assert_fails(done, 2, "beautify", "caricature")
+
+
+@pytest.mark.parametrize(
+    ("line", "completed"),
+    [
+        ("de", "denoise"),
+        ("filter --filter-type band-s", "band-stop"),
+        ("filter --crease-a", "--crease-angle"),
+    ],
+)
+def test_the_shell_completes_commands_options_and_choices(line: str, completed: str) -> None:
+    done = command(
+        _MESHLAB_SPECTRAL_COMPLETE="complete_bash",
+        COMP_WORDS=f"meshlab-spectral {line}",
+        COMP_CWORD=str(len(line.split())),
+    )
+    assert done.stdout.split() == [completed], done.stderr

@@ -16,6 +16,7 @@ from meshlab_spectral.batch.outputs import DEFAULT_PATTERN
 from meshlab_spectral.batch.plan import Batch, plan_batch
 from meshlab_spectral.batch.report import Report
 from meshlab_spectral.errors import OptionError
+from meshlab_spectral.extras import check_extras
 from meshlab_spectral.filters.options import FilterOptions
 
 
@@ -86,6 +87,8 @@ def filter_files(
         name, or an option is invalid.
     BatchError
         When the report cannot be written, or the Dask cluster cannot be reached.
+    MissingPackageError
+        When Dask, of the extra `batch`, is not installed.
 
     Examples
     --------
@@ -128,6 +131,8 @@ def run_batch(
     scheduler: str | None = None,
 ) -> Generator[FileResult, None, None]:
     """Run a planned batch; see `filter_files`."""
+    if batch.jobs:
+        check_extras("batch")
     with Report(batch.report) as report:
         counts = dict.fromkeys(get_args(Outcome), 0) | {"unchanged": len(batch.done)}
         begin = time.monotonic()

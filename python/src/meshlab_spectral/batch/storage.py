@@ -14,6 +14,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from meshlab_spectral.errors import InputError, MeshFileError
+from meshlab_spectral.extras import check_extras
 from meshlab_spectral.files.meshes import check_source
 from meshlab_spectral.files.whole_files import (
     remove_leftovers,
@@ -55,7 +56,10 @@ def file_system(url: str) -> tuple[Any, str]:
     ------
     InputError
         When the scheme is unknown or its package is not installed.
+    MissingPackageError
+        When fsspec, of the extra `batch`, is not installed.
     """
+    check_extras("batch")
     import fsspec
 
     try:

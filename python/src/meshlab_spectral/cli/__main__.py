@@ -9,7 +9,7 @@ def main() -> None:
     from meshlab_spectral.cli.app import app  # takes most of a second
 
     try:
-        app()
+        app(prog_name="meshlab-spectral")
     finally:
         ignore_interrupts()
 

@@ -21,7 +21,6 @@ app = typer.Typer(
     help="Denoise, smooth, sharpen and band-filter meshes by the size of their details.",
     epilog=EXIT_CODES,
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
 )

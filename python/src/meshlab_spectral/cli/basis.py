@@ -9,6 +9,7 @@ import typer
 
 from meshlab_spectral.cli.messages import errors_reported
 from meshlab_spectral.cli.progress import progress_shown
+from meshlab_spectral.extras import check_extras
 from meshlab_spectral.figures.harmonics import check_modes, check_picture, draw_basis_file
 from meshlab_spectral.files.whole_files import check_target
 from meshlab_spectral.filters.harmonics import DEFAULT_BASIS_SIZE
@@ -63,6 +64,7 @@ def basis_command(
     with errors_reported(debug, "finished files are complete"):
         shown = None if modes is None else _modes(modes, basis_size)
         if pictures is not None:
+            check_extras("plots", "render")
             check_picture(pictures)
             check_target(pictures)
         with progress_shown() as on_progress:

@@ -18,6 +18,7 @@ from rich.text import Text
 from meshlab_spectral.cli.filter_options import with_options
 from meshlab_spectral.cli.messages import errors_reported
 from meshlab_spectral.cli.progress import progress_shown
+from meshlab_spectral.extras import check_extras
 from meshlab_spectral.figures.spectrum import (
     check_format,
     draw_spectrum,
@@ -95,6 +96,7 @@ def spectrum_command(
         check_source(source)
         scratch = None
         if output is not None:  # fail before the computation if it cannot be written
+            check_extras("plots")
             check_format(output)
             scratch = stack.enter_context(writing_whole(output))
         with progress_shown() as on_progress:

@@ -1,4 +1,5 @@
 """Pictures and plots: the figures of the paper, manifold harmonics, geometry spectra.
 
-`pictures` renders meshes, `sheet` arranges them on a page. Needs the extra `pictures`.
+`pictures` renders meshes, `sheet` arranges them on a page. Needs the extras
+`plots` and `render`.
 """

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from meshlab_spectral.errors import MeshFileError, OptionError
+from meshlab_spectral.extras import check_extras
 from meshlab_spectral.figures import eigenfunctions, sequences, stability
 from meshlab_spectral.figures.subject import Subject
 from meshlab_spectral.files.whole_files import check_target
@@ -58,7 +59,10 @@ def draw_figures(
         When two meshes have the same name.
     FilterError
         When the filter rejects a mesh.
+    MissingPackageError
+        When Matplotlib or PyVista is not installed.
     """
+    check_extras("plots", "render")
     for source in sources:
         if not source.is_file():
             raise MeshFileError(f"there is no mesh file {source}. {_WHERE_MESHES_ARE}")

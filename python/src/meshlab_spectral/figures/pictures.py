@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from meshlab_spectral.errors import SpectralError
+from meshlab_spectral.extras import check_extras
 
 if TYPE_CHECKING:
     import pymeshlab
@@ -147,7 +147,7 @@ def draw_side_by_side(
 
     Raises
     ------
-    SpectralError
+    MissingPackageError
         When PyVista is not installed.
     """
     # Half of the largest extent, with a margin for the label.
@@ -186,7 +186,7 @@ def render(panel: Panel, frame: Frame, pixels: int) -> Image:
 
     Raises
     ------
-    SpectralError
+    MissingPackageError
         When PyVista is not installed.
     """
     height = max(1, round(pixels * frame.height / frame.width))
@@ -220,12 +220,9 @@ def _plotter(columns: int, panel_size: tuple[int, int]) -> Any:
     if sys.platform == "linux" and not os.environ.get("DISPLAY"):
         # Otherwise VTK first tries an X server, and warns that there is none.
         os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
-    try:
-        import pyvista
-    except ModuleNotFoundError as error:
-        raise SpectralError(
-            f"pictures need PyVista ({error}): pip install 'meshlab-spectral[pictures]'"
-        ) from error
+    check_extras("render")
+    import pyvista
+
     width, height = panel_size
     plotter = pyvista.Plotter(
         off_screen=True,

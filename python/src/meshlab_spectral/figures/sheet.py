@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from meshlab_spectral.errors import SpectralError
+from meshlab_spectral.extras import check_extras
 from meshlab_spectral.figures.pictures import Image
 from meshlab_spectral.files.whole_files import writing_whole
 
@@ -54,7 +54,7 @@ class Sheet:
 
     Raises
     ------
-    SpectralError
+    MissingPackageError
         When Matplotlib is not installed.
     """
 
@@ -66,13 +66,10 @@ class Sheet:
         scale: float = 1.0,
         footer: float = 0.0,
     ) -> None:
-        try:
-            from matplotlib.backends.backend_agg import FigureCanvasAgg
-            from matplotlib.figure import Figure
-        except ModuleNotFoundError as error:
-            raise SpectralError(
-                f"figures need Matplotlib ({error}): pip install 'meshlab-spectral[pictures]'"
-            ) from error
+        check_extras("plots")
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+
         fitting = (_PAGE_WIDTH - (columns + 1) * _GAP) / columns
         self._picture = min(fitting, min(aspects) * _MAX_HEIGHT)
         self._cell = max(self._picture, min(fitting, _MIN_CELL))

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from meshlab_spectral.errors import FormatError, SpectralError
+from meshlab_spectral.errors import FormatError
+from meshlab_spectral.extras import check_extras
 from meshlab_spectral.figures.sheet import FONT_SIZE, INK
 from meshlab_spectral.figures.subject import filter_name
 from meshlab_spectral.filters.options import FilterOptions
@@ -79,16 +80,13 @@ def draw_spectrum(
 
     Raises
     ------
-    SpectralError
+    MissingPackageError
         When Matplotlib is not installed.
     """
-    try:
-        from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
-    except ModuleNotFoundError as error:
-        raise SpectralError(
-            f"the plot needs Matplotlib ({error}): pip install 'meshlab-spectral[pictures]'"
-        ) from error
+    check_extras("plots")
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
     figure = Figure(_SIZE, dpi=_DOTS_PER_INCH, facecolor="white", layout="constrained")
     FigureCanvasAgg(figure)
     axes, noise = figure.subplots(2, 1, sharex=True, height_ratios=_HEIGHTS)
