@@ -58,6 +58,19 @@ def test_a_process_that_is_gone_before_its_job_is_told(samples: Path, tmp_path: 
             process.run(long_work(samples, tmp_path))
 
 
+def test_a_process_that_ends_in_the_middle_of_its_answer_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    child = tmp_path / "child"
+    child.write_text("#!/bin/sh\nread job\necho a word on the end >&2\nprintf '{\"report\": {'\n")
+    child.chmod(0o755)
+    monkeypatch.setattr(sys, "executable", str(child))
+    with MeshLabProcess() as process:
+        with pytest.raises(ProcessDiedError, match="with status 0") as error:
+            process.run({})
+        assert "a word on the end" in str(error.value.__cause__)
+
+
 PARENT = """
 import json, os, sys, threading, time
 from meshlab_spectral.process.parent import MeshLabProcess

@@ -238,7 +238,8 @@ class MeshLabProcess:
     def _read_answers(self) -> None:
         assert self._child.stdout is not None
         for line in self._child.stdout:
-            self._messages.put(json.loads(line))
+            if line.endswith("\n"):  # else the child was ended while it wrote
+                self._messages.put(json.loads(line))
         self._messages.put(None)
 
     def _read_log(self) -> None:
