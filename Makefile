@@ -28,6 +28,9 @@ CMAKE_OPTIONS := $(if $(MESHLAB_SOURCE_DIR),-DMESHLAB_SOURCE_DIR=$(abspath $(MES
 # have it set up again.
 PACKAGES := build/.packages
 VENV := .venv/.requirements
+# That of pymeshlab's wheel; and what a plugin finds in its host, MeshLab or pymeshlab.
+MANYLINUX := manylinux_2_35_x86_64
+HOST_LIBRARIES := libmeshlab-common.so libQt5Core.so.5 libQt5Gui.so.5 libQt5Widgets.so.5 libQt5Xml.so.5 libQt5OpenGL.so.5
 PACKAGE := .venv/.package
 COMPETITORS := .venv/.competitors
 
@@ -40,7 +43,7 @@ PACKAGE_SOURCES := CMakeLists.txt $(shell find plugin python -not -path '*/__pyc
 # Two targets at once would fetch MeshLab's headers twice; ninja uses every core anyway.
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help demo test docs gui-test screenshots setup build bench bench-basis bench-batch bench-contract bench-defaults bench-denoise bench-ldlt fuzz fuzz-python lint format clean
+.PHONY: help demo test wheel sdist docs gui-test screenshots setup build bench bench-basis bench-batch bench-contract bench-defaults bench-denoise bench-ldlt fuzz fuzz-python lint format clean
 
 help:  ## list these commands
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 20
@@ -52,6 +55,22 @@ demo: $(PACKAGE)  ## filter the Stanford bunny: report, mesh and picture in buil
 test: build $(PACKAGE)  ## run every test, C++ and Python
 	ctest --test-dir build --output-on-failure --no-tests=error --parallel $$(nproc)
 	$(BIN)/python -m pytest -c python/pyproject.toml --rootdir . $(TEST_OPTIONS) tests/python
+
+wheel: $(VENV)  ## build the wheel that PyPI takes: build/wheel/*.whl
+	rm -rf build/wheel/linux build/wheel/*.whl
+	plugin/cmake/static_muparser.sh $(CURDIR)/build/wheel/muparser
+	CMAKE_ARGS="$(CMAKE_OPTIONS) -DCMAKE_PREFIX_PATH=$(CURDIR)/build/wheel/muparser" \
+	  $(BIN)/pip wheel --quiet --disable-pip-version-check --no-index --no-build-isolation --no-deps \
+	  --config-settings=build-dir="$(CURDIR)/build/wheel/package" --wheel-dir build/wheel/linux ./python
+	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/auditwheel repair --plat $(MANYLINUX) --wheel-dir build/wheel \
+	  $(patsubst %,--exclude %,$(HOST_LIBRARIES)) build/wheel/linux/*.whl
+
+sdist: $(VENV)  ## build the source package: build/sdist/*.tar.gz
+	rm -rf build/sdist && mkdir -p build/sdist/tree
+	cp -r CMakeLists.txt LICENSE plugin python/README.md python/pyproject.toml python/src build/sdist/tree
+	sed -i 's|"\.\."|"."|; s|"\.\./CMakeLists\.txt"|"CMakeLists.txt"|' build/sdist/tree/pyproject.toml
+	cd build/sdist/tree && $(CURDIR)/$(BIN)/python -c \
+	  'from scikit_build_core.build import build_sdist; print(build_sdist(".."))'
 
 docs: $(PACKAGE)  ## write the reference of filters and Python API: build/docs/index.html
 	rm -rf build/docs

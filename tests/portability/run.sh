@@ -48,16 +48,10 @@ build_project() {  # options of CMake
 # Compiles the libraries for the target, and writes where they are to $installed.
 build_libraries() {
     installed=$folder/installed
-    muparser=$project/build/portability/muparser
-    "$project/plugin/cmake/fetch_debian_source.sh" "$muparser" bookworm muparser=2.3.3-0.1 \
-        muparser_2.3.3.orig.tar.gz \
-        91d26d8274ae9cd9c776ee58250aeddc6b574f369eafd03b25045b858a2b8177
-    for library in "$muparser" /usr/src/googletest; do
-        build "$library" "$folder/$(basename "$library")" --toolchain "$toolchain" \
-            -DCMAKE_INSTALL_PREFIX="$installed" -DBUILD_SHARED_LIBS=OFF -DBUILD_TESTING=OFF \
-            -DENABLE_SAMPLES=OFF -DENABLE_OPENMP=OFF -DBUILD_GMOCK=OFF
-        cmake --install "$folder/$(basename "$library")"
-    done
+    "$project/plugin/cmake/static_muparser.sh" "$installed" --toolchain "$toolchain"
+    build /usr/src/googletest "$folder/googletest" --toolchain "$toolchain" \
+        -DCMAKE_INSTALL_PREFIX="$installed" -DBUILD_GMOCK=OFF
+    cmake --install "$folder/googletest"
     # Spectra alone: next to it in /usr/include are the headers of this machine's C library.
     ln -sfn /usr/include/Spectra "$installed/include/Spectra"
 }

@@ -1,0 +1,51 @@
+#!/usr/bin/env bash
+# Tries the wheel that `make wheel` has built where nothing was installed before: in a bare Debian with
+# Python and the run-time libraries of pymeshlab, in an empty environment.
+#
+# usage: wheel_room.sh [SUITE]    bookworm (default), trixie, testing ...
+#
+# Needs root and debootstrap.
+set -euo pipefail
+
+suite=${1:-bookworm}
+project=$(cd "$(dirname "$0")/.." && pwd)
+wheel=$(echo "$project"/build/wheel/meshlab_spectral-*-manylinux_*.whl)
+[ -f "$wheel" ] || { echo "$0: no wheel: run \`make wheel\`" >&2; exit 2; }
+root=$(mktemp -d)
+chmod 755 "$root"
+trap 'rm -rf --one-file-system "$root"' EXIT
+trap 'exit 130' INT TERM
+
+libraries=$(sed -n '/^# Run-time/,$s/^\([a-z0-9-]*\) .*/\1/p' "$project/plugin/cmake/debian_packages.txt")
+"$project/tests/debian_root.sh" "$suite" "$root" "ca-certificates,python3-venv,$(paste -sd, <<<"$libraries")"
+for file in /etc/pip.conf ~/.pip/pip.conf ~/.config/pip/pip.conf; do
+    [ ! -f "$file" ] || cp "$file" "$root/etc/pip.conf"
+done
+cp "$wheel" "$root/root"
+cat >"$root/root/try.sh" <<'END'
+set -eu
+cd /root
+. /etc/os-release && echo "$PRETTY_NAME, $(python3 --version), $(ldd --version | sed -n 1p)"
+python3 -m venv venv
+venv/bin/pip install --quiet --quiet --disable-pip-version-check "$(echo meshlab_spectral-*.whl)[batch]"
+PATH=$PWD/venv/bin:$PATH
+python - <<'PYTHON'
+import meshlab_spectral, pymeshlab
+meshlab_spectral.load()
+ms = pymeshlab.MeshSet()
+ms.create_sphere(subdiv=5)
+ms.apply_coord_random_displacement()
+ms.save_current_mesh("noisy.ply")
+print(ms.apply_coord_spectral_filter_fractional(filter_type="custom", transfer_function="1/(1+w^4)"))
+PYTHON
+meshlab-spectral denoise noisy.ply clean.ply
+mkdir scans && cp noisy.ply scans
+meshlab-spectral batch scans --output smooth --feature-size 6e --workers 2
+test -s clean.ply && test -s smooth/noisy.ply
+meshlab-spectral install
+meshlab-spectral install --uninstall
+END
+# In namespaces of its own, so that the mount and whatever still runs go when it ends, in any way.
+unshare --mount --pid --fork --kill-child bash -c \
+    'mount --bind "$1" "$1" && mount -t proc proc "$1/proc" && exec chroot "$1" bash /root/try.sh' - "$root"
+echo "=== the wheel works in $suite"
