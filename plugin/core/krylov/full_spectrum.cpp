@@ -111,7 +111,9 @@ class Approximation {
         // Vertices of small mass hardly affect the norm over the surface. Their errors can be
         // larger, and decay more slowly and less evenly: the larger of two changes counts.
         const double before = std::exchange(largest_, spaces_.largestEntryOf(change_));
-        const double estimate = atVertices_(std::max(before, largest_) / spaces_.largestEntry());
+        double estimate = atVertices_(std::max(before, largest_) / spaces_.largestEntry());
+        // Changes below the error over the surface have not reached the vertices that make it up.
+        if (estimate < error) estimate = error * mostAtVertices_;
         const double surest = std::max(error, mixingError()) * mostAtVertices_;
         return std::max(error, std::min(estimate, surest));
     }
@@ -156,7 +158,10 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
     const Eigen::VectorXd& D, const ConstantModes& constants, const ShiftedLdlt& ldlt,
     const std::vector<Gain>& gains, const Eigen::MatrixXd& X, const FullSpectrumOptions& options,
     const Progress& progress) {
-    KrylovSpaces spaces(ldlt, D, constants, X);
+    double orthogonal = KrylovSpaces::kOrthogonal;
+    if (options.atEveryVertex)  // of small mass, with entries as large in the basis
+        orthogonal = std::min(orthogonal, options.accuracy * std::sqrt(D.minCoeff() / D.sum()));
+    KrylovSpaces spaces(ldlt, D, constants, X, orthogonal);
     if (!(spaces.largestEntry() > 0.0)) return {gains.size(), {X, 0.0, 0, true}};
     std::vector<FullSpectrumResult> results(gains.size());
     const Eigen::VectorXd omega = sampleFrequencies(-ldlt.shift(), options.samples);

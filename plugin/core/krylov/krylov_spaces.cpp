@@ -18,10 +18,6 @@ namespace {
 /// Relative norm below which a new direction may be round-off.
 constexpr double kBreakdown = 1e-13;
 
-/// Largest inner product of an orthogonal basis. Semiorthogonality, 1e-8 (Simon 1984), would keep T
-/// accurate, but not combinations of the basis.
-constexpr double kOrthogonal = 1e-10;
-
 /// Inner product of orthogonalized vectors: a few units of round-off. New directions of this
 /// relative norm are nothing else: the space is invariant. Longer ones may be all that is known of
 /// vertices whose share of the mass is 1e-12.
@@ -113,9 +109,11 @@ Moments<Columns> momentsOf(const Eigen::VectorXd& D, const Eigen::VectorXi& labe
 }  // namespace
 
 KrylovSpaces::KrylovSpaces(const ShiftedLdlt& ldlt, const Eigen::VectorXd& D,
-                           const ConstantModes& constants, const Eigen::MatrixXd& X)
+                           const ConstantModes& constants, const Eigen::MatrixXd& X,
+                           double orthogonal)
     : ldlt_(ldlt),
       constants_(constants),
+      orthogonal_(orthogonal),
       columns_(static_cast<int>(X.cols())),
       D_(D.size()),
       label_(D.size()),
@@ -253,16 +251,18 @@ bool KrylovSpaces::losesOrthogonality(const Eigen::Ref<const Eigen::ArrayXd>& be
         const std::size_t j = alpha.size() - 1;
         std::vector<double>&now = overlap_[c], next(j + 2), &past = overlapBefore_[c];
         now.resize(j + 1, 1.0);
+        // Round-off of a recurrence whose terms cancel.
+        const double local = kRoundOff * std::max(1.0, std::abs(alpha[j]) / beta[c]);
         for (std::size_t k = 0; k < j; ++k) {
             double sum = betas[k] * now[k + 1] + (alpha[k] - alpha[j]) * now[k];
             if (k > 0) sum += betas[k - 1] * now[k - 1];
             sum = (sum - betas[j - 1] * past[k]) / beta[c];
-            next[k] = sum + std::copysign(kRoundOff, sum);
-            loses = loses || !(std::abs(next[k]) <= kOrthogonal);
+            next[k] = sum + std::copysign(local, sum);
+            loses = loses || !(std::abs(next[k]) <= orthogonal_);
         }
-        next[j] = kRoundOff;
+        next[j] = local;
         next[j + 1] = 1.0;
-        loses = loses || !(beta[c] > std::sqrt(kBreakdown) * std::abs(alpha[j]));
+        loses = loses || !(local <= orthogonal_);
         past = std::move(now);
         now = std::move(next);
     }

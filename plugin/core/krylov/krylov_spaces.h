@@ -35,11 +35,16 @@ class KrylovSpaces {
   public:
     static constexpr int kMostSignals = 4;
 
+    /// Largest inner product of an orthogonal basis. Semiorthogonality, 1e-8 (Simon 1984), would
+    /// keep T accurate, but not combinations of the basis.
+    static constexpr double kOrthogonal = 1e-10;
+
     /// @param ldlt  factorization of W + lambda_p D; kept by reference, like constants.
     /// @param constants  removed from all vectors.
     /// @param X  n x c signals, 1 <= c <= kMostSignals.
+    /// @param orthogonal  inner product of two vectors at which they are reorthogonalized.
     KrylovSpaces(const ShiftedLdlt& ldlt, const Eigen::VectorXd& D, const ConstantModes& constants,
-                 const Eigen::MatrixXd& X);
+                 const Eigen::MatrixXd& X, double orthogonal = kOrthogonal);
 
     int columns() const { return columns_; }
 
@@ -107,6 +112,7 @@ class KrylovSpaces {
 
     const ShiftedLdlt& ldlt_;
     const ConstantModes& constants_;
+    double orthogonal_;
     int columns_;
     Eigen::VectorXd D_;      // in factor order, like all that follow
     Eigen::VectorXi label_;  // components; see ConstantModes

@@ -163,6 +163,20 @@ TEST(FullSpectrum, IsAccurateAtVerticesOfHardlyAnyMass) {
     EXPECT_LT((result.Y - expected).cwiseAbs().maxCoeff(), 1e-8);
 }
 
+TEST(FullSpectrum, SeesAPartOfHardlyAnyMassWhereAllElseVanishes) {
+    Mesh tiny = testing::icosphere(0);
+    tiny.V *= 1e-5;
+    const Operator A(testing::joined(testing::cube(2), tiny));
+    TransferFunctionOptions highPass;
+    highPass.type = FilterType::HighPass;
+    const double cutoff = 30.0;  // between the frequencies of the two
+    const FullSpectrumResult result = testing::filteredFullSpectrum(
+        A, fractionalPower(TransferFunction(highPass, cutoff), 1.0), cutoff, 1e-6);
+    const Eigen::MatrixXd change = result.Y - A.mesh.V;
+    EXPECT_TRUE(result.converged);
+    EXPECT_LT(change.bottomRows(tiny.V.rows()).cwiseAbs().maxCoeff(), 1e-6);
+}
+
 TEST(FullSpectrum, LeavesASignalOfConstantsAlone) {
     const Operator A(testing::blob());
     ShiftedLdlt ldlt;

@@ -51,6 +51,23 @@ TEST(KrylovSpaces, StayOrthogonalToConstantsAndToThemselves) {
     }
 }
 
+TEST(KrylovSpaces, AreAsOrthogonalAsAskedForWhereDirectionsCancel) {
+    const Operator A(testing::rectangle(1.0, 1e-6, 7, 2));
+    const int dimensions = 6;
+    for (const double pole : {1e3, 1e6, 1e9})
+        for (const double orthogonal : {1e-10, 1e-12, 1e-14}) {
+            ShiftedLdlt ldlt;
+            ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, pole);
+            KrylovSpaces spaces(ldlt, A.laplacian.D, A.constants, A.mesh.V.leftCols(1), orthogonal);
+            for (int m = 0; m < dimensions; ++m) spaces.extend();
+            Eigen::MatrixXd Q(A.mesh.V.rows(), dimensions);
+            for (int m = 0; m < dimensions; ++m)
+                Q.col(m) = spaces.combine({Eigen::VectorXd::Unit(dimensions, m)});
+            const Eigen::MatrixXd products = Q.transpose() * A.laplacian.D.asDiagonal() * Q;
+            EXPECT_TRUE(products.isIdentity(orthogonal)) << pole << " " << orthogonal;
+        }
+}
+
 TEST(KrylovSpaces, AreNormalizedWhereSolvesHaveConstantsOfRoundOff) {
     // A ribbon: new directions are about as small as the round-off of S.
     const Operator A(testing::rectangle(1.0, 1e-7, 7, 2));
