@@ -17,6 +17,9 @@ using ConstMatrix = Eigen::Map<const Eigen::MatrixXd, Eigen::Unaligned, Eigen::O
 /// columns are then taken at a time.
 constexpr Size kManyColumns = 32, kManyInner = 8;
 
+/// Products whose three sizes sum to less Eigen computes coefficient by coefficient.
+constexpr Size kSmallProduct = 20;
+
 /// From so many multiplications on, sharing them pays.
 constexpr Size kMuchWork = 500000;
 
@@ -64,26 +67,7 @@ void subtractInner(const Subtraction& s, Size inner) {
     for (Size rest = j; rest < s.columns; ++rest) subtractFew<Inner, 1>(s, inner, rest, j);
 }
 
-/// The columns from j on, at most kManyColumns, by Eigen's product.
-void subtractProduct(const Subtraction& s, Size j) {
-    const Eigen::OuterStride<> stride(s.stride), strideC(s.strideC);
-    const Size columns = std::min(kManyColumns, s.columns - j), rows = s.rows - j;
-    Matrix(s.C + j * s.strideC + j, rows, columns, strideC).noalias() -=
-        ConstMatrix(s.L + j, rows, s.inner, stride) *
-        ConstMatrix(s.Lpivots + j, columns, s.inner, stride).transpose();
-}
-
-void subtract(const Subtraction& s, const FrontalMatrix& front) {
-    if (s.inner >= kManyInner && s.columns >= kManyColumns) {
-        const Size blocks = (s.columns + kManyColumns - 1) / kManyColumns;
-        const auto one = [](const void* subtraction, Size block) {
-            subtractProduct(*static_cast<const Subtraction*>(subtraction), block * kManyColumns);
-        };
-        if (front.parallelFor != nullptr && s.inner * s.columns * s.rows >= kMuchWork)
-            return front.parallelFor(blocks, one, &s);
-        for (Size block = 0; block < blocks; ++block) one(&s, block);
-        return;
-    }
+void subtractByLoops(const Subtraction& s) {
     Size a = 0;
     for (; a + 4 <= s.inner; a += 4) subtractInner<4>(s, a);
     switch (s.inner - a) {
@@ -92,6 +76,31 @@ void subtract(const Subtraction& s, const FrontalMatrix& front) {
         case 1: subtractInner<1>(s, a); break;
         default: break;
     }
+}
+
+/// The columns from j on, at most kManyColumns, by Eigen's product.
+void subtractProduct(const Subtraction& s, Size j) {
+    const Size columns = std::min(kManyColumns, s.columns - j), rows = s.rows - j;
+    const double *L = s.L + j, *Lpivots = s.Lpivots + j;
+    double* C = s.C + j * s.strideC + j;
+    // Those Eigen rounds differently where vectors start, which depends on the address.
+    if (rows + columns + s.inner < kSmallProduct)
+        return subtractByLoops({L, Lpivots, s.stride, s.inner, C, s.strideC, columns, rows});
+    const Eigen::OuterStride<> stride(s.stride), strideC(s.strideC);
+    Matrix(C, rows, columns, strideC).noalias() -=
+        ConstMatrix(L, rows, s.inner, stride) *
+        ConstMatrix(Lpivots, columns, s.inner, stride).transpose();
+}
+
+void subtract(const Subtraction& s, const FrontalMatrix& front) {
+    if (s.inner < kManyInner || s.columns < kManyColumns) return subtractByLoops(s);
+    const Size blocks = (s.columns + kManyColumns - 1) / kManyColumns;
+    const auto one = [](const void* subtraction, Size block) {
+        subtractProduct(*static_cast<const Subtraction*>(subtraction), block * kManyColumns);
+    };
+    if (front.parallelFor != nullptr && s.inner * s.columns * s.rows >= kMuchWork)
+        return front.parallelFor(blocks, one, &s);
+    for (Size block = 0; block < blocks; ++block) one(&s, block);
 }
 
 /// The elimination of a front's columns.

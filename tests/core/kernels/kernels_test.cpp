@@ -78,6 +78,25 @@ TEST_P(KernelsOfEverySet, EliminatesInFronts) {
         }
 }
 
+TEST_P(KernelsOfEverySet, HasTheSameBitsAtEveryAddress) {
+    // Blocks of many columns leave over a few, whose product is a small one.
+    constexpr Index kWidth = 8, kBelow = 36, kStride = kWidth + kBelow;
+    std::srand(4);
+    Eigen::MatrixXd panel = Eigen::MatrixXd::Random(kStride, kWidth), scratch(kStride, kWidth);
+    panel.diagonal().setConstant(40.0);
+    alignas(64) static double memory[kBelow * kBelow + kLane];
+    Eigen::MatrixXd expected;
+    for (Index shift = 0; shift < kLane; ++shift) {
+        Eigen::MatrixXd columns = panel;
+        Eigen::Map<Eigen::MatrixXd> contribution(memory + shift, kBelow, kBelow);
+        contribution.setConstant(0.1);
+        ASSERT_TRUE(set().eliminateFront(
+            {kWidth, kBelow, columns.data(), kStride, 0, contribution.data(), scratch.data()}));
+        if (shift == 0) expected = contribution;
+        EXPECT_EQ(contribution, expected) << shift;
+    }
+}
+
 TEST_P(KernelsOfEverySet, SaysWhenAPivotVanishes) {
     Eigen::MatrixXd A = Eigen::MatrixXd::Ones(7, 7);
     A.diagonal() << 1.0, 1.0, 3.0, 4.0, 5.0, 6.0, 7.0;
