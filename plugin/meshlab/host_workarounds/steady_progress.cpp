@@ -6,6 +6,8 @@
 #include <mutex>
 #include <string>
 #include <system_error>
+#include <thread>
+#include <utility>
 
 namespace spectral {
 
@@ -31,9 +33,12 @@ void runBeside(const Progress& progress, const std::function<void(const Progress
         },
         [&] { return progress.isInterrupted(); });
 
-    std::future<void> done;
+    // Not std::async: libc++'s waits for ever for a thread that it could not get.
+    std::packaged_task<void()> task([&] { work(note); });
+    std::future<void> done = task.get_future();
+    std::thread worker;
     try {
-        done = std::async(std::launch::async, [&] { work(note); });
+        worker = std::thread(std::move(task));
     } catch (const std::system_error&) {  // the system has no more threads
         return work(progress);
     }
@@ -47,9 +52,10 @@ void runBeside(const Progress& progress, const std::function<void(const Progress
         } while (done.wait_for(kReportInterval) != std::future_status::ready);
     } catch (...) {
         stop = true;
-        done.wait();
+        worker.join();
         throw;
     }
+    worker.join();
     done.get();
 }
 
