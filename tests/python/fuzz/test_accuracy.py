@@ -12,7 +12,7 @@ import spectral_reference as reference
 from fuzz.meshes import shape_of
 from fuzz.runs import as_many_as
 from helpers import diagonal, filter_arrays, largest_distance, percent
-from hypothesis import given
+from hypothesis import event, given
 from hypothesis import strategies as st
 from transfer_functions import gain_of
 
@@ -52,6 +52,7 @@ def test_accuracy_that_is_claimed_is_true(
     V, F = made.V, made.triangles()
     options = {"feature_size": percent(size), **options}
     Y, report = filter_arrays(V, F, steps=1, **options)
+    event(f"accuracy reached: {report['accuracy_reached']}")
     if not report["accuracy_reached"]:
         return
     expected = reference.full_filter(
