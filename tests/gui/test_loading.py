@@ -7,7 +7,8 @@ from pathlib import Path
 
 from desktop import Desktop
 from meshlab import MeshLab
-from meshlab_spectral.plugin.installation import DOUBLE, SINGLE, extra_plugins_folder, library_name
+from meshlab_spectral.plugin.installation import DOUBLE, SINGLE, extra_plugins_folder
+from meshlab_spectral.plugin.loading import library_name
 
 SMOOTHING = "Smoothing, Fairing and Deformation"
 MEASURES = "Quality Measure and Computations"
@@ -23,7 +24,7 @@ ENTRIES = [
 
 
 def installed_plugin(home: Path) -> Path:
-    return extra_plugins_folder(SINGLE, "linux", {"HOME": str(home)}) / library_name(SINGLE)
+    return extra_plugins_folder(SINGLE, "linux", {"HOME": str(home)}) / library_name(SINGLE.plugin)
 
 
 def maps_of(meshlab: MeshLab) -> str:
@@ -62,8 +63,9 @@ def test_a_plugin_of_the_other_precision_is_told_of_at_the_start(
     install: Callable[[], None], home: Path, start: Callable[[Path], MeshLab], bunny: Path
 ) -> None:
     install()
-    double = extra_plugins_folder(DOUBLE, "linux", {"HOME": str(home)}) / library_name(DOUBLE)
-    plugin = installed_plugin(home).with_name(double.name)
+    name = library_name(DOUBLE.plugin)
+    double = extra_plugins_folder(DOUBLE, "linux", {"HOME": str(home)}) / name
+    plugin = installed_plugin(home).with_name(name)
     double.rename(plugin)
     error = start(bunny).plugin_error()
     assert error is not None
