@@ -55,15 +55,10 @@ NormalFilterOptions filterFor(double noise, bool keepCreases) {
 
 /// The height of the noise that had moved the vertices from X to X0, by its median.
 double removedHeight(const Vertices& X0, const Vertices& X, const std::vector<bool>& isFixed) {
-    constexpr double kMedian = 0.6745;  // of the modulus, for variance 1
     std::vector<double> displacements;
     for (Index i = 0; i < X.rows(); ++i)
         if (!isFixed[i]) displacements.push_back((X.row(i) - X0.row(i)).norm());
-    if (displacements.empty()) return 0.0;
-    const auto middle =
-        displacements.begin() + static_cast<std::ptrdiff_t>(displacements.size()) / 2;
-    std::nth_element(displacements.begin(), middle, displacements.end());
-    return *middle / kMedian;
+    return medianDeviation(displacements);
 }
 
 /// Draws the vertices of X back to within `farthest` of where they were.

@@ -32,10 +32,10 @@ double median(std::vector<double>& values, std::ptrdiff_t count) {
 /// The standard deviation of a normal distribution from the moduli of a sample, some of which are
 /// of something else, and larger: creases and outliers.
 double robustDeviation(std::vector<double> moduli) {
-    // Medians of the modulus for variance 1: of all, and of those within three deviations.
-    constexpr double kMedian = 0.6745, kMedianWithin = 0.6722, kDeviations = 3.0;
+    // The median of the moduli within three deviations, for variance 1.
+    constexpr double kMedianWithin = 0.6722, kDeviations = 3.0;
     constexpr int kRepetitions = 5;
-    double deviation = median(moduli, static_cast<std::ptrdiff_t>(moduli.size())) / kMedian;
+    double deviation = medianDeviation(moduli);
     for (int k = 0; k < kRepetitions; ++k) {
         const auto outliers = std::partition(moduli.begin(), moduli.end(), [&](double modulus) {
             return modulus < kDeviations * deviation;
@@ -87,6 +87,11 @@ Normals vertexNormals(const FaceGraph& graph, const Vertices& X) {
 }
 
 }  // namespace
+
+double medianDeviation(std::vector<double>& moduli) {
+    constexpr double kMedian = 0.6745;  // for variance 1
+    return median(moduli, static_cast<std::ptrdiff_t>(moduli.size())) / kMedian;
+}
 
 NoiseEstimate estimateNoise(const FaceGraph& graph, const Vertices& X) {
     const Normals N = vertexNormals(graph, X);

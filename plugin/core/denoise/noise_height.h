@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "core/denoise/face_graph.h"
 #include "core/mesh/mesh.h"
 
@@ -21,5 +23,9 @@ struct NoiseEstimate {
 /// tell.
 /// @param X  n x 3 positions.
 NoiseEstimate estimateNoise(const FaceGraph& graph, const Vertices& X);
+
+/// The standard deviation of normally distributed values, by the median of their moduli, which it
+/// reorders; 0 for none.
+double medianDeviation(std::vector<double>& moduli);
 
 }  // namespace spectral
