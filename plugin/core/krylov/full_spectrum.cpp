@@ -118,6 +118,12 @@ class Approximation {
         return std::max(error, std::min(estimate, surest));
     }
 
+    /// The error that comes of round-off in S, by roundOffError; at every vertex if asked for.
+    double ofRoundOff(double roundOff) const {
+        const double error = roundOffError(spaces_, roundOff, gain_, pole_);
+        return options_.atEveryVertex ? error * mostAtVertices_ : error;
+    }
+
     Eigen::MatrixXd Y() const { return spaces_.combine(coefficients_); }
 
   private:
@@ -210,8 +216,8 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
     for (std::size_t g = 0; g < gains.size(); ++g) {
         FullSpectrumResult& result = results[g];
         // In an invariant space, this is the only error.
-        result.errorEstimate = std::max(result.errorEstimate,
-                                        roundOffError(spaces, roundOff, gains[g], -ldlt.shift()));
+        result.errorEstimate =
+            std::max(result.errorEstimate, approximations[g].ofRoundOff(roundOff));
         result.converged = result.errorEstimate <= options.accuracy;
         if (!result.converged) result.errorEstimate *= kNotConverged;
         result.Y = approximations[g].Y();
