@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
+#include <numeric>
 #include <string>
+#include <vector>
 
 #include "core/laplacian/constant_modes.h"
 #include "core/laplacian/frequency.h"
@@ -34,12 +36,39 @@ DenseSolver solved(const Eigen::MatrixXd& A) {
                         " vertices did not converge");
 }
 
+/// Eigenvectors of a positive semidefinite matrix, in any order, by Jacobi's rotations: each
+/// eigenvalue to its own relative accuracy, where methods that begin with a tridiagonal matrix
+/// spread round-off of the largest over all (Demmel and Veselic 1992). A becomes diagonal.
+Eigen::MatrixXd jacobiEigenvectors(Eigen::MatrixXd& A) {
+    constexpr double kRoundOff = 1e-15;
+    constexpr int kMostSweeps = 60;  // converges quadratically: ten are many
+    Eigen::MatrixXd Q = Eigen::MatrixXd::Identity(A.rows(), A.cols());
+    for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+        bool isDiagonal = true;
+        for (Index q = 1; q < A.cols(); ++q) {
+            for (Index p = 0; p < q; ++p) {
+                const double product = std::sqrt(std::abs(A(p, p))) * std::sqrt(std::abs(A(q, q)));
+                if (std::abs(A(p, q)) <= kRoundOff * product) continue;
+                isDiagonal = false;
+                Eigen::JacobiRotation<double> rotation;
+                rotation.makeJacobi(A, p, q);
+                A.applyOnTheLeft(p, q, rotation.adjoint());
+                A.applyOnTheRight(p, q, rotation);
+                A(p, q) = A(q, p) = 0.0;
+                Q.applyOnTheRight(p, q, rotation);
+            }
+        }
+        if (isDiagonal) return Q;
+    }
+    throw SolverFailure("the dense eigenproblem of " + std::to_string(A.rows()) +
+                        " harmonics did not converge");
+}
+
 /// Makes eigenvectors accurate whose errors are round-off relative to the largest eigenvalue, by
-/// Rayleigh-Ritz; returns their eigenvalues. Phi^T W Phi is computed from differences along edges:
-/// among needles, most digits of W Phi would cancel.
+/// Rayleigh-Ritz, and sorts them; returns their eigenvalues. Phi^T W Phi is computed from
+/// differences along edges: among needles, most digits of W Phi would cancel.
 Eigen::VectorXd refine(const SparseMatrix& W, const ConstantModes& constants,
                        Eigen::MatrixXd& Phi) {
-    constexpr double kRoundOff = 1e-14;
     const Index n = W.rows();
     const Eigen::VectorXd sums = W * Eigen::VectorXd::Ones(n);
     Eigen::MatrixXd differences((W.nonZeros() + n) / 2, Phi.cols());
@@ -54,15 +83,13 @@ Eigen::VectorXd refine(const SparseMatrix& W, const ConstantModes& constants,
         weight[edge++] = constants.label()[j] < 0 ? sums[j] : 0.0;
     }
     Eigen::MatrixXd ritz = differences.transpose() * weight.asDiagonal() * differences;
-    // Round-off of the largest eigenvalues must not spread over all.
-    const Eigen::ArrayXd lambda = ritz.diagonal().array().abs();
-    for (Index j = 0; j < ritz.cols(); ++j)
-        ritz.col(j) = (ritz.col(j).array().abs() > kRoundOff * lambda.max(lambda[j]))
-                          .select(ritz.col(j), 0.0)
-                          .eval();
-    const DenseSolver solver = solved(ritz);
-    Phi *= solver.eigenvectors();
-    return solver.eigenvalues();
+    const Eigen::MatrixXd Q = Phi * jacobiEigenvectors(ritz);
+    std::vector<Index> order(static_cast<std::size_t>(ritz.cols()));
+    std::iota(order.begin(), order.end(), Index{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](Index a, Index b) { return ritz(a, a) < ritz(b, b); });
+    Phi = Q(Eigen::all, order);
+    return ritz.diagonal()(order);
 }
 
 }  // namespace

@@ -122,9 +122,10 @@ TEST(TruncatedSteps, ComputeTheBasisOfEveryShape) {
 }
 
 TEST(TruncatedBasis, RefusesHarmonicsOfWhichRoundOffLeavesNothing) {
-    for (const int levels : {2, 3}) {  // by the dense solver, and in intervals
+    // By the dense solver, and in intervals.
+    for (const auto& [levels, spike] : {std::pair<int, double>{2, 1e14}, {3, 1e7}}) {
         Mesh mesh = testing::withNoise(testing::icosphere(levels), 0.03, 4);
-        mesh.V.row(7) *= 1e7;
+        mesh.V.row(7) *= spike;
         HarmonicsOptions options;
         options.basisSize = 20;
         try {
@@ -134,6 +135,21 @@ TEST(TruncatedBasis, RefusesHarmonicsOfWhichRoundOffLeavesNothing) {
             EXPECT_EQ(failure.code(), ErrorCode::SingularMatrix) << failure.what();
         }
     }
+}
+
+TEST(TruncatedBasis, OfAFewVerticesStandsASpike) {
+    // The lowest harmonic is that of its tip, the next four are those of its sides; the rest of the
+    // surface does not feel how long it is.
+    const auto eigenvalues = [](double spike) {
+        Mesh mesh = testing::withNoise(testing::icosphere(2), 0.03, 4);
+        mesh.V.row(7) *= spike;
+        HarmonicsOptions options;
+        options.basisSize = 20;
+        return manifoldHarmonics(mesh.V, mesh.F, options).lambda;
+    };
+    const Eigen::ArrayXd ratio = eigenvalues(1e5).array() / eigenvalues(1e6).array();
+    EXPECT_NEAR(ratio[1], 100.0, 0.1);
+    for (int i = 2; i < 20; ++i) EXPECT_NEAR(ratio[i], i < 6 ? 10.0 : 1.0, 1e-2) << i;
 }
 
 }  // namespace
