@@ -29,7 +29,7 @@ CMAKE_OPTIONS := $(if $(MESHLAB_SOURCE_DIR),-DMESHLAB_SOURCE_DIR=$(abspath $(MES
 PACKAGES := build/.packages
 VENV := .venv/.requirements
 # That of pymeshlab's wheel; and what a plugin finds in its host, MeshLab or pymeshlab.
-MANYLINUX := manylinux_2_35_x86_64
+MANYLINUX := manylinux_2_35_$(shell uname -m)
 HOST_LIBRARIES := libmeshlab-common.so libQt5Core.so.5 libQt5Gui.so.5 libQt5Widgets.so.5 libQt5Xml.so.5 libQt5OpenGL.so.5
 PACKAGE := .venv/.package
 COMPETITORS := .venv/.competitors

@@ -21,7 +21,7 @@ libraries=$(sed -n '/^# Run-time/,$s/^\([a-z0-9-]*\) .*/\1/p' "$project/plugin/c
 for file in /etc/pip.conf ~/.pip/pip.conf ~/.config/pip/pip.conf; do
     [ ! -f "$file" ] || cp "$file" "$root/etc/pip.conf"
 done
-cp "$wheel" "$root/root"
+cp "$wheel" "$project/tests/portability/try_wheel.py" "$root/root"
 cat >"$root/root/try.sh" <<'END'
 set -eu
 cd /root
@@ -29,19 +29,7 @@ cd /root
 python3 -m venv venv
 venv/bin/pip install --quiet --quiet --disable-pip-version-check "$(echo meshlab_spectral-*.whl)[batch]"
 PATH=$PWD/venv/bin:$PATH
-python - <<'PYTHON'
-import meshlab_spectral, pymeshlab
-meshlab_spectral.load()
-ms = pymeshlab.MeshSet()
-ms.create_sphere(subdiv=5)
-ms.apply_coord_random_displacement()
-ms.save_current_mesh("noisy.ply")
-print(ms.apply_coord_spectral_filter_fractional(filter_type="custom", transfer_function="1/(1+w^4)"))
-PYTHON
-meshlab-spectral denoise noisy.ply clean.ply
-mkdir scans && cp noisy.ply scans
-meshlab-spectral batch scans --output smooth --feature-size 6e --workers 2
-test -s clean.ply && test -s smooth/noisy.ply
+python try_wheel.py
 meshlab-spectral install
 meshlab-spectral install --uninstall
 END

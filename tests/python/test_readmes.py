@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 REPOSITORY = Path(__file__).resolve().parents[2]
+PAGES = {"README.md", "CHANGELOG.md"}
 NOT_OURS = {".git", ".venv", "build"}
 PLUGIN = REPOSITORY / "plugin" / "README.md"
 
@@ -21,11 +22,11 @@ EQUATIONS = re.compile(rf"\bEqs?\. ({NUMBERS})")
 
 
 def readmes() -> list[Path]:
-    """Every README.md of the project."""
+    """Every README.md of the project, and the changelog."""
     found = []
     for folder, folders, files in os.walk(REPOSITORY):
         folders[:] = sorted(set(folders) - NOT_OURS)
-        found += [Path(folder, name) for name in files if name == "README.md"]
+        found += [Path(folder, name) for name in files if name in PAGES]
     return found
 
 
@@ -97,6 +98,17 @@ def test_every_relative_link_leads_to_a_file_and_a_heading_of_it(readme: Path) -
 
 def test_the_main_readme_can_be_read_in_two_minutes() -> None:
     assert len((REPOSITORY / "README.md").read_text().splitlines()) <= 115
+
+
+def test_the_version_is_below_1_until_everything_is_tested_everywhere() -> None:
+    changelog = (REPOSITORY / "python" / "CHANGELOG.md").read_text()
+    table = changelog.split("## When it is 1.0.0")[1].split("\n## ")[0]
+    rows = [line.strip("| ").split(" | ") for line in table.splitlines() if line.startswith("| ")]
+    cells = {cell for row in rows[1:] for cell in row[1:]}
+    assert "tested" in cells
+    if cells != {"tested"}:
+        cmake = (REPOSITORY / "CMakeLists.txt").read_text()
+        assert re.search(r"project\(\w+ VERSION 0\.", cmake)
 
 
 def test_the_table_covers_every_equation_of_the_paper_that_is_used() -> None:
