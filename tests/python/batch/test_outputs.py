@@ -180,3 +180,16 @@ def test_the_formats_are_those_of_pymeshlab(ending: str, tmp_path: Path) -> None
 )
 def test_the_ending_of_a_name(name: str, ending: str) -> None:
     assert ending_of(name) == ending
+
+
+def test_outputs_that_differ_in_case_alone_are_refused_where_they_are_one_file(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    files = inputs("x/Cow.ply", "y/cow.ply")
+    for platform in ("win32", "darwin"):
+        monkeypatch.setattr(sys, "platform", platform)
+        with pytest.raises(InputError, match=r"x/Cow.ply, y/cow.ply would all be written to"):
+            plan_outputs(files, "out")
+        plan_outputs(files, "out", "{folder}_{stem}")
+    monkeypatch.setattr(sys, "platform", "linux")
+    plan_outputs(files, "out")

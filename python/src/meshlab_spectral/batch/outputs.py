@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import posixpath
 import string
+import sys
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -112,14 +113,18 @@ def _output(file: Input, folder: str, pattern: str, ending: str | None) -> Outpu
 
 
 def _refuse_collisions(outputs: Sequence[Output]) -> None:
-    sources: dict[str, list[str]] = {}
+    groups: dict[str, list[Output]] = {}
     for output in outputs:
-        sources.setdefault(output.target, []).append(output.source)
-    collisions = {target: of for target, of in sources.items() if len(of) > 1}
+        # Names that differ in case alone are one file there.
+        ignores_case = sys.platform in ("win32", "darwin") and not is_url(output.target)
+        key = output.target.casefold() if ignores_case else output.target
+        groups.setdefault(key, []).append(output)
+    collisions = [group for group in groups.values() if len(group) > 1]
     if collisions:
-        target, of = next(iter(collisions.items()))
+        sources = [output.source for output in collisions[0]]
         raise InputError(
-            f"{', '.join(of[:_NAMED_AT_MOST])} would all be written to {target} "
+            f"{', '.join(sources[:_NAMED_AT_MOST])} would all be written to "
+            f"{collisions[0][0].target} "
             f"({len(collisions)} such names): distinguish them with --name, such as "
             "{stem}_{ending} or {folder}_{stem}, or filter them into different folders"
         )
