@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/kernels/kernels.h"
+#include "core/kernels/subnormals.h"
 
 namespace spectral {
 
@@ -96,6 +97,7 @@ void subtract(const Subtraction& s, const FrontalMatrix& front) {
     if (s.inner < kManyInner || s.columns < kManyColumns) return subtractByLoops(s);
     const Size blocks = (s.columns + kManyColumns - 1) / kManyColumns;
     const auto one = [](const void* subtraction, Size block) {
+        const SubnormalsAreZero mode;  // of another thread
         subtractProduct(*static_cast<const Subtraction*>(subtraction), block * kManyColumns);
     };
     if (front.parallelFor != nullptr && s.inner * s.columns * s.rows >= kMuchWork)
@@ -164,6 +166,7 @@ class PivotColumns {
 namespace SPECTRAL_INSTRUCTIONS {
 
 bool eliminateFront(const FrontalMatrix& front) {
+    const SubnormalsAreZero mode;
     const PivotColumns columns(front);
     if (!columns.eliminate(0, front.width)) return false;
     columns.updateContribution();

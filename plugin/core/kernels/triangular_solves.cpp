@@ -2,6 +2,7 @@
 #include <Eigen/Core>
 
 #include "core/kernels/kernels.h"
+#include "core/kernels/subnormals.h"
 
 namespace spectral {
 
@@ -146,6 +147,7 @@ void backwardColumns(const LdltFactor& factor, double* rows, Size begin, Size en
 namespace SPECTRAL_INSTRUCTIONS {
 
 void forward(const LdltFactor& factor, double* Y, int columns, Size begin, Size end) {
+    const SubnormalsAreZero mode;
     switch (columns) {
         case 1: return forwardColumns<1>(factor, Y, begin, end);
         case 2: return forwardColumns<2>(factor, Y, begin, end);
@@ -155,6 +157,7 @@ void forward(const LdltFactor& factor, double* Y, int columns, Size begin, Size 
 }
 
 void backward(const LdltFactor& factor, double* Y, int columns, Size begin, Size end) {
+    const SubnormalsAreZero mode;
     switch (columns) {
         case 1: return backwardColumns<1>(factor, Y, begin, end);
         case 2: return backwardColumns<2>(factor, Y, begin, end);

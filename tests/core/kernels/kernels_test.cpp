@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "core/kernels/subnormals.h"
 #include "core/support/types.h"
 #include "support/evaluation.h"
 #include "support/shapes.h"
@@ -95,6 +96,26 @@ TEST_P(KernelsOfEverySet, HasTheSameBitsAtEveryAddress) {
         if (shift == 0) expected = contribution;
         EXPECT_EQ(contribution, expected) << shift;
     }
+}
+
+TEST_P(KernelsOfEverySet, TakesSubnormalNumbersForZeroAndLeavesTheModeAsItWas) {
+#ifndef SPECTRAL_SUBNORMALS_ARE_SLOW
+    GTEST_SKIP() << "subnormal numbers are as quick as others here";
+#endif
+    for (const Index width : {2, 40}) {  // by loops, and by Eigen's product
+        const Index n = 2 * width + 30;
+        Eigen::MatrixXd A = Eigen::MatrixXd::Constant(n, n, 1e-160);
+        A.diagonal().setOnes();
+        FrontOf front(A, width);
+        ASSERT_TRUE(set().eliminateFront(front.front()));
+        EXPECT_EQ(front.update(), A.bottomRightCorner(n - width, n - width));
+        A.array() = (A.array() == 1.0).select(A, 1e-310);
+        FrontOf subnormal(A, width);
+        ASSERT_TRUE(set().eliminateFront(subnormal.front()));
+        EXPECT_EQ(subnormal.columns().col(0).tail(n - 1).cwiseAbs().maxCoeff(), 0.0);
+    }
+    volatile double tiny = 1e-308;
+    EXPECT_GT(tiny / 8.0, 0.0);
 }
 
 TEST_P(KernelsOfEverySet, SaysWhenAPivotVanishes) {
