@@ -11,6 +11,7 @@ import pytest
 from batches import REPORT, contents, make_meshes, records
 from commands import arrays_of, assert_fails, command
 from meshlab_spectral import DenoiseOptions
+from meshlab_spectral.files.recipe import load_recipe
 from numpy.testing import assert_array_equal
 
 FILTER = "apply_coord_spectral_denoise"
@@ -127,6 +128,25 @@ def test_a_dry_run_lists_the_outputs_and_saves_the_whole_recipe(scan: Path, tmp_
     assert text.startswith("[denoise]\n")
     assert 'noise_height = "0.2e"' in text
     assert "strength = 1.0" in text
+
+
+def test_a_batch_denoises_without_a_recipe(scan: Path, tmp_path: Path) -> None:
+    out, saved = tmp_path / "clean", tmp_path / "a.toml"
+    done = command("batch", scan, "--output", out, "--denoise", "--save-recipe", saved)
+    assert done.returncode == 0, done.stderr
+    assert_array_equal(arrays_of(out / scan.name)[0], denoised(scan))
+    assert load_recipe(saved) == (DenoiseOptions, DenoiseOptions().as_dict())
+
+
+@pytest.mark.parametrize(
+    "arguments", [["--feature-size", "2%"], ["--preset", "sharpen"], ["--recipe", "no.toml"]]
+)
+def test_denoise_takes_no_options_of_a_batch(
+    arguments: list[str], scan: Path, tmp_path: Path
+) -> None:
+    done = command("batch", scan, "--output", tmp_path / "clean", "--denoise", *arguments)
+    assert_fails(done, 2, "--denoise", "--recipe alone")
+    assert not (tmp_path / "clean").exists()
 
 
 @pytest.mark.parametrize(

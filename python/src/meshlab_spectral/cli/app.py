@@ -47,9 +47,9 @@ def _common(
 
 app.command("filter", help=FILTER_HELP, epilog=EXIT_CODES)(filter_command)
 app.command("denoise", help=DENOISE_HELP, epilog=EXIT_CODES)(denoise_command)
-app.command("figures", help=FIGURES_HELP, epilog=EXIT_CODES)(figures_command)
-app.command("basis", help=BASIS_HELP, epilog=EXIT_CODES)(basis_command)
 app.command("batch", help=BATCH_HELP, epilog=EXIT_CODES)(batch_command)
-app.command("install", help=INSTALL_HELP, epilog=EXIT_CODES)(install_command)
-app.command("spectra", help=SPECTRA_HELP, epilog=EXIT_CODES)(spectra_command)
 app.command("spectrum", help=SPECTRUM_HELP, epilog=EXIT_CODES)(spectrum_command)
+app.command("spectra", help=SPECTRA_HELP, epilog=EXIT_CODES)(spectra_command)
+app.command("basis", help=BASIS_HELP, epilog=EXIT_CODES)(basis_command)
+app.command("figures", help=FIGURES_HELP, epilog=EXIT_CODES)(figures_command)
+app.command("install", help=INSTALL_HELP, epilog=EXIT_CODES)(install_command)

@@ -17,7 +17,7 @@ from meshlab_spectral.filters.options import Boundary, LaplacianKind
 from meshlab_spectral.process.single_file import basis_file_in_child
 
 # "\b" keeps a paragraph's lines as they are.
-BASIS_HELP = """Compute the manifold harmonics of a mesh, for scripts and as pictures.
+BASIS_HELP = """Compute manifold harmonics, as arrays and pictures.
 
 The output is a NumPy archive with the arrays eigenvalues (k), frequencies (k, their square roots),
 harmonics (n x k), masses (n, the vertex areas: with these as weights the harmonics are

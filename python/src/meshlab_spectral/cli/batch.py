@@ -30,17 +30,18 @@ from meshlab_spectral.cli.many_files import (
 from meshlab_spectral.cli.messages import EXIT_FAILED, errors_reported, warn_of_points_only
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.files.recipe import load_recipe, save_recipe
+from meshlab_spectral.filters.denoise import DenoiseOptions
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import FilterOptions
 
 # "\b" keeps a paragraph's lines as they are.
-BATCH_HELP = """Filter many meshes in worker processes; a failure does not stop the others.
+BATCH_HELP = """Filter or denoise many meshes in parallel, with a report.
 
 \b
 Smooth a folder of scans:
   meshlab-spectral batch scans --output smooth --feature-size 2%
-Denoise it: a recipe with the line [denoise] alone
-  meshlab-spectral batch scans --output clean --recipe denoise.toml
+Denoise it, as denoise does for one scan:
+  meshlab-spectral batch scans --output clean --denoise
 Continue after an interruption, or with more scans:
   meshlab-spectral batch scans --output smooth --feature-size 2% --resume
 Save the options for next time:
@@ -49,6 +50,7 @@ Save the options for next time:
 
 Each file gets a line in the report, DIR/batch_report.jsonl, as soon as it is done: outcome,
 options, the filter's report and warnings, SHA-256 of input and output, seconds, memory, versions.
+A file that fails does not stop the others.
 """
 
 
@@ -101,6 +103,13 @@ def batch_command(
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Only list the outputs that would be written.")
     ] = False,
+    denoise: Annotated[
+        bool,
+        typer.Option(
+            "--denoise",
+            help="Denoise instead, with the defaults of denoise; its options go into a recipe.",
+        ),
+    ] = False,
     recipe: Annotated[
         Path | None,
         typer.Option(
@@ -146,9 +155,15 @@ def batch_command(
             "a recipe holds options of the filter, which a script replaces: leave out one of them",
             param_hint="--save-recipe",
         )
+    if denoise and (given or recipe is not None or script is not None):
+        raise typer.BadParameter(
+            "takes no options, recipe or script beside it; for other options of denoise use "
+            "--recipe alone, with the table [denoise]",
+            param_hint="--denoise",
+        )
     with errors_reported(debug, INTERRUPTED):
         check_workers(scheduler, workers, memory_limit)
-        options = _options(given, recipe, script)
+        options = DenoiseOptions() if denoise else _options(given, recipe, script)
         begin = time.monotonic()
         with planning_shown(resume):
             batch = plan_batch(

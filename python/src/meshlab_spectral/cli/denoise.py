@@ -11,8 +11,8 @@ DENOISE_HELP = """Remove the noise of a scan, as strongly as its height requires
 
 \b
   meshlab-spectral denoise scan.ply clean.ply
-A folder of scans, with a recipe that has the line [denoise] alone:
-  meshlab-spectral batch scans --output clean --recipe denoise.toml
+A folder of scans:
+  meshlab-spectral batch scans --output clean --denoise
 """
 
 

@@ -12,7 +12,9 @@ from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.figures.paper import FIGURES, draw_figures
 
 # "\b" keeps a paragraph's lines as they are.
-FIGURES_HELP = """Draw the figures of the paper (Kovnatsky et al. 2012) from your meshes.
+FIGURES_HELP = """Draw the figures of the paper from your meshes.
+
+The paper is Kovnatsky, Bronstein, Bronstein: Stable Spectral Mesh Filtering, 2012.
 
 \b
 1  a strong filter in one shot, and in ten fractional steps
