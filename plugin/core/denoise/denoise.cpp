@@ -40,6 +40,9 @@ constexpr double kEnough = 0.96;
 // Where triangles are narrower than the noise is high, normals mean little: no vertex moves farther
 // than noise of this many standard deviations, or impulses of this many mean edges, had moved it.
 constexpr double kMostDeviations = 3.0, kMostEdges = 0.3;
+/// An offset that makes up for lost volume is at most so many times the displacement. Noise lies on
+/// both sides of a surface, and takes little volume away with it.
+constexpr double kMostOffset = 2.0;
 constexpr double kMostAlongSurface = 2.5;  // standard deviations, to turn folded faces back
 
 /// Share of the time that the estimate takes, for the progress.
@@ -115,7 +118,8 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
     const Components components = connectedComponents(surface.F, X.rows());
     Eigen::VectorXd mayMove(X.rows());
     for (Index i = 0; i < X.rows(); ++i) mayMove[i] = isFixed[i] ? 0.0 : 1.0;
-    if (isNoisy) result.volumes = preserveVolumes(surface.X, graph.F, components, mayMove, X);
+    if (isNoisy)
+        result.volumes = preserveVolumes(surface.X, graph.F, components, mayMove, kMostOffset, X);
     if (!X.allFinite()) throw SolverFailure("the denoised coordinates are not finite numbers");
 
     const Vertices displacement = X - surface.X;

@@ -27,6 +27,11 @@ constexpr double kEvaluationShare = 0.05;
 /// Relative accuracy of evaluations at any tolerance: four digits that do not depend on it.
 constexpr double kLoosestAccuracy = 1e-4;
 
+/// An offset that makes up for lost volume is at most so many times the displacement: a surface
+/// that moves by a length changes its volume by at most its area times that, and its area may
+/// shrink to a small part.
+constexpr double kMostOffset = 10.0;
+
 /// More steps make no difference, and take hours.
 constexpr int kMostSteps = 1000;
 
@@ -120,8 +125,8 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     Vertices X = surface.X + displacement;
     FilterResult result;
     if (options.preserveVolume) {
-        result.volumes =
-            preserveVolumes(surface.X, surface.F, interior.surfaceComponents(), weight, X);
+        result.volumes = preserveVolumes(surface.X, surface.F, interior.surfaceComponents(), weight,
+                                         kMostOffset, X);
         displacement = X - surface.X;
     }
 

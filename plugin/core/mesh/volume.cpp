@@ -49,11 +49,6 @@ Vertices volumeGradient(const Vertices& X, const Faces& F) {
     return gradient;
 }
 
-/// An offset is at most so many times the largest displacement that it makes up for: a surface that
-/// moves by a length changes its volume by at most its area times that, and its area may shrink to
-/// a small part. Next to no volume, Newton's method goes anywhere.
-constexpr double kMostOffset = 10.0;
-
 /// Moves a closed component until it has the volume; returns whether it does.
 bool offsetTo(double volume, const Faces& F, const Eigen::VectorXd& weight, Vertices& X) {
     constexpr int kMostSteps = 50;
@@ -76,7 +71,7 @@ bool offsetTo(double volume, const Faces& F, const Eigen::VectorXd& weight, Vert
 }  // namespace
 
 PreservedVolumes preserveVolumes(const Vertices& X0, const Faces& F, const Components& components,
-                                 const Eigen::VectorXd& weight, Vertices& X) {
+                                 const Eigen::VectorXd& weight, double mostOffset, Vertices& X) {
     constexpr double kRoundOff = 1e-9;  // of volumes, as a displacement of the vertices
     PreservedVolumes volumes;
     for (const Faces& component : facesByComponent(F, components)) {
@@ -90,7 +85,7 @@ PreservedVolumes preserveVolumes(const Vertices& X0, const Faces& F, const Compo
         for (Index i = 0; i < itsWeight.size(); ++i) {
             const Index v = before.vertex[i];
             itsWeight[i] = weight[v];
-            most = std::max(most, kMostOffset * (X.row(v) - X0.row(v)).norm());
+            most = std::max(most, mostOffset * (X.row(v) - X0.row(v)).norm());
         }
         Vertices moved = before.X;
         if (!offsetTo(signedVolume(X0, component), before.F, itsWeight, moved) ||
