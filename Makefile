@@ -6,7 +6,7 @@
 #   WARNINGS_AS_ERRORS  ON: a compiler warning fails the build
 #   TEST_OPTIONS        of pytest in `make test`, such as --without-posix: as on Windows
 #   BENCH_MESH          the mesh of the C++ benchmark, skipped when there is no such file
-#   BENCH_OPTIONS       of `make bench-basis`, `bench-contract`, `bench-defaults`, `bench-denoise`; --help lists them
+#   BENCH_OPTIONS       of `make bench-basis`, `bench-contract`, `bench-defaults`, `bench-denoise`, `bench-memory`; --help lists them
 #   FUZZ_OPTIONS        of `make fuzz`; tests/fuzz/fuzz_core.cpp lists them
 #   FUZZ_EXAMPLES       of `make fuzz-python`: how many, about 20 a second
 #   SANITIZE            ON: `make fuzz` with AddressSanitizer and UndefinedBehaviorSanitizer
@@ -43,7 +43,7 @@ PACKAGE_SOURCES := CMakeLists.txt $(shell find plugin python -not -path '*/__pyc
 # Two targets at once would fetch MeshLab's headers twice; ninja uses every core anyway.
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help demo test wheel sdist docs gui-test screenshots setup build bench bench-basis bench-batch bench-contract bench-defaults bench-denoise bench-ldlt fuzz fuzz-python lint format clean
+.PHONY: help demo test wheel sdist docs gui-test screenshots setup build bench bench-basis bench-batch bench-contract bench-defaults bench-denoise bench-ldlt bench-memory fuzz fuzz-python lint format clean
 
 help:  ## list these commands
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 20
@@ -105,6 +105,9 @@ bench-denoise: $(PACKAGE)  ## denoising against MeshLab's, VTK's and bilateral n
 
 bench-contract: $(PACKAGE)  ## every filter at three settings on real meshes: outcomes, texts
 	$(BIN)/python tests/benchmarks/bench_contract.py $(BENCH_OPTIONS)
+
+bench-memory: $(PACKAGE)  ## memory of many runs, and of a large mesh with and without a limit
+	$(BIN)/python tests/benchmarks/bench_memory.py $(BENCH_OPTIONS)
 
 bench-basis: BENCHMARKS := ON
 bench-basis: build $(PACKAGE) $(COMPETITORS)  ## compare the truncated basis with other programs
