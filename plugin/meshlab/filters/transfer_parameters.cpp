@@ -4,6 +4,7 @@
 
 #include "core/laplacian/frequency.h"
 #include "core/mesh/measures.h"
+#include "core/mesh/mesh_check.h"
 #include "core/transfer/custom_gain.h"
 #include "meshlab/filters/common_parameters.h"
 
@@ -76,6 +77,7 @@ ChosenTransfer chosenTransfer(const RichParameterList& parameters, const MeshMat
     transfer.power = parameters.getFloat("power");
     chosen.featureSize = featureSize(parameters);
     if (transfer.type == spectral::FilterType::Custom) {
+        spectral::checkMesh(mesh.V, mesh.F);  // before it is measured
         const spectral::CustomGain custom = spectral::parseGain(
             parameters.getString("transfer_function").toStdString(),
             spectral::cutoffFrequency(chosen.featureSize),

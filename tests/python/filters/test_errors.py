@@ -34,6 +34,9 @@ REFUSED_OPTIONS: dict[str, tuple[dict[str, Any], str]] = {
     "order of nothing": ({"response": "butterworth", "order": 0}, "order"),
 }
 
+# Percentages and edges in it are measured on the mesh.
+SIZES_OF_THE_MESH = {"filter_type": "custom", "transfer_function": "20%:1, 6e:2"}
+
 
 @pytest.mark.parametrize("case", REFUSED_OPTIONS)
 def test_a_refused_option_is_named_and_leaves_the_mesh_as_it_was(
@@ -47,12 +50,13 @@ def test_a_refused_option_is_named_and_leaves_the_mesh_as_it_was(
     assert_same(before, snapshot(mesh_set.current_mesh()))
 
 
-def test_an_empty_mesh_is_refused_and_stays_empty() -> None:
+@pytest.mark.parametrize("parameters", [{}, SIZES_OF_THE_MESH], ids=["default", "custom"])
+def test_an_empty_mesh_is_refused_and_stays_empty(parameters: dict[str, Any]) -> None:
     mesh_set = mesh_set_of([[0.0, 0.0, 0.0]], np.zeros((0, 3), dtype=np.int32))
     mesh_set.set_selection_all()
     mesh_set.meshing_remove_selected_vertices()
     assert mesh_set.current_mesh().vertex_number() == 0
-    assert "empty" in refusal(mesh_set)
+    assert "empty" in refusal(mesh_set, **parameters)
     assert mesh_set.current_mesh().vertex_number() == 0
 
 
@@ -71,16 +75,17 @@ def test_a_point_cloud_is_refused_with_a_way_to_a_surface(decimated: Callable[..
     assert_same(before, snapshot(mesh_set.current_mesh()))
 
 
+@pytest.mark.parametrize("parameters", [{}, SIZES_OF_THE_MESH], ids=["default", "custom"])
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
 def test_coordinates_that_are_no_numbers_are_counted_and_located(
-    value: float, decimated: Callable[..., Any]
+    value: float, parameters: dict[str, Any], decimated: Callable[..., Any]
 ) -> None:
     V, F = decimated("cow.obj")
     V = V.copy()
     V[[17, 40], 1] = value
     mesh_set = mesh_set_of(V, F)
     before = snapshot(mesh_set.current_mesh())
-    message = refusal(mesh_set)
+    message = refusal(mesh_set, **parameters)
     assert "2 vertices" in message
     assert "vertex 17" in message
     assert "Delete Selected Vertices" in message

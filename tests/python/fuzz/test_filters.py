@@ -13,8 +13,8 @@ from fuzz.judge import Judge
 from fuzz.meshes import Description, descriptions
 from fuzz.parameters import PARAMETERS, calls
 from fuzz.runs import as_many_as
-from hypothesis import event, given
-from meshlab_spectral.plugin.loading import FILTERS
+from hypothesis import event, example, given
+from meshlab_spectral.plugin.loading import FILTER_NAME, FILTERS
 
 
 @pytest.fixture(scope="module")
@@ -28,8 +28,23 @@ def test_every_filter_is_called() -> None:
     assert PARAMETERS.keys() == set(FILTERS.values())
 
 
+EMPTIED = {
+    "shape": ("triangle",),
+    "changes": [],
+    "exponent": 0,
+    "offset": 0.0,
+    "spoiled": "",
+    "where": 0,
+    "polygons": False,
+    "deleted": "everything",
+    "transform": "",
+    "selected": "",
+}
+
+
 @as_many_as(150)
 @given(descriptions(), calls())
+@example(EMPTIED, (FILTER_NAME, {"filter_type": 4}))  # was measured before it was checked
 def test_a_filter_gives_a_finite_result_or_an_error_that_leaves_the_mesh_as_it_was(
     judge: Judge, mesh: Description, call: tuple[str, dict[str, Any]]
 ) -> None:
