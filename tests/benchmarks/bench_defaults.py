@@ -1,14 +1,14 @@
 """The run that most users make: open a mesh, leave everything as it is, press Apply.
 
-usage: bench_defaults.py [--setting NAME] [--reference] [--timeout SECONDS] [MESH ...]
+usage: bench_defaults.py [--setting NAME] [--reference [TIMES]] [--timeout SECONDS] [MESH ...]
 
 One row per mesh, each measured in a process of its own: seconds of the filter call (best of three
 where it is short), its ratio to MeshLab's Laplacian smoothing with 100 steps on the same mesh in
 the same process, the work, the process's peak memory above that before, and the warnings. With
 --reference also the error, in tolerances: estimated; real, over all but 0.1 % of the filtered
 surface, and of the input's; and at most. Real ones are against another scheme: the paper's with 16
-times the steps, at most 500, and with twice as many, extrapolated (twice the second minus the
-first).
+(TIMES) times the steps, at most 500, and with twice as many, extrapolated (twice the second minus
+the first).
 
 MESH defaults to every mesh with faces in ../shared/data beside the repository.
 """
@@ -59,8 +59,11 @@ def forget_peak() -> float:
     return peak_megabytes()
 
 
-def measure(mesh: str, setting: str, with_reference: bool) -> dict[str, Any]:
-    """Filter one mesh in this process; return its row."""
+def measure(mesh: str, setting: str, reference_steps: int) -> dict[str, Any]:
+    """Filter one mesh in this process; return its row.
+
+    With reference_steps > 0 also the error against that many times the steps of the result.
+    """
     import meshlab_spectral
     import numpy as np
     import pymeshlab
@@ -106,13 +109,13 @@ def measure(mesh: str, setting: str, with_reference: bool) -> dict[str, Any]:
         "feature_size": report["feature_size"],
         "singular_part": report["singular_part"],
     }
-    if with_reference:
+    if reference_steps:
         meshes = pymeshlab.MeshSet()
         meshes.load_new_mesh(mesh)
         X, F = meshes.current_mesh().vertex_matrix(), meshes.current_mesh().face_matrix()
         tolerance = 5e-4 * meshes.current_mesh().bounding_box().diagonal()
         row["estimate"] /= tolerance
-        K = min(REFERENCE_STEPS * report["steps"], MOST_STEPS // 2)
+        K = min(reference_steps * report["steps"], MOST_STEPS // 2)
         _, _, coarse = timed(filtered(steps=K))
         _, _, fine = timed(filtered(steps=2 * K))
         limit = 2 * fine - coarse
@@ -157,7 +160,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("meshes", nargs="*", metavar="MESH")
     parser.add_argument("--setting", choices=SETTINGS, default="default")
-    parser.add_argument("--reference", action="store_true")
+    parser.add_argument(
+        "--reference", type=int, nargs="?", default=0, const=REFERENCE_STEPS, metavar="TIMES"
+    )
     parser.add_argument("--timeout", type=float, default=1800)
     parser.add_argument("--json", type=pathlib.Path, help="append the rows to this file")
     parser.add_argument("--one", action="store_true", help=argparse.SUPPRESS)
@@ -180,7 +185,7 @@ def main() -> None:
     for mesh in arguments.meshes or default_meshes():
         command = [sys.executable, __file__, mesh, "--one", "--setting", arguments.setting]
         if arguments.reference:
-            command.append("--reference")
+            command += ["--reference", str(arguments.reference)]
         row: dict[str, Any]
         try:
             run = subprocess.run(command, capture_output=True, text=True, timeout=arguments.timeout)
