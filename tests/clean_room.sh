@@ -10,8 +10,8 @@
 #   ROOT             new folder for the Debian system, kept for a look; without it a temporary one,
 #                    deleted afterwards (4 GB either way)
 #
-# Needs root and debootstrap. What the network needs (mirror, apt and pip settings, certificates,
-# name servers) is taken from this machine.
+# Needs root. What the network needs (mirror, apt and pip settings, certificates, name servers) is
+# taken from this machine.
 set -euo pipefail
 
 usage() { sed -n '2,/^set /{s/^# \{0,1\}//p}' "$0" >&2; exit 2; }

@@ -8,13 +8,14 @@
 #   FOLDER    new or empty
 #   PACKAGES  to have beside the most necessary ones, with commas between them
 #
-# Needs root and debootstrap.
+# Needs root; debootstrap is installed when it is missing.
 set -euo pipefail
 
 [ $# -eq 3 ] || { echo "usage: $0 SUITE FOLDER PACKAGES" >&2; exit 2; }
 suite=$1 root=$2 packages=$3
 [ "$(id -u)" -eq 0 ] || { echo "$0: needs root, for debootstrap and chroot" >&2; exit 2; }
 here=$(dirname "$0")
+"$here/../plugin/cmake/install_debian_packages.sh" "$here/debian_packages.txt"
 mirror=$("$here/../plugin/cmake/debian_mirror.sh")
 
 # A suite younger than this machine's debootstrap is made as the unstable one is.

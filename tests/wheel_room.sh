@@ -4,7 +4,7 @@
 #
 # usage: wheel_room.sh [SUITE]    bookworm (default), trixie, testing ...
 #
-# Needs root and debootstrap.
+# Needs root.
 set -euo pipefail
 
 suite=${1:-bookworm}

@@ -19,7 +19,7 @@ if [ "$(id -u)" -ne 0 ]; then
     exec sudo env MESHLAB_SPECTRAL_GUI_ROOT="$root" "$0" "$@"
 fi
 
-plugin/cmake/install_debian_packages.sh tests/gui/debian_packages.txt
+plugin/cmake/install_debian_packages.sh tests/debian_packages.txt
 command -v debootstrap >/dev/null || { echo "$0: needs debootstrap" >&2; exit 2; }
 
 . tests/children.sh
