@@ -13,17 +13,18 @@ from meshlab_spectral.plugin.loading import FILTERS
 
 RUNS, WARM_UP = 60, 10
 SLOW, FEWER_RUNS = "get_geometry_spectrum", 25  # half a second each
-# Fifty leaks of a matrix of the cow's harmonics would be 23 MiB. One arena: how many of them the
-# threads happen to use is noise.
-MEBIBYTES_OF_NOISE = 8.0
+# Fifty leaks of a matrix of the cow's harmonics would be 23 MiB. What malloc keeps for itself is
+# noise of 10 MiB, hence `malloc_trim` and one arena. A MeshSet's history of runs takes 20 kB each.
+MEBIBYTES_OF_NOISE = 4.0
 ONE_ARENA = {"MALLOC_ARENA_MAX": "1"}
 
 PROGRAM = """
-import json, re, sys
+import ctypes, json, re, sys
 from pathlib import Path
 import meshlab_spectral, pymeshlab
 
 def resident_mebibytes():
+    ctypes.CDLL(None).malloc_trim(0)
     status = Path("/proc/self/status").read_text()
     return int(re.findall(r"VmRSS:\\s+([0-9]+)", status)[0]) / 1024
 
