@@ -37,7 +37,7 @@ void midpointStep(LaplacianBuilder& laplacians, StepEvaluator& evaluate, double 
                     .Y.front();
             half = &predicted;
         }
-        if (laplacians.mass(*half).sum() < kLeastArea * laplacians.mass(steps.X).sum())
+        if (laplacians.area(*half) < kLeastArea * laplacians.area(steps.X))
             throw SolverFailure(ErrorCode::ShrinksToNothing,
                                 "the whole surface shrinks to nothing in half a step");
         append(evaluate(laplacians(*half), steps.X, h, progress.part(0.5, 1.0)), h, steps);

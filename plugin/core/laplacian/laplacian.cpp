@@ -1,6 +1,7 @@
 #include "core/laplacian/laplacian.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -74,8 +75,14 @@ Eigen::VectorXd lumpedMass(const Vertices& V, const Faces& F) {
 }
 
 bool isUsable(const Laplacian& laplacian) {
-    return laplacian.W.coeffs().allFinite() && laplacian.D.allFinite() &&
-           laplacian.D.minCoeff() > 0.0;
+    const double* values = laplacian.W.valuePtr();
+    const Index unusable =
+        parallelSum(laplacian.W.nonZeros(), Index{0}, [&](Index begin, Index end) {
+            return end - begin - std::count_if(values + begin, values + end, [](double w) {
+                       return std::isfinite(w);
+                   });
+        });
+    return unusable == 0 && laplacian.D.allFinite() && laplacian.D.minCoeff() > 0.0;
 }
 
 }  // namespace spectral

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "core/mesh/measures.h"
 #include "core/mesh/mesh_check.h"
 #include "core/support/errors.h"
 

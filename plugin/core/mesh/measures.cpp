@@ -2,6 +2,8 @@
 
 #include <Eigen/Geometry>
 
+#include "core/support/threads.h"
+
 namespace spectral {
 
 double boundingBoxDiagonal(const Vertices& V) {
@@ -16,11 +18,14 @@ double meanEdgeLength(const Vertices& V, const Faces& F) {
 }
 
 double surfaceArea(const Vertices& V, const Faces& F) {
-    double twiceArea = 0.0;
-    for (Index t = 0; t < F.rows(); ++t) {
-        const Eigen::RowVector3d a = V.row(F(t, 0)), b = V.row(F(t, 1)), c = V.row(F(t, 2));
-        twiceArea += (b - a).cross(c - a).norm();
-    }
+    const double twiceArea = parallelSum(F.rows(), 0.0, [&](Index begin, Index end) {
+        double sum = 0.0;
+        for (Index t = begin; t < end; ++t) {
+            const Eigen::RowVector3d a = V.row(F(t, 0)), b = V.row(F(t, 1)), c = V.row(F(t, 2));
+            sum += (b - a).cross(c - a).norm();
+        }
+        return sum;
+    });
     return 0.5 * twiceArea;
 }
 
