@@ -188,7 +188,8 @@ bool eliminate(const SymbolicLdlt& symbolic, const SparseMatrix& W, const Eigen:
     above.push_back({next, static_cast<int>(symbolic.fronts.size()), nullptr, nullptr});
 
     std::vector<char> done(symbolic.subtrees.size());
-    parallelFor(static_cast<Index>(done.size()), [&](Index t) {
+    parallelFor(static_cast<Index>(done.size()), [&](Index task) {
+        const int t = symbolic.largestFirst[task];
         const SymbolicLdlt::Subtree& tree = symbolic.subtrees[t];
         done[t] = ofSubtree[t].run({{tree.firstFront, tree.endFront, nullptr, nullptr}});
     });

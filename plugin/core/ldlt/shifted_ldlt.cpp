@@ -42,14 +42,14 @@ constexpr double kNudge = 1e-7;
 
 }  // namespace
 
-void ShiftedLdlt::analyze(const SparseMatrix& W) {
+void ShiftedLdlt::analyze(const SparseMatrix& W, const SymbolicLdlt* similar) {
     if (analysis_ && analysis_->isOf(W)) return;
     if (!analysis_) requireMemory(kOfRow * static_cast<double>(W.rows()), W.rows());
-    analysis_ = std::make_shared<const SymbolicLdlt>(W);
+    analysis_ = std::make_shared<const SymbolicLdlt>(W, similar);
 }
 
 ShiftedLdlt ShiftedLdlt::sibling(const SparseMatrix& W) {
-    analyze(W);
+    analyze(W, nullptr);  // hundreds of solves to come: the best order
     ShiftedLdlt empty;
     empty.analysis_ = analysis_;
     return empty;
@@ -57,7 +57,7 @@ ShiftedLdlt ShiftedLdlt::sibling(const SparseMatrix& W) {
 
 void ShiftedLdlt::factorize(const SparseMatrix& W, const Eigen::VectorXd& D, double sigma,
                             const StopPoint& stop) {
-    analyze(W);
+    analyze(W, analysis_.get());
     symbolic_ = analysis_;
     if (numbers_.values.empty())
         requireMemory(sizeof(double) * ((1.0 + kWaiting) * symbolic_->valueStarts.back() +
@@ -134,9 +134,10 @@ void ShiftedLdlt::solveOrdered(double* Y, int columns) const {
 
     // L Z = Y: the subtrees, each on its own rows and its copies of others', then what is above.
     rows.bottomRows(orderedRows() - n).setZero();
-    parallelFor(count, [&](Index t) {
-        kernels().forward(factor, Y, columns, subtrees[t].firstColumn, subtrees[t].endColumn);
-        divideByPivots(subtrees[t].firstColumn, subtrees[t].endColumn);
+    parallelFor(count, [&](Index task) {
+        const SymbolicLdlt::Subtree& tree = subtrees[symbolic.largestFirst[task]];
+        kernels().forward(factor, Y, columns, tree.firstColumn, tree.endColumn);
+        divideByPivots(tree.firstColumn, tree.endColumn);
     });
     for (std::size_t k = 0; k < symbolic.copied.size(); ++k)
         rows.row(symbolic.copied[k]) += rows.row(n + static_cast<Index>(k));
@@ -158,8 +159,9 @@ void ShiftedLdlt::solveOrdered(double* Y, int columns) const {
     kernels().backward(factor, Y, columns, 0, end);
     for (std::size_t k = 0; k < symbolic.copied.size(); ++k)
         rows.row(n + static_cast<Index>(k)) = rows.row(symbolic.copied[k]);
-    parallelFor(count, [&](Index t) {
-        kernels().backward(factor, Y, columns, subtrees[t].firstColumn, subtrees[t].endColumn);
+    parallelFor(count, [&](Index task) {
+        const SymbolicLdlt::Subtree& tree = subtrees[symbolic.largestFirst[task]];
+        kernels().backward(factor, Y, columns, tree.firstColumn, tree.endColumn);
     });
 }
 

@@ -78,7 +78,7 @@ class ShiftedLdlt {
     int solves() const { return solves_; }  ///< Columns solved for.
 
   private:
-    void analyze(const SparseMatrix& W);
+    void analyze(const SparseMatrix& W, const SymbolicLdlt* similar);
 
     std::shared_ptr<const SymbolicLdlt> analysis_;  // of the last pattern
     std::shared_ptr<const SymbolicLdlt> symbolic_;  // of the factor

@@ -1,6 +1,6 @@
 #include "core/ldlt/symbolic_ldlt.h"
 
-#include <Eigen/SparseCholesky>
+#include <Eigen/OrderingMethods>
 #include <algorithm>
 #include <iterator>
 #include <limits>
@@ -28,19 +28,10 @@ constexpr Relaxation kRelaxations[] = {
 /// waking a thread.
 constexpr Index kLeastParts = 4, kMostParts = 200, kLeastShared = 30000;
 
-/// Approximate minimum degree; Eigen's own functor would add the transpose once more.
-struct SymmetricOrdering {
-    using PermutationType = Eigen::AMDOrdering<int>::PermutationType;
-    void operator()(const SparseMatrix& W, PermutationType& permutation) const {
-        Eigen::AMDOrdering<int>()(W.selfadjointView<Eigen::Lower>(), permutation);
-    }
-};
-
-/// Gives access to the elimination tree of Eigen's analysis.
-struct Analysis : Eigen::SimplicialLDLT<SparseMatrix, Eigen::Lower, SymmetricOrdering> {
-    const auto& parent() const { return m_parent; }
-    const auto& columnEntries() const { return m_nonZerosPerCol; }
-};
+/// An order of elimination is taken over from a similar pattern while L has at most so many times
+/// the entries that it had where the order was made for it: finding one takes as long as a dozen
+/// solves.
+constexpr double kMostFill = 1.2;
 
 /// Postorder of a forest: children before their parents, subtrees contiguous.
 /// @param parent  of each node, a larger number; -1 for roots.
@@ -84,32 +75,98 @@ struct Supernode {
 
 }  // namespace
 
-SymbolicLdlt::SymbolicLdlt(const SparseMatrix& W)
+SymbolicLdlt::SymbolicLdlt(const SparseMatrix& W, const SymbolicLdlt* similar)
     : starts(W.outerIndexPtr(), W.outerIndexPtr() + W.outerSize() + 1),
       rows(W.innerIndexPtr(), W.innerIndexPtr() + W.nonZeros()) {
-    const Columns columns = findOrder(W);
+    const Columns columns = findOrder(W, similar);
     findFronts(columns);
     findRows(columns);
     findPlaces();
     findSubtrees();
 }
 
-SymbolicLdlt::Columns SymbolicLdlt::findOrder(const SparseMatrix& W) {
-    const auto n = static_cast<std::size_t>(W.rows());
-    Analysis analysis;
-    analysis.analyzePattern(W);
-    const std::vector<int> tree(analysis.parent().begin(), analysis.parent().end());
-    const std::vector<int> number = postorder(tree);
+SymbolicLdlt::Columns SymbolicLdlt::findOrder(const SparseMatrix& W, const SymbolicLdlt* similar) {
+    const auto entriesOf = [](const Columns& columns) {
+        return std::accumulate(columns.count.begin(), columns.count.end(), Index{0});
+    };
+    if (similar != nullptr && similar->order.size() == W.rows()) {
+        adaptOrder(*similar);
+        entriesWhenOrdered_ = similar->entriesWhenOrdered_;
+        const Columns columns = eliminationTree();
+        if (static_cast<double>(entriesOf(columns)) <=
+            kMostFill * static_cast<double>(entriesWhenOrdered_))
+            return postordered(columns);
+    }
+    Eigen::AMDOrdering<int>::PermutationType leastDegree;  // its indices: what `inverse` is
+    Eigen::AMDOrdering<int>()(W.selfadjointView<Eigen::Lower>(), leastDegree);
+    inverse.assign(leastDegree.indices().begin(), leastDegree.indices().end());
     order.resize(W.rows());
-    inverse.resize(n);
-    Columns columns{std::vector<int>(n, -1), std::vector<int>(n)};
-    for (int i = 0; i < W.rows(); ++i) {
-        order[i] = number[analysis.permutationP().indices()[i]];
-        inverse[order[i]] = i;
-        if (tree[i] >= 0) columns.parent[number[i]] = number[tree[i]];
-        columns.count[number[i]] = analysis.columnEntries()[i];
+    for (int j = 0; j < W.rows(); ++j) order[inverse[j]] = j;
+    const Columns columns = eliminationTree();
+    entriesWhenOrdered_ = entriesOf(columns);
+    return postordered(columns);
+}
+
+/// Takes over the order of a similar pattern. An entry that the other has not may join two subtrees
+/// of its tree, and fill all fronts above both. One of the two rows then moves up to the front
+/// where they meet, as if into a separator: it only becomes one more row of the fronts on its way.
+void SymbolicLdlt::adaptOrder(const SymbolicLdlt& similar) {
+    const auto n = static_cast<int>(similar.inverse.size());
+    const auto top = static_cast<int>(similar.fronts.size());  // above all roots
+    const auto parent = [&](int f) {
+        return similar.parentFront_[f] < 0 ? top : similar.parentFront_[f];
+    };
+    std::vector<int> frontOf(similar.inverse.size());  // of each row of W
+    std::vector<char> isMoved(similar.inverse.size(), 0);
+    for (int i = 0; i < n; ++i) frontOf[i] = similar.frontOf_[similar.order[i]];
+    for (int j = 0; j < n; ++j)
+        for (int p = starts[j]; p < starts[j + 1]; ++p) {
+            if (rows[p] >= j) continue;
+            int f = frontOf[rows[p]], g = frontOf[j];
+            while (f != g) (f < g ? f : g) = parent(std::min(f, g));
+            if (f == frontOf[rows[p]] || f == frontOf[j]) continue;
+            frontOf[j] = f;
+            isMoved[j] = 1;
+        }
+    std::vector<int> next(similar.fronts.size() + 2, 0);
+    for (const int f : frontOf) ++next[f + 1];
+    std::partial_sum(next.begin(), next.end(), next.begin());
+    order.resize(n);
+    for (const bool moved : {true, false})
+        for (const int i : similar.inverse)
+            if ((isMoved[i] != 0) == moved) order[i] = next[frontOf[i]]++;
+    inverse.resize(similar.inverse.size());
+    for (int i = 0; i < n; ++i) inverse[order[i]] = i;
+}
+
+/// Row k of L has entries on the paths in the tree from those of W to k (Davis 2006, section 4.1).
+SymbolicLdlt::Columns SymbolicLdlt::eliminationTree() const {
+    Columns columns{std::vector<int>(inverse.size(), -1), std::vector<int>(inverse.size(), 0)};
+    std::vector<int> visited(inverse.size(), -1);
+    for (int k = 0; k < static_cast<int>(inverse.size()); ++k) {
+        visited[k] = k;
+        for (int p = starts[inverse[k]]; p < starts[inverse[k] + 1]; ++p) {
+            if (order[rows[p]] > k) continue;
+            for (int j = order[rows[p]]; visited[j] != k; j = columns.parent[j]) {
+                if (columns.parent[j] < 0) columns.parent[j] = k;
+                ++columns.count[j];
+                visited[j] = k;
+            }
+        }
     }
     return columns;
+}
+
+SymbolicLdlt::Columns SymbolicLdlt::postordered(const Columns& columns) {
+    const std::vector<int> number = postorder(columns.parent);
+    Columns result{std::vector<int>(number.size(), -1), std::vector<int>(number.size())};
+    for (int& j : order) j = number[j];
+    for (std::size_t j = 0; j < number.size(); ++j) {
+        if (columns.parent[j] >= 0) result.parent[number[j]] = number[columns.parent[j]];
+        result.count[number[j]] = columns.count[j];
+    }
+    for (int i = 0; i < order.size(); ++i) inverse[order[i]] = i;
+    return result;
 }
 
 void SymbolicLdlt::findFronts(const Columns& columns) {
@@ -250,6 +307,11 @@ void SymbolicLdlt::findSubtrees() {
                        static_cast<int>(std::lower_bound(below, below + root.below, *row) - below);
         subtrees.push_back(tree);
     }
+    const auto sizeOf = [&](int t) { return size[subtrees[t].endFront - 1]; };
+    largestFirst.resize(subtrees.size());
+    std::iota(largestFirst.begin(), largestFirst.end(), 0);
+    std::stable_sort(largestFirst.begin(), largestFirst.end(),
+                     [&](int a, int b) { return sizeOf(a) > sizeOf(b); });
 }
 
 bool SymbolicLdlt::isOf(const SparseMatrix& W) const {

@@ -15,9 +15,11 @@ namespace spectral {
 /// eliminated together in a dense frontal matrix (ldlt_elimination.h), and stored with the same
 /// rows: a few entries of L are 0.
 struct SymbolicLdlt {
-    /// @param W  n x n, symmetric, both triangles stored.
+    /// @param W        n x n, symmetric, both triangles stored.
+    /// @param similar  of a pattern that differs in a few per cent of its entries, whose order is
+    ///                 adapted if L has hardly more entries with it; or null.
     /// @throws SolverFailure  when the factor has more entries than an int counts: some 1e7 rows.
-    explicit SymbolicLdlt(const SparseMatrix& W);
+    explicit SymbolicLdlt(const SparseMatrix& W, const SymbolicLdlt* similar = nullptr);
 
     /// Whether W has the pattern that was analyzed.
     bool isOf(const SparseMatrix& W) const;
@@ -59,6 +61,10 @@ struct SymbolicLdlt {
     /// the pattern alone, so that results are the same for any number of threads.
     std::vector<Subtree> subtrees;
 
+    /// The subtrees' numbers by descending size of L: threads that take them in this order end
+    /// together.
+    std::vector<int> largestFirst;
+
     /// Solves work on n + copied.size() rows: each subtree has its own copies of the rows that it
     /// shares with others. Row n + k is a copy of row copied[k]; `solveRows` are `frontRows` with
     /// the copies' numbers.
@@ -77,12 +83,16 @@ struct SymbolicLdlt {
     struct Columns {
         std::vector<int> parent, count;
     };
-    Columns findOrder(const SparseMatrix& W);
+    Columns findOrder(const SparseMatrix& W, const SymbolicLdlt* similar);
+    void adaptOrder(const SymbolicLdlt& similar);
+    Columns eliminationTree() const;              ///< In the order as it is.
+    Columns postordered(const Columns& columns);  ///< Makes the order a postorder of the tree.
     void findFronts(const Columns& columns);
     void findRows(const Columns& columns);
     void findPlaces();
     void findSubtrees();
 
+    Index entriesWhenOrdered_ = 0;  // off the diagonal of L, of the pattern the order was made for
     std::vector<int> frontOf_;      // n, of each column
     std::vector<int> parentFront_;  // of each front, or -1
 };

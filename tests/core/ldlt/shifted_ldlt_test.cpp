@@ -94,6 +94,52 @@ TEST(ShiftedLdlt, TakesMatricesOfOtherPatterns) {
     EXPECT_LT(relativeResidual(ldlt, A.laplacian), 1e-9);
 }
 
+/// The mesh with the edge opposite to the first corner of some triangles flipped.
+testing::Mesh withFlips(testing::Mesh mesh, int every) {
+    for (Eigen::Index s = 0; s < mesh.F.rows(); s += every) {
+        const int i = mesh.F(s, 1), j = mesh.F(s, 2);
+        for (Eigen::Index t = 0; t < mesh.F.rows(); ++t)
+            for (int c = 0; c < 3; ++c) {
+                if (mesh.F(t, c) != j || mesh.F(t, (c + 1) % 3) != i) continue;
+                const int k = mesh.F(s, 0), l = mesh.F(t, (c + 2) % 3);
+                mesh.F.row(s) << k, i, l;
+                mesh.F.row(t) << l, j, k;
+            }
+    }
+    return mesh;
+}
+
+TEST(ShiftedLdlt, AdaptsItsOrderToPatternsThatDifferALittle) {
+    std::srand(6);
+    const testing::Mesh mesh = testing::withNoise(testing::icosphere(4), 0.003, 5);
+    const SymbolicLdlt before(Operator(mesh).laplacian.W);
+    for (const int threads : {1, 3}) {
+        const ThreadTeam team(threads);
+        ShiftedLdlt ldlt;
+        for (const int every : {5000, 600, 80, 9}) {  // from one flip to a ninth of the triangles
+            const Operator A(withFlips(mesh, every));
+            const SymbolicLdlt adapted(A.laplacian.W, &before);
+            EXPECT_LT(adapted.valueStarts.back(), 1.25 * before.valueStarts.back()) << every;
+            ldlt.factorize(A.laplacian.W, A.laplacian.D, 4.0);
+            EXPECT_LT(relativeResidual(ldlt, A.laplacian), 1e-9) << every;
+        }
+    }
+    const SymbolicLdlt one(Operator(withFlips(mesh, 5000)).laplacian.W, &before);
+    const Eigen::VectorXi moved = (one.order - before.order).cwiseAbs();
+    EXPECT_LT(moved.cast<double>().mean(), 2.0);
+}
+
+TEST(ShiftedLdlt, FindsAnOrderOfItsOwnForOtherPatterns) {
+    const SparseMatrix W = Operator(testing::icosphere(4)).laplacian.W;
+    const SymbolicLdlt before(W);
+    Eigen::PermutationMatrix<Eigen::Dynamic> reversed(W.rows());
+    for (Eigen::Index i = 0; i < W.rows(); ++i)
+        reversed.indices()[i] = static_cast<int>(W.rows() - 1 - i);
+    const SparseMatrix PW = reversed * W, other = PW * reversed.transpose();
+    EXPECT_EQ(SymbolicLdlt(other, &before).valueStarts.back(),
+              SymbolicLdlt(other).valueStarts.back());
+}
+
 TEST(ShiftedLdlt, TakesAMatrixOfSeveralParts) {
     std::srand(3);
     Laplacian laplacian;
