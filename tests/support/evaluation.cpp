@@ -2,12 +2,18 @@
 
 #include <sstream>
 
+#include "core/harmonics/truncated_basis.h"
 #include "core/krylov/pole_selection.h"
 #include "core/laplacian/frequency.h"
 #include "core/mesh/mesh.h"
 #include "core/transfer/transfer_function.h"
 
 namespace spectral::testing {
+
+HarmonicBasis lowestHarmonics(const Operator& A, Index k, const Progress& progress) {
+    ShiftedLdlt ldlt;
+    return truncatedBasis(A.laplacian, A.constants, k, ldlt, progress);
+}
 
 Vertices filteredDense(const Operator& A, const HarmonicBasis& dense, const Gain& gain) {
     return applyInBasis(dense, A.laplacian.D, A.constants, gain, 0.0, A.mesh.V);

@@ -26,6 +26,9 @@ struct Operator {
     double area() const { return laplacian.D.sum(); }
 };
 
+/// At least the k lowest harmonics, by truncatedBasis.
+HarmonicBasis lowestHarmonics(const Operator& A, Index k, const Progress& progress = {});
+
 /// Y = F(sqrt(A)) V by all eigenvectors: the yardstick.
 Vertices filteredDense(const Operator& A, const HarmonicBasis& dense, const Gain& gain);
 

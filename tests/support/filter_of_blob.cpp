@@ -25,8 +25,4 @@ TransferFunctionOptions boost() {
     return options;
 }
 
-double largestDifference(const Vertices& A, const Vertices& B) {
-    return (A - B).rowwise().norm().maxCoeff();
-}
-
 }  // namespace spectral::testing

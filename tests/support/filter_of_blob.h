@@ -26,7 +26,4 @@ struct FilterOfBlob {
 /// A band-pass that doubles one octave and keeps all others.
 TransferFunctionOptions boost();
 
-/// Longest distance between corresponding vertices.
-double largestDifference(const Vertices& A, const Vertices& B);
-
 }  // namespace spectral::testing

@@ -203,4 +203,13 @@ Mesh blob() {
     return withNoise(mesh, 0.01, 7);
 }
 
+std::vector<Mesh> classesOfMeshes() {
+    return {blob(), withNoise(rectangle(2, 1, 20, 10), 0.03, 3),
+            joined(blob(), withNoise(cube(5), 0.05, 4))};
+}
+
+double largestDifference(const Vertices& A, const Vertices& B) {
+    return (A - B).rowwise().norm().maxCoeff();
+}
+
 }  // namespace spectral::testing

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "support/ply.h"
 
 namespace spectral::testing {
@@ -31,6 +33,12 @@ Mesh joined(const Mesh& a, const Mesh& b);
 
 /// The mesh with every coordinate displaced by uniform noise in [-amplitude, amplitude].
 Mesh withNoise(Mesh mesh, double amplitude, unsigned seed);
+
+/// Meshes of several classes, without symmetry: closed, with a boundary, of two components.
+std::vector<Mesh> classesOfMeshes();
+
+/// Longest distance between corresponding vertices.
+double largestDifference(const Vertices& A, const Vertices& B);
 
 /// A closed surface without symmetry, 642 vertices: a bumpy, stretched sphere. All eigenvalues
 /// differ, and all sizes of details are present.

@@ -1,16 +1,13 @@
 #include "core/harmonics/harmonic_basis.h"
 
-#include <Spectra/MatOp/SparseSymMatProd.h>
-#include <Spectra/SymEigsSolver.h>
-
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <numeric>
 #include <string>
 #include <vector>
 
+#include "core/harmonics/lanczos.h"
 #include "core/laplacian/constant_modes.h"
 #include "core/laplacian/frequency.h"
 #include "core/mesh/mesh.h"
@@ -125,19 +122,17 @@ double largestEigenvalue(const Laplacian& laplacian) {
     const double bound = (A.cwiseAbs() * Eigen::VectorXd::Ones(A.cols())).maxCoeff();
     // Spectra starts from A times a random vector: where one eigenvalue is far above all others, an
     // eigenvector, with a residual of round-off (yixuan/spectra#159). Those of A + I are in [1, 2].
-    SparseMatrix I(A.rows(), A.cols());
-    I.setIdentity();
-    A = A / bound + I;
-    Spectra::SparseSymMatProd<double> op(A);
-    const Index dimension = std::min<Index>(A.rows(), 30);
-    Spectra::SymEigsSolver<Spectra::SparseSymMatProd<double>> solver(op, 1, dimension);
+    A = A / bound;
+    const auto shifted = [&A](const Eigen::Ref<const Eigen::VectorXd>& x) -> Eigen::VectorXd {
+        return A * x + x;
+    };
+    const LanczosOptions options{std::min<Index>(A.rows(), 30), kMostRestarts, 1e-8};
     try {
-        solver.init();
-        if (solver.compute(Spectra::SortRule::LargestAlge, kMostRestarts, 1e-8) == 1)
-            return bound * (solver.eigenvalues()[0] - 1.0);
-    } catch (const std::exception&) {  // Spectra's own, of a breakdown
+        return bound * (largestPairs(shifted, A.rows(), 1, options).values[0] - 1.0);
+    } catch (const SolverFailure&) {
+        throw SolverFailure(ErrorCode::SingularMatrix,
+                            "the largest eigenvalue could not be computed");
     }
-    throw SolverFailure(ErrorCode::SingularMatrix, "the largest eigenvalue could not be computed");
 }
 
 Eigen::MatrixXd applyInBasis(const HarmonicBasis& basis, const Eigen::VectorXd& D,

@@ -1,16 +1,12 @@
 #include "core/harmonics/interval_pairs.h"
 
-#include <Spectra/SymEigsSolver.h>
-
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <exception>
-#include <string>
 #include <utility>
 #include <vector>
 
+#include "core/harmonics/lanczos.h"
 #include "core/laplacian/constant_modes.h"
-#include "core/support/errors.h"
 
 namespace spectral {
 
@@ -34,11 +30,9 @@ constexpr int kFruitless = 3;
 
 /// u -> h D^1/2 (W - sigma D)^-1 D^1/2 u on the complement of the constants and of known vectors:
 /// symmetric, with eigenvalues h / (lambda - sigma). With h the half of an interval around sigma
-/// those inside are above 1, as Spectra's test for convergence assumes.
+/// those inside are above 1, as the test for convergence assumes.
 class DeflatedResolvent {
   public:
-    using Scalar = double;
-
     DeflatedResolvent(const Laplacian& laplacian, const ConstantModes& constants,
                       const ShiftedLdlt& factor, double half, const Eigen::MatrixXd& known,
                       const StopPoint& stopPoint)
@@ -50,16 +44,13 @@ class DeflatedResolvent {
           known_(known),
           stopPoint_(stopPoint) {}
 
-    Index rows() const { return D_.size(); }
-    Index cols() const { return D_.size(); }
-
-    void perform_op(const double* in, double* out) const {
+    Eigen::VectorXd operator()(const Eigen::Ref<const Eigen::VectorXd>& x) const {
         stopPoint_();
-        Eigen::VectorXd u = Eigen::Map<const Eigen::VectorXd>(in, rows()).cwiseQuotient(sqrtD_);
+        Eigen::VectorXd u = x.cwiseQuotient(sqrtD_);
         factor_.applyResolvent(D_, u);
         constants_.remove(u);
         u -= known_ * (known_.transpose() * D_.cwiseProduct(u)).eval();
-        Eigen::Map<Eigen::VectorXd>(out, rows()) = half_ * u.cwiseProduct(sqrtD_);
+        return half_ * u.cwiseProduct(sqrtD_);
     }
 
   private:
@@ -71,27 +62,6 @@ class DeflatedResolvent {
     const Eigen::MatrixXd& known_;
     const StopPoint& stopPoint_;
 };
-
-struct Eigenpairs {
-    Eigen::ArrayXd values;
-    Eigen::MatrixXd vectors;
-};
-
-/// Those of the largest modulus, which are nearest to the shift.
-Eigenpairs nearestPairs(DeflatedResolvent& op, Index wanted, Index dimension) {
-    try {
-        Spectra::SymEigsSolver<DeflatedResolvent> solver(op, wanted, dimension);
-        solver.init();
-        if (solver.compute(Spectra::SortRule::LargestMagn, kMaxRestarts, kTolerance) > 0)
-            return {solver.eigenvalues(), solver.eigenvectors()};
-    } catch (const Error&) {
-        throw;
-    } catch (const std::exception& error) {  // Spectra's own, of a breakdown
-        throw SolverFailure(ErrorCode::BasisIncomplete,
-                            std::string("the harmonics could not be computed: ") + error.what());
-    }
-    throw SolverFailure(ErrorCode::BasisIncomplete, "the harmonics did not converge");
-}
 
 void append(Eigen::MatrixXd& A, const Eigen::MatrixXd& B) {
     A.conservativeResize(B.rows(), A.cols() + B.cols());
@@ -141,15 +111,16 @@ IntervalPairs computeInterval(const Laplacian& laplacian, const ConstantModes& c
         if (wanted < 1) return {};
         const Index dimension =
             std::min(std::max(2 * wanted + kSpareDimension, kLeastDimension), free);
-        DeflatedResolvent op(laplacian, constants, factor, half, known, stopPoint);
-        const Eigenpairs nearest = nearestPairs(op, wanted, dimension);
+        const DeflatedResolvent resolvent(laplacian, constants, factor, half, known, stopPoint);
+        const Eigenpairs nearest =
+            largestPairs(resolvent, n, wanted, {dimension, kMaxRestarts, kTolerance});
         Eigen::MatrixXd U = D.cwiseSqrt().cwiseInverse().asDiagonal() * nearest.vectors;
         // One more inverse iteration removes what is not in the Krylov space.
         factor.applyResolvent(D, U);
         constants.remove(U);
         if (orthonormalize(D, known, U) < kOwnPart) return {};
         append(known, U);
-        append(lambda, factor.shift() + half * nearest.values.inverse());
+        append(lambda, factor.shift() + half * nearest.values.array().inverse());
         const std::size_t before = inside.size();
         for (Index i = lambda.size() - U.cols(); i < lambda.size(); ++i)
             if (lambda[i] >= interval.from && lambda[i] < interval.to) inside.push_back(i);

@@ -14,6 +14,7 @@
 namespace spectral {
 namespace {
 
+using testing::classesOfMeshes;
 using testing::Mesh;
 using testing::Operator;
 
@@ -29,11 +30,6 @@ Artefacts measured(const Mesh& mesh, double part,
                    LaplacianKind kind = LaplacianKind::IntrinsicDelaunay) {
     return measureArtefacts(mesh.V, mesh.F,
                             withFeatureSize(part * boundingBoxDiagonal(mesh.V), kind));
-}
-
-std::vector<Mesh> classesOfMeshes() {
-    return {testing::blob(), testing::withNoise(testing::rectangle(2, 1, 20, 10), 0.03, 3),
-            testing::joined(testing::blob(), testing::withNoise(testing::cube(5), 0.05, 4))};
 }
 
 TEST(Artefacts, AreWhatAllEigenvectorsSay) {

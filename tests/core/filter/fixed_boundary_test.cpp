@@ -20,6 +20,7 @@
 namespace spectral {
 namespace {
 
+using testing::largestDifference;
 using testing::Mesh;
 using testing::Operator;
 
@@ -61,10 +62,6 @@ FilterOptions smoothing(const Mesh& mesh, int steps, BasisUpdate update = BasisU
     options.boundary = Boundary::Fixed;
     options.evaluation.accuracy = 1e-9;
     return options;
-}
-
-double largestDifference(const Vertices& A, const Vertices& B) {
-    return (A - B).rowwise().norm().maxCoeff();
 }
 
 /// H + F(sqrt(A_II)) (X - H) by dense solvers: harmonic extension and eigenvectors of the interior.

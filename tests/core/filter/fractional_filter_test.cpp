@@ -21,6 +21,8 @@
 namespace spectral {
 namespace {
 
+using testing::classesOfMeshes;
+using testing::largestDifference;
 using testing::Mesh;
 using testing::Operator;
 
@@ -44,15 +46,6 @@ FilterOptions smoothing(const Mesh& mesh, int steps, BasisUpdate update) {
     options.basisUpdate = update;
     options.evaluation.accuracy = 1e-9;
     return options;
-}
-
-double largestDifference(const Vertices& A, const Vertices& B) {
-    return (A - B).rowwise().norm().maxCoeff();
-}
-
-std::vector<Mesh> classesOfMeshes() {
-    return {testing::blob(), testing::withNoise(testing::rectangle(2, 1, 20, 10), 0.03, 3),
-            testing::joined(testing::blob(), testing::withNoise(testing::cube(5), 0.05, 4))};
 }
 
 const BasisUpdate kUpdates[] = {BasisUpdate::Full, BasisUpdate::Conformal, BasisUpdate::None};

@@ -7,6 +7,7 @@
 #include "core/mesh/mesh.h"
 #include "core/transfer/transfer_function.h"
 #include "support/filter_of_blob.h"
+#include "support/shapes.h"
 
 namespace spectral {
 namespace {

@@ -14,6 +14,7 @@
 namespace spectral {
 namespace {
 
+using testing::classesOfMeshes;
 using testing::Mesh;
 using testing::Operator;
 
@@ -25,11 +26,6 @@ SignalFilterOptions lowPass(const Mesh& mesh, double part = 0.2) {
     options.featureSize = part * boundingBoxDiagonal(mesh.V);
     options.laplacian = LaplacianKind::Cotangent;
     return options;
-}
-
-std::vector<Mesh> classesOfMeshes() {
-    return {testing::blob(), testing::withNoise(testing::rectangle(2, 1, 20, 10), 0.03, 3),
-            testing::joined(testing::blob(), testing::torus(2, 0.7, 24, 12))};
 }
 
 Eigen::MatrixXd noise(Index rows, Index columns, unsigned seed) {

@@ -11,19 +11,15 @@
 namespace spectral {
 namespace {
 
+using testing::lowestHarmonics;
 using testing::Mesh;
 using testing::Operator;
-
-HarmonicBasis lowest(const Operator& A, Index k, const Progress& progress = {}) {
-    ShiftedLdlt ldlt;
-    return truncatedBasis(A.laplacian, A.constants, k, ldlt, progress);
-}
 
 /// Compares with all eigenvalues by the dense solver: none missing, none twice.
 void expectLowest(const Mesh& mesh, Index k, const char* name) {
     SCOPED_TRACE(name);
     const Operator A(mesh);
-    const HarmonicBasis pairs = lowest(A, k);
+    const HarmonicBasis pairs = lowestHarmonics(A, k);
     const Eigen::VectorXd lambda = denseBasis(A.laplacian, A.constants).lambda;
     ASSERT_GE(pairs.lambda.size(), k);
     const Index c = A.constants.count(), found = pairs.lambda.size();
@@ -80,7 +76,7 @@ TEST(TruncatedBasisSlices, AreFewWhereFewAreAsked) {
 
 TEST(TruncatedBasisSlices, DoNotDependOnTheThreads) {
     const Operator A(testing::icosphere(3));
-    const HarmonicBasis once = lowest(A, 100), again = lowest(A, 100);
+    const HarmonicBasis once = lowestHarmonics(A, 100), again = lowestHarmonics(A, 100);
     EXPECT_TRUE((once.Phi.array() == again.Phi.array()).all());
     EXPECT_TRUE((once.lambda.array() == again.lambda.array()).all());
 }
@@ -93,7 +89,7 @@ TEST(TruncatedBasisSlices, StopWhenTheCallerWantsIt) {
         EXPECT_LE(fraction, 1.0);
         return ++reports < 2;  // there are many slices
     });
-    EXPECT_THROW(lowest(A, 100, progress), Cancelled);
+    EXPECT_THROW(lowestHarmonics(A, 100, progress), Cancelled);
 }
 
 TEST(TruncatedBasisSlices, TellTheirProgress) {
@@ -104,7 +100,7 @@ TEST(TruncatedBasisSlices, TellTheirProgress) {
         last = fraction;
         return true;
     });
-    lowest(A, 100, rising);
+    lowestHarmonics(A, 100, rising);
     EXPECT_GT(last, 0.9);
 }
 
