@@ -13,7 +13,8 @@ from batches import REPORT, alive, below, contents, make_meshes, records, start_
 from commands import command
 
 MESHES = 12
-OPTIONS = ["--steps", 60, "--workers", 2]
+# So long that the batch is at work still when a busy machine delivers the signal late.
+OPTIONS = ["--steps", 600, "--workers", 2]
 
 
 @pytest.fixture(scope="module")
