@@ -25,8 +25,8 @@ struct Eigenpairs {
 ///
 /// @param wanted  number of pairs, 1 <= wanted < n.
 /// @return at least one pair; fewer than wanted where others have not converged.
-/// @throws SolverFailure  when none converges, or Spectra breaks down; whatever the operator
-/// throws.
+/// @throws SolverFailure  when none converges, or Spectra breaks down.
+/// @throws whatever the operator throws.
 Eigenpairs largestPairs(const SymmetricOperator& S, Index n, Index wanted,
                         const LanczosOptions& options);
 

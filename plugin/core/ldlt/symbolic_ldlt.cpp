@@ -123,7 +123,10 @@ void SymbolicLdlt::adaptOrder(const SymbolicLdlt& similar) {
         for (int p = starts[j]; p < starts[j + 1]; ++p) {
             if (rows[p] >= j) continue;
             int f = frontOf[rows[p]], g = frontOf[j];
-            while (f != g) (f < g ? f : g) = parent(std::min(f, g));
+            while (f != g) {
+                int& lower = f < g ? f : g;
+                lower = parent(lower);
+            }
             if (f == frontOf[rows[p]] || f == frontOf[j]) continue;
             frontOf[j] = f;
             isMoved[j] = 1;
