@@ -185,3 +185,5 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
 }
 
 MESHLAB_PLUGIN_NAME_EXPORTER(FilterSpectralPlugin)
+
+#include "moc_filter_spectral.cpp"  // else compiled by itself, with MeshLab's headers once more

@@ -15,52 +15,49 @@ namespace spectral::fuzz {
 
 namespace {
 
-template <class Scalar>
+using Scalar = long double;
 using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
-template <class Scalar>
 using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
 
-template <class Scalar>
 struct Pairs {
-    Vector<Scalar> values;
-    Matrix<Scalar> vectors;
+    Vector values;
+    Matrix vectors;
 };
 
-Pairs<double> eigenpairs(const Matrix<double>& W, const Vector<double>& D) {
-    testing::DenseEigenpairs pairs = testing::denseEigenpairs(W, D);
-    return {std::move(pairs.values), std::move(pairs.vectors)};
+Pairs pairsInDouble(const Matrix& W, const Vector& D) {
+    const testing::DenseEigenpairs pairs =
+        testing::denseEigenpairs(W.cast<double>(), D.cast<double>());
+    return {pairs.values.cast<Scalar>(), pairs.vectors.cast<Scalar>()};
 }
 
-Pairs<long double> eigenpairs(const Matrix<long double>& W, const Vector<long double>& D) {
-    const Vector<long double> scale = D.cwiseSqrt().cwiseInverse();
-    const Eigen::SelfAdjointEigenSolver<Matrix<long double>> solver(scale.asDiagonal() * W *
-                                                                    scale.asDiagonal());
+Pairs pairsInExtended(const Matrix& W, const Vector& D) {
+    const Vector scale = D.cwiseSqrt().cwiseInverse();
+    Eigen::SelfAdjointEigenSolver<Matrix> solver(scale.asDiagonal() * W * scale.asDiagonal());
     // Errors relative to the largest eigenvalue become errors relative to their own, by
     // Rayleigh-Ritz with differences along edges.
-    Matrix<long double> Phi = scale.asDiagonal() * solver.eigenvectors();
+    Matrix Phi = scale.asDiagonal() * solver.eigenvectors();
     const Index n = W.rows();
-    const Vector<long double> sums = W.rowwise().sum();
-    Matrix<long double> ritz = Phi.transpose() * sums.asDiagonal() * Phi;
+    const Vector sums = W.rowwise().sum();
+    Matrix ritz = Phi.transpose() * sums.asDiagonal() * Phi;
     for (Index j = 0; j < n; ++j)
         for (Index i = 0; i < j; ++i) {
             if (W(i, j) == 0) continue;
-            const Vector<long double> difference = (Phi.row(j) - Phi.row(i)).transpose();
+            const Vector difference = (Phi.row(j) - Phi.row(i)).transpose();
             ritz -= (W(i, j) * difference) * difference.transpose();
         }
-    constexpr long double kRoundOff = 100 * std::numeric_limits<long double>::epsilon();
-    const Vector<long double> lambda = ritz.diagonal().cwiseAbs();
+    constexpr Scalar kRoundOff = 100 * std::numeric_limits<Scalar>::epsilon();
+    const Vector lambda = ritz.diagonal().cwiseAbs();
     for (Index j = 0; j < n; ++j)
         for (Index i = 0; i < n; ++i)
             if (std::abs(ritz(i, j)) <= kRoundOff * std::max(lambda[i], lambda[j])) ritz(i, j) = 0;
-    const Eigen::SelfAdjointEigenSolver<Matrix<long double>> again(ritz);
-    return {again.eigenvalues(), Phi * again.eigenvectors()};
+    solver.compute(ritz);
+    return {solver.eigenvalues(), Phi * solver.eigenvectors()};
 }
 
-/// W, D and X in another precision, and in another order; rows of W sum to zero without round-off.
-template <class Scalar>
+/// W, D and X in extended precision, and in another order; rows of W sum to zero without round-off.
 struct Problem {
-    Matrix<Scalar> W, X;
-    Vector<Scalar> D;
+    Matrix W, X;
+    Vector D;
     std::vector<Index> order;  ///< Vertex of each row.
 
     Problem(const MeshLaplacian& mesh, Precision precision) : order(mesh.laplacian.D.size()) {
@@ -77,23 +74,22 @@ struct Problem {
             return isPerturbed ? 1 + 4 * kUnit * random : Scalar{1};
         };
         const Eigen::MatrixXd dense(mesh.laplacian.W);
-        W = Matrix<Scalar>::Zero(n, n);
+        W = Matrix::Zero(n, n);
         X.resize(n, 3);
         D.resize(n);
         for (Index i = 0; i < n; ++i) {
             D[i] = static_cast<Scalar>(mesh.laplacian.D[order[i]]) * factor();
-            X.row(i) = mesh.surface.X.row(order[i]).template cast<Scalar>();
+            X.row(i) = mesh.surface.X.row(order[i]).cast<Scalar>();
             for (Index j = 0; j < i; ++j)
                 W(i, j) = W(j, i) = static_cast<Scalar>(dense(order[i], order[j])) * factor();
         }
-        const Vector<Scalar> sums = W.rowwise().sum();
+        const Vector sums = W.rowwise().sum();
         for (Index i = 0; i < n; ++i) W(i, i) = -sums[i] * factor();
     }
 };
 
 /// Subtracts the D-weighted mean of every component from its rows.
-template <class Scalar>
-void centre(const Vector<Scalar>& D, const std::vector<int>& label, Matrix<Scalar>& X) {
+void centre(const Vector& D, const std::vector<int>& label, Matrix& X) {
     const int count = label.empty() ? 0 : 1 + *std::max_element(label.begin(), label.end());
     for (int component = 0; component < count; ++component) {
         Eigen::Matrix<Scalar, 1, 3> mean = Eigen::Matrix<Scalar, 1, 3>::Zero();
@@ -108,9 +104,8 @@ void centre(const Vector<Scalar>& D, const std::vector<int>& label, Matrix<Scala
     }
 }
 
-template <class Scalar>
 DenseSpectrum spectrumOf(const MeshLaplacian& mesh, const Interior& interior, Precision precision) {
-    Problem<Scalar> all(mesh, precision);
+    Problem all(mesh, precision);
     std::vector<Index> rowOf(all.order.size(), -1);  // in the interior
     const Eigen::MatrixXd marks = interior.extended(Eigen::MatrixXd::Ones(interior.size(), 1));
     for (Index i = 0, m = 0; i < marks.rows(); ++i)
@@ -124,32 +119,33 @@ DenseSpectrum spectrumOf(const MeshLaplacian& mesh, const Interior& interior, Pr
         label.push_back(interior.components().label[rowOf[all.order[i]]]);
     }
     const auto m = static_cast<Index>(rows.size());
-    const Matrix<Scalar> W = all.W(rows, rows);
-    const Vector<Scalar> D = all.D(rows);
+    const Matrix W = all.W(rows, rows);
+    const Vector D = all.D(rows);
     centre(all.D, surfaceLabel, all.X);
-    Matrix<Scalar> U = all.X(rows, Eigen::all);
+    Matrix U = all.X(rows, Eigen::all);
 
     // X - H where a boundary is fixed: W_II U = (W X)_I.
     std::vector<Index> held;
     for (Index i = 0; i < m; ++i)
         if (label[i] < 0) held.push_back(i);
     if (!held.empty()) {
-        const Matrix<Scalar> WX = (all.W * all.X)(rows, Eigen::all);
-        const Matrix<Scalar> right = WX(held, Eigen::all), left = W(held, held);
-        const Matrix<Scalar> solution = left.ldlt().solve(right);
+        const Matrix WX = (all.W * all.X)(rows, Eigen::all);
+        const Matrix right = WX(held, Eigen::all), left = W(held, held);
+        const Matrix solution = left.ldlt().solve(right);
         U(held, Eigen::all) = solution;
     }
     centre(D, label, U);
 
-    const Pairs<Scalar> pairs = eigenpairs(W, D);
-    const Matrix<Scalar> c = pairs.vectors.transpose() * (D.asDiagonal() * U);
+    const Pairs pairs =
+        precision == Precision::Double ? pairsInDouble(W, D) : pairsInExtended(W, D);
+    const Matrix c = pairs.vectors.transpose() * (D.asDiagonal() * U);
     DenseSpectrum spectrum;
-    spectrum.lambda = pairs.values.cwiseMax(Scalar{0}).template cast<double>();
-    spectrum.c = c.template cast<double>();
-    spectrum.energies = c.rowwise().squaredNorm().template cast<double>();
+    spectrum.lambda = pairs.values.cwiseMax(Scalar{0}).cast<double>();
+    spectrum.c = c.cast<double>();
+    spectrum.energies = c.rowwise().squaredNorm().cast<double>();
     spectrum.Phi.resize(m, m);
     for (Index i = 0; i < m; ++i)
-        spectrum.Phi.row(rowOf[all.order[rows[i]]]) = pairs.vectors.row(i).template cast<double>();
+        spectrum.Phi.row(rowOf[all.order[rows[i]]]) = pairs.vectors.row(i).cast<double>();
     return spectrum;
 }
 
@@ -167,10 +163,7 @@ DenseReference::DenseReference(const Vertices& V, const Faces& F, LaplacianKind 
 
 const DenseSpectrum& DenseReference::at(Precision precision) {
     std::optional<DenseSpectrum>& spectrum = spectra_[static_cast<std::size_t>(precision)];
-    if (!spectrum)
-        spectrum = precision == Precision::Double
-                       ? spectrumOf<double>(mesh_, interior_, precision)
-                       : spectrumOf<long double>(mesh_, interior_, precision);
+    if (!spectrum) spectrum = spectrumOf(mesh_, interior_, precision);
     return *spectrum;
 }
 

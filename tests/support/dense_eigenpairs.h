@@ -19,4 +19,7 @@ inline Eigen::VectorXd denseEigenvalues(const Eigen::MatrixXd& A) {
     return denseEigenpairs(A, Eigen::VectorXd::Ones(A.rows())).values;
 }
 
+/// X with A X = B, for A positive semidefinite and B orthogonal to its kernel; so is X.
+Eigen::MatrixXd denseSolution(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+
 }  // namespace spectral::testing

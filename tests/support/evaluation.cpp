@@ -30,6 +30,17 @@ FullSpectrumResult filteredFullSpectrum(const Operator& A, const Gain& gain, dou
     return applyFullSpectrum(A.laplacian.D, A.constants, ldlt, {gain}, A.mesh.V, options).front();
 }
 
+Eigen::MatrixXd innerProducts(const Eigen::MatrixXd& U, const Eigen::VectorXd& D,
+                              const Eigen::MatrixXd& V) {
+    const Eigen::MatrixXd DV = D.asDiagonal() * V;
+    return U.transpose() * DV;
+}
+
+double orthonormalityError(const Eigen::MatrixXd& Phi, const Eigen::VectorXd& D) {
+    const Eigen::MatrixXd gram = innerProducts(Phi, D, Phi);
+    return (gram - Eigen::MatrixXd::Identity(gram.rows(), gram.cols())).cwiseAbs().maxCoeff();
+}
+
 double relativeError(const Operator& A, const Eigen::MatrixXd& difference) {
     Eigen::MatrixXd centred = A.mesh.V;
     A.constants.remove(centred);

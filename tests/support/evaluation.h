@@ -37,6 +37,13 @@ Vertices filteredDense(const Operator& A, const HarmonicBasis& dense, const Gain
 FullSpectrumResult filteredFullSpectrum(const Operator& A, const Gain& gain, double cutoff,
                                         double accuracy, const std::vector<double>& samples = {});
 
+/// D-inner products of columns, U^T D V.
+Eigen::MatrixXd innerProducts(const Eigen::MatrixXd& U, const Eigen::VectorXd& D,
+                              const Eigen::MatrixXd& V);
+
+/// Largest entry of |Phi^T D Phi - I|.
+double orthonormalityError(const Eigen::MatrixXd& Phi, const Eigen::VectorXd& D);
+
 /// |difference|_D / |V - mean|_D over all columns together, as FullSpectrumResult measures it.
 double relativeError(const Operator& A, const Eigen::MatrixXd& difference);
 

@@ -217,21 +217,22 @@ BandEnergies bandEnergies(const Bands& octaves, const Bands& thirds, const Signa
                           const HarmonicBasis& basis, ShiftedLdlt& ldlt, const Progress& progress,
                           GeometrySpectrum& spectrum) {
     const Eigen::VectorXd& D = signal.laplacian.D;
-    const Eigen::MatrixXd Dphi = D.asDiagonal() * basis.Phi;
     const Index varying = basis.size() - signal.constants.count();
     Quadrature measure{spectrum.frequencies.tail(varying),
                        spectrum.amplitudes.tail(varying).cwiseAbs2() * spectrum.area};
     BandEnergies energies{energiesIn(octaves, measure), energiesIn(thirds, measure), {}};
-    measure.weight = Dphi.rightCols(varying).colwise().squaredNorm();
+    measure.weight =
+        (D.asDiagonal() * basis.Phi.rightCols(varying)).colwise().squaredNorm().transpose();
     energies.noise = energiesIn(thirds, measure);
     if (basis.size() == D.size()) return energies;
 
-    Eigen::MatrixXd R = signal.U;
-    R.noalias() -= basis.Phi * (Dphi.transpose() * R);
+    const auto beyondBasis = [&](const Eigen::MatrixXd& X) {
+        return Eigen::MatrixXd(X - basis.inverseTransform(basis.transform(D, X)));
+    };
+    Eigen::MatrixXd R = beyondBasis(signal.U);
     const double energyOfR = energyOf(R, D);
     if (energyOfR <= kNoEnergy * spectrum.totalEnergy) R.setZero();
-    Eigen::VectorXd noise = noiseOfUnitHeight(D.size());
-    noise -= basis.Phi * (Dphi.transpose() * noise);
+    const Eigen::VectorXd noise = beyondBasis(noiseOfUnitHeight(D.size()));
     BandEnergies beyond = energiesBeyond(
         octaves, thirds, signal, spectrum.frequencies[basis.size() - 1], R, noise, ldlt, progress);
     if (const double sum = beyond.octaves.sum(); sum > 0.0) {
@@ -331,8 +332,7 @@ GeometrySpectrum geometrySpectrum(const Vertices& V, const Faces& F, const Spect
             : truncatedBasis(laplacian, signal.constants, k, ldlt, progress.part(0.0, kBasisDone));
     spectrum.totalEnergy = energyOf(signal.U, D);
     spectrum.frequencies = basis.lambda.cwiseMax(0.0).cwiseSqrt();
-    spectrum.amplitudes = (basis.Phi.transpose() * (D.asDiagonal() * signal.U)).rowwise().norm() /
-                          std::sqrt(spectrum.area);
+    spectrum.amplitudes = basis.transform(D, signal.U).rowwise().norm() / std::sqrt(spectrum.area);
     spectrum.amplitudes.head(constants).setZero();
 
     const double lowest = std::max(basis.lambda[constants], kLowest * 4.0 * kPi / spectrum.area);

@@ -91,6 +91,13 @@ Eigen::VectorXd refine(const SparseMatrix& W, const ConstantModes& constants,
 
 }  // namespace
 
+Eigen::MatrixXd HarmonicBasis::transform(const Eigen::VectorXd& D, const Eigen::MatrixXd& X) const {
+    const Eigen::MatrixXd DX = D.asDiagonal() * X;
+    return Phi.transpose() * DX;
+}
+
+Eigen::MatrixXd HarmonicBasis::inverseTransform(const Eigen::MatrixXd& c) const { return Phi * c; }
+
 HarmonicBasis denseBasis(const Laplacian& laplacian, const ConstantModes& constants) {
     const Eigen::VectorXd sqrtD = laplacian.D.cwiseSqrt(), invSqrtD = sqrtD.cwiseInverse();
     Eigen::MatrixXd A =
@@ -100,9 +107,10 @@ HarmonicBasis denseBasis(const Laplacian& laplacian, const ConstantModes& consta
     const Index varying = A.rows() - constants.count();
     const double bound = A.cwiseAbs().rowwise().sum().maxCoeff();
     const Eigen::MatrixXd C = sqrtD.asDiagonal() * constants.orthonormal();
-    A -= C * (C.transpose() * A);
-    A -= (A * C) * C.transpose();
-    A += 2.0 * bound * C * C.transpose();
+    for (const Eigen::VectorXd c : C.colwise()) {  // (I - c c^T) A (I - c c^T) + 2 bound c c^T
+        const Eigen::VectorXd Ac = A.selfadjointView<Eigen::Lower>() * c;
+        A.selfadjointView<Eigen::Lower>().rankUpdate(c, (0.5 * c.dot(Ac) + bound) * c - Ac);
+    }
     Eigen::MatrixXd Phi = invSqrtD.asDiagonal() * solved(A).eigenvectors().leftCols(varying);
     const Eigen::VectorXd lambda = refine(laplacian.W, constants, Phi);
     HarmonicBasis basis;
@@ -142,13 +150,11 @@ Eigen::MatrixXd applyInBasis(const HarmonicBasis& basis, const Eigen::VectorXd& 
     Eigen::MatrixXd centred = X;
     constants.add(-means, centred);
 
-    // With the manifold harmonic transform c = Phi^T D X:
     // Phi F c + F_h (X - Phi c) = F_h X + Phi (F - F_h) c.
-    const Eigen::MatrixXd c = basis.Phi.transpose() * (D.asDiagonal() * centred);
-    Eigen::VectorXd gains(basis.size());
+    Eigen::MatrixXd c = basis.transform(D, centred);
     for (Index i = 0; i < basis.size(); ++i)
-        gains[i] = gain(std::sqrt(std::max(0.0, basis.lambda[i]))) - residualGain;
-    Eigen::MatrixXd Y = residualGain * centred + basis.Phi * (gains.asDiagonal() * c);
+        c.row(i) *= gain(std::sqrt(std::max(0.0, basis.lambda[i]))) - residualGain;
+    Eigen::MatrixXd Y = residualGain * centred + basis.inverseTransform(c);
     constants.remove(Y);
     constants.add(means, Y);
     return Y;

@@ -20,6 +20,12 @@ struct HarmonicBasis {
                                 ///< inertia of W - sigma D: equal to size(), none is missing.
 
     Index size() const { return lambda.size(); }
+
+    /// The manifold harmonic transform c = Phi^T D X, k x c.
+    Eigen::MatrixXd transform(const Eigen::VectorXd& D, const Eigen::MatrixXd& X) const;
+
+    /// Its inverse, Phi c.
+    Eigen::MatrixXd inverseTransform(const Eigen::MatrixXd& c) const;
 };
 
 /// All n eigenpairs by a dense solver: O(n^3) time, 3 n^2 numbers of memory. The yardstick of the

@@ -13,7 +13,7 @@
 
 namespace {
 
-const char* const kHelp =
+const char* const kArtefactsHelp =
     "Measures the <b>artefacts</b> that a filter has left in a shape: spikes, creases and ripples "
     "that are much finer than the details it should have left."
     "<br><br>Apply it to the filtered mesh, with the feature size of the filter, as the same "
@@ -27,7 +27,7 @@ const char* const kHelp =
     "<br><i>A. Kovnatsky, M. M. Bronstein, A. M. Bronstein</i>, <b>Stable Spectral Mesh "
     "Filtering</b>, ECCV Workshops 2012";
 
-RichParameterList parameters(const MeshModel& mesh) {
+RichParameterList artefactsParameters(const MeshModel& mesh) {
     RichParameterList list;
     list.addParam(featureSizeParameter(
         mesh,
@@ -51,8 +51,8 @@ std::string textOf(const spectral::Artefacts& artefacts, double featureSize, dou
     return text.str();
 }
 
-FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
-                    const spectral::Progress& progress) {
+FilterOutcome applyArtefacts(const RichParameterList& parameters, MeshModel& mesh,
+                             const spectral::Progress& progress) {
     const MeshMatrices input = toMatrices(mesh.cm);
     spectral::ArtefactOptions options;
     options.featureSize = featureSize(parameters);
@@ -81,10 +81,10 @@ MeshFilter artefactsMeshFilter() {
     MeshFilter filter;
     filter.name = "Spectral Artefacts";
     filter.pythonName = "compute_scalar_spectral_artefacts_per_vertex";
-    filter.help = kHelp;
+    filter.help = kArtefactsHelp;
     filter.category = FilterPlugin::FilterClass(FilterPlugin::Quality | FilterPlugin::Measure);
     filter.changes = MeshModel::MM_VERTQUALITY | MeshModel::MM_VERTCOLOR;
-    filter.parameters = parameters;
-    filter.apply = apply;
+    filter.parameters = artefactsParameters;
+    filter.apply = applyArtefacts;
     return filter;
 }

@@ -14,7 +14,7 @@
 
 namespace {
 
-const char* const kHelp =
+const char* const kDenoiseHelp =
     "Removes the noise of a scan, with <b>nothing to choose</b>: measures how high the noise is "
     "(<i>noise height</i> 0), and filters as strongly as that takes. Creases become sharp, soft "
     "forms stay soft; a mesh without noise stays as it is."
@@ -26,7 +26,7 @@ const char* const kHelp =
     "<br><br><small>[1] Kovnatsky, Bronstein, Bronstein 2012; [2] Sun, Rosin, Martin, Langbein "
     "2007</small>";
 
-RichParameterList parameters(const MeshModel& mesh) {
+RichParameterList denoiseParameters(const MeshModel& mesh) {
     const spectral::DenoiseOptions defaults;
     const Scalarm diagonal = mesh.cm.bbox.Diag();
     RichParameterList list;
@@ -97,8 +97,8 @@ std::vector<std::string> warningsOf(const spectral::DenoiseResult& result) {
     return warnings;
 }
 
-FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
-                    const spectral::Progress& progress) {
+FilterOutcome applyDenoise(const RichParameterList& parameters, MeshModel& mesh,
+                           const spectral::Progress& progress) {
     const MeshMatrices input = toMatrices(mesh.cm);
     spectral::DenoiseOptions options;
     options.strength = parameters.getFloat("strength");
@@ -133,10 +133,10 @@ MeshFilter denoiseMeshFilter() {
     MeshFilter filter;
     filter.name = "Spectral Denoise";
     filter.pythonName = "apply_coord_spectral_denoise";
-    filter.help = kHelp;
+    filter.help = kDenoiseHelp;
     filter.category = FilterPlugin::Smoothing;
     filter.changes = MeshModel::MM_VERTCOORD | MeshModel::MM_VERTNORMAL | MeshModel::MM_FACENORMAL;
-    filter.parameters = parameters;
-    filter.apply = apply;
+    filter.parameters = denoiseParameters;
+    filter.apply = applyDenoise;
     return filter;
 }

@@ -12,8 +12,8 @@ namespace {
 /// Name of the vertex attribute with the details.
 const char* const kDetails = "spectral_details";
 
-FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
-                    const spectral::Progress& progress) {
+FilterOutcome applyFractional(const RichParameterList& parameters, MeshModel& mesh,
+                              const spectral::Progress& progress) {
     const MeshMatrices input = toMatrices(mesh.cm);
     const spectral::FilterOptions options = fractionalFilterOptions(parameters, mesh, input);
     const bool detailsOnly = areDetailsWanted(parameters);
@@ -22,7 +22,8 @@ FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
             return spectral::fractionalFilter(input.V, input.F, options, steady);
         });
     reportWriting(input, mesh.cm, progress);
-    std::string text = reportText(options, result, spectral::boundingBoxDiagonal(input.V));
+    std::string text =
+        fractionalReportText(options, result, spectral::boundingBoxDiagonal(input.V));
     if (detailsOnly) {
         setDetails(input.vertexIndex, kDetails, input.V - result.V, mesh);
         text += "\n  no vertex has moved: the details are the vertex quality, and the attribute ";
@@ -30,7 +31,7 @@ FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
     } else {
         setPositions(input.vertexIndex, result.V, mesh);
     }
-    return {reportDictionary(result), text, warningsOf(options, result)};
+    return {reportDictionary(result), text, fractionalWarnings(options, result)};
 }
 
 }  // namespace
@@ -44,6 +45,6 @@ MeshFilter fractionalMeshFilter() {
     filter.changes = MeshModel::MM_VERTCOORD | MeshModel::MM_VERTNORMAL | MeshModel::MM_FACENORMAL |
                      MeshModel::MM_VERTQUALITY;
     filter.parameters = fractionalFilterParameters;
-    filter.apply = apply;
+    filter.apply = applyFractional;
     return filter;
 }

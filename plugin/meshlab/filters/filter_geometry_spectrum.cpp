@@ -17,7 +17,7 @@ namespace {
 
 using spectral::GeometrySpectrum;
 
-const char* const kHelp =
+const char* const kGeometrySpectrumHelp =
     "Measures how much of a shape is in details of which size, like the display of an equalizer. "
     "Use it to <b>choose a feature size</b> for the spectral filters; no vertex moves."
     "<br><br>The shape is decomposed into its manifold harmonics, the standing waves of its own "
@@ -40,7 +40,7 @@ const char* const kHelp =
     "<br><i>G. H. Golub, G. Meurant</i>, <b>Matrices, Moments and Quadrature</b>, Numerical "
     "Analysis 1993, Longman, 1994";
 
-RichParameterList parameters(const MeshModel&) {
+RichParameterList geometrySpectrumParameters(const MeshModel&) {
     RichParameterList list;
     list.addParam(
         RichInt("basis_size", spectral::SpectrumOptions().basisSize, "Basis size",
@@ -57,8 +57,6 @@ RichParameterList parameters(const MeshModel&) {
         "part of the shape. <b>fixed</b>: only what it does not determine is measured."));
     return list;
 }
-
-QVariant vectorVariant(const Eigen::VectorXd& v) { return QVariant::fromValue(v); }
 
 /// A length, also in percent of the diagonal.
 std::string withPercent(double length, double diagonal) {
@@ -103,8 +101,8 @@ std::vector<std::string> warningsOf(const GeometrySpectrum& spectrum) {
     return {text.str()};
 }
 
-FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
-                    const spectral::Progress& progress) {
+FilterOutcome applyGeometrySpectrum(const RichParameterList& parameters, MeshModel& mesh,
+                                    const spectral::Progress& progress) {
     const MeshMatrices input = toMatrices(mesh.cm);
     spectral::SpectrumOptions options;
     options.basisSize = parameters.getInt("basis_size");
@@ -120,15 +118,15 @@ FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
               spectral::defaultFeatureSize(spectrum.meanEdge, spectrum.diagonal)},
              {"area", spectrum.area},
              {"total_energy", spectrum.totalEnergy},
-             {"frequencies", vectorVariant(spectrum.frequencies)},
-             {"amplitudes", vectorVariant(spectrum.amplitudes)},
-             {"octave_feature_sizes", vectorVariant(spectrum.octaveFeatureSizes)},
-             {"octave_energies", vectorVariant(spectrum.octaveEnergies)},
-             {"octave_amplitudes", vectorVariant(spectrum.octaveAmplitudes)},
-             {"cumulative_energy", vectorVariant(spectrum.cumulativeEnergy)},
-             {"band_feature_sizes", vectorVariant(spectrum.bandFeatureSizes)},
-             {"band_amplitudes", vectorVariant(spectrum.bandAmplitudes)},
-             {"band_noise", vectorVariant(spectrum.bandNoise)},
+             {"frequencies", QVariant::fromValue(spectrum.frequencies)},
+             {"amplitudes", QVariant::fromValue(spectrum.amplitudes)},
+             {"octave_feature_sizes", QVariant::fromValue(spectrum.octaveFeatureSizes)},
+             {"octave_energies", QVariant::fromValue(spectrum.octaveEnergies)},
+             {"octave_amplitudes", QVariant::fromValue(spectrum.octaveAmplitudes)},
+             {"cumulative_energy", QVariant::fromValue(spectrum.cumulativeEnergy)},
+             {"band_feature_sizes", QVariant::fromValue(spectrum.bandFeatureSizes)},
+             {"band_amplitudes", QVariant::fromValue(spectrum.bandAmplitudes)},
+             {"band_noise", QVariant::fromValue(spectrum.bandNoise)},
              {"noise_height", spectrum.noiseHeight},
              {"noise_feature_size", spectrum.noiseFeatureSize},
              {"feature_size_50", spectrum.featureSize50},
@@ -145,9 +143,9 @@ MeshFilter geometrySpectrumMeshFilter() {
     MeshFilter filter;
     filter.name = "Geometry Spectrum";
     filter.pythonName = "get_geometry_spectrum";
-    filter.help = kHelp;
+    filter.help = kGeometrySpectrumHelp;
     filter.category = FilterPlugin::Measure;
-    filter.parameters = parameters;
-    filter.apply = apply;
+    filter.parameters = geometrySpectrumParameters;
+    filter.apply = applyGeometrySpectrum;
     return filter;
 }

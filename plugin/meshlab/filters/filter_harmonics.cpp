@@ -21,7 +21,7 @@ constexpr int kDefaultMode = 1;  // the first that is not constant on a connecte
 /// Prefix of the names of the vertex attributes, followed by the mode.
 const char* const kAttribute = "harmonic_";
 
-const char* const kHelp =
+const char* const kHarmonicsHelp =
     "Computes the <b>manifold harmonics</b> of a surface: its standing waves, from low to high "
     "frequencies, like those of a drum of this shape. They are the eigenfunctions of its "
     "Laplace-Beltrami operator, which the spectral filters work with."
@@ -39,7 +39,7 @@ const char* const kHelp =
     "<br><i>B. Vallet, B. L&eacute;vy</i>, <b>Spectral Geometry Processing with Manifold "
     "Harmonics</b>, Computer Graphics Forum 27(2), 2008";
 
-RichParameterList parameters(const MeshModel&) {
+RichParameterList harmonicsParameters(const MeshModel&) {
     RichParameterList list;
     list.addParam(RichInt(
         "mode", kDefaultMode, "Mode",
@@ -88,8 +88,8 @@ std::string textOf(const spectral::ManifoldHarmonics& harmonics, int mode) {
     return text.str();
 }
 
-FilterOutcome apply(const RichParameterList& parameters, MeshModel& mesh,
-                    const spectral::Progress& progress) {
+FilterOutcome applyHarmonics(const RichParameterList& parameters, MeshModel& mesh,
+                             const spectral::Progress& progress) {
     const int mode = parameters.getInt("mode");
     spectral::HarmonicsOptions options;
     options.basisSize = parameters.getInt("basis_size");
@@ -120,10 +120,10 @@ MeshFilter harmonicsMeshFilter() {
     MeshFilter filter;
     filter.name = "Manifold Harmonics";
     filter.pythonName = "compute_scalar_manifold_harmonic_per_vertex";
-    filter.help = kHelp;
+    filter.help = kHarmonicsHelp;
     filter.category = FilterPlugin::Quality;
     filter.changes = MeshModel::MM_VERTQUALITY | MeshModel::MM_VERTCOLOR;
-    filter.parameters = parameters;
-    filter.apply = apply;
+    filter.parameters = harmonicsParameters;
+    filter.apply = applyHarmonics;
     return filter;
 }

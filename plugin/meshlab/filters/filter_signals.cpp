@@ -47,7 +47,7 @@ const char* const kColorHelp =
     "area-weighted mean colour of every connected component."
     "<br><br><small>Kovnatsky, Bronstein, Bronstein 2012; Vallet, L&eacute;vy 2008</small>";
 
-RichParameterList parameters(const MeshModel& mesh) {
+RichParameterList signalsParameters(const MeshModel& mesh) {
     RichParameterList list;
     addTransferParameters(mesh, list);
     list.addParam(selectedParameter(mesh));
@@ -197,7 +197,7 @@ MeshFilter qualityMeshFilter() {
     filter.help = kQualityHelp;
     filter.category = FilterPlugin::FilterClass(FilterPlugin::Smoothing | FilterPlugin::Quality);
     filter.changes = MeshModel::MM_VERTQUALITY;
-    filter.parameters = parameters;
+    filter.parameters = signalsParameters;
     filter.apply = applyToQuality;
     return filter;
 }
@@ -210,7 +210,7 @@ MeshFilter colorMeshFilter() {
     filter.category =
         FilterPlugin::FilterClass(FilterPlugin::Smoothing | FilterPlugin::VertexColoring);
     filter.changes = MeshModel::MM_VERTCOLOR;
-    filter.parameters = parameters;
+    filter.parameters = signalsParameters;
     filter.apply = applyToColor;
     return filter;
 }

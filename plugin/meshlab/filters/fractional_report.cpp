@@ -143,8 +143,8 @@ double lastFrequency(const spectral::FilterResult& result) {
 
 }  // namespace
 
-std::vector<std::string> warningsOf(const spectral::FilterOptions& options,
-                                    const spectral::FilterResult& result) {
+std::vector<std::string> fractionalWarnings(const spectral::FilterOptions& options,
+                                            const spectral::FilterResult& result) {
     std::vector<std::string> warnings;
     if (result.fixedVertices > 0 &&
         result.fixedVertices + result.unreferencedVertices == result.V.rows())
@@ -168,8 +168,8 @@ std::vector<std::string> warningsOf(const spectral::FilterOptions& options,
     return warnings;
 }
 
-std::string reportText(const spectral::FilterOptions& options, const spectral::FilterResult& result,
-                       double diagonal) {
+std::string fractionalReportText(const spectral::FilterOptions& options,
+                                 const spectral::FilterResult& result, double diagonal) {
     std::ostringstream text;
     text << std::setprecision(4);
     text << headline(options, result, diagonal) << "\n  steps: " << result.steps

@@ -12,9 +12,9 @@ std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& r
 
 /// The same as lines for MeshLab's log, the most important facts first.
 /// @param diagonal  of the bounding box of the input.
-std::string reportText(const spectral::FilterOptions& options, const spectral::FilterResult& result,
-                       double diagonal);
+std::string fractionalReportText(const spectral::FilterOptions& options,
+                                 const spectral::FilterResult& result, double diagonal);
 
 /// What the user should act on: sentences, each with its remedy; empty if there is nothing.
-std::vector<std::string> warningsOf(const spectral::FilterOptions& options,
-                                    const spectral::FilterResult& result);
+std::vector<std::string> fractionalWarnings(const spectral::FilterOptions& options,
+                                            const spectral::FilterResult& result);

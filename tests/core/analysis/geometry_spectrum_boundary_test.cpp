@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/QR>
 #include <cmath>
 #include <string>
 
@@ -14,6 +13,7 @@
 #include "core/mesh/surface.h"
 #include "core/support/errors.h"
 #include "core/transfer/transfer_function.h"
+#include "support/dense_eigenpairs.h"
 #include "support/evaluation.h"
 #include "support/geometry_spectra.h"
 
@@ -42,12 +42,12 @@ TEST(GeometrySpectrumOfAFixedBoundary, IsWhatAllEigenvectorsOfTheInteriorSay) {
         const Laplacian inside = interior.restricted(A.laplacian);
         Eigen::MatrixXd centred = mesh.V;
         A.constants.remove(centred);
-        Eigen::MatrixXd U = Eigen::MatrixXd(inside.W).completeOrthogonalDecomposition().solve(
-            interior.restricted(Eigen::MatrixXd(A.laplacian.W * centred)));
+        const Eigen::MatrixXd WX = interior.restricted(Eigen::MatrixXd(A.laplacian.W * centred));
+        Eigen::MatrixXd U = testing::denseSolution(Eigen::MatrixXd(inside.W), WX);
         const ConstantModes constants(interior.components(), inside.D);
         constants.remove(U);
         const Eigen::VectorXd energies =
-            (denseBasis(inside, constants).Phi.transpose() * inside.D.asDiagonal() * U)
+            testing::innerProducts(denseBasis(inside, constants).Phi, inside.D, U)
                 .rowwise()
                 .squaredNorm();
         const GeometrySpectrum spectrum =
