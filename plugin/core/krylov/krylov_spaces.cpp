@@ -155,14 +155,14 @@ void KrylovSpaces::start(const Eigen::MatrixXd& X) {
     std::vector<double> largest(taskCount(n));
     const Row<Columns> squares =
         parallelSum(n, Row<Columns>::Zero().eval(), [&](Index begin, Index end) {
-            Row<Columns> sum = Row<Columns>::Zero();
+            Row<Columns> sum = Row<Columns>::Zero(), entry = sum;
             for (Index i = begin; i < end; ++i) {
                 auto x = rowOf<Columns>(work_, i);
                 if (label_[i] >= 0) x -= mean.row(label_[i]);
                 sum += D_[i] * x * x;
-                largest[begin / kRowsOfTask] =
-                    std::max(largest[begin / kRowsOfTask], x.abs().maxCoeff());
+                entry = entry.max(x.abs());
             }
+            largest[begin / kRowsOfTask] = entry.maxCoeff();
             return sum;
         });
     norms_ = squares.sqrt().transpose();
