@@ -26,21 +26,24 @@ void append(Evaluation step, double h, FractionalSteps& steps) {
 constexpr double kLeastArea = 1e-2;
 
 /// One step of the midpoint rule, or several smaller ones.
-/// @param half  the shape at the half step, where it is known.
+/// @param half  the shape at the half step, where it is known: that of the first step.
 void midpointStep(LaplacianBuilder& laplacians, StepEvaluator& evaluate, double h, double smallest,
                   const Vertices* half, const Progress& progress, FractionalSteps& steps) {
     try {
         Vertices predicted;
+        double area = laplacians.inputMass().sum();
         if (half == nullptr) {
+            const Laplacian& laplacian = laplacians(steps.X);
+            area = laplacian.D.sum();
             predicted =
-                evaluate.predict(laplacians(steps.X), steps.X, {0.5 * h}, progress.part(0.0, 0.5))
-                    .Y.front();
+                evaluate.predict(laplacian, steps.X, {0.5 * h}, progress.part(0.0, 0.5)).Y.front();
             half = &predicted;
         }
-        if (laplacians.area(*half) < kLeastArea * laplacians.area(steps.X))
+        const Laplacian& laplacian = laplacians(*half);
+        if (laplacian.D.sum() < kLeastArea * area)
             throw SolverFailure(ErrorCode::ShrinksToNothing,
                                 "the whole surface shrinks to nothing in half a step");
-        append(evaluate(laplacians(*half), steps.X, h, progress.part(0.5, 1.0)), h, steps);
+        append(evaluate(laplacian, steps.X, h, progress.part(0.5, 1.0)), h, steps);
     } catch (const SolverFailure&) {
         if (0.5 * h < smallest) throw;
         midpointStep(laplacians, evaluate, 0.5 * h, smallest, nullptr, progress.part(0.0, 0.5),

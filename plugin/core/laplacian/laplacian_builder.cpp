@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "core/mesh/measures.h"
 #include "core/mesh/mesh_check.h"
 #include "core/support/errors.h"
 

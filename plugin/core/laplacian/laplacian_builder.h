@@ -5,7 +5,6 @@
 #include "core/laplacian/constant_modes.h"
 #include "core/laplacian/intrinsic_delaunay.h"
 #include "core/laplacian/laplacian.h"
-#include "core/mesh/measures.h"
 #include "core/mesh/surface.h"
 
 namespace spectral {
@@ -50,9 +49,6 @@ class LaplacianBuilder {
 
     /// D of the shape X, > 0.
     Eigen::VectorXd mass(const Vertices& X) const;
-
-    /// Area of the shape X.
-    double area(const Vertices& X) const { return surfaceArea(X, surface_.F); }
 
   private:
     SparseMatrix stiffness(const Vertices& X) const;
