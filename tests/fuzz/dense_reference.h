@@ -11,7 +11,7 @@ namespace spectral::fuzz {
 /// How a dense reference is computed. Where double precision disagrees with a result, the extended
 /// one decides; what the perturbed one differs from it, nobody can know.
 enum class Precision {
-    Double,     ///< Eigenpairs in double precision, the rest as below.
+    Double,     ///< Eigenpairs in double precision, the rest in long double.
     Extended,   ///< long double, which on some systems is double.
     Perturbed,  ///< Extended, with all vertices in another order and round-off in every number.
     PerturbedAgain

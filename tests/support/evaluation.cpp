@@ -38,7 +38,9 @@ Eigen::MatrixXd innerProducts(const Eigen::MatrixXd& U, const Eigen::VectorXd& D
 
 double orthonormalityError(const Eigen::MatrixXd& Phi, const Eigen::VectorXd& D) {
     const Eigen::MatrixXd gram = innerProducts(Phi, D, Phi);
-    return (gram - Eigen::MatrixXd::Identity(gram.rows(), gram.cols())).cwiseAbs().maxCoeff();
+    return (gram - Eigen::MatrixXd::Identity(gram.rows(), gram.cols()))
+        .cwiseAbs()
+        .maxCoeff<Eigen::PropagateNaN>();
 }
 
 double relativeError(const Operator& A, const Eigen::MatrixXd& difference) {

@@ -41,7 +41,7 @@ FullSpectrumResult filteredFullSpectrum(const Operator& A, const Gain& gain, dou
 Eigen::MatrixXd innerProducts(const Eigen::MatrixXd& U, const Eigen::VectorXd& D,
                               const Eigen::MatrixXd& V);
 
-/// Largest entry of |Phi^T D Phi - I|.
+/// Largest entry of |Phi^T D Phi - I|; NaN if one is.
 double orthonormalityError(const Eigen::MatrixXd& Phi, const Eigen::VectorXd& D);
 
 /// |difference|_D / |V - mean|_D over all columns together, as FullSpectrumResult measures it.

@@ -26,7 +26,7 @@ void append(Evaluation step, double h, FractionalSteps& steps) {
 constexpr double kLeastArea = 1e-2;
 
 /// One step of the midpoint rule, or several smaller ones.
-/// @param half  the shape at the half step, where it is known: that of the first step.
+/// @param half  the shape at the half step from the input, where it is known; else null.
 void midpointStep(LaplacianBuilder& laplacians, StepEvaluator& evaluate, double h, double smallest,
                   const Vertices* half, const Progress& progress, FractionalSteps& steps) {
     try {

@@ -155,14 +155,14 @@ void KrylovSpaces::start(const Eigen::MatrixXd& X) {
     std::vector<double> largest(taskCount(n));
     const Row<Columns> squares =
         parallelSum(n, Row<Columns>::Zero().eval(), [&](Index begin, Index end) {
-            Row<Columns> sum = Row<Columns>::Zero(), entry = sum;
+            Row<Columns> sum = Row<Columns>::Zero(), ofTask = sum;
             for (Index i = begin; i < end; ++i) {
                 auto x = rowOf<Columns>(work_, i);
                 if (label_[i] >= 0) x -= mean.row(label_[i]);
                 sum += D_[i] * x * x;
-                entry = entry.max(x.abs());
+                ofTask = ofTask.max(x.abs());
             }
-            largest[begin / kRowsOfTask] = entry.maxCoeff();
+            largest[begin / kRowsOfTask] = ofTask.maxCoeff();  // once: threads share its cache line
             return sum;
         });
     norms_ = squares.sqrt().transpose();

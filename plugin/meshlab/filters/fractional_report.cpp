@@ -13,12 +13,6 @@
 #include "meshlab/error_messages.h"
 #include "meshlab/filters/transfer_parameters.h"
 
-namespace {
-
-QVariant vectorVariant(const Eigen::VectorXd& v) { return QVariant::fromValue(v); }
-
-}  // namespace
-
 std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& result) {
     std::map<std::string, QVariant> report{
         {"steps", result.steps},
@@ -42,16 +36,16 @@ std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& r
         {"tolerance_reached", result.toleranceReached},
         {"singular_part", result.singularPart},
         {"step_sizes",
-         vectorVariant(Eigen::Map<const Eigen::VectorXd>(
-             result.stepSizes.data(), static_cast<Eigen::Index>(result.stepSizes.size())))},
+         QVariant::fromValue(Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
+             result.stepSizes.data(), static_cast<Eigen::Index>(result.stepSizes.size()))))},
     };
     if (result.eigenvalues.size() > 0) {
-        report["eigenvalues"] = vectorVariant(result.eigenvalues);
+        report["eigenvalues"] = QVariant::fromValue(result.eigenvalues);
         report["cutoff_reached"] = result.cutoffReached;
         report["computed_bases"] = result.computedBases;
     }
     if (result.residuals.size() > 0) {
-        report["residuals"] = vectorVariant(result.residuals);
+        report["residuals"] = QVariant::fromValue(result.residuals);
         report["inertia_count"] = result.inertiaCount;
     }
     return report;
