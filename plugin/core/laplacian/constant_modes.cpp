@@ -6,9 +6,12 @@ namespace spectral {
 
 ConstantModes::ConstantModes(const Components& components, const Eigen::VectorXd& D)
     : label_(components.label), D_(D), mass_(Eigen::VectorXd::Zero(components.count)) {
-    for (Index i = 0; i < D.size(); ++i)
-        if (label_[i] >= 0) mass_[label_[i]] += D[i];
     isWhole_ = count() == 1 && label_.minCoeff() == 0;
+    if (isWhole_)
+        mass_[0] = D.sum();
+    else
+        for (Index i = 0; i < D.size(); ++i)
+            if (label_[i] >= 0) mass_[label_[i]] += D[i];
 }
 
 Eigen::MatrixXd ConstantModes::means(const Eigen::Ref<const Eigen::MatrixXd>& X) const {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numeric>
 #include <utility>
@@ -26,27 +27,46 @@ struct EdgeSide {
 };
 
 /// All sides, sorted by edge.
-std::vector<EdgeSide> sidesByEdge(const Faces& F, Index vertexCount) {
-    // A bucket sort by the lower vertex, which few sides share.
-    std::vector<int> begin(static_cast<std::size_t>(vertexCount) + 1, 0);
-    const auto forEachSide = [&F](const auto& visit) {
-        for (int t = 0; t < F.rows(); ++t)
-            for (int c = 0; c < 3; ++c) {
-                const int i = F(t, c), j = F(t, c == 2 ? 0 : c + 1);
-                visit(EdgeSide{std::min(i, j), std::max(i, j), 3 * t + c});
+struct SidesByEdge {
+    std::vector<EdgeSide> sides;
+    std::vector<int> begin;  // of the sides of each lower vertex; then their number
+
+    SidesByEdge(const Faces& F, Index vertexCount)
+        : sides(static_cast<std::size_t>(3 * F.rows())),
+          begin(static_cast<std::size_t>(vertexCount) + 1, 0) {
+        // A bucket sort by the lower vertex, which few sides share.
+        const auto forEachSide = [&F](const auto& visit) {
+            for (int t = 0; t < F.rows(); ++t)
+                for (int c = 0; c < 3; ++c) {
+                    const int i = F(t, c), j = F(t, c == 2 ? 0 : c + 1);
+                    visit(EdgeSide{std::min(i, j), std::max(i, j), 3 * t + c});
+                }
+        };
+        forEachSide([&](const EdgeSide& s) { ++begin[s.low + 1]; });
+        std::partial_sum(begin.begin(), begin.end(), begin.begin());
+        std::vector<int> next(begin.begin(), begin.end() - 1);
+        forEachSide([&](const EdgeSide& s) { sides[next[s.low]++] = s; });
+        parallelRows(vertexCount, [&](Index first, Index last) {
+            for (Index i = first; i < last; ++i)
+                std::sort(sides.begin() + begin[i], sides.begin() + begin[i + 1]);
+        });
+    }
+
+    /// Calls visit(first, last) for the sides of every edge, in parallel.
+    template <class Visit>
+    void forEachEdge(const Visit& visit) {
+        parallelRows(static_cast<Index>(begin.size()) - 1, [&](Index from, Index to) {
+            EdgeSide *first = sides.data() + begin[from], *end = sides.data() + begin[to];
+            while (first != end) {
+                EdgeSide* last = std::find_if(first, end, [first](const EdgeSide& s) {
+                    return s.low != first->low || s.high != first->high;
+                });
+                visit(first, last);
+                first = last;
             }
-    };
-    forEachSide([&](const EdgeSide& s) { ++begin[s.low + 1]; });
-    std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    std::vector<EdgeSide> sides(static_cast<std::size_t>(3 * F.rows()));
-    std::vector<int> next(begin.begin(), begin.end() - 1);
-    forEachSide([&](const EdgeSide& s) { sides[next[s.low]++] = s; });
-    parallelRows(vertexCount, [&](Index first, Index last) {
-        for (Index i = first; i < last; ++i)
-            std::sort(sides.begin() + begin[i], sides.begin() + begin[i + 1]);
-    });
-    return sides;
-}
+        });
+    }
+};
 
 /// Sorts the sides of one edge by the angles of their triangles around it.
 void sortByAngle(const Vertices& V, const Faces& F, EdgeSide* first, EdgeSide* last) {
@@ -70,77 +90,74 @@ void sortByAngle(const Vertices& V, const Faces& F, EdgeSide* first, EdgeSide* l
     });
 }
 
-/// W_ij = -weight, W_ii = -sum_j W_ij; zero weights are stored, too.
-/// @param forEachEdge  calls its argument with (i, j, weight) for every edge, the same each time;
-///                     several edges may join i and j.
-template <class ForEachEdge>
-SparseMatrix stiffnessOf(const ForEachEdge& forEachEdge, Index vertexCount) {
+/// The cotangent matrix of an intrinsic triangulation, whose cover has so many copies of every
+/// triangle: W_ij = -weight, W_ii = -sum_j W_ij; zero weights are stored, too.
+SparseMatrix stiffnessOf(const IntrinsicTriangulation& triangulation, int copies,
+                         Index vertexCount) {
+    // Column j: an entry for every side that starts in j, and the diagonal.
+    const auto n = static_cast<std::size_t>(vertexCount);
+    std::vector<int> begin(n + 1, 1);
+    begin[0] = 0;
+    for (int s = 0; s < triangulation.sideCount(); ++s) ++begin[triangulation.tail(s) + 1];
+    std::partial_sum(begin.begin(), begin.end(), begin.begin());
     struct Entry {
         int row;
         double value;
     };
-    std::vector<int> begin(static_cast<std::size_t>(vertexCount) + 1, 1);  // 1 for the diagonal
-    begin[0] = 0;
-    forEachEdge([&](int i, int j, double) {
-        ++begin[i + 1];
-        ++begin[j + 1];
-    });
-    std::partial_sum(begin.begin(), begin.end(), begin.begin());
     std::vector<Entry> entries(static_cast<std::size_t>(begin.back()));
-    std::vector<int> next(begin.begin(), begin.end() - 1);
-    for (int i = 0; i < vertexCount; ++i) entries[next[i]++] = {i, 0.0};
-    forEachEdge([&](int i, int j, double weight) {
-        entries[next[i]++] = {j, -weight};
-        entries[next[j]++] = {i, -weight};
-        entries[begin[i]].value += weight;
-        entries[begin[j]].value += weight;
-    });
-    parallelRows(vertexCount, [&](Index first, Index last) {
-        // By value, too: W_ij and W_ji then sum in the same order, and W is symmetric to the bit.
-        for (Index j = first; j < last; ++j)
-            std::sort(entries.begin() + begin[j], entries.begin() + begin[j + 1],
-                      [](const Entry& a, const Entry& b) {
-                          return std::pair(a.row, a.value) < std::pair(b.row, b.value);
-                      });
-    });
+    std::vector<int> end(begin.begin(), begin.end() - 1);
+    for (int j = 0; j < vertexCount; ++j) entries[end[j]++] = {j, 0.0};
+    for (int s = 0; s < triangulation.sideCount(); ++s)
+        entries[end[triangulation.tail(s)]++].row = s;
 
     SparseMatrix W(vertexCount, vertexCount);
-    W.reserve(begin.back());
-    for (Index j = 0; j < vertexCount; ++j) {
-        const auto first = entries.begin() + begin[j], last = entries.begin() + begin[j + 1];
-        W.startVec(j);
-        for (auto entry = first; entry != last;) {
-            const int row = entry->row;
-            double& value = W.insertBack(row, j);
-            for (value = 0.0; entry != last && entry->row == row; ++entry) value += entry->value;
+    int* starts = W.outerIndexPtr();
+    parallelRows(vertexCount, [&](Index first, Index last) {
+        for (Index j = first; j < last; ++j) {
+            Entry *diagonal = &entries[begin[j]], *next = diagonal + 1;
+            for (Entry* side = next; side != entries.data() + end[j]; ++side) {
+                const int s = side->row, i = triangulation.tail(triangulation.twin(s));
+                if (i == j) continue;  // a loop
+                const double weight = 0.5 / copies * std::max(0.0, triangulation.edgeCotangents(s));
+                diagonal->value += weight;
+                *next++ = {i, -weight};
+            }
+            // By value, too: W_ij and W_ji sum in the same order; W is symmetric to the bit.
+            std::sort(diagonal, next, [](const Entry& a, const Entry& b) {
+                return std::pair(a.row, a.value) < std::pair(b.row, b.value);
+            });
+            Entry* sum = diagonal;  // over several edges that join i and j
+            for (Entry* entry = diagonal + 1; entry != next; ++entry)
+                if (entry->row == sum->row)
+                    sum->value += entry->value;
+                else
+                    *++sum = *entry;
+            starts[j + 1] = static_cast<int>(sum + 1 - diagonal);
         }
-    }
-    W.finalize();
+    });
+    std::partial_sum(starts, starts + n + 1, starts);
+    W.resizeNonZeros(starts[n]);
+    parallelRows(vertexCount, [&](Index first, Index last) {
+        for (Index j = first; j < last; ++j)
+            for (int p = starts[j]; p < starts[j + 1]; ++p) {
+                const Entry& entry = entries[begin[j] + p - starts[j]];
+                W.innerIndexPtr()[p] = entry.row;
+                W.valuePtr()[p] = entry.value;
+            }
+    });
     return W;
 }
 
 }  // namespace
 
 IntrinsicDelaunay::IntrinsicDelaunay(const Vertices& V, const Faces& F) : vertexCount_(V.rows()) {
-    std::vector<EdgeSide> sides = sidesByEdge(F, V.rows());
+    SidesByEdge edges(F, V.rows());
     const int front = static_cast<int>(3 * F.rows());
     const auto runsUp = [&](const EdgeSide& s) { return F(s.side / 3, s.side % 3) == s.low; };
-    const auto endOfEdge = [&](std::size_t begin) {
-        std::size_t end = begin;
-        while (end < sides.size() && sides[end].low == sides[begin].low &&
-               sides[end].high == sides[begin].high)
-            ++end;
-        return end;
-    };
-
-    bool closedAndOriented = true;
-    for (std::size_t begin = 0; begin < sides.size();) {
-        const std::size_t end = endOfEdge(begin);
-        oneSide_.push_back(sides[begin].side);
-        closedAndOriented = closedAndOriented && end - begin == 2 &&
-                            runsUp(sides[begin]) != runsUp(sides[begin + 1]);
-        begin = end;
-    }
+    std::atomic<bool> closedAndOriented = true;
+    edges.forEachEdge([&](const EdgeSide* first, const EdgeSide* last) {
+        if (last - first != 2 || runsUp(first[0]) == runsUp(first[1])) closedAndOriented = false;
+    });
     copies_ = closedAndOriented ? 1 : 2;
 
     tail_.resize(static_cast<std::size_t>(copies_) * front);
@@ -151,22 +168,19 @@ IntrinsicDelaunay::IntrinsicDelaunay(const Vertices& V, const Faces& F) : vertex
     const auto back = [front](int side) { return front + 3 * (side / 3) + 2 - side % 3; };
     if (copies_ == 2)
         for (int s = 0; s < front; ++s) tail_[back(s)] = F(s / 3, (s + 1 - 3 * (s / 3)) % 3);
-    for (std::size_t begin = 0; begin < sides.size();) {
-        const std::size_t end = endOfEdge(begin);
-        if (end - begin > 2) sortByAngle(V, F, sides.data() + begin, sides.data() + end);
+    edges.forEachEdge([&](EdgeSide* first, EdgeSide* last) {
+        if (last - first > 2) sortByAngle(V, F, first, last);
         // The copy that runs up the edge faces larger angles: it is glued to the copy of the next
         // triangle that runs down. The triangle of a boundary edge is glued to its own back.
-        for (std::size_t e = begin; e < end; ++e) {
-            const EdgeSide& here = sides[e];
-            const EdgeSide& there = sides[e + 1 < end ? e + 1 : begin];
-            const int up = runsUp(here) ? here.side : back(here.side);
+        for (const EdgeSide* here = first; here != last; ++here) {
+            const EdgeSide* there = here + 1 != last ? here + 1 : first;
+            const int up = runsUp(*here) ? here->side : back(here->side);
             if (copies_ == 1 && up >= front) continue;
-            const int down = runsUp(there) ? back(there.side) : there.side;
+            const int down = runsUp(*there) ? back(there->side) : there->side;
             twin_[up] = down;
             twin_[down] = up;
         }
-        begin = end;
-    }
+    });
 }
 
 IntrinsicTriangulation IntrinsicDelaunay::triangulation(const Vertices& V) const {
@@ -177,9 +191,8 @@ IntrinsicTriangulation IntrinsicDelaunay::triangulation(const Vertices& V) const
     });
 
     // The smallest mollification that makes every triangle inequality hold by the margin.
-    double meanLength = 0.0;
-    for (const int s : oneSide_) meanLength += length[s];
-    meanLength /= static_cast<double>(oneSide_.size());
+    const double meanLength =
+        std::accumulate(length.begin(), length.end(), 0.0) / static_cast<double>(length.size());
     double epsilon = 0.0;
     for (int s = 0; s < static_cast<int>(tail_.size()); ++s)
         epsilon = std::max(epsilon, length[s] - length[nextSide(s)] - length[previousSide(s)] +
@@ -192,15 +205,7 @@ IntrinsicTriangulation IntrinsicDelaunay::triangulation(const Vertices& V) const
 }
 
 SparseMatrix IntrinsicDelaunay::stiffness(const Vertices& V) const {
-    const IntrinsicTriangulation delaunay = triangulation(V);
-    const auto forEachEdge = [&](const auto& visit) {
-        for (int s = 0; s < delaunay.sideCount(); ++s) {
-            const int t = delaunay.twin(s), i = delaunay.tail(s), j = delaunay.tail(t);
-            if (s > t || i == j) continue;  // every edge once, loops not at all
-            visit(i, j, 0.5 / copies_ * std::max(0.0, delaunay.edgeCotangents(s)));
-        }
-    };
-    return stiffnessOf(forEachEdge, vertexCount_);
+    return stiffnessOf(triangulation(V), copies_, vertexCount_);
 }
 
 }  // namespace spectral

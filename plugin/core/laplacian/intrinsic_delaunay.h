@@ -34,10 +34,9 @@ class IntrinsicDelaunay {
 
   private:
     Index vertexCount_;
-    int copies_;                // of every triangle in the cover: 1 or 2
-    std::vector<int> tail_;     // first vertex of each side, see IntrinsicTriangulation
-    std::vector<int> twin_;     // side glued to each side
-    std::vector<int> oneSide_;  // of every edge of the mesh
+    int copies_;             // of every triangle in the cover: 1 or 2
+    std::vector<int> tail_;  // first vertex of each side, see IntrinsicTriangulation
+    std::vector<int> twin_;  // side glued to each side
 };
 
 }  // namespace spectral

@@ -55,8 +55,12 @@ void IntrinsicTriangulation::makeDelaunay() {
             stack.push_back(s);
         }
     };
+    parallelRows(sideCount(), [&](Index begin, Index end) {
+        for (int s = static_cast<int>(begin); s < end; ++s)
+            waiting[s] = s < twin_[s] && !isDelaunay(s);
+    });
     for (int s = sideCount() - 1; s >= 0; --s)
-        if (!isDelaunay(s)) push(s);
+        if (waiting[s]) stack.push_back(s);
     const Index edges = sideCount() / 2;
     Index flips = 0;
     while (!stack.empty()) {
@@ -109,7 +113,7 @@ void IntrinsicTriangulation::flip(int s) {
     const double lx = 0.5 * (lij + (lil - llj) * (lil + llj) / lij);
     const double ky = 2.0 * triangleArea(lij, ljk, lki) / lij;
     const double ly = -2.0 * triangleArea(lij, lil, llj) / lij;
-    const double lkl = std::hypot(kx - lx, ky - ly);
+    const double lkl = std::hypot(kx - lx, ky - ly);  // to the last bit: needles depend on it
 
     const int k = tail_[previousSide(s)], l = tail_[previousSide(t)];
     std::array<int, 4> tails, twins;

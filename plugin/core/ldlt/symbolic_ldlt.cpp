@@ -116,19 +116,20 @@ void SymbolicLdlt::adaptOrder(const SymbolicLdlt& similar) {
     const auto parent = [&](int f) {
         return similar.parentFront_[f] < 0 ? top : similar.parentFront_[f];
     };
+    // Subtrees are contiguous: that of front g is first[g] to g.
+    std::vector<int> first(similar.fronts.size() + 1);
+    std::iota(first.begin(), first.end(), 0);
+    for (int f = 0; f < top; ++f) first[parent(f)] = std::min(first[parent(f)], first[f]);
+    const auto isWithin = [&first](int f, int g) { return first[g] <= f && f <= g; };
     std::vector<int> frontOf(similar.inverse.size());  // of each row of W
     std::vector<char> isMoved(similar.inverse.size(), 0);
     for (int i = 0; i < n; ++i) frontOf[i] = similar.frontOf_[similar.order[i]];
     for (int j = 0; j < n; ++j)
         for (int p = starts[j]; p < starts[j + 1]; ++p) {
-            if (rows[p] >= j) continue;
-            int f = frontOf[rows[p]], g = frontOf[j];
-            while (f != g) {
-                int& lower = f < g ? f : g;
-                lower = parent(lower);
-            }
-            if (f == frontOf[rows[p]] || f == frontOf[j]) continue;
-            frontOf[j] = f;
+            const int other = frontOf[rows[p]];
+            if (rows[p] >= j || isWithin(other, frontOf[j]) || isWithin(frontOf[j], other))
+                continue;
+            while (!isWithin(other, frontOf[j])) frontOf[j] = parent(frontOf[j]);
             isMoved[j] = 1;
         }
     std::vector<int> next(similar.fronts.size() + 2, 0);
