@@ -8,6 +8,7 @@
 #include <string>
 
 #include "core/support/errors.h"
+#include "core/support/threads.h"
 
 namespace spectral {
 
@@ -80,9 +81,23 @@ SymbolicLdlt::SymbolicLdlt(const SparseMatrix& W, const SymbolicLdlt* similar)
       rows(W.innerIndexPtr(), W.innerIndexPtr() + W.nonZeros()) {
     const Columns columns = findOrder(W, similar);
     findFronts(columns);
-    findRows(columns);
-    findPlaces();
     findSubtrees();
+    findRows();
+    parallelFor(2, [this](Index task) { task == 0 ? findPlaces() : findCopies(); });
+}
+
+/// Calls work(begin, end) for the rows of L of each subtree, in parallel, and then for those of
+/// none: a row of a subtree has all of its entries in the subtree's columns.
+template <class Work>
+void SymbolicLdlt::forRows(const Work& work) const {
+    parallelFor(static_cast<Index>(subtrees.size()),
+                [&](Index t) { work(subtrees[t].firstColumn, subtrees[t].endColumn); });
+    int next = 0;
+    for (const Subtree& tree : subtrees) {
+        work(next, tree.firstColumn);
+        next = tree.endColumn;
+    }
+    work(next, static_cast<int>(inverse.size()));
 }
 
 SymbolicLdlt::Columns SymbolicLdlt::findOrder(const SparseMatrix& W, const SymbolicLdlt* similar) {
@@ -97,6 +112,7 @@ SymbolicLdlt::Columns SymbolicLdlt::findOrder(const SparseMatrix& W, const Symbo
             kMostFill * static_cast<double>(entriesWhenOrdered_))
             return postordered(columns);
     }
+    subtrees.clear();
     Eigen::AMDOrdering<int>::PermutationType leastDegree;  // its indices: what `inverse` is
     Eigen::AMDOrdering<int>()(W.selfadjointView<Eigen::Lower>(), leastDegree);
     inverse.assign(leastDegree.indices().begin(), leastDegree.indices().end());
@@ -135,6 +151,8 @@ void SymbolicLdlt::adaptOrder(const SymbolicLdlt& similar) {
     std::vector<int> next(similar.fronts.size() + 2, 0);
     for (const int f : frontOf) ++next[f + 1];
     std::partial_sum(next.begin(), next.end(), next.begin());
+    for (const Subtree& tree : similar.subtrees)  // for eliminationTree, until there are new ones
+        subtrees.push_back({0, 0, next[tree.firstFront], next[tree.endFront], 0});
     order.resize(n);
     for (const bool moved : {true, false})
         for (const int i : similar.inverse)
@@ -147,17 +165,19 @@ void SymbolicLdlt::adaptOrder(const SymbolicLdlt& similar) {
 SymbolicLdlt::Columns SymbolicLdlt::eliminationTree() const {
     Columns columns{std::vector<int>(inverse.size(), -1), std::vector<int>(inverse.size(), 0)};
     std::vector<int> visited(inverse.size(), -1);
-    for (int k = 0; k < static_cast<int>(inverse.size()); ++k) {
-        visited[k] = k;
-        for (int p = starts[inverse[k]]; p < starts[inverse[k] + 1]; ++p) {
-            if (order[rows[p]] > k) continue;
-            for (int j = order[rows[p]]; visited[j] != k; j = columns.parent[j]) {
-                if (columns.parent[j] < 0) columns.parent[j] = k;
-                ++columns.count[j];
-                visited[j] = k;
+    forRows([&](int begin, int end) {
+        for (int k = begin; k < end; ++k) {
+            visited[k] = k;
+            for (int p = starts[inverse[k]]; p < starts[inverse[k] + 1]; ++p) {
+                if (order[rows[p]] > k) continue;
+                for (int j = order[rows[p]]; visited[j] != k; j = columns.parent[j]) {
+                    if (columns.parent[j] < 0) columns.parent[j] = k;
+                    ++columns.count[j];
+                    visited[j] = k;
+                }
             }
         }
-    }
+    });
     return columns;
 }
 
@@ -222,30 +242,67 @@ void SymbolicLdlt::findFronts(const Columns& columns) {
         joined[end - 1] = 0;
         fronts.push_back(front);
     }
+    for (const Front& front : fronts) {
+        const int next = parent[front.first + front.width - 1];
+        parentFront_.push_back(next < 0 ? -1 : frontOf_[next]);
+    }
     frontRows.resize(static_cast<std::size_t>(rowCount));
 }
 
-void SymbolicLdlt::findRows(const Columns& columns) {
+void SymbolicLdlt::findSubtrees() {
+    subtrees.clear();
+    const auto count = static_cast<int>(fronts.size());
+    std::vector<Index> size(fronts.size(), 0);       // entries of L in each front's subtree
+    std::vector<int> frontsBelow(fronts.size(), 1);  // number of fronts in it
+    for (int f = 0; f < count; ++f) {
+        size[f] += fronts[f].size();
+        if (const int parent = parentFront_[f]; parent >= 0) {
+            size[parent] += size[f];
+            frontsBelow[parent] += frontsBelow[f];
+        }
+    }
+    const Index total = valueStarts.back() + static_cast<Index>(inverse.size());
+    const Index most = total >= kLeastShared ? total / kLeastParts : 0;
+    const auto isWhole = [&](int f) { return size[f] <= most; };
+    for (int f = 0; f < count; ++f) {
+        const int parent = parentFront_[f];
+        if (!isWhole(f) || size[f] * kMostParts < total || (parent >= 0 && isWhole(parent)))
+            continue;
+        Subtree tree;
+        tree.firstFront = f + 1 - frontsBelow[f];
+        tree.endFront = f + 1;
+        tree.firstColumn = fronts[tree.firstFront].first;
+        tree.endColumn = fronts[f].first + fronts[f].width;
+        subtrees.push_back(tree);
+    }
+    const auto sizeOf = [&](int t) { return size[subtrees[t].endFront - 1]; };
+    largestFirst.resize(subtrees.size());
+    std::iota(largestFirst.begin(), largestFirst.end(), 0);
+    std::stable_sort(largestFirst.begin(), largestFirst.end(),
+                     [&](int a, int b) { return sizeOf(a) > sizeOf(b); });
+}
+
+void SymbolicLdlt::findRows() {
     std::vector<int> ends;  // of the rows known so far, by front
     for (const Front& front : fronts) {
-        const int last = front.first + front.width - 1, next = columns.parent[last];
-        parentFront_.push_back(next < 0 ? -1 : frontOf_[next]);
         std::iota(&frontRows[front.firstRow], &frontRows[front.firstRow] + front.width,
                   front.first);
         ends.push_back(front.firstRow + front.width);
     }
     // The entries of a row of L are on the paths in the tree that start at the entries of W.
     std::vector<int> visited(fronts.size(), -1);
-    for (int k = 0; k < static_cast<int>(inverse.size()); ++k) {
-        visited[frontOf_[k]] = k;
-        for (int p = starts[inverse[k]]; p < starts[inverse[k] + 1]; ++p) {
-            if (order[rows[p]] >= k) continue;
-            for (int f = frontOf_[order[rows[p]]]; visited[f] != k; f = parentFront_[f]) {
-                frontRows[ends[f]++] = k;
-                visited[f] = k;
+    forRows([&](int begin, int end) {
+        for (int k = begin; k < end; ++k) {
+            visited[frontOf_[k]] = k;
+            for (int p = starts[inverse[k]]; p < starts[inverse[k] + 1]; ++p) {
+                if (order[rows[p]] >= k) continue;
+                for (int f = frontOf_[order[rows[p]]]; visited[f] != k; f = parentFront_[f]) {
+                    frontRows[ends[f]++] = k;
+                    visited[f] = k;
+                }
             }
         }
-    }
+    });
 }
 
 void SymbolicLdlt::findPlaces() {
@@ -275,31 +332,10 @@ void SymbolicLdlt::findPlaces() {
     }
 }
 
-void SymbolicLdlt::findSubtrees() {
-    const auto count = static_cast<int>(fronts.size());
-    std::vector<Index> size(fronts.size(), 0);       // entries of L in each front's subtree
-    std::vector<int> frontsBelow(fronts.size(), 1);  // number of fronts in it
-    for (int f = 0; f < count; ++f) {
-        size[f] += fronts[f].size();
-        if (const int parent = parentFront_[f]; parent >= 0) {
-            size[parent] += size[f];
-            frontsBelow[parent] += frontsBelow[f];
-        }
-    }
-    const Index total = valueStarts.back() + static_cast<Index>(inverse.size());
-    const Index most = total >= kLeastShared ? total / kLeastParts : 0;
-    const auto isWhole = [&](int f) { return size[f] <= most; };
+void SymbolicLdlt::findCopies() {
     solveRows = frontRows;
-    for (int f = 0; f < count; ++f) {
-        const int parent = parentFront_[f];
-        if (!isWhole(f) || size[f] * kMostParts < total || (parent >= 0 && isWhole(parent)))
-            continue;
-        const Front& root = fronts[f];
-        Subtree tree;
-        tree.firstFront = f + 1 - frontsBelow[f];
-        tree.endFront = f + 1;
-        tree.firstColumn = fronts[tree.firstFront].first;
-        tree.endColumn = root.first + root.width;
+    for (Subtree& tree : subtrees) {
+        const Front& root = fronts[tree.endFront - 1];
         tree.firstCopy = static_cast<int>(copied.size());
         const auto below = frontRows.begin() + root.firstRow + root.width;
         copied.insert(copied.end(), below, below + root.below);
@@ -309,13 +345,7 @@ void SymbolicLdlt::findSubtrees() {
             if (*row >= tree.endColumn)
                 *row = static_cast<int>(inverse.size()) + tree.firstCopy +
                        static_cast<int>(std::lower_bound(below, below + root.below, *row) - below);
-        subtrees.push_back(tree);
     }
-    const auto sizeOf = [&](int t) { return size[subtrees[t].endFront - 1]; };
-    largestFirst.resize(subtrees.size());
-    std::iota(largestFirst.begin(), largestFirst.end(), 0);
-    std::stable_sort(largestFirst.begin(), largestFirst.end(),
-                     [&](int a, int b) { return sizeOf(a) > sizeOf(b); });
 }
 
 bool SymbolicLdlt::isOf(const SparseMatrix& W) const {

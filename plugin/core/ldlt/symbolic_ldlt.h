@@ -88,9 +88,12 @@ struct SymbolicLdlt {
     Columns eliminationTree() const;              ///< In the order as it is.
     Columns postordered(const Columns& columns);  ///< Makes the order a postorder of the tree.
     void findFronts(const Columns& columns);
-    void findRows(const Columns& columns);
-    void findPlaces();
     void findSubtrees();
+    void findRows();
+    void findPlaces();
+    void findCopies();
+    template <class Work>
+    void forRows(const Work& work) const;
 
     Index entriesWhenOrdered_ = 0;  // off the diagonal of L, of the pattern the order was made for
     std::vector<int> frontOf_;      // n, of each column
