@@ -1,4 +1,5 @@
-// What a whole filter costs beside its factorizations and solves alone, in one run of the program:
+// What a whole filter costs beside its factorizations and solves alone, and how much faster it is
+// on two threads than on one, in one run of the program:
 //   bench_dragon MESH.ply [FEATURE_SIZE as part of the diagonal, default 0.15]
 // Times are medians of several runs; compare the ratios, the machine's speed cancels out of them.
 
@@ -24,17 +25,38 @@ using namespace spectral;
 
 namespace {
 
+constexpr int kRuns = 9;
+constexpr double kDefaultTolerance = 5e-4;  // of the diagonal, as in the dialog
+
+double secondsOf(const std::function<void()>& work) {
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
+    return took.count();
+}
+
+double medianOf(std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    return values[values.size() / 2];
+}
+
 double medianSeconds(const std::function<void()>& work) {
-    constexpr int kRuns = 5;
     std::vector<double> seconds;
+    for (int run = 0; run < kRuns; ++run) seconds.push_back(secondsOf(work));
+    return medianOf(seconds);
+}
+
+/// How many times as fast two threads are as one: the median over pairs of runs.
+double speedUpOf(const std::function<void()>& work) {
+    std::vector<double> ratios;
     for (int run = 0; run < kRuns; ++run) {
-        const auto start = std::chrono::steady_clock::now();
-        work();
-        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
-        seconds.push_back(took.count());
+        setThreadCount(1);
+        const double one = secondsOf(work);
+        setThreadCount(2);
+        ratios.push_back(one / secondsOf(work));
     }
-    std::sort(seconds.begin(), seconds.end());
-    return seconds[kRuns / 2];
+    setThreadCount(0);
+    return medianOf(ratios);
 }
 
 struct Case {
@@ -45,7 +67,7 @@ struct Case {
     BasisUpdate update;
 };
 
-FilterOptions optionsOf(const Case& c, double featureSize) {
+FilterOptions optionsOf(const Case& c, double featureSize, double tolerance) {
     FilterOptions options;
     options.transferFunction.type = c.type;
     options.transferFunction.response = c.response;
@@ -54,6 +76,7 @@ FilterOptions optionsOf(const Case& c, double featureSize) {
         options.transferFunction.passGain = 2.5;
     }
     options.featureSize = featureSize;
+    options.tolerance = tolerance;
     options.steps = c.steps;
     options.basisUpdate = c.update;
     return options;
@@ -84,13 +107,15 @@ int main(int argc, char** argv) {
     }
     const testing::Mesh mesh = testing::readPly(argv[1]);
     const double part = argc > 2 ? std::atof(argv[2]) : 0.15;
-    const double featureSize = part * boundingBoxDiagonal(mesh.V);
+    const double diagonal = boundingBoxDiagonal(mesh.V);
     std::printf("%s: %ld vertices, feature size %g of the diagonal, accuracy %g\n", argv[1],
                 static_cast<long>(mesh.V.rows()), part, EvaluationOptions().accuracy);
-    std::printf("%-34s %14s %14s %10s %10s %8s %6s\n", "filter", "factorizations", "solves/coord.",
-                "error", "filter s", "alone s", "ratio");
+    std::printf("%-34s %14s %14s %10s %10s %8s %6s %12s\n", "filter", "factorizations",
+                "solves/coord.", "error", "filter s", "alone s", "ratio", "two threads");
 
     const Case cases[] = {
+        {"every parameter at its default", FilterType::LowPass, Response::Gaussian, 0,
+         BasisUpdate::Conformal},
         {"gaussian low-pass, K = 1", FilterType::LowPass, Response::Gaussian, 1, BasisUpdate::None},
         {"butterworth low-pass, K = 1", FilterType::LowPass, Response::Butterworth, 1,
          BasisUpdate::None},
@@ -98,17 +123,23 @@ int main(int argc, char** argv) {
          BasisUpdate::None},
         {"gaussian low-pass, conformal K = 10", FilterType::LowPass, Response::Gaussian, 10,
          BasisUpdate::Conformal},
+        {"gaussian low-pass, full K = 10", FilterType::LowPass, Response::Gaussian, 10,
+         BasisUpdate::Full},
         {"gaussian band boost, full K = 10", FilterType::BandPass, Response::Gaussian, 10,
          BasisUpdate::Full},
     };
     for (const Case& c : cases) {
-        const FilterOptions options = optionsOf(c, featureSize);
+        const double featureSize =
+            c.steps > 0 ? part * diagonal
+                        : defaultFeatureSize(meanEdgeLength(mesh.V, mesh.F), diagonal);
+        const FilterOptions options = optionsOf(c, featureSize, kDefaultTolerance * diagonal);
         FilterResult result;
-        const double whole =
-            medianSeconds([&] { result = fractionalFilter(mesh.V, mesh.F, options); });
+        const auto filter = [&] { result = fractionalFilter(mesh.V, mesh.F, options); };
+        const double whole = medianSeconds(filter), speedUp = speedUpOf(filter);
         const double alone = secondsOfWorkAlone(mesh, result);
-        std::printf("%-34s %14d %14d %10.1e %10.3f %8.3f %6.2f\n", c.name, result.factorizations,
-                    result.solves / 3, result.errorEstimate, whole, alone, whole / alone);
+        std::printf("%-34s %14d %14d %10.1e %10.3f %8.3f %6.2f %12.2f\n", c.name,
+                    result.factorizations, result.solves / 3, result.errorEstimate, whole, alone,
+                    whole / alone, speedUp);
     }
     return EXIT_SUCCESS;
 }
