@@ -5,6 +5,8 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
+#include "meshlab/normals.h"
+
 MeshMatrices toMatrices(const CMeshO& mesh) {
     MeshMatrices matrices;
     matrices.vertexIndex.reserve(mesh.vn);
@@ -103,7 +105,8 @@ void setPositions(const std::vector<std::size_t>& vertexIndex, const spectral::V
         for (int c = 0; c < 3; ++c)
             mesh.cm.vert[vertexIndex[i]].P()[c] =
                 static_cast<Scalarm>(V(static_cast<Eigen::Index>(i), c));
-    mesh.updateBoxAndNormals();
+    vcg::tri::UpdateBounding<CMeshO>::Box(mesh.cm);
+    updateNormals(mesh.cm);
 }
 
 void setQuality(const std::vector<std::size_t>& vertexIndex, const Eigen::VectorXd& values,

@@ -71,6 +71,18 @@ def test_normals_and_bounding_box_are_those_of_the_new_shape(
     assert np.median(at_corners) > 0.9
 
 
+def test_normals_are_meshlabs_to_the_last_bit(decimated: Callable[..., Any]) -> None:
+    V, F = decimated("bunny.obj")
+    V = np.vstack([V, [[1.0, 2.0, 3.0]]])  # of no face
+    F = np.vstack([F, F[:1], F[-1:, [0, 0, 1]]])  # a face twice, and one without area
+    mesh_set = mesh_set_of(V, F)
+    mesh_set.apply_filter(FILTER)
+    mesh = mesh_set.current_mesh()
+    fresh = pymeshlab.Mesh(mesh.vertex_matrix(), mesh.face_matrix())
+    for normals in ("vertex_normal_matrix", "face_normal_matrix"):
+        np.testing.assert_array_equal(getattr(mesh, normals)(), getattr(fresh, normals)())
+
+
 def test_other_meshes_of_the_set_are_left_alone(decimated: Callable[..., Any]) -> None:
     mesh_set = mesh_set_of(*decimated("bone.ply"))
     mesh_set.add_mesh(pymeshlab.Mesh(*decimated("cow.obj")))
