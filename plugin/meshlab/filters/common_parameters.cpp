@@ -25,28 +25,25 @@ int choice(const RichParameterList& parameters, const char* name, const QStringL
                                   numbered.join(", ").toStdString());
 }
 
-namespace {
-
 double meanEdge(const MeshModel& mesh) {
     const MeshMatrices matrices = toMatrices(mesh.cm);
     return spectral::meanEdgeLength(matrices.V, matrices.F);
 }
 
-}  // namespace
-
-QString meanEdgeTold(const MeshModel& mesh) {
-    if (mesh.cm.fn == 0) return {};
-    return QString(" A mean edge of this mesh is %1 long.").arg(meanEdge(mesh), 0, 'g', 3);
+QString meanEdgeTold(double meanEdge) {
+    if (meanEdge == 0.0) return {};
+    return QString(" A mean edge of this mesh is %1 long.").arg(meanEdge, 0, 'g', 3);
 }
 
 RichPercentage featureSizeParameter(const MeshModel& mesh, const QString& help) {
     const Scalarm diagonal = mesh.cm.bbox.Diag();
+    const double edge = meanEdge(mesh);
     return {"feature_size",
-            static_cast<Scalarm>(spectral::defaultFeatureSize(meanEdge(mesh), diagonal)),
+            static_cast<Scalarm>(spectral::defaultFeatureSize(edge, diagonal)),
             0,
             diagonal,
             "Feature size",
-            help + meanEdgeTold(mesh)};
+            help + meanEdgeTold(edge)};
 }
 
 double featureSize(const RichParameterList& parameters) {

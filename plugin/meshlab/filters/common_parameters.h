@@ -15,8 +15,11 @@ int choice(const RichParameterList& parameters, const char* name, const QStringL
 
 // Parameters that several filters share, with the same names and defaults.
 
-/// A sentence for the help of sizes: how long a mean edge of the mesh is; none without faces.
-QString meanEdgeTold(const MeshModel& mesh);
+/// Mean edge length, in the mesh's units; 0 without faces.
+double meanEdge(const MeshModel& mesh);
+
+/// A sentence for the help of sizes: how long a mean edge is; none for 0.
+QString meanEdgeTold(double meanEdge);
 
 /// `feature_size`, a percentage of the bounding box diagonal; default:
 /// spectral::defaultFeatureSize.

@@ -37,7 +37,7 @@ RichParameterList denoiseParameters(const MeshModel& mesh) {
         "noise_height", static_cast<Scalarm>(defaults.noiseHeight), 0, diagonal, "Noise height",
         "Standard deviation of the noise along the normals. 0: as measured; the log then says how "
         "high it is. Give it where fine details were taken for noise, or noise for details." +
-            meanEdgeTold(mesh)));
+            meanEdgeTold(meanEdge(mesh))));
     list.addParam(RichBool("keep_creases", defaults.keepCreases, "Keep creases",
                            "Do not smooth across edges. Off: rounds them; for shapes that have "
                            "none."));
