@@ -12,6 +12,10 @@
 #include <thread>
 #include <utility>
 
+#ifndef _WIN32
+#include <pthread.h>
+#endif
+
 namespace spectral {
 
 namespace {
@@ -40,7 +44,7 @@ void setThreadCount(int count) { chosenThreads = std::max(0, count); }
 /// unclaimed tasks. A thread that wakes up late finds none left, and nobody waits for it.
 class ThreadTeam::Implementation {
   public:
-    explicit Implementation(int threads) {
+    explicit Implementation(int threads) : asked_(threads) {
         try {
             for (int i = 1; i < threads; ++i)
                 threads_.emplace_back([this, i] {
@@ -61,6 +65,7 @@ class ThreadTeam::Implementation {
         for (std::thread& thread : threads_) thread.join();
     }
 
+    int asked() const { return asked_; }
     int size() const { return static_cast<int>(threads_.size()) + 1; }
 
     void run(Index count, TaskFunction work) {
@@ -122,6 +127,7 @@ class ThreadTeam::Implementation {
         }
     }
 
+    const int asked_;  // number of threads, of which the system may have had fewer
     std::vector<std::thread> threads_;
     TaskFunction work_{};
     Index count_ = 0;
@@ -136,14 +142,26 @@ class ThreadTeam::Implementation {
 
 thread_local ThreadTeam::Implementation* ThreadTeam::current_ = nullptr;
 
+// Not deleted at exit: a library that is being unloaded cannot wait for threads.
+std::atomic<ThreadTeam::Implementation*> ThreadTeam::idle_{nullptr};
+
 ThreadTeam::ThreadTeam(int threads) {
     if (current_ != nullptr || isInTask) return;
-    implementation_ = std::make_unique<Implementation>(threads);
+#ifndef _WIN32  // a forked process has the team, but not its threads
+    [[maybe_unused]] static const int atFork =
+        pthread_atfork(nullptr, nullptr, [] { idle_ = nullptr; });
+#endif
+    if (threads > 1) implementation_.reset(idle_.exchange(nullptr));
+    if (!implementation_ || implementation_->asked() != threads)
+        implementation_ = std::make_unique<Implementation>(threads);
     current_ = implementation_.get();
 }
 
 ThreadTeam::~ThreadTeam() {
-    if (implementation_) current_ = nullptr;
+    if (!implementation_) return;
+    current_ = nullptr;
+    if (implementation_->size() > 1)
+        implementation_.reset(idle_.exchange(implementation_.release()));
 }
 
 void ThreadTeam::run(Index count, TaskFunction work) {

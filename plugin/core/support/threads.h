@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <string>
@@ -22,7 +23,8 @@ void setThreadCount(int count);
 /// team's lifetime: one run of a filter.
 ///
 /// Between calls they spin before they sleep, because an evaluation makes thousands of calls of
-/// some hundred microseconds each. A team made within another one has no threads of its own.
+/// some hundred microseconds each. A team made within another one has no threads of its own. The
+/// last team's threads sleep until the next one, if of as many, takes them over.
 class ThreadTeam {
   public:
     /// @param threads  including the calling one; fewer if the system has no more.
@@ -47,6 +49,7 @@ class ThreadTeam {
   private:
     class Implementation;
     static thread_local Implementation* current_;     // of the calling thread
+    static std::atomic<Implementation*> idle_;        // the last one that had threads, or null
     std::unique_ptr<Implementation> implementation_;  // null within another team
 };
 

@@ -2,12 +2,19 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 #include <thread>
 #include <vector>
+
+#ifndef _WIN32
+#include <sys/wait.h>
+#include <unistd.h>
+#endif
 
 namespace spectral {
 namespace {
@@ -60,6 +67,44 @@ TEST(ThreadTeam, DoesNestedCallsOnTheThreadOfTheTask) {
     });
     EXPECT_EQ(sum, 40);
 }
+
+/// The threads of a new team of two: each does one of two tasks that wait for each other.
+std::set<std::thread::id> threadsOfTwo() {
+    const ThreadTeam team(2);
+    std::atomic<int> begun{0};
+    std::array<std::thread::id, 2> threads;
+    parallelFor(2, [&](Index task) {
+        threads[static_cast<std::size_t>(task)] = std::this_thread::get_id();
+        for (++begun; begun < 2;) std::this_thread::yield();
+    });
+    return {threads.begin(), threads.end()};
+}
+
+TEST(ThreadTeam, TakesOverTheThreadsOfTheLastTeam) {
+    const std::set<std::thread::id> threads = threadsOfTwo();
+    {
+        const ThreadTeam withoutThreads(1);
+    }
+    EXPECT_EQ(threadsOfTwo(), threads);
+    {
+        const ThreadTeam ofThree(3);
+    }
+    EXPECT_EQ(threadsOfTwo().size(), 2U);
+}
+
+#ifndef _WIN32
+TEST(ThreadTeam, HasThreadsOfItsOwnInAForkedProcess) {
+    threadsOfTwo();
+    const pid_t child = fork();
+    if (child == 0) {
+        alarm(20);  // ends it where it waits for threads that it does not have
+        _exit(threadsOfTwo().size() == 2 ? 0 : 1);
+    }
+    int status = -1;
+    ASSERT_EQ(waitpid(child, &status, 0), child);
+    EXPECT_EQ(status, 0);
+}
+#endif
 
 TEST(ThreadTeam, SumsAlikeForEveryNumberOfThreads) {
     const auto sum = [](int threads) {
