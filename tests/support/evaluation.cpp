@@ -27,6 +27,7 @@ FullSpectrumResult filteredFullSpectrum(const Operator& A, const Gain& gain, dou
     FullSpectrumOptions options;
     options.accuracy = accuracy;
     options.samples = samples;
+    options.roundOffAtVertices = roundOffAtVertices(ldlt, A.laplacian);
     return applyFullSpectrum(A.laplacian.D, A.constants, ldlt, {gain}, A.mesh.V, options).front();
 }
 

@@ -29,6 +29,7 @@ Artefacts measureArtefacts(const Vertices& V, const Faces& F, const ArtefactOpti
                            selectPole(gain, 2.0 * cutoff, bulkSpectrum(mesh.laplacian), kAccuracy));
     FullSpectrumOptions evaluation;
     evaluation.accuracy = kAccuracy;
+    evaluation.roundOffAtVertices = roundOffAtVertices(ldlt, mesh.laplacian);
     const Vertices& X = mesh.surface.X;
     const FullSpectrumResult smooth =
         applyFullSpectrum(D, mesh.constants, ldlt, {gain}, X, evaluation, progress).front();

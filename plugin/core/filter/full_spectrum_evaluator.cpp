@@ -7,17 +7,6 @@
 
 namespace spectral {
 
-namespace {
-
-/// Round-off of solves with W + pole D relative to its smallest eigenvalue, from one whose solution
-/// is 1: where a boundary is fixed, no solution is known to be free of constants.
-double roundOffOf(const ShiftedLdlt& ldlt, const Laplacian& laplacian, double pole) {
-    const Eigen::VectorXd ones = Eigen::VectorXd::Ones(laplacian.D.size());
-    return (ldlt.solve(laplacian.W * ones + pole * laplacian.D) - ones).lpNorm<Eigen::Infinity>();
-}
-
-}  // namespace
-
 /// The pole is chosen for the spectrum of the first Laplacian: those that follow are much alike.
 double FullSpectrumEvaluator::poleFor(const Laplacian& laplacian, double alpha) {
     if (!spectrum_) spectrum_ = bulkSpectrum(laplacian);
@@ -41,8 +30,11 @@ Evaluation FullSpectrumEvaluator::evaluate(const Laplacian& laplacian,
     options.accuracy = accuracy;
     options.atEveryVertex = atEveryVertex_;
     options.samples = F_.samples();
-    if (constants.label().minCoeff() < 0)
-        options.roundOff = roundOffOf(ldlt_, laplacian, -ldlt_.shift());
+    const bool hasFixedBoundary = constants.label().minCoeff() < 0;
+    if (atEveryVertex_ || hasFixedBoundary)
+        options.roundOffAtVertices = roundOffAtVertices(ldlt_, laplacian);
+    // Where a boundary is fixed, no solution is known to be free of constants.
+    if (hasFixedBoundary) options.roundOff = *options.roundOffAtVertices;
     std::vector<Gain> gains;
     for (const double alpha : alphas) gains.push_back(fractionalPower(F_, alpha));
     Evaluation evaluation;

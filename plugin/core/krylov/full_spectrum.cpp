@@ -121,7 +121,11 @@ class Approximation {
     /// The error that comes of round-off in S, by roundOffError; at every vertex if asked for.
     double ofRoundOff(double roundOff) const {
         const double error = roundOffError(spaces_, roundOff, gain_, pole_);
-        return options_.atEveryVertex ? error * mostAtVertices_ : error;
+        if (!options_.atEveryVertex) return error;
+        const double bound = error * mostAtVertices_;
+        if (!options_.roundOffAtVertices) return bound;
+        return std::clamp(roundOffError(spaces_, *options_.roundOffAtVertices, gain_, pole_), error,
+                          bound);
     }
 
     Eigen::MatrixXd Y() const { return spaces_.combine(coefficients_); }
@@ -225,6 +229,12 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
         constants.add(means, result.Y);
     }
     return results;
+}
+
+double roundOffAtVertices(const ShiftedLdlt& ldlt, const Laplacian& laplacian) {
+    const Eigen::VectorXd ones = Eigen::VectorXd::Ones(laplacian.D.size());
+    const double pole = -ldlt.shift();
+    return (ldlt.solve(laplacian.W * ones + pole * laplacian.D) - ones).lpNorm<Eigen::Infinity>();
 }
 
 }  // namespace spectral

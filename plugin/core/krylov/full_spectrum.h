@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/laplacian/constant_modes.h"
 #include "core/laplacian/frequency.h"
+#include "core/laplacian/laplacian.h"
 #include "core/ldlt/shifted_ldlt.h"
 #include "core/support/progress.h"
 
@@ -17,6 +19,10 @@ struct FullSpectrumOptions {
     /// Round-off of solves, relative to the largest eigenvalue of the inverse, where it is known to
     /// be more than KrylovSpaces::roundOff.
     double roundOff = 0.0;
+
+    /// roundOffAtVertices, where it is known, for the error at every vertex; else that is bounded
+    /// by the smallest mass, far from the truth where parts have shrunk to nothing.
+    std::optional<double> roundOffAtVertices;
 
     /// Frequencies between which the gains vary little; eighths of octaves are always among them.
     std::vector<double> samples;
@@ -55,5 +61,10 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
     const Eigen::VectorXd& D, const ConstantModes& constants, const ShiftedLdlt& ldlt,
     const std::vector<Gain>& gains, const Eigen::MatrixXd& X, const FullSpectrumOptions& options,
     const Progress& progress = {});
+
+/// Largest round-off of any vertex in a solve whose solution is 1: relative to that, the largest
+/// solution, and so to the smallest eigenvalue of W + pole D.
+/// @param ldlt  factorization of W + pole D.
+double roundOffAtVertices(const ShiftedLdlt& ldlt, const Laplacian& laplacian);
 
 }  // namespace spectral

@@ -6,6 +6,7 @@
 
 #include "core/laplacian/constant_modes.h"
 #include "core/laplacian/frequency.h"
+#include "core/mesh/measures.h"
 #include "core/mesh/mesh.h"
 #include "core/transfer/transfer_function.h"
 #include "support/evaluation.h"
@@ -161,6 +162,20 @@ TEST(FullSpectrum, IsAccurateAtVerticesOfHardlyAnyMass) {
     const Vertices expected = testing::filteredDense(A, dense, gain);
     EXPECT_GT((expected - A.mesh.V).cwiseAbs().maxCoeff(), 1e-7);
     EXPECT_LT((result.Y - expected).cwiseAbs().maxCoeff(), 1e-8);
+}
+
+TEST(FullSpectrum, DoesNotTakeAVertexWithoutMassForRoundOff) {
+    // As a step finds it where a thin part has shrunk to nothing.
+    Operator A(testing::blob());
+    A.laplacian.D[0] = 1e-12 * A.laplacian.D.mean();
+    A.constants = ConstantModes(connectedComponents(A.mesh.F, A.mesh.V.rows()), A.laplacian.D);
+    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    const double cutoff = cutoffFrequency(0.2 * boundingBoxDiagonal(A.mesh.V));
+    const Gain gain = fractionalPower(TransferFunction({}, cutoff), 0.1);
+    const FullSpectrumResult result = testing::filteredFullSpectrum(A, gain, cutoff, 1e-7);
+    const Vertices error = result.Y - testing::filteredDense(A, dense, gain);
+    EXPECT_TRUE(result.converged) << result.errorEstimate;
+    EXPECT_LT(error.cwiseAbs().maxCoeff(), 1e-7 * A.mesh.V.cwiseAbs().maxCoeff());
 }
 
 TEST(FullSpectrum, SeesAPartOfHardlyAnyMassWhereAllElseVanishes) {
