@@ -124,8 +124,8 @@ class Approximation {
         if (!options_.atEveryVertex) return error;
         const double bound = error * mostAtVertices_;
         if (!options_.roundOffAtVertices) return bound;
-        return std::clamp(roundOffError(spaces_, *options_.roundOffAtVertices, gain_, pole_), error,
-                          bound);
+        const double measured = roundOffError(spaces_, *options_.roundOffAtVertices, gain_, pole_);
+        return std::min(std::max(measured, error), bound);
     }
 
     Eigen::MatrixXd Y() const { return spaces_.combine(coefficients_); }

@@ -62,8 +62,8 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
     const std::vector<Gain>& gains, const Eigen::MatrixXd& X, const FullSpectrumOptions& options,
     const Progress& progress = {});
 
-/// Largest round-off of any vertex in a solve whose solution is 1: relative to that, the largest
-/// solution, and so to the smallest eigenvalue of W + pole D.
+/// Largest round-off of any vertex in a solve whose solution is 1 everywhere, the eigenvector of
+/// the largest eigenvalue of the inverse where the boundary is free.
 /// @param ldlt  factorization of W + pole D.
 double roundOffAtVertices(const ShiftedLdlt& ldlt, const Laplacian& laplacian);
 
