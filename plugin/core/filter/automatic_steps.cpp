@@ -84,8 +84,13 @@ class Limit {
     void add(Vertices Y) {
         Vertices E = Y_.size() > 0 ? Vertices(Y + (Y - Y_) / (kSecondOrder - 1.0)) : Y;
         change_ = distances(E, E_);
-        ofResult_.add(change_, laplacians_.mass(E));
-        ofInput_.add(change_, laplacians_.inputMass());
+        const Eigen::VectorXd mass = laplacians_.mass(E);
+        parallelFor(2, [&](Index task) {
+            if (task == 0)
+                ofResult_.add(change_, mass);
+            else
+                ofInput_.add(change_, laplacians_.inputMass());
+        });
         E_ = std::move(E);
         Y_ = std::move(Y);
     }

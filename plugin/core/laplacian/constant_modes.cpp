@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/support/threads.h"
+
 namespace spectral {
 
 ConstantModes::ConstantModes(const Components& components, const Eigen::VectorXd& D)
@@ -24,13 +26,15 @@ Eigen::MatrixXd ConstantModes::means(const Eigen::Ref<const Eigen::MatrixXd>& X)
 }
 
 void ConstantModes::add(const Eigen::MatrixXd& means, Eigen::Ref<Eigen::MatrixXd> X) const {
-    if (isWhole_) {
-        X.rowwise() += means.row(0);
-        return;
-    }
-    for (Index c = 0; c < X.cols(); ++c)
-        for (Index i = 0; i < X.rows(); ++i)
-            if (label_[i] >= 0) X(i, c) += means(label_[i], c);
+    parallelRows(X.rows(), [&](Index begin, Index end) {
+        if (isWhole_) {
+            X.middleRows(begin, end - begin).rowwise() += means.row(0);
+            return;
+        }
+        for (Index c = 0; c < X.cols(); ++c)
+            for (Index i = begin; i < end; ++i)
+                if (label_[i] >= 0) X(i, c) += means(label_[i], c);
+    });
 }
 
 Eigen::MatrixXd ConstantModes::orthonormal() const {

@@ -29,6 +29,9 @@ constexpr Relaxation kRelaxations[] = {
 /// waking a thread.
 constexpr Index kLeastParts = 4, kMostParts = 200, kLeastShared = 30000;
 
+/// Rows of a task without a tree are at most one of so many parts of all.
+constexpr Index kClosedParts = 16;
+
 /// An order of elimination is taken over from a similar pattern while L has at most so many times
 /// the entries that it had where the order was made for it: finding one takes as long as a dozen
 /// solves.
@@ -83,7 +86,9 @@ SymbolicLdlt::SymbolicLdlt(const SparseMatrix& W, const SymbolicLdlt* similar)
     findFronts(columns);
     findSubtrees();
     findRows();
-    parallelFor(2, [this](Index task) { task == 0 ? findPlaces() : findCopies(); });
+    parallelFor(3, [this](Index task) {
+        task == 0 ? findEntries() : task == 1 ? findPlaces() : findCopies();
+    });
 }
 
 /// Calls work(begin, end) for the rows of L of each subtree, in parallel, and then for those of
@@ -112,7 +117,6 @@ SymbolicLdlt::Columns SymbolicLdlt::findOrder(const SparseMatrix& W, const Symbo
             kMostFill * static_cast<double>(entriesWhenOrdered_))
             return postordered(columns);
     }
-    subtrees.clear();
     Eigen::AMDOrdering<int>::PermutationType leastDegree;  // its indices: what `inverse` is
     Eigen::AMDOrdering<int>()(W.selfadjointView<Eigen::Lower>(), leastDegree);
     inverse.assign(leastDegree.indices().begin(), leastDegree.indices().end());
@@ -151,8 +155,6 @@ void SymbolicLdlt::adaptOrder(const SymbolicLdlt& similar) {
     std::vector<int> next(similar.fronts.size() + 2, 0);
     for (const int f : frontOf) ++next[f + 1];
     std::partial_sum(next.begin(), next.end(), next.begin());
-    for (const Subtree& tree : similar.subtrees)  // for eliminationTree, until there are new ones
-        subtrees.push_back({0, 0, next[tree.firstFront], next[tree.endFront], 0});
     order.resize(n);
     for (const bool moved : {true, false})
         for (const int i : similar.inverse)
@@ -161,8 +163,29 @@ void SymbolicLdlt::adaptOrder(const SymbolicLdlt& similar) {
     for (int i = 0; i < n; ++i) inverse[order[i]] = i;
 }
 
+/// Sets `subtrees` to what can be told of them before the tree is known: rows whose first entries
+/// in W are not to the left of them all, and so those in L.
+void SymbolicLdlt::findClosedRows() {
+    const auto n = static_cast<int>(inverse.size());
+    std::vector<int> first(inverse.size());  // entry of each row
+    parallelRows(n, [&](Index begin, Index end) {
+        for (auto k = static_cast<int>(begin); k < end; ++k) {
+            first[k] = k;
+            for (int p = starts[inverse[k]]; p < starts[inverse[k] + 1]; ++p)
+                first[k] = std::min(first[k], order[rows[p]]);
+        }
+    });
+    subtrees.clear();
+    for (int begin = 0, end; begin < n; begin = std::max(end, begin + 1)) {
+        end = begin;
+        while (end < n && end - begin < n / kClosedParts && first[end] >= begin) ++end;
+        if ((end - begin) * kMostParts >= n) subtrees.push_back({0, 0, begin, end, 0});
+    }
+}
+
 /// Row k of L has entries on the paths in the tree from those of W to k (Davis 2006, section 4.1).
-SymbolicLdlt::Columns SymbolicLdlt::eliminationTree() const {
+SymbolicLdlt::Columns SymbolicLdlt::eliminationTree() {
+    findClosedRows();
     Columns columns{std::vector<int>(inverse.size(), -1), std::vector<int>(inverse.size(), 0)};
     std::vector<int> visited(inverse.size(), -1);
     forRows([&](int begin, int end) {
@@ -305,15 +328,16 @@ void SymbolicLdlt::findRows() {
     });
 }
 
+void SymbolicLdlt::setPositions(const Front& front, std::vector<int>& position) const {
+    for (int i = 0; i < front.width + front.below; ++i) position[frontRows[front.firstRow + i]] = i;
+}
+
 void SymbolicLdlt::findPlaces() {
     std::vector<int> position(inverse.size());  // of each row in the current front
     std::vector<int> waiting;                   // fronts whose parents are yet to come
-    entries.reserve((rows.size() + inverse.size()) / 2);
     for (int f = 0; f < static_cast<int>(fronts.size()); ++f) {
         Front& front = fronts[f];
-        for (int i = 0; i < front.width + front.below; ++i)
-            position[frontRows[front.firstRow + i]] = i;
-
+        setPositions(front, position);
         for (; !waiting.empty(); waiting.pop_back(), ++front.children) {
             Front& child = fronts[waiting.back()];
             const int* below = &frontRows[child.firstRow] + child.width;
@@ -322,7 +346,14 @@ void SymbolicLdlt::findPlaces() {
             for (int i = 0; i < child.below; ++i) places.push_back(position[below[i]]);
         }
         if (front.below > 0) waiting.push_back(f);
+    }
+}
 
+void SymbolicLdlt::findEntries() {
+    std::vector<int> position(inverse.size());  // of each row in the current front
+    entries.reserve((rows.size() + inverse.size()) / 2);
+    for (Front& front : fronts) {
+        setPositions(front, position);
         front.entriesBegin = static_cast<int>(entries.size());
         for (int j = front.first; j < front.first + front.width; ++j)
             for (int p = starts[inverse[j]]; p < starts[inverse[j] + 1]; ++p)

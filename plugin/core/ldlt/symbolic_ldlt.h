@@ -85,11 +85,14 @@ struct SymbolicLdlt {
     };
     Columns findOrder(const SparseMatrix& W, const SymbolicLdlt* similar);
     void adaptOrder(const SymbolicLdlt& similar);
-    Columns eliminationTree() const;              ///< In the order as it is.
+    void findClosedRows();
+    Columns eliminationTree();                    ///< In the order as it is.
     Columns postordered(const Columns& columns);  ///< Makes the order a postorder of the tree.
     void findFronts(const Columns& columns);
     void findSubtrees();
     void findRows();
+    void setPositions(const Front& front, std::vector<int>& position) const;
+    void findEntries();
     void findPlaces();
     void findCopies();
     template <class Work>
