@@ -164,7 +164,8 @@ void SymbolicLdlt::adaptOrder(const SymbolicLdlt& similar) {
 }
 
 /// Sets `subtrees` to what can be told of them before the tree is known: rows whose first entries
-/// in W are not to the left of them all, and so those in L.
+/// in W are not to the left of them all, and so those in L. In a postorder, as minimum degree
+/// leaves it, most rows are in such ranges.
 void SymbolicLdlt::findClosedRows() {
     const auto n = static_cast<int>(inverse.size());
     std::vector<int> first(inverse.size());  // entry of each row
