@@ -53,7 +53,8 @@ std::string weakerFilter(const RichParameterList& parameters) {
         hasChoice(parameters, "filter_type", 1) || hasChoice(parameters, "filter_type", 2);
     const char* const name = isStopped ? "stop_gain" : "pass_gain";
     if (!parameters.hasParameter(name) || parameters.getFloat(name) >= kSmall)
-        return "choose a smaller feature_size";
+        return "choose a smaller feature_size; if the triangles are not connected, apply "
+               "'Merge Close Vertices' first";
     return std::string("choose ") + name + " = 1, which keeps the large details";
 }
 

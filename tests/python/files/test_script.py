@@ -11,7 +11,8 @@ import pytest
 from helpers import FILTER, mesh_set_of
 from meshlab_spectral.errors import FilterError, OptionError
 from meshlab_spectral.files.script import apply_script
-from meshlab_spectral.filters.calling import call_filter, keep_failed
+from meshlab_spectral.filters.calling import call_filter
+from meshlab_spectral.plugin.failed_calls import keep_failed
 
 ENUMERATIONS = {
     "filter_type": 5,

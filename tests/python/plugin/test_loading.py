@@ -56,6 +56,26 @@ def test_load_binds_methods_also_when_the_plugin_was_loaded_by_hand() -> None:
     assert done.stdout.strip() == FILTER, done.stderr
 
 
+@pytest.mark.parametrize("name", loading.FILTERS.values())
+def test_after_a_filter_has_failed_another_mesh_can_be_loaded(name: str, samples: Path) -> None:
+    done = run_python(
+        "import gc, pymeshlab, meshlab_spectral\n"
+        "meshlab_spectral.load()\n"
+        "for _ in range(20):\n"
+        "    points = pymeshlab.MeshSet()\n"
+        "    points.add_mesh(pymeshlab.Mesh([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]))\n"
+        "    try:\n"
+        f"        points.{name}()\n"
+        "    except pymeshlab.PyMeshLabException as error:\n"
+        "        assert 'no faces' in str(error)\n"
+        "    del points\n"
+        "    gc.collect()\n"
+        f"    pymeshlab.MeshSet().load_new_mesh({str(samples / 'cow.obj')!r})\n"
+        "print('loaded')\n"
+    )
+    assert done.stdout == "loaded\n", done.stderr
+
+
 def test_the_environment_variable_chooses_the_plugin(tmp_path: Path) -> None:
     copy = tmp_path / "libfilter_spectral_copy.so"
     copy.write_bytes(loading.plugin_path().read_bytes())

@@ -8,7 +8,8 @@ from typing import Any
 from xml.etree import ElementTree
 
 from meshlab_spectral.errors import FilterError, OptionError
-from meshlab_spectral.filters.calling import call_filter, keep_failed, plain_report, reason_of
+from meshlab_spectral.filters.calling import call_filter, plain_report, reason_of
+from meshlab_spectral.plugin.failed_calls import keep_failed
 from meshlab_spectral.plugin.loading import FILTERS, load
 
 _HEAD, _FOOT = "<!DOCTYPE FilterScript>\n<FilterScript>\n", "</FilterScript>\n"

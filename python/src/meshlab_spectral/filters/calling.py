@@ -10,12 +10,9 @@ from numpy.typing import ArrayLike
 from meshlab_spectral.errors import FilterError
 from meshlab_spectral.filters.arrays import mesh_arrays
 from meshlab_spectral.filters.option_types import Options
+from meshlab_spectral.plugin.failed_calls import keep_failed
 from meshlab_spectral.plugin.library import last_warnings
 from meshlab_spectral.plugin.loading import load
-
-# pymeshlab 2025.7 crashes after a MeshSet in which any filter has thrown is destroyed. Such a
-# MeshSet is therefore kept alive until the process ends.
-_failed_mesh_sets: list[Any] = []
 
 _PLAIN_SIZE = re.compile(r"Parameter (\w+): must be a pymeshlab\.Percentage")
 _RANGE = re.compile(r"Must be a value between 0 and (\d+)")
@@ -131,11 +128,6 @@ def _fits(value: Any, wanted: type) -> bool:
     if wanted is float:
         return value is not None and not isinstance(value, str)
     return isinstance(value, wanted)
-
-
-def keep_failed(mesh_set: Any) -> None:
-    """Keep a MeshSet alive in which a filter has failed."""
-    _failed_mesh_sets.append(mesh_set)
 
 
 def plain_report(report: dict[str, Any]) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from importlib.metadata import version as installed_version
 from pathlib import Path
 
 from meshlab_spectral.errors import PluginError
+from meshlab_spectral.plugin.failed_calls import kept_when_failed
 
 FILTER_NAME = "apply_coord_spectral_filter_fractional"
 DENOISE_NAME = "apply_coord_spectral_denoise"
@@ -62,7 +63,8 @@ def load() -> None:
     # pymeshlab only creates methods on import, for the filters it knows by then.
     for name in pymeshlab.filter_list():
         if not hasattr(pymeshlab.MeshSet, name):
-            setattr(pymeshlab.MeshSet, name, pymeshlab.bind_function(name))
+            method = kept_when_failed(pymeshlab.bind_function(name))
+            setattr(pymeshlab.MeshSet, name, method)
 
 
 def plugin_path() -> Path:
