@@ -112,6 +112,7 @@ bench-memory: $(PACKAGE)  ## memory of many runs, and of a large mesh with and w
 bench-basis: BENCHMARKS := ON
 bench-basis: build $(PACKAGE) $(COMPETITORS)  ## compare the truncated basis with other programs
 	$(BIN)/python tests/benchmarks/bench_basis.py --mesh $(BENCH_MESH) $(BENCH_OPTIONS)
+	build/tests/benchmarks/bench_steps truncated $(BENCH_MESH)
 
 bench-ldlt: BENCHMARKS := ON
 bench-ldlt: $(COMPETITORS) build  ## compare the factorization with Eigen's and CHOLMOD's

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
+#include "core/filter/full_spectrum_evaluator.h"
 #include "core/harmonics/truncated_basis.h"
 #include "core/support/errors.h"
 
@@ -18,33 +20,95 @@ constexpr Index kMaxExactBasis = 1000;
 /// an edge, below which an eigenvalue belongs or not.
 constexpr double kDenseError = 1e-15, kEdgeAccuracy = 1e-6;
 
+/// Part of k on both sides of the cut whose harmonics are computed in the steps after the first:
+/// more take longer than the solves that they save. Of fewer than so many harmonics it is quicker
+/// to compute all (bench_steps truncated).
+constexpr Index kNearTheCut = 5, kLeastHarmonics = 200;
+
 }  // namespace
 
 Evaluation BasisEvaluator::evaluate(const Laplacian& laplacian, const ConstantModes& constants,
                                     const Eigen::MatrixXd& X, const std::vector<double>& alphas,
-                                    double, const Progress& progress) {
-    basis_ = {};  // frees its memory before the next one is computed
-    double residualGain = 0.0;
-    if (truncation_) {
-        basis_ = truncatedBasis(laplacian, constants, truncation_->basisSize, ldlt_, progress);
-        if (truncation_->reinjectResidual) residualGain = meanResidualGain(laplacian);
-    } else {
-        basis_ = upToLastJump(laplacian, constants, progress);
-        residualGain = F_(2.0 * F_.discontinuities().back());
+                                    double accuracy, const Progress& progress) {
+    if (canDoWithoutBasis_) {
+        std::optional<Evaluation> evaluation =
+            aroundTheCut(laplacian, constants, X, alphas, accuracy, progress);
+        if (evaluation) return *std::move(evaluation);
+        canDoWithoutBasis_ = false;  // nor will it in the steps that follow
     }
-    ++computedBases_;
+    HarmonicBasis basis;
+    double rest = 0.0;
+    if (truncation_) {
+        basis = truncatedBasis(laplacian, constants, truncation_->basisSize, ldlt_, progress);
+        rest = residualGain(laplacian, basis.lambda[basis.size() - 1]);
+    } else {
+        basis = upToLastJump(laplacian, constants, progress);
+        rest = F_(2.0 * F_.discontinuities().back());
+    }
     Evaluation evaluation;
     for (const double alpha : alphas)
         // The power of the mean gain, not the mean of the power: K steps then make one filter.
-        evaluation.Y.push_back(applyInBasis(basis_, laplacian.D, constants,
-                                            fractionalPower(F_, alpha),
-                                            std::pow(residualGain, alpha), X));
+        evaluation.Y.push_back(applyInBasis(basis, laplacian.D, constants,
+                                            fractionalPower(F_, alpha), std::pow(rest, alpha), X));
+    if (computedBases_++ == 0) {
+        basis.Phi = {};
+        basis_ = std::move(basis);
+        // Where the residual is dropped, the jump is so high that a basis takes no longer.
+        canDoWithoutBasis_ = truncation_ && truncation_->reinjectResidual &&
+                             truncation_->basisSize >= kLeastHarmonics &&
+                             F_.discontinuities().empty();
+    }
     return evaluation;
 }
 
-/// F_h (Kovnatsky et al. 2012, Eq. 9): the mean of F over the frequencies beyond the basis.
-double BasisEvaluator::meanResidualGain(const Laplacian& laplacian) const {
-    const double from = std::sqrt(basis_.lambda[basis_.size() - 1]);
+std::optional<Evaluation> BasisEvaluator::aroundTheCut(const Laplacian& laplacian,
+                                                       const ConstantModes& constants,
+                                                       const Eigen::MatrixXd& X,
+                                                       const std::vector<double>& alphas,
+                                                       double accuracy, const Progress& progress) {
+    const Index k = truncation_->basisSize, margin = k / kNearTheCut;
+    if (k - margin <= constants.count() || k + margin >= laplacian.D.size()) return {};
+    try {
+        const HarmonicBasis near = harmonicsBetween(laplacian, constants, k - margin, k + margin,
+                                                    ldlt_, progress.part(0.0, 0.6));
+        const std::optional<Index> size = cutOutsideClusters(near.lambda, k, near.first);
+        if (!size) return {};
+        const Index inside = *size - near.first;
+        const double below = near.lambda[inside - 1], above = near.lambda[inside];
+        const double cut = std::sqrt(0.5 * (below + above)), rest = residualGain(laplacian, below);
+        std::vector<Gain> gains;
+        for (const double alpha : alphas)
+            gains.push_back([F = fractionalPower(F_, alpha), Fh = std::pow(rest, alpha),
+                             cut](double omega) { return omega < cut ? F(omega) : Fh; });
+
+        const Eigen::MatrixXd c = near.transform(laplacian.D, X);
+        const Eigen::ArrayXd omega = near.lambda.cwiseSqrt();
+        FullSpectrumOptions options;
+        options.accuracy = accuracy;
+        options.atEveryVertex = atEveryVertex_;
+        options.samples = F_.samples();
+        options.samples.insert(options.samples.end(), {omega[0], omega[omega.size() - 1]});
+        // Seen from a pole at the cut, both sides of the spectrum are equally large.
+        ldlt_.factorizeDefinite(laplacian.W, laplacian.D, cut * cut,
+                                [&] { progress.report(0.6, "factorizing"); });
+        Evaluation evaluation =
+            evaluateInKrylovSpaces(laplacian, constants, ldlt_, gains, X - near.inverseTransform(c),
+                                   std::move(options), progress.part(0.6, 1.0));
+        if (!evaluation.accuracyReached) return {};
+        for (std::size_t i = 0; i < gains.size(); ++i)
+            evaluation.Y[i] +=
+                near.inverseTransform(omega.unaryExpr(gains[i]).matrix().asDiagonal() * c);
+        return evaluation;
+    } catch (const SolverFailure&) {
+        return {};
+    }
+}
+
+/// F_h (Kovnatsky et al. 2012, Eq. 9): the mean of F over the frequencies beyond the basis; 0 where
+/// the residual is dropped.
+double BasisEvaluator::residualGain(const Laplacian& laplacian, double lastEigenvalue) const {
+    if (!truncation_->reinjectResidual) return 0.0;
+    const double from = std::sqrt(lastEigenvalue);
     const double to = std::sqrt(largestEigenvalue(laplacian));
     // The power of the mean here, too, so that parts of a filter make the whole.
     const TransferFunction whole = F_.whole();

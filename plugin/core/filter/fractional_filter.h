@@ -61,11 +61,11 @@ struct FilterResult {
     bool cutoffReached = true;  ///< Truncated spectrum: whether the harmonics reach omega_c.
     std::vector<double> stepSizes;  ///< The fractional powers alpha, in their order; sum 1.
 
-    // The basis of the last step, where one is used.
+    // The basis of the input, where one is used.
     Eigen::VectorXd eigenvalues;  ///< k, ascending; empty without a basis.
     Eigen::VectorXd residuals;    ///< k, relative (see HarmonicBasis); empty for a dense basis.
     int inertiaCount = 0;         ///< Harmonics that the basis must hold; 0 for a dense basis.
-    int computedBases = 0;        ///< Bases computed in all steps.
+    int computedBases = 0;        ///< Bases computed, that of the input among them.
 };
 
 /// Filters the geometry of a mesh: K steps X <- F^(1/K)(sqrt(A)) X, with the Laplacian A of the

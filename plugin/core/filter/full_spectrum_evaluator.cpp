@@ -3,9 +3,26 @@
 #include <algorithm>
 #include <utility>
 
-#include "core/krylov/full_spectrum.h"
-
 namespace spectral {
+
+Evaluation evaluateInKrylovSpaces(const Laplacian& laplacian, const ConstantModes& constants,
+                                  const ShiftedLdlt& ldlt, const std::vector<Gain>& gains,
+                                  const Eigen::MatrixXd& X, FullSpectrumOptions options,
+                                  const Progress& progress) {
+    const bool hasFixedBoundary = constants.label().minCoeff() < 0;
+    if (options.atEveryVertex || hasFixedBoundary)
+        options.roundOffAtVertices = roundOffAtVertices(ldlt, laplacian);
+    // Where a boundary is fixed, no solution is known to be free of constants.
+    if (hasFixedBoundary) options.roundOff = *options.roundOffAtVertices;
+    Evaluation evaluation;
+    for (FullSpectrumResult& result :
+         applyFullSpectrum(laplacian.D, constants, ldlt, gains, X, options, progress)) {
+        evaluation.errorEstimate = std::max(evaluation.errorEstimate, result.errorEstimate);
+        evaluation.accuracyReached = evaluation.accuracyReached && result.converged;
+        evaluation.Y.push_back(std::move(result.Y));
+    }
+    return evaluation;
+}
 
 /// The pole is chosen for the spectrum of the first Laplacian: those that follow are much alike.
 double FullSpectrumEvaluator::poleFor(const Laplacian& laplacian, double alpha) {
@@ -30,21 +47,10 @@ Evaluation FullSpectrumEvaluator::evaluate(const Laplacian& laplacian,
     options.accuracy = accuracy;
     options.atEveryVertex = atEveryVertex_;
     options.samples = F_.samples();
-    const bool hasFixedBoundary = constants.label().minCoeff() < 0;
-    if (atEveryVertex_ || hasFixedBoundary)
-        options.roundOffAtVertices = roundOffAtVertices(ldlt_, laplacian);
-    // Where a boundary is fixed, no solution is known to be free of constants.
-    if (hasFixedBoundary) options.roundOff = *options.roundOffAtVertices;
     std::vector<Gain> gains;
     for (const double alpha : alphas) gains.push_back(fractionalPower(F_, alpha));
-    Evaluation evaluation;
-    for (FullSpectrumResult& result :
-         applyFullSpectrum(laplacian.D, constants, ldlt_, gains, X, options, progress)) {
-        evaluation.errorEstimate = std::max(evaluation.errorEstimate, result.errorEstimate);
-        evaluation.accuracyReached = evaluation.accuracyReached && result.converged;
-        evaluation.Y.push_back(std::move(result.Y));
-    }
-    return evaluation;
+    return evaluateInKrylovSpaces(laplacian, constants, ldlt_, gains, X, std::move(options),
+                                  progress);
 }
 
 }  // namespace spectral

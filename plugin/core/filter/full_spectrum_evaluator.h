@@ -2,12 +2,23 @@
 
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "core/filter/evaluator.h"
+#include "core/krylov/full_spectrum.h"
 #include "core/krylov/pole_selection.h"
 #include "core/transfer/transfer_function.h"
 
 namespace spectral {
+
+/// Gains over all n harmonics from the Krylov spaces of one factor (full_spectrum.h).
+/// @param ldlt     factorization of W + lambda_p D.
+/// @param gains    continuous, at least where X has harmonics.
+/// @param options  without what this function knows: round-off.
+Evaluation evaluateInKrylovSpaces(const Laplacian& laplacian, const ConstantModes& constants,
+                                  const ShiftedLdlt& ldlt, const std::vector<Gain>& gains,
+                                  const Eigen::MatrixXd& X, FullSpectrumOptions options,
+                                  const Progress& progress);
 
 /// Evaluates over all n harmonics, by a rational Krylov method that computes none of them
 /// (full_spectrum.h): for a continuous F.

@@ -9,10 +9,11 @@
 
 namespace spectral {
 
-/// Manifold harmonics: the k lowest eigenpairs of W phi = lambda D phi.
+/// Manifold harmonics: the k lowest eigenpairs of W phi = lambda D phi, or k others in succession.
 struct HarmonicBasis {
     Eigen::MatrixXd Phi;     ///< n x k, D-orthonormal: Phi^T D Phi = I.
     Eigen::VectorXd lambda;  ///< k eigenvalues, ascending; exactly 0 for the constant modes.
+    Index first = 0;         ///< Number of eigenvalues below them.
 
     // The certificate of a truncated basis; without meaning for a dense one.
     Eigen::VectorXd residuals;  ///< k, |D^-1/2 (W phi - lambda D phi)| / lambda; 0 for constants.

@@ -49,36 +49,41 @@ void countAt(const std::vector<double>& sigmas, const Laplacian& laplacian,
 }
 
 /// A first division, by Weyl's law: lambda_i ~ 4 pi i / area.
-std::vector<double> firstCuts(Index constants, Index k, Index width, double area) {
+std::vector<double> firstCuts(Index first, Index k, Index width, double area) {
     std::vector<double> sigmas;
-    for (Index i = constants + width; i < k + width; i += width)
+    for (Index i = first + width; i < k + width; i += width)
         sigmas.push_back(4.0 * kPi / area * static_cast<double>(std::min(i, k)));
     return sigmas;
 }
 
-/// Cuts that divide the intervals with too many eigenvalues, if they were evenly spaced.
-std::vector<double> moreCuts(const std::vector<Count>& counts, Index width) {
+/// Cuts that divide the intervals with too many eigenvalues, if they were evenly spaced; below the
+/// eigenvalue `first` one at most.
+std::vector<double> moreCuts(const std::vector<Count>& counts, Index first, Index width) {
     std::vector<double> sigmas;
     for (std::size_t i = 1; i < counts.size(); ++i) {
         const Count &a = counts[i - 1], &b = counts[i];
         const Index parts = (b.below - a.below) / width;
         if (parts < kTooMany || b.sigma - a.sigma <= kNarrowest * b.sigma) continue;
-        for (Index j = 1; j < parts; ++j)
+        const Index below = std::max<Index>(first - a.below, 0) * parts / (b.below - a.below);
+        for (Index j = std::max<Index>(below, 1); j < parts; ++j)
             sigmas.push_back(a.sigma + (b.sigma - a.sigma) * static_cast<double>(j) /
                                            static_cast<double>(parts));
     }
     return sigmas;
 }
 
-/// Drops the cuts beyond the first one with k eigenvalues below it.
-void dropBeyond(Index k, std::vector<Count>& counts) {
+/// Drops the cuts beyond the first one with k eigenvalues below it, and those below the last one
+/// with at most `first`.
+void dropOutside(Index first, Index k, std::vector<Count>& counts) {
     while (counts[counts.size() - 2].below >= k) counts.pop_back();
+    while (counts[1].below <= first) counts.erase(counts.begin());
 }
 
 }  // namespace
 
-std::vector<SpectralInterval> sliceSpectrum(const Laplacian& laplacian, Index constants, Index k,
-                                            Index width, std::vector<ShiftedLdlt>& factors,
+std::vector<SpectralInterval> sliceSpectrum(const Laplacian& laplacian, Index constants,
+                                            Index first, Index k, Index width,
+                                            std::vector<ShiftedLdlt>& factors,
                                             const Progress& progress) {
     std::vector<Count> counts{{0.0, constants}};
     double done = 0.0;  // how many more rounds there will be is not known
@@ -87,7 +92,7 @@ std::vector<SpectralInterval> sliceSpectrum(const Laplacian& laplacian, Index co
         countAt(sigmas, laplacian, factors, progress.part(done, half), counts);
         done = half;
     };
-    count(firstCuts(constants, k, width, laplacian.D.sum()));
+    count(firstCuts(first, k, width, laplacian.D.sum()));
     for (int move = 0; counts.back().below < k; ++move) {
         if (move == kMostMoves)
             throw SolverFailure(ErrorCode::BasisIncomplete,
@@ -95,11 +100,11 @@ std::vector<SpectralInterval> sliceSpectrum(const Laplacian& laplacian, Index co
         const bool isGap = counts.back().below == counts[counts.size() - 2].below;
         count({(isGap ? kAcrossGap : kFarther) * counts.back().sigma});
     }
-    dropBeyond(k, counts);
-    for (std::vector<double> cuts = moreCuts(counts, width); !cuts.empty();
-         cuts = moreCuts(counts, width)) {
+    dropOutside(first, k, counts);
+    for (std::vector<double> cuts = moreCuts(counts, first, width); !cuts.empty();
+         cuts = moreCuts(counts, first, width)) {
         count(cuts);
-        dropBeyond(k, counts);
+        dropOutside(first, k, counts);
     }
 
     // Neighbours with few eigenvalues make one interval.

@@ -19,18 +19,21 @@ struct SpectralInterval {
     double middle() const { return 0.5 * (from + to); }
 };
 
-/// Divides the lowest part of the spectrum, at least k eigenvalues, into intervals of about `width`
-/// eigenvalues (spectrum slicing; the bands of Vallet and Levy 2008, section 3.3).
+/// Divides a part of the spectrum, at least the eigenvalues first to k - 1, counted from 0, into
+/// intervals of about `width` eigenvalues (spectrum slicing; the bands of Vallet and Levy 2008,
+/// section 3.3).
 ///
 /// The inertia of W - sigma D counts the eigenvalues below every cut (Sylvester's law of inertia):
 /// it is known how many harmonics each interval must give. The constant modes are in none.
 ///
-/// @param constants  number of constant modes, < k; k < n.
+/// @param constants  number of constant modes, <= first.
+/// @param first, k   first < k < n.
 /// @param factors    one for each thread of the team.
-/// @return ascending, without gaps from the constant modes on.
+/// @return ascending, without gaps; from the constant modes on where first = constants.
 /// @throws SolverFailure  when there is no such division; Cancelled.
-std::vector<SpectralInterval> sliceSpectrum(const Laplacian& laplacian, Index constants, Index k,
-                                            Index width, std::vector<ShiftedLdlt>& factors,
+std::vector<SpectralInterval> sliceSpectrum(const Laplacian& laplacian, Index constants,
+                                            Index first, Index k, Index width,
+                                            std::vector<ShiftedLdlt>& factors,
                                             const Progress& progress);
 
 }  // namespace spectral

@@ -56,17 +56,21 @@ bool separate(const std::vector<SpectralInterval>& intervals, const Eigen::Vecto
     return differ;
 }
 
-/// At least the k lowest pairs, in intervals of about `width`; empty where an eigenvalue lies on a
-/// cut between two of them.
+/// At least the pairs first to k - 1, in intervals of about `width`; empty where an eigenvalue lies
+/// on a cut between two of them.
 std::optional<HarmonicBasis> inIntervals(const Laplacian& laplacian, const ConstantModes& constants,
-                                         Index k, Index width, std::vector<ShiftedLdlt>& factors,
+                                         Index first, Index k, Index width,
+                                         std::vector<ShiftedLdlt>& factors,
                                          const Progress& progress) {
-    const std::vector<SpectralInterval> intervals =
-        sliceSpectrum(laplacian, constants.count(), k, width, factors, progress.part(0.0, 0.2));
-    const Index size = intervals.back().first + intervals.back().count;
+    std::vector<SpectralInterval> intervals =
+        sliceSpectrum(laplacian, constants.count(), std::max<Index>(first, constants.count()), k,
+                      width, factors, progress.part(0.0, 0.2));
     HarmonicBasis basis;
+    basis.first = first == 0 ? 0 : intervals.front().first;
+    for (SpectralInterval& interval : intervals) interval.first -= basis.first;
+    const Index size = intervals.back().first + intervals.back().count;
     basis.Phi.resize(laplacian.D.size(), size);
-    basis.Phi.leftCols(constants.count()) = constants.orthonormal();
+    if (basis.first == 0) basis.Phi.leftCols(constants.count()) = constants.orthonormal();
     basis.lambda = Eigen::VectorXd::Zero(size);
     std::atomic<bool> isComplete{true};
     runTasks(
@@ -90,15 +94,16 @@ std::optional<HarmonicBasis> inIntervals(const Laplacian& laplacian, const Const
     return basis;
 }
 
-HarmonicBasis lowestPairs(const Laplacian& laplacian, const ConstantModes& constants, Index k,
-                          ShiftedLdlt& ldlt, const Progress& progress) {
+/// At least the pairs first to k - 1.
+HarmonicBasis pairsBetween(const Laplacian& laplacian, const ConstantModes& constants, Index first,
+                           Index k, ShiftedLdlt& ldlt, const Progress& progress) {
     std::vector<ShiftedLdlt> factors(static_cast<std::size_t>(ThreadTeam::size()),
                                      ldlt.sibling(laplacian.W));
     double done = 0.0;
     for (const Index width : kWidths) {
         const double end = 0.9 + 0.1 * done;
         std::optional<HarmonicBasis> basis =
-            inIntervals(laplacian, constants, k, width, factors, progress.part(done, end));
+            inIntervals(laplacian, constants, first, k, width, factors, progress.part(done, end));
         done = end;
         if (!basis) continue;
         for (const ShiftedLdlt& factor : factors) ldlt.addWork(factor);
@@ -192,10 +197,10 @@ Eigen::VectorXd relativeResiduals(const Laplacian& laplacian, Index constants,
     return residuals;
 }
 
-std::optional<Index> cutOutsideClusters(const Eigen::VectorXd& lambda, Index asked) {
-    const double spacing = lambda[asked - 1] / static_cast<double>(asked);
-    for (Index k = asked; k < lambda.size(); ++k)
-        if (lambda[k] - lambda[k - 1] > kClusterSpacing * spacing) return k;
+std::optional<Index> cutOutsideClusters(const Eigen::VectorXd& lambda, Index asked, Index first) {
+    const double spacing = lambda[asked - first - 1] / static_cast<double>(asked);
+    for (Index k = asked - first; k < lambda.size(); ++k)
+        if (lambda[k] - lambda[k - 1] > kClusterSpacing * spacing) return first + k;
     return std::nullopt;
 }
 
@@ -214,7 +219,7 @@ HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& co
     for (Index more = 8;; more *= 2) {
         const Index total = std::min(k + more, n - 1);
         HarmonicBasis basis =
-            lowestPairs(laplacian, constants, total, ldlt, progress.part(0.0, 0.95));
+            pairsBetween(laplacian, constants, 0, total, ldlt, progress.part(0.0, 0.95));
         std::optional<Index> size = cutOutsideClusters(basis.lambda, k);
         if (!size) {
             if (total < n - 1) continue;
@@ -223,6 +228,18 @@ HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& co
         return certified(laplacian, constants, std::move(basis), *size, ldlt,
                          progress.part(0.95, 1.0));
     }
+}
+
+HarmonicBasis harmonicsBetween(const Laplacian& laplacian, const ConstantModes& constants,
+                               Index first, Index last, ShiftedLdlt& ldlt,
+                               const Progress& progress) {
+    requireMemory(last - first, laplacian.D.size());
+    const ThreadTeam team;
+    HarmonicBasis basis =
+        pairsBetween(laplacian, constants, first, last, ldlt, progress.part(0.0, 0.95));
+    basis.residuals = relativeResiduals(laplacian, 0, basis, progress.part(0.95, 1.0));
+    requireUseful(basis.residuals);
+    return basis;
 }
 
 }  // namespace spectral

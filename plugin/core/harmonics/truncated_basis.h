@@ -26,6 +26,15 @@ namespace spectral {
 HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& constants, Index k,
                              ShiftedLdlt& ldlt, const Progress& progress = {});
 
+/// The eigenpairs first to last - 1, counted from 0, and some on both sides; none is missing
+/// between them, by inertia. Residuals as those of truncatedBasis.
+///
+/// @param first, last  constants.count() < first < last < n.
+/// @throws SolverFailure, Cancelled
+HarmonicBasis harmonicsBetween(const Laplacian& laplacian, const ConstantModes& constants,
+                               Index first, Index last, ShiftedLdlt& ldlt,
+                               const Progress& progress);
+
 /// |D^-1/2 (W phi - lambda D phi)| / |lambda| of every harmonic but the first `constants`; 0 there.
 Eigen::VectorXd relativeResiduals(const Laplacian& laplacian, Index constants,
                                   const HarmonicBasis& basis, const Progress& progress);
@@ -33,7 +42,8 @@ Eigen::VectorXd relativeResiduals(const Laplacian& laplacian, Index constants,
 /// The number of pairs, from `asked` on, at which a spectrum may be cut: where the next eigenvalue
 /// is not equal to the last one or nearly so. Empty when every candidate lies inside a cluster.
 ///
-/// @param lambda  ascending, more than `asked` entries.
-std::optional<Index> cutOutsideClusters(const Eigen::VectorXd& lambda, Index asked);
+/// @param lambda  the eigenvalues from number `first` on, ascending, also the one after `asked`.
+std::optional<Index> cutOutsideClusters(const Eigen::VectorXd& lambda, Index asked,
+                                        Index first = 0);
 
 }  // namespace spectral

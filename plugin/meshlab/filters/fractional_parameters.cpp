@@ -54,7 +54,7 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "spectrum", static_cast<int>(defaults.evaluation.spectrum), spectra(), "Spectrum",
         "<b>full</b> filters all frequencies of the mesh, and is fast. <b>truncated</b> computes "
         "only the lowest frequencies (as many as the basis size) and treats all others alike, as "
-        "older methods do; it does so in every step, so set a number of steps, e.g. 10.",
+        "older methods do; every step takes long, so set a number of steps, e.g. 10.",
         true));
     list.addParam(
         RichInt("basis_size", defaults.evaluation.truncation.basisSize, "Basis size",

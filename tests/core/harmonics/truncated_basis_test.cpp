@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "core/analysis/manifold_harmonics.h"
-#include "core/filter/fractional_filter.h"
 #include "core/support/errors.h"
 #include "support/evaluation.h"
 #include "support/shapes.h"
@@ -51,6 +50,26 @@ TEST(TruncatedBasisSlices, HoldEveryCopyOfAMultipleEigenvalue) {
     expectLowest(testing::cube(12), 120, "cube");
     expectLowest(testing::rectangle(1, 1, 24, 24), 100, "square");
     expectLowest(copies(testing::icosphere(2), 5), 100, "five equal spheres");
+}
+
+TEST(HarmonicsBetween, AreAllThere) {
+    // On the sphere first and last lie inside multiplets: 100 and 168 of 169 harmonics up to degree
+    // 12.
+    for (const Mesh& mesh : {testing::blob(), testing::icosphere(3), testing::cube(12),
+                             copies(testing::icosphere(2), 5)}) {
+        const Operator A(mesh);
+        const Eigen::VectorXd lambda = denseBasis(A.laplacian, A.constants).lambda;
+        ShiftedLdlt ldlt;
+        const Index first = 90, last = 168;
+        const HarmonicBasis near =
+            harmonicsBetween(A.laplacian, A.constants, first, last, ldlt, {});
+        ASSERT_LE(near.first, first);
+        ASSERT_GE(near.first + near.size(), last);
+        EXPECT_LT((near.lambda - lambda.segment(near.first, near.size())).cwiseAbs().maxCoeff(),
+                  1e-9 * lambda[last]);
+        EXPECT_LT(testing::orthonormalityError(near.Phi, A.laplacian.D), 1e-7);
+        EXPECT_LT(near.residuals.maxCoeff(), 1e-7);
+    }
 }
 
 TEST(TruncatedBasisSlices, OfManyEqualPartsAreAllThere) {
@@ -101,19 +120,6 @@ TEST(TruncatedBasisSlices, TellTheirProgress) {
     });
     lowestHarmonics(A, 100, rising);
     EXPECT_GT(last, 0.9);
-}
-
-TEST(TruncatedSteps, ComputeTheBasisOfEveryShape) {
-    const Mesh mesh = testing::withNoise(testing::icosphere(4), 0.02, 7);
-    FilterOptions options;
-    options.featureSize = 0.5;
-    options.steps = 3;
-    options.evaluation.spectrum = Spectrum::Truncated;
-    options.evaluation.truncation.basisSize = 100;
-    const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
-    EXPECT_EQ(result.computedBases, 3);
-    EXPECT_EQ(result.inertiaCount, result.eigenvalues.size());
-    EXPECT_LT(result.residuals.maxCoeff(), 1e-7);
 }
 
 TEST(TruncatedBasis, RefusesHarmonicsOfWhichRoundOffLeavesNothing) {

@@ -245,7 +245,7 @@ def test_truncated_basis_agrees(
         "feature_size": percent(15),
         "laplacian": "cotangent",
         "spectrum": "truncated",
-        "basis_size": 100,
+        "basis_size": 200,
         "reinject_residual": reinject_residual,
         "steps": steps,
         "basis_update": basis_update,
@@ -305,7 +305,7 @@ def test_a_fixed_boundary_agrees(
         "laplacian": laplacian,
         "boundary": "fixed",
         "spectrum": spectrum,
-        "basis_size": 100,
+        "basis_size": 200,
         "steps": steps,
         "basis_update": basis_update,
     }
@@ -317,7 +317,7 @@ def test_a_fixed_boundary_agrees(
         steps,
         basis_update,
         laplacian,
-        100 if spectrum == "truncated" else None,
+        200 if spectrum == "truncated" else None,
     )
     error = largest_distance(Y, expected) / diagonal(V)
     record_property("largest_distance_in_diagonals", error)

@@ -1,0 +1,129 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/filter/fractional_filter.h"
+#include "core/harmonics/harmonic_basis.h"
+#include "core/harmonics/truncated_basis.h"
+#include "core/laplacian/constant_modes.h"
+#include "core/laplacian/laplacian.h"
+#include "core/mesh/measures.h"
+#include "core/mesh/surface.h"
+#include "core/transfer/transfer_function.h"
+#include "support/evaluation.h"
+#include "support/shapes.h"
+
+namespace spectral {
+namespace {
+
+using testing::Mesh;
+
+FilterOptions truncated(const Mesh& mesh, Index k, bool reinjectResidual = true) {
+    FilterOptions options;
+    options.featureSize = 0.2 * boundingBoxDiagonal(mesh.V);
+    options.steps = 3;
+    options.laplacian = LaplacianKind::Cotangent;
+    options.basisUpdate = BasisUpdate::Full;
+    options.evaluation.spectrum = Spectrum::Truncated;
+    options.evaluation.truncation = {k, reinjectResidual};
+    return options;
+}
+
+/// The same steps with all eigenvectors of every shape, by the dense solver.
+Vertices withDenseBases(const Mesh& mesh, const FilterOptions& options) {
+    const TransferFunction F(options.transferFunction, cutoffFrequency(options.featureSize));
+    const Components components = connectedComponents(mesh.F, mesh.V.rows());
+    const double alpha = 1.0 / options.steps;
+    Vertices X = mesh.V;
+    for (int step = 0; step < options.steps; ++step) {
+        const Laplacian laplacian = cotangentLaplacian(X, mesh.F);
+        const ConstantModes constants(components, laplacian.D);
+        HarmonicBasis basis = denseBasis(laplacian, constants);
+        const double highest = std::sqrt(basis.lambda[basis.size() - 1]);
+        const Index k =
+            cutOutsideClusters(basis.lambda, options.evaluation.truncation.basisSize).value();
+        basis.Phi.conservativeResize(Eigen::NoChange, k);
+        basis.lambda.conservativeResize(k);
+        const double rest = options.evaluation.truncation.reinjectResidual
+                                ? meanGain(F, std::sqrt(basis.lambda[k - 1]), highest)
+                                : 0.0;
+        X = applyInBasis(basis, laplacian.D, constants, fractionalPower(F, alpha),
+                         std::pow(rest, alpha), X);
+    }
+    return X;
+}
+
+void expectAgreement(const Mesh& mesh, const FilterOptions& options, int computedBases) {
+    const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_EQ(result.computedBases, computedBases);
+    EXPECT_TRUE(result.accuracyReached);
+    EXPECT_LT(testing::largestDifference(result.V, withDenseBases(mesh, options)),
+              options.evaluation.accuracy * boundingBoxDiagonal(mesh.V));
+    EXPECT_GT(testing::largestDifference(result.V, mesh.V), 1e-3 * boundingBoxDiagonal(mesh.V));
+}
+
+Mesh roughSphere() { return testing::withNoise(testing::icosphere(3), 0.02, 7); }
+
+TEST(TruncatedSteps, ComputeOneBasisWhereTheResidualIsKept) {
+    const Mesh two = testing::joined(testing::icosphere(2), testing::torus(4, 0.8, 24, 10));
+    for (const Mesh& mesh : {roughSphere(), two}) {
+        FilterOptions options = truncated(mesh, 200);
+        expectAgreement(mesh, options, 1);
+        options.transferFunction.type = FilterType::HighPass;  // a high jump at the cut
+        options.transferFunction.passGain = 2.0;
+        options.transferFunction.stopGain = 1.0;
+        expectAgreement(mesh, options, 1);
+        options.transferFunction.passGain = 0.2;
+        expectAgreement(mesh, options, 1);
+    }
+}
+
+TEST(TruncatedSteps, DoNotCutAClusterOfHarmonics) {
+    // 200 harmonics would cut the sphere's of degree 14, the 197th to the 225th.
+    const Mesh mesh = testing::icosphere(3);
+    expectAgreement(mesh, truncated(mesh, 200), 1);
+}
+
+TEST(TruncatedSteps, ComputeEveryBasisWhereThatIsQuicker) {
+    const Mesh mesh = roughSphere();
+    expectAgreement(mesh, truncated(mesh, 200, false), 3);
+    expectAgreement(mesh, truncated(mesh, 50), 3);
+}
+
+TEST(TruncatedSteps, ComputeEveryBasisForAGainWithJumps) {
+    const Mesh mesh = roughSphere();
+    FilterOptions options = truncated(mesh, 200);
+    options.transferFunction.response = Response::Ideal;
+    expectAgreement(mesh, options, 3);
+}
+
+TEST(TruncatedSteps, ComputeEveryBasisOfAlmostAllHarmonics) {
+    const Mesh mesh = roughSphere();
+    expectAgreement(mesh, truncated(mesh, mesh.V.rows() - 40), 3);
+}
+
+TEST(TruncatedSteps, ComputeEveryBasisOnceTheAccuracyIsNotReached) {
+    Mesh mesh = roughSphere();
+    mesh.V.row(7) *= 30.0;  // needles, whose round-off no more solves make up for
+    FilterOptions options = truncated(mesh, 200);
+    options.evaluation.accuracy = 1e-12;
+    const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_EQ(result.computedBases, 3);
+    EXPECT_LT(testing::largestDifference(result.V, withDenseBases(mesh, options)),
+              1e-6 * boundingBoxDiagonal(mesh.V));
+}
+
+TEST(TruncatedSteps, TellOfTheBasisOfTheInput) {
+    const Mesh mesh = roughSphere();
+    const FilterResult result = fractionalFilter(mesh.V, mesh.F, truncated(mesh, 200));
+    const testing::Operator A(mesh);
+    const Eigen::VectorXd lambda = denseBasis(A.laplacian, A.constants).lambda;
+    ASSERT_GE(result.eigenvalues.size(), 200);
+    EXPECT_EQ(result.inertiaCount, result.eigenvalues.size());
+    EXPECT_LT(result.residuals.maxCoeff(), 1e-7);
+    EXPECT_LT((result.eigenvalues - lambda.head(result.eigenvalues.size())).cwiseAbs().maxCoeff(),
+              1e-8 * lambda[result.eigenvalues.size()]);
+}
+
+}  // namespace
+}  // namespace spectral
