@@ -201,16 +201,16 @@ def truncated_filter(
     basis_update: str,
     basis_size: int,
     reinject_residual: bool,
-) -> tuple[Array, int]:
+) -> tuple[Array, list[int]]:
     """K steps with the `basis_size` lowest eigenpairs of a connected mesh (Eqs. 6 to 10).
 
     The rest of X gets F_h^(1/K), F_h the mean of F over [omega_k, omega_max], or is dropped.
-    Returns the coordinates and the size of the first step's basis.
+    Returns the coordinates and the sizes of the bases of all steps.
     """
     (part,) = components(len(V), F)
     W, d = cotangent_matrix(V, F), lumped_areas(V, F)
     (spectrum,) = spectra(W, d, [part])
-    size = cut_outside_clusters(spectrum.lam, basis_size)
+    sizes = []
     X = V.copy()
     for step in range(steps):
         if step > 0 and basis_update != "none":
@@ -218,6 +218,7 @@ def truncated_filter(
             d = lumped_areas(X, F)
             (spectrum,) = spectra(W, d, [part])
         k = cut_outside_clusters(spectrum.lam, basis_size)
+        sizes.append(k)
         omega = np.sqrt(spectrum.lam)
         g = np.ones(k)
         g[1:] = gain(omega[1:k]) ** (1 / steps)
@@ -225,7 +226,7 @@ def truncated_filter(
         C = Phi.T @ (d[:, None] * X)
         F_h = mean_gain(gain, omega[k - 1], omega[-1]) if reinject_residual else 0.0
         X = Phi @ (g[:, None] * C) + F_h ** (1 / steps) * (X - Phi @ C)
-    return X, size
+    return X, sizes
 
 
 def boundary_vertices(F: Indices) -> Indices:

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <utility>
 
 #include "core/filter/full_spectrum_evaluator.h"
@@ -12,13 +11,6 @@
 namespace spectral {
 
 namespace {
-
-/// More harmonics than this for a discontinuous gain take minutes: almost certainly unintended.
-constexpr Index kMaxExactBasis = 1000;
-
-/// Error of dense eigenvalues relative to the largest, and what is tolerable relative to the one at
-/// an edge, below which an eigenvalue belongs or not.
-constexpr double kDenseError = 1e-15, kEdgeAccuracy = 1e-6;
 
 /// Part of k on both sides of the cut whose harmonics are computed in the steps after the first:
 /// more take longer than the solves that they save. Of fewer than so many harmonics it is quicker
@@ -42,7 +34,7 @@ Evaluation BasisEvaluator::evaluate(const Laplacian& laplacian, const ConstantMo
         basis = truncatedBasis(laplacian, constants, truncation_->basisSize, ldlt_, progress);
         rest = residualGain(laplacian, basis.lambda[basis.size() - 1]);
     } else {
-        basis = upToLastJump(laplacian, constants, progress);
+        basis = harmonicsUpTo(F_.discontinuities().back(), laplacian, constants, ldlt_, progress);
         rest = F_(2.0 * F_.discontinuities().back());
     }
     Evaluation evaluation;
@@ -50,14 +42,13 @@ Evaluation BasisEvaluator::evaluate(const Laplacian& laplacian, const ConstantMo
         // The power of the mean gain, not the mean of the power: K steps then make one filter.
         evaluation.Y.push_back(applyInBasis(basis, laplacian.D, constants,
                                             fractionalPower(F_, alpha), std::pow(rest, alpha), X));
-    if (computedBases_++ == 0) {
-        basis.Phi = {};
-        basis_ = std::move(basis);
+    basis.Phi = {};
+    basis_ = std::move(basis);
+    if (computedBases_++ == 0)
         // Where the residual is dropped, the jump is so high that a basis takes no longer.
         canDoWithoutBasis_ = truncation_ && truncation_->reinjectResidual &&
                              truncation_->basisSize >= kLeastHarmonics &&
                              F_.discontinuities().empty();
-    }
     return evaluation;
 }
 
@@ -76,7 +67,7 @@ std::optional<Evaluation> BasisEvaluator::aroundTheCut(const Laplacian& laplacia
         const Index inside = *size - near.first;
         const double below = near.lambda[inside - 1], above = near.lambda[inside];
         const double cut = std::sqrt(0.5 * (below + above)), rest = residualGain(laplacian, below);
-        std::vector<Gain> gains;
+        std::vector<Gain> gains;  // Eqs. 6 to 9: F on the first harmonics, F_h on all others
         for (const double alpha : alphas)
             gains.push_back([F = fractionalPower(F_, alpha), Fh = std::pow(rest, alpha),
                              cut](double omega) { return omega < cut ? F(omega) : Fh; });
@@ -113,31 +104,6 @@ double BasisEvaluator::residualGain(const Laplacian& laplacian, double lastEigen
     // The power of the mean here, too, so that parts of a filter make the whole.
     const TransferFunction whole = F_.whole();
     return std::pow(from < to ? meanGain(whole, from, to) : whole(to), F_.appliedPower());
-}
-
-HarmonicBasis BasisEvaluator::upToLastJump(const Laplacian& laplacian,
-                                           const ConstantModes& constants,
-                                           const Progress& progress) {
-    const double last = F_.discontinuities().back();
-    const Index n = laplacian.D.size();
-    if (isDenseQuicker(n)) {
-        HarmonicBasis all = denseBasis(laplacian, constants);
-        if (all.lambda[n - 1] * kDenseError > kEdgeAccuracy * last * last)
-            throw SolverFailure(ErrorCode::SingularMatrix,
-                                "round-off leaves nothing of the harmonics at the edge of the "
-                                "filter: triangles are needles");
-        return all;
-    }
-    const Index below = countEigenvaluesBelow(laplacian.W, laplacian.D, last * last, ldlt_);
-    if (below > kMaxExactBasis)
-        throw InvalidOption(ErrorCode::TooManyHarmonics,
-                            "response = ideal needs every harmonic up to its edge, here " +
-                                std::to_string(below) + " (at most " +
-                                std::to_string(kMaxExactBasis) + ")",
-                            kMaxExactBasis);
-    if (below == n) return denseBasis(laplacian, constants);  // nothing to cut
-    return truncatedBasis(laplacian, constants, std::max<Index>(below, constants.count() + 1),
-                          ldlt_, progress);
 }
 
 }  // namespace spectral

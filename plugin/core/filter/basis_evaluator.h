@@ -39,8 +39,6 @@ class BasisEvaluator : public Evaluator {
                                            const ConstantModes& constants, const Eigen::MatrixXd& X,
                                            const std::vector<double>& alphas, double accuracy,
                                            const Progress& progress);
-    HarmonicBasis upToLastJump(const Laplacian& laplacian, const ConstantModes& constants,
-                               const Progress& progress);
     double residualGain(const Laplacian& laplacian, double lastEigenvalue) const;
 
     const TransferFunction& F_;

@@ -39,7 +39,7 @@ class Evaluator {
                                 const Eigen::MatrixXd& X, const std::vector<double>& alphas,
                                 double accuracy, const Progress& progress) = 0;
 
-    /// The basis of the first Laplacian, without its vectors; empty where none is used.
+    /// The last basis that was computed, without its vectors; empty where none is used.
     const HarmonicBasis& basis() const { return basis_; }
     int computedBases() const { return computedBases_; }
     const ShiftedLdlt& ldlt() const { return ldlt_; }  ///< Counts the work.

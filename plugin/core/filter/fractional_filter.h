@@ -61,11 +61,12 @@ struct FilterResult {
     bool cutoffReached = true;  ///< Truncated spectrum: whether the harmonics reach omega_c.
     std::vector<double> stepSizes;  ///< The fractional powers alpha, in their order; sum 1.
 
-    // The basis of the input, where one is used.
+    // The last basis that was computed: that of the last step, or of the input where no other was
+    // needed.
     Eigen::VectorXd eigenvalues;  ///< k, ascending; empty without a basis.
     Eigen::VectorXd residuals;    ///< k, relative (see HarmonicBasis); empty for a dense basis.
     int inertiaCount = 0;         ///< Harmonics that the basis must hold; 0 for a dense basis.
-    int computedBases = 0;        ///< Bases computed, that of the input among them.
+    int computedBases = 0;        ///< Bases computed in all steps.
 };
 
 /// Filters the geometry of a mesh: K steps X <- F^(1/K)(sqrt(A)) X, with the Laplacian A of the

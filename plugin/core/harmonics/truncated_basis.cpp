@@ -33,6 +33,13 @@ constexpr double kClusterSpacing = 0.1;
 /// Relative residual beyond which a vector is none of the harmonics.
 constexpr double kUselessResidual = 1e-2;
 
+/// More harmonics than this up to an edge take minutes: almost certainly unintended.
+constexpr Index kMostUpToEdge = 1000;
+
+/// Error of dense eigenvalues relative to the largest, and what is tolerable relative to the one at
+/// an edge, below which an eigenvalue belongs or not.
+constexpr double kDenseError = 1e-15, kEdgeAccuracy = 1e-6;
+
 constexpr const char* kStage = "computing the harmonics";
 
 /// Orthogonalizes every second interval against its neighbours: eigenvectors of close eigenvalues
@@ -228,6 +235,29 @@ HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& co
         return certified(laplacian, constants, std::move(basis), *size, ldlt,
                          progress.part(0.95, 1.0));
     }
+}
+
+HarmonicBasis harmonicsUpTo(double edge, const Laplacian& laplacian, const ConstantModes& constants,
+                            ShiftedLdlt& ldlt, const Progress& progress) {
+    const Index n = laplacian.D.size();
+    if (isDenseQuicker(n)) {
+        HarmonicBasis all = denseBasis(laplacian, constants);
+        if (all.lambda[n - 1] * kDenseError > kEdgeAccuracy * edge * edge)
+            throw SolverFailure(ErrorCode::SingularMatrix,
+                                "round-off leaves nothing of the harmonics at the edge of the "
+                                "filter: triangles are needles");
+        return all;
+    }
+    const Index below = countEigenvaluesBelow(laplacian.W, laplacian.D, edge * edge, ldlt);
+    if (below > kMostUpToEdge)
+        throw InvalidOption(ErrorCode::TooManyHarmonics,
+                            "response = ideal needs every harmonic up to its edge, here " +
+                                std::to_string(below) + " (at most " +
+                                std::to_string(kMostUpToEdge) + ")",
+                            kMostUpToEdge);
+    if (below == n) return denseBasis(laplacian, constants);  // nothing to cut
+    return truncatedBasis(laplacian, constants, std::max<Index>(below, constants.count() + 1), ldlt,
+                          progress);
 }
 
 HarmonicBasis harmonicsBetween(const Laplacian& laplacian, const ConstantModes& constants,

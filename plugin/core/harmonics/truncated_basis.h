@@ -26,6 +26,14 @@ namespace spectral {
 HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& constants, Index k,
                              ShiftedLdlt& ldlt, const Progress& progress = {});
 
+/// All harmonics below an edge of a gain, omega^2 = lambda, at least one besides the constants; all
+/// that there are, where a mesh has few.
+/// @param edge  a frequency > 0.
+/// @throws InvalidOption  when they are more than 1,000.
+/// @throws SolverFailure, Cancelled
+HarmonicBasis harmonicsUpTo(double edge, const Laplacian& laplacian, const ConstantModes& constants,
+                            ShiftedLdlt& ldlt, const Progress& progress = {});
+
 /// The eigenpairs first to last - 1, counted from 0, and some on both sides; none is missing
 /// between them, by inertia. Residuals as those of truncatedBasis.
 ///

@@ -182,7 +182,7 @@ std::string fractionalReportText(const spectral::FilterOptions& options,
     text << "\n  work: " << result.factorizations << " factorizations, " << result.solves
          << " solves";
     if (result.eigenvalues.size() > 0)
-        text << ", " << result.eigenvalues.size() << " harmonics of the input up to frequency "
+        text << ", " << result.eigenvalues.size() << " harmonics up to frequency "
              << lastFrequency(result) << ", bases computed: " << result.computedBases;
     else
         text << ", estimated relative error " << result.errorEstimate;

@@ -113,7 +113,7 @@ TEST(TruncatedSteps, ComputeEveryBasisOnceTheAccuracyIsNotReached) {
               1e-6 * boundingBoxDiagonal(mesh.V));
 }
 
-TEST(TruncatedSteps, TellOfTheBasisOfTheInput) {
+TEST(TruncatedSteps, ReportTheBasisOfTheInputWhereItIsTheOnlyOne) {
     const Mesh mesh = roughSphere();
     const FilterResult result = fractionalFilter(mesh.V, mesh.F, truncated(mesh, 200));
     const testing::Operator A(mesh);

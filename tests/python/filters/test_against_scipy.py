@@ -251,7 +251,7 @@ def test_truncated_basis_agrees(
         "basis_update": basis_update,
     }
     Y, report = filter_arrays(V, F, **options)
-    expected, basis_size = reference.truncated_filter(
+    expected, sizes = reference.truncated_filter(
         V,
         F,
         gain_of(options, report),
@@ -262,7 +262,7 @@ def test_truncated_basis_agrees(
     )
     error = largest_distance(Y, expected) / diagonal(V)
     record_property("largest_distance_in_diagonals", error)
-    assert len(report["eigenvalues"]) == basis_size
+    assert len(report["eigenvalues"]) == sizes[report["computed_bases"] - 1]
     assert error < AGREEMENT
 
 
