@@ -7,6 +7,7 @@
 #include "core/filter/full_spectrum_evaluator.h"
 #include "core/harmonics/truncated_basis.h"
 #include "core/support/errors.h"
+#include "core/support/memory.h"
 
 namespace spectral {
 
@@ -57,8 +58,15 @@ std::optional<Evaluation> BasisEvaluator::aroundTheCut(const Laplacian& laplacia
                                                        const Eigen::MatrixXd& X,
                                                        const std::vector<double>& alphas,
                                                        double accuracy, const Progress& progress) {
-    const Index k = truncation_->basisSize, margin = k / kNearTheCut;
-    if (k - margin <= constants.count() || k + margin >= laplacian.D.size()) return {};
+    const Index k = truncation_->basisSize, margin = k / kNearTheCut, n = laplacian.D.size();
+    if (k - margin <= constants.count() || k + margin >= n) return {};
+    FullSpectrumOptions options;
+    options.accuracy = accuracy;
+    options.atEveryVertex = atEveryVertex_;
+    options.samples = F_.samples();
+    // Krylov spaces of all dimensions may need more memory than the basis has taken.
+    const auto numbers = static_cast<double>(n * X.cols() * options.maxDimension);
+    if (sizeof(double) * numbers > availableMemory()) return {};
     try {
         const HarmonicBasis near = harmonicsBetween(laplacian, constants, k - margin, k + margin,
                                                     ldlt_, progress.part(0.0, 0.6));
@@ -74,10 +82,6 @@ std::optional<Evaluation> BasisEvaluator::aroundTheCut(const Laplacian& laplacia
 
         const Eigen::MatrixXd c = near.transform(laplacian.D, X);
         const Eigen::ArrayXd omega = near.lambda.cwiseSqrt();
-        FullSpectrumOptions options;
-        options.accuracy = accuracy;
-        options.atEveryVertex = atEveryVertex_;
-        options.samples = F_.samples();
         options.samples.insert(options.samples.end(), {omega[0], omega[omega.size() - 1]});
         // Seen from a pole at the cut, both sides of the spectrum are equally large.
         ldlt_.factorizeDefinite(laplacian.W, laplacian.D, cut * cut,

@@ -9,6 +9,7 @@
 #include "core/laplacian/laplacian.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/surface.h"
+#include "core/support/memory.h"
 #include "core/transfer/transfer_function.h"
 #include "support/evaluation.h"
 #include "support/shapes.h"
@@ -111,6 +112,13 @@ TEST(TruncatedSteps, ComputeEveryBasisOnceTheAccuracyIsNotReached) {
     EXPECT_EQ(result.computedBases, 3);
     EXPECT_LT(testing::largestDifference(result.V, withDenseBases(mesh, options)),
               1e-6 * boundingBoxDiagonal(mesh.V));
+}
+
+TEST(TruncatedSteps, ComputeEveryBasisWhereMemoryIsShort) {
+    const Mesh mesh = roughSphere();
+    setMemoryMeasure([] { return 2.5e6; });  // room for 200 harmonics of 642 vertices
+    expectAgreement(mesh, truncated(mesh, 200), 3);
+    setMemoryMeasure(nullptr);
 }
 
 TEST(TruncatedSteps, ReportTheBasisOfTheInputWhereItIsTheOnlyOne) {
