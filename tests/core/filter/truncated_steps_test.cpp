@@ -19,7 +19,7 @@ namespace {
 
 using testing::Mesh;
 
-FilterOptions truncated(const Mesh& mesh, Index k, bool reinjectResidual = true) {
+FilterOptions truncated(const Mesh& mesh, int k, bool reinjectResidual = true) {
     FilterOptions options;
     options.featureSize = 0.2 * boundingBoxDiagonal(mesh.V);
     options.steps = 3;
@@ -100,7 +100,7 @@ TEST(TruncatedSteps, ComputeEveryBasisForAGainWithJumps) {
 
 TEST(TruncatedSteps, ComputeEveryBasisOfAlmostAllHarmonics) {
     const Mesh mesh = roughSphere();
-    expectAgreement(mesh, truncated(mesh, mesh.V.rows() - 40), 3);
+    expectAgreement(mesh, truncated(mesh, static_cast<int>(mesh.V.rows()) - 40), 3);
 }
 
 TEST(TruncatedSteps, ComputeEveryBasisOnceTheAccuracyIsNotReached) {
