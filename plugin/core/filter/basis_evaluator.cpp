@@ -23,19 +23,22 @@ constexpr Index kNearTheCut = 5, kLeastHarmonics = 200;
 Evaluation BasisEvaluator::evaluate(const Laplacian& laplacian, const ConstantModes& constants,
                                     const Eigen::MatrixXd& X, const std::vector<double>& alphas,
                                     double accuracy, const Progress& progress) {
+    double done = 0.0;
     if (canDoWithoutBasis_) {
+        done = 0.9;
         std::optional<Evaluation> evaluation =
-            aroundTheCut(laplacian, constants, X, alphas, accuracy, progress);
+            aroundTheCut(laplacian, constants, X, alphas, accuracy, progress.part(0.0, done));
         if (evaluation) return *std::move(evaluation);
         canDoWithoutBasis_ = false;  // nor will it in the steps that follow
     }
+    const Progress remaining = progress.part(done, 1.0);
     HarmonicBasis basis;
     double rest = 0.0;
     if (truncation_) {
-        basis = truncatedBasis(laplacian, constants, truncation_->basisSize, ldlt_, progress);
+        basis = truncatedBasis(laplacian, constants, truncation_->basisSize, ldlt_, remaining);
         rest = residualGain(laplacian, basis.lambda[basis.size() - 1]);
     } else {
-        basis = harmonicsUpTo(F_.discontinuities().back(), laplacian, constants, ldlt_, progress);
+        basis = harmonicsUpTo(F_.discontinuities().back(), laplacian, constants, ldlt_, remaining);
         rest = F_(2.0 * F_.discontinuities().back());
     }
     Evaluation evaluation;

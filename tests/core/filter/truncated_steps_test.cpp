@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 
 #include "core/filter/fractional_filter.h"
 #include "core/harmonics/harmonic_basis.h"
@@ -10,6 +11,7 @@
 #include "core/mesh/measures.h"
 #include "core/mesh/surface.h"
 #include "core/support/memory.h"
+#include "core/support/progress.h"
 #include "core/transfer/transfer_function.h"
 #include "support/evaluation.h"
 #include "support/shapes.h"
@@ -108,7 +110,13 @@ TEST(TruncatedSteps, ComputeEveryBasisOnceTheAccuracyIsNotReached) {
     mesh.V.row(7) *= 30.0;  // needles, whose round-off no more solves make up for
     FilterOptions options = truncated(mesh, 200);
     options.evaluation.accuracy = 1e-12;
-    const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
+    double last = 0.0;
+    const Progress rising([&](double fraction, const std::string&) {
+        EXPECT_GE(fraction, last);
+        last = fraction;
+        return true;
+    });
+    const FilterResult result = fractionalFilter(mesh.V, mesh.F, options, rising);
     EXPECT_EQ(result.computedBases, 3);
     EXPECT_LT(testing::largestDifference(result.V, withDenseBases(mesh, options)),
               1e-6 * boundingBoxDiagonal(mesh.V));
