@@ -10,7 +10,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <functional>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -139,56 +138,35 @@ void printAutomatic(const char* file) {
     }
 }
 
-/// Steps of the paper with a truncated spectrum, one at a time.
-class TruncatedSteps {
-  public:
-    TruncatedSteps(const Surface& surface, const FilterOptions& options, bool hasBasisEach)
-        : hasBasisEach_(hasBasisEach),
-          interior_(surface.F, connectedComponents(surface.F, surface.X.rows()), Boundary::Free),
-          F_(options.transferFunction, 2.0 * kPi / options.featureSize),
-          laplacians_(surface, options.laplacian, options.basisUpdate),
-          evaluation_(options.evaluation),
-          X_(surface.X) {}
-
-    void operator()(double alpha) {
-        const auto start = std::chrono::steady_clock::now();
-        if (!evaluate_ || hasBasisEach_) evaluate_.emplace(evaluation_, interior_, F_);
-        X_ = (*evaluate_)(laplacians_(X_), X_, alpha, {}).Y.front();
-        seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    }
-
-    const Vertices& X() const { return X_; }
-    double seconds() const { return seconds_; }
-    int computedBases() const { return evaluate_->computedBases(); }
-
-  private:
-    bool hasBasisEach_;
-    Interior interior_;
-    TransferFunction F_;
-    LaplacianBuilder laplacians_;
-    EvaluationOptions evaluation_;
-    Vertices X_;
-    std::optional<StepEvaluator> evaluate_;
-    double seconds_ = 0.0;
-};
-
 void printTruncated(const char* file) {
     const testing::Mesh mesh = testing::readPly(file);
     const Surface surface = surfaceOf(mesh.V, mesh.F);
+    const Interior interior(surface.F, connectedComponents(surface.F, surface.X.rows()),
+                            Boundary::Free);
     const double diagonal = boundingBoxDiagonal(surface.X);
     constexpr int kSteps = 10;
     const ThreadTeam team;
     for (const Case& c : kCases) {
         FilterOptions options = optionsOf(c, diagonal);
         options.evaluation.spectrum = Spectrum::Truncated;
-        TruncatedSteps one(surface, options, false), each(surface, options, true);
-        for (int step = 0; step < kSteps; ++step) {  // in turns: a machine's pace changes
-            one(1.0 / kSteps);
-            each(1.0 / kSteps);
+        const TransferFunction F(options.transferFunction, 2.0 * kPi / options.featureSize);
+        LaplacianBuilder laplacians(surface, options.laplacian, options.basisUpdate);
+        const auto step = [&](StepEvaluator& evaluate, Vertices& X) {
+            const auto start = std::chrono::steady_clock::now();
+            X = evaluate(laplacians(X), X, 1.0 / kSteps, {}).Y.front();
+            return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        };
+        StepEvaluator evaluate(options.evaluation, interior, F);
+        Vertices X = surface.X, withBases = surface.X;
+        double seconds = 0.0, secondsWithBases = 0.0;
+        for (int i = 0; i < kSteps; ++i) {  // in turns: a machine's pace changes
+            seconds += step(evaluate, X);
+            StepEvaluator fresh(options.evaluation, interior, F);
+            secondsWithBases += step(fresh, withBases);
         }
-        std::printf("| %s | %s | %.1f | %.1f | %.2f | %.1e | %d |\n", file, c.name, one.seconds(),
-                    each.seconds(), each.seconds() / one.seconds(),
-                    largestDifference(one.X(), each.X()) / diagonal, one.computedBases());
+        std::printf("| %s | %s | %.1f | %.1f | %.2f | %.1e | %d |\n", file, c.name, seconds,
+                    secondsWithBases, secondsWithBases / seconds,
+                    largestDifference(X, withBases) / diagonal, evaluate.computedBases());
         std::fflush(stdout);
     }
 }

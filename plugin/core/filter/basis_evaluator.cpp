@@ -13,8 +13,8 @@ namespace spectral {
 
 namespace {
 
-/// Part of k on both sides of the cut whose harmonics are computed in the steps after the first:
-/// more take longer than the solves that they save. Of fewer than so many harmonics it is quicker
+/// In the steps after the first, k / kNearTheCut harmonics are computed on both sides of the cut:
+/// more take longer than the solves that they save. With fewer than kLeastHarmonics it is quicker
 /// to compute all (bench_steps truncated).
 constexpr Index kNearTheCut = 5, kLeastHarmonics = 200;
 

@@ -34,7 +34,8 @@ class BasisEvaluator : public Evaluator {
                         double accuracy, const Progress& progress) override;
 
   private:
-    /// Empty where the accuracy is not reached: needles, say, or a cluster at the cut.
+    /// Empty where it cannot be done: the accuracy is not reached (needles, say), the harmonics
+    /// near the cut are one cluster or almost all that there are, or memory is short.
     std::optional<Evaluation> aroundTheCut(const Laplacian& laplacian,
                                            const ConstantModes& constants, const Eigen::MatrixXd& X,
                                            const std::vector<double>& alphas, double accuracy,

@@ -24,8 +24,8 @@ struct EvaluationOptions {
     Spectrum spectrum = Spectrum::Full;
     TruncationOptions truncation;  ///< For Spectrum::Truncated.
 
-    /// For Spectrum::Full: error of all steps together, relative to the size of the shape (see
-    /// FullSpectrumResult).
+    /// Error of all steps together that are evaluated without a basis, relative to the size of the
+    /// shape (see FullSpectrumResult).
     double accuracy = 1e-6;
     bool atEveryVertex = true;  ///< Whether that is the error of every vertex, or over the surface.
 };

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "core/filter/fractional_filter.h"
 #include "core/harmonics/harmonic_basis.h"
@@ -12,6 +13,7 @@
 #include "core/mesh/surface.h"
 #include "core/support/memory.h"
 #include "core/support/progress.h"
+#include "core/support/threads.h"
 #include "core/transfer/transfer_function.h"
 #include "support/evaluation.h"
 #include "support/shapes.h"
@@ -127,6 +129,29 @@ TEST(TruncatedSteps, ComputeEveryBasisWhereMemoryIsShort) {
     setMemoryMeasure([] { return 2.5e6; });  // room for 200 harmonics of 642 vertices
     expectAgreement(mesh, truncated(mesh, 200), 3);
     setMemoryMeasure(nullptr);
+}
+
+TEST(TruncatedSteps, HaveTheSameBitsForEveryNumberOfThreads) {
+    const Mesh mesh = testing::withNoise(testing::icosphere(4), 0.02, 7);  // several blocks of rows
+    std::vector<Vertices> results;
+    for (const int threads : {1, 2, 3}) {
+        setThreadCount(threads);
+        results.push_back(fractionalFilter(mesh.V, mesh.F, truncated(mesh, 200)).V);
+    }
+    setThreadCount(0);
+    EXPECT_TRUE(results[0] == results[1]);
+    EXPECT_TRUE(results[0] == results[2]);
+}
+
+TEST(TruncatedSteps, StopWhenTheCallerSaysSo) {
+    const Mesh mesh = roughSphere();
+    for (const char* stage : {"counting the harmonics", "computing the harmonics", "filtering"}) {
+        const std::string last = std::string("step 2 of 3: ") + stage;
+        const Progress progress(
+            [&](double, const std::string& text) { return text.find(last) == std::string::npos; });
+        EXPECT_THROW(fractionalFilter(mesh.V, mesh.F, truncated(mesh, 200), progress), Cancelled)
+            << last;
+    }
 }
 
 TEST(TruncatedSteps, ReportTheBasisOfTheInputWhereItIsTheOnlyOne) {

@@ -53,8 +53,8 @@ TEST(TruncatedBasisSlices, HoldEveryCopyOfAMultipleEigenvalue) {
 }
 
 TEST(HarmonicsBetween, AreAllThere) {
-    // On the sphere first and last lie inside multiplets: 100 and 168 of 169 harmonics up to degree
-    // 12.
+    // On the sphere both ends lie inside multiplets: those of degree 9, the 82nd to the 100th, and
+    // of degree 12, the 145th to the 169th.
     for (const Mesh& mesh : {testing::blob(), testing::icosphere(3), testing::cube(12),
                              copies(testing::icosphere(2), 5)}) {
         const Operator A(mesh);

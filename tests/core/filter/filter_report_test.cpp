@@ -1,0 +1,188 @@
+// What the fractional filter tells: its report, progress, and errors.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numeric>
+#include <string>
+
+#include "core/filter/fractional_filter.h"
+#include "core/mesh/measures.h"
+#include "core/mesh/mesh.h"
+#include "core/support/errors.h"
+#include "core/support/progress.h"
+#include "core/support/types.h"
+#include "core/transfer/transfer_function.h"
+#include "support/shapes.h"
+
+namespace spectral {
+namespace {
+
+using testing::largestDifference;
+using testing::Mesh;
+
+FilterOptions smoothing(const Mesh& mesh, int steps, BasisUpdate update) {
+    FilterOptions options;
+    options.featureSize = 0.25 * boundingBoxDiagonal(mesh.V);
+    options.steps = steps;
+    options.basisUpdate = update;
+    options.evaluation.accuracy = 1e-9;
+    return options;
+}
+
+TEST(FractionalFilter, ReportsWhatItDid) {
+    const Mesh mesh = testing::blob();
+    const FilterOptions options = smoothing(mesh, 4, BasisUpdate::Full);
+    const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_EQ(result.steps, 4);
+    EXPECT_EQ(result.factorizations, 4);
+    EXPECT_EQ(result.components, 1);
+    EXPECT_EQ(result.unreferencedVertices, 0);
+    EXPECT_NEAR(std::accumulate(result.stepSizes.begin(), result.stepSizes.end(), 0.0), 1.0, 1e-15);
+    EXPECT_NEAR(result.cutoffFrequency * result.featureSize, 2.0 * kPi, 1e-12);
+    EXPECT_GT(result.errorEstimate, 0.0);
+    EXPECT_LE(result.errorEstimate, options.evaluation.accuracy);
+    EXPECT_DOUBLE_EQ(result.areaAfter, surfaceArea(result.V, mesh.F));
+    EXPECT_NEAR(result.maxDisplacement, largestDifference(result.V, mesh.V), 1e-14);
+    EXPECT_EQ(result.eigenvalues.size(), 0);
+}
+
+TEST(FractionalFilter, WarnsWhenTheAccuracyIsNotReached) {
+    // The tenth root of a gain that vanishes inside the spectrum has a cusp there.
+    const Mesh mesh = testing::withNoise(testing::icosphere(4), 0.02, 5);
+    FilterOptions options = smoothing(mesh, 10, BasisUpdate::Conformal);
+    options.transferFunction.type = FilterType::BandStop;
+    options.featureSize = 0.5;  // where the noise is
+    const FilterResult cusp = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_FALSE(cusp.accuracyReached);
+    EXPECT_GT(cusp.errorEstimate, options.evaluation.accuracy);
+
+    options.transferFunction.stopGain = 0.05;
+    const FilterResult smooth = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_TRUE(smooth.accuracyReached);
+}
+
+TEST(FractionalFilter, TellsWhenTheHarmonicsEndBelowTheCutoff) {
+    const Mesh mesh = testing::blob();
+    FilterOptions options = smoothing(mesh, 2, BasisUpdate::Full);
+    options.evaluation.spectrum = Spectrum::Truncated;
+    options.evaluation.truncation.basisSize = 50;
+    const FilterResult enough = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_TRUE(enough.cutoffReached);
+
+    options.evaluation.truncation.basisSize = 5;
+    const FilterResult few = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_LT(std::sqrt(few.eigenvalues[few.eigenvalues.size() - 1]), few.cutoffFrequency);
+    EXPECT_FALSE(few.cutoffReached);
+
+    // An ideal response needs no harmonic beyond its edge.
+    options.evaluation.spectrum = Spectrum::Full;
+    options.transferFunction.response = Response::Ideal;
+    const FilterResult ideal = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_GT(ideal.eigenvalues.size(), 0);
+    EXPECT_TRUE(ideal.cutoffReached);
+}
+
+TEST(FractionalFilter, ReportsProgressUpToTheEnd) {
+    const Mesh mesh = testing::blob();
+    double last = 0.0;
+    int calls = 0;
+    const Progress progress([&](double fraction, const std::string& stage) {
+        EXPECT_GE(fraction, last - 1e-12);
+        EXPECT_LE(fraction, 1.0);
+        EXPECT_NE(stage.find(" of 5: "), std::string::npos);
+        last = fraction;
+        ++calls;
+        return true;
+    });
+    fractionalFilter(mesh.V, mesh.F, smoothing(mesh, 5, BasisUpdate::Full), progress);
+    EXPECT_GT(calls, 10);
+    EXPECT_GT(last, 0.8);
+}
+
+TEST(FractionalFilter, StopsWhenTheCallerSaysSo) {
+    const Mesh mesh = testing::blob();
+    for (const Spectrum spectrum : {Spectrum::Full, Spectrum::Truncated}) {
+        FilterOptions options = smoothing(mesh, 5, BasisUpdate::Full);
+        options.evaluation.spectrum = spectrum;
+        options.evaluation.truncation.basisSize = 50;
+        int calls = 0;
+        const Progress progress([&](double, const std::string&) { return ++calls < 7; });
+        EXPECT_THROW(fractionalFilter(mesh.V, mesh.F, options, progress), Cancelled);
+        EXPECT_EQ(calls, 7);
+    }
+}
+
+TEST(FractionalFilter, RefusesOptionsOutOfTheirRange) {
+    const Mesh mesh = testing::icosphere(2);
+    const auto refuses = [&](auto change) {
+        FilterOptions options = smoothing(mesh, 2, BasisUpdate::Full);
+        change(options);
+        EXPECT_THROW(fractionalFilter(mesh.V, mesh.F, options), InvalidOption);
+    };
+    refuses([](FilterOptions& o) { o.steps = -1; });
+    refuses([](FilterOptions& o) { o.steps = 1001; });
+    refuses([](FilterOptions& o) { o.steps = 0; });  // automatic, without a tolerance
+    refuses([](FilterOptions& o) { o.conformalShare = -0.1; });
+    refuses([](FilterOptions& o) { o.conformalShare = 1.1; });
+    refuses([](FilterOptions& o) { o.featureSize = 0.0; });
+    refuses([](FilterOptions& o) { o.featureSize = std::nan(""); });
+    refuses([](FilterOptions& o) { o.evaluation.accuracy = 0.0; });
+    refuses([](FilterOptions& o) { o.transferFunction.passGain = -1.0; });
+    refuses([](FilterOptions& o) {
+        o.evaluation.spectrum = Spectrum::Truncated;
+        o.evaluation.truncation.basisSize = 162;
+    });
+}
+
+TEST(FractionalFilter, TellsSmallNumbersInErrors) {
+    const Mesh mesh = testing::icosphere(1);
+    FilterOptions options = smoothing(mesh, 2, BasisUpdate::Full);
+    options.transferFunction.passGain = -1e-9;
+    try {
+        fractionalFilter(mesh.V, mesh.F, options);
+        FAIL() << "a negative gain is no gain";
+    } catch (const InvalidOption& error) {
+        EXPECT_EQ(std::string(error.what()).find("pass_gain = -1e-09: "), 0U) << error.what();
+    }
+}
+
+TEST(FractionalFilter, SaysInWhichStepThinPartsCollapsed) {
+    // A needle: a strong low-pass with full update pinches it to a line.
+    Mesh mesh = testing::icosphere(4);
+    mesh.V.col(0) *= 60.0;
+    FilterOptions options;
+    options.featureSize = 300.0;
+    options.laplacian = LaplacianKind::Cotangent;
+    options.basisUpdate = BasisUpdate::Full;
+    options.steps = 60;
+    try {
+        fractionalFilter(mesh.V, mesh.F, options);
+        FAIL() << "the needle should have collapsed";
+    } catch (const SolverFailure& failure) {
+        const std::string text = failure.what();
+        EXPECT_NE(text.find("step "), std::string::npos) << text;
+        EXPECT_EQ(failure.code(), ErrorCode::ShapeCollapsed);
+    }
+}
+
+TEST(FractionalFilter, SaysThatAFeatureSizeBeyondTheShapeLeavesNothing) {
+    const Mesh mesh = testing::withNoise(testing::icosphere(3), 0.03, 5);
+    FilterOptions options;
+    options.tolerance = 1e-3;
+    for (const BasisUpdate update : {BasisUpdate::Conformal, BasisUpdate::Full})
+        for (const double size : {1e1, 1e3, 1e9}) {
+            options.featureSize = size;
+            options.basisUpdate = update;
+            try {
+                fractionalFilter(mesh.V, mesh.F, options);
+                ADD_FAILURE() << "feature size " << size;
+            } catch (const SolverFailure& failure) {
+                EXPECT_EQ(failure.code(), ErrorCode::ShrinksToNothing)
+                    << failure.what() << ", feature size " << size;
+            }
+        }
+}
+
+}  // namespace
+}  // namespace spectral
