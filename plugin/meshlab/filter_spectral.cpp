@@ -12,7 +12,7 @@
 #include "meshlab/error_messages.h"
 #include "meshlab/free_memory.h"
 #include "meshlab/host_workarounds/apply_lock.h"
-#include "meshlab/host_workarounds/last_warnings.h"
+#include "meshlab/host_workarounds/last_words.h"
 #include "meshlab/host_workarounds/late_close.h"
 #include "meshlab/host_workarounds/late_preview.h"
 #include "meshlab/mesh_conversion.h"
@@ -134,7 +134,7 @@ RichParameterList FilterSpectralPlugin::initParameterList(const QAction* action,
 std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
     const QAction* action, const RichParameterList& parameters, MeshDocument& document,
     unsigned int&, vcg::CallBackPos* callback) {
-    keepLastWarnings({});
+    keepLastWords({}, {});
     releaseGLContext();
     // MeshLab handles user input in its callback, in the middle of this run: it may switch the
     // preview off, apply the filter, close its windows, restart the filter for a preview with other
@@ -159,7 +159,7 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
         FilterOutcome outcome = filterOf(action).apply(parameters, *document.mm(), progress);
         logLines(outcome.text);
         for (const std::string& warning : outcome.warnings) logLines("  WARNING: " + warning);
-        keepLastWarnings(outcome.warnings);
+        keepLastWords(outcome.summary, outcome.warnings);
         return std::move(outcome.report);
     } catch (const spectral::Cancelled& cancelled) {
         // No error message: the newer run's result stays, or the project is closed.

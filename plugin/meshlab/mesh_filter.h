@@ -16,7 +16,8 @@ struct FilterOutcome {
     std::map<std::string, QVariant> report;
     std::string text;  ///< The same as lines for MeshLab's log.
     std::vector<std::string>
-        warnings{};  ///< What fell short without being an error; in the log too.
+        warnings{};         ///< What fell short without being an error; in the log too.
+    std::string summary{};  ///< What was found and done in one line, if that needs words.
 };
 
 /// One filter of the plugin.

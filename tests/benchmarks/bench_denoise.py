@@ -1,33 +1,35 @@
 """Denoising against ground truth: noisy meshes whose clean originals are known.
 
-usage: bench_denoise.py [--pairs FOLDER] [--pictures FOLDER] [NAME ...]
+usage: bench_denoise.py [--pairs FOLDER] [--all-methods] [--pictures FOLDER] [NAME ...]
+       bench_denoise.py --clean [MESH ...]
        bench_denoise.py --estimates [MESH ...]
 
-For every pair NAME_noisy.ply, NAME_clean.ply and every method: mean angle between the normals of
-the faces in degrees / mean distance to the clean surface / mean distance of a vertex to its clean
-place, both in mean edges. Methods with a parameter have two lines: at its default, and at its best,
-the value with the least angle, chosen for each mesh by its clean original. Spectral Denoise has
-nothing to choose. FOLDER defaults to ../shared/denoise beside the repository, the measure is
-denoise_score.py beside FOLDER. --pictures writes pictures of four of the meshes
-side by side, and of a raw scan.
+For every pair NAME_noisy.ply, NAME_clean.ply: mean angle between the normals of the faces in
+degrees / mean distance of a vertex to its clean place along the normals, in mean edges; before,
+and after Spectral Denoise, with nothing chosen, and after MeshLab's smoothing filters at their
+best, the number of steps with the least angle for each mesh. For NAME_surface.ply, the true
+surface of a staircase with faces of its own, the angle between normals of nearest points. Seconds
+are those of a call of pymeshlab's, over those of MeshLab's Taubin smoothing with 50 steps.
+FOLDER defaults to ../shared/denoise beside the repository. --all-methods adds VTK's windowed sinc
+and bilateral normals. --pictures writes pictures of some, before, after and the truth.
+
+--clean: the largest displacement of meshes without noise, by default those of ../shared, and some
+of them decimated; with 0.05 mean edges of noise added, the angle before and after.
 
 --estimates: for every MESH, by default some of ../shared/data, without noise and with noise of
-known kind and height: the estimate, and the root mean square distance of the vertices to where they
-were without it, before and after; all in mean edges.
+known kind and height: what is found, and the root mean square distance of the vertices to where
+they were without it, before and after; all in mean edges.
 """
 
 from __future__ import annotations
 
 import argparse
-import re
-import subprocess
-import sys
-import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import matplotlib.pyplot as pyplot
 import meshlab_spectral
 import numpy as np
 import pymeshlab
@@ -41,24 +43,52 @@ Array = NDArray[np.float64]
 Method = Callable[[Array, Any], Array]
 
 SHARED = Path(__file__).resolve().parents[3] / "shared"
-# The constants of the method were chosen on these; it was then tried on the others.
-CHOSEN_ON = ("igea_n3", "child_n3", "Fandisk0.3", "pierrot_i3")
 GROUPS = {
-    "organic": ("igea_n3", "Nicolo0.2", "julius_n2", "child_n3"),
-    "CAD": ("trimstar_n3", "Fandisk0.3", "Block0.4"),
-    "impulsive": ("pierrot_i3",),
+    "soft forms": ("igea_n3", "Nicolo0.2", "julius_n2", "child_n3"),
+    "machine parts": ("trimstar_n3", "Fandisk0.3", "Block0.4"),
+    "synthetic": tuple(
+        f"{shape}_n{noise}"
+        for shape in [
+            "block",
+            "bumpy_torus",
+            "cube",
+            "eight",
+            "elephant",
+            "genus3",
+            "joint",
+            "plane-sphere",
+            "star",
+        ]
+        for noise in (1, 2, 3)
+    ),
 }
-PICTURED = ("trimstar_n3", "Fandisk0.3", "child_n3", "julius_n2")
+# What is drawn: the part within so much of the extent around a point, both relative to the extent.
+PICTURED = {
+    "kinect_Cone": ((0.5, 0.5), 1.0),
+    "stair64x1_igea": ((0.5, 0.5), 1.0),
+    "pierrot_i3": ((0.47, 0.7), 0.27),
+    "trimstar_n3": ((0.5, 0.5), 1.0),
+}
+README = ("kinect_Cone", "stair64x1_igea", "pierrot_i3")  # one above the other
 ESTIMATED = (
-    "rocker-arm.obj",
     "fandisk.off",
-    "gears.stl",
     "stanford-bunny.obj",
+    "igea.ply",
+    "hippo.ply",
+    "camelhead.off",
     "dragon_40k.ply",
     "lionstatue.obj",
-    "rangescan_lato000.ply",
+    "rocker-arm.obj",
 )
-_SCORE = re.compile(r"angle (\S+)  surface (\S+)  vertex (\S+)")
+DECIMATED = ("stanford-bunny.obj", "igea.ply", "fandisk.off")
+
+
+def load(file: Path) -> tuple[Array, NDArray[Any]]:
+    """Read vertices and faces."""
+    meshes = pymeshlab.MeshSet()
+    meshes.load_new_mesh(str(file))
+    mesh = meshes.current_mesh()
+    return mesh.vertex_matrix().copy(), mesh.face_matrix().copy()
 
 
 def meshlab(name: str, parameter: str | None = None) -> Method:
@@ -73,29 +103,27 @@ def meshlab(name: str, parameter: str | None = None) -> Method:
     return method
 
 
-def windowed_sinc(V: Array, F: Any, pass_band: float | None = None) -> Array:
+def windowed_sinc(V: Array, F: Any, pass_band: float) -> Array:
     """VTK's windowed sinc smoothing."""
     surface = pyvista.PolyData.from_regular_faces(V, F)
-    band = 0.1 if pass_band is None else pass_band
-    return np.asarray(surface.smooth_taubin(n_iter=50, pass_band=band).points, float)
+    return np.asarray(surface.smooth_taubin(n_iter=50, pass_band=pass_band).points, float)
 
 
-def bilateral_normals(V: Array, F: Any, chosen: tuple[float, int] = (0.35, 20)) -> Array:
+def bilateral_normals(V: Array, F: Any, chosen: tuple[float, int]) -> Array:
     """Bilateral normal filtering, local scheme (Zheng, Fu, Au, Tai 2011), from its equations."""
     sigma, iterations = chosen
     rows = np.repeat(np.arange(len(F)), 3)
     of_vertex = sp.csr_matrix((np.ones(F.size), (F.ravel(), rows)), (len(V), len(F)))
     pairs = (of_vertex.T @ of_vertex).tocoo()  # faces with a common vertex
     a, b = pairs.row[pairs.row != pairs.col], pairs.col[pairs.row != pairs.col]
-    sides = np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]])
+    sides = face_normals(V, F)
     area = np.linalg.norm(sides, axis=1)
     N, centre = sides / np.maximum(area, 1e-300)[:, None], V[F].mean(1)
     distance = np.linalg.norm(centre[a] - centre[b], axis=1)
     near = area[b] * np.exp(-((distance / distance.mean()) ** 2) / 2)
     for _ in range(iterations):
         w = near * np.exp(-(((N[a] - N[b]) ** 2).sum(1)) / (2 * sigma**2))
-        N = sp.csr_matrix((w, (a, b)), (len(F), len(F))) @ N
-        N /= np.maximum(np.linalg.norm(N, axis=1), 1e-300)[:, None]
+        N = unit(sp.csr_matrix((w, (a, b)), (len(F), len(F))) @ N)
     X = V.copy()
     faces = np.asarray(of_vertex.sum(1)).ravel()
     for _ in range(20):
@@ -108,126 +136,238 @@ def bilateral_normals(V: Array, F: Any, chosen: tuple[float, int] = (0.35, 20)) 
     return X
 
 
-# Method, and the values that its best is taken from; None: its default.
+# Method, and the values that its best is taken from.
 METHODS: dict[str, tuple[Method, list[Any]]] = {
-    "Spectral Denoise": (meshlab("apply_coord_spectral_denoise"), [None]),
-    "MeshLab Laplacian": (
-        meshlab("apply_coord_laplacian_smoothing", "stepsmoothnum"),
-        [None, 1, 2, 5, 8],
-    ),
-    "MeshLab HC Laplacian": (meshlab("apply_coord_hc_laplacian_smoothing"), [None]),
-    "MeshLab Taubin": (
+    "Laplacian": (meshlab("apply_coord_laplacian_smoothing", "stepsmoothnum"), [1, 2, 3, 5, 8]),
+    "Taubin": (
         meshlab("apply_coord_taubin_smoothing", "stepsmoothnum"),
-        [None, 3, 5, 8, 15, 20, 30, 45],
+        [3, 5, 8, 10, 15, 20, 30, 45],
     ),
-    "MeshLab two-step": (
-        meshlab("apply_coord_two_steps_smoothing", "normalthr"),
-        [None, 20.0, 40.0, 90.0],
-    ),
-    "VTK windowed sinc": (windowed_sinc, [None, 0.02, 0.05, 0.15, 0.2, 0.3]),
-    "bilateral normals": (
+}
+MORE_METHODS: dict[str, tuple[Method, list[Any]]] = {
+    "windowed sinc": (windowed_sinc, [0.02, 0.05, 0.1, 0.15, 0.2, 0.3]),
+    "bilateral": (
         bilateral_normals,
-        [None, *((sigma, k) for sigma in (0.2, 0.3, 0.45, 0.6) for k in (1, 2, 5, 10, 20))],
+        [(sigma, k) for sigma in (0.2, 0.3, 0.45, 0.6) for k in (1, 2, 5, 10, 20)],
     ),
 }
 
 
+def unit(N: Array) -> Array:
+    """Scale rows to length 1."""
+    return np.asarray(N / np.maximum(np.linalg.norm(N, axis=1), 1e-300)[:, None])
+
+
+def face_normals(V: Array, F: Any) -> Array:
+    """Normals of the faces, of length twice the area."""
+    return np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]])
+
+
+def vertex_normals(V: Array, F: Any) -> Array:
+    """Unit normals of the vertices, weighted by area."""
+    N = np.zeros_like(V)
+    for corner in range(3):
+        np.add.at(N, F[:, corner], face_normals(V, F))
+    return unit(N)
+
+
+def mean_angle(M: Array, N: Array) -> float:
+    """Mean angle between unit vectors, in degrees."""
+    return float(np.degrees(np.arccos(np.clip((M * N).sum(1), -1, 1))).mean())
+
+
 class Pair:
-    """A noisy mesh and its original."""
+    """A noisy mesh and its truth: the same mesh without noise, or a surface."""
 
     def __init__(self, folder: Path, name: str) -> None:
-        self.clean = folder / f"{name}_clean.ply"
-        meshes = pymeshlab.MeshSet()
-        meshes.load_new_mesh(str(folder / f"{name}_noisy.ply"))
-        mesh = meshes.current_mesh()
-        self.V, self.F = mesh.vertex_matrix().copy(), mesh.face_matrix().copy()
-        self._measure = folder.parent / "denoise_score.py"
+        self.V, self.F = load(folder / f"{name}_noisy.ply")
+        self.clean: Array | None = None
+        if (folder / f"{name}_clean.ply").exists():
+            self.clean = load(folder / f"{name}_clean.ply")[0]
+            normals = face_normals(self.clean, self.F)
+            area = np.linalg.norm(normals, axis=1)
+            self._faces = np.flatnonzero(area > 1e-9 * area.mean())
+            self._normals = unit(normals[self._faces])
+            self._edge = mean_edge(self.clean, self.F)
+        else:
+            self.surface = pyvista.read(folder / f"{name}_surface.ply").compute_normals(
+                point_normals=False, auto_orient_normals=False, consistent_normals=False
+            )
+            self._faces = np.random.default_rng(0).permutation(len(self.F))[:6000]
 
-    def scores(self, shapes: list[Array]) -> Array:
-        """Angle, distance to the surface and of the vertices, a row for each shape."""
-        with tempfile.TemporaryDirectory() as folder:
-            files = [Path(folder, f"{number}.ply") for number in range(len(shapes))]
-            for file, V in zip(files, shapes, strict=True):
-                meshes = pymeshlab.MeshSet()
-                meshes.add_mesh(pymeshlab.Mesh(V, self.F))
-                meshes.save_current_mesh(str(file))
-            command = [sys.executable, str(self._measure), str(self.clean), *map(str, files)]
-            text = subprocess.run(command, check=True, capture_output=True, text=True).stdout
-        return np.array([[float(x) for x in found] for found in _SCORE.findall(text)])
+    def truth(self) -> Panel:
+        """The truth, to draw."""
+        if self.clean is not None:
+            return Panel("truth", self.clean, self.F)
+        return Panel("truth", np.asarray(self.surface.points), self.surface.regular_faces)
+
+    def angle(self, V: Array) -> float:
+        """Mean angle to the normals of the truth, degrees."""
+        F = self.F[self._faces]
+        N = unit(face_normals(V, F))
+        if self.clean is not None:
+            return mean_angle(N, self._normals)
+        nearest = self.surface.find_closest_cell(V[F].mean(1))
+        M = np.asarray(self.surface.cell_data["Normals"], float)[nearest]
+        return mean_angle(N, M * np.sign((M * N).sum(1).mean()))
+
+    def distance(self, V: Array) -> float:
+        """Mean distance of the vertices to their places along the normals, in edges."""
+        if self.clean is None:
+            return np.nan
+        along = ((V - self.clean) * vertex_normals(self.clean, self.F)).sum(1)
+        return float(np.abs(along).mean() / self._edge)
+
+
+def timed(method: Callable[[], Any]) -> tuple[Any, float]:
+    """Call twice; return the result and the shorter time."""
+    seconds = []
+    for _ in range(2):
+        begin = time.perf_counter()
+        result = method()
+        seconds.append(time.perf_counter() - begin)
+    return result, min(seconds)
+
+
+def draw(panels: list[Panel], name: str, folder: Path) -> None:
+    """Draw a part of meshes side by side."""
+    view = View.of_widest_side(panels[0].V)
+    seen = panels[0].V @ view.axes().T
+    low, extent = seen.min(0), np.ptp(seen, axis=0)
+    middle, radius = PICTURED[name]
+    parts = []
+    for panel in panels:
+        at = (panel.V @ view.axes().T - low) / extent
+        near = np.abs(at[:, :2] - middle).max(1) < radius
+        near &= (at[:, 2] > 0.6) | (radius == 1.0)  # of a part the front
+        used, faces = np.unique(panel.F[near[panel.F].all(1)], return_inverse=True)
+        parts.append(Panel(panel.label, panel.V[used], faces.reshape(-1, 3)))
+    picture = folder / f"denoise_{name}.png"
+    draw_side_by_side(parts, picture, view=view, panel_size=(400, 400))
+    rows = [folder / f"denoise_{row}.png" for row in README]
+    if all(row.exists() for row in rows):
+        images = [pyplot.imread(row) for row in rows]
+        pyplot.imsave(folder / "denoise.png", np.concatenate(images))
+
+
+def print_pairs(folder: Path, names: list[str], more: bool, pictures: Path | None) -> None:
+    """Print a line for every pair, and means of groups; draw some."""
+    methods = METHODS | (MORE_METHODS if more else {})
+    taubin = METHODS["Taubin"][0]
+    print(
+        f"{'':20}{'noisy':>14}{'Spectral Denoise':>18}", *(f"{m:>13}" for m in methods), "  times"
+    )
+    angles: dict[str, list[float]] = {}
+    ratios = []
+    for name in names:
+        pair = Pair(folder, name)
+        (X, report), seconds = timed(lambda p=pair: meshlab_spectral.denoise_mesh(p.V, p.F))
+        reference = timed(lambda p=pair: taubin(p.V, p.F, 50))[1]
+        best = []
+        for method, values in methods.values():
+            shapes = [method(pair.V, pair.F, value) for value in values]
+            best.append(min(shapes, key=pair.angle))
+        shapes = [pair.V, X, *best]
+        angles[name] = [pair.angle(shape) for shape in shapes]
+        ratios.append(seconds / reference)
+        cells = [
+            f"{a:7.2f} /{pair.distance(s):6.3f}" for a, s in zip(angles[name], shapes, strict=True)
+        ]
+        print(f"{name:20}", *cells, f"{ratios[-1]:5.2f}  {report['summary']}", flush=True)
+        taubin_best = best[list(methods).index("Taubin")]
+        if pictures is not None and name in PICTURED:
+            shown = {"before": pair.V, "Spectral Denoise": X, "Taubin, best": taubin_best}
+            draw(
+                [Panel(label, V, pair.F) for label, V in shown.items()] + [pair.truth()],
+                name,
+                pictures,
+            )
+    for group, members in GROUPS.items():
+        present = [angles[name] for name in members if name in angles]
+        if present:
+            means = np.mean(present, axis=0)
+            print(f"{group} ({len(present)}):", *(f"{mean:.2f}" for mean in means))
+    worse = [n for n, a in angles.items() if a[1] > min(a[3:4]) + 0.3]
+    print(f"more than 0.3 above Taubin's best: {', '.join(worse) or 'none'}")
+    print(f"time over Taubin, 50 steps: at most {max(ratios):.2f}, mean {np.mean(ratios):.2f}")
 
 
 def noise_of(kind: str, height: float, V: Array, F: Any) -> Array:
     """Seeded noise along the normals of the vertices, `height` mean edges high."""
     random = np.random.default_rng(1)
-    sides = np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]])
-    N = np.zeros_like(V)
-    for corner in range(3):
-        np.add.at(N, F[:, corner], sides)
-    N /= np.maximum(np.linalg.norm(N, axis=1), 1e-300)[:, None]
     values = random.standard_normal(len(V))
-    if kind == "correlated":  # over about three edges
+    if kind == "correlated":  # over about one and a half edges
         i, j = F.ravel(), np.roll(F, 1, axis=1).ravel()
         A = sp.csr_matrix((np.ones(len(i)), (i, j)), (len(V), len(V)))
         A = A + A.T
         degree = np.maximum(np.asarray(A.sum(1)).ravel(), 1)
-        for _ in range(6):
+        for _ in range(2):
             values = (values + A @ values / degree) / 2
         values /= values.std()
-    if kind == "outliers":  # one vertex in a hundred
-        values *= random.random(len(V)) < 0.01
-    return N * (height * mean_edge(V, F) * values)[:, None]
+    if kind == "spikes":  # one vertex in ten
+        values = np.sign(values) * (random.random(len(V)) < 0.1)
+    return vertex_normals(V, F) * (height * mean_edge(V, F) * values)[:, None]
 
 
 def print_estimates(files: list[Path]) -> None:
     """Print what is found, moved and left on meshes with noise of known height."""
     for file in files:
-        meshes = pymeshlab.MeshSet()
-        meshes.load_new_mesh(str(file))
-        V = meshes.current_mesh().vertex_matrix().copy()
-        F = meshes.current_mesh().face_matrix().copy()
+        V, F = load(file)
         edge = mean_edge(V, F)
         print(f"\n{file.name}: {len(V)} vertices")
         kinds = [("none", 0.0), *(("white", height) for height in (0.05, 0.1, 0.2, 0.4))]
-        for kind, height in [*kinds, ("correlated", 0.2), ("outliers", 1.0)]:
+        for kind, height in [*kinds, ("correlated", 0.4), ("spikes", 0.7)]:
             X = V + (noise_of(kind, height, V, F) if height else 0.0)
-            start = time.perf_counter()
             Y, report = meshlab_spectral.denoise_mesh(X, F)
-            seconds = time.perf_counter() - start
             before, after = (np.sqrt(((Z - V) ** 2).sum(1).mean()) / edge for Z in (X, Y))
-            found, rounds = report["estimated_noise_height"] / edge, report["rounds"]
+            found = report["estimated_noise_height"] / edge
             print(
-                f"  {kind:10} {height:4.2f}: estimated {found:.3f}, "
-                f"distance {before:.4f} -> {after:.4f}, {rounds:2} rounds, {seconds:.2f} s"
+                f"  {kind:10} {height:4.2f}: estimated {found:.3f}, distance {before:.4f} -> "
+                f"{after:.4f}; {report['summary'][:60]}"
             )
 
 
-def draw_scan(file: Path, picture: Path) -> None:
-    """Draw the middle of a raw scan before and after, and print what is left of its noise."""
-    meshes = pymeshlab.MeshSet()
-    meshes.load_new_mesh(str(file))
-    V = meshes.current_mesh().vertex_matrix().copy()
-    F = meshes.current_mesh().face_matrix().copy()
-    middle = np.abs(V[:, :2] - V[:, :2].mean(0)) < 0.12 * np.ptp(V, axis=0).max()
-    near = F[middle.all(1)[F].all(1)]
-    used, faces = np.unique(near, return_inverse=True)
-    panels = [Panel("range scan", V[used], faces.reshape(-1, 3))]
-    print(f"\n{file.name}")
-    for label, options in {"default": {}, "noise_height 0.1e": {"noise_height": "0.1e"}}.items():
-        X, report = meshlab_spectral.denoise_mesh(V, F, **options)
-        left = meshlab_spectral.denoise_mesh(X, F)[1]["estimated_noise_height"]
-        edge = report["mean_edge"]
+def clean_meshes(given: list[str]) -> Iterator[tuple[str, Array, NDArray[Any]]]:
+    """Yield meshes without noise, and decimated ones."""
+    files = [Path(name) for name in given]
+    if not given:
+        folders = [SHARED / "cad", SHARED / "data"]
+        files = [file for folder in folders for file in sorted(folder.iterdir())]
+        files += sorted((SHARED / "denoise").glob("*_clean.ply"))
+    for file in files:
+        if file.suffix.lower() in (".ply", ".obj", ".off", ".stl"):
+            yield (file.name, *load(file))
+    for name in () if given else DECIMATED:
+        for faces in (8000, 5000, 3000, 2000, 1000, 600, 300):
+            meshes = pymeshlab.MeshSet()
+            meshes.load_new_mesh(str(SHARED / "data" / name))
+            meshes.meshing_decimation_quadric_edge_collapse(targetfacenum=faces)
+            mesh = meshes.current_mesh()
+            yield f"{name}, {faces} faces", mesh.vertex_matrix().copy(), mesh.face_matrix().copy()
+
+
+def print_clean(given: list[str]) -> None:
+    """Print what moves where nothing should, and what becomes of a little noise."""
+    moved = worse = count = 0
+    for name, V, F in clean_meshes(given):
+        if len(F) == 0:
+            continue
+        count += 1
+        edge, N = mean_edge(V, F), unit(face_normals(V, F))
+        X, report = meshlab_spectral.denoise_mesh(V, F)
+        largest = np.abs(X - V).max() / edge
+        random = np.random.default_rng(5)
+        noisy = V + vertex_normals(V, F) * (0.05 * edge * random.standard_normal(len(V)))[:, None]
+        Y = meshlab_spectral.denoise_mesh(noisy, F)[0]
+        before, after = (mean_angle(unit(face_normals(Z, F)), N) for Z in (noisy, Y))
+        moved += bool(largest > 0)
+        worse += after > before
         print(
-            f"  {label}: noise {report['estimated_noise_height'] / edge:.3f} -> {left / edge:.3f} "
-            f"edges, moved by {report['rms_displacement'] / edge:.3f}; {report['fixed_vertices']} "
-            f"vertices on rims, of {(X == V).all(1).sum()} that have not moved"
+            f"{name:36} moved {largest:.4f} edges; noise of 0.05 edges: {before:5.2f} -> "
+            f"{after:5.2f} degrees; {report['summary'][:60]}",
+            flush=True,
         )
-        panels.append(Panel(label, X[used], faces.reshape(-1, 3)))
-    draw_side_by_side(panels, picture, panel_size=(400, 400))
-
-
-def told(scores: Array) -> str:
-    """Format three scores."""
-    return f"{scores[0]:.1f} / {scores[1]:.3f} / {scores[2]:.3f}"
+    print(f"{count} meshes: {moved} moved; with noise added, {worse} are worse than before")
 
 
 def main() -> None:
@@ -236,51 +376,22 @@ def main() -> None:
     parser.add_argument("names", nargs="*", metavar="NAME")
     parser.add_argument("--pairs", type=Path, default=SHARED / "denoise")
     parser.add_argument("--pictures", type=Path)
+    parser.add_argument("--all-methods", action="store_true")
+    parser.add_argument("--clean", action="store_true")
     parser.add_argument("--estimates", action="store_true")
     arguments = parser.parse_args()
     meshlab_spectral.load()
     if arguments.estimates:
         given = [Path(name) for name in arguments.names]
         print_estimates(given or [SHARED / "data" / name for name in ESTIMATED])
-        return
-    names = arguments.names or [
-        file.name.removesuffix("_noisy.ply") for file in sorted(arguments.pairs.glob("*_noisy.ply"))
-    ]
-    table: dict[str, dict[str, Array]] = {}
-    for name in names:
-        pair = Pair(arguments.pairs, name)
-        print(f"\n{name}{' (constants chosen on it)' if name in CHOSEN_ON else ''}")
-        table.setdefault("noisy", {})[name] = pair.scores([pair.V])[0]
-        panels = [Panel("noisy", pair.V, pair.F)]
-        for label, (method, values) in METHODS.items():
-            start = time.perf_counter()
-            shapes = [method(pair.V, pair.F, *([] if v is None else [v])) for v in values]
-            seconds = (time.perf_counter() - start) / len(values)
-            scores = pair.scores(shapes)
-            best = int(np.argmin(scores[:, 0]))
-            lines = {label: 0} if len(values) == 1 else {label: 0, f"{label}, best": best}
-            for line, index in lines.items():
-                table.setdefault(line, {})[name] = scores[index]
-                print(f"  {line:30}{told(scores[index])}  {values[index] or ''}  {seconds:.2f} s")
-            if label in ("Spectral Denoise", "MeshLab Taubin", "bilateral normals"):
-                last = list(lines)[-1]
-                panels.append(Panel(last, shapes[best], pair.F))
-        if arguments.pictures and name in PICTURED:
-            clean = pyvista.read(pair.clean)
-            panels.append(Panel("clean", np.asarray(clean.points, float), pair.F))
-            arguments.pictures.mkdir(parents=True, exist_ok=True)
-            picture = arguments.pictures / f"denoise_{name}.png"
-            view = View.of_widest_side(pair.V)
-            draw_side_by_side(panels, picture, view=view, panel_size=(400, 400))
-    scan = SHARED / "data" / "rangescan_lato000.ply"
-    if arguments.pictures and scan.exists():
-        draw_scan(scan, arguments.pictures / "denoise_rangescan.png")
-    for group, members in GROUPS.items():
-        present = [name for name in members if name in names]
-        if present:
-            print(f"\n{group}: mean of {', '.join(present)}")
-            for line, scores in table.items():
-                print(f"  {line:30}{told(np.mean([scores[name] for name in present], axis=0))}")
+    elif arguments.clean:
+        print_clean(arguments.names)
+    else:
+        names = arguments.names or [
+            file.name.removesuffix("_noisy.ply")
+            for file in sorted(arguments.pairs.glob("*_noisy.ply"))
+        ]
+        print_pairs(arguments.pairs, names, arguments.all_methods, arguments.pictures)
 
 
 if __name__ == "__main__":

@@ -159,7 +159,9 @@ void append(const GeometrySpectrum& r, Numbers& to) {
 }
 
 void append(const DenoiseResult& r, Numbers& to) {
-    to << r.V << r.estimatedHeight << r.noiseHeight << r.meanEdge << r.rounds << r.maxDisplacement
+    const NoiseEstimate& noise = r.diagnosis.noise;
+    to << r.V << noise.height << noise.size << noise.correlation << noise.meanEdge << r.noiseHeight
+       << r.noiseSize << static_cast<double>(r.diagnosis.spikes) << r.rounds << r.maxDisplacement
        << r.rmsDisplacement << r.volumeBefore << r.volumeAfter << r.volumes.preserved;
 }
 
@@ -208,6 +210,7 @@ struct Describe {
     }
     void operator()(const DenoiseOptions& o) const {
         text << "denoise, strength " << o.strength << ", noise " << o.noiseHeight / diagonal
+             << " of size " << o.noiseSize / diagonal << (o.selected.empty() ? "" : ", selected")
              << (o.keepCreases ? "" : ", creases smoothed") << ", " << nameOf(o.boundary);
     }
 };
@@ -284,6 +287,9 @@ Case makeDenoiseCase(Choices& choices) {
     options.strength = choices.pick({0.0, 1.0, 1.0, 0.5, 3.0, 1e3});
     if (!choices.oneIn(3))  // few vertices do not tell the noise
         options.noiseHeight = choices.logUniform(1e-4, 10.0) * diagonal;
+    if (choices.oneIn(3)) options.noiseSize = choices.logUniform(1e-4, 10.0) * diagonal;
+    if (V.rows() > 0 && choices.oneIn(4))
+        for (Index i = 0; i < V.rows(); ++i) options.selected.push_back(i == 0 || choices.oneIn(2));
     options.keepCreases = !choices.oneIn(3);
     options.boundary = boundaryOf(choices);
     made.mustThrow = choices.oneIn(40);

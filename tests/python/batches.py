@@ -28,8 +28,8 @@ def make_meshes(folder: Path, count: int, seed: int = 0, rings: int = 12) -> lis
     c, d = ((corner + rings) % rings**2 for corner in (b, a))
     F = np.vstack([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
     u, v = (index * 2 * np.pi / rings for index in (i, j))
-    radius = 1 + 0.4 * np.cos(v)
-    torus = np.column_stack([radius * np.cos(u), radius * np.sin(u), 0.4 * np.sin(v)])
+    radius = 1 + 0.7 * np.cos(v)  # triangles that are no needles
+    torus = np.column_stack([radius * np.cos(u), radius * np.sin(u), 0.7 * np.sin(v)])
     paths = []
     for number in range(count):
         V = torus + 0.02 * rng.standard_normal(torus.shape)

@@ -19,7 +19,8 @@ ARROWS = {
     "transfer": {"laplacian", "support"},
     "krylov": {"laplacian", "ldlt", "mesh", "support"},
     "harmonics": {"laplacian", "ldlt", "mesh", "support"},
-    "denoise": {"laplacian", "mesh", "support"},
+    "noise": {"mesh", "support"},
+    "denoise": {"noise", "laplacian", "mesh", "support"},
     "filter": {"transfer", "krylov", "harmonics", "laplacian", "ldlt", "mesh", "support"},
     "analysis": {"krylov", "harmonics", "laplacian", "ldlt", "mesh", "support"},
 }

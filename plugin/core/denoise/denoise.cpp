@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <string>
+#include <utility>
 
-#include "core/denoise/face_graph.h"
-#include "core/denoise/noise_height.h"
-#include "core/denoise/normal_filter.h"
-#include "core/denoise/unfold.h"
-#include "core/denoise/vertex_update.h"
+#include "core/denoise/crumpling.h"
+#include "core/denoise/removal.h"
+#include "core/laplacian/laplacian.h"
+#include "core/laplacian/vertex_weight.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/surface.h"
@@ -22,56 +22,115 @@ namespace {
 void checkOptions(const DenoiseOptions& options) {
     if (!(options.strength >= 0.0 && std::isfinite(options.strength)))
         throw InvalidOption("strength = " + textOf(options.strength) +
-                            ": must be 0 (nothing) or above, e.g. 1 for the noise as estimated");
-    if (!(options.noiseHeight >= 0.0 && std::isfinite(options.noiseHeight)))
-        throw InvalidOption("noise_height = " + textOf(options.noiseHeight) +
-                            ": must be a length, or 0 to have it estimated");
+                            ": must be 0 (nothing) or above, e.g. 1 for the noise as measured");
+    const auto checkLength = [](const char* name, double length) {
+        if (!(length >= 0.0 && std::isfinite(length)))
+            throw InvalidOption(std::string(name) + " = " + textOf(length) +
+                                ": must be a length, or 0 to have it measured");
+    };
+    checkLength("noise_height", options.noiseHeight);
+    checkLength("noise_size", options.noiseSize);
 }
 
-// Chosen on four pairs of noisy and clean meshes: see tests/benchmarks/README.md. Noise is measured
-// in mean edges.
-constexpr double kNone = 0.02, kMost = 1.0;        // less is no noise, more is filtered no more
-constexpr double kTime = 1.5, kHalfTimeAt = 0.13;  // less noise takes weaker rounds
-constexpr int kMostRounds = 12, kSweeps = 12;
-constexpr double kEdgeScale = 0.22;
-/// Share of the noise that the displacement has to reach. More rounds would take the shape for
-/// noise (Morozov's discrepancy principle).
-constexpr double kEnough = 0.96;
-// Where triangles are narrower than the noise is high, normals mean little: no vertex moves farther
-// than noise of this many standard deviations, or impulses of this many mean edges, had moved it.
-constexpr double kMostDeviations = 3.0, kMostEdges = 0.3;
+/// Part of its displacement that each vertex of the surface makes, 0 to 1.
+Eigen::VectorXd displacementWeight(const DenoiseOptions& options, const Surface& surface,
+                                   const Components& components) {
+    constexpr double kFadingOut = 4.0;  // mean edges
+    const WeightOptions part{options.selected, {}};
+    checkWeights(part);
+    const Interior interior(surface.F, components, options.boundary);
+    return vertexWeight(
+        part, surface, interior,
+        part.selected.empty() ? Laplacian{} : uniformLaplacian(surface.X, surface.F),
+        kFadingOut * meanEdgeLength(surface.X, surface.F));
+}
+
+/// The triangles at which a vertex moves, and their vertices, rows of `whole`.
+Surface movingPart(const Surface& whole, const Eigen::VectorXd& weight) {
+    Faces F(whole.F.rows(), 3);
+    Index count = 0;
+    for (Index t = 0; t < F.rows(); ++t)
+        if (weight[whole.F(t, 0)] > 0.0 || weight[whole.F(t, 1)] > 0.0 ||
+            weight[whole.F(t, 2)] > 0.0)
+            F.row(count++) = whole.F.row(t);
+    F.conservativeResize(count, 3);
+    return surfaceOf(whole.X, F);
+}
+
+/// What the options say of the noise, and what was measured.
+RemovalOptions removalOptions(const DenoiseOptions& options, const Diagnosis& diagnosis) {
+    constexpr double kMostHeight = 1.0;  // mean edges: more is filtered as if it were that
+    const NoiseEstimate& noise = diagnosis.noise;
+    const double edge = noise.meanEdge;
+    RemovalOptions removal;
+    removal.meanEdge = edge;
+    removal.height = std::min(
+        options.strength * (options.noiseHeight > 0.0 ? options.noiseHeight : noise.height),
+        kMostHeight * edge);
+    // Of noise over several edges only the part in the finest octaves can be told from the shape:
+    // it is about twice as long as it looks.
+    constexpr double kHidden = 2.0;
+    removal.size = options.noiseSize > 0.0 ? options.noiseSize / edge
+                   : noise.size > 1.0      ? kHidden * noise.size
+                                           : 0.0;
+    removal.keepCreases = options.keepCreases;
+    removal.areImpulses = diagnosis.kind == NoiseKind::Impulses;
+    return removal;
+}
+
+/// Mean edges: below, noise is independent at every vertex to the filters.
+constexpr double kSizeOfWhite = 1.25;
+
+bool isNoise(const Diagnosis& diagnosis) {
+    return diagnosis.kind == NoiseKind::White || diagnosis.kind == NoiseKind::Impulses ||
+           diagnosis.kind == NoiseKind::Correlated;
+}
+
+Removal removeNoise(const FaceGraph& graph, const Points& X, const Diagnosis& diagnosis,
+                    const DenoiseOptions& options, const RemovalOptions& removal,
+                    const Progress& progress) {
+    if (options.strength == 0.0) return {X, 0};
+    if (diagnosis.kind == NoiseKind::Voxels) {
+        Removal steps = removeVoxelSteps(graph, X, diagnosis.voxel, removal, progress);
+        steps.X = X + std::min(options.strength, 1.0) * (steps.X - X);
+        return steps;
+    }
+    if (!(removal.height > 0.0) || !(options.noiseHeight > 0.0 || isNoise(diagnosis)))
+        return {diagnosis.X, 0};
+    return removal.size > kSizeOfWhite
+               ? removeCorrelatedNoise(graph, diagnosis.X, removal, progress)
+               : removeWhiteNoise(graph, diagnosis.X, removal, progress);
+}
+
+/// Draws coordinates back that an offset for the volume has moved farther than their limits.
+void keepWithin(const Eigen::RowVector3d& most, const Vertices& X0, Vertices& X) {
+    for (Index i = 0; i < X.rows(); ++i)
+        X.row(i) = X.row(i).cwiseMax(X0.row(i) - most).cwiseMin(X0.row(i) + most);
+}
+
+/// Fills in what is told of the displacement (n x 3) of a surface of a mesh V, and moves the mesh.
+void report(const Vertices& V, const Surface& surface, const Vertices& displacement,
+            DenoiseResult& result) {
+    if (!displacement.allFinite())
+        throw SolverFailure("the denoised coordinates are not finite numbers");
+    result.V = V;
+    for (Index i = 0; i < displacement.rows(); ++i)
+        if ((displacement.row(i).array() != 0.0).any())
+            result.V.row(surface.vertex[i]) += displacement.row(i);
+    result.maxDisplacement = displacement.rowwise().norm().maxCoeff();
+    result.rmsDisplacement =
+        displacement.stableNorm() / std::sqrt(static_cast<double>(displacement.rows()));
+    result.volumeBefore = signedVolume(surface.X, surface.F);
+    result.volumeAfter = signedVolume(surface.X + displacement, surface.F);
+    result.unreferencedVertices = static_cast<int>(V.rows() - surface.X.rows());
+}
+
 /// An offset that makes up for lost volume is at most so many times the displacement. Noise lies on
 /// both sides of a surface, and takes little volume away with it.
 constexpr double kMostOffset = 2.0;
-constexpr double kMostAlongSurface = 2.5;  // standard deviations, to turn folded faces back
 
-/// Share of the time that the estimate takes, for the progress.
-constexpr double kMeasuring = 0.2;
-
-/// @param noise  standard deviation along the normals, in mean edges.
-NormalFilterOptions filterFor(double noise, bool keepCreases) {
-    NormalFilterOptions filter;
-    filter.time = kTime / (1.0 + std::pow(kHalfTimeAt / noise, 3));
-    filter.edgeScale = keepCreases ? kEdgeScale : std::numeric_limits<double>::infinity();
-    return filter;
-}
-
-/// The height of the noise that had moved the vertices from X to X0, by its median.
-double removedHeight(const Vertices& X0, const Vertices& X, const std::vector<bool>& isFixed) {
-    std::vector<double> displacements;
-    for (Index i = 0; i < X.rows(); ++i)
-        if (!isFixed[i]) displacements.push_back((X.row(i) - X0.row(i)).norm());
-    return medianDeviation(displacements);
-}
-
-/// Draws the vertices of X back to within `farthest` of where they were.
-void limitDisplacement(const Vertices& X0, double farthest, Vertices& X) {
-    for (Index i = 0; i < X.rows(); ++i) {
-        const Eigen::RowVector3d displacement = X.row(i) - X0.row(i);
-        const double length = displacement.norm();
-        if (length > farthest) X.row(i) = X0.row(i) + farthest / length * displacement;
-    }
-}
+/// Share of the time that measuring takes, for the progress.
+constexpr double kMeasuring = 0.3;
 
 }  // namespace
 
@@ -80,60 +139,57 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
     const ThreadTeam team;
     checkMesh(V, F);
     checkOptions(options);
-    const Surface surface = surfaceOf(V, F);
     progress.report(0.0, "measuring the noise");
-    const FaceGraph graph = faceGraph(surface.F, surface.X.rows());
-    const NoiseEstimate noise = estimateNoise(graph, surface.X);
+    const Surface whole = surfaceOf(V, F);
+    const Components components = connectedComponents(whole.F, whole.X.rows());
+    const Eigen::VectorXd weight = displacementWeight(options, whole, components);
+    const bool isPart = !options.selected.empty();
+    const Surface part = isPart ? movingPart(whole, weight) : Surface{};
+    const Surface& surface = isPart ? part : whole;
+    const auto rowOfWhole = [&](Index i) { return isPart ? part.vertex[i] : i; };
 
     DenoiseResult result;
-    result.estimatedHeight = noise.height;
-    result.noiseHeight =
-        options.strength * (options.noiseHeight > 0.0 ? options.noiseHeight : noise.height);
-    result.meanEdge = noise.meanEdge;
-    const double height = std::min(result.noiseHeight, kMost * noise.meanEdge);
-    const bool isNoisy = height > 0.0 && height >= kNone * noise.meanEdge;
-    const double farthest = std::max(kMostDeviations * height, kMostEdges * noise.meanEdge);
-
-    std::vector<bool> isFixed(graph.onRim.size(), false);
-    if (options.boundary == Boundary::Fixed) isFixed = graph.onRim;
-    Vertices X = surface.X;
-    if (isNoisy) {
-        const NormalFilterOptions filter = filterFor(height / noise.meanEdge, options.keepCreases);
-        Normals N;
-        double removed = 0.0;  // share of the noise
-        while (removed < kEnough && result.rounds < kMostRounds) {
-            const double done = std::max(removed, double(result.rounds) / kMostRounds);
-            progress.report(kMeasuring + (1.0 - kMeasuring) * done, "removing the noise");
-            // From the input: it is the normals that are filtered, the vertices only show them.
-            N = filterNormals(graph, X, filter);
-            X = followNormals(graph, surface.X, N, isFixed, kSweeps);
-            limitDisplacement(surface.X, farthest, X);
-            removed = removedHeight(surface.X, X, isFixed) / height;
-            ++result.rounds;
-        }
-        unfoldFaces(graph, N, kMostAlongSurface * result.noiseHeight, isFixed, X);
-        limitDisplacement(surface.X, farthest, X);
-    }
-
-    const Components components = connectedComponents(surface.F, X.rows());
-    Eigen::VectorXd mayMove(X.rows());
-    for (Index i = 0; i < X.rows(); ++i) mayMove[i] = isFixed[i] ? 0.0 : 1.0;
-    if (isNoisy)
-        result.volumes = preserveVolumes(surface.X, graph.F, components, mayMove, kMostOffset, X);
-    if (!X.allFinite()) throw SolverFailure("the denoised coordinates are not finite numbers");
-
-    const Vertices displacement = X - surface.X;
-    result.V = V;
-    for (Index i = 0; i < X.rows(); ++i)
-        if ((displacement.row(i).array() != 0.0).any())
-            result.V.row(surface.vertex[i]) += displacement.row(i);
-    result.maxDisplacement = displacement.rowwise().norm().maxCoeff();
-    result.rmsDisplacement = displacement.stableNorm() / std::sqrt(static_cast<double>(X.rows()));
-    result.volumeBefore = signedVolume(surface.X, surface.F);
-    result.volumeAfter = signedVolume(X, surface.F);
     result.components = components.count;
-    result.unreferencedVertices = static_cast<int>(V.rows() - X.rows());
-    result.fixedVertices = static_cast<int>(std::count(isFixed.begin(), isFixed.end(), true));
+    if (options.boundary == Boundary::Fixed) {
+        const std::vector<bool> onBoundary = boundaryVertices(whole.F, whole.X.rows());
+        result.fixedVertices =
+            static_cast<int>(std::count(onBoundary.begin(), onBoundary.end(), true));
+    }
+    Vertices moved = whole.X;
+    if (surface.X.rows() > 0) {
+        const FaceGraph graph = faceGraph(surface.F, surface.X.rows());
+        const Points X0 = surface.X;
+        std::vector<bool> isMeasured(graph.onRim), mayMove(graph.onRim);
+        for (Index i = 0; i < X0.rows(); ++i) {
+            isMeasured[i] = !graph.onRim[i] && weight[rowOfWhole(i)] == 1.0;
+            mayMove[i] = weight[rowOfWhole(i)] > 0.0;
+        }
+        result.diagnosis = diagnose(graph, X0, isMeasured, options.noiseHeight > 0.0,
+                                    progress.part(0.0, kMeasuring));
+        RemovalOptions removal = removalOptions(options, result.diagnosis);
+        removal.mayMove = std::move(mayMove);
+        Removal done = removeNoise(graph, X0, result.diagnosis, options, removal,
+                                   progress.part(kMeasuring, 1.0));
+        if (done.rounds > 0 && isCrumpled(graph, X0, done.X)) {
+            result.isCrumpled = true;
+            done = {result.diagnosis.X, 0};
+        }
+        result.rounds = done.rounds;
+        if (done.rounds > 0 && result.diagnosis.kind != NoiseKind::Voxels) {
+            result.noiseHeight = removal.height;
+            if (removal.size > kSizeOfWhite) result.noiseSize = removal.size * removal.meanEdge;
+        }
+        for (Index i = 0; i < X0.rows(); ++i)
+            moved.row(rowOfWhole(i)) += weight[rowOfWhole(i)] * (done.X.row(i) - X0.row(i));
+        if (done.rounds > 0)
+            result.volumes = preserveVolumes(whole.X, isPart ? whole.F : graph.F, components,
+                                             weight, kMostOffset, moved);
+        if (result.diagnosis.kind == NoiseKind::Voxels)
+            keepWithin(0.5 * result.diagnosis.voxel, whole.X, moved);
+    }
+    if (isPart)
+        for (const Index i : whole.vertex) result.selectedVertices += options.selected[i] ? 1 : 0;
+    report(V, whole, moved - whole.X, result);
     return result;
 }
 

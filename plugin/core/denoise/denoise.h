@@ -1,26 +1,32 @@
 #pragma once
 
+#include <vector>
+
 #include "core/laplacian/interior.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/volume.h"
+#include "core/noise/diagnosis.h"
 #include "core/support/progress.h"
 
 namespace spectral {
 
 struct DenoiseOptions {
     double strength = 1.0;     ///< Factor of the noise height that is removed, >= 0.
-    double noiseHeight = 0.0;  ///< Length units; 0: estimated (noise_height.h).
+    double noiseHeight = 0.0;  ///< Length units; 0: measured (diagnosis.h).
+    double noiseSize = 0.0;    ///< Correlation length, length units; 0: measured.
     bool keepCreases = true;   ///< Else smooths across them, too.
-    Boundary boundary = Boundary::Fixed;
+    Boundary boundary = Boundary::Free;
+    std::vector<bool> selected;  ///< n: what to denoise; empty: everything.
 };
 
 struct DenoiseResult {
     Vertices V;  ///< The denoised positions; unreferenced vertices stay where they are.
 
-    double estimatedHeight = 0.0;  ///< Of the noise in V (noise_height.h), length units.
-    double noiseHeight = 0.0;      ///< That was removed, times the strength, length units.
-    double meanEdge = 0.0;         ///< Without the noise, length units.
-    int rounds = 0;                ///< Weak parts of the filter of the normals; 0: no noise.
+    Diagnosis diagnosis;
+    double noiseHeight = 0.0;      ///< Removed as if it were that, length units; 0: none.
+    double noiseSize = 0.0;        ///< And that, length units; 0: independent at every vertex.
+    int rounds = 0;                ///< Weak parts of the filter, or linear steps; 0: none.
+    bool isCrumpled = false;       ///< Removing it would have folded the surface: not removed.
     double maxDisplacement = 0.0;  ///< Largest vertex displacement, length units.
     double rmsDisplacement = 0.0;  ///< Root mean square over the vertices.
     double volumeBefore = 0.0, volumeAfter = 0.0;  ///< Signed; a volume for closed meshes only.
@@ -28,18 +34,19 @@ struct DenoiseResult {
     int components = 0;                            ///< Connected components of the surface.
     int unreferencedVertices = 0;                  ///< Vertices of no triangle, unchanged.
     int fixedVertices = 0;                         ///< Vertices on a fixed boundary, unchanged.
+    int selectedVertices = 0;                      ///< With a selection: those of the surface.
 };
 
-/// Removes noise that differs from vertex to vertex, and chooses how from the noise it finds.
+/// Removes noise, and chooses how from the noise it finds.
 ///
 /// The signal is the field of the face normals, the operator the Laplacian of the graph of the
 /// faces, in which faces across a crease hardly mix. Its low-pass is applied in weak parts, with
 /// the operator taken anew from the shape after each, as in Kovnatsky et al. 2012, Eq. 11
-/// (normal_filter.h); the vertices then follow the normals (vertex_update.h). The filter stops when
-/// the vertices have moved as far as the noise had moved them, by their median: Morozov's
-/// discrepancy principle. Vertices move along normals alone, but for those of folded faces
-/// (unfold.h), by at most three times the noise or 0.3 mean edges, and closed components keep
-/// their volume.
+/// (normal_filter.h); the vertices then follow the normals (vertex_update.h). The stages: what kind
+/// of noise it is (diagnosis.h), spikes out (spikes.h), the rest of the noise out, as far as it
+/// explains (removal.h), unless that would crumple the surface (crumpling.h); and closed components
+/// get their volume back. Around a selection all this fades out within four edges, and only what is
+/// selected is measured.
 ///
 /// @param V  n x 3 positions, finite.
 /// @param F  m x 3 vertex indices, m >= 1; any topology and orientation.

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "core/denoise/face_graph.h"
-#include "core/mesh/mesh.h"
+#include <vector>
+
+#include "core/noise/face_graph.h"
 
 namespace spectral {
 
@@ -10,11 +11,11 @@ namespace spectral {
 /// vertices, move within the surface to the mean of their neighbours, unless that is farther than
 /// the noise can have moved them, as among needles.
 ///
-/// @param N        m x 3 filtered normals.
+/// @param N         m x 3 filtered normals.
 /// @param farthest  of a move, length units.
-/// @param isFixed  n: vertices that stay.
-/// @param X        n x 3 positions, moved.
-void unfoldFaces(const FaceGraph& graph, const Normals& N, double farthest,
-                 const std::vector<bool>& isFixed, Vertices& X);
+/// @param mayMove   n
+/// @param X         n x 3 positions, moved.
+void unfoldFaces(const FaceGraph& graph, const Points& N, double farthest,
+                 const std::vector<bool>& mayMove, Points& X);
 
 }  // namespace spectral

@@ -1,7 +1,8 @@
 #pragma once
 
-#include "core/denoise/face_graph.h"
-#include "core/mesh/mesh.h"
+#include <vector>
+
+#include "core/noise/face_graph.h"
 
 namespace spectral {
 
@@ -14,9 +15,9 @@ namespace spectral {
 ///
 /// @param X       n x 3 positions.
 /// @param N       m x 3 unit normals.
-/// @param isFixed n: vertices that stay.
+/// @param mayMove n
 /// @param sweeps  how often, >= 0.
-Vertices followNormals(const FaceGraph& graph, Vertices X, const Normals& N,
-                       const std::vector<bool>& isFixed, int sweeps);
+Points followNormals(const FaceGraph& graph, Points X, const Points& N,
+                     const std::vector<bool>& mayMove, int sweeps);
 
 }  // namespace spectral

@@ -3,9 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "core/mesh/measures.h"
+#include "core/mesh/sides.h"
 
 namespace spectral {
 
@@ -24,18 +24,16 @@ std::vector<Faces> facesByComponent(const Faces& F, const Components& components
     return faces;
 }
 
-/// Whether every directed edge has as many opposite ones.
+/// Whether every edge is passed as often in one direction as in the other.
 bool isClosed(const Faces& F) {
-    std::vector<std::pair<int, int>> there, back;
-    for (Index t = 0; t < F.rows(); ++t)
-        for (int c = 0; c < 3; ++c) {
-            const int i = F(t, c), j = F(t, (c + 1) % 3);
-            there.emplace_back(i, j);
-            back.emplace_back(j, i);
-        }
-    std::sort(there.begin(), there.end());
-    std::sort(back.begin(), back.end());
-    return there == back;
+    bool isBalanced = true;
+    forEachEdge(sidesByEdge(F), [&](auto first, auto end) {
+        int balance = 0;
+        for (auto side = first; side != end; ++side)
+            balance += F(side->face, (side->opposite + 1) % 3) == side->low ? 1 : -1;
+        isBalanced = isBalanced && balance == 0;
+    });
+    return isBalanced;
 }
 
 /// Gradient of six times the volume of a closed surface, n x 3: multiples of the normals.

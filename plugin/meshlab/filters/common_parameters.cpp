@@ -50,12 +50,14 @@ double featureSize(const RichParameterList& parameters) {
     return parameters.getAbsPerc("feature_size");
 }
 
-RichBool selectedParameter(const MeshModel& mesh) {
+RichBool selectedParameter(const MeshModel& mesh, const QString& width) {
     const bool isAnySelected = hasSelectedFaces(mesh.cm);
-    return {"selected", isAnySelected, "Only the selection",
-            "Filter the selected faces and vertices. Around them the filter fades out within about "
-            "a feature size, so that no crease is left; everything beyond stays where it is.",
-            !isAnySelected};
+    return {
+        "selected", isAnySelected, "Only the selection",
+        QString("Filter the selected faces and vertices. Around them the filter fades out within "
+                "%1, so that no crease is left; everything beyond stays where it is.")
+            .arg(width),
+        !isAnySelected};
 }
 
 RichEnum laplacianParameter(const QString& help) {

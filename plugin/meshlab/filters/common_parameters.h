@@ -29,7 +29,8 @@ RichPercentage featureSizeParameter(const MeshModel& mesh, const QString& help);
 double featureSize(const RichParameterList& parameters);
 
 /// `selected`; default: whether a face is, as in MeshLab's own filters.
-RichBool selectedParameter(const MeshModel& mesh);
+/// @param width  within which a filter fades out around the selection, in words.
+RichBool selectedParameter(const MeshModel& mesh, const QString& width = "about a feature size");
 
 /// `laplacian`; default: intrinsic Delaunay.
 RichEnum laplacianParameter(const QString& help);

@@ -14,21 +14,30 @@
 
 namespace {
 
+using spectral::DenoiseResult;
+using spectral::NoiseKind;
+
 const char* const kDenoiseHelp =
-    "Removes the noise of a scan, with <b>nothing to choose</b>: measures how high the noise is "
-    "(<i>noise height</i> 0), and filters as strongly as that takes. Creases become sharp, soft "
-    "forms stay soft; a mesh without noise stays as it is."
+    "Removes the noise of a scan, with <b>nothing to choose</b>: finds out what kind of noise "
+    "there "
+    "is, how high and how large, and removes that. A mesh without noise stays as it is, to the bit."
+    "<br><br>It tells apart the noise of scanners, single spikes, and the steps of voxels in the "
+    "surface of a segmentation, which it smooths within half a voxel; and it leaves the triangles "
+    "of "
+    "CAD programs alone. Creases become sharp, soft forms stay soft. The log says in one line what "
+    "was found."
     "<br><br>Face normals are filtered in weak fractional steps [1], with the Laplacian taken anew "
     "from the shape after each; it hardly connects faces across creases. The vertices follow the "
     "normals [2] and do not drift within the surface. Closed components keep their volume."
-    "<br><br>Only noise that differs from vertex to vertex is removed. Ripples over many vertices "
-    "are taken for shape: for those, use <i>Spectral Filter (Fractional)</i>."
+    "<br><br>Ripples over several edges may be shape as well as noise: give their height and size, "
+    "or use <i>Spectral Filter (Fractional)</i>."
     "<br><br><small>[1] Kovnatsky, Bronstein, Bronstein 2012; [2] Sun, Rosin, Martin, Langbein "
     "2007</small>";
 
 RichParameterList denoiseParameters(const MeshModel& mesh) {
     const spectral::DenoiseOptions defaults;
     const Scalarm diagonal = mesh.cm.bbox.Diag();
+    const QString edge = meanEdgeTold(meanEdge(mesh));
     RichParameterList list;
     list.addParam(RichFloat("strength", static_cast<Scalarm>(defaults.strength), "Strength",
                             "1 removes the noise as measured. More removes finer details, too; "
@@ -36,44 +45,110 @@ RichParameterList denoiseParameters(const MeshModel& mesh) {
     list.addParam(RichPercentage(
         "noise_height", static_cast<Scalarm>(defaults.noiseHeight), 0, diagonal, "Noise height",
         "Standard deviation of the noise along the normals. 0: as measured; the log then says how "
-        "high it is. Give it where fine details were taken for noise, or noise for details." +
-            meanEdgeTold(meanEdge(mesh))));
+        "high it is. Give it where details were taken for noise, or noise for details." +
+            edge));
+    list.addParam(RichPercentage(
+        "noise_size", static_cast<Scalarm>(defaults.noiseSize), 0, diagonal, "Noise size",
+        "How far the noise of neighbouring vertices is alike: half the width of its bumps. Up to a "
+        "mean edge it differs from vertex to vertex. 0: as measured." +
+            edge));
+    list.addParam(selectedParameter(mesh, "four edges"));
     list.addParam(RichBool("keep_creases", defaults.keepCreases, "Keep creases",
                            "Do not smooth across edges. Off: rounds them; for shapes that have "
-                           "none."));
-    list.addParam(RichEnum("boundary", static_cast<int>(defaults.boundary), boundaries(),
-                           "Boundary",
-                           "The boundary of an open surface, holes included. <b>fixed</b>: it "
-                           "stays exactly in place. <b>free</b>: it is denoised, too.",
+                           "none.",
                            true));
+    list.addParam(boundaryParameter(
+        "The boundary of an open surface, holes included. <b>free</b>: it follows along its "
+        "normals, "
+        "as far as the noise explains. <b>fixed</b>: it stays exactly in place."));
     return list;
 }
 
-std::string headline(const spectral::DenoiseResult& result) {
-    const bool isAsMeasured = result.noiseHeight == result.estimatedHeight;
+/// A length, and the same in mean edges.
+std::string lengthTold(double length, double edge) {
     std::ostringstream text;
-    text << std::setprecision(3) << "Spectral Denoise: ";
-    if (result.rounds == 0 && isAsMeasured)
-        text << "no noise found (measured: " << result.estimatedHeight / result.meanEdge
-             << " mean edges)";
-    else
-        text << "the noise is " << result.estimatedHeight << " high (standard deviation; "
-             << result.estimatedHeight / result.meanEdge << " mean edges)";
-    if (!isAsMeasured) text << ", filtered as if it were " << result.noiseHeight << " high";
-    if (result.rounds == 0)
-        text << "; nothing changed. Against ripples over several vertices, give a noise height, "
-                "e.g. a tenth of an edge, or use Spectral Filter (Fractional)";
-    else
-        text << "; the vertices moved by " << result.rmsDisplacement << " (root mean square), by "
-             << result.maxDisplacement << " at most";
+    text << std::setprecision(2) << length / edge << " edges" << std::setprecision(3) << " ("
+         << length << ")";
     return text.str();
 }
 
-std::string reportText(const spectral::DenoiseResult& result) {
+std::string voxelsTold(const Eigen::RowVector3d& voxel) {
     std::ostringstream text;
-    text << headline(result) << std::setprecision(6) << "\n  volume: " << result.volumeBefore
-         << " -> " << result.volumeAfter
-         << " (of closed surfaces)\n  surface: " << result.components
+    text << std::setprecision(3) << "voxel steps of " << voxel[0] << " x " << voxel[1] << " x "
+         << voxel[2] << ": smoothed within half a voxel";
+    return text.str();
+}
+
+std::string removedTold(const spectral::DenoiseOptions& options, const DenoiseResult& result) {
+    const double edge = result.diagnosis.noise.meanEdge;
+    const bool isGiven = options.noiseHeight > 0.0;
+    std::string text = isGiven                                          ? "noise"
+                       : result.diagnosis.kind == NoiseKind::Correlated ? "scanner noise"
+                       : result.diagnosis.kind == NoiseKind::Impulses   ? "impulse noise"
+                                                                        : "white noise";
+    text += ": height " +
+            lengthTold(isGiven ? options.noiseHeight : result.diagnosis.noise.height, edge);
+    if (result.noiseSize > 0.0)
+        text += ", size " +
+                lengthTold(isGiven ? result.noiseSize : result.diagnosis.noise.size * edge, edge);
+    text += isGiven ? ", as given: removed" : ": removed";
+    if (options.strength != 1.0) {
+        std::ostringstream strength;
+        strength << options.strength;
+        text += ", times " + strength.str();
+    }
+    return text;
+}
+
+/// Why there is nothing to remove, and what overrules that.
+std::string nothingTold(const DenoiseResult& result) {
+    if (result.isCrumpled)
+        return "the noise was not removed: that would have folded the surface over, as among the "
+               "needle triangles of a designed part. Remesh first, or give a smaller noise height "
+               "or size";
+    switch (result.diagnosis.kind) {
+        case NoiseKind::Tessellation:
+            return "no scan but the needle triangles of a designed part: no noise is looked for. "
+                   "If "
+                   "there is some, give its noise height, or remesh first";
+        case NoiseKind::TooFew:
+            return "too few vertices to tell noise from shape. If there is some, give its noise "
+                   "height";
+        default:
+            return "no noise found that is not shape as well. For ripples over several edges, give "
+                   "noise height and noise size, e.g. a tenth of an edge and two edges, or use "
+                   "Spectral Filter (Fractional)";
+    }
+}
+
+/// What was found and done, in one line.
+std::string summaryOf(const spectral::DenoiseOptions& options, const DenoiseResult& result) {
+    if (options.strength == 0.0) return "strength 0; nothing changed";
+    std::ostringstream text;
+    if (!options.selected.empty())
+        text << "only the selection, " << result.selectedVertices << " of "
+             << result.V.rows() - result.unreferencedVertices << " vertices: ";
+    if (result.diagnosis.spikes > 0)
+        text << (result.diagnosis.spikes == 1 ? "a spike" : "spikes at ")
+             << (result.diagnosis.spikes == 1 ? "" : std::to_string(result.diagnosis.spikes))
+             << (result.diagnosis.spikes == 1 ? ": removed; " : " vertices: removed; ");
+    if (result.rounds == 0) {
+        text << nothingTold(result);
+        if (result.maxDisplacement == 0.0) text << "; nothing changed";
+    } else if (result.noiseHeight == 0.0) {
+        text << voxelsTold(result.diagnosis.voxel);
+    } else {
+        text << removedTold(options, result);
+    }
+    return text.str();
+}
+
+std::string reportText(const std::string& summary, const DenoiseResult& result) {
+    std::ostringstream text;
+    text << "Spectral Denoise: " << summary << std::setprecision(3) << "\n  the vertices moved by "
+         << result.rmsDisplacement << " (root mean square), by " << result.maxDisplacement
+         << " at most" << std::setprecision(6) << "\n  volume: " << result.volumeBefore << " -> "
+         << result.volumeAfter << " (of closed surfaces)\n  surface: " << result.components
          << (result.components == 1 ? " component" : " components");
     if (result.unreferencedVertices > 0)
         text << ", " << result.unreferencedVertices << " unreferenced vertices unchanged";
@@ -83,14 +158,17 @@ std::string reportText(const spectral::DenoiseResult& result) {
     return text.str();
 }
 
-std::vector<std::string> warningsOf(const spectral::DenoiseResult& result) {
+std::vector<std::string> warningsOf(const spectral::DenoiseOptions& options,
+                                    const std::string& summary, const DenoiseResult& result) {
     std::vector<std::string> warnings;
     if (result.rounds > 0 && result.fixedVertices + result.unreferencedVertices == result.V.rows())
         warnings.emplace_back(
             "nothing can move: every vertex lies on the boundary, which is fixed. Choose boundary "
             "= free; if the triangles are not connected, apply 'Merge Close Vertices' first");
-    constexpr double kHalf = 0.5;
-    if (result.estimatedHeight > kHalf * result.meanEdge)
+    else if (options.strength > 0.0 && (result.maxDisplacement == 0.0 || result.isCrumpled))
+        warnings.push_back(summary);
+    constexpr double kHalf = 0.34;  // of an edge without the noise, which lengthens edges
+    if (result.diagnosis.noise.height > kHalf * result.diagnosis.noise.meanEdge)
         warnings.emplace_back(
             "the noise is higher than half an edge: what it hides cannot be told from it. Look at "
             "the result, or remesh more coarsely first");
@@ -103,17 +181,26 @@ FilterOutcome applyDenoise(const RichParameterList& parameters, MeshModel& mesh,
     spectral::DenoiseOptions options;
     options.strength = parameters.getFloat("strength");
     options.noiseHeight = parameters.getAbsPerc("noise_height");
+    options.noiseSize = parameters.getAbsPerc("noise_size");
+    if (parameters.getBool("selected")) options.selected = selectedVertices(mesh.cm, input);
     options.keepCreases = parameters.getBool("keep_creases");
     options.boundary = boundaryCondition(parameters);
-    const spectral::DenoiseResult result =
+    const DenoiseResult result =
         spectral::withSteadyProgress(progress, [&](const spectral::Progress& steady) {
             return spectral::denoise(input.V, input.F, options, steady);
         });
     reportWriting(input, mesh.cm, progress);
     setPositions(input.vertexIndex, result.V, mesh);
+    const std::string summary = summaryOf(options, result);
+    const spectral::NoiseEstimate& noise = result.diagnosis.noise;
     return {{{"noise_height", result.noiseHeight},
-             {"estimated_noise_height", result.estimatedHeight},
-             {"mean_edge", result.meanEdge},
+             {"noise_size", result.noiseSize},
+             {"estimated_noise_height", noise.height},
+             {"estimated_noise_size", noise.size * noise.meanEdge},
+             {"noise_correlation", noise.correlation},
+             {"spikes", static_cast<int>(result.diagnosis.spikes)},
+             {"voxel_size", QVariant::fromValue(Eigen::VectorXd(result.diagnosis.voxel))},
+             {"mean_edge", noise.meanEdge},
              {"rms_displacement", result.rmsDisplacement},
              {"max_displacement", result.maxDisplacement},
              {"volume_before", result.volumeBefore},
@@ -123,8 +210,9 @@ FilterOutcome applyDenoise(const RichParameterList& parameters, MeshModel& mesh,
              {"unreferenced_vertices", result.unreferencedVertices},
              {"fixed_vertices", result.fixedVertices},
              {"rounds", result.rounds}},
-            reportText(result),
-            warningsOf(result)};
+            reportText(summary, result),
+            warningsOf(options, summary, result),
+            summary};
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ def test_filter_files_gives_a_result_for_every_file(meshes: Path, tmp_path: Path
     assert sorted(result.outcome for result in results) == ["failed", *["filtered"] * 6]
     assert contents(out) == contents(by_command)
     again = list(filter_files([meshes, broken], out, workers=1, resume=True, steps=1))
-    assert sorted(result.outcome for result in again) == ["failed", *["unchanged"] * 6]
+    assert sorted(result.outcome for result in again) == [*["already done"] * 6, "failed"]
     assert {result.name: result.output_sha256 for result in again} == {
         result.name: result.output_sha256 for result in results
     }

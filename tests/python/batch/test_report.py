@@ -168,7 +168,7 @@ def proved(job: Job, *records: dict[str, Any], **versions: str) -> bool:
 def test_a_record_proves_its_job_done_and_gives_its_report(done: tuple[Job, Any]) -> None:
     job, record = done
     result = proved_done([job], done_records([record]), VERSIONS)[job]
-    assert result.outcome == "unchanged"
+    assert result.outcome == "already done"
     assert result.report == {"steps": 3}
 
 

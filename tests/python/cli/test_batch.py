@@ -79,12 +79,12 @@ def test_resume_leaves_out_what_is_proved_and_does_the_rest(tmp_path: Path) -> N
     done = command(*batch, "--resume")
     assert done.returncode == 0, done.stderr
     summary = json.loads(done.stdout)
-    assert (summary["filtered"], summary["unchanged"], summary["failed"]) == (3, 1, 0)
+    assert (summary["filtered"], summary["already_done"], summary["failed"]) == (3, 1, 0)
     after = contents(out)
     assert after.keys() == before.keys()
     assert [name for name in after if after[name] != before[name]] == [paths[0].name]
     again = json.loads(command(*batch, "--resume").stdout)
-    assert (again["filtered"], again["unchanged"]) == (0, 4)
+    assert (again["filtered"], again["already_done"]) == (0, 4)
     changed = command(*batch, "--resume", "--dry-run", "--feature-size", "3%")
     assert changed.stdout.count(" -> ") == 4
     assert "done already" not in changed.stdout

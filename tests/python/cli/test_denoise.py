@@ -20,7 +20,7 @@ FILTER = "apply_coord_spectral_denoise"
 @pytest.fixture
 def scan(tmp_path: Path) -> Path:
     """A noisy torus."""
-    return make_meshes(tmp_path, 1, rings=24)[0]
+    return make_meshes(tmp_path, 1, rings=48)[0]
 
 
 def denoised(path: Path, noise_height: float = 0.0) -> np.ndarray:
@@ -95,7 +95,7 @@ def test_a_wrong_option_is_named_before_any_file_is_touched(
 
 def test_a_recipe_denoises_a_folder(tmp_path: Path) -> None:
     source, out = tmp_path / "scans", tmp_path / "clean"
-    scans = make_meshes(source, 2, rings=24)
+    scans = make_meshes(source, 2, rings=48)
     recipe = recipe_in(tmp_path, "[denoise]\n")
     batch = ["batch", source, "--output", out, "--recipe", recipe, "--workers", 1]
     done = command(*batch)

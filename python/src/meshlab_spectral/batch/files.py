@@ -134,7 +134,7 @@ def run_batch(
     if batch.jobs:
         check_extras("batch")
     with Report(batch.report) as report:
-        counts = dict.fromkeys(get_args(Outcome), 0) | {"unchanged": len(batch.done)}
+        counts = dict.fromkeys(get_args(Outcome), 0) | {"already done": len(batch.done)}
         begin = time.monotonic()
         report.add("run", {"begun": time.time(), "at": _now(), "files": len(batch.jobs)})
         yield from batch.done

@@ -6,7 +6,7 @@ import math
 from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
 
-Outcome = Literal["filtered", "measured", "failed", "unchanged"]
+Outcome = Literal["filtered", "unchanged", "measured", "failed", "already done"]
 
 
 @dataclass(frozen=True)
@@ -47,9 +47,9 @@ class FileResult:
     Attributes
     ----------
     outcome
-        "filtered": the output has been written; "failed": the output path is untouched;
-        "unchanged": the report proves that an earlier run has written the output; "measured": done,
-        without an output.
+        "filtered": the output has been written; "unchanged": as well, but no vertex has moved, as
+        where there is no noise; "measured": done, without an output; "failed": the output path is
+        untouched; "already done": the report proves that an earlier run has written the output.
     input, output
         Absolute paths or URLs.
     name

@@ -11,7 +11,7 @@ from meshlab_spectral.batch.storage import digest_at, sibling
 
 Records = dict[str, list[dict[str, Any]]]
 
-_DONE = ("filtered", "measured")
+_DONE = ("filtered", "unchanged", "measured")
 # Versions a result depends on.
 _DECIDING_VERSIONS = ("meshlab_spectral", "plugin", "pymeshlab")
 
@@ -45,7 +45,7 @@ def proved_done(
     Returns
     -------
     dict
-        The recorded result of each such job, as "unchanged".
+        The recorded result of each such job, as "already done".
     """
     candidates = [job for job in jobs if job.name in records]
     with ThreadPoolExecutor() as pool:  # most of the time goes into reading
@@ -74,7 +74,7 @@ def _proof(
             and _same_side_files(job, record.get("side_files", {}))
         ):
             return FileResult(
-                outcome="unchanged",
+                outcome="already done",
                 input=job.source,
                 output=job.target,
                 name=job.name,

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from meshlab_spectral.batch import storage
-from meshlab_spectral.batch.jobs import FileResult, Job
+from meshlab_spectral.batch.jobs import FileResult, Job, Outcome
 from meshlab_spectral.batch.processes import processes
 from meshlab_spectral.errors import MemoryLimitError, ProcessDiedError, SpectralError
 from meshlab_spectral.files.whole_files import side_files
@@ -51,7 +51,7 @@ def run_job(job: Job, memory_limit: int | None = None) -> FileResult:
                     answer = _attempt(work | {"scratch": str(scratch)}, limits, result)
                     written = _digests(scratch)
                 result |= written
-        result["outcome"] = "measured" if job.target is None else "filtered"
+        result["outcome"] = _outcome(job, answer.report)
         result |= {"report": answer.report, "peak_memory": answer.peak_memory}
         result["warnings"] = _warnings(answer.report)
     except SpectralError as error:
@@ -67,6 +67,12 @@ def run_job(job: Job, memory_limit: int | None = None) -> FileResult:
         versions=versions(),
         **result,
     )
+
+
+def _outcome(job: Job, report: dict[str, Any]) -> Outcome:
+    if job.target is None:
+        return "measured"
+    return "unchanged" if report.get("max_displacement") == 0 else "filtered"
 
 
 def _warnings(report: dict[str, Any]) -> list[str]:

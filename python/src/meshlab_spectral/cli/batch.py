@@ -217,6 +217,7 @@ def _tell_summary(batch: Batch, counts: Counter[str], seconds: float, as_json: b
         "filtered": counts["filtered"],
         "failed": counts["failed"],
         "unchanged": counts["unchanged"],
+        "already_done": counts["already done"],
         "with_warnings": counts["with warnings"],
         "seconds": round(seconds, 1),
         "report": str(batch.report),

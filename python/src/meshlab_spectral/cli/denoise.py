@@ -7,7 +7,7 @@ from meshlab_spectral.cli.filter_options import with_options
 from meshlab_spectral.filters.denoise import DenoiseOptions
 
 # "\b" keeps a paragraph's lines as they are.
-DENOISE_HELP = """Remove the noise of a scan, as strongly as its height requires.
+DENOISE_HELP = """Find out what noise a mesh has, of a scanner, spikes or voxels, and remove it.
 
 \b
   meshlab-spectral denoise scan.ply clean.ply

@@ -74,6 +74,9 @@ def filter_one_file(
     if as_json:
         typer.echo(json.dumps(_record(source, target, options, report, time.monotonic() - begin)))
     else:
+        if (summary := report.get("summary")) and summary not in report["warnings"]:
+            told = f"{source.name}: {summary}"
+            Console().print(told, markup=False, highlight=False, soft_wrap=True)
         Console().print(report_table(report, f"{source.name} -> {target.name}"))
 
 

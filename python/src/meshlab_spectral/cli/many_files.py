@@ -106,6 +106,7 @@ def run_shown(
 def summary_of(counts: Counter[str], done: str) -> str:
     """Format the counts of `run_shown`; `done` is the outcome of a successful file."""
     always = f"{counts[done]} {done}, {counts['failed']} failed"
-    before = f", {counts['unchanged']} already done" if counts["unchanged"] else ""
+    same = f", {counts['unchanged']} unchanged" if counts["unchanged"] else ""
+    before = f", {counts['already done']} already done" if counts["already done"] else ""
     warned = f", {counts['with warnings']} with warnings" if counts["with warnings"] else ""
-    return always + before + warned
+    return always + same + before + warned

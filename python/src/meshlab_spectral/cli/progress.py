@@ -99,7 +99,7 @@ def batch_progress(console: Console, files: int) -> Iterator[Callable[[FileResul
                     highlight=False,
                     soft_wrap=True,
                 )
-            worked += result.outcome != "unchanged"
+            worked += result.outcome != "already done"
             failures = f"[red]{failed} failed[/red]" if failed else "0 failed"
             progress.update(task, advance=1, failed=failures, worked=worked)
 

@@ -29,10 +29,7 @@ def report_table(report: dict[str, Any], title: str) -> Table:
 
 def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
     if "noise_height" in report:
-        found, removed = report["estimated_noise_height"], report["noise_height"]
-        rows = [("Noise height", f"{found:.4g} ({found / report['mean_edge']:.2g} mean edges)")]
-        if removed != found:
-            rows.append(("Filtered as if it were", f"{removed:.4g}"))
+        rows = [("Mean edge", f"{report['mean_edge']:.4g}")]
     else:
         rows = _rows_of_filter(report)
     rows += [

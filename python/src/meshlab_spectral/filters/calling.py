@@ -11,7 +11,7 @@ from meshlab_spectral.errors import FilterError
 from meshlab_spectral.filters.arrays import mesh_arrays
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.plugin.failed_calls import keep_failed
-from meshlab_spectral.plugin.library import last_warnings
+from meshlab_spectral.plugin.library import last_summary, last_warnings
 from meshlab_spectral.plugin.loading import load
 
 _PLAIN_SIZE = re.compile(r"Parameter (\w+): must be a pymeshlab\.Percentage")
@@ -34,8 +34,8 @@ def call_filter(mesh_set: Any, name: str, parameters: dict[str, Any]) -> dict[st
     Returns
     -------
     dict
-        pymeshlab's report, and "warnings": a list of what fell short without being an error, in the
-        plugin's words.
+        pymeshlab's report, and in the plugin's words "warnings", a list of what fell short without
+        being an error, and of a filter that chooses by itself "summary", what it found and did.
 
     Raises
     ------
@@ -60,6 +60,8 @@ def call_filter(mesh_set: Any, name: str, parameters: dict[str, Any]) -> dict[st
         defaults = mesh_set.filter_parameter_values(name)
         raise FilterError(_wrong_types(parameters, defaults) or reason_of(error)) from error
     report["warnings"] = last_warnings()
+    if summary := last_summary():
+        report["summary"] = summary
     return report
 
 

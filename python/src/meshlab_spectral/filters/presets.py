@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Literal, get_args
 
-Preset = Literal["denoise", "remove-details", "sharpen", "enhance", "caricature", "extract-details"]
+Preset = Literal["smooth", "remove-details", "sharpen", "enhance", "caricature", "extract-details"]
 
 # Values as on the command line. Sizes are left to the user where the wish contains one.
 PRESETS: dict[Preset, dict[str, str]] = {
     # The default size: about the finest waves that the mesh can represent.
-    "denoise": {"filter_type": "low-pass", "feature_size": "auto"},
+    "smooth": {"filter_type": "low-pass", "feature_size": "auto"},
     "remove-details": {"filter_type": "low-pass", "feature_size": "5%"},
     "sharpen": {
         "filter_type": "high-pass",

@@ -41,6 +41,23 @@ def last_warnings() -> list[str]:
     return text.decode().splitlines()
 
 
+def last_summary() -> str:
+    """Return what the plugin's latest filter run in this thread found and did, in one line.
+
+    Returns
+    -------
+    str
+        Empty where the numbers of the report say it all.
+
+    Raises
+    ------
+    PluginError
+        As `last_warnings`.
+    """
+    text: bytes = _function(loaded_plugin(), "meshlab_spectral_summary", ())()
+    return text.decode()
+
+
 def custom_gains(
     text: str,
     feature_size: float,

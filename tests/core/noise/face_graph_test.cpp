@@ -1,4 +1,4 @@
-#include "core/denoise/face_graph.h"
+#include "core/noise/face_graph.h"
 
 #include <gtest/gtest.h>
 
@@ -14,24 +14,33 @@ using testing::Mesh;
 
 Index count(const std::vector<bool>& flags) { return std::count(flags.begin(), flags.end(), true); }
 
-TEST(FaceGraph, OfAClosedSurfaceHasAnEdgeForEachOfTheMesh) {
+TEST(FaceGraph, OfAClosedSurfaceHasThreeNeighboursOfEachFace) {
     const Mesh torus = testing::torus(2.0, 0.5, 12, 8);
     const FaceGraph graph = faceGraph(torus.F, torus.V.rows());
-    EXPECT_EQ(static_cast<Index>(graph.edges.size()), 3 * torus.F.rows() / 2);
     EXPECT_EQ(count(graph.onRim), 0);
     EXPECT_EQ(graph.F, torus.F) << "an oriented surface keeps its orientation";
-    for (const FaceGraph::Edge& edge : graph.edges)
-        for (const int face : edge.faces)
-            for (const int end : edge.ends) EXPECT_TRUE((graph.F.row(face).array() == end).any());
+    for (Index f = 0; f < graph.faceCount(); ++f)
+        for (int c = 0; c < 3; ++c) {
+            const int other = graph.neighbours(f, c);
+            ASSERT_GE(other, 0);
+            for (const int shared : {graph.F(f, (c + 1) % 3), graph.F(f, (c + 2) % 3)})
+                EXPECT_TRUE((graph.F.row(other).array() == shared).any());
+            EXPECT_FALSE((graph.F.row(other).array() == graph.F(f, c)).any());
+        }
 }
 
-TEST(FaceGraph, KnowsTheFacesAtEveryVertex) {
+TEST(FaceGraph, KnowsTheFacesAndNeighboursOfEveryVertex) {
     const Mesh mesh = testing::blob();
     const FaceGraph graph = faceGraph(mesh.F, mesh.V.rows());
-    EXPECT_EQ(graph.firstFace.back(), 3 * mesh.F.rows());
-    for (Index i = 0; i < mesh.V.rows(); ++i)
-        for (Index k = graph.firstFace[i]; k < graph.firstFace[i + 1]; ++k)
-            EXPECT_TRUE((mesh.F.row(graph.faceAt[k]).array() == static_cast<int>(i)).any());
+    EXPECT_EQ(graph.faces.first.back(), 3 * mesh.F.rows());
+    EXPECT_EQ(graph.vertices.first.back(), 3 * mesh.F.rows()) << "two ends of 3 m / 2 edges";
+    for (Index i = 0; i < mesh.V.rows(); ++i) {
+        EXPECT_EQ(graph.faces.degree(i), graph.vertices.degree(i)) << "closed";
+        for (Index k = graph.faces.first[i]; k < graph.faces.first[i + 1]; ++k)
+            EXPECT_TRUE((mesh.F.row(graph.faces.at[k]).array() == static_cast<int>(i)).any());
+        for (Index k = graph.vertices.first[i] + 1; k < graph.vertices.first[i + 1]; ++k)
+            EXPECT_LT(graph.vertices.at[k - 1], graph.vertices.at[k]);
+    }
 }
 
 TEST(FaceGraph, OrientsNeighboursAlike) {
@@ -56,7 +65,8 @@ TEST(FaceGraph, HasARimAtABoundaryAndWhereThreeFacesMeet) {
         if (fins.F(0, c) != a && (fins.F.row(1).array() == fins.F(0, c)).any()) b = fins.F(0, c);
     fins.F.conservativeResize(3, 3);
     fins.F.row(2) << a, b, 4;
-    EXPECT_TRUE(faceGraph(fins.F, 5).edges.empty()) << "three faces at one edge are no neighbours";
+    EXPECT_EQ(faceGraph(fins.F, 5).neighbours, Faces::Constant(3, 3, -1))
+        << "three faces at one edge are no neighbours";
 }
 
 }  // namespace

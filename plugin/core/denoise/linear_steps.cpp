@@ -1,0 +1,114 @@
+#include "core/denoise/linear_steps.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/denoise/whiteness.h"
+#include "core/noise/diffusion.h"
+
+namespace spectral {
+
+namespace {
+
+/// Positions, and white noise that takes the same steps.
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
+
+/// The neighbours of every vertex that its mean is taken of: none where it may not move, those on
+/// the rim of one on the rim.
+VertexGraph averagedNeighbours(const FaceGraph& graph, const std::vector<bool>& mayMove) {
+    VertexGraph averaged;
+    averaged.first.push_back(0);
+    const VertexGraph& all = graph.vertices;
+    for (Index i = 0; i < all.size(); ++i) {
+        for (Index k = all.first[i]; k < all.first[i + 1]; ++k)
+            if (mayMove[i] && (!graph.onRim[i] || graph.onRim[all.at[k]]))
+                averaged.at.push_back(all.at[k]);
+        averaged.first.push_back(static_cast<Index>(averaged.at.size()));
+    }
+    return averaged;
+}
+
+void takeSteps(const VertexGraph& graph, int count, Rows& X) {
+    Rows next = X;
+    for (int k = 0; k < count; ++k)
+        for (const double factor : {0.6, -0.61}) {
+            forEachMean(graph, X, [&](Index i, const auto& mean) {
+                next.row(i) = (1.0 - factor) * X.row(i) + factor * mean;
+            });
+            X.swap(next);
+        }
+}
+
+/// Mean square of the differences along the edges off the rim.
+double squaredSlope(const FaceGraph& graph, const Eigen::VectorXd& y) {
+    const VertexGraph& vertices = graph.vertices;
+    const Eigen::Array2d sums =
+        parallelSum(vertices.size(), Eigen::Array2d(0.0, 0.0), [&](Index begin, Index end) {
+            Eigen::Array2d sum(0.0, 0.0);
+            for (Index i = begin; i < end; ++i)
+                for (Index k = vertices.first[i]; k < vertices.first[i + 1]; ++k) {
+                    const int j = vertices.at[k];
+                    if (graph.onRim[i] || graph.onRim[j]) continue;
+                    sum += Eigen::Array2d(std::pow(y[i] - y[j], 2), 1.0);
+                }
+            return sum;
+        });
+    return sums[1] > 0.0 ? sums[0] / sums[1] : 0.0;
+}
+
+Points smoothNormals(const FaceGraph& graph, const Points& X) {
+    return vertexNormals(graph, blurredNormals(graph, areaNormals(X, graph.F), 1));
+}
+
+}  // namespace
+
+std::optional<LinearSteps> linearSteps(const FaceGraph& graph, const Points& X,
+                                       const std::vector<bool>& mayMove, double height,
+                                       bool isTailed) {
+    constexpr std::array<int, 11> kSteps{5, 10, 14, 20, 28, 40, 56, 80, 113, 160, 226};
+    constexpr int kStepsToNormals = 20;
+    // Of the slopes, over those of the noise: what the filter of the normals leaves of it.
+    const double mostError = isTailed ? 0.19 : 0.17 - 0.2 * height;
+    constexpr double kMostTail = 1.1, kNoTail = 1.02;
+    const VertexGraph averaged = averagedNeighbours(graph, mayMove);
+    const Eigen::VectorXd white = whiteNoise(X.rows());
+    const double whiteSlope = squaredSlope(graph, white);
+    Rows start(X.rows(), 4);
+    start << X, white;
+
+    Rows Y = start;
+    takeSteps(averaged, kStepsToNormals, Y);
+    // The same normals for all, lest a change of the normals counts as the shape's.
+    const Points N = smoothNormals(graph, Y.leftCols<3>());
+    Y = start;
+    LinearSteps best;
+    double least = 0.0, noise = 0.0;  // squares: of the error, and of the noise' height
+    int taken = 0;
+    for (const int steps : kSteps) {
+        takeSteps(averaged, steps - taken, Y);
+        taken = steps;
+        const Eigen::VectorXd along = (Y.leftCols<3>() - X).cwiseProduct(N).rowwise().sum();
+        const double takenFromNoise = squaredSlope(graph, white - Y.col(3));
+        const double ratio = squaredSlope(graph, along) / takenFromNoise;
+        if (noise == 0.0) noise = ratio;  // the first steps take noise alone
+        if (!(noise > 0.0)) return std::nullopt;
+        const double shape = std::max(0.0, ratio / noise - 1.0) * takenFromNoise;
+        const double error = (shape + squaredSlope(graph, Y.col(3))) / whiteSlope;
+        if (best.steps > 0 && error >= least) break;
+        least = error;
+        best.X = Y.leftCols<3>();
+        best.steps = steps;
+    }
+    const Points ownN = smoothNormals(graph, best.X);
+    const Eigen::VectorXd along = (best.X - X).cwiseProduct(ownN).rowwise().sum();
+    const double most = tail(graph.vertices, along);
+    const bool isEven = isTailed || most < kMostTail;
+    if (!(isEven && least < mostError * mostError) && !(most < kNoTail)) return std::nullopt;
+    best.N = areaNormals(best.X, graph.F);
+    normalizeRows(best.N);
+    best.X = X + along.asDiagonal() * ownN;
+    return best;
+}
+
+}  // namespace spectral

@@ -1,0 +1,52 @@
+#include "core/denoise/whiteness.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "core/noise/diffusion.h"
+#include "core/noise/robust_statistics.h"
+
+namespace spectral {
+
+namespace {
+
+double deviation(const Eigen::VectorXd& y) {
+    return std::sqrt((y.array() - y.mean()).square().mean());
+}
+
+}  // namespace
+
+Eigen::VectorXd displacementAlongNormals(const FaceGraph& graph, const Points& X0,
+                                         const Points& X) {
+    const Points N = vertexNormals(graph, blurredNormals(graph, areaNormals(X, graph.F), 1));
+    return (X - X0).cwiseProduct(N).rowwise().sum();
+}
+
+double smoothness(const VertexGraph& graph, const Eigen::VectorXd& signal) {
+    double white = 0.0;  // variance that is left of white noise of variance 1
+    for (Index i = 0; i < graph.size(); ++i)
+        white += graph.degree(i) > 0 ? 0.25 + 0.25 / static_cast<double>(graph.degree(i)) : 1.0;
+    white = std::sqrt(white / static_cast<double>(graph.size()));
+    Eigen::VectorXd y = signal;
+    diffuse(graph, y);
+    const double before = deviation(signal);
+    return before > 0.0 ? deviation(y) / before / white : 1.0;
+}
+
+double tail(const VertexGraph& graph, const Eigen::VectorXd& signal) {
+    constexpr double kShare = 0.99, kDeviations = 2.5758;  // of a normal distribution
+    Eigen::VectorXd y = signal;
+    double most = 0.0;
+    int step = 0;
+    for (const int end : {1, 2, 4}) {
+        for (; step < end; ++step) diffuse(graph, y);
+        const double mean = y.mean();
+        std::vector<double> moduli(y.begin(), y.end());
+        for (double& value : moduli) value = std::abs(value - mean);
+        most = std::max(most, quantile(std::move(moduli), kShare) / deviation(y) / kDeviations);
+    }
+    return most;
+}
+
+}  // namespace spectral

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/noise/face_graph.h"
+#include "core/support/threads.h"
+#include "core/support/types.h"
+
+namespace spectral {
+
+/// Calls visit(i, mean of the rows of X at the neighbours of vertex i) for every vertex that has
+/// neighbours, in parallel: the rows of P X, where L = I - P is the uniform Laplacian.
+template <class Rows, class Visit>
+void forEachMean(const VertexGraph& graph, const Rows& X, const Visit& visit) {
+    parallelRows(graph.size(), [&](Index begin, Index end) {
+        for (Index i = begin; i < end; ++i) {
+            const Index first = graph.first[i], last = graph.first[i + 1];
+            if (first == last) continue;
+            Eigen::Matrix<double, 1, Rows::ColsAtCompileTime> sum = X.row(graph.at[first]);
+            for (Index k = first + 1; k < last; ++k) sum += X.row(graph.at[k]);
+            visit(i, sum / static_cast<double>(last - first));
+        }
+    });
+}
+
+/// One step of lazy diffusion, X <- (X + P X) / 2. It damps every frequency of the graph, without
+/// oscillations.
+template <class Rows>
+void diffuse(const VertexGraph& graph, Rows& X) {
+    Rows next = X;
+    forEachMean(graph, X,
+                [&](Index i, const auto& mean) { next.row(i) = 0.5 * (X.row(i) + mean); });
+    X.swap(next);
+}
+
+/// Independent values of the standard normal distribution, the same on every machine.
+Eigen::VectorXd whiteNoise(Index count);
+
+}  // namespace spectral

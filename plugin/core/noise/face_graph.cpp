@@ -1,0 +1,158 @@
+#include "core/noise/face_graph.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <utility>
+
+#include "core/mesh/sides.h"
+#include "core/support/threads.h"
+
+namespace spectral {
+
+namespace {
+
+/// Reverses faces until neighbours are oriented alike, from the first face of each component on.
+/// @param isOpposite  m x 3: whether each neighbour is oriented against the face.
+void orient(const Eigen::Matrix<bool, Eigen::Dynamic, 3>& isOpposite, FaceGraph& graph) {
+    std::vector<char> isReached(static_cast<std::size_t>(graph.faceCount()), 0);
+    std::vector<std::pair<int, bool>> left;
+    for (int start = 0; start < graph.faceCount(); ++start) {
+        if (!isReached[start]) left.emplace_back(start, false);
+        isReached[start] = 1;
+        while (!left.empty()) {
+            const auto [face, isReversed] = left.back();
+            left.pop_back();
+            for (int c = 0; c < 3; ++c) {
+                const int next = graph.neighbours(face, c);
+                if (next < 0 || isReached[next]) continue;
+                isReached[next] = 1;
+                left.emplace_back(next, isReversed != isOpposite(face, c));
+            }
+            if (!isReversed) continue;
+            std::swap(graph.F(face, 1), graph.F(face, 2));
+            std::swap(graph.neighbours(face, 1), graph.neighbours(face, 2));
+        }
+    }
+}
+
+/// Makes counts of i at first[i + 1] the beginnings of its entries.
+void accumulate(VertexGraph& graph) {
+    for (std::size_t i = 1; i < graph.first.size(); ++i) graph.first[i] += graph.first[i - 1];
+    graph.at.resize(static_cast<std::size_t>(graph.first.back()));
+}
+
+VertexGraph facesOfVertices(const Faces& F, Index vertexCount) {
+    VertexGraph graph;
+    graph.first.assign(static_cast<std::size_t>(vertexCount) + 1, 0);
+    for (Index t = 0; t < F.rows(); ++t)
+        for (int c = 0; c < 3; ++c) ++graph.first[F(t, c) + 1];
+    accumulate(graph);
+    std::vector<Index> next(graph.first);
+    for (Index t = 0; t < F.rows(); ++t)
+        for (int c = 0; c < 3; ++c) graph.at[next[F(t, c)]++] = static_cast<int>(t);
+    return graph;
+}
+
+VertexGraph neighboursOfVertices(const std::vector<Side>& sides, Index vertexCount) {
+    VertexGraph graph;
+    graph.first.assign(static_cast<std::size_t>(vertexCount) + 1, 0);
+    forEachEdge(sides, [&](auto first, auto) {
+        ++graph.first[first->low + 1];
+        ++graph.first[first->high + 1];
+    });
+    accumulate(graph);
+    std::vector<Index> next(graph.first);
+    // By ascending lower vertex, so that each vertex meets its neighbours in ascending order.
+    forEachEdge(sides, [&](auto first, auto) {
+        graph.at[next[first->low]++] = first->high;
+        graph.at[next[first->high]++] = first->low;
+    });
+    return graph;
+}
+
+/// A vector scaled to length 1; zero stays. Where squares do not underflow, twice as fast as
+/// stableNormalized.
+Eigen::RowVector3d unit(const Eigen::RowVector3d& v) {
+    constexpr double kSafe = 1e-280;
+    const double squared = v.squaredNorm();
+    if (squared > kSafe && squared < 1.0 / kSafe) return v / std::sqrt(squared);
+    return v.stableNormalized();
+}
+
+}  // namespace
+
+FaceGraph faceGraph(const Faces& F, Index vertexCount) {
+    FaceGraph graph;
+    graph.F = F;
+    graph.onRim.assign(static_cast<std::size_t>(vertexCount), false);
+    graph.neighbours = Faces::Constant(F.rows(), 3, -1);
+    Eigen::Matrix<bool, Eigen::Dynamic, 3> isOpposite(F.rows(), 3);
+    // Whether the face runs through the side from its higher to its lower vertex.
+    const auto isReversed = [&](const Side& side) {
+        return F(side.face, (side.opposite + 1) % 3) == side.high;
+    };
+    const std::vector<Side> sides = sidesByEdge(F);
+    forEachEdge(sides, [&](auto first, auto end) {
+        if (end - first != 2) {
+            graph.onRim[first->low] = graph.onRim[first->high] = true;
+            return;
+        }
+        const Side &a = *first, &b = *(first + 1);
+        graph.neighbours(a.face, a.opposite) = b.face;
+        graph.neighbours(b.face, b.opposite) = a.face;
+        isOpposite(a.face, a.opposite) = isOpposite(b.face, b.opposite) =
+            isReversed(a) == isReversed(b);
+    });
+    orient(isOpposite, graph);
+    graph.faces = facesOfVertices(F, vertexCount);
+    graph.vertices = neighboursOfVertices(sides, vertexCount);
+    return graph;
+}
+
+Points areaNormals(const Points& X, const Faces& F) {
+    Points N(F.rows(), 3);
+    parallelRows(F.rows(), [&](Index begin, Index end) {
+        for (Index t = begin; t < end; ++t) {
+            const Eigen::RowVector3d a = X.row(F(t, 0)), b = X.row(F(t, 1)), c = X.row(F(t, 2));
+            N.row(t) = (b - a).cross(c - a);
+        }
+    });
+    return N;
+}
+
+Points blurredNormals(const FaceGraph& graph, Points N, int times) {
+    Points sum(N.rows(), 3);
+    for (int k = 0; k < times; ++k) {
+        parallelRows(N.rows(), [&](Index begin, Index end) {
+            for (Index t = begin; t < end; ++t) {
+                Eigen::RowVector3d here = N.row(t);
+                for (int c = 0; c < 3; ++c)
+                    if (graph.neighbours(t, c) >= 0) here += N.row(graph.neighbours(t, c));
+                sum.row(t) = here;
+            }
+        });
+        N.swap(sum);
+    }
+    return N;
+}
+
+Points vertexNormals(const FaceGraph& graph, const Points& N) {
+    Points normals(graph.vertexCount(), 3);
+    parallelRows(graph.vertexCount(), [&](Index begin, Index end) {
+        for (Index i = begin; i < end; ++i) {
+            Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+            for (Index k = graph.faces.first[i]; k < graph.faces.first[i + 1]; ++k)
+                sum += N.row(graph.faces.at[k]);
+            normals.row(i) = unit(sum);
+        }
+    });
+    return normals;
+}
+
+void normalizeRows(Points& N) {
+    parallelRows(N.rows(), [&](Index begin, Index end) {
+        for (Index t = begin; t < end; ++t) N.row(t) = unit(N.row(t));
+    });
+}
+
+}  // namespace spectral

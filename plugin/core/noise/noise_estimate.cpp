@@ -1,0 +1,173 @@
+#include "core/noise/noise_estimate.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/noise/diffusion.h"
+#include "core/noise/robust_statistics.h"
+
+namespace spectral {
+
+namespace {
+
+constexpr int kOctaves = 7;
+using Octaves = Eigen::Array<double, kOctaves, 1>;
+
+/// How often normals are blurred: they are to vary less than the noise does.
+constexpr int kBlurs = 3;
+
+/// The standard deviation of the measured values.
+double deviationOf(const Eigen::VectorXd& values, const std::vector<bool>& isMeasured) {
+    double sum = 0.0, squares = 0.0, count = 0.0;
+    for (Index i = 0; i < values.size(); ++i) {
+        if (!isMeasured[i]) continue;
+        sum += values[i];
+        squares += values[i] * values[i];
+        count += 1.0;
+    }
+    return count > 0.0 ? std::sqrt(std::max(0.0, squares / count - std::pow(sum / count, 2))) : 0.0;
+}
+
+/// The moduli of the measured values.
+std::vector<double> moduliOf(const Eigen::VectorXd& values, const std::vector<bool>& isMeasured) {
+    std::vector<double> moduli;
+    for (Index i = 0; i < values.size(); ++i)
+        if (isMeasured[i]) moduli.push_back(std::abs(values[i]));
+    return moduli;
+}
+
+/// The measured vertices around which there is the least of the shape, as this octave of it shows.
+std::vector<bool> quietest(const VertexGraph& graph, const Eigen::VectorXd& octave,
+                           std::vector<bool> isMeasured) {
+    constexpr double kShare = 0.5;
+    constexpr int kSteps = 16;
+    Eigen::VectorXd energy = octave.cwiseAbs2();
+    for (int k = 0; k < kSteps; ++k) diffuse(graph, energy);
+    const double most = quantile(moduliOf(energy, isMeasured), kShare);
+    for (Index i = 0; i < energy.size(); ++i) isMeasured[i] = isMeasured[i] && energy[i] <= most;
+    return isMeasured;
+}
+
+/// Deviations along the normals in each octave, and those of white noise.
+struct OctaveDeviations {
+    Octaves shape, white;
+};
+
+OctaveDeviations octaveDeviations(const FaceGraph& graph, const Points& X, const Points& N,
+                                  const std::vector<bool>& isMeasured) {
+    using Rows = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
+    constexpr int kOctaveOfShape = 3;
+    Rows Y(X.rows(), 4);  // positions and white noise
+    Y << X, whiteNoise(X.rows());
+    OctaveDeviations deviations;
+    std::array<Eigen::VectorXd, kOctaves> along;
+    int power = 0;
+    for (int k = 0; k < kOctaves; ++k) {
+        const Rows before = Y;
+        for (const int end = 1 << k; power < end; ++power) diffuse(graph.vertices, Y);
+        const Rows octave = before - Y;
+        along[k] = octave.leftCols<3>().cwiseProduct(N).rowwise().sum();
+        deviations.white[k] = deviationOf(octave.col(3), isMeasured);
+    }
+    const std::vector<bool> isQuiet = quietest(graph.vertices, along[kOctaveOfShape], isMeasured);
+    parallelFor(kOctaves, [&](Index k) {
+        deviations.shape[k] = trimmedDeviation(moduliOf(along[k], isQuiet));
+    });
+    return deviations;
+}
+
+/// The most of each octave that the shape can account for. It rises by a factor from octave to
+/// octave, so the coarser ones, in which the shape is seen, bound the finer ones.
+/// @param height  deviations over those of white noise.
+Octaves shapePart(const Octaves& height) {
+    constexpr double kLeastRise = 2.3, kMostRise = 3.0;
+    double rise = 0.0;
+    for (int k = 2; k + 1 < kOctaves; ++k)
+        if (height[k] > 0.0) rise = std::max(rise, height[k + 1] / height[k]);
+    rise = std::clamp(rise, kLeastRise, kMostRise);
+    Octaves shape = height;
+    for (int k = kOctaves - 2; k >= 0; --k) shape[k] = std::min(height[k], shape[k + 1] / rise);
+    return shape;
+}
+
+/// Diffusion powers in the middle of each octave; their roots are lengths in edges.
+constexpr std::array<double, kOctaves> kPowers{0.5, 1.5, 3.0, 6.0, 12.0, 24.0, 48.0};
+/// Up to this octave white noise is where noise has its length: in the coarser ones is too little.
+constexpr int kOctavesOfWhite = 5;
+
+/// Mean length, in edges, of what has these energies in its first octaves.
+double meanLength(const Octaves& energy, int octaves) {
+    double lengths = 0.0, energies = 0.0;
+    for (int k = 0; k < octaves; ++k) {
+        lengths += energy[k] * std::sqrt(kPowers[k]);
+        energies += energy[k];
+    }
+    return lengths / energies;
+}
+
+}  // namespace
+
+double residualCorrelation(const FaceGraph& graph, const Points& X,
+                           const std::vector<bool>& isMeasured) {
+    const Points N = vertexNormals(graph, blurredNormals(graph, areaNormals(X, graph.F), kBlurs));
+    const VertexGraph& vertices = graph.vertices;
+    Eigen::VectorXd residual(X.rows());
+    forEachMean(vertices, X, [&](Index i, const Eigen::RowVector3d& mean) {
+        residual[i] = (X.row(i) - mean).dot(N.row(i)) /
+                      std::sqrt(1.0 + 1.0 / static_cast<double>(vertices.degree(i)));
+    });
+    std::vector<double> moduli;
+    for (Index i = 0; i < X.rows(); ++i)
+        if (isMeasured[i]) moduli.push_back(std::abs(residual[i]));
+    const double limit = 2.0 * medianDeviation(std::move(moduli));
+    if (!(limit > 0.0)) return 1.0;
+    residual = residual.cwiseMax(-limit).cwiseMin(limit);
+    double products = 0.0, squares = 0.0;
+    for (Index i = 0; i < X.rows(); ++i)
+        for (Index k = vertices.first[i]; k < vertices.first[i + 1]; ++k) {
+            const int j = vertices.at[k];
+            if (!isMeasured[i] || !isMeasured[j]) continue;
+            products += residual[i] * residual[j];
+            squares += residual[i] * residual[i];
+        }
+    return squares > 0.0 ? products / squares : 1.0;
+}
+
+NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X,
+                            const std::vector<bool>& isMeasured, double correlation,
+                            double meanEdge) {
+    constexpr double kLeastExcess = 0.45;  // share of an octave that must be noise
+    constexpr double kMostRise = 2.03;     // of noise, from an octave to the next coarser one
+    // Of noise of 1.5 edges, height over what the octaves show that the shape does not hide.
+    constexpr double kHidden = 1.3;
+    const Points N = vertexNormals(graph, blurredNormals(graph, areaNormals(X, graph.F), kBlurs));
+    const auto [deviation, white] = octaveDeviations(graph, X, N, isMeasured);
+    const Octaves height = (white > 0.0).select(deviation / white, 0.0);
+    const Octaves noise = (height.square() - shapePart(height).square()).max(0.0).sqrt();
+
+    Octaves energy = Octaves::Zero();
+    for (int k = 0; k < kOctaves; ++k) {
+        const int finer = std::max(k - 1, 0);
+        if (!(noise[k] >= kLeastExcess * height[k] &&
+              height[finer + 1] < kMostRise * height[finer]))
+            break;
+        energy[k] = std::pow(noise[k] * white[k], 2);
+    }
+    NoiseEstimate estimate;
+    estimate.meanEdge = meanEdge;
+    if (!(energy.sum() > 0.0)) return estimate;
+    const double length =
+        meanLength(energy, kOctaves) / meanLength(white.square(), kOctavesOfWhite);
+    estimate.size = std::max(1.0, length);
+    estimate.height = kHidden * std::sqrt(energy.sum() / white.square().sum());
+    // White noise is best seen in the first octave, where there is the least shape.
+    constexpr double kLeastSize = 1.22, kMostCorrelationOfWhite = -0.1;
+    if (estimate.size < kLeastSize || correlation < kMostCorrelationOfWhite) {
+        estimate.size = 1.0;
+        estimate.height = noise[0];
+    }
+    return estimate;
+}
+
+}  // namespace spectral

@@ -1,0 +1,178 @@
+#include "core/noise/spikes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/noise/diffusion.h"
+#include "core/noise/robust_statistics.h"
+
+namespace spectral {
+
+namespace {
+
+/// L = I - P and its transpose, on scalars.
+class UniformLaplacian {
+  public:
+    explicit UniformLaplacian(const VertexGraph& graph)
+        : graph_(graph), squaredNorm_(graph.size()) {
+        for (Index j = 0; j < graph.size(); ++j) {
+            squaredNorm_[j] = 1.0;
+            for (Index k = graph.first[j]; k < graph.first[j + 1]; ++k)
+                squaredNorm_[j] += std::pow(static_cast<double>(graph.degree(graph.at[k])), -2);
+        }
+    }
+
+    /// Residual along the normals, (L X) . N.
+    Eigen::VectorXd residual(const Points& X, const Points& N) const {
+        Eigen::VectorXd r = Eigen::VectorXd::Zero(X.rows());
+        forEachMean(graph_, X, [&](Index i, const Eigen::RowVector3d& mean) {
+            r[i] = (X.row(i) - mean).dot(N.row(i));
+        });
+        return r;
+    }
+
+    Eigen::VectorXd times(const Eigen::VectorXd& x) const {
+        Eigen::VectorXd y = x;
+        forEachMean(graph_, x, [&](Index i, const auto& mean) { y[i] -= mean[0]; });
+        return y;
+    }
+
+    Eigen::VectorXd transposedTimes(const Eigen::VectorXd& x) const {
+        Eigen::VectorXd y = x;
+        parallelRows(graph_.size(), [&](Index begin, Index end) {
+            for (Index i = begin; i < end; ++i)
+                for (Index k = graph_.first[i]; k < graph_.first[i + 1]; ++k)
+                    y[i] -= x[graph_.at[k]] / static_cast<double>(graph_.degree(graph_.at[k]));
+        });
+        return y;
+    }
+
+    /// |L e_j|^2
+    const Eigen::VectorXd& squaredNorm() const { return squaredNorm_; }
+
+  private:
+    const VertexGraph& graph_;
+    Eigen::VectorXd squaredNorm_;
+};
+
+Points blurredVertexNormals(const FaceGraph& graph, const Points& X, int blurs) {
+    return vertexNormals(graph, blurredNormals(graph, areaNormals(X, graph.F), blurs));
+}
+
+/// Heights of the spikes, 0 elsewhere: the least squares solution of L z = r, by conjugate
+/// gradients on the normal equations.
+Eigen::VectorXd heightsOf(const std::vector<bool>& isSpike, const UniformLaplacian& L,
+                          const Eigen::VectorXd& r) {
+    constexpr int kMostIterations = 100;
+    constexpr double kAccuracy = 1e-6;
+    const auto restricted = [&](Eigen::VectorXd x) {
+        for (Index i = 0; i < x.size(); ++i)
+            if (!isSpike[i]) x[i] = 0.0;
+        return x;
+    };
+    Eigen::VectorXd z = Eigen::VectorXd::Zero(r.size());
+    Eigen::VectorXd left = restricted(L.transposedTimes(r)), direction = left;
+    double squared = left.squaredNorm();
+    const double enough = kAccuracy * kAccuracy * squared;
+    for (int k = 0; k < kMostIterations && squared > enough; ++k) {
+        const Eigen::VectorXd image = L.times(direction);
+        const double step = squared / image.squaredNorm();
+        z += step * direction;
+        left -= step * restricted(L.transposedTimes(image));
+        const double next = left.squaredNorm();
+        direction = left + next / squared * direction;
+        squared = next;
+    }
+    return z;
+}
+
+/// Takes vertices out that have more neighbours on their own side of the surface than on the other,
+/// by two.
+void dropClusters(const VertexGraph& graph, const Eigen::VectorXd& height,
+                  std::vector<bool>& isSpike) {
+    constexpr int kCluster = 2;
+    const std::vector<bool> wasSpike = isSpike;
+    for (Index i = 0; i < graph.size(); ++i) {
+        int sameSide = 0;
+        for (Index k = graph.first[i]; wasSpike[i] && k < graph.first[i + 1]; ++k)
+            if (wasSpike[graph.at[k]]) sameSide += height[i] * height[graph.at[k]] > 0.0 ? 1 : -1;
+        if (sameSide >= kCluster) isSpike[i] = false;
+    }
+}
+
+void judge(const VertexGraph& graph, Spikes& spikes) {
+    double neighbours = 0.0, both = 0.0;
+    spikes.count = (spikes.height.array() != 0.0).count();
+    for (Index i = 0; i < graph.size(); ++i)
+        for (Index k = graph.first[i]; spikes.height[i] != 0.0 && k < graph.first[i + 1]; ++k) {
+            neighbours += 1.0;
+            both += spikes.height[graph.at[k]] != 0.0 ? 1.0 : 0.0;
+        }
+    spikes.clustering = neighbours > 0.0 ? both / neighbours / spikes.share() : 0.0;
+}
+
+}  // namespace
+
+Spikes findSpikes(const FaceGraph& graph, const Points& X, const std::vector<bool>& mayMove,
+                  double deviations, double meanEdge) {
+    constexpr int kMostRounds = 12, kBlursOfSearch = 4, kBlurs = 3;
+    constexpr double kLeastHeight = 0.1;  // mean edges
+    constexpr double kLeastFound = 1e-4;  // share of the vertices, for another round
+    const UniformLaplacian L(graph.vertices);
+    const VertexGraph& vertices = graph.vertices;
+    Points without = X;
+    std::vector<bool> isSpike(mayMove.size(), false);
+    for (int round = 0; round < kMostRounds; ++round) {
+        const Points N = blurredVertexNormals(graph, without, kBlursOfSearch);
+        const Eigen::VectorXd d =
+            L.transposedTimes(L.residual(without, N)).cwiseQuotient(L.squaredNorm());
+        std::vector<double> moduli;
+        for (Index i = 0; i < d.size(); ++i)
+            if (mayMove[i]) moduli.push_back(std::abs(d[i]));
+        const double least =
+            std::max(deviations * medianDeviation(std::move(moduli)), kLeastHeight * meanEdge);
+        Index found = 0;
+        for (Index i = 0; i < d.size(); ++i) {
+            if (!mayMove[i] || !(std::abs(d[i]) > least)) continue;
+            bool isLargest = true;
+            for (Index k = vertices.first[i]; k < vertices.first[i + 1]; ++k)
+                isLargest = isLargest && std::abs(d[i]) >= std::abs(d[vertices.at[k]]);
+            if (!isLargest) continue;
+            isSpike[i] = true;
+            without.row(i) -= d[i] * N.row(i);
+            ++found;
+        }
+        if (static_cast<double>(found) < std::max(1.0, kLeastFound * static_cast<double>(d.size())))
+            break;
+    }
+    Spikes spikes;
+    spikes.N = blurredVertexNormals(graph, without, kBlurs);
+    const Eigen::VectorXd r = L.residual(X, spikes.N);
+    dropClusters(vertices, heightsOf(isSpike, L, r), isSpike);
+    spikes.height = heightsOf(isSpike, L, r);
+    judge(vertices, spikes);
+    return spikes;
+}
+
+Spikes certainSpikes(const FaceGraph& graph, const Points& X, Spikes spikes, double meanEdge) {
+    constexpr double kLeastHeight = 1.5;  // mean edges
+    constexpr double kLeastExplained = 0.97;
+    const UniformLaplacian L(graph.vertices);
+    const Eigen::VectorXd r = L.residual(X, spikes.N), left = r - L.times(spikes.height);
+    const VertexGraph& vertices = graph.vertices;
+    for (Index i = 0; i < r.size(); ++i) {
+        if (spikes.height[i] == 0.0) continue;
+        double before = r[i] * r[i], after = left[i] * left[i];
+        for (Index k = vertices.first[i]; k < vertices.first[i + 1]; ++k) {
+            before += r[vertices.at[k]] * r[vertices.at[k]];
+            after += left[vertices.at[k]] * left[vertices.at[k]];
+        }
+        if (!(std::abs(spikes.height[i]) > kLeastHeight * meanEdge &&
+              after < (1.0 - kLeastExplained) * before))
+            spikes.height[i] = 0.0;
+    }
+    judge(vertices, spikes);
+    return spikes;
+}
+
+}  // namespace spectral

@@ -1,0 +1,117 @@
+#include "core/denoise/normal_filter.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <random>
+#include <utility>
+
+#include "core/denoise/vertex_update.h"
+#include "support/noisy_shapes.h"
+
+namespace spectral {
+namespace {
+
+using testing::Mesh;
+
+Points faceNormals(const Points& X, const Faces& F) {
+    Points N = areaNormals(X, F);
+    normalizeRows(N);
+    return N;
+}
+
+/// M + t L, dense, for triangles of which none is in the surroundings of half the mean area.
+Eigen::MatrixXd denseSystem(const FaceGraph& graph, const Points& X,
+                            const NormalFilterOptions& options, const Eigen::VectorXd& M) {
+    Points q = blurredNormals(graph, areaNormals(X, graph.F), options.blurs);
+    normalizeRows(q);
+    double meanLength = 0.0;
+    for (Index f = 0; f < graph.faceCount(); ++f)
+        for (int c = 0; c < 3; ++c)
+            meanLength += (X.row(graph.F(f, c)) - X.row(graph.F(f, (c + 1) % 3))).norm() /
+                          (3.0 * static_cast<double>(graph.faceCount()));
+    Eigen::MatrixXd A = M.asDiagonal();
+    for (Index a = 0; a < graph.faceCount(); ++a)
+        for (int c = 0; c < 3; ++c) {
+            const int b = graph.neighbours(a, c);
+            if (b < 0) continue;
+            const double length =
+                (X.row(graph.F(a, (c + 1) % 3)) - X.row(graph.F(a, (c + 2) % 3))).norm();
+            const double w = options.time * length / meanLength *
+                             std::exp(-(q.row(a) - q.row(b)).squaredNorm() /
+                                      (2.0 * options.edgeScale * options.edgeScale));
+            A(a, a) += w;
+            A(a, b) -= w;
+        }
+    return A;
+}
+
+TEST(NormalFilter, SolvesItsEquation) {
+    const Mesh mesh = testing::withGaussianNoise(testing::cube(5), 0.2, 2);
+    const FaceGraph graph = faceGraph(mesh.F, mesh.V.rows());
+    const Points X = mesh.V, N = faceNormals(X, mesh.F);
+    const Eigen::VectorXd area = areaNormals(X, mesh.F).rowwise().norm();
+    const Eigen::VectorXd M = (area / area.mean()).cwiseMax(0.05).cwiseSqrt();
+    NormalFilterOptions options{1.5, 0.3};
+    for (const bool isTwice : {false, true}) {
+        options.isTwice = isTwice;
+        const Eigen::LDLT<Eigen::MatrixXd> A(denseSystem(graph, X, options, M));
+        Points expected = A.solve(M.asDiagonal() * N);
+        if (isTwice) expected += A.solve(M.asDiagonal() * (N - expected)).eval();
+        normalizeRows(expected);
+        const Points found = filterNormals(graph, X, options);
+        EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 0.03);
+        EXPECT_LT((found - expected).norm(), 0.01 * expected.norm());
+        // The guess is where the solver begins, no part of the result.
+        const Points again = filterNormals(graph, X, options, found);
+        EXPECT_LT((again - expected).norm(), 0.01 * expected.norm());
+    }
+}
+
+TEST(NormalFilter, MixesMoreWhereEdgesAreShort) {
+    const Mesh large = testing::rectangle(20.0, 20.0, 20, 20);
+    const Mesh small = testing::rectangle(5.0, 5.0, 20, 20);
+    Mesh mesh = testing::joined(large, small);
+    const double height = 0.1;
+    std::mt19937 random(4);
+    std::normal_distribution<double> normal(0.0, height);
+    for (Index i = 0; i < mesh.V.rows(); ++i) mesh.V(i, 2) = normal(random);
+    const FaceGraph graph = faceGraph(mesh.F, mesh.V.rows());
+    NormalFilterOptions options{4.0, 0.22};
+    const auto slopes = [&] {  // of the large triangles, and of the small ones
+        const Points N = filterNormals(graph, mesh.V, options);
+        const auto squares = N.leftCols<2>().rowwise().squaredNorm();
+        return std::pair(squares.head(large.F.rows()).sum(), squares.tail(small.F.rows()).sum());
+    };
+    const auto [largeBefore, smallBefore] = slopes();
+    options.height = height / meanEdgeLength(mesh.V, mesh.F);
+    const auto [largeAfter, smallAfter] = slopes();
+    EXPECT_NEAR(largeAfter, largeBefore, 0.02 * largeBefore);
+    EXPECT_LT(smallAfter, 0.8 * smallBefore);
+}
+
+TEST(NormalFilter, LeavesNeedlesWithoutNormals) {
+    const Mesh needles{(Vertices(4, 3) << 0, 0, 0, 1, 0, 0, 2, 0, 0, 4, 0, 0).finished(),
+                       (Faces(2, 3) << 0, 1, 2, 1, 3, 2).finished()};
+    EXPECT_EQ(filterNormals(faceGraph(needles.F, 4), needles.V, {}), Points::Zero(2, 3));
+}
+
+TEST(VertexUpdate, GivesAPlaneItsNormalAndMovesNothingElse) {
+    Mesh mesh = testing::rectangle(1, 1, 12, 12);
+    const Points up = faceNormals(mesh.V, mesh.F);
+    std::mt19937 random(4);
+    std::normal_distribution<double> normal(0.0, 0.02);
+    Vertices bumpy = mesh.V;
+    for (Index i = 0; i < bumpy.rows(); ++i) bumpy(i, 2) += normal(random);
+    std::vector<bool> mayMove = testing::everywhere(bumpy.rows());
+    mayMove[80] = false;
+    const Vertices flat = followNormals(faceGraph(mesh.F, bumpy.rows()), bumpy, up, mayMove, 50);
+    EXPECT_EQ(flat.row(80), bumpy.row(80));
+    EXPECT_EQ(flat.leftCols(2), bumpy.leftCols(2)) << "no drift within the plane";
+    EXPECT_LT(testing::meanAngle(flat, mesh.V, mesh.F),
+              0.2 * testing::meanAngle(bumpy, mesh.V, mesh.F));
+}
+
+}  // namespace
+}  // namespace spectral

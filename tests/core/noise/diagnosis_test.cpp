@@ -1,0 +1,153 @@
+#include "core/noise/diagnosis.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "core/noise/diffusion.h"
+#include "core/noise/robust_statistics.h"
+#include "core/noise/spikes.h"
+#include "core/noise/voxel_lattice.h"
+#include "support/noisy_shapes.h"
+
+namespace spectral {
+namespace {
+
+using testing::Mesh;
+
+Diagnosis diagnosed(const Mesh& mesh) {
+    return diagnose(faceGraph(mesh.F, mesh.V.rows()), mesh.V, testing::everywhere(mesh.V.rows()),
+                    false);
+}
+
+TEST(RobustStatistics, LeaveOutliersOut) {
+    std::mt19937 random(1);
+    std::normal_distribution<double> normal(0.0, 2.0);
+    std::vector<double> moduli;
+    for (int i = 0; i < 20000; ++i) moduli.push_back(std::abs(normal(random)));
+    EXPECT_NEAR(medianDeviation(moduli), 2.0, 0.05);
+    EXPECT_NEAR(trimmedDeviation(moduli), 2.0, 0.05);
+    EXPECT_NEAR(quantile(moduli, 0.99), 2.0 * 2.576, 0.2);
+    for (int i = 0; i < 2000; ++i) moduli[i] = 100.0;
+    EXPECT_NEAR(trimmedDeviation(moduli), 2.0, 0.1);
+    EXPECT_EQ(medianDeviation({}), 0.0);
+    EXPECT_EQ(trimmedDeviation({}), 0.0);
+}
+
+TEST(Diffusion, HalvesWhatAlternatesAndKeepsConstants) {
+    const Mesh mesh = testing::blob();
+    const FaceGraph graph = faceGraph(mesh.F, mesh.V.rows());
+    Eigen::VectorXd ones = Eigen::VectorXd::Ones(mesh.V.rows());
+    diffuse(graph.vertices, ones);
+    EXPECT_LT((ones.array() - 1.0).abs().maxCoeff(), 1e-15);
+    const Eigen::VectorXd noise = whiteNoise(100001);
+    EXPECT_NEAR(noise.mean(), 0.0, 0.02);
+    EXPECT_NEAR(noise.squaredNorm() / 100001.0, 1.0, 0.02);
+}
+
+TEST(Diagnosis, MeasuresTheHeightOfWhiteNoise) {
+    for (const Mesh& mesh : {testing::icosphere(4), testing::cube(20)})
+        for (const double height : {0.1, 0.2, 0.3}) {
+            const Diagnosis found = diagnosed(testing::withGaussianNoise(mesh, height, 7));
+            const double edge = meanEdgeLength(mesh.V, mesh.F);
+            EXPECT_EQ(found.kind, NoiseKind::White);
+            EXPECT_NEAR(found.noise.height, height * edge, 0.1 * height * edge) << height;
+            EXPECT_EQ(found.noise.size, 1.0);
+        }
+}
+
+TEST(Diagnosis, KnowsNoiseThatNeighboursShare) {
+    Mesh mesh = testing::rectangle(1.0, 1.0, 70, 70);
+    const FaceGraph graph = faceGraph(mesh.F, mesh.V.rows());
+    Eigen::VectorXd z = whiteNoise(mesh.V.rows());
+    for (int k = 0; k < 2; ++k) diffuse(graph.vertices, z);
+    mesh.V.col(2) = 0.2 / 70.0 / std::sqrt(z.squaredNorm() / double(z.size())) * z;
+    std::vector<bool> isMeasured(graph.onRim);
+    isMeasured.flip();
+    const Diagnosis found = diagnose(graph, mesh.V, isMeasured, true);
+    EXPECT_GT(found.noise.size, 1.2);
+    EXPECT_LT(found.noise.size, 3.0);
+    EXPECT_NEAR(found.noise.height, 0.2 / 70.0, 0.45 * 0.2 / 70.0);
+    EXPECT_GT(found.noise.correlation, 0.0);
+}
+
+TEST(Diagnosis, SeesNoNoiseInCleanShapes) {
+    for (const Mesh& mesh : {testing::icosphere(4), testing::cube(20), testing::blob(),
+                             testing::torus(2.0, 0.5, 60, 30)}) {
+        const Diagnosis found = diagnosed(mesh);
+        EXPECT_TRUE(found.kind == NoiseKind::None || found.kind == NoiseKind::Shape);
+        EXPECT_EQ(found.spikes, 0);
+        EXPECT_EQ(found.X, Points(mesh.V));
+    }
+}
+
+TEST(Diagnosis, MeasuresNothingOnATessellationOrFewVertices) {
+    Mesh needles = testing::torus(2.0, 0.5, 200, 6);
+    EXPECT_EQ(diagnosed(needles).kind, NoiseKind::Tessellation);
+    EXPECT_EQ(diagnosed(testing::cube(2)).kind, NoiseKind::TooFew);
+}
+
+TEST(VoxelLattice, IsFoundOfAnySizeAndPlace) {
+    const Mesh ball = testing::segmentedBall(10);
+    EXPECT_FALSE(voxelLattice(testing::withGaussianNoise(ball, 0.2, 1).V));
+    EXPECT_FALSE(voxelLattice(testing::icosphere(4).V));
+    EXPECT_FALSE(voxelLattice(testing::cube(20).V));
+    const auto found = diagnosed(ball);
+    // Marching tetrahedra also have midpoints of diagonals, which are no grid edges.
+    EXPECT_NE(found.kind, NoiseKind::White);
+}
+
+/// The surface of a ball of voxels by squares of two triangles around every voxel's face would lie
+/// on whole numbers; marching cubes put vertices on the middles of grid edges.
+TEST(VoxelLattice, HasTheSizeOfAVoxelAlongEachAxis) {
+    std::vector<Eigen::RowVector3d> middles;
+    constexpr int kRadius = 8;
+    const auto isInside = [](int x, int y, int z) { return x * x + y * y + z * z < 60; };
+    for (int x = -kRadius; x <= kRadius; ++x)
+        for (int y = -kRadius; y <= kRadius; ++y)
+            for (int z = -kRadius; z <= kRadius; ++z) {
+                const bool here = isInside(x, y, z);
+                if (here != isInside(x + 1, y, z)) middles.emplace_back(x + 0.5, y, z);
+                if (here != isInside(x, y + 1, z)) middles.emplace_back(x, y + 0.5, z);
+                if (here != isInside(x, y, z + 1)) middles.emplace_back(x, y, z + 0.5);
+            }
+    Points X(static_cast<Index>(middles.size()), 3);
+    const Eigen::RowVector3d size(0.7, 0.7, 2.1), place(1e3, -5.0, 0.1);
+    for (Index i = 0; i < X.rows(); ++i) X.row(i) = middles[i].cwiseProduct(size) + place;
+    const auto voxel = voxelLattice(X);
+    ASSERT_TRUE(voxel);
+    EXPECT_LT((*voxel - size).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(Spikes, AreFoundWithTheirHeights) {
+    const Mesh sphere = testing::icosphere(4);
+    const Mesh spiky = testing::withSpikes(sphere, 0.1, 0.8, 3);
+    const FaceGraph graph = faceGraph(spiky.F, spiky.V.rows());
+    const double edge = meanEdgeLength(sphere.V, sphere.F);
+    const Spikes spikes =
+        findSpikes(graph, spiky.V, testing::everywhere(spiky.V.rows()), 4.0, edge);
+    Index missed = 0, invented = 0;
+    for (Index i = 0; i < spiky.V.rows(); ++i) {
+        const double height = (spiky.V.row(i) - sphere.V.row(i)).dot(sphere.V.row(i));
+        missed += height != 0.0 && std::abs(spikes.height[i] - height) > 0.2 * edge;
+        invented += height == 0.0 && std::abs(spikes.height[i]) > 0.1 * edge;
+    }
+    EXPECT_LT(missed, spikes.count / 20);
+    EXPECT_LT(invented, spikes.count / 20);
+    EXPECT_LT(spikes.clustering, 1.5);
+}
+
+TEST(Spikes, AFewHighOnesAreCertainAndCornersAreNone) {
+    Mesh sphere = testing::icosphere(4);
+    const double edge = meanEdgeLength(sphere.V, sphere.F);
+    const Mesh clean = sphere;
+    for (const int i : {100, 700, 1500}) sphere.V.row(i) *= 1.0 + 4.0 * edge;
+    const Diagnosis found = diagnosed(sphere);
+    EXPECT_EQ(found.spikes, 3);
+    EXPECT_LT((found.X - Points(clean.V)).rowwise().norm().maxCoeff(), 0.2 * edge);
+    EXPECT_EQ(diagnosed(testing::cube(20)).spikes, 0);
+}
+
+}  // namespace
+}  // namespace spectral
