@@ -35,27 +35,35 @@ void checkOptions(const DenoiseOptions& options) {
 /// Part of its displacement that each vertex of the surface makes, 0 to 1.
 Eigen::VectorXd displacementWeight(const DenoiseOptions& options, const Surface& surface,
                                    const Components& components) {
-    constexpr double kFadingOut = 4.0;  // mean edges
+    constexpr double kFadingOut = 4.0;  // edges
     const WeightOptions part{options.selected, {}};
     checkWeights(part);
-    const Interior interior(surface.F, components, options.boundary);
-    return vertexWeight(
-        part, surface, interior,
-        part.selected.empty() ? Laplacian{} : uniformLaplacian(surface.X, surface.F),
-        kFadingOut * meanEdgeLength(surface.X, surface.F));
+    Laplacian inEdges;  // as if all edges were of length 1, needles or not
+    if (!part.selected.empty()) {
+        inEdges = uniformLaplacian(surface.X, surface.F);
+        inEdges.D.setConstant(0.5 * std::sqrt(3.0));
+    }
+    return vertexWeight(part, surface, Interior(surface.F, components, options.boundary), inEdges,
+                        kFadingOut);
 }
 
-/// The triangles at which a vertex moves, and their vertices, rows of `whole`.
-Surface movingPart(const Surface& whole, const Eigen::VectorXd& weight) {
-    Faces F(whole.F.rows(), 3);
-    Index count = 0;
-    for (Index t = 0; t < F.rows(); ++t)
-        if (weight[whole.F(t, 0)] > 0.0 || weight[whole.F(t, 1)] > 0.0 ||
-            weight[whole.F(t, 2)] > 0.0)
-            F.row(count++) = whole.F.row(t);
-    F.conservativeResize(count, 3);
-    return surfaceOf(whole.X, F);
-}
+/// The triangles of a surface at which a vertex moves, and their vertices.
+struct MovingPart {
+    Surface surface;  ///< Its vertices are rows of the whole surface.
+    Eigen::VectorXd
+        weight;  ///< Part of its displacement that each vertex makes, above 0 to 1; or 0.
+
+    MovingPart(const Surface& whole, const Eigen::VectorXd& weightOfWhole) {
+        Faces F(whole.F.rows(), 3);
+        Index count = 0;
+        for (Index t = 0; t < F.rows(); ++t)
+            if ((weightOfWhole(whole.F.row(t).transpose()).array() > 0.0).any())
+                F.row(count++) = whole.F.row(t);
+        F.conservativeResize(count, 3);
+        surface = surfaceOf(whole.X, F);
+        weight = weightOfWhole(surface.vertex);
+    }
+};
 
 /// What the options say of the noise, and what was measured.
 RemovalOptions removalOptions(const DenoiseOptions& options, const Diagnosis& diagnosis) {
@@ -64,9 +72,9 @@ RemovalOptions removalOptions(const DenoiseOptions& options, const Diagnosis& di
     const double edge = noise.meanEdge;
     RemovalOptions removal;
     removal.meanEdge = edge;
-    removal.height = std::min(
-        options.strength * (options.noiseHeight > 0.0 ? options.noiseHeight : noise.height),
-        kMostHeight * edge);
+    removal.height = std::min(std::max(options.strength, 1.0) *
+                                  (options.noiseHeight > 0.0 ? options.noiseHeight : noise.height),
+                              kMostHeight * edge);
     // Of noise over several edges only the part in the finest octaves can be told from the shape:
     // it is about twice as long as it looks.
     constexpr double kHidden = 2.0;
@@ -87,19 +95,46 @@ bool isNoise(const Diagnosis& diagnosis) {
 }
 
 Removal removeNoise(const FaceGraph& graph, const Points& X, const Diagnosis& diagnosis,
-                    const DenoiseOptions& options, const RemovalOptions& removal,
-                    const Progress& progress) {
-    if (options.strength == 0.0) return {X, 0};
-    if (diagnosis.kind == NoiseKind::Voxels) {
-        Removal steps = removeVoxelSteps(graph, X, diagnosis.voxel, removal, progress);
-        steps.X = X + std::min(options.strength, 1.0) * (steps.X - X);
-        return steps;
-    }
-    if (!(removal.height > 0.0) || !(options.noiseHeight > 0.0 || isNoise(diagnosis)))
-        return {diagnosis.X, 0};
+                    bool isKnown, const RemovalOptions& removal, const Progress& progress) {
+    if (diagnosis.kind == NoiseKind::Voxels)
+        return removeVoxelSteps(graph, X, diagnosis.voxel, removal, progress);
+    if (!(removal.height > 0.0) || !(isKnown || isNoise(diagnosis))) return {diagnosis.X, 0};
     return removal.size > kSizeOfWhite
                ? removeCorrelatedNoise(graph, diagnosis.X, removal, progress)
                : removeWhiteNoise(graph, diagnosis.X, removal, progress);
+}
+
+/// Share of the time that measuring takes, for the progress.
+constexpr double kMeasuring = 0.3;
+
+/// Measures and removes, and fills in what is told of both.
+/// @return  the displacement of the part, n x 3.
+Points denoisePart(const MovingPart& part, const FaceGraph& graph, const DenoiseOptions& options,
+                   const Progress& progress, DenoiseResult& result) {
+    const Points X0 = part.surface.X;
+    std::vector<bool> isMeasured(graph.onRim), mayMove(graph.onRim);
+    for (Index i = 0; i < X0.rows(); ++i) {
+        isMeasured[i] = !graph.onRim[i] && part.weight[i] == 1.0;
+        mayMove[i] = part.weight[i] > 0.0;
+    }
+    const bool isKnown = options.noiseHeight > 0.0;
+    Diagnosis& diagnosis = result.diagnosis;
+    diagnosis = diagnose(graph, X0, isMeasured, isKnown, progress.part(0.0, kMeasuring));
+    RemovalOptions removal = removalOptions(options, diagnosis);
+    removal.mayMove = std::move(mayMove);
+    Removal done =
+        removeNoise(graph, X0, diagnosis, isKnown, removal, progress.part(kMeasuring, 1.0));
+    if (done.rounds > 0 && isCrumpled(graph, X0, done.X)) {
+        result.isCrumpled = true;
+        done = {diagnosis.X, 0};
+    }
+    result.rounds = done.rounds;
+    const double strength = std::min(options.strength, 1.0);
+    if (done.rounds > 0 && diagnosis.kind != NoiseKind::Voxels) {
+        result.noiseHeight = strength * removal.height;
+        if (removal.size > kSizeOfWhite) result.noiseSize = removal.size * removal.meanEdge;
+    }
+    return strength * part.weight.asDiagonal() * (done.X - X0);
 }
 
 /// Draws coordinates back that an offset for the volume has moved farther than their limits.
@@ -129,9 +164,6 @@ void report(const Vertices& V, const Surface& surface, const Vertices& displacem
 /// both sides of a surface, and takes little volume away with it.
 constexpr double kMostOffset = 2.0;
 
-/// Share of the time that measuring takes, for the progress.
-constexpr double kMeasuring = 0.3;
-
 }  // namespace
 
 DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& options,
@@ -143,10 +175,6 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
     const Surface whole = surfaceOf(V, F);
     const Components components = connectedComponents(whole.F, whole.X.rows());
     const Eigen::VectorXd weight = displacementWeight(options, whole, components);
-    const bool isPart = !options.selected.empty();
-    const Surface part = isPart ? movingPart(whole, weight) : Surface{};
-    const Surface& surface = isPart ? part : whole;
-    const auto rowOfWhole = [&](Index i) { return isPart ? part.vertex[i] : i; };
 
     DenoiseResult result;
     result.components = components.count;
@@ -155,40 +183,24 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
         result.fixedVertices =
             static_cast<int>(std::count(onBoundary.begin(), onBoundary.end(), true));
     }
+    if (!options.selected.empty())
+        for (const Index i : whole.vertex) result.selectedVertices += options.selected[i] ? 1 : 0;
+
     Vertices moved = whole.X;
-    if (surface.X.rows() > 0) {
-        const FaceGraph graph = faceGraph(surface.F, surface.X.rows());
-        const Points X0 = surface.X;
-        std::vector<bool> isMeasured(graph.onRim), mayMove(graph.onRim);
-        for (Index i = 0; i < X0.rows(); ++i) {
-            isMeasured[i] = !graph.onRim[i] && weight[rowOfWhole(i)] == 1.0;
-            mayMove[i] = weight[rowOfWhole(i)] > 0.0;
-        }
-        result.diagnosis = diagnose(graph, X0, isMeasured, options.noiseHeight > 0.0,
-                                    progress.part(0.0, kMeasuring));
-        RemovalOptions removal = removalOptions(options, result.diagnosis);
-        removal.mayMove = std::move(mayMove);
-        Removal done = removeNoise(graph, X0, result.diagnosis, options, removal,
-                                   progress.part(kMeasuring, 1.0));
-        if (done.rounds > 0 && isCrumpled(graph, X0, done.X)) {
-            result.isCrumpled = true;
-            done = {result.diagnosis.X, 0};
-        }
-        result.rounds = done.rounds;
-        if (done.rounds > 0 && result.diagnosis.kind != NoiseKind::Voxels) {
-            result.noiseHeight = removal.height;
-            if (removal.size > kSizeOfWhite) result.noiseSize = removal.size * removal.meanEdge;
-        }
-        for (Index i = 0; i < X0.rows(); ++i)
-            moved.row(rowOfWhole(i)) += weight[rowOfWhole(i)] * (done.X.row(i) - X0.row(i));
-        if (done.rounds > 0)
-            result.volumes = preserveVolumes(whole.X, isPart ? whole.F : graph.F, components,
+    const MovingPart part(whole, weight);
+    if (options.strength > 0.0 && part.surface.X.rows() > 0) {
+        const FaceGraph graph = faceGraph(part.surface.F, part.surface.X.rows());
+        const Points displacement = denoisePart(part, graph, options, progress, result);
+        for (Index i = 0; i < displacement.rows(); ++i)
+            moved.row(part.surface.vertex[i]) += displacement.row(i);
+        // The faces of the graph are oriented; they are numbered as the whole, if they are all.
+        const bool isWhole = part.surface.F.rows() == whole.F.rows();
+        if (result.rounds > 0)
+            result.volumes = preserveVolumes(whole.X, isWhole ? graph.F : whole.F, components,
                                              weight, kMostOffset, moved);
         if (result.diagnosis.kind == NoiseKind::Voxels)
             keepWithin(0.5 * result.diagnosis.voxel, whole.X, moved);
     }
-    if (isPart)
-        for (const Index i : whole.vertex) result.selectedVertices += options.selected[i] ? 1 : 0;
     report(V, whole, moved - whole.X, result);
     return result;
 }

@@ -11,7 +11,8 @@
 namespace spectral {
 
 struct DenoiseOptions {
-    double strength = 1.0;     ///< Factor of the noise height that is removed, >= 0.
+    double strength = 1.0;     ///< Part of the displacement to make, or, above 1, factor of the
+                               ///< noise height that is removed; >= 0.
     double noiseHeight = 0.0;  ///< Length units; 0: measured (diagnosis.h).
     double noiseSize = 0.0;    ///< Correlation length, length units; 0: measured.
     bool keepCreases = true;   ///< Else smooths across them, too.

@@ -76,7 +76,9 @@ Eigen::VectorXd heightsOf(const std::vector<bool>& isSpike, const UniformLaplaci
     const double enough = kAccuracy * kAccuracy * squared;
     for (int k = 0; k < kMostIterations && squared > enough; ++k) {
         const Eigen::VectorXd image = L.times(direction);
-        const double step = squared / image.squaredNorm();
+        const double curvature = image.squaredNorm();
+        if (!(curvature > 0.0)) break;  // all vertices of a component are spikes
+        const double step = squared / curvature;
         z += step * direction;
         left -= step * restricted(L.transposedTimes(image));
         const double next = left.squaredNorm();

@@ -18,7 +18,7 @@ struct HalfSteps {
 };
 
 HalfSteps halfSteps(const Eigen::VectorXd& coordinates) {
-    constexpr double kEqual = 1e-4;        // of the extent: no difference
+    constexpr double kEqual = 2e-5;        // of the extent: no difference
     constexpr double kVerticesOfStep = 8;  // at least, in the mean: a lattice is met often
     constexpr std::size_t kLeastSteps = 4;
     constexpr double kRounded = 0.02;     // of a half step
