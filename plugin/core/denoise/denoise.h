@@ -24,10 +24,10 @@ struct DenoiseResult {
     Vertices V;  ///< The denoised positions; unreferenced vertices stay where they are.
 
     Diagnosis diagnosis;
-    double noiseHeight = 0.0;      ///< Removed as if it were that, length units; 0: none.
-    double noiseSize = 0.0;        ///< And that, length units; 0: independent at every vertex.
+    double noiseHeight = 0.0;      ///< The height it removed, length units; 0: none.
+    double noiseSize = 0.0;        ///< Its correlation length, length units; 0: of single vertices.
     int rounds = 0;                ///< Weak parts of the filter, or linear steps; 0: none.
-    bool isCrumpled = false;       ///< Removing it would have folded the surface: not removed.
+    bool isCrumpled = false;       ///< Not removed: that would have folded the surface.
     double maxDisplacement = 0.0;  ///< Largest vertex displacement, length units.
     double rmsDisplacement = 0.0;  ///< Root mean square over the vertices.
     double volumeBefore = 0.0, volumeAfter = 0.0;  ///< Signed; a volume for closed meshes only.
@@ -35,7 +35,7 @@ struct DenoiseResult {
     int components = 0;                            ///< Connected components of the surface.
     int unreferencedVertices = 0;                  ///< Vertices of no triangle, unchanged.
     int fixedVertices = 0;                         ///< Vertices on a fixed boundary, unchanged.
-    int selectedVertices = 0;                      ///< With a selection: those of the surface.
+    int selectedVertices = 0;                      ///< Of the surface, with a selection.
 };
 
 /// Removes noise, and chooses how from the noise it finds.

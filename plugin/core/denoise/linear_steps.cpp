@@ -83,7 +83,7 @@ std::optional<LinearSteps> linearSteps(const FaceGraph& graph, const Points& X,
     const Points N = smoothNormals(graph, Y.leftCols<3>());
     Y = start;
     LinearSteps best;
-    double least = 0.0, noise = 0.0;  // squares: of the error, and of the noise' height
+    double least = 0.0, noise = 0.0;  // squares: of the error, and of the height of the noise
     int taken = 0;
     for (const int steps : kSteps) {
         takeSteps(averaged, steps - taken, Y);
