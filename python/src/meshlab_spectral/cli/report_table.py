@@ -35,7 +35,7 @@ def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
     rows += [
         ("Largest displacement", f"{report['max_displacement']:.4g}"),
         ("RMS displacement", f"{report['rms_displacement']:.4g}"),
-        ("Volume", _change(report["volume_before"], report["volume_after"])),
+        ("Volume, if closed", _change(report["volume_before"], report["volume_after"])),
         ("Components", f"{report['components']}"),
     ]
     if report.get("unreferenced_vertices"):
