@@ -183,8 +183,6 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
         result.fixedVertices =
             static_cast<int>(std::count(onBoundary.begin(), onBoundary.end(), true));
     }
-    if (!options.selected.empty())
-        for (const Index i : whole.vertex) result.selectedVertices += options.selected[i] ? 1 : 0;
 
     Vertices moved = whole.X;
     const MovingPart part(whole, weight);

@@ -35,7 +35,6 @@ struct DenoiseResult {
     int components = 0;                            ///< Connected components of the surface.
     int unreferencedVertices = 0;                  ///< Vertices of no triangle, unchanged.
     int fixedVertices = 0;                         ///< Vertices on a fixed boundary, unchanged.
-    int selectedVertices = 0;                      ///< Of the surface, with a selection.
 };
 
 /// Removes noise, and chooses how from the noise it finds.

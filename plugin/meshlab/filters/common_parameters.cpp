@@ -2,10 +2,12 @@
 
 #include <common/parameters/rich_parameters.h>
 
+#include <algorithm>
+#include <cstddef>
+
 #include "core/laplacian/frequency.h"
 #include "core/mesh/measures.h"
 #include "core/support/errors.h"
-#include "meshlab/mesh_conversion.h"
 
 namespace {
 
@@ -58,6 +60,20 @@ RichBool selectedParameter(const MeshModel& mesh, const QString& width) {
                 "%1, so that no crease is left; everything beyond stays where it is.")
             .arg(width),
         !isAnySelected};
+}
+
+std::vector<bool> chosenVertices(const RichParameterList& parameters, const MeshModel& mesh,
+                                 const MeshMatrices& matrices) {
+    if (!parameters.getBool("selected")) return {};
+    return selectedVertices(mesh.cm, matrices);
+}
+
+std::string selectionTold(const std::vector<bool>& selected) {
+    const auto count = std::count(selected.begin(), selected.end(), true);
+    const auto all = static_cast<std::ptrdiff_t>(selected.size());
+    if (count == all) return {};
+    return "only the selection: " + std::to_string(count) + " of " + std::to_string(all) +
+           " vertices";
 }
 
 RichEnum laplacianParameter(const QString& help) {

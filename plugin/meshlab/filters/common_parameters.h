@@ -4,9 +4,12 @@
 #include <common/parameters/rich_parameter_list.h>
 
 #include <QStringList>
+#include <string>
+#include <vector>
 
 #include "core/laplacian/interior.h"
 #include "core/laplacian/laplacian_builder.h"
+#include "meshlab/mesh_conversion.h"
 
 /// The value of an enumeration, in which a script can have any number.
 /// @param choices  in the order of the core's enumeration.
@@ -31,6 +34,15 @@ double featureSize(const RichParameterList& parameters);
 /// `selected`; default: whether a face is, as in MeshLab's own filters.
 /// @param width  within which a filter fades out around the selection, in words.
 RichBool selectedParameter(const MeshModel& mesh, const QString& width = "about a feature size");
+
+/// Whether `selected` chooses each vertex; empty: all are.
+std::vector<bool> chosenVertices(const RichParameterList& parameters, const MeshModel& mesh,
+                                 const MeshMatrices& matrices);
+
+/// "only the selection: 44 of 642 vertices", since other filters leave selections behind unasked;
+/// empty if everything is filtered.
+/// @param selected  one value for each vertex, or none.
+std::string selectionTold(const std::vector<bool>& selected);
 
 /// `laplacian`; default: intrinsic Delaunay.
 RichEnum laplacianParameter(const QString& help);

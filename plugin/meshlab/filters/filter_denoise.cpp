@@ -125,9 +125,8 @@ std::string nothingTold(const DenoiseResult& result) {
 std::string summaryOf(const spectral::DenoiseOptions& options, const DenoiseResult& result) {
     if (options.strength == 0.0) return "strength 0; nothing changed";
     std::ostringstream text;
-    if (!options.selected.empty())
-        text << "only the selection, " << result.selectedVertices << " of "
-             << result.V.rows() - result.unreferencedVertices << " vertices: ";
+    if (const std::string told = selectionTold(options.selected); !told.empty())
+        text << told << "; ";
     if (result.diagnosis.spikes > 0)
         text << (result.diagnosis.spikes == 1 ? "a spike" : "spikes at ")
              << (result.diagnosis.spikes == 1 ? "" : std::to_string(result.diagnosis.spikes))
@@ -182,7 +181,7 @@ FilterOutcome applyDenoise(const RichParameterList& parameters, MeshModel& mesh,
     options.strength = parameters.getFloat("strength");
     options.noiseHeight = parameters.getAbsPerc("noise_height");
     options.noiseSize = parameters.getAbsPerc("noise_size");
-    if (parameters.getBool("selected")) options.selected = selectedVertices(mesh.cm, input);
+    options.selected = chosenVertices(parameters, mesh, input);
     options.keepCreases = parameters.getBool("keep_creases");
     options.boundary = boundaryCondition(parameters);
     const DenoiseResult result =

@@ -72,14 +72,16 @@ spectral::FilteredSignal filtered(const RichParameterList& parameters, const Mes
     options.featureSize = transfer.featureSize;
     options.laplacian = laplacianKind(parameters);
     options.boundary = boundaryCondition(parameters);
-    if (parameters.getBool("selected")) options.part.selected = selectedVertices(mesh.cm, input);
+    options.part.selected = chosenVertices(parameters, mesh, input);
     return spectral::withSteadyProgress(progress, [&](const spectral::Progress& steady) {
         return spectral::filterSignal(input.V, input.F, Q, options, steady);
     });
 }
 
-std::vector<std::string> warningsOf(const spectral::FilteredSignal& result) {
+std::vector<std::string> warningsOf(const std::vector<bool>& selected,
+                                    const spectral::FilteredSignal& result) {
     std::vector<std::string> warnings;
+    if (const std::string told = selectionTold(selected); !told.empty()) warnings.push_back(told);
     if (result.isConstant)
         warnings.emplace_back(
             "nothing to filter: every connected component has one value throughout. Apply a filter "
@@ -100,7 +102,8 @@ std::vector<std::string> warningsOf(const spectral::FilteredSignal& result) {
 /// What both filters report.
 /// @param signal  "quality changed", ...
 FilterOutcome outcomeOf(const char* name, const char* signal, const RichParameterList& parameters,
-                        const MeshMatrices& input, const spectral::FilteredSignal& result) {
+                        const MeshModel& mesh, const MeshMatrices& input,
+                        const spectral::FilteredSignal& result) {
     const ChosenTransfer transfer = chosenTransfer(parameters, input);
     const double size = transfer.featureSize;
     std::ostringstream text;
@@ -129,7 +132,7 @@ FilterOutcome outcomeOf(const char* name, const char* signal, const RichParamete
              {"factorizations", result.factorizations},
              {"solves", result.solves}},
             text.str(),
-            warningsOf(result)};
+            warningsOf(chosenVertices(parameters, mesh, input), result)};
 }
 
 std::string rangeOf(const Eigen::MatrixXd& values) {
@@ -154,7 +157,8 @@ FilterOutcome applyToQuality(const RichParameterList& parameters, MeshModel& mes
 
     reportWriting(input, mesh.cm, progress);
     setQuality(input.vertexIndex, result.Y.col(0), mesh);
-    FilterOutcome outcome = outcomeOf(kQualityName, "quality changed", parameters, input, result);
+    FilterOutcome outcome =
+        outcomeOf(kQualityName, "quality changed", parameters, mesh, input, result);
     outcome.text += "\n  quality: " + rangeOf(Q) + " -> " + rangeOf(result.Y);
     return outcome;
 }
@@ -181,7 +185,7 @@ FilterOutcome applyToColor(const RichParameterList& parameters, MeshModel& mesh,
     const auto clamped = static_cast<int>((levels < 0.0 || levels > kWhite).count());
     FilterOutcome outcome =
         outcomeOf(kColorName, "colours changed (in levels of 0 to 255, before rounding)",
-                  parameters, input, result);
+                  parameters, mesh, input, result);
     outcome.report["clamped_values"] = clamped;
     outcome.text +=
         "\n  clamped: " + std::to_string(clamped) + " of " + std::to_string(Q.size()) + " values";

@@ -123,7 +123,7 @@ FilterOptions fractionalFilterOptions(const RichParameterList& parameters, const
     options.boundary = boundaryCondition(parameters);
     options.creaseAngle = parameters.getFloat("crease_angle");
     options.preserveVolume = parameters.getBool("preserve_volume");
-    if (parameters.getBool("selected")) options.part.selected = selectedVertices(mesh.cm, matrices);
+    options.part.selected = chosenVertices(parameters, mesh, matrices);
     if (choice(parameters, "weight", weights()) == 1) {
         if (!mesh.hasPerVertexQuality())
             throw spectral::InvalidOption(

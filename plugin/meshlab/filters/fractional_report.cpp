@@ -11,6 +11,7 @@
 #include "core/filter/automatic_steps.h"
 #include "core/support/types.h"
 #include "meshlab/error_messages.h"
+#include "meshlab/filters/common_parameters.h"
 #include "meshlab/filters/transfer_parameters.h"
 
 std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& result) {
@@ -140,6 +141,8 @@ double lastFrequency(const spectral::FilterResult& result) {
 std::vector<std::string> fractionalWarnings(const spectral::FilterOptions& options,
                                             const spectral::FilterResult& result) {
     std::vector<std::string> warnings;
+    if (const std::string told = selectionTold(options.part.selected); !told.empty())
+        warnings.push_back(told);
     if (result.fixedVertices > 0 &&
         result.fixedVertices + result.unreferencedVertices == result.V.rows())
         warnings.emplace_back(

@@ -132,7 +132,6 @@ TEST(Denoise, OfASelectionFadesOutAroundIt) {
     for (Index i = 0; i < mesh.V.rows(); ++i) options.selected.push_back(mesh.V(i, 2) > 0.5);
     const DenoiseResult result = denoise(mesh.V, mesh.F, options);
     const double edge = meanEdgeLength(mesh.V, mesh.F);
-    EXPECT_GT(result.selectedVertices, 1000);
     for (Index i = 0; i < mesh.V.rows(); ++i) {
         const double moved = (result.V.row(i) - mesh.V.row(i)).norm();
         if (mesh.V(i, 2) < 0.5 - 8.0 * edge) {

@@ -22,6 +22,7 @@ from helpers import (
     snapshot,
 )
 from meshlab_spectral import filter_mesh
+from meshlab_spectral.plugin.library import last_warnings
 from numpy.typing import NDArray
 
 Decimated = Callable[..., tuple[NDArray[Any], NDArray[Any]]]
@@ -111,6 +112,28 @@ def test_selected_vertices_are_a_selection_too(small: tuple[NDArray[Any], NDArra
     moved = np.any(mesh_set.current_mesh().vertex_matrix() != V, axis=1)
     assert np.all(moved[vertices])
     assert not np.all(moved)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [FILTER, "apply_scalar_spectral_filter_per_vertex", "apply_coord_spectral_denoise"],
+)
+def test_a_selection_that_another_filter_has_left_is_told(name: str) -> None:
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.create_sphere(subdiv=3)
+    mesh_set.compute_scalar_by_function_per_vertex(q="x")
+    mesh_set.compute_selection_by_condition_per_face(condselect="z0 > 0.9")
+    mesh_set.meshing_remove_selected_faces()
+    mesh_set.meshing_remove_unreferenced_vertices()
+    mesh_set.meshing_close_holes()
+    mesh = mesh_set.current_mesh()
+    F = mesh.face_matrix()
+    count = len(np.unique(F[mesh.face_selection_array()]))
+    assert 0 < count < mesh.vertex_number()
+    report = mesh_set.apply_filter(name)
+    words = [*last_warnings(), report.get("summary", "")]
+    told = f"only the selection: {count} of {mesh.vertex_number()} vertices"
+    assert any(told in text for text in words)
 
 
 def test_a_selection_is_ignored_on_request(small: tuple[NDArray[Any], NDArray[Any]]) -> None:
