@@ -1,0 +1,213 @@
+"""Spectral Denoise's equations on closed meshes, written a second time with SciPy."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+def unit(N: Array) -> Array:
+    return np.asarray(N / np.maximum(np.linalg.norm(N, axis=1, keepdims=True), 1e-300))
+
+
+def mean_edge(V: Array, F: NDArray[Any]) -> float:
+    return float(np.linalg.norm(V[F] - V[np.roll(F, 1, axis=1)], axis=2).mean())
+
+
+def limited(X0: Array, X: Array, farthest: float) -> Array:
+    away = np.linalg.norm(X - X0, axis=1, keepdims=True)
+    return np.asarray(X0 + np.minimum(1, farthest / np.maximum(away, 1e-300)) * (X - X0))
+
+
+def upper_median(values: Array) -> float:
+    return float(np.sort(values)[len(values) // 2])
+
+
+def white_noise(count: int) -> Array:
+    """The plugin's, by Box and Muller from a Mersenne twister."""
+    twister = np.random.MT19937()
+    twister._legacy_seeding(1)
+    raw = twister.random_raw(2 * ((count + 1) // 2)).reshape(-1, 2)
+    u, v = ((raw + 0.5) / 2.0**32).T
+    radius = np.sqrt(-2 * np.log(u))
+    both = np.stack([radius * np.cos(2 * np.pi * v), radius * np.sin(2 * np.pi * v)], axis=1)
+    return np.asarray(both.ravel()[:count])
+
+
+class Reference:
+    """A closed, oriented manifold mesh, and the parts of the filter on it."""
+
+    def __init__(self, F: NDArray[Any], n: int) -> None:
+        sides = np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
+        face = np.tile(np.arange(len(F)), 3)
+        order = np.lexsort(np.sort(sides, axis=1).T)
+        self.ends = np.sort(sides, axis=1)[order][::2]
+        self.pairs = face[order].reshape(-1, 2)
+        self.F, self.n = F, n
+        a, b = self.pairs.T
+        between = sp.coo_array((np.ones(len(a)), (a, b)), shape=(len(F), len(F)))
+        self.neighbours = (between + between.T).tocsr()
+        self.average = (self.neighbours + sp.eye_array(len(F))).tocsr()
+        self.incidence = sp.csr_array((np.ones(F.size), (F.ravel(), np.repeat(face[: len(F)], 3))))
+        i, j = self.ends.T
+        A = sp.coo_array((np.ones(len(i)), (i, j)), shape=(n, n))
+        A = (A + A.T).tocsr()
+        self.P = (sp.diags_array(1 / A.sum(axis=1)) @ A).tocsr()
+
+    def area_normals(self, X: Array) -> Array:
+        a, b, c = (X[self.F[:, k]] for k in range(3))
+        return np.cross(b - a, c - a)
+
+    def vertex_normals(self, X: Array, blurs: int) -> Array:
+        N = self.area_normals(X)
+        for _ in range(blurs):
+            N = self.average @ N
+        return unit(self.incidence @ N)
+
+    def diffused(self, x: Array, times: int) -> Array:
+        for _ in range(times):
+            x = (x + self.P @ x) / 2
+        return x
+
+    # Measuring.
+
+    def noise(self, X: Array) -> tuple[float, float]:
+        """Height and size of the noise, by the octaves of diffusion."""
+        N = self.vertex_normals(X, 3)
+        along, white = [], []
+        Y, w = X, white_noise(self.n)
+        for k in range(7):
+            times = 2**k - (2 ** (k - 1) if k else 0)
+            Z, z = self.diffused(Y, times), self.diffused(w, times)
+            along.append(np.abs(((Y - Z) * N).sum(axis=1)))
+            white.append((w - z).std())
+            Y, w = Z, z
+        energy = self.diffused(along[3] ** 2, 16)
+        quiet = energy <= np.sort(energy)[self.n // 2]
+        heights = []
+        for moduli, scale in zip(along, white, strict=True):
+            moduli = moduli[quiet]
+            deviation = upper_median(moduli) / 0.6745
+            for _ in range(5):
+                deviation = upper_median(moduli[moduli < 3 * deviation]) / 0.6722
+            heights.append(deviation / scale)
+        a, g = np.array(heights), np.array(white)
+        rise = np.clip((a[3:] / a[2:-1]).max(), 2.3, 3.0)
+        shape = [min(a[j] / rise ** (j - k) for j in range(k, 7)) for k in range(7)]
+        n = np.sqrt(np.maximum(a**2 - np.array(shape) ** 2, 0))
+        energies = np.zeros(7)
+        for k in range(7):
+            if n[k] < 0.45 * a[k] or a[max(k, 1)] >= 2.03 * a[max(k, 1) - 1]:
+                break
+            energies[k] = (n[k] * g[k]) ** 2
+        lengths = np.sqrt([0.5, 1.5, 3, 6, 12, 24, 48])
+        mean = (energies @ lengths) / energies.sum()
+        size = max(1.0, mean / ((g**2)[:5] @ lengths[:5] / (g**2)[:5].sum()))
+        return (n[0], 1.0) if size < 1.22 else (1.3 * np.sqrt(energies.sum() / (g @ g)), size)
+
+    # Normals and vertices.
+
+    def filtered_normals(
+        self, X: Array, time: float, scale: float, height: float, blurs: int, twice: bool
+    ) -> Array:
+        N = self.area_normals(X)
+        area = np.linalg.norm(N, axis=1)
+        q = N
+        for _ in range(blurs):
+            q = self.average @ q
+        q = unit(q)
+        local = np.sqrt(area / area.mean())
+        for _ in range(6):
+            local = local / 4 + self.neighbours @ local / 4
+        (a, b), (i, j) = self.pairs.T, self.ends.T
+        e = np.linalg.norm(X[i] - X[j], axis=1)
+        shortness = np.maximum(0, 1 / (local[a] * local[b]) - 2)
+        squared = scale**2 + (0.5 * height) ** 2 * shortness
+        w = e / e.mean() * np.exp(-((q[a] - q[b]) ** 2).sum(axis=1) / (2 * squared))
+        W = sp.coo_array((w, (a, b)), shape=(len(N), len(N)))
+        M = sp.diags_array(np.sqrt(np.maximum(area / area.mean(), 0.05)))
+        L = sp.csgraph.laplacian((W + W.T).tocsr())
+        solve = scipy.sparse.linalg.splu((M + time * L).tocsc()).solve
+        N = unit(N)
+        filtered = solve(M @ N)
+        if twice:
+            filtered = filtered + solve(M @ (N - filtered))
+        return unit(filtered)
+
+    def followed(self, X: Array, N: Array, sweeps: int) -> Array:
+        faces = self.incidence.sum(axis=1)
+        for _ in range(sweeps):
+            pull = np.zeros_like(X)
+            for k in range(3):
+                away = (N * (X[self.F].mean(axis=1) - X[self.F[:, k]])).sum(axis=1)
+                np.add.at(pull, self.F[:, k], N * away[:, None])
+            X = X + pull / faces[:, None]
+        return X
+
+    def unfolded(self, X: Array, N: Array, farthest: float) -> Array:
+        faces = self.incidence.sum(axis=1)
+        normal = unit(self.incidence @ N)
+        for _ in range(20):
+            now = self.area_normals(X)
+            folded = (now * N).sum(axis=1) < 0.5 * np.linalg.norm(now, axis=1)
+            if not folded.any():
+                break
+            corners = np.unique(self.F[folded])
+            way = (self.incidence @ X[self.F].sum(axis=1) / faces[:, None] - 3 * X) / 2
+            way -= (way * normal).sum(axis=1, keepdims=True) * normal
+            corners = corners[np.linalg.norm(way[corners], axis=1) <= farthest]
+            X = X.copy()
+            X[corners] += way[corners]
+        return X
+
+    def volume(self, X: Array) -> float:
+        a, b, c = (X[self.F[:, k]] for k in range(3))
+        return float((np.cross(a, b) * c).sum() / 6)
+
+    def finished(self, X0: Array, X: Array, N: Array, height: float, edge: float) -> Array:
+        X = limited(X0, self.unfolded(X, N, 5 * height), max(6 * height, 0.3 * edge))
+        for _ in range(4):  # Newton's method for the volume, along the normals of the vertices
+            G = self.incidence @ self.area_normals(X)
+            size = np.linalg.norm(G, axis=1).sum() / 6
+            X = X + (self.volume(X0) - self.volume(X)) / size * unit(G)
+        return X
+
+    # Kinds of noise, of a given height.
+
+    def without_white_noise(self, X0: Array, height: float) -> Array:
+        edge = mean_edge(X0, self.F)
+        weaker = 1 + (0.13 * edge / height) ** 3
+        X = X0
+        for number in range(10):
+            time, sweeps, scale = (4, 16, 0.25) if number < 6 else (8, 32, 0.22)
+            N = self.filtered_normals(X, time / weaker, scale, height / edge, 2, True)
+            Y = limited(X0, self.followed(X0, N, sweeps), max(3 * height, 0.3 * edge))
+            y = ((Y - X0) * self.vertex_normals(Y, 1)).sum(axis=1)
+            degrees = np.diff(self.P.indptr)
+            smooth = self.diffused(y, 1).std() / y.std() / np.sqrt((1 + 1 / degrees).mean() / 4)
+            if number == 0:
+                most = 0.957 * max(1, smooth / 0.76) ** 0.75
+            elif smooth > most:
+                break
+            X, last = Y, N
+            if upper_median(np.linalg.norm(X - X0, axis=1)) / 0.6745 > 1.03 * height:
+                break
+        return self.finished(X0, X, last, height, edge)
+
+    def without_correlated_noise(self, X0: Array, height: float, size: float) -> Array:
+        edge = mean_edge(X0, self.F)
+        length = min(0.8 * size / edge, 4)
+        X = X0
+        for number in range(6):
+            N = self.filtered_normals(X, 1.5 * length**2, 0.22, 0, int(2 * length**2), False)
+            Y = self.followed(X0, N, round(12 * length))
+            X = limited(X0, Y, max(6 * height, 0.3 * edge))
+            if number and upper_median(np.linalg.norm(Y - X0, axis=1)) / 0.6745 >= 0.8 * height:
+                break
+        return self.finished(X0, X, N, height, edge)
