@@ -1,7 +1,6 @@
 #include "core/denoise/crumpling.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/support/threads.h"
 
