@@ -81,8 +81,11 @@ std::string remedy(const spectral::Error& error, const RichParameterList& parame
             return "delete them, e.g. with 'Conditional Vertex Selection' (x != x) and 'Delete "
                    "Selected Vertices'";
         case ErrorCode::ValueNotFinite:
-            return "apply 'Per Vertex Quality Function' with abs(q) < 1e30 ? q : 0 first, to set "
-                   "them to 0";
+            return "apply 'Per Vertex Quality Function' with abs(q) < 1e30 ? q : 0/0 first, which "
+                   "makes them NaN: no data";
+        case ErrorCode::NoData:
+            return "apply a filter that computes qualities first, e.g. 'Per Vertex Quality "
+                   "Function'";
         case ErrorCode::DegenerateTriangles: return largerTriangles(parameters);
         case ErrorCode::NoDelaunay:
         case ErrorCode::SolverFailed:

@@ -385,6 +385,7 @@ const char* nameOf(ErrorCode code) {
         case ErrorCode::BadIndex: return "BadIndex";
         case ErrorCode::NotFinite: return "NotFinite";
         case ErrorCode::ValueNotFinite: return "ValueNotFinite";
+        case ErrorCode::NoData: return "NoData";
         case ErrorCode::NoArea: return "NoArea";
         case ErrorCode::DegenerateTriangles: return "DegenerateTriangles";
         case ErrorCode::ShapeCollapsed: return "ShapeCollapsed";

@@ -66,6 +66,13 @@ void checkRepeated(const Case& of, Verdict& verdict) {
         verdict.failures.push_back(failure("depends on threads", "two threads differ from one"));
 }
 
+/// Calls work(vertex, row) for every vertex of the mesh on a surface, and its row of X.
+template <class Work>
+void forEachVertex(const Surface& surface, const Work& work) {
+    for (Index i = 0; i < surface.X.rows(); ++i) work(surface.vertex[i], i);
+    for (const auto& [vertex, row] : surface.copies) work(vertex, row);
+}
+
 void checkUnmoved(const Vertices& V, const Vertices& moved, const std::vector<bool>& mustStay,
                   std::vector<Failure>& failures) {
     for (Index i = 0; i < V.rows(); ++i) {
@@ -84,7 +91,7 @@ void checkFilter(const Case& of, const FilterOptions& options, const FilterResul
         failures.push_back(failure("size", result.V.rows(), " of ", V.rows(), " vertices"));
         return;
     }
-    const Surface surface = surfaceOf(V, F);
+    const Surface surface = joinedSurface(V, F);
     const Components components = connectedComponents(surface.F, surface.X.rows());
     std::vector<bool> isFixed(surface.vertex.size(), false);
     if (options.boundary == Boundary::Fixed)
@@ -94,14 +101,17 @@ void checkFilter(const Case& of, const FilterOptions& options, const FilterResul
         std::transform(isFixed.begin(), isFixed.end(), onCrease.begin(), isFixed.begin(),
                        std::logical_or<>());
     }
-    std::vector<bool> mustStay(static_cast<std::size_t>(V.rows()), true);
     const auto& [selected, weight] = options.part;
     std::vector<bool> isReached(static_cast<std::size_t>(components.count), selected.empty());
-    for (std::size_t i = 0; i < isFixed.size() && !selected.empty(); ++i)
-        if (selected[surface.vertex[i]]) isReached[components.label[i]] = true;
-    for (std::size_t i = 0; i < isFixed.size(); ++i)
-        mustStay[surface.vertex[i]] = isFixed[i] || !isReached[components.label[i]] ||
-                                      (weight.size() > 0 && weight[surface.vertex[i]] == 0.0);
+    std::vector<bool> hasWeight(isFixed.size(), weight.size() == 0);
+    forEachVertex(surface, [&](Index vertex, Index row) {
+        if (!selected.empty() && selected[vertex]) isReached[components.label[row]] = true;
+        if (weight.size() > 0 && weight[vertex] > 0.0) hasWeight[row] = true;
+    });
+    std::vector<bool> mustStay(static_cast<std::size_t>(V.rows()), true);
+    forEachVertex(surface, [&](Index vertex, Index row) {
+        mustStay[vertex] = isFixed[row] || !isReached[components.label[row]] || !hasWeight[row];
+    });
     checkUnmoved(V, result.V, mustStay, failures);
 
     const double sum = Eigen::Map<const Eigen::VectorXd>(
@@ -114,7 +124,7 @@ void checkFilter(const Case& of, const FilterOptions& options, const FilterResul
     if (result.components != components.count)
         failures.push_back(failure("components", result.components));
     if (result.fixedVertices != std::count(isFixed.begin(), isFixed.end(), true) ||
-        result.unreferencedVertices != V.rows() - surface.X.rows())
+        result.unreferencedVertices + result.joinedVertices != V.rows() - surface.X.rows())
         failures.push_back(failure("counts", "of fixed or unreferenced vertices"));
 
     const auto& [preserved, open, lost] = result.volumes;
@@ -143,12 +153,13 @@ void checkArtefacts(const Case& of, const Artefacts& result, std::vector<Failure
 void checkDenoise(const Case& of, const DenoiseOptions& options, const DenoiseResult& result,
                   std::vector<Failure>& failures) {
     const auto& [V, F] = of.mesh.mesh;
-    const Surface surface = surfaceOf(V, F);
+    const Surface surface = joinedSurface(V, F);
     const std::vector<bool> onRim = boundaryVertices(surface.F, surface.X.rows());
     std::vector<bool> mustStay(static_cast<std::size_t>(V.rows()), true);
-    for (std::size_t i = 0; i < onRim.size(); ++i)
-        mustStay[surface.vertex[i]] =
-            options.strength == 0.0 || (options.boundary == Boundary::Fixed && onRim[i]);
+    forEachVertex(surface, [&](Index vertex, Index row) {
+        mustStay[vertex] =
+            options.strength == 0.0 || (options.boundary == Boundary::Fixed && onRim[row]);
+    });
     checkUnmoved(V, result.V, mustStay, failures);
     if (result.diagnosis.spikes > 0 || result.diagnosis.kind == NoiseKind::Voxels ||
         result.diagnosis.kind == NoiseKind::Impulses)

@@ -38,7 +38,7 @@ Artefacts measureArtefacts(const Vertices& V, const Faces& F, const ArtefactOpti
     Artefacts artefacts;
     artefacts.rms = std::sqrt(length.cwiseAbs2().dot(D) / D.sum());
     artefacts.maximum = length.maxCoeff();
-    artefacts.length = extendedByZero(length, mesh.surface.vertex, V.rows());
+    artefacts.length = extended(length, mesh.surface, V.rows());
     artefacts.errorEstimate = smooth.errorEstimate * X.cwiseAbs().maxCoeff();
     return artefacts;
 }

@@ -42,8 +42,7 @@ ManifoldHarmonics manifoldHarmonics(const Vertices& V, const Faces& F,
     harmonics.lambda = basis.lambda.head(k);
     harmonics.residuals = basis.residuals.head(k);
     harmonics.inertiaCount = static_cast<int>(basis.inertiaCount);
-    harmonics.Phi =
-        extendedByZero(interior.extended(std::move(basis.Phi)), mesh.surface.vertex, V.rows());
+    harmonics.Phi = extended(interior.extended(std::move(basis.Phi)), mesh.surface, V.rows());
     return harmonics;
 }
 

@@ -148,16 +148,12 @@ void report(const Vertices& V, const Surface& surface, const Vertices& displacem
             DenoiseResult& result) {
     if (!displacement.allFinite())
         throw SolverFailure("the denoised coordinates are not finite numbers");
-    result.V = V;
-    for (Index i = 0; i < displacement.rows(); ++i)
-        if ((displacement.row(i).array() != 0.0).any())
-            result.V.row(surface.vertex[i]) += displacement.row(i);
+    result.V = changed(V, surface, displacement);
     result.maxDisplacement = displacement.rowwise().norm().maxCoeff();
     result.rmsDisplacement =
         displacement.stableNorm() / std::sqrt(static_cast<double>(displacement.rows()));
     result.volumeBefore = signedVolume(surface.X, surface.F);
     result.volumeAfter = signedVolume(surface.X + displacement, surface.F);
-    result.unreferencedVertices = static_cast<int>(V.rows() - surface.X.rows());
 }
 
 /// An offset that makes up for lost volume is at most so many times the displacement. Noise lies on
@@ -172,11 +168,12 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
     checkMesh(V, F);
     checkOptions(options);
     progress.report(0.0, "measuring the noise");
-    const Surface whole = surfaceOf(V, F);
+    const Surface whole = joinedSurface(V, F);
     const Components components = connectedComponents(whole.F, whole.X.rows());
     const Eigen::VectorXd weight = displacementWeight(options, whole, components);
 
     DenoiseResult result;
+    static_cast<SurfaceCounts&>(result) = countsOf(whole, V.rows());
     result.components = components.count;
     if (options.boundary == Boundary::Fixed) {
         const std::vector<bool> onBoundary = boundaryVertices(whole.F, whole.X.rows());

@@ -4,6 +4,7 @@
 
 #include "core/laplacian/interior.h"
 #include "core/mesh/mesh.h"
+#include "core/mesh/surface.h"
 #include "core/mesh/volume.h"
 #include "core/noise/diagnosis.h"
 #include "core/support/progress.h"
@@ -20,7 +21,7 @@ struct DenoiseOptions {
     std::vector<bool> selected;  ///< n: what to denoise; empty: everything.
 };
 
-struct DenoiseResult {
+struct DenoiseResult : SurfaceCounts {
     Vertices V;  ///< The denoised positions; unreferenced vertices stay where they are.
 
     Diagnosis diagnosis;
@@ -32,9 +33,6 @@ struct DenoiseResult {
     double rmsDisplacement = 0.0;  ///< Root mean square over the vertices.
     double volumeBefore = 0.0, volumeAfter = 0.0;  ///< Signed; a volume for closed meshes only.
     PreservedVolumes volumes;                      ///< Of the closed components.
-    int components = 0;                            ///< Connected components of the surface.
-    int unreferencedVertices = 0;                  ///< Vertices of no triangle, unchanged.
-    int fixedVertices = 0;                         ///< Vertices on a fixed boundary, unchanged.
 };
 
 /// Removes noise, and chooses how from the noise it finds.

@@ -107,7 +107,7 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     const ThreadTeam team;
     checkMesh(V, F, options.laplacian);  // first: of an infinite diagonal no feature size is right
     checkOptions(options);
-    const Surface surface = surfaceOf(V, F);
+    const Surface surface = joinedSurface(V, F);
     const TransferFunction transfer(options.transferFunction, cutoffFrequency(options.featureSize));
     const Interior interior(connectedComponents(surface.F, surface.X.rows()),
                             verticesAtRest(surface, options));
@@ -124,19 +124,14 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     Vertices displacement = weight.asDiagonal() * (steps.last.X - surface.X);
     Vertices X = surface.X + displacement;
     FilterResult result;
+    static_cast<SurfaceCounts&>(result) = countsOf(surface, V.rows());
     if (options.preserveVolume) {
         result.volumes = preserveVolumes(surface.X, surface.F, interior.surfaceComponents(), weight,
                                          kMostOffset, X);
         displacement = X - surface.X;
     }
 
-    // The displacement is added to the input: what does not move keeps its coordinates to the bit,
-    // the sign of a zero included.
-    result.V = V;
-    for (Index i = 0; i < X.rows(); ++i)
-        if ((displacement.row(i).array() != 0.0).any())
-            result.V.row(surface.vertex[i]) += displacement.row(i);
-
+    result.V = changed(V, surface, displacement);
     result.steps = static_cast<int>(steps.last.sizes.size());
     result.stepSizes = steps.last.sizes;
     result.stepError = steps.error;
@@ -150,7 +145,6 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     result.volumeBefore = signedVolume(surface.X, surface.F);
     result.volumeAfter = signedVolume(X, surface.F);
     result.components = interior.surfaceComponents().count;
-    result.unreferencedVertices = static_cast<int>(V.rows() - X.rows());
     result.fixedVertices = static_cast<int>(interior.fixedVertices());
     result.factorizations = evaluate.factorizations();
     result.solves = evaluate.solves();

@@ -8,6 +8,7 @@
 #include "core/laplacian/laplacian_builder.h"
 #include "core/laplacian/vertex_weight.h"
 #include "core/mesh/mesh.h"
+#include "core/mesh/surface.h"
 #include "core/mesh/volume.h"
 #include "core/support/progress.h"
 #include "core/support/types.h"
@@ -34,7 +35,7 @@ struct FilterOptions {
     bool preserveVolume = false;  ///< Gives closed components their volume back (volume.h).
 };
 
-struct FilterResult {
+struct FilterResult : SurfaceCounts {
     Vertices V;  ///< The filtered positions; unreferenced vertices stay where they are.
 
     int steps = 0;
@@ -44,9 +45,6 @@ struct FilterResult {
     double rmsDisplacement = 0.0;  ///< Root mean square over the input's surface.
     double areaBefore = 0.0, areaAfter = 0.0;
     double volumeBefore = 0.0, volumeAfter = 0.0;  ///< Signed; a volume for closed meshes only.
-    int components = 0;                            ///< Connected components of the surface.
-    int unreferencedVertices = 0;                  ///< Vertices of no triangle, unchanged.
-    int fixedVertices = 0;                         ///< On a fixed boundary or a crease, unchanged.
     PreservedVolumes volumes;                      ///< With preserveVolume.
     int factorizations = 0;                        ///< Sparse LDL^T factorizations.
     int solves = 0;                                ///< Solves with one right-hand side.

@@ -6,6 +6,7 @@
 
 #include "core/filter/step_evaluator.h"
 #include "core/krylov/krylov_spaces.h"
+#include "core/mesh/mesh_check.h"
 #include "core/mesh/surface.h"
 #include "core/support/errors.h"
 #include "core/support/threads.h"
@@ -15,15 +16,29 @@ namespace spectral {
 namespace {
 
 void checkSignal(const Eigen::MatrixXd& Q) {
-    Index notFinite = 0, first = -1;
+    Index infinite = 0, first = -1;
     for (Index i = 0; i < Q.rows(); ++i)
-        if (!Q.row(i).allFinite() && notFinite++ == 0) first = i;
-    if (notFinite > 0)
-        throw InvalidMesh(
-            ErrorCode::ValueNotFinite,
-            std::to_string(notFinite) + (notFinite == 1 ? " vertex has" : " vertices have") +
-                " a value that is not finite (NaN or infinity), the first is vertex " +
-                std::to_string(first));
+        if (Q.row(i).array().isInf().any() && infinite++ == 0) first = i;
+    if (infinite > 0)
+        throw InvalidMesh(ErrorCode::ValueNotFinite,
+                          std::to_string(infinite) +
+                              (infinite == 1 ? " vertex has" : " vertices have") +
+                              " an infinite value, the first is vertex " + std::to_string(first));
+}
+
+/// The triangles with data at all corners.
+/// @param hasData  n.
+Faces trianglesWithData(const Faces& F, const Eigen::Array<bool, Eigen::Dynamic, 1>& hasData) {
+    Faces withData(F.rows(), 3);
+    Index count = 0;
+    for (Index t = 0; t < F.rows(); ++t)
+        if (hasData[F(t, 0)] && hasData[F(t, 1)] && hasData[F(t, 2)])
+            withData.row(count++) = F.row(t);
+    if (count == 0)
+        throw InvalidMesh(ErrorCode::NoData,
+                          "no triangle has values at all of its corners: they are NaN");
+    withData.conservativeResize(count, 3);
+    return withData;
 }
 
 /// Whether each component has one value, to round-off: there is nothing to filter, and an error
@@ -41,10 +56,13 @@ FilteredSignal filterSignal(const Vertices& V, const Faces& F, const Eigen::Matr
                             const SignalFilterOptions& options, const Progress& progress) {
     assert(Q.rows() == V.rows() && Q.cols() >= 1 && Q.cols() <= KrylovSpaces::kMostSignals);
     const ThreadTeam team;
-    checkMesh(V, F, options.laplacian);
+    checkMesh(V, F);
     checkSignal(Q);
     checkWeights(options.part);
-    const Surface surface = surfaceOf(V, F);
+    const Eigen::Array<bool, Eigen::Dynamic, 1> hasData = !Q.array().isNaN().rowwise().any();
+    const Faces withData = trianglesWithData(F, hasData);
+    checkMesh(V, withData, options.laplacian);
+    const Surface surface = joinedSurface(V, withData);
     const TransferFunction transfer(options.transferFunction, cutoffFrequency(options.featureSize));
     const Interior interior(surface.F, connectedComponents(surface.F, surface.X.rows()),
                             options.boundary);
@@ -54,13 +72,13 @@ FilteredSignal filterSignal(const Vertices& V, const Faces& F, const Eigen::Matr
 
     // About the middle of the range and scaled to 1: no digit is lost to a large mean, and no
     // square overflows.
-    Eigen::MatrixXd X(surface.X.rows(), Q.cols());
-    for (Index i = 0; i < X.rows(); ++i) X.row(i) = Q.row(surface.vertex[i]);
+    Eigen::MatrixXd X = restricted(Q, surface);
     X.rowwise() -= (0.5 * X.colwise().minCoeff() + 0.5 * X.colwise().maxCoeff()).eval();
     const double scale = X.cwiseAbs().maxCoeff();
     if (scale > 0.0) X /= scale;
 
     FilteredSignal result;
+    static_cast<SurfaceCounts&>(result) = countsOf(surface, V.rows());
     result.Y = Q;
     result.accuracy = evaluation.accuracy;
     const Eigen::VectorXd& D = laplacians.inputMass();
@@ -71,18 +89,17 @@ FilteredSignal filterSignal(const Vertices& V, const Faces& F, const Eigen::Matr
             vertexWeight(options.part, surface, interior, laplacians.input(), options.featureSize)
                 .asDiagonal() *
             (scale * (filtered.Y.front() - X));
-        for (Index i = 0; i < X.rows(); ++i)
-            for (Index c = 0; c < X.cols(); ++c)  // -0 + 0 would not be -0
-                if (change(i, c) != 0.0) result.Y(surface.vertex[i], c) += change(i, c);
+        result.Y = changed(Q, surface, change);
         result.maxChange = change.cwiseAbs().maxCoeff();
         result.rmsChange = (D.cwiseSqrt().asDiagonal() * change).eval().stableNorm() /
                            std::sqrt(D.sum() * static_cast<double>(Q.cols()));
         result.errorEstimate = filtered.errorEstimate;
         result.accuracyReached = filtered.accuracyReached;
     }
+    result.verticesWithoutData = static_cast<int>(hasData.size() - hasData.count());
+    result.unreferencedVertices -= result.verticesWithoutData;
     result.cutoffFrequency = transfer.cutoff();
     result.components = interior.surfaceComponents().count;
-    result.unreferencedVertices = static_cast<int>(V.rows() - X.rows());
     result.fixedVertices = static_cast<int>(interior.fixedVertices());
     result.factorizations = evaluate.factorizations();
     result.solves = evaluate.solves();

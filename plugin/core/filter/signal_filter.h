@@ -6,6 +6,7 @@
 #include "core/laplacian/laplacian_builder.h"
 #include "core/laplacian/vertex_weight.h"
 #include "core/mesh/mesh.h"
+#include "core/mesh/surface.h"
 #include "core/support/progress.h"
 #include "core/transfer/transfer_function.h"
 
@@ -19,10 +20,11 @@ struct SignalFilterOptions {
     WeightOptions part;  ///< Where to filter.
 };
 
-struct FilteredSignal {
-    Eigen::MatrixXd Y;  ///< n x c, the filtered signals; Q at unreferenced vertices.
+struct FilteredSignal : SurfaceCounts {
+    Eigen::MatrixXd Y;  ///< n x c, the filtered signals; Q at vertices beyond the surface.
 
     bool isConstant = false;       ///< Each component has one value: nothing to filter.
+    int verticesWithoutData = 0;   ///< Vertices with a NaN, unchanged.
     double cutoffFrequency = 0.0;  ///< omega_c, radians per length unit.
     double rmsChange = 0.0;        ///< Of Y - Q over the surface and all signals, units of Q.
     double maxChange = 0.0;        ///< Largest modulus of an entry of Y - Q.
@@ -30,9 +32,6 @@ struct FilteredSignal {
     double errorEstimate = 0.0;    ///< Estimated error of Y, relative to the largest modulus of Q
                                    ///< without its means, over all signals together.
     bool accuracyReached = true;   ///< Whether errorEstimate is within the accuracy.
-    int components = 0;            ///< Connected components of the surface.
-    int unreferencedVertices = 0;  ///< Vertices of no triangle, unchanged.
-    int fixedVertices = 0;         ///< Vertices on a fixed boundary, unchanged.
     int factorizations = 0;        ///< Sparse LDL^T factorizations.
     int solves = 0;                ///< Solves with one right-hand side.
     Eigen::VectorXd residuals;     ///< Of the harmonics, where F needs any (see HarmonicBasis).
@@ -46,10 +45,13 @@ struct FilteredSignal {
 /// fixed boundary the values there are kept instead, and F acts on the rest of the signal
 /// (harmonic_extension.h). What F does not change keeps its value to the bit.
 ///
+/// A vertex with a NaN has no data. The surface consists of the triangles with data at all corners;
+/// it ends at the others with a natural boundary.
+///
 /// @param V  n x 3 positions, finite.
 /// @param F  m x 3 vertex indices, m >= 1; any topology, unreferenced vertices allowed.
-/// @param Q  n x c values, finite, 1 <= c <= KrylovSpaces::kMostSignals.
-/// @throws InvalidMesh  as checkMesh, and when a value is not finite.
+/// @param Q  n x c values, not infinite, 1 <= c <= KrylovSpaces::kMostSignals.
+/// @throws InvalidMesh  as checkMesh, and when a value is infinite, or no triangle has data.
 /// @throws InvalidOption, SolverFailure, Cancelled
 FilteredSignal filterSignal(const Vertices& V, const Faces& F, const Eigen::MatrixXd& Q,
                             const SignalFilterOptions& options, const Progress& progress = {});

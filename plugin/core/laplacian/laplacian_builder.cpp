@@ -64,7 +64,7 @@ Eigen::VectorXd LaplacianBuilder::mass(const Vertices& X) const {
 
 MeshLaplacian meshLaplacian(const Vertices& V, const Faces& F, LaplacianKind kind) {
     checkMesh(V, F, kind);
-    Surface surface = surfaceOf(V, F);
+    Surface surface = joinedSurface(V, F);
     Components components = connectedComponents(surface.F, surface.X.rows());
     Laplacian laplacian = LaplacianBuilder(surface, kind, BasisUpdate::None).input();
     if (!isUsable(laplacian))

@@ -35,12 +35,13 @@ Eigen::VectorXd vertexWeight(const WeightOptions& options, const Surface& surfac
     if (contains(options.selected, false)) {
         std::vector<bool> onSurface;
         for (const Index i : surface.vertex) onSurface.push_back(options.selected[i]);
+        for (const auto& [vertex, row] : surface.copies)
+            if (options.selected[vertex]) onSurface[row] = true;
         weight.array() *=
             selectionWeight(laplacian, interior.surfaceComponents(), onSurface, featureSize)
                 .array();
     }
-    if (options.weight.size() > 0)
-        for (Index i = 0; i < weight.size(); ++i) weight[i] *= options.weight[surface.vertex[i]];
+    if (options.weight.size() > 0) weight.array() *= restricted(options.weight, surface).array();
     return weight;
 }
 

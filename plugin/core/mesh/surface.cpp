@@ -1,7 +1,7 @@
 #include "core/mesh/surface.h"
 
-#include <algorithm>
-#include <numeric>
+#include "core/mesh/seams.h"
+#include "core/mesh/union_find.h"
 
 namespace spectral {
 
@@ -34,6 +34,56 @@ Surface surfaceOf(const Vertices& V, const Faces& F) {
     return surface;
 }
 
+Surface joinedSurface(const Vertices& V, const Faces& F) {
+    const Surface cut = surfaceOf(V, F);
+    const Seams seams = findSeams(cut.X, cut.F);
+    if (seams.first.empty()) {
+        Surface whole = cut;
+        whole.nearlyCopies = seams.nearby;
+        return whole;
+    }
+    Surface surface = surfaceOf(cut.X, cut.F.unaryExpr([&](int i) { return seams.first[i]; }));
+    surface.nearlyCopies = seams.nearby;
+    std::vector<Index> row(seams.first.size(), -1);
+    for (Index i = 0; i < surface.X.rows(); ++i) row[surface.vertex[i]] = i;
+    for (std::size_t i = 0; i < row.size(); ++i)
+        if (seams.first[i] != static_cast<int>(i) && row[seams.first[i]] >= 0)
+            surface.copies.push_back({cut.vertex[i], row[seams.first[i]]});
+    for (Index& vertex : surface.vertex) vertex = cut.vertex[vertex];
+    return surface;
+}
+
+Eigen::MatrixXd restricted(const Eigen::MatrixXd& values, const Surface& surface) {
+    Eigen::MatrixXd mean = values(surface.vertex, Eigen::all);
+    if (surface.copies.empty()) return mean;
+    Eigen::VectorXd count = Eigen::VectorXd::Ones(mean.rows());
+    for (const Surface::Copy& copy : surface.copies) count[copy.row] += 1.0;
+    // From differences: the mean of equal values is that value, to the bit.
+    for (const auto& [vertex, row] : surface.copies)
+        mean.row(row) += (values.row(vertex) - values.row(surface.vertex[row])) / count[row];
+    return mean;
+}
+
+Eigen::MatrixXd extended(Eigen::MatrixXd values, const Surface& surface, Index n) {
+    Eigen::MatrixXd onMesh = extendedByZero(std::move(values), surface.vertex, n);
+    for (const auto& [vertex, row] : surface.copies)
+        onMesh.row(vertex) = onMesh.row(surface.vertex[row]);
+    return onMesh;
+}
+
+Eigen::MatrixXd changed(const Eigen::MatrixXd& values, const Surface& surface,
+                        const Eigen::MatrixXd& change) {
+    const Eigen::MatrixXd before = restricted(values, surface);
+    Eigen::MatrixXd after = values;
+    const auto set = [&](Index vertex, Index row) {
+        for (Index c = 0; c < values.cols(); ++c)
+            if (change(row, c) != 0.0) after(vertex, c) = before(row, c) + change(row, c);
+    };
+    for (Index i = 0; i < before.rows(); ++i) set(surface.vertex[i], i);
+    for (const auto& [vertex, row] : surface.copies) set(vertex, row);
+    return after;
+}
+
 Eigen::MatrixXd extendedByZero(Eigen::MatrixXd values, const std::vector<Index>& vertex, Index n) {
     if (values.rows() == n) return values;
     Eigen::MatrixXd extended = Eigen::MatrixXd::Zero(n, values.cols());
@@ -41,26 +91,24 @@ Eigen::MatrixXd extendedByZero(Eigen::MatrixXd values, const std::vector<Index>&
     return extended;
 }
 
+SurfaceCounts countsOf(const Surface& surface, Index n) {
+    SurfaceCounts counts;
+    counts.joinedVertices = static_cast<int>(surface.copies.size());
+    counts.unreferencedVertices = static_cast<int>(n - surface.X.rows()) - counts.joinedVertices;
+    counts.nearlyJoined = surface.nearlyCopies;
+    return counts;
+}
+
 Components connectedComponents(const Faces& F, Index vertexCount) {
-    // Union-find with path halving.
-    std::vector<int> parent(static_cast<std::size_t>(vertexCount));
-    std::iota(parent.begin(), parent.end(), 0);
-    const auto root = [&](int i) {
-        while (parent[i] != i) i = parent[i] = parent[parent[i]];
-        return i;
-    };
-    // The smaller index becomes the root: components are numbered by their first vertices.
-    const auto unite = [&](int i, int j) {
-        const auto [first, second] = std::minmax({root(i), root(j)});
-        parent[second] = first;
-    };
+    UnionFind sets(vertexCount);
     for (Index t = 0; t < F.rows(); ++t) {
-        unite(F(t, 0), F(t, 1));
-        unite(F(t, 0), F(t, 2));
+        sets.unite(F(t, 0), F(t, 1));
+        sets.unite(F(t, 0), F(t, 2));
     }
+    // Numbered by their first vertices, which are the roots.
     Components components{Eigen::VectorXi(vertexCount), 0};
     for (int i = 0; i < vertexCount; ++i) {
-        const int first = root(i);
+        const int first = sets.root(i);
         components.label[i] = first == i ? components.count++ : components.label[first];
     }
     return components;

@@ -14,7 +14,8 @@ enum class ErrorCode {
     NoFaces,              ///< A point cloud.
     BadIndex,             ///< A triangle refers to a vertex that does not exist.
     NotFinite,            ///< Coordinates that are NaN or infinite.
-    ValueNotFinite,       ///< The same of a signal to filter.
+    ValueNotFinite,       ///< A value of a signal is infinite.
+    NoData,               ///< No triangle has values at all of its corners.
     NoArea,               ///< No triangle has an area.
     DegenerateTriangles,  ///< Some triangles have no area, or too little for their cotangents.
     ShapeCollapsed,       ///< The same, in the course of the filter.

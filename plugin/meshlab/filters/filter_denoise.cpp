@@ -2,12 +2,15 @@
 
 #include <cmath>
 #include <iomanip>
+#include <map>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/denoise/denoise.h"
 #include "meshlab/filters/common_parameters.h"
+#include "meshlab/filters/surface_report.h"
 #include "meshlab/host_workarounds/steady_progress.h"
 #include "meshlab/mesh_conversion.h"
 #include "meshlab/mesh_filter.h"
@@ -147,20 +150,15 @@ std::string reportText(const std::string& summary, const DenoiseResult& result) 
     text << "Spectral Denoise: " << summary << std::setprecision(3) << "\n  the vertices moved by "
          << result.rmsDisplacement << " (root mean square), by " << result.maxDisplacement
          << " at most" << std::setprecision(6) << "\n  volume: " << result.volumeBefore << " -> "
-         << result.volumeAfter << " (of closed surfaces)\n  surface: " << result.components
-         << (result.components == 1 ? " component" : " components");
-    if (result.unreferencedVertices > 0)
-        text << ", " << result.unreferencedVertices << " unreferenced vertices unchanged";
-    if (result.fixedVertices > 0)
-        text << ", " << result.fixedVertices << " boundary vertices fixed";
-    text << "\n  work: " << result.rounds << " rounds";
+         << result.volumeAfter << " (of closed surfaces)\n  " << surfaceTold(result)
+         << "\n  work: " << result.rounds << " rounds";
     return text.str();
 }
 
 std::vector<std::string> warningsOf(const spectral::DenoiseOptions& options,
                                     const std::string& summary, const DenoiseResult& result) {
-    std::vector<std::string> warnings;
-    if (result.rounds > 0 && result.fixedVertices + result.unreferencedVertices == result.V.rows())
+    std::vector<std::string> warnings = surfaceWarnings(result);
+    if (result.rounds > 0 && isAllFixed(result, result.V.rows()))
         warnings.emplace_back(
             "nothing can move: every vertex lies on the boundary, which is fixed. Choose boundary "
             "= free; if the triangles are not connected, apply 'Merge Close Vertices' first");
@@ -192,25 +190,23 @@ FilterOutcome applyDenoise(const RichParameterList& parameters, MeshModel& mesh,
     setPositions(input.vertexIndex, result.V, mesh);
     const std::string summary = summaryOf(options, result);
     const spectral::NoiseEstimate& noise = result.diagnosis.noise;
-    return {{{"noise_height", result.noiseHeight},
-             {"noise_size", result.noiseSize},
-             {"estimated_noise_height", noise.height},
-             {"estimated_noise_size", noise.size * noise.meanEdge},
-             {"noise_correlation", noise.correlation},
-             {"spikes", static_cast<int>(result.diagnosis.spikes)},
-             {"voxel_size", QVariant::fromValue(Eigen::VectorXd(result.diagnosis.voxel))},
-             {"mean_edge", noise.meanEdge},
-             {"rms_displacement", result.rmsDisplacement},
-             {"max_displacement", result.maxDisplacement},
-             {"volume_before", result.volumeBefore},
-             {"volume_after", result.volumeAfter},
-             {"preserved_volumes", result.volumes.preserved},
-             {"components", result.components},
-             {"unreferenced_vertices", result.unreferencedVertices},
-             {"fixed_vertices", result.fixedVertices},
-             {"rounds", result.rounds}},
-            reportText(summary, result),
-            warningsOf(options, summary, result),
+    std::map<std::string, QVariant> report{
+        {"noise_height", result.noiseHeight},
+        {"noise_size", result.noiseSize},
+        {"estimated_noise_height", noise.height},
+        {"estimated_noise_size", noise.size * noise.meanEdge},
+        {"noise_correlation", noise.correlation},
+        {"spikes", static_cast<int>(result.diagnosis.spikes)},
+        {"voxel_size", QVariant::fromValue(Eigen::VectorXd(result.diagnosis.voxel))},
+        {"mean_edge", noise.meanEdge},
+        {"rms_displacement", result.rmsDisplacement},
+        {"max_displacement", result.maxDisplacement},
+        {"volume_before", result.volumeBefore},
+        {"volume_after", result.volumeAfter},
+        {"preserved_volumes", result.volumes.preserved},
+        {"rounds", result.rounds}};
+    addSurfaceCounts(result, report);
+    return {std::move(report), reportText(summary, result), warningsOf(options, summary, result),
             summary};
 }
 

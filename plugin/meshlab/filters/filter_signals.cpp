@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iomanip>
 #include <limits>
+#include <map>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "core/mesh/measures.h"
 #include "meshlab/error_messages.h"
 #include "meshlab/filters/common_parameters.h"
+#include "meshlab/filters/surface_report.h"
 #include "meshlab/filters/transfer_parameters.h"
 #include "meshlab/host_workarounds/steady_progress.h"
 #include "meshlab/mesh_conversion.h"
@@ -33,7 +35,8 @@ const char* const kQualityHelp =
     "<br><br>A low-pass leaves a quarter of the height of waves half as long as the <b>feature "
     "size</b>, and nine tenths of waves twice as long. The area-weighted mean of every connected "
     "component is kept. Values are not clamped, so they may leave their old range; colours do not "
-    "follow: to see the result, apply <i>Colorize by vertex Quality</i>."
+    "follow: to see the result, apply <i>Colorize by vertex Quality</i>. Where the quality is NaN "
+    "there is no data: it stays so, and the rest is filtered as if the surface ended there."
     "<br><br><small>Kovnatsky, Bronstein, Bronstein 2012; Vallet, L&eacute;vy 2008</small>";
 
 const char* const kColorHelp =
@@ -80,14 +83,13 @@ spectral::FilteredSignal filtered(const RichParameterList& parameters, const Mes
 
 std::vector<std::string> warningsOf(const std::vector<bool>& selected,
                                     const spectral::FilteredSignal& result) {
-    std::vector<std::string> warnings;
+    std::vector<std::string> warnings = surfaceWarnings(result);
     if (const std::string told = selectionTold(selected); !told.empty()) warnings.push_back(told);
     if (result.isConstant)
         warnings.emplace_back(
             "nothing to filter: every connected component has one value throughout. Apply a filter "
             "that computes qualities or colours first");
-    else if (result.fixedVertices > 0 &&
-             result.fixedVertices + result.unreferencedVertices == result.Y.rows())
+    else if (isAllFixed(result, result.Y.rows() - result.verticesWithoutData))
         warnings.emplace_back(
             "nothing can change: every vertex lies on the boundary, which is fixed. Choose "
             "boundary = free; if the triangles are not connected, apply 'Merge Close Vertices' "
@@ -112,32 +114,30 @@ FilterOutcome outcomeOf(const char* name, const char* signal, const RichParamete
          << 100.0 * size / spectral::boundingBoxDiagonal(input.V) << " % of the diagonal); "
          << signal << " by " << result.rmsChange << " (root mean square), by " << result.maxChange
          << " at most; estimated relative error " << std::setprecision(2) << result.errorEstimate
-         << "\n  surface: " << result.components
-         << (result.components == 1 ? " component" : " components");
-    if (result.unreferencedVertices > 0)
-        text << ", " << result.unreferencedVertices << " unreferenced vertices unchanged";
-    if (result.fixedVertices > 0)
-        text << ", " << result.fixedVertices << " boundary vertices fixed";
+         << "\n  " << surfaceTold(result);
+    if (result.verticesWithoutData > 0)
+        text << ", " << result.verticesWithoutData << " vertices without a value (NaN) unchanged";
     text << "\n  work: " << result.factorizations << " factorizations, " << result.solves
          << " solves";
-    return {{{"feature_size", size},
-             {"cutoff_frequency", result.cutoffFrequency},
-             {"rms_change", result.rmsChange},
-             {"max_change", result.maxChange},
-             {"error_estimate", result.errorEstimate},
-             {"accuracy_reached", result.accuracyReached},
-             {"components", result.components},
-             {"unreferenced_vertices", result.unreferencedVertices},
-             {"fixed_vertices", result.fixedVertices},
-             {"factorizations", result.factorizations},
-             {"solves", result.solves}},
-            text.str(),
+    std::map<std::string, QVariant> report{{"feature_size", size},
+                                           {"cutoff_frequency", result.cutoffFrequency},
+                                           {"rms_change", result.rmsChange},
+                                           {"max_change", result.maxChange},
+                                           {"error_estimate", result.errorEstimate},
+                                           {"accuracy_reached", result.accuracyReached},
+                                           {"vertices_without_data", result.verticesWithoutData},
+                                           {"factorizations", result.factorizations},
+                                           {"solves", result.solves}};
+    addSurfaceCounts(result, report);
+    return {std::move(report), text.str(),
             warningsOf(chosenVertices(parameters, mesh, input), result)};
 }
 
-std::string rangeOf(const Eigen::MatrixXd& values) {
+/// Of the values that are not NaN.
+std::string rangeOf(const Eigen::VectorXd& values) {
     std::ostringstream text;
-    text << std::setprecision(4) << values.minCoeff() << " to " << values.maxCoeff();
+    text << std::setprecision(4) << values.minCoeff<Eigen::PropagateNumbers>() << " to "
+         << values.maxCoeff<Eigen::PropagateNumbers>();
     return text.str();
 }
 
@@ -150,7 +150,8 @@ FilterOutcome applyToQuality(const RichParameterList& parameters, MeshModel& mes
     const MeshMatrices input = toMatrices(mesh.cm);
     const Eigen::VectorXd Q = vertexQuality(mesh.cm, input);
     const spectral::FilteredSignal result = filtered(parameters, mesh, input, Q, progress);
-    if (!(result.Y.cwiseAbs().maxCoeff() <= std::numeric_limits<Scalarm>::max()))
+    if (!(result.Y.cwiseAbs().maxCoeff<Eigen::PropagateNumbers>() <=
+          std::numeric_limits<Scalarm>::max()))
         throw MLException(
             "the filtered quality is too large for a number: choose smaller gains, or apply "
             "'Per Vertex Quality Function', q / 1000, first");

@@ -12,6 +12,7 @@
 #include "core/support/types.h"
 #include "meshlab/error_messages.h"
 #include "meshlab/filters/common_parameters.h"
+#include "meshlab/filters/surface_report.h"
 #include "meshlab/filters/transfer_parameters.h"
 
 std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& result) {
@@ -25,9 +26,6 @@ std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& r
         {"area_after", result.areaAfter},
         {"volume_before", result.volumeBefore},
         {"volume_after", result.volumeAfter},
-        {"components", result.components},
-        {"unreferenced_vertices", result.unreferencedVertices},
-        {"fixed_vertices", result.fixedVertices},
         {"preserved_volumes", result.volumes.preserved},
         {"factorizations", result.factorizations},
         {"solves", result.solves},
@@ -40,6 +38,7 @@ std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& r
          QVariant::fromValue(Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
              result.stepSizes.data(), static_cast<Eigen::Index>(result.stepSizes.size()))))},
     };
+    addSurfaceCounts(result, report);
     if (result.eigenvalues.size() > 0) {
         report["eigenvalues"] = QVariant::fromValue(result.eigenvalues);
         report["cutoff_reached"] = result.cutoffReached;
@@ -140,11 +139,10 @@ double lastFrequency(const spectral::FilterResult& result) {
 
 std::vector<std::string> fractionalWarnings(const spectral::FilterOptions& options,
                                             const spectral::FilterResult& result) {
-    std::vector<std::string> warnings;
+    std::vector<std::string> warnings = surfaceWarnings(result);
     if (const std::string told = selectionTold(options.part.selected); !told.empty())
         warnings.push_back(told);
-    if (result.fixedVertices > 0 &&
-        result.fixedVertices + result.unreferencedVertices == result.V.rows())
+    if (isAllFixed(result, result.V.rows()))
         warnings.emplace_back(
             options.creaseAngle > 0.0
                 ? "nothing can move: every vertex lies on a crease or a fixed boundary. Choose a "
@@ -174,12 +172,7 @@ std::string fractionalReportText(const spectral::FilterOptions& options,
          << "  area: " << result.areaBefore << " -> " << result.areaAfter << "\n"
          << "  volume: " << result.volumeBefore << " -> " << result.volumeAfter
          << " (of closed surfaces)\n"
-         << "  surface: " << result.components
-         << (result.components == 1 ? " component" : " components");
-    if (result.unreferencedVertices > 0)
-        text << ", " << result.unreferencedVertices << " unreferenced vertices unchanged";
-    if (result.fixedVertices > 0)
-        text << ", " << result.fixedVertices << " vertices fixed, on the boundary or a crease";
+         << "  " << surfaceTold(result, "vertices fixed, on the boundary or a crease");
     if (options.preserveVolume)
         text << ", " << result.volumes.preserved << " with the volume preserved";
     text << "\n  work: " << result.factorizations << " factorizations, " << result.solves

@@ -219,10 +219,10 @@ TEST(SignalFilter, KeepsUnreferencedAndFixedVerticesToTheBit) {
     EXPECT_LT(largest(result.Y.middleRows(1, mesh.V.rows()) - alone), 1e-12);
 }
 
-TEST(SignalFilter, CountsAndLocatesValuesThatAreNotFinite) {
+TEST(SignalFilter, CountsAndLocatesInfiniteValues) {
     const Mesh mesh = testing::icosphere(2);
     Eigen::MatrixXd Q = noise(mesh.V.rows(), 2, 9);
-    Q(40, 1) = std::nan("");
+    Q(40, 1) = std::numeric_limits<double>::infinity();
     const auto message = [&] {
         try {
             filterSignal(mesh.V, mesh.F, Q, lowPass(mesh));
@@ -232,14 +232,39 @@ TEST(SignalFilter, CountsAndLocatesValuesThatAreNotFinite) {
         }
         return std::string("no error");
     };
-    EXPECT_EQ(message(),
-              "1 vertex has a value that is not finite (NaN or infinity), the first is "
-              "vertex 40");
+    EXPECT_EQ(message(), "1 vertex has an infinite value, the first is vertex 40");
     Q(17, 0) = -std::numeric_limits<double>::infinity();
-    Q(17, 1) = std::nan("");
-    EXPECT_EQ(message(),
-              "2 vertices have a value that is not finite (NaN or infinity), the first "
-              "is vertex 17");
+    EXPECT_EQ(message(), "2 vertices have an infinite value, the first is vertex 17");
+}
+
+TEST(SignalFilter, EndsTheSurfaceWhereThereIsNoData) {
+    const Mesh mesh = testing::icosphere(3);
+    Eigen::MatrixXd Q = noise(mesh.V.rows(), 1, 9);
+    Eigen::VectorXd hole = Q;
+    Faces rest(mesh.F.rows(), 3);
+    Index triangles = 0, without = 0;
+    for (Index i = 0; i < Q.rows(); ++i)
+        if (mesh.V(i, 2) > 0.6) {
+            Q(i, 0) = std::nan("");
+            ++without;
+        }
+    for (Index t = 0; t < mesh.F.rows(); ++t)
+        if ((mesh.V(mesh.F.row(t).transpose(), 2).array() <= 0.6).all())
+            rest.row(triangles++) = mesh.F.row(t);
+    rest.conservativeResize(triangles, 3);
+
+    const FilteredSignal result = filterSignal(mesh.V, mesh.F, Q, lowPass(mesh));
+    const Eigen::MatrixXd expected = filterSignal(mesh.V, rest, hole, lowPass(mesh)).Y;
+    EXPECT_EQ(result.verticesWithoutData, without);
+    for (Index i = 0; i < Q.rows(); ++i) {
+        if (std::isnan(Q(i, 0)))
+            EXPECT_TRUE(std::isnan(result.Y(i, 0)));
+        else
+            EXPECT_EQ(result.Y(i, 0), expected(i, 0));
+    }
+    EXPECT_GT(result.rmsChange, 0.0);
+    Q.setConstant(std::nan(""));
+    EXPECT_THROW(filterSignal(mesh.V, mesh.F, Q, lowPass(mesh)), InvalidMesh);
 }
 
 TEST(SignalFilter, RefusesBadMeshesAndOptions) {

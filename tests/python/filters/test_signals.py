@@ -249,28 +249,54 @@ def test_after_a_deletion_only_what_is_left_counts(decimated: Decimated) -> None
     np.testing.assert_allclose(mesh.vertex_scalar_array(), expected, rtol=0, atol=1e-12)
 
 
-@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
-def test_values_that_are_no_numbers_are_counted_and_located_and_the_advice_helps(
+@pytest.mark.parametrize("value", [np.inf, -np.inf])
+def test_infinite_values_are_counted_and_located_and_the_advice_helps(
     value: float, decimated: Decimated
 ) -> None:
     V, F = decimated("cow.obj")
     Q = noisy_field(V)
     Q[[17, 40]] = value
-    with pytest.raises(FilterError, match=r"2 vertices have a value .* the first is vertex 17"):
+    with pytest.raises(FilterError, match="2 vertices have an infinite value, the first is ver"):
         filter_scalars(V, F, Q)
     mesh_set = pymeshlab.MeshSet()
     mesh_set.add_mesh(pymeshlab.Mesh(V, F, v_scalar_array=Q))
     before = snapshot(mesh_set.current_mesh())
-    advice = "'Per Vertex Quality Function' with abs(q) < 1e30 ? q : 0"
+    advice = "'Per Vertex Quality Function' with abs(q) < 1e30 ? q : 0/0"
     assert advice in refusal(mesh_set, QUALITY)
     assert_same(before, snapshot(mesh_set.current_mesh()))
 
     advised = pymeshlab.MeshSet()
     advised.add_mesh(pymeshlab.Mesh(V, F, v_scalar_array=Q))
-    advised.compute_scalar_by_function_per_vertex(q="abs(q) < 1e30 ? q : 0")
+    advised.compute_scalar_by_function_per_vertex(q="abs(q) < 1e30 ? q : 0/0")
     mended = advised.current_mesh().vertex_scalar_array()
-    np.testing.assert_array_equal(mended, np.where(np.isfinite(Q), Q, 0))
-    advised.apply_filter(QUALITY)
+    np.testing.assert_array_equal(mended, np.where(np.isfinite(Q), Q, np.nan))
+    report = advised.apply_filter(QUALITY)
+    assert report["vertices_without_data"] == 2
+
+
+def test_where_there_is_no_data_the_surface_ends(decimated: Decimated) -> None:
+    V, F = decimated("cow.obj")
+    Q = noisy_field(V)
+    without = V[:, 0] > np.median(V[:, 0])
+    rest = F[~without[F].any(axis=1)]
+    expected, _ = filter_scalars(V, rest, Q, feature_size=0.25)
+    filtered, report = filter_scalars(V, F, np.where(without, np.nan, Q), feature_size=0.25)
+    assert np.isnan(filtered[without]).all()
+    np.testing.assert_allclose(filtered[~without], expected[~without], rtol=0, atol=1e-12)
+    assert report["vertices_without_data"] == without.sum()
+    with pytest.raises(FilterError, match="no triangle has values at all of its corners"):
+        filter_scalars(V, F, np.full(len(V), np.nan))
+
+
+def test_several_columns_are_filtered_each_by_itself(decimated: Decimated) -> None:
+    V, F = decimated("cow.obj")
+    Q = np.column_stack([noisy_field(V), V[:, 1], np.where(V[:, 2] > 0, np.nan, V[:, 0])])
+    filtered, report = filter_scalars(V, F, Q, feature_size="8e")
+    assert filtered.shape == Q.shape
+    for column, of_column in enumerate(report["columns"]):
+        alone, its_report = filter_scalars(V, F, Q[:, column], feature_size="8e")
+        np.testing.assert_array_equal(filtered[:, column], alone)
+        assert of_column == its_report
 
 
 @pytest.mark.parametrize(

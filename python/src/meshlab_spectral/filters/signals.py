@@ -33,7 +33,8 @@ def filter_scalars(
     faces
         m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
     values
-        n numbers, finite. Those at vertices without faces are kept to the bit.
+        n numbers, or n x k for k fields, each filtered by itself. NaN is no data: it stays, and the
+        surface ends there for the rest. Values at vertices without faces are kept to the bit.
     **options
         Fields of `FilterOptions` that describe the transfer function, `laplacian` and `boundary`:
         "fixed" keeps the values on the boundary. Sizes as a string such as "2%" of the bounding box
@@ -42,11 +43,12 @@ def filter_scalars(
     Returns
     -------
     values : array
-        The n filtered values.
+        The filtered values, of the shape that was given.
     report : dict
         Numbers: `rms_change` over the surface and `max_change`, in the units of the values;
         `error_estimate`, relative to their largest deviation from the means; and others.
-        "warnings" lists what fell short and what to do about it.
+        "warnings" lists what fell short and what to do about it. Of n x k values, a list of the k
+        reports as "columns".
 
     Raises
     ------
@@ -55,7 +57,8 @@ def filter_scalars(
     OptionError
         When an option is unknown, has an invalid value, or is not for values on a fixed shape.
     FilterError
-        When the mesh has no faces, no area or non-finite coordinates, or a value is not finite.
+        When the mesh has no faces, no area or non-finite coordinates, a value is infinite, or all
+        are NaN.
     PluginError
         When the plugin cannot be loaded.
 
@@ -66,8 +69,17 @@ def filter_scalars(
     """
     V, F = mesh_arrays(vertices, faces)
     Q = np.asarray(values, dtype=np.float64)
-    if Q.shape != (len(V),):
-        raise ValueError(f"values have shape {Q.shape}: pass {len(V)} numbers, one for each vertex")
+    if Q.ndim not in (1, 2) or len(Q) != len(V) or Q.size == 0:
+        raise ValueError(
+            f"values have shape {Q.shape}: pass {len(V)} numbers, one for each vertex, or a matrix "
+            f"with {len(V)} rows"
+        )
+    if Q.ndim == 2:
+        columns = [filter_scalars(V, F, column, **options) for column in Q.T]
+        reports = [report for _, report in columns]
+        warnings = [f"column {j}: {w}" for j, r in enumerate(reports) for w in r["warnings"]]
+        filtered = np.column_stack([values for values, _ in columns])
+        return filtered, {"columns": reports, "warnings": warnings}
     mesh_set, report = _filtered(_SCALARS, V, F, options, v_scalar_array=Q)
     return mesh_set.current_mesh().vertex_scalar_array().copy(), report
 

@@ -1,0 +1,33 @@
+#include "meshlab/filters/surface_report.h"
+
+void addSurfaceCounts(const spectral::SurfaceCounts& counts,
+                      std::map<std::string, QVariant>& report) {
+    report["components"] = counts.components;
+    report["unreferenced_vertices"] = counts.unreferencedVertices;
+    report["joined_vertices"] = counts.joinedVertices;
+    report["fixed_vertices"] = counts.fixedVertices;
+}
+
+std::string surfaceTold(const spectral::SurfaceCounts& counts, const char* fixed) {
+    std::string text = "surface: " + std::to_string(counts.components) +
+                       (counts.components == 1 ? " component" : " components");
+    const auto add = [&](int count, const char* what) {
+        if (count > 0) text += ", " + std::to_string(count) + " " + what;
+    };
+    add(counts.joinedVertices, "vertices at seams joined to others");
+    add(counts.unreferencedVertices, "unreferenced vertices unchanged");
+    add(counts.fixedVertices, fixed);
+    return text;
+}
+
+bool isAllFixed(const spectral::SurfaceCounts& counts, Eigen::Index n) {
+    return counts.fixedVertices > 0 &&
+           counts.fixedVertices + counts.joinedVertices + counts.unreferencedVertices == n;
+}
+
+std::vector<std::string> surfaceWarnings(const spectral::SurfaceCounts& counts) {
+    if (counts.nearlyJoined == 0) return {};
+    return {std::to_string(counts.nearlyJoined) +
+            " vertices on the boundary are within round-off of others, but not at the same point: "
+            "the surface may tear there. Apply 'Merge Close Vertices' first"};
+}

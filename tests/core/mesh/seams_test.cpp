@@ -1,0 +1,247 @@
+#include "core/mesh/seams.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <utility>
+
+#include "core/analysis/artefacts.h"
+#include "core/analysis/geometry_spectrum.h"
+#include "core/analysis/manifold_harmonics.h"
+#include "core/denoise/denoise.h"
+#include "core/filter/fractional_filter.h"
+#include "core/filter/signal_filter.h"
+#include "core/mesh/measures.h"
+#include "core/mesh/surface.h"
+#include "support/noisy_shapes.h"
+
+namespace spectral {
+namespace {
+
+using testing::joined;
+using testing::Mesh;
+
+/// A mesh cut apart, and the vertex of the whole that each of its vertices was.
+struct CutMesh {
+    Mesh mesh;
+    std::vector<Index> origin;
+
+    Eigen::MatrixXd cut(const Eigen::MatrixXd& values) const { return values(origin, Eigen::all); }
+};
+
+/// Cuts a mesh between triangles of different charts: the corners at a vertex that are in one chart
+/// stay one vertex.
+/// @param chart  of each triangle.
+CutMesh cutApart(const Mesh& mesh, const std::vector<int>& chart) {
+    CutMesh cut;
+    cut.mesh.F.resize(mesh.F.rows(), 3);
+    std::map<std::pair<int, int>, int> number;
+    for (Index t = 0; t < mesh.F.rows(); ++t)
+        for (int c = 0; c < 3; ++c) {
+            const int i = mesh.F(t, c);
+            const auto [at, isNew] =
+                number.try_emplace({i, chart[t]}, static_cast<int>(number.size()));
+            if (isNew) cut.origin.push_back(i);
+            cut.mesh.F(t, c) = at->second;
+        }
+    cut.mesh.V = mesh.V(cut.origin, Eigen::all);
+    return cut;
+}
+
+/// Every triangle on its own, as in an STL file.
+CutMesh soupOf(const Mesh& mesh) {
+    std::vector<int> chart;
+    for (int t = 0; t < mesh.F.rows(); ++t) chart.push_back(t);
+    return cutApart(mesh, chart);
+}
+
+/// Eight islands, one for each octant that a triangle's centre is in, as in a texture atlas.
+CutMesh islandsOf(const Mesh& mesh) {
+    std::vector<int> chart;
+    for (Index t = 0; t < mesh.F.rows(); ++t) {
+        const Eigen::RowVector3d centre =
+            mesh.V.row(mesh.F(t, 0)) + mesh.V.row(mesh.F(t, 1)) + mesh.V.row(mesh.F(t, 2));
+        chart.push_back((centre[0] > 0.0) + 2 * (centre[1] > 0.0) + 4 * (centre[2] > 0.0));
+    }
+    return cutApart(mesh, chart);
+}
+
+Mesh noisyBlob() { return testing::withGaussianNoise(testing::blob(), 0.1, 7); }
+
+class CutSurface : public ::testing::TestWithParam<CutMesh (*)(const Mesh&)> {
+  protected:
+    const Mesh whole = noisyBlob();
+    const CutMesh cut = GetParam()(whole);
+    const double diagonal = boundingBoxDiagonal(whole.V);
+
+    void expectEqual(const Eigen::MatrixXd& cutValues, const Eigen::MatrixXd& wholeValues,
+                     double tolerance) const {
+        EXPECT_LE((cutValues - cut.cut(wholeValues)).cwiseAbs().maxCoeff(), tolerance);
+    }
+};
+
+TEST_P(CutSurface, IsTheWholeSurface) {
+    const Surface surface = joinedSurface(cut.mesh.V, cut.mesh.F);
+    EXPECT_EQ(surface.X.rows(), whole.V.rows());
+    EXPECT_EQ(connectedComponents(surface.F, surface.X.rows()).count, 1);
+    EXPECT_EQ(surface.nearlyCopies, 0);
+    const SurfaceCounts counts = countsOf(surface, cut.mesh.V.rows());
+    EXPECT_EQ(counts.joinedVertices, cut.mesh.V.rows() - whole.V.rows());
+    EXPECT_EQ(counts.unreferencedVertices, 0);
+}
+
+TEST_P(CutSurface, IsFilteredAsTheWhole) {
+    for (const LaplacianKind kind :
+         {LaplacianKind::IntrinsicDelaunay, LaplacianKind::Cotangent, LaplacianKind::Uniform})
+        for (const int steps : {0, 3}) {
+            FilterOptions options;
+            options.featureSize = 0.1 * diagonal;
+            options.tolerance = 0.0005 * diagonal;
+            options.laplacian = kind;
+            options.steps = steps;
+            options.preserveVolume = true;
+            options.basisUpdate = steps == 0 ? BasisUpdate::Conformal : BasisUpdate::Full;
+            const FilterResult result = fractionalFilter(cut.mesh.V, cut.mesh.F, options);
+            expectEqual(result.V, fractionalFilter(whole.V, whole.F, options).V, 1e-12 * diagonal);
+            EXPECT_EQ(result.joinedVertices, cut.mesh.V.rows() - whole.V.rows());
+            EXPECT_EQ(result.volumes.preserved, 1);
+        }
+}
+
+TEST_P(CutSurface, IsFilteredInPartAsTheWhole) {
+    FilterOptions options;
+    options.featureSize = 0.1 * diagonal;
+    options.tolerance = 0.0005 * diagonal;
+    options.part.weight = (whole.V.col(0).array() / diagonal + 0.5).matrix();
+    std::vector<bool> selected;
+    for (Index i = 0; i < whole.V.rows(); ++i) selected.push_back(whole.V(i, 1) > 0.2);
+    options.part.selected = selected;
+    const Vertices expected = fractionalFilter(whole.V, whole.F, options).V;
+    options.part.weight = cut.cut(options.part.weight);
+    options.part.selected.clear();
+    for (const Index i : cut.origin) options.part.selected.push_back(selected[i]);
+    expectEqual(fractionalFilter(cut.mesh.V, cut.mesh.F, options).V, expected, 1e-12 * diagonal);
+}
+
+TEST_P(CutSurface, IsDenoisedAsTheWhole) {
+    const Mesh noisy = testing::withGaussianNoise(testing::icosphere(4), 0.2, 3);
+    const CutMesh cutNoisy = GetParam()(noisy);
+    const DenoiseResult result = denoise(cutNoisy.mesh.V, cutNoisy.mesh.F, {});
+    const DenoiseResult expected = denoise(noisy.V, noisy.F, {});
+    EXPECT_GT(result.maxDisplacement, 0.0);
+    EXPECT_EQ(result.diagnosis.kind, expected.diagnosis.kind);
+    EXPECT_LE(testing::largestDifference(result.V, cutNoisy.cut(expected.V)), 1e-12 * 2.0);
+}
+
+TEST_P(CutSurface, HasTheSignalsOfTheWhole) {
+    SignalFilterOptions options;
+    options.featureSize = 0.1 * diagonal;
+    const Eigen::MatrixXd Q = whole.V.leftCols(2);
+    expectEqual(filterSignal(cut.mesh.V, cut.mesh.F, cut.cut(Q), options).Y,
+                filterSignal(whole.V, whole.F, Q, options).Y, 1e-12 * diagonal);
+}
+
+TEST_P(CutSurface, HasTheHarmonicsOfTheWhole) {
+    HarmonicsOptions options;
+    options.basisSize = 20;
+    const ManifoldHarmonics result = manifoldHarmonics(cut.mesh.V, cut.mesh.F, options);
+    const ManifoldHarmonics expected = manifoldHarmonics(whole.V, whole.F, options);
+    EXPECT_LE((result.lambda - expected.lambda).cwiseAbs().maxCoeff(),
+              1e-9 * expected.lambda.maxCoeff());
+    expectEqual(result.Phi.cwiseAbs(), expected.Phi.cwiseAbs(), 1e-7);
+}
+
+TEST_P(CutSurface, HasTheArtefactsAndTheSpectrumOfTheWhole) {
+    ArtefactOptions options;
+    options.featureSize = 0.1 * diagonal;
+    expectEqual(measureArtefacts(cut.mesh.V, cut.mesh.F, options).length,
+                measureArtefacts(whole.V, whole.F, options).length, 1e-12 * diagonal);
+    const GeometrySpectrum result = geometrySpectrum(cut.mesh.V, cut.mesh.F, {});
+    const GeometrySpectrum expected = geometrySpectrum(whole.V, whole.F, {});
+    EXPECT_NEAR(result.totalEnergy, expected.totalEnergy, 1e-12 * expected.totalEnergy);
+    EXPECT_LE((result.octaveEnergies - expected.octaveEnergies).cwiseAbs().maxCoeff(),
+              1e-6 * expected.totalEnergy);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seams, CutSurface, ::testing::Values(soupOf, islandsOf));
+
+TEST(Seams, CopiesOfAVertexMoveAlikeToTheBit) {
+    const CutMesh cut = soupOf(noisyBlob());
+    FilterOptions options;
+    options.featureSize = 0.3;
+    options.tolerance = 1e-3;
+    const Vertices filtered = fractionalFilter(cut.mesh.V, cut.mesh.F, options).V;
+    std::map<Index, Index> first;
+    for (Index i = 0; i < filtered.rows(); ++i) {
+        const Index same = first.try_emplace(cut.origin[i], i).first->second;
+        EXPECT_EQ(filtered.row(i), filtered.row(same));
+    }
+}
+
+TEST(Seams, ClosedPartsThatTouchStayApart) {
+    Mesh right = testing::cube(3);
+    right.V.col(0).array() += 2.0;
+    const Mesh both = joined(testing::cube(3), right);
+    EXPECT_TRUE(findSeams(both.V, both.F).first.empty());
+    EXPECT_EQ(findSeams(both.V, both.F).nearby, 0);
+}
+
+TEST(Seams, OpenSheetsAreOneAlongACommonBoundary) {
+    const Mesh left = testing::rectangle(1.0, 1.0, 4, 4);
+    Mesh right = left;
+    right.V.col(0).array() += 1.0;
+    const Mesh both = joined(left, right);
+    const Surface surface = joinedSurface(both.V, both.F);
+    EXPECT_EQ(surface.copies.size(), 5u);
+    EXPECT_EQ(connectedComponents(surface.F, surface.X.rows()).count, 1);
+}
+
+TEST(Seams, DistancesOfRoundOffAreCountedAndNotJoined) {
+    const Mesh left = testing::rectangle(1.0, 1.0, 4, 4);
+    Mesh right = left;
+    right.V.col(0).array() += 1.0 + 1e-8;
+    const Mesh both = joined(left, right);
+    const Surface surface = joinedSurface(both.V, both.F);
+    EXPECT_TRUE(surface.copies.empty());
+    EXPECT_EQ(surface.nearlyCopies, 5);
+    EXPECT_EQ(joinedSurface(left.V, left.F).nearlyCopies, 0);
+}
+
+TEST(Seams, AnEdgeWhereThreeSheetsMeetIsOne) {
+    const Mesh sheet = testing::rectangle(1.0, 1.0, 3, 3);
+    Mesh turned = sheet, opposite = sheet;
+    turned.V.col(2) = sheet.V.col(0);
+    turned.V.col(0).setZero();
+    opposite.V.col(0) *= -1.0;
+    const Mesh three = joined(joined(sheet, turned), opposite);
+    const Surface surface = joinedSurface(three.V, three.F);
+    EXPECT_EQ(surface.copies.size(), 8u);
+    FilterOptions options;
+    options.featureSize = 0.5;
+    options.tolerance = 1e-3;
+    EXPECT_TRUE(fractionalFilter(three.V, three.F, options).V.allFinite());
+}
+
+TEST(Seams, AValueOnBothSidesOfASeamBecomesOne) {
+    const CutMesh cut = islandsOf(testing::blob());
+    Eigen::VectorXd Q = cut.mesh.V.col(0);
+    for (Index i = 0; i < Q.size(); ++i) Q[i] += 0.01 * static_cast<double>(i % 7);
+    SignalFilterOptions options;
+    options.featureSize = 0.3;
+    const Eigen::VectorXd Y = filterSignal(cut.mesh.V, cut.mesh.F, Q, options).Y;
+    std::map<Index, double> first;
+    for (Index i = 0; i < Y.size(); ++i)
+        EXPECT_EQ(Y[i], first.try_emplace(cut.origin[i], Y[i]).first->second);
+}
+
+TEST(Seams, ATriangleWithoutAreaJoinsNothingElse) {
+    Vertices V(4, 3);
+    V << 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0;
+    Faces F(2, 3);
+    F << 0, 1, 2, 1, 2, 3;
+    const Surface surface = joinedSurface(V, F);
+    EXPECT_EQ(surface.X.rows(), 4);
+}
+
+}  // namespace
+}  // namespace spectral
