@@ -338,7 +338,7 @@ def test_the_transfer_functions_parameters_are_those_of_the_main_filter(
 
 def test_arrays_of_another_shape_are_refused() -> None:
     V, F = TRIANGLE
-    for values in (np.zeros(2), np.zeros((3, 1)), 1.0):
+    for values in (np.zeros(2), np.zeros((2, 3)), 1.0):
         with pytest.raises(ValueError, match="pass 3 numbers"):
             filter_scalars(V, F, values)
 
