@@ -15,6 +15,7 @@ SOURCE = Path(meshlab_spectral.__file__).parent
 LEVELS = {
     "errors": 0,
     "extras": 1,
+    "documents": 2,
     "plugin": 2,
     "filters": 3,
     "files": 4,

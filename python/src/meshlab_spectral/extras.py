@@ -6,15 +6,24 @@ from importlib.util import find_spec
 
 from meshlab_spectral.errors import MissingPackageError
 
-# Extra -> the package that tells whether it is installed.
-_PACKAGES = {"batch": "distributed", "plots": "matplotlib", "render": "pyvista"}
+# Extra -> its packages.
+_PACKAGES = {
+    "batch": ["distributed"],
+    "formats": ["nibabel", "pyvista"],
+    "plots": ["matplotlib"],
+    "render": ["pyvista"],
+}
 
 
 def check_extras(*extras: str) -> None:
     """Raise MissingPackageError, which says what to install, unless all of `extras` are there."""
-    missing = [extra for extra in extras if find_spec(_PACKAGES[extra]) is None]
+    lacking = {
+        extra: [package for package in _PACKAGES[extra] if find_spec(package) is None]
+        for extra in extras
+    }
+    missing = [extra for extra, packages in lacking.items() if packages]
     if missing:
-        packages = " and ".join(_PACKAGES[extra] for extra in missing)
+        packages = " and ".join(sorted({name for names in lacking.values() for name in names}))
         raise MissingPackageError(
             f"this needs {packages}: pip install 'meshlab-spectral[{','.join(missing)}]'"
         )

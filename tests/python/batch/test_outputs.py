@@ -47,7 +47,7 @@ def test_folders_within_the_inputs_are_kept() -> None:
     assert output.target == "/out/a/b/c_x.ply"
 
 
-@pytest.mark.parametrize("ending", ["ptx", "gltf", "mesh3", "xyz", "E57"])
+@pytest.mark.parametrize("ending", ["ptx", "fbx", "mesh3", "xyz", "E57"])
 def test_what_cannot_be_written_with_faces_becomes_ply(ending: str) -> None:
     (output,) = plan_outputs(inputs(f"/in/a.{ending}"), "/out")
     assert output.name == "a.ply"

@@ -95,11 +95,11 @@ def test_resume_restores_materials_and_textures(samples: Path, tmp_path: Path) -
     batch = ["batch", source, "--output", out, "--steps", 1, "--workers", 1]
     assert command(*batch).returncode == 0
     before = contents(out)
-    material, texture = f"{source.name}.mtl", "TextureDouble_A.png"
+    material, texture = "bunny10k_textured.mtl", "TextureDouble_A.png"
     assert before.keys() == {source.name, material, texture}
     assert "1 already done" in command(*batch, "--resume").stdout
     (out / texture).unlink()
-    (out / material).write_bytes(PRECIOUS)
+    (out / material).unlink()
     done = command(*batch, "--resume")
     assert "1 filtered, 0 failed in" in done.stdout
     assert contents(out) == before
@@ -182,7 +182,7 @@ def test_a_format_without_faces_is_written_with_a_warning(cow: Path, tmp_path: P
     for arguments in (batch, ["filter", cow, tmp_path / "one.xyz"]):
         done = command(*arguments, "--steps", 1)
         assert done.returncode == 0
-        assert done.stderr == "Warning: .xyz files hold points only, the faces are not written.\n"
+        assert "Warning: .xyz files hold points only, the faces are not written.\n" in done.stderr
     assert sorted(contents(tmp_path)) == ["cow.xyz", "one.xyz"]
 
 

@@ -13,6 +13,8 @@ import pytest
 from commands import COMMAND, PRECIOUS, arrays_of, assert_fails, command
 from helpers import diagonal, largest_distance
 
+MATERIAL = "bunny10k_textured.mtl"
+
 
 @pytest.mark.parametrize("ending", [".ply", ".obj", ".stl", ".off"])
 def test_every_usual_format_is_written(ending: str, cow: Path, tmp_path: Path) -> None:
@@ -70,9 +72,9 @@ def test_material_and_texture_of_an_obj_appear_beside_it_under_their_names(
         done = command(*arguments)
         assert done.returncode == 0, done.stderr
         names = sorted(path.name for path in tmp_path.iterdir())
-        assert names == ["TextureDouble_A.png", "bunny.obj", "bunny.obj.mtl"]
-    assert "mtllib ./bunny.obj.mtl" in target.read_text()
-    assert "map_Kd TextureDouble_A.png" in (tmp_path / "bunny.obj.mtl").read_text()
+        assert names == ["TextureDouble_A.png", "bunny.obj", MATERIAL]
+    assert f"mtllib ./{MATERIAL}" in target.read_text()
+    assert (tmp_path / MATERIAL).read_bytes() == (samples / MATERIAL).read_bytes()
     mesh_set = pymeshlab.MeshSet()
     mesh_set.load_new_mesh(str(target))
     assert mesh_set.current_mesh().has_wedge_tex_coord()
@@ -85,7 +87,7 @@ def test_a_texture_in_a_folder_keeps_its_place(samples: Path, tmp_path: Path) ->
     target.parent.mkdir()
     assert command("filter", source, target, "--steps", 1).returncode == 0
     assert (target.parent / "maps" / "skin.png").is_file()
-    assert "map_Kd maps/skin.png" in (target.parent / "bunny.obj.mtl").read_text()
+    assert "map_Kd maps/skin.png" in (target.parent / MATERIAL).read_text()
 
 
 def test_the_texture_of_the_input_is_left_alone_when_the_output_lies_beside_it(
@@ -96,16 +98,23 @@ def test_the_texture_of_the_input_is_left_alone_when_the_output_lies_beside_it(
     before = skin.read_bytes()
     assert command("filter", source, source.parent / "new.obj", "--steps", 1).returncode == 0
     assert skin.read_bytes() == before
-    assert "map_Kd skin.png" in (source.parent / "new.obj.mtl").read_text()
+    assert sorted(path.name for path in source.parent.iterdir()) == [
+        MATERIAL,
+        source.name,
+        "new.obj",
+        "skin.png",
+    ]
 
 
 def test_a_texture_outside_of_the_folder_is_never_written(samples: Path, tmp_path: Path) -> None:
     source = textured_bunny(samples, tmp_path / "in", "../skin.png")
     target = tmp_path / "out" / "bunny.obj"
     target.parent.mkdir()
-    assert command("filter", source, target, "--steps", 1).returncode == 0
+    done = command("filter", source, target, "--steps", 1)
+    assert done.returncode == 0
+    assert "../skin.png" in done.stderr
     names = sorted(path.name for path in target.parent.iterdir())
-    assert names == ["bunny.obj", "bunny.obj.mtl"]
+    assert names == ["bunny.obj", MATERIAL]
 
 
 def test_a_foreign_file_in_the_place_of_a_texture_is_not_replaced(
@@ -114,7 +123,7 @@ def test_a_foreign_file_in_the_place_of_a_texture_is_not_replaced(
     source = textured_bunny(samples, tmp_path / "in", "skin.png")
     foreign = existing.parent / "skin.png"
     foreign.write_bytes(PRECIOUS)
-    done = command("filter", source, existing, "--steps", 1)
+    done = command("filter", source, existing.with_suffix(".obj"), "--steps", 1)
     assert_fails(done, 1, "skin.png", "folder of its own")
     assert foreign.read_bytes() == PRECIOUS
     foreign.unlink()
@@ -126,8 +135,8 @@ def textured_bunny(samples: Path, folder: Path, texture: str) -> Path:
     place.parent.mkdir(parents=True, exist_ok=True)
     folder.mkdir(exist_ok=True)
     shutil.copy(samples / "TextureDouble_A.png", place)
-    material = (samples / "bunny10k_textured.mtl").read_text()
-    (folder / "bunny10k_textured.mtl").write_text(material.replace("TextureDouble_A.png", texture))
+    material = (samples / MATERIAL).read_text()
+    (folder / MATERIAL).write_text(material.replace("TextureDouble_A.png", texture))
     return Path(shutil.copy(samples / "bunny10k_textured.obj", folder))
 
 

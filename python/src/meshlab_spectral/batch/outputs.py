@@ -12,6 +12,7 @@ from pathlib import Path
 
 from meshlab_spectral.batch.inputs import Input
 from meshlab_spectral.batch.storage import is_url, joined
+from meshlab_spectral.documents.opening import PATCHED
 from meshlab_spectral.errors import FormatError, InputError
 from meshlab_spectral.files.formats import FALLBACK, POINTS_ONLY, WRITABLE, ending_of
 
@@ -55,8 +56,8 @@ def plan_outputs(
         input's name before and after its last dot, {folder} for the name of its folder. A "/"
         creates folders.
     ending
-        Extension of the outputs; by default that of the input, or ply if MeshLab cannot write that
-        with faces.
+        Extension of the outputs; by default that of the input, or ply if it cannot be written with
+        faces.
 
     Raises
     ------
@@ -68,7 +69,8 @@ def plan_outputs(
     check_pattern(pattern)
     if ending is not None:
         ending = ending.removeprefix(".")
-        if ending.lower() not in WRITABLE:
+        kept = {ending_of(file.name).lower() for file in inputs} == {ending.lower()} <= PATCHED
+        if ending.lower() not in WRITABLE and not kept:
             raise FormatError(
                 f"MeshLab cannot write .{ending} files: choose {', '.join(sorted(WRITABLE))}"
             )
@@ -104,7 +106,7 @@ def _output(file: Input, folder: str, pattern: str, ending: str | None) -> Outpu
     own = ending_of(file.name)
     stem = file.name.removesuffix(f".{own}") if own else file.name
     if ending is None:
-        ending = own if own.lower() in WRITABLE - POINTS_ONLY else FALLBACK
+        ending = own if own.lower() in (WRITABLE - POINTS_ONLY) | PATCHED else FALLBACK
     parent = posixpath.basename(posixpath.dirname(file.place))
     made = pattern.format(stem=stem, ending=own, folder=parent)
     _check_name(made, pattern)  # a field may be empty: no extension, or the root folder

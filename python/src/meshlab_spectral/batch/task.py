@@ -76,8 +76,8 @@ def _outcome(job: Job, report: dict[str, Any]) -> Outcome:
 
 
 def _warnings(report: dict[str, Any]) -> list[str]:
-    """Collect the warnings of a filter, or of all the plugin's filters in a script."""
-    parts = [one.get("report", {}) for one in report.get("filters", [])] or [report]
+    """Collect the warnings of a file and its filter, or of all the plugin's filters in a script."""
+    parts = [*(one.get("report", {}) for one in report.get("filters", [])), report]
     return [warning for part in parts for warning in part.get("warnings", [])]
 
 

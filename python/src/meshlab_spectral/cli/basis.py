@@ -48,6 +48,14 @@ def basis_command(
         Boundary,
         typer.Option(help="At the boundary of an open surface: free, or fixed to zero."),
     ] = "free",
+    mesh: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="Only the mesh of this name; by default all of the file together.",
+            show_default=False,
+        ),
+    ] = None,
     pictures: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Sheet of pictures to draw, a .png file.")
     ] = None,
@@ -68,7 +76,7 @@ def basis_command(
             check_picture(pictures)
             check_target(pictures)
         with progress_shown() as on_progress:
-            basis_file_in_child(source, output, basis_size, laplacian, boundary, on_progress)
+            basis_file_in_child(source, output, basis_size, laplacian, boundary, on_progress, mesh)
             if pictures is not None:
                 on_progress("drawing", None)
                 draw_basis_file(output, pictures, shown, scale)

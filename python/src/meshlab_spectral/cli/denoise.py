@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from meshlab_spectral.cli.filter import AsJson, Debug, Source, Target, filter_one_file
+from meshlab_spectral.cli.filter import AsJson, Debug, Mesh, Source, Target, filter_one_file
 from meshlab_spectral.cli.filter_options import with_options
 from meshlab_spectral.filters.denoise import DenoiseOptions
 
@@ -21,8 +21,9 @@ def denoise_command(
     options: DenoiseOptions,
     source: Source,
     target: Target,
+    mesh: Mesh = None,
     as_json: AsJson = False,
     debug: Debug = False,
 ) -> None:
     """Denoise one mesh: see `meshlab-spectral denoise --help`."""
-    filter_one_file(source, target, options, as_json, debug)
+    filter_one_file(source, target, options, mesh, as_json, debug)

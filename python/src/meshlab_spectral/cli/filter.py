@@ -20,7 +20,9 @@ from meshlab_spectral.plugin.versions import versions
 from meshlab_spectral.process.single_file import filter_file_in_child
 
 # "\b" keeps a paragraph's lines as they are.
-FILTER_HELP = """Filter one mesh by the size of its details.
+FILTER_HELP = """Filter one mesh file by the size of its details.
+
+Only coordinates and normals change, as long as INPUT and OUTPUT are of one format.
 
 \b
 Smooth a scan, removing what is smaller than 1 % of it:
@@ -41,6 +43,15 @@ Target = Annotated[
         help="Mesh to write, in the format of its extension; replaces an existing file.",
     ),
 ]
+Mesh = Annotated[
+    str | None,
+    typer.Option(
+        "--mesh",
+        metavar="NAME",
+        help="Only the mesh of this name; by default all meshes of the file, each by itself.",
+        show_default=False,
+    ),
+]
 AsJson = Annotated[bool, typer.Option("--json", help="Print the report as one JSON object.")]
 Debug = Annotated[bool, typer.Option("--debug", hidden=True)]
 
@@ -50,34 +61,42 @@ def filter_command(
     options: FilterOptions,
     source: Source,
     target: Target,
+    mesh: Mesh = None,
     as_json: AsJson = False,
     debug: Debug = False,
 ) -> None:
     """Filter one mesh: see `meshlab-spectral filter --help`."""
-    filter_one_file(source, target, options, as_json, debug)
+    filter_one_file(source, target, options, mesh, as_json, debug)
 
 
 def filter_one_file(
-    source: Path, target: Path, options: Options, as_json: bool, debug: bool
+    source: Path, target: Path, options: Options, mesh: str | None, as_json: bool, debug: bool
 ) -> None:
-    """Filter one mesh, in a child process, and print the report."""
+    """Filter one file, in a child process, and print the report."""
     if target.exists() and source.exists() and target.samefile(source):
         raise typer.BadParameter(
             f"{target} is INPUT itself and would be lost: choose another name", param_hint="OUTPUT"
         )
     begin = time.monotonic()
     with errors_reported(debug), progress_shown() as on_progress:
-        report = filter_file_in_child(source, target, options, on_progress)
+        report = filter_file_in_child(source, target, options, on_progress, mesh)
     warn_of_points_only(target.suffix)
     for warning in report["warnings"]:
         MESSAGES.print(f"Warning: {warning}.", markup=False, highlight=False, soft_wrap=True)
     if as_json:
         typer.echo(json.dumps(_record(source, target, options, report, time.monotonic() - begin)))
-    else:
-        if (summary := report.get("summary")) and summary not in report["warnings"]:
-            told = f"{source.name}: {summary}"
-            Console().print(told, markup=False, highlight=False, soft_wrap=True)
-        Console().print(report_table(report, f"{source.name} -> {target.name}"))
+        return
+    title = f"{source.name} -> {target.name}"
+    for one in report.get("meshes", [report]):
+        _tell(one, f"{title}, {one['mesh']}" if "meshes" in report else title, report["warnings"])
+
+
+def _tell(report: dict[str, Any], title: str, warnings: list[str]) -> None:
+    """Print the report of a mesh, but for a summary that has already been a warning."""
+    if (summary := report.get("summary")) and not any(told.endswith(summary) for told in warnings):
+        told = f"{title.partition(' -> ')[0]}: {summary}"
+        Console().print(told, markup=False, highlight=False, soft_wrap=True)
+    Console().print(report_table(report, title))
 
 
 def _record(

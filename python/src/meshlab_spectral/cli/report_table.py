@@ -38,6 +38,8 @@ def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
         ("Volume, if closed", _change(report["volume_before"], report["volume_after"])),
         ("Components", f"{report['components']}"),
     ]
+    if report.get("joined_vertices"):
+        rows.append(("Vertices joined at seams", f"{report['joined_vertices']}"))
     if report.get("unreferenced_vertices"):
         rows.append(("Vertices without faces", f"{report['unreferenced_vertices']}, unchanged"))
     if report.get("fixed_vertices"):

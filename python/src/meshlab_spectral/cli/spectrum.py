@@ -83,6 +83,14 @@ def spectrum_command(
     basis_size: Annotated[
         int, typer.Option(min=1, help="Number of lowest harmonics to show individually.")
     ] = DEFAULT_BASIS_SIZE,
+    mesh: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="Only the mesh of this name; by default all of the file together.",
+            show_default=False,
+        ),
+    ] = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print the spectrum as one JSON object.")
     ] = False,
@@ -101,7 +109,7 @@ def spectrum_command(
             scratch = stack.enter_context(writing_whole(output))
         with progress_shown() as on_progress:
             spectrum = measure_spectrum_in_child(
-                source, basis_size, options.laplacian, options.boundary, on_progress
+                source, basis_size, options.laplacian, options.boundary, on_progress, mesh
             )
         if scratch is not None:
             draw_spectrum(spectrum, options, source.name, scratch)

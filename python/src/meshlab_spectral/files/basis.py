@@ -27,8 +27,11 @@ def basis_to_scratch(
     laplacian: LaplacianKind,
     boundary: Boundary,
     on_stage: Callable[[str], None],
+    mesh: str | None = None,
 ) -> dict[str, Any]:
     """Write the harmonics of a mesh file to a NumPy archive, `scratch` from `writing_whole`.
+
+    Those of all its meshes together, or of the one with the name `mesh`.
 
     Its arrays are eigenvalues (k), frequencies (k), harmonics (n x k) and masses (n) as in
     `Harmonics`, and the mesh as read, whose vertices their rows follow: vertices (n x 3), faces
@@ -45,7 +48,7 @@ def basis_to_scratch(
         As `harmonics.manifold_harmonics`; MeshFileError when `source` cannot be read.
     """
     on_stage("reading")
-    V, F = load_arrays(source)
+    V, F = load_arrays(source, mesh)
     on_stage("computing")
     # Verbose: MeshLab's log is the only source of progress.
     basis = compute(V, F, basis_size, laplacian, boundary, verbose=True)

@@ -1,10 +1,12 @@
-"""Extensions of the mesh files that pymeshlab reads and writes; it offers no such list."""
+"""Extensions of mesh files; pymeshlab offers no list of its own."""
 
 from __future__ import annotations
 
+from meshlab_spectral.documents.opening import PATCHED
+
 _BOTH = {"3ds", "3mf", "ctm", "dae", "e57", "obj", "off", "ply", "stl", "wrl", "x3d", "xyz"}
 _READ_ONLY = {"apts", "asc", "bre", "fbx", "glb", "gltf", "pdb", "pts", "ptx", "qobj", "tri"}
-READABLE = frozenset(_BOTH | _READ_ONLY | {"txt", "vmi", "x3dv"})
+READABLE = frozenset(_BOTH | _READ_ONLY | {"txt", "vmi", "x3dv"} | PATCHED)
 WRITABLE = frozenset(_BOTH | {"dxf", "idtf", "json", "nxs", "nxz"})
 # MeshLab drops the faces in these without an error.
 POINTS_ONLY = frozenset({"e57", "xyz"})

@@ -1,22 +1,30 @@
-"""Mesh files: read one, filter it, write one."""
+"""Mesh files: read one, filter its meshes, write it.
+
+A file that stays in its format is patched: its coordinates change, and nothing else (`documents`).
+Another format, a script, and a format that only MeshLab knows go through MeshLab.
+"""
 
 from __future__ import annotations
 
-import functools
-import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshlab_spectral.errors import FormatError, MeshFileError
-from meshlab_spectral.files.claims import check_claims
-from meshlab_spectral.files.dropped import check_nothing_dropped
+from meshlab_spectral.documents.digits import precision_warning
+from meshlab_spectral.documents.document import Array, Document, Indices, Part
+from meshlab_spectral.documents.opening import is_patched, open_document
+from meshlab_spectral.errors import FilterError, FormatError, MeshFileError, OptionError
+from meshlab_spectral.files.meshlab_files import (
+    check_writable,
+    left_behind,
+    read_with_meshlab,
+    write_with_meshlab,
+)
 from meshlab_spectral.files.script import apply_script
-from meshlab_spectral.files.whole_files import USUAL_FORMATS, resolved, writing_whole
-from meshlab_spectral.filters.calling import call_filter, plain_report, reason_of
+from meshlab_spectral.files.whole_files import writing_whole
+from meshlab_spectral.filters.calling import call_filter, plain_report
 from meshlab_spectral.filters.fractional import DETAILS
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import FilterOptions
@@ -24,8 +32,12 @@ from meshlab_spectral.plugin.loading import load
 
 StageCallback = Callable[[str], None]
 
-# Formats in which MeshLab joins triangles again that it read as one polygon.
-_POLYGON_FORMATS = (".obj", ".off")
+# What MeshLab reads without losing placement, units or all meshes but one.
+_READ_BY_MESHLAB = (".ply", ".obj", ".off", ".stl")
+# Of a mesh from arrays MeshLab would invent both.
+_BARE = {".ply": {"save_vertex_color": False, "save_vertex_quality": False}}
+# Formats of MeshLab that hold coordinates in single precision, or in fewer digits.
+_COARSE = (".stl", ".3ds", ".3mf", ".ctm", ".dae", ".wrl", ".x3d")
 
 
 def filter_file(
@@ -33,37 +45,47 @@ def filter_file(
     target: Path,
     options: Options,
     on_stage: StageCallback = lambda stage: None,
+    mesh: str | None = None,
 ) -> dict[str, Any]:
     """Filter a mesh file into another.
 
     Parameters
     ----------
     source
-        A file that pymeshlab can read, with one mesh in it.
+        A mesh file. All of its meshes are filtered, each by itself, at the size at which it is
+        placed.
     target
-        The file to write, atomically. An existing one is replaced.
+        The file to write, atomically. An existing one is replaced. In the format of `source` only
+        coordinates and normals change; another format is written by MeshLab, and a warning lists
+        what it comes without.
     options
         Options of the filter.
     on_stage
         Called with "reading", "filtering" and "writing" as these begin.
+    mesh
+        Filter only the mesh of this name.
 
     Returns
     -------
     dict
-        The filter's report, as from `filter_mesh`.
+        The filter's report, as from `filter_mesh`, with the name of a mesh that has one as "mesh".
+        Of several meshes the list of their reports as "meshes"; "warnings" and "max_displacement"
+        of all.
 
     Raises
     ------
     MeshFileError
         When `source` cannot be read or `target` cannot be written.
     FormatError
-        When pymeshlab cannot write the extension of `target`.
+        When the extension of `target` cannot be written.
     FilterError
-        When the filter rejects the mesh or the options.
+        When the filter rejects a mesh or the options.
+    OptionError
+        When no mesh has the name.
     """
     check_source(source)
     with writing_whole(target) as scratch:
-        return filter_to_scratch(source, scratch, options, on_stage)
+        return filter_to_scratch(source, scratch, options, on_stage, mesh=mesh)
 
 
 def filter_to_scratch(
@@ -72,6 +94,7 @@ def filter_to_scratch(
     options: Options,
     on_stage: StageCallback,
     verbose: bool = True,
+    mesh: str | None = None,
 ) -> dict[str, Any]:
     """Filter `source` into `scratch`, a file from `writing_whole`.
 
@@ -83,11 +106,18 @@ def filter_to_scratch(
         parameters = options.pymeshlab_parameters(mesh_set.current_mesh())
         return plain_report(call_filter(mesh_set, options.FILTER, parameters))
 
-    if not isinstance(options, FilterOptions) or options.result != "details":
-        return _process(source, scratch, apply, on_stage, verbose)
-    if scratch.suffix.lower() != ".ply":
-        raise FormatError(f"{scratch.name} cannot hold details: choose .ply")
-    return _process(source, scratch, apply, on_stage, verbose, {f"__ca_vp__{DETAILS}": True})
+    if isinstance(options, FilterOptions) and options.result == "details":
+        if scratch.suffix.lower() != ".ply":
+            raise FormatError(f"{scratch.name} cannot hold details: choose .ply")
+        settings = {f"__ca_vp__{DETAILS}": True}
+        return _through_meshlab(source, scratch, apply, on_stage, verbose, settings)
+    if is_patched(source) and (
+        source.suffix.lower() not in _READ_BY_MESHLAB or _is_same_format(source, scratch)
+    ):
+        return _filter_document(source, scratch, apply, options, on_stage, verbose, mesh)
+    if mesh is not None:
+        raise OptionError(f"{source} is read as one mesh: leave out the name {mesh!r}")
+    return _through_meshlab(source, scratch, apply, on_stage, verbose)
 
 
 def script_to_scratch(
@@ -98,50 +128,37 @@ def script_to_scratch(
     The result is the current mesh at the end of the script. Errors as in `filter_file` and
     `script.apply_script`, which also describes the report.
     """
-    return _process(
+    return _through_meshlab(
         source, scratch, lambda mesh_set: apply_script(mesh_set, script), on_stage, verbose
     )
 
 
-def _process(
-    source: Path,
-    scratch: Path,
-    apply: Callable[[Any], dict[str, Any]],
-    on_stage: StageCallback,
-    verbose: bool,
-    settings: dict[str, bool] | None = None,
-) -> dict[str, Any]:
-    import pymeshlab
+def load_arrays(source: Path, mesh: str | None = None) -> tuple[Array, Indices]:
+    """Read a mesh file: n x 3 coordinates, placed, and m x 3 vertex indices of triangles.
 
-    load()
-    on_stage("reading")
-    check_source(source)
-    _check_name(scratch, scratch.parent.parent / scratch.name)
-    _check_writable_format(scratch)
-    mesh_set = pymeshlab.MeshSet(verbose=verbose)
-    _read(mesh_set, source)
-    on_stage("filtering")
-    report = apply(mesh_set)
-    on_stage("writing")
-    _write(mesh_set, scratch, source, settings or {})
-    return report
-
-
-def load_arrays(source: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Read a mesh file: n x 3 coordinates, m x 3 vertex indices of triangles.
+    Parameters
+    ----------
+    source
+        The file. Several meshes become one, of as many components.
+    mesh
+        Read only the mesh of this name.
 
     Raises
     ------
     MeshFileError
         When `source` cannot be read.
+    OptionError
+        When no mesh has the name.
     """
     import pymeshlab
 
     check_source(source)
+    if is_patched(source):
+        return _joined(_chosen(open_document(source), mesh))
     mesh_set = pymeshlab.MeshSet()
-    _read(mesh_set, source)
-    mesh = mesh_set.current_mesh()
-    return mesh.vertex_matrix().copy(), mesh.face_matrix().astype(np.int64)
+    read_with_meshlab(mesh_set, source)
+    current = mesh_set.current_mesh()
+    return current.vertex_matrix().copy(), current.face_matrix().astype(np.int64)
 
 
 def check_source(source: Path) -> None:
@@ -171,91 +188,164 @@ def _check_name(path: Path, shown: Path) -> None:
         ) from error
 
 
-def _check_writable_format(path: Path) -> None:
-    """Fail before the long computation, not after it."""
-    if not _is_writable(path.suffix):
-        ending = f"ends in {path.suffix}" if path.suffix else "has no extension"
-        raise FormatError(
-            f"{path.name} {ending}, which MeshLab cannot write: choose {USUAL_FORMATS}"
+def _is_same_format(source: Path, target: Path) -> bool:
+    return source.suffix.lower() == target.suffix.lower()
+
+
+def _filter_document(
+    source: Path,
+    scratch: Path,
+    apply: Callable[[Any], dict[str, Any]],
+    options: Options,
+    on_stage: StageCallback,
+    verbose: bool,
+    name: str | None,
+) -> dict[str, Any]:
+    """Filter the meshes of a document, each by itself."""
+    is_same_format = _is_same_format(source, scratch)
+    if not is_same_format:
+        check_writable(scratch)
+    load()
+    on_stage("reading")
+    check_source(source)
+    document = open_document(source)
+    chosen = _chosen(document, name)
+    on_stage("filtering")
+    moved = {part: part.vertices for part in document.parts}
+    reports = []
+    for part in chosen:
+        _check_weight(part, options)
+        moved[part], report = _filtered(part, apply, verbose, is_alone=len(chosen) == 1)
+        reports.append(report)
+    on_stage("writing")
+    shapes = list(moved.values())
+    if is_same_format:
+        warnings = document.save(scratch, shapes)
+    else:
+        bare = _BARE.get(scratch.suffix.lower())
+        write_with_meshlab(_merged(document, verbose, shapes), scratch, source, bare)
+        warnings = left_behind(document, scratch)
+        warnings += _rounded(_joined(document.parts)[0], np.vstack(shapes), scratch)
+    return _report([part.name for part in chosen], reports, document.warnings + warnings)
+
+
+def _chosen(document: Document, name: str | None) -> list[Part]:
+    if name is None:
+        return document.parts
+    parts = [part for part in document.parts if part.name == name]
+    if not parts:
+        names = ", ".join(part.name or "one without a name" for part in document.parts)
+        raise OptionError(f"{document.path} has no mesh {name!r}: choose from {names}")
+    return parts
+
+
+def _check_weight(part: Part, options: Options) -> None:
+    if isinstance(options, FilterOptions) and options.weight != "none" and part.quality is None:
+        raise FilterError(
+            "weight = vertex quality: the mesh has no vertex quality; compute one, or choose "
+            "weight = none"
         )
 
 
-@functools.cache
-def _is_writable(ending: str) -> bool:
-    """Try to write a triangle: pymeshlab has no list of the formats it can write."""
-    import pymeshlab
-
-    mesh_set = pymeshlab.MeshSet()
-    corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
-    mesh_set.add_mesh(pymeshlab.Mesh(corners, [[0, 1, 2]]))
-    with tempfile.TemporaryDirectory() as folder:
-        try:
-            mesh_set.save_current_mesh(str(Path(folder) / f"probe{ending}"))
-        except pymeshlab.PyMeshLabException:
-            return False
-    return True
-
-
-def _read(mesh_set: Any, source: Path) -> None:
-    import pymeshlab
-
-    check_claims(source)
+def _filtered(
+    part: Part, apply: Callable[[Any], dict[str, Any]], verbose: bool, is_alone: bool
+) -> tuple[Array, dict[str, Any]]:
+    """Filter a mesh: its vertices, and the report."""
+    mesh_set = _mesh_set(part.vertices, part.faces, part.quality, verbose)
     try:
-        mesh_set.load_new_mesh(str(source))
-    except pymeshlab.PyMeshLabException as error:
-        reason = reason_of(error)
-        if reason.startswith("Unknown format"):
-            raise MeshFileError(
-                f"{source} ends in {source.suffix or 'nothing'}, which MeshLab cannot read as a "
-                f"mesh: convert it to {USUAL_FORMATS}"
-            ) from error
-        raise MeshFileError(
-            f"{source} cannot be read as a mesh ({reason}): the file is damaged or does not "
-            "match its extension; export it again from the program that made it"
-        ) from error
-    if mesh_set.mesh_number() > 1:
-        raise MeshFileError(
-            f"{source} holds {mesh_set.mesh_number()} meshes: merge them in MeshLab with 'Flatten "
-            "Visible Layers', or save them separately"
-        )
-    mesh = mesh_set.current_mesh()
-    check_nothing_dropped(source, mesh.vertex_number(), mesh.face_number())
+        report = apply(mesh_set)
+    except FilterError as error:
+        if is_alone:
+            raise
+        raise FilterError(f"mesh {part.name}: {error}") from error
+    return mesh_set.current_mesh().vertex_matrix(), report
 
 
-def _write(mesh_set: Any, scratch: Path, source: Path, settings: dict[str, bool]) -> None:
+def _mesh_set(V: Array, F: Indices, quality: Array | None, verbose: bool) -> Any:
     import pymeshlab
 
-    settings = {
-        **settings,
-        "save_textures": _textures_to_be_saved(mesh_set, scratch, source),
+    mesh_set = pymeshlab.MeshSet(verbose=verbose)
+    signal = {} if quality is None else {"v_scalar_array": quality}
+    mesh_set.add_mesh(pymeshlab.Mesh(V, F, **signal))
+    return mesh_set
+
+
+def _joined(parts: Sequence[Part], moved: Sequence[Array] | None = None) -> tuple[Array, Indices]:
+    """Several meshes as one."""
+    vertices = [part.vertices for part in parts] if moved is None else moved
+    begins = np.cumsum([0, *(len(V) for V in vertices)])
+    faces = [part.faces + begin for part, begin in zip(parts, begins, strict=False)]
+    return np.vstack(vertices), np.vstack(faces)
+
+
+def _merged(document: Document, verbose: bool, moved: Sequence[Array] | None = None) -> Any:
+    """Return a MeshSet with all meshes of a document as one."""
+    quality = document.parts[0].quality if len(document.parts) == 1 else None
+    return _mesh_set(*_joined(document.parts, moved), quality, verbose)
+
+
+def _rounded(before: Array, after: Array, scratch: Path) -> list[str]:
+    """Return the warning, if any, of a format of MeshLab that cannot hold the movement."""
+    if scratch.suffix.lower() not in _COARSE or before.shape != after.shape:
+        return []
+    told = precision_warning(before, after, scratch.name)
+    return [told] if told else []
+
+
+def _report(names: list[str], reports: list[dict[str, Any]], warnings: list[str]) -> dict[str, Any]:
+    """Make one report of those of all meshes."""
+    if len(reports) == 1:
+        named = {"mesh": names[0]} if names[0] else {}
+        return {**named, **reports[0], "warnings": reports[0]["warnings"] + warnings}
+    each = [
+        f"{name}: {warning}"
+        for name, report in zip(names, reports, strict=True)
+        for warning in report["warnings"]
+    ]
+    return {
+        "meshes": [{"mesh": name, **one} for name, one in zip(names, reports, strict=True)],
+        "max_displacement": max(report["max_displacement"] for report in reports),
+        "warnings": each + warnings,
     }
-    if scratch.suffix.lower() in _POLYGON_FORMATS and _has_non_manifold_edges(mesh_set):
-        # MeshLab would trace its polygons without end and use up all memory.
-        settings["save_polygonal"] = False
-    try:
-        mesh_set.save_current_mesh(str(scratch), **settings)
-    except pymeshlab.PyMeshLabException as error:
-        reason = reason_of(error).rsplit(": ", 1)[-1]  # without the scratch file's name
-        raise MeshFileError(
-            f"{scratch.name} cannot be written ({reason}): is the disk full?"
-        ) from error
 
 
-def _has_non_manifold_edges(mesh_set: Any) -> bool:
-    """Whether any edge has more than two faces."""
-    F = mesh_set.current_mesh().face_matrix()
-    edges = np.sort(np.vstack([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]]), axis=1)
-    _, faces = np.unique(edges, axis=0, return_counts=True)
-    return bool((faces > 2).any())
+def _through_meshlab(
+    source: Path,
+    scratch: Path,
+    apply: Callable[[Any], dict[str, Any]],
+    on_stage: StageCallback,
+    verbose: bool,
+    settings: dict[str, bool] | None = None,
+) -> dict[str, Any]:
+    """Let MeshLab read, if it reads the whole of the format, and write."""
+    load()
+    on_stage("reading")
+    check_source(source)
+    _check_name(scratch, scratch.parent.parent / scratch.name)
+    check_writable(scratch)
+    document = open_document(source) if is_patched(source) else None
+    mesh_set, is_whole = _loaded(source, document, verbose)
+    on_stage("filtering")
+    before = mesh_set.current_mesh().vertex_matrix()
+    report = apply(mesh_set)
+    on_stage("writing")
+    write_with_meshlab(mesh_set, scratch, source, settings)
+    warnings = left_behind(document, scratch, mesh_set if is_whole else None) if document else []
+    warnings += _rounded(before, mesh_set.current_mesh().vertex_matrix(), scratch)
+    return {**report, "warnings": report.get("warnings", []) + warnings}
 
 
-def _textures_to_be_saved(mesh_set: Any, scratch: Path, source: Path) -> bool:
-    """Whether to save copies of the texture images next to the output.
+def _loaded(source: Path, document: Document | None, verbose: bool) -> tuple[Any, bool]:
+    """Return a MeshSet, and whether MeshLab has read the file or only got arrays of it."""
+    import pymeshlab
 
-    Not next to the input, where they already are. And not if the mesh refers to an image outside
-    its own folder, which would be written outside the scratch folder, over whatever is there.
-    """
-    names = [Path(name) for name in mesh_set.current_mesh().textures()]
-    beside_input = scratch.parent.parent.samefile(resolved(source).parent)
-    within = all(not name.is_absolute() and ".." not in name.parts for name in names)
-    return within and not beside_input
+    if document is None or source.suffix.lower() in _READ_BY_MESHLAB:
+        mesh_set = pymeshlab.MeshSet(verbose=verbose)
+        try:
+            read_with_meshlab(mesh_set, source)
+        except MeshFileError:
+            if document is None:
+                raise
+        else:
+            return mesh_set, True
+    return _merged(document, verbose), False

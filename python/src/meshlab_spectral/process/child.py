@@ -43,16 +43,18 @@ def _report_of(job: dict[str, Any], on_stage: StageCallback) -> dict[str, Any]:
     verbose = job.get("verbose", True)  # the log has the progress within a mesh
     if task == "spectrum":
         on_stage("reading")
-        V, F = load_arrays(source)
+        V, F = load_arrays(source, job.get("mesh"))
         on_stage("measuring")
         return plain_report(measure(V, F, job["parameters"], verbose=verbose))
     scratch = Path(job["scratch"])
     if task == "basis":
-        return basis_to_scratch(source, scratch, **job["options"], on_stage=on_stage)
+        return basis_to_scratch(
+            source, scratch, **job["options"], on_stage=on_stage, mesh=job.get("mesh")
+        )
     if task == "script":
         return script_to_scratch(source, scratch, job["script"], on_stage, verbose)
     options = TABLES[task].from_dict(job["options"])
-    return filter_to_scratch(source, scratch, options, on_stage, verbose)
+    return filter_to_scratch(source, scratch, options, on_stage, verbose, job.get("mesh"))
 
 
 def _read(jobs: queue.SimpleQueue[str]) -> None:

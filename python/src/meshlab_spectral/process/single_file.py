@@ -22,6 +22,7 @@ def filter_file_in_child(
     target: Path,
     options: Options,
     on_progress: ProgressCallback = lambda stage, fraction: None,
+    mesh: str | None = None,
 ) -> dict[str, Any]:
     """Filter a mesh file into another, in a child process that can be interrupted.
 
@@ -31,6 +32,8 @@ def filter_file_in_child(
         As for `meshes.filter_file`.
     on_progress
         Called with the current stage and the fraction done, 0 to 1, or None if unknown.
+    mesh
+        Only the mesh of this name; by default all of the file.
 
     Returns
     -------
@@ -44,7 +47,7 @@ def filter_file_in_child(
     KeyboardInterrupt
         After the child has been ended and the scratch files removed.
     """
-    job = {"task": options.TABLE, "options": options.as_dict()}
+    job = {"task": options.TABLE, "options": options.as_dict(), "mesh": mesh}
     return _write_in_child(source, target, job, on_progress)
 
 
@@ -55,19 +58,20 @@ def basis_file_in_child(
     laplacian: LaplacianKind,
     boundary: Boundary,
     on_progress: ProgressCallback = lambda stage, fraction: None,
+    mesh: str | None = None,
 ) -> dict[str, Any]:
     """Write the manifold harmonics of a mesh file to a NumPy archive.
 
     Parameters
     ----------
     source
-        A file that pymeshlab can read, with one mesh in it.
+        A mesh file.
     target
         The .npz file to write, atomically, with the arrays of `basis.basis_to_scratch`. An existing
         one is replaced.
     basis_size, laplacian, boundary
         As for `harmonics.manifold_harmonics`.
-    on_progress
+    on_progress, mesh
         As for `filter_file_in_child`.
 
     Returns
@@ -85,7 +89,8 @@ def basis_file_in_child(
     """
     check_basis_target(target)
     options = {"basis_size": basis_size, "laplacian": laplacian, "boundary": boundary}
-    return _write_in_child(source, target, {"task": "basis", "options": options}, on_progress)
+    job = {"task": "basis", "options": options, "mesh": mesh}
+    return _write_in_child(source, target, job, on_progress)
 
 
 def _write_in_child(
@@ -104,16 +109,17 @@ def measure_spectrum_in_child(
     laplacian: LaplacianKind,
     boundary: Boundary,
     on_progress: ProgressCallback = lambda stage, fraction: None,
+    mesh: str | None = None,
 ) -> GeometrySpectrum:
     """Measure the geometry spectrum of a mesh file, in a child process that can be interrupted.
 
     Parameters
     ----------
     source
-        A file that pymeshlab can read, with one mesh in it.
+        A mesh file.
     basis_size, laplacian, boundary
         As for `spectrum.geometry_spectrum`.
-    on_progress
+    on_progress, mesh
         As for `filter_file_in_child`.
 
     Raises
@@ -127,6 +133,7 @@ def measure_spectrum_in_child(
     job = {
         "task": "spectrum",
         "source": str(source.absolute()),
+        "mesh": mesh,
         "parameters": spectrum_parameters(basis_size, laplacian, boundary),
     }
     return GeometrySpectrum.from_report(_run_in_child(job, on_progress))

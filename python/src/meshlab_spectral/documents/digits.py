@@ -1,0 +1,57 @@
+"""Digits of coordinates: as few as hold a movement."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from meshlab_spectral.documents.document import Array
+
+# Rounding may take this part of the displacement.
+_TOLERATED = 0.01
+SINGLE, DOUBLE = 9, 17  # significant digits that hold a number of that precision
+
+
+def rounding_told(before: Array, after: Array) -> str | None:
+    """Return how single precision rounds a movement, or None where it holds it.
+
+    It does if rounding takes, in the root mean square over what moves, at most a hundredth of the
+    displacement.
+
+    Parameters
+    ----------
+    before, after
+        n x 3, in the coordinates to be written.
+    """
+    moves = (before != after).any(axis=1)
+    if not moves.any():
+        return None
+    with np.errstate(over="ignore"):
+        rounding = _size(after[moves].astype(np.float32) - after[moves])
+    displacement = _size(after[moves] - before[moves])
+    if rounding <= _TOLERATED * displacement:
+        return None
+    largest = float(np.abs(after).max())
+    return (
+        f"single precision rounds coordinates near {largest:.6g} by {rounding:.2g}, where the "
+        f"filter moves by {displacement:.2g} (root mean square)"
+    )
+
+
+def _size(difference: Array) -> float:
+    return float(np.sqrt(np.mean(difference**2)))
+
+
+def single_holds(before: Array, after: Array) -> bool:
+    """Whether single precision holds a movement."""
+    return rounding_told(before, after) is None
+
+
+def precision_warning(before: Array, after: Array, name: str) -> str | None:
+    """Return the warning when a file `name` of single precision cannot hold a movement."""
+    told = rounding_told(before, after)
+    return told and f"{name}: {told}: choose .ply or .obj, or move the mesh to the origin first"
+
+
+def digits_for(before: Array, after: Array) -> int:
+    """Return how many significant digits a text needs to hold a movement."""
+    return SINGLE if single_holds(before, after) else DOUBLE

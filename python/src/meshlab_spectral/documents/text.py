@@ -1,0 +1,73 @@
+"""Lines of text files: words as numbers, and numbers replaced where they are."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from meshlab_spectral.documents.document import Array, unreadable
+
+Words = Sequence[bytes]
+
+
+def numbers(path: Path, rows: Sequence[Words], first: int = 0, count: int = 3) -> Array:
+    """Return the words `first` to `first + count - 1` of each row as numbers, n x count.
+
+    Raises
+    ------
+    MeshFileError
+        When a word is missing or is no number; names the row.
+    """
+    chosen = [row[first : first + count] for row in rows]
+    try:
+        return np.array(chosen, dtype=bytes).reshape(-1, count).astype(np.float64)
+    except ValueError:
+        for number, words in enumerate(chosen):
+            if len(words) < count or not all(map(_is_number, words)):
+                told = b" ".join(rows[number]).decode(errors="replace")[:80]
+                raise unreadable(
+                    path, f"row {number} is {told!r}, which has not the {count} numbers it needs"
+                ) from None
+        raise
+
+
+def _is_number(word: bytes) -> bool:
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
+
+
+def with_numbers(
+    line: bytes, first: int, before: Sequence[float], after: Sequence[float], digits: int
+) -> bytes:
+    """Return a line in which three numbers are replaced where they differ.
+
+    Parameters
+    ----------
+    line
+        The line; words and what is between them stay.
+    first
+        The position, from 0, of the word with the first of the numbers.
+    before, after
+        The three numbers that the line holds, and those that it shall hold.
+    digits
+        How many significant digits they get.
+    """
+    found = _three_words(first).match(line)
+    assert found is not None
+    pieces = list(found.groups())
+    for k in range(3):
+        if before[k] != after[k]:
+            pieces[2 * k + 1] = b"%.*g" % (digits, after[k])
+    return b"".join(pieces) + line[found.end() :]
+
+
+@cache
+def _three_words(first: int) -> re.Pattern[bytes]:
+    return re.compile(rb"(\s*(?:\S+\s+){%d})(\S+)(\s+)(\S+)(\s+)(\S+)" % first)

@@ -1,0 +1,159 @@
+"""Mesh files as MeshLab reads and writes them."""
+
+from __future__ import annotations
+
+import functools
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from meshlab_spectral.documents.document import Document
+from meshlab_spectral.documents.opening import PATCHED
+from meshlab_spectral.errors import FormatError, MeshFileError
+from meshlab_spectral.files.whole_files import USUAL_FORMATS, resolved
+from meshlab_spectral.filters.calling import reason_of
+
+# Formats in which MeshLab joins triangles again that it read as one polygon.
+_POLYGON_FORMATS = (".obj", ".off")
+# What MeshLab writes of the `contents` of a document that it has read, beside the triangles.
+_WRITTEN = {
+    ".ply": {"normals", "colours", "texture coordinates", "quality", "texture names"},
+    ".obj": {"normals", "colours", "texture coordinates", "materials", "texture names"},
+    ".off": {"normals", "colours", "texture coordinates"},
+}
+# Stands for textures whose names it cannot read, such as those with blanks.
+_DUMMY = "dummy.png"
+
+
+def check_writable(path: Path) -> None:
+    """Fail before the long computation, not after it."""
+    ending = path.suffix
+    if _is_writable(ending):
+        return
+    if ending[1:].lower() in PATCHED:
+        raise FormatError(
+            f"{path.name} can be written only when the input ends in {ending}, too: choose "
+            f"{USUAL_FORMATS}"
+        )
+    told = f"ends in {ending}" if ending else "has no extension"
+    raise FormatError(f"{path.name} {told}, which MeshLab cannot write: choose {USUAL_FORMATS}")
+
+
+@functools.cache
+def _is_writable(ending: str) -> bool:
+    """Try to write a triangle: pymeshlab has no list of the formats it can write."""
+    import pymeshlab
+
+    mesh_set = pymeshlab.MeshSet()
+    corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
+    mesh_set.add_mesh(pymeshlab.Mesh(corners, [[0, 1, 2]]))
+    with tempfile.TemporaryDirectory() as folder:
+        try:
+            mesh_set.save_current_mesh(str(Path(folder) / f"probe{ending}"))
+        except pymeshlab.PyMeshLabException:
+            return False
+    return True
+
+
+def read_with_meshlab(mesh_set: Any, source: Path) -> None:
+    """Load the one mesh of a file into a MeshSet; raises MeshFileError."""
+    import pymeshlab
+
+    try:
+        mesh_set.load_new_mesh(str(source))
+    except pymeshlab.PyMeshLabException as error:
+        reason = reason_of(error)
+        if reason.startswith("Unknown format"):
+            raise MeshFileError(
+                f"{source} ends in {source.suffix or 'nothing'}, which MeshLab cannot read as a "
+                f"mesh: convert it to {USUAL_FORMATS}"
+            ) from error
+        raise MeshFileError(
+            f"{source} cannot be read by MeshLab ({reason}): convert it to {USUAL_FORMATS} with "
+            "the program that made it"
+        ) from error
+    if mesh_set.mesh_number() > 1:
+        raise MeshFileError(
+            f"{source} holds {mesh_set.mesh_number()} meshes: merge them in MeshLab with 'Flatten "
+            "Visible Layers', or save them separately"
+        )
+
+
+def write_with_meshlab(
+    mesh_set: Any, scratch: Path, source: Path, settings: dict[str, bool] | None = None
+) -> None:
+    """Save the current mesh to a file from `writing_whole`; raises MeshFileError.
+
+    Parameters
+    ----------
+    mesh_set
+        A `pymeshlab.MeshSet`.
+    scratch
+        The file to write.
+    source
+        The file that the mesh comes from.
+    settings
+        Of `MeshSet.save_current_mesh`.
+    """
+    import pymeshlab
+
+    settings = {
+        **(settings or {}),
+        "save_textures": _textures_to_be_saved(mesh_set, scratch, source),
+    }
+    if scratch.suffix.lower() in _POLYGON_FORMATS and _has_non_manifold_edges(mesh_set):
+        # MeshLab would trace its polygons without end and use up all memory.
+        settings["save_polygonal"] = False
+    try:
+        mesh_set.save_current_mesh(str(scratch), **settings)
+    except pymeshlab.PyMeshLabException as error:
+        reason = reason_of(error).rsplit(": ", 1)[-1]  # without the scratch file's name
+        raise MeshFileError(
+            f"MeshLab cannot write {scratch.name} ({reason}): is the disk full, or does the mesh "
+            f"name textures that are missing? Choose another format, {USUAL_FORMATS}"
+        ) from error
+
+
+def left_behind(document: Document, target: Path, mesh_set: Any = None) -> list[str]:
+    """Return the warning, if any, of what a file in another format comes without.
+
+    Parameters
+    ----------
+    document
+        The file that was read.
+    target
+        The file in another format. What places a mesh is in its coordinates.
+    mesh_set
+        What MeshLab has read of the file; None where only coordinates and triangles went to it.
+    """
+    written = {"placement"}
+    if mesh_set is not None:
+        written |= _WRITTEN.get(target.suffix.lower(), set())
+        if (document.path.suffix.lower(), target.suffix.lower()) == (".obj", ".ply"):
+            written.remove("normals")  # which belong to corners there
+    lost = [content for content in document.contents if content not in written]
+    if mesh_set is not None and _DUMMY in mesh_set.current_mesh().textures():
+        lost.append("textures with blanks in their names")
+    return [f"{target.name} comes without {', '.join(lost)}"] if lost else []
+
+
+def _has_non_manifold_edges(mesh_set: Any) -> bool:
+    """Whether any edge has more than two faces."""
+    F = mesh_set.current_mesh().face_matrix()
+    edges = np.sort(np.vstack([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]]), axis=1)
+    _, faces = np.unique(edges, axis=0, return_counts=True)
+    return bool((faces > 2).any())
+
+
+def _textures_to_be_saved(mesh_set: Any, scratch: Path, source: Path) -> bool:
+    """Whether to save copies of the texture images next to the output.
+
+    Not next to the input, where they already are. And not if the mesh refers to an image outside
+    its own folder, which would be written outside the scratch folder, over whatever is there.
+    """
+    names = [Path(name) for name in mesh_set.current_mesh().textures()]
+    beside_input = scratch.parent.parent.samefile(resolved(source).parent)
+    within = all(not name.is_absolute() and ".." not in name.parts for name in names)
+    return within and not beside_input

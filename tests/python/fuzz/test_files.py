@@ -1,0 +1,78 @@
+"""Damaged files of every format: they are read, or refused with a message; nothing else happens."""
+
+from __future__ import annotations
+
+import contextlib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from commands import assert_fails, command
+from format_samples import SAMPLES, Sample
+from fuzz.runs import as_many_as
+from hypothesis import given
+from hypothesis import strategies as st
+from meshlab_spectral.documents.opening import open_document
+from meshlab_spectral.errors import MeshFileError
+
+# VTK's own readers may end the process: the commands say so (below).
+PATCHED_HERE = [sample for sample in SAMPLES if not sample.name.endswith((".vtk", ".vtp"))]
+WORDS = (b"nan", b"1e400", b"-1", b"99999999999", b"0", b"\0", b"\xff\xfe", b"]}", b"<x>", b"\n")
+
+
+def damaged(data: bytes, damages: list[tuple[str, float, float, bytes]]) -> bytes:
+    for kind, begin, length, word in damages:
+        first = int(begin * len(data))
+        last = first + int(length**4 * len(data))
+        middle = {"cut": b"", "twice": 2 * data[first:last], "replaced": word}[kind]
+        data = data[:first] + middle + data[last:]
+    return data
+
+
+_shares = st.floats(0, 1)
+_damages = st.lists(
+    st.tuples(
+        st.sampled_from(("cut", "twice", "replaced")),
+        _shares,
+        _shares,
+        st.one_of(st.sampled_from(WORDS), st.binary(max_size=4)),
+    ),
+    min_size=1,
+    max_size=3,
+)
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> dict[int, Path]:
+    """The undamaged files by their numbers in PATCHED_HERE."""
+    paths = {}
+    for number, sample in enumerate(PATCHED_HERE):
+        paths[number] = tmp_path_factory.mktemp("whole") / sample.name
+        sample.write(paths[number])
+    return paths
+
+
+@as_many_as(400)
+@given(st.integers(0, len(PATCHED_HERE) - 1), _damages)
+def test_a_damaged_file_is_read_or_refused(
+    whole: dict[int, Path], number: int, damages: list[tuple[str, float, float, bytes]]
+) -> None:
+    source = whole[number]
+    path = source.with_name(f"damaged{source.suffix}")
+    path.write_bytes(damaged(source.read_bytes(), damages))
+    with contextlib.suppress(MeshFileError):
+        document = open_document(path)
+        assert all(np.isfinite(part.vertices).all() for part in document.parts)
+        moved = [part.vertices + 1e-3 for part in document.parts]
+        document.save(path.with_name(f"moved{path.suffix}"), moved)
+
+
+@pytest.mark.parametrize("sample", SAMPLES, ids=lambda sample: sample.name)
+def test_a_file_that_is_cut_off_is_an_error_of_the_command(
+    sample: Sample, existing: Path, tmp_path: Path
+) -> None:
+    source = tmp_path / sample.name
+    sample.write(source)
+    data = source.read_bytes()
+    source.write_bytes(data[: len(data) // 2])
+    assert_fails(command("filter", source, existing), 1, sample.name)
