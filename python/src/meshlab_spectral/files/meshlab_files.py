@@ -23,7 +23,7 @@ _WRITTEN = {
     ".obj": {"normals", "colours", "texture coordinates", "materials", "texture names"},
     ".off": {"normals", "colours", "texture coordinates"},
 }
-# Stands for textures whose names it cannot read, such as those with blanks.
+# Stands for textures that it does not find, such as those with blanks in their names.
 _DUMMY = "dummy.png"
 
 
@@ -135,7 +135,7 @@ def left_behind(document: Document, target: Path, mesh_set: Any = None) -> list[
             written.remove("normals")  # which belong to corners there
     lost = [content for content in document.contents if content not in written]
     if mesh_set is not None and _DUMMY in mesh_set.current_mesh().textures():
-        lost.append("textures with blanks in their names")
+        lost.append("textures that MeshLab does not find")
     return [f"{target.name} comes without {', '.join(lost)}"] if lost else []
 
 
@@ -151,9 +151,12 @@ def _textures_to_be_saved(mesh_set: Any, scratch: Path, source: Path) -> bool:
     """Whether to save copies of the texture images next to the output.
 
     Not next to the input, where they already are. And not if the mesh refers to an image outside
-    its own folder, which would be written outside the scratch folder, over whatever is there.
+    its own folder, which would be written outside the scratch folder, over whatever is there; nor a
+    dummy.
     """
     names = [Path(name) for name in mesh_set.current_mesh().textures()]
+    if Path(_DUMMY) in names:
+        return False
     beside_input = scratch.parent.parent.samefile(resolved(source).parent)
     within = all(not name.is_absolute() and ".." not in name.parts for name in names)
     return within and not beside_input
