@@ -11,13 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshlab_spectral.documents.digits import SINGLE, digits_for, precision_warning
-from meshlab_spectral.documents.document import Array, Document, Indices, Part, unreadable
-from meshlab_spectral.documents.off import Lines, with_numbers
-from meshlab_spectral.errors import MeshFileError
+from meshlab_spectral.documents.document import Array, Document, Part, check_vertices, unreadable
+from meshlab_spectral.documents.off import replace_numbers
+from meshlab_spectral.documents.text import numbers
 
 _HEADER, _LOOKED_AT = 84, 1000  # bytes
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _EXCESS = 1 / 20  # of its length, which a binary file may have at its end
+_FACET = [b"facet", b"vertex", b"vertex", b"vertex", b"endfacet"]  # without loops
 
 
 @dataclass(kw_only=True)
@@ -39,116 +40,92 @@ class _BinaryStl(Document):
 
 @dataclass(kw_only=True)
 class _TextStl(Document):
-    content: bytes
-    places: Indices  # of coordinates in the text, m x 3 x 3 x 2
+    lines: list[bytes]
+    facets: list[int]  # their lines
+    corners: list[int]
     normals: Array
-    normal_places: Indices
 
     def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
-        (part,), (after,) = self.parts, moved
-        before, faces = part.vertices, part.faces
+        (part,), (after,), lines = self.parts, moved, self.lines.copy()
+        before, corners = part.vertices, part.faces.ravel()
+        digits = digits_for(before, after)
+        replace_numbers(lines, self.corners, 1, before[corners], after[corners], digits)
         normals = _following(self.normals, part, after)
-        text = with_numbers(
-            self.content,
-            (self.places, before[faces], after[faces], digits_for(before, after)),
-            (self.normal_places, self.normals, normals, SINGLE),
-        )
-        target.write_bytes(text)
+        replace_numbers(lines, self.facets, 2, self.normals, normals, SINGLE)
+        target.write_bytes(b"".join(lines))
         return []
 
 
 def read(path: Path) -> Document:
-    """Read an STL file.
-
-    Raises
-    ------
-    MeshFileError
-        When it is damaged.
-    """
+    """Read an STL file; raise MeshFileError when it is damaged."""
     content = path.read_bytes()
-    count = _binary_count(content)
-    return _read_text(path, content) if count is None else _read_binary(path, content, count)
+    try:
+        return _read_text(path, content) if _is_text(content) else _read_binary(path, content)
+    except (ValueError, IndexError) as error:
+        raise unreadable(path, error) from error
 
 
-def _binary_count(content: bytes) -> int | None:
-    """Return the number of triangles that a binary file claims to hold; None of a text."""
-    if len(content) < _HEADER:
-        return None
-    count: int = struct.unpack_from("<I", content, _HEADER - 4)[0]
+def _is_text(content: bytes) -> bool:
     head = content[: _HEADER + _LOOKED_AT]
+    if len(head) < _HEADER:
+        return True
     # A binary file may begin with the word solid, as a text does.
-    is_whole = len(content) == _HEADER + _TRIANGLE.itemsize * count
-    return None if head.isascii() and b"\0" not in head and not is_whole else count
+    is_whole = len(content) == _size(content)
+    return head.isascii() and b"\0" not in head and not is_whole
 
 
-def _read_binary(path: Path, content: bytes, count: int) -> Document:
-    claimed = _HEADER + _TRIANGLE.itemsize * count
-    if not claimed <= len(content) <= claimed * (1 + _EXCESS):
-        size = len(content)
-        raise unreadable(path, f"it claims {count} triangles, which does not fit its {size} bytes")
+def _count(content: bytes) -> int:
+    """Return the number of triangles that a binary file claims to hold."""
+    count: int = struct.unpack_from("<I", content, _HEADER - 4)[0]
+    return count
+
+
+def _size(content: bytes) -> int:
+    return _HEADER + _TRIANGLE.itemsize * _count(content)
+
+
+def _read_binary(path: Path, content: bytes) -> Document:
+    count, size = _count(content), len(content)
+    if not _size(content) <= size <= _size(content) * (1 + _EXCESS):
+        raise ValueError(f"it claims {count} triangles, which does not fit its {size} bytes")
     rows = np.frombuffer(content, _TRIANGLE, count, _HEADER)
-    return _BinaryStl(
-        path=path,
-        parts=[_connected(path, rows["corners"].astype(np.float64))],
-        contents=["attribute bytes"] if rows["attribute"].any() else [],
-        content=content,
-        count=count,
-    )
+    part = _connected(path, rows["corners"].reshape(-1, 3).astype(np.float64))
+    contents = ["attribute bytes"] if rows["attribute"].any() else []
+    return _BinaryStl(path, [part], contents, content=content, count=count)
 
 
 def _read_text(path: Path, content: bytes) -> Document:
-    lines = Lines(path, content.lower())
-    facets, corners = lines.beginning(b"facet"), lines.beginning(b"vertex")
-    _check_structure(lines, facets, corners)
-    normal_words = lines.columns(facets, 2, 5)
-    words = lines.columns(corners, 1, 4).reshape(-1, 3, 3)
-    named = lines.count[lines.beginning(b"solid")] > 1
+    lines = content.splitlines(keepends=True)
+    keywords = [b"".join(line.lower().split(maxsplit=1)[:1]) for line in lines]
+    chosen = [number for number, keyword in enumerate(keywords) if keyword in _FACET]
+    for k, number in enumerate(chosen):
+        if keywords[number] != _FACET[k % 5]:
+            raise ValueError(
+                f"line {number + 1} has no {_FACET[k % 5].decode()}, which belongs there"
+            )
+    if len(chosen) % 5:
+        raise ValueError("it ends within a facet")
+    facets, corners = chosen[::5], [number for k, number in enumerate(chosen) if 0 < k % 5 < 4]
+    points = numbers(path, [tuple(lines[number].split()) for number in corners], 1)
+    normals = numbers(path, [tuple(lines[number].split()) for number in facets], 2)
+    solids = [lines[number] for number, keyword in enumerate(keywords) if keyword == b"solid"]
+    contents = ["names of solids"] if any(len(line.split()) > 1 for line in solids) else []
+    parts = [_connected(path, points)]
     return _TextStl(
-        path=path,
-        parts=[_connected(path, lines.numbers(words))],
-        contents=["names of solids"] if named.any() else [],
-        content=content,
-        places=lines.words[words],
-        normals=lines.numbers(normal_words),
-        normal_places=lines.words[normal_words],
+        path, parts, contents, lines=lines, facets=facets, corners=corners, normals=normals
     )
 
 
-def _check_structure(lines: Lines, facets: Indices, corners: Indices) -> None:
-    """Raise MeshFileError unless each facet has three corners and an end."""
-    ends = lines.beginning(b"endfacet")
-    begins = np.append(facets, len(lines.first))
-    wrong = np.diff(np.searchsorted(corners, begins)) != 3
-    wrong |= np.diff(np.searchsorted(ends, begins)) != 1
-    if wrong.any():
-        line = lines.line_number(lines.words[lines.first[facets[np.argmax(wrong)]], 0])
-        raise unreadable(lines.path, f"the facet in line {line} has not three corners and an end")
-    if len(corners) != 3 * len(facets):
-        raise unreadable(lines.path, "it has a corner before the first facet")
-
-
-def _connected(path: Path, corners: Array) -> Part:
-    """Make one vertex of corners (m x 3 x 3) that coincide, in the order of their appearance."""
-    if not len(corners):
-        raise unreadable(path, "it has no triangles")
-    with np.errstate(over="ignore"):
-        lost = ~np.isfinite(corners.astype(np.float32)).all(axis=2)
-    if lost.any():
-        triangle, corner = np.argwhere(lost)[0]
-        x, y, z = corners[triangle, corner]
-        raise MeshFileError(
-            f"{path}: a corner of triangle {triangle} is at {x:g} {y:g} {z:g}, which is not finite "
-            "or too large: correct it, or open and save the file in MeshLab, which deletes such "
-            "vertices with their faces"
-        )
-    points = corners.reshape(-1, 3)
-    x, y, z = (np.unique(column, return_inverse=True)[1] for column in points.T)
-    xy = np.unique(x << 32 | y, return_inverse=True)[1]
-    _, first, index = np.unique(xy << 32 | z, return_index=True, return_inverse=True)
-    order = np.argsort(first)
-    rank = np.empty_like(order)
-    rank[order] = np.arange(len(order))
-    return Part("", points[first[order]], rank[index].reshape(-1, 3))
+def _connected(path: Path, points: Array) -> Part:
+    """Make one vertex of corners of triangles, three by three, that coincide."""
+    if not len(points):
+        raise ValueError("it has no triangles")
+    check_vertices(path, points)
+    order = np.lexsort(points.T)
+    is_new = np.append(True, (np.diff(points[order], axis=0) != 0).any(axis=1))
+    index = np.empty(len(points), dtype=np.int64)
+    index[order] = np.cumsum(is_new) - 1
+    return Part("", points[order[is_new]], index.reshape(-1, 3))
 
 
 def _following(normals: NDArray[np.floating], part: Part, after: Array) -> Array:
