@@ -22,10 +22,9 @@ from meshlab_spectral.documents.document import (
     unsupported,
 )
 from meshlab_spectral.documents.normals import following_normals
-from meshlab_spectral.documents.off import replace_numbers
 from meshlab_spectral.documents.polygons import corners_of_triangles
 from meshlab_spectral.documents.side_files import copy_side_files
-from meshlab_spectral.documents.text import Words, numbers
+from meshlab_spectral.documents.text import Words, numbers, replace_numbers
 
 _CONTENTS = {
     b"vn": "normals",

@@ -22,18 +22,9 @@ from meshlab_spectral.documents.document import (
 )
 from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.documents.polygons import triangles
-from meshlab_spectral.documents.text import Words, numbers, with_numbers
+from meshlab_spectral.documents.text import Words, numbers, replace_numbers
 
 _REMEDY = "save it as PLY, or as OFF of text with one vertex x y z in a line"
-
-
-def replace_numbers(
-    lines: list[bytes], where: Sequence[int], first: int, before: Array, after: Array, digits: int
-) -> None:
-    """Replace three numbers, which begin at word `first`, in those lines where they differ."""
-    rows = np.flatnonzero((before != after).any(axis=1))
-    for k, old, new in zip(rows.tolist(), before[rows].tolist(), after[rows].tolist(), strict=True):
-        lines[where[k]] = with_numbers(lines[where[k]], first, old, new, digits)
 
 
 @dataclass(kw_only=True)

@@ -33,6 +33,7 @@ from meshlab_spectral.documents.text import with_numbers
 
 _AXES, _NORMALS = ("x", "y", "z"), ("nx", "ny", "nz")
 _LINE = re.compile(rb"\s*\S[^\n]*\n?")  # with the empty ones before it
+_PLAIN = bytes.maketrans(b"\r\x1c\x1d\x1e\x1f\x85\xa0", b" ??????")  # blanks to str, not to bytes
 _TEXTURE = re.compile(rb"(?m)^[ \t]*comment[ \t]+TextureFile[ \t]+(.*\S)")
 _COMMENT = re.compile(rb"(?m)^[ \t]*(comment|obj_info)[ \t]+(?!TextureFile|VCGLIB generated)\S")
 _CORNERS = ("vertex_indices", "vertex_index")
@@ -127,8 +128,8 @@ def read(path: Path) -> PlyDocument:
     check_indices(path, faces, len(vertices))
     values = [name for name in ("quality", "confidence") if _has_floats(ply["vertex"], name)]
     part = Part("", vertices, faces, _columns(ply["vertex"], values[0])[:, 0] if values else None)
-    contents = _contents(ply, header, len(faces))
-    return PlyDocument(path, [part], contents, content=content, header=header, ply=ply, span=span)
+    held = _contents(ply, header, len(faces))
+    return PlyDocument(path, [part], held, content=content, header=header, ply=ply, span=span)
 
 
 def _read_header(content: bytes) -> tuple[PlyData, list[int], bytes]:
@@ -151,16 +152,15 @@ def _read_rows(content: bytes, ply: PlyData, counts: list[int], start: int) -> s
         body = content[start:]
         if not 0 <= count <= len(body):
             raise ValueError(f"element {element.name!r} cannot have {count} rows")
-        element.data, size = read_rows(element, count, body, ply)
+        element.data, size = read_rows(element, count, body, ply)  # in bytes
         span = slice(start, start + size) if element.name == "vertex" else span
         start += size
     return span
 
 
 def _text_rows(element: PlyElement, count: int, body: bytes, ply: PlyData) -> tuple[_Rows, int]:
-    """Return the rows of an element, and how many bytes they are."""
-    lines = _LINE.findall(body)[:count]
-    words = [line.strip() for line in lines]
+    lines = _LINE.findall(body.translate(_PLAIN))[:count]
+    words = list(map(bytes.strip, lines))
     rows = _even_rows(element, "f8", lambda row: np.loadtxt(words, row, None).reshape(count))
     if rows is None:
         rows, _ = _uneven_rows(element, count, b"\n".join(words), ply)

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from meshlab_spectral.documents.digits import SINGLE, digits_for, precision_warning
 from meshlab_spectral.documents.document import Array, Document, Part, check_vertices, unreadable
-from meshlab_spectral.documents.off import replace_numbers
-from meshlab_spectral.documents.text import numbers
+from meshlab_spectral.documents.text import numbers, replace_numbers
 
 _HEADER, _LOOKED_AT = 84, 1000  # bytes
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -89,7 +88,9 @@ def _read_binary(path: Path, content: bytes) -> Document:
     if not _size(content) <= size <= _size(content) * (1 + _EXCESS):
         raise ValueError(f"it claims {count} triangles, which does not fit its {size} bytes")
     rows = np.frombuffer(content, _TRIANGLE, count, _HEADER)
-    part = _connected(path, rows["corners"].reshape(-1, 3).astype(np.float64))
+    with np.errstate(invalid="ignore"):  # what is no number is found when checked
+        points = rows["corners"].reshape(-1, 3).astype(np.float64)
+    part = _connected(path, points)
     contents = ["attribute bytes"] if rows["attribute"].any() else []
     return _BinaryStl(path, [part], contents, content=content, count=count)
 
@@ -134,12 +135,13 @@ def _following(normals: NDArray[np.floating], part: Part, after: Array) -> Array
     They stay on the side of the surface where they were; a facet without normal or without area
     keeps what it has.
     """
+    with np.errstate(invalid="ignore"):
+        result = normals.astype(np.float64)
     new, old = (_area_vectors(shape[part.faces]) for shape in (after, part.vertices))
     length = np.linalg.norm(new, axis=1)
     moved = (after != part.vertices).any(axis=1)[part.faces].any(axis=1)
-    chosen = moved & (length > 0) & normals.any(axis=1)
-    new[np.einsum("ij,ij->i", normals, old) < 0] *= -1
-    result = normals.astype(np.float64)
+    chosen = moved & (length > 0) & result.any(axis=1)
+    new[np.einsum("ij,ij->i", result, old) < 0] *= -1
     result[chosen] = new[chosen] / length[chosen, None]
     return result
 

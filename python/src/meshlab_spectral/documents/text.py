@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 from functools import cache
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +25,8 @@ def numbers(path: Path, rows: Sequence[Words], first: int = 0, count: int = 3) -
     """
     chosen = [row[first : first + count] for row in rows]
     try:
-        return np.array(chosen, dtype=bytes).reshape(-1, count).astype(np.float64)
+        values = np.array(list(map(float, chain.from_iterable(chosen))))
+        return values.reshape(len(rows), count)
     except ValueError:
         for number, words in enumerate(chosen):
             if len(words) < count or not all(map(_is_number, words)):
@@ -68,6 +70,15 @@ def with_numbers(
     return b"".join(pieces) + line[found.end() :]
 
 
+def replace_numbers(
+    lines: list[bytes], where: Sequence[int], first: int, before: Array, after: Array, digits: int
+) -> None:
+    """Replace three numbers, which begin at word `first`, in those lines where they differ."""
+    rows = np.flatnonzero((before != after).any(axis=1))
+    for k, old, new in zip(rows.tolist(), before[rows].tolist(), after[rows].tolist(), strict=True):
+        lines[where[k]] = with_numbers(lines[where[k]], first, old, new, digits)
+
+
 @cache
 def _three_words(first: int) -> re.Pattern[bytes]:
-    return re.compile(rb"(\s*(?:\S+\s+){%d})(\S+)(\s+)(\S+)(\s+)(\S+)" % first)
+    return re.compile(rb"(\s*(?:\S+\s+){%d})(\S+)(\s+)(\S+)(\s+)([^\s#]+)" % first)

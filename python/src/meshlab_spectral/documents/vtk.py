@@ -7,7 +7,6 @@ compression than zlib. Legacy text becomes binary: VTK would keep six digits of 
 from __future__ import annotations
 
 import re
-import shutil
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from meshlab_spectral.documents.digits import single_holds
+from meshlab_spectral.documents.digits import rounding_told
 from meshlab_spectral.documents.document import (
     Array,
     Document,
@@ -38,7 +37,7 @@ _EXTRACT = "extract its surface first (in ParaView: Filters > Extract Surface), 
 
 def read(path: Path) -> Document:
     """Read a mesh of points and flat cells; see open_document."""
-    check_extras("render")
+    check_extras("formats")
     import pyvista
 
     try:
@@ -48,7 +47,7 @@ def read(path: Path) -> Document:
         with pyvista.vtk_verbosity("off"), pyvista.VtkErrorCatcher(send_to_logging=False) as caught:
             reader = pyvista.get_reader(path).reader
             reader.Update()
-            reader.GetOutputDataObject(0).CheckAttributes()
+            (reader.GetOutputDataObject(0) or pyvista.PolyData()).CheckAttributes()
         for event in caught.events:
             raise ValueError(event.alert)
         return _document(path, pyvista.wrap(reader.GetOutputDataObject(0)))
@@ -62,30 +61,30 @@ class _VtkDocument(Document):
     owners: Indices  # the cell of each triangle
 
     def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
-        before, after, mesh = self.parts[0].vertices, moved[0], self.mesh.copy()
+        before, faces, after = self.parts[0].vertices, self.parts[0].faces, moved[0]
         if np.array_equal(before, after):
-            shutil.copyfile(self.path, target)
+            target.write_bytes(self.path.read_bytes())
             return []
-        widens = mesh.points.dtype != np.float64 and not single_holds(before, after)
-        kind = np.float64 if widens else np.float32
-        mesh.points = after.astype(np.result_type(mesh.points, kind))
+        mesh = self.mesh.copy()
+        told = None if mesh.points.dtype == np.float64 else rounding_told(before, after)
+        mesh.points = after.astype(np.result_type(mesh.points, "f8" if told else "f4"))
         for normals in _normals(mesh.point_data):
-            normals[:] = following_normals(before, after, self.parts[0].faces, np.array(normals))
+            normals[:] = following_normals(before, after, faces, np.array(normals))
         for normals in _normals(mesh.cell_data):
-            self._turn(normals, after)
+            old, new = (_areas(P[faces], self.owners, normals.shape) for P in (before, after))
+            side = np.sign((old * normals).sum(axis=1, keepdims=True))  # they stay on it
+            length = np.linalg.norm(new, axis=1, keepdims=True) * side
+            turned = (old != new).any(axis=1) & (length[:, 0] != 0)
+            normals[turned] = new[turned] / length[turned]
         mesh.save(target, binary=not _TEXT.search(self.path.read_bytes()))
-        return [f"{target.name}: its points get double precision, to hold the result"] * widens
+        return [f"coordinates are written in double precision, since {told}"] if told else []
 
-    def _turn(self, normals: Any, after: Array) -> None:
-        """Replace the normals of cells that have moved; they stay on their side."""
-        areas = np.zeros((2, *normals.shape))
-        for total, shape in zip(areas, (self.parts[0].vertices, after), strict=True):
-            P = shape[self.parts[0].faces]
-            np.add.at(total, self.owners, np.cross(P[:, 1] - P[:, 0], P[:, 2] - P[:, 0]))
-        side = np.sign((areas[0] * normals).sum(axis=1, keepdims=True))
-        length = np.linalg.norm(areas[1], axis=1, keepdims=True) * side
-        turned = (areas[0] != areas[1]).any(axis=1) & (length[:, 0] != 0)
-        normals[turned] = areas[1][turned] / length[turned]
+
+def _areas(P: Array, owners: Indices, shape: tuple[int, ...]) -> Array:
+    """Vector areas of cells from the corners of triangles."""
+    areas = np.zeros(shape)
+    np.add.at(areas, owners, np.cross(P[:, 1] - P[:, 0], P[:, 2] - P[:, 0]))
+    return areas
 
 
 def _normals(data: Any) -> list[Any]:
@@ -96,7 +95,7 @@ def _normals(data: Any) -> list[Any]:
 def _document(path: Path, mesh: Any) -> Document:
     if type(mesh).__name__ not in ("PolyData", "UnstructuredGrid"):
         raise unsupported(path, f"holds {type(mesh).__name__}", _EXTRACT)
-    vertices = np.asarray(mesh.points, dtype=np.float64)
+    vertices = np.array(mesh.points, dtype=np.float64)
     check_vertices(path, vertices)
     grid = mesh if hasattr(mesh, "celltypes") else mesh.cast_to_unstructured_grid()
     faces, owners = _surface(path, grid, vertices)
@@ -104,8 +103,7 @@ def _document(path: Path, mesh: Any) -> Document:
         raise unsupported(path, "holds no polygons and no strips", "name a file with a surface")
     scalars = mesh.point_data.active_scalars
     quality = scalars.astype(np.float64) if np.ndim(scalars) == 1 else None
-    data = {"point": mesh.point_data, "cell": mesh.cell_data, "field": mesh.field_data}
-    contents = [f"{what} data {name}" for what, arrays in data.items() for name in list(arrays)]
+    contents = [f"array {name}" for name in mesh.array_names]
     contents += ["points and lines"] * bool(np.isin(grid.celltypes, _OTHERS).any())
     return _VtkDocument(
         path, [Part("", vertices, faces, quality)], contents, mesh=mesh, owners=owners
