@@ -1,7 +1,8 @@
 """Surfaces of brains: GIFTI (.gii), and FreeSurfer's geometry (lh.pial, lh.white).
 
 nibabel reads and writes GIFTI. It drops comments of the XML, keeps one coordinate system an array,
-and writes matrices with six decimals. FreeSurfer's coordinates are replaced where they lie.
+and writes matrices with six decimals; it would do so with numbers in text, which become binary.
+FreeSurfer's coordinates are replaced where they lie.
 """
 
 from __future__ import annotations
@@ -29,6 +30,7 @@ from meshlab_spectral.errors import MeshFileError, SpectralError
 from meshlab_spectral.extras import check_extras
 
 _TRIANGLES = b"\xff\xff\xfe"  # how a surface of FreeSurfer begins
+_TEXT, _BINARY = 1, 2  # encodings of GIFTI
 _OTHERS = (b"\xff\xff\xff", b"\xff\xff\xfd")  # quadrilaterals, or values such as curvature
 
 
@@ -108,7 +110,10 @@ class _Gifti(Document):
             new = following_normals(part.vertices, after, part.faces, normals)
             array.data = new.astype(array.data.dtype)
         self.points.data = after.astype(self.points.data.dtype)
-        self.image.to_filename(target)
+        for array in self.image.darrays:
+            if array.encoding == _TEXT and array.data.dtype.kind == "f":
+                array.encoding = _BINARY
+        target.write_bytes(self.image.to_bytes(mode="force"))  # doubles, too
         return _precision(part.vertices, after, target)
 
 

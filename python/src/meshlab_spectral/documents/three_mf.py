@@ -1,30 +1,28 @@
-"""3MF: a zip archive of models in XML."""
+"""3MF, a zip archive of models in XML: digits of vertices are replaced, and all else stays."""
 
 from __future__ import annotations
 
-import contextlib
-import copy
-import graphlib
 import io
 import lzma
 import re
 import struct
 import zipfile
 import zlib
-from array import array
 from collections import defaultdict
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from graphlib import TopologicalSorter
+from itertools import chain, islice
 from pathlib import Path
-from xml.parsers import expat
+from xml.etree import ElementTree
 
 import numpy as np
-from numpy.typing import NDArray
 
 from meshlab_spectral.documents.digits import digits_for
 from meshlab_spectral.documents.document import (
     Array,
     Document,
+    Indices,
     Part,
     check_indices,
     check_vertices,
@@ -32,27 +30,35 @@ from meshlab_spectral.documents.document import (
     unsupported,
 )
 from meshlab_spectral.documents.placement import IDENTITY, Placement, placement_of, same_scale
-from meshlab_spectral.errors import MeshFileError
 
 # XML of vertices compresses to a tenth; what grows far more is made to fill the memory.
 _LARGEST_RATIO, _HARMLESS = 200, 64 << 20
+_VERTEX = re.compile(rb"<(?:[^\s<>/:!]+:)?vertex(?=\s)")
 _ATTRIBUTE = re.compile(rb"""\s+([^\s=]+)\s*=\s*("[^"]*"|'[^']*')""")
 _AXES = {b"x": 0, b"y": 1, b"z": 2}
-_FAULTS = (
-    ArithmeticError,
-    EOFError,
-    LookupError,
-    OSError,  # of the decompression: the file itself has been read
-    RuntimeError,
-    TypeError,
-    ValueError,
-    lzma.LZMAError,
-    struct.error,
-    zipfile.BadZipFile,
-    zlib.error,
-)
+_CONTENTS = {
+    "basematerials": "materials",
+    "colorgroup": "colours",
+    "texture2d": "textures",
+    "slicestack": "slices",
+    "beamlattice": "beams",
+}
+_DAMAGES = (ValueError, LookupError, TypeError, ArithmeticError, EOFError, OSError, RuntimeError)
+_OF_ARCHIVES = (zipfile.BadZipFile, zlib.error, lzma.LZMAError, struct.error)
 _Key = tuple[str, str]  # model, object
 _Placed = tuple[_Key, Array]
+
+
+def read(path: Path) -> Document:
+    """Read a .3mf file; each object with a mesh is a part."""
+    data = path.read_bytes()
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            return _document(path, data, archive)
+    except KeyError as error:
+        raise unreadable(path, f"not found: {error}") from error
+    except (*_DAMAGES, *_OF_ARCHIVES, ElementTree.ParseError) as error:
+        raise unreadable(path, f"{error!s:.300}") from error
 
 
 @dataclass
@@ -60,347 +66,100 @@ class _Object:
     """An object of a model: a mesh, or components."""
 
     name: str
-    is_model: bool
-    coordinates: array[float] = field(default_factory=lambda: array("d"))
-    offsets: array[int] = field(default_factory=lambda: array("q"))  # bytes, of its vertices
-    corners: array[int] = field(default_factory=lambda: array("q"))
-    components: list[_Placed] = field(default_factory=list)
-
-
-@dataclass(frozen=True)
-class _Mesh:
-    """What one part was read from."""
-
-    model: str
-    offsets: NDArray[np.int64]  # where the elements of its vertices begin
+    is_part: bool
     own: Array  # vertices, without transforms
-    placement: Placement
-
-
-@dataclass
-class ThreeMfDocument(Document):
-    """A 3MF archive: digits in its models are replaced, and all else stays."""
-
-    _data: bytes = field(kw_only=True, repr=False)
-    _models: dict[str, bytes] = field(default_factory=dict, kw_only=True, repr=False)
-    _meshes: list[_Mesh] = field(default_factory=list, kw_only=True, repr=False)
-
-    def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
-        """Write the archive with other vertices; see Document."""
-        changes: dict[str, list[tuple[_Mesh, Array]]] = defaultdict(list)
-        for mesh, part, vertices in zip(self._meshes, self.parts, moved, strict=True):
-            if not np.array_equal(vertices, part.vertices):
-                after = mesh.placement.back(mesh.own, part.vertices, vertices)
-                changes[mesh.model].append((mesh, after))
-        if not changes:
-            target.write_bytes(self._data)
-            return []
-        self._write(
-            target, {name: _patched(self._models[name], meshes) for name, meshes in changes.items()}
-        )
-        return ["its slices stay as they are"] if "slices" in self.contents else []
-
-    def _write(self, target: Path, patched: dict[str, bytes]) -> None:
-        with (
-            zipfile.ZipFile(io.BytesIO(self._data)) as source,
-            zipfile.ZipFile(target, "w") as result,
-        ):
-            result.comment = source.comment
-            for info in source.infolist():
-                with _reporting_faults(self.path):
-                    content = patched.get(info.filename) or source.read(info)
-                result.writestr(copy.copy(info), content)
-
-
-def read(path: Path) -> ThreeMfDocument:
-    """Read a .3mf file; each object with a mesh is a part.
-
-    Raises
-    ------
-    MeshFileError
-        When it is damaged, encrypted, or without triangles.
-    """
-    data = path.read_bytes()
-    with _reporting_faults(path), zipfile.ZipFile(io.BytesIO(data)) as archive:
-        _check(path, archive, len(data))
-        root = _root(path, archive)
-        models = _read_models(path, archive, root)
-        document = ThreeMfDocument(path, [], _data=data)
-        document._models = {name: model.data for name, model in models.items()}
-        objects = {
-            (name, number): entry
-            for name, model in models.items()
-            for number, entry in model.objects.items()
-        }
-        matrices = _placements(objects, models[root].items)
-        for key, entry in objects.items():
-            _add_part(document, key, entry, matrices.get(key, []))
-        if not document.parts:
-            raise unsupported(path, "holds no triangles", "give a file with a triangle mesh")
-        document.contents = _contents(models, models[root].unit, archive.namelist(), matrices)
-        return document
-
-
-@contextlib.contextmanager
-def _reporting_faults(path: Path) -> Iterator[None]:
-    """Turn what Python raises for a malformed archive into MeshFileError."""
-    try:
-        yield
-    except _FAULTS as error:
-        raise unreadable(path, f"{error!s:.300}") from error
-
-
-def _check(path: Path, archive: zipfile.ZipFile, size: int) -> None:
-    """Refuse archives that are encrypted, or made to do harm."""
-    entries = archive.infolist()
-    if len({info.filename for info in entries}) < len(entries):
-        raise ValueError("two entries have one name")
-    for info in entries:
-        if ".." in re.split(r"[/\\]", info.filename):
-            raise ValueError(f"an entry is named {info.filename[:80]}")
-        if info.flag_bits & 1:
-            raise _encrypted(path)
-    compressed = [info.compress_size for info in entries]
-    full = [info.file_size for info in entries]
-    if sum(compressed) > size:
-        raise ValueError("its entries overlap")
-    for small, large in zip([*compressed, size], [*full, sum(full)], strict=True):
-        if large > max(_HARMLESS, _LARGEST_RATIO * small):
-            raise ValueError(f"{small} bytes would grow to {large}")
-
-
-def _encrypted(path: Path) -> MeshFileError:
-    return unsupported(path, "is encrypted", "save it without encryption")
-
-
-def _root(path: Path, archive: zipfile.ZipFile) -> str:
-    """Return the name of the model that is built."""
-    targets: dict[str, str] = {}
-
-    def start(name: str, attributes: dict[str, str]) -> None:
-        if name.endswith(" Relationship"):
-            kind = attributes["Type"].rpartition("/")[2]
-            targets.setdefault(kind, attributes["Target"])
-
-    _parse("_rels/.rels", archive.read("_rels/.rels"), lambda parser: start)
-    if "keystore" in targets:
-        raise _encrypted(path)
-    if "3dmodel" not in targets:
-        raise ValueError("_rels/.rels names no 3D model")
-    return targets["3dmodel"].lstrip("/")
-
-
-_Start = Callable[[str, dict[str, str]], None]
-
-
-def _parse(name: str, data: bytes, starting: Callable[[expat.XMLParserType], _Start]) -> None:
-    """Parse an entry, and tell the place of an error."""
-    parser = expat.ParserCreate(namespace_separator=" ")
-    parser.StartElementHandler = starting(parser)
-    parser.StartDoctypeDeclHandler = _refuse_doctype
-    try:
-        parser.Parse(data, True)
-    except expat.ExpatError as error:
-        raise ValueError(f"{name}: {error}") from error
-    except KeyError as error:
-        raise ValueError(f"{name}, line {parser.CurrentLineNumber}: {error} is missing") from error
-    except (ArithmeticError, ValueError) as error:
-        raise ValueError(f"{name}, line {parser.CurrentLineNumber}: {error}") from error
-
-
-def _refuse_doctype(*_: object) -> None:
-    raise ValueError("a document type declaration, which 3MF forbids")
+    offsets: list[int]  # where they are in the model
+    faces: Indices
+    components: list[_Placed]
+    placement: Placement = Placement(IDENTITY)
 
 
 class _Model:
-    """A model as it is read: objects, and what is built of them."""
+    """A model of an archive: objects, and what is built of them."""
 
     def __init__(self, path: Path, name: str, data: bytes) -> None:
-        if b"\0" in data[:4] or data[:2] in (b"\xff\xfe", b"\xfe\xff"):
-            raise unsupported(path, f"has {name} in UTF-16", "save it in UTF-8")
-        self.data = data
-        self.objects: dict[str, _Object] = {}
-        self.items: list[_Placed] = []
-        self.unit = "millimeter"
-        self.elements: set[str] = set()
-        self.textures: set[str] = set()
-        self._name = name
-        self._current: _Object | None = None
-        self._handlers: dict[str, Callable[[dict[str, str]], None]] = {}
-        _parse(name, data, self._starting)
+        if b"<!DOCTYPE" in data or b"\0" in data:  # zeros are in UTF-16
+            raise unsupported(path, f"has a document type or UTF-16 in {name}", "save it in UTF-8")
+        root = ElementTree.fromstring(data)
+        if not root.tag.endswith("model"):
+            raise ValueError(f"{name} begins with {root.tag[-80:]}, not with a model")
+        self.name, self.unit = name, root.get("unit", "millimeter")
+        self.elements = {tag.rpartition("}")[2] for tag in {element.tag for element in root.iter()}}
+        self._namespace = root.tag.removesuffix("model")
+        self.items = [self._placed(item) for item in root.iter(f"{self._namespace}item")]
+        places = [match.end() for match in _VERTEX.finditer(data)]
+        self._places = iter(places)  # in the order of the elements
+        elements = list(root.iter(f"{self._namespace}object"))
+        self.objects = {element.attrib["id"]: self._object(element) for element in elements}
+        if len(self.objects) < len(elements):
+            raise ValueError(f"{name} has two objects of one id")
+        if len(places) != sum(len(entry.own) for entry in self.objects.values()):
+            raise unsupported(path, f"has vertices outside meshes in {name}", "export it anew")
 
-    def _starting(self, parser: expat.XMLParserType) -> _Start:
-        self._parser = parser
-        return self._start
-
-    def _start(self, name: str, attributes: dict[str, str]) -> None:
-        handler = self._handlers.get(name)
-        if handler is not None:
-            handler(attributes)
-        elif not self._handlers:
-            self._model(name, attributes)
-        else:
-            self._other(name.rpartition(" ")[2], attributes)
-
-    def _model(self, name: str, attributes: dict[str, str]) -> None:
-        namespace, separator, local = name.rpartition(" ")
-        if local != "model":
-            raise ValueError(f"<{local[:80]}> instead of <model>")
-        self.unit = attributes.get("unit", self.unit)
-        handlers = {
-            "vertex": self._vertex,
-            "triangle": self._triangle,
-            "object": self._object,
-            "component": self._component,
-            "item": self._item,
-        }
-        self._handlers = {
-            f"{namespace}{separator}{local}": handler for local, handler in handlers.items()
-        }
-
-    def _object(self, attributes: dict[str, str]) -> None:
-        number = attributes["id"]
-        if number in self.objects:
-            raise ValueError(f"a second object {number[:80]}")
-        if "name" in attributes:
-            self.elements.add("name")
-        name = attributes.get("name") or attributes.get("partnumber") or f"object {number}"
-        self._current = _Object(name, attributes.get("type", "model") == "model")
-        self.objects[number] = self._current
-
-    def _vertex(self, attributes: dict[str, str]) -> None:
-        current = self._of_object()
-        current.coordinates.extend(
-            (float(attributes["x"]), float(attributes["y"]), float(attributes["z"]))
-        )
-        current.offsets.append(self._parser.CurrentByteIndex)
-
-    def _triangle(self, attributes: dict[str, str]) -> None:
-        self._of_object().corners.extend(
-            (int(attributes["v1"]), int(attributes["v2"]), int(attributes["v3"]))
+    def _object(self, element: ElementTree.Element) -> _Object:
+        ns, axes, corners = self._namespace, ("x", "y", "z"), ("v1", "v2", "v3")
+        own = [[v.attrib[axis] for axis in axes] for v in element.iter(f"{ns}vertex")]
+        faces = [[int(t.attrib[c]) for c in corners] for t in element.iter(f"{ns}triangle")]
+        name = element.get("name") or element.get("partnumber")
+        return _Object(
+            name=name or f"object {element.attrib['id']}",
+            is_part=bool(faces) and element.get("type", "model") == "model",
+            own=np.array(own, dtype=np.float64).reshape(-1, 3),
+            offsets=list(islice(self._places, len(own))),
+            faces=np.array(faces, dtype=np.int64).reshape(-1, 3),
+            components=[self._placed(c) for c in element.iter(f"{ns}component")],
         )
 
-    def _component(self, attributes: dict[str, str]) -> None:
-        self._of_object().components.append(self._placed(attributes))
-
-    def _item(self, attributes: dict[str, str]) -> None:
-        self.items.append(self._placed(attributes))
-
-    def _of_object(self) -> _Object:
-        if self._current is None:
-            raise ValueError("an element of a mesh outside an object")
-        return self._current
-
-    def _placed(self, attributes: dict[str, str]) -> _Placed:
+    def _placed(self, element: ElementTree.Element) -> _Placed:
         """Return the object that an element refers to, with its transform."""
-        # Of the production extension.
-        paths = [value for key, value in attributes.items() if key.endswith(" path")]
-        model = paths[0].lstrip("/") if paths else self._name
-        return (model, attributes["objectid"]), _matrix(attributes.get("transform"))
-
-    def _other(self, element: str, attributes: dict[str, str]) -> None:
-        self.elements.add(element)
-        if element == "texture2d":
-            self.textures.add(attributes.get("path", "").lstrip("/"))
+        paths = [value for key, value in element.items() if key.endswith("}path")]
+        model = paths[0].lstrip("/") if paths else self.name  # of the production extension
+        matrix = np.eye(4)  # for column vectors; in the file it is for row vectors
+        if transform := element.get("transform"):
+            matrix[:3] = np.array(transform.split(), dtype=np.float64).reshape(4, 3).T
+        return (model, element.attrib["objectid"]), matrix
 
 
-def _matrix(transform: str | None) -> Array:
-    """Return a transform as 4 x 4 for column vectors; in the file it is for row vectors."""
-    if transform is None:
-        return IDENTITY
-    numbers = np.array(transform.split(), dtype=np.float64)
-    if numbers.shape != (12,):
-        raise ValueError(f"a transform of {numbers.size} numbers instead of 12")
-    matrix = np.eye(4)
-    matrix[:3] = numbers.reshape(4, 3).T
-    return matrix
+@dataclass(kw_only=True)
+class _ThreeMfDocument(Document):
+    data: bytes
+    meshes: list[tuple[str, _Object]]  # of the parts, with the names of their models
+
+    def add(self, model: str, mesh: _Object, matrices: list[Array]) -> None:
+        """Add an object to the parts."""
+        mesh.placement = placement_of(mesh.name, matrices, self.warnings)
+        placed = mesh.placement.placed(mesh.own)
+        check_vertices(self.path, placed)
+        check_indices(self.path, mesh.faces, len(placed))
+        self.parts.append(Part(mesh.name, placed, mesh.placement.oriented(mesh.faces)))
+        self.meshes.append((model, mesh))
+
+    def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
+        changes: dict[str, list[tuple[_Object, Array]]] = defaultdict(list)
+        for (model, mesh), part, vertices in zip(self.meshes, self.parts, moved, strict=True):
+            if not np.array_equal(vertices, part.vertices):
+                after = mesh.placement.back(mesh.own, part.vertices, vertices)
+                changes[model].append((mesh, after))
+        if not changes:
+            target.write_bytes(self.data)
+            return []
+        with zipfile.ZipFile(io.BytesIO(self.data)) as source, zipfile.ZipFile(target, "w") as copy:
+            copy.comment = source.comment
+            for info in source.infolist():
+                content = _patched(source.read(info), changes.get(info.filename, []))
+                copy.writestr(info, content)
+        return ["its slices stay as they are"] * ("slices" in self.contents)
 
 
-def _read_models(path: Path, archive: zipfile.ZipFile, root: str) -> dict[str, _Model]:
-    """Read a model, and those that it refers to."""
-    models: dict[str, _Model] = {}
-    wanted = [root]
-    while wanted:
-        name = wanted.pop()
-        if name in models:
-            continue
-        model = models[name] = _Model(path, name, archive.read(name))
-        components = (c for entry in model.objects.values() for c in entry.components)
-        wanted.extend({key[0] for key, _ in [*components, *model.items]} - models.keys())
-    return models
-
-
-def _placements(objects: dict[_Key, _Object], items: list[_Placed]) -> dict[_Key, list[Array]]:
-    """Return each object's first transform, and if there is one the first of another scale."""
-    graph = {key: [c for c, _ in entry.components] for key, entry in objects.items()}
-    for key in (*(key for key, _ in items), *(c for cs in graph.values() for c in cs)):
-        if key not in objects:
-            raise ValueError(f"{key[0]} has no object {key[1]}")
-    try:
-        graphlib.TopologicalSorter(graph).prepare()
-    except graphlib.CycleError as error:
-        raise ValueError("objects are components of each other, in a circle") from error
-    result: dict[_Key, list[Array]] = {}
-    stack = items[::-1]
-    while stack:
-        key, matrix = stack.pop()
-        found = result.setdefault(key, [])
-        if len(found) == 2 or (found and same_scale(found[0], matrix)):
-            continue
-        found.append(matrix)
-        with np.errstate(all="ignore"):
-            stack.extend((c, matrix @ inner) for c, inner in reversed(objects[key].components))
-    return result
-
-
-def _add_part(document: ThreeMfDocument, key: _Key, entry: _Object, matrices: list[Array]) -> None:
-    """Add an object to the parts if it is a mesh with triangles."""
-    if not (entry.is_model and entry.corners):
-        return
-    own = np.array(entry.coordinates, dtype=np.float64).reshape(-1, 3)
-    faces = np.array(entry.corners, dtype=np.int64).reshape(-1, 3)
-    placement = placement_of(entry.name, matrices, document.warnings)
-    placed = placement.placed(own)
-    check_vertices(document.path, placed)
-    check_indices(document.path, faces, len(own))
-    document.parts.append(Part(entry.name, placed, placement.oriented(faces)))
-    offsets = np.array(entry.offsets, dtype=np.int64)
-    document._meshes.append(_Mesh(key[0], offsets, own, placement))
-
-
-def _contents(
-    models: dict[str, _Model], unit: str, names: list[str], matrices: dict[_Key, list[Array]]
-) -> list[str]:
-    elements = {element for model in models.values() for element in model.elements}
-    known = {texture for model in models.values() for texture in model.textures} | models.keys()
-    transforms = [matrix for found in matrices.values() for matrix in found]
-    found = {
-        f"units ({unit})": True,
-        "placement": not all(np.array_equal(matrix, IDENTITY) for matrix in transforms),
-        "materials and colours": bool(elements & {"basematerials", "colorgroup"}),
-        "textures": bool(elements & {"texture2d", "texture2dgroup"}),
-        "names": "name" in elements,
-        "slices": "slicestack" in elements,
-        "beams": "beamlattice" in elements,
-        "thumbnails and settings": any(
-            name not in known and not name.endswith(("/", ".rels", "[Content_Types].xml"))
-            for name in names
-        ),
-    }
-    return [name for name, is_there in found.items() if is_there]
-
-
-def _patched(data: bytes, changes: Iterable[tuple[_Mesh, Array]]) -> bytes:
+def _patched(data: bytes, changes: list[tuple[_Object, Array]]) -> bytes:
     """Return a model with other coordinates where they have changed."""
     pieces: list[bytes] = []
     position = 0
-    # In the order of the file, in which they were read.
-    for mesh, after in changes:
+    for mesh, after in changes:  # in the order of the file
         digits = digits_for(mesh.own, after)
-        rows = np.flatnonzero((after != mesh.own).any(axis=1))
-        arrays = (array[rows].tolist() for array in (mesh.offsets, mesh.own, after))
-        for offset, old, new in zip(*arrays, strict=True):
-            for axis, start, end in _values(data, offset):
+        for row in np.flatnonzero((after != mesh.own).any(axis=1)).tolist():
+            old, new = mesh.own[row], after[row]
+            for axis, start, end in _values(data, mesh.offsets[row]):
                 if old[axis] != new[axis]:
                     pieces += (data[position:start], b"%.*g" % (digits, new[axis]))
                     position = end
@@ -408,12 +167,74 @@ def _patched(data: bytes, changes: Iterable[tuple[_Mesh, Array]]) -> bytes:
 
 
 def _values(data: bytes, offset: int) -> Iterator[tuple[int, int, int]]:
-    """Yield axis, begin and end of the three values of the vertex element at an offset."""
-    left = 3
-    for match in _ATTRIBUTE.finditer(data, offset):
-        axis = _AXES.get(match[1])
-        if axis is not None:
-            yield axis, match.start(2) + 1, match.end(2) - 1
-            left -= 1
-            if not left:
-                return
+    """Yield axis, begin and end of the three values of the vertex at an offset."""
+    found = (match for match in _ATTRIBUTE.finditer(data, offset) if match[1] in _AXES)
+    for match in islice(found, 3):
+        yield _AXES[match[1]], match.start(2) + 1, match.end(2) - 1
+
+
+def _document(path: Path, data: bytes, archive: zipfile.ZipFile) -> Document:
+    entries = archive.infolist()
+    if any(e.flag_bits & 1 for e in entries) or b"/keystore" in archive.read("_rels/.rels"):
+        raise unsupported(path, "is encrypted", "save it without encryption")
+    if sum(info.file_size for info in entries) > max(_HARMLESS, _LARGEST_RATIO * len(data)):
+        raise ValueError(f"its {len(data)} bytes would grow to more than {_LARGEST_RATIO} times")
+    if damaged := archive.testzip():
+        raise ValueError(f"{damaged} in it is damaged")
+    relationships = ElementTree.fromstring(archive.read("_rels/.rels"))
+    targets = {r.attrib["Type"].rpartition("/")[2]: r.attrib["Target"] for r in relationships}
+    root = targets["3dmodel"].lstrip("/")
+    models = _models(path, archive, root)
+    objects = {(m, o): found for m, model in models.items() for o, found in model.objects.items()}
+    contents = _contents(models, models[root].unit, archive.namelist())
+    document = _ThreeMfDocument(path, [], contents, data=data, meshes=[])
+    for key, matrices in _matrices(objects, models[root].items).items():
+        if objects[key].is_part:
+            document.add(key[0], objects[key], matrices)
+    if not document.parts:
+        raise unsupported(path, "holds no triangles", "give a file with a triangle mesh")
+    return document
+
+
+def _models(path: Path, archive: zipfile.ZipFile, root: str) -> dict[str, _Model]:
+    """Read a model, and those that it refers to."""
+    models: dict[str, _Model] = {}
+    wanted = [root]
+    while wanted:
+        name = wanted.pop()
+        if name not in models:
+            model = models[name] = _Model(path, name, archive.read(name))
+            placed = [c for entry in model.objects.values() for c in entry.components]
+            wanted += [key[0] for key, _ in [*placed, *model.items]]
+    return models
+
+
+def _matrices(objects: dict[_Key, _Object], items: list[_Placed]) -> dict[_Key, list[Array]]:
+    """Return each object's first transform, and if there is one the first of another scale."""
+    graph = {key: [child for child, _ in found.components] for key, found in objects.items()}
+    for key in [*(key for key, _ in items), *chain(*graph.values())]:
+        if key not in objects:
+            raise ValueError(f"{key[0]} has no object {key[1]}")
+    matrices: dict[_Key, list[Array]] = {key: [] for key in objects}
+    _place(matrices, items, IDENTITY)
+    for key in reversed([*TopologicalSorter(graph).static_order()]):  # components follow
+        for matrix in matrices[key]:
+            _place(matrices, objects[key].components, matrix)
+    return matrices
+
+
+def _place(matrices: dict[_Key, list[Array]], placed: list[_Placed], outer: Array) -> None:
+    for key, inner in placed:
+        with np.errstate(all="ignore"):
+            matrix = outer @ inner
+        found = matrices[key]
+        if not found or (len(found) == 1 and not same_scale(found[0], matrix)):
+            found.append(matrix)
+
+
+def _contents(models: dict[str, _Model], unit: str, names: list[str]) -> list[str]:
+    elements = {element for model in models.values() for element in model.elements}
+    contents = [f"units ({unit})", *(_CONTENTS[one] for one in _CONTENTS if one in elements)]
+    if any(not name.endswith(("/", ".rels", ".model", "[Content_Types].xml")) for name in names):
+        contents.append("thumbnails and settings")
+    return contents
