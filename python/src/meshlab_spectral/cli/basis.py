@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from meshlab_spectral.cli.filter_options import OneMesh
 from meshlab_spectral.cli.messages import errors_reported
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.extras import check_extras
@@ -48,14 +49,7 @@ def basis_command(
         Boundary,
         typer.Option(help="At the boundary of an open surface: free, or fixed to zero."),
     ] = "free",
-    mesh: Annotated[
-        str | None,
-        typer.Option(
-            metavar="NAME",
-            help="Only the mesh of this name; by default all of the file together.",
-            show_default=False,
-        ),
-    ] = None,
+    mesh: OneMesh = None,
     pictures: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Sheet of pictures to draw, a .png file.")
     ] = None,

@@ -16,6 +16,16 @@ from meshlab_spectral.filters.presets import PRESETS, Preset
 
 Command = Callable[..., None]
 
+# Of the commands that measure a file as a whole.
+OneMesh = Annotated[
+    str | None,
+    typer.Option(
+        metavar="NAME",
+        help="Only the mesh of this name; by default all of the file together.",
+        show_default=False,
+    ),
+]
+
 
 def _use_preset(context: typer.Context, name: Preset | None) -> Preset | None:
     """Make the values of a preset the defaults of the command's other options."""

@@ -15,7 +15,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from meshlab_spectral.cli.filter_options import with_options
+from meshlab_spectral.cli.filter_options import OneMesh, with_options
 from meshlab_spectral.cli.messages import errors_reported
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.extras import check_extras
@@ -83,14 +83,7 @@ def spectrum_command(
     basis_size: Annotated[
         int, typer.Option(min=1, help="Number of lowest harmonics to show individually.")
     ] = DEFAULT_BASIS_SIZE,
-    mesh: Annotated[
-        str | None,
-        typer.Option(
-            metavar="NAME",
-            help="Only the mesh of this name; by default all of the file together.",
-            show_default=False,
-        ),
-    ] = None,
+    mesh: OneMesh = None,
     as_json: Annotated[
         bool, typer.Option("--json", help="Print the spectrum as one JSON object.")
     ] = False,

@@ -41,11 +41,6 @@ def _size(difference: Array) -> float:
     return float(np.sqrt(np.mean(difference**2)))
 
 
-def single_holds(before: Array, after: Array) -> bool:
-    """Whether single precision holds a movement."""
-    return rounding_told(before, after) is None
-
-
 def precision_warning(before: Array, after: Array, name: str) -> str | None:
     """Return the warning when a file `name` of single precision cannot hold a movement."""
     told = rounding_told(before, after)
@@ -54,4 +49,4 @@ def precision_warning(before: Array, after: Array, name: str) -> str | None:
 
 def digits_for(before: Array, after: Array) -> int:
     """Return how many significant digits a text needs to hold a movement."""
-    return SINGLE if single_holds(before, after) else DOUBLE
+    return SINGLE if rounding_told(before, after) is None else DOUBLE
