@@ -7,10 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+import pyvista as pv
 from meshlab_spectral.documents import vtk
 from meshlab_spectral.errors import MeshFileError
-
-pv = pytest.importorskip("pyvista", reason="pyvista reads and writes the files")
 
 LEGACY = """# vtk DataFile Version 3.0
 A title: POINTS 7 float
