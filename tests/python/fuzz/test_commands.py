@@ -13,6 +13,8 @@ from pathlib import Path
 import pytest
 import tomli_w
 from commands import PRECIOUS, write_ply
+from format_samples import SAMPLES
+from fuzz.damages import Damage, damaged, damages
 from fuzz.runs import as_many_as
 from hypothesis import given
 from hypothesis import strategies as st
@@ -39,7 +41,9 @@ _choices = st.sampled_from(
 _values = st.one_of(_numbers, _sizes, _choices, _texts)
 _names = st.one_of(
     st.sampled_from(tuple(FilterOptions().as_dict())).map(lambda name: name.replace("_", "-")),
-    st.sampled_from(("no-reinject-residual", "json", "debug", "help", "no-such-option", "")),
+    st.sampled_from(
+        ("no-reinject-residual", "json", "mesh", "debug", "help", "no-such-option", "")
+    ),
 )
 
 
@@ -52,7 +56,11 @@ def _options() -> st.SearchStrategy[list[str]]:
     )
 
 
-_INPUTS = ("mesh.ply", "cloud.ply", "text.ply", "empty.obj", "missing.ply", ".", "a b [x].ply", "")
+_FORMATS = tuple(sorted({sample.name for sample in SAMPLES}))
+_INPUTS = (
+    *("mesh.ply", "cloud.ply", "text.ply", "empty.obj", "missing.ply", ".", "a b [x].ply", ""),
+    *_FORMATS,
+)
 _OUTPUTS = (
     "out.ply",
     "out.obj",
@@ -62,6 +70,7 @@ _OUTPUTS = (
     ".",
     "",
     "mesh.ply",
+    *(f"out{Path(name).suffix}" for name in _FORMATS),
 )
 _inputs, _outputs = st.sampled_from(_INPUTS), st.sampled_from(_OUTPUTS)
 
@@ -97,6 +106,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     shutil.copy(folder / "mesh.ply", folder / "a b [x].ply")
     (folder / "text.ply").write_text("Dear all,\n")
     (folder / "empty.obj").touch()
+    for sample in SAMPLES:
+        sample.write(folder / sample.name)
     return folder
 
 
@@ -154,6 +165,20 @@ def test_any_command_line_filters_or_says_why_not(
     wrote = answer[0] == 0 and target == "out.ply" and "--help" not in options
     assert (written.read_bytes() != PRECIOUS) == wrote, answer
     assert not list(folder.glob(".*.partial"))
+
+
+@as_many_as(30, share=0.05)
+@given(st.sampled_from(_FORMATS), damages)
+def test_any_damaged_file_is_filtered_or_refused(
+    run: Callable[[list[str]], Answer], folder: Path, name: str, damages: list[Damage]
+) -> None:
+    source = folder / f"damaged{Path(name).suffix}"
+    target = folder / f"filtered{source.suffix}"
+    source.write_bytes(damaged((folder / name).read_bytes(), damages))
+    target.write_bytes(PRECIOUS)
+    answer = run(["filter", source.name, target.name])
+    assert_civil(answer)
+    assert (target.read_bytes() != PRECIOUS) == (answer[0] == 0), answer
 
 
 @as_many_as(50, share=0.1)

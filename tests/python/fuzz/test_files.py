@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from commands import assert_fails, command
 from format_samples import SAMPLES, Sample
+from fuzz.damages import Damage, damaged, damages
 from fuzz.runs import as_many_as
 from hypothesis import given
 from hypothesis import strategies as st
@@ -17,29 +18,6 @@ from meshlab_spectral.errors import MeshFileError
 
 # VTK's own readers may end the process: the commands say so (below).
 PATCHED_HERE = [sample for sample in SAMPLES if not sample.name.endswith((".vtk", ".vtp"))]
-WORDS = (b"nan", b"1e400", b"-1", b"99999999999", b"0", b"\0", b"\xff\xfe", b"]}", b"<x>", b"\n")
-
-
-def damaged(data: bytes, damages: list[tuple[str, float, float, bytes]]) -> bytes:
-    for kind, begin, length, word in damages:
-        first = int(begin * len(data))
-        last = first + int(length**4 * len(data))
-        middle = {"cut": b"", "twice": 2 * data[first:last], "replaced": word}[kind]
-        data = data[:first] + middle + data[last:]
-    return data
-
-
-_shares = st.floats(0, 1)
-_damages = st.lists(
-    st.tuples(
-        st.sampled_from(("cut", "twice", "replaced")),
-        _shares,
-        _shares,
-        st.one_of(st.sampled_from(WORDS), st.binary(max_size=4)),
-    ),
-    min_size=1,
-    max_size=3,
-)
 
 
 @pytest.fixture(scope="module")
@@ -53,9 +31,9 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> dict[int, Path]:
 
 
 @as_many_as(400)
-@given(st.integers(0, len(PATCHED_HERE) - 1), _damages)
+@given(st.integers(0, len(PATCHED_HERE) - 1), damages)
 def test_a_damaged_file_is_read_or_refused(
-    whole: dict[int, Path], number: int, damages: list[tuple[str, float, float, bytes]]
+    whole: dict[int, Path], number: int, damages: list[Damage]
 ) -> None:
     source = whole[number]
     path = source.with_name(f"damaged{source.suffix}")
