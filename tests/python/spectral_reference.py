@@ -169,6 +169,11 @@ def masses(V: Array, F: Indices, laplacian: str) -> Array:
     return np.full_like(d, d[d > 0].mean()) if laplacian == "uniform" else d
 
 
+def conformal_masses(D: Array, of_input: Array) -> Array:
+    """Return the masses of a conformal update, of which every vertex keeps a quarter."""
+    return np.maximum(D, 0.25 * of_input)
+
+
 def full_filter(
     V: Array,
     F: Indices,
@@ -182,13 +187,14 @@ def full_filter(
     parts = components(len(V), F)
     W, d = matrices(V, F, laplacian)
     spectrum = spectra(W, d, parts)
-    X = V.copy()
+    of_input, X = d, V.copy()
     for step in range(steps):
         if step > 0 and basis_update == "full":
             now, d = matrices(X, F, laplacian)
             spectrum = spectra((1 - conformal_share) * now + conformal_share * W, d, parts)
         if step > 0 and basis_update == "conformal":
-            spectrum = spectra(W, masses(X, F, laplacian), parts)
+            d = conformal_masses(masses(X, F, laplacian), of_input)
+            spectrum = spectra(W, d, parts)
         X = apply_gain(X, spectrum, lambda omega: gain(omega) ** (1 / steps))
     return X
 
@@ -211,11 +217,13 @@ def truncated_filter(
     W, d = cotangent_matrix(V, F), lumped_areas(V, F)
     (spectrum,) = spectra(W, d, [part])
     sizes = []
-    X = V.copy()
+    of_input, X = d, V.copy()
     for step in range(steps):
         if step > 0 and basis_update != "none":
             W = cotangent_matrix(X, F) if basis_update == "full" else W
             d = lumped_areas(X, F)
+            if basis_update == "conformal":
+                d = conformal_masses(d, of_input)
             (spectrum,) = spectra(W, d, [part])
         k = cut_outside_clusters(spectrum.lam, basis_size)
         sizes.append(k)
@@ -262,11 +270,13 @@ def fixed_filter(
     interior = np.setdiff1d(np.arange(len(V)), rim)
     W, d = matrices(V, F, laplacian)
     spectrum = fixed_spectrum(W, d, interior)
-    X = V.copy()
+    of_input, X = d, V.copy()
     for step in range(steps):
         if step > 0 and basis_update != "none":
             W = matrices(X, F, laplacian)[0] if basis_update == "full" else W
             d = lumped_areas(X, F)
+            if basis_update == "conformal":
+                d = conformal_masses(d, of_input)
             spectrum = fixed_spectrum(W, d, interior)
         rows = W[interior]
         H = scipy.linalg.solve(

@@ -28,7 +28,9 @@ FullSpectrumResult filteredFullSpectrum(const Operator& A, const Gain& gain, dou
     options.accuracy = accuracy;
     options.samples = samples;
     options.roundOffAtVertices = roundOffAtVertices(ldlt, A.laplacian);
-    return applyFullSpectrum(A.laplacian.D, A.constants, ldlt, {gain}, A.mesh.V, options).front();
+    return applyFullSpectrum(A.laplacian.D, A.constants, ShiftInvert(ldlt), {gain}, A.mesh.V,
+                             options)
+        .front();
 }
 
 Eigen::MatrixXd innerProducts(const Eigen::MatrixXd& U, const Eigen::VectorXd& D,

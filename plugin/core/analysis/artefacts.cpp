@@ -32,7 +32,8 @@ Artefacts measureArtefacts(const Vertices& V, const Faces& F, const ArtefactOpti
     evaluation.roundOffAtVertices = roundOffAtVertices(ldlt, mesh.laplacian);
     const Vertices& X = mesh.surface.X;
     const FullSpectrumResult smooth =
-        applyFullSpectrum(D, mesh.constants, ldlt, {gain}, X, evaluation, progress).front();
+        applyFullSpectrum(D, mesh.constants, ShiftInvert(ldlt), {gain}, X, evaluation, progress)
+            .front();
 
     const Eigen::VectorXd length = (X - smooth.Y).rowwise().norm();
     Artefacts artefacts;

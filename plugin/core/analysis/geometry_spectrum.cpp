@@ -201,8 +201,9 @@ BandEnergies energiesBeyond(const Bands& octaves, const Bands& thirds, const Sig
         progress.report(static_cast<double>(j) / octaves.count(), "energies of the octaves");
         const double omega = 2.0 * kPi / octaves.featureSize(j);
         ldlt.factorizeDefinite(W, D, omega * omega);
+        const ShiftInvert S(ldlt);
         const Eigen::ArrayXd energies =
-            convergedEnergies(wanted, KrylovSpaces(ldlt, D, signal.constants, signals));
+            convergedEnergies(wanted, KrylovSpaces(S, D, signal.constants, signals));
         for (std::size_t i = 0; i < wanted.size(); ++i)
             wanted[i].energy = energies[static_cast<Index>(i)];
     }

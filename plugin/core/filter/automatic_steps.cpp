@@ -20,7 +20,7 @@ namespace {
 constexpr double kSecondOrder = 4.0, kLeastShrinking = 1.25;
 
 /// Steps after which a pass that has not converged is singular: an error of second order has shrunk
-/// 64 times since the first pass. Parts that shrink away are given as many.
+/// 64 times since the first pass.
 constexpr int kFewSteps = 8;
 
 /// Norms of the rows of A - B.
@@ -68,8 +68,8 @@ class Convergence {
     bool stagnates() const { return shrinking_ < kLeastShrinking; }
 
   private:
-    /// Assumed while two shapes give no rate yet: cautious, half of second order.
-    static constexpr double kUnknown = 2.0;
+    /// Assumed while two shapes give no rate yet: the least of real meshes is 2.2.
+    static constexpr double kUnknown = 2.5;
 
     double distance_ = std::numeric_limits<double>::infinity(), shrinking_ = kUnknown;
 };
@@ -84,13 +84,7 @@ class Limit {
     void add(Vertices Y) {
         Vertices E = Y_.size() > 0 ? Vertices(Y + (Y - Y_) / (kSecondOrder - 1.0)) : Y;
         change_ = distances(E, E_);
-        const Eigen::VectorXd mass = laplacians_.mass(E);
-        parallelFor(2, [&](Index task) {
-            if (task == 0)
-                ofResult_.add(change_, mass);
-            else
-                ofInput_.add(change_, laplacians_.inputMass());
-        });
+        convergence_.add(change_, laplacians_.mass(E));
         E_ = std::move(E);
         Y_ = std::move(Y);
     }
@@ -98,20 +92,19 @@ class Limit {
     const Vertices& last() const { return Y_; }
     const Vertices& extrapolated() const { return E_; }
 
-    const Convergence& ofResult() const { return ofResult_; }  ///< Over the extrapolated surface.
-    const Convergence& ofInput() const { return ofInput_; }
+    const Convergence& convergence() const { return convergence_; }  ///< Over the surface E_K.
 
     /// Part of the input's surface where the estimated error exceeds the tolerance.
     double partBeyond(double tolerance) const {
         const Eigen::VectorXd& D = laplacians_.inputMass();
-        return (ofInput_.toCome() * change_.array() > tolerance).select(D, 0.0).sum() / D.sum();
+        return (convergence_.toCome() * change_.array() > tolerance).select(D, 0.0).sum() / D.sum();
     }
 
   private:
     const LaplacianBuilder& laplacians_;
     Vertices Y_, E_;
     Eigen::VectorXd change_;  // n, displacements of the vertices from E_K/2 to E_K
-    Convergence ofResult_, ofInput_;
+    Convergence convergence_;
 };
 
 /// Estimated number of steps of the last pass.
@@ -149,16 +142,13 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
                                     progress.part(done, end), firstHalf);
         done = end;
         limit.add(std::move(result.last.X));
-        result.error = limit.ofResult().error();
+        result.error = limit.convergence().error();
         // Of two passes, of which one had to take smaller steps, both may have taken the same ones.
         const bool isEven = result.last.sizes.size() == static_cast<std::size_t>(K);
         const bool isComparable = std::exchange(wasEven, isEven) && isEven;
         const bool isReached = isComparable && result.error <= options.tolerance;
-        // Parts that shrink away are worth a few passes only.
-        const bool isEnough =
-            isReached && (K >= kFewSteps || limit.ofInput().error() <= options.tolerance);
-        const bool stagnates = isComparable && K >= kFewSteps && limit.ofResult().stagnates();
-        if (isEnough || stagnates || 2 * K > options.maxSteps) {
+        const bool stagnates = isComparable && K >= kFewSteps && limit.convergence().stagnates();
+        if (isReached || stagnates || 2 * K > options.maxSteps) {
             result.last.X = isReached ? limit.extrapolated() : limit.last();
             result.singularPart = limit.partBeyond(options.tolerance);
             return result;

@@ -9,8 +9,8 @@
 
 namespace spectral {
 
-/// Part of a surface that errors of automatic steps leave out: thin parts that pinch off, often
-/// single vertices, where the flow is singular.
+/// Part of a surface that errors of automatic steps leave out: where the flow is nearly singular,
+/// often at single vertices.
 inline constexpr double kNegligibleArea = 1e-3;
 
 struct AutomaticOptions {
@@ -37,12 +37,12 @@ struct AutomaticSteps {
 /// removes the first term. The distance from E_K/2 to E_K is the error of the former; with the rate
 /// at which these distances shrink it gives that of E_K, an error of the final shape. A single step
 /// (E_1 = Y_1) is compared with the paper's, which comes from the same Krylov space as its half
-/// step. All passes before the last together cost as much as the last.
+/// step. Most runs end after one pass, of two evaluations, or two, of five. All passes before the
+/// last together cost as much as the last.
 ///
-/// Where parts of the surface shrink away, whole components or thin tips, the flow is singular and
-/// passes converge slowly: such parts are given K = 8 and must not hold up all the others. Where
-/// more of the filtered surface is singular, as it can be with BasisUpdate::Full, passes end when
-/// the distances no longer shrink, or at maxSteps; X is then Y_K.
+/// Where parts of the surface shrink away, as they can with BasisUpdate::Full, the flow is singular
+/// and passes converge slowly, or not at all: they end when the distances no longer shrink, or at
+/// maxSteps; X is then Y_K.
 ///
 /// The steps are equal because smaller ones where the local error is large do not pay: chosen by
 /// the largest local error of a vertex, as many were taken for the same error of the result, since

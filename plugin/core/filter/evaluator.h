@@ -43,11 +43,15 @@ class Evaluator {
     const HarmonicBasis& basis() const { return basis_; }
     int computedBases() const { return computedBases_; }
     const ShiftedLdlt& ldlt() const { return ldlt_; }  ///< Counts the work.
+    int products() const { return products_; }         ///< Of W with one column each.
+    /// Whether there was no memory for a factorization that would have paid.
+    bool lacksMemory() const { return lacksMemory_; }
 
   protected:
     ShiftedLdlt ldlt_;
     HarmonicBasis basis_;
-    int computedBases_ = 0;
+    int computedBases_ = 0, products_ = 0;
+    bool lacksMemory_ = false;
 };
 
 }  // namespace spectral

@@ -32,6 +32,9 @@ constexpr double kLoosestAccuracy = 1e-4;
 /// shrink to a small part.
 constexpr double kMostOffset = 10.0;
 
+/// What a low-pass leaves of the area, less than a hundredth of the size: nothing, to its user.
+constexpr double kLeastArea = 1e-4;
+
 /// More steps make no difference, and take hours.
 constexpr int kMostSteps = 1000;
 
@@ -119,6 +122,10 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     const AutomaticSteps steps = filterInSteps(laplacians, evaluate, surface.X, options, progress);
     if (!steps.last.X.allFinite())
         throw SolverFailure("the filtered coordinates are not finite numbers");
+    const double areaBefore = surfaceArea(surface.X, surface.F);
+    if (options.steps == 0 && options.transferFunction.type == FilterType::LowPass &&
+        surfaceArea(steps.last.X, surface.F) < kLeastArea * areaBefore)
+        throw SolverFailure(ErrorCode::ShrinksToNothing, "the whole surface shrinks to nothing");
     const Eigen::VectorXd weight =
         vertexWeight(options.part, surface, interior, laplacians.input(), options.featureSize);
     Vertices displacement = weight.asDiagonal() * (steps.last.X - surface.X);
@@ -140,7 +147,7 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     result.cutoffFrequency = transfer.cutoff();
     result.featureSize = options.featureSize;
     measureDisplacement(displacement, lumpedMass(surface.X, surface.F), result);
-    result.areaBefore = surfaceArea(surface.X, surface.F);
+    result.areaBefore = areaBefore;
     result.areaAfter = surfaceArea(X, surface.F);
     result.volumeBefore = signedVolume(surface.X, surface.F);
     result.volumeAfter = signedVolume(X, surface.F);
@@ -148,6 +155,8 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     result.fixedVertices = static_cast<int>(interior.fixedVertices());
     result.factorizations = evaluate.factorizations();
     result.solves = evaluate.solves();
+    result.products = evaluate.products();
+    result.lacksMemory = evaluate.lacksMemory();
     result.accuracy = evaluation.accuracy;
     result.errorEstimate = steps.last.errorEstimate;
     result.accuracyReached = steps.last.accuracyReached;

@@ -48,6 +48,9 @@ struct FilterResult : SurfaceCounts {
     PreservedVolumes volumes;                      ///< With preserveVolume.
     int factorizations = 0;                        ///< Sparse LDL^T factorizations.
     int solves = 0;                                ///< Solves with one right-hand side.
+    int products = 0;                              ///< Of the Laplacian with one column.
+    bool lacksMemory = false;     ///< Whether products took the place of a factorization that there
+                                  ///< was no memory for: the same result, but slower.
     double accuracy = 0.0;        ///< Requested accuracy of the evaluation, relative, all steps.
     double errorEstimate = 0.0;   ///< Estimated error of the evaluation, relative, all steps.
     bool accuracyReached = true;  ///< Whether every step was within its share of `accuracy`.

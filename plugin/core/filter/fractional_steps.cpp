@@ -34,13 +34,13 @@ void midpointStep(LaplacianBuilder& laplacians, StepEvaluator& evaluate, double 
         double area = laplacians.inputMass().sum();
         if (half == nullptr) {
             const Laplacian& laplacian = laplacians(steps.X);
-            area = laplacian.D.sum();
+            area = laplacians.area();
             predicted =
                 evaluate.predict(laplacian, steps.X, {0.5 * h}, progress.part(0.0, 0.5)).Y.front();
             half = &predicted;
         }
         const Laplacian& laplacian = laplacians(*half);
-        if (laplacian.D.sum() < kLeastArea * area)
+        if (laplacians.area() < kLeastArea * area)
             throw SolverFailure(ErrorCode::ShrinksToNothing,
                                 "the whole surface shrinks to nothing in half a step");
         append(evaluate(laplacian, steps.X, h, progress.part(0.5, 1.0)), h, steps);

@@ -5,7 +5,6 @@
 #include <optional>
 #include <sstream>
 
-#include "core/filter/full_spectrum_evaluator.h"
 #include "core/support/errors.h"
 
 namespace spectral {
@@ -42,7 +41,8 @@ std::unique_ptr<Evaluator> evaluatorFor(const EvaluationOptions& options,
         requireOneResidualGain(F);
         return std::make_unique<BasisEvaluator>(F, std::nullopt, options.atEveryVertex);
     }
-    return std::make_unique<FullSpectrumEvaluator>(F, options.accuracy, options.atEveryVertex);
+    return std::make_unique<FullSpectrumEvaluator>(F, options.accuracy, options.atEveryVertex,
+                                                   options.solver);
 }
 
 }  // namespace

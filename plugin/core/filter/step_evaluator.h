@@ -6,6 +6,7 @@
 
 #include "core/filter/basis_evaluator.h"
 #include "core/filter/evaluator.h"
+#include "core/filter/full_spectrum_evaluator.h"
 #include "core/laplacian/harmonic_extension.h"
 #include "core/laplacian/interior.h"
 #include "core/laplacian/laplacian.h"
@@ -28,6 +29,7 @@ struct EvaluationOptions {
     /// shape (see FullSpectrumResult).
     double accuracy = 1e-6;
     bool atEveryVertex = true;  ///< Whether that is the error of every vertex, or over the surface.
+    Solver solver = Solver::Cheapest;  ///< For Spectrum::Full.
 };
 
 /// Evaluates fractional steps F^alpha(sqrt(A)) X (Eq. 11) on a surface.
@@ -58,6 +60,8 @@ class StepEvaluator {
         return evaluator_->ldlt().factorizations() + extension_.factorizations();
     }
     int solves() const { return evaluator_->ldlt().solves() + extension_.solves(); }
+    int products() const { return evaluator_->products(); }
+    bool lacksMemory() const { return evaluator_->lacksMemory(); }
 
   private:
     Evaluation evaluate(const Laplacian& surface, const Eigen::MatrixXd& X,

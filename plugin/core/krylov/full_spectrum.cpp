@@ -15,6 +15,11 @@ namespace {
 /// Dimensions between checks of the error: as they grow, so does the cost of a check.
 int nextCheck(int m) { return m + std::max(3, m / 10); }
 
+/// Dimension from which on the error tells how many there will be: its logarithm falls like their
+/// number to the power of one and a half, on real meshes.
+constexpr int kEnoughToJudge = 9;
+constexpr double kPace = 1.0 / 1.5;
+
 /// Multiple of the accuracy at which the error at the vertices is estimated as well: a pass over
 /// the basis that would be wasted far from convergence, but needs some checks for its rate.
 constexpr double kNearlyConverged = 30.0;
@@ -27,12 +32,14 @@ constexpr double kNotConverged = 3.0;
 constexpr double kUselessRoundOff = 0.03;
 
 /// Frequencies at which gains are sampled, ascending: those asked for, and eighths of octaves on
-/// both sides of the one that belongs to the pole.
-Eigen::VectorXd sampleFrequencies(double pole, std::vector<double> samples) {
+/// both sides of the central one, up to the last.
+Eigen::VectorXd sampleFrequencies(const KrylovOperator& S, std::vector<double> samples) {
     constexpr int kOctaves = 32, kPerOctave = 8;
     for (int i = -kOctaves * kPerOctave; i <= kOctaves * kPerOctave; ++i)
-        samples.push_back(std::sqrt(pole) * std::exp2(static_cast<double>(i) / kPerOctave));
+        samples.push_back(S.centralFrequency() * std::exp2(static_cast<double>(i) / kPerOctave));
+    for (double& omega : samples) omega = std::min(omega, S.lastFrequency());
     std::sort(samples.begin(), samples.end());
+    samples.erase(std::unique(samples.begin(), samples.end()), samples.end());
     return Eigen::Map<const Eigen::VectorXd>(samples.data(), static_cast<Index>(samples.size()));
 }
 
@@ -58,17 +65,18 @@ class ErrorEstimate {
     std::vector<double> changes_;
 };
 
-/// Error of F(sqrt(A)) X, relative to X, that comes of a relative error of S: an error of lambda
-/// relative to lambda + lambda_p, however small lambda is.
-double roundOffError(const KrylovSpaces& spaces, double roundOff, const Gain& gain, double pole) {
+/// Error of F(sqrt(A)) X, relative to X, that comes of a relative error of all that S is applied
+/// to.
+double roundOffError(const KrylovSpaces& spaces, double roundOff, const Gain& gain,
+                     const KrylovOperator& S) {
     double squares = 0.0;
     for (int c = 0; c < spaces.columns(); ++c) {
         const auto [omega, weight] = spaces.quadrature(c);
         for (Index i = 0; i < omega.size(); ++i) {
             if (!std::isfinite(omega[i])) continue;
-            const double lambda = omega[i] * omega[i], error = roundOff * (lambda + pole);
-            const double F = gain(omega[i]), above = gain(std::sqrt(lambda + error)),
-                         below = gain(std::sqrt(std::max(0.0, lambda - error)));
+            const double theta = S.theta(omega[i] * omega[i]), error = S.errorOf(theta, roundOff);
+            const double F = gain(omega[i]), above = gain(std::sqrt(S.lambda(theta + error))),
+                         below = gain(std::sqrt(S.lambda(theta - error)));
             const double most = std::max(std::abs(above - F), std::abs(below - F));
             squares += weight[i] * most * most;
         }
@@ -79,15 +87,14 @@ double roundOffError(const KrylovSpaces& spaces, double roundOff, const Gain& ga
 /// Successive approximations of F(sqrt(A)) X for one gain.
 class Approximation {
   public:
-    /// @param pole          lambda_p.
     /// @param omega         frequencies at which the gain is sampled.
     /// @param smallestMass  of a vertex.
-    Approximation(const KrylovSpaces& spaces, const Gain& gain, double pole,
+    Approximation(const KrylovSpaces& spaces, const Gain& gain, const KrylovOperator& S,
                   const Eigen::VectorXd& omega, double smallestMass,
                   const FullSpectrumOptions& options)
         : spaces_(spaces),
           gain_(gain),
-          pole_(pole),
+          S_(S),
           omega_(omega),
           gains_(omega.unaryExpr(gain)),
           options_(options),
@@ -120,11 +127,11 @@ class Approximation {
 
     /// The error that comes of round-off in S, by roundOffError; at every vertex if asked for.
     double ofRoundOff(double roundOff) const {
-        const double error = roundOffError(spaces_, roundOff, gain_, pole_);
+        const double error = roundOffError(spaces_, roundOff, gain_, S_);
         if (!options_.atEveryVertex) return error;
         const double bound = error * mostAtVertices_;
         if (!options_.roundOffAtVertices) return bound;
-        const double measured = roundOffError(spaces_, *options_.roundOffAtVertices, gain_, pole_);
+        const double measured = roundOffError(spaces_, *options_.roundOffAtVertices, gain_, S_);
         return std::min(std::max(measured, error), bound);
     }
 
@@ -135,12 +142,14 @@ class Approximation {
     /// order, the divided differences of F, as a function of theta, times that round-off.
     double mixingError() const {
         constexpr double kRoundOff = 1e-15;  // of each theta
-        const Eigen::ArrayXd theta = (omega_.array().square() + pole_).inverse();
+        const Eigen::ArrayXd theta =
+            omega_.array().unaryExpr([&](double omega) { return S_.theta(omega * omega); });
         double squares = 0.0;
         for (int c = 0; c < spaces_.columns(); ++c) {
             const auto [omega, weight] = spaces_.quadrature(c);
             for (Index i = 0; i < omega.size(); ++i) {
-                const double ritz = 1.0 / (omega[i] * omega[i] + pole_), error = kRoundOff * ritz;
+                const double ritz = S_.theta(omega[i] * omega[i]);
+                const double error = S_.errorOf(ritz, kRoundOff);
                 const Eigen::ArrayXd distance = (theta - ritz).abs() + error;
                 const double most =
                     ((gains_.array() - gain_(omega[i])).abs() / distance).maxCoeff() * error;
@@ -152,7 +161,7 @@ class Approximation {
 
     const KrylovSpaces& spaces_;
     const Gain& gain_;
-    double pole_;
+    const KrylovOperator& S_;
     const Eigen::VectorXd& omega_;
     Eigen::VectorXd gains_;
     const FullSpectrumOptions& options_;
@@ -165,19 +174,21 @@ class Approximation {
 }  // namespace
 
 std::vector<FullSpectrumResult> applyFullSpectrum(
-    const Eigen::VectorXd& D, const ConstantModes& constants, const ShiftedLdlt& ldlt,
+    const Eigen::VectorXd& D, const ConstantModes& constants, const KrylovOperator& S,
     const std::vector<Gain>& gains, const Eigen::MatrixXd& X, const FullSpectrumOptions& options,
     const Progress& progress) {
     double orthogonal = KrylovSpaces::kOrthogonal;
     if (options.atEveryVertex)  // of small mass, with entries as large in the basis
         orthogonal = std::min(orthogonal, options.accuracy * std::sqrt(D.minCoeff() / D.sum()));
-    KrylovSpaces spaces(ldlt, D, constants, X, orthogonal);
+    constexpr double kNarrow = 1e-6, kErrorOfNarrow = 1e-7;
+    const bool isNarrow = !S.isToBeOrthogonal() && options.accuracy >= kNarrow;
+    KrylovSpaces spaces(S, D, constants, X, orthogonal, isNarrow);
     if (!(spaces.largestEntry() > 0.0)) return {gains.size(), {X, 0.0, 0, true}};
     std::vector<FullSpectrumResult> results(gains.size());
-    const Eigen::VectorXd omega = sampleFrequencies(-ldlt.shift(), options.samples);
+    const Eigen::VectorXd omega = sampleFrequencies(S, options.samples);
     std::vector<Approximation> approximations;
     for (const Gain& gain : gains)
-        approximations.emplace_back(spaces, gain, -ldlt.shift(), omega, D.minCoeff(), options);
+        approximations.emplace_back(spaces, gain, S, omega, D.minCoeff(), options);
 
     // A space of all dimensions need not be invariant: where eigenvalues span many decades, its
     // last vectors are round-off.
@@ -201,7 +212,7 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
         for (std::size_t g = 0; g < gains.size(); ++g) {
             FullSpectrumResult& result = results[g];
             result.dimension = isInvariant ? m - 1 : m;
-            result.errorEstimate = approximations[g].update();
+            result.errorEstimate = approximations[g].update() + (isNarrow ? kErrorOfNarrow : 0.0);
             result.converged = result.errorEstimate <= options.accuracy;
             allConverged = allConverged && result.converged;
             largestError = std::max(largestError, result.errorEstimate);
@@ -213,6 +224,9 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
         if (firstError <= 0.0) firstError = std::max(largestError, options.accuracy * 10);
         const double done =
             std::log(firstError / largestError) / std::log(firstError / options.accuracy);
+        if (options.affordable && m >= kEnoughToJudge &&
+            m > *options.affordable * std::pow(std::max(0.0, done), kPace))
+            return {};
         furthest = std::clamp(done, furthest, 1.0);  // the estimate may increase
     }
 

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/krylov/krylov_operator.h"
 #include "core/laplacian/constant_modes.h"
 #include "core/laplacian/frequency.h"
 #include "core/laplacian/laplacian.h"
@@ -12,8 +13,10 @@
 namespace spectral {
 
 struct FullSpectrumOptions {
-    double accuracy = 1e-6;     ///< Requested error of Y, relative as in FullSpectrumResult.
-    int maxDimension = 200;     ///< Krylov dimension at which to give up.
+    double accuracy = 1e-6;  ///< Requested error of Y, relative as in FullSpectrumResult.
+    int maxDimension = 200;  ///< Krylov dimension at which to give up.
+    /// Krylov dimension at which to give up as soon as more is expected, without a result.
+    std::optional<int> affordable;
     bool atEveryVertex = true;  ///< Else only |dY|_D / |X|_D, over the surface, is bounded.
 
     /// Round-off of solves, relative to the largest eigenvalue of the inverse, where it is known to
@@ -44,21 +47,21 @@ struct FullSpectrumResult {
 /// Y = F(sqrt(A)) X over the whole spectrum for several gains F, without computing an eigenvector.
 ///
 /// The same as with all n harmonics, Y = Phi F(Lambda^1/2) Phi^T D X (Kovnatsky et al. 2012, Eq.
-/// 6), by a shift-invert Lanczos method with one repeated real pole (krylov_spaces.h).
+/// 6), by a Lanczos method: rational, with one repeated real pole, or polynomial, as S is
+/// (krylov_operator.h, krylov_spaces.h).
 ///
 /// The stopping rule is a posteriori: over the surface by a bound from the spectral measure
 /// (KrylovSpaces::squaredErrorBound), at every vertex from the differences between approximations a
 /// few dimensions apart and their rate of decay.
 ///
 /// @param D      n lumped masses of the Laplacian.
-/// @param ldlt   factorization of W + lambda_p D; see selectPole for lambda_p.
 /// @param gains  continuous, finite and >= 0 on [0, infinity]; constant modes keep gain 1.
 /// @param X      n x c signals, e.g. the three coordinates.
-/// @return       one result for each gain, all from the same Krylov spaces.
+/// @return       one result for each gain, all from the same Krylov spaces; none if it gives up.
 /// @throws SolverFailure  when the tridiagonal eigenproblem does not converge, or round-off leaves
 ///                        nothing of the solves (KrylovSpaces::roundOff).
 std::vector<FullSpectrumResult> applyFullSpectrum(
-    const Eigen::VectorXd& D, const ConstantModes& constants, const ShiftedLdlt& ldlt,
+    const Eigen::VectorXd& D, const ConstantModes& constants, const KrylovOperator& S,
     const std::vector<Gain>& gains, const Eigen::MatrixXd& X, const FullSpectrumOptions& options,
     const Progress& progress = {});
 

@@ -5,9 +5,9 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
-#include <type_traits>
 #include <utility>
 
+#include "core/krylov/rows.h"
 #include "core/support/errors.h"
 #include "core/support/threads.h"
 
@@ -23,33 +23,9 @@ constexpr double kBreakdown = 1e-13;
 /// vertices whose share of the mass is 1e-12.
 constexpr double kRoundOff = 1e-15;
 
-/// Calls a function with the number of columns as a compile-time constant.
-template <class Call>
-void withColumns(int columns, const Call& call) {
-    switch (columns) {
-        case 1: return call(std::integral_constant<int, 1>());
-        case 2: return call(std::integral_constant<int, 2>());
-        case 3: return call(std::integral_constant<int, 3>());
-        default: return call(std::integral_constant<int, KrylovSpaces::kMostSignals>());
-    }
-}
-
 /// Number of tasks of parallelRows.
 std::size_t taskCount(Index rows) {
     return static_cast<std::size_t>((rows + kRowsOfTask - 1) / kRowsOfTask);
-}
-
-/// The values of all signals at a vertex.
-template <int Columns>
-using Row = Eigen::Array<double, 1, Columns, Eigen::RowMajor | Eigen::DontAlign>;
-
-template <int Columns>
-Eigen::Map<Row<Columns>> rowOf(Eigen::VectorXd& block, Index i) {
-    return Eigen::Map<Row<Columns>>(block.data() + i * Columns);
-}
-template <int Columns>
-Eigen::Map<const Row<Columns>> rowOf(const Eigen::VectorXd& block, Index i) {
-    return Eigen::Map<const Row<Columns>>(block.data() + i * Columns);
 }
 
 template <int Columns>
@@ -108,10 +84,10 @@ Moments<Columns> momentsOf(const Eigen::VectorXd& D, const Eigen::VectorXi& labe
 
 }  // namespace
 
-KrylovSpaces::KrylovSpaces(const ShiftedLdlt& ldlt, const Eigen::VectorXd& D,
+KrylovSpaces::KrylovSpaces(const KrylovOperator& S, const Eigen::VectorXd& D,
                            const ConstantModes& constants, const Eigen::MatrixXd& X,
-                           double orthogonal)
-    : ldlt_(ldlt),
+                           double orthogonal, bool isNarrow)
+    : S_(S),
       constants_(constants),
       orthogonal_(orthogonal),
       columns_(static_cast<int>(X.cols())),
@@ -119,13 +95,17 @@ KrylovSpaces::KrylovSpaces(const ShiftedLdlt& ldlt, const Eigen::VectorXd& D,
       label_(D.size()),
       alpha_(X.cols()),
       beta_(X.cols()),
+      ritz_(X.cols()),
       overlap_(X.cols()),
       overlapBefore_(X.cols()),
       exhausted_(X.cols()),
       isOfRoundOff_(X.cols()),
       roundOff_(kBreakdown) {
     assert(columns_ >= 1 && columns_ <= kMostSignals);
-    const Eigen::VectorXi& order = ldlt.factorOrder();
+    if (isNarrow) basis_.emplace<Vectors<float>>();
+    for (Eigen::VectorXd* rows : {&newest_, &before_, &next_}) rows->resize(S.rows() * columns_);
+    before_.setZero();
+    const int* order = S.order();
     parallelRows(D.size(), [&](Index begin, Index end) {
         for (Index i = begin; i < end; ++i) {
             D_[order[i]] = D[i];
@@ -144,20 +124,20 @@ bool KrylovSpaces::extend() {
 template <int Columns>
 void KrylovSpaces::start(const Eigen::MatrixXd& X) {
     const Index n = D_.size();
-    work_.resize(ldlt_.orderedRows() * Columns);
-    const Eigen::VectorXi& order = ldlt_.factorOrder();
+    double* q = newest_.data();
+    const int* order = S_.order();
     parallelRows(n, [&](Index begin, Index end) {
-        for (Index i = begin; i < end; ++i) rowOf<Columns>(work_, order[i]) = X.row(i).array();
+        for (Index i = begin; i < end; ++i) rowOf<Columns>(q, order[i]) = X.row(i).array();
     });
     const auto mean = momentsOf<Columns>(D_, label_, constants_.masses(), [&](Index i) {
-                          return Row<Columns>(rowOf<Columns>(work_, i));
+                          return Row<Columns>(rowOf<Columns>(q, i));
                       }).means;
     std::vector<double> largest(taskCount(n));
     const Row<Columns> squares =
         parallelSum(n, Row<Columns>::Zero().eval(), [&](Index begin, Index end) {
             Row<Columns> sum = Row<Columns>::Zero(), ofTask = sum;
             for (Index i = begin; i < end; ++i) {
-                auto x = rowOf<Columns>(work_, i);
+                auto x = rowOf<Columns>(q, i);
                 if (label_[i] >= 0) x -= mean.row(label_[i]);
                 sum += D_[i] * x * x;
                 ofTask = ofTask.max(x.abs());
@@ -174,47 +154,49 @@ void KrylovSpaces::start(const Eigen::MatrixXd& X) {
         exhausted_[c] = !(norms_[c] > kBreakdown * constants[c]);  // what is left is round-off
         if (!exhausted_[c]) inverse[c] = 1.0 / norms_[c];
     }
-    basis_.emplace_back(n * Columns);
-    parallelRows(n, [&](Index begin, Index end) {
-        for (Index i = begin; i < end; ++i) {
-            const Row<Columns> q = inverse * rowOf<Columns>(work_, i);
-            rowOf<Columns>(basis_.back(), i) = q;
-            rowOf<Columns>(work_, i) = D_[i] * q;
-        }
-    });
+    append<Columns>([&](Index i) { return rowOf<Columns>(q, i) *= inverse; });
+}
+
+/// Appends a vector to the basis.
+template <int Columns, class MakeRow>
+void KrylovSpaces::append(const MakeRow& row) {
+    std::visit(
+        [&](auto& basis) {
+            using Vector = typename std::decay_t<decltype(basis)>::value_type;
+            using Scalar = typename Vector::Scalar;
+            Vector vector(D_.size() * Columns);
+            parallelRows(D_.size(), [&](Index begin, Index end) {
+                for (Index i = begin; i < end; ++i)
+                    rowOf<Columns>(vector.data(), i) = row(i).template cast<Scalar>();
+            });
+            basis.push_back(std::move(vector));
+        },
+        basis_);
 }
 
 template <int Columns>
 void KrylovSpaces::extendColumns() {
-    const Index n = D_.size();
-    ldlt_.solveOrdered(work_.data(), Columns);
-    const Block& q = basis_.back();
-    const Row<Columns> alpha =
-        parallelSum(n, Row<Columns>::Zero().eval(), [&](Index begin, Index end) {
-            Row<Columns> sum = Row<Columns>::Zero();
-            for (Index i = begin; i < end; ++i)
-                sum += D_[i] * rowOf<Columns>(q, i) * rowOf<Columns>(work_, i);
-            return sum;
-        });
+    const double *q = newest_.data(), *p = before_.data();
+    double* w = next_.data();
+    const Row<Columns> alpha = S_.apply(D_, q, Columns, w).transpose();
 
     // w = S q - alpha q - beta p, with p the vector before q. Constants do not arise, except from
     // round-off, and would be amplified by every step.
     const Row<Columns> before = lastOf<Columns>(beta_);
-    const Block& p = basis_[basis_.size() > 1 ? basis_.size() - 2 : 0];
-    const Moments<Columns> w = momentsOf<Columns>(D_, label_, constants_.masses(), [&](Index i) {
-        auto row = rowOf<Columns>(work_, i);
+    const auto moments = momentsOf<Columns>(D_, label_, constants_.masses(), [&](Index i) {
+        auto row = rowOf<Columns>(w, i);
         row -= alpha * rowOf<Columns>(q, i) + before * rowOf<Columns>(p, i);
         return Row<Columns>(row);
     });
     Eigen::Array<double, Eigen::Dynamic, Columns> constants =
-        w.means.colwise() * constants_.masses().array().sqrt();
+        moments.means.colwise() * constants_.masses().array().sqrt();
     for (int c = 0; c < Columns; ++c)
         if (isOfRoundOff_[c]) constants.col(c).setZero();  // says nothing about the signal
-    roundOff_ = std::max(roundOff_, -ldlt_.shift() * constants.matrix().norm());
-    Row<Columns> beta = w.squares.sqrt();
+    roundOff_ = std::max(roundOff_, constants.matrix().norm() / S_.errorOf(S_.theta(0.0), 1.0));
+    Row<Columns> beta = moments.squares.sqrt();
     for (int c = 0; c < Columns; ++c)
         if (!exhausted_[c]) alpha_[c].push_back(alpha[c]);
-    if (losesOrthogonality(beta)) beta = orthogonalize<Columns>(beta);
+    if (S_.isToBeOrthogonal() && losesOrthogonality(beta)) beta = orthogonalize<Columns>(beta, w);
 
     Row<Columns> inverse = Row<Columns>::Zero();
     for (int c = 0; c < Columns; ++c) {
@@ -227,17 +209,13 @@ void KrylovSpaces::extendColumns() {
         inverse[c] = 1.0 / beta[c];
     }
 
-    Block next(n * Columns);
-    parallelRows(n, [&](Index begin, Index end) {
-        for (Index i = begin; i < end; ++i) {
-            Row<Columns> row = rowOf<Columns>(work_, i);
-            if (label_[i] >= 0) row -= w.means.row(label_[i]);
-            row *= inverse;
-            rowOf<Columns>(next, i) = row;
-            rowOf<Columns>(work_, i) = D_[i] * row;
-        }
+    append<Columns>([&](Index i) {
+        auto row = rowOf<Columns>(w, i);
+        if (label_[i] >= 0) row -= moments.means.row(label_[i]);
+        return row *= inverse;
     });
-    basis_.push_back(std::move(next));
+    before_.swap(newest_);
+    newest_.swap(next_);
 }
 
 /// Whether the next vector must be orthogonalized: updates the estimated inner products with all
@@ -269,46 +247,57 @@ bool KrylovSpaces::losesOrthogonality(const Eigen::Ref<const Eigen::ArrayXd>& be
     return std::exchange(orthogonalizesNext_, loses) || loses;
 }
 
-/// Orthogonalizes the vectors in `work_` against the basis; returns their norms.
+/// Orthogonalizes the rows of w against the basis; returns the norms of the columns.
 template <int Columns>
-Eigen::Array<double, 1, Columns> KrylovSpaces::orthogonalize(
-    Eigen::Array<double, 1, Columns> norm) {
+Eigen::Array<double, 1, Columns> KrylovSpaces::orthogonalize(Eigen::Array<double, 1, Columns> norm,
+                                                             double* w) {
     using Overlaps = Eigen::Array<double, Eigen::Dynamic, Columns>;
-    const Index n = D_.size(), m = static_cast<Index>(basis_.size());
-    for (int pass = 0; pass < 2; ++pass) {
-        const Overlaps overlaps =
-            parallelSum(n, Overlaps(Overlaps::Zero(m, Columns)), [&](Index begin, Index end) {
-                Overlaps sums = Overlaps::Zero(m, Columns);
-                for (Index j = 0; j < m; ++j) {
-                    Row<Columns> sum = Row<Columns>::Zero();
-                    for (Index i = begin; i < end; ++i)
-                        sum += D_[i] * rowOf<Columns>(basis_[j], i) * rowOf<Columns>(work_, i);
-                    sums.row(j) = sum;
-                }
-                return sums;
-            });
-        parallelRows(n, [&](Index begin, Index end) {
-            for (Index j = 0; j < m; ++j) {
-                const Row<Columns> overlap = overlaps.row(j);
-                for (Index i = begin; i < end; ++i)
-                    rowOf<Columns>(work_, i) -= overlap * rowOf<Columns>(basis_[j], i);
+    const Index n = D_.size();
+    std::visit(
+        [&](const auto& basis) {
+            const auto m = static_cast<Index>(basis.size());
+            for (int pass = 0; pass < 2; ++pass) {
+                const Overlaps overlaps = parallelSum(
+                    n, Overlaps(Overlaps::Zero(m, Columns)), [&](Index begin, Index end) {
+                        Overlaps sums = Overlaps::Zero(m, Columns);
+                        for (Index j = 0; j < m; ++j) {
+                            Row<Columns> sum = Row<Columns>::Zero();
+                            for (Index i = begin; i < end; ++i)
+                                sum += D_[i] *
+                                       rowOf<Columns>(basis[j].data(), i).template cast<double>() *
+                                       rowOf<Columns>(w, i);
+                            sums.row(j) = sum;
+                        }
+                        return sums;
+                    });
+                parallelRows(n, [&](Index begin, Index end) {
+                    for (Index j = 0; j < m; ++j) {
+                        const Row<Columns> overlap = overlaps.row(j);
+                        for (Index i = begin; i < end; ++i)
+                            rowOf<Columns>(w, i) -=
+                                overlap *
+                                rowOf<Columns>(basis[j].data(), i).template cast<double>();
+                    }
+                });
+                const Row<Columns> squares =  // without the means, which are still to be removed
+                    momentsOf<Columns>(D_, label_, constants_.masses(), [&](Index i) {
+                        return Row<Columns>(rowOf<Columns>(w, i));
+                    }).squares;
+                const Row<Columns> before = std::exchange(norm, squares.sqrt());
+                if ((norm >= 0.5 * before).all())
+                    break;  // else cancellation requires a second pass
             }
-        });
-        const Row<Columns> squares =  // without the means, which are still to be removed
-            momentsOf<Columns>(D_, label_, constants_.masses(), [&](Index i) {
-                return Row<Columns>(rowOf<Columns>(work_, i));
-            }).squares;
-        const Row<Columns> before = std::exchange(norm, squares.sqrt());
-        if ((norm >= 0.5 * before).all()) break;  // else cancellation requires a second pass
-    }
+        },
+        basis_);
     for (std::vector<double>& overlaps : overlap_)
         if (!overlaps.empty()) std::fill(overlaps.begin(), overlaps.end() - 1, kRoundOff);
     return norm;
 }
 
-KrylovSpaces::Ritz KrylovSpaces::ritz(int column) const {
+const KrylovSpaces::Ritz& KrylovSpaces::ritz(int column) const {
     const auto m = static_cast<Index>(alpha_[column].size());
-    if (m == 0) return {};
+    Ritz& pairs = ritz_[column];
+    if (pairs.omega.size() == m) return pairs;
     Eigen::VectorXd a = Eigen::Map<const Eigen::VectorXd>(alpha_[column].data(), m);
     Eigen::VectorXd b = Eigen::Map<const Eigen::VectorXd>(beta_[column].data(), m - 1);
     // Eigen scales a full matrix to entries up to 1, but not a tridiagonal one, although its test
@@ -322,19 +311,13 @@ KrylovSpaces::Ritz KrylovSpaces::ritz(int column) const {
     T.computeFromTridiagonal(a, b);
     if (T.info() != Eigen::Success)
         throw SolverFailure("the tridiagonal eigenproblem of the Krylov space did not converge");
-    Ritz pairs{Eigen::VectorXd(m), T.eigenvectors()};
-    for (Index i = 0; i < m; ++i) {
-        // theta = 1/(lambda + lambda_p); round-off may push it out of (0, 1/lambda_p].
-        const double theta = scale * T.eigenvalues()[i];
-        const double lambda = theta > 0.0 ? std::max(0.0, 1.0 / theta + ldlt_.shift())
-                                          : std::numeric_limits<double>::infinity();
-        pairs.omega[i] = std::sqrt(lambda);
-    }
+    pairs = {Eigen::VectorXd(m), T.eigenvectors()};
+    for (Index i = 0; i < m; ++i) pairs.omega[i] = std::sqrt(S_.lambda(scale * T.eigenvalues()[i]));
     return pairs;
 }
 
 Eigen::VectorXd KrylovSpaces::coefficients(int column, const Gain& gain) const {
-    const Ritz pairs = ritz(column);
+    const Ritz& pairs = ritz(column);
     if (pairs.omega.size() == 0) return {};
     const Eigen::VectorXd gains = pairs.omega.unaryExpr(gain);
     return norms_[column] * (pairs.Q * gains.cwiseProduct(pairs.Q.row(0).transpose()));
@@ -349,7 +332,7 @@ double KrylovSpaces::squaredErrorBound(int column, const Eigen::VectorXd& c,
     using Values = Eigen::ArrayXd;  // at all samples
     const Index count = omega.size();
     const double norm = norms_[column];
-    const Values theta = (omega.array().square() - ldlt_.shift()).inverse();
+    const Values theta = omega.array().unaryExpr([&](double w) { return S_.theta(w * w); });
     Values before = Values::Zero(count), p = Values::Ones(count), polynomial = before,
            squares = before, unit = p;
     for (std::size_t k = 0; k < alpha.size(); ++k) {
@@ -375,15 +358,15 @@ double KrylovSpaces::squaredErrorBound(int column, const Eigen::VectorXd& c,
 }
 
 Quadrature KrylovSpaces::quadrature(int column) const {
-    Ritz pairs = ritz(column);
+    const Ritz& pairs = ritz(column);
     if (pairs.omega.size() == 0) return {};
     const double norm = norms_[column];
-    return {std::move(pairs.omega), norm * norm * pairs.Q.row(0).transpose().cwiseAbs2()};
+    return {pairs.omega, norm * norm * pairs.Q.row(0).transpose().cwiseAbs2()};
 }
 
 Eigen::MatrixXd KrylovSpaces::combine(const std::vector<Eigen::VectorXd>& coefficients) const {
     Eigen::MatrixXd Y(D_.size(), columns_);
-    const std::vector<int>& inverse = ldlt_.inverseOrder();
+    const int* inverse = S_.inverseOrder();
     withColumns(columns_, [&](auto columns) {
         combineColumns<columns>(
             coefficients, [&](Index i, const auto& row) { Y.row(inverse[i]) = row.matrix(); });
@@ -405,19 +388,26 @@ double KrylovSpaces::largestEntryOf(const std::vector<Eigen::VectorXd>& coeffici
 template <int Columns, class TakeRow>
 void KrylovSpaces::combineColumns(const std::vector<Eigen::VectorXd>& coefficients,
                                   const TakeRow& takeRow) const {
-    // Padded with zeros: spaces may have different dimensions.
-    std::vector<Row<Columns>> factors(basis_.size(), Row<Columns>::Zero());
-    for (int c = 0; c < Columns; ++c)
-        for (Index j = 0; j < coefficients[c].size(); ++j) factors[j][c] = coefficients[c][j];
-    parallelRows(D_.size(), [&](Index begin, Index end) {
-        Eigen::VectorXd sum = Eigen::VectorXd::Zero((end - begin) * Columns);
-        for (std::size_t j = 0; j < basis_.size(); ++j) {
-            if ((factors[j] == 0.0).all()) continue;
-            for (Index i = begin; i < end; ++i)
-                rowOf<Columns>(sum, i - begin) += factors[j] * rowOf<Columns>(basis_[j], i);
-        }
-        for (Index i = begin; i < end; ++i) takeRow(i, rowOf<Columns>(sum, i - begin));
-    });
+    std::visit(
+        [&](const auto& basis) {
+            // Padded with zeros: spaces may have different dimensions.
+            std::vector<Row<Columns>> factors(basis.size(), Row<Columns>::Zero());
+            for (int c = 0; c < Columns; ++c)
+                for (Index j = 0; j < coefficients[c].size(); ++j)
+                    factors[j][c] = coefficients[c][j];
+            parallelRows(D_.size(), [&](Index begin, Index end) {
+                Eigen::VectorXd sum = Eigen::VectorXd::Zero((end - begin) * Columns);
+                for (std::size_t j = 0; j < basis.size(); ++j) {
+                    if ((factors[j] == 0.0).all()) continue;
+                    for (Index i = begin; i < end; ++i)
+                        rowOf<Columns>(sum.data(), i - begin) +=
+                            factors[j] * rowOf<Columns>(basis[j].data(), i).template cast<double>();
+                }
+                for (Index i = begin; i < end; ++i)
+                    takeRow(i, rowOf<Columns>(sum.data(), i - begin));
+            });
+        },
+        basis_);
 }
 
 }  // namespace spectral

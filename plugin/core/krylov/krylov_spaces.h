@@ -1,11 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <variant>
 #include <vector>
 
+#include "core/krylov/krylov_operator.h"
+#include "core/krylov/rows.h"
 #include "core/laplacian/constant_modes.h"
 #include "core/laplacian/frequency.h"
-#include "core/ldlt/shifted_ldlt.h"
 
 namespace spectral {
 
@@ -15,36 +17,39 @@ struct Quadrature {
     Eigen::VectorXd weight;  ///< m weights, >= 0.
 };
 
-/// Shift-invert Lanczos recurrences of several signals in step: each pass over the factor of W +
-/// lambda_p D extends all of their Krylov spaces.
+/// Lanczos recurrences of several signals in step: each application of an operator S extends all of
+/// their Krylov spaces.
 ///
-/// S = (W + lambda_p D)^-1 D is self-adjoint in the D-inner product and has the eigenvectors of A
-/// with eigenvalues theta = 1/(lambda + lambda_p). With U the D-orthonormal basis of the Krylov
-/// space of S and a signal x, and the tridiagonal T = U^T D S U,
-///     f(A) x       ~ |x|_D U f(T^-1 - lambda_p) e_1,
-///     x^T D f(A) x ~ |x|_D^2 e_1^T f(T^-1 - lambda_p) e_1.
+/// S is self-adjoint in the D-inner product and has the eigenvectors of A (krylov_operator.h). With
+/// U the D-orthonormal basis of the Krylov space of S and a signal x, the tridiagonal T = U^T D S
+/// U, and lambda(T) A's eigenvalues in place of those of T,
+///     f(A) x       ~ |x|_D U f(lambda(T)) e_1,
+///     x^T D f(A) x ~ |x|_D^2 e_1^T f(lambda(T)) e_1.
 /// The second is Gauss quadrature of the spectral measure of x (Golub and Meurant 1994): m
 /// dimensions are exact for polynomials in theta of degree 2m - 1, twice that of the first.
 ///
 /// The recurrence keeps the basis orthogonal until a Ritz value converges. Only then is it
 /// reorthogonalized, which costs more than all the rest (partial reorthogonalization, Simon 1984).
 ///
-/// Vectors are stored in factor order, the values of all signals at a vertex next to each other.
+/// Vectors are stored in the order of S, the values of all signals at a vertex next to each other.
 /// Work is shared by the threads of the caller's team.
 class KrylovSpaces {
   public:
-    static constexpr int kMostSignals = 4;
+    static constexpr int kMostSignals = kMostColumns;
 
     /// Largest inner product of an orthogonal basis. Semiorthogonality, 1e-8 (Simon 1984), would
     /// keep T accurate, but not combinations of the basis.
     static constexpr double kOrthogonal = 1e-10;
 
-    /// @param ldlt  factorization of W + lambda_p D; kept by reference, like constants.
+    /// @param S  kept by reference, like constants.
     /// @param constants  removed from all vectors.
     /// @param X  n x c signals, 1 <= c <= kMostSignals.
-    /// @param orthogonal  inner product of two vectors at which they are reorthogonalized.
-    KrylovSpaces(const ShiftedLdlt& ldlt, const Eigen::VectorXd& D, const ConstantModes& constants,
-                 const Eigen::MatrixXd& X, double orthogonal = kOrthogonal);
+    /// @param orthogonal  inner product of two vectors at which they are reorthogonalized, where S
+    ///                    wants that.
+    /// @param isNarrow  whether the basis is stored in single precision, as fits combinations of no
+    ///                  more than 1e-6; T is computed in double precision all the same.
+    KrylovSpaces(const KrylovOperator& S, const Eigen::VectorXd& D, const ConstantModes& constants,
+                 const Eigen::MatrixXd& X, double orthogonal = kOrthogonal, bool isNarrow = false);
 
     int columns() const { return columns_; }
 
@@ -52,7 +57,7 @@ class KrylovSpaces {
     /// there were any. Results from an invariant space are exact.
     bool extend();
 
-    /// Coefficients |x|_D F(sqrt(T^-1 - lambda_p)) e_1 of F(sqrt(A)) x in the basis.
+    /// Coefficients |x|_D F(sqrt(lambda(T))) e_1 of F(sqrt(A)) x in the basis.
     /// @throws SolverFailure  when the eigenproblem of T does not converge.
     Eigen::VectorXd coefficients(int column, const Gain& gain) const;
 
@@ -90,35 +95,42 @@ class KrylovSpaces {
     double roundOff() const { return roundOff_; }
 
   private:
-    using Block = Eigen::VectorXd;  // n rows of columns_ values
+    /// Vectors of n rows of columns_ values.
+    template <class Scalar>
+    using Vectors = std::vector<Eigen::Matrix<Scalar, Eigen::Dynamic, 1>>;
 
     /// Eigenpairs of T: frequencies of the Ritz values, and eigenvectors as columns.
     struct Ritz {
         Eigen::VectorXd omega;
         Eigen::MatrixXd Q;
     };
-    Ritz ritz(int column) const;
+    const Ritz& ritz(int column) const;
 
     template <int Columns>
     void start(const Eigen::MatrixXd& X);
     template <int Columns>
     void extendColumns();
+    template <int Columns, class MakeRow>
+    void append(const MakeRow& row);
     bool losesOrthogonality(const Eigen::Ref<const Eigen::ArrayXd>& beta);
     template <int Columns>
-    Eigen::Array<double, 1, Columns> orthogonalize(Eigen::Array<double, 1, Columns> norm);
+    Eigen::Array<double, 1, Columns> orthogonalize(Eigen::Array<double, 1, Columns> norm,
+                                                   double* w);
     template <int Columns, class TakeRow>
     void combineColumns(const std::vector<Eigen::VectorXd>& coefficients,
                         const TakeRow& takeRow) const;
 
-    const ShiftedLdlt& ldlt_;
+    const KrylovOperator& S_;
     const ConstantModes& constants_;
     double orthogonal_;
     int columns_;
-    Eigen::VectorXd D_;      // in factor order, like all that follow
+    Eigen::VectorXd D_;      // in the order of S, like all that follow
     Eigen::VectorXi label_;  // components; see ConstantModes
-    std::vector<Block> basis_;
-    Block work_;  // D times the newest vectors; S times them during an extension
+    std::variant<Vectors<double>, Vectors<float>> basis_;
+    Eigen::VectorXd newest_, before_, next_;  // of the basis, with rows of scratch behind; see S
     std::vector<std::vector<double>> alpha_, beta_;  // diagonal and off-diagonal of T, by column
+
+    mutable std::vector<Ritz> ritz_;  // of the last T that was asked for, by column
 
     /// Estimated inner products of the newest vector with all others, and of the one before.
     std::vector<std::vector<double>> overlap_, overlapBefore_;

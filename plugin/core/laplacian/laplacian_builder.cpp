@@ -8,6 +8,16 @@
 
 namespace spectral {
 
+namespace {
+
+/// Part of its mass in the input that every vertex keeps with BasisUpdate::Conformal: where lengths
+/// have shrunk to less than a half, they count as a half. Without it, a part that is thinner than
+/// the feature size would shrink to a line, and that to a point, infinitely fast: masses vanish
+/// there, W does not.
+constexpr double kLeastMass = 0.25;
+
+}  // namespace
+
 void checkMesh(const Vertices& V, const Faces& F, LaplacianKind kind) {
     checkMesh(V, F);
     if (kind == LaplacianKind::Cotangent) checkAreas(V, F);
@@ -19,21 +29,25 @@ LaplacianBuilder::LaplacianBuilder(const Surface& surface, LaplacianKind kind, B
     if (kind == LaplacianKind::IntrinsicDelaunay) intrinsic_.emplace(surface.X, surface.F);
     current_ = {stiffness(surface.X), mass(surface.X)};
     inputMass_ = current_.D;
+    area_ = inputMass_.sum();
     if (update == BasisUpdate::Full) inputStiffness_ = current_.W;
 }
 
 const Laplacian& LaplacianBuilder::input() {
     if (update_ == BasisUpdate::Full) current_.W = inputStiffness_;
     current_.D = inputMass_;
+    area_ = inputMass_.sum();
     return current_;
 }
 
 const Laplacian& LaplacianBuilder::operator()(const Vertices& X) {
     if (update_ == BasisUpdate::None) return input();
-    current_.D = mass(X);
+    const Eigen::VectorXd D = lumpedMass(X, surface_.F);
+    current_.D = boundedMass(D);
+    area_ = D.sum();
     // Relative to the input; a surface that has shrunk to a line has edges, but no area.
     constexpr double kNothing = 1e-10;
-    if (current_.D.sum() <= kNothing * kNothing * inputMass_.sum() &&
+    if (area_ <= kNothing * kNothing * inputMass_.sum() &&
         meanEdgeLength(X, surface_.F) <= kNothing * meanEdgeLength(surface_.X, surface_.F))
         throw SolverFailure(ErrorCode::ShrinksToNothing, "the whole surface shrinks to nothing");
     if (update_ == BasisUpdate::Full) {
@@ -53,12 +67,17 @@ SparseMatrix LaplacianBuilder::stiffness(const Vertices& X) const {
 /// From the triangles of the mesh for every kind: intrinsic areas jump where an edge flips, while
 /// second-order steps need D continuous in the shape.
 Eigen::VectorXd LaplacianBuilder::mass(const Vertices& X) const {
+    return boundedMass(lumpedMass(X, surface_.F));
+}
+
+Eigen::VectorXd LaplacianBuilder::boundedMass(const Eigen::VectorXd& D) const {
     // Smallest mass, in mean masses, of parts that have shrunk to a line or a point. The D-inner
     // product needs it positive; its value does not matter, as such a vertex is at the harmonic
     // mean of its neighbours.
     constexpr double kFloor = 1e-12;
-    const Eigen::VectorXd D = lumpedMass(X, surface_.F);
     if (kind_ == LaplacianKind::Uniform) return Eigen::VectorXd::Constant(D.size(), D.mean());
+    if (update_ == BasisUpdate::Conformal && inputMass_.size() > 0)
+        return D.cwiseMax(kLeastMass * inputMass_);
     return D.cwiseMax(kFloor * D.mean());
 }
 

@@ -44,14 +44,18 @@ class LaplacianBuilder {
     /// @throws SolverFailure  when nothing of the shape is left.
     const Laplacian& operator()(const Vertices& X);
 
+    /// Area of the shape of the last Laplacian: the sum of D, but for what D is kept above.
+    double area() const { return area_; }
+
     /// D of the input.
     const Eigen::VectorXd& inputMass() const { return inputMass_; }
 
-    /// D of the shape X, > 0.
+    /// D of the shape X, > 0; with BasisUpdate::Conformal at least a quarter of that of the input.
     Eigen::VectorXd mass(const Vertices& X) const;
 
   private:
     SparseMatrix stiffness(const Vertices& X) const;
+    Eigen::VectorXd boundedMass(const Eigen::VectorXd& D) const;
 
     const Surface& surface_;
     LaplacianKind kind_;
@@ -61,6 +65,7 @@ class LaplacianBuilder {
     SparseMatrix inputStiffness_;  // empty where W stays that of the input
     Eigen::VectorXd inputMass_;
     Laplacian current_;
+    double area_ = 0.0;
 };
 
 /// The Laplacian of a mesh as it is, for the filters of `analysis`.

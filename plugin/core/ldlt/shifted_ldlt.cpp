@@ -22,18 +22,6 @@ constexpr double kOfRow = 1000.0;
 /// spaces, of three columns each.
 constexpr double kWaiting = 0.3, kVectors = 15.0;
 
-/// Refuses work that there is no memory for, before it is taken.
-/// @throws Error  of code OutOfMemory.
-void requireMemory(double bytes, Index rows) {
-    const double available = availableMemory();
-    if (bytes <= available) return;
-    std::ostringstream text;
-    text << "a surface of " << rows << " vertices needs about " << Bytes{bytes}
-         << " more memory, of which " << Bytes{available} << " are free";
-    throw Error(ErrorCode::OutOfMemory, text.str(),
-                static_cast<Index>(0.9 * available / bytes * static_cast<double>(rows)));
-}
-
 using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Relative change of a shift that is an eigenvalue of a leading minor: far above round-off, far

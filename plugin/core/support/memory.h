@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/support/types.h"
+
 namespace spectral {
 
 /// Memory that this process may still take, bytes; infinite where that is not known.
@@ -12,6 +14,12 @@ void setMemoryMeasure(MemoryMeasure measure);
 
 /// What the host measures, bytes.
 double availableMemory();
+
+/// Refuses work that there is no memory for, before it is taken.
+/// @param bytes  that it needs.
+/// @param rows   vertices that it needs them for.
+/// @throws Error  of code OutOfMemory, with the number of vertices that there is memory for.
+void requireMemory(double bytes, Index rows);
 
 /// "1.5 GiB"; for texts of errors.
 struct Bytes {

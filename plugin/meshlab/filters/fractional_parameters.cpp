@@ -37,13 +37,15 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
     list.addParam(RichPercentage(
         "tolerance", static_cast<Scalarm>(kDefaultTolerance) * diagonal, 0, diagonal, "Tolerance",
         "With 0 steps: largest distance of the surface from that of infinitely many steps "
-        "(except for a thousandth of it, where thin parts pinch off). Larger is faster.",
+        "(except for a thousandth of it). Larger is faster.",
         true));
     list.addParam(RichEnum(
         "basis_update", static_cast<int>(defaults.basisUpdate), basisUpdates(), "Basis update",
         "What every step recomputes from the current shape. <b>full</b>, the paper's scheme: all "
-        "of its frequencies. <b>conformal</b>: its areas only [4]; thin parts shrink instead of "
-        "turning into spikes. <b>none</b>: nothing; the number of steps then makes no difference.",
+        "of its frequencies. <b>conformal</b>: its areas only [4], each vertex a quarter of its "
+        "own "
+        "at least; thin parts do not turn into spikes. <b>none</b>: nothing; the number of steps "
+        "then makes no difference.",
         true));
     list.addParam(RichFloat(
         "conformal_share", static_cast<Scalarm>(defaults.conformalShare), "Conformal share",

@@ -29,6 +29,7 @@ std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& r
         {"preserved_volumes", result.volumes.preserved},
         {"factorizations", result.factorizations},
         {"solves", result.solves},
+        {"products", result.products},
         {"error_estimate", result.errorEstimate},
         {"accuracy_reached", result.accuracyReached},
         {"step_error", result.stepError},
@@ -78,7 +79,7 @@ std::string headline(const spectral::FilterOptions& options, const spectral::Fil
         text << "NOT accurate: estimated error " << result.stepError << " ("
              << percent * result.stepError << " %)";
     if (options.steps == 0 && result.singularPart > spectral::kNegligibleArea)
-        text << "; " << percentOf(result.singularPart) << " of the input shrinks away";
+        text << "; less so on " << percentOf(result.singularPart) << " of the input";
     return text.str();
 }
 
@@ -176,7 +177,8 @@ std::string fractionalReportText(const spectral::FilterOptions& options,
     if (options.preserveVolume)
         text << ", " << result.volumes.preserved << " with the volume preserved";
     text << "\n  work: " << result.factorizations << " factorizations, " << result.solves
-         << " solves";
+         << " solves, " << result.products << " products";
+    if (result.lacksMemory) text << ", as there is no memory for a factorization";
     if (result.eigenvalues.size() > 0)
         text << ", " << result.eigenvalues.size() << " harmonics up to frequency "
              << lastFrequency(result) << ", bases computed: " << result.computedBases;

@@ -198,7 +198,8 @@ TEST(FullSpectrum, LeavesASignalOfConstantsAlone) {
     ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, 1.0);
     const Eigen::MatrixXd X = Eigen::MatrixXd::Constant(A.mesh.V.rows(), 2, 4.0);
     const FullSpectrumResult result =
-        applyFullSpectrum(A.laplacian.D, A.constants, ldlt, {[](double) { return 0.0; }}, X, {})
+        applyFullSpectrum(A.laplacian.D, A.constants, ShiftInvert(ldlt),
+                          {[](double) { return 0.0; }}, X, {})
             .front();
     EXPECT_TRUE(result.converged);
     EXPECT_LT((result.Y - X).cwiseAbs().maxCoeff(), 1e-14);
@@ -213,7 +214,8 @@ TEST(FullSpectrum, SaysWhenATransferFunctionIsTooSteep) {
     FullSpectrumOptions options;
     options.maxDimension = 24;
     const FullSpectrumResult result =
-        applyFullSpectrum(A.laplacian.D, A.constants, ldlt, {step}, A.mesh.V, options).front();
+        applyFullSpectrum(A.laplacian.D, A.constants, ShiftInvert(ldlt), {step}, A.mesh.V, options)
+            .front();
     EXPECT_FALSE(result.converged);
     EXPECT_EQ(result.dimension, 24);
     EXPECT_LE(testing::relativeError(A, result.Y - testing::filteredDense(A, dense, step)),

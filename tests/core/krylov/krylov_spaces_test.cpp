@@ -23,7 +23,8 @@ struct Measured {
 Measured measured(const Operator& A, double pole, int dimensions) {
     ShiftedLdlt ldlt;
     ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, pole);
-    KrylovSpaces space(ldlt, A.laplacian.D, A.constants, A.mesh.V.leftCols(1));
+    const ShiftInvert S(ldlt);
+    KrylovSpaces space(S, A.laplacian.D, A.constants, A.mesh.V.leftCols(1));
     for (int m = 0; m < dimensions; ++m) space.extend();
     return {space.quadrature(0), space.extend()};
 }
@@ -34,7 +35,8 @@ TEST(KrylovSpaces, StayOrthogonalToConstantsAndToThemselves) {
     for (const double pole : {0.5, 50.0}) {
         ShiftedLdlt ldlt;
         ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, pole);
-        KrylovSpaces spaces(ldlt, A.laplacian.D, A.constants, A.mesh.V);
+        const ShiftInvert S(ldlt);
+        KrylovSpaces spaces(S, A.laplacian.D, A.constants, A.mesh.V);
         const int dimensions = 80;
         for (int m = 0; m < dimensions; ++m) spaces.extend();
         const auto vector = [&](int m) {
@@ -58,7 +60,8 @@ TEST(KrylovSpaces, AreAsOrthogonalAsAskedForWhereDirectionsCancel) {
         for (const double orthogonal : {1e-10, 1e-12, 1e-14}) {
             ShiftedLdlt ldlt;
             ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, pole);
-            KrylovSpaces spaces(ldlt, A.laplacian.D, A.constants, A.mesh.V.leftCols(1), orthogonal);
+            const ShiftInvert S(ldlt);
+            KrylovSpaces spaces(S, A.laplacian.D, A.constants, A.mesh.V.leftCols(1), orthogonal);
             for (int m = 0; m < dimensions; ++m) spaces.extend();
             Eigen::MatrixXd Q(A.mesh.V.rows(), dimensions);
             for (int m = 0; m < dimensions; ++m)
@@ -72,7 +75,8 @@ TEST(KrylovSpaces, AreNormalizedWhereSolvesHaveConstantsOfRoundOff) {
     const Operator A(testing::rectangle(1.0, 1e-7, 7, 2));
     ShiftedLdlt ldlt;
     ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, 1e9);
-    KrylovSpaces spaces(ldlt, A.laplacian.D, A.constants, A.mesh.V.leftCols(1));
+    const ShiftInvert S(ldlt);
+    KrylovSpaces spaces(S, A.laplacian.D, A.constants, A.mesh.V.leftCols(1));
     for (int m = 0; m < 6; ++m) spaces.extend();
     for (int m = 0; m < 6; ++m) {
         const Eigen::VectorXd q = spaces.combine({Eigen::VectorXd::Unit(6, m)});
@@ -84,7 +88,8 @@ TEST(KrylovSpaces, TellTheLargestEntryOfACombination) {
     const Operator A(testing::blob());
     ShiftedLdlt ldlt;
     ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, 5.0);
-    KrylovSpaces spaces(ldlt, A.laplacian.D, A.constants, A.mesh.V);
+    const ShiftInvert S(ldlt);
+    KrylovSpaces spaces(S, A.laplacian.D, A.constants, A.mesh.V);
     for (int m = 0; m < 4; ++m) spaces.extend();
     std::srand(5);
     std::vector<Eigen::VectorXd> coefficients(3);
@@ -154,7 +159,8 @@ TEST(LanczosQuadrature, OfNothingHasNoNodes) {
     const Operator A(testing::icosphere(0));
     ShiftedLdlt ldlt;
     ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, 1.0);
-    KrylovSpaces space(ldlt, A.laplacian.D, A.constants,
+    const ShiftInvert S(ldlt);
+    KrylovSpaces space(S, A.laplacian.D, A.constants,
                        Eigen::MatrixXd::Constant(A.mesh.V.rows(), 1, 5.0));
     EXPECT_FALSE(space.extend());
     EXPECT_EQ(space.quadrature(0).omega.size(), 0);

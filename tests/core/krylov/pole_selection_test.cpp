@@ -17,7 +17,8 @@ int dimensionWithPole(const Operator& A, const Gain& gain, double pole) {
     ShiftedLdlt ldlt;
     ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, pole);
     const FullSpectrumResult result =
-        applyFullSpectrum(A.laplacian.D, A.constants, ldlt, {gain}, A.mesh.V, {}).front();
+        applyFullSpectrum(A.laplacian.D, A.constants, ShiftInvert(ldlt), {gain}, A.mesh.V, {})
+            .front();
     return result.converged ? result.dimension : 1000;
 }
 

@@ -68,6 +68,25 @@ TEST_F(Memory, EndsAutomaticStepsAtOnce) {
     }
 }
 
+TEST_F(Memory, ThatIsTooLittleForAFactorizationIsEnoughForProducts) {
+    // 40,962 vertices, 41 MB for the analysis alone; a cutoff so steep that products are dear.
+    const testing::Mesh mesh = testing::withNoise(testing::icosphere(6), 0.01, 1);
+    FilterOptions options;
+    options.transferFunction.response = Response::Butterworth;
+    options.transferFunction.order = 6;
+    options.featureSize = 0.3;
+    options.tolerance = 1e-3;
+    const FilterResult best = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_GT(best.factorizations, 0);
+    EXPECT_FALSE(best.lacksMemory);
+    limitTo(38.0);
+    const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_TRUE(result.lacksMemory);
+    EXPECT_EQ(result.factorizations, 0);
+    EXPECT_TRUE(result.accuracyReached);
+    EXPECT_LE(testing::largestDifference(result.V, best.V), 1e-3);
+}
+
 TEST_F(Memory, OfABasisIsAskedForAndTheSizeThatFitsIsTold) {
     const Operator A(testing::icosphere(5));  // 10,242 vertices: 10 MB for 100 harmonics
     limitTo(50.0);

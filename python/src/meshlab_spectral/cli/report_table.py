@@ -65,7 +65,8 @@ def _work(report: dict[str, Any]) -> list[tuple[str, str]]:
         rows.append(("Bases computed", f"{report['computed_bases']}"))
     else:
         rows.append(("Estimated relative error", f"{report['error_estimate']:.1e}"))
-    rows.append(("Work", f"{report['factorizations']} factorizations, {report['solves']} solves"))
+    work = [f"{report[what]} {what}" for what in ("factorizations", "solves", "products")]
+    rows.append(("Work", ", ".join(work)))
     return rows
 
 

@@ -1,0 +1,102 @@
+#include "core/krylov/krylov_operator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/krylov/rows.h"
+#include "core/support/memory.h"
+#include "core/support/threads.h"
+
+namespace spectral {
+
+namespace {
+
+/// Y <- D^-1 W Q; returns Q^T D Y by columns.
+template <int Columns>
+Row<Columns> multiply(const Laplacian& laplacian, const double* Q, double* Y) {
+    const SparseMatrix& W = laplacian.W;  // symmetric: its columns are its rows
+    const auto* begins = W.outerIndexPtr();
+    const auto* neighbours = W.innerIndexPtr();
+    const double* weights = W.valuePtr();
+    return parallelSum(W.rows(), Row<Columns>::Zero().eval(), [&](Index begin, Index end) {
+        Row<Columns> products = Row<Columns>::Zero();
+        for (Index i = begin; i < end; ++i) {
+            Row<Columns> sum = Row<Columns>::Zero();
+            for (auto k = begins[i]; k < begins[i + 1]; ++k)
+                sum += weights[k] * rowOf<Columns>(Q, neighbours[k]);
+            products += rowOf<Columns>(Q, i) * sum;
+            rowOf<Columns>(Y, i) = sum / laplacian.D[i];
+        }
+        return products;
+    });
+}
+
+/// Q^T D Y by columns.
+template <int Columns>
+Row<Columns> innerProducts(const Eigen::VectorXd& D, const double* Q, const double* Y) {
+    return parallelSum(D.size(), Row<Columns>::Zero().eval(), [&](Index begin, Index end) {
+        Row<Columns> sum = Row<Columns>::Zero();
+        for (Index i = begin; i < end; ++i)
+            sum += D[i] * rowOf<Columns>(Q, i) * rowOf<Columns>(Y, i);
+        return sum;
+    });
+}
+
+/// Gershgorin's bound of the largest eigenvalue of D^-1 W.
+double boundOfEigenvalues(const Laplacian& laplacian) {
+    double bound = 0.0;
+    for (Index i = 0; i < laplacian.W.outerSize(); ++i) {
+        double sum = 0.0;
+        for (SparseMatrix::InnerIterator entry(laplacian.W, i); entry; ++entry)
+            sum += std::abs(entry.value());
+        bound = std::max(bound, sum / laplacian.D[i]);
+    }
+    return bound;
+}
+
+}  // namespace
+
+Eigen::ArrayXd ShiftInvert::apply(const Eigen::VectorXd& D, const double* Q, int columns,
+                                  double* Y) const {
+    parallelRows(D.size(), [&](Index begin, Index end) {
+        for (Index i = begin; i < end; ++i)
+            for (Index k = i * columns; k < (i + 1) * columns; ++k) Y[k] = D[i] * Q[k];
+    });
+    ldlt_.solveOrdered(Y, columns);
+    return withColumns(columns, [&](auto count) {
+        return Eigen::ArrayXd(innerProducts<count>(D, Q, Y).transpose());
+    });
+}
+
+double ShiftInvert::lambda(double theta) const {
+    return theta > 0.0 ? std::max(0.0, 1.0 / theta + ldlt_.shift())
+                       : std::numeric_limits<double>::infinity();
+}
+
+double ShiftInvert::centralFrequency() const { return std::sqrt(-ldlt_.shift()); }
+
+double ShiftInvert::lastFrequency() const { return std::numeric_limits<double>::infinity(); }
+
+Products::Products(const Laplacian& laplacian, double central)
+    : laplacian_(laplacian),
+      central_(central),
+      largest_(boundOfEigenvalues(laplacian)),
+      order_(Eigen::VectorXi::LinSpaced(laplacian.D.size(), 0,
+                                        static_cast<int>(laplacian.D.size()) - 1)) {
+    constexpr double kVectors = 20.0, kOfVector = 3 * sizeof(float);  // of spaces; see KrylovSpaces
+    const Index n = laplacian.D.size();
+    requireMemory(kVectors * kOfVector * static_cast<double>(n), n);
+}
+
+Eigen::ArrayXd Products::apply(const Eigen::VectorXd&, const double* Q, int columns,
+                               double* Y) const {
+    count_ += columns;
+    return withColumns(columns, [&](auto count) {
+        return Eigen::ArrayXd(multiply<count>(laplacian_, Q, Y).transpose());
+    });
+}
+
+double Products::lastFrequency() const { return std::sqrt(largest_); }
+
+}  // namespace spectral

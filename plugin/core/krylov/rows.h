@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <type_traits>
+
+#include "core/support/types.h"
+
+namespace spectral {
+
+/// Most signals that are filtered together.
+inline constexpr int kMostColumns = 4;
+
+/// The values of all signals at a vertex, as they lie next to each other in a vector of rows.
+template <int Columns, class Scalar = double>
+using Row = Eigen::Array<Scalar, 1, Columns, Eigen::RowMajor | Eigen::DontAlign>;
+
+template <int Columns, class Scalar>
+Eigen::Map<Row<Columns, Scalar>> rowOf(Scalar* rows, Index i) {
+    return Eigen::Map<Row<Columns, Scalar>>(rows + i * Columns);
+}
+template <int Columns, class Scalar>
+Eigen::Map<const Row<Columns, Scalar>> rowOf(const Scalar* rows, Index i) {
+    return Eigen::Map<const Row<Columns, Scalar>>(rows + i * Columns);
+}
+
+/// Calls a function with the number of columns as a compile-time constant.
+template <class Call>
+auto withColumns(int columns, const Call& call) {
+    switch (columns) {
+        case 1: return call(std::integral_constant<int, 1>());
+        case 2: return call(std::integral_constant<int, 2>());
+        case 3: return call(std::integral_constant<int, 3>());
+        default: return call(std::integral_constant<int, kMostColumns>());
+    }
+}
+
+}  // namespace spectral

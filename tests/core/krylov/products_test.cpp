@@ -1,0 +1,88 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/krylov/full_spectrum.h"
+#include "core/krylov/krylov_operator.h"
+#include "core/laplacian/laplacian_builder.h"
+#include "core/transfer/transfer_function.h"
+#include "support/evaluation.h"
+
+namespace spectral {
+namespace {
+
+using testing::Mesh;
+using testing::Operator;
+
+constexpr double kRoundOff = 1e-12;
+
+std::vector<FullSpectrumResult> byProducts(const Operator& A, const TransferFunction& F,
+                                           double alpha, const FullSpectrumOptions& options) {
+    return applyFullSpectrum(A.laplacian.D, A.constants, Products(A.laplacian, F.cutoff()),
+                             {fractionalPower(F, alpha)}, A.mesh.V, options);
+}
+
+TEST(Products, EqualAllEigenvectorsWithinTheRequestedAccuracy) {
+    for (const Mesh& mesh : {testing::blob(), testing::withNoise(testing::cube(8), 0.02, 4),
+                             testing::withNoise(testing::rectangle(2, 1, 24, 12), 0.03, 3),
+                             testing::joined(testing::blob(), testing::torus(2, 0.7, 24, 12))}) {
+        const Operator A(mesh);
+        const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+        for (const auto& transfer : testing::smoothTransferFunctions())
+            for (const double alpha : {1.0, 0.1})
+                for (const double accuracy : {1e-4, 1e-6, 1e-9})
+                    for (const bool atEveryVertex : {false, true}) {
+                        const TransferFunction F(transfer, 2.0 * kPi / 0.5);
+                        FullSpectrumOptions options;
+                        options.accuracy = accuracy;
+                        options.atEveryVertex = atEveryVertex;
+                        options.samples = F.samples();
+                        const FullSpectrumResult result = byProducts(A, F, alpha, options).front();
+                        const Vertices error =
+                            result.Y - testing::filteredDense(A, dense, fractionalPower(F, alpha));
+                        const Eigen::VectorXd& D = A.laplacian.D;
+                        Vertices X = A.mesh.V;
+                        A.constants.remove(X);
+                        const double relative =
+                            atEveryVertex ? testing::relativeError(A, error)
+                                          : std::sqrt(D.dot(error.rowwise().squaredNorm()) /
+                                                      D.dot(X.rowwise().squaredNorm()));
+                        EXPECT_LE(relative, result.errorEstimate + kRoundOff)
+                            << testing::describe(transfer) << ", alpha " << alpha << ", accuracy "
+                            << accuracy << ", dimension " << result.dimension;
+                    }
+    }
+}
+
+TEST(Products, GiveUpWhereTheyAreExpectedToBeTooMany) {
+    const Operator A(testing::withNoise(testing::icosphere(4), 0.02, 5));
+    TransferFunctionOptions steep;
+    steep.response = Response::Butterworth;
+    steep.order = 8;
+    const TransferFunction F(steep, 2.0 * kPi / 1.0);
+    FullSpectrumOptions options;
+    options.atEveryVertex = false;
+    const int needed = byProducts(A, F, 1.0, options).front().dimension;
+    ASSERT_GT(needed, 20);
+    options.affordable = needed / 2;
+    EXPECT_TRUE(byProducts(A, F, 1.0, options).empty());
+    options.affordable = 3 * needed;
+    EXPECT_EQ(byProducts(A, F, 1.0, options).size(), 1U);
+}
+
+TEST(LaplacianBuilder, KeepsAQuarterOfEveryMassInAConformalUpdate) {
+    const Mesh mesh = testing::blob();
+    const Surface surface = surfaceOf(mesh.V, mesh.F);
+    LaplacianBuilder laplacians(surface, LaplacianKind::IntrinsicDelaunay, BasisUpdate::Conformal);
+    const Eigen::VectorXd D = laplacians.input().D;
+    const Vertices halved = 0.5 * surface.X, tenth = 0.1 * surface.X;
+    EXPECT_TRUE(laplacians(halved).D.isApprox(0.25 * D, 1e-12));
+    EXPECT_EQ(laplacians(tenth).D, 0.25 * D);
+    EXPECT_NEAR(laplacians.area(), 0.01 * D.sum(), 1e-12 * D.sum());
+
+    LaplacianBuilder full(surface, LaplacianKind::IntrinsicDelaunay, BasisUpdate::Full);
+    EXPECT_TRUE(full(tenth).D.isApprox(0.01 * D, 1e-12));
+}
+
+}  // namespace
+}  // namespace spectral
