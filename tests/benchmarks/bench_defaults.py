@@ -5,10 +5,10 @@ usage: bench_defaults.py [--setting NAME] [--reference [TIMES]] [--timeout SECON
 One row per mesh, each measured in a process of its own: seconds of the filter call (the least of
 three, or of as many as fit into a fifth of a second), its ratios to MeshLab's Taubin smoothing with
 50 and 10 steps and to its Laplacian smoothing with 100 on the same mesh in the same process, the
-work, the process's peak memory above that before, and the warnings. With --reference also the error, in tolerances: estimated; real, over all
-but 0.1 % of the filtered surface, and of the input's; and at most. Real ones are against another
-scheme: the paper's with 16 (TIMES) times the steps, at most 500, and with twice as many,
-extrapolated (twice the second minus the first).
+work, the process's peak memory above that before, and the warnings. With --reference also the
+error, in tolerances: estimated; real, over all but 0.1 % of the filtered surface, and of the
+input's; and at most. Real ones are against another scheme: the paper's with 16 (TIMES) times the
+steps, at most 500, and with twice as many, extrapolated (twice the second minus the first).
 
 MESH defaults to every mesh with faces in ../shared/data beside the repository.
 """
