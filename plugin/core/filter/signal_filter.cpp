@@ -54,7 +54,7 @@ bool isConstant(Eigen::MatrixXd X, const ConstantModes& constants) {
 
 FilteredSignal filterSignal(const Vertices& V, const Faces& F, const Eigen::MatrixXd& Q,
                             const SignalFilterOptions& options, const Progress& progress) {
-    assert(Q.rows() == V.rows() && Q.cols() >= 1 && Q.cols() <= KrylovSpaces::kMostSignals);
+    assert(Q.rows() == V.rows() && Q.cols() >= 1 && Q.cols() <= kMostSignals);
     const ThreadTeam team;
     checkMesh(V, F);
     checkSignal(Q);

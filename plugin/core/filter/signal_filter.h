@@ -50,7 +50,7 @@ struct FilteredSignal : SurfaceCounts {
 ///
 /// @param V  n x 3 positions, finite.
 /// @param F  m x 3 vertex indices, m >= 1; any topology, unreferenced vertices allowed.
-/// @param Q  n x c values, not infinite, 1 <= c <= KrylovSpaces::kMostSignals.
+/// @param Q  n x c values, not infinite, 1 <= c <= kMostSignals.
 /// @throws InvalidMesh  as checkMesh, and when a value is infinite, or no triangle has data.
 /// @throws InvalidOption, SolverFailure, Cancelled
 FilteredSignal filterSignal(const Vertices& V, const Faces& F, const Eigen::MatrixXd& Q,

@@ -39,15 +39,14 @@ class KrylovOperator {
     virtual double lastFrequency() const = 0;
 
     /// Whether the basis is to be kept orthogonal. Applications of A are so cheap that some more of
-    /// them, which make up for what is lost (Greenbaum 1989), cost less.
+    /// them, which make up for what is lost (Druskin and Knizhnerman 1991), cost less.
     virtual bool isToBeOrthogonal() const = 0;
 };
 
 /// S = (W + lambda_p D)^-1 D, with theta = 1/(lambda + lambda_p): a solve for every dimension.
 class ShiftInvert final : public KrylovOperator {
   public:
-    /// @param ldlt  factorization of W + lambda_p D, kept by reference; see selectPole for
-    /// lambda_p.
+    /// @param ldlt  factorization of W + lambda_p D, kept by reference (see selectPole).
     explicit ShiftInvert(const ShiftedLdlt& ldlt) : ldlt_(ldlt) {}
 
     Eigen::ArrayXd apply(const Eigen::VectorXd& D, const double* Q, int columns,

@@ -35,8 +35,6 @@ struct Quadrature {
 /// Work is shared by the threads of the caller's team.
 class KrylovSpaces {
   public:
-    static constexpr int kMostSignals = kMostColumns;
-
     /// Largest inner product of an orthogonal basis. Semiorthogonality, 1e-8 (Simon 1984), would
     /// keep T accurate, but not combinations of the basis.
     static constexpr double kOrthogonal = 1e-10;
@@ -46,8 +44,8 @@ class KrylovSpaces {
     /// @param X  n x c signals, 1 <= c <= kMostSignals.
     /// @param orthogonal  inner product of two vectors at which they are reorthogonalized, where S
     ///                    wants that.
-    /// @param isNarrow  whether the basis is stored in single precision, as fits combinations of no
-    ///                  more than 1e-6; T is computed in double precision all the same.
+    /// @param isNarrow  whether the basis is stored in single precision, with an error of 1e-7 in
+    ///                  combinations of it; T is computed in double precision all the same.
     KrylovSpaces(const KrylovOperator& S, const Eigen::VectorXd& D, const ConstantModes& constants,
                  const Eigen::MatrixXd& X, double orthogonal = kOrthogonal, bool isNarrow = false);
 

@@ -8,7 +8,7 @@
 namespace spectral {
 
 /// Most signals that are filtered together.
-inline constexpr int kMostColumns = 4;
+inline constexpr int kMostSignals = 4;
 
 /// The values of all signals at a vertex, as they lie next to each other in a vector of rows.
 template <int Columns, class Scalar = double>
@@ -30,7 +30,7 @@ auto withColumns(int columns, const Call& call) {
         case 1: return call(std::integral_constant<int, 1>());
         case 2: return call(std::integral_constant<int, 2>());
         case 3: return call(std::integral_constant<int, 3>());
-        default: return call(std::integral_constant<int, kMostColumns>());
+        default: return call(std::integral_constant<int, kMostSignals>());
     }
 }
 
