@@ -26,7 +26,6 @@ using namespace spectral;
 namespace {
 
 constexpr int kRuns = 9;
-constexpr double kDefaultTolerance = 5e-4;  // of the diagonal, as in the dialog
 
 double secondsOf(const std::function<void()>& work) {
     const auto start = std::chrono::steady_clock::now();
@@ -67,7 +66,7 @@ struct Case {
     BasisUpdate update;
 };
 
-FilterOptions optionsOf(const Case& c, double featureSize, double tolerance) {
+FilterOptions optionsOf(const Case& c, double featureSize) {
     FilterOptions options;
     options.transferFunction.type = c.type;
     options.transferFunction.response = c.response;
@@ -76,7 +75,6 @@ FilterOptions optionsOf(const Case& c, double featureSize, double tolerance) {
         options.transferFunction.passGain = 2.5;
     }
     options.featureSize = featureSize;
-    options.tolerance = tolerance;
     options.steps = c.steps;
     options.basisUpdate = c.update;
     return options;
@@ -114,8 +112,6 @@ int main(int argc, char** argv) {
                 "solves/coord.", "error", "filter s", "alone s", "ratio", "two threads");
 
     const Case cases[] = {
-        {"every parameter at its default", FilterType::LowPass, Response::Gaussian, 0,
-         BasisUpdate::Conformal},
         {"gaussian low-pass, K = 1", FilterType::LowPass, Response::Gaussian, 1, BasisUpdate::None},
         {"butterworth low-pass, K = 1", FilterType::LowPass, Response::Butterworth, 1,
          BasisUpdate::None},
@@ -129,10 +125,7 @@ int main(int argc, char** argv) {
          BasisUpdate::Full},
     };
     for (const Case& c : cases) {
-        const double featureSize =
-            c.steps > 0 ? part * diagonal
-                        : defaultFeatureSize(meanEdgeLength(mesh.V, mesh.F), diagonal);
-        const FilterOptions options = optionsOf(c, featureSize, kDefaultTolerance * diagonal);
+        const FilterOptions options = optionsOf(c, part * diagonal);
         FilterResult result;
         const auto filter = [&] { result = fractionalFilter(mesh.V, mesh.F, options); };
         const double whole = medianSeconds(filter), speedUp = speedUpOf(filter);

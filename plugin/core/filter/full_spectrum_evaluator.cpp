@@ -1,6 +1,7 @@
 #include "core/filter/full_spectrum_evaluator.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "core/support/errors.h"
@@ -9,9 +10,12 @@ namespace spectral {
 
 namespace {
 
-/// Dimensions of products that cost as much as a factorization and its solves: 20 to 60, on real
-/// meshes of 20,000 to 280,000 vertices.
-constexpr int kAffordable = 36;
+/// Dimensions of products that cost as much as a factorization and its solves, on meshes of n
+/// vertices: measured 20 to 30 with 20,000, 35 to 70 with 200,000, and 70 with 2.5 million. Where
+/// products have served for the first evaluation, the analysis of the pattern is left for fewer.
+int affordableDimension(Index n, bool isFirst) {
+    return static_cast<int>((isFirst ? 36.0 : 54.0) * std::pow(static_cast<double>(n) / 1e5, 0.2));
+}
 
 Evaluation joined(std::vector<FullSpectrumResult> results) {
     Evaluation evaluation;
@@ -81,7 +85,7 @@ std::optional<Evaluation> FullSpectrumEvaluator::evaluateByProducts(
     const bool areToDo = solver_ == Solver::Products || lacksMemory_;
     const bool areToTry = solver_ == Solver::Cheapest && !atEveryVertex_ && !areDear_;
     if (!areToDo && !areToTry) return {};
-    if (!areToDo) options.affordable = kAffordable;
+    if (!areToDo) options.affordable = affordableDimension(laplacian.D.size(), products_ == 0);
     const Products A(laplacian, F_.cutoff());
     std::vector<FullSpectrumResult> results =
         applyFullSpectrum(laplacian.D, constants, A, gains, X, options, progress);
