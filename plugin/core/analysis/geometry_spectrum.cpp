@@ -10,8 +10,8 @@
 
 #include "core/analysis/bands.h"
 #include "core/analysis/noise_floor.h"
+#include "core/analysis/spectral_measure.h"
 #include "core/harmonics/truncated_basis.h"
-#include "core/krylov/krylov_spaces.h"
 #include "core/laplacian/harmonic_extension.h"
 #include "core/mesh/measures.h"
 #include "core/support/threads.h"
@@ -40,15 +40,18 @@ constexpr double kFewHarmonics = 30.0;
 /// times as long as wide would fall below; it bounds the number of octaves.
 constexpr double kLowest = 1e-6;
 
-/// Krylov dimensions of an octave: between checks of its energies, at the first check, at most.
-constexpr int kEnergyCheckInterval = 4, kFirstEnergyCheck = 16, kMaxDimension = 120;
+/// Dimensions of Krylov spaces: around a pole, enough for its octave and two or three on each side;
+/// without one, for the highest four or so.
+constexpr int kDimensionOfPole = 36, kDimensionOfProducts = 144;
 
-/// Largest change of converged energies, relative to themselves. Octaves are scaled to their known
-/// sum; third octaves are only plotted, and fitted to noise: a loose tolerance suffices.
-constexpr double kConverged = 1e-4, kThirdsConverged = 1e-2;
+/// The first pole is at this harmonic of those that are asked for, counted by Weyl's law: some
+/// octaves above the lowest, which converge best.
+constexpr double kHarmonicOfPole = 32.0;
 
-/// Smaller changes relative to the energy of all bands are ignored: an amplitude of 1e-5 of it.
-constexpr double kNegligible = 1e-10;
+/// Largest change of the energy of an octave relative to itself: beyond it, the octave gets a pole.
+/// The error is some times smaller: a space that grows by half converges. Third octaves are only
+/// plotted, and fitted to noise.
+constexpr double kConverged = 0.02;
 
 /// The signal that is analysed, and the Laplacian of its vertices.
 struct Signal {
@@ -84,8 +87,10 @@ Signal signalOf(MeshLaplacian mesh, Boundary boundary) {
 
 /// Number of harmonics to compute; on a small mesh at most as many as it has.
 Index sizeOfBasis(int asked, Index vertices, int components) {
-    if (asked < 1)
-        throw InvalidOption("basis_size = " + std::to_string(asked) + ": must be at least 1");
+    if (asked < 0)
+        throw InvalidOption("basis_size = " + std::to_string(asked) +
+                            ": must be 0, for no single harmonics, or more");
+    if (asked == 0) return 0;
     const Index size = std::max(asked, components + 1);
     return vertices <= kWholeBasis ? std::min(size, vertices) : size;
 }
@@ -101,152 +106,98 @@ Eigen::VectorXd noiseOfUnitHeight(Index vertices) {
     return Eigen::VectorXd::NullaryExpr(vertices, [&] { return bits() & 1U ? 1.0 : -1.0; });
 }
 
-/// Energies in octaves and in third octaves.
-struct BandEnergies {
-    Eigen::VectorXd octaves;  ///< Of the shape.
-    Eigen::VectorXd thirds;   ///< Of the shape.
-    Eigen::VectorXd noise;    ///< Of the noise, in third octaves.
+/// The measures of a shape and of noise of height 1, and the bands that cover their frequencies.
+struct MeasuredBands {
+    ShapeAndNoise measures;
+    Bands octaves, thirds;
 };
 
-/// Energy sum_i e_i g(omega_i) in the window g of band j.
-double energyIn(const Bands& bands, int j, const Quadrature& measure) {
-    double energy = 0.0;
-    for (Index i = 0; i < measure.omega.size(); ++i)
-        energy += measure.weight[i] * bands.window(j, measure.omega[i]);
-    return energy;
+MeasuredBands withBands(ShapeAndNoise measures, double highest, const GeometrySpectrum& spectrum) {
+    // All harmonics are in the noise, and the lowest Ritz values are the first to converge.
+    const double lowest = std::max(measures.noise.first().omega.minCoeff(),
+                                   std::sqrt(kLowest * 4.0 * kPi / spectrum.area));
+    highest = std::max(lowest, highest);
+    return {std::move(measures),
+            {spectrum.diagonal, lowest, highest},
+            {spectrum.diagonal, lowest, highest, 3}};
 }
 
-Eigen::VectorXd energiesIn(const Bands& bands, const Quadrature& measure) {
-    Eigen::VectorXd energies(bands.count());
-    for (int j = 0; j < bands.count(); ++j) energies[j] = energyIn(bands, j, measure);
-    return energies;
-}
-
-/// An energy to be computed: of the shape or of the noise, in one band.
-struct WantedEnergy {
-    const Bands& bands;
-    int band;
-    bool isNoise;
-    double tolerance;   ///< Largest change of a converged energy, relative to itself.
-    double negligible;  ///< Smaller changes are ignored.
-    double& energy;     ///< Set to the result.
-};
-
-/// @param signals  the shape, then the noise in the last column.
-Eigen::ArrayXd energiesOf(const std::vector<WantedEnergy>& wanted, const KrylovSpaces& signals) {
-    Eigen::ArrayXd energies = Eigen::ArrayXd::Zero(static_cast<Index>(wanted.size()));
-    for (int c = 0; c < signals.columns(); ++c) {
-        const Quadrature measure = signals.quadrature(c);
-        const bool isNoise = c + 1 == signals.columns();
-        for (std::size_t i = 0; i < wanted.size(); ++i)
-            if (wanted[i].isNoise == isNoise)
-                energies[static_cast<Index>(i)] +=
-                    energyIn(wanted[i].bands, wanted[i].band, measure);
-    }
-    return energies;
-}
-
-/// The same, in spaces that grow until they have converged.
-Eigen::ArrayXd convergedEnergies(const std::vector<WantedEnergy>& wanted, KrylovSpaces signals) {
-    const auto haveConverged = [&wanted](const Eigen::ArrayXd& energies,
-                                         const Eigen::ArrayXd& change) {
-        for (std::size_t i = 0; i < wanted.size(); ++i) {
-            const auto e = static_cast<Index>(i);
-            if (!(change[e] <= std::max(wanted[i].tolerance * energies[e], wanted[i].negligible)))
-                return false;
-        }
-        return true;
-    };
-    Eigen::ArrayXd energies = Eigen::ArrayXd::Zero(static_cast<Index>(wanted.size()));
-    Eigen::ArrayXd change = energies;
-    for (int m = 1; m <= kMaxDimension; ++m) {
-        if (!signals.extend()) return energiesOf(wanted, signals);
-        if (m % kEnergyCheckInterval != 0) continue;
-        const Eigen::ArrayXd before = energies, changeBefore = change;
-        energies = energiesOf(wanted, signals);
-        change = (energies - before).abs();
-        // Two in a row: one small change may be a coincidence.
-        if (m >= kFirstEnergyCheck && haveConverged(energies, change.max(changeBefore))) break;
-    }
-    return energies;
-}
-
-/// The energies x^T D g(sqrt(A)) x of signals orthogonal to a basis, by Gauss quadrature in
-/// shift-invert Krylov spaces with poles at the centres of the octaves.
-/// @param lastOfBasis  highest frequency of the basis; bands that end below it get 0.
-BandEnergies energiesBeyond(const Bands& octaves, const Bands& thirds, const Signal& signal,
-                            double lastOfBasis, const Eigen::MatrixXd& shape,
-                            const Eigen::VectorXd& noise, ShiftedLdlt& ldlt,
-                            const Progress& progress) {
-    const auto& [W, D] = signal.laplacian;
-    Eigen::MatrixXd signals(shape.rows(), shape.cols() + 1);
-    signals << shape, noise;
-    const double negligible = kNegligible * energyOf(shape, D);
-    const double negligibleNoise = kNegligible * energyOf(noise, D);
-
-    BandEnergies beyond{Eigen::VectorXd::Zero(octaves.count()),
-                        Eigen::VectorXd::Zero(thirds.count()),
-                        Eigen::VectorXd::Zero(thirds.count())};
-    for (int j = 0; j < octaves.count(); ++j) {
-        // The octave and the third octaves around its centre share Krylov spaces.
-        std::vector<WantedEnergy> wanted{
-            {octaves, j, false, kConverged, negligible, beyond.octaves[j]}};
-        for (int t = 0; t < thirds.count(); ++t) {
-            if (thirds.end(t) <= lastOfBasis || octaves.nearest(thirds.featureSize(t)) != j)
-                continue;
-            wanted.push_back({thirds, t, false, kThirdsConverged, negligible, beyond.thirds[t]});
-            wanted.push_back({thirds, t, true, kThirdsConverged, negligibleNoise, beyond.noise[t]});
-        }
-        if (octaves.end(j) <= lastOfBasis && wanted.size() == 1) continue;
-        progress.report(static_cast<double>(j) / octaves.count(), "energies of the octaves");
-        const double omega = 2.0 * kPi / octaves.featureSize(j);
-        ldlt.factorizeDefinite(W, D, omega * omega);
-        const ShiftInvert S(ldlt);
-        const Eigen::ArrayXd energies =
-            convergedEnergies(wanted, KrylovSpaces(S, D, signal.constants, signals));
-        for (std::size_t i = 0; i < wanted.size(); ++i)
-            wanted[i].energy = energies[static_cast<Index>(i)];
-    }
-    return beyond;
-}
-
-/// The energies of the shape in all bands, and the expected ones of noise of height 1.
+/// Adds to the measures of a basis what is beyond it.
 ///
-/// In the basis, the expectation is sum_v (phi_i(v) D_v)^2. Beyond it, a band has so many harmonics
-/// that a single sample is close enough.
-BandEnergies bandEnergies(const Bands& octaves, const Bands& thirds, const Signal& signal,
-                          const HarmonicBasis& basis, ShiftedLdlt& ldlt, const Progress& progress,
-                          GeometrySpectrum& spectrum) {
-    const Eigen::VectorXd& D = signal.laplacian.D;
-    const Index varying = basis.size() - signal.constants.count();
-    Quadrature measure{spectrum.frequencies.tail(varying),
-                       spectrum.amplitudes.tail(varying).cwiseAbs2() * spectrum.area};
-    BandEnergies energies{energiesIn(octaves, measure), energiesIn(thirds, measure), {}};
-    measure.weight =
-        (D.asDiagonal() * basis.Phi.rightCols(varying)).colwise().squaredNorm().transpose();
-    energies.noise = energiesIn(thirds, measure);
-    if (basis.size() == D.size()) return energies;
-
-    const auto beyondBasis = [&](const Eigen::MatrixXd& X) {
-        return Eigen::MatrixXd(X - basis.inverseTransform(basis.transform(D, X)));
+/// The lowest octaves come from a space with a pole, the highest from products with A. Where these
+/// do not meet, as on large meshes or with needles, octaves get poles of their own.
+/// @param signals    n x 4, without the basis: the shape, then the noise.
+/// @param firstPole  its frequency.
+MeasuredBands measureBeyond(ShapeAndNoise measures, const Signal& signal,
+                            const Eigen::MatrixXd& signals, double firstPole, ShiftedLdlt& ldlt,
+                            const Progress& progress, const GeometrySpectrum& spectrum) {
+    const auto& [W, D] = signal.laplacian;
+    const auto addPole = [&](ShapeAndNoise& to, double omega, double begin, double end) {
+        progress.report(begin, "energies of the octaves");
+        ldlt.factorizeDefinite(W, D, omega * omega);
+        addMeasures(ShiftInvert(ldlt), D, signal.constants, signals, kDimensionOfPole,
+                    progress.part(begin, end), to);
     };
-    Eigen::MatrixXd R = beyondBasis(signal.U);
-    const double energyOfR = energyOf(R, D);
-    if (energyOfR <= kNoEnergy * spectrum.totalEnergy) R.setZero();
-    const Eigen::VectorXd noise = beyondBasis(noiseOfUnitHeight(D.size()));
-    BandEnergies beyond = energiesBeyond(
-        octaves, thirds, signal, spectrum.frequencies[basis.size() - 1], R, noise, ldlt, progress);
-    if (const double sum = beyond.octaves.sum(); sum > 0.0) {
-        spectrum.mismatch = std::abs(sum / energyOfR - 1.0);
-        beyond.octaves *= energyOfR / sum;
+    double done = 0.4;
+    addPole(measures, firstPole, 0.0, done);
+    const double highest = std::sqrt(largestEigenvalue(signal.laplacian));
+    MeasuredBands bands = withBands(std::move(measures), highest, spectrum);
+    addMeasures(Products(signal.laplacian, highest), D, signal.constants, signals,
+                kDimensionOfProducts, progress.part(done, 2.0 * done), bands.measures);
+
+    const double negligible = kNoEnergy * spectrum.totalEnergy;
+    std::vector<bool> hasPole(static_cast<std::size_t>(bands.octaves.count()));
+    for (done *= 2.0;;) {
+        std::vector<int> open;
+        for (int j = 0; j < bands.octaves.count(); ++j) {
+            const auto [energy, change] = bands.measures.shape.in(bands.octaves, j);
+            if (!hasPole[j] && !(change <= kConverged * energy + negligible)) open.push_back(j);
+        }
+        if (open.empty()) return bands;
+        const int middle = open[open.size() / 2];
+        hasPole[middle] = true;
+        const double next = 0.5 * (done + 1.0);
+        addPole(bands.measures, 2.0 * kPi / bands.octaves.featureSize(middle), done, next);
+        done = next;
     }
-    energies.octaves += beyond.octaves;
-    energies.thirds += beyond.thirds;
-    energies.noise += beyond.noise;
-    return energies;
 }
 
-void setOctaves(const Bands& octaves, const Eigen::VectorXd& energies, GeometrySpectrum& spectrum) {
+/// The measures of the shape and the noise in the harmonics of a basis and, if that is not all
+/// there are, beyond it.
+MeasuredBands measureSignals(const Signal& signal, const HarmonicBasis& basis, ShiftedLdlt& ldlt,
+                             const Progress& progress, const GeometrySpectrum& spectrum) {
+    const Eigen::VectorXd& D = signal.laplacian.D;
+    const Index n = D.size();
+    const Index varying = std::max<Index>(0, basis.size() - signal.constants.count());
+    const Eigen::VectorXd omega = spectrum.frequencies.tail(varying);
+    // The noise is a sample. In the basis, its expectation sum_v (phi_i(v) D_v)^2 takes its place;
+    // bands beyond have so many harmonics that a sample is close enough.
+    ShapeAndNoise measures{
+        SpectralMeasure({omega, spectrum.amplitudes.tail(varying).cwiseAbs2() * spectrum.area}),
+        SpectralMeasure(
+            {omega,
+             (D.asDiagonal() * basis.Phi.rightCols(varying)).colwise().squaredNorm().transpose()})};
+    if (basis.size() == n)
+        return withBands(std::move(measures), spectrum.frequencies[n - 1], spectrum);
+    Eigen::MatrixXd signals(n, signal.U.cols() + 1);
+    signals << signal.U, noiseOfUnitHeight(n);
+    if (basis.size() > 0) signals -= basis.inverseTransform(basis.transform(D, signals));
+    if (energyOf(signals.leftCols(signal.U.cols()), D) <= kNoEnergy * spectrum.totalEnergy)
+        signals.leftCols(signal.U.cols()).setZero();
+    // By Weyl's law, area omega^2 / (4 pi) frequencies are below omega.
+    const double firstPole = std::sqrt(4.0 * kPi / spectrum.area * kHarmonicOfPole *
+                                       static_cast<double>(std::max<Index>(1, varying)));
+    return measureBeyond(std::move(measures), signal, signals, firstPole, ldlt, progress, spectrum);
+}
+
+void setOctaves(const MeasuredBands& bands, GeometrySpectrum& spectrum) {
+    const Bands& octaves = bands.octaves;
+    Eigen::VectorXd energies(octaves.count());
+    for (int j = 0; j < octaves.count(); ++j) {
+        const auto [energy, change] = bands.measures.shape.in(octaves, j);
+        energies[j] = energy;
+        spectrum.mismatch += change / spectrum.totalEnergy;
+    }
     // A triangle of nearly no area has very high frequencies, and no energy in them.
     Index filled = octaves.count();
     while (filled > 0 && !(energies[filled - 1] > kNoEnergy * spectrum.totalEnergy)) --filled;
@@ -256,7 +207,8 @@ void setOctaves(const Bands& octaves, const Eigen::VectorXd& energies, GeometryS
             "distance");
     spectrum.octaveFeatureSizes.resize(filled);
     for (int j = 0; j < filled; ++j) spectrum.octaveFeatureSizes[j] = octaves.featureSize(j);
-    const double sum = energies.head(filled).sum();  // totalEnergy, up to round-off
+    const double sum = energies.head(filled).sum();
+    spectrum.mismatch = std::max(spectrum.mismatch, std::abs(sum / spectrum.totalEnergy - 1.0));
     spectrum.octaveEnergies = energies.head(filled) * (spectrum.totalEnergy / sum);
     spectrum.octaveAmplitudes = (spectrum.octaveEnergies / spectrum.area).cwiseSqrt();
     spectrum.cumulativeEnergy.resize(filled);
@@ -266,48 +218,59 @@ void setOctaves(const Bands& octaves, const Eigen::VectorXd& energies, GeometryS
 }
 
 /// The third octaves with enough harmonics, and their noise floor.
-void setBands(const Bands& thirds, const BandEnergies& energies, Index vertices,
-              GeometrySpectrum& spectrum) {
+void setBands(const MeasuredBands& bands, Index vertices, GeometrySpectrum& spectrum) {
+    const Bands& thirds = bands.thirds;
     const double least = kFewHarmonics / static_cast<double>(vertices) * spectrum.area;
-    const Index count = (energies.noise.array() >= least).count();
-    spectrum.bandFeatureSizes.resize(count);
-    spectrum.bandAmplitudes.resize(count);
-    spectrum.bandNoise.resize(count);
-    Index b = 0;
+    std::vector<double> featureSizes, amplitudes, noise;
     for (int t = 0; t < thirds.count(); ++t) {
-        if (energies.noise[t] < least) continue;
-        spectrum.bandFeatureSizes[b] = thirds.featureSize(t);
-        spectrum.bandAmplitudes[b] = std::sqrt(energies.thirds[t] / spectrum.area);
-        spectrum.bandNoise[b] = std::sqrt(energies.noise[t] / spectrum.area);
-        ++b;
+        const double ofNoise = bands.measures.noise.in(thirds, t).energy;
+        if (ofNoise < least) continue;
+        featureSizes.push_back(thirds.featureSize(t));
+        amplitudes.push_back(std::sqrt(bands.measures.shape.in(thirds, t).energy / spectrum.area));
+        noise.push_back(std::sqrt(ofNoise / spectrum.area));
     }
+    const auto vectorOf = [](const std::vector<double>& values) {
+        return Eigen::VectorXd::Map(values.data(), static_cast<Index>(values.size()));
+    };
+    spectrum.bandFeatureSizes = vectorOf(featureSizes);
+    spectrum.bandAmplitudes = vectorOf(amplitudes);
+    spectrum.bandNoise = vectorOf(noise);
     const NoiseFloor floor =
         noiseFloor(spectrum.bandFeatureSizes, spectrum.bandAmplitudes, spectrum.bandNoise);
     spectrum.noiseHeight = floor.height;
     spectrum.noiseFeatureSize = floor.featureSize;
 }
 
-/// Feature size at and above which this part of the energy is.
-double featureSizeHolding(double part, const GeometrySpectrum& spectrum, const Bands& octaves) {
-    const double wanted = part * spectrum.totalEnergy;
-    const Eigen::VectorXd& omega = spectrum.frequencies;
-    double energy = 0.0;
-    for (Index i = 0; i < omega.size(); ++i) {
-        energy += std::pow(spectrum.amplitudes[i], 2) * spectrum.area;
-        if (omega[i] > 0.0 && energy >= wanted) return 2.0 * kPi / omega[i];
+/// Sets the feature sizes at and above which parts of the energy are: of single harmonics, or of
+/// Ritz values. The low ones, which have nearly all of the energy, are converged to harmonics.
+void setFeatureSizes(const Quadrature& measure, GeometrySpectrum& spectrum) {
+    std::vector<Index> order(static_cast<std::size_t>(measure.omega.size()));
+    std::iota(order.begin(), order.end(), 0);
+    std::sort(order.begin(), order.end(),
+              [&](Index i, Index j) { return measure.omega[i] < measure.omega[j]; });
+    const auto holding = [&](double part) {
+        double energy = 0.0;
+        for (const Index i : order)
+            if ((energy += measure.weight[i]) >= part * spectrum.totalEnergy &&
+                measure.omega[i] > 0)
+                return 2.0 * kPi / measure.omega[i];
+        return 2.0 * kPi / measure.omega[order.back()];
+    };
+    spectrum.featureSize50 = holding(0.50);
+    spectrum.featureSize90 = holding(0.90);
+    spectrum.featureSize99 = holding(0.99);
+}
+
+/// The lowest k harmonics, all of them, or none.
+HarmonicBasis basisOf(const Signal& signal, Index k, ShiftedLdlt& ldlt, const Progress& progress) {
+    const Index n = signal.laplacian.D.size();
+    if (k == 0) {
+        HarmonicBasis none;
+        none.Phi.resize(n, 0);
+        return none;
     }
-    // Beyond the basis, interpolated in octaves between the edges.
-    double size = 2.0 * kPi / omega[omega.size() - 1];
-    for (int j = 0; j < spectrum.cumulativeEnergy.size(); ++j) {
-        const double next = octaves.edge(j);
-        const double energyThere = spectrum.cumulativeEnergy[j] * spectrum.totalEnergy;
-        if (next >= size || energyThere <= energy) continue;
-        if (energyThere >= wanted)
-            return size * std::pow(next / size, (wanted - energy) / (energyThere - energy));
-        size = next;
-        energy = energyThere;
-    }
-    return size;
+    if (k == n && n <= kWholeBasis) return denseBasis(signal.laplacian, signal.constants);
+    return truncatedBasis(signal.laplacian, signal.constants, k, ldlt, progress);
 }
 
 }  // namespace
@@ -327,32 +290,26 @@ GeometrySpectrum geometrySpectrum(const Vertices& V, const Faces& F, const Spect
 
     const ThreadTeam team;
     ShiftedLdlt ldlt;
-    const HarmonicBasis basis =
-        k == n && n <= kWholeBasis
-            ? denseBasis(laplacian, signal.constants)
-            : truncatedBasis(laplacian, signal.constants, k, ldlt, progress.part(0.0, kBasisDone));
+    const double basisDone = k > 0 ? kBasisDone : 0.0;
+    const HarmonicBasis basis = basisOf(signal, k, ldlt, progress.part(0.0, basisDone));
+    const Index varying = std::max<Index>(0, basis.size() - constants);
     spectrum.totalEnergy = energyOf(signal.U, D);
     spectrum.frequencies = basis.lambda.cwiseMax(0.0).cwiseSqrt();
     spectrum.amplitudes = basis.transform(D, signal.U).rowwise().norm() / std::sqrt(spectrum.area);
-    spectrum.amplitudes.head(constants).setZero();
+    spectrum.amplitudes.head(basis.size() - varying).setZero();
 
-    const double lowest = std::max(basis.lambda[constants], kLowest * 4.0 * kPi / spectrum.area);
-    const double highest =
-        std::max(lowest, k == n ? basis.lambda[n - 1] : largestEigenvalue(laplacian));
-    const Bands octaves(spectrum.diagonal, std::sqrt(lowest), std::sqrt(highest));
-    const Bands thirds(spectrum.diagonal, std::sqrt(lowest), std::sqrt(highest), 3);
-    const BandEnergies energies = bandEnergies(octaves, thirds, signal, basis, ldlt,
-                                               progress.part(kBasisDone, 1.0), spectrum);
-    const Eigen::VectorXd residuals =
-        relativeResiduals(laplacian, constants, basis, progress.part(1.0, 1.0));
-    for (Index i = constants; i < basis.size(); ++i)
-        spectrum.mismatch += std::min(1.0, residuals[i]) * std::pow(spectrum.amplitudes[i], 2) *
-                             spectrum.area / spectrum.totalEnergy;
-    setOctaves(octaves, energies.octaves, spectrum);
-    setBands(thirds, energies, n, spectrum);
-    spectrum.featureSize50 = featureSizeHolding(0.50, spectrum, octaves);
-    spectrum.featureSize90 = featureSizeHolding(0.90, spectrum, octaves);
-    spectrum.featureSize99 = featureSizeHolding(0.99, spectrum, octaves);
+    const MeasuredBands bands =
+        measureSignals(signal, basis, ldlt, progress.part(basisDone, 1.0), spectrum);
+    setOctaves(bands, spectrum);
+    setBands(bands, n, spectrum);
+    setFeatureSizes(bands.measures.shape.first(), spectrum);
+    if (varying > 0) {
+        const Eigen::VectorXd residuals =
+            relativeResiduals(laplacian, constants, basis, progress.part(1.0, 1.0));
+        for (Index i = constants; i < basis.size(); ++i)
+            spectrum.mismatch += std::min(1.0, residuals[i]) * std::pow(spectrum.amplitudes[i], 2) *
+                                 spectrum.area / spectrum.totalEnergy;
+    }
     return spectrum;
 }
 

@@ -7,9 +7,9 @@
 namespace spectral {
 
 struct SpectrumOptions {
-    /// k >= 1 harmonics are computed, constant ones included; on a mesh of fewer vertices, up to
-    /// 2,000, all of them.
-    int basisSize = 200;
+    /// k >= 0 harmonics are computed one by one, constant ones included; on a mesh of fewer
+    /// vertices, up to 2,000, all of them. They take most of the time.
+    int basisSize = 0;
     LaplacianKind laplacian = LaplacianKind::IntrinsicDelaunay;
     Boundary boundary = Boundary::Free;
 };
@@ -32,7 +32,8 @@ struct GeometrySpectrum {
     double area = 0.0;         ///< Sum of D, length^2, fixed vertices included.
     double totalEnergy = 0.0;  ///< |U|_D^2, length^4.
 
-    /// Of the lowest harmonics: basisSize, or more where that would split a multiple eigenvalue.
+    /// Of the lowest harmonics: basisSize, or more where that would split a multiple eigenvalue;
+    /// empty for 0.
     Eigen::VectorXd frequencies;  ///< omega_i, ascending, radians per length unit; constants: 0.
     Eigen::VectorXd amplitudes;   ///< |Phi_i^T D U| / sqrt(area), length units; constants: 0.
 
@@ -43,7 +44,8 @@ struct GeometrySpectrum {
     Eigen::VectorXd cumulativeEnergy;    ///< Energy of an octave and all larger ones relative to
                                          ///< totalEnergy, ascending to 1.
 
-    /// Feature sizes at and above which 50, 90 and 99 % of the energy are, length units.
+    /// Feature sizes at and above which 50, 90 and 99 % of the energy are, length units: of
+    /// harmonics, or of Ritz values where these are not computed.
     double featureSize50 = 0.0, featureSize90 = 0.0, featureSize99 = 0.0;
 
     /// Of the third octaves (bands.h) that hold at least as much noise as 30 harmonics, by
@@ -58,7 +60,7 @@ struct GeometrySpectrum {
     double noiseHeight = 0.0;       ///< Root mean square height, length units.
     double noiseFeatureSize = 0.0;  ///< All smaller details are indistinguishable from noise.
 
-    /// Part of the energy that may be in another octave. Beyond the basis, the relative error of
+    /// Part of the energy that may be in another octave. Beyond the basis, the estimated error of
     /// the quadrature, whose energies are then scaled to their known sum; in it, the energies of
     /// the harmonics times their relative residuals, which matter where triangles are needles.
     double mismatch = 0.0;
@@ -66,9 +68,9 @@ struct GeometrySpectrum {
 
 /// The whole spectrum of the coordinates in the manifold harmonics of the surface.
 ///
-/// The coefficients Phi^T D U of the k lowest harmonics are exact (Vallet and Levy 2008); the
-/// energies of the remainder of U are quadratic forms, computed by quadrature. The basis is removed
-/// from U first, lest the energies of large features swamp those of the details.
+/// The coefficients Phi^T D U of the k lowest harmonics are exact (Vallet and Levy 2008). The
+/// energies of the remainder of U are quadratic forms, and need no harmonics: they are computed by
+/// Gauss quadrature in a few Krylov spaces, to about a percent.
 ///
 /// @param V  n x 3 positions, finite.
 /// @param F  m x 3 vertex indices, m >= 1; any topology, unreferenced vertices allowed.

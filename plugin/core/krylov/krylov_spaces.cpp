@@ -86,13 +86,14 @@ Moments<Columns> momentsOf(const Eigen::VectorXd& D, const Eigen::VectorXi& labe
 
 KrylovSpaces::KrylovSpaces(const KrylovOperator& S, const Eigen::VectorXd& D,
                            const ConstantModes& constants, const Eigen::MatrixXd& X,
-                           double orthogonal, bool isNarrow)
+                           double orthogonal, KeptBasis kept)
     : S_(S),
       constants_(constants),
       orthogonal_(orthogonal),
       columns_(static_cast<int>(X.cols())),
       D_(D.size()),
       label_(D.size()),
+      kept_(kept),
       alpha_(X.cols()),
       beta_(X.cols()),
       ritz_(X.cols()),
@@ -102,7 +103,7 @@ KrylovSpaces::KrylovSpaces(const KrylovOperator& S, const Eigen::VectorXd& D,
       isOfRoundOff_(X.cols()),
       roundOff_(kBreakdown) {
     assert(columns_ >= 1 && columns_ <= kMostSignals);
-    if (isNarrow) basis_.emplace<Vectors<float>>();
+    if (kept == KeptBasis::Single) basis_.emplace<Vectors<float>>();
     for (Eigen::VectorXd* rows : {&newest_, &before_, &next_}) rows->resize(S.rows() * columns_);
     before_.setZero();
     const int* order = S.order();
@@ -157,9 +158,15 @@ void KrylovSpaces::start(const Eigen::MatrixXd& X) {
     append<Columns>([&](Index i) { return rowOf<Columns>(q, i) *= inverse; });
 }
 
-/// Appends a vector to the basis.
+/// Makes the rows of the newest vector, and appends it to the basis.
 template <int Columns, class MakeRow>
 void KrylovSpaces::append(const MakeRow& row) {
+    if (kept_ == KeptBasis::None) {
+        parallelRows(D_.size(), [&](Index begin, Index end) {
+            for (Index i = begin; i < end; ++i) row(i);
+        });
+        return;
+    }
     std::visit(
         [&](auto& basis) {
             using Vector = typename std::decay_t<decltype(basis)>::value_type;
@@ -196,7 +203,8 @@ void KrylovSpaces::extendColumns() {
     Row<Columns> beta = moments.squares.sqrt();
     for (int c = 0; c < Columns; ++c)
         if (!exhausted_[c]) alpha_[c].push_back(alpha[c]);
-    if (S_.isToBeOrthogonal() && losesOrthogonality(beta)) beta = orthogonalize<Columns>(beta, w);
+    if (kept_ != KeptBasis::None && S_.isToBeOrthogonal() && losesOrthogonality(beta))
+        beta = orthogonalize<Columns>(beta, w);
 
     Row<Columns> inverse = Row<Columns>::Zero();
     for (int c = 0; c < Columns; ++c) {

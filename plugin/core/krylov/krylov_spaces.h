@@ -17,6 +17,14 @@ struct Quadrature {
     Eigen::VectorXd weight;  ///< m weights, >= 0.
 };
 
+/// How Krylov spaces keep their bases.
+enum class KeptBasis {
+    Double,
+    Single,  ///< With an error of 1e-7 in combinations of it; T is in double precision all the
+             ///< same.
+    None  ///< For quadrature alone, which T is enough for, orthogonal or not (Golub and Meurant).
+};
+
 /// Lanczos recurrences of several signals in step: each application of an operator S extends all of
 /// their Krylov spaces.
 ///
@@ -44,10 +52,10 @@ class KrylovSpaces {
     /// @param X  n x c signals, 1 <= c <= kMostSignals.
     /// @param orthogonal  inner product of two vectors at which they are reorthogonalized, where S
     ///                    wants that.
-    /// @param isNarrow  whether the basis is stored in single precision, with an error of 1e-7 in
-    ///                  combinations of it; T is computed in double precision all the same.
+    /// @param kept  the basis; combinations of none are not to be asked for.
     KrylovSpaces(const KrylovOperator& S, const Eigen::VectorXd& D, const ConstantModes& constants,
-                 const Eigen::MatrixXd& X, double orthogonal = kOrthogonal, bool isNarrow = false);
+                 const Eigen::MatrixXd& X, double orthogonal = kOrthogonal,
+                 KeptBasis kept = KeptBasis::Double);
 
     int columns() const { return columns_; }
 
@@ -124,6 +132,7 @@ class KrylovSpaces {
     int columns_;
     Eigen::VectorXd D_;      // in the order of S, like all that follow
     Eigen::VectorXi label_;  // components; see ConstantModes
+    KeptBasis kept_;
     std::variant<Vectors<double>, Vectors<float>> basis_;
     Eigen::VectorXd newest_, before_, next_;  // of the basis, with rows of scratch behind; see S
     std::vector<std::vector<double>> alpha_, beta_;  // diagonal and off-diagonal of T, by column

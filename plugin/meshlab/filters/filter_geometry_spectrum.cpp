@@ -44,9 +44,9 @@ RichParameterList geometrySpectrumParameters(const MeshModel&) {
     RichParameterList list;
     list.addParam(
         RichInt("basis_size", spectral::SpectrumOptions().basisSize, "Basis size",
-                "Number of the largest features (manifold harmonics) that are computed one by one, "
-                "constant ones included; time and memory grow with it. The octaves cover all "
-                "features in any case. A small mesh gets all it has."));
+                "Number of the largest features (manifold harmonics) that are also computed one by "
+                "one, constant ones included, for scripts that need them: it takes most of the "
+                "time. The octaves cover all features in any case. A small mesh gets all it has."));
     list.addParam(
         laplacianParameter("How the frequencies of the surface are measured, as in the filter. "
                            "<b>intrinsic delaunay</b> works on any triangles; for <b>cotangent</b> "
@@ -68,9 +68,10 @@ std::string withPercent(double length, double diagonal) {
 
 std::string textOf(const GeometrySpectrum& spectrum) {
     std::ostringstream text;
-    text << std::setprecision(4) << "Geometry Spectrum: " << spectrum.frequencies.size()
-         << " harmonics, octaves of all details; in brackets percent of the diagonal, "
-         << spectrum.diagonal << "\n"
+    text << std::setprecision(4) << "Geometry Spectrum: octaves of all details";
+    if (spectrum.frequencies.size() > 0)
+        text << ", and " << spectrum.frequencies.size() << " harmonics";
+    text << "; in brackets percent of the diagonal, " << spectrum.diagonal << "\n"
          << std::left << "  " << std::setw(24) << "feature size" << std::setw(24) << "amplitude"
          << "cumulative energy";
     for (Eigen::Index j = 0; j < spectrum.octaveEnergies.size(); ++j)

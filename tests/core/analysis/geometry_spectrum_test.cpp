@@ -31,7 +31,7 @@ std::vector<Mesh> classesOfMeshes() {
 
 TEST(GeometrySpectrum, HoldsAllOfTheEnergyOfTheShape) {
     for (const Mesh& mesh : classesOfMeshes())
-        for (const int basisSize : {4, 50, 200, 5000}) {
+        for (const int basisSize : {0, 4, 50, 200, 5000}) {
             const Operator A(mesh);
             Eigen::MatrixXd X = mesh.V;
             A.constants.remove(X);
@@ -147,6 +147,21 @@ TEST(GeometrySpectrum, ShowsABumpySphereInItsOctaveWithItsAmplitude) {
     EXPECT_LT(others.maxCoeff(), 0.1 * spectrum.octaveAmplitudes[j]);
 }
 
+TEST(GeometrySpectrum, OfLargeFeaturesDoesNotDependOnHowFineTheMeshIs) {
+    // Many octaves lie between the largest features and the edges: no Krylov space sees them all.
+    const auto wavy = [](int count) {
+        Mesh mesh = testing::rectangle(2.0, 1.0, 2 * count, count);
+        for (Index i = 0; i < mesh.V.rows(); ++i)
+            mesh.V(i, 2) = 0.05 * std::sin(3.0 * mesh.V(i, 0)) * std::cos(9.0 * mesh.V(i, 1));
+        return spectrumOf(mesh, 0);
+    };
+    const GeometrySpectrum coarse = wavy(48), fine = wavy(240);
+    EXPECT_LT(fine.mismatch, 1e-3);
+    ASSERT_NEAR(fine.octaveFeatureSizes[0] / coarse.octaveFeatureSizes[0], 1.0, 1e-3);
+    for (Index j = 0; j < 4; ++j)
+        EXPECT_NEAR(fine.octaveEnergies[j] / coarse.octaveEnergies[j], 1.0, 0.03) << j;
+}
+
 TEST(GeometrySpectrum, ScalesWithTheMeshAndDoesNotChangeUnderTranslation) {
     for (const Mesh& mesh : classesOfMeshes()) {
         const GeometrySpectrum original = spectrumOf(mesh, 30);
@@ -233,7 +248,7 @@ TEST(GeometrySpectrum, IsRefusedWhereRoundOffLeavesNothingOfTheShape) {
 
 TEST(GeometrySpectrum, RefusesBadMeshesAndSizes) {
     const Mesh mesh = testing::icosphere(2);
-    for (const int basisSize : {0, -3}) EXPECT_THROW(spectrumOf(mesh, basisSize), InvalidOption);
+    EXPECT_THROW(spectrumOf(mesh, -1), InvalidOption);
     const Mesh large = testing::icosphere(4);
     try {
         spectrumOf(large, static_cast<int>(large.V.rows()));

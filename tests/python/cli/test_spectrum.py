@@ -141,7 +141,7 @@ def test_help_names_the_options_that_make_the_curve_and_no_others() -> None:
         (["COW", "--output", "plot.jpg"], 2, ".png, .pdf or .svg"),
         (["COW", "--output", "plot"], 2, ".png, .pdf or .svg"),
         (["COW", "--output", "nowhere/plot.png"], 1, "does not exist"),
-        (["COW", "--basis-size", "0"], 2, "basis-size"),
+        (["COW", "--basis-size", "-1"], 2, "basis-size"),
         (["COW", "--basis-size", "100000"], 1, "choose at most"),
         (["COW", "--feature-size", "0"], 2, "above zero"),
         (["COW", "--laplacian", "graph"], 2, "intrinsic delaunay"),

@@ -25,7 +25,7 @@ from meshlab_spectral.files.meshes import load_arrays
 from numpy.typing import NDArray
 
 SPECTRUM = "get_geometry_spectrum"
-OCTAVES = 2e-3  # relative accuracy of an octave's energy
+OCTAVES = 1e-2  # relative accuracy of an octave's energy
 
 Decimated = Callable[..., tuple[NDArray[Any], NDArray[Any]]]
 
@@ -62,7 +62,7 @@ def octave_energies(
 
 
 @pytest.mark.parametrize("laplacian", ["cotangent", "intrinsic delaunay"])
-@pytest.mark.parametrize("basis_size", [10, 200])
+@pytest.mark.parametrize("basis_size", [0, 10, 200])
 def test_all_of_it_agrees(
     sample_name: str, basis_size: int, laplacian: Any, decimated: Decimated
 ) -> None:
@@ -96,12 +96,12 @@ def test_all_of_it_agrees(
         (0.99, found.feature_size_99),
     ):
         exact = 2 * np.pi / omega[np.searchsorted(np.cumsum(energy), share * energy.sum())]
-        within_basis = exact > 1.001 * 2 * np.pi / omega[k - 1]
+        within_basis = k > 0 and exact > 1.001 * 2 * np.pi / omega[k - 1]
         assert abs(np.log2(size / exact)) < (1e-4 if within_basis else 0.75)
 
 
 @pytest.mark.parametrize("laplacian", ["cotangent", "intrinsic delaunay"])
-@pytest.mark.parametrize("basis_size", [10, 200])
+@pytest.mark.parametrize("basis_size", [0, 10, 200])
 def test_with_a_fixed_boundary_it_is_what_the_boundary_does_not_determine(
     sample_name: str, basis_size: int, laplacian: Any, decimated: Decimated
 ) -> None:
@@ -203,7 +203,7 @@ def test_noise_in_a_range_scan_is_told_from_its_relief_and_its_rim(
     assert found.noise_feature_size > 1.4 * raw.noise_feature_size
 
 
-@pytest.mark.parametrize("basis_size", [10, 200])
+@pytest.mark.parametrize("basis_size", [0, 10, 200])
 def test_the_bands_agree(sample_name: str, basis_size: int, decimated: Decimated) -> None:
     V, F = decimated(sample_name)
     W, d = reference.matrices(V, F, "cotangent")
@@ -249,7 +249,7 @@ def test_the_filter_reports_everything_and_leaves_the_mesh_as_it_was(decimated: 
 
 
 def test_a_small_mesh_has_all_of_its_harmonics() -> None:
-    found = geometry_spectrum([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]])
+    found = geometry_spectrum([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], 10)
     assert found.frequencies.shape == (3,)
     assert found.octave_energies.sum() == pytest.approx(found.total_energy)
     assert found.band_feature_sizes.shape == found.noise_heights.shape == (0,)
@@ -262,7 +262,7 @@ def test_a_basis_as_large_as_a_large_mesh_is_refused(decimated: Decimated) -> No
         geometry_spectrum(V, F, len(V))
 
 
-@pytest.mark.parametrize("basis_size", [0, -1, 2.5, True, "ten", 2**31])
+@pytest.mark.parametrize("basis_size", [-1, 2.5, True, "ten", 2**31])
 def test_a_basis_size_that_is_no_number_of_harmonics_is_refused(basis_size: Any) -> None:
     with pytest.raises(OptionError, match="basis_size"):
         geometry_spectrum([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], basis_size)
@@ -286,5 +286,5 @@ def test_a_mesh_that_cannot_be_measured_is_refused_and_left_as_it_was(
         geometry_spectrum(V, F + len(V))
     mesh_set = mesh_set_of(V, F)
     before = snapshot(mesh_set.current_mesh())
-    assert "basis_size" in refusal(mesh_set, filter_name=SPECTRUM, basis_size=0)
+    assert "basis_size" in refusal(mesh_set, filter_name=SPECTRUM, basis_size=-1)
     assert_same(before, snapshot(mesh_set.current_mesh()))

@@ -60,7 +60,7 @@ def spectra_command(
         ),
     ] = False,
     basis_size: Annotated[
-        int, typer.Option(min=1, help="Number of lowest harmonics to measure individually.")
+        int, typer.Option(min=0, help="Number of lowest harmonics to measure individually, too.")
     ] = DEFAULT_BASIS_SIZE,
     laplacian: Annotated[
         LaplacianKind, typer.Option(help="As for the filter.")

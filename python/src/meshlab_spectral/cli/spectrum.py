@@ -81,7 +81,7 @@ def spectrum_command(
         ),
     ] = None,
     basis_size: Annotated[
-        int, typer.Option(min=1, help="Number of lowest harmonics to show individually.")
+        int, typer.Option(min=0, help="Number of lowest harmonics to show individually, too.")
     ] = DEFAULT_BASIS_SIZE,
     mesh: OneMesh = None,
     as_json: Annotated[

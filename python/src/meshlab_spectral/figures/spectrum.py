@@ -116,14 +116,15 @@ def _plot_amplitudes(axes: Axes, spectrum: GeometrySpectrum) -> None:
     # Separate octaves of equal height.
     axes.vlines(edges[1:-1], floor, np.minimum(heights[:-1], heights[1:]), _OCTAVES, linewidth=0.6)
     waves = spectrum.frequencies > 0
-    axes.plot(
-        2 * np.pi / spectrum.frequencies[waves],
-        spectrum.amplitudes[waves],
-        ".",
-        color=_HARMONICS,
-        markersize=3,
-        label=f"the {np.count_nonzero(waves)} lowest harmonics",
-    )
+    if waves.any():
+        axes.plot(
+            2 * np.pi / spectrum.frequencies[waves],
+            spectrum.amplitudes[waves],
+            ".",
+            color=_HARMONICS,
+            markersize=3,
+            label=f"the {np.count_nonzero(waves)} lowest harmonics",
+        )
     axes.set_xlim(edges[0], edges[-1])
     axes.set_ylim(floor, 3 * heights.max())
 

@@ -24,9 +24,9 @@ Weight = Literal["none", "vertex quality"]
 Result = Literal["filtered shape", "details"]
 
 
-def checked_basis_size(value: Any) -> int:
-    """Return a basis size as an integer; raise OptionError unless it is one from 1 on."""
-    limits = Limits(1, LARGEST_INTEGER)
+def checked_basis_size(value: Any, least: int = 1) -> int:
+    """Return a basis size as an integer; raise OptionError unless it is one from `least` on."""
+    limits = Limits(least, LARGEST_INTEGER)
     if not isinstance(value, Integral) or isinstance(value, bool) or not limits.contain(value):
         raise OptionError(f"basis_size = {value}: must be an integer {limits}")
     return int(value)

@@ -15,7 +15,7 @@ from meshlab_spectral.filters.options import Boundary, LaplacianKind, checked_ba
 from meshlab_spectral.plugin.loading import load
 
 FILTER_NAME = "get_geometry_spectrum"
-DEFAULT_BASIS_SIZE = 200
+DEFAULT_BASIS_SIZE = 0
 
 Array = NDArray[np.float64]
 
@@ -46,7 +46,8 @@ class GeometrySpectrum:
         Surface integral of the squared length of the shape, length^4.
     frequencies
         Frequencies of the lowest harmonics, ascending, radians per length unit, 0 for constants. At
-        least `basis_size` of them, as groups of equal frequencies are not split, or all there are.
+        least `basis_size` of them, as groups of equal frequencies are not split, or all there are;
+        empty for 0.
     amplitudes
         Amplitudes of these harmonics; 0 for constants.
     octave_feature_sizes
@@ -74,9 +75,9 @@ class GeometrySpectrum:
     feature_size_50, feature_size_90, feature_size_99
         Feature sizes above which 50, 90 and 99 % of the energy lie.
     mismatch
-        Part of the energy that may belong to another octave: the deviation of the energies beyond
-        the harmonics from their known sum, before they are scaled to it, and the energies of
-        harmonics times their relative residuals. A warning above 0.01.
+        Part of the energy that may belong to another octave: the estimated error of the energies
+        beyond the harmonics, and the energies of harmonics times their relative residuals. A
+        warning above 0.01.
     """
 
     diagonal: float
@@ -129,8 +130,8 @@ def geometry_spectrum(
     """Measure the geometry spectrum of a mesh.
 
     With the harmonics ``W phi_i = omega_i^2 D phi_i`` of the mesh and its shape U, an energy is a
-    sum of ``|phi_i^T D U|^2``: over single harmonics for the lowest frequencies, and over octaves
-    for the whole spectrum.
+    sum of ``|phi_i^T D U|^2``: over octaves, to about a percent, for the whole spectrum and, if
+    asked for, over single harmonics for the lowest frequencies.
 
     Parameters
     ----------
@@ -139,8 +140,9 @@ def geometry_spectrum(
     faces
         m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
     basis_size
-        Number of harmonics measured individually, constants included; at least 1, and less than
-        the number of vertices not fixed if there are more than 2,000 of these.
+        Number of harmonics measured individually, constants included, which takes most of the
+        time; less than the number of vertices not fixed if there are more than 2,000 of these.
+        0 for the octaves alone.
     laplacian
         "intrinsic delaunay" works with any triangles; "cotangent" needs non-degenerate ones;
         "uniform" looks at the connections only.
@@ -158,7 +160,7 @@ def geometry_spectrum(
     ValueError
         When an array has the wrong shape or type, or an index is out of range.
     OptionError
-        When `laplacian` or `boundary` is unknown, or `basis_size` is not a positive integer.
+        When `laplacian` or `boundary` is unknown, or `basis_size` is not an integer from 0 on.
     FilterError
         When the mesh has no faces, no area or non-finite coordinates, `basis_size` is too large, or
         a fixed boundary leaves nothing to measure, as in a flat mesh.
@@ -196,7 +198,7 @@ def spectrum_parameters(basis_size: int, laplacian: str, boundary: str) -> dict[
     OptionError
         When an option has an invalid value.
     """
-    basis_size = checked_basis_size(basis_size)
+    basis_size = checked_basis_size(basis_size, least=0)
     for name, value, kind in (
         ("laplacian", laplacian, LaplacianKind),
         ("boundary", boundary, Boundary),
