@@ -17,7 +17,7 @@ Artefacts measureArtefacts(const Vertices& V, const Faces& F, const ArtefactOpti
                            const Progress& progress) {
     // Relative to the size of the shape. Artefacts of good results are 1e-4 of it: four digits.
     constexpr double kAccuracy = 1e-8;
-    const ThreadTeam team;
+    const ThreadTeam team(progress);
     const MeshLaplacian mesh = meshLaplacian(V, F, options.laplacian);
     const double cutoff = cutoffFrequency(options.featureSize);
     const Gain gain = [cutoff](double omega) { return artefactFreeGain(omega, cutoff); };

@@ -277,6 +277,7 @@ HarmonicBasis basisOf(const Signal& signal, Index k, ShiftedLdlt& ldlt, const Pr
 
 GeometrySpectrum geometrySpectrum(const Vertices& V, const Faces& F, const SpectrumOptions& options,
                                   const Progress& progress) {
+    const ThreadTeam team(progress);
     MeshLaplacian mesh = meshLaplacian(V, F, options.laplacian);
     GeometrySpectrum spectrum;
     spectrum.diagonal = boundingBoxDiagonal(V);
@@ -288,7 +289,6 @@ GeometrySpectrum geometrySpectrum(const Vertices& V, const Faces& F, const Spect
     const Index n = D.size(), constants = signal.constants.count();
     const Index k = sizeOfBasis(options.basisSize, n, signal.constants.count());
 
-    const ThreadTeam team;
     ShiftedLdlt ldlt;
     const double basisDone = k > 0 ? kBasisDone : 0.0;
     const HarmonicBasis basis = basisOf(signal, k, ldlt, progress.part(0.0, basisDone));

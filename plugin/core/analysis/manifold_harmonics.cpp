@@ -6,6 +6,7 @@
 
 #include "core/harmonics/truncated_basis.h"
 #include "core/support/errors.h"
+#include "core/support/threads.h"
 
 namespace spectral {
 
@@ -23,6 +24,7 @@ void fixSigns(Eigen::MatrixXd& Phi) {
 
 ManifoldHarmonics manifoldHarmonics(const Vertices& V, const Faces& F,
                                     const HarmonicsOptions& options, const Progress& progress) {
+    const ThreadTeam team(progress);
     const MeshLaplacian mesh = meshLaplacian(V, F, options.laplacian);
     const Interior interior(mesh.surface.F, mesh.components, options.boundary);
     const Index k = options.basisSize;

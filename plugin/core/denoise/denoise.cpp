@@ -164,7 +164,7 @@ constexpr double kMostOffset = 2.0;
 
 DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& options,
                       const Progress& progress) {
-    const ThreadTeam team;
+    const ThreadTeam team(progress);
     checkMesh(V, F);
     checkOptions(options);
     progress.report(0.0, "measuring the noise");

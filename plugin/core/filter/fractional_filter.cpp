@@ -107,7 +107,7 @@ AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evalua
 
 FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOptions& options,
                               const Progress& progress) {
-    const ThreadTeam team;
+    const ThreadTeam team(progress);
     checkMesh(V, F, options.laplacian);  // first: of an infinite diagonal no feature size is right
     checkOptions(options);
     const Surface surface = joinedSurface(V, F);

@@ -55,7 +55,7 @@ bool isConstant(Eigen::MatrixXd X, const ConstantModes& constants) {
 FilteredSignal filterSignal(const Vertices& V, const Faces& F, const Eigen::MatrixXd& Q,
                             const SignalFilterOptions& options, const Progress& progress) {
     assert(Q.rows() == V.rows() && Q.cols() >= 1 && Q.cols() <= kMostSignals);
-    const ThreadTeam team;
+    const ThreadTeam team(progress);
     checkMesh(V, F);
     checkSignal(Q);
     checkWeights(options.part);

@@ -17,7 +17,7 @@ constexpr double kCoarsestAccuracy = 1e-2;
 /// Error of a shape that a Laplacian is taken of, relative to that of a result, and three digits at
 /// least. It enters the result through the change of the Laplacian alone, but where parts shrink
 /// away that change is large; a digit costs two solves.
-constexpr double kPredictionShare = 0.1, kPredictionAccuracy = 1e-3;
+constexpr double kPredictionShare = 0.3, kPredictionAccuracy = 1e-3;
 
 /// Relative error beyond which a result is useless.
 constexpr double kUselessError = 0.1;

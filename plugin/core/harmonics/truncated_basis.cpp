@@ -216,7 +216,7 @@ HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& co
     const Index n = laplacian.D.size();
     checkSize(k, n, constants.count());
     requireMemory(k, n);
-    const ThreadTeam team;
+    const ThreadTeam team(progress);
     if (isDenseQuicker(n)) {
         HarmonicBasis all = denseBasis(laplacian, constants);
         const Index size = cutOutsideClusters(all.lambda, k).value_or(n);
@@ -264,7 +264,7 @@ HarmonicBasis harmonicsBetween(const Laplacian& laplacian, const ConstantModes& 
                                Index first, Index last, ShiftedLdlt& ldlt,
                                const Progress& progress) {
     requireMemory(last - first, laplacian.D.size());
-    const ThreadTeam team;
+    const ThreadTeam team(progress);
     HarmonicBasis basis =
         pairsBetween(laplacian, constants, first, last, ldlt, progress.part(0.0, 0.95));
     basis.residuals = relativeResiduals(laplacian, 0, basis, progress.part(0.95, 1.0));

@@ -94,57 +94,58 @@ void sortByAngle(const Vertices& V, const Faces& F, EdgeSide* first, EdgeSide* l
 /// triangle: W_ij = -weight, W_ii = -sum_j W_ij; zero weights are stored, too.
 SparseMatrix stiffnessOf(const IntrinsicTriangulation& triangulation, int copies,
                          Index vertexCount) {
-    // Column j: an entry for every side that starts in j, and the diagonal.
+    // Column j has room for an entry of every side that starts in j, and the diagonal.
     const auto n = static_cast<std::size_t>(vertexCount);
     std::vector<int> begin(n + 1, 1);
     begin[0] = 0;
     for (int s = 0; s < triangulation.sideCount(); ++s) ++begin[triangulation.tail(s) + 1];
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
-    struct Entry {
-        int row;
-        double value;
-    };
-    std::vector<Entry> entries(static_cast<std::size_t>(begin.back()));
-    std::vector<int> end(begin.begin(), begin.end() - 1);
-    for (int j = 0; j < vertexCount; ++j) entries[end[j]++] = {j, 0.0};
-    for (int s = 0; s < triangulation.sideCount(); ++s)
-        entries[end[triangulation.tail(s)]++].row = s;
-
     SparseMatrix W(vertexCount, vertexCount);
-    int* starts = W.outerIndexPtr();
+    W.resizeNonZeros(begin.back());
+    int* rows = W.innerIndexPtr();
+    std::vector<int> end(begin.begin(), begin.end() - 1);
+    for (int s = 0; s < triangulation.sideCount(); ++s) rows[end[triangulation.tail(s)]++] = s;
+
     parallelRows(vertexCount, [&](Index first, Index last) {
-        for (Index j = first; j < last; ++j) {
-            Entry *diagonal = &entries[begin[j]], *next = diagonal + 1;
-            for (Entry* side = next; side != entries.data() + end[j]; ++side) {
-                const int s = side->row, i = triangulation.tail(triangulation.twin(s));
+        struct Entry {
+            int row;
+            double value;
+        };
+        std::vector<Entry> entries;
+        for (int j = static_cast<int>(first); j < last; ++j) {
+            entries.assign(1, {j, 0.0});
+            for (int p = begin[j]; p < end[j]; ++p) {
+                const int s = rows[p], i = triangulation.tail(triangulation.twin(s));
                 if (i == j) continue;  // a loop
                 const double weight = 0.5 / copies * std::max(0.0, triangulation.edgeCotangents(s));
-                diagonal->value += weight;
-                *next++ = {i, -weight};
+                entries.front().value += weight;
+                entries.push_back({i, -weight});
             }
             // By value, too: W_ij and W_ji sum in the same order; W is symmetric to the bit.
-            std::sort(diagonal, next, [](const Entry& a, const Entry& b) {
+            std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
                 return std::pair(a.row, a.value) < std::pair(b.row, b.value);
             });
-            Entry* sum = diagonal;  // over several edges that join i and j
-            for (Entry* entry = diagonal + 1; entry != next; ++entry)
-                if (entry->row == sum->row)
-                    sum->value += entry->value;
-                else
-                    *++sum = *entry;
-            starts[j + 1] = static_cast<int>(sum + 1 - diagonal);
+            int at = begin[j] - 1;
+            for (const Entry& entry : entries)  // several edges may join i and j
+                if (at >= begin[j] && rows[at] == entry.row) {
+                    W.valuePtr()[at] += entry.value;
+                } else {
+                    rows[++at] = entry.row;
+                    W.valuePtr()[at] = entry.value;
+                }
+            end[j] = at + 1;
         }
     });
-    std::partial_sum(starts, starts + n + 1, starts);
+    // Columns move up, if any has room left.
+    int* starts = W.outerIndexPtr();
+    for (std::size_t j = 0; j < n; ++j) {
+        const int size = end[j] - begin[j];
+        starts[j + 1] = starts[j] + size;
+        if (starts[j] == begin[j]) continue;
+        std::copy_n(rows + begin[j], size, rows + starts[j]);
+        std::copy_n(W.valuePtr() + begin[j], size, W.valuePtr() + starts[j]);
+    }
     W.resizeNonZeros(starts[n]);
-    parallelRows(vertexCount, [&](Index first, Index last) {
-        for (Index j = first; j < last; ++j)
-            for (int p = starts[j]; p < starts[j + 1]; ++p) {
-                const Entry& entry = entries[begin[j] + p - starts[j]];
-                W.innerIndexPtr()[p] = entry.row;
-                W.valuePtr()[p] = entry.value;
-            }
-    });
     return W;
 }
 
@@ -193,11 +194,16 @@ IntrinsicTriangulation IntrinsicDelaunay::triangulation(const Vertices& V) const
     // The smallest mollification that makes every triangle inequality hold by the margin.
     const double meanLength =
         std::accumulate(length.begin(), length.end(), 0.0) / static_cast<double>(length.size());
-    double epsilon = 0.0;
-    for (int s = 0; s < static_cast<int>(tail_.size()); ++s)
-        epsilon = std::max(epsilon, length[s] - length[nextSide(s)] - length[previousSide(s)] +
-                                        kMollification * meanLength);
-    for (double& l : length) l += epsilon;
+    std::vector<double> least((length.size() + kRowsOfTask - 1) / kRowsOfTask, 0.0);
+    parallelRows(static_cast<Index>(length.size()), [&](Index begin, Index end) {
+        double& epsilon = least[static_cast<std::size_t>(begin / kRowsOfTask)];
+        for (int s = static_cast<int>(begin); s < end; ++s)
+            epsilon = std::max(epsilon, length[s] - length[nextSide(s)] - length[previousSide(s)] +
+                                            kMollification * meanLength);
+    });
+    const double epsilon = *std::max_element(least.begin(), least.end());
+    if (epsilon > 0.0)
+        for (double& l : length) l += epsilon;
 
     IntrinsicTriangulation triangulation(tail_, twin_, std::move(length));
     triangulation.makeDelaunay();

@@ -64,6 +64,7 @@ void IntrinsicTriangulation::makeDelaunay() {
     const Index edges = sideCount() / 2;
     Index flips = 0;
     while (!stack.empty()) {
+        ThreadTeam::stopPoint();
         const int s = stack.back();
         stack.pop_back();
         waiting[s] = 0;

@@ -30,7 +30,10 @@ LaplacianBuilder::LaplacianBuilder(const Surface& surface, LaplacianKind kind, B
     current_ = {stiffness(surface.X), mass(surface.X)};
     inputMass_ = current_.D;
     area_ = inputMass_.sum();
-    if (update == BasisUpdate::Full) inputStiffness_ = current_.W;
+    if (update == BasisUpdate::Full)
+        inputStiffness_ = current_.W;
+    else
+        intrinsic_.reset();  // W stays
 }
 
 const Laplacian& LaplacianBuilder::input() {

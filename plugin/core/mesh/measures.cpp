@@ -32,12 +32,15 @@ double surfaceArea(const Vertices& V, const Faces& F) {
 double signedVolume(const Vertices& V, const Faces& F) {
     // Far from the origin, tetrahedra with an apex there would cancel.
     const Eigen::RowVector3d o = 0.5 * (V.colwise().maxCoeff() + V.colwise().minCoeff());
-    double sixfoldVolume = 0.0;
-    for (Index t = 0; t < F.rows(); ++t) {
-        const Eigen::RowVector3d a = V.row(F(t, 0)) - o, b = V.row(F(t, 1)) - o,
-                                 c = V.row(F(t, 2)) - o;
-        sixfoldVolume += a.dot(b.cross(c));
-    }
+    const double sixfoldVolume = parallelSum(F.rows(), 0.0, [&](Index begin, Index end) {
+        double sum = 0.0;
+        for (Index t = begin; t < end; ++t) {
+            const Eigen::RowVector3d a = V.row(F(t, 0)) - o, b = V.row(F(t, 1)) - o,
+                                     c = V.row(F(t, 2)) - o;
+            sum += a.dot(b.cross(c));
+        }
+        return sum;
+    });
     return sixfoldVolume / 6.0;
 }
 

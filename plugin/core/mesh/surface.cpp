@@ -35,12 +35,11 @@ Surface surfaceOf(const Vertices& V, const Faces& F) {
 }
 
 Surface joinedSurface(const Vertices& V, const Faces& F) {
-    const Surface cut = surfaceOf(V, F);
+    Surface cut = surfaceOf(V, F);
     const Seams seams = findSeams(cut.X, cut.F);
     if (seams.first.empty()) {
-        Surface whole = cut;
-        whole.nearlyCopies = seams.nearby;
-        return whole;
+        cut.nearlyCopies = seams.nearby;
+        return cut;
     }
     Surface surface = surfaceOf(cut.X, cut.F.unaryExpr([&](int i) { return seams.first[i]; }));
     surface.nearlyCopies = seams.nearby;

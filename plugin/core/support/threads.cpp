@@ -65,6 +65,12 @@ class ThreadTeam::Implementation {
         for (std::thread& thread : threads_) thread.join();
     }
 
+    void listenTo(const Progress* progress) { progress_ = progress; }
+
+    void stopPoint() const {
+        if (progress_ != nullptr && progress_->isInterrupted()) throw Cancelled();
+    }
+
     int asked() const { return asked_; }
     int size() const { return static_cast<int>(threads_.size()) + 1; }
 
@@ -97,6 +103,7 @@ class ThreadTeam::Implementation {
             any = true;
             isInTask = true;
             try {
+                if (indexInTeam == 0) stopPoint();
                 if (!failed_) work_.call(work_.function, count_ - unclaimed(ticket));
             } catch (...) {
                 const std::lock_guard<std::mutex> lock(mutex_);
@@ -127,6 +134,7 @@ class ThreadTeam::Implementation {
         }
     }
 
+    const Progress* progress_ = nullptr;  // for the thread that made the team
     const int asked_;  // number of threads, of which the system may have had fewer
     std::vector<std::thread> threads_;
     TaskFunction work_{};
@@ -160,8 +168,17 @@ ThreadTeam::ThreadTeam(int threads) {
 ThreadTeam::~ThreadTeam() {
     if (!implementation_) return;
     current_ = nullptr;
+    implementation_->listenTo(nullptr);
     if (implementation_->size() > 1)
         implementation_.reset(idle_.exchange(implementation_.release()));
+}
+
+void ThreadTeam::listenTo(const Progress& progress) {
+    if (implementation_) implementation_->listenTo(&progress);
+}
+
+void ThreadTeam::stopPoint() {
+    if (current_ != nullptr && !isInTask) current_->stopPoint();
 }
 
 void ThreadTeam::run(Index count, TaskFunction work) {

@@ -29,6 +29,10 @@ class ThreadTeam {
   public:
     /// @param threads  including the calling one; fewer if the system has no more.
     explicit ThreadTeam(int threads = threadCount());
+    /// A team whose work ends when the caller interrupts it, whatever it is at: parallelFor and
+    /// stopPoint throw Cancelled.
+    /// @param progress  kept by reference.
+    explicit ThreadTeam(const Progress& progress) : ThreadTeam() { listenTo(progress); }
     ~ThreadTeam();
     ThreadTeam(const ThreadTeam&) = delete;
     ThreadTeam& operator=(const ThreadTeam&) = delete;
@@ -46,7 +50,12 @@ class ThreadTeam {
     /// Number of the calling thread within its team; 0 for the one that made it, or without a team.
     static int threadIndex();
 
+    /// For long loops without parallelFor.
+    /// @throws Cancelled  when the calling thread's team is interrupted.
+    static void stopPoint();
+
   private:
+    void listenTo(const Progress& progress);
     class Implementation;
     static thread_local Implementation* current_;     // of the calling thread
     static std::atomic<Implementation*> idle_;        // the last one that had threads, or null
@@ -58,7 +67,7 @@ class ThreadTeam {
 ///
 /// Results must not depend on the number of threads: each task writes to its own memory, and sums
 /// over tasks are taken afterwards, in order.
-/// @throws one of the tasks' exceptions, after all running tasks have ended.
+/// @throws one of the tasks' exceptions, after all running tasks have ended; Cancelled.
 template <class Work>
 void parallelFor(Index count, const Work& work) {
     ThreadTeam::run(count, {[](const void* function, Index task) {

@@ -31,7 +31,7 @@ void runBeside(const Progress& progress, const std::function<void(const Progress
             latestStage = stage;
             return !stop;
         },
-        [&] { return progress.isInterrupted(); });
+        [&] { return stop || progress.isInterrupted(); });
 
     // Not std::async: libc++'s waits for ever for a thread that it could not get.
     std::packaged_task<void()> task([&] { work(note); });

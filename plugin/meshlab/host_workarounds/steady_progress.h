@@ -15,9 +15,10 @@ namespace spectral {
 /// a large mesh takes seconds, and nothing can report from within it. A window that is painted anew
 /// only in its callback, as MeshLab's, stands still as long.
 ///
-/// `work` gets a progress that notes what it is told, and is left by Cancelled at its next report
-/// once the caller wants to stop. Only the calling thread calls the caller back. Where no thread
-/// can be had, or nobody is to be told, it does the work itself.
+/// `work` gets a progress that notes what it is told, and is left by Cancelled once the caller
+/// wants to stop: at its next report, or wherever its threads ask (ThreadTeam). Only the calling
+/// thread calls the caller back. Where no thread can be had, or nobody is to be told, it does the
+/// work itself.
 ///
 /// @throws whatever `work` throws; Cancelled.
 void runBeside(const Progress& progress, const std::function<void(const Progress&)>& work);

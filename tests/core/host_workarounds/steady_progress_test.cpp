@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/support/threads.h"
 #include "support/thread_shortage.h"
 
 using namespace spectral;
@@ -88,6 +89,17 @@ TEST(SteadyProgress, AnInterruptionStopsTheWorkWhileTheCallbackHasNotReturned) {
         },
         [] { return true; });
     EXPECT_THROW(runBeside(busy, endlessWork(left)), Cancelled);
+}
+
+TEST(SteadyProgress, TheCallerStopsTheThreadsOfWorkThatReportsNothing) {
+    const Progress progress([](double, const std::string&) { return false; });
+    EXPECT_THROW(withSteadyProgress(progress,
+                                    [&](const Progress& steady) {
+                                        const ThreadTeam team(steady);
+                                        while (true) parallelFor(2, [](Index) {});
+                                        return 0;
+                                    }),
+                 Cancelled);
 }
 
 TEST(SteadyProgress, AFailureOfTheWorkReachesTheCaller) {

@@ -106,6 +106,28 @@ TEST(ThreadTeam, HasThreadsOfItsOwnInAForkedProcess) {
 }
 #endif
 
+TEST(ThreadTeam, EndsItsWorkWhenItIsInterrupted) {
+    std::atomic<bool> isInterrupted{false};
+    const Progress progress([](double, const std::string&) { return true; },
+                            [&] { return isInterrupted.load(); });
+    {
+        const ThreadTeam team(progress);
+        parallelFor(100, [](Index) {});
+        EXPECT_NO_THROW(ThreadTeam::stopPoint());
+        std::atomic<int> done{0};
+        EXPECT_THROW(parallelFor(1000000,
+                                 [&](Index) {
+                                     if (++done == 1000) isInterrupted = true;
+                                 }),
+                     Cancelled);
+        EXPECT_LT(done, 1000000);
+        EXPECT_THROW(ThreadTeam::stopPoint(), Cancelled);
+    }
+    const ThreadTeam next;  // of the same threads
+    EXPECT_NO_THROW(parallelFor(100, [](Index) {}));
+    EXPECT_NO_THROW(ThreadTeam::stopPoint());
+}
+
 TEST(ThreadTeam, SumsAlikeForEveryNumberOfThreads) {
     const auto sum = [](int threads) {
         const ThreadTeam team(threads);
