@@ -36,11 +36,12 @@ struct SidesByEdge {
           begin(static_cast<std::size_t>(vertexCount) + 1, 0) {
         // A bucket sort by the lower vertex, which few sides share.
         const auto forEachSide = [&F](const auto& visit) {
-            for (int t = 0; t < F.rows(); ++t)
+            forEachInOrder(F.rows(), [&](Index t) {
                 for (int c = 0; c < 3; ++c) {
                     const int i = F(t, c), j = F(t, c == 2 ? 0 : c + 1);
-                    visit(EdgeSide{std::min(i, j), std::max(i, j), 3 * t + c});
+                    visit(EdgeSide{std::min(i, j), std::max(i, j), static_cast<int>(3 * t) + c});
                 }
+            });
         };
         forEachSide([&](const EdgeSide& s) { ++begin[s.low + 1]; });
         std::partial_sum(begin.begin(), begin.end(), begin.begin());
@@ -98,13 +99,17 @@ SparseMatrix stiffnessOf(const IntrinsicTriangulation& triangulation, int copies
     const auto n = static_cast<std::size_t>(vertexCount);
     std::vector<int> begin(n + 1, 1);
     begin[0] = 0;
-    for (int s = 0; s < triangulation.sideCount(); ++s) ++begin[triangulation.tail(s) + 1];
+    forEachInOrder(triangulation.sideCount(),
+                   [&](Index s) { ++begin[triangulation.tail(static_cast<int>(s)) + 1]; });
     std::partial_sum(begin.begin(), begin.end(), begin.begin());
     SparseMatrix W(vertexCount, vertexCount);
     W.resizeNonZeros(begin.back());
     int* rows = W.innerIndexPtr();
     std::vector<int> end(begin.begin(), begin.end() - 1);
-    for (int s = 0; s < triangulation.sideCount(); ++s) rows[end[triangulation.tail(s)]++] = s;
+    forEachInOrder(triangulation.sideCount(), [&](Index s) {
+        const int side = static_cast<int>(s);
+        rows[end[triangulation.tail(side)]++] = side;
+    });
 
     parallelRows(vertexCount, [&](Index first, Index last) {
         struct Entry {

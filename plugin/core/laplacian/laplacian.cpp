@@ -69,8 +69,9 @@ Eigen::VectorXd lumpedMass(const Vertices& V, const Faces& F) {
         }
     });
     Eigen::VectorXd D = Eigen::VectorXd::Zero(V.rows());
-    for (Index t = 0; t < F.rows(); ++t)
+    forEachInOrder(F.rows(), [&](Index t) {
         for (int k = 0; k < 3; ++k) D[F(t, k)] += third[t];
+    });
     return D;
 }
 

@@ -15,17 +15,19 @@ std::vector<Side> sidesByEdge(const Faces& F) {
         return std::minmax({F(t, (c + 1) % 3), F(t, (c + 2) % 3)});
     };
     std::vector<Index> begin(vertices + 1, 0);
-    for (Index t = 0; t < F.rows(); ++t)
+    forEachInOrder(F.rows(), [&](Index t) {
         for (int c = 0; c < 3; ++c) ++begin[ends(t, c).first + 1];
+    });
     for (std::size_t i = 0; i < vertices; ++i) begin[i + 1] += begin[i];
 
     std::vector<Side> sides(static_cast<std::size_t>(3 * F.rows()));
     std::vector<Index> next(begin);
-    for (Index t = 0; t < F.rows(); ++t)
+    forEachInOrder(F.rows(), [&](Index t) {
         for (int c = 0; c < 3; ++c) {
             const auto [low, high] = ends(t, c);
             sides[next[low]++] = {low, high, static_cast<int>(t), c};
         }
+    });
     parallelRows(static_cast<Index>(vertices), [&](Index first, Index last) {
         for (Index i = first; i < last; ++i)
             std::sort(sides.begin() + begin[i], sides.begin() + begin[i + 1],

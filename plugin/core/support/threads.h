@@ -88,7 +88,17 @@ void parallelRows(Index count, const Work& work) {
     });
 }
 
-/// The sum of work(begin, end) over the same blocks, in order.
+/// Calls work(i) for 0 <= i < count, ascending, on the calling thread, with stop points.
+template <class Work>
+void forEachInOrder(Index count, const Work& work) {
+    constexpr Index kBetweenStopPoints = Index{1} << 16;
+    for (Index begin = 0; begin < count; begin += kBetweenStopPoints) {
+        ThreadTeam::stopPoint();
+        for (Index i = begin; i < std::min(count, begin + kBetweenStopPoints); ++i) work(i);
+    }
+}
+
+/// The sum of work(begin, end) over the blocks of parallelRows, in order.
 /// @param zero  initial value.
 template <class Value, class Work>
 Value parallelSum(Index count, Value zero, const Work& work) {
