@@ -2,14 +2,14 @@
 // headers promise (contract.h).
 //
 // usage: fuzz_core [--cases N] [--first-seed S] [--seconds T] [--seeds FILE] [--limit SECONDS]
-//                  [--errors yes] [--compare no]
+//                  [--errors yes] [--compare no] [--solver factorization|products]
 //        fuzz_core --seed S    one seed, in this process, with everything that came of it
 //
 // Cases have seeds S, S + 64, ...: nearer ones share bytes. Seeds below 1e12 make meshes of any
 // size, larger ones mostly small meshes, of which there are more in an hour; those from 1e15 on
 // also give filters custom gains, parts of the mesh, creases and volumes; those from 2e15 denoise.
 // --limit is for one case; --errors prints the errors that are allowed, too; --compare no leaves
-// out the dense solver, for sanitizers.
+// out the dense solver, for sanitizers; --solver makes filters use it whatever it costs.
 //
 // A file of seeds has one in each line, with a remark after it. Seeds mean the same on every
 // platform, but not after a change of meshes.cpp or cases.cpp.
@@ -24,6 +24,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "fuzz/contract.h"
@@ -48,6 +49,7 @@ struct Arguments {
     double seconds = std::numeric_limits<double>::infinity(), limit = 60.0;
     std::optional<std::vector<std::uint64_t>> seeds;  ///< Instead of a range.
     bool isVerbose = false, showsErrors = false, compares = true;
+    spectral::Solver solver = spectral::Solver::Cheapest;
 };
 
 std::vector<std::uint64_t> seedsOf(const std::string& path) {
@@ -57,6 +59,12 @@ std::vector<std::uint64_t> seedsOf(const std::string& path) {
     for (std::string line; std::getline(file, line);)
         if (!line.empty() && line[0] != '#') seeds.push_back(std::stoull(line));
     return seeds;
+}
+
+spectral::Solver solverOf(const std::string& name) {
+    if (name == "factorization") return spectral::Solver::Factorization;
+    if (name == "products") return spectral::Solver::Products;
+    throw std::runtime_error("unknown solver " + name);
 }
 
 Arguments argumentsOf(int count, char** values) {
@@ -77,6 +85,8 @@ Arguments argumentsOf(int count, char** values) {
             arguments.showsErrors = std::string(value) == "yes";
         else if (name == "--compare")
             arguments.compares = std::string(value) == "yes";
+        else if (name == "--solver")
+            arguments.solver = solverOf(value);
         else if (name == "--seeds")
             arguments.seeds = seedsOf(value);
         else if (name == "--seed") {
@@ -88,7 +98,7 @@ Arguments argumentsOf(int count, char** values) {
     return arguments;
 }
 
-Case caseOf(std::uint64_t seed) {
+Case caseOf(std::uint64_t seed, spectral::Solver solver) {
     const std::vector<std::uint8_t> bytes = bytesOf(seed);
     Choices choices(bytes.data(), bytes.size());
     if (seed >= kFirstOfDenoise) return makeDenoiseCase(choices);
@@ -98,6 +108,8 @@ Case caseOf(std::uint64_t seed) {
         Choices parts(more.data(), more.size());
         addPart(parts, made);
     }
+    if (auto* filter = std::get_if<spectral::FilterOptions>(&made.options))
+        filter->evaluation.solver = solver;
     return made;
 }
 
@@ -168,8 +180,8 @@ void printOutcome(const Outcome& outcome) {
                   << ", octaves " << spectrum->octaveEnergies.transpose() << "\n";
 }
 
-int runOne(std::uint64_t seed) {
-    const Case made = caseOf(seed);
+int runOne(std::uint64_t seed, spectral::Solver solver) {
+    const Case made = caseOf(seed, solver);
     std::cout << "seed " << seed << ": " << describe(made) << std::endl;
     const Verdict verdict = check(made);
     printOutcome(verdict.outcome);
@@ -190,7 +202,7 @@ int runAll(const Arguments& arguments) {
     runInChildren(
         0, arguments.seeds ? arguments.seeds->size() : arguments.cases, arguments.limit,
         [&](std::uint64_t i) {
-            const Case made = caseOf(seedOf(i));
+            const Case made = caseOf(seedOf(i), arguments.solver);
             const Verdict verdict = check(made, arguments.compares);
             counts->add(verdict);
             for (const Failure& failure : verdict.failures) print(seedOf(i), failure, made);
@@ -204,7 +216,7 @@ int runAll(const Arguments& arguments) {
             ++counts->cases;
             ++counts->failed;
             counts->addFailure(what);
-            print(seedOf(i), {what, "no outcome"}, caseOf(seedOf(i)));
+            print(seedOf(i), {what, "no outcome"}, caseOf(seedOf(i), arguments.solver));
         });
     print(*counts);
     return counts->failed == 0 ? 0 : 1;
@@ -215,7 +227,8 @@ int runAll(const Arguments& arguments) {
 int main(int count, char** values) {
     try {
         const Arguments arguments = argumentsOf(count, values);
-        return arguments.isVerbose ? runOne(arguments.seeds->front()) : runAll(arguments);
+        return arguments.isVerbose ? runOne(arguments.seeds->front(), arguments.solver)
+                                   : runAll(arguments);
     } catch (const std::exception& error) {
         std::cerr << "fuzz_core: " << error.what() << "\n";
         return 2;

@@ -12,9 +12,10 @@ namespace spectral {
 
 namespace {
 
-/// Y <- D^-1 W Q; returns Q^T D Y by columns.
+/// Y <- D^-1 W Q / unit; returns Q^T D Y by columns.
 template <int Columns>
-Row<Columns> multiply(const Laplacian& laplacian, const double* Q, double* Y) {
+Row<Columns> multiply(const Laplacian& laplacian, double unit, const double* Q, double* Y) {
+    const double inverse = 1.0 / unit;
     const SparseMatrix& W = laplacian.W;  // symmetric: its columns are its rows
     const auto* begins = W.outerIndexPtr();
     const auto* neighbours = W.innerIndexPtr();
@@ -25,6 +26,7 @@ Row<Columns> multiply(const Laplacian& laplacian, const double* Q, double* Y) {
             Row<Columns> sum = Row<Columns>::Zero();
             for (auto k = begins[i]; k < begins[i + 1]; ++k)
                 sum += weights[k] * rowOf<Columns>(Q, neighbours[k]);
+            sum *= inverse;
             products += rowOf<Columns>(Q, i) * sum;
             rowOf<Columns>(Y, i) = sum / laplacian.D[i];
         }
@@ -83,7 +85,7 @@ double ShiftInvert::lastFrequency() const { return std::numeric_limits<double>::
 Products::Products(const Laplacian& laplacian, double central)
     : laplacian_(laplacian),
       central_(central),
-      largest_(boundOfEigenvalues(laplacian)),
+      largest_(std::max(boundOfEigenvalues(laplacian), std::numeric_limits<double>::min())),
       order_(Eigen::VectorXi::LinSpaced(laplacian.D.size(), 0,
                                         static_cast<int>(laplacian.D.size()) - 1)) {
     constexpr double kVectors = 20.0, kOfVector = 3 * sizeof(float);  // of spaces; see KrylovSpaces
@@ -95,7 +97,7 @@ Eigen::ArrayXd Products::apply(const Eigen::VectorXd&, const double* Q, int colu
                                double* Y) const {
     count_ += columns;
     return withColumns(columns, [&](auto count) {
-        return Eigen::ArrayXd(multiply<count>(laplacian_, Q, Y).transpose());
+        return Eigen::ArrayXd(multiply<count>(laplacian_, largest_, Q, Y).transpose());
     });
 }
 

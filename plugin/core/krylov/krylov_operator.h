@@ -65,7 +65,8 @@ class ShiftInvert final : public KrylovOperator {
     const ShiftedLdlt& ldlt_;
 };
 
-/// S = A itself: a product with W for every dimension, no factorization, no memory for one.
+/// S = A over a bound of its eigenvalues, so that theta is in [0, 1]: a product with W for every
+/// dimension, no factorization, no memory for one.
 ///
 /// It needs few dimensions where the spectrum ends some octaves beyond the frequencies that F tells
 /// apart, or where little of the signal is in its end, as of some slivers. Errors are relative to
@@ -82,9 +83,9 @@ class Products final : public KrylovOperator {
     Index rows() const override { return laplacian_.D.size(); }
     const int* order() const override { return order_.data(); }
     const int* inverseOrder() const override { return order_.data(); }
-    double theta(double lambda) const override { return lambda; }
-    double lambda(double theta) const override { return theta > 0.0 ? theta : 0.0; }
-    double errorOf(double, double relative) const override { return relative * largest_; }
+    double theta(double lambda) const override { return lambda / largest_; }
+    double lambda(double theta) const override { return theta > 0.0 ? theta * largest_ : 0.0; }
+    double errorOf(double, double relative) const override { return relative; }
     double centralFrequency() const override { return central_; }
     double lastFrequency() const override;
     bool isToBeOrthogonal() const override { return false; }

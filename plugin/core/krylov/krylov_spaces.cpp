@@ -103,7 +103,10 @@ KrylovSpaces::KrylovSpaces(const KrylovOperator& S, const Eigen::VectorXd& D,
       isOfRoundOff_(X.cols()),
       roundOff_(kBreakdown) {
     assert(columns_ >= 1 && columns_ <= kMostSignals);
-    if (kept == KeptBasis::Single) basis_.emplace<Vectors<float>>();
+    if (kept == KeptBasis::Single) {
+        basis_.emplace<Vectors<float>>();
+        unit_ = 1.0 / std::sqrt(D.sum());
+    }
     for (Eigen::VectorXd* rows : {&newest_, &before_, &next_}) rows->resize(S.rows() * columns_);
     before_.setZero();
     const int* order = S.order();
@@ -174,7 +177,7 @@ void KrylovSpaces::append(const MakeRow& row) {
             Vector vector(D_.size() * Columns);
             parallelRows(D_.size(), [&](Index begin, Index end) {
                 for (Index i = begin; i < end; ++i)
-                    rowOf<Columns>(vector.data(), i) = row(i).template cast<Scalar>();
+                    rowOf<Columns>(vector.data(), i) = (row(i) / unit_).template cast<Scalar>();
             });
             basis.push_back(std::move(vector));
         },
@@ -402,7 +405,7 @@ void KrylovSpaces::combineColumns(const std::vector<Eigen::VectorXd>& coefficien
             std::vector<Row<Columns>> factors(basis.size(), Row<Columns>::Zero());
             for (int c = 0; c < Columns; ++c)
                 for (Index j = 0; j < coefficients[c].size(); ++j)
-                    factors[j][c] = coefficients[c][j];
+                    factors[j][c] = unit_ * coefficients[c][j];
             parallelRows(D_.size(), [&](Index begin, Index end) {
                 Eigen::VectorXd sum = Eigen::VectorXd::Zero((end - begin) * Columns);
                 for (std::size_t j = 0; j < basis.size(); ++j) {

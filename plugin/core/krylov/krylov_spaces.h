@@ -133,6 +133,7 @@ class KrylovSpaces {
     Eigen::VectorXd D_;      // in the order of S, like all that follow
     Eigen::VectorXi label_;  // components; see ConstantModes
     KeptBasis kept_;
+    double unit_ = 1.0;  // of the stored basis: numbers in single precision have few exponents
     std::variant<Vectors<double>, Vectors<float>> basis_;
     Eigen::VectorXd newest_, before_, next_;  // of the basis, with rows of scratch behind; see S
     std::vector<std::vector<double>> alpha_, beta_;  // diagonal and off-diagonal of T, by column

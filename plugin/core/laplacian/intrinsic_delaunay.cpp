@@ -199,7 +199,7 @@ IntrinsicTriangulation IntrinsicDelaunay::triangulation(const Vertices& V) const
     // The smallest mollification that makes every triangle inequality hold by the margin.
     const double meanLength =
         std::accumulate(length.begin(), length.end(), 0.0) / static_cast<double>(length.size());
-    std::vector<double> least((length.size() + kRowsOfTask - 1) / kRowsOfTask, 0.0);
+    std::vector<double> least(length.size() / kRowsOfTask + 1, 0.0);
     parallelRows(static_cast<Index>(length.size()), [&](Index begin, Index end) {
         double& epsilon = least[static_cast<std::size_t>(begin / kRowsOfTask)];
         for (int s = static_cast<int>(begin); s < end; ++s)

@@ -42,6 +42,7 @@ Surface joinedSurface(const Vertices& V, const Faces& F) {
         return cut;
     }
     Surface surface = surfaceOf(cut.X, cut.F.unaryExpr([&](int i) { return seams.first[i]; }));
+    if (surface.F.rows() == 0) return cut;  // corners that are one point but for their last bits
     surface.nearlyCopies = seams.nearby;
     std::vector<Index> row(seams.first.size(), -1);
     for (Index i = 0; i < surface.X.rows(); ++i) row[surface.vertex[i]] = i;
