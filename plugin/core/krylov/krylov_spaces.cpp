@@ -158,7 +158,11 @@ void KrylovSpaces::start(const Eigen::MatrixXd& X) {
         exhausted_[c] = !(norms_[c] > kBreakdown * constants[c]);  // what is left is round-off
         if (!exhausted_[c]) inverse[c] = 1.0 / norms_[c];
     }
-    append<Columns>([&](Index i) { return rowOf<Columns>(q, i) *= inverse; });
+    append<Columns>([&](Index i) {
+        const Row<Columns> row = rowOf<Columns>(q, i) * inverse;
+        rowOf<Columns>(q, i) = row;
+        return row;
+    });
 }
 
 /// Makes the rows of the newest vector, and appends it to the basis.
@@ -175,9 +179,10 @@ void KrylovSpaces::append(const MakeRow& row) {
             using Vector = typename std::decay_t<decltype(basis)>::value_type;
             using Scalar = typename Vector::Scalar;
             Vector vector(D_.size() * Columns);
+            const double inverse = 1.0 / unit_;
             parallelRows(D_.size(), [&](Index begin, Index end) {
                 for (Index i = begin; i < end; ++i)
-                    rowOf<Columns>(vector.data(), i) = (row(i) / unit_).template cast<Scalar>();
+                    rowOf<Columns>(vector.data(), i) = (inverse * row(i)).template cast<Scalar>();
             });
             basis.push_back(std::move(vector));
         },
@@ -194,9 +199,10 @@ void KrylovSpaces::extendColumns() {
     // round-off, and would be amplified by every step.
     const Row<Columns> before = lastOf<Columns>(beta_);
     const auto moments = momentsOf<Columns>(D_, label_, constants_.masses(), [&](Index i) {
-        auto row = rowOf<Columns>(w, i);
-        row -= alpha * rowOf<Columns>(q, i) + before * rowOf<Columns>(p, i);
-        return Row<Columns>(row);
+        const Row<Columns> row =
+            rowOf<Columns>(w, i) - (alpha * rowOf<Columns>(q, i) + before * rowOf<Columns>(p, i));
+        rowOf<Columns>(w, i) = row;
+        return row;
     });
     Eigen::Array<double, Eigen::Dynamic, Columns> constants =
         moments.means.colwise() * constants_.masses().array().sqrt();
@@ -221,9 +227,11 @@ void KrylovSpaces::extendColumns() {
     }
 
     append<Columns>([&](Index i) {
-        auto row = rowOf<Columns>(w, i);
+        Row<Columns> row = rowOf<Columns>(w, i);
         if (label_[i] >= 0) row -= moments.means.row(label_[i]);
-        return row *= inverse;
+        row *= inverse;
+        rowOf<Columns>(w, i) = row;
+        return row;
     });
     before_.swap(newest_);
     newest_.swap(next_);
