@@ -60,6 +60,7 @@ Evaluation FullSpectrumEvaluator::evaluate(const Laplacian& laplacian,
     options.accuracy = accuracy;
     options.atEveryVertex = atEveryVertex_;
     options.samples = F_.samples();
+    options.spare = &spare_;
     std::vector<Gain> gains;
     for (const double alpha : alphas) gains.push_back(fractionalPower(F_, alpha));
 

@@ -61,7 +61,8 @@ class FullSpectrumEvaluator : public Evaluator {
     Solver solver_;
     bool areDear_ = false;                   // products
     std::optional<SpectrumRange> spectrum_;  // of the first Laplacian
-    std::map<double, double> poles_;         // for the powers asked for so far
+    SpareVectors spare_;
+    std::map<double, double> poles_;  // for the powers asked for so far
 };
 
 }  // namespace spectral

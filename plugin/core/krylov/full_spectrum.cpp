@@ -183,7 +183,7 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
     constexpr double kNarrow = 1e-6, kErrorOfNarrow = 1e-7;
     const bool isNarrow = !S.isToBeOrthogonal() && options.accuracy >= kNarrow;
     KrylovSpaces spaces(S, D, constants, X, orthogonal,
-                        isNarrow ? KeptBasis::Single : KeptBasis::Double);
+                        isNarrow ? KeptBasis::Single : KeptBasis::Double, options.spare);
     if (!(spaces.largestEntry() > 0.0)) return {gains.size(), {X, 0.0, 0, true}};
     std::vector<FullSpectrumResult> results(gains.size());
     const Eigen::VectorXd omega = sampleFrequencies(S, options.samples);

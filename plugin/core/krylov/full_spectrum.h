@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/krylov/krylov_operator.h"
+#include "core/krylov/krylov_spaces.h"
 #include "core/laplacian/constant_modes.h"
 #include "core/laplacian/frequency.h"
 #include "core/laplacian/laplacian.h"
@@ -26,6 +27,8 @@ struct FullSpectrumOptions {
     /// roundOffAtVertices, where it is known, for the error at every vertex; else that is bounded
     /// by the smallest mass, far from the truth where parts have shrunk to nothing.
     std::optional<double> roundOffAtVertices;
+
+    SpareVectors* spare = nullptr;  ///< Memory for the basis (krylov_spaces.h).
 
     /// Frequencies between which the gains vary little; eighths of octaves are always among them.
     std::vector<double> samples;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -86,7 +87,7 @@ Moments<Columns> momentsOf(const Eigen::VectorXd& D, const Eigen::VectorXi& labe
 
 KrylovSpaces::KrylovSpaces(const KrylovOperator& S, const Eigen::VectorXd& D,
                            const ConstantModes& constants, const Eigen::MatrixXd& X,
-                           double orthogonal, KeptBasis kept)
+                           double orthogonal, KeptBasis kept, SpareVectors* spare)
     : S_(S),
       constants_(constants),
       orthogonal_(orthogonal),
@@ -94,6 +95,7 @@ KrylovSpaces::KrylovSpaces(const KrylovOperator& S, const Eigen::VectorXd& D,
       D_(D.size()),
       label_(D.size()),
       kept_(kept),
+      spare_(spare),
       alpha_(X.cols()),
       beta_(X.cols()),
       ritz_(X.cols()),
@@ -117,6 +119,16 @@ KrylovSpaces::KrylovSpaces(const KrylovOperator& S, const Eigen::VectorXd& D,
         }
     });
     withColumns(columns_, [&](auto columns) { start<columns>(X); });
+}
+
+KrylovSpaces::~KrylovSpaces() {
+    if (spare_ == nullptr) return;
+    std::visit(
+        [&](auto& basis) {
+            auto& spare = std::get<std::decay_t<decltype(basis)>>(*spare_);
+            std::move(basis.begin(), basis.end(), std::back_inserter(spare));
+        },
+        basis_);
 }
 
 bool KrylovSpaces::extend() {
@@ -178,7 +190,12 @@ void KrylovSpaces::append(const MakeRow& row) {
         [&](auto& basis) {
             using Vector = typename std::decay_t<decltype(basis)>::value_type;
             using Scalar = typename Vector::Scalar;
-            Vector vector(D_.size() * Columns);
+            Vector vector;
+            if (spare_ != nullptr && !std::get<std::vector<Vector>>(*spare_).empty()) {
+                vector = std::move(std::get<std::vector<Vector>>(*spare_).back());
+                std::get<std::vector<Vector>>(*spare_).pop_back();
+            }
+            vector.resize(D_.size() * Columns);
             const double inverse = 1.0 / unit_;
             parallelRows(D_.size(), [&](Index begin, Index end) {
                 for (Index i = begin; i < end; ++i)

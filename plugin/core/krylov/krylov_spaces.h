@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <tuple>
 #include <variant>
 #include <vector>
 
@@ -24,6 +25,10 @@ enum class KeptBasis {
              ///< same.
     None  ///< For quadrature alone, which T is enough for, orthogonal or not (Golub and Meurant).
 };
+
+/// Vectors of bases that are no longer used, for the spaces that follow: fresh memory costs as much
+/// as the rest of a dimension.
+using SpareVectors = std::tuple<std::vector<Eigen::VectorXd>, std::vector<Eigen::VectorXf>>;
 
 /// Lanczos recurrences of several signals in step: each application of an operator S extends all of
 /// their Krylov spaces.
@@ -53,9 +58,13 @@ class KrylovSpaces {
     /// @param orthogonal  inner product of two vectors at which they are reorthogonalized, where S
     ///                    wants that.
     /// @param kept  the basis; combinations of none are not to be asked for.
+    /// @param spare  where vectors are taken from, and left in the end; null for none.
     KrylovSpaces(const KrylovOperator& S, const Eigen::VectorXd& D, const ConstantModes& constants,
                  const Eigen::MatrixXd& X, double orthogonal = kOrthogonal,
-                 KeptBasis kept = KeptBasis::Double);
+                 KeptBasis kept = KeptBasis::Double, SpareVectors* spare = nullptr);
+    ~KrylovSpaces();
+    KrylovSpaces(const KrylovSpaces&) = delete;
+    KrylovSpaces& operator=(const KrylovSpaces&) = delete;
 
     int columns() const { return columns_; }
 
@@ -101,7 +110,7 @@ class KrylovSpaces {
     double roundOff() const { return roundOff_; }
 
   private:
-    /// Vectors of n rows of columns_ values.
+    /// Of n rows of columns_ values.
     template <class Scalar>
     using Vectors = std::vector<Eigen::Matrix<Scalar, Eigen::Dynamic, 1>>;
 
@@ -135,6 +144,7 @@ class KrylovSpaces {
     KeptBasis kept_;
     double unit_ = 1.0;  // of the stored basis: numbers in single precision have few exponents
     std::variant<Vectors<double>, Vectors<float>> basis_;
+    SpareVectors* spare_;
     Eigen::VectorXd newest_, before_, next_;  // of the basis, with rows of scratch behind; see S
     std::vector<std::vector<double>> alpha_, beta_;  // diagonal and off-diagonal of T, by column
 

@@ -75,6 +75,7 @@ class ThreadTeam::Implementation {
     int size() const { return static_cast<int>(threads_.size()) + 1; }
 
     void run(Index count, TaskFunction work) {
+        stopPoint();
         work_ = work;
         count_ = count;
         done_ = 0;
@@ -90,6 +91,9 @@ class ThreadTeam::Implementation {
     }
 
   private:
+    /// Tasks may take less than a microsecond, as those of small fronts do.
+    static constexpr Index kBetweenStopPoints = 32;
+
     static constexpr std::uint64_t kCall = std::uint64_t{1} << 32;
     static Index unclaimed(std::uint64_t ticket) { return static_cast<Index>(ticket % kCall); }
 
@@ -103,7 +107,7 @@ class ThreadTeam::Implementation {
             any = true;
             isInTask = true;
             try {
-                if (indexInTeam == 0) stopPoint();
+                if (unclaimed(ticket) % kBetweenStopPoints == 0 && indexInTeam == 0) stopPoint();
                 if (!failed_) work_.call(work_.function, count_ - unclaimed(ticket));
             } catch (...) {
                 const std::lock_guard<std::mutex> lock(mutex_);

@@ -84,6 +84,23 @@ TEST(KrylovSpaces, AreNormalizedWhereSolvesHaveConstantsOfRoundOff) {
     }
 }
 
+TEST(KrylovSpaces, LeaveTheMemoryOfTheirBasisToTheNext) {
+    const Operator A(testing::blob());
+    const Products S(A.laplacian, 1.0);
+    SpareVectors spare;
+    for (const Index columns : {3, 3, 1}) {
+        KrylovSpaces spaces(S, A.laplacian.D, A.constants, A.mesh.V.leftCols(columns),
+                            KrylovSpaces::kOrthogonal, KeptBasis::Double, &spare);
+        KrylovSpaces own(S, A.laplacian.D, A.constants, A.mesh.V.leftCols(columns));
+        for (int m = 0; m < 8; ++m) EXPECT_EQ(spaces.extend(), own.extend());
+        std::vector<Eigen::VectorXd> ones(static_cast<std::size_t>(columns),
+                                          Eigen::VectorXd::Ones(8));
+        EXPECT_EQ(spaces.combine(ones), own.combine(ones));
+    }
+    EXPECT_EQ(std::get<0>(spare).size(), 9U);
+    EXPECT_TRUE(std::get<1>(spare).empty());
+}
+
 TEST(KrylovSpaces, TellTheLargestEntryOfACombination) {
     const Operator A(testing::blob());
     ShiftedLdlt ldlt;
