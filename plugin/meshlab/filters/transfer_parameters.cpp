@@ -29,8 +29,8 @@ void addTransferParameters(const MeshModel& mesh, RichParameterList& list) {
     list.addParam(featureSizeParameter(
         mesh,
         "Size at which the filter cuts off: the wavelength of a wave along the surface, a bump and "
-        "the hollow next to it. To remove bumps, try twice their width. Default: six mean edges of "
-        "this mesh, at most 5 % of its diagonal, which removes the noise of a scan."));
+        "the hollow next to it. To remove bumps, try four times their width. Default: six mean "
+        "edges of this mesh, at most 5 % of its diagonal, which removes the noise of a scan."));
     list.addParam(RichFloat("pass_gain", static_cast<Scalarm>(transfer.passGain), "Pass gain",
                             "Factor for the details that the filter passes: 1 keeps them, 2 "
                             "doubles their height, 0 removes them. Not negative."));

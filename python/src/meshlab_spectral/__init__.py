@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     from meshlab_spectral.filters.denoise import DenoiseOptions, denoise_mesh
     from meshlab_spectral.filters.fractional import filter_mesh
     from meshlab_spectral.filters.harmonics import Harmonics, manifold_harmonics
+    from meshlab_spectral.filters.option_types import Length
     from meshlab_spectral.filters.options import FilterOptions
     from meshlab_spectral.filters.signals import filter_colors, filter_scalars
     from meshlab_spectral.filters.spectrum import GeometrySpectrum, geometry_spectrum
@@ -51,6 +52,7 @@ __all__ = [
     "GeometrySpectrum",
     "Harmonics",
     "InputError",
+    "Length",
     "MeshFileError",
     "MissingPackageError",
     "OptionError",
@@ -81,6 +83,7 @@ _MODULES = {
     "GeometrySpectrum": "filters.spectrum",
     "Harmonics": "filters.harmonics",
     "InputError": "errors",
+    "Length": "filters.option_types",
     "MeshFileError": "errors",
     "MissingPackageError": "errors",
     "OptionError": "errors",

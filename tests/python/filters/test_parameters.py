@@ -5,15 +5,21 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, get_args, get_type_hints
+from typing import Any, cast, get_args, get_type_hints
 from xml.etree import ElementTree
 
 import numpy as np
 import pymeshlab
 import pytest
 from helpers import FILTER, mesh_set_of, refusal
-from meshlab_spectral import FilterOptions, OptionError, filter_mesh
-from meshlab_spectral.filters.option_types import Length
+from meshlab_spectral import (
+    DenoiseOptions,
+    FilterOptions,
+    Length,
+    OptionError,
+    denoise_mesh,
+    filter_mesh,
+)
 
 CHOICES = {
     name: get_args(type_)
@@ -119,7 +125,7 @@ def test_an_unknown_choice_is_refused_with_the_choices(name: str) -> None:
         ("pass_gain", "2"),
         ("band_width", True),
         ("reinject_residual", 1),
-        ("feature_size", "5%"),
+        ("feature_size", True),
     ],
 )
 def test_a_value_of_another_type_is_refused_by_the_name_of_the_option(
@@ -137,6 +143,26 @@ def test_a_feature_size_is_a_percentage_mean_edges_or_a_length(
     text: str, value: float, unit: Any
 ) -> None:
     assert Length.parse(text) == Length(value, unit)
+    assert FilterOptions(feature_size=cast(Any, text)).feature_size == Length(value, unit)
+
+
+def test_a_number_is_a_length_in_the_units_of_the_mesh() -> None:
+    assert FilterOptions(feature_size=cast(Any, 3)).feature_size == Length(3)
+    with pytest.raises(OptionError, match=r"feature_size = -1: .*percentage"):
+        FilterOptions(feature_size=cast(Any, -1))
+
+
+def test_options_are_given_as_one_object_or_by_name(decimated: Callable[..., Any]) -> None:
+    V, F = decimated("cow.obj", 1000)
+    by_name, _ = filter_mesh(V, F, feature_size="10%", steps=1)
+    as_object, _ = filter_mesh(V, F, FilterOptions(feature_size=Length(10, "%"), steps=1))
+    np.testing.assert_array_equal(by_name, as_object)
+    with pytest.raises(OptionError, match="one object or by name"):
+        filter_mesh(V, F, FilterOptions(), steps=1)
+    with pytest.raises(OptionError, match="DenoiseOptions"):
+        filter_mesh(V, F, cast(Any, DenoiseOptions()))
+    same, _ = denoise_mesh(V, F, DenoiseOptions(strength=0))
+    np.testing.assert_array_equal(same, V)
 
 
 def test_a_size_in_mean_edges_is_that_length(decimated: Callable[..., Any]) -> None:

@@ -114,10 +114,12 @@ def test_colours_in_arrays_are_those_of_the_filter(decimated: Decimated) -> None
     assert report["max_change"] > 10
     without_alpha, _ = filter_colors(V, F, C[:, :3], feature_size="15%")
     np.testing.assert_array_equal(without_alpha, found[:, :3])
+    as_floats, _ = filter_colors(V, F, C / 255, feature_size="15%")
+    np.testing.assert_allclose(as_floats, found / 255, atol=1e-7)
     with pytest.raises(ValueError, match="from 0 to 255"):
         filter_colors(V, F, C[:, :2])
     with pytest.raises(ValueError, match="from 0 to 255"):
-        filter_colors(V, F, C.astype(float) * 2)
+        filter_colors(V, F, C.astype(float))
 
 
 def test_ideal_responses_are_exact(decimated: Decimated) -> None:

@@ -25,7 +25,7 @@ FILTER_HELP = """Filter one mesh file by the size of its details.
 Only coordinates and normals change, as long as INPUT and OUTPUT are of one format.
 
 \b
-Smooth a scan, removing what is smaller than 1 % of it:
+Smooth a scan, removing bumps narrower than half a percent of it:
   meshlab-spectral filter scan.ply smooth.ply --feature-size 2%
 Sharpen it:
   meshlab-spectral filter scan.ply sharp.ply --filter-type high-pass \\

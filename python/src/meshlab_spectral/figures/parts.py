@@ -130,11 +130,11 @@ def _creases(source: Path, noise: float, view: View) -> tuple[list[Panel], View]
     F = mesh_set.current_mesh().face_matrix().astype(np.int64)
     edge = mean_edge(V, F)
     X = V + noise * edge * np.random.default_rng(1).standard_normal(V.shape)
-    size = {"feature_size": str(6 * edge)}
+    size = str(6 * edge)
     shapes = {
         f"noise of {noise:g} mean edges": X,
-        "low-pass, 6 mean edges": filter_mesh(X, F, **size)[0],
-        "crease_angle 50": filter_mesh(X, F, crease_angle=50.0, **size)[0],
+        "low-pass, 6 mean edges": filter_mesh(X, F, feature_size=size)[0],
+        "crease_angle 50": filter_mesh(X, F, feature_size=size, crease_angle=50.0)[0],
     }
     panels = []
     for label, Y in shapes.items():

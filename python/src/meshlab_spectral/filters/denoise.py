@@ -55,7 +55,7 @@ class DenoiseOptions(Options):
 
 
 def denoise_mesh(
-    vertices: ArrayLike, faces: ArrayLike, **options: Any
+    vertices: ArrayLike, faces: ArrayLike, options: DenoiseOptions | None = None, **named: Any
 ) -> tuple[NDArray[np.float64], dict[str, Any]]:
     """Find out what kind of noise a mesh has, and remove it; without noise, nothing moves.
 
@@ -65,8 +65,10 @@ def denoise_mesh(
         n x 3 coordinates, finite.
     faces
         m x 3 indices of the corners of triangles, from 0 to n - 1; any topology and orientation.
-    **options
-        Fields of `DenoiseOptions`.
+    options
+        All options in one object, or
+    **named
+        fields of `DenoiseOptions` by name.
 
     Returns
     -------
@@ -97,5 +99,5 @@ def denoise_mesh(
     >>> V, report = denoise_mesh(vertices, faces)
     >>> print(report["summary"])
     """
-    mesh_set, report = filtered_arrays(vertices, faces, DenoiseOptions.from_dict(options))
+    mesh_set, report = filtered_arrays(vertices, faces, DenoiseOptions.given(options, named))
     return mesh_set.current_mesh().vertex_matrix().copy(), report

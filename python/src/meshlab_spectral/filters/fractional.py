@@ -15,7 +15,7 @@ DETAILS = "spectral_details"
 
 
 def filter_mesh(
-    vertices: ArrayLike, faces: ArrayLike, **options: Any
+    vertices: ArrayLike, faces: ArrayLike, options: FilterOptions | None = None, **named: Any
 ) -> tuple[NDArray[np.float64], dict[str, Any]]:
     """Filter a mesh by the size of its details.
 
@@ -25,9 +25,11 @@ def filter_mesh(
         n x 3 coordinates, finite.
     faces
         m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
-    **options
-        Fields of `FilterOptions`; sizes as a string such as "2%" of the bounding box diagonal or
-        "6e" (mean edges), or as a length in the units of the mesh.
+    options
+        All options in one object, or
+    **named
+        fields of `FilterOptions` by name; sizes as a string such as "2%" of the bounding box
+        diagonal or "6e" (mean edges), or as a length in the units of the mesh.
 
     Returns
     -------
@@ -54,7 +56,7 @@ def filter_mesh(
     >>> V, report = filter_mesh(vertices, faces, feature_size="2%")
     >>> report["max_displacement"]
     """
-    parameters = FilterOptions.from_dict(options)
+    parameters = FilterOptions.given(options, named)
     mesh_set, report = filtered_arrays(vertices, faces, parameters)
     mesh = mesh_set.current_mesh()
     if parameters.result == "details":

@@ -125,9 +125,16 @@ def _is_of(value: Any, wanted: type) -> bool:
     return type(value) is wanted
 
 
+def _is_text_or_number(value: Any) -> bool:
+    return isinstance(value, str | Real) and not isinstance(value, bool)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Options:
     """Base of the tables of options: a frozen dataclass with a field for each, made by `option`.
+
+    A length may be given as a `Length`, as a text such as "2%" or as a number, in the units of the
+    mesh.
 
     Attributes
     ----------
@@ -149,6 +156,12 @@ class Options:
         types = get_type_hints(type(self))
         for one in fields(self):
             value = getattr(self, one.name)
+            if types[one.name] is Length and _is_text_or_number(value):
+                try:
+                    value = Length.parse(str(value))
+                except OptionError as error:
+                    raise OptionError(f"{one.name} = {error}") from None
+                object.__setattr__(self, one.name, value)  # frozen for everybody else
             choices = get_args(types[one.name])
             if choices and value not in choices:
                 raise OptionError(f"{one.name} = {value}: choose {', '.join(choices)}")
@@ -174,20 +187,34 @@ class Options:
     @classmethod
     def from_dict(cls: type[AnyOptions], plain: dict[str, Any]) -> AnyOptions:
         """Make options from plain values, as from `as_dict`; the rest keep their defaults."""
-        values = dict(plain)
-        for name, wanted in get_type_hints(cls).items():
-            if wanted is Length and name in values:
-                try:
-                    values[name] = Length.parse(str(values[name]))
-                except OptionError as error:
-                    raise OptionError(f"{name} = {error}") from None
         known = [one.name for one in fields(cls)]
-        for name in values:
+        for name in plain:
             if name not in known:
                 similar = difflib.get_close_matches(name, known, n=1)
                 hint = f"did you mean {similar[0]}?" if similar else f"choose {', '.join(known)}"
                 raise OptionError(f"there is no option {name}: {hint}")
-        return cls(**values)
+        return cls(**plain)
+
+    @classmethod
+    def given(
+        cls: type[AnyOptions], options: AnyOptions | None, named: dict[str, Any]
+    ) -> AnyOptions:
+        """Return the options of a call, which are one object or values by name.
+
+        Raises
+        ------
+        OptionError
+            When both are given, or the object is of another filter.
+        """
+        if options is None:
+            return cls.from_dict(named)
+        if not isinstance(options, cls):
+            raise OptionError(f"options = {type(options).__name__}: must be {cls.__name__}")
+        if named:
+            raise OptionError(
+                f"{', '.join(named)}: give options as one object or by name, not both"
+            )
+        return options
 
     def pymeshlab_parameters(self, mesh: Any) -> dict[str, Any]:
         """Keyword arguments for pymeshlab; automatic options are left out.

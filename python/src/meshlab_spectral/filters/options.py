@@ -55,7 +55,7 @@ class FilterOptions(Options):
         Length(automatic=True),
         "Size of the details at the filter's cutoff: a percentage of the model's diagonal such as "
         "5%, mean edge lengths such as 6e, a length in the model's units such as 0.02, or auto: "
-        "6e, at most 5%. Try twice the width of what you want to remove.",
+        "6e, at most 5%. Try four times the width of what you want to remove.",
     )
     pass_gain: float = option(
         1.0, "Factor for the details that pass: 1 keeps them, 2 doubles their height.", Limits(0)

@@ -86,7 +86,7 @@ def filter_scalars(
 
 def filter_colors(
     vertices: ArrayLike, faces: ArrayLike, colors: ArrayLike, **options: Any
-) -> tuple[NDArray[np.uint8], dict[str, Any]]:
+) -> tuple[NDArray[Any], dict[str, Any]]:
     """Filter colours at the vertices, as `filter_scalars` does red, green and blue.
 
     Parameters
@@ -94,23 +94,29 @@ def filter_colors(
     vertices, faces, **options
         As for `filter_scalars`.
     colors
-        n x 3 or n x 4 levels from 0 to 255; the fourth, alpha, is kept.
+        n x 3 or n x 4 integers from 0 to 255, or floating-point numbers from 0 to 1; the fourth,
+        alpha, is kept.
 
     Returns
     -------
     colors : array
-        The filtered levels, rounded and clamped to 0 to 255, of the shape that was given.
+        The filtered levels, of the shape and in the range that was given: integers as uint8,
+        clamped and rounded; floating-point numbers in steps of 1/255, as MeshLab has them.
     report : dict
         As from `filter_scalars`, changes in levels; and `clamped_values`.
     """
     V, F = mesh_arrays(vertices, faces)
     C = np.asarray(colors)
-    if C.shape not in ((len(V), 3), (len(V), 4)) or not ((C >= 0) & (C <= 255)).all():
-        raise ValueError(f"colors: pass {len(V)} x 3 or {len(V)} x 4 levels from 0 to 255")
-    levels = np.column_stack([C, np.full((len(V), 4 - C.shape[1]), 255)])
-    mesh_set, report = _filtered(_COLORS, V, F, options, v_color_matrix=levels / 255)
-    filtered = np.round(255 * mesh_set.current_mesh().vertex_color_matrix()).astype(np.uint8)
-    return filtered[:, : C.shape[1]], report
+    most = 1 if np.issubdtype(C.dtype, np.floating) else 255
+    if C.shape not in ((len(V), 3), (len(V), 4)) or not ((C >= 0) & (most >= C)).all():
+        raise ValueError(
+            f"colors: pass {len(V)} x 3 or {len(V)} x 4 integers from 0 to 255, or floating-point "
+            "numbers from 0 to 1"
+        )
+    levels = np.column_stack([C / most, np.ones((len(V), 4 - C.shape[1]))])
+    mesh_set, report = _filtered(_COLORS, V, F, options, v_color_matrix=levels)
+    filtered = mesh_set.current_mesh().vertex_color_matrix()[:, : C.shape[1]].copy()
+    return filtered if most == 1 else np.round(255 * filtered).astype(np.uint8), report
 
 
 def _filtered(
