@@ -9,7 +9,8 @@
 // size, larger ones mostly small meshes, of which there are more in an hour; those from 1e15 on
 // also give filters custom gains, parts of the mesh, creases and volumes; those from 2e15 denoise.
 // --limit is for one case; --errors prints the errors that are allowed, too; --compare no leaves
-// out the dense solver, for sanitizers; --solver makes filters use it whatever it costs.
+// out the dense solver, for sanitizers; --solver makes filters use it whatever it costs, and with
+// products spectra have no harmonics.
 //
 // A file of seeds has one in each line, with a remark after it. Seeds mean the same on every
 // platform, but not after a change of meshes.cpp or cases.cpp.
@@ -110,6 +111,8 @@ Case caseOf(std::uint64_t seed, spectral::Solver solver) {
     }
     if (auto* filter = std::get_if<spectral::FilterOptions>(&made.options))
         filter->evaluation.solver = solver;
+    auto* spectrum = std::get_if<spectral::SpectrumOptions>(&made.options);
+    if (spectrum != nullptr && solver == spectral::Solver::Products) spectrum->basisSize = 0;
     return made;
 }
 

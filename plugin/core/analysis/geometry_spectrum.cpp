@@ -113,8 +113,10 @@ struct MeasuredBands {
 };
 
 MeasuredBands withBands(ShapeAndNoise measures, double highest, const GeometrySpectrum& spectrum) {
-    // All harmonics are in the noise, and the lowest Ritz values are the first to converge.
-    const double lowest = std::max(measures.noise.first().omega.minCoeff(),
+    // All harmonics are in the noise, and the lowest Ritz values are the first to converge. On a
+    // mesh of a few vertices all random signs may be equal, and nothing is in it.
+    const Eigen::VectorXd omega = measures.noise.first().omega;
+    const double lowest = std::max(omega.size() > 0 ? omega.minCoeff() : 0.0,
                                    std::sqrt(kLowest * 4.0 * kPi / spectrum.area));
     highest = std::max(lowest, highest);
     return {std::move(measures),
@@ -244,6 +246,7 @@ void setBands(const MeasuredBands& bands, Index vertices, GeometrySpectrum& spec
 /// Sets the feature sizes at and above which parts of the energy are: of single harmonics, or of
 /// Ritz values. The low ones, which have nearly all of the energy, are converged to harmonics.
 void setFeatureSizes(const Quadrature& measure, GeometrySpectrum& spectrum) {
+    if (measure.omega.size() == 0) return;
     std::vector<Index> order(static_cast<std::size_t>(measure.omega.size()));
     std::iota(order.begin(), order.end(), 0);
     std::sort(order.begin(), order.end(),

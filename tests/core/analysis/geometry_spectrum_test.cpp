@@ -207,9 +207,29 @@ TEST(GeometrySpectrum, OfTinyMeshesHasAllTheirHarmonics) {
             EXPECT_EQ(all.frequencies.size(), mesh.V.rows());
             EXPECT_NEAR(all.octaveEnergies.sum() / all.totalEnergy, 1.0, 1e-12);
             EXPECT_GT(all.featureSize99, 0.0);
+            const GeometrySpectrum none = geometrySpectrum(mesh.V, mesh.F, withBasis(0, kind));
+            EXPECT_EQ(none.frequencies.size(), 0);
+            EXPECT_NEAR(none.octaveEnergies.sum() / none.totalEnergy, 1.0, 1e-12);
+            EXPECT_NEAR(none.featureSize50 / all.featureSize50, 1.0, 1e-6);
             // A basis that has no room for more than the constants is made larger.
             EXPECT_GT(geometrySpectrum(mesh.V, mesh.F, withBasis(1, kind)).frequencies.size(), 1);
         }
+}
+
+TEST(GeometrySpectrum, OfSingleTrianglesWhateverTheirNoise) {
+    // As many as random signs are equal at all corners of some.
+    for (int count = 1; count <= 12; ++count) {
+        Mesh mesh{Vertices(0, 3), Faces(0, 3)};
+        for (int i = 0; i < count; ++i) {
+            Mesh triangle{Vertices(3, 3), Faces(1, 3)};
+            triangle.V << i, 0, 0, i + 0.5, 0, 0, i, 0, 0.4;
+            triangle.F << 0, 1, 2;
+            mesh = i == 0 ? triangle : testing::joined(mesh, triangle);
+        }
+        const GeometrySpectrum spectrum = spectrumOf(mesh, 0);
+        EXPECT_GT(spectrum.featureSize99, 0.0) << count;
+        EXPECT_TRUE(spectrum.octaveEnergies.allFinite()) << count;
+    }
 }
 
 TEST(GeometrySpectrum, EndsWhereTheShapeDoesEvenIfATriangleHasNoArea) {
@@ -235,14 +255,14 @@ TEST(GeometrySpectrum, IsRefusedWhereRoundOffLeavesNothingOfTheShape) {
             far.V.col(i % 3).array() += i * distance;
             mesh = testing::joined(mesh, far);
         }
-        try {
-            const GeometrySpectrum spectrum =
-                geometrySpectrum(mesh.V, mesh.F, withBasis(20, LaplacianKind::IntrinsicDelaunay));
-            EXPECT_TRUE(spectrum.octaveEnergies.allFinite()) << distance;
-            EXPECT_GT(spectrum.octaveEnergies.size(), 0) << distance;
-        } catch (const Error& error) {
-            EXPECT_NE(std::string(error.what()), "") << distance;
-        }
+        for (const int basisSize : {0, 20}) try {
+                const GeometrySpectrum spectrum = geometrySpectrum(
+                    mesh.V, mesh.F, withBasis(basisSize, LaplacianKind::IntrinsicDelaunay));
+                EXPECT_TRUE(spectrum.octaveEnergies.allFinite()) << distance;
+                EXPECT_GT(spectrum.octaveEnergies.size(), 0) << distance;
+            } catch (const Error& error) {
+                EXPECT_NE(std::string(error.what()), "") << distance;
+            }
     }
 }
 
