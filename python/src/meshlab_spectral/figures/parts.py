@@ -177,7 +177,8 @@ def colors(meshes: Path, path: Path) -> None:
     brown, cream = np.array([120.0, 70.0, 40.0]), np.array([235.0, 220.0, 190.0])
     painting = (brown + cream) / 2 + patches * (cream - brown) / 2
     noisy = np.clip(painting + 30 * np.random.default_rng(1).standard_normal(V.shape), 0, 255)
-    clean, _ = filter_colors(V, F, noisy, feature_size="6%")
+    clean, _ = filter_colors(V, F, noisy / 255, feature_size="6%")
+    clean *= 255
     areas = lumped_areas(V, F)
     panels = []
     for label, levels in (("painting", painting), ("with noise", noisy), ("low-pass 6 %", clean)):
