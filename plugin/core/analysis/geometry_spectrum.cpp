@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <random>
 #include <string>
@@ -112,13 +113,13 @@ struct MeasuredBands {
     Bands octaves, thirds;
 };
 
-MeasuredBands withBands(ShapeAndNoise measures, double highest, const GeometrySpectrum& spectrum) {
-    // All harmonics are in the noise, and the lowest Ritz values are the first to converge. On a
+MeasuredBands withBands(ShapeAndNoise measures, const GeometrySpectrum& spectrum) {
+    // All harmonics are in the noise, and the extreme Ritz values are the first to converge. On a
     // mesh of a few vertices all random signs may be equal, and nothing is in it.
-    const Eigen::VectorXd omega = measures.noise.first().omega;
+    const Eigen::VectorXd omega = measures.noise.first().omega;  // products do not see the lowest
     const double lowest = std::max(omega.size() > 0 ? omega.minCoeff() : 0.0,
                                    std::sqrt(kLowest * 4.0 * kPi / spectrum.area));
-    highest = std::max(lowest, highest);
+    const double highest = std::max(lowest, measures.noise.highest());
     return {std::move(measures),
             {spectrum.diagonal, lowest, highest},
             {spectrum.diagonal, lowest, highest, 3}};
@@ -134,18 +135,18 @@ MeasuredBands measureBeyond(ShapeAndNoise measures, const Signal& signal,
                             const Eigen::MatrixXd& signals, double firstPole, ShiftedLdlt& ldlt,
                             const Progress& progress, const GeometrySpectrum& spectrum) {
     const auto& [W, D] = signal.laplacian;
-    const auto addPole = [&](ShapeAndNoise& to, double omega, double begin, double end) {
+    const auto addPole = [&](double omega, ShapeAndNoise& to, double begin, double end) {
         progress.report(begin, "energies of the octaves");
         ldlt.factorizeDefinite(W, D, omega * omega);
         addMeasures(ShiftInvert(ldlt), D, signal.constants, signals, kDimensionOfPole,
                     progress.part(begin, end), to);
     };
     double done = 0.4;
-    addPole(measures, firstPole, 0.0, done);
-    const double highest = std::sqrt(largestEigenvalue(signal.laplacian));
-    MeasuredBands bands = withBands(std::move(measures), highest, spectrum);
-    addMeasures(Products(signal.laplacian, highest), D, signal.constants, signals,
-                kDimensionOfProducts, progress.part(done, 2.0 * done), bands.measures);
+    addPole(firstPole, measures, 0.0, done);
+    const Products A(signal.laplacian, std::numeric_limits<double>::infinity());
+    addMeasures(A, D, signal.constants, signals, kDimensionOfProducts,
+                progress.part(done, 2.0 * done), measures);
+    MeasuredBands bands = withBands(std::move(measures), spectrum);
 
     const double negligible = kNoEnergy * spectrum.totalEnergy;
     std::vector<bool> hasPole(static_cast<std::size_t>(bands.octaves.count()));
@@ -159,7 +160,7 @@ MeasuredBands measureBeyond(ShapeAndNoise measures, const Signal& signal,
         const int middle = open[open.size() / 2];
         hasPole[middle] = true;
         const double next = 0.5 * (done + 1.0);
-        addPole(bands.measures, 2.0 * kPi / bands.octaves.featureSize(middle), done, next);
+        addPole(2.0 * kPi / bands.octaves.featureSize(middle), bands.measures, done, next);
         done = next;
     }
 }
@@ -179,8 +180,7 @@ MeasuredBands measureSignals(const Signal& signal, const HarmonicBasis& basis, S
         SpectralMeasure(
             {omega,
              (D.asDiagonal() * basis.Phi.rightCols(varying)).colwise().squaredNorm().transpose()})};
-    if (basis.size() == n)
-        return withBands(std::move(measures), spectrum.frequencies[n - 1], spectrum);
+    if (basis.size() == n) return withBands(std::move(measures), spectrum);
     Eigen::MatrixXd signals(n, signal.U.cols() + 1);
     signals << signal.U, noiseOfUnitHeight(n);
     if (basis.size() > 0) signals -= basis.inverseTransform(basis.transform(D, signals));

@@ -76,35 +76,45 @@ Quadrature SpectralMeasure::first() const {
     return spaces_.empty() ? exact_ : exact_ + spaces_.front().larger;
 }
 
+double SpectralMeasure::highest() const {
+    double highest = exact_.omega.size() > 0 ? exact_.omega.maxCoeff() : 0.0;
+    for (const MeasureInSpace& space : spaces_)
+        if (space.larger.omega.size() > 0)
+            highest = std::max(highest, space.larger.omega.maxCoeff());
+    return highest;
+}
+
 void addMeasures(const KrylovOperator& S, const Eigen::VectorXd& D, const ConstantModes& constants,
                  const Eigen::MatrixXd& signals, int dimension, const Progress& progress,
                  ShapeAndNoise& measures) {
     KrylovSpaces spaces(S, D, constants, signals, KrylovSpaces::kOrthogonal, KeptBasis::None);
-    using Columns = std::array<Quadrature, kMostSignals>;
+    constexpr int kShape = 3, kSignals = kShape + 1;
+    using Columns = std::array<Quadrature, kSignals>;
     const auto grow = [&](int begin, int end) {
         for (int m = begin; m < end; ++m) {
             progress.report(static_cast<double>(m) / dimension, "energies of the octaves");
             if (!spaces.extend()) break;
         }
         Columns columns;
-        parallelFor(kMostSignals,
+        parallelFor(kSignals,
                     [&](Index c) { columns[c] = spaces.quadrature(static_cast<int>(c)); });
         return columns;
     };
     const int first = 2 * dimension / 3;
     const Columns smaller = grow(0, first), larger = grow(first, dimension);
+    const double best = std::min(S.centralFrequency(), S.lastFrequency());
     const auto sumOf = [&](int begin, int end) {
         MeasureInSpace sum;
         sum.from = std::sqrt(S.lambda(S.theta(0.0) + S.errorOf(S.theta(0.0), kRoundOff)));
         for (int c = begin; c < end; ++c) {
             sum.smaller = sum.smaller + smaller[c];
             sum.larger = sum.larger + larger[c];
-            narrow(smaller[c].omega, larger[c].omega, S.centralFrequency(), sum);
+            narrow(smaller[c].omega, larger[c].omega, best, sum);
         }
         return sum;
     };
-    measures.shape.add(sumOf(0, kMostSignals - 1));
-    measures.noise.add(sumOf(kMostSignals - 1, kMostSignals));
+    measures.shape.add(sumOf(0, kShape));
+    measures.noise.add(sumOf(kShape, kSignals));
 }
 
 }  // namespace spectral

@@ -45,6 +45,9 @@ class SpectralMeasure {
     /// The measure as the first of the spaces has it, or its exact part without one.
     Quadrature first() const;
 
+    /// Largest frequency of all spaces, 0 where there is none.
+    double highest() const;
+
   private:
     Quadrature exact_;
     std::vector<MeasureInSpace> spaces_;
@@ -55,7 +58,7 @@ struct ShapeAndNoise {
 };
 
 /// Adds what Krylov spaces of S see.
-/// @param signals    n x 4, without the exact parts: the shape, then the noise.
+/// @param signals    n x (3 + 1), without the exact parts: the shape, then the noise.
 /// @param dimension  >= 3; two thirds of it when smaller.
 /// @throws SolverFailure, Cancelled.
 void addMeasures(const KrylovOperator& S, const Eigen::VectorXd& D, const ConstantModes& constants,

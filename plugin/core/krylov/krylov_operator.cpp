@@ -47,16 +47,16 @@ Row<Columns> innerProducts(const Eigen::VectorXd& D, const double* Q, const doub
 
 /// Gershgorin's bound of the largest eigenvalue of D^-1 W.
 double boundOfEigenvalues(const Laplacian& laplacian) {
-    Eigen::VectorXd bound(laplacian.D.size());
-    parallelRows(bound.size(), [&](Index begin, Index end) {
+    return parallelMax(laplacian.D.size(), [&](Index begin, Index end) {
+        double bound = 0.0;
         for (Index i = begin; i < end; ++i) {
             double sum = 0.0;
             for (SparseMatrix::InnerIterator entry(laplacian.W, i); entry; ++entry)
                 sum += std::abs(entry.value());
-            bound[i] = sum / laplacian.D[i];
+            bound = std::max(bound, sum / laplacian.D[i]);
         }
+        return bound;
     });
-    return bound.maxCoeff();
 }
 
 }  // namespace

@@ -199,14 +199,14 @@ IntrinsicTriangulation IntrinsicDelaunay::triangulation(const Vertices& V) const
     // The smallest mollification that makes every triangle inequality hold by the margin.
     const double meanLength =
         std::accumulate(length.begin(), length.end(), 0.0) / static_cast<double>(length.size());
-    std::vector<double> least(length.size() / kRowsOfTask + 1, 0.0);
-    parallelRows(static_cast<Index>(length.size()), [&](Index begin, Index end) {
-        double& epsilon = least[static_cast<std::size_t>(begin / kRowsOfTask)];
-        for (int s = static_cast<int>(begin); s < end; ++s)
-            epsilon = std::max(epsilon, length[s] - length[nextSide(s)] - length[previousSide(s)] +
-                                            kMollification * meanLength);
-    });
-    const double epsilon = *std::max_element(least.begin(), least.end());
+    const double epsilon =
+        parallelMax(static_cast<Index>(length.size()), [&](Index begin, Index end) {
+            double most = 0.0;
+            for (int s = static_cast<int>(begin); s < end; ++s)
+                most = std::max(most, length[s] - length[nextSide(s)] - length[previousSide(s)] +
+                                          kMollification * meanLength);
+            return most;
+        });
     if (epsilon > 0.0)
         for (double& l : length) l += epsilon;
 

@@ -111,6 +111,16 @@ Value parallelSum(Index count, Value zero, const Work& work) {
     return zero;
 }
 
+/// The largest value of work(begin, end) over the blocks of parallelRows, at least 0.
+template <class Work>
+double parallelMax(Index count, const Work& work) {
+    std::vector<double> largest(static_cast<std::size_t>(count / kRowsOfTask) + 1, 0.0);
+    parallelRows(count, [&](Index begin, Index end) {
+        largest[static_cast<std::size_t>(begin / kRowsOfTask)] = work(begin, end);
+    });
+    return std::max(0.0, *std::max_element(largest.begin(), largest.end()));
+}
+
 /// Throws when all tasks are to stop; to be called often within a long task.
 using StopPoint = std::function<void()>;
 

@@ -216,6 +216,21 @@ TEST(GeometrySpectrum, OfTinyMeshesHasAllTheirHarmonics) {
         }
 }
 
+TEST(GeometrySpectrum, DoesNotChangeWithATinyPart) {
+    // Its frequencies are so high that the shape's are round-off to products with A.
+    const Mesh shape = testing::blob();
+    const GeometrySpectrum alone = spectrumOf(shape, 0);
+    for (const double scale : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7}) {
+        Mesh tiny = testing::icosphere(1);
+        tiny.V *= scale;
+        const GeometrySpectrum both = spectrumOf(testing::joined(shape, tiny), 0);
+        EXPECT_NEAR(both.octaveFeatureSizes[0] / alone.octaveFeatureSizes[0], 1.0, 1e-6) << scale;
+        EXPECT_LT(both.mismatch, 1e-3) << scale;
+        for (Index j = 0; j + 1 < alone.octaveEnergies.size(); ++j)  // the last has all beyond
+            EXPECT_NEAR(both.octaveEnergies[j] / alone.octaveEnergies[j], 1.0, 0.01) << scale;
+    }
+}
+
 TEST(GeometrySpectrum, OfSingleTrianglesWhateverTheirNoise) {
     // As many as random signs are equal at all corners of some.
     for (int count = 1; count <= 12; ++count) {
