@@ -113,13 +113,14 @@ struct MeasuredBands {
     Bands octaves, thirds;
 };
 
+/// @param measures  the first of its spaces has the lowest frequencies, the last the highest.
 MeasuredBands withBands(ShapeAndNoise measures, const GeometrySpectrum& spectrum) {
     // All harmonics are in the noise, and the extreme Ritz values are the first to converge. On a
     // mesh of a few vertices all random signs may be equal, and nothing is in it.
-    const Eigen::VectorXd omega = measures.noise.first().omega;  // products do not see the lowest
-    const double lowest = std::max(omega.size() > 0 ? omega.minCoeff() : 0.0,
+    const Eigen::VectorXd low = measures.noise.first().omega, high = measures.noise.last().omega;
+    const double lowest = std::max(low.size() > 0 ? low.minCoeff() : 0.0,
                                    std::sqrt(kLowest * 4.0 * kPi / spectrum.area));
-    const double highest = std::max(lowest, measures.noise.highest());
+    const double highest = std::max(lowest, high.size() > 0 ? high.maxCoeff() : 0.0);
     return {std::move(measures),
             {spectrum.diagonal, lowest, highest},
             {spectrum.diagonal, lowest, highest, 3}};

@@ -1,6 +1,8 @@
 #include "core/analysis/noise_floor.h"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace spectral {
 
@@ -20,11 +22,12 @@ NoiseFloor noiseFloor(const Eigen::VectorXd& featureSize, const Eigen::VectorXd&
             const double rise = amplitude[b] / noise[b] / height;
             if (!(rise <= kRise)) {
                 // Interpolated between the centres of this band and the one before.
-                const double t = std::log(kRise / riseBefore) / std::log(rise / riseBefore);
+                const double before = std::log(riseBefore);
+                const double t = (std::log(kRise) - before) / (std::log(rise) - before);
                 floor.featureSize *= std::pow(featureSize[b] / floor.featureSize, t);
                 break;
             }
-            riseBefore = rise;
+            riseBefore = std::max(rise, std::numeric_limits<double>::min());  // of 0 for no energy
             floor.height = height;
         }
         energy += amplitude[b] * amplitude[b];

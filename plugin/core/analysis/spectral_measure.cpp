@@ -76,12 +76,8 @@ Quadrature SpectralMeasure::first() const {
     return spaces_.empty() ? exact_ : exact_ + spaces_.front().larger;
 }
 
-double SpectralMeasure::highest() const {
-    double highest = exact_.omega.size() > 0 ? exact_.omega.maxCoeff() : 0.0;
-    for (const MeasureInSpace& space : spaces_)
-        if (space.larger.omega.size() > 0)
-            highest = std::max(highest, space.larger.omega.maxCoeff());
-    return highest;
+Quadrature SpectralMeasure::last() const {
+    return spaces_.empty() ? exact_ : exact_ + spaces_.back().larger;
 }
 
 void addMeasures(const KrylovOperator& S, const Eigen::VectorXd& D, const ConstantModes& constants,

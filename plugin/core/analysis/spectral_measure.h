@@ -45,8 +45,8 @@ class SpectralMeasure {
     /// The measure as the first of the spaces has it, or its exact part without one.
     Quadrature first() const;
 
-    /// Largest frequency of all spaces, 0 where there is none.
-    double highest() const;
+    /// The measure as the last of the spaces has it, or its exact part without one.
+    Quadrature last() const;
 
   private:
     Quadrature exact_;

@@ -58,5 +58,13 @@ TEST(NoiseFloor, OfNothingIsNone) {
     EXPECT_EQ(noiseFloor(one, one, one).height, 0.0);
 }
 
+TEST(NoiseFloor, IsFiniteWhereABandHasNoEnergy) {
+    const Eigen::VectorXd size = Eigen::Vector4d(8, 4, 2, 1), noise = Eigen::Vector4d::Ones();
+    const NoiseFloor floor = noiseFloor(size, Eigen::Vector4d(1, 1, 0, 1e-80), noise);
+    EXPECT_TRUE(std::isfinite(floor.height));
+    EXPECT_GT(floor.featureSize, 2.0);
+    EXPECT_LT(floor.featureSize, 4.0);
+}
+
 }  // namespace
 }  // namespace spectral
