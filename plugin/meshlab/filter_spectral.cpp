@@ -15,6 +15,7 @@
 #include "meshlab/host_workarounds/last_words.h"
 #include "meshlab/host_workarounds/late_close.h"
 #include "meshlab/host_workarounds/late_preview.h"
+#include "meshlab/host_workarounds/signals.h"
 #include "meshlab/mesh_conversion.h"
 
 namespace {
@@ -25,7 +26,8 @@ spectral::Progress meshlabProgress(vcg::CallBackPos* callback, std::function<boo
     if (callback == nullptr) return {};
     const auto report = [callback, isWanted = std::move(isWanted)](double fraction,
                                                                    const std::string& stage) {
-        return callback(static_cast<int>(100.0 * fraction), stage.c_str()) && isWanted();
+        return callback(static_cast<int>(100.0 * fraction), stage.c_str()) && isWanted() &&
+               !isInterruptedBySignal();
     };
     return spectral::Progress(report, std::move(isOvertaken));
 }

@@ -35,6 +35,9 @@ constexpr double kMostOffset = 10.0;
 /// What a low-pass leaves of the area, less than a hundredth of the size: nothing, to its user.
 constexpr double kLeastArea = 1e-4;
 
+/// What is left of the area at a vertex, relative to it, where a part shrinks to a line or a point.
+constexpr double kShrunken = 0.1;
+
 /// More steps make no difference, and take hours.
 constexpr int kMostSteps = 1000;
 
@@ -73,6 +76,13 @@ void measureDisplacement(const Vertices& displacement, const Eigen::VectorXd& D,
     const Eigen::VectorXd squares = displacement.rowwise().squaredNorm();
     result.maxDisplacement = std::sqrt(squares.maxCoeff());
     result.rmsDisplacement = std::sqrt(squares.dot(D / D.sum()));
+}
+
+/// Part of an area at vertices where little of it is left.
+/// @param before, after  areas at the vertices.
+double shrunkenPart(const Eigen::VectorXd& before, const Eigen::VectorXd& after) {
+    const auto isShrunken = after.array() < kShrunken * before.array();
+    return isShrunken.select(before, 0.0).sum() / before.sum();
 }
 
 /// The evaluations of automatic steps need not be much more accurate than the steps.
@@ -146,11 +156,15 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     result.toleranceReached = options.steps > 0 || steps.error <= options.tolerance;
     result.cutoffFrequency = transfer.cutoff();
     result.featureSize = options.featureSize;
-    measureDisplacement(displacement, lumpedMass(surface.X, surface.F), result);
+    const Eigen::VectorXd before = lumpedMass(surface.X, surface.F);
+    measureDisplacement(displacement, before, result);
+    result.shrunkenPart = shrunkenPart(before, lumpedMass(X, surface.F));
     result.areaBefore = areaBefore;
     result.areaAfter = surfaceArea(X, surface.F);
     result.volumeBefore = signedVolume(surface.X, surface.F);
     result.volumeAfter = signedVolume(X, surface.F);
+    result.hasVolume = enclosesVolume(surface.X, surface.F);
+    result.meanEdge = meanEdgeLength(surface.X, surface.F);
     result.components = interior.surfaceComponents().count;
     result.fixedVertices = static_cast<int>(interior.fixedVertices());
     result.factorizations = evaluate.factorizations();

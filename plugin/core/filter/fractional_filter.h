@@ -44,14 +44,18 @@ struct FilterResult : SurfaceCounts {
     double maxDisplacement = 0.0;  ///< Largest vertex displacement, length units.
     double rmsDisplacement = 0.0;  ///< Root mean square over the input's surface.
     double areaBefore = 0.0, areaAfter = 0.0;
-    double volumeBefore = 0.0, volumeAfter = 0.0;  ///< Signed; a volume for closed meshes only.
-    PreservedVolumes volumes;                      ///< With preserveVolume.
-    int factorizations = 0;                        ///< Sparse LDL^T factorizations.
-    int solves = 0;                                ///< Solves with one right-hand side.
-    int products = 0;                              ///< Of the Laplacian with one column.
-    bool lacksMemory = false;     ///< Whether products took the place of a factorization that there
-                                  ///< was no memory for: the same result, but slower.
-    double accuracy = 0.0;        ///< Requested accuracy of the evaluation, relative, all steps.
+    double volumeBefore = 0.0, volumeAfter = 0.0;  ///< Signed; a volume where there is one.
+    bool hasVolume = false;                        ///< Whether the surface encloses one.
+    double meanEdge = 0.0;                         ///< Mean edge length of the input.
+    double shrunkenPart = 0.0;  ///< Part of the input's surface, 0 to 1, at vertices that keep less
+                                ///< than a tenth of their area: it shrinks to lines and points.
+    PreservedVolumes volumes;   ///< With preserveVolume.
+    int factorizations = 0;     ///< Sparse LDL^T factorizations.
+    int solves = 0;             ///< Solves with one right-hand side.
+    int products = 0;           ///< Of the Laplacian with one column.
+    bool lacksMemory = false;   ///< Whether products took the place of a factorization that there
+                                ///< was no memory for: the same result, but slower.
+    double accuracy = 0.0;      ///< Requested accuracy of the evaluation, relative, all steps.
     double errorEstimate = 0.0;   ///< Estimated error of the evaluation, relative, all steps.
     bool accuracyReached = true;  ///< Whether every step was within its share of `accuracy`.
     double stepError = 0.0;  ///< Automatic steps: estimated error over all but a thousandth of the

@@ -44,4 +44,17 @@ double signedVolume(const Vertices& V, const Faces& F) {
     return sixfoldVolume / 6.0;
 }
 
+bool enclosesVolume(const Vertices& V, const Faces& F) {
+    constexpr double kRoundOff = 1e-9;
+    Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
+    double area = 0.0;
+    for (Index t = 0; t < F.rows(); ++t) {
+        const Eigen::RowVector3d a = V.row(F(t, 0)), b = V.row(F(t, 1)), c = V.row(F(t, 2));
+        const Eigen::RowVector3d normal = (b - a).cross(c - a);
+        sum += normal;
+        area += normal.norm();
+    }
+    return sum.norm() <= kRoundOff * area;
+}
+
 }  // namespace spectral

@@ -17,4 +17,9 @@ double surfaceArea(const Vertices& V, const Faces& F);
 /// that of its cone over the centre of the bounding box.
 double signedVolume(const Vertices& V, const Faces& F);
 
+/// Whether the triangles' areas, as vectors along their normals, sum to zero, to round-off: the
+/// signed volume then has no need of the centre. So it is with surfaces that are closed and
+/// consistently oriented.
+bool enclosesVolume(const Vertices& V, const Faces& F);
+
 }  // namespace spectral

@@ -22,8 +22,8 @@ FilterOutcome applyFractional(const RichParameterList& parameters, MeshModel& me
             return spectral::fractionalFilter(input.V, input.F, options, steady);
         });
     reportWriting(input, mesh.cm, progress);
-    std::string text =
-        fractionalReportText(options, result, spectral::boundingBoxDiagonal(input.V));
+    const double diagonal = spectral::boundingBoxDiagonal(input.V);
+    std::string text = fractionalReportText(options, result, diagonal);
     if (detailsOnly) {
         setDetails(input.vertexIndex, kDetails, input.V - result.V, mesh);
         text += "\n  no vertex has moved: the details are the vertex quality, and the attribute ";
@@ -31,7 +31,9 @@ FilterOutcome applyFractional(const RichParameterList& parameters, MeshModel& me
     } else {
         setPositions(input.vertexIndex, result.V, mesh);
     }
-    return {reportDictionary(result), text, fractionalWarnings(options, result)};
+    std::vector<std::string> warnings = fractionalWarnings(options, result, diagonal);
+    for (std::string& unused : unusedParameters(parameters)) warnings.push_back(std::move(unused));
+    return {reportDictionary(result), text, std::move(warnings)};
 }
 
 }  // namespace

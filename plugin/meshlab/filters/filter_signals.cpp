@@ -129,8 +129,10 @@ FilterOutcome outcomeOf(const char* name, const char* signal, const RichParamete
                                            {"factorizations", result.factorizations},
                                            {"solves", result.solves}};
     addSurfaceCounts(result, report);
-    return {std::move(report), text.str(),
-            warningsOf(chosenVertices(parameters, mesh, input), result)};
+    std::vector<std::string> warnings = warningsOf(chosenVertices(parameters, mesh, input), result);
+    for (std::string& unused : unusedTransferParameters(parameters))
+        warnings.push_back(std::move(unused));
+    return {std::move(report), text.str(), std::move(warnings)};
 }
 
 /// Of the values that are not NaN.

@@ -42,9 +42,9 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
     list.addParam(RichEnum(
         "basis_update", static_cast<int>(defaults.basisUpdate), basisUpdates(), "Basis update",
         "What every step recomputes from the current shape. <b>full</b>, the paper's scheme: all "
-        "of its frequencies. <b>conformal</b>: its areas only [4], each vertex a quarter of its "
-        "own "
-        "at least; thin parts do not turn into spikes. <b>none</b>: nothing; the number of steps "
+        "of its frequencies. <b>conformal</b>: its areas only, each vertex a quarter of its own "
+        "at least (Kazhdan et al. 2012); thin parts do not turn into spikes. <b>none</b>: nothing; "
+        "the number of steps "
         "then makes no difference.",
         true));
     list.addParam(RichFloat(
@@ -104,6 +104,24 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
 
 bool areDetailsWanted(const RichParameterList& parameters) {
     return choice(parameters, "result", results()) == 1;
+}
+
+std::vector<std::string> unusedParameters(const RichParameterList& parameters) {
+    const FilterOptions defaults;
+    const bool isFull = choice(parameters, "basis_update", basisUpdates()) ==
+                        static_cast<int>(spectral::BasisUpdate::Full);
+    const bool isTruncated = choice(parameters, "spectrum", spectra()) ==
+                             static_cast<int>(spectral::Spectrum::Truncated);
+    std::vector<std::string> warnings = unusedTransferParameters(parameters);
+    warnIfUnused(
+        parameters.getFloat("conformal_share") != static_cast<Scalarm>(defaults.conformalShare),
+        isFull, "conformal_share", "without basis_update = full", warnings);
+    warnIfUnused(parameters.getInt("basis_size") != defaults.evaluation.truncation.basisSize,
+                 isTruncated, "basis_size", "without spectrum = truncated", warnings);
+    warnIfUnused(
+        parameters.getBool("reinject_residual") != defaults.evaluation.truncation.reinjectResidual,
+        isTruncated, "reinject_residual", "without spectrum = truncated", warnings);
+    return warnings;
 }
 
 FilterOptions fractionalFilterOptions(const RichParameterList& parameters, const MeshModel& mesh,

@@ -35,6 +35,8 @@ std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& r
         {"step_error", result.stepError},
         {"tolerance_reached", result.toleranceReached},
         {"singular_part", result.singularPart},
+        {"shrunken_part", result.shrunkenPart},
+        {"mean_edge", result.meanEdge},
         {"step_sizes",
          QVariant::fromValue(Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
              result.stepSizes.data(), static_cast<Eigen::Index>(result.stepSizes.size()))))},
@@ -53,6 +55,9 @@ std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& r
 }
 
 namespace {
+
+/// Part of a surface that one would miss: half the tail of an elephant.
+constexpr double kNoticeable = 0.003;
 
 /// A share in percent, to two or three digits.
 std::string percentOf(double share) {
@@ -132,6 +137,27 @@ std::string volumeWarning(const spectral::FilterResult& result) {
     return text.str() + ". Close holes and orient the faces first, or leave preserve_volume off";
 }
 
+/// A size that the mesh has no details of, which is no error of a script for many meshes.
+std::string edgeWarning(const spectral::FilterResult& result) {
+    std::ostringstream text;
+    text << std::setprecision(3) << "the mesh has no details of the feature size "
+         << result.featureSize << ", which is below its mean edge of " << result.meanEdge
+         << ". Choose at least two edges, " << 2.0 * result.meanEdge
+         << "; of a model of few triangles, apply 'Subdivision Surfaces: Midpoint' first";
+    return text.str();
+}
+
+std::string shrinkingWarning(const spectral::FilterResult& result, double diagonal) {
+    const double half = 0.5 * result.featureSize;
+    std::ostringstream text;
+    text << percentOf(result.shrunkenPart) << std::setprecision(2)
+         << " of the surface shrinks to lines or points, being thin compared with the feature "
+            "size. Try feature_size = "
+         << half << " (" << 100.0 * half / diagonal
+         << " % of the diagonal), or filter a selection without these parts";
+    return text.str();
+}
+
 double lastFrequency(const spectral::FilterResult& result) {
     return std::sqrt(result.eigenvalues[result.eigenvalues.size() - 1]);
 }
@@ -139,11 +165,12 @@ double lastFrequency(const spectral::FilterResult& result) {
 }  // namespace
 
 std::vector<std::string> fractionalWarnings(const spectral::FilterOptions& options,
-                                            const spectral::FilterResult& result) {
+                                            const spectral::FilterResult& result, double diagonal) {
     std::vector<std::string> warnings = surfaceWarnings(result);
     if (const std::string told = selectionTold(options.part.selected); !told.empty())
         warnings.push_back(told);
-    if (isAllFixed(result, result.V.rows()))
+    const bool isAtRest = isAllFixed(result, result.V.rows());
+    if (isAtRest)
         warnings.emplace_back(
             options.creaseAngle > 0.0
                 ? "nothing can move: every vertex lies on a crease or a fixed boundary. Choose a "
@@ -151,6 +178,15 @@ std::vector<std::string> fractionalWarnings(const spectral::FilterOptions& optio
                 : "nothing can move: every vertex lies on the boundary, which is fixed. Choose "
                   "boundary = free; if the triangles are not connected, apply 'Merge Close "
                   "Vertices' first");
+    if (options.transferFunction.type != spectral::FilterType::Custom &&
+        result.featureSize < result.meanEdge && !isAtRest)
+        warnings.push_back(edgeWarning(result));
+    const spectral::TransferFunctionOptions& transfer = options.transferFunction;
+    const bool keepsTheRest =
+        transfer.type == spectral::FilterType::LowPass && transfer.passGain >= 1.0;
+    if (keepsTheRest && result.shrunkenPart > kNoticeable && result.toleranceReached &&
+        result.cutoffReached)
+        warnings.push_back(shrinkingWarning(result, diagonal));
     if (options.preserveVolume && result.volumes.preserved < result.components)
         warnings.push_back(volumeWarning(result));
     if (!result.accuracyReached)
@@ -171,9 +207,12 @@ std::string fractionalReportText(const spectral::FilterOptions& options,
     text << headline(options, result, diagonal) << "\n  steps: " << result.steps
          << ", cutoff frequency " << result.cutoffFrequency << " rad per unit\n"
          << "  area: " << result.areaBefore << " -> " << result.areaAfter << "\n"
-         << "  volume: " << result.volumeBefore << " -> " << result.volumeAfter
-         << " (of closed surfaces)\n"
-         << "  " << surfaceTold(result, "vertices fixed, on the boundary or a crease");
+         << "  volume: ";
+    if (result.hasVolume)
+        text << result.volumeBefore << " -> " << result.volumeAfter;
+    else
+        text << "none, as the surface is open";
+    text << "\n  " << surfaceTold(result, "vertices fixed, on the boundary or a crease");
     if (options.preserveVolume)
         text << ", " << result.volumes.preserved << " with the volume preserved";
     text << "\n  work: " << result.factorizations << " factorizations, " << result.solves

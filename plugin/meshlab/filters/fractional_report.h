@@ -16,5 +16,6 @@ std::string fractionalReportText(const spectral::FilterOptions& options,
                                  const spectral::FilterResult& result, double diagonal);
 
 /// What the user should act on: sentences, each with its remedy; empty if there is nothing.
+/// @param diagonal  of the bounding box of the input.
 std::vector<std::string> fractionalWarnings(const spectral::FilterOptions& options,
-                                            const spectral::FilterResult& result);
+                                            const spectral::FilterResult& result, double diagonal);

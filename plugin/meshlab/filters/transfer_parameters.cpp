@@ -14,6 +14,9 @@ namespace {
 QStringList filterTypes() { return {"low-pass", "high-pass", "band-pass", "band-stop", "custom"}; }
 QStringList responses() { return {"gaussian", "butterworth", "ideal"}; }
 
+/// The transfer function that is there to be changed.
+const char* const kExample = "20%:1, 5%:2, 1%:0.1";
+
 }  // namespace
 
 void addTransferParameters(const MeshModel& mesh, RichParameterList& list) {
@@ -39,7 +42,7 @@ void addTransferParameters(const MeshModel& mesh, RichParameterList& list) {
         "Factor for all other details: 0 removes them, 0.5 halves their height, 1 keeps them. Not "
         "negative."));
     list.addParam(RichString(
-        "transfer_function", "20%:1, 5%:2, 1%:0.1", "Transfer function",
+        "transfer_function", kExample, "Transfer function",
         "For the type custom: gains at feature sizes, like an equalizer, as size:gain with sizes "
         "in percent of the diagonal (5%), mean edges (6e) or as lengths; or an expression of w, "
         "the feature size over the wavelength, such as 1/(1 + w^4) (f is the frequency, l = f^2).",
@@ -86,6 +89,40 @@ ChosenTransfer chosenTransfer(const RichParameterList& parameters, const MeshMat
         chosen.featureSize = 2.0 * spectral::kPi / custom.cutoff;
     }
     return chosen;
+}
+
+void warnIfUnused(bool isChanged, bool isUsed, const char* name, const char* condition,
+                  std::vector<std::string>& warnings) {
+    if (isChanged && !isUsed) warnings.push_back(std::string(name) + " has no effect " + condition);
+}
+
+std::vector<std::string> unusedTransferParameters(const RichParameterList& parameters) {
+    const spectral::TransferFunctionOptions defaults;
+    const auto type =
+        static_cast<spectral::FilterType>(choice(parameters, "filter_type", filterTypes()));
+    const auto response =
+        static_cast<spectral::Response>(choice(parameters, "response", responses()));
+    const bool isCustom = type == spectral::FilterType::Custom;
+    const bool isBand =
+        type == spectral::FilterType::BandPass || type == spectral::FilterType::BandStop;
+    const auto isChanged = [&](const char* name, double usual) {
+        return parameters.getFloat(name) != static_cast<Scalarm>(usual);
+    };
+    std::vector<std::string> warnings;
+    const char* const withCustom = "with filter_type = custom";
+    warnIfUnused(isChanged("pass_gain", defaults.passGain), !isCustom, "pass_gain", withCustom,
+                 warnings);
+    warnIfUnused(isChanged("stop_gain", defaults.stopGain), !isCustom, "stop_gain", withCustom,
+                 warnings);
+    warnIfUnused(parameters.getString("transfer_function") != kExample, isCustom,
+                 "transfer_function", "without filter_type = custom", warnings);
+    warnIfUnused(isChanged("band_width", defaults.bandWidth), isBand, "band_width",
+                 "without filter_type = band-pass or band-stop", warnings);
+    warnIfUnused(response != defaults.response, !isCustom, "response", withCustom, warnings);
+    warnIfUnused(parameters.getInt("order") != defaults.order,
+                 !isCustom && response == spectral::Response::Butterworth, "order",
+                 "without response = butterworth", warnings);
+    return warnings;
 }
 
 std::string nameOf(spectral::FilterType type) {

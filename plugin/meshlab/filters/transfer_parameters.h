@@ -4,6 +4,7 @@
 #include <common/parameters/rich_parameter_list.h>
 
 #include <string>
+#include <vector>
 
 #include "core/transfer/transfer_function.h"
 #include "meshlab/mesh_conversion.h"
@@ -25,6 +26,15 @@ struct ChosenTransfer {
 /// @throws spectral::InvalidOption  when an enumeration has none of its values, or the transfer
 ///                                  function of the user a mistake.
 ChosenTransfer chosenTransfer(const RichParameterList& parameters, const MeshMatrices& mesh);
+
+/// Those that are not at their defaults and have no effect on the others, as warnings that say what
+/// they would need.
+std::vector<std::string> unusedTransferParameters(const RichParameterList& parameters);
+
+/// The warning that a parameter has no effect; none where it has, or is at its default.
+/// @param condition  when it has none: "without filter_type = custom".
+void warnIfUnused(bool isChanged, bool isUsed, const char* name, const char* condition,
+                  std::vector<std::string>& warnings);
 
 /// The name of a filter type among the choices of `filter_type`.
 std::string nameOf(spectral::FilterType type);

@@ -30,6 +30,22 @@ FilterOptions smoothing(const Mesh& mesh, int steps, BasisUpdate update) {
     return options;
 }
 
+TEST(FractionalFilter, ReportsTheAreaOfWhatShrinksToALine) {
+    // The tube of a thin ring has no harmonic below the cutoff, a ball has.
+    Mesh ring = testing::torus(2, 0.1, 120, 12);
+    ring.V.rowwise() += Eigen::RowVector3d(8, 0, 0);
+    const Mesh ball = testing::icosphere(3), both = testing::joined(ball, ring);
+    FilterOptions options;
+    options.featureSize = 1.2;
+    options.tolerance = 1e-3;
+    const FilterResult result = fractionalFilter(both.V, both.F, options);
+    const double part = surfaceArea(ring.V, ring.F) / surfaceArea(both.V, both.F);
+    EXPECT_NEAR(result.shrunkenPart, part, 0.01 * part);
+    EXPECT_EQ(fractionalFilter(ball.V, ball.F, options).shrunkenPart, 0.0);
+    EXPECT_NEAR(result.meanEdge, meanEdgeLength(both.V, both.F), 1e-12);
+    EXPECT_TRUE(result.hasVolume);
+}
+
 TEST(FractionalFilter, ReportsWhatItDid) {
     const Mesh mesh = testing::blob();
     const FilterOptions options = smoothing(mesh, 4, BasisUpdate::Full);

@@ -13,11 +13,19 @@ from typing import Any
 
 import numpy as np
 import pytest
+import pyvista
 from batches import REPORT, make_meshes, records
 from commands import command, write_ply
-from helpers import FILTER, mesh_set_of, refusal
-from meshlab_spectral import FilterError, filter_files, filter_mesh, geometry_spectrum
+from helpers import FILTER, mesh_set_of, percent, refusal
+from meshlab_spectral import (
+    FilterError,
+    filter_files,
+    filter_mesh,
+    filter_scalars,
+    geometry_spectrum,
+)
 from meshlab_spectral.files.script import apply_script
+from meshlab_spectral.filters.options import TransferKeywords
 from meshlab_spectral.plugin.library import last_warnings
 
 TRIANGLE = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]])
@@ -151,7 +159,7 @@ def script_of(folder: Path, name: str, **parameters: Any) -> Path:
 
 def test_every_filter_of_a_script_has_its_own_warnings(tmp_path: Path) -> None:
     fixed = script_of(tmp_path, "fixed.mlx", **EVERYTHING_FIXED).read_text()
-    free = script_of(tmp_path, "free.mlx", steps=1).read_text()
+    free = script_of(tmp_path, "free.mlx", steps=1, feature_size=percent(100)).read_text()
     part = free[free.index("<filter ") : free.index("</FilterScript>")]
     report = apply_script(
         mesh_set_of(*TRIANGLE), fixed.replace("</FilterScript>", part + "</FilterScript>")
@@ -169,7 +177,7 @@ def test_a_batch_of_a_script_keeps_the_warnings_of_its_filters(tmp_path: Path) -
     for resume in (False, True):
         results = filter_files([flat, closed], out, script=script, workers=1, resume=resume)
         warnings = {result.name: result.warnings for result in results}
-        assert warnings[closed.name] == []
+        assert "nothing can move" not in "".join(warnings[closed.name])
         assert "nothing can move" in warnings["flat.ply"][0]
     kept = {record["name"]: record["warnings"] for record in records(out / REPORT)}
     assert kept == warnings
@@ -180,3 +188,59 @@ def test_json_has_the_warning_that_standard_error_shows(tmp_path: Path) -> None:
     done = command("filter", source, tmp_path / "out.ply", "--boundary", "fixed", "--json")
     (warning,) = json.loads(done.stdout)["report"]["warnings"]
     assert done.stderr == f"Warning: {warning}.\n"
+
+
+@pytest.mark.parametrize(
+    ("options", "warning"),
+    [
+        ({"transfer_function": "1"}, "transfer_function has no effect without filter_type = cus"),
+        ({"order": 4}, "order has no effect without response = butterworth"),
+        ({"band_width": 2.0}, "band_width has no effect without filter_type = band-pass"),
+        ({"filter_type": "custom", "pass_gain": 2.0}, "pass_gain has no effect with filter_type"),
+        ({"filter_type": "custom", "order": 4}, "order has no effect without response"),
+        ({"conformal_share": 0.5}, "conformal_share has no effect without basis_update = full"),
+        ({"basis_size": 50}, "basis_size has no effect without spectrum = truncated"),
+        ({"reinject_residual": False}, "reinject_residual has no effect without spectrum"),
+    ],
+)
+def test_what_has_no_effect_is_told(
+    options: dict[str, Any], warning: str, decimated: Decimated
+) -> None:
+    V, F = decimated("bunny.obj", 500)
+    (told,) = filter_mesh(V, F, feature_size="2e", **options)[1]["warnings"]
+    assert warning in told
+    if set(options) <= TransferKeywords.__annotations__.keys():
+        (told,) = filter_scalars(V, F, V[:, 0], **options)[1]["warnings"]
+        assert warning in told
+
+
+def test_what_has_an_effect_is_not_told(decimated: Decimated) -> None:
+    V, F = decimated("bunny.obj", 500)
+    for options in (
+        {"filter_type": "custom", "transfer_function": "1/(1 + w^2)"},
+        {"response": "butterworth", "order": 4},
+        {"filter_type": "band-stop", "band_width": 0.5},
+        {"basis_update": "full", "conformal_share": 0.5, "steps": 2},
+    ):
+        assert filter_mesh(V, F, feature_size="2e", **options)[1]["warnings"] == [], options
+
+
+def test_a_size_below_the_edges_is_told(decimated: Decimated) -> None:
+    V, F = decimated("bunny.obj", 500)
+    (warning,) = filter_mesh(V, F, feature_size="0.5e")[1]["warnings"]
+    assert "the mesh has no details of the feature size" in warning
+    assert filter_mesh(V, F, feature_size="1.1e")[1]["warnings"] == []
+
+
+def test_a_part_that_shrinks_to_a_line_is_told_with_a_size_that_keeps_it() -> None:
+    # A ball with a long thin handle, of a fifth of the area.
+    ball = pyvista.Icosphere(radius=1.0, nsub=4)
+    rod = pyvista.Cylinder(center=(0, 0, 3), direction=(0, 0, 1), radius=0.15, height=4.2)
+    rod = rod.triangulate().subdivide(4)
+    mesh = ball.merge(rod).extract_surface(algorithm=None).triangulate()
+    _, report = filter_mesh(mesh, feature_size=1.6)
+    (warning,) = report["warnings"]
+    assert "of the surface shrinks to lines or points" in warning
+    assert "Try feature_size = 0.8 (" in warning
+    assert 0.1 < report["shrunken_part"] < 0.3
+    assert filter_mesh(mesh, feature_size=0.4)[1]["warnings"] == []

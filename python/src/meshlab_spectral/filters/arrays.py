@@ -1,28 +1,45 @@
-"""Validation of meshes given as arrays; vertex areas and edges."""
+"""Validation of meshes and of data of their vertices; vertex areas and edges."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from meshlab_spectral.filters.mesh_objects import kind_of, known_kinds
+
 
 def mesh_arrays(
-    vertices: ArrayLike, faces: ArrayLike
+    mesh_or_vertices: Any, faces: ArrayLike | None = None
 ) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
     """Validate and convert the arrays of a mesh; pymeshlab would misread or reject them silently.
 
     Parameters
     ----------
-    vertices
-        n x 3 coordinates.
+    mesh_or_vertices
+        A mesh of `mesh_objects`, or n x 3 coordinates.
     faces
-        m x 3 indices of the corners of triangles, from 0 to n - 1.
+        With coordinates: m x 3 indices of the corners of triangles, from 0 to n - 1.
 
     Raises
     ------
     ValueError
         When an array has the wrong shape or type, or an index is out of range.
+    TypeError
+        When a mesh is of no known kind.
     """
+    vertices = mesh_or_vertices
+    kind = kind_of(mesh_or_vertices)
+    if kind is not None and faces is None:
+        vertices, faces = kind.arrays(mesh_or_vertices)
+    elif faces is None:
+        raise TypeError(
+            f"there are no faces with {_class_of(mesh_or_vertices)}: pass vertices and faces, or a "
+            f"mesh: {known_kinds()}"
+        )
+    elif kind is not None:
+        raise TypeError(f"faces: {kind.name} has its own; pass the mesh alone, or two arrays")
     V, F = np.asarray(vertices, dtype=np.float64), np.asarray(faces)
     if V.ndim != 2 or V.shape[1] != 3:
         raise ValueError(f"vertices have shape {V.shape}: pass n x 3 coordinates")
@@ -37,6 +54,55 @@ def mesh_arrays(
         wrong = F.min() if F.min() < 0 else F.max()
         raise ValueError(f"a face refers to vertex {wrong}, but there are {len(V)} vertices")
     return V, F.astype(np.int32)
+
+
+def _class_of(mesh: Any) -> str:
+    return f"{type(mesh).__module__.partition('.')[0]}'s {type(mesh).__name__}"
+
+
+def vertex_numbers(values: ArrayLike, count: int, name: str) -> NDArray[np.float64]:
+    """Return one number for each of `count` vertices; raise ValueError if there are not as many."""
+    numbers = np.asarray(values, dtype=np.float64)
+    if numbers.shape != (count,):
+        raise ValueError(
+            f"{name} have shape {numbers.shape}: pass {count} numbers, one for each vertex"
+        )
+    return numbers
+
+
+def chosen_vertices(selection: ArrayLike, count: int, F: NDArray[np.integer]) -> NDArray[np.bool_]:
+    """Return which of `count` vertices are selected.
+
+    Parameters
+    ----------
+    selection
+        One boolean for each vertex, or indices of faces, which select their corners.
+    count
+        Number of vertices.
+    F
+        m x 3 corners.
+
+    Raises
+    ------
+    ValueError
+        When it is neither, or an index is out of range.
+    """
+    given = np.asarray(selection)
+    if given.dtype == bool and given.shape == (count,):
+        return given
+    chosen = np.zeros(count, dtype=bool)
+    if given.size == 0:
+        return chosen
+    if given.ndim != 1 or not np.issubdtype(given.dtype, np.integer):
+        raise ValueError(
+            f"selection has shape {given.shape} and type {given.dtype}: pass {count} booleans, one "
+            "for each vertex, or indices of faces (of a mask: numpy.flatnonzero(mask))"
+        )
+    if given.min() < 0 or given.max() >= len(F):
+        wrong = given.min() if given.min() < 0 else given.max()
+        raise ValueError(f"selection has face {wrong}, but there are {len(F)} faces")
+    chosen[F[given]] = True
+    return chosen
 
 
 def lumped_areas(V: NDArray[np.float64], F: NDArray[np.integer]) -> NDArray[np.float64]:

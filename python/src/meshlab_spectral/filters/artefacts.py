@@ -10,10 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.filters.arrays import mesh_arrays
-from meshlab_spectral.filters.calling import call_filter
+from meshlab_spectral.filters.calling import call_filter, mesh_set_of
 from meshlab_spectral.filters.option_types import Length
 from meshlab_spectral.filters.options import LaplacianKind
-from meshlab_spectral.plugin.loading import load
 
 _FILTER_NAME = "compute_scalar_spectral_artefacts_per_vertex"
 
@@ -100,11 +99,9 @@ def measure_artefacts(
     if laplacian not in get_args(LaplacianKind):
         raise OptionError(f"laplacian = {laplacian}: choose {', '.join(get_args(LaplacianKind))}")
 
-    load()
     import pymeshlab
 
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.add_mesh(pymeshlab.Mesh(V, F))
+    mesh_set = mesh_set_of(V, F)
     report = call_filter(
         mesh_set,
         _FILTER_NAME,

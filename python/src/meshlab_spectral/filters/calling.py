@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
-from numpy.typing import ArrayLike
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
-from meshlab_spectral.errors import FilterError
-from meshlab_spectral.filters.arrays import mesh_arrays
+from meshlab_spectral.errors import FilterError, OptionError
+from meshlab_spectral.filters.arrays import chosen_vertices, mesh_arrays, vertex_numbers
+from meshlab_spectral.filters.mesh_objects import PYMESHLAB, kind_of, owned_mesh
 from meshlab_spectral.filters.option_types import Options
-from meshlab_spectral.plugin.failed_calls import keep_failed
+from meshlab_spectral.plugin.failed_calls import is_interrupt, keep_failed
 from meshlab_spectral.plugin.library import last_summary, last_warnings
 from meshlab_spectral.plugin.loading import load
 
@@ -41,6 +45,8 @@ def call_filter(mesh_set: Any, name: str, parameters: dict[str, Any]) -> dict[st
     ------
     FilterError
         When the filter rejects the mesh or the parameters; says what is wrong and what to do.
+    KeyboardInterrupt
+        On Ctrl-C, within 0.3 s; nothing has changed.
     PluginError
         When the plugin's warnings are not available, see `last_warnings`.
     """
@@ -51,6 +57,8 @@ def call_filter(mesh_set: Any, name: str, parameters: dict[str, Any]) -> dict[st
         report: dict[str, Any] = mesh_set.apply_filter(name, **parameters)
     except pymeshlab.PyMeshLabException as error:
         keep_failed(mesh_set)
+        if is_interrupt(error):
+            raise KeyboardInterrupt from None
         raise FilterError(_size_wanted(reason_of(error))) from error
     except pymeshlab.InvalidEnumException as error:
         keep_failed(mesh_set)
@@ -65,32 +73,114 @@ def call_filter(mesh_set: Any, name: str, parameters: dict[str, Any]) -> dict[st
     return report
 
 
-def filtered_arrays(
-    vertices: ArrayLike, faces: ArrayLike, options: Options
+def mesh_set_of(
+    V: NDArray[np.float64],
+    F: NDArray[np.int32],
+    data: Mapping[str, NDArray[Any]] | None = None,
+    verbose: bool = False,
+) -> Any:
+    """Return a `pymeshlab.MeshSet` with one mesh, for filters of the plugin.
+
+    Parameters
+    ----------
+    V, F
+        As from `mesh_arrays`.
+    data
+        Further arguments of `pymeshlab.Mesh`, such as `v_scalar_array`.
+    verbose
+        Whether MeshLab writes its log.
+
+    Raises
+    ------
+    PluginError
+        When the plugin cannot be loaded.
+    """
+    import pymeshlab
+
+    return _set_of(pymeshlab.Mesh(V, F, **(data or {})), verbose)
+
+
+def _set_of(mesh: Any, verbose: bool = False) -> Any:
+    """Return a MeshSet with a copy of a mesh."""
+    load()
+    import pymeshlab
+
+    mesh_set = pymeshlab.MeshSet(verbose=verbose)
+    mesh_set.add_mesh(mesh)
+    return mesh_set
+
+
+def filtered(
+    mesh_or_vertices: Any,
+    faces: ArrayLike | None,
+    options: Options,
+    weights: ArrayLike | None = None,
+    selection: ArrayLike | None = None,
 ) -> tuple[Any, dict[str, Any]]:
-    """Apply the filter of a table of options to a mesh from arrays.
+    """Apply the filter of a table of options to a mesh.
+
+    Parameters
+    ----------
+    mesh_or_vertices, faces
+        As for `mesh_arrays`.
+    options
+        All options.
+    weights, selection
+        What `weight` and `selected` refer to; a mesh of pymeshlab has its own.
 
     Returns
     -------
     mesh_set : pymeshlab.MeshSet
-        With the result.
+        With the result, in which a mesh of pymeshlab has kept its data.
     report : dict
         As from `call_filter`, with lists instead of arrays.
 
     Raises
     ------
-    ValueError, FilterError, PluginError
+    ValueError, TypeError, OptionError, FilterError, PluginError
         As `mesh_arrays`, `call_filter` and `load`.
     """
-    V, F = mesh_arrays(vertices, faces)
-    load()
-    import pymeshlab
-
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.add_mesh(pymeshlab.Mesh(V, F))
+    V, F = mesh_arrays(mesh_or_vertices, faces)
+    if kind_of(mesh_or_vertices) is PYMESHLAB:
+        if weights is not None or selection is not None:
+            raise OptionError(
+                "weights, selection: a pymeshlab mesh has its own; give weight='vertex quality' or "
+                "selected=True, or pass vertices and faces"
+            )
+        mesh_set = _set_of(mesh_or_vertices)
+    else:
+        data: dict[str, NDArray[Any]] = {}
+        part: dict[str, Any] = {}
+        if weights is not None:
+            data["v_scalar_array"] = vertex_numbers(weights, len(V), "weights")
+            part["weight"] = "vertex quality"
+        elif getattr(options, "weight", "none") != "none":
+            raise OptionError("weight = vertex quality: pass the quality as weights")
+        mesh_set = mesh_set_of(V, F, data)
+        if selection is not None:
+            _select(mesh_set, chosen_vertices(selection, len(V), F))
+            part["selected"] = True
+        elif getattr(options, "selected", False):
+            raise OptionError("selected = True: pass what is selected as selection")
+        options = replace(options, **part)
     parameters = options.pymeshlab_parameters(mesh_set.current_mesh())
     report = call_filter(mesh_set, options.FILTER, parameters)
     return mesh_set, plain_report(report)
+
+
+def given_back(mesh_or_vertices: Any, mesh_set: Any) -> Any:
+    """Return the current mesh of a MeshSet as what was passed: coordinates, or a mesh."""
+    kind = kind_of(mesh_or_vertices)
+    if kind is PYMESHLAB:
+        return owned_mesh(mesh_set)
+    V = mesh_set.current_mesh().vertex_matrix().copy()
+    return V if kind is None else kind.moved(mesh_or_vertices, V)
+
+
+def _select(mesh_set: Any, chosen: NDArray[np.bool_]) -> None:
+    """Select vertices, which pymeshlab only does by a condition."""
+    mesh_set.current_mesh().add_vertex_custom_scalar_attribute(chosen.astype(float), "chosen")
+    mesh_set.compute_selection_by_condition_per_vertex(condselect="chosen > 0.5")
 
 
 def _size_wanted(reason: str) -> str:

@@ -1,17 +1,20 @@
-"""Spectral Denoise: its options, and the filter on NumPy arrays."""
+"""Spectral Denoise: its options, and the filter on arrays and meshes."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypedDict
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from meshlab_spectral.filters.calling import filtered_arrays
+from meshlab_spectral.filters.calling import filtered, given_back
+from meshlab_spectral.filters.keywords import takes_options
 from meshlab_spectral.filters.option_types import Length, Limits, Options, option
-from meshlab_spectral.filters.options import Boundary
+from meshlab_spectral.filters.options import Boundary, Size
 from meshlab_spectral.plugin.loading import DENOISE_NAME
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -54,26 +57,47 @@ class DenoiseOptions(Options):
     )
 
 
+class DenoiseKeywords(TypedDict, total=False):
+    """All fields of `DenoiseOptions`."""
+
+    strength: float
+    noise_height: Size
+    noise_size: Size
+    selected: bool
+    keep_creases: bool
+    boundary: Boundary
+
+
+@takes_options(DenoiseOptions)
 def denoise_mesh(
-    vertices: ArrayLike, faces: ArrayLike, options: DenoiseOptions | None = None, **named: Any
-) -> tuple[NDArray[np.float64], dict[str, Any]]:
+    mesh_or_vertices: Any,
+    faces: ArrayLike | None = None,
+    options: DenoiseOptions | None = None,
+    *,
+    selection: ArrayLike | None = None,
+    **named: Unpack[DenoiseKeywords],
+) -> tuple[Any, dict[str, Any]]:
     """Find out what kind of noise a mesh has, and remove it; without noise, nothing moves.
 
     Parameters
     ----------
-    vertices
-        n x 3 coordinates, finite.
+    mesh_or_vertices
+        n x 3 coordinates, finite; or a mesh of pyvista, trimesh, meshio, Open3D or pymeshlab, of
+        triangles.
     faces
-        m x 3 indices of the corners of triangles, from 0 to n - 1; any topology and orientation.
+        With coordinates: m x 3 indices of the corners of triangles, from 0 to n - 1; any topology
+        and orientation.
     options
-        All options in one object, or
+        All options below in one object, in place of those by name.
+    selection
+        What to denoise: n booleans, one for each vertex, or indices of faces; it fades out around
+        them within four edges.
     **named
-        fields of `DenoiseOptions` by name.
 
     Returns
     -------
-    V : array
-        n x 3 denoised coordinates; the faces do not change.
+    denoised
+        n x 3 coordinates, or a mesh as it was passed, with its data; the faces do not change.
     report : dict
         "summary" says in one line what was found and done, such as "scanner noise: height 0.08
         edges (0.012), size 2.1 edges (0.31): removed". Numbers, in the units of the mesh:
@@ -87,6 +111,8 @@ def denoise_mesh(
     ------
     ValueError
         When an array has the wrong shape or type, or an index is out of range.
+    TypeError
+        When the mesh is of none of these libraries.
     OptionError
         When an option is unknown or has an invalid value.
     FilterError
@@ -99,5 +125,6 @@ def denoise_mesh(
     >>> V, report = denoise_mesh(vertices, faces)
     >>> print(report["summary"])
     """
-    mesh_set, report = filtered_arrays(vertices, faces, DenoiseOptions.given(options, named))
-    return mesh_set.current_mesh().vertex_matrix().copy(), report
+    parameters = DenoiseOptions.given(options, named)
+    mesh_set, report = filtered(mesh_or_vertices, faces, parameters, selection=selection)
+    return given_back(mesh_or_vertices, mesh_set), report

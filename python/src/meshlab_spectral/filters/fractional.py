@@ -1,49 +1,76 @@
-"""The fractional filter, on NumPy arrays."""
+"""The fractional filter, on arrays and meshes."""
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from meshlab_spectral.filters.calling import filtered_arrays
-from meshlab_spectral.filters.options import FilterOptions
+from meshlab_spectral.filters.arrays import mesh_arrays
+from meshlab_spectral.filters.calling import filtered, given_back
+from meshlab_spectral.filters.gain_points import with_gain
+from meshlab_spectral.filters.keywords import takes_options
+from meshlab_spectral.filters.options import FilterKeywords, FilterOptions
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 # The vertex attribute in which the filter stores the details.
 DETAILS = "spectral_details"
 
 
+@takes_options(FilterOptions)
 def filter_mesh(
-    vertices: ArrayLike, faces: ArrayLike, options: FilterOptions | None = None, **named: Any
-) -> tuple[NDArray[np.float64], dict[str, Any]]:
+    mesh_or_vertices: Any,
+    faces: ArrayLike | None = None,
+    options: FilterOptions | None = None,
+    *,
+    weights: ArrayLike | None = None,
+    selection: ArrayLike | None = None,
+    gain: Callable[[float], float] | None = None,
+    **named: Unpack[FilterKeywords],
+) -> tuple[Any, dict[str, Any]]:
     """Filter a mesh by the size of its details.
+
+    Sizes are a string such as "2%" of the bounding box diagonal or "6e" (mean edges), or a length
+    in the units of the mesh.
 
     Parameters
     ----------
-    vertices
-        n x 3 coordinates, finite.
+    mesh_or_vertices
+        n x 3 coordinates, finite; or a mesh of pyvista, trimesh, meshio, Open3D or pymeshlab, of
+        triangles.
     faces
-        m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
+        With coordinates: m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
     options
-        All options in one object, or
+        All options below in one object, in place of those by name.
+    weights
+        n numbers: how much of the filter each vertex gets, from 0 (nothing) to 1 (all).
+    selection
+        What to filter: n booleans, one for each vertex, or indices of faces; it fades out around
+        them within about a feature size.
+    gain
+        Gain as a function of w, the feature size over the wavelength, w > 0; finite, >= 0. In place
+        of filter_type="custom". Called some thousand times, with one number each.
     **named
-        fields of `FilterOptions` by name; sizes as a string such as "2%" of the bounding box
-        diagonal or "6e" (mean edges), or as a length in the units of the mesh.
 
     Returns
     -------
-    V : array
-        n x 3 filtered coordinates; the faces do not change. With result="details", what the
-        filter takes away instead: the coordinates minus the filtered ones.
+    filtered
+        n x 3 coordinates, or a mesh as it was passed, with its data; the faces do not change. With
+        result="details" what the filter takes away instead, n x 3: the coordinates minus the
+        filtered ones.
     report : dict
         Numbers, and lists for vectors; lengths in the units of the mesh. "warnings" lists what fell
-        short of the options and what to do about it.
+        short of the options, or had no effect, and what to do about it.
 
     Raises
     ------
     ValueError
         When an array has the wrong shape or type, or an index is out of range.
+    TypeError
+        When the mesh is of none of these libraries.
     OptionError
         When an option is unknown or has an invalid value.
     FilterError
@@ -55,10 +82,13 @@ def filter_mesh(
     --------
     >>> V, report = filter_mesh(vertices, faces, feature_size="2%")
     >>> report["max_displacement"]
+    >>> smooth, report = filter_mesh(pyvista.read("scan.ply"), gain=lambda w: 1 / (1 + w**4))
     """
     parameters = FilterOptions.given(options, named)
-    mesh_set, report = filtered_arrays(vertices, faces, parameters)
-    mesh = mesh_set.current_mesh()
+    if gain is not None:
+        parameters = with_gain(parameters, gain, *mesh_arrays(mesh_or_vertices, faces))
+    mesh_set, report = filtered(mesh_or_vertices, faces, parameters, weights, selection)
     if parameters.result == "details":
+        mesh = mesh_set.current_mesh()
         return mesh.vertex_custom_point_attribute_matrix(DETAILS).copy(), report
-    return mesh.vertex_matrix().copy(), report
+    return given_back(mesh_or_vertices, mesh_set), report

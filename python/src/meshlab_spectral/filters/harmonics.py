@@ -10,9 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.filters.arrays import lumped_areas, mesh_arrays
-from meshlab_spectral.filters.calling import call_filter
+from meshlab_spectral.filters.calling import call_filter, mesh_set_of
 from meshlab_spectral.filters.options import Boundary, LaplacianKind, checked_basis_size
-from meshlab_spectral.plugin.loading import load
 
 DEFAULT_BASIS_SIZE = 100
 
@@ -48,8 +47,8 @@ class Harmonics:
 
 
 def manifold_harmonics(
-    vertices: ArrayLike,
-    faces: ArrayLike,
+    mesh_or_vertices: Any,
+    faces: ArrayLike | None = None,
     basis_size: int = DEFAULT_BASIS_SIZE,
     laplacian: LaplacianKind = "intrinsic delaunay",
     boundary: Boundary = "free",
@@ -58,10 +57,11 @@ def manifold_harmonics(
 
     Parameters
     ----------
-    vertices
-        n x 3 coordinates, finite.
+    mesh_or_vertices
+        n x 3 coordinates, finite; or a mesh of pyvista, trimesh, meshio, Open3D or pymeshlab, of
+        triangles.
     faces
-        m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
+        With coordinates: m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
     basis_size
         Number of harmonics k, constants included; less than the number of vertices not fixed.
     laplacian
@@ -92,7 +92,7 @@ def manifold_harmonics(
     >>> basis = manifold_harmonics(V, F, 50)
     >>> spectrum = basis.harmonics.T @ (basis.masses[:, None] * V)
     """
-    return compute(*mesh_arrays(vertices, faces), basis_size, laplacian, boundary)
+    return compute(*mesh_arrays(mesh_or_vertices, faces), basis_size, laplacian, boundary)
 
 
 def compute(
@@ -111,11 +111,7 @@ def compute(
     ):
         if value not in get_args(kind):
             raise OptionError(f"{name} = {value}: choose {', '.join(get_args(kind))}")
-    load()
-    import pymeshlab
-
-    mesh_set = pymeshlab.MeshSet(verbose=verbose)
-    mesh_set.add_mesh(pymeshlab.Mesh(V, F))
+    mesh_set = mesh_set_of(V, F, verbose=verbose)
     parameters = {
         "mode": 0,  # in every basis
         "basis_size": basis_size,

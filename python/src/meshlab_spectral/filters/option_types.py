@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from numbers import Real
 from typing import Any, Literal, TypeVar, get_args, get_type_hints
@@ -94,7 +95,9 @@ class Length:
         return cls(value, unit)
 
     def in_units_of_mesh(self, diagonal: float, mean_edge: float) -> float:
-        """Convert to the units of a mesh, from its lengths in them."""
+        """Convert to the units of a mesh, from its lengths in them; auto is a feature size."""
+        if self.automatic:
+            return min(6 * mean_edge or diagonal, diagonal / 20)
         return self.value * {"": 1.0, "%": diagonal / 100, "e": mean_edge}[self.unit]
 
     def __str__(self) -> str:
@@ -185,7 +188,7 @@ class Options:
         }
 
     @classmethod
-    def from_dict(cls: type[AnyOptions], plain: dict[str, Any]) -> AnyOptions:
+    def from_dict(cls: type[AnyOptions], plain: Mapping[str, Any]) -> AnyOptions:
         """Make options from plain values, as from `as_dict`; the rest keep their defaults."""
         known = [one.name for one in fields(cls)]
         for name in plain:
@@ -197,7 +200,7 @@ class Options:
 
     @classmethod
     def given(
-        cls: type[AnyOptions], options: AnyOptions | None, named: dict[str, Any]
+        cls: type[AnyOptions], options: AnyOptions | None, named: Mapping[str, object]
     ) -> AnyOptions:
         """Return the options of a call, which are one object or values by name.
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from numbers import Integral
-from typing import Any, Literal
+from typing import Any, Literal, TypedDict
 
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.filters.option_types import LARGEST_INTEGER, Length, Limits, Options, option
@@ -22,6 +22,40 @@ LaplacianKind = Literal["intrinsic delaunay", "cotangent", "uniform"]
 Boundary = Literal["free", "fixed"]
 Weight = Literal["none", "vertex quality"]
 Result = Literal["filtered shape", "details"]
+Size = Length | str | float
+
+
+class TransferKeywords(TypedDict, total=False):
+    """What a call may say about the transfer function; the fields of `FilterOptions`."""
+
+    filter_type: FilterType
+    feature_size: Size
+    pass_gain: float
+    stop_gain: float
+    transfer_function: str
+    band_width: float
+    response: Response
+    order: int
+    power: float
+    laplacian: LaplacianKind
+    boundary: Boundary
+
+
+class FilterKeywords(TransferKeywords, total=False):
+    """All fields of `FilterOptions`."""
+
+    selected: bool
+    steps: int
+    tolerance: Size
+    basis_update: BasisUpdate
+    conformal_share: float
+    spectrum: Spectrum
+    basis_size: int
+    reinject_residual: bool
+    crease_angle: float
+    preserve_volume: bool
+    weight: Weight
+    result: Result
 
 
 def checked_basis_size(value: Any, least: int = 1) -> int:

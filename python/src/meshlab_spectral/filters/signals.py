@@ -1,24 +1,36 @@
-"""Filters of numbers and colours at the vertices of a mesh, on NumPy arrays."""
+"""Filters of numbers and colours at the vertices of a mesh, given as arrays."""
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.filters.arrays import mesh_arrays
-from meshlab_spectral.filters.calling import call_filter, plain_report
-from meshlab_spectral.filters.options import FilterOptions
-from meshlab_spectral.plugin.loading import load
+from meshlab_spectral.filters.calling import call_filter, mesh_set_of, plain_report
+from meshlab_spectral.filters.gain_points import with_gain
+from meshlab_spectral.filters.keywords import takes_options
+from meshlab_spectral.filters.options import FilterOptions, TransferKeywords
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 _SCALARS = "apply_scalar_spectral_filter_per_vertex"
 _COLORS = "apply_color_spectral_filter_per_vertex"
 
 
+@takes_options(FilterOptions, TransferKeywords.__annotations__)
 def filter_scalars(
-    vertices: ArrayLike, faces: ArrayLike, values: ArrayLike, **options: Any
+    mesh_or_vertices: Any,
+    faces: ArrayLike | None = None,
+    values: ArrayLike | None = None,
+    options: FilterOptions | None = None,
+    *,
+    gain: Callable[[float], float] | None = None,
+    **named: Unpack[TransferKeywords],
 ) -> tuple[NDArray[np.float64], dict[str, Any]]:
     """Filter a scalar field on a mesh by the size of its details; the shape stays as it is.
 
@@ -26,19 +38,24 @@ def filter_scalars(
     the coordinates, the result is ``F(sqrt(A)) values`` over the whole spectrum. The area-weighted
     mean of every connected component is kept; values are not clamped.
 
+    Sizes are a string such as "2%" of the bounding box diagonal or "6e" (mean edges), or a length
+    in the units of the mesh. With boundary="fixed", the values on the boundary stay.
+
     Parameters
     ----------
-    vertices
-        n x 3 coordinates, finite.
+    mesh_or_vertices
+        n x 3 coordinates, finite; or a mesh of pyvista, trimesh, meshio, Open3D or pymeshlab, of
+        triangles.
     faces
-        m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
+        With coordinates: m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
     values
         n numbers, or n x k for k fields, each filtered by itself. NaN is no data: it stays, and the
         surface ends there for the rest. Values at vertices without faces are kept to the bit.
-    **options
-        Fields of `FilterOptions` that describe the transfer function, `laplacian` and `boundary`:
-        "fixed" keeps the values on the boundary. Sizes as a string such as "2%" of the bounding box
-        diagonal or "6e" (mean edges), or as a length in the units of the mesh.
+    options
+        All options below in one object, in place of those by name; others must have their defaults.
+    gain
+        As for `filter_mesh`.
+    **named
 
     Returns
     -------
@@ -67,7 +84,10 @@ def filter_scalars(
     >>> smooth, report = filter_scalars(vertices, faces, curvature, feature_size="2%")
     >>> report["rms_change"], report["max_change"]
     """
-    V, F = mesh_arrays(vertices, faces)
+    V, F = mesh_arrays(mesh_or_vertices, faces)
+    if values is None:
+        raise TypeError("values: pass numbers to filter, one for each vertex")
+    parameters = _options_for(V, F, options, named, gain)
     Q = np.asarray(values, dtype=np.float64)
     if Q.ndim not in (1, 2) or len(Q) != len(V) or Q.size == 0:
         raise ValueError(
@@ -75,27 +95,35 @@ def filter_scalars(
             f"with {len(V)} rows"
         )
     if Q.ndim == 2:
-        columns = [filter_scalars(V, F, column, **options) for column in Q.T]
+        columns = [filter_scalars(V, F, column, parameters) for column in Q.T]
         reports = [report for _, report in columns]
         warnings = [f"column {j}: {w}" for j, r in enumerate(reports) for w in r["warnings"]]
         filtered = np.column_stack([values for values, _ in columns])
         return filtered, {"columns": reports, "warnings": warnings}
-    mesh_set, report = _filtered(_SCALARS, V, F, options, v_scalar_array=Q)
+    mesh_set, report = _filtered(_SCALARS, V, F, parameters, {"v_scalar_array": Q})
     return mesh_set.current_mesh().vertex_scalar_array().copy(), report
 
 
+@takes_options(FilterOptions, TransferKeywords.__annotations__)
 def filter_colors(
-    vertices: ArrayLike, faces: ArrayLike, colors: ArrayLike, **options: Any
+    mesh_or_vertices: Any,
+    faces: ArrayLike | None = None,
+    colors: ArrayLike | None = None,
+    options: FilterOptions | None = None,
+    *,
+    gain: Callable[[float], float] | None = None,
+    **named: Unpack[TransferKeywords],
 ) -> tuple[NDArray[Any], dict[str, Any]]:
     """Filter colours at the vertices, as `filter_scalars` does red, green and blue.
 
     Parameters
     ----------
-    vertices, faces, **options
+    mesh_or_vertices, faces, options, gain
         As for `filter_scalars`.
     colors
         n x 3 or n x 4 integers from 0 to 255, or floating-point numbers from 0 to 1; the fourth,
         alpha, is kept.
+    **named
 
     Returns
     -------
@@ -105,7 +133,10 @@ def filter_colors(
     report : dict
         As from `filter_scalars`, changes in levels; and `clamped_values`.
     """
-    V, F = mesh_arrays(vertices, faces)
+    V, F = mesh_arrays(mesh_or_vertices, faces)
+    if colors is None:
+        raise TypeError("colors: pass red, green and blue of each vertex")
+    parameters = _options_for(V, F, options, named, gain)
     C = np.asarray(colors)
     most = 1 if np.issubdtype(C.dtype, np.floating) else 255
     if C.shape not in ((len(V), 3), (len(V), 4)) or not ((C >= 0) & (most >= C)).all():
@@ -114,27 +145,32 @@ def filter_colors(
             "numbers from 0 to 1"
         )
     levels = np.column_stack([C / most, np.ones((len(V), 4 - C.shape[1]))])
-    mesh_set, report = _filtered(_COLORS, V, F, options, v_color_matrix=levels)
+    mesh_set, report = _filtered(_COLORS, V, F, parameters, {"v_color_matrix": levels})
     filtered = mesh_set.current_mesh().vertex_color_matrix()[:, : C.shape[1]].copy()
     return filtered if most == 1 else np.round(255 * filtered).astype(np.uint8), report
 
 
+def _options_for(
+    V: Any, F: Any, options: FilterOptions | None, named: Any, gain: Callable[[float], float] | None
+) -> FilterOptions:
+    """Return the options of a call, which has to do without those for shapes."""
+    for name in named:
+        if name not in TransferKeywords.__annotations__:
+            FilterOptions.from_dict(named)  # an unknown one is told as such
+            raise OptionError(
+                f"{name}: not for values on a fixed shape; choose "
+                f"{', '.join(TransferKeywords.__annotations__)}"
+            )
+    parameters = FilterOptions.given(options, named)
+    return parameters if gain is None else with_gain(parameters, gain, V, F)
+
+
 def _filtered(
-    name: str, V: Any, F: Any, options: dict[str, Any], **signal: NDArray[Any]
+    name: str, V: Any, F: Any, options: FilterOptions, signal: dict[str, NDArray[Any]]
 ) -> tuple[Any, dict[str, Any]]:
     """Apply a filter of signals to a mesh with one: a MeshSet with the result, and the report."""
-    parameters = FilterOptions.from_dict(options)
-    load()
-    import pymeshlab
-
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.add_mesh(pymeshlab.Mesh(V, F, **signal))
+    mesh_set = mesh_set_of(V, F, signal)
     known = mesh_set.filter_parameter_values(name)
-    for option in options:
-        if option not in known:
-            raise OptionError(
-                f"{option}: not for values on a fixed shape; choose {', '.join(known)}"
-            )
-    all_given = parameters.pymeshlab_parameters(mesh_set.current_mesh())
+    all_given = options.pymeshlab_parameters(mesh_set.current_mesh())
     given = {option: value for option, value in all_given.items() if option in known}
     return mesh_set, plain_report(call_filter(mesh_set, name, given))

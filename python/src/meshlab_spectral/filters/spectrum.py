@@ -10,9 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.filters.arrays import mesh_arrays
-from meshlab_spectral.filters.calling import call_filter
+from meshlab_spectral.filters.calling import call_filter, mesh_set_of
 from meshlab_spectral.filters.options import Boundary, LaplacianKind, checked_basis_size
-from meshlab_spectral.plugin.loading import load
 
 FILTER_NAME = "get_geometry_spectrum"
 DEFAULT_BASIS_SIZE = 0
@@ -121,8 +120,8 @@ class GeometrySpectrum:
 
 
 def geometry_spectrum(
-    vertices: ArrayLike,
-    faces: ArrayLike,
+    mesh_or_vertices: Any,
+    faces: ArrayLike | None = None,
     basis_size: int = DEFAULT_BASIS_SIZE,
     laplacian: LaplacianKind = "intrinsic delaunay",
     boundary: Boundary = "free",
@@ -135,10 +134,11 @@ def geometry_spectrum(
 
     Parameters
     ----------
-    vertices
-        n x 3 coordinates, finite.
+    mesh_or_vertices
+        n x 3 coordinates, finite; or a mesh of pyvista, trimesh, meshio, Open3D or pymeshlab, of
+        triangles.
     faces
-        m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
+        With coordinates: m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
     basis_size
         Number of harmonics measured individually, constants included, which takes most of the
         time; less than the number of vertices not fixed if there are more than 2,000 of these.
@@ -173,7 +173,7 @@ def geometry_spectrum(
     >>> for size, height in zip(spectrum.octave_feature_sizes, spectrum.octave_amplitudes):
     ...     print(f"details of {size:.3g}: {height:.3g} high")
     """
-    V, F = mesh_arrays(vertices, faces)
+    V, F = mesh_arrays(mesh_or_vertices, faces)
     parameters = spectrum_parameters(basis_size, laplacian, boundary)
     return GeometrySpectrum.from_report(measure(V, F, parameters))
 
@@ -182,11 +182,7 @@ def measure(
     V: Array, F: NDArray[Any], parameters: dict[str, Any], verbose: bool = False
 ) -> dict[str, Any]:
     """Run the filter on a mesh and return its report. With `verbose`, MeshLab writes its log."""
-    load()
-    import pymeshlab
-
-    mesh_set = pymeshlab.MeshSet(verbose=verbose)
-    mesh_set.add_mesh(pymeshlab.Mesh(V, F))
+    mesh_set = mesh_set_of(V, F, verbose=verbose)
     return call_filter(mesh_set, FILTER_NAME, parameters)
 
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 import ctypes
 import functools
 import json
-import os
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -15,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshlab_spectral.errors import OptionError, PluginError
+from meshlab_spectral.plugin.handle import opened
 from meshlab_spectral.plugin.loading import load, loaded_plugin
 
 _NUMBERS = ctypes.POINTER(ctypes.c_double)
@@ -128,7 +127,7 @@ def filter_descriptions() -> list[dict[str, Any]]:
 def _function(plugin: Path, name: str, arguments: Sequence[Any]) -> Any:
     """Return a function of the loaded plugin that returns a text."""
     try:
-        function = getattr(_opened(plugin), name)
+        function = getattr(opened(plugin), name)
     except OSError as error:
         raise PluginError(
             f"pymeshlab has loaded another copy of the plugin than {plugin}: call "
@@ -141,21 +140,3 @@ def _function(plugin: Path, name: str, arguments: Sequence[Any]) -> Any:
     function.restype = ctypes.c_char_p
     function.argtypes = arguments
     return function
-
-
-def _opened(plugin: Path) -> ctypes.CDLL:
-    """Open a library if it is loaded: a second copy of the plugin would have no warnings to report.
-
-    Raises
-    ------
-    OSError
-        When it is not loaded.
-    """
-    if sys.platform == "win32":
-        find = ctypes.WinDLL("kernel32").GetModuleHandleW
-        find.argtypes, find.restype = [ctypes.c_wchar_p], ctypes.c_void_p
-        handle = find(str(plugin))
-        if handle is None:
-            raise OSError
-        return ctypes.CDLL(str(plugin), handle=handle)
-    return ctypes.CDLL(str(plugin), mode=os.RTLD_NOW | os.RTLD_NOLOAD)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from meshlab_spectral.errors import PluginError
 from meshlab_spectral.plugin.failed_calls import kept_when_failed
+from meshlab_spectral.plugin.handle import let_signals_interrupt
 
 FILTER_NAME = "apply_coord_spectral_filter_fractional"
 DENOISE_NAME = "apply_coord_spectral_denoise"
@@ -60,6 +61,7 @@ def load() -> None:
         except pymeshlab.PyMeshLabException as error:
             raise PluginError(_refused(path, str(error))) from error
         _loaded = path
+        let_signals_interrupt(path)
     # pymeshlab only creates methods on import, for the filters it knows by then.
     for name in pymeshlab.filter_list():
         if not hasattr(pymeshlab.MeshSet, name):

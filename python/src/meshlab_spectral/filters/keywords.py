@@ -1,0 +1,85 @@
+"""Functions that take a filter's options by name: their signatures and docstrings."""
+
+from __future__ import annotations
+
+import inspect
+import re
+import textwrap
+from collections.abc import Callable, Collection
+from dataclasses import fields
+from typing import Any, TypeVar, get_args, get_type_hints
+
+from meshlab_spectral.filters.option_types import Length, Options
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+# Ends of ranges that a user has no use for.
+_UNLIMITED = re.compile(r",? (to|at most) (3\.4e\+38|2147483647)$")
+_FLAG = re.compile(r"--([a-z][a-z-]*)(?: (\d[\d.]*))?")
+
+
+def takes_options(
+    table: type[Options], names: Collection[str] | None = None
+) -> Callable[[Function], Function]:
+    """Spell out the ``**named`` of a function, for its `help` and for completion in notebooks.
+
+    Type checkers read the annotation of ``**named`` instead.
+
+    Parameters
+    ----------
+    table
+        The options.
+    names
+        Those of them that the function takes; None for all.
+    """
+
+    def spelled_out(function: Function) -> Function:
+        types = get_type_hints(table)
+        chosen = [one for one in fields(table) if names is None or one.name in names]
+        signature = inspect.signature(function)
+        *others, named = signature.parameters.values()
+        keywords = [
+            named.replace(
+                name=one.name,
+                kind=inspect.Parameter.KEYWORD_ONLY,
+                default=_plain(one.default),
+                annotation=_type_named(types[one.name]),
+            )
+            for one in chosen
+        ]
+        texts = "".join(_explained(one, types[one.name]) for one in chosen)
+        function.__signature__ = signature.replace(  # type: ignore[attr-defined]
+            parameters=[*others, *keywords]
+        )
+        function.__doc__ = (function.__doc__ or "").replace("    **named\n", texts)
+        return function
+
+    return spelled_out
+
+
+def _type_named(kind: Any) -> str:
+    if kind is Length:
+        return "str | float"
+    return "str" if get_args(kind) else str(kind.__name__)
+
+
+def _plain(default: Any) -> Any:
+    return str(default) if isinstance(default, Length) else default
+
+
+def _explained(one: Any, kind: Any) -> str:
+    """Return an entry of a docstring: the help in the words of Python, and the range."""
+    facts = [repr(choice) for choice in get_args(kind)]
+    if one.metadata["limits"]:
+        facts.append(_UNLIMITED.sub("", str(one.metadata["limits"])))
+    indent = " " * 8
+    text = _FLAG.sub(_as_keyword, one.metadata["help"])
+    if facts:
+        text += f" Range: {', '.join(facts)}."
+    wrapped = textwrap.fill(text, 100, initial_indent=indent, subsequent_indent=indent)
+    return f"    {one.name}\n{wrapped}\n"
+
+
+def _as_keyword(flag: re.Match[str]) -> str:
+    name = flag[1].replace("-", "_")
+    return f"{name}={flag[2]}" if flag[2] else name

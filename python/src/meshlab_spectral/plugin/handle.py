@@ -1,0 +1,36 @@
+"""The plugin's library in this process."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import sys
+from pathlib import Path
+
+
+def opened(plugin: Path) -> ctypes.CDLL:
+    """Open a library if it is loaded: a second copy of the plugin would have no warnings to report.
+
+    Raises
+    ------
+    OSError
+        When it is not loaded.
+    """
+    if sys.platform == "win32":
+        find = ctypes.WinDLL("kernel32").GetModuleHandleW
+        find.argtypes, find.restype = [ctypes.c_wchar_p], ctypes.c_void_p
+        handle = find(str(plugin))
+        if handle is None:
+            raise OSError
+        return ctypes.CDLL(str(plugin), handle=handle)
+    return ctypes.CDLL(str(plugin), mode=os.RTLD_NOW | os.RTLD_NOLOAD)
+
+
+def let_signals_interrupt(plugin: Path) -> None:
+    """Let the plugin's filters run Python's handlers of signals, so that Ctrl-C stops them."""
+    function = getattr(opened(plugin), "meshlab_spectral_check_signals", None)
+    if function is not None:  # a plugin of another version is asked for with a message of its own
+        python = ctypes.pythonapi
+        steps = (python.PyGILState_Ensure, python.PyErr_CheckSignals, python.PyGILState_Release)
+        function.argtypes, function.restype = [ctypes.c_void_p] * len(steps), None
+        function(*(ctypes.cast(step, ctypes.c_void_p) for step in steps))

@@ -1,0 +1,87 @@
+"""Options by name are known before a call: to `help`, to notebooks and to type checkers."""
+
+from __future__ import annotations
+
+import inspect
+import subprocess
+import sys
+from dataclasses import fields
+from pathlib import Path
+from typing import Any, get_args, get_type_hints
+
+import jedi
+import meshlab_spectral
+import pytest
+from meshlab_spectral import DenoiseOptions, FilterOptions
+from meshlab_spectral.filters.denoise import DenoiseKeywords
+from meshlab_spectral.filters.option_types import Length, Options
+from meshlab_spectral.filters.options import FilterKeywords
+
+TABLES: list[tuple[type[Options], Any]] = [
+    (FilterOptions, FilterKeywords),
+    (DenoiseOptions, DenoiseKeywords),
+]
+
+
+@pytest.mark.parametrize(("table", "keywords"), TABLES)
+def test_keywords_are_the_fields_of_the_table(table: type[Options], keywords: Any) -> None:
+    types, keyword_types = get_type_hints(table), get_type_hints(keywords)
+    assert set(keyword_types) == {one.name for one in fields(table)}
+    for name, kind in keyword_types.items():
+        assert kind == types[name] or (types[name] is Length and Length in get_args(kind))
+
+
+@pytest.mark.parametrize("name", ["filter_mesh", "denoise_mesh", "filter_scalars", "filter_colors"])
+def test_help_lists_every_option_with_default_and_range(name: str) -> None:
+    function = getattr(meshlab_spectral, name)
+    document = inspect.getdoc(function) or ""
+    parameters = inspect.signature(function).parameters
+    assert "named" not in parameters
+    assert "**named" not in document
+    assert "--" not in document.partition("Returns\n-------")[0].replace("----------", "")
+    for parameter in parameters:
+        assert f"\n{parameter}\n    " in document or f"{parameter}, " in document
+    assert all(len(line) <= 100 for line in document.splitlines())
+    assert parameters["boundary"].default == "free"
+    assert "Range: 'free', 'fixed'." in document
+
+
+@pytest.mark.parametrize(
+    ("call", "completions"),
+    [
+        ("filter_mesh(V, F, fea", ["feature_size="]),
+        ("filter_mesh(V, F, weigh", ["weight=", "weights="]),
+        ("denoise_mesh(V, F, stre", ["strength="]),
+        ("filter_scalars(V, F, q, band", ["band_width="]),
+    ],
+)
+def test_a_notebook_completes_options(call: str, completions: list[str]) -> None:
+    found = jedi.Interpreter(call, [vars(meshlab_spectral), meshlab_spectral_names()]).complete()
+    assert sorted(one.name for one in found) == completions
+
+
+def meshlab_spectral_names() -> dict[str, Any]:
+    return {name: getattr(meshlab_spectral, name) for name in meshlab_spectral.__all__}
+
+
+def test_a_type_checker_knows_options(tmp_path: Path) -> None:
+    script = tmp_path / "script.py"
+    script.write_text(
+        "from meshlab_spectral import filter_mesh, filter_scalars\n"
+        'filter_mesh([], [], feature_size="2%", steps=3)\n'
+        'filter_mesh([], [], feature_siz="2%")\n'
+        'filter_mesh([], [], response="gausian")\n'
+        "filter_scalars([], [], [], steps=3)\n"
+    )
+    settings = ("--strict", "--no-incremental", "--follow-imports=silent", "--python-version=3.11")
+    done = subprocess.run(
+        [sys.executable, "-m", "mypy", *settings, script.name],
+        cwd=tmp_path,
+        env={"MYPYPATH": str(Path(meshlab_spectral.__file__).parents[1])},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    told = [line for line in done.stdout.splitlines() if ": error:" in line]
+    assert [line.split(":")[1] for line in told] == ["3", "4", "5"], done.stdout + done.stderr
+    assert 'did you mean "feature_size"?' in told[0]

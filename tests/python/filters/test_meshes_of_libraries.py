@@ -1,0 +1,213 @@
+"""Meshes of other libraries come back as their own kind, with their data; the input stays."""
+
+from __future__ import annotations
+
+import copy
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pymeshlab
+import pytest
+import pyvista
+from meshlab_spectral import (
+    FilterOptions,
+    OptionError,
+    denoise_mesh,
+    filter_colors,
+    filter_mesh,
+    filter_scalars,
+    geometry_spectrum,
+    manifold_harmonics,
+)
+
+_SPHERE = pyvista.Icosphere(nsub=3)
+V, F = np.array(_SPHERE.points, dtype=float), np.array(_SPHERE.regular_faces)
+EXPECTED, _ = filter_mesh(V, F, feature_size="30%")
+
+
+class Trimesh:
+    """What trimesh.Trimesh offers."""
+
+    def __init__(self, vertices: np.ndarray, faces: np.ndarray) -> None:
+        self.vertices, self._faces = vertices, faces
+        self.metadata = {"name": "sphere"}
+
+    @property
+    def faces(self) -> np.ndarray:
+        return self._faces
+
+    def copy(self) -> Trimesh:
+        return copy.deepcopy(self)
+
+
+class MeshioMesh:
+    """What meshio.Mesh offers."""
+
+    def __init__(self, points: np.ndarray, cells: dict[str, np.ndarray]) -> None:
+        self.points, self._cells = points, cells
+        self.point_data = {"height": points[:, 2]}
+
+    @property
+    def cells_dict(self) -> dict[str, np.ndarray]:
+        return self._cells
+
+
+class Open3dMesh:
+    """What open3d.geometry.TriangleMesh offers."""
+
+    def __init__(self, other: Open3dMesh | None = None) -> None:
+        if other is not None:
+            self.__dict__.update(other.__dict__)
+            self.computed = []
+
+    @property
+    def triangle_normals(self) -> list[Any]:
+        return []
+
+    def has_triangle_normals(self) -> bool:
+        return False
+
+    def has_vertex_normals(self) -> bool:
+        return True
+
+    def compute_vertex_normals(self) -> None:
+        self.computed.append("vertex normals")
+
+
+def test_a_mesh_of_pyvista() -> None:
+    mesh = pyvista.PolyData.from_regular_faces(V, F)
+    mesh["height"] = V[:, 2]
+    mesh.compute_normals(inplace=True, split_vertices=False)
+    given = mesh.copy()
+    moved, report = filter_mesh(mesh, feature_size="30%")
+    assert isinstance(moved, pyvista.PolyData)
+    assert report["warnings"] == []
+    np.testing.assert_array_equal(moved.points, EXPECTED.astype(mesh.points.dtype))
+    np.testing.assert_array_equal(moved["height"], mesh["height"])
+    assert moved.point_data["Normals"].shape == V.shape
+    assert mesh == given
+
+
+def test_a_mesh_of_pyvista_with_quadrangles_is_told_to_triangulate() -> None:
+    with pytest.raises(ValueError, match=r"no triangles: call its triangulate\(\) first"):
+        filter_mesh(pyvista.Plane(i_resolution=2, j_resolution=2))
+
+
+def test_a_mesh_of_trimesh() -> None:
+    mesh = Trimesh(V, F)
+    moved, _ = filter_mesh(mesh, feature_size="30%")
+    assert isinstance(moved, Trimesh)
+    assert moved.metadata == {"name": "sphere"}
+    np.testing.assert_array_equal(moved.vertices, EXPECTED)
+    np.testing.assert_array_equal(mesh.vertices, V)
+
+
+def test_a_mesh_of_meshio_keeps_its_precision() -> None:
+    mesh = MeshioMesh(V.astype(np.float32), {"triangle": F, "line": F[:2, :2]})
+    moved, _ = filter_mesh(mesh, feature_size="30%")
+    assert isinstance(moved, MeshioMesh)
+    assert moved.points.dtype == np.float32
+    np.testing.assert_allclose(moved.points, EXPECTED, atol=1e-6)
+    np.testing.assert_array_equal(moved.point_data["height"], mesh.point_data["height"])
+
+
+def test_a_mesh_of_meshio_with_other_cells_is_refused() -> None:
+    mesh = MeshioMesh(V, {"triangle": F, "tetra": F})
+    with pytest.raises(ValueError, match="cells tetra, triangle: pass one of triangles alone"):
+        filter_mesh(mesh)
+
+
+def test_a_mesh_of_open3d() -> None:
+    mesh = Open3dMesh()
+    mesh.vertices, mesh.triangles = V.tolist(), F.tolist()
+    moved, _ = filter_mesh(mesh, feature_size="30%")
+    assert isinstance(moved, Open3dMesh)
+    np.testing.assert_array_equal(moved.vertices, EXPECTED)
+    assert moved.computed == ["vertex normals"]
+    assert mesh.vertices == V.tolist()
+
+
+def test_a_mesh_of_pymeshlab_keeps_quality_and_selection() -> None:
+    mesh_set = pymeshlab.MeshSet()
+    quality = np.linspace(0, 1, len(V))
+    mesh_set.add_mesh(pymeshlab.Mesh(V, F, v_scalar_array=quality))
+    mesh = mesh_set.current_mesh()
+    moved, _ = filter_mesh(mesh, feature_size="30%")
+    assert isinstance(moved, pymeshlab.Mesh)
+    np.testing.assert_array_equal(moved.vertex_matrix(), EXPECTED)
+    np.testing.assert_array_equal(moved.vertex_scalar_array(), quality)
+    np.testing.assert_array_equal(mesh.vertex_matrix(), V)
+    weighted, _ = filter_mesh(mesh, feature_size="30%", weight="vertex quality")
+    by_arrays, _ = filter_mesh(V, F, feature_size="30%", weights=quality)
+    np.testing.assert_array_equal(weighted.vertex_matrix(), by_arrays)
+    with pytest.raises(OptionError, match="has its own"):
+        filter_mesh(mesh, weights=quality)
+
+
+def test_what_is_no_mesh_is_told() -> None:
+    with pytest.raises(TypeError, match="no faces with types's SimpleNamespace: pass vertices and"):
+        filter_mesh(SimpleNamespace())
+    with pytest.raises(TypeError, match=r"faces: pyvista\.PolyData has its own"):
+        filter_mesh(pyvista.Sphere(), F)
+
+
+def test_every_function_takes_a_mesh() -> None:
+    mesh = pyvista.PolyData.from_regular_faces(V, F)
+    assert isinstance(denoise_mesh(mesh)[0], pyvista.PolyData)
+    assert filter_scalars(mesh, values=V[:, 0])[0].shape == (len(V),)
+    assert filter_colors(mesh, colors=np.abs(V))[0].shape == V.shape
+    assert manifold_harmonics(mesh, basis_size=5).harmonics.shape == (len(V), 5)
+    assert geometry_spectrum(mesh).area > 3
+
+
+def test_weights_are_the_part_of_the_filter_that_vertices_get() -> None:
+    weights = np.linspace(0, 1, len(V))
+    moved, _ = filter_mesh(V, F, feature_size="30%", weights=weights)
+    np.testing.assert_allclose(moved, V + weights[:, None] * (EXPECTED - V), atol=1e-12)
+    with pytest.raises(ValueError, match=rf"weights have shape \(3,\): pass {len(V)} numbers"):
+        filter_mesh(V, F, weights=[0, 0.5, 1])
+    with pytest.raises(OptionError, match="pass the quality as weights"):
+        filter_mesh(V, F, weight="vertex quality")
+
+
+def test_a_selection_is_of_vertices_or_of_faces() -> None:
+    faces = np.flatnonzero(V[F, 2].min(axis=1) > 0)
+    corners = np.zeros(len(V), dtype=bool)
+    corners[F[faces]] = True
+    by_faces, _ = filter_mesh(V, F, feature_size="30%", selection=faces)
+    by_corners, _ = filter_mesh(V, F, FilterOptions(feature_size="30%"), selection=corners)
+    np.testing.assert_array_equal(by_faces, by_corners)
+    moved = np.linalg.norm(by_faces - V, axis=1)
+    assert moved[V[:, 2] > 0.5].min() > 0.1 * np.linalg.norm(EXPECTED - V, axis=1).max()
+    assert moved[V[:, 2] < -0.9].max() < 1e-3
+    denoised, _ = denoise_mesh(V, F, selection=corners)
+    assert denoised.shape == V.shape
+    with pytest.raises(OptionError, match="pass what is selected as selection"):
+        filter_mesh(V, F, selected=True)
+    with pytest.raises(ValueError, match=rf"selection has face {len(F)}, but"):
+        filter_mesh(V, F, selection=[0, len(F)])
+    with pytest.raises(ValueError, match=r"numpy\.flatnonzero"):
+        filter_mesh(V, F, selection=np.ones(len(F), dtype=bool))
+
+
+def test_a_gain_is_any_function_of_w() -> None:
+    text, _ = filter_mesh(
+        V, F, filter_type="custom", transfer_function="1/(1 + w^4)", feature_size="30%"
+    )
+    function, _ = filter_mesh(V, F, feature_size="30%", gain=lambda w: 1 / (1 + w**4))
+    scale = np.abs(text - V).max()
+    np.testing.assert_allclose(function, text, atol=1e-4 * scale)
+    low, _ = filter_scalars(V, F, V[:, 0] ** 3, feature_size="30%")
+    same, _ = filter_scalars(
+        V, F, V[:, 0] ** 3, feature_size="30%", gain=lambda w: 2 ** (-(w**2) / 2)
+    )
+    np.testing.assert_allclose(same, low, atol=1e-4)
+
+
+@pytest.mark.parametrize("wrong", [-1.0, np.nan, np.inf])
+def test_a_gain_must_be_finite_and_not_negative(wrong: float) -> None:
+    with pytest.raises(OptionError, match=r"gain\(.*\) = .*: must be finite and not negative"):
+        filter_mesh(V, F, gain=lambda w: wrong if w > 3 else 1.0)
+    with pytest.raises(OptionError, match="filter_type = high-pass: gain takes its place"):
+        filter_mesh(V, F, gain=lambda w: 1.0, filter_type="high-pass")

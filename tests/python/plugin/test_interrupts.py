@@ -1,0 +1,59 @@
+"""Ctrl-C stops a filter that Python has called, and leaves all as it was."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+# The call would take minutes. The signal comes from a thread, once the filter is at work.
+PROGRAM = """
+import os, signal, sys, threading, time
+import meshlab_spectral, pymeshlab
+meshlab_spectral.load()
+mesh_set = pymeshlab.MeshSet()
+mesh_set.load_new_mesh(sys.argv[1])
+before = mesh_set.current_mesh().vertex_matrix()
+faces = mesh_set.current_mesh().face_matrix()
+call = eval(sys.argv[2])
+
+def interrupt():
+    time.sleep(0.5)
+    os.kill(os.getpid(), signal.SIGINT)
+
+threading.Thread(target=interrupt, daemon=True).start()
+began = time.monotonic()
+try:
+    call()
+except KeyboardInterrupt:
+    print("stopped after", time.monotonic() - began)
+assert (mesh_set.current_mesh().vertex_matrix() == before).all()
+mesh_set.load_new_mesh(sys.argv[1])
+"""
+LONG = "steps=1000, basis_update='full'"
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        f"lambda: meshlab_spectral.filter_mesh(before, faces, {LONG})",
+        f"lambda: mesh_set.apply_coord_spectral_filter_fractional({LONG})",
+        "lambda: [meshlab_spectral.denoise_mesh(before, faces, strength=2) for _ in range(1000)]",
+    ],
+)
+@pytest.mark.skipif(os.name == "nt", reason="Windows has no signals to send")
+def test_an_interrupt_stops_a_filter(call: str, samples: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM, str(samples / "bunny.obj"), call],
+        capture_output=True,
+        text=True,
+        timeout=100,
+        check=False,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )
+    assert done.returncode == 0, done.stderr
+    assert float(done.stdout.rpartition(" ")[2]) < 30  # alone on a machine 0.55
