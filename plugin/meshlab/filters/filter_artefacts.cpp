@@ -15,17 +15,8 @@ namespace {
 
 const char* const kArtefactsHelp =
     "Measures the <b>artefacts</b> that a filter has left in a shape: spikes, creases and ripples "
-    "that are much finer than the details it should have left."
-    "<br><br>Apply it to the filtered mesh, with the feature size of the filter, as the same "
-    "length. The part of the shape above twice the cutoff frequency, measured on the filtered "
-    "surface itself, is split off; its length at every vertex becomes the vertex quality and is "
-    "shown in colours, from red (none) to blue (largest). The log reports its root mean square "
-    "over the surface and its maximum."
-    "<br><br>No vertex moves. Strong smoothing should leave next to nothing; on a mesh that was "
-    "not smoothed, its own fine details are measured."
-    "<br><br>For more information see:"
-    "<br><i>A. Kovnatsky, M. M. Bronstein, A. M. Bronstein</i>, <b>Stable Spectral Mesh "
-    "Filtering</b>, ECCV Workshops 2012";
+    "much finer than what it should have left. Apply it to the filtered mesh, with the filter's "
+    "feature size; their length becomes the vertex quality, and no vertex moves.";
 
 RichParameterList artefactsParameters(const MeshModel& mesh) {
     RichParameterList list;

@@ -21,21 +21,9 @@ using spectral::DenoiseResult;
 using spectral::NoiseKind;
 
 const char* const kDenoiseHelp =
-    "Removes the noise of a scan, with <b>nothing to choose</b>: finds out what kind of noise "
-    "there "
-    "is, how high and how large, and removes that. A mesh without noise stays as it is, to the bit."
-    "<br><br>It tells apart the noise of scanners, single spikes, and the steps of voxels in the "
-    "surface of a segmentation, which it smooths within half a voxel; and it leaves the triangles "
-    "of "
-    "CAD programs alone. Creases become sharp, soft forms stay soft. The log says in one line what "
-    "was found."
-    "<br><br>Face normals are filtered in weak fractional steps [1], with the Laplacian taken anew "
-    "from the shape after each; it hardly connects faces across creases. The vertices follow the "
-    "normals [2] and do not drift within the surface. Closed components keep their volume."
-    "<br><br>Ripples over several edges may be shape as well as noise: give their height and size, "
-    "or use <i>Spectral Filter (Fractional)</i>."
-    "<br><br><small>[1] Kovnatsky, Bronstein, Bronstein 2012; [2] Sun, Rosin, Martin, Langbein "
-    "2007</small>";
+    "Finds out what noise a mesh has, of a scanner, spikes or voxels, and removes that: <b>nothing "
+    "to choose</b>. Creases become sharp; a mesh without noise stays as it is, to the bit. The log "
+    "says what was found.";
 
 RichParameterList denoiseParameters(const MeshModel& mesh) {
     const spectral::DenoiseOptions defaults;

@@ -18,27 +18,9 @@ namespace {
 using spectral::GeometrySpectrum;
 
 const char* const kGeometrySpectrumHelp =
-    "Measures how much of a shape is in details of which size, like the display of an equalizer. "
-    "Use it to <b>choose a feature size</b> for the spectral filters; no vertex moves."
-    "<br><br>The shape is decomposed into its manifold harmonics, the standing waves of its own "
-    "surface. Those of one octave of feature sizes (wavelengths) add up to details of a certain "
-    "height: the <b>amplitude</b> of the octave, the root mean square over the surface, in mesh "
-    "units. The log lists it for every octave, down to the smallest details that the mesh can "
-    "represent; for a smooth shape it decreases steadily towards small sizes."
-    "<br><br>Details that look like random displacements of the vertices are <b>noise</b>, or too "
-    "fine for the mesh to distinguish them from noise. The log reports the feature size at which "
-    "they begin, and their height: a low-pass with a somewhat larger feature size removes them."
-    "<br><br>Squared amplitudes are energies. The log also reports the feature sizes at and above "
-    "which 50, 90 and 99 % of the energy are: nearly all is in the largest features, the overall "
-    "shape."
-    "<br><br>An open boundary adds to the details of every size, more so the longer and more "
-    "ragged it is. With <b>boundary</b> <i>fixed</i> it does not: what it determines is removed "
-    "first, and the rest is measured, which is all that a filter with a fixed boundary acts on."
-    "<br><br>For more information see:"
-    "<br><i>B. Vallet, B. L&eacute;vy</i>, <b>Spectral Geometry Processing with Manifold "
-    "Harmonics</b>, Computer Graphics Forum 27(2), 2008"
-    "<br><i>G. H. Golub, G. Meurant</i>, <b>Matrices, Moments and Quadrature</b>, Numerical "
-    "Analysis 1993, Longman, 1994";
+    "Measures how much of a shape is in details of which size, and where noise begins: look here "
+    "to <b>choose a feature size</b>. The log lists the root mean square height of the details of "
+    "each octave of sizes; no vertex moves.";
 
 RichParameterList geometrySpectrumParameters(const MeshModel&) {
     RichParameterList list;
@@ -71,13 +53,15 @@ std::string textOf(const GeometrySpectrum& spectrum) {
     text << std::setprecision(4) << "Geometry Spectrum: octaves of all details";
     if (spectrum.frequencies.size() > 0)
         text << ", and " << spectrum.frequencies.size() << " harmonics";
-    text << "; in brackets percent of the diagonal, " << spectrum.diagonal << "\n"
-         << std::left << "  " << std::setw(24) << "feature size" << std::setw(24) << "amplitude"
-         << "cumulative energy";
+    text << "; in brackets percent of the diagonal, " << spectrum.diagonal << "; energy of this "
+         << "size and all above\n"
+         << std::left << "  " << std::setw(20) << "feature size" << std::setw(11) << "amplitude"
+         << "energy";
+    // Not wider than MeshLab's log, which would break the lines.
     for (Eigen::Index j = 0; j < spectrum.octaveEnergies.size(); ++j)
-        text << "\n  " << std::setw(24)
-             << withPercent(spectrum.octaveFeatureSizes[j], spectrum.diagonal) << std::setw(24)
-             << withPercent(spectrum.octaveAmplitudes[j], spectrum.diagonal) << std::fixed
+        text << "\n  " << std::setw(20)
+             << withPercent(spectrum.octaveFeatureSizes[j], spectrum.diagonal) << std::setw(11)
+             << std::setprecision(3) << spectrum.octaveAmplitudes[j] << std::fixed
              << std::setprecision(5) << 100.0 * spectrum.cumulativeEnergy[j] << " %"
              << std::defaultfloat;
     if (spectrum.noiseHeight > 0.0)

@@ -22,22 +22,9 @@ constexpr int kDefaultMode = 1;  // the first that is not constant on a connecte
 const char* const kAttribute = "harmonic_";
 
 const char* const kHarmonicsHelp =
-    "Computes the <b>manifold harmonics</b> of a surface: its standing waves, from low to high "
-    "frequencies, like those of a drum of this shape. They are the eigenfunctions of its "
-    "Laplace-Beltrami operator, which the spectral filters work with."
-    "<br><br>The harmonic with the number <b>mode</b> becomes the vertex quality and is shown in "
-    "colours: red where it is positive, blue where it is negative, white in between. Its sign, "
-    "which is arbitrary, makes the value of largest modulus positive; of several such values (to "
-    "within one millionth) that of the first vertex. Modes of a multiple eigenvalue, on symmetric "
-    "shapes, are an arbitrary mixture."
-    "<br><br>None is missing: their number is checked against the inertia of a factorization "
-    "(Sylvester's law). The report holds that count, the relative residuals and the eigenvalues; "
-    "the frequency of a harmonic is the square root of its eigenvalue, and its wavelength 2 pi "
-    "over the frequency. <b>Store basis</b> keeps all harmonics in the mesh, as the vertex "
-    "attributes harmonic_0, harmonic_1 and so on."
-    "<br><br>For more information see:"
-    "<br><i>B. Vallet, B. L&eacute;vy</i>, <b>Spectral Geometry Processing with Manifold "
-    "Harmonics</b>, Computer Graphics Forum 27(2), 2008";
+    "Computes the <b>manifold harmonics</b> of a surface, its standing waves from low to high "
+    "frequencies, like those of a drum of this shape. One of them becomes the vertex quality, in "
+    "colours: red where it is positive, blue where it is negative.";
 
 RichParameterList harmonicsParameters(const MeshModel&) {
     RichParameterList list;

@@ -30,25 +30,14 @@ constexpr double kWhite = 255.0;
 
 const char* const kQualityHelp =
     "Filters the <b>vertex quality</b>, any number at every vertex, by the size of its details on "
-    "the surface: removes noise, enhances details of one size, or removes them. The filter is that "
-    "of <i>Spectral Filter (Fractional)</i>, with the same parameters; the shape stays as it is."
-    "<br><br>A low-pass leaves a quarter of the height of waves half as long as the <b>feature "
-    "size</b>, and nine tenths of waves twice as long. The area-weighted mean of every connected "
-    "component is kept. Values are not clamped, so they may leave their old range; colours do not "
-    "follow: to see the result, apply <i>Colorize by vertex Quality</i>. Where the quality is NaN "
-    "there is no data: it stays so, and the rest is filtered as if the surface ended there."
-    "<br><br><small>Kovnatsky, Bronstein, Bronstein 2012; Vallet, L&eacute;vy 2008</small>";
+    "the surface, as <i>Spectral Filter (Fractional)</i> does the shape, which stays as it is. "
+    "Where the quality is NaN there is no data.";
 
 const char* const kColorHelp =
-    "Filters the <b>vertex colours</b> by the size of their details on the surface: removes the "
-    "noise of a scanner's colours, sharpens a painting, or enhances details of one size. The "
-    "filter is that of <i>Spectral Filter (Fractional)</i>, with the same parameters; the shape "
-    "stays as it is."
-    "<br><br>A low-pass leaves a quarter of the contrast of patterns half as long as the "
-    "<b>feature size</b>, and nine tenths of patterns twice as long. Red, green and blue are "
-    "filtered alike, then rounded, and clamped to 0 to 255; alpha is kept. Up to that, so is the "
-    "area-weighted mean colour of every connected component."
-    "<br><br><small>Kovnatsky, Bronstein, Bronstein 2012; Vallet, L&eacute;vy 2008</small>";
+    "Filters the <b>vertex colours</b> by the size of their details on the surface, as <i>Spectral "
+    "Filter (Fractional)</i> does the shape, which stays as it is: removes the noise of a "
+    "scanner's "
+    "colours, sharpens a painting.";
 
 RichParameterList signalsParameters(const MeshModel& mesh) {
     RichParameterList list;

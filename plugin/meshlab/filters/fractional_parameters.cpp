@@ -32,7 +32,7 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "steps", defaults.steps, "Steps (0 = automatic)",
         "The filter is applied in this many weak steps, because a single strong one turns thin "
         "parts into spikes or balloons. 0 takes as many as the tolerance needs; 10 is the "
-        "scheme of the paper [1] with ten steps; 1 is the classical one-shot filter.",
+        "scheme of the paper with ten steps; 1 is the classical one-shot filter.",
         true));
     list.addParam(RichPercentage(
         "tolerance", static_cast<Scalarm>(kDefaultTolerance) * diagonal, 0, diagonal, "Tolerance",

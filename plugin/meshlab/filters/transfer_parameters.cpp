@@ -32,7 +32,10 @@ void addTransferParameters(const MeshModel& mesh, RichParameterList& list) {
     list.addParam(featureSizeParameter(
         mesh,
         "Size at which the filter cuts off: the wavelength of a wave along the surface, a bump and "
-        "the hollow next to it. To remove bumps, try four times their width. Default: six mean "
+        "the hollow next to it. A low-pass leaves a quarter of the height of waves half as long, "
+        "and "
+        "nine tenths of waves twice as long. To remove bumps, try four times their width. Default: "
+        "six mean "
         "edges of this mesh, at most 5 % of its diagonal, which removes the noise of a scan."));
     list.addParam(RichFloat("pass_gain", static_cast<Scalarm>(transfer.passGain), "Pass gain",
                             "Factor for the details that the filter passes: 1 keeps them, 2 "
@@ -45,8 +48,8 @@ void addTransferParameters(const MeshModel& mesh, RichParameterList& list) {
         "transfer_function", kExample, "Transfer function",
         "For the type custom: gains at feature sizes, like an equalizer, as size:gain with sizes "
         "in percent of the diagonal (5%), mean edges (6e) or as lengths; or an expression of w, "
-        "the feature size over the wavelength, such as 1/(1 + w^4) (f is the frequency, l = f^2).",
-        true));
+        "the feature size over the wavelength, such as 1/(1 + w^4) (f is the frequency, l = "
+        "f^2)."));
     list.addParam(
         RichFloat("band_width", static_cast<Scalarm>(transfer.bandWidth), "Band width (octaves)",
                   "Width of the band for band-pass and band-stop, in octaves: with 1, its "
