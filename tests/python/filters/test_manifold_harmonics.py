@@ -94,6 +94,20 @@ def test_on_a_fixed_boundary_harmonics_vanish_and_agree_with_scipy(
     assert np.linalg.norm(overlap[:, :10], axis=0).min() > 1 - 1e-6
 
 
+@pytest.mark.parametrize("laplacian", ["uniform", "cotangent", "intrinsic delaunay"])
+def test_masses_are_those_that_harmonics_are_orthonormal_with(
+    laplacian: Any, decimated: Decimated
+) -> None:
+    V, F = decimated("cow.obj")
+    unreferenced = np.vstack([V, [[0, 0, 9]]]), F
+    cut = V[F.ravel()], np.arange(F.size).reshape(-1, 3)  # seams along all edges
+    for vertices, faces in ((V, F), unreferenced, cut):
+        basis = manifold_harmonics(vertices, faces, 20, laplacian)
+        gram = basis.harmonics.T @ (basis.masses[:, None] * basis.harmonics)
+        np.testing.assert_allclose(gram, np.eye(20), rtol=0, atol=1e-8)
+        assert basis.masses.sum() == pytest.approx(reference.lumped_areas(V, F).sum())
+
+
 def test_the_mode_is_the_quality_with_its_extreme_value_positive(decimated: Decimated) -> None:
     V, F = decimated("cow.obj")
     mesh_set = mesh_set_of(V, F)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from meshlab_spectral.errors import OptionError
-from meshlab_spectral.filters.arrays import lumped_areas, mesh_arrays
+from meshlab_spectral.filters.arrays import equal_areas, lumped_areas, mesh_arrays
 from meshlab_spectral.filters.calling import call_filter
 from meshlab_spectral.filters.options import Boundary, LaplacianKind, checked_basis_size
 from meshlab_spectral.plugin.loading import load
@@ -33,7 +33,8 @@ class Harmonics:
         ``Phi.T @ (masses[:, None] * Phi) = I``; 0 at unreferenced vertices and fixed boundaries.
         The entry of largest magnitude in each column is positive.
     masses
-        Areas of the n vertices, the diagonal of D: a third of their incident triangles, length^2.
+        Areas of the n vertices, the diagonal of D, length^2: a third of their incident triangles;
+        with the uniform Laplacian the mean of these.
     """
 
     eigenvalues: NDArray[np.float64]
@@ -128,4 +129,5 @@ def compute(
     columns = [
         mesh.vertex_custom_scalar_attribute_array(f"harmonic_{mode}") for mode in range(basis_size)
     ]
-    return Harmonics(report["eigenvalues"].copy(), np.column_stack(columns), lumped_areas(V, F))
+    masses = equal_areas(V, F) if laplacian == "uniform" else lumped_areas(V, F)
+    return Harmonics(report["eigenvalues"].copy(), np.column_stack(columns), masses)
