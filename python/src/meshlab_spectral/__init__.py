@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from meshlab_spectral.filters.artefacts import Artefacts, measure_artefacts
     from meshlab_spectral.filters.denoise import DenoiseOptions, denoise_mesh
     from meshlab_spectral.filters.fractional import filter_mesh
-    from meshlab_spectral.filters.harmonics import Harmonics, manifold_harmonics
+    from meshlab_spectral.filters.harmonics import Harmonics, manifold_harmonics, shape_dna
     from meshlab_spectral.filters.option_types import Length
     from meshlab_spectral.filters.options import FilterOptions
     from meshlab_spectral.filters.signals import filter_colors, filter_scalars
@@ -69,6 +69,7 @@ __all__ = [
     "measure_artefacts",
     "set_memory_limit",
     "set_threads",
+    "shape_dna",
     "threads",
 ]
 # Imported when first used: the command must not wait for them before it can handle Ctrl-C.
@@ -100,6 +101,7 @@ _MODULES = {
     "measure_artefacts": "filters.artefacts",
     "set_memory_limit": "plugin.memory",
     "set_threads": "plugin.threads",
+    "shape_dna": "filters.harmonics",
     "threads": "plugin.threads",
 }
 
