@@ -29,6 +29,8 @@ if TYPE_CHECKING:
         PluginError,
         SpectralError,
     )
+    from meshlab_spectral.figures.harmonics import plot_harmonics
+    from meshlab_spectral.figures.spectrum import plot_spectrum
     from meshlab_spectral.filters.artefacts import Artefacts, measure_artefacts
     from meshlab_spectral.filters.denoise import DenoiseOptions, denoise_mesh
     from meshlab_spectral.filters.fractional import filter_mesh
@@ -67,6 +69,8 @@ __all__ = [
     "load",
     "manifold_harmonics",
     "measure_artefacts",
+    "plot_harmonics",
+    "plot_spectrum",
     "set_memory_limit",
     "set_threads",
     "shape_dna",
@@ -99,6 +103,8 @@ _MODULES = {
     "load": "plugin.loading",
     "manifold_harmonics": "filters.harmonics",
     "measure_artefacts": "filters.artefacts",
+    "plot_harmonics": "figures.harmonics",
+    "plot_spectrum": "figures.spectrum",
     "set_memory_limit": "plugin.memory",
     "set_threads": "plugin.threads",
     "shape_dna": "filters.harmonics",
