@@ -304,7 +304,10 @@ def shape_dna(
     laplacian: LaplacianKind = "intrinsic delaunay",
     boundary: Boundary = "free",
 ) -> NDArray[np.float64]:
-    """Compute the Shape-DNA of a mesh, its lowest eigenvalues (Reuter, Wolter, Peinecke 2006).
+    """Compute the Shape-DNA of a mesh, its lowest eigenvalues.
+
+    M. Reuter, F.-E. Wolter, N. Peinecke: Laplace-Beltrami Spectra as "Shape-DNA" of Surfaces and
+    Solids, Computer-Aided Design 38(4), 2006.
 
     Shapes that differ by a motion or by bending without stretching have the same one, up to what
     their triangles resolve. The distance of two shapes is that of their Shape-DNAs.
