@@ -48,18 +48,6 @@ def lumped_areas(V: NDArray[np.float64], F: NDArray[np.integer]) -> NDArray[np.f
     return lumped
 
 
-def equal_areas(V: NDArray[np.float64], F: NDArray[np.integer]) -> NDArray[np.float64]:
-    """Vertex areas of the uniform Laplacian: their mean, 0 at unreferenced vertices.
-
-    Vertices at one point, as along seams, are one vertex there and share its area.
-    """
-    used = np.unique(F)
-    points, point, copies = np.unique(V[used], axis=0, return_inverse=True, return_counts=True)
-    equal = np.zeros(len(V))
-    equal[used] = lumped_areas(V, F).sum() / len(points) / copies[point.ravel()]
-    return equal
-
-
 def mean_edge(V: NDArray[np.float64], F: NDArray[np.integer]) -> float:
     """Mean side length over all triangles; 0 without triangles."""
     if len(F) == 0:

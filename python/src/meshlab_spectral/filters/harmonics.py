@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from meshlab_spectral.errors import FilterError, OptionError
 from meshlab_spectral.filters import signatures
-from meshlab_spectral.filters.arrays import equal_areas, lumped_areas, mesh_arrays
+from meshlab_spectral.filters.arrays import lumped_areas, mesh_arrays
 from meshlab_spectral.filters.calling import call_filter
 from meshlab_spectral.filters.options import (
     Boundary,
@@ -404,5 +404,20 @@ def compute(
     columns = [
         mesh.vertex_custom_scalar_attribute_array(f"harmonic_{mode}") for mode in range(basis_size)
     ]
-    masses = equal_areas(V, F) if laplacian == "uniform" else lumped_areas(V, F)
-    return Harmonics(report["eigenvalues"].copy(), np.column_stack(columns), masses)
+    Phi = np.column_stack(columns)
+    masses = _equal_areas(V, F, Phi) if laplacian == "uniform" else lumped_areas(V, F)
+    return Harmonics(report["eigenvalues"].copy(), Phi, masses)
+
+
+def _equal_areas(V: Array, F: NDArray[Any], Phi: Array) -> Array:
+    """Vertex areas of the uniform Laplacian: their mean, 0 at unreferenced vertices.
+
+    The copies of a vertex along a seam are one vertex there, and share its area. Unlike vertices
+    of two parts that only touch, they have the same harmonics to the bit.
+    """
+    used = np.unique(F)
+    told_apart_by = np.column_stack([V, Phi.sum(axis=1)])[used]
+    one, of, copies = np.unique(told_apart_by, axis=0, return_inverse=True, return_counts=True)
+    areas = np.zeros(len(V))
+    areas[used] = lumped_areas(V, F).sum() / len(one) / copies[of.ravel()]
+    return areas
