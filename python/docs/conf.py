@@ -38,6 +38,6 @@ nitpicky = True
 nitpick_ignore_regex = [
     ("py:.*", r"(numpy|np|pymeshlab|pathlib|collections|typing|npt)\..*"),
     ("py:class", r"array|ArrayLike|NDArray|Any|Path|Sequence|Generator|LaplacianKind|Boundary"),
-    ("py:class", r"np\..*|Outcome"),
+    ("py:class", r"np\..*|Outcome|Figure|Plotter"),
     ("py:obj", r".*"),
 ]

@@ -29,10 +29,12 @@ if TYPE_CHECKING:
         PluginError,
         SpectralError,
     )
+    from meshlab_spectral.figures.harmonics import plot_harmonics
+    from meshlab_spectral.figures.spectrum import plot_spectrum
     from meshlab_spectral.filters.artefacts import Artefacts, measure_artefacts
     from meshlab_spectral.filters.denoise import DenoiseOptions, denoise_mesh
     from meshlab_spectral.filters.fractional import filter_mesh
-    from meshlab_spectral.filters.harmonics import Harmonics, manifold_harmonics
+    from meshlab_spectral.filters.harmonics import Harmonics, manifold_harmonics, shape_dna
     from meshlab_spectral.filters.option_types import Length
     from meshlab_spectral.filters.options import FilterOptions
     from meshlab_spectral.filters.signals import filter_colors, filter_scalars
@@ -67,8 +69,11 @@ __all__ = [
     "load",
     "manifold_harmonics",
     "measure_artefacts",
+    "plot_harmonics",
+    "plot_spectrum",
     "set_memory_limit",
     "set_threads",
+    "shape_dna",
     "threads",
 ]
 # Imported when first used: the command must not wait for them before it can handle Ctrl-C.
@@ -98,8 +103,11 @@ _MODULES = {
     "load": "plugin.loading",
     "manifold_harmonics": "filters.harmonics",
     "measure_artefacts": "filters.artefacts",
+    "plot_harmonics": "figures.harmonics",
+    "plot_spectrum": "figures.spectrum",
     "set_memory_limit": "plugin.memory",
     "set_threads": "plugin.threads",
+    "shape_dna": "filters.harmonics",
     "threads": "plugin.threads",
 }
 

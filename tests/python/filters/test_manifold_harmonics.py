@@ -14,6 +14,7 @@ import scipy.sparse.linalg
 import spectral_reference as reference
 from helpers import assert_same, lower_part, mesh_set_of, refusal, snapshot
 from meshlab_spectral import OptionError, manifold_harmonics
+from meshlab_spectral.files.meshes import load_arrays
 from numpy.typing import NDArray
 
 HARMONICS = "compute_scalar_manifold_harmonic_per_vertex"
@@ -92,6 +93,23 @@ def test_on_a_fixed_boundary_harmonics_vanish_and_agree_with_scipy(
     # Whole spaces of harmonics, for eigenvalues may be nearly equal.
     overlap = spectrum.Phi.T[:20] @ (spectrum.d[:, None] * basis[spectrum.of])
     assert np.linalg.norm(overlap[:, :10], axis=0).min() > 1 - 1e-6
+
+
+@pytest.mark.parametrize("laplacian", ["uniform", "cotangent", "intrinsic delaunay"])
+def test_masses_are_those_that_harmonics_are_orthonormal_with(
+    laplacian: Any, decimated: Decimated, cow: Path
+) -> None:
+    V, F = decimated("cow.obj")
+    unreferenced = np.vstack([V, [[0, 0, 9]]]), F
+    cut = V[F.ravel()], np.arange(F.size).reshape(-1, 3)  # seams along all edges
+    touching = load_arrays(cow)  # at a point, which two vertices share without a seam
+    assert len(np.unique(touching[0], axis=0)) == len(touching[0]) - 1
+    for vertices, faces in ((V, F), unreferenced, cut, touching):
+        basis = manifold_harmonics(vertices, faces, 20, laplacian)
+        gram = basis.harmonics.T @ (basis.masses[:, None] * basis.harmonics)
+        np.testing.assert_allclose(gram, np.eye(20), rtol=0, atol=1e-8)
+        area = reference.lumped_areas(vertices, faces).sum()
+        assert basis.masses.sum() == pytest.approx(area)
 
 
 def test_the_mode_is_the_quality_with_its_extreme_value_positive(decimated: Decimated) -> None:

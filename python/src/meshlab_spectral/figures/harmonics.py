@@ -1,13 +1,16 @@
-"""A sheet of a mesh's manifold harmonics, for `meshlab-spectral basis`."""
+"""Pictures of a mesh's manifold harmonics: for `meshlab-spectral basis`, and for notebooks."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import ceil
+from operator import index
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from meshlab_spectral.errors import FormatError, OptionError
 from meshlab_spectral.figures.pictures import (
@@ -16,16 +19,23 @@ from meshlab_spectral.figures.pictures import (
     Panel,
     View,
     render,
+    scene,
     to_full_colours,
 )
 from meshlab_spectral.figures.sheet import Sheet
+from meshlab_spectral.filters.arrays import mesh_arrays
 from meshlab_spectral.filters.harmonics import Harmonics
+
+if TYPE_CHECKING:
+    from pyvista import Plotter
 
 # Default number of pictures, and how many in a row.
 _SHOWN = 12
 _COLUMNS, _COLUMNS_UPRIGHT = 4, 6
 # Colours compress worse than the other figures: this brings the file back to a megabyte.
 _RESOLUTION = 0.92
+# In notebooks, pixels.
+_PANEL_WIDTH, _LABEL_HEIGHT = 320, 46
 
 
 def spread_modes(first: int, size: int) -> list[int]:
@@ -37,7 +47,9 @@ def spread_modes(first: int, size: int) -> list[int]:
 
 
 def check_modes(modes: Sequence[int], size: int) -> None:
-    """Raise OptionError unless every mode is in a basis of `size` harmonics."""
+    """Raise OptionError unless every mode is in a basis of `size` harmonics, and there is one."""
+    if len(modes) == 0:
+        raise OptionError("no modes to show: name at least one")
     for mode in modes:
         if not 0 <= mode < size:
             raise OptionError(f"mode {mode}: a basis of {size} harmonics has modes 0 to {size - 1}")
@@ -88,26 +100,103 @@ def draw(
     MeshFileError
         When `path` cannot be written.
     """
+    panels = _panels(basis, V, F, modes)
+    frame = Frame.around([V], View.of_widest_side(V))
+    columns = _columns(len(panels), frame)
+    rows = ceil(len(panels) / columns)
+    sheet = Sheet([frame.width / frame.height] * rows, columns, 2, _RESOLUTION * scale, footer=0.56)
+    for cell, panel in enumerate(panels):
+        picture = render(panel, frame, sheet.pixels)
+        sheet.picture(*divmod(cell, columns), picture, panel.label)
+    sheet.colour_bar(
+        SIGNED_COLOURS, ("\N{MINUS SIGN}", "0", "+"), "wavelengths in % of the model's diagonal"
+    )
+    sheet.save(path)
+
+
+def plot_harmonics(
+    mesh_or_vertices: Any,
+    faces: ArrayLike | None,
+    harmonics: Harmonics,
+    indices: Sequence[int] | None = None,
+    *,
+    off_screen: bool = True,
+) -> Plotter:
+    """Plot harmonics on their mesh: red is positive, blue negative, a line marks zero.
+
+    One camera moves all of them. Wavelengths are in percent of the diagonal of the mesh, as feature
+    sizes are.
+
+    Parameters
+    ----------
+    mesh_or_vertices, faces
+        As for `manifold_harmonics`; a mesh has no faces but its own, None.
+    harmonics
+        Harmonics of this mesh, as from `manifold_harmonics`.
+    indices
+        Which to show, from 0; by default a dozen from the first non-constant one to the last.
+    off_screen
+        Whether to do without a window. A notebook shows the plot either way.
+
+    Returns
+    -------
+    pyvista.Plotter
+        ``show()`` shows it, ``screenshot(path)`` saves it, ``close()`` frees it.
+
+    Raises
+    ------
+    ValueError
+        When an array of the mesh has the wrong shape or type, or the harmonics are not of a mesh of
+        n vertices.
+    OptionError
+        When there is no such harmonic.
+    MissingPackageError
+        When PyVista, the extra `render`, is not installed.
+
+    Examples
+    --------
+    >>> plot_harmonics(V, F, manifold_harmonics(V, F), [1, 2, 3, 10]).show()
+    """
+    V, F = mesh_arrays(mesh_or_vertices, faces)
+    if len(harmonics.masses) != len(V):
+        raise ValueError(
+            f"the harmonics are of a mesh of {len(harmonics.masses)} vertices, not of {len(V)}: "
+            "pass those of this mesh"
+        )
+    panels = _panels(harmonics, V, F, indices)
+    frame = Frame.around([V], View.of_widest_side(V))
+    columns = _columns(len(panels), frame)
+    # As much above as the label takes below: the camera turns about the middle of the mesh.
+    frame = replace(frame, height=frame.height + 2 * _LABEL_HEIGHT * frame.width / _PANEL_WIDTH)
+    panel_size = (_PANEL_WIDTH, round(_PANEL_WIDTH * frame.height / frame.width))
+    plotter = scene(panels, frame, columns, panel_size, font_size=8, off_screen=off_screen)
+    plotter.link_views()
+    return plotter
+
+
+def _panels(
+    basis: Harmonics, V: NDArray[np.float64], F: NDArray[Any], modes: Sequence[int] | None
+) -> list[Panel]:
+    """Colour a mesh by its harmonics."""
     size = len(basis.eigenvalues)
     if modes is None:
         constants = int(np.count_nonzero(basis.eigenvalues == 0))
         modes = spread_modes(min(constants, size - 1), size)
     check_modes(modes, size)
-    frame = Frame.around([V], View.of_widest_side(V))
-    aspect = frame.width / frame.height
-    columns = min(len(modes), _COLUMNS if aspect > 0.8 else _COLUMNS_UPRIGHT)
-    rows = ceil(len(modes) / columns)
-    sheet = Sheet([aspect] * rows, columns, 2, _RESOLUTION * scale, footer=0.56)
     diagonal = float(np.linalg.norm(np.ptp(V, axis=0)))
-    for cell, mode in enumerate(modes):
-        values = to_full_colours(basis.harmonics[:, mode], basis.masses)
-        picture = render(Panel("", V, F, values), frame, sheet.pixels)
-        label = f"harmonic {mode}\n{_wavelength(basis.frequencies[mode], diagonal)}"
-        sheet.picture(*divmod(cell, columns), picture, label)
-    sheet.colour_bar(
-        SIGNED_COLOURS, ("\N{MINUS SIGN}", "0", "+"), "wavelengths in % of the model's diagonal"
-    )
-    sheet.save(path)
+    return [
+        Panel(
+            f"harmonic {mode}\n{_wavelength(basis.frequencies[mode], diagonal)}",
+            V,
+            F,
+            to_full_colours(basis.harmonics[:, mode], basis.masses),
+        )
+        for mode in map(index, modes)
+    ]
+
+
+def _columns(count: int, frame: Frame) -> int:
+    return min(count, _COLUMNS if frame.width > 0.8 * frame.height else _COLUMNS_UPRIGHT)
 
 
 def _wavelength(frequency: float, diagonal: float) -> str:

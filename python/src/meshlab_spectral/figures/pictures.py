@@ -1,4 +1,4 @@
-"""Off-screen rendering of meshes. Needs the extra `pictures` (PyVista)."""
+"""Off-screen rendering of meshes. Needs the extra `render` (PyVista)."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import os
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import ceil
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -154,17 +155,57 @@ def draw_side_by_side(
     low, high = _box([panels[0].V])
     height = 1.24 * float((high - low).max())
     frame = Frame(view or View(), (low + high) / 2, height, height)
-    plotter = _plotter(len(panels), panel_size)
+    plotter = scene(panels, frame, len(panels), panel_size, font_size=15)
     try:
-        for column, panel in enumerate(panels):
-            plotter.subplot(0, column)
-            _add(plotter, panel, frame)
-            plotter.add_text(
-                panel.label, position="lower_edge", font_size=15, color="#202020", shadow=False
-            )
         plotter.screenshot(str(path))
     finally:
         plotter.close()
+
+
+def scene(
+    panels: Sequence[Panel],
+    frame: Frame,
+    columns: int,
+    panel_size: tuple[int, int],
+    *,
+    font_size: int,
+    off_screen: bool = True,
+) -> Any:
+    """Set up meshes in rows, to be shown or saved.
+
+    Parameters
+    ----------
+    panels
+        The meshes, row by row.
+    frame
+        The rectangle to show of each.
+    columns
+        Number of panels in a row.
+    panel_size
+        Width and height of each panel in pixels.
+    font_size
+        Size of the labels.
+    off_screen
+        Whether to do without a window.
+
+    Returns
+    -------
+    pyvista.Plotter
+        For the caller to close.
+
+    Raises
+    ------
+    MissingPackageError
+        When PyVista is not installed.
+    """
+    plotter = _plotter((ceil(len(panels) / columns), columns), panel_size, off_screen)
+    for cell, panel in enumerate(panels):
+        plotter.subplot(*divmod(cell, columns))
+        _add(plotter, panel, frame)
+        plotter.add_text(
+            panel.label, position="lower_edge", font_size=font_size, color="#202020", shadow=False
+        )
+    return plotter
 
 
 def render(panel: Panel, frame: Frame, pixels: int) -> Image:
@@ -190,7 +231,7 @@ def render(panel: Panel, frame: Frame, pixels: int) -> Image:
         When PyVista is not installed.
     """
     height = max(1, round(pixels * frame.height / frame.width))
-    plotter = _plotter(1, (2 * pixels, 2 * height))
+    plotter = _plotter((1, 1), (2 * pixels, 2 * height))
     try:
         _add(plotter, panel, frame)
         fine = plotter.screenshot(return_img=True)
@@ -216,18 +257,19 @@ def to_full_colours(values: NDArray[np.float64], areas: NDArray[np.float64]) -> 
     return scaled
 
 
-def _plotter(columns: int, panel_size: tuple[int, int]) -> Any:
+def _plotter(shape: tuple[int, int], panel_size: tuple[int, int], off_screen: bool = True) -> Any:
     if sys.platform == "linux" and not os.environ.get("DISPLAY"):
         # Otherwise VTK first tries an X server, and warns that there is none.
         os.environ.setdefault("VTK_DEFAULT_OPENGL_WINDOW", "vtkEGLRenderWindow")
     check_extras("render")
     import pyvista
 
+    rows, columns = shape
     width, height = panel_size
     plotter = pyvista.Plotter(
-        off_screen=True,
-        shape=(1, columns),
-        window_size=[width * columns, height],
+        off_screen=off_screen,
+        shape=shape,
+        window_size=[width * columns, height * rows],
         border=False,
         lighting="none",
     )

@@ -17,6 +17,7 @@ from meshlab_spectral.filters.transfer import MeshLengths, gain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 FORMATS = (".png", ".pdf", ".svg")
 
@@ -24,6 +25,15 @@ _SIZE = (9.0, 7.5)  # inches
 _HEIGHTS = (3, 2)  # ratio of the two plots
 _DOTS_PER_INCH = 150
 _OCTAVES, _HARMONICS, _FILTER, _NOISE = "#3b6ea5", "#7a7a7a", "#c0504d", "#8a6d1d"
+
+_LEGEND: dict[str, Any] = {
+    "fontsize": FONT_SIZE - 1,
+    "loc": "lower left",
+    "frameon": True,
+    "framealpha": 0.9,
+    "edgecolor": "none",
+    "labelcolor": INK,
+}
 
 # The last octaves, below this fraction of the largest amplitude, come from a few slivers of the
 # mesh and would take up half the plot.
@@ -61,7 +71,18 @@ def _gains_at(sizes: Array, spectrum: GeometrySpectrum, options: FilterOptions) 
 def draw_spectrum(
     spectrum: GeometrySpectrum, options: FilterOptions, title: str, path: Path
 ) -> None:
-    """Plot the spectrum of a mesh with a filter's transfer function over it.
+    """Draw the spectrum of a mesh with a filter's transfer function to a file; see `plot_spectrum`.
+
+    The extension of `path`, one of FORMATS, sets the format.
+    """
+    figure = plot_spectrum(spectrum, options, title)
+    figure.savefig(path, format=path.suffix.lower().removeprefix("."))
+
+
+def plot_spectrum(
+    spectrum: GeometrySpectrum, options: FilterOptions | None = None, title: str = ""
+) -> Figure:
+    """Plot the spectrum of a mesh, if wanted with a filter's transfer function over it.
 
     Large features are on the left, small ones on the right, like low and high notes. The lower plot
     has the height of the vertex noise that would explain the details of each size: where it levels
@@ -70,18 +91,28 @@ def draw_spectrum(
     Parameters
     ----------
     spectrum
-        Spectrum of the mesh.
+        Spectrum of the mesh, as from `geometry_spectrum`.
     options
         Options of the filter.
     title
         Title of the plot, plain text.
-    path
-        The file to write; its extension, one of FORMATS, sets the format.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Not registered with pyplot: a notebook shows it as the value of a cell, after
+        ``%matplotlib inline``; ``savefig(path)`` saves it. Its axes are the amplitudes, the noise,
+        and the gains if any.
 
     Raises
     ------
     MissingPackageError
-        When Matplotlib is not installed.
+        When Matplotlib, the extra `plots`, is not installed.
+
+    Examples
+    --------
+    >>> figure = plot_spectrum(geometry_spectrum(V, F, 100), FilterOptions(), "scan")
+    >>> figure.savefig("spectrum.png")
     """
     check_extras("plots")
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -91,15 +122,22 @@ def draw_spectrum(
     FigureCanvasAgg(figure)
     axes, noise = figure.subplots(2, 1, sharex=True, height_ratios=_HEIGHTS)
     _plot_amplitudes(axes, spectrum)
-    gains = axes.twinx()
-    _plot_gain(gains, spectrum, options, axes.get_xlim())
     _plot_noise(noise, spectrum)
     for each in (axes, noise):
         if spectrum.noise_height > 0:
             smallest = min(axes.get_xlim())
             each.axvspan(smallest, spectrum.noise_feature_size, color=_NOISE, alpha=0.12, zorder=0)
-    _label(axes, gains, noise, spectrum, title)
-    figure.savefig(path, format=path.suffix.lower().removeprefix("."))
+    _label(axes, noise, spectrum, title)
+    curves, names = axes.get_legend_handles_labels()
+    if options is not None:
+        gains = axes.twinx()
+        _plot_gain(gains, spectrum, options, axes.get_xlim())
+        gain_curves, gain_names = gains.get_legend_handles_labels()
+        curves, names = [*curves, *gain_curves], [*names, *gain_names]
+        axes = gains  # in front
+    axes.legend(curves, names, **_LEGEND)
+    noise.legend(**_LEGEND)
+    return figure
 
 
 def _plot_amplitudes(axes: Axes, spectrum: GeometrySpectrum) -> None:
@@ -137,6 +175,8 @@ def _plot_gain(
     gains = _gains_at(sizes, spectrum, options)
     axes.plot(sizes, gains, color=_FILTER, linewidth=1.8, label=filter_name(options))
     axes.set_ylim(0, 1.25 * max(1.0, float(gains.max())))
+    axes.set_ylabel("gain of the filter", fontsize=FONT_SIZE, color=_FILTER)
+    axes.tick_params(labelsize=FONT_SIZE - 1, colors=_FILTER)
     if options.filter_type != "custom" and min(limits) < cutoff < max(limits):
         axes.axvline(cutoff, color=_FILTER, linewidth=0.9, linestyle=(0, (4, 3)))
         axes.annotate(
@@ -192,7 +232,7 @@ def _plot_noise(axes: Axes, spectrum: GeometrySpectrum) -> None:
     )
 
 
-def _label(axes: Axes, gains: Axes, noise: Axes, spectrum: GeometrySpectrum, title: str) -> None:
+def _label(axes: Axes, noise: Axes, spectrum: GeometrySpectrum, title: str) -> None:
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     def to_percent(size: Any) -> Any:
@@ -210,22 +250,9 @@ def _label(axes: Axes, gains: Axes, noise: Axes, spectrum: GeometrySpectrum, tit
     percent.set_xlabel("% of the bounding box diagonal", fontsize=FONT_SIZE, color=INK)
     axes.set_ylabel("amplitude (rms height), units of the mesh", fontsize=FONT_SIZE, color=INK)
     noise.set_ylabel("noise height, units of the mesh", fontsize=FONT_SIZE, color=INK)
-    gains.set_ylabel("gain of the filter", fontsize=FONT_SIZE, color=_FILTER)
     axes.set_title(title, fontsize=FONT_SIZE + 1, color=INK, parse_math=False)
-    for each in (axes, noise, percent, gains):
+    for each in (axes, noise, percent):
         each.tick_params(labelsize=FONT_SIZE - 1, colors=INK)
-    gains.tick_params(colors=_FILTER)
     for each in (axes, noise):
         each.grid(which="major", color="#e4e4e4", linewidth=0.6)
         each.set_axisbelow(True)
-    (curves, names), (more, more_names) = (a.get_legend_handles_labels() for a in (axes, gains))
-    style: dict[str, Any] = {
-        "fontsize": FONT_SIZE - 1,
-        "loc": "lower left",
-        "frameon": True,
-        "framealpha": 0.9,
-        "edgecolor": "none",
-        "labelcolor": INK,
-    }
-    gains.legend([*curves, *more], [*names, *more_names], **style)
-    noise.legend(**style)

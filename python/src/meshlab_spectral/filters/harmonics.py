@@ -1,19 +1,29 @@
-"""Manifold harmonics of a mesh, as NumPy arrays."""
+"""Manifold harmonics of a mesh, as NumPy arrays, and what they tell of functions and shapes."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshlab_spectral.errors import OptionError
+from meshlab_spectral.errors import FilterError, OptionError
+from meshlab_spectral.filters import signatures
 from meshlab_spectral.filters.arrays import lumped_areas, mesh_arrays
 from meshlab_spectral.filters.calling import call_filter, mesh_set_of
-from meshlab_spectral.filters.options import Boundary, LaplacianKind, checked_basis_size
+from meshlab_spectral.filters.options import (
+    Boundary,
+    LaplacianKind,
+    checked_basis_size,
+    checked_count,
+)
+
+Array = NDArray[np.float64]
 
 DEFAULT_BASIS_SIZE = 100
+DEFAULT_TIMES = 16
 
 _FILTER_NAME = "compute_scalar_manifold_harmonic_per_vertex"
 
@@ -21,6 +31,9 @@ _FILTER_NAME = "compute_scalar_manifold_harmonic_per_vertex"
 @dataclass(frozen=True, eq=False)
 class Harmonics:
     """The k lowest eigenpairs of a mesh's Laplacian, ``W phi = lambda D phi``.
+
+    With Phi the harmonics and D the masses, a function f at the vertices has coefficients
+    ``c = Phi^T D f``, and ``Phi c`` is its part in the basis: the nearest function to it, by area.
 
     Attributes
     ----------
@@ -32,18 +45,206 @@ class Harmonics:
         ``Phi.T @ (masses[:, None] * Phi) = I``; 0 at unreferenced vertices and fixed boundaries.
         The entry of largest magnitude in each column is positive.
     masses
-        Areas of the n vertices, the diagonal of D: a third of their incident triangles, length^2.
+        Areas of the n vertices, the diagonal of D, length^2: a third of their incident triangles;
+        with the uniform Laplacian the mean of these.
     """
 
-    eigenvalues: NDArray[np.float64]
-    harmonics: NDArray[np.float64]
-    masses: NDArray[np.float64]
+    eigenvalues: Array
+    harmonics: Array
+    masses: Array
 
     @property
-    def frequencies(self) -> NDArray[np.float64]:
+    def frequencies(self) -> Array:
         """Square roots of the eigenvalues, radians per length unit; wavelengths are 2 pi / them."""
-        roots: NDArray[np.float64] = np.sqrt(self.eigenvalues)
+        roots: Array = np.sqrt(self.eigenvalues)
         return roots
+
+    def project(self, f: ArrayLike) -> Array:
+        """Coefficients of functions in the basis, ``c = Phi^T D f``.
+
+        Parameters
+        ----------
+        f
+            n values at the vertices, or n x c for c functions such as coordinates; finite.
+
+        Returns
+        -------
+        array
+            k coefficients, or k x c; the unit of f times length.
+
+        Raises
+        ------
+        ValueError
+            When f does not have a finite value for each vertex.
+
+        Examples
+        --------
+        >>> energy = (basis.project(vertices) ** 2).sum(axis=1)
+        """
+        values = _rows("f", f, len(self.masses), "vertex")
+        coefficients: Array = self.harmonics.T @ (self.masses * values.T).T
+        return coefficients
+
+    def reconstruct(self, c: ArrayLike) -> Array:
+        """Functions from their coefficients, ``f = Phi c``.
+
+        ``reconstruct(project(f))`` is the part of f in the basis.
+
+        Parameters
+        ----------
+        c
+            k coefficients, or k x c for c functions; finite.
+
+        Returns
+        -------
+        array
+            n values at the vertices, or n x c.
+
+        Raises
+        ------
+        ValueError
+            When c does not have a finite value for each harmonic.
+
+        Examples
+        --------
+        >>> coarse = basis.reconstruct(basis.project(vertices))
+        """
+        f: Array = self.harmonics @ _rows("c", c, len(self.eigenvalues), "harmonic")
+        return f
+
+    def filter(self, f: ArrayLike, gain: Callable[[Array], ArrayLike]) -> Array:
+        """Filter functions within the basis, ``Phi diag(F(omega)) Phi^T D f``.
+
+        Constants keep gain 1, as in every filter of this package: f keeps its mean over each
+        component without a fixed boundary. What f has beyond the basis is dropped; `filter_scalars`
+        filters all of it.
+
+        Parameters
+        ----------
+        f
+            n values at the vertices, or n x c for c functions; finite.
+        gain
+            The transfer function F. Called once, with the positive frequencies of the basis,
+            ascending, in radians per length unit: 2 pi / feature size. Returns a finite gain for
+            each, or one for all; negative ones invert.
+
+        Returns
+        -------
+        array
+            n filtered values, or n x c; 0 at unreferenced vertices and fixed boundaries.
+
+        Raises
+        ------
+        ValueError
+            When f does not have a finite value for each vertex, or `gain` does not return finite
+            gains; names the frequency.
+
+        Examples
+        --------
+        >>> cutoff = 2 * np.pi / 0.05
+        >>> smooth = basis.filter(curvature, lambda omega: np.exp(-((omega / cutoff) ** 2)))
+        """
+        waves = self.eigenvalues > 0
+        omega = self.frequencies[waves]
+        F = np.asarray(gain(omega.copy()), dtype=np.float64)
+        if F.shape not in ((), omega.shape):
+            raise ValueError(
+                f"gain returns shape {F.shape} for {len(omega)} frequencies: return a gain for each"
+            )
+        gains = np.ones(len(waves))
+        gains[waves] = F
+        if not np.isfinite(gains).all():
+            wrong = np.flatnonzero(~np.isfinite(gains))[0]
+            raise ValueError(
+                f"gain({self.frequencies[wrong]:g}) = {gains[wrong]}: return finite gains at all "
+                "positive frequencies"
+            )
+        return self.reconstruct((gains * self.project(f).T).T)
+
+    def heat_kernel_signature(self, times: ArrayLike | None = None) -> Array:
+        """Heat kernel signature of every vertex (Sun, Ovsjanikov, Guibas 2009).
+
+        ``h_t(x) = sum_i exp(-lambda_i t) phi_i(x)^2``: the share of heat put at x that is still
+        there at time t, per area. Small times see curvature and thin parts, large ones the whole
+        shape; bending without stretching changes none of it.
+
+        Parameters
+        ----------
+        times
+            T times, >= 0, length^2; heat spreads over a distance of about sqrt(4 t). By default 16
+            in geometric progression from ``4 ln 10 / lambda`` of the last eigenvalue to that of the
+            first positive one, as in the paper: they scale with the mesh. Smaller times need a
+            larger basis.
+
+        Returns
+        -------
+        array
+            n x T values, >= 0, 1 / length^2.
+
+        Raises
+        ------
+        ValueError
+            When `times` are not finite numbers from 0 on, or all harmonics are constant and there
+            are no default times.
+
+        Examples
+        --------
+        >>> signature = manifold_harmonics(V, F, 300).heat_kernel_signature()
+        >>> distance = np.linalg.norm(np.log(signature) - np.log(signature[0]), axis=1)
+        """
+        if times is None:
+            if not (self.eigenvalues > 0).any():
+                raise ValueError(
+                    f"all {len(self.eigenvalues)} harmonics are constant: compute more, or pass "
+                    "times"
+                )
+            t = signatures.heat_times(self.eigenvalues, DEFAULT_TIMES)
+        else:
+            t = np.asarray(times, dtype=np.float64)
+            if t.ndim != 1 or len(t) == 0 or not (np.isfinite(t) & (t >= 0)).all():
+                raise ValueError(f"times = {times}: pass a list of finite numbers from 0 on")
+        return signatures.heat_kernel(self.eigenvalues, self.harmonics, t)
+
+    def wave_kernel_signature(self, count: int = 100) -> Array:
+        """Wave kernel signature of every vertex (Aubry, Schlickewei, Cremers 2011).
+
+        ``WKS(x, e) = C_e sum_i phi_i(x)^2 exp(-(e - log lambda_i)^2 / (2 sigma^2))``, where C_e
+        makes the weights sum to 1: how likely a particle of energy about exp(e) is at x, per area.
+        Unlike the heat kernel's it separates sizes: each energy is a band of wavelengths.
+
+        Parameters
+        ----------
+        count
+            Number T of energies e. They are evenly spaced by delta from ``log lambda + 2 sigma`` of
+            the first positive eigenvalue to ``log lambda - 2 sigma`` of the last one, with
+            ``sigma = 7 delta``, as in the paper.
+
+        Returns
+        -------
+        array
+            n x T values, >= 0, 1 / length^2, from low energies to high ones; every column
+            integrates to 1 over the surface, ``masses @ signature = 1``.
+
+        Raises
+        ------
+        OptionError
+            When `count` is not a positive integer.
+        ValueError
+            When the basis has less than two different positive eigenvalues.
+
+        Examples
+        --------
+        >>> signature = manifold_harmonics(V, F, 300).wave_kernel_signature()
+        """
+        count = checked_count("count", count)
+        positive = np.unique(self.eigenvalues[self.eigenvalues > 0])
+        if len(positive) < 2:
+            raise ValueError(
+                "energies lie between two different positive eigenvalues, of which the basis has "
+                f"{len(positive)}: compute more harmonics"
+            )
+        e, sigma = signatures.wave_energies(self.eigenvalues, count)
+        return signatures.wave_kernel(self.eigenvalues, self.harmonics, e, sigma)
 
 
 def manifold_harmonics(
@@ -90,9 +291,82 @@ def manifold_harmonics(
     Examples
     --------
     >>> basis = manifold_harmonics(V, F, 50)
-    >>> spectrum = basis.harmonics.T @ (basis.masses[:, None] * V)
+    >>> smooth = basis.reconstruct(basis.project(V))
     """
     return compute(*mesh_arrays(mesh_or_vertices, faces), basis_size, laplacian, boundary)
+
+
+def shape_dna(
+    mesh_or_vertices: Any,
+    faces: ArrayLike | None = None,
+    count: int = 50,
+    normalize: bool = True,
+    laplacian: LaplacianKind = "intrinsic delaunay",
+    boundary: Boundary = "free",
+) -> NDArray[np.float64]:
+    """Compute the Shape-DNA of a mesh, its lowest eigenvalues.
+
+    M. Reuter, F.-E. Wolter, N. Peinecke: Laplace-Beltrami Spectra as "Shape-DNA" of Surfaces and
+    Solids, Computer-Aided Design 38(4), 2006.
+
+    Shapes that differ by a motion or by bending without stretching have the same one, up to what
+    their triangles resolve. The distance of two shapes is that of their Shape-DNAs.
+
+    Parameters
+    ----------
+    mesh_or_vertices, faces
+        As for `manifold_harmonics`.
+    count
+        Number of eigenvalues, the zeros of constants included; at least 2, and less than the number
+        of vertices not fixed.
+    normalize
+        Whether to multiply by the area of the surface, so that size does not count.
+    laplacian, boundary
+        As for `manifold_harmonics`.
+
+    Returns
+    -------
+    array
+        `count` eigenvalues lambda, ascending: ``lambda * area``, without unit, which grow by 4 pi
+        on average (Weyl's law); or lambda itself, 1 / length^2.
+
+    Raises
+    ------
+    ValueError
+        When an array has the wrong shape or type, or an index is out of range.
+    OptionError
+        When `laplacian` or `boundary` is unknown, or `count` is not an integer from 2 on.
+    FilterError
+        When the mesh has no faces, no area, non-finite coordinates, or too few vertices.
+    PluginError
+        When the plugin cannot be loaded.
+
+    Examples
+    --------
+    >>> dna = shape_dna(V, F)
+    >>> np.linalg.norm(dna - shape_dna(other_V, other_F))
+    """
+    basis_size = checked_count("count", count, least=2)
+    try:
+        basis = manifold_harmonics(mesh_or_vertices, faces, basis_size, laplacian, boundary)
+    except FilterError as error:  # in the words of this function
+        raise FilterError(str(error).replace("basis_size", "count")) from error
+    # lambda is 1 / length^2: area^(2 / dimension) is the paper's factor, the dimension 2.
+    return basis.eigenvalues * basis.masses.sum() if normalize else basis.eigenvalues
+
+
+def _rows(name: str, values: ArrayLike, count: int, what: str) -> Array:
+    """Validate a number, or a row of numbers, for each vertex or harmonic."""
+    rows = np.asarray(values, dtype=np.float64)
+    if rows.ndim not in (1, 2) or len(rows) != count:
+        raise ValueError(
+            f"{name} has shape {rows.shape}: pass {count} values, one for each {what}, or a matrix "
+            f"with {count} rows"
+        )
+    if not np.isfinite(rows).all():
+        wrong = np.argwhere(~np.isfinite(rows))[0, 0]
+        raise ValueError(f"{name} is not finite at {what} {wrong}: pass finite values")
+    return rows
 
 
 def compute(
@@ -124,4 +398,20 @@ def compute(
     columns = [
         mesh.vertex_custom_scalar_attribute_array(f"harmonic_{mode}") for mode in range(basis_size)
     ]
-    return Harmonics(report["eigenvalues"].copy(), np.column_stack(columns), lumped_areas(V, F))
+    Phi = np.column_stack(columns)
+    masses = _equal_areas(V, F, Phi) if laplacian == "uniform" else lumped_areas(V, F)
+    return Harmonics(report["eigenvalues"].copy(), Phi, masses)
+
+
+def _equal_areas(V: Array, F: NDArray[Any], Phi: Array) -> Array:
+    """Vertex areas of the uniform Laplacian: their mean, 0 at unreferenced vertices.
+
+    The copies of a vertex along a seam are one vertex there, and share its area. Unlike vertices
+    of two parts that only touch, they have the same harmonics to the bit.
+    """
+    used = np.unique(F)
+    told_apart_by = np.column_stack([V, Phi.sum(axis=1)])[used]
+    one, of, copies = np.unique(told_apart_by, axis=0, return_inverse=True, return_counts=True)
+    areas = np.zeros(len(V))
+    areas[used] = lumped_areas(V, F).sum() / len(one) / copies[of.ravel()]
+    return areas

@@ -58,12 +58,17 @@ class FilterKeywords(TransferKeywords, total=False):
     result: Result
 
 
-def checked_basis_size(value: Any, least: int = 1) -> int:
-    """Return a basis size as an integer; raise OptionError unless it is one from `least` on."""
+def checked_count(name: str, value: Any, least: int = 1) -> int:
+    """Return a count as an integer; raise OptionError unless it is one from `least` on."""
     limits = Limits(least, LARGEST_INTEGER)
     if not isinstance(value, Integral) or isinstance(value, bool) or not limits.contain(value):
-        raise OptionError(f"basis_size = {value}: must be an integer {limits}")
+        raise OptionError(f"{name} = {value}: must be an integer {limits}")
     return int(value)
+
+
+def checked_basis_size(value: Any, least: int = 1) -> int:
+    """Return a basis size as an integer; raise OptionError unless it is one from `least` on."""
+    return checked_count("basis_size", value, least)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,0 +1,144 @@
+"""Plots for notebooks: what they show of a spectrum and of harmonics, and what they refuse."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import matplotlib.image
+import numpy as np
+import pytest
+from meshlab_spectral import (
+    FilterOptions,
+    GeometrySpectrum,
+    Harmonics,
+    MissingPackageError,
+    OptionError,
+    geometry_spectrum,
+    manifold_harmonics,
+    plot_harmonics,
+    plot_spectrum,
+)
+from meshlab_spectral.figures.spectrum import draw_spectrum
+from numpy.typing import NDArray
+
+Mesh = tuple[NDArray[Any], NDArray[Any]]
+
+
+@pytest.fixture(scope="module")
+def mesh(decimated: Callable[..., Mesh]) -> Mesh:
+    return decimated("cow.obj", 1000)
+
+
+@pytest.fixture(scope="module")
+def spectrum(mesh: Mesh) -> GeometrySpectrum:
+    return geometry_spectrum(*mesh, 20)
+
+
+@pytest.fixture(scope="module")
+def basis(mesh: Mesh) -> Harmonics:
+    return manifold_harmonics(*mesh, 12)
+
+
+def test_the_plot_of_a_spectrum_has_its_harmonics_and_bands(spectrum: GeometrySpectrum) -> None:
+    figure = plot_spectrum(spectrum, title="cow")
+    amplitudes, noise = figure.axes
+    assert amplitudes.get_title() == "cow"
+    (harmonics,) = amplitudes.lines
+    waves = spectrum.frequencies > 0
+    np.testing.assert_array_equal(harmonics.get_xdata(), 2 * np.pi / spectrum.frequencies[waves])
+    np.testing.assert_array_equal(harmonics.get_ydata(), spectrum.amplitudes[waves])
+    np.testing.assert_array_equal(noise.lines[0].get_xdata(), spectrum.band_feature_sizes)
+    np.testing.assert_array_equal(noise.lines[0].get_ydata(), spectrum.noise_heights)
+    entries = [text.get_text() for text in amplitudes.get_legend().get_texts()]
+    assert len(entries) == 2
+    assert "low-pass" not in " ".join(entries)
+
+
+def test_with_options_it_has_the_gain_of_the_filter(spectrum: GeometrySpectrum) -> None:
+    figure = plot_spectrum(spectrum, FilterOptions(feature_size="5%"))
+    _, _, gains = figure.axes
+    curve = gains.lines[0]
+    at_cutoff = np.interp(
+        0.05 * spectrum.diagonal, curve.get_xdata()[::-1], curve.get_ydata()[::-1]
+    )
+    assert at_cutoff == pytest.approx(np.sqrt(0.5), abs=0.01)
+    entries = [text.get_text() for text in gains.get_legend().get_texts()]
+    assert entries[-1] == "low-pass 5 %"
+
+
+def test_the_plot_is_the_picture_of_the_command(spectrum: GeometrySpectrum, tmp_path: Path) -> None:
+    plot_spectrum(spectrum, FilterOptions(), "cow").savefig(tmp_path / "plot.png")
+    draw_spectrum(spectrum, FilterOptions(), "cow", tmp_path / "command.png")
+    plot, command = (matplotlib.image.imread(tmp_path / f"{n}.png") for n in ("plot", "command"))
+    np.testing.assert_array_equal(plot, command)
+
+
+def test_harmonics_are_shown_in_rows_red_where_positive(mesh: Mesh, basis: Harmonics) -> None:
+    modes = [0, 1, 5, 7, 11]
+    plotter = plot_harmonics(*mesh, basis, modes)
+    try:
+        assert plotter.shape == (2, 4)
+        for renderer, mode in zip(plotter.renderers, modes, strict=False):
+            surface = next(iter(renderer.actors.values())).mapper.dataset
+            np.testing.assert_allclose(surface.points, mesh[0], rtol=1e-6)
+            phi, shown = basis.harmonics[:, mode], surface["signed"]
+            inside = np.abs(shown) < 1
+            np.testing.assert_array_equal(np.sign(shown), np.sign(phi))
+            if mode > 0:
+                assert np.corrcoef(shown[inside], phi[inside])[0, 1] == pytest.approx(1)
+        picture = np.asarray(plotter.screenshot(return_img=True)).astype(int)
+    finally:
+        plotter.close()
+    height, width = picture.shape[0] // 2, picture.shape[1] // 4
+    redder, bluer = (
+        [(picture[:height, width * i : width * (i + 1)] @ channels > 40).mean() for i in range(2)]
+        for channels in ([1, 0, -1], [-1, 0, 1])
+    )
+    assert redder[0] > 0.1
+    assert bluer[0] == 0, "the constant is positive"
+    assert min(redder[1], bluer[1]) > 0.01
+    assert (picture[height:, width:] == 255).all(), "nothing in the cells left over"
+
+
+def test_one_camera_moves_all_harmonics(mesh: Mesh, basis: Harmonics) -> None:
+    plotter = plot_harmonics(*mesh, basis)
+    try:
+        cameras = {id(renderer.camera) for renderer in plotter.renderers}
+        assert len(plotter.renderers) > 4
+        assert len(cameras) == 1
+    finally:
+        plotter.close()
+
+
+def test_harmonics_that_are_not_there_are_refused(mesh: Mesh, basis: Harmonics) -> None:
+    V, F = mesh
+    with pytest.raises(OptionError, match="mode 12: a basis of 12 harmonics has modes 0 to 11"):
+        plot_harmonics(V, F, basis, [1, 12])
+    with pytest.raises(OptionError, match="no modes"):
+        plot_harmonics(V, F, basis, [])
+    with pytest.raises(ValueError, match=f"of a mesh of {len(V)} vertices, not of {len(V) + 1}"):
+        plot_harmonics(np.vstack([V, V[:1]]), F, basis, [1])
+    with pytest.raises(ValueError, match="pass n x 3 coordinates"):
+        plot_harmonics(V.T, F, basis, [1])
+
+
+def test_without_its_extra_a_plot_names_it(
+    mesh: Mesh, spectrum: GeometrySpectrum, basis: Harmonics, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("meshlab_spectral.extras.find_spec", lambda name: None)
+    with pytest.raises(MissingPackageError, match=r"matplotlib: .*meshlab-spectral\[plots\]"):
+        plot_spectrum(spectrum)
+    with pytest.raises(MissingPackageError, match=r"pyvista: .*meshlab-spectral\[render\]"):
+        plot_harmonics(*mesh, basis, [1])
+
+
+def test_nothing_is_imported_for_plots_until_one_is_made() -> None:
+    code = (
+        "import sys, meshlab_spectral as m; m.plot_spectrum, m.plot_harmonics; "
+        "sys.exit(any(name in sys.modules for name in ('matplotlib', 'pyvista', 'vtk')))"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
