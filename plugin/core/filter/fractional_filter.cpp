@@ -91,11 +91,13 @@ EvaluationOptions evaluationFor(const FilterOptions& options, const Surface& sur
 AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate,
                              const TransferFunction& F, const Vertices& X,
                              const FilterOptions& options, const Progress& progress) {
-    if (F.isOne() || options.basisUpdate == BasisUpdate::None) {
+    // A truncated spectrum may drop the residual, whatever the gain.
+    const bool isIdentity = F.isOne() && options.evaluation.spectrum == Spectrum::Full;
+    if (isIdentity || options.basisUpdate == BasisUpdate::None) {
         // All powers of one operator commute: K steps are the whole filter at once. That of a gain
         // of 1 keeps every bit.
         AutomaticSteps whole;
-        if (F.isOne())
+        if (isIdentity)
             whole.last.X = X;
         else
             whole.last = fixedSteps(laplacians, evaluate, X, 1, progress);
@@ -104,7 +106,8 @@ AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evalua
         return whole;
     }
     if (options.steps == 0)
-        return automaticSteps(laplacians, evaluate, X, {options.tolerance, options.mostSteps}, progress);
+        return automaticSteps(laplacians, evaluate, X, {options.tolerance, options.mostSteps},
+                              progress);
     return {fixedSteps(laplacians, evaluate, X, options.steps, progress)};
 }
 

@@ -22,10 +22,10 @@ namespace {
 
 // Short: MeshLab shows all of it above the parameters.
 const char* const kEqualizerHelp =
-    "An equalizer for shapes: each slider scales the height of <b>details of one size</b>, a bump "
-    "and the hollow next to it, from coarse to fine. Tick <i>Preview</i> and move them. To deepen "
-    "the folds of a robe, set those of their size to 2; to smooth its cloth, set the last one to "
-    "0.";
+    "Each slider scales the height of <b>details of one size</b>, from coarse to fine: 1 keeps, 2 "
+    "doubles, 0 removes them. With <i>Preview</i> the shape follows. To deepen the folds of a "
+    "robe, "
+    "set the slider of their size to 2.";
 
 /// Sizes of the sliders, from coarse to fine, as multiples of the smallest one.
 constexpr int kTimes[] = {32, 16, 8, 4, 2, 1};
