@@ -18,6 +18,11 @@ bool hasChoice(const RichParameterList& parameters, const char* name, int choice
     return parameters.hasParameter(name) && parameters.getEnum(name) == choice;
 }
 
+/// Whether the filter has gains of several sizes, and no other choice of strength.
+bool isEqualizer(const RichParameterList& parameters) {
+    return parameters.hasParameter("smallest_size");
+}
+
 /// Alternatives to changing the basis size.
 std::string otherThanThisBasis(const RichParameterList& parameters) {
     std::string text;
@@ -42,7 +47,9 @@ std::string stablerFilter(const RichParameterList& parameters) {
     if (hasChoice(parameters, "basis_update", 0))
         return "a strong filter with basis_update = full pinches thin parts off: choose "
                "basis_update = conformal";
-    return std::string("choose a smaller feature_size, or ") + kRemesh;
+    return (isEqualizer(parameters) ? "choose gains closer to 1, or "
+                                    : "choose a smaller feature_size, or ") +
+           std::string(kRemesh);
 }
 
 /// Remedy for a filter that leaves nothing.
@@ -60,6 +67,7 @@ std::string weakerFilter(const RichParameterList& parameters) {
 
 /// Remedy for a gain that is too steep.
 std::string gentlerFilter(const RichParameterList& parameters) {
+    if (isEqualizer(parameters)) return "choose gains closer to 1";
     constexpr float kLarge = 100.0f;
     for (const char* const name : {"pass_gain", "stop_gain"})
         if (parameters.hasParameter(name) && parameters.getFloat(name) > kLarge)

@@ -63,9 +63,9 @@ double memoryLimitOfEnvironment() {
 }  // namespace
 
 std::vector<MeshFilter> allMeshFilters() {
-    return {fractionalMeshFilter(),      denoiseMeshFilter(),   qualityMeshFilter(),
-            colorMeshFilter(),           artefactsMeshFilter(), harmonicsMeshFilter(),
-            geometrySpectrumMeshFilter()};
+    return {fractionalMeshFilter(), denoiseMeshFilter(),         equalizerMeshFilter(),
+            qualityMeshFilter(),    colorMeshFilter(),           artefactsMeshFilter(),
+            harmonicsMeshFilter(),  geometrySpectrumMeshFilter()};
 }
 
 FilterSpectralPlugin::FilterSpectralPlugin() : filters_(allMeshFilters()), runs_(filters_.size()) {

@@ -40,6 +40,7 @@ struct MeshFilter {
 // One function for each filter, and one file but for the two of signals.
 MeshFilter fractionalMeshFilter();        ///< filter_fractional.cpp
 MeshFilter denoiseMeshFilter();           ///< filter_denoise.cpp
+MeshFilter equalizerMeshFilter();         ///< filter_equalizer.cpp
 MeshFilter qualityMeshFilter();           ///< filter_signals.cpp
 MeshFilter colorMeshFilter();             ///< filter_signals.cpp
 MeshFilter artefactsMeshFilter();         ///< filter_artefacts.cpp

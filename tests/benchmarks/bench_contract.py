@@ -38,6 +38,7 @@ class Call(NamedTuple):
 NAMES = {
     "filter": "apply_coord_spectral_filter_fractional",
     "denoise": "apply_coord_spectral_denoise",
+    "equalizer": "apply_coord_spectral_equalizer",
     "quality": "apply_scalar_spectral_filter_per_vertex",
     "color": "apply_color_spectral_filter_per_vertex",
     "artefacts": "compute_scalar_spectral_artefacts_per_vertex",
@@ -51,6 +52,9 @@ CALLS = [
     Call("denoise", "default", {}),
     Call("denoise", "strong", {"strength": 5.0}),
     Call("denoise", "free", {"boundary": "free", "keep_creases": False}),
+    Call("equalizer", "default", {}),
+    Call("equalizer", "deep", {"gain_8x": 2.0}),
+    Call("equalizer", "smooth", {"gain_2x": 0.0, "gain_1x": 0.0}),
     Call("quality", "default", {}),
     Call("quality", "strong", {"feature_size": 15.0}),
     Call("quality", "fixed", {"boundary": "fixed"}),
@@ -68,7 +72,7 @@ CALLS = [
     Call("spectrum", "fixed", {"boundary": "fixed"}),
 ]
 # What a filter may change; of the rest, positions and faces are compared to the bit.
-MOVES = {"filter", "denoise"}
+MOVES = {"filter", "denoise", "equalizer"}
 # Filters of a signal that the files need not have: it is the height.
 SIGNALS = {"quality", "color"}
 

@@ -82,6 +82,10 @@ class FilterDialog:
                     editors, label = [], None
         return rows
 
+    def sliders(self) -> list[Widget]:
+        """The sliders of the parameters that have one, in their order."""
+        return self._parameter_frame().find_all("slider")
+
     def _parameter_frame(self) -> Widget:
         def has_editors(widget: Widget) -> bool:
             inner = [w for w in widget.children() if not w.has_name("Preview")]
@@ -107,10 +111,10 @@ class FilterDialog:
     def type_value(self, row: Row, value: str) -> None:
         """Write into a parameter's field, and stay there: the dialog does not yet know of it."""
         editor = row.editors[-1]
-        wait_for(f"{row.label} to have the keys", lambda: self._focus(editor))
+        wait_for(f"{row.label} to have the keys", lambda: self.focus(editor))
         self._desktop.enter(editor, value)
 
-    def _focus(self, editor: Widget) -> bool:
+    def focus(self, editor: Widget) -> bool:
         """Try to direct the keys to a field of entry, which its window may not have at once."""
         # On the help: nothing happens there, whereas two clicks on the title dock the dialog.
         text = self.window.find("label")

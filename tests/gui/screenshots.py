@@ -101,6 +101,27 @@ def test_a_scan_before_and_with_the_preview_of_denoising(
     save_picture(np.concatenate([before, after], axis=1), SCREENSHOTS / "meshlab_denoise.png")
 
 
+def test_a_bust_before_and_with_the_preview_of_the_equalizer(
+    install: Callable[[], None], start: Callable[[Path], MeshLab], home: Path, desktop: Desktop
+) -> None:
+    bust = DATA / "Laurana50k.ply"
+    if not bust.is_file():
+        pytest.skip(f"no {bust.name} in the collection of meshes")
+    install()
+    meshlab = start(Path(shutil.copy(bust, home)))
+    dialog = meshlab.open_filter(SMOOTHING, "Spectral Equalizer")
+    dialog.move(1020, 170)
+    window = meshlab.main_window().box
+    scene = Box(window.x + 285, window.y + 150, 560, 730)  # where the bust is seen
+    before = desktop.settled_picture(scene)
+    for row, gain in zip(dialog.rows(), ("1", "1", "1", "1.5", "2.5", "1"), strict=False):
+        dialog.set_value(row, gain)
+    dialog.preview(True)
+    desktop.settled_picture(scene)
+    after = desktop.picture(scene._replace(width=window.x + window.width - scene.x))
+    save_picture(np.concatenate([before, after], axis=1), SCREENSHOTS / "meshlab_equalizer.png")
+
+
 def test_a_manifold_harmonic(meshlab: MeshLab, desktop: Desktop) -> None:
     dialog = meshlab.open_filter(MEASURES, "Manifold Harmonics")
     mode = next(row for row in dialog.rows() if row.label == "Mode")

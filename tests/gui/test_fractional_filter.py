@@ -8,8 +8,7 @@ from xml.etree import ElementTree
 import numpy as np
 import pymeshlab
 import pytest
-from accessibility import Box
-from desktop import Desktop, Picture
+from desktop import Desktop
 from filter_dialog import FilterDialog
 from fractional import (
     FILTER,
@@ -25,6 +24,7 @@ from fractional import (
 )
 from meshlab import MeshLab
 from meshlab_spectral import FilterOptions
+from scene import scene_of, share_changed
 from waiting import wait_for
 
 # Of every parameter another value than its default, all together a filter that the bunny can take.
@@ -250,15 +250,3 @@ def test_a_refused_parameter_is_explained_and_the_mesh_is_as_it_was(
     assert MENU[-1] in message
     dialog.close()
     np.testing.assert_array_equal(saved_vertices(meshlab), vertices(load(bunny)))
-
-
-def scene_of(meshlab: MeshLab, dialog: FilterDialog) -> Box:
-    """The part of the screen with the mesh: without the frame rate, which always changes."""
-    window = meshlab.main_window().box
-    top = window.y + window.height // 8
-    return Box(window.x, top, dialog.window.box.x - window.x, window.height * 3 // 4 - top)
-
-
-def share_changed(before: Picture, after: Picture) -> float:
-    """Which part of the pixels is of another colour than before, visibly."""
-    return float((np.abs(after.astype(int) - before).max(axis=2) > 8).mean())

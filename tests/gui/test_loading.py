@@ -14,6 +14,7 @@ SMOOTHING = "Smoothing, Fairing and Deformation"
 MEASURES = "Quality Measure and Computations"
 ENTRIES = [
     (SMOOTHING, "Spectral Denoise"),
+    (SMOOTHING, "Spectral Equalizer"),
     (SMOOTHING, "Spectral Filter (Fractional)"),
     (SMOOTHING, "Spectral Filter: Vertex Quality"),
     (SMOOTHING, "Spectral Filter: Vertex Color"),

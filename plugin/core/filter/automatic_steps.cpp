@@ -23,6 +23,9 @@ constexpr double kSecondOrder = 4.0, kLeastShrinking = 1.25;
 /// 64 times since the first pass.
 constexpr int kFewSteps = 8;
 
+/// What a step that fails is divided into at most, however few steps a pass may have.
+constexpr int kFinest = 64;
+
 /// Norms of the rows of A - B.
 Eigen::VectorXd distances(const Vertices& A, const Vertices& B) {
     Eigen::VectorXd length(A.rows());
@@ -139,7 +142,7 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
         // This pass and all later ones take K + 2 K + ... + last steps.
         const double end = done + (1.0 - done) * K / (2.0 * std::max(K, last) - K);
         const Vertices* firstHalf = K <= 2 ? &halves[K - 1] : nullptr;
-        result.last = midpointSteps(laplacians, evaluate, X, K, options.maxSteps,
+        result.last = midpointSteps(laplacians, evaluate, X, K, std::max(K, kFinest),
                                     progress.part(done, end), firstHalf);
         done = end;
         limit.add(std::move(result.last.X));

@@ -99,17 +99,25 @@ EvaluationOptions evaluationFor(const FilterOptions& options, const Surface& sur
 
 /// The steps that the options ask for.
 AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate,
-                             const Vertices& X, const FilterOptions& options,
-                             const Progress& progress) {
-    if (options.basisUpdate == BasisUpdate::None) {
-        // All powers of one operator commute: K steps are the whole filter at once.
-        AutomaticSteps whole{fixedSteps(laplacians, evaluate, X, 1, progress)};
+                             const TransferFunction& F, const Vertices& X,
+                             const FilterOptions& options, const Progress& progress) {
+    // A truncated spectrum may drop the residual, whatever the gain.
+    const bool isIdentity = F.isOne() && options.evaluation.spectrum == Spectrum::Full;
+    if (isIdentity || options.basisUpdate == BasisUpdate::None) {
+        // All powers of one operator commute: K steps are the whole filter at once. That of a gain
+        // of 1 keeps every bit.
+        AutomaticSteps whole;
+        if (isIdentity)
+            whole.last.X = X;
+        else
+            whole.last = fixedSteps(laplacians, evaluate, X, 1, progress);
         const int K = std::max(1, options.steps);
         whole.last.sizes.assign(static_cast<std::size_t>(K), 1.0 / K);
         return whole;
     }
     if (options.steps == 0)
-        return automaticSteps(laplacians, evaluate, X, {options.tolerance}, progress);
+        return automaticSteps(laplacians, evaluate, X, {options.tolerance, options.mostSteps},
+                              progress);
     return {fixedSteps(laplacians, evaluate, X, options.steps, progress)};
 }
 
@@ -129,7 +137,8 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
                                 options.conformalShare);
     const EvaluationOptions evaluation = evaluationFor(options, surface);
     StepEvaluator evaluate(evaluation, interior, transfer);
-    const AutomaticSteps steps = filterInSteps(laplacians, evaluate, surface.X, options, progress);
+    const AutomaticSteps steps =
+        filterInSteps(laplacians, evaluate, transfer, surface.X, options, progress);
     if (!steps.last.X.allFinite())
         throw SolverFailure("the filtered coordinates are not finite numbers");
     const double areaBefore = surfaceArea(surface.X, surface.F);

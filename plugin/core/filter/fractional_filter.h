@@ -23,6 +23,7 @@ struct FilterOptions {
     double tolerance = 0.0;    ///< For automatic steps: largest distance from the result of
                                ///< infinitely many steps, over all but a thousandth of the filtered
                                ///< surface, length units, > 0.
+    int mostSteps = 64;        ///< For automatic steps: where they end, whatever the error, >= 2.
     LaplacianKind laplacian = LaplacianKind::IntrinsicDelaunay;
     BasisUpdate basisUpdate = BasisUpdate::Conformal;
     double conformalShare = 0.0;  ///< For BasisUpdate::Full, 0 to 1; see laplacian_builder.h.

@@ -14,11 +14,30 @@ constexpr int kFewestNodes = 32, kMostNodes = 256;
 /// Poles that are tried, powers of two times omega_c^2: a wide range, as a trial costs no solve.
 constexpr int kLowestPower = -6, kHighestPower = 12;
 
-/// Part of the range of a gain by which nodes may miss its peak.
+/// Part of the range of a gain by which nodes may miss its peak or notch.
 constexpr double kReached = 0.25;
 
 /// A pole is at most this far outside of the range of eigenvalues.
 constexpr double kFarthest = 64.0;
+
+/// Least and largest values of a gain.
+struct Extremes {
+    double least, largest;
+};
+
+/// Those in a range, as far as eighths of octaves around the cutoff, and the ends, tell.
+Extremes extremesOf(const Gain& gain, double cutoff, const SpectrumRange& range) {
+    constexpr double kPerOctave = 8.0;
+    const double first = std::sqrt(range.lowest), last = std::sqrt(range.highest);
+    auto [least, largest] = std::minmax({gain(first), gain(last)});
+    const double begin = std::ceil(kPerOctave * std::log2(first / cutoff));
+    for (double i = begin; cutoff * std::exp2(i / kPerOctave) < last; ++i) {
+        const double value = gain(cutoff * std::exp2(i / kPerOctave));
+        least = std::min(least, value);
+        largest = std::max(largest, value);
+    }
+    return {least, largest};
+}
 
 /// Chebyshev series of a gain on an interval of theta.
 class ChebyshevSeries {
@@ -51,10 +70,10 @@ class ChebyshevSeries {
                                 tail_.begin());
     }
 
-    /// Whether a value of the gain is about within the range of those at the nodes.
-    bool reaches(double value, double accuracy) const {
+    /// Whether the values at the nodes come close to the extremes of the gain.
+    bool reaches(const Extremes& extremes, double accuracy) const {
         const double margin = kReached * (largest_ - least_) + accuracy;
-        return value >= least_ - margin && value <= largest_ + margin;
+        return extremes.least >= least_ - margin && extremes.largest <= largest_ + margin;
     }
 
   private:
@@ -67,8 +86,7 @@ class ChebyshevSeries {
 double selectPole(const Gain& gain, double cutoff, const SpectrumRange& range, double accuracy) {
     const double atCutoff =
         std::clamp(cutoff * cutoff, range.lowest / kFarthest, range.highest * kFarthest);
-    // Where in the range a band would be; a cutoff beyond it leaves no band to miss.
-    const double atBand = gain(std::sqrt(std::clamp(cutoff * cutoff, range.lowest, range.highest)));
+    const Extremes extremes = extremesOf(gain, cutoff, range);
     double best = atCutoff;
     int nodes = kFewestNodes;
     for (double target = accuracy;;) {
@@ -78,7 +96,7 @@ double selectPole(const Gain& gain, double cutoff, const SpectrumRange& range, d
             const ChebyshevSeries series(gain, pole, pole / (range.highest + pole),
                                          pole / (range.lowest + pole), nodes);
             const int dimension = series.requiredDimension(target);
-            if (dimension >= fewest || !series.reaches(atBand, accuracy)) continue;
+            if (dimension >= fewest || !series.reaches(extremes, accuracy)) continue;
             fewest = dimension;
             best = pole;
         }
@@ -88,7 +106,7 @@ double selectPole(const Gain& gain, double cutoff, const SpectrumRange& range, d
         if (nodes < kMostNodes)
             nodes *= 2;
         else if (fewest > nodes)
-            return atCutoff;  // every series has missed the band
+            return atCutoff;  // every series has missed something
         else
             target *= 10.0;
     }

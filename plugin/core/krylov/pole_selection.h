@@ -20,8 +20,9 @@ struct SpectrumRange {
 /// (half the solves); a small fractional power of a slowly decaying gain one in between.
 ///
 /// A gain that no such polynomial resolves (with a cusp where it vanishes, say) gets the pole that
-/// comes closest; one with a band so narrow that it lies between the nodes, the pole at the cutoff.
-/// No pole is far beyond the range: (W + lambda_p D)^-1 D would be a constant to round-off.
+/// comes closest. Poles whose nodes miss a peak or a notch, wherever it is, are left out; if all
+/// do, it is the pole at the cutoff. No pole is far beyond the range: (W + lambda_p D)^-1 D would
+/// be a constant to round-off.
 ///
 /// @param gain      continuous on the range.
 /// @param cutoff    omega_c > 0, around which poles are tried.

@@ -20,4 +20,8 @@ double defaultFeatureSize(double meanEdge, double diagonal) {
     return size > 0.0 && size < most ? size : most;
 }
 
+double defaultSmallestSize(double meanEdge, double diagonal) {
+    return 0.5 * defaultFeatureSize(meanEdge, diagonal);
+}
+
 }  // namespace spectral

@@ -21,4 +21,11 @@ double cutoffFrequency(double featureSize);
 /// @param meanEdge, diagonal  length units; meanEdge = 0 gives the bound.
 double defaultFeatureSize(double meanEdge, double diagonal);
 
+/// Default size of the smallest details of an equalizer: three mean edges, at most 2.5 % of the
+/// diagonal, half of the default feature size.
+///
+/// A mesh holds no wave shorter than two edges, and one of three already poorly. The bound keeps
+/// the sliders of a coarse mesh below the size of its shape.
+double defaultSmallestSize(double meanEdge, double diagonal);
+
 }  // namespace spectral

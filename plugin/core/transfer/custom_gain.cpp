@@ -7,10 +7,10 @@
 #include <locale>
 #include <memory>
 #include <sstream>
-#include <utility>
 #include <vector>
 
 #include "core/support/errors.h"
+#include "core/transfer/equalizer.h"
 
 namespace spectral {
 
@@ -19,9 +19,6 @@ namespace {
 constexpr const char* kExamples =
     "; give points as size:gain, e.g. 20%:1, 5%:2, 1%:0.1, or an expression of w = feature size / "
     "wavelength, e.g. 1/(1 + w^4)";
-
-/// What a gain of 0 at a point stands for, because it has no logarithm: nothing that one can see.
-constexpr double kNoGain = 1e-3;
 
 /// @param position  from 0.
 [[noreturn]] void reject(const std::string& text, std::size_t position, const std::string& why) {
@@ -65,58 +62,6 @@ class Expression {
     double w_ = 0.0, f_ = 0.0, l_ = 0.0;
 };
 
-/// A point of an equalizer.
-struct Point {
-    double octave = 0.0;  // log2 omega
-    double level = 0.0;   // log2 of the gain
-    double slope = 0.0;   // of the level, per octave
-};
-
-/// Interpolates the level, so that a fractional power of the points is that of the function: smooth
-/// and monotone between points of ascending frequency, constant beyond them.
-class Equalizer {
-  public:
-    explicit Equalizer(std::vector<Point> points) : points_(std::move(points)) {
-        // Steeper slopes than the lesser secant's would overshoot.
-        for (std::size_t i = 1; i + 1 < points_.size(); ++i) {
-            const double left = secant(i - 1), right = secant(i);
-            if (left * right > 0.0)
-                points_[i].slope = std::abs(left) < std::abs(right) ? left : right;
-        }
-    }
-
-    double operator()(double omega) const { return std::exp2(level(std::log2(omega))); }
-
-    /// Frequency in the middle of the points.
-    double middle() const {
-        return std::exp2(0.5 * (points_.front().octave + points_.back().octave));
-    }
-
-  private:
-    double level(double octave) const {
-        const auto next =
-            std::upper_bound(points_.begin(), points_.end(), octave,
-                             [](double value, const Point& p) { return value < p.octave; });
-        if (next == points_.begin()) return next->level;
-        const Point& a = *(next - 1);
-        if (next == points_.end()) return a.level;
-        const Point& b = *next;
-        // From the tangent at one point to that at the other, with three continuous derivatives.
-        const double t = (octave - a.octave) / (b.octave - a.octave);
-        const double blend = t * t * t * t * (35.0 - t * (84.0 - t * (70.0 - t * 20.0)));
-        return (1.0 - blend) * (a.level + (octave - a.octave) * a.slope) +
-               blend * (b.level + (octave - b.octave) * b.slope);
-    }
-
-    /// Slope of the line from point i to the next.
-    double secant(std::size_t i) const {
-        return (points_[i + 1].level - points_[i].level) /
-               (points_[i + 1].octave - points_[i].octave);
-    }
-
-    std::vector<Point> points_;
-};
-
 /// The number that is all of text[begin, end), but for blanks.
 double numberIn(const std::string& text, std::size_t begin, std::size_t end, const char* what) {
     std::istringstream input(text.substr(begin, end - begin));
@@ -142,9 +87,9 @@ double sizeIn(const std::string& text, std::size_t begin, std::size_t end,
     return size;
 }
 
-/// The points of a text, by ascending frequency.
-std::vector<Point> pointsOf(const std::string& text, const MeshLengths& lengths) {
-    std::vector<Point> points;
+/// The points of a text, in its order.
+std::vector<SizedGain> pointsOf(const std::string& text, const MeshLengths& lengths) {
+    std::vector<SizedGain> points;
     for (std::size_t begin = 0, end = 0; end < text.size(); begin = end + 1) {
         end = std::min(text.find(',', begin), text.size());
         const std::size_t colon = text.find(':', begin);
@@ -152,16 +97,18 @@ std::vector<Point> pointsOf(const std::string& text, const MeshLengths& lengths)
         const double size = sizeIn(text, begin, colon, lengths);
         const double gain = numberIn(text, colon + 1, end, "gain");
         if (gain < 0.0) reject(text, colon + 1, "a gain must not be negative");
-        points.push_back(
-            {std::log2(cutoffFrequency(size)), std::log2(gain > 0.0 ? gain : kNoGain), 0.0});
+        points.push_back({size, gain});
     }
-    const auto comesBefore = [](const Point& a, const Point& b) { return a.octave < b.octave; };
-    std::sort(points.begin(), points.end(), comesBefore);
-    for (std::size_t i = 0; i + 1 < points.size(); ++i)
-        if (!(points[i].octave < points[i + 1].octave))
-            throw InvalidOption("transfer_function = " + text +
-                                ": two points have the same size; a size has one gain");
     return points;
+}
+
+Equalizer equalizerOf(const std::string& text, const MeshLengths& lengths) {
+    const std::vector<SizedGain> points = pointsOf(text, lengths);
+    try {
+        return Equalizer(points);
+    } catch (const InvalidOption& error) {
+        throw InvalidOption("transfer_function = " + text + ": " + error.what());
+    }
 }
 
 }  // namespace
@@ -171,7 +118,7 @@ CustomGain parseGain(const std::string& text, double cutoff, const MeshLengths& 
     const bool hasPoints =
         text.find(':') != std::string::npos && text.find('?') == std::string::npos;
     if (hasPoints) {
-        const Equalizer equalizer(pointsOf(text, lengths));
+        const Equalizer equalizer = equalizerOf(text, lengths);
         return {equalizer, equalizer.middle()};
     }
     const auto expression = std::make_shared<Expression>(text, cutoff);

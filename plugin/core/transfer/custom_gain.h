@@ -21,10 +21,8 @@ struct MeshLengths {
 
 /// Reads a transfer function, in one of two notations.
 ///
-/// Points of an equalizer, `20%:1, 5%:2, 1%:0.1`: gains at feature sizes, which are percentages of
-/// the diagonal, mean edges (`6e`) or lengths. Between two points the logarithm of the gain is a
-/// smooth, monotone function of log omega; beyond the first and the last it is theirs. A gain of 0
-/// stands for 0.001.
+/// Points of an Equalizer, `20%:1, 5%:2, 1%:0.1`: gains at feature sizes, which are percentages of
+/// the diagonal, mean edges (`6e`) or lengths.
 ///
 /// An expression of w = omega / omega_c, f = omega and l = lambda = omega^2 in the language of
 /// muParser: `1/(1 + w^4)`, `w < 1 ? 1 : 0.5`.

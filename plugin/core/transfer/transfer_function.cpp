@@ -173,6 +173,11 @@ void TransferFunction::sampleBetween(double from, double to, double tolerance) {
     sampleBetween(middle, to, tolerance);
 }
 
+bool TransferFunction::isOne() const {
+    return std::all_of(samples_.begin(), samples_.end(),
+                       [&](double omega) { return (*this)(omega) == 1.0; });
+}
+
 bool TransferFunction::isConstantBeyondJumps() const {
     if (options_.type != FilterType::Custom || jumps_.empty()) return true;
     const double last = custom(samples_.back());

@@ -57,6 +57,9 @@ class TransferFunction {
     /// Frequencies at which F jumps, ascending; empty for a continuous F.
     const std::vector<double>& discontinuities() const { return jumps_; }
 
+    /// Whether F is 1 at every frequency: such a filter changes nothing.
+    bool isOne() const;
+
     /// Whether F has one value beyond its last jump.
     bool isConstantBeyondJumps() const;
 

@@ -44,6 +44,10 @@ std::vector<bool> chosenVertices(const RichParameterList& parameters, const Mesh
 /// @param selected  one value for each vertex, or none.
 std::string selectionTold(const std::vector<bool>& selected);
 
+/// Default tolerance of automatic steps, relative to the bounding box diagonal: half a pixel of a
+/// mesh shown 1,000 pixels wide.
+constexpr double kDefaultTolerance = 0.0005;
+
 /// `laplacian`; default: intrinsic Delaunay.
 RichEnum laplacianParameter(const QString& help);
 

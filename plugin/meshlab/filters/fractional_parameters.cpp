@@ -10,9 +10,6 @@ using spectral::FilterOptions;
 
 namespace {
 
-/// Relative to the bounding box diagonal: half a pixel of a mesh shown 1,000 pixels wide.
-constexpr double kDefaultTolerance = 0.0005;
-
 // In the order of the core's enumerations.
 QStringList basisUpdates() { return {"full", "conformal", "none"}; }
 QStringList weights() { return {"none", "vertex quality"}; }

@@ -68,13 +68,17 @@ std::string percentOf(double share) {
 
 /// The most important facts in one line: filter and size, displacement, accuracy.
 std::string headline(const spectral::FilterOptions& options, const spectral::FilterResult& result,
-                     double diagonal) {
+                     double diagonal, const std::string& subject) {
     const double percent = 100.0 / diagonal;
     std::ostringstream text;
-    text << std::setprecision(4) << "Spectral Filter: " << nameOf(options.transferFunction.type)
-         << " at feature size " << result.featureSize << " (" << percent * result.featureSize
-         << " % of the diagonal); it moves the surface by " << result.rmsDisplacement
-         << " (root mean square), by " << result.maxDisplacement << " at most; ";
+    text << std::setprecision(4);
+    if (!subject.empty())
+        text << subject;
+    else
+        text << "Spectral Filter: " << nameOf(options.transferFunction.type) << " at feature size "
+             << result.featureSize << " (" << percent * result.featureSize << " % of the diagonal)";
+    text << "; it moves the surface by " << result.rmsDisplacement << " (root mean square), by "
+         << result.maxDisplacement << " at most; ";
     text << std::setprecision(2);
     if (options.steps > 0)
         text << result.steps << (result.steps == 1 ? " step" : " steps") << ", as requested";
@@ -201,10 +205,11 @@ std::vector<std::string> fractionalWarnings(const spectral::FilterOptions& optio
 }
 
 std::string fractionalReportText(const spectral::FilterOptions& options,
-                                 const spectral::FilterResult& result, double diagonal) {
+                                 const spectral::FilterResult& result, double diagonal,
+                                 const std::string& subject) {
     std::ostringstream text;
     text << std::setprecision(4);
-    text << headline(options, result, diagonal) << "\n  steps: " << result.steps
+    text << headline(options, result, diagonal, subject) << "\n  steps: " << result.steps
          << ", cutoff frequency " << result.cutoffFrequency << " rad per unit\n"
          << "  area: " << result.areaBefore << " -> " << result.areaAfter << "\n"
          << "  volume: ";

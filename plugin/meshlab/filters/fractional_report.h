@@ -12,8 +12,10 @@ std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& r
 
 /// The same as lines for MeshLab's log, the most important facts first.
 /// @param diagonal  of the bounding box of the input.
+/// @param subject   what the text is about; without one, the filter's type and feature size.
 std::string fractionalReportText(const spectral::FilterOptions& options,
-                                 const spectral::FilterResult& result, double diagonal);
+                                 const spectral::FilterResult& result, double diagonal,
+                                 const std::string& subject = {});
 
 /// What the user should act on: sentences, each with its remedy; empty if there is nothing.
 /// @param diagonal  of the bounding box of the input.

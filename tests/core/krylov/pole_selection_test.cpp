@@ -49,6 +49,20 @@ TEST(SelectPole, OfABandTooNarrowToSampleIsAtTheBand) {
                          cutoff * cutoff);
 }
 
+TEST(SelectPole, SeesABandFarFromTheCutoff) {
+    // Two octaves below, where the nodes of a pole at the cutoff or above it are sparse.
+    const Operator A(testing::icosphere(5));
+    TransferFunctionOptions options;
+    options.type = FilterType::BandPass;
+    options.stopGain = 1.0;
+    options.passGain = 2.0;
+    const Gain gain = fractionalPower(TransferFunction(options, 3.0), 1.0);
+    const SpectrumRange range = bulkSpectrum(A.laplacian);
+    const int best = dimensionWithPole(A, gain, selectPole(gain, 3.0, range, 1e-6));
+    EXPECT_LE(dimensionWithPole(A, gain, selectPole(gain, 12.0, range, 1e-6)), best + 6);
+    EXPECT_LE(dimensionWithPole(A, gain, selectPole(gain, 48.0, range, 1e-6)), best + 6);
+}
+
 TEST(SelectPole, IsNotFarOutsideOfTheSpectrum) {
     // Else (W + lambda_p D)^-1 D is a constant to round-off, and the space invariant at once.
     const SpectrumRange range{0.01, 1e4};

@@ -43,6 +43,7 @@ for run in range(int(sys.argv[3])):
         "store_basis": run % 2 == 0,
         "steps": 1,
         "stop_gain": 0.9,
+        "gain_2x": 0.5,
     }
     ms.apply_filter(name, **{key: varied[key] for key in varied.keys() & known.keys()})
     used.append(resident_mebibytes())

@@ -116,7 +116,12 @@ def test_selected_vertices_are_a_selection_too(small: tuple[NDArray[Any], NDArra
 
 @pytest.mark.parametrize(
     "name",
-    [FILTER, "apply_scalar_spectral_filter_per_vertex", "apply_coord_spectral_denoise"],
+    [
+        FILTER,
+        "apply_scalar_spectral_filter_per_vertex",
+        "apply_coord_spectral_denoise",
+        "apply_coord_spectral_equalizer",
+    ],
 )
 def test_a_selection_that_another_filter_has_left_is_told(name: str) -> None:
     mesh_set = pymeshlab.MeshSet()

@@ -77,6 +77,13 @@ PARAMETERS: dict[str, dict[str, st.SearchStrategy[Any]]] = {
         "keep_creases": st.booleans(),
         "boundary": _BOUNDARY,
     },
+    "apply_coord_spectral_equalizer": {
+        **{f"gain_{times}x": _GAINS for times in (32, 16, 8, 4, 2, 1)},
+        "smallest_size": _SIZES,
+        "selected": st.booleans(),
+        "boundary": _BOUNDARY,
+        "accurate": st.booleans(),
+    },
     "apply_scalar_spectral_filter_per_vertex": _SIGNALS,
     "apply_color_spectral_filter_per_vertex": _SIGNALS,
     "compute_scalar_spectral_artefacts_per_vertex": {

@@ -39,6 +39,11 @@ TARGETS = {
         "vertex_normal_matrix",
         "face_normal_matrix",
     },
+    "apply_coord_spectral_equalizer": {
+        "vertex_matrix",
+        "vertex_normal_matrix",
+        "face_normal_matrix",
+    },
     "apply_scalar_spectral_filter_per_vertex": {"vertex_scalar_array"},
     "apply_color_spectral_filter_per_vertex": {"vertex_color_matrix"},
     "compute_scalar_spectral_artefacts_per_vertex": {"vertex_scalar_array", "vertex_color_matrix"},

@@ -15,6 +15,7 @@ DENOISE_NAME = "apply_coord_spectral_denoise"
 FILTERS = {
     "Spectral Filter (Fractional)": FILTER_NAME,
     "Spectral Denoise": DENOISE_NAME,
+    "Spectral Equalizer": "apply_coord_spectral_equalizer",
     "Spectral Filter: Vertex Quality": "apply_scalar_spectral_filter_per_vertex",
     "Spectral Filter: Vertex Color": "apply_color_spectral_filter_per_vertex",
     "Spectral Artefacts": "compute_scalar_spectral_artefacts_per_vertex",
