@@ -138,7 +138,8 @@ FilterOutcome applyEqualizer(const RichParameterList& parameters, MeshModel& mes
         });
     const spectral::FilterResult told = isAccurate ? result : withoutTolerance(result);
     const std::string changes = changesTold(parameters, smallest, diagonal);
-    FilterOutcome outcome{reportDictionary(result), "", fractionalWarnings(options, told)};
+    FilterOutcome outcome{reportDictionary(result), "",
+                          fractionalWarnings(options, told, diagonal)};
     if (changes.empty()) {
         outcome.summary = "all gains are 1; nothing changed";
         outcome.text = "Spectral Equalizer: " + outcome.summary;
