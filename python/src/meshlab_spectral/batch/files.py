@@ -14,7 +14,7 @@ from meshlab_spectral.batch import storage
 from meshlab_spectral.batch.jobs import FileResult, Job, Outcome
 from meshlab_spectral.batch.outputs import DEFAULT_PATTERN
 from meshlab_spectral.batch.plan import Batch, plan_batch
-from meshlab_spectral.batch.report import Report
+from meshlab_spectral.batch.report import Report, grouped_warnings
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.extras import check_extras
 from meshlab_spectral.filters.options import FilterOptions
@@ -135,6 +135,7 @@ def run_batch(
         check_extras("batch")
     with Report(batch.report) as report:
         counts = dict.fromkeys(get_args(Outcome), 0) | {"already done": len(batch.done)}
+        warnings = {one.name: one.warnings for one in batch.done if one.warnings}
         begin = time.monotonic()
         report.add("run", {"begun": time.time(), "at": _now(), "files": len(batch.jobs)})
         yield from batch.done
@@ -142,26 +143,19 @@ def run_batch(
             storage.tidy(folder)
         if batch.jobs:
             try:
-                yield from _run(batch.jobs, report, counts, workers, memory_limit, scheduler)
+                with workers_for(scheduler, workers, memory_limit) as run:
+                    for result in run(batch.jobs):
+                        report.add("file", result.as_record())
+                        counts[result.outcome] += 1
+                        if result.warnings:
+                            warnings[result.name] = result.warnings
+                        yield result
             finally:
                 for folder in batch.folders:  # of workers that were ended
                     storage.tidy(folder)
-        report.add("summary", {**counts, "seconds": round(time.monotonic() - begin, 3)})
-
-
-def _run(
-    jobs: list[Job],
-    report: Report,
-    counts: dict[Outcome, int],
-    workers: int | None,
-    memory_limit: int | None,
-    scheduler: str | None,
-) -> Iterator[FileResult]:
-    with workers_for(scheduler, workers, memory_limit) as run:
-        for result in run(jobs):
-            report.add("file", result.as_record())
-            counts[result.outcome] += 1
-            yield result
+        seconds = round(time.monotonic() - begin, 3)
+        told = {"with_warnings": len(warnings), "warnings": grouped_warnings(warnings)}
+        report.add("summary", {**counts, **told, "seconds": seconds})
 
 
 @contextmanager

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from meshlab_spectral.cli.filter_options import OneMesh
-from meshlab_spectral.cli.messages import errors_reported
+from meshlab_spectral.cli.messages import errors_reported, print_result
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.extras import check_extras
 from meshlab_spectral.figures.harmonics import check_modes, check_picture, draw_basis_file
@@ -36,7 +36,12 @@ def basis_command(
     ],
     output: Annotated[
         Path,
-        typer.Option(metavar="FILE", help="NumPy archive to write; replaces an existing file."),
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="FILE",
+            help="NumPy archive to write; replaces an existing file.",
+        ),
     ] = Path("basis.npz"),
     basis_size: Annotated[
         int,
@@ -60,10 +65,9 @@ def basis_command(
     scale: Annotated[
         float, typer.Option(min=0.1, max=10, help="Resolution of the pictures; 1 fills a screen.")
     ] = 1.0,
-    debug: Annotated[bool, typer.Option("--debug", hidden=True)] = False,
 ) -> None:
     """Compute manifold harmonics: see `meshlab-spectral basis --help`."""
-    with errors_reported(debug, "finished files are complete"):
+    with errors_reported("finished files are complete"):
         shown = None if modes is None else _modes(modes, basis_size)
         if pictures is not None:
             check_extras("plots", "render")
@@ -76,7 +80,7 @@ def basis_command(
                 draw_basis_file(output, pictures, shown, scale)
     for path in (output, pictures):
         if path is not None:
-            typer.echo(path)
+            print_result(path)
 
 
 def _modes(text: str, basis_size: int) -> list[int]:

@@ -1,4 +1,4 @@
-"""The command `meshlab-spectral filter`, and what it shares with `denoise`."""
+"""The commands `meshlab-spectral filter` and `meshlab-spectral denoise`, for one file."""
 
 from __future__ import annotations
 
@@ -8,12 +8,20 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.console import Console
 
-from meshlab_spectral.cli.filter_options import with_options
-from meshlab_spectral.cli.messages import MESSAGES, errors_reported, warn_of_points_only
+from meshlab_spectral.cli.command_line import OUTPUT, WHERE, Command
+from meshlab_spectral.cli.filter_options import Recipe, SaveRecipe, chosen_options, with_options
+from meshlab_spectral.cli.messages import (
+    VERBOSITY,
+    errors_reported,
+    print_result,
+    print_warning,
+    warn_of_points_only,
+)
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.cli.report_table import report_table
+from meshlab_spectral.files.recipe import saving_recipe
+from meshlab_spectral.filters.denoise import DenoiseOptions
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.plugin.versions import versions
@@ -30,47 +38,89 @@ Smooth a scan, removing bumps narrower than half a percent of it:
 Sharpen it:
   meshlab-spectral filter scan.ply sharp.ply --filter-type high-pass \\
     --stop-gain 1 --pass-gain 2
+Save the options, and filter a folder with them:
+  meshlab-spectral filter scan.ply smooth.ply --feature-size 2% \\
+    --save-recipe smooth.toml
+  meshlab-spectral batch scans --output smooth --recipe smooth.toml
+"""
+DENOISE_HELP = """Find out what noise a mesh has, of a scanner, spikes or voxels, and remove it.
+
+\b
+  meshlab-spectral denoise scan.ply clean.ply
+A folder of scans:
+  meshlab-spectral batch scans --output clean --denoise
 """
 
 
-Source = Annotated[
-    Path, typer.Argument(metavar="INPUT", help="Mesh to read: .ply, .obj, .stl, .off, ...")
-]
-Target = Annotated[
-    Path,
-    typer.Argument(
-        metavar="OUTPUT",
-        help="Mesh to write, in the format of its extension; replaces an existing file.",
-    ),
-]
-Mesh = Annotated[
-    str | None,
-    typer.Option(
-        "--mesh",
-        metavar="NAME",
-        help="Only the mesh of this name; by default all meshes of the file, each by itself.",
-        show_default=False,
-    ),
-]
-AsJson = Annotated[bool, typer.Option("--json", help="Print the report as one JSON object.")]
-Debug = Annotated[bool, typer.Option("--debug", hidden=True)]
+def _command_with(table: type[Options]) -> Command:
+    """Make the command for the filter of a table."""
+
+    @with_options(table)
+    def command(
+        given: dict[str, Any],
+        source: Annotated[
+            Path, typer.Argument(metavar="INPUT", help="Mesh to read: .ply, .obj, .stl, .off, ...")
+        ],
+        target: Annotated[
+            Path | None,
+            typer.Argument(
+                metavar="OUTPUT",
+                help="Mesh to write, in the format of its extension; replaces an existing file.",
+                show_default=False,
+            ),
+        ] = None,
+        output: Annotated[
+            Path | None,
+            typer.Option(
+                "--output",
+                "-o",
+                metavar="FILE",
+                help="Another way to name OUTPUT.",
+                show_default=False,
+                rich_help_panel=OUTPUT,
+            ),
+        ] = None,
+        mesh: Annotated[
+            str | None,
+            typer.Option(
+                metavar="NAME",
+                help="Only the mesh of this name; by default all meshes of the file, each by "
+                "itself.",
+                show_default=False,
+                rich_help_panel=WHERE,
+            ),
+        ] = None,
+        recipe: Recipe = None,
+        save_recipe: SaveRecipe = None,
+        as_json: Annotated[
+            bool,
+            typer.Option(
+                "--json", help="Print the report as one JSON object.", rich_help_panel=OUTPUT
+            ),
+        ] = False,
+    ) -> None:
+        if target is not None and output is not None:
+            raise typer.BadParameter(f"OUTPUT is {target} already", param_hint="--output")
+        place = target or output
+        if place is None:
+            raise typer.BadParameter("name the mesh to write", param_hint="OUTPUT")
+        _filter_one_file(source, place, given, table, recipe, save_recipe, mesh, as_json)
+
+    return command
 
 
-@with_options(FilterOptions)
-def filter_command(
-    options: FilterOptions,
-    source: Source,
-    target: Target,
-    mesh: Mesh = None,
-    as_json: AsJson = False,
-    debug: Debug = False,
-) -> None:
-    """Filter one mesh: see `meshlab-spectral filter --help`."""
-    filter_one_file(source, target, options, mesh, as_json, debug)
+filter_command, denoise_command = _command_with(FilterOptions), _command_with(DenoiseOptions)
 
 
-def filter_one_file(
-    source: Path, target: Path, options: Options, mesh: str | None, as_json: bool, debug: bool
+def _filter_one_file(
+    source: Path,
+    target: Path,
+    given: dict[str, Any],
+    table: type[Options],
+    recipe: Path | None,
+    save_recipe: Path | None,
+    mesh: str | None,
+    as_json: bool,
 ) -> None:
     """Filter one file, in a child process, and print the report."""
     if target.exists() and source.exists() and target.samefile(source):
@@ -78,25 +128,23 @@ def filter_one_file(
             f"{target} is INPUT itself and would be lost: choose another name", param_hint="OUTPUT"
         )
     begin = time.monotonic()
-    with errors_reported(debug), progress_shown() as on_progress:
-        report = filter_file_in_child(source, target, options, on_progress, mesh)
+    with errors_reported():
+        options = chosen_options(table, given, recipe)
+        with saving_recipe(save_recipe, options), progress_shown() as on_progress:
+            report = filter_file_in_child(source, target, options, on_progress, mesh)
     warn_of_points_only(target.suffix)
     for warning in report["warnings"]:
-        MESSAGES.print(f"Warning: {warning}.", markup=False, highlight=False, soft_wrap=True)
+        print_warning(warning)
     if as_json:
-        typer.echo(json.dumps(_record(source, target, options, report, time.monotonic() - begin)))
+        seconds = time.monotonic() - begin
+        typer.echo(json.dumps(_record(source, target, options, report, seconds)))
         return
-    title = f"{source.name} -> {target.name}"
     for one in report.get("meshes", [report]):
-        _tell(one, f"{title}, {one['mesh']}" if "meshes" in report else title, report["warnings"])
-
-
-def _tell(report: dict[str, Any], title: str, warnings: list[str]) -> None:
-    """Print the report of a mesh, but for a summary that has already been a warning."""
-    if (summary := report.get("summary")) and not any(told.endswith(summary) for told in warnings):
-        told = f"{title.partition(' -> ')[0]}: {summary}"
-        Console().print(told, markup=False, highlight=False, soft_wrap=True)
-    Console().print(report_table(report, title))
+        name = f", {one['mesh']}" if "meshes" in report else ""
+        # A summary may be among the warnings, of several meshes with their names.
+        if (told := one.get("summary")) and not any(w.endswith(told) for w in report["warnings"]):
+            print_result(f"{source.name}{name}: {told}")
+        print_result(report_table(one, f"{source.name} -> {target.name}{name}", VERBOSITY.verbose))
 
 
 def _record(
