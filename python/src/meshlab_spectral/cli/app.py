@@ -17,6 +17,7 @@ from meshlab_spectral.cli.filter import (
     denoise_command,
     filter_command,
 )
+from meshlab_spectral.cli.info import INFO_HELP, info_command
 from meshlab_spectral.cli.install import INSTALL_HELP, install_command
 from meshlab_spectral.cli.messages import EXIT_CODES
 from meshlab_spectral.cli.spectra import SPECTRA_HELP, spectra_command
@@ -53,6 +54,7 @@ def _common(
 
 
 for _name, _help, _command in (
+    ("info", INFO_HELP, info_command),
     ("denoise", DENOISE_HELP, denoise_command),
     ("filter", FILTER_HELP, filter_command),
     ("batch", BATCH_HELP, batch_command),
