@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from meshlab_spectral.cli.filter_options import OneMesh
+from meshlab_spectral.cli.filter_options import OneMesh, Source
 from meshlab_spectral.cli.messages import errors_reported, print_result
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.extras import check_extras
@@ -31,9 +31,7 @@ orthonormal), and the mesh that their rows belong to, vertices (n x 3) and faces
 
 
 def basis_command(
-    source: Annotated[
-        Path, typer.Argument(metavar="MESH", help="Mesh to read: .ply, .obj, .stl, .off, ...")
-    ],
+    source: Source,
     output: Annotated[
         Path,
         typer.Option(
@@ -51,16 +49,14 @@ def basis_command(
         LaplacianKind, typer.Option(help="As for the filter.")
     ] = "intrinsic delaunay",
     boundary: Annotated[
-        Boundary,
-        typer.Option(help="At the boundary of an open surface: free, or fixed to zero."),
+        Boundary, typer.Option(help="At the boundary of an open surface: free, or fixed to zero.")
     ] = "free",
     mesh: OneMesh = None,
     pictures: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Sheet of pictures to draw, a .png file.")
     ] = None,
     modes: Annotated[
-        str | None,
-        typer.Option(metavar="NUMBERS", help="Harmonics to draw, such as 1,2,3,5,8."),
+        str | None, typer.Option(metavar="NUMBERS", help="Harmonics to draw, such as 1,2,3,5,8.")
     ] = None,
     scale: Annotated[
         float, typer.Option(min=0.1, max=10, help="Resolution of the pictures; 1 fills a screen.")

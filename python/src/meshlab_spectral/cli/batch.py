@@ -9,12 +9,17 @@ from typing import Annotated, Any
 
 import typer
 
-from meshlab_spectral.batch.files import check_workers
+from meshlab_spectral.batch.files import Workers
 from meshlab_spectral.batch.outputs import DEFAULT_PATTERN
 from meshlab_spectral.batch.plan import Batch, plan_batch
 from meshlab_spectral.batch.report import grouped_warnings
-from meshlab_spectral.cli.command_line import FILES, OUTPUT, WHAT
-from meshlab_spectral.cli.filter_options import Recipe, SaveRecipe, chosen_options, with_options
+from meshlab_spectral.cli.filter_options import (
+    AsJson,
+    Recipe,
+    SaveRecipe,
+    chosen_options,
+    with_options,
+)
 from meshlab_spectral.cli.many_files import (
     INTERRUPTED,
     Inputs,
@@ -25,7 +30,7 @@ from meshlab_spectral.cli.many_files import (
     Scheduler,
     Tally,
     Timeout,
-    Workers,
+    WorkerCount,
     planning_shown,
     run_shown,
 )
@@ -68,11 +73,7 @@ def batch_command(
     output: Annotated[
         str,
         typer.Option(
-            "--output",
-            "-o",
-            metavar="DIR",
-            help="Output folder, created if needed; or a URL.",
-            rich_help_panel=OUTPUT,
+            "--output", "-o", metavar="DIR", help="Output folder, created if needed; or a URL."
         ),
     ],
     name: Annotated[
@@ -81,7 +82,6 @@ def batch_command(
             metavar="PATTERN",
             help="Names of the outputs, without extension, made from those of the inputs: {stem}, "
             "{ending}, {folder}; such as {stem}_smooth or {folder}/{stem}.",
-            rich_help_panel=OUTPUT,
         ),
     ] = DEFAULT_PATTERN,
     ending: Annotated[
@@ -91,33 +91,19 @@ def batch_command(
             metavar="ENDING",
             help="Format of the outputs, such as ply. By default that of the input, or ply if "
             "MeshLab cannot write that with faces.",
-            show_default=False,
-            rich_help_panel=OUTPUT,
         ),
     ] = None,
     recursive: Recursive = False,
     overwrite: Annotated[
         bool,
-        typer.Option(
-            "--overwrite",
-            help="Replace existing outputs; inputs are never replaced.",
-            rich_help_panel=FILES,
-        ),
+        typer.Option("--overwrite", help="Replace existing outputs; inputs are never replaced."),
     ] = False,
     resume: Resume = False,
     dry_run: Annotated[
-        bool,
-        typer.Option(
-            "--dry-run",
-            help="Only list the outputs that would be written.",
-            rich_help_panel=FILES,
-        ),
+        bool, typer.Option("--dry-run", help="Only list the outputs that would be written.")
     ] = False,
     denoise: Annotated[
-        bool,
-        typer.Option(
-            "--denoise", help="Denoise instead, with the options of denoise.", rich_help_panel=WHAT
-        ),
+        bool, typer.Option("--denoise", help="Denoise instead, with the options of denoise.")
     ] = False,
     recipe: Recipe = None,
     save_recipe: SaveRecipe = None,
@@ -127,21 +113,14 @@ def batch_command(
             metavar="FILE",
             help="Apply a MeshLab filter script (.mlx) instead of the options. Sizes in it are "
             "lengths, not percentages.",
-            show_default=False,
-            rich_help_panel=WHAT,
         ),
     ] = None,
     report: ReportFile = None,
-    workers: Workers = None,
+    workers: WorkerCount = None,
     memory_limit: MemoryLimit = None,
     timeout: Timeout = None,
     scheduler: Scheduler = None,
-    as_json: Annotated[
-        bool,
-        typer.Option(
-            "--json", help="Print the summary as one JSON object.", rich_help_panel=OUTPUT
-        ),
-    ] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Filter many meshes: see `meshlab-spectral batch --help`."""
     if script is not None and save_recipe is not None:
@@ -150,7 +129,7 @@ def batch_command(
             param_hint="--save-recipe",
         )
     with errors_reported(INTERRUPTED):
-        check_workers(scheduler, workers, memory_limit)
+        using = Workers(workers, memory_limit, scheduler)
         options: Options | None = None
         if script is None or given or recipe is not None or denoise:
             table = FilterOptions if recipe is None else load_recipe(recipe)[0]
@@ -174,7 +153,7 @@ def batch_command(
         if dry_run:
             _print_plan(batch)
             return
-        tally = run_shown(batch, workers, memory_limit, scheduler)
+        tally = run_shown(batch, using)
         _print_summary(batch, tally, time.monotonic() - begin, as_json)
     if tally.counts["failed"]:
         raise typer.Exit(EXIT_FAILED)

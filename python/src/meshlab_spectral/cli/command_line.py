@@ -16,16 +16,29 @@ from meshlab_spectral.cli.messages import EXIT_USAGE, VERBOSITY, print_error
 
 Command = Callable[..., None]
 
-WHAT, WHERE, HOW, DENOISE = "What to do", "Where", "How", "With --denoise"
-FILES, WORKERS, OUTPUT = "Files", "Workers", "Output"
-_GROUPS = (WHAT, DENOISE, WHERE, HOW, FILES, WORKERS, OUTPUT)
+# The groups of --help, and the options in them; all others are under "Options", or where
+# `rich_help_panel` says.
+HOW, DENOISE = "How", "With --denoise"
+_GROUPS = {
+    "What to do": """preset recipe script denoise only filter_type feature_size pass_gain stop_gain
+        transfer_function band_width response order power strength noise_height noise_size""",
+    DENOISE: "",
+    "Where": "mesh selected boundary crease_angle keep_creases weight",
+    HOW: """steps tolerance basis_update conformal_share spectrum basis_size reinject_residual
+        laplacian preserve_volume""",
+    "Files": "recursive overwrite resume dry_run",
+    "Workers": "workers memory_limit timeout scheduler",
+    "Output": "output name ending result pictures modes scale save_recipe report as_json",
+}
+GROUP_OF = {name: group for group, names in _GROUPS.items() for name in names.split()}
 
 # Typer comes with its own copy of Click, or in older versions with Click itself.
 _UsageError: type[Exception] = typer.BadParameter.__mro__[1]
 
+_MORE = "Print all numbers, files and warnings, and MeshLab's log."
 _VERBOSITY = (
     ("quiet", typer.Option("--quiet", "-q", help="Print only errors and warnings.")),
-    ("verbose", typer.Option("--verbose", "-v", help="Print every number, and MeshLab's log.")),
+    ("verbose", typer.Option("--verbose", "-v", help=_MORE)),
     ("debug", typer.Option("--debug", hidden=True)),
 )
 
@@ -33,8 +46,7 @@ _VERBOSITY = (
 class OneCommand(TyperCommand):
     """A command whose --help has its options in groups.
 
-    Their names are Typer's `rich_help_panel`; its own panels leave the help of an option a third of
-    a terminal with 80 columns.
+    Typer's own panels leave the help of an option a third of a terminal with 80 columns.
     """
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
@@ -44,7 +56,8 @@ class OneCommand(TyperCommand):
             record = parameter.get_help_record(ctx)
             if record is not None:
                 other = "Arguments" if parameter.param_type_name == "argument" else "Options"
-                group = getattr(parameter, "rich_help_panel", None) or other
+                named = getattr(parameter, "rich_help_panel", None)
+                group = named or GROUP_OF.get(parameter.name, other)
                 groups.setdefault(group, []).append(record)
         for group in ("Arguments", *_GROUPS, "Options"):
             if group in groups:
@@ -155,9 +168,8 @@ def _described(error: Any) -> str:
         return f"{name} is missing"
     if type(error).__name__ == "NoSuchOption":
         similar = " or ".join(error.possibilities or [])
-        return f"there is no option {error.option_name}" + (
-            f": did you mean {similar}?" if similar else ""
-        )
+        hint = f": did you mean {similar}?" if similar else ""
+        return f"there is no option {error.option_name}{hint}"
     # "Value error, 'x' is not one of ...", "Input should be an integer"
     text = re.sub(r"^(Value error, |Input )", "", error.message).rstrip(".")
     text = text.replace(". Did you mean", ": did you mean")

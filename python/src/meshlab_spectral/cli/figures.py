@@ -34,8 +34,7 @@ def figures_command(
     meshes: Annotated[
         list[Path],
         typer.Argument(
-            metavar="MESH",
-            help="Meshes to show, viewed along their shortest axis with y up, or z.",
+            metavar="MESH", help="Meshes to show, viewed along their shortest axis with y up, or z."
         ),
     ],
     output: Annotated[

@@ -9,8 +9,14 @@ from typing import Annotated, Any
 
 import typer
 
-from meshlab_spectral.cli.command_line import OUTPUT, WHERE, Command
-from meshlab_spectral.cli.filter_options import Recipe, SaveRecipe, chosen_options, with_options
+from meshlab_spectral.cli.command_line import Command
+from meshlab_spectral.cli.filter_options import (
+    AsJson,
+    Recipe,
+    SaveRecipe,
+    chosen_options,
+    with_options,
+)
 from meshlab_spectral.cli.messages import (
     VERBOSITY,
     errors_reported,
@@ -66,19 +72,11 @@ def _command_with(table: type[Options]) -> Command:
             typer.Argument(
                 metavar="OUTPUT",
                 help="Mesh to write, in the format of its extension; replaces an existing file.",
-                show_default=False,
             ),
         ] = None,
         output: Annotated[
             Path | None,
-            typer.Option(
-                "--output",
-                "-o",
-                metavar="FILE",
-                help="Another way to name OUTPUT.",
-                show_default=False,
-                rich_help_panel=OUTPUT,
-            ),
+            typer.Option("--output", "-o", metavar="FILE", help="Another way to name OUTPUT."),
         ] = None,
         mesh: Annotated[
             str | None,
@@ -86,18 +84,11 @@ def _command_with(table: type[Options]) -> Command:
                 metavar="NAME",
                 help="Only the mesh of this name; by default all meshes of the file, each by "
                 "itself.",
-                show_default=False,
-                rich_help_panel=WHERE,
             ),
         ] = None,
         recipe: Recipe = None,
         save_recipe: SaveRecipe = None,
-        as_json: Annotated[
-            bool,
-            typer.Option(
-                "--json", help="Print the report as one JSON object.", rich_help_panel=OUTPUT
-            ),
-        ] = False,
+        as_json: AsJson = False,
     ) -> None:
         if target is not None and output is not None:
             raise typer.BadParameter(f"OUTPUT is {target} already", param_hint="--output")

@@ -9,37 +9,22 @@ from typing import Annotated, Any, get_type_hints
 
 import typer
 
-from meshlab_spectral.cli.command_line import (
-    DENOISE,
-    HOW,
-    OUTPUT,
-    WHAT,
-    WHERE,
-    Command,
-    with_parameters,
-)
+from meshlab_spectral.cli.command_line import DENOISE, GROUP_OF, HOW, Command, with_parameters
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.files.recipe import load_recipe
 from meshlab_spectral.filters.option_types import AnyOptions, Length, Options
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.filters.presets import PRESETS, Preset
 
-# All others are about how.
-_GROUPS = {
-    **dict.fromkeys(["filter_type", "feature_size", "pass_gain", "stop_gain"], WHAT),
-    **dict.fromkeys(["transfer_function", "band_width", "response", "order", "power"], WHAT),
-    **dict.fromkeys(["strength", "noise_height", "noise_size"], WHAT),
-    **dict.fromkeys(["selected", "boundary", "crease_angle", "keep_creases", "weight"], WHERE),
-    "result": OUTPUT,
-}
-
+Source = Annotated[
+    Path, typer.Argument(metavar="MESH", help="Mesh to read: .ply, .obj, .stl, .off, ...")
+]
+AsJson = Annotated[bool, typer.Option("--json", help="Print the result as one JSON object.")]
 # Of the commands that measure a file as a whole.
 OneMesh = Annotated[
     str | None,
     typer.Option(
-        metavar="NAME",
-        help="Only the mesh of this name; by default all of the file together.",
-        show_default=False,
+        metavar="NAME", help="Only the mesh of this name; by default all of the file together."
     ),
 ]
 Recipe = Annotated[
@@ -48,8 +33,6 @@ Recipe = Annotated[
         "--recipe",
         metavar="FILE",
         help="Read options from a recipe, a TOML file; those given here override it.",
-        show_default=False,
-        rich_help_panel=WHAT,
     ),
 ]
 SaveRecipe = Annotated[
@@ -58,8 +41,6 @@ SaveRecipe = Annotated[
         "--save-recipe",
         metavar="FILE",
         help="Write all options to a recipe, for the next scan or a batch.",
-        show_default=False,
-        rich_help_panel=OUTPUT,
     ),
 ]
 
@@ -75,8 +56,6 @@ _PRESET = typer.Option(
     is_eager=True,
     callback=_use_preset,
     help="Start from the options for a purpose; those given besides replace its own.",
-    show_default=False,
-    rich_help_panel=WHAT,
 )
 
 
@@ -106,7 +85,7 @@ def with_options(
                 continue
             settings: dict[str, Any] = {
                 "help": one.metadata["help"],
-                "rich_help_panel": _GROUPS.get(one.name, HOW) if table is tables[0] else DENOISE,
+                "rich_help_panel": GROUP_OF.get(one.name, HOW) if table is tables[0] else DENOISE,
             }
             type_, default = types[one.name], one.default
             if type_ is Length:

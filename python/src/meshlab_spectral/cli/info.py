@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import typer
 from rich.console import Console
 
-from meshlab_spectral.cli.filter_options import OneMesh
+from meshlab_spectral.cli.filter_options import AsJson, OneMesh, Source
 from meshlab_spectral.cli.messages import errors_reported, print_warning
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.cli.report_table import table_of
@@ -29,13 +28,9 @@ the feature size the default of filter.
 
 
 def info_command(
-    source: Annotated[
-        Path, typer.Argument(metavar="MESH", help="Mesh to read: .ply, .obj, .stl, .off, ...")
-    ],
+    source: Source,
     mesh: OneMesh = None,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print the description as one JSON object.")
-    ] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Describe a mesh: see `meshlab-spectral info --help`."""
     with errors_reported("nothing was printed"), progress_shown() as on_progress:

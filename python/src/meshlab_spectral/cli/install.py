@@ -40,10 +40,13 @@ def install_command(
     """Install the filters in MeshLab: see `meshlab-spectral install --help`."""
     with errors_reported("some files may have been changed"):
         changes = uninstall(dry_run) if remove else install(dry_run)
+        tell = typer.echo if dry_run else print_result
         for change in changes:
-            print_result(_line(change, dry_run))
+            tell(_line(change, dry_run))
         if not remove:
-            print_result(_advice(find_meshlab()))
+            found = find_meshlab()
+            fits = found is not None and found.host is not None
+            (tell if fits else typer.echo)(_advice(found))
 
 
 def _line(change: Change, dry_run: bool) -> str:

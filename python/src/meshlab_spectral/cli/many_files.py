@@ -12,11 +12,10 @@ from typing import Annotated, Any
 
 import typer
 
-from meshlab_spectral.batch.files import run_batch
+from meshlab_spectral.batch.files import Workers, run_batch
 from meshlab_spectral.batch.jobs import FileResult
 from meshlab_spectral.batch.plan import Batch
 from meshlab_spectral.batch.report import grouped_warnings
-from meshlab_spectral.cli.command_line import FILES, OUTPUT, WORKERS
 from meshlab_spectral.cli.messages import MESSAGES, VERBOSITY, print_warning
 from meshlab_spectral.cli.progress import batch_progress
 
@@ -40,17 +39,11 @@ def _bytes(text: str | int) -> int:
 Inputs = Annotated[
     list[str],
     typer.Argument(
-        metavar="INPUT",
-        help="Mesh files, folders, quoted patterns such as 'scans/*.ply', URLs.",
+        metavar="INPUT", help="Mesh files, folders, quoted patterns such as 'scans/*.ply', URLs."
     ),
 ]
-Workers = Annotated[
-    int | None,
-    typer.Option(
-        min=1,
-        help="Files processed at once. By default one per processor.",
-        rich_help_panel=WORKERS,
-    ),
+WorkerCount = Annotated[
+    int | None, typer.Option(min=1, help="Files processed at once. By default one per processor.")
 ]
 MemoryLimit = Annotated[
     int | None,
@@ -58,16 +51,10 @@ MemoryLimit = Annotated[
         parser=_bytes,
         metavar="SIZE",
         help="Memory limit per worker, such as 4GB. By default they share the machine's.",
-        rich_help_panel=WORKERS,
     ),
 ]
 Timeout = Annotated[
-    float | None,
-    typer.Option(
-        min=1,
-        help="Time limit per file in seconds. By default none.",
-        rich_help_panel=WORKERS,
-    ),
+    float | None, typer.Option(min=1, help="Time limit per file in seconds. By default none.")
 ]
 Scheduler = Annotated[
     str | None,
@@ -75,14 +62,10 @@ Scheduler = Annotated[
         metavar="ADDRESS",
         help="Use the workers of a running Dask cluster, such as tcp://host:8786; they must see "
         "the files under the same paths.",
-        rich_help_panel=WORKERS,
     ),
 ]
 Recursive = Annotated[
-    bool,
-    typer.Option(
-        "--recursive", "-r", help="Search subfolders of INPUT, too.", rich_help_panel=FILES
-    ),
+    bool, typer.Option("--recursive", "-r", help="Search subfolders of INPUT, too.")
 ]
 ReportFile = Annotated[
     Path | None,
@@ -90,8 +73,6 @@ ReportFile = Annotated[
         metavar="FILE",
         help="The report, one JSON object per line; appended to if it exists. By default next to "
         "the outputs.",
-        show_default=False,
-        rich_help_panel=OUTPUT,
     ),
 ]
 Resume = Annotated[
@@ -100,7 +81,6 @@ Resume = Annotated[
         "--resume",
         help="Skip what the report proves done with the same input, options and versions; replace "
         "outputs changed since.",
-        rich_help_panel=FILES,
     ),
 ]
 
@@ -138,17 +118,14 @@ def planning_shown(resume: bool) -> AbstractContextManager[object]:
 
 def run_shown(
     batch: Batch,
-    workers: int | None,
-    memory_limit: int | None,
-    scheduler: str | None,
+    workers: Workers,
     take: Callable[[FileResult], None] = lambda result: None,
 ) -> Tally:
     """Run a batch, pass each result to `take`, and print progress and finally the warnings."""
     tally = Tally()
-    running = run_batch(batch, workers=workers, memory_limit=memory_limit, scheduler=scheduler)
     with (
         batch_progress(len(batch.jobs) + len(batch.done)) as on_result,
-        closing(running) as results,  # ends the workers on an interrupt
+        closing(run_batch(batch, workers)) as results,  # ends the workers on an interrupt
     ):
         for result in results:
             tally.counts[result.outcome] += 1

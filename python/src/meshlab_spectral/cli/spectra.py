@@ -7,10 +7,9 @@ from typing import Annotated
 
 import typer
 
-from meshlab_spectral.batch.files import check_workers
+from meshlab_spectral.batch.files import Workers
 from meshlab_spectral.batch.jobs import FileResult
 from meshlab_spectral.batch.spectra import plan_spectra, write_table
-from meshlab_spectral.cli.command_line import HOW, OUTPUT
 from meshlab_spectral.cli.many_files import (
     INTERRUPTED,
     Inputs,
@@ -20,7 +19,7 @@ from meshlab_spectral.cli.many_files import (
     Resume,
     Scheduler,
     Timeout,
-    Workers,
+    WorkerCount,
     planning_shown,
     run_shown,
 )
@@ -51,42 +50,30 @@ def spectra_command(
     output: Annotated[
         Path,
         typer.Option(
-            "--output",
-            "-o",
-            metavar="TABLE",
-            help="Table to write; replaces an existing file.",
-            rich_help_panel=OUTPUT,
+            "--output", "-o", metavar="TABLE", help="Table to write; replaces an existing file."
         ),
     ] = Path("spectra.csv"),
     recursive: Recursive = False,
     resume: Resume = False,
     basis_size: Annotated[
-        int,
-        typer.Option(
-            min=0,
-            help="Number of lowest harmonics to measure individually, too.",
-            rich_help_panel=HOW,
-        ),
+        int, typer.Option(min=0, help="Number of lowest harmonics to measure individually, too.")
     ] = DEFAULT_BASIS_SIZE,
     laplacian: Annotated[
-        LaplacianKind, typer.Option(help="As for the filter.", rich_help_panel=HOW)
+        LaplacianKind, typer.Option(help="As for the filter.")
     ] = "intrinsic delaunay",
     boundary: Annotated[
         Boundary,
-        typer.Option(
-            help="Whether boundaries of open surfaces are part of the shape (free).",
-            rich_help_panel=HOW,
-        ),
+        typer.Option(help="Whether boundaries of open surfaces are part of the shape (free)."),
     ] = "free",
     report: ReportFile = None,
-    workers: Workers = None,
+    workers: WorkerCount = None,
     memory_limit: MemoryLimit = None,
     timeout: Timeout = None,
     scheduler: Scheduler = None,
 ) -> None:
     """Measure spectra of many meshes: see `meshlab-spectral spectra --help`."""
     with errors_reported(INTERRUPTED):
-        check_workers(scheduler, workers, memory_limit)
+        using = Workers(workers, memory_limit, scheduler)
         with planning_shown(resume):
             batch = plan_spectra(
                 inputs,
@@ -102,7 +89,7 @@ def spectra_command(
         remove_leftovers(resolved(output).parent, output.name)
         results: list[FileResult] = []
         with writing_whole(output) as scratch:
-            tally = run_shown(batch, workers, memory_limit, scheduler, results.append)
+            tally = run_shown(batch, using, results.append)
             write_table(scratch, results)
         print_result(f"{tally.summary('measured')}; table: {output}, report: {batch.report}")
     if tally.counts["failed"]:

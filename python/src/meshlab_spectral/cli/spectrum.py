@@ -14,7 +14,14 @@ import typer
 from rich.table import Table
 from rich.text import Text
 
-from meshlab_spectral.cli.filter_options import OneMesh, Recipe, chosen_options, with_options
+from meshlab_spectral.cli.filter_options import (
+    AsJson,
+    OneMesh,
+    Recipe,
+    Source,
+    chosen_options,
+    with_options,
+)
 from meshlab_spectral.cli.messages import errors_reported, print_result
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.extras import check_extras
@@ -67,9 +74,7 @@ SHOWN_OPTIONS = (
 @with_options(FilterOptions, names=SHOWN_OPTIONS)
 def spectrum_command(
     given: dict[str, Any],
-    source: Annotated[
-        Path, typer.Argument(metavar="MESH", help="Mesh to read: .ply, .obj, .stl, .off, ...")
-    ],
+    source: Source,
     output: Annotated[
         Path | None,
         typer.Option(
@@ -78,7 +83,6 @@ def spectrum_command(
             metavar="PLOT",
             help="Plot to write: .png, .pdf or .svg; replaces an existing file. By default "
             "MESH_spectrum.png in the current folder, or none with --json.",
-            show_default=False,
         ),
     ] = None,
     basis_size: Annotated[
@@ -86,9 +90,7 @@ def spectrum_command(
     ] = DEFAULT_BASIS_SIZE,
     mesh: OneMesh = None,
     recipe: Recipe = None,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print the spectrum as one JSON object.")
-    ] = False,
+    as_json: AsJson = False,
 ) -> None:
     """Show the spectrum of a mesh: see `meshlab-spectral spectrum --help`."""
     if output is None and not as_json:
