@@ -10,7 +10,7 @@ import pytest
 from batches import make_meshes
 from commands import assert_fails, command, messages_in, write_ply
 from meshlab_spectral import DenoiseOptions, FilterOptions
-from meshlab_spectral.cli import progress
+from meshlab_spectral.cli import many_files, progress
 from meshlab_spectral.cli.app import app
 from meshlab_spectral.cli.messages import VERBOSITY
 from typer.main import get_command
@@ -177,3 +177,16 @@ def test_warnings_of_many_files_are_shown_by_name_and_all_in_the_report(tmp_path
     assert group["files"] == [f"flat_{k}.ply" for k in range(7)]
     last = json.loads((out / "batch_report.jsonl").read_text().splitlines()[-1])
     assert (last["with_warnings"], last["warnings"]) == (7, [group])
+
+
+def test_hundreds_of_warnings_are_cut_short_unless_all_are_asked_for(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    groups = [{"warning": f"kind {k}", "files": ["a.ply", "b.ply"]} for k in "abcdefghijklmno"]
+    many_files._print_warnings(groups, Path("report.jsonl"))
+    lines = capsys.readouterr().err.splitlines()
+    assert lines[0] == "Warning: a.ply and 1 more (b.ply): kind a."
+    assert lines[10:] == ["Warning: 5 more, see them with --verbose or at the end of report.jsonl."]
+    monkeypatch.setattr(VERBOSITY, "verbose", True)
+    many_files._print_warnings(groups, Path("report.jsonl"))
+    assert len(capsys.readouterr().err.splitlines()) == len(groups)
