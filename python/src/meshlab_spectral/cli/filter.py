@@ -90,12 +90,30 @@ def _command_with(table: type[Options]) -> Command:
         save_recipe: SaveRecipe = None,
         as_json: AsJson = False,
     ) -> None:
+        """Filter one file, in a child process, and print the report."""
         if target is not None and output is not None:
             raise typer.BadParameter(f"OUTPUT is {target} already", param_hint="--output")
         place = target or output
         if place is None:
             raise typer.BadParameter("name the mesh to write", param_hint="OUTPUT")
-        _filter_one_file(source, place, given, table, recipe, save_recipe, mesh, as_json)
+        if place.exists() and source.exists() and place.samefile(source):
+            raise typer.BadParameter(
+                f"{place} is INPUT itself and would be lost: choose another name",
+                param_hint="OUTPUT",
+            )
+        begin = time.monotonic()
+        with errors_reported():
+            options = chosen_options(table, given, recipe)
+            with saving_recipe(save_recipe, options), progress_shown() as on_progress:
+                report = filter_file_in_child(source, place, options, on_progress, mesh)
+        warn_of_points_only(place.suffix)
+        for warning in report["warnings"]:
+            print_warning(warning)
+        if as_json:
+            seconds = time.monotonic() - begin
+            typer.echo(json.dumps(_record(source, place, options, report, seconds)))
+        else:
+            _print_reports(report, source.name, place.name)
 
     return command
 
@@ -103,39 +121,13 @@ def _command_with(table: type[Options]) -> Command:
 filter_command, denoise_command = _command_with(FilterOptions), _command_with(DenoiseOptions)
 
 
-def _filter_one_file(
-    source: Path,
-    target: Path,
-    given: dict[str, Any],
-    table: type[Options],
-    recipe: Path | None,
-    save_recipe: Path | None,
-    mesh: str | None,
-    as_json: bool,
-) -> None:
-    """Filter one file, in a child process, and print the report."""
-    if target.exists() and source.exists() and target.samefile(source):
-        raise typer.BadParameter(
-            f"{target} is INPUT itself and would be lost: choose another name", param_hint="OUTPUT"
-        )
-    begin = time.monotonic()
-    with errors_reported():
-        options = chosen_options(table, given, recipe)
-        with saving_recipe(save_recipe, options), progress_shown() as on_progress:
-            report = filter_file_in_child(source, target, options, on_progress, mesh)
-    warn_of_points_only(target.suffix)
-    for warning in report["warnings"]:
-        print_warning(warning)
-    if as_json:
-        seconds = time.monotonic() - begin
-        typer.echo(json.dumps(_record(source, target, options, report, seconds)))
-        return
+def _print_reports(report: dict[str, Any], source: str, target: str) -> None:
     for one in report.get("meshes", [report]):
         name = f", {one['mesh']}" if "meshes" in report else ""
         # A summary may be among the warnings, of several meshes with their names.
         if (told := one.get("summary")) and not any(w.endswith(told) for w in report["warnings"]):
-            print_result(f"{source.name}{name}: {told}")
-        print_result(report_table(one, f"{source.name} -> {target.name}{name}", VERBOSITY.verbose))
+            print_result(f"{source}{name}: {told}")
+        print_result(report_table(one, f"{source} -> {target}{name}", VERBOSITY.verbose))
 
 
 def _record(
