@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 from batches import REPORT, contents, make_meshes, records, start_batch, wait_until
-from commands import command
+from commands import command, messages_in
 from meshlab_spectral import BatchError, filter_files
 from meshlab_spectral.batch import engine
 
@@ -114,4 +114,4 @@ def test_a_cluster_that_goes_in_the_middle_is_told_in_one_line(tmp_path: Path) -
             batch.communicate()
     assert batch.returncode == 1
     assert stdout == ""
-    assert re.fullmatch("Error: the Dask cluster is gone.*--resume\n", stderr)
+    assert re.fullmatch("Error: the Dask cluster is gone.*--resume\n", messages_in(stderr))

@@ -299,4 +299,8 @@ def test_progress_is_shown_on_a_terminal_only(tmp_path: Path) -> None:
     assert code == 0
     assert b"Comparing files with the report" in shown
     for more in ("--overwrite", "--resume"):
-        assert command(*arguments, "--steps", 1, more).stderr == ""
+        assert command(*arguments, "--steps", 1, more, "--quiet").stderr == ""
+    lines = command(*arguments, "--steps", 1, "--overwrite").stderr.splitlines()
+    assert [line[:6] for line in lines] == ["[1/3] ", "[2/3] ", "[3/3] "]
+    names = [f"torus_{k:03}.ply: filtered" for k in range(3)]
+    assert sorted(line[6:] for line in lines) == names

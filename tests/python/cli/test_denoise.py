@@ -9,7 +9,7 @@ import numpy as np
 import pymeshlab
 import pytest
 from batches import REPORT, contents, make_meshes, records
-from commands import arrays_of, assert_fails, command
+from commands import arrays_of, assert_fails, command, messages_in
 from meshlab_spectral import DenoiseOptions
 from meshlab_spectral.files.recipe import load_recipe
 from numpy.testing import assert_array_equal
@@ -41,7 +41,7 @@ def test_the_output_is_what_pymeshlab_computes(scan: Path, tmp_path: Path) -> No
     target = tmp_path / "clean.ply"
     done = command("denoise", scan, target)
     assert done.returncode == 0, done.stderr
-    assert done.stderr == ""
+    assert messages_in(done.stderr) == ""
     (V, F), (noisy, faces) = arrays_of(target), arrays_of(scan)
     assert_array_equal(V, denoised(scan))
     assert_array_equal(F, faces)
@@ -138,26 +138,45 @@ def test_a_batch_denoises_without_a_recipe(scan: Path, tmp_path: Path) -> None:
     assert load_recipe(saved) == (DenoiseOptions, DenoiseOptions().as_dict())
 
 
-@pytest.mark.parametrize(
-    "arguments", [["--feature-size", "2%"], ["--preset", "sharpen"], ["--recipe", "no.toml"]]
-)
-def test_denoise_takes_no_options_of_a_batch(
-    arguments: list[str], scan: Path, tmp_path: Path
-) -> None:
-    done = command("batch", scan, "--output", tmp_path / "clean", "--denoise", *arguments)
-    assert_fails(done, 2, "--denoise", "--recipe alone")
-    assert not (tmp_path / "clean").exists()
+def test_a_batch_denoises_with_every_option_of_denoise(scan: Path, tmp_path: Path) -> None:
+    given = {"strength": 0.5, "noise_height": "0.2e", "noise_size": "0.5e", "boundary": "fixed"}
+    spelled = [f"--{name.replace('_', '-')}={value}" for name, value in given.items()]
+    out, one, saved = tmp_path / "clean", tmp_path / "one.ply", tmp_path / "a.toml"
+    options = [*spelled, "--no-keep-creases", "--save-recipe", saved]
+    done = command("batch", scan, "--output", out, "--denoise", *options)
+    assert done.returncode == 0, done.stderr
+    expected = {**DenoiseOptions().as_dict(), **given, "keep_creases": False}
+    assert load_recipe(saved) == (DenoiseOptions, expected)
+    # Options of the command line come before those of the recipe, in both commands.
+    done = command("denoise", scan, one, "--recipe", saved, "--json")
+    assert json.loads(done.stdout)["options"] == expected
+    assert one.read_bytes() == (out / scan.name).read_bytes()
+    again = ["--output", tmp_path / "again", "--recipe", saved, "--strength", 2]
+    assert command("batch", scan, *again, "--denoise").returncode == 0
+    (record,) = records(tmp_path / "again" / REPORT)
+    assert record["options"] == {**expected, "strength": 2.0}
 
 
 @pytest.mark.parametrize(
-    "arguments", [["--feature-size", "2%"], ["--boundary", "fixed"], ["--preset", "sharpen"]]
+    ("arguments", "words"),
+    [
+        (["--denoise", "--feature-size", "2%"], ["--feature-size is not an option of denoise"]),
+        (["--denoise", "--preset", "sharpen"], ["--preset is not an option of denoise"]),
+        (["--recipe", "DENOISE", "--steps", "3"], ["--steps is not an option of denoise"]),
+        (["--recipe", "FILTER", "--denoise"], ["filter.toml is for filter, not for denoise"]),
+        (["--recipe", "FILTER", "--strength", "2"], ["--strength is not an option of filter"]),
+        (["--strength", "2"], ["--strength is not an option of filter", "add --denoise"]),
+    ],
+    ids=lambda value: " ".join(value),
 )
-def test_options_of_the_other_filter_are_refused_next_to_the_recipe(
-    arguments: list[str], scan: Path, tmp_path: Path
+def test_options_and_recipes_of_the_other_filter_are_refused(
+    arguments: list[str], words: list[str], scan: Path, tmp_path: Path
 ) -> None:
-    recipe, out = recipe_in(tmp_path, "[denoise]\n"), tmp_path / "clean"
-    done = command("batch", scan, "--output", out, "--recipe", recipe, *arguments)
-    assert_fails(done, 2, "for another filter", "[denoise] there", str(recipe))
+    files = {"DENOISE": recipe_in(tmp_path, "[denoise]\n"), "FILTER": tmp_path / "filter.toml"}
+    files["FILTER"].write_text("[filter]\n", encoding="utf-8")
+    out = tmp_path / "clean"
+    given = [str(files.get(argument, argument)) for argument in arguments]
+    assert_fails(command("batch", scan, "--output", out, *given), 2, *words)
     assert not out.exists()
 
 

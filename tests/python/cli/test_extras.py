@@ -28,6 +28,7 @@ def _plain(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize(
     "arguments",
     [
+        ["info", "COW"],
         ["filter", "COW", "out.ply"],
         ["denoise", "COW", "out.ply"],
         ["basis", "COW", "-k", "10", "--output", "out.npz"],

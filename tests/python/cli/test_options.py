@@ -164,6 +164,31 @@ def test_a_batch_takes_a_preset_over_a_recipe(cow: Path, tmp_path: Path) -> None
     assert "steps = 1" in written
 
 
+def test_a_recipe_is_tried_on_one_mesh_and_serves_a_batch(cow: Path, tmp_path: Path) -> None:
+    recipe, one = tmp_path / "recipe.toml", tmp_path / "cow.obj"
+    options = ["--preset", "sharpen", "--steps", 1, "--crease-angle", 120]
+    done = command("filter", cow, one, *options, "--save-recipe", recipe)
+    assert done.returncode == 0, done.stderr
+    out = tmp_path / "out"
+    command("batch", cow, "--output", out, "--recipe", recipe, "--workers", 1)
+    assert (out / "cow.obj").read_bytes() == one.read_bytes()
+    done = command("filter", cow, one, "--recipe", recipe, "--steps", 2, "--json")
+    chosen = json.loads(done.stdout)["options"]
+    assert (chosen["steps"], chosen["pass_gain"], chosen["crease_angle"]) == (2, 2.0, 120.0)
+
+
+def test_a_recipe_is_saved_only_of_what_has_succeeded(cow: Path, tmp_path: Path) -> None:
+    recipe, out = tmp_path / "recipe.toml", tmp_path / "out.ply"
+    for wrong in ((tmp_path / "none.ply", out), (cow, tmp_path / "out.xyzzy")):
+        assert command("filter", *wrong, "--save-recipe", recipe).returncode in (1, 2)
+        assert not list(tmp_path.iterdir())
+    assert_fails(command("filter", cow, out, "--recipe", recipe), 2, "recipe.toml cannot be read")
+    recipe.write_text("[denoise]\n", encoding="utf-8")
+    done = command("filter", cow, out, "--recipe", recipe)
+    assert_fails(done, 2, "is for denoise, not for filter")
+    assert not out.exists()
+
+
 def test_an_unknown_preset_is_refused_with_the_known_ones(cow: Path, tmp_path: Path) -> None:
     done = command("filter", cow, tmp_path / "out.ply", "--preset", "beautify")
     assert_fails(done, 2, "beautify", "caricature")

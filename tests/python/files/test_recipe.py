@@ -9,7 +9,7 @@ from commands import PRECIOUS
 from hypothesis import given
 from hypothesis import strategies as st
 from meshlab_spectral import FilterOptions, InputError, OptionError
-from meshlab_spectral.files.recipe import load_recipe, save_recipe
+from meshlab_spectral.files.recipe import load_recipe, saving_recipe
 from meshlab_spectral.filters.option_types import Length
 
 OPTIONS = st.builds(
@@ -28,7 +28,8 @@ def test_a_recipe_keeps_every_option(
     options: FilterOptions, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     path = tmp_path_factory.mktemp("recipe") / "recipe.toml"
-    save_recipe(path, options)
+    with saving_recipe(path, options):
+        pass
     assert FilterOptions.from_dict(load_recipe(path)[1]).as_dict() == options.as_dict()
 
 
@@ -86,9 +87,14 @@ def test_a_missing_recipe_is_named(tmp_path: Path) -> None:
 
 def test_a_recipe_replaces_a_recipe_and_nothing_else(tmp_path: Path) -> None:
     path = write(tmp_path, "[filter]\nsteps = 4\n")
-    save_recipe(path, FilterOptions(steps=5))
+    with saving_recipe(path, FilterOptions(steps=5)):
+        assert load_recipe(path)[1]["steps"] == 4
+    assert load_recipe(path)[1]["steps"] == 5
+    with pytest.raises(ZeroDivisionError), saving_recipe(path, FilterOptions(steps=6)):
+        raise ZeroDivisionError  # nothing is saved of what has failed
     assert load_recipe(path)[1]["steps"] == 5
     path.write_bytes(PRECIOUS)
-    with pytest.raises(InputError, match=r"recipe\.toml is not a TOML file.*not replaced"):
-        save_recipe(path, FilterOptions())
+    refused = pytest.raises(InputError, match=r"recipe\.toml is not a TOML file.*not replaced")
+    with refused, saving_recipe(path, FilterOptions()):
+        raise AssertionError("refused too late")
     assert path.read_bytes() == PRECIOUS

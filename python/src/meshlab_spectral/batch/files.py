@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
 from datetime import datetime, timezone
 from functools import partial
 from pathlib import Path
@@ -14,10 +15,48 @@ from meshlab_spectral.batch import storage
 from meshlab_spectral.batch.jobs import FileResult, Job, Outcome
 from meshlab_spectral.batch.outputs import DEFAULT_PATTERN
 from meshlab_spectral.batch.plan import Batch, plan_batch
-from meshlab_spectral.batch.report import Report
+from meshlab_spectral.batch.report import Report, grouped_warnings
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.extras import check_extras
 from meshlab_spectral.filters.options import FilterOptions
+
+
+@dataclass(frozen=True)
+class Workers:
+    """The workers of a batch: new ones on this machine, or those of a Dask scheduler.
+
+    The attributes are parameters of `filter_files`.
+
+    Raises
+    ------
+    OptionError
+        When both kinds are asked for.
+    """
+
+    count: int | None = None
+    memory_limit: int | None = None
+    scheduler: str | None = None
+
+    def __post_init__(self) -> None:
+        if self.scheduler is not None and (self.count, self.memory_limit) != (None, None):
+            raise OptionError(
+                "a cluster configures its own workers: with a scheduler, leave out the number of "
+                "workers and the memory limit"
+            )
+
+    @contextmanager
+    def started(self) -> Iterator[Callable[[Sequence[Job]], Iterator[FileResult]]]:
+        """Yield a function that runs jobs, see `engine.run_jobs`."""
+        # A slow import, not needed by commands for a single file.
+        from meshlab_spectral.batch import engine
+
+        cluster: AbstractContextManager[Any] = (
+            engine.workers_at(self.scheduler)
+            if self.scheduler
+            else engine.local_workers(self.count, self.memory_limit)
+        )
+        with cluster as client:
+            yield partial(engine.run_jobs, client)
 
 
 def filter_files(
@@ -96,7 +135,7 @@ def filter_files(
     ...     for result in filter_files("scans", "smooth", feature_size="2%"):
     ...         print(result.name, result.outcome, result.reason or "")
     """
-    check_workers(scheduler, workers, memory_limit)
+    using = Workers(workers, memory_limit, scheduler)
     chosen = None if script is not None and not options else FilterOptions.from_dict(options)
     batch = plan_batch(
         [inputs] if isinstance(inputs, str | Path) else inputs,
@@ -111,30 +150,16 @@ def filter_files(
         report=report,
         timeout=timeout,
     )
-    return run_batch(batch, workers=workers, memory_limit=memory_limit, scheduler=scheduler)
+    return run_batch(batch, using)
 
 
-def check_workers(scheduler: str | None, workers: int | None, memory_limit: int | None) -> None:
-    """Raise OptionError if workers are configured for an existing cluster."""
-    if scheduler is not None and (workers is not None or memory_limit is not None):
-        raise OptionError(
-            "a cluster configures its own workers: with a scheduler, leave out the number of "
-            "workers and the memory limit"
-        )
-
-
-def run_batch(
-    batch: Batch,
-    *,
-    workers: int | None = None,
-    memory_limit: int | None = None,
-    scheduler: str | None = None,
-) -> Generator[FileResult, None, None]:
+def run_batch(batch: Batch, workers: Workers) -> Generator[FileResult, None, None]:
     """Run a planned batch; see `filter_files`."""
     if batch.jobs:
         check_extras("batch")
     with Report(batch.report) as report:
         counts = dict.fromkeys(get_args(Outcome), 0) | {"already done": len(batch.done)}
+        warnings = {one.name: one.warnings for one in batch.done if one.warnings}
         begin = time.monotonic()
         report.add("run", {"begun": time.time(), "at": _now(), "files": len(batch.jobs)})
         yield from batch.done
@@ -142,44 +167,19 @@ def run_batch(
             storage.tidy(folder)
         if batch.jobs:
             try:
-                yield from _run(batch.jobs, report, counts, workers, memory_limit, scheduler)
+                with workers.started() as run:
+                    for result in run(batch.jobs):
+                        report.add("file", result.as_record())
+                        counts[result.outcome] += 1
+                        if result.warnings:
+                            warnings[result.name] = result.warnings
+                        yield result
             finally:
                 for folder in batch.folders:  # of workers that were ended
                     storage.tidy(folder)
-        report.add("summary", {**counts, "seconds": round(time.monotonic() - begin, 3)})
-
-
-def _run(
-    jobs: list[Job],
-    report: Report,
-    counts: dict[Outcome, int],
-    workers: int | None,
-    memory_limit: int | None,
-    scheduler: str | None,
-) -> Iterator[FileResult]:
-    with workers_for(scheduler, workers, memory_limit) as run:
-        for result in run(jobs):
-            report.add("file", result.as_record())
-            counts[result.outcome] += 1
-            yield result
-
-
-@contextmanager
-def workers_for(
-    scheduler: str | None, workers: int | None = None, memory_limit: int | None = None
-) -> Iterator[Callable[[Sequence[Job]], Iterator[FileResult]]]:
-    """Yield a function that runs jobs, on the workers of a scheduler or on new local ones.
-
-    See `engine.run_jobs`, `engine.workers_at` and `engine.local_workers`.
-    """
-    # A slow import, not needed by commands for a single file.
-    from meshlab_spectral.batch import engine
-
-    cluster: AbstractContextManager[Any] = (
-        engine.workers_at(scheduler) if scheduler else engine.local_workers(workers, memory_limit)
-    )
-    with cluster as client:
-        yield partial(engine.run_jobs, client)
+        seconds = round(time.monotonic() - begin, 3)
+        told = {"with_warnings": len(warnings), "warnings": grouped_warnings(warnings)}
+        report.add("summary", {**counts, **told, "seconds": seconds})
 
 
 def _now() -> str:

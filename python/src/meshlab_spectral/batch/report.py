@@ -1,7 +1,8 @@
 """The report of a batch: one JSON object per line, safe on disk at any time.
 
 Each line has a "kind": "run" when a batch starts, "file" for each file as soon as it is done (the
-attributes of `FileResult`), "summary" at the end. Later batches append to it.
+attributes of `FileResult`), "summary" at the end: the number of files by outcome, and the warnings
+with the names of their files. Later batches append to it.
 """
 
 from __future__ import annotations
@@ -10,7 +11,8 @@ import contextlib
 import io
 import json
 import os
-from collections.abc import Callable, Iterator
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -20,6 +22,7 @@ from meshlab_spectral.errors import BatchError, InputError
 DEFAULT_NAME = "batch_report.jsonl"
 
 _BEGIN = b'{"kind": '  # start of every line
+_NUMBER = re.compile(r"\d+([.,]\d+)*(e[-+]?\d+)?")
 _END_OF_TIME = 1e12  # seconds since 1970; NaN and infinity are beyond it, too
 
 
@@ -127,6 +130,28 @@ class Report:
         self._file.seek(-1, io.SEEK_END)
         if self._file.read(1) != b"\n":
             self._write(b"\n")
+
+
+def grouped_warnings(warnings: Mapping[str, Sequence[str]]) -> list[dict[str, Any]]:
+    """Group the warnings of many files that differ in their numbers at most, most frequent first.
+
+    Parameters
+    ----------
+    warnings
+        Those of each file, by its name.
+
+    Returns
+    -------
+    list of dict
+        "warning": that of the first file; "files": the names of all.
+    """
+    groups: dict[str, dict[str, Any]] = {}
+    for name, texts in sorted(warnings.items()):
+        for text in texts:
+            group = groups.setdefault(_NUMBER.sub("0", text), {"warning": text, "files": []})
+            if group["files"][-1:] != [name]:  # of several meshes in a file
+                group["files"].append(name)
+    return sorted(groups.values(), key=lambda group: -len(group["files"]))
 
 
 def check_report(path: Path) -> None:

@@ -9,15 +9,22 @@ import typer
 
 from meshlab_spectral.cli.basis import BASIS_HELP, basis_command
 from meshlab_spectral.cli.batch import BATCH_HELP, batch_command
-from meshlab_spectral.cli.denoise import DENOISE_HELP, denoise_command
+from meshlab_spectral.cli.command_line import AllCommands, OneCommand, with_verbosity
 from meshlab_spectral.cli.figures import FIGURES_HELP, figures_command
-from meshlab_spectral.cli.filter import FILTER_HELP, filter_command
+from meshlab_spectral.cli.filter import (
+    DENOISE_HELP,
+    FILTER_HELP,
+    denoise_command,
+    filter_command,
+)
+from meshlab_spectral.cli.info import INFO_HELP, info_command
 from meshlab_spectral.cli.install import INSTALL_HELP, install_command
 from meshlab_spectral.cli.messages import EXIT_CODES
 from meshlab_spectral.cli.spectra import SPECTRA_HELP, spectra_command
 from meshlab_spectral.cli.spectrum import SPECTRUM_HELP, spectrum_command
 
 app = typer.Typer(
+    cls=AllCommands,
     help="Denoise, smooth, sharpen and band-filter meshes by the size of their details.",
     epilog=EXIT_CODES,
     no_args_is_help=True,
@@ -46,11 +53,15 @@ def _common(
     """Denoise, smooth, sharpen and band-filter meshes by the size of their details."""
 
 
-app.command("filter", help=FILTER_HELP, epilog=EXIT_CODES)(filter_command)
-app.command("denoise", help=DENOISE_HELP, epilog=EXIT_CODES)(denoise_command)
-app.command("batch", help=BATCH_HELP, epilog=EXIT_CODES)(batch_command)
-app.command("spectrum", help=SPECTRUM_HELP, epilog=EXIT_CODES)(spectrum_command)
-app.command("spectra", help=SPECTRA_HELP, epilog=EXIT_CODES)(spectra_command)
-app.command("basis", help=BASIS_HELP, epilog=EXIT_CODES)(basis_command)
-app.command("figures", help=FIGURES_HELP, epilog=EXIT_CODES)(figures_command)
-app.command("install", help=INSTALL_HELP, epilog=EXIT_CODES)(install_command)
+for _name, _help, _command in (
+    ("info", INFO_HELP, info_command),
+    ("denoise", DENOISE_HELP, denoise_command),
+    ("filter", FILTER_HELP, filter_command),
+    ("batch", BATCH_HELP, batch_command),
+    ("spectrum", SPECTRUM_HELP, spectrum_command),
+    ("spectra", SPECTRA_HELP, spectra_command),
+    ("basis", BASIS_HELP, basis_command),
+    ("figures", FIGURES_HELP, figures_command),
+    ("install", INSTALL_HELP, install_command),
+):
+    app.command(_name, cls=OneCommand, help=_help, epilog=EXIT_CODES)(with_verbosity(_command))

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from meshlab_spectral.cli.filter_options import OneMesh
-from meshlab_spectral.cli.messages import errors_reported
+from meshlab_spectral.cli.filter_options import OneMesh, Source
+from meshlab_spectral.cli.messages import errors_reported, print_result
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.extras import check_extras
 from meshlab_spectral.figures.harmonics import check_modes, check_picture, draw_basis_file
@@ -31,12 +31,15 @@ orthonormal), and the mesh that their rows belong to, vertices (n x 3) and faces
 
 
 def basis_command(
-    source: Annotated[
-        Path, typer.Argument(metavar="MESH", help="Mesh to read: .ply, .obj, .stl, .off, ...")
-    ],
+    source: Source,
     output: Annotated[
         Path,
-        typer.Option(metavar="FILE", help="NumPy archive to write; replaces an existing file."),
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="FILE",
+            help="NumPy archive to write; replaces an existing file.",
+        ),
     ] = Path("basis.npz"),
     basis_size: Annotated[
         int,
@@ -46,24 +49,21 @@ def basis_command(
         LaplacianKind, typer.Option(help="As for the filter.")
     ] = "intrinsic delaunay",
     boundary: Annotated[
-        Boundary,
-        typer.Option(help="At the boundary of an open surface: free, or fixed to zero."),
+        Boundary, typer.Option(help="At the boundary of an open surface: free, or fixed to zero.")
     ] = "free",
     mesh: OneMesh = None,
     pictures: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Sheet of pictures to draw, a .png file.")
     ] = None,
     modes: Annotated[
-        str | None,
-        typer.Option(metavar="NUMBERS", help="Harmonics to draw, such as 1,2,3,5,8."),
+        str | None, typer.Option(metavar="NUMBERS", help="Harmonics to draw, such as 1,2,3,5,8.")
     ] = None,
     scale: Annotated[
         float, typer.Option(min=0.1, max=10, help="Resolution of the pictures; 1 fills a screen.")
     ] = 1.0,
-    debug: Annotated[bool, typer.Option("--debug", hidden=True)] = False,
 ) -> None:
     """Compute manifold harmonics: see `meshlab-spectral basis --help`."""
-    with errors_reported(debug, "finished files are complete"):
+    with errors_reported("finished files are complete"):
         shown = None if modes is None else _modes(modes, basis_size)
         if pictures is not None:
             check_extras("plots", "render")
@@ -76,7 +76,7 @@ def basis_command(
                 draw_basis_file(output, pictures, shown, scale)
     for path in (output, pictures):
         if path is not None:
-            typer.echo(path)
+            print_result(path)
 
 
 def _modes(text: str, basis_size: int) -> list[int]:

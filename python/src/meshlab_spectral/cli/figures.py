@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from meshlab_spectral.cli.messages import errors_reported
+from meshlab_spectral.cli.messages import errors_reported, print_result
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.figures.paper import FIGURES, draw_figures
 
@@ -18,7 +18,7 @@ The paper is Kovnatsky, Bronstein, Bronstein: Stable Spectral Mesh Filtering, 20
 
 \b
 1  a strong filter in one shot, and in ten fractional steps
-4  eigenfunctions before a filter, after its 1/10 power, and after the whole filter
+4  eigenfunctions before a filter, after a tenth of it, and after all of it
 5  the fractional powers of two filters, and the shapes they produce
 
 Each mesh gets its own pictures. The paper's meshes, the dragon and the angel, are in the Stanford
@@ -34,12 +34,14 @@ def figures_command(
     meshes: Annotated[
         list[Path],
         typer.Argument(
-            metavar="MESH",
-            help="Meshes to show, viewed along their shortest axis with y up, or z.",
+            metavar="MESH", help="Meshes to show, viewed along their shortest axis with y up, or z."
         ),
     ],
     output: Annotated[
-        Path, typer.Option(metavar="DIR", help="Folder for the pictures, created if needed.")
+        Path,
+        typer.Option(
+            "--output", "-o", metavar="DIR", help="Folder for the pictures, created if needed."
+        ),
     ] = Path(),
     only: Annotated[
         str, typer.Option(metavar="NUMBERS", help="Figures to draw, such as 1,5.")
@@ -47,17 +49,16 @@ def figures_command(
     scale: Annotated[
         float, typer.Option(min=0.1, max=10, help="Resolution: 2 doubles the pixels per side.")
     ] = 1.0,
-    debug: Annotated[bool, typer.Option("--debug", hidden=True)] = False,
 ) -> None:
     """Draw the figures of the paper: see `meshlab-spectral figures --help`."""
     numbers = _figure_numbers(only)
     interrupted = "finished pictures are complete"
-    with errors_reported(debug, interrupted), progress_shown() as on_progress:
+    with errors_reported(interrupted), progress_shown() as on_progress:
         pictures = draw_figures(
             meshes, output, numbers, scale, lambda stage: on_progress(stage, None)
         )
     for picture in pictures:
-        typer.echo(picture)
+        print_result(picture)
 
 
 def _figure_numbers(text: str) -> list[int]:

@@ -1,4 +1,4 @@
-"""The command `meshlab-spectral filter`, and what it shares with `denoise`."""
+"""The commands `meshlab-spectral filter` and `meshlab-spectral denoise`, for one file."""
 
 from __future__ import annotations
 
@@ -8,12 +8,26 @@ from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from rich.console import Console
 
-from meshlab_spectral.cli.filter_options import with_options
-from meshlab_spectral.cli.messages import MESSAGES, errors_reported, warn_of_points_only
+from meshlab_spectral.cli.command_line import Command
+from meshlab_spectral.cli.filter_options import (
+    AsJson,
+    Recipe,
+    SaveRecipe,
+    chosen_options,
+    with_options,
+)
+from meshlab_spectral.cli.messages import (
+    VERBOSITY,
+    errors_reported,
+    print_result,
+    print_warning,
+    warn_of_points_only,
+)
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.cli.report_table import report_table
+from meshlab_spectral.files.recipe import saving_recipe
+from meshlab_spectral.filters.denoise import DenoiseOptions
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.plugin.versions import versions
@@ -30,73 +44,90 @@ Smooth a scan, removing bumps narrower than half a percent of it:
 Sharpen it:
   meshlab-spectral filter scan.ply sharp.ply --filter-type high-pass \\
     --stop-gain 1 --pass-gain 2
+Save the options, and filter a folder with them:
+  meshlab-spectral filter scan.ply smooth.ply --feature-size 2% \\
+    --save-recipe smooth.toml
+  meshlab-spectral batch scans --output smooth --recipe smooth.toml
+"""
+DENOISE_HELP = """Find out what noise a mesh has, of a scanner, spikes or voxels, and remove it.
+
+\b
+  meshlab-spectral denoise scan.ply clean.ply
+A folder of scans:
+  meshlab-spectral batch scans --output clean --denoise
 """
 
 
-Source = Annotated[
-    Path, typer.Argument(metavar="INPUT", help="Mesh to read: .ply, .obj, .stl, .off, ...")
-]
-Target = Annotated[
-    Path,
-    typer.Argument(
-        metavar="OUTPUT",
-        help="Mesh to write, in the format of its extension; replaces an existing file.",
-    ),
-]
-Mesh = Annotated[
-    str | None,
-    typer.Option(
-        "--mesh",
-        metavar="NAME",
-        help="Only the mesh of this name; by default all meshes of the file, each by itself.",
-        show_default=False,
-    ),
-]
-AsJson = Annotated[bool, typer.Option("--json", help="Print the report as one JSON object.")]
-Debug = Annotated[bool, typer.Option("--debug", hidden=True)]
+def _command_with(table: type[Options]) -> Command:
+    """Make the command for the filter of a table."""
+
+    @with_options(table)
+    def command(
+        given: dict[str, Any],
+        source: Annotated[
+            Path, typer.Argument(metavar="INPUT", help="Mesh to read: .ply, .obj, .stl, .off, ...")
+        ],
+        target: Annotated[
+            Path | None,
+            typer.Argument(
+                metavar="OUTPUT",
+                help="Mesh to write, in the format of its extension; replaces an existing file.",
+            ),
+        ] = None,
+        output: Annotated[
+            Path | None,
+            typer.Option("--output", "-o", metavar="FILE", help="Another way to name OUTPUT."),
+        ] = None,
+        mesh: Annotated[
+            str | None,
+            typer.Option(
+                metavar="NAME",
+                help="Only the mesh of this name; by default all meshes of the file, each by "
+                "itself.",
+            ),
+        ] = None,
+        recipe: Recipe = None,
+        save_recipe: SaveRecipe = None,
+        as_json: AsJson = False,
+    ) -> None:
+        """Filter one file, in a child process, and print the report."""
+        if target is not None and output is not None:
+            raise typer.BadParameter(f"OUTPUT is {target} already", param_hint="--output")
+        place = target or output
+        if place is None:
+            raise typer.BadParameter("name the mesh to write", param_hint="OUTPUT")
+        if place.exists() and source.exists() and place.samefile(source):
+            raise typer.BadParameter(
+                f"{place} is INPUT itself and would be lost: choose another name",
+                param_hint="OUTPUT",
+            )
+        begin = time.monotonic()
+        with errors_reported():
+            options = chosen_options(table, given, recipe)
+            with saving_recipe(save_recipe, options), progress_shown() as on_progress:
+                report = filter_file_in_child(source, place, options, on_progress, mesh)
+        warn_of_points_only(place.suffix)
+        for warning in report["warnings"]:
+            print_warning(warning)
+        if as_json:
+            seconds = time.monotonic() - begin
+            typer.echo(json.dumps(_record(source, place, options, report, seconds)))
+        else:
+            _print_reports(report, source.name, place.name)
+
+    return command
 
 
-@with_options(FilterOptions)
-def filter_command(
-    options: FilterOptions,
-    source: Source,
-    target: Target,
-    mesh: Mesh = None,
-    as_json: AsJson = False,
-    debug: Debug = False,
-) -> None:
-    """Filter one mesh: see `meshlab-spectral filter --help`."""
-    filter_one_file(source, target, options, mesh, as_json, debug)
+filter_command, denoise_command = _command_with(FilterOptions), _command_with(DenoiseOptions)
 
 
-def filter_one_file(
-    source: Path, target: Path, options: Options, mesh: str | None, as_json: bool, debug: bool
-) -> None:
-    """Filter one file, in a child process, and print the report."""
-    if target.exists() and source.exists() and target.samefile(source):
-        raise typer.BadParameter(
-            f"{target} is INPUT itself and would be lost: choose another name", param_hint="OUTPUT"
-        )
-    begin = time.monotonic()
-    with errors_reported(debug), progress_shown() as on_progress:
-        report = filter_file_in_child(source, target, options, on_progress, mesh)
-    warn_of_points_only(target.suffix)
-    for warning in report["warnings"]:
-        MESSAGES.print(f"Warning: {warning}.", markup=False, highlight=False, soft_wrap=True)
-    if as_json:
-        typer.echo(json.dumps(_record(source, target, options, report, time.monotonic() - begin)))
-        return
-    title = f"{source.name} -> {target.name}"
+def _print_reports(report: dict[str, Any], source: str, target: str) -> None:
     for one in report.get("meshes", [report]):
-        _tell(one, f"{title}, {one['mesh']}" if "meshes" in report else title, report["warnings"])
-
-
-def _tell(report: dict[str, Any], title: str, warnings: list[str]) -> None:
-    """Print the report of a mesh, but for a summary that has already been a warning."""
-    if (summary := report.get("summary")) and not any(told.endswith(summary) for told in warnings):
-        told = f"{title.partition(' -> ')[0]}: {summary}"
-        Console().print(told, markup=False, highlight=False, soft_wrap=True)
-    Console().print(report_table(report, title))
+        name = f", {one['mesh']}" if "meshes" in report else ""
+        # A summary may be among the warnings, of several meshes with their names.
+        if (told := one.get("summary")) and not any(w.endswith(told) for w in report["warnings"]):
+            print_result(f"{source}{name}: {told}")
+        print_result(report_table(one, f"{source} -> {target}{name}", VERBOSITY.verbose))
 
 
 def _record(

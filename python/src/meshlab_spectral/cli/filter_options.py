@@ -1,28 +1,46 @@
-"""Command-line options generated from tables of options, and `--preset`."""
+"""Command-line options generated from tables of options, `--preset`, and recipes."""
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Callable, Collection
 from dataclasses import fields
+from pathlib import Path
 from typing import Annotated, Any, get_type_hints
 
 import typer
 
+from meshlab_spectral.cli.command_line import DENOISE, GROUP_OF, HOW, Command, with_parameters
 from meshlab_spectral.errors import OptionError
+from meshlab_spectral.files.recipe import load_recipe
 from meshlab_spectral.filters.option_types import AnyOptions, Length, Options
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.filters.presets import PRESETS, Preset
 
-Command = Callable[..., None]
-
+Source = Annotated[
+    Path, typer.Argument(metavar="MESH", help="Mesh to read: .ply, .obj, .stl, .off, ...")
+]
+AsJson = Annotated[bool, typer.Option("--json", help="Print the result as one JSON object.")]
 # Of the commands that measure a file as a whole.
 OneMesh = Annotated[
     str | None,
     typer.Option(
-        metavar="NAME",
-        help="Only the mesh of this name; by default all of the file together.",
-        show_default=False,
+        metavar="NAME", help="Only the mesh of this name; by default all of the file together."
+    ),
+]
+Recipe = Annotated[
+    Path | None,
+    typer.Option(
+        "--recipe",
+        metavar="FILE",
+        help="Read options from a recipe, a TOML file; those given here override it.",
+    ),
+]
+SaveRecipe = Annotated[
+    Path | None,
+    typer.Option(
+        "--save-recipe",
+        metavar="FILE",
+        help="Write all options to a recipe, for the next scan or a batch.",
     ),
 ]
 
@@ -34,115 +52,96 @@ def _use_preset(context: typer.Context, name: Preset | None) -> Preset | None:
     return name
 
 
-_PRESET = Annotated[
-    Preset | None,
-    typer.Option(
-        is_eager=True,
-        callback=_use_preset,
-        help="Start from the options for a purpose; those given besides replace its own.",
-        show_default=False,
-    ),
-]
+_PRESET = typer.Option(
+    is_eager=True,
+    callback=_use_preset,
+    help="Start from the options for a purpose; those given besides replace its own.",
+)
 
 
 def with_options(
-    table: type[Options], names: Collection[str] | None = None
+    *tables: type[Options], names: Collection[str] | None = None
 ) -> Callable[[Command], Command]:
-    """Add one option per field of a table to a command, passed as `options`.
+    """Add one option per field of some tables to a command, passed as `given`.
+
+    `given` is a dict for `chosen_options`, with only the options on the command line and of its
+    preset.
 
     Parameters
     ----------
-    table
-        The table; a command with FilterOptions gets `--preset`, too.
+    *tables
+        The tables. Of fields with one name the first counts. A command with FilterOptions gets
+        `--preset`, too.
     names
-        Only these fields; the rest keep their defaults.
+        Only these fields.
     """
+    added: dict[str, tuple[str, Any, Any, Any]] = {}
+    if FilterOptions in tables:
+        added["preset"] = ("preset", Preset | None, _PRESET, None)
+    for table in tables:
+        types = get_type_hints(table)
+        for one in fields(table):
+            if one.name in added or (names is not None and one.name not in names):
+                continue
+            settings: dict[str, Any] = {
+                "help": one.metadata["help"],
+                "rich_help_panel": GROUP_OF.get(one.name, HOW) if table is tables[0] else DENOISE,
+            }
+            type_, default = types[one.name], one.default
+            if type_ is Length:
+                settings |= {"parser": _length, "metavar": "SIZE"}
+                default = str(default)
+            added[one.name] = (one.name, type_, typer.Option(**settings), default)
 
     def decorate(command: Command) -> Command:
-        def run(given: dict[str, Any], arguments: dict[str, Any]) -> None:
-            command(options=_checked(table, given), **arguments)
+        def run(arguments: dict[str, Any]) -> None:
+            source = arguments.pop("context").get_parameter_source
+            values = {name: arguments.pop(name) for name in added}
+            given = {
+                name: value
+                for name, value in values.items()
+                if source(name).name in ("COMMANDLINE", "DEFAULT_MAP")
+            }
+            command(given=given, **arguments)
 
-        return _with_options(table, names, command, "options", run)
+        context = ("context", typer.Context, None, None)
+        return with_parameters(command, [context, *added.values()], run, replaced="given")
 
     return decorate
 
 
-def with_given_filter_options(command: Command) -> Command:
-    """Add one option per field of FilterOptions to a command, passed as `given`.
+def chosen_options(
+    table: type[AnyOptions], given: dict[str, Any], recipe: Path | None = None
+) -> AnyOptions:
+    """Return the options of a recipe, if any, overridden by those given.
 
-    `given` is a dict for `FilterOptions.from_dict` with only the options on the command line and
-    of its preset, validated. The command needs a parameter `context: typer.Context`.
+    Parameters
+    ----------
+    table
+        The table that they are of.
+    given
+        From `with_options`.
+    recipe
+        A TOML file.
+
+    Raises
+    ------
+    OptionError
+        When an option has an invalid value, or it or the recipe is for another filter.
+    InputError
+        When the recipe cannot be read.
     """
-
-    def run(values: dict[str, Any], arguments: dict[str, Any]) -> None:
-        source = arguments["context"].get_parameter_source
-        given = {
-            name: value
-            for name, value in values.items()
-            if source(name).name in ("COMMANDLINE", "DEFAULT_MAP")
-        }
-        _checked(FilterOptions, given)
-        command(given=given, **arguments)
-
-    return _with_options(FilterOptions, None, command, "given", run)
-
-
-def _checked(table: type[AnyOptions], given: dict[str, Any]) -> AnyOptions:
-    try:
-        return table(**given)
-    except OptionError as error:
-        raise typer.BadParameter(str(error)) from error
-
-
-def _with_options(
-    table: type[Options],
-    names: Collection[str] | None,
-    command: Command,
-    place: str,
-    call: Callable[[dict[str, Any], dict[str, Any]], None],
-) -> Command:
-    """Make a command with the options `names` and the parameters of `command` except `place`.
-
-    It passes the values of the former and of the latter to `call`.
-    """
-    types = get_type_hints(table)
-    own = [
-        parameter
-        for parameter in inspect.signature(command, eval_str=True).parameters.values()
-        if parameter.name != place
-    ]
-    preset = inspect.Parameter(
-        "preset", inspect.Parameter.KEYWORD_ONLY, default=None, annotation=_PRESET
-    )
-    added = [preset] if table is FilterOptions else []
-    for option in fields(table):
-        if names is not None and option.name not in names:
-            continue
-        settings: dict[str, Any] = {"help": option.metadata["help"]}
-        type_, default = types[option.name], option.default
-        if type_ is Length:
-            settings |= {"parser": _length, "metavar": "SIZE"}
-            default = str(default)
-        added.append(
-            inspect.Parameter(
-                option.name,
-                inspect.Parameter.KEYWORD_ONLY,
-                default=default,
-                annotation=Annotated[type_, typer.Option(**settings)],
-            )
-        )
-
-    def run(**arguments: Any) -> None:
-        values = {parameter.name: arguments.pop(parameter.name) for parameter in added}
-        values.pop("preset", None)  # has done its work
-        call(values, arguments)
-
-    parameters = [p.replace(kind=inspect.Parameter.KEYWORD_ONLY) for p in [*own, *added]]
-    run.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
-    run.__annotations__ = {p.name: p.annotation for p in parameters}
-    run.__doc__ = command.__doc__
-    run.__name__ = command.__name__
-    return run
+    found, options = (table, {}) if recipe is None else load_recipe(recipe)
+    if found is not table:
+        raise OptionError(f"the recipe {recipe} is for {found.TABLE}, not for {table.TABLE}")
+    known = {one.name for one in fields(table)} | ({"preset"} if table is FilterOptions else set())
+    for name in given:
+        if name not in known:
+            hint = ": add --denoise" if table is FilterOptions and recipe is None else ""
+            spelled = name.replace("_", "-")
+            raise OptionError(f"--{spelled} is not an option of {table.TABLE}{hint}")
+    values = {name: value for name, value in given.items() if name != "preset"}
+    return table.from_dict({**options, **values})
 
 
 def _length(text: str | Length) -> Length:

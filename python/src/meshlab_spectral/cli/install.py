@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from meshlab_spectral.cli.messages import errors_reported
+from meshlab_spectral.cli.messages import errors_reported, print_result
 from meshlab_spectral.plugin.installation import (
     HOSTS,
     Change,
@@ -36,15 +36,17 @@ def install_command(
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Change nothing, only show what would be done.")
     ] = False,
-    debug: Annotated[bool, typer.Option("--debug", hidden=True)] = False,
 ) -> None:
     """Install the filters in MeshLab: see `meshlab-spectral install --help`."""
-    with errors_reported(debug, "some files may have been changed"):
+    with errors_reported("some files may have been changed"):
         changes = uninstall(dry_run) if remove else install(dry_run)
+        tell = typer.echo if dry_run else print_result
         for change in changes:
-            typer.echo(_line(change, dry_run))
+            tell(_line(change, dry_run))
         if not remove:
-            typer.echo(_advice(find_meshlab()))
+            found = find_meshlab()
+            fits = found is not None and found.host is not None
+            (tell if fits else typer.echo)(_advice(found))
 
 
 def _line(change: Change, dry_run: bool) -> str:

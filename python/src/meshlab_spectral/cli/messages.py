@@ -1,16 +1,20 @@
-"""Messages of all commands: errors with their exit codes, and warnings."""
+"""What all commands print: results, warnings, and errors with their exit codes."""
 
 from __future__ import annotations
 
 import contextlib
+import logging
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import typer
 from rich.console import Console
+from rich.table import Table
 
 from meshlab_spectral.cli.interrupts import EXIT_INTERRUPTED, raise_interrupts
 from meshlab_spectral.errors import FormatError, InputError, OptionError, SpectralError
 from meshlab_spectral.files.formats import POINTS_ONLY
+from meshlab_spectral.process.parent import LOG
 
 EXIT_FAILED, EXIT_USAGE = 1, 2
 
@@ -22,9 +26,30 @@ EXIT_CODES = (
 MESSAGES = Console(stderr=True)
 
 
+@dataclass
+class Verbosity:
+    """How much the command of this process prints: --quiet, --verbose, --debug."""
+
+    quiet: bool = False
+    verbose: bool = False
+    debug: bool = False
+
+
+VERBOSITY = Verbosity()
+
+
+class _LogHandler(logging.Handler):
+    def emit(self, record: logging.LogRecord) -> None:
+        """Print a line of MeshLab's log, above a progress bar if there is one."""
+        print_message(record.getMessage())
+
+
 @contextlib.contextmanager
-def errors_reported(debug: bool, when_interrupted: str = "no output was written") -> Iterator[None]:
+def errors_reported(when_interrupted: str = "no output was written") -> Iterator[None]:
     """Turn any error of this package into a message and an exit code."""
+    if VERBOSITY.verbose:
+        LOG.addHandler(_LogHandler())
+        LOG.setLevel(logging.INFO)
     try:
         raise_interrupts()
         yield
@@ -32,20 +57,41 @@ def errors_reported(debug: bool, when_interrupted: str = "no output was written"
         MESSAGES.print(f"Interrupted: {when_interrupted}.")
         raise typer.Exit(EXIT_INTERRUPTED) from None
     except SpectralError as error:
-        if debug:
+        if VERBOSITY.debug:
             MESSAGES.print_exception()
-        # No markup or wrapping: file names may contain brackets, and scripts parse messages.
-        MESSAGES.print(f"Error: {error}", markup=False, highlight=False, soft_wrap=True)
+        print_error(str(error))
         usage = isinstance(error, OptionError | FormatError | InputError)
         raise typer.Exit(EXIT_USAGE if usage else EXIT_FAILED) from error
+
+
+def print_result(result: Table | object) -> None:
+    """Print on standard output, a table or a line, unless --quiet."""
+    if VERBOSITY.quiet:
+        return
+    if isinstance(result, Table):
+        Console().print(result)
+    else:
+        typer.echo(result)
+
+
+def print_message(text: str) -> None:
+    """Print a line on standard error."""
+    # No markup or wrapping: file names may contain brackets, and scripts parse messages.
+    MESSAGES.print(text, markup=False, highlight=False, soft_wrap=True)
+
+
+def print_error(text: str) -> None:
+    """Print an error."""
+    print_message(f"Error: {text}")
+
+
+def print_warning(text: str) -> None:
+    """Print a warning, of which --quiet prints as many."""
+    print_message(f"Warning: {text}.")
 
 
 def warn_of_points_only(ending: str) -> None:
     """Warn of a format, such as .xyz, in which MeshLab silently drops the faces."""
     plain = ending.removeprefix(".")
     if plain.lower() in POINTS_ONLY:
-        MESSAGES.print(
-            f"Warning: .{plain} files hold points only, the faces are not written.",
-            highlight=False,
-            soft_wrap=True,
-        )
+        print_warning(f".{plain} files hold points only, the faces are not written")

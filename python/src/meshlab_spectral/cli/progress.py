@@ -1,13 +1,13 @@
-"""Progress displays on a terminal, for one mesh and for a batch."""
+"""Progress of one mesh and of a batch: a display on a terminal, elsewhere plain lines."""
 
 from __future__ import annotations
 
 import contextlib
 import math
+import time
 from collections.abc import Callable, Iterator
 from datetime import timedelta
 
-from rich.console import Console
 from rich.markup import escape
 from rich.progress import (
     BarColumn,
@@ -23,15 +23,20 @@ from rich.table import Column
 from rich.text import Text
 
 from meshlab_spectral.batch.jobs import FileResult
-from meshlab_spectral.cli.messages import MESSAGES
+from meshlab_spectral.cli.messages import MESSAGES, VERBOSITY, print_message
 from meshlab_spectral.process.parent import ProgressCallback
 
 _FEWEST_PER_SECOND = 0.1
+# Between plain lines: a run that is over sooner has none.
+_SECONDS_BETWEEN = 5.0
 
 
 @contextlib.contextmanager
 def progress_shown() -> Iterator[ProgressCallback]:
-    """Show MeshLab's progress on a terminal; elsewhere show nothing."""
+    """Show MeshLab's progress, on a terminal or as a line every few seconds; none with --quiet."""
+    if not MESSAGES.is_terminal:
+        yield _line_now_and_then()
+        return
     with Progress(
         SpinnerColumn(),
         BarColumn(),
@@ -39,7 +44,7 @@ def progress_shown() -> Iterator[ProgressCallback]:
         TimeElapsedColumn(),
         console=MESSAGES,
         transient=True,
-        disable=not MESSAGES.is_terminal,
+        disable=VERBOSITY.quiet,
     ) as progress:
         task = progress.add_task("starting", total=None)
 
@@ -55,16 +60,29 @@ def progress_shown() -> Iterator[ProgressCallback]:
         yield update
 
 
-@contextlib.contextmanager
-def batch_progress(console: Console, files: int) -> Iterator[Callable[[FileResult], None]]:
-    """Show on a terminal the number of files done and failed, the rate and the time left.
+def _line_now_and_then() -> ProgressCallback:
+    begin = last = time.monotonic()
 
-    Failures are printed in any case, one line each.
+    def update(stage: str, fraction: float | None) -> None:
+        nonlocal last
+        now = time.monotonic()
+        if now - last >= _SECONDS_BETWEEN and not VERBOSITY.quiet:
+            last = now
+            done = "" if fraction is None else f", {fraction:.0%}"
+            print_message(f"[{now - begin:.0f} s] {stage}{done}")
+
+    return update
+
+
+@contextlib.contextmanager
+def batch_progress(files: int) -> Iterator[Callable[[FileResult], None]]:
+    """Show the progress of a batch; none with --quiet.
+
+    On a terminal the number of files done and failed, the rate and the time left; elsewhere, and
+    with --verbose, a line for each file. Failures are printed in any case.
 
     Parameters
     ----------
-    console
-        The console to print to.
     files
         Number of results expected.
 
@@ -80,25 +98,27 @@ def batch_progress(console: Console, files: int) -> Iterator[Callable[[FileResul
         TextColumn("{task.fields[failed]}"),
         TimeElapsedColumn(),
         _PaceColumn(table_column=Column(no_wrap=True)),  # a narrow terminal shortens the bar
-        console=console,
+        console=MESSAGES,
         transient=True,
-        disable=not console.is_terminal,
+        disable=VERBOSITY.quiet or not MESSAGES.is_terminal,
         redirect_stdout=False,
     ) as progress:
         task = progress.add_task("", total=files, failed="0 failed", worked=0)
-        worked = failed = 0
+        has_lines = VERBOSITY.verbose or not (MESSAGES.is_terminal or VERBOSITY.quiet)
+        done = worked = failed = 0
 
         def update(result: FileResult) -> None:
-            nonlocal worked, failed
+            nonlocal done, worked, failed
+            done += 1
             if result.outcome == "failed":
                 failed += 1
                 reason = result.reason or ""
                 named = reason if result.input in reason else f"{result.input}: {reason}"
-                console.print(
-                    f"[red]Failed:[/red] {escape(named)}",
-                    highlight=False,
-                    soft_wrap=True,
+                MESSAGES.print(
+                    f"[red]Failed:[/red] {escape(named)}", highlight=False, soft_wrap=True
                 )
+            elif has_lines and result.outcome != "already done":  # which are there at once
+                print_message(f"[{done}/{files}] {result.name}: {result.outcome}")
             worked += result.outcome != "already done"
             failures = f"[red]{failed} failed[/red]" if failed else "0 failed"
             progress.update(task, advance=1, failed=failures, worked=worked)

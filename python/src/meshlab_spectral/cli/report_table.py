@@ -7,8 +7,10 @@ from typing import Any
 from rich.table import Table
 from rich.text import Text
 
+_SHOWN_NUMBERS = 6  # of a vector
 
-def report_table(report: dict[str, Any], title: str) -> Table:
+
+def report_table(report: dict[str, Any], title: str, in_full: bool = False) -> Table:
     """Format a report of the filter as a table; lengths are in the units of the mesh.
 
     Parameters
@@ -17,14 +19,33 @@ def report_table(report: dict[str, Any], title: str) -> Table:
         The dictionary returned by the filter.
     title
         Title of the table, plain text.
+    in_full
+        Add every number of the report under its name there.
     """
+    same = ": unchanged" if report["max_displacement"] == 0 else ""
+    rows = _rows(report)
+    if in_full:
+        numbers = {name: value for name, value in report.items() if name != "warnings"}
+        rows += [(name, _plain(x)) for name, x in numbers.items() if not isinstance(x, str)]
+    return table_of(rows, title + same)
+
+
+def table_of(rows: list[tuple[str, str]], title: str) -> Table:
+    """Format labels and values."""
     # Text, not str: a name such as "[red].ply" is not markup.
     table = Table(title=Text(title), show_header=False, title_justify="left", title_style="bold")
     table.add_column(style="cyan", no_wrap=True)
     table.add_column(justify="right")
-    for label, value in _rows(report):
-        table.add_row(label, value)
+    for label, value in rows:
+        table.add_row(label, Text(value))
     return table
+
+
+def _plain(value: Any) -> str:
+    if not isinstance(value, list):
+        return f"{value:.6g}" if isinstance(value, float) else str(value)
+    shown = ", ".join(map(_plain, value[:_SHOWN_NUMBERS]))
+    return f"{shown}, ... ({len(value)})" if len(value) > _SHOWN_NUMBERS else shown
 
 
 def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:

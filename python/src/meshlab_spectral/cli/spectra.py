@@ -7,22 +7,23 @@ from typing import Annotated
 
 import typer
 
-from meshlab_spectral.batch.files import check_workers
+from meshlab_spectral.batch.files import Workers
 from meshlab_spectral.batch.jobs import FileResult
 from meshlab_spectral.batch.spectra import plan_spectra, write_table
 from meshlab_spectral.cli.many_files import (
     INTERRUPTED,
-    Debug,
     Inputs,
     MemoryLimit,
+    Recursive,
+    ReportFile,
+    Resume,
     Scheduler,
     Timeout,
-    Workers,
+    WorkerCount,
     planning_shown,
     run_shown,
-    summary_of,
 )
-from meshlab_spectral.cli.messages import EXIT_FAILED, errors_reported
+from meshlab_spectral.cli.messages import EXIT_FAILED, errors_reported, print_result
 from meshlab_spectral.files.whole_files import remove_leftovers, resolved, writing_whole
 from meshlab_spectral.filters.options import Boundary, LaplacianKind
 from meshlab_spectral.filters.spectrum import DEFAULT_BASIS_SIZE
@@ -47,18 +48,13 @@ Each mesh gets a line in the report, spectra_report.jsonl, as soon as it is meas
 def spectra_command(
     inputs: Inputs,
     output: Annotated[
-        Path, typer.Option(metavar="FILE", help="Table to write; replaces an existing file.")
-    ] = Path("spectra.csv"),
-    recursive: Annotated[
-        bool, typer.Option("--recursive", "-r", help="Search subfolders, too.")
-    ] = False,
-    resume: Annotated[
-        bool,
+        Path,
         typer.Option(
-            "--resume",
-            help="Reuse what the report proves measured with the same input, options and versions.",
+            "--output", "-o", metavar="TABLE", help="Table to write; replaces an existing file."
         ),
-    ] = False,
+    ] = Path("spectra.csv"),
+    recursive: Recursive = False,
+    resume: Resume = False,
     basis_size: Annotated[
         int, typer.Option(min=0, help="Number of lowest harmonics to measure individually, too.")
     ] = DEFAULT_BASIS_SIZE,
@@ -69,24 +65,15 @@ def spectra_command(
         Boundary,
         typer.Option(help="Whether boundaries of open surfaces are part of the shape (free)."),
     ] = "free",
-    report: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FILE",
-            help="The report, one JSON object per line; appended to if it exists. By default "
-            "spectra_report.jsonl next to spectra.csv.",
-            show_default=False,
-        ),
-    ] = None,
-    workers: Workers = None,
+    report: ReportFile = None,
+    workers: WorkerCount = None,
     memory_limit: MemoryLimit = None,
     timeout: Timeout = None,
     scheduler: Scheduler = None,
-    debug: Debug = False,
 ) -> None:
     """Measure spectra of many meshes: see `meshlab-spectral spectra --help`."""
-    with errors_reported(debug, INTERRUPTED):
-        check_workers(scheduler, workers, memory_limit)
+    with errors_reported(INTERRUPTED):
+        using = Workers(workers, memory_limit, scheduler)
         with planning_shown(resume):
             batch = plan_spectra(
                 inputs,
@@ -102,8 +89,8 @@ def spectra_command(
         remove_leftovers(resolved(output).parent, output.name)
         results: list[FileResult] = []
         with writing_whole(output) as scratch:
-            counts = run_shown(batch, workers, memory_limit, scheduler, results.append)
+            tally = run_shown(batch, using, results.append)
             write_table(scratch, results)
-        typer.echo(f"{summary_of(counts, 'measured')}; table: {output}, report: {batch.report}")
-    if counts["failed"]:
+        print_result(f"{tally.summary('measured')}; table: {output}, report: {batch.report}")
+    if tally.counts["failed"]:
         raise typer.Exit(EXIT_FAILED)

@@ -11,12 +11,18 @@ from typing import Annotated, Any
 
 import numpy as np
 import typer
-from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from meshlab_spectral.cli.filter_options import OneMesh, with_options
-from meshlab_spectral.cli.messages import errors_reported
+from meshlab_spectral.cli.filter_options import (
+    AsJson,
+    OneMesh,
+    Recipe,
+    Source,
+    chosen_options,
+    with_options,
+)
+from meshlab_spectral.cli.messages import errors_reported, print_result
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.extras import check_extras
 from meshlab_spectral.figures.spectrum import (
@@ -65,35 +71,33 @@ SHOWN_OPTIONS = (
 )
 
 
-@with_options(FilterOptions, SHOWN_OPTIONS)
+@with_options(FilterOptions, names=SHOWN_OPTIONS)
 def spectrum_command(
-    options: FilterOptions,
-    source: Annotated[
-        Path, typer.Argument(metavar="MESH", help="Mesh to read: .ply, .obj, .stl, .off, ...")
-    ],
+    given: dict[str, Any],
+    source: Source,
     output: Annotated[
         Path | None,
         typer.Option(
+            "--output",
+            "-o",
             metavar="PLOT",
             help="Plot to write: .png, .pdf or .svg; replaces an existing file. By default "
             "MESH_spectrum.png in the current folder, or none with --json.",
-            show_default=False,
         ),
     ] = None,
     basis_size: Annotated[
         int, typer.Option(min=0, help="Number of lowest harmonics to show individually, too.")
     ] = DEFAULT_BASIS_SIZE,
     mesh: OneMesh = None,
-    as_json: Annotated[
-        bool, typer.Option("--json", help="Print the spectrum as one JSON object.")
-    ] = False,
-    debug: Annotated[bool, typer.Option("--debug", hidden=True)] = False,
+    recipe: Recipe = None,
+    as_json: AsJson = False,
 ) -> None:
     """Show the spectrum of a mesh: see `meshlab-spectral spectrum --help`."""
     if output is None and not as_json:
         output = Path(f"{source.stem}_spectrum.png")
     begin = time.monotonic()
-    with errors_reported(debug), contextlib.ExitStack() as stack:
+    with errors_reported(), contextlib.ExitStack() as stack:
+        options = chosen_options(FilterOptions, given, recipe)
         check_source(source)
         scratch = None
         if output is not None:  # fail before the computation if it cannot be written
@@ -111,8 +115,8 @@ def spectrum_command(
         record |= {"seconds": round(time.monotonic() - begin, 3), "versions": versions()}
         typer.echo(json.dumps(record))
     else:
-        Console().print(_table(spectrum, options, source.name))
-        typer.echo(output)
+        print_result(_table(spectrum, options, source.name))
+        print_result(output)
 
 
 def _record(

@@ -136,10 +136,19 @@ def script_to_scratch(
 def load_arrays(source: Path, mesh: str | None = None) -> tuple[Array, Indices]:
     """Read a mesh file: n x 3 coordinates, placed, and m x 3 vertex indices of triangles.
 
+    Several meshes become one, of as many components. Parameters and errors are those of
+    `load_parts`.
+    """
+    return joined(load_parts(source, mesh))
+
+
+def load_parts(source: Path, mesh: str | None = None) -> list[Part]:
+    """Read the meshes of a file.
+
     Parameters
     ----------
     source
-        The file. Several meshes become one, of as many components.
+        The file.
     mesh
         Read only the mesh of this name.
 
@@ -154,11 +163,11 @@ def load_arrays(source: Path, mesh: str | None = None) -> tuple[Array, Indices]:
 
     check_source(source)
     if is_patched(source):
-        return _joined(_chosen(open_document(source), mesh))
+        return _chosen(open_document(source), mesh)
     mesh_set = pymeshlab.MeshSet()
     read_with_meshlab(mesh_set, source)
     current = mesh_set.current_mesh()
-    return current.vertex_matrix().copy(), current.face_matrix().astype(np.int64)
+    return [Part("", current.vertex_matrix().copy(), current.face_matrix().astype(np.int64))]
 
 
 def check_source(source: Path) -> None:
@@ -225,7 +234,7 @@ def _filter_document(
         bare = _BARE.get(scratch.suffix.lower())
         write_with_meshlab(_merged(document, verbose, shapes), scratch, source, bare)
         warnings = left_behind(document, scratch)
-        warnings += _rounded(_joined(document.parts)[0], np.vstack(shapes), scratch)
+        warnings += _rounded(joined(document.parts)[0], np.vstack(shapes), scratch)
     return _report([part.name for part in chosen], reports, document.warnings + warnings)
 
 
@@ -270,7 +279,7 @@ def _mesh_set(V: Array, F: Indices, quality: Array | None, verbose: bool) -> Any
     return mesh_set
 
 
-def _joined(parts: Sequence[Part], moved: Sequence[Array] | None = None) -> tuple[Array, Indices]:
+def joined(parts: Sequence[Part], moved: Sequence[Array] | None = None) -> tuple[Array, Indices]:
     """Several meshes as one."""
     vertices = [part.vertices for part in parts] if moved is None else moved
     begins = np.cumsum([0, *(len(V) for V in vertices)])
@@ -281,7 +290,7 @@ def _joined(parts: Sequence[Part], moved: Sequence[Array] | None = None) -> tupl
 def _merged(document: Document, verbose: bool, moved: Sequence[Array] | None = None) -> Any:
     """Return a MeshSet with all meshes of a document as one."""
     quality = document.parts[0].quality if len(document.parts) == 1 else None
-    return _mesh_set(*_joined(document.parts, moved), quality, verbose)
+    return _mesh_set(*joined(document.parts, moved), quality, verbose)
 
 
 def _rounded(before: Array, after: Array, scratch: Path) -> list[str]:

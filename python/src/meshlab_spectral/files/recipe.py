@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -44,16 +46,22 @@ def load_recipe(path: Path) -> tuple[type[Options], dict[str, Any]]:
     return table, options
 
 
-def save_recipe(path: Path, options: Options) -> None:
+@contextlib.contextmanager
+def saving_recipe(path: Path | None, options: Options | None) -> Iterator[None]:
     """Write all options to a recipe, which may replace another recipe but no other file.
+
+    It is written when the block has succeeded, and not at all where `path` or `options` is None.
 
     Raises
     ------
     InputError
-        When the file exists and is not a recipe.
+        Before the block: when the file exists and is not a recipe.
     MeshFileError
-        When it cannot be written.
+        When it cannot be written, if possible before the block.
     """
+    if path is None or options is None:
+        yield
+        return
     if path.is_file():
         try:
             _content(path)
@@ -65,6 +73,7 @@ def save_recipe(path: Path, options: Options) -> None:
     }
     with writing_whole(path) as scratch:
         scratch.write_text(tomli_w.dumps({options.TABLE: plain}), encoding="utf-8")
+        yield
 
 
 def _content(path: Path) -> tuple[type[Options], dict[str, Any]]:

@@ -22,6 +22,7 @@ from typing import Any
 
 from meshlab_spectral import errors
 from meshlab_spectral.files.basis import basis_to_scratch
+from meshlab_spectral.files.info import mesh_info
 from meshlab_spectral.files.meshes import (
     StageCallback,
     filter_to_scratch,
@@ -46,6 +47,8 @@ def _report_of(job: dict[str, Any], on_stage: StageCallback) -> dict[str, Any]:
         V, F = load_arrays(source, job.get("mesh"))
         on_stage("measuring")
         return plain_report(measure(V, F, job["parameters"], verbose=verbose))
+    if task == "info":
+        return mesh_info(source, on_stage, job.get("mesh"))
     scratch = Path(job["scratch"])
     if task == "basis":
         return basis_to_scratch(

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import logging
 import os
 import queue
 import re
@@ -28,7 +29,11 @@ from meshlab_spectral.plugin.threads import VARIABLE as THREADS_VARIABLE
 
 ProgressCallback = Callable[[str, float | None], None]
 
-_LOG_LINE = re.compile(r"^LOG: \d+ (?P<stage>.*?)\s+\[ (?P<percent>\d+)% \]")
+# Takes the lines of MeshLab's log but for its progress.
+LOG = logging.getLogger("meshlab_spectral.meshlab")
+
+_LOG_BEGIN = re.compile(r"^LOG: \d+ ")
+_LOG_LINE = re.compile(_LOG_BEGIN.pattern + r"(?P<stage>.*?)\s+\[ (?P<percent>\d+)% \]")
 _KEPT_LOG_LINES = 30
 # Seconds between looks at the child, in which its memory can grow by some 100 MB.
 _LOOK_INTERVAL = 0.05
@@ -250,6 +255,8 @@ class MeshLabProcess:
             if match:
                 fraction = int(match["percent"]) / 100
                 self._messages.put({"stage": match["stage"], "fraction": fraction})
+            elif line.strip():
+                LOG.info(_LOG_BEGIN.sub("", line.rstrip()))
 
 
 def _ignore(stage: str, fraction: float | None) -> None:

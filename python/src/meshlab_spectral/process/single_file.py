@@ -139,6 +139,21 @@ def measure_spectrum_in_child(
     return GeometrySpectrum.from_report(_run_in_child(job, on_progress))
 
 
+def mesh_info_in_child(
+    source: Path,
+    on_progress: ProgressCallback = lambda stage, fraction: None,
+    mesh: str | None = None,
+) -> dict[str, Any]:
+    """Describe a mesh file, see `info.mesh_info`, in a child process that can be interrupted.
+
+    Parameters and errors are those of `measure_spectrum_in_child`.
+    """
+    check_source(source)
+    return _run_in_child(
+        {"task": "info", "source": str(source.absolute()), "mesh": mesh}, on_progress
+    )
+
+
 def _run_in_child(job: dict[str, Any], on_progress: ProgressCallback) -> dict[str, Any]:
     with MeshLabProcess() as process:
         return process.run(job, on_progress).report

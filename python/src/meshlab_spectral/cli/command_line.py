@@ -1,0 +1,176 @@
+"""What all commands have in common: --quiet and --verbose, help in groups, usage errors."""
+
+from __future__ import annotations
+
+import contextlib
+import inspect
+import re
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperCommand, TyperGroup
+
+from meshlab_spectral.cli.messages import EXIT_USAGE, VERBOSITY, print_error
+
+Command = Callable[..., None]
+
+# The groups of --help, and the options in them; all others are under "Options", or where
+# `rich_help_panel` says.
+HOW, DENOISE = "How", "With --denoise"
+_GROUPS = {
+    "What to do": """preset recipe script denoise only filter_type feature_size pass_gain stop_gain
+        transfer_function band_width response order power strength noise_height noise_size""",
+    DENOISE: "",
+    "Where": "mesh selected boundary crease_angle keep_creases weight",
+    HOW: """steps tolerance basis_update conformal_share spectrum basis_size reinject_residual
+        laplacian preserve_volume""",
+    "Files": "recursive overwrite resume dry_run",
+    "Workers": "workers memory_limit timeout scheduler",
+    "Output": "output name ending result pictures modes scale save_recipe report as_json",
+}
+GROUP_OF = {name: group for group, names in _GROUPS.items() for name in names.split()}
+
+# Typer comes with its own copy of Click, or in older versions with Click itself.
+_UsageError: type[Exception] = typer.BadParameter.__mro__[1]
+
+_MORE = "Print all numbers, files and warnings, and MeshLab's log."
+_VERBOSITY = (
+    ("quiet", typer.Option("--quiet", "-q", help="Print only errors and warnings.")),
+    ("verbose", typer.Option("--verbose", "-v", help=_MORE)),
+    ("debug", typer.Option("--debug", hidden=True)),
+)
+
+
+class OneCommand(TyperCommand):
+    """A command whose --help has its options in groups.
+
+    Typer's own panels leave the help of an option a third of a terminal with 80 columns.
+    """
+
+    def format_options(self, ctx: Any, formatter: Any) -> None:
+        """Write the arguments, then the groups."""
+        groups: dict[str, list[tuple[str, str]]] = {}
+        for parameter in self.get_params(ctx):
+            record = parameter.get_help_record(ctx)
+            if record is not None:
+                other = "Arguments" if parameter.param_type_name == "argument" else "Options"
+                named = getattr(parameter, "rich_help_panel", None)
+                group = named or GROUP_OF.get(parameter.name, other)
+                groups.setdefault(group, []).append(record)
+        for group in ("Arguments", *_GROUPS, "Options"):
+            if group in groups:
+                with formatter.section(group):
+                    formatter.write_dl(groups[group])
+
+    def parse_args(self, ctx: Any, args: list[str]) -> Any:
+        """Parse the command line; usage errors know the command."""
+        with _known_to(ctx):
+            return super().parse_args(ctx, args)
+
+    def invoke(self, ctx: Any) -> Any:
+        """Run the command; usage errors know it."""
+        with _known_to(ctx):
+            return super().invoke(ctx)
+
+
+@contextlib.contextmanager
+def _known_to(ctx: Any) -> Iterator[None]:
+    """Add the command's context to usage errors that come without."""
+    try:
+        yield
+    except _UsageError as error:
+        error.ctx = error.ctx or ctx  # type: ignore[attr-defined]
+        raise
+
+
+class AllCommands(TyperGroup):
+    """The commands; usage errors look like all other errors."""
+
+    def main(self, *args: Any, **extra: Any) -> Any:
+        """Run a command line and exit with its exit code."""
+        extra["standalone_mode"] = False
+        try:
+            code = super().main(*args, **extra)
+        except _UsageError as error:
+            _print_usage_error(error)
+            code = EXIT_USAGE
+        sys.exit(code)
+
+
+def with_verbosity(command: Command) -> Command:
+    """Add the options of VERBOSITY to a command."""
+    added = [(name, bool, option, False) for name, option in _VERBOSITY]
+
+    def run(arguments: dict[str, Any]) -> None:
+        for name, _ in _VERBOSITY:
+            setattr(VERBOSITY, name, arguments.pop(name))
+        if VERBOSITY.quiet and VERBOSITY.verbose:
+            raise typer.BadParameter("not together with --verbose", param_hint="--quiet")
+        command(**arguments)
+
+    return with_parameters(command, added, run)
+
+
+def with_parameters(
+    command: Command,
+    added: Sequence[tuple[str, Any, Any, Any]],
+    run: Callable[[dict[str, Any]], None],
+    replaced: str | None = None,
+) -> Command:
+    """Return `run` as a command with more parameters.
+
+    Parameters
+    ----------
+    command
+        The command that `run` calls: it has the same parameters, but for
+    added
+        name, type, `typer.Option` and default of each that only `run` has, and
+    replaced
+        the name of the parameter that `run` passes in place of these.
+    """
+    own = inspect.signature(command, eval_str=True).parameters.values()
+    kind = inspect.Parameter.KEYWORD_ONLY
+    parameters = [one.replace(kind=kind) for one in own if one.name != replaced] + [
+        inspect.Parameter(name, kind, default=default, annotation=Annotated[type_, option])
+        if option is not None
+        else inspect.Parameter(name, kind, annotation=type_)
+        for name, type_, option, default in added
+    ]
+
+    def with_more(**arguments: Any) -> None:
+        run(arguments)
+
+    with_more.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
+    with_more.__annotations__ = {one.name: one.annotation for one in parameters}
+    with_more.__doc__, with_more.__name__ = command.__doc__, command.__name__
+    return with_more
+
+
+def _print_usage_error(error: Any) -> None:
+    if error.message.startswith("Usage:"):  # no command at all: the whole help
+        typer.echo(error.message, err=True)
+        return
+    print_error(_described(error))
+    if error.ctx is not None:
+        typer.echo(f"See: {error.ctx.command_path} --help", err=True)
+
+
+def _described(error: Any) -> str:
+    """Say what is wrong, starting with the name of the option or argument."""
+    parameter = getattr(error, "param", None)
+    name = getattr(error, "param_hint", None)
+    if name is None and parameter is not None:
+        is_option = parameter.param_type_name == "option"
+        name = max(parameter.opts, key=len) if is_option else parameter.metavar or parameter.name
+    if type(error).__name__ == "MissingParameter":
+        return f"{name} is missing"
+    if type(error).__name__ == "NoSuchOption":
+        similar = " or ".join(error.possibilities or [])
+        hint = f": did you mean {similar}?" if similar else ""
+        return f"there is no option {error.option_name}{hint}"
+    # "Value error, 'x' is not one of ...", "Input should be an integer"
+    text = re.sub(r"^(Value error, |Input )", "", error.message).rstrip(".")
+    text = text.replace(". Did you mean", ": did you mean")
+    return f"{text[:1].lower()}{text[1:]}" if name is None else f"{name}: {text}"

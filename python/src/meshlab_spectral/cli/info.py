@@ -1,0 +1,75 @@
+"""The command `meshlab-spectral info`."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import typer
+from rich.console import Console
+
+from meshlab_spectral.cli.filter_options import AsJson, OneMesh, Source
+from meshlab_spectral.cli.messages import errors_reported, print_warning
+from meshlab_spectral.cli.progress import progress_shown
+from meshlab_spectral.cli.report_table import table_of
+from meshlab_spectral.plugin.versions import versions
+from meshlab_spectral.process.single_file import mesh_info_in_child
+
+# "\b" keeps a paragraph's lines as they are.
+INFO_HELP = """Describe a mesh: its surface, its noise, and a feature size to start with.
+
+Nothing is written. Lengths are in the units of the file; the noise is what denoise would remove,
+the feature size the default of filter.
+
+\b
+  meshlab-spectral info scan.ply
+  meshlab-spectral info scan.ply --json
+"""
+
+
+def info_command(
+    source: Source,
+    mesh: OneMesh = None,
+    as_json: AsJson = False,
+) -> None:
+    """Describe a mesh: see `meshlab-spectral info --help`."""
+    with errors_reported("nothing was printed"), progress_shown() as on_progress:
+        report = mesh_info_in_child(source, on_progress, mesh)
+    for warning in report["warnings"]:
+        print_warning(warning)
+    if as_json:
+        typer.echo(json.dumps({"input": str(source), **report, "versions": versions()}))
+        return
+    Console().print(table_of(_rows(report), source.name))
+    typer.echo(f"denoise would say: {report['noise_summary'].removesuffix('; nothing changed')}")
+
+
+def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
+    percent = 100 / report["diagonal"]
+
+    def length(name: str) -> str:
+        """Format a length, in mean edges and percent of the diagonal, too."""
+        x = report[name]
+        return f"{x:.4g} ({x / report['mean_edge']:.2g}e, {x * percent:.2g} %)" if x else "none"
+
+    selected = [report.get(f"selected_{what}", 0) for what in ("faces", "vertices")]
+    voxel = " x ".join(f"{x:.4g}" for x in report["voxel_size"] if x)
+    rows = [
+        ("Meshes", ", ".join(report["meshes"]) if len(report["meshes"]) > 1 else ""),
+        ("Vertices", f"{report['vertices']}"),
+        ("Faces", f"{report['faces']}"),
+        ("Components", f"{report['components']}"),
+        ("Rims (boundary loops)", f"{report['rims']}"),
+        ("Vertices joined at seams", f"{report['joined_vertices']}"),
+        ("Vertices without faces", f"{report['unreferenced_vertices'] or ''}"),
+        ("Selected", "{} faces, {} vertices".format(*selected) if any(selected) else ""),
+        ("Extent", " x ".join(f"{x:.4g}" for x in report["extent"])),
+        ("Diagonal", f"{report['diagonal']:.4g}"),
+        ("Mean edge", f"{report['mean_edge']:.4g} ({report['mean_edge'] * percent:.2g} %)"),
+        ("Noise height", length("noise_height")),
+        ("Noise size", length("noise_size") if report["noise_size"] else ""),
+        ("Spikes", f"{report['spikes'] or ''}"),
+        ("Voxels", voxel),
+        ("Suggested feature size", length("default_feature_size")),
+    ]
+    return [(label, value) for label, value in rows if value]

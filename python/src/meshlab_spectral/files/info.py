@@ -1,0 +1,116 @@
+"""What is in a mesh file: its size and surface, its noise, and a feature size to start with."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshlab_spectral.errors import MeshFileError
+from meshlab_spectral.files.meshes import StageCallback, joined, load_parts
+from meshlab_spectral.files.meshlab_files import read_with_meshlab
+from meshlab_spectral.filters.calling import call_filter, plain_report
+from meshlab_spectral.filters.spectrum import FILTER_NAME as SPECTRUM_NAME
+from meshlab_spectral.plugin.loading import DENOISE_NAME, load
+
+_OF_SURFACE = ("components", "joined_vertices", "unreferenced_vertices")
+_LENGTHS = ("diagonal", "mean_edge", "area", "default_feature_size")
+
+
+def mesh_info(source: Path, on_stage: StageCallback, mesh: str | None = None) -> dict[str, Any]:
+    """Describe a mesh file; several meshes are described together.
+
+    Parameters
+    ----------
+    source
+        The file.
+    on_stage
+        Called with "reading", "measuring" and "looking for noise" as these begin.
+    mesh
+        Describe only the mesh of this name.
+
+    Returns
+    -------
+    dict
+        "meshes", their names; the numbers of "vertices", "faces", "components", "rims" (boundary
+        loops), "joined_vertices" (at seams) and "unreferenced_vertices"; those of
+        "selected_vertices" and "selected_faces" in a PLY file; in the units of the file "extent"
+        along each axis, "diagonal", "mean_edge", "area" and "default_feature_size"; what Spectral
+        Denoise would remove: "noise_summary", "noise_height" and "noise_size", the number of
+        "spikes", "voxel_size"; "warnings".
+
+    Raises
+    ------
+    MeshFileError, OptionError
+        As `load_parts`.
+    FilterError
+        When the mesh has no faces, no area or non-finite coordinates.
+    """
+    on_stage("reading")
+    parts = load_parts(source, mesh)
+    selected = _selected(source)
+    V, F = joined(parts)
+    load()
+    import pymeshlab
+
+    mesh_set = pymeshlab.MeshSet(verbose=True)  # the log has the progress
+    mesh_set.add_mesh(pymeshlab.Mesh(V, F))
+    on_stage("measuring")
+    spectrum = call_filter(mesh_set, SPECTRUM_NAME, {})
+    on_stage("looking for noise")
+    denoised = call_filter(mesh_set, DENOISE_NAME, {})
+    report = {
+        "meshes": [part.name for part in parts if part.name],
+        "vertices": len(V),
+        "faces": len(F),
+        **{name: denoised[name] for name in _OF_SURFACE},
+        "rims": _boundary_loops(V, F),
+        **selected,
+        "extent": np.ptp(V, axis=0),
+        **{name: spectrum[name] for name in _LENGTHS},
+        "noise_summary": denoised["summary"],
+        "noise_height": denoised["noise_height"],
+        "noise_size": denoised["noise_size"],
+        "spikes": denoised["spikes"],
+        "voxel_size": denoised["voxel_size"],
+        "warnings": [told for told in denoised["warnings"] if told != denoised["summary"]],
+    }
+    return plain_report(report)
+
+
+def _boundary_loops(V: NDArray[np.float64], F: NDArray[np.int64]) -> int:
+    """Count the connected sets of edges with one face, vertices at the same place being one."""
+    _, place = np.unique(V, axis=0, return_inverse=True)
+    corners = place.ravel()[F]
+    sides = np.vstack([corners[:, [k, (k + 1) % 3]] for k in range(3)])
+    edges, faces = np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)
+    parent: dict[int, int] = {}
+
+    def root(vertex: int) -> int:
+        while parent.setdefault(vertex, vertex) != vertex:
+            parent[vertex] = vertex = parent[parent[vertex]]
+        return vertex
+
+    for one, other in edges[faces == 1].tolist():
+        parent[root(one)] = root(other)
+    return sum(vertex == above for vertex, above in parent.items())
+
+
+def _selected(source: Path) -> dict[str, int]:
+    """Count what is selected in a file of MeshLab's; only its PLY files hold a selection."""
+    if source.suffix.lower() != ".ply":
+        return {}
+    import pymeshlab
+
+    mesh_set = pymeshlab.MeshSet()
+    try:
+        read_with_meshlab(mesh_set, source)
+    except MeshFileError:  # which we have read nevertheless
+        return {}
+    mesh = mesh_set.current_mesh()
+    return {
+        "selected_vertices": mesh.selected_vertex_number(),
+        "selected_faces": mesh.selected_face_number(),
+    }
