@@ -209,3 +209,27 @@ def test_the_shell_completes_commands_options_and_choices(line: str, completed: 
         COMP_CWORD=str(len(line.split())),
     )
     assert done.stdout.split() == [completed], done.stderr
+
+
+def test_an_equalizer_is_that_of_meshlab(samples: Path, tmp_path: Path) -> None:
+    bunny, target = samples / "bunny.obj", tmp_path / "out.ply"
+    done = command(
+        "filter", bunny, target, "--equalizer", "1,1,2,1,0.5,0", "--tolerance", "0.01%", "--json"
+    )
+    assert json.loads(done.stdout)["options"]["transfer_function"] == (
+        "192e:1, 96e:1, 48e:1, 24e:2, 12e:1, 6e:0.5, 3e:0"
+    )
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.load_new_mesh(str(bunny))
+    before = mesh_set.current_mesh().vertex_matrix()
+    mesh_set.apply_coord_spectral_equalizer(gain_8x=2, gain_2x=0.5, gain_1x=0, accurate=True)
+    expected = mesh_set.current_mesh().vertex_matrix()
+    mesh_set.load_new_mesh(str(target))
+    moved = np.abs(expected - before).max()
+    np.testing.assert_allclose(mesh_set.current_mesh().vertex_matrix(), expected, atol=0.1 * moved)
+
+
+@pytest.mark.parametrize("gains", ["1,2", "1,1,1,1,1,-1", "1,1,1,1,1,x", "1,1,1,1,1,nan"])
+def test_an_equalizer_needs_six_gains(gains: str, cow: Path, tmp_path: Path) -> None:
+    done = command("filter", cow, tmp_path / "out.ply", "--equalizer", gains)
+    assert_fails(done, 2, "--equalizer", gains)

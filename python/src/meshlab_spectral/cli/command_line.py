@@ -20,8 +20,9 @@ Command = Callable[..., None]
 # `rich_help_panel` says.
 HOW, DENOISE = "How", "With --denoise"
 _GROUPS = {
-    "What to do": """preset recipe script denoise only filter_type feature_size pass_gain stop_gain
-        transfer_function band_width response order power strength noise_height noise_size""",
+    "What to do": """preset equalizer recipe script denoise only filter_type feature_size pass_gain
+        stop_gain transfer_function band_width response order power
+        strength noise_height noise_size""",
     DENOISE: "",
     "Where": "mesh selected boundary crease_angle keep_creases weight",
     HOW: """steps tolerance basis_update conformal_share spectrum basis_size reinject_residual

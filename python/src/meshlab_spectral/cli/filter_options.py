@@ -14,7 +14,7 @@ from meshlab_spectral.errors import OptionError
 from meshlab_spectral.files.recipe import load_recipe
 from meshlab_spectral.filters.option_types import AnyOptions, Length, Options
 from meshlab_spectral.filters.options import FilterOptions
-from meshlab_spectral.filters.presets import PRESETS, Preset
+from meshlab_spectral.filters.presets import PRESETS, Preset, equalizer_points
 
 Source = Annotated[
     Path, typer.Argument(metavar="MESH", help="Mesh to read: .ply, .obj, .stl, .off, ...")
@@ -52,6 +52,25 @@ def _use_preset(context: typer.Context, name: Preset | None) -> Preset | None:
     return name
 
 
+def _use_equalizer(context: typer.Context, gains: str | None) -> str | None:
+    """Make the gains of an equalizer the defaults of `--filter-type` and `--transfer-function`."""
+    if gains is not None:
+        try:
+            points = equalizer_points([float(gain) for gain in gains.split(",")])
+        except ValueError as error:
+            raise typer.BadParameter(f"{gains}: {error}") from error
+        custom = {"filter_type": "custom", "transfer_function": points}
+        context.default_map = {**(context.default_map or {}), **custom}
+    return gains
+
+
+_EQUALIZER = typer.Option(
+    is_eager=True,
+    callback=_use_equalizer,
+    metavar="GAINS",
+    help="Gains of details of 96, 48, 24, 12, 6 and 3 mean edges, such as 1,1,2,1,0.5,0: the "
+    "sliders of MeshLab's Spectral Equalizer. In place of --filter-type and --transfer-function.",
+)
 _PRESET = typer.Option(
     is_eager=True,
     callback=_use_preset,
@@ -71,13 +90,14 @@ def with_options(
     ----------
     *tables
         The tables. Of fields with one name the first counts. A command with FilterOptions gets
-        `--preset`, too.
+        `--preset` and `--equalizer`, too.
     names
         Only these fields.
     """
     added: dict[str, tuple[str, Any, Any, Any]] = {}
     if FilterOptions in tables:
         added["preset"] = ("preset", Preset | None, _PRESET, None)
+        added["equalizer"] = ("equalizer", str | None, _EQUALIZER, None)
     for table in tables:
         types = get_type_hints(table)
         for one in fields(table):
@@ -134,13 +154,14 @@ def chosen_options(
     found, options = (table, {}) if recipe is None else load_recipe(recipe)
     if found is not table:
         raise OptionError(f"the recipe {recipe} is for {found.TABLE}, not for {table.TABLE}")
-    known = {one.name for one in fields(table)} | ({"preset"} if table is FilterOptions else set())
+    shortcuts = {"preset", "equalizer"}
+    known = {one.name for one in fields(table)} | (shortcuts if table is FilterOptions else set())
     for name in given:
         if name not in known:
             hint = ": add --denoise" if table is FilterOptions and recipe is None else ""
             spelled = name.replace("_", "-")
             raise OptionError(f"--{spelled} is not an option of {table.TABLE}{hint}")
-    values = {name: value for name, value in given.items() if name != "preset"}
+    values = {name: value for name, value in given.items() if name not in shortcuts}
     return table.from_dict({**options, **values})
 
 

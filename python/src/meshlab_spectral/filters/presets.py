@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from math import inf
 from typing import Literal, get_args
 
 Preset = Literal["smooth", "remove-details", "sharpen", "enhance", "caricature", "extract-details"]
@@ -32,4 +34,27 @@ PRESETS: dict[Preset, dict[str, str]] = {
     },
     "extract-details": {"filter_type": "low-pass", "feature_size": "5%", "result": "details"},
 }
+# Sizes of the equalizer's sliders in mean edges, from coarse to fine, as in MeshLab.
+EQUALIZER_EDGES = (96, 48, 24, 12, 6, 3)
+
+
+def equalizer_points(gains: Sequence[float]) -> str:
+    """Return the transfer function of an equalizer's sliders, as points for the filter.
+
+    Parameters
+    ----------
+    gains
+        One for each of `EQUALIZER_EDGES`, >= 0; what is larger than all of them keeps its height.
+
+    Raises
+    ------
+    ValueError
+        When there are not as many, or one is negative or not finite.
+    """
+    if len(gains) != len(EQUALIZER_EDGES) or not all(0 <= gain < inf for gain in gains):
+        raise ValueError(f"give {len(EQUALIZER_EDGES)} gains from 0 on, such as 1,1,2,1,0.5,0")
+    points = zip((2 * EQUALIZER_EDGES[0], *EQUALIZER_EDGES), (1.0, *gains), strict=True)
+    return ", ".join(f"{edges}e:{gain:g}" for edges, gain in points)
+
+
 assert get_args(Preset) == tuple(PRESETS)
