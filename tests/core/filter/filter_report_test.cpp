@@ -63,6 +63,23 @@ TEST(FractionalFilter, ReportsWhatItDid) {
     EXPECT_EQ(result.eigenvalues.size(), 0);
 }
 
+TEST(FractionalFilter, EndsAtTheMostStepsAndTellsTheError) {
+    const Mesh mesh = testing::blob();
+    FilterOptions options = smoothing(mesh, 0, BasisUpdate::Conformal);
+    options.tolerance = 1e-6 * boundingBoxDiagonal(mesh.V);
+    const FilterResult accurate = fractionalFilter(mesh.V, mesh.F, options);
+    options.mostSteps = 2;
+    const FilterResult quick = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_TRUE(accurate.toleranceReached);
+    EXPECT_GT(accurate.steps, 2);
+    EXPECT_EQ(quick.steps, 2);
+    EXPECT_FALSE(quick.toleranceReached);
+    const double error = largestDifference(quick.V, accurate.V);
+    EXPECT_GT(error, options.tolerance);
+    EXPECT_LT(error, 2.0 * quick.stepError);
+    EXPECT_LT(error, 0.1 * quick.maxDisplacement);
+}
+
 TEST(FractionalFilter, WarnsWhenTheAccuracyIsNotReached) {
     // The tenth root of a gain that vanishes inside the spectrum has a cusp there.
     const Mesh mesh = testing::withNoise(testing::icosphere(4), 0.02, 5);
