@@ -154,6 +154,7 @@ void report(const Vertices& V, const Surface& surface, const Vertices& displacem
         displacement.stableNorm() / std::sqrt(static_cast<double>(displacement.rows()));
     result.volumeBefore = signedVolume(surface.X, surface.F);
     result.volumeAfter = signedVolume(surface.X + displacement, surface.F);
+    result.hasVolume = enclosesVolume(surface.X, surface.F);
 }
 
 /// An offset that makes up for lost volume is at most so many times the displacement. Noise lies on

@@ -31,7 +31,8 @@ struct DenoiseResult : SurfaceCounts {
     bool isCrumpled = false;       ///< Not removed: that would have folded the surface.
     double maxDisplacement = 0.0;  ///< Largest vertex displacement, length units.
     double rmsDisplacement = 0.0;  ///< Root mean square over the vertices.
-    double volumeBefore = 0.0, volumeAfter = 0.0;  ///< Signed; a volume for closed meshes only.
+    double volumeBefore = 0.0, volumeAfter = 0.0;  ///< Signed; a volume where there is one.
+    bool hasVolume = false;                        ///< Whether the surface encloses one.
     PreservedVolumes volumes;                      ///< Of the closed components.
 };
 

@@ -137,9 +137,8 @@ std::string reportText(const std::string& summary, const DenoiseResult& result) 
     std::ostringstream text;
     text << "Spectral Denoise: " << summary << std::setprecision(3) << "\n  the vertices moved by "
          << result.rmsDisplacement << " (root mean square), by " << result.maxDisplacement
-         << " at most" << std::setprecision(6) << "\n  volume: " << result.volumeBefore << " -> "
-         << result.volumeAfter << " (of closed surfaces)\n  " << surfaceTold(result)
-         << "\n  work: " << result.rounds << " rounds";
+         << " at most\n  " << volumeTold(result.hasVolume, result.volumeBefore, result.volumeAfter)
+         << "\n  " << surfaceTold(result) << "\n  work: " << result.rounds << " rounds";
     return text.str();
 }
 

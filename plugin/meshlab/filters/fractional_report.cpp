@@ -212,12 +212,8 @@ std::string fractionalReportText(const spectral::FilterOptions& options,
     text << headline(options, result, diagonal, subject) << "\n  steps: " << result.steps
          << ", cutoff frequency " << result.cutoffFrequency << " rad per unit\n"
          << "  area: " << result.areaBefore << " -> " << result.areaAfter << "\n"
-         << "  volume: ";
-    if (result.hasVolume)
-        text << result.volumeBefore << " -> " << result.volumeAfter;
-    else
-        text << "none, as the surface is open";
-    text << "\n  " << surfaceTold(result, "vertices fixed, on the boundary or a crease");
+         << "  " << volumeTold(result.hasVolume, result.volumeBefore, result.volumeAfter) << "\n  "
+         << surfaceTold(result, "vertices fixed, on the boundary or a crease");
     if (options.preserveVolume)
         text << ", " << result.volumes.preserved << " with the volume preserved";
     text << "\n  work: " << result.factorizations << " factorizations, " << result.solves

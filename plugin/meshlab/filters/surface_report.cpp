@@ -1,5 +1,8 @@
 #include "meshlab/filters/surface_report.h"
 
+#include <iomanip>
+#include <sstream>
+
 void addSurfaceCounts(const spectral::SurfaceCounts& counts,
                       std::map<std::string, QVariant>& report) {
     report["components"] = counts.components;
@@ -18,6 +21,13 @@ std::string surfaceTold(const spectral::SurfaceCounts& counts, const char* fixed
     add(counts.unreferencedVertices, "unreferenced vertices unchanged");
     add(counts.fixedVertices, fixed);
     return text;
+}
+
+std::string volumeTold(bool hasVolume, double before, double after) {
+    if (!hasVolume) return "volume: none, as the surface is open, or not consistently oriented";
+    std::ostringstream text;
+    text << std::setprecision(6) << "volume: " << before << " -> " << after;
+    return text.str();
 }
 
 bool isAllFixed(const spectral::SurfaceCounts& counts, Eigen::Index n) {

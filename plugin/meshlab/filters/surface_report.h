@@ -18,6 +18,9 @@ void addSurfaceCounts(const spectral::SurfaceCounts& counts,
 std::string surfaceTold(const spectral::SurfaceCounts& counts,
                         const char* fixed = "boundary vertices fixed");
 
+/// A line for the log: "volume: 2.1 -> 2", or that there is none.
+std::string volumeTold(bool hasVolume, double before, double after);
+
 /// Whether every vertex of a surface of a mesh of n vertices must stay where it is.
 bool isAllFixed(const spectral::SurfaceCounts& counts, Eigen::Index n);
 
