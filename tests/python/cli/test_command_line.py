@@ -148,8 +148,8 @@ def test_a_file_that_is_left_as_it_is_counts_as_unchanged(tmp_path: Path) -> Non
     source, out = tmp_path / "in", tmp_path / "out"
     make_meshes(source, 2)
     flat = write_ply(source / "flat.ply", "0 0 0\n1 0 0\n0 1 0", "3 0 1 2")
-    batch = ["batch", source, "--output", out, "--boundary", "fixed", "--steps", 1, "--workers", 1]
-    done = command(*batch)
+    options = ["--boundary", "fixed", "--steps", 1, "--feature-size", "2e", "--workers", 1]
+    done = command("batch", source, "--output", out, *options)
     assert "2 filtered, 0 failed, 1 unchanged, 1 with warnings in " in done.stdout
     assert "] flat.ply: unchanged\n" in done.stderr
     assert re.fullmatch(r"Warning: flat\.ply: nothing can move.*\n", messages_in(done.stderr))
