@@ -11,7 +11,13 @@ project = "Spectral Filter (Fractional)"
 author = "meshlab-spectral"
 version = release = installed_version("meshlab-spectral")
 
-extensions = ["sphinx.ext.autodoc", "sphinx.ext.napoleon", "filter_pages", "docstrings"]
+extensions = [
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "filter_pages",
+    "command_pages",
+    "docstrings",
+]
 default_role = "py:obj"  # `x` in a docstring: a link where there is an x, else code
 smartquotes_action = "D"  # dashes alone: quotes are often those of code
 exclude_patterns = ["**/__pycache__"]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import re
 import subprocess
 import sys
@@ -15,6 +16,7 @@ import plugin_facts
 import pymeshlab
 import pytest
 from built_pages import Page, Site
+from command_pages import command_names
 from meshlab_spectral import DenoiseOptions, FilterOptions
 from meshlab_spectral.filters.option_types import Limits, Options
 from meshlab_spectral.plugin.loading import FILTERS
@@ -195,3 +197,12 @@ def test_examples_run(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     mesh_set.save_current_mesh("scan.ply")
     for code in EXAMPLES[path]:
         exec(code, {"ms": mesh_set, "pymeshlab": pymeshlab, "numpy": np})
+
+
+def test_every_command_has_its_help_on_the_page_of_commands(site: Site) -> None:
+    text = html.unescape(site.pages["commands.html"].path.read_text(encoding="utf-8"))
+    names = command_names()
+    assert {"filter", "denoise", "batch", "info"} <= set(names)
+    for name in names:
+        assert f"Usage: meshlab-spectral {name} " in text, name
+    assert "--transfer-function" in text
