@@ -1,9 +1,11 @@
 #!/usr/bin/env bash
-# Tries `make demo` and `make test` where nothing was installed before: in a bare Debian 12 with only
+# Tries `make demo` and `make test` where nothing was installed before: in a bare Debian with only
 # ca-certificates, git and make, on a clone of this repository's HEAD.
 #
-# usage: clean_room.sh [--user] [--ci] [--shared FOLDER] [ROOT]
+# usage: clean_room.sh [--suite SUITE] [--demo] [--user] [--ci] [--shared FOLDER] [ROOT]
 #
+#   --suite SUITE    another Debian than bookworm, 12: trixie, 13
+#   --demo           `make demo` alone
 #   --user           as a user with sudo, not as root
 #   --ci             then .ci/run too, in a second clone
 #   --shared FOLDER  shown beside the clone as ../shared, read-only (meshes of the benchmarks)
@@ -16,10 +18,12 @@ set -euo pipefail
 
 usage() { sed -n '2,/^set /{s/^# \{0,1\}//p}' "$0" >&2; exit 2; }
 
-user=root ci=false shared='' root=''
+user=root ci=false shared='' root='' suite=bookworm target=test
 while [ $# -gt 0 ]; do
     case $1 in
         --user) user=tester ;;
+        --demo) target=demo ;;
+        --suite) [ $# -gt 1 ] || usage; suite=$2; shift ;;
         --ci) ci=true ;;
         --shared) [ $# -gt 1 ] || usage; shared=$(realpath "$2"); shift ;;
         -*) usage ;;
@@ -42,8 +46,8 @@ fi
 
 include=ca-certificates,git,make
 [ "$user" = root ] || include=$include,sudo
-echo "=== a bare Debian in $root"
-"$repository/tests/debian_root.sh" bookworm "$root" "$include"
+echo "=== a bare Debian, $suite, in $root"
+"$repository/tests/debian_root.sh" "$suite" "$root" "$include"
 for file in /etc/pip.conf ~/.pip/pip.conf ~/.config/pip/pip.conf; do
     [ ! -f "$file" ] || cp "$file" "$root/etc/pip.conf"
 done
@@ -81,12 +85,12 @@ inside() {
     }
     run project 'make demo'
     run project 'ls -l build/demo'
-    run project 'make test'
+    [ "$target" = demo ] || run project 'make test'
     run project 'make demo  # again: no set-up work'
     if "$ci"; then run ci 'bash .ci/run'; fi
     echo '=== clean room: all passed'
 }
-export root home user shared ci
+export root home user shared ci target
 # Arrays and functions do not pass through the environment: they go as text.
 unshare --mount --pid --fork --kill-child \
     bash -c "set -euo pipefail; $(declare -p settings); $(declare -f inside); inside"
