@@ -195,8 +195,9 @@ def test_examples_run(path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     mesh_set.compute_color_by_function_per_vertex(x="100 * (1 + x)")
     monkeypatch.chdir(tmp_path)
     mesh_set.save_current_mesh("scan.ply")
-    for code in EXAMPLES[path]:
-        exec(code, {"ms": mesh_set, "pymeshlab": pymeshlab, "numpy": np})
+    names = {"ms": mesh_set, "pymeshlab": pymeshlab, "numpy": np}
+    for code in EXAMPLES[path]:  # later blocks of a page go on with the names of earlier ones
+        exec(code, names)
 
 
 def test_every_command_has_its_help_on_the_page_of_commands(site: Site) -> None:

@@ -1,0 +1,35 @@
+"""The tutorial does what it says: its code runs, and prints the numbers that stand there."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import plugin_facts
+
+TUTORIAL = Path(plugin_facts.__file__).with_name("tutorial.rst")
+
+
+def test_the_code_of_the_tutorial_runs_and_its_numbers_are_true() -> None:
+    text = TUTORIAL.read_text(encoding="utf-8")
+    blocks = re.findall(r"\.\. code-block:: python\n\n((?:   .*\n|\n)+)", text)
+    assert len(blocks) > 6
+    names: dict[str, Any] = {}
+    for block in blocks:
+        exec(textwrap.dedent(block), names)
+    spectrum, error = names["spectrum"], names["error"]
+    table = re.findall(r"^ +([\d.]+) % +([\d.]+) %", text, flags=re.MULTILINE)
+    heights = 100 * spectrum.octave_amplitudes / spectrum.diagonal
+    np.testing.assert_allclose([float(height) for _, height in table], heights, atol=1e-3)
+    assert f"{spectrum.noise_height / spectrum.mean_edge:.2f}" == "0.19"
+    assert f"{100 * spectrum.noise_feature_size / spectrum.diagonal:.1f}" == "3.3"
+    assert [f"{error(names[x]):.2f}" for x in ("scan", "smooth", "clean")] == [
+        "0.32",
+        "0.27",
+        "0.27",
+    ]
+    assert names["spectral"].geometry_spectrum(names["smooth"], names["F"]).noise_height == 0
+    assert np.abs(names["details"] - (names["scan"] - names["smooth"])).max() < 1e-12
