@@ -46,15 +46,18 @@ double signedVolume(const Vertices& V, const Faces& F) {
 
 bool enclosesVolume(const Vertices& V, const Faces& F) {
     constexpr double kRoundOff = 1e-9;
-    Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
-    double area = 0.0;
-    for (Index t = 0; t < F.rows(); ++t) {
-        const Eigen::RowVector3d a = V.row(F(t, 0)), b = V.row(F(t, 1)), c = V.row(F(t, 2));
-        const Eigen::RowVector3d normal = (b - a).cross(c - a);
-        sum += normal;
-        area += normal.norm();
-    }
-    return sum.norm() <= kRoundOff * area;
+    const Eigen::Vector4d zero = Eigen::Vector4d::Zero();  // area vectors, then their lengths
+    const Eigen::Vector4d sum = parallelSum(F.rows(), zero, [&](Index begin, Index end) {
+        Eigen::Vector4d part = Eigen::Vector4d::Zero();
+        for (Index t = begin; t < end; ++t) {
+            const Eigen::RowVector3d a = V.row(F(t, 0)), b = V.row(F(t, 1)), c = V.row(F(t, 2));
+            const Eigen::RowVector3d normal = (b - a).cross(c - a);
+            part.head<3>() += normal.transpose();
+            part[3] += normal.norm();
+        }
+        return part;
+    });
+    return sum.head<3>().norm() <= kRoundOff * sum[3];
 }
 
 }  // namespace spectral

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import sys
 from types import SimpleNamespace
 from typing import Any
 
@@ -13,6 +14,7 @@ import pyvista
 from meshlab_spectral import (
     FilterOptions,
     OptionError,
+    PluginError,
     denoise_mesh,
     filter_colors,
     filter_mesh,
@@ -211,3 +213,9 @@ def test_a_gain_must_be_finite_and_not_negative(wrong: float) -> None:
         filter_mesh(V, F, gain=lambda w: wrong if w > 3 else 1.0)
     with pytest.raises(OptionError, match="filter_type = high-pass: gain takes its place"):
         filter_mesh(V, F, gain=lambda w: 1.0, filter_type="high-pass")
+
+
+def test_without_pymeshlab_a_call_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pymeshlab", None)
+    with pytest.raises(PluginError, match="pymeshlab"):
+        filter_mesh(V, F)

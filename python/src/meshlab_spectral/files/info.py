@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from meshlab_spectral.errors import MeshFileError
 from meshlab_spectral.files.meshes import StageCallback, joined, load_parts
 from meshlab_spectral.files.meshlab_files import read_with_meshlab
-from meshlab_spectral.filters.calling import call_filter, plain_report
+from meshlab_spectral.filters.calling import call_filter, mesh_set_of, plain_report
 from meshlab_spectral.filters.spectrum import FILTER_NAME as SPECTRUM_NAME
-from meshlab_spectral.plugin.loading import DENOISE_NAME, load
+from meshlab_spectral.plugin.loading import DENOISE_NAME
 
 _OF_SURFACE = ("components", "joined_vertices", "unreferenced_vertices")
 _LENGTHS = ("diagonal", "mean_edge", "area", "default_feature_size")
@@ -52,11 +52,7 @@ def mesh_info(source: Path, on_stage: StageCallback, mesh: str | None = None) ->
     parts = load_parts(source, mesh)
     selected = _selected(source)
     V, F = joined(parts)
-    load()
-    import pymeshlab
-
-    mesh_set = pymeshlab.MeshSet(verbose=True)  # the log has the progress
-    mesh_set.add_mesh(pymeshlab.Mesh(V, F))
+    mesh_set = mesh_set_of(V, F, verbose=True)  # the log has the progress
     on_stage("measuring")
     spectrum = call_filter(mesh_set, SPECTRUM_NAME, {})
     on_stage("looking for noise")

@@ -75,7 +75,7 @@ def call_filter(mesh_set: Any, name: str, parameters: dict[str, Any]) -> dict[st
 
 def mesh_set_of(
     V: NDArray[np.float64],
-    F: NDArray[np.int32],
+    F: NDArray[np.integer],
     data: Mapping[str, NDArray[Any]] | None = None,
     verbose: bool = False,
 ) -> Any:
@@ -95,14 +95,14 @@ def mesh_set_of(
     PluginError
         When the plugin cannot be loaded.
     """
+    load()  # first: it says what to do where there is no pymeshlab
     import pymeshlab
 
     return _set_of(pymeshlab.Mesh(V, F, **(data or {})), verbose)
 
 
 def _set_of(mesh: Any, verbose: bool = False) -> Any:
-    """Return a MeshSet with a copy of a mesh."""
-    load()
+    """Return a MeshSet with a copy of a mesh, once the plugin is loaded."""
     import pymeshlab
 
     mesh_set = pymeshlab.MeshSet(verbose=verbose)
@@ -147,6 +147,7 @@ def filtered(
                 "weights, selection: a pymeshlab mesh has its own; give weight='vertex quality' or "
                 "selected=True, or pass vertices and faces"
             )
+        load()
         mesh_set = _set_of(mesh_or_vertices)
     else:
         data: dict[str, NDArray[Any]] = {}
