@@ -7,6 +7,7 @@
 
 #include "core/krylov/krylov_spaces.h"
 #include "core/support/errors.h"
+#include "core/support/memory.h"
 
 namespace spectral {
 
@@ -135,7 +136,7 @@ class Approximation {
         return std::min(std::max(measured, error), bound);
     }
 
-    Eigen::MatrixXd Y() const { return spaces_.combine(coefficients_); }
+    const std::vector<Eigen::VectorXd>& coefficients() const { return coefficients_; }
 
   private:
     /// Error of F(sqrt(A)) X, relative to X, where round-off in S mixes eigenvectors: to first
@@ -171,6 +172,45 @@ class Approximation {
     double largest_ = 0.0;
 };
 
+/// How the basis is kept: not at all where the largest that may be needed does not fit in memory.
+KeptBasis keptBasis(const KrylovOperator& S, const Eigen::MatrixXd& X,
+                    const FullSpectrumOptions& options) {
+    constexpr double kNarrow = 1e-6;
+    if (S.isToBeOrthogonal() || options.accuracy < kNarrow) return KeptBasis::Double;
+    if (options.atEveryVertex) return KeptBasis::Single;
+    const int dimensions =
+        std::min(options.affordable.value_or(options.maxDimension), options.maxDimension);
+    const double bytes =
+        static_cast<double>(sizeof(float)) * dimensions * static_cast<double>(X.size());
+    return bytes > availableMemory() ? KeptBasis::None : KeptBasis::Single;
+}
+
+/// The signals with these coefficients in their bases; X are those that the spaces began with.
+std::vector<Eigen::MatrixXd> combined(KrylovSpaces& spaces, const Eigen::MatrixXd& X,
+                                      const std::vector<Approximation>& approximations,
+                                      bool isKept) {
+    std::vector<Eigen::MatrixXd> Y;
+    for (const Approximation& approximation : approximations)
+        Y.push_back(isKept ? spaces.combine(approximation.coefficients())
+                           : Eigen::MatrixXd::Zero(X.rows(), X.cols()));
+    if (isKept) return Y;
+    spaces.restart(X);
+    for (Index j = 0;; ++j) {
+        bool isLast = true;
+        for (std::size_t g = 0; g < Y.size(); ++g) {
+            Eigen::RowVectorXd factors = Eigen::RowVectorXd::Zero(X.cols());
+            for (Index c = 0; c < X.cols(); ++c) {
+                const Eigen::VectorXd& coefficients = approximations[g].coefficients()[c];
+                if (j < coefficients.size()) factors[c] = coefficients[j];
+                isLast = isLast && j + 1 >= coefficients.size();
+            }
+            spaces.addNewest(factors, Y[g]);
+        }
+        if (isLast) return Y;
+        spaces.extend();
+    }
+}
+
 }  // namespace
 
 std::vector<FullSpectrumResult> applyFullSpectrum(
@@ -180,10 +220,9 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
     double orthogonal = KrylovSpaces::kOrthogonal;
     if (options.atEveryVertex)  // of small mass, with entries as large in the basis
         orthogonal = std::min(orthogonal, options.accuracy * std::sqrt(D.minCoeff() / D.sum()));
-    constexpr double kNarrow = 1e-6, kErrorOfNarrow = 1e-7;
-    const bool isNarrow = !S.isToBeOrthogonal() && options.accuracy >= kNarrow;
-    KrylovSpaces spaces(S, D, constants, X, orthogonal,
-                        isNarrow ? KeptBasis::Single : KeptBasis::Double, options.spare);
+    const KeptBasis kept = keptBasis(S, X, options);
+    const double errorOfBasis = kept == KeptBasis::Single ? 1e-7 : 0.0;
+    KrylovSpaces spaces(S, D, constants, X, orthogonal, kept, options.spare);
     if (!(spaces.largestEntry() > 0.0)) return {gains.size(), {X, 0.0, 0, true}};
     std::vector<FullSpectrumResult> results(gains.size());
     const Eigen::VectorXd omega = sampleFrequencies(S, options.samples);
@@ -213,7 +252,7 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
         for (std::size_t g = 0; g < gains.size(); ++g) {
             FullSpectrumResult& result = results[g];
             result.dimension = isInvariant ? m - 1 : m;
-            result.errorEstimate = approximations[g].update() + (isNarrow ? kErrorOfNarrow : 0.0);
+            result.errorEstimate = approximations[g].update() + errorOfBasis;
             result.converged = result.errorEstimate <= options.accuracy;
             allConverged = allConverged && result.converged;
             largestError = std::max(largestError, result.errorEstimate);
@@ -239,7 +278,11 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
             std::max(result.errorEstimate, approximations[g].ofRoundOff(roundOff));
         result.converged = result.errorEstimate <= options.accuracy;
         if (!result.converged) result.errorEstimate *= kNotConverged;
-        result.Y = approximations[g].Y();
+    }
+    std::vector<Eigen::MatrixXd> Y = combined(spaces, X, approximations, kept != KeptBasis::None);
+    for (std::size_t g = 0; g < gains.size(); ++g) {
+        FullSpectrumResult& result = results[g];
+        result.Y = std::move(Y[g]);
         constants.remove(result.Y);
         constants.add(means, result.Y);
     }

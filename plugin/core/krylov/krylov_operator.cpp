@@ -88,7 +88,8 @@ Products::Products(const Laplacian& laplacian, double central)
       largest_(std::max(boundOfEigenvalues(laplacian), std::numeric_limits<double>::min())),
       order_(Eigen::VectorXi::LinSpaced(laplacian.D.size(), 0,
                                         static_cast<int>(laplacian.D.size()) - 1)) {
-    constexpr double kVectors = 20.0, kOfVector = 3 * sizeof(float);  // of spaces; see KrylovSpaces
+    // Of spaces that keep no basis: three vectors, and two results.
+    constexpr double kVectors = 5.0, kOfVector = 3 * sizeof(double);
     const Index n = laplacian.D.size();
     requireMemory(kVectors * kOfVector * static_cast<double>(n), n);
 }

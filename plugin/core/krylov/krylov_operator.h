@@ -75,7 +75,8 @@ class Products final : public KrylovOperator {
   public:
     /// @param laplacian  kept by reference.
     /// @param central    frequency around which F varies.
-    /// @throws Error  of code OutOfMemory, when there is none for the vectors of a usual space.
+    /// @throws Error  of code OutOfMemory, when there is none for the vectors of a space without a
+    /// basis.
     Products(const Laplacian& laplacian, double central);
 
     Eigen::ArrayXd apply(const Eigen::VectorXd& D, const double* Q, int columns,

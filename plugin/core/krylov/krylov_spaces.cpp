@@ -131,6 +131,17 @@ KrylovSpaces::~KrylovSpaces() {
         basis_);
 }
 
+void KrylovSpaces::restart(const Eigen::MatrixXd& X) {
+    assert(kept_ == KeptBasis::None);
+    before_.setZero();
+    const auto columns = static_cast<std::size_t>(columns_);
+    alpha_.assign(columns, {});
+    beta_.assign(columns, {});
+    ritz_.assign(columns, {});
+    isOfRoundOff_.assign(columns, false);
+    withColumns(columns_, [&](auto count) { start<count>(X); });
+}
+
 bool KrylovSpaces::extend() {
     if (std::find(exhausted_.begin(), exhausted_.end(), false) == exhausted_.end()) return false;
     withColumns(columns_, [&](auto columns) { extendColumns<columns>(); });
@@ -408,6 +419,17 @@ Eigen::MatrixXd KrylovSpaces::combine(const std::vector<Eigen::VectorXd>& coeffi
             coefficients, [&](Index i, const auto& row) { Y.row(inverse[i]) = row.matrix(); });
     });
     return Y;
+}
+
+void KrylovSpaces::addNewest(const Eigen::RowVectorXd& factors, Eigen::MatrixXd& Y) const {
+    const int* inverse = S_.inverseOrder();
+    withColumns(columns_, [&](auto columns) {
+        const Row<columns> factor = factors.array();
+        parallelRows(D_.size(), [&](Index begin, Index end) {
+            for (Index i = begin; i < end; ++i)
+                Y.row(inverse[i]) += (factor * rowOf<columns>(newest_.data(), i)).matrix();
+        });
+    });
 }
 
 double KrylovSpaces::largestEntryOf(const std::vector<Eigen::VectorXd>& coefficients) const {

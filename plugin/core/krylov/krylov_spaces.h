@@ -23,7 +23,8 @@ enum class KeptBasis {
     Double,
     Single,  ///< With an error of 1e-7 in combinations of it; T is in double precision all the
              ///< same.
-    None  ///< For quadrature alone, which T is enough for, orthogonal or not (Golub and Meurant).
+    None     ///< For quadrature, which T is enough for, orthogonal or not (Golub and Meurant), and
+             ///< for combinations in a second pass: see restart.
 };
 
 /// Vectors of bases that are no longer used, for the spaces that follow: fresh memory costs as much
@@ -99,6 +100,13 @@ class KrylovSpaces {
 
     /// Largest modulus of the entries of combine(coefficients).
     double largestEntryOf(const std::vector<Eigen::VectorXd>& coefficients) const;
+
+    /// Begins anew with the same signals: extend() repeats the recurrence, and addNewest combines
+    /// the vectors of a basis that is not kept, for twice the products (two-pass Lanczos).
+    void restart(const Eigen::MatrixXd& X);
+
+    /// Y += the newest vector of each column's basis times its factor; Y is n x c, in mesh order.
+    void addNewest(const Eigen::RowVectorXd& factors, Eigen::MatrixXd& Y) const;
 
     /// D-norm of each signal without its constants, c.
     const Eigen::ArrayXd& norms() const { return norms_; }

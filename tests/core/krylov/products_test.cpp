@@ -5,6 +5,7 @@
 #include "core/krylov/full_spectrum.h"
 #include "core/krylov/krylov_operator.h"
 #include "core/laplacian/laplacian_builder.h"
+#include "core/support/memory.h"
 #include "core/transfer/transfer_function.h"
 #include "support/evaluation.h"
 
@@ -51,6 +52,37 @@ TEST(Products, EqualAllEigenvectorsWithinTheRequestedAccuracy) {
                             << testing::describe(transfer) << ", alpha " << alpha << ", accuracy "
                             << accuracy << ", dimension " << result.dimension;
                     }
+    }
+}
+
+TEST(Products, AreRepeatedWhereThereIsNoMemoryForABasis) {
+    const Operator A(
+        testing::joined(testing::blob(), testing::withNoise(testing::cube(8), 0.02, 4)));
+    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    const TransferFunction F({}, 2.0 * kPi / 0.5);
+    FullSpectrumOptions options;
+    options.accuracy = 1e-5;
+    options.atEveryVertex = false;
+    options.samples = F.samples();
+    const auto filtered = [&] {
+        return applyFullSpectrum(A.laplacian.D, A.constants, Products(A.laplacian, F.cutoff()),
+                                 {fractionalPower(F, 1.0), fractionalPower(F, 0.5)}, A.mesh.V,
+                                 options);
+    };
+    const auto kept = filtered();
+    setMemoryMeasure([] { return 5e5; });  // 200 dimensions of 1,028 vertices need 2.5 MB
+    const auto repeated = filtered();
+    setMemoryMeasure(nullptr);
+    for (const std::size_t g : {0, 1}) {
+        EXPECT_EQ(repeated[g].dimension, kept[g].dimension);
+        EXPECT_GT((repeated[g].Y - kept[g].Y).norm(), 0.0);  // it was not the same path
+        EXPECT_LE((repeated[g].Y - kept[g].Y).norm(), 1e-6 * kept[g].Y.norm());
+        const Vertices error =
+            repeated[g].Y -
+            testing::filteredDense(A, dense, fractionalPower(F, g == 0 ? 1.0 : 0.5));
+        EXPECT_LE(std::sqrt(A.laplacian.D.dot(error.rowwise().squaredNorm())),
+                  repeated[g].errorEstimate * std::sqrt(A.laplacian.D.sum()) *
+                      A.mesh.V.rowwise().norm().maxCoeff());
     }
 }
 
