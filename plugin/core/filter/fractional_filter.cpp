@@ -107,10 +107,12 @@ AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evalua
         // All powers of one operator commute: K steps are the whole filter at once. That of a gain
         // of 1 keeps every bit.
         AutomaticSteps whole;
-        if (isIdentity)
+        if (isIdentity) {
+            requireUsable(laplacians.input());
             whole.last.X = X;
-        else
+        } else {
             whole.last = fixedSteps(laplacians, evaluate, X, 1, progress);
+        }
         const int K = std::max(1, options.steps);
         whole.last.sizes.assign(static_cast<std::size_t>(K), 1.0 / K);
         return whole;

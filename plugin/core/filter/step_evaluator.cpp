@@ -68,9 +68,7 @@ Evaluation StepEvaluator::predict(const Laplacian& surface, const Eigen::MatrixX
 Evaluation StepEvaluator::evaluate(const Laplacian& surface, const Eigen::MatrixXd& X,
                                    const std::vector<double>& alphas, double accuracy,
                                    const Progress& progress) {
-    if (!isUsable(surface))
-        throw SolverFailure(ErrorCode::DegenerateTriangles,
-                            "triangles have collapsed: a cotangent or a mass is not finite");
+    requireUsable(surface);
     if (interior_.size() == 0) return {std::vector<Eigen::MatrixXd>(alphas.size(), X)};
     if (interior_.isWhole()) {
         Evaluation whole =

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/support/errors.h"
 #include "core/support/threads.h"
 
 namespace spectral {
@@ -84,6 +85,13 @@ bool isUsable(const Laplacian& laplacian) {
                    });
         });
     return unusable == 0 && laplacian.D.allFinite() && laplacian.D.minCoeff() > 0.0;
+}
+
+void requireUsable(const Laplacian& laplacian) {
+    if (!isUsable(laplacian))
+        throw SolverFailure(ErrorCode::DegenerateTriangles,
+                            "some triangles have hardly any area, or have collapsed: a cotangent "
+                            "or a mass is not finite");
 }
 
 }  // namespace spectral

@@ -35,4 +35,7 @@ Eigen::VectorXd lumpedMass(const Vertices& V, const Faces& F);
 /// Whether all entries are finite and all masses positive; false when triangles have collapsed.
 bool isUsable(const Laplacian& laplacian);
 
+/// @throws SolverFailure  of code DegenerateTriangles, unless isUsable.
+void requireUsable(const Laplacian& laplacian);
+
 }  // namespace spectral

@@ -89,10 +89,7 @@ MeshLaplacian meshLaplacian(const Vertices& V, const Faces& F, LaplacianKind kin
     Surface surface = joinedSurface(V, F);
     Components components = connectedComponents(surface.F, surface.X.rows());
     Laplacian laplacian = LaplacianBuilder(surface, kind, BasisUpdate::None).input();
-    if (!isUsable(laplacian))
-        throw SolverFailure(
-            ErrorCode::DegenerateTriangles,
-            "some triangles have hardly any area: a cotangent or a mass is not finite");
+    requireUsable(laplacian);
     ConstantModes constants(components, laplacian.D);
     return {std::move(surface), std::move(components), std::move(laplacian), std::move(constants)};
 }
