@@ -4,7 +4,7 @@
 # usage: fetch_debian_source.sh FOLDER SUITE PACKAGE=VERSION ARCHIVE SHA256
 #
 # They come through apt, but without touching the machine's own apt set-up: the mirror is the one that
-# the machine already uses, the lists go to a private folder.
+# the machine already uses (debian_mirror.sh), the lists go to a private folder.
 set -eu
 
 [ $# -eq 5 ] || { echo "usage: $0 FOLDER SUITE PACKAGE=VERSION ARCHIVE SHA256" >&2; exit 2; }
@@ -21,7 +21,8 @@ trap 'exit 130' INT TERM
 
 mirror=$("$(dirname "$0")/debian_mirror.sh")
 mkdir -p "$work/lists/partial" "$work/tree"
-echo "deb-src $mirror $suite main" > "$work/sources.list"
+# Trusted by the hash below: Ubuntu has no keys of Debian's.
+echo "deb-src [trusted=yes] $mirror $suite main" > "$work/sources.list"
 (
     cd "$work"
     # No package caches: they would be the machine's, which a user who is not root cannot write.
