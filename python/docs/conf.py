@@ -26,7 +26,7 @@ exclude_patterns = ["**/__pycache__"]
 html_theme = "furo"
 html_title = f"{project} {version}"
 html_static_path = ["static"]
-html_css_files = ["narrow.css"]
+html_css_files = ["pages.css"]
 html_copy_source = False
 html_show_copyright = False
 
