@@ -1,4 +1,4 @@
-"""The tutorial does what it says: its code runs, and prints the numbers that stand there."""
+"""Tutorial and gallery do what they say: the code runs, and prints the numbers that stand there."""
 
 from __future__ import annotations
 
@@ -7,10 +7,13 @@ import textwrap
 from pathlib import Path
 from typing import Any
 
+import meshlab_spectral
 import numpy as np
 import plugin_facts
+import pyvista
 
 TUTORIAL = Path(plugin_facts.__file__).with_name("tutorial.rst")
+GALLERY = TUTORIAL.with_name("gallery.rst")
 
 
 def test_the_code_of_the_tutorial_runs_and_its_numbers_are_true() -> None:
@@ -33,3 +36,16 @@ def test_the_code_of_the_tutorial_runs_and_its_numbers_are_true() -> None:
     ]
     assert names["spectral"].geometry_spectrum(names["smooth"], names["F"]).noise_height == 0
     assert np.abs(names["details"] - (names["scan"] - names["smooth"])).max() < 1e-12
+
+
+def test_every_call_of_the_gallery_runs() -> None:
+    text = GALLERY.read_text(encoding="utf-8")
+    calls = re.findall(r"^   ``([a-z_]+\(.*?\))``", text, flags=re.MULTILINE | re.DOTALL)
+    assert len(calls) == text.count(".. figure::")
+    ball = pyvista.Icosphere(nsub=3)
+    V, F = np.asarray(ball.points, dtype=np.float64), ball.regular_faces
+    names = {name: getattr(meshlab_spectral, name) for name in meshlab_spectral.__all__}
+    names |= {"V": V, "F": F, "faces": np.arange(100), "values": V[:, 0], "feature_size": 0.5}
+    names["colors"] = np.abs(V)
+    for call in calls:
+        eval(call.replace("\n", " "), names)

@@ -27,6 +27,23 @@ def filtered(
     return mesh_set, report
 
 
+def test_with_nothing_chosen_no_vertex_moves_farther_than_the_feature_size(
+    shared_mesh: Callable[[str], Path],
+) -> None:
+    folder = shared_mesh("elephant.ply").parent
+    files = [file for file in sorted(folder.iterdir()) if file.suffix in {".ply", ".obj", ".off"}]
+    moved = {}
+    for file in files:
+        mesh_set = pymeshlab.MeshSet()
+        mesh_set.load_new_mesh(str(file))
+        if mesh_set.current_mesh().face_number() == 0:
+            continue
+        report = mesh_set.apply_coord_spectral_filter_fractional()
+        moved[file.name] = report["max_displacement"] / report["feature_size"]
+    assert len(moved) > 20
+    assert max(moved.values()) < 0.5, moved
+
+
 @pytest.mark.parametrize("percentage", [15, 30])
 @pytest.mark.parametrize(
     "name",

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pymeshlab
 import pytest
+import pyvista
 import spectral_reference as reference
 from helpers import (
     FILTER,
@@ -405,3 +406,19 @@ def test_a_gain_out_of_reach_is_an_error_that_recommends_only_what_the_filter_ha
     assert_same(before, snapshot(mesh_set.current_mesh()))
     assert "choose" in message
     assert not [name for name in main.keys() - ours.keys() if re.search(rf"\b{name}\b", message)]
+
+
+def test_of_a_bump_is_left_what_the_readme_says() -> None:
+    width = 0.1
+    plane = pyvista.Plane(i_resolution=160, j_resolution=160).triangulate()
+    x, y, _ = np.asarray(plane.points, dtype=np.float64).T
+    r = np.hypot(x, y)
+    lone = np.where(r < width / 2, (1 + np.cos(2 * np.pi * r / width)) / 2, 0.0)
+    waves = np.cos(np.pi * x / width)  # a bump and a hollow: a wavelength of two widths
+
+    def left(field: Array, widths: float) -> float:
+        return filter_scalars(plane, values=field, feature_size=widths * width)[0][r.argmin()]
+
+    assert left(lone, 4) == pytest.approx(1 / 8, abs=0.01)
+    for widths, height in ((1, 0.92), (2, 0.71), (4, 0.25), (6, 0.04)):
+        assert left(waves, widths) == pytest.approx(height, abs=0.01)

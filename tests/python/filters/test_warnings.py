@@ -49,6 +49,18 @@ print("WARNINGS", json.dumps(report["warnings"]))
 """
 
 
+def log_of(source: Path, name: str, options: dict[str, Any]) -> str:
+    """What pymeshlab prints of a call, and a line of its warnings."""
+    done = subprocess.run(
+        [sys.executable, "-c", PROGRAM, str(source), name, json.dumps(options)],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=True,
+    )
+    return done.stdout + done.stderr
+
+
 @pytest.mark.parametrize(
     ("name", "options", "words"),
     [
@@ -62,19 +74,35 @@ def test_the_report_has_the_warnings_of_meshlabs_log(
 ) -> None:
     triangle = write_ply(tmp_path / "triangle.ply", "0 0 0\n1 0 0\n0 1 0", "3 0 1 2")
     source = triangle if name == triangle.name else samples / name
-    done = subprocess.run(
-        [sys.executable, "-c", PROGRAM, str(source), FILTER, json.dumps(options)],
-        capture_output=True,
-        text=True,
-        timeout=60,
-        check=True,
-    )
-    (line,) = (line for line in done.stdout.splitlines() if line.startswith("WARNINGS "))
+    log = log_of(source, FILTER, options)
+    (line,) = (line for line in log.splitlines() if line.startswith("WARNINGS "))
     warnings = json.loads(line.removeprefix("WARNINGS "))
-    in_log = re.findall(r"WARNING: (.*)", done.stdout + done.stderr)
+    in_log = re.findall(r"WARNING: (.*)", log)
     assert [warning.strip() for warning in in_log] == warnings
     assert len(warnings) == (words is not None)
     assert (words or "") in "".join(warnings)
+
+
+@pytest.mark.parametrize("name", [FILTER, "apply_coord_spectral_denoise"])
+def test_the_log_tells_the_volumes_of_closed_surfaces_alone(
+    name: str, samples: Path, tmp_path: Path
+) -> None:
+    open_one = write_ply(tmp_path / "open.ply", "0 0 0\n1 0 0\n0 1 0\n1 1 1", "3 0 1 2\n3 2 1 3")
+    assert "volume: none, as the surface is open" in log_of(open_one, name, {})
+    assert re.search(r"volume: \S+ -> \S+", log_of(samples / "cow.obj", name, {}))
+
+
+def test_the_log_of_a_geometry_spectrum_keeps_its_columns(samples: Path) -> None:
+    log = log_of(samples / "cow.obj", "get_geometry_spectrum", {})
+    lines = [line.removeprefix("LOG: 2 ") for line in log.splitlines()]
+    head = next(i for i, line in enumerate(lines) if line.startswith("  feature size"))
+    columns = [lines[head].index(word) for word in ("feature", "amplitude", "energy")]
+    rows = [line for line in lines[head + 1 :] if line.endswith(" %")]
+    assert len(rows) > 4
+    for row in rows:
+        for column in columns:
+            assert row[column - 1].isspace(), row
+            assert not row[column].isspace(), row
 
 
 def test_every_flag_of_a_shortfall_comes_with_a_warning(decimated: Decimated) -> None:
