@@ -138,6 +138,7 @@ lint: setup  ## check style and types, change nothing
 	$(CPP_FILES) | xargs $(BIN)/clang-format --dry-run -Werror
 	$(BIN)/ruff check --config python/pyproject.toml $(PYTHON_FILES)
 	$(BIN)/ruff format --check --config python/pyproject.toml $(PYTHON_FILES)
+	cd python/src && "$(CURDIR)/$(BIN)/lint-imports" ../pyproject.toml --no-cache
 	for platform in linux win32 darwin; do \
 	  $(BIN)/mypy --strict --platform $$platform --config-file python/pyproject.toml python/src \
 	  || exit; done

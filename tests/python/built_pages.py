@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from html.parser import HTMLParser
 from pathlib import Path
-from urllib.parse import unquote, urlsplit
 
 
 class Page(HTMLParser):
@@ -68,23 +67,3 @@ class Site:
         self.pages = {
             str(path.relative_to(folder)): Page(path) for path in sorted(folder.rglob("*.html"))
         }
-        self._folder = folder.resolve()
-
-    def dead_links(self) -> list[str]:
-        """Links to files, and to places in pages, that do not exist."""
-        return [
-            f"{name}: {link}"
-            for name, page in self.pages.items()
-            for link in page.links + page.files
-            if self._is_dead(page, link)
-        ]
-
-    def _is_dead(self, page: Page, link: str) -> bool:
-        parts = urlsplit(link)
-        if parts.scheme or parts.netloc:
-            return False
-        path = (page.path.parent / unquote(parts.path) if parts.path else page.path).resolve()
-        if not path.is_file() or not path.is_relative_to(self._folder):
-            return True
-        target = self.pages.get(str(path.relative_to(self._folder)))
-        return bool(target and parts.fragment and unquote(parts.fragment) not in target.ids)

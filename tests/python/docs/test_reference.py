@@ -1,4 +1,4 @@
-"""The reference pages: complete, as the plugin is, and without dead links."""
+"""The reference pages: complete, as the plugin is. Sphinx itself refuses dead links (conf.py)."""
 
 from __future__ import annotations
 
@@ -40,10 +40,6 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Site:
 
 def page_of(name: str, site: Site) -> Page:
     return site.pages[f"filters/{name}.html"]
-
-
-def test_no_link_is_dead(site: Site) -> None:
-    assert site.dead_links() == []
 
 
 def test_a_browser_loads_nothing_from_the_network(site: Site) -> None:
