@@ -92,3 +92,25 @@ def test_a_vertex_that_is_no_number_is_named(existing: Path, tmp_path: Path) -> 
     faces = "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n3 0 1 4"
     source = write_ply(tmp_path / "nan.ply", vertices, faces)
     assert_fails(command("filter", source, existing), 1, str(source), "vertex 4 is at nan 0 0")
+
+
+@pytest.mark.parametrize("element", ["vertex", "face"])
+def test_what_a_ply_file_holds_as_selected_is_filtered_alone(
+    element: str, samples: Path, tmp_path: Path
+) -> None:
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.load_new_mesh(str(samples / "bunny.obj"))
+    if element == "vertex":
+        mesh_set.compute_selection_by_condition_per_vertex(condselect="x > 0.2")
+    else:
+        mesh_set.compute_selection_by_condition_per_face(condselect="x0 > 0.2")
+    flags = {"save_vertex_flag": element == "vertex", "save_face_flag": element == "face"}
+    source, target = tmp_path / "selected.ply", tmp_path / "out.ply"
+    mesh_set.save_current_mesh(str(source), **flags)
+    done = command("filter", source, target, "--selected", "--feature-size", "5%", "--quiet")
+    assert done.returncode == 0, done.stderr
+    before, after = arrays_of(source)[0], arrays_of(target)[0]
+    moved = (before != after).any(axis=1)
+    assert 100 < moved.sum() < 0.8 * len(before)
+    assert before[moved, 0].min() > 0.1
+    assert target.read_bytes()[:200] == source.read_bytes()[:200]  # the flags stay

@@ -30,12 +30,16 @@ class Part:
         m x 3 indices of vertices; polygons are split into triangles.
     quality
         n numbers that MeshLab would read as the vertex quality; None if there are none.
+    selected
+        n booleans, the vertices that MeshLab would show as selected and those of selected faces;
+        None if the format holds no selection.
     """
 
     name: str
     vertices: Array
     faces: Indices
     quality: Array | None = None
+    selected: NDArray[np.bool_] | None = None
 
 
 @dataclass

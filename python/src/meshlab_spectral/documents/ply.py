@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from plyfile import PlyData, PlyElement, PlyListProperty, PlyParseError
 
 from meshlab_spectral.documents.digits import digits_for, rounding_told
@@ -43,6 +44,7 @@ _KNOWN = {
     "texture coordinates": {"s", "t", "u", "v", "texture_u", "texture_v", "texcoord", "texnumber"},
     "quality": {"quality"},
 }
+_SELECTED = 0x20  # VCG's bit
 _Rows = np.ndarray[Any, Any]
 _Changes = dict[tuple[str, str, str], tuple[Array, Array]]  # before and after
 
@@ -127,7 +129,8 @@ def read(path: Path) -> PlyDocument:
         raise unreadable(path, error) from error
     check_indices(path, faces, len(vertices))
     values = [name for name in ("quality", "confidence") if _has_floats(ply["vertex"], name)]
-    part = Part("", vertices, faces, _columns(ply["vertex"], values[0])[:, 0] if values else None)
+    quality = _columns(ply["vertex"], values[0])[:, 0] if values else None
+    part = Part("", vertices, faces, quality, _selected(ply))
     held = _contents(ply, header, len(faces))
     return PlyDocument(path, [part], held, content=content, header=header, ply=ply, span=span)
 
@@ -226,6 +229,19 @@ def _read_faces(ply: PlyData, vertices: Array) -> Indices:
                 return triangles(corners, sizes, vertices)
             return _strip_triangles(np.insert(corners, np.cumsum(sizes), -1))
     return np.zeros((0, 3), np.int64)
+
+
+def _selected(ply: PlyData) -> NDArray[np.bool_] | None:
+    """Read MeshLab's flags of vertices and faces."""
+    chosen = np.zeros(ply["vertex"].count, bool)
+    if "flags" in ply["vertex"]:
+        chosen |= ply["vertex"]["flags"].astype(np.int64) & _SELECTED > 0
+    if "face" in ply and "flags" in ply["face"]:
+        held = [one for one in _CORNERS if one in ply["face"]]
+        flags = ply["face"]["flags"].astype(np.int64)
+        for face in np.flatnonzero(flags & _SELECTED) if held else ():
+            chosen[ply["face"][held[0]][face]] = True
+    return chosen if chosen.any() else None
 
 
 def _strip_triangles(corners: Indices) -> Indices:

@@ -24,7 +24,7 @@ from meshlab_spectral.files.meshlab_files import (
 )
 from meshlab_spectral.files.script import apply_script
 from meshlab_spectral.files.whole_files import writing_whole
-from meshlab_spectral.filters.calling import call_filter, plain_report
+from meshlab_spectral.filters.calling import call_filter, plain_report, select_vertices
 from meshlab_spectral.filters.fractional import DETAILS
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import FilterOptions
@@ -261,6 +261,8 @@ def _filtered(
 ) -> tuple[Array, dict[str, Any]]:
     """Filter a mesh: its vertices, and the report."""
     mesh_set = _mesh_set(part.vertices, part.faces, part.quality, verbose)
+    if part.selected is not None:
+        select_vertices(mesh_set, part.selected)
     try:
         report = apply(mesh_set)
     except FilterError as error:

@@ -159,7 +159,7 @@ def filtered(
             raise OptionError("weight = vertex quality: pass the quality as weights")
         mesh_set = mesh_set_of(V, F, data)
         if selection is not None:
-            _select(mesh_set, chosen_vertices(selection, len(V), F))
+            select_vertices(mesh_set, chosen_vertices(selection, len(V), F))
             part["selected"] = True
         elif getattr(options, "selected", False):
             raise OptionError("selected = True: pass what is selected as selection")
@@ -178,7 +178,7 @@ def given_back(mesh_or_vertices: Any, mesh_set: Any) -> Any:
     return V if kind is None else kind.moved(mesh_or_vertices, V)
 
 
-def _select(mesh_set: Any, chosen: NDArray[np.bool_]) -> None:
+def select_vertices(mesh_set: Any, chosen: NDArray[np.bool_]) -> None:
     """Select vertices, which pymeshlab only does by a condition."""
     mesh_set.current_mesh().add_vertex_custom_scalar_attribute(chosen.astype(float), "chosen")
     mesh_set.compute_selection_by_condition_per_vertex(condselect="chosen > 0.5")
