@@ -83,3 +83,7 @@ def test_debug_shows_where_an_error_arose(existing: Path, tmp_path: Path) -> Non
     assert done.returncode == 1
     assert "Traceback" in done.stderr
     assert "filter_to_scratch" in done.stderr
+
+
+def test_colons_of_a_message_are_no_emoji(tmp_path: Path) -> None:
+    assert ":x:none.ply does not exist" in command("info", tmp_path / ":x:none.ply").stderr

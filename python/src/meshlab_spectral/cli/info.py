@@ -40,7 +40,7 @@ def info_command(
     if as_json:
         typer.echo(json.dumps({"input": str(source), **report, "versions": versions()}))
         return
-    Console().print(table_of(_rows(report), source.name))
+    Console(emoji=False).print(table_of(_rows(report), source.name))
     typer.echo(f"denoise would say: {report['noise_summary'].removesuffix('; nothing changed')}")
 
 

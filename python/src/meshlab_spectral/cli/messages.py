@@ -23,7 +23,8 @@ EXIT_CODES = (
     "line; 130 interrupted."
 )
 
-MESSAGES = Console(stderr=True)
+# Colons are part of a transfer function, or of a file name: ":x:" is no emoji.
+MESSAGES = Console(stderr=True, emoji=False)
 
 
 @dataclass
@@ -69,7 +70,7 @@ def print_result(result: Table | object) -> None:
     if VERBOSITY.quiet:
         return
     if isinstance(result, Table):
-        Console().print(result)
+        Console(emoji=False).print(result)
     else:
         typer.echo(result)
 
