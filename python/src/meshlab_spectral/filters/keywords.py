@@ -51,7 +51,8 @@ def takes_options(
         function.__signature__ = signature.replace(  # type: ignore[attr-defined]
             parameters=[*others, *keywords]
         )
-        function.__doc__ = (function.__doc__ or "").replace("    **named\n", texts)
+        # From Python 3.13 on a docstring has no indentation, before it has that of the source.
+        function.__doc__ = (inspect.getdoc(function) or "").replace("**named\n", texts)
         return function
 
     return spelled_out
@@ -72,12 +73,12 @@ def _explained(one: Any, kind: Any) -> str:
     facts = [repr(choice) for choice in get_args(kind)]
     if one.metadata["limits"]:
         facts.append(_UNLIMITED.sub("", str(one.metadata["limits"])))
-    indent = " " * 8
+    indent = " " * 4
     text = _FLAG.sub(_as_keyword, one.metadata["help"])
     if facts:
         text += f" Range: {', '.join(facts)}."
     wrapped = textwrap.fill(text, 100, initial_indent=indent, subsequent_indent=indent)
-    return f"    {one.name}\n{wrapped}\n"
+    return f"{one.name}\n{wrapped}\n"
 
 
 def _as_keyword(flag: re.Match[str]) -> str:
