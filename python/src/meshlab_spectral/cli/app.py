@@ -10,7 +10,6 @@ import typer
 from meshlab_spectral.cli.basis import BASIS_HELP, basis_command
 from meshlab_spectral.cli.batch import BATCH_HELP, batch_command
 from meshlab_spectral.cli.command_line import AllCommands, OneCommand, with_verbosity
-from meshlab_spectral.cli.figures import FIGURES_HELP, figures_command
 from meshlab_spectral.cli.filter import (
     DENOISE_HELP,
     FILTER_HELP,
@@ -61,7 +60,6 @@ for _name, _help, _command in (
     ("spectrum", SPECTRUM_HELP, spectrum_command),
     ("spectra", SPECTRA_HELP, spectra_command),
     ("basis", BASIS_HELP, basis_command),
-    ("figures", FIGURES_HELP, figures_command),
     ("install", INSTALL_HELP, install_command),
 ):
     app.command(_name, cls=OneCommand, help=_help, epilog=EXIT_CODES)(with_verbosity(_command))

@@ -14,6 +14,8 @@ import pymeshlab
 from meshlab_spectral.figures.pictures import Panel, View, draw_side_by_side
 from numpy.typing import NDArray
 
+SCRIPTS = Path(__file__).resolve().parents[3] / "screenshots" / "scripts"
+
 
 def read_picture(path: Path) -> NDArray[Any]:
     """Height x width x 3, 0 to 1."""
@@ -29,7 +31,7 @@ def test_the_demo_leaves_a_smoother_bunny_and_a_picture_of_both(
 ) -> None:
     folder = tmp_path / "demo"
     done = subprocess.run(
-        [sys.executable, "-m", "meshlab_spectral.cli.demo", str(folder)],
+        [sys.executable, SCRIPTS / "demo.py", folder],
         capture_output=True,
         text=True,
         timeout=120,

@@ -1,4 +1,4 @@
-"""A demonstration: `python -m meshlab_spectral.cli.demo DIR` strongly smooths the Stanford bunny.
+"""A demonstration: `demo.py DIR` strongly smooths the Stanford bunny.
 
 It writes bunny_filtered.ply and before_after.png to DIR, and prints the filter's report.
 """
@@ -9,8 +9,6 @@ import argparse
 import sys
 from pathlib import Path
 
-from rich.console import Console
-
 from meshlab_spectral.cli.report_table import report_table
 from meshlab_spectral.errors import SpectralError
 from meshlab_spectral.figures.pictures import Panel, View, draw_side_by_side
@@ -18,6 +16,7 @@ from meshlab_spectral.files.whole_files import writing_whole
 from meshlab_spectral.filters.option_types import Length
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.plugin.loading import FILTER_NAME, load
+from rich.console import Console
 
 OPTIONS = FilterOptions(feature_size=Length(15, "%"), steps=10, basis_update="conformal")
 BUNNY_VIEW = View(direction=(0.25, 0.2, 1.0))
@@ -51,9 +50,7 @@ def demonstrate(folder: Path) -> None:
 
 
 def _main() -> None:
-    parser = argparse.ArgumentParser(
-        prog="python -m meshlab_spectral.cli.demo", description=__doc__
-    )
+    parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", metavar="DIR", type=Path, help="folder for the results")
     folder = parser.parse_args().folder
     try:
