@@ -57,28 +57,33 @@ def last_summary() -> str:
     return text.decode()
 
 
-def custom_gains(
+def transfer_gains(
+    filter_type: int,
+    response: int,
+    shape: Sequence[float],
     text: str,
-    feature_size: float,
-    diagonal: float,
-    mean_edge: float,
-    sizes: NDArray[np.float64],
+    lengths: Sequence[float],
+    frequencies: NDArray[np.float64],
 ) -> NDArray[np.float64]:
-    """Return the gains of a custom transfer function, as the filter applies it.
+    """Return the gains of a transfer function, as the filter applies it.
 
     Parameters
     ----------
+    filter_type, response
+        Numbers of the filter's choices.
+    shape
+        The filter's options order, band_width, pass_gain, stop_gain and power.
     text
-        The filter's option `transfer_function`.
-    feature_size, diagonal, mean_edge
-        What sizes are relative to, in the units of the mesh, > 0.
-    sizes
-        Feature sizes in the units of the mesh, > 0.
+        Its option transfer_function.
+    lengths
+        Feature size, diagonal and mean edge, in the units of the mesh, > 0.
+    frequencies
+        Relative to that of the feature size, >= 0.
 
     Returns
     -------
     array
-        The gains, >= 0, in the shape of `sizes`.
+        The gains, >= 0, in the shape of `frequencies`.
 
     Raises
     ------
@@ -88,18 +93,18 @@ def custom_gains(
         When the plugin cannot be loaded, or as `last_warnings`.
     """
     load()
-    double, integer = ctypes.c_double, ctypes.c_int
-    arguments = (ctypes.c_char_p, double, double, double, _NUMBERS, integer, _NUMBERS)
-    function = _function(loaded_plugin(), "meshlab_spectral_gains", arguments)
-    flat = np.ascontiguousarray(sizes, dtype=np.float64).ravel()
-    gains = np.empty_like(flat)
-    pointers = (array.ctypes.data_as(_NUMBERS) for array in (flat, gains))
+    integer, text_type = ctypes.c_int, ctypes.c_char_p
+    types = (integer, integer, _NUMBERS, text_type, _NUMBERS, _NUMBERS, integer, _NUMBERS)
+    function = _function(loaded_plugin(), "meshlab_spectral_gains", types)
+    gains = np.empty(np.shape(frequencies))
+    arrays = [np.ascontiguousarray(one, dtype=np.float64) for one in (shape, lengths, frequencies)]
+    numbers = [array.ctypes.data_as(_NUMBERS) for array in (*arrays, gains)]
     mistake: bytes | None = function(
-        text.encode(), feature_size, diagonal, mean_edge, next(pointers), flat.size, next(pointers)
+        filter_type, response, numbers[0], text.encode(), *numbers[1:3], gains.size, numbers[3]
     )
     if mistake is not None:
         raise OptionError(mistake.decode())
-    return gains.reshape(np.shape(sizes))
+    return gains
 
 
 def filter_descriptions() -> list[dict[str, Any]]:
