@@ -15,8 +15,9 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import TracebackType
-from typing import Any
+from typing import Any, get_args
 
+from meshlab_spectral.batch.jobs import FileResult, Outcome
 from meshlab_spectral.errors import BatchError, InputError
 
 DEFAULT_NAME = "batch_report.jsonl"
@@ -152,6 +153,41 @@ def grouped_warnings(warnings: Mapping[str, Sequence[str]]) -> list[dict[str, An
             if group["files"][-1:] != [name]:  # of several meshes in a file
                 group["files"].append(name)
     return sorted(groups.values(), key=lambda group: -len(group["files"]))
+
+
+class Tally:
+    """What has become of the files of a batch.
+
+    Attributes
+    ----------
+    counts
+        Number of results by outcome.
+    warnings
+        The warnings of each file that has any, by its name.
+    """
+
+    def __init__(self) -> None:
+        self.counts = dict.fromkeys(get_args(Outcome), 0)
+        self.warnings: dict[str, list[str]] = {}
+
+    def add(self, result: FileResult) -> None:
+        """Count a result."""
+        self.counts[result.outcome] += 1
+        if result.warnings:
+            self.warnings[result.name] = result.warnings
+
+    def told(self) -> dict[str, Any]:
+        """Return how many files have warnings, and these, as `grouped_warnings`."""
+        grouped = grouped_warnings(self.warnings)
+        return {"with_warnings": len(self.warnings), "warnings": grouped}
+
+    def summary(self, done: Outcome) -> str:
+        """Format the counts; `done` is the outcome of a successful file."""
+        text = f"{self.counts[done]} {done}, {self.counts['failed']} failed"
+        for outcome in ("unchanged", "already done"):
+            if self.counts[outcome]:
+                text += f", {self.counts[outcome]} {outcome}"
+        return text + (f", {len(self.warnings)} with warnings" if self.warnings else "")
 
 
 def check_report(path: Path) -> None:

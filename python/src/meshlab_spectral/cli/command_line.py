@@ -6,7 +6,7 @@ import contextlib
 import inspect
 import re
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from typing import Annotated, Any
 
 import typer
@@ -118,7 +118,7 @@ def with_parameters(
     command: Command,
     added: Sequence[tuple[str, Any, Any, Any]],
     run: Callable[[dict[str, Any]], None],
-    replaced: str | None = None,
+    replaced: Collection[str] = (),
 ) -> Command:
     """Return `run` as a command with more parameters.
 
@@ -129,11 +129,11 @@ def with_parameters(
     added
         name, type, `typer.Option` and default of each that only `run` has, and
     replaced
-        the name of the parameter that `run` passes in place of these.
+        the names of parameters that `run` passes in place of these.
     """
     own = inspect.signature(command, eval_str=True).parameters.values()
     kind = inspect.Parameter.KEYWORD_ONLY
-    parameters = [one.replace(kind=kind) for one in own if one.name != replaced] + [
+    parameters = [one.replace(kind=kind) for one in own if one.name not in replaced] + [
         inspect.Parameter(name, kind, default=default, annotation=Annotated[type_, option])
         if option is not None
         else inspect.Parameter(name, kind, annotation=type_)

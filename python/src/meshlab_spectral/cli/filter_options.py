@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Collection
 from dataclasses import fields
 from pathlib import Path
@@ -9,12 +10,16 @@ from typing import Annotated, Any, get_type_hints
 
 import typer
 
+from meshlab_spectral.batch.settings import Settings
 from meshlab_spectral.cli.command_line import DENOISE, GROUP_OF, HOW, Command, with_parameters
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.files.recipe import load_recipe
-from meshlab_spectral.filters.option_types import AnyOptions, Length, Options
+from meshlab_spectral.filters.option_types import AnyOptions, Length
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.filters.presets import PRESETS, Preset, equalizer_points
+
+_SIZE = re.compile(r"(?P<number>\d+(\.\d+)?)\s*(?P<unit>[KMGT]?)(i?B)?", re.IGNORECASE)
+_UNITS = {"": 1, "K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
 
 Source = Annotated[
     Path, typer.Argument(metavar="MESH", help="Mesh to read: .ply, .obj, .stl, .off, ...")
@@ -79,12 +84,12 @@ _PRESET = typer.Option(
 
 
 def with_options(
-    *tables: type[Options], names: Collection[str] | None = None
+    *tables: type[Any], names: Collection[str] | None = None
 ) -> Callable[[Command], Command]:
-    """Add one option per field of some tables to a command, passed as `given`.
+    """Add one option per field of some tables to a command, passed as `given` and `settings`.
 
     `given` is a dict for `chosen_options`, with only the options on the command line and of its
-    preset.
+    preset; `settings` are `Settings`, if these are among the tables.
 
     Parameters
     ----------
@@ -95,6 +100,7 @@ def with_options(
         Only these fields.
     """
     added: dict[str, tuple[str, Any, Any, Any]] = {}
+    settings_names: list[str] = []
     if FilterOptions in tables:
         added["preset"] = ("preset", Preset | None, _PRESET, None)
         added["equalizer"] = ("equalizer", str | None, _EQUALIZER, None)
@@ -103,29 +109,38 @@ def with_options(
         for one in fields(table):
             if one.name in added or (names is not None and one.name not in names):
                 continue
-            settings: dict[str, Any] = {
-                "help": one.metadata["help"],
-                "rich_help_panel": GROUP_OF.get(one.name, HOW) if table is tables[0] else DENOISE,
-            }
+            shown = {key: one.metadata[key] for key in ("help", "metavar")}
             type_, default = types[one.name], one.default
+            if table is Settings:
+                settings_names.append(one.name)
+                shown |= {"min": one.metadata["limits"] and one.metadata["limits"].low}
+            else:
+                own = table is tables[0]
+                shown |= {"rich_help_panel": GROUP_OF.get(one.name, HOW) if own else DENOISE}
             if type_ is Length:
-                settings |= {"parser": _length, "metavar": "SIZE"}
+                shown |= {"parser": _length, "metavar": "SIZE"}
                 default = str(default)
-            added[one.name] = (one.name, type_, typer.Option(**settings), default)
+            elif one.name == "memory_limit":
+                shown |= {"parser": _bytes}
+            spelled = typer.Option(*one.metadata["flags"], **shown)
+            added[one.name] = (one.name, type_, spelled, default)
 
     def decorate(command: Command) -> Command:
         def run(arguments: dict[str, Any]) -> None:
             source = arguments.pop("context").get_parameter_source
             values = {name: arguments.pop(name) for name in added}
-            given = {
-                name: value
-                for name, value in values.items()
-                if source(name).name in ("COMMANDLINE", "DEFAULT_MAP")
-            }
-            command(given=given, **arguments)
+            if settings_names:
+                arguments["settings"] = Settings(**{n: values.pop(n) for n in settings_names})
+            if len(settings_names) < len(added):
+                arguments["given"] = {
+                    name: value
+                    for name, value in values.items()
+                    if source(name).name in ("COMMANDLINE", "DEFAULT_MAP")
+                }
+            command(**arguments)
 
         context = ("context", typer.Context, None, None)
-        return with_parameters(command, [context, *added.values()], run, replaced="given")
+        return with_parameters(command, [context, *added.values()], run, {"given", "settings"})
 
     return decorate
 
@@ -163,6 +178,16 @@ def chosen_options(
             raise OptionError(f"--{spelled} is not an option of {table.TABLE}{hint}")
     values = {name: value for name, value in given.items() if name not in shortcuts}
     return table.from_dict({**options, **values})
+
+
+def _bytes(text: str | int) -> int:
+    if isinstance(text, int):
+        return text
+    match = _SIZE.fullmatch(text.strip())
+    size = int(float(match["number"]) * _UNITS[match["unit"].upper()]) if match else 0
+    if not size:
+        raise typer.BadParameter(f"{text!r}: give a size such as 4GB or 500MB")
+    return size
 
 
 def _length(text: str | Length) -> Length:

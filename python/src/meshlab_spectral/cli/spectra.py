@@ -7,19 +7,13 @@ from typing import Annotated
 
 import typer
 
-from meshlab_spectral.batch.files import Workers
 from meshlab_spectral.batch.jobs import FileResult
+from meshlab_spectral.batch.settings import Settings
 from meshlab_spectral.batch.spectra import plan_spectra, write_table
+from meshlab_spectral.cli.filter_options import with_options
 from meshlab_spectral.cli.many_files import (
     INTERRUPTED,
     Inputs,
-    MemoryLimit,
-    Recursive,
-    ReportFile,
-    Resume,
-    Scheduler,
-    Timeout,
-    WorkerCount,
     planning_shown,
     run_shown,
 )
@@ -45,7 +39,12 @@ Each mesh gets a line in the report, spectra_report.jsonl, as soon as it is meas
 """
 
 
+@with_options(
+    Settings,
+    names=("recursive", "resume", "report", "workers", "memory_limit", "timeout", "scheduler"),
+)
 def spectra_command(
+    settings: Settings,
     inputs: Inputs,
     output: Annotated[
         Path,
@@ -53,8 +52,6 @@ def spectra_command(
             "--output", "-o", metavar="TABLE", help="Table to write; replaces an existing file."
         ),
     ] = Path("spectra.csv"),
-    recursive: Recursive = False,
-    resume: Resume = False,
     basis_size: Annotated[
         int, typer.Option(min=0, help="Number of lowest harmonics to measure individually, too.")
     ] = DEFAULT_BASIS_SIZE,
@@ -65,31 +62,15 @@ def spectra_command(
         Boundary,
         typer.Option(help="Whether boundaries of open surfaces are part of the shape (free)."),
     ] = "free",
-    report: ReportFile = None,
-    workers: WorkerCount = None,
-    memory_limit: MemoryLimit = None,
-    timeout: Timeout = None,
-    scheduler: Scheduler = None,
 ) -> None:
     """Measure spectra of many meshes: see `meshlab-spectral spectra --help`."""
     with errors_reported(INTERRUPTED):
-        using = Workers(workers, memory_limit, scheduler)
-        with planning_shown(resume):
-            batch = plan_spectra(
-                inputs,
-                output,
-                basis_size,
-                laplacian,
-                boundary,
-                recursive=recursive,
-                resume=resume,
-                report=report,
-                timeout=timeout,
-            )
+        with planning_shown(settings.resume):
+            batch = plan_spectra(inputs, output, basis_size, laplacian, boundary, settings)
         remove_leftovers(resolved(output).parent, output.name)
         results: list[FileResult] = []
         with writing_whole(output) as scratch:
-            tally = run_shown(batch, using, results.append)
+            tally = run_shown(batch, results.append)
             write_table(scratch, results)
         print_result(f"{tally.summary('measured')}; table: {output}, report: {batch.report}")
     if tally.counts["failed"]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from numbers import Real
 from typing import Any, Literal, TypeVar, get_args, get_type_hints
@@ -107,9 +107,24 @@ class Length:
         return number + self.unit
 
 
-def option(default: Any, explanation: str, limits: Limits | None = None) -> Any:
-    """Make a field of a table of options."""
-    return field(default=default, metadata={"help": explanation, "limits": limits})
+def option(
+    default: Any,
+    explanation: str,
+    limits: Limits | None = None,
+    flags: Sequence[str] = (),
+    metavar: str | None = None,
+) -> Any:
+    """Make a field of a table of options.
+
+    Parameters
+    ----------
+    default, explanation, limits
+        Its default, help, and range if it is a number.
+    flags, metavar
+        How a command spells the option, unless by its name, and its value.
+    """
+    told = {"help": explanation, "limits": limits, "flags": flags, "metavar": metavar}
+    return field(default=default, metadata=told)
 
 
 _NAMED = {
