@@ -11,8 +11,9 @@ from typing import Any
 import matplotlib.image
 import numpy as np
 import pymeshlab
-from meshlab_spectral.figures.pictures import Panel, View, draw_side_by_side
+from meshlab_spectral.figures.pictures import Panel, View
 from numpy.typing import NDArray
+from side_by_side import draw_side_by_side
 
 SCRIPTS = Path(__file__).resolve().parents[3] / "screenshots" / "scripts"
 

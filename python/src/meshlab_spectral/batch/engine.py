@@ -30,7 +30,7 @@ from meshlab_spectral.batch.jobs import FileResult, Job
 from meshlab_spectral.batch.processes import processes
 from meshlab_spectral.batch.task import run_job
 from meshlab_spectral.errors import BatchError
-from meshlab_spectral.plugin.threads import threads_each
+from meshlab_spectral.plugin.limits import threads_each
 from meshlab_spectral.plugin.versions import versions
 
 # Share of the machine's memory for all workers together.
@@ -175,16 +175,7 @@ def _failed(job: Job, error: BaseException) -> FileResult:
         )
     else:
         reason = f"unexpected error: {error!r}; please report it"
-    return FileResult(
-        outcome="failed",
-        input=job.source,
-        output=job.target,
-        name=job.name,
-        reason=reason,
-        options=job.options,
-        attempts=attempts,
-        versions=versions(),
-    )
+    return job.result("failed", reason=reason, attempts=attempts, versions=versions())
 
 
 def _check_workers(client: Client, address: str) -> None:

@@ -73,12 +73,8 @@ def _proof(
             and record.get("output_sha256") == output
             and _same_side_files(job, record.get("side_files", {}))
         ):
-            return FileResult(
-                outcome="already done",
-                input=job.source,
-                output=job.target,
-                name=job.name,
-                options=job.options,
+            return job.result(
+                "already done",
                 report=record.get("report"),
                 warnings=record.get("warnings", []),
                 input_sha256=source,

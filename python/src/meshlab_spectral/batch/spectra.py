@@ -17,7 +17,8 @@ from meshlab_spectral.batch.report import check_report, read_report
 from meshlab_spectral.batch.resume import done_records, proved_done
 from meshlab_spectral.batch.settings import Settings
 from meshlab_spectral.errors import InputError
-from meshlab_spectral.filters.spectrum import GeometrySpectrum, spectrum_parameters
+from meshlab_spectral.filters.options import SpectrumOptions
+from meshlab_spectral.filters.spectrum import GeometrySpectrum
 from meshlab_spectral.plugin.versions import versions
 
 COLUMNS = (
@@ -37,9 +38,7 @@ COLUMNS = (
 def plan_spectra(
     inputs: Sequence[str | Path],
     table: Path,
-    basis_size: int,
-    laplacian: str,
-    boundary: str,
+    options: SpectrumOptions,
     settings: Settings,
 ) -> Batch:
     """Plan to measure the spectra of many meshes; the report of each mesh is its spectrum.
@@ -50,7 +49,7 @@ def plan_spectra(
         As for `files.filter_files`.
     table
         The file for `write_table`.
-    basis_size, laplacian, boundary
+    options
         As for `spectrum.geometry_spectrum`.
     settings
         Of `Settings` recursive, resume, report, timeout and the workers; the report is by default
@@ -61,12 +60,11 @@ def plan_spectra(
     InputError
         When inputs are missing, or the table or the report would replace another file.
     OptionError
-        When a parameter has an invalid value.
+        When both kinds of workers are wanted.
     BatchError
         When an earlier report cannot be read.
     """
     settings.check_workers()
-    parameters = spectrum_parameters(basis_size, laplacian, boundary)
     table = table.absolute()
     report = (settings.report or table.parent / f"{table.stem}_report.jsonl").absolute()
     if report == table:
@@ -76,8 +74,9 @@ def plan_spectra(
         file.place for file in find_inputs(map(str, inputs), settings.recursive, [table, report])
     ]
     refuse_inputs([str(table)], places)
-    work = {"task": "spectrum", "parameters": parameters}
-    jobs = [Job(place, None, place, work, parameters, settings.timeout) for place in places]
+    described = options.as_dict()
+    work = {"task": options.TABLE, "options": described}
+    jobs = [Job(place, None, place, work, described, settings.timeout) for place in places]
     proved = (
         proved_done(jobs, done_records(read_report(report)), versions()) if settings.resume else {}
     )

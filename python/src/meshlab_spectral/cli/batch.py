@@ -19,12 +19,7 @@ from meshlab_spectral.cli.filter_options import (
     chosen_options,
     with_options,
 )
-from meshlab_spectral.cli.many_files import (
-    INTERRUPTED,
-    Inputs,
-    planning_shown,
-    run_shown,
-)
+from meshlab_spectral.cli.many_files import INTERRUPTED, Inputs, planning_shown, run_shown
 from meshlab_spectral.cli.messages import (
     EXIT_FAILED,
     errors_reported,
@@ -35,26 +30,6 @@ from meshlab_spectral.files.recipe import load_recipe, saving_recipe
 from meshlab_spectral.filters.denoise import DenoiseOptions
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import FilterOptions
-
-# "\b" keeps a paragraph's lines as they are.
-BATCH_HELP = """Filter or denoise many meshes in parallel, with a report.
-
-\b
-Smooth a folder of scans:
-  meshlab-spectral batch scans --output smooth --feature-size 2%
-Denoise it, as denoise does for one scan, with the same options:
-  meshlab-spectral batch scans --output clean --denoise
-Continue after an interruption, or with more scans:
-  meshlab-spectral batch scans --output smooth --feature-size 2% --resume
-Save the options for next time:
-  meshlab-spectral batch scans --output smooth --feature-size 2% \\
-    --save-recipe smooth.toml
-  meshlab-spectral batch more/*.obj --output more_smooth --recipe smooth.toml
-
-Each file gets a line in the report, DIR/batch_report.jsonl, as soon as it is done: outcome,
-options, the filter's report and warnings, SHA-256 of input and output, seconds, memory, versions.
-A file that fails does not stop the others.
-"""
 
 
 @with_options(FilterOptions, DenoiseOptions, Settings)
@@ -78,7 +53,22 @@ def batch_command(
     save_recipe: SaveRecipe = None,
     as_json: AsJson = False,
 ) -> None:
-    """Filter many meshes: see `meshlab-spectral batch --help`."""
+    """Filter or denoise many meshes in parallel, with a report.
+
+    Smooth a folder of scans:
+      meshlab-spectral batch scans --output smooth --feature-size 2%
+    Denoise it, as denoise does for one scan, with the same options:
+      meshlab-spectral batch scans --output clean --denoise
+    Continue after an interruption, or with more scans:
+      meshlab-spectral batch scans --output smooth --feature-size 2% --resume
+    Save the options for next time:
+      meshlab-spectral batch scans -o clean --denoise --save-recipe clean.toml
+      meshlab-spectral batch more/*.obj -o more_clean --recipe clean.toml
+
+    Each file gets a line in the report, DIR/batch_report.jsonl, as soon as it is done: outcome,
+    options, the filter's report and warnings, SHA-256 of input and output, seconds, memory,
+    versions. A file that fails does not stop the others.
+    """
     if settings.script is not None and save_recipe is not None:
         raise typer.BadParameter(
             "a recipe holds options of the filter, which a script replaces: leave out one of them",

@@ -84,7 +84,7 @@ _PRESET = typer.Option(
 
 
 def with_options(
-    *tables: type[Any], names: Collection[str] | None = None
+    *tables: type[Any], leave_out: Collection[str] = ()
 ) -> Callable[[Command], Command]:
     """Add one option per field of some tables to a command, passed as `given` and `settings`.
 
@@ -96,8 +96,8 @@ def with_options(
     *tables
         The tables. Of fields with one name the first counts. A command with FilterOptions gets
         `--preset` and `--equalizer`, too.
-    names
-        Only these fields.
+    leave_out
+        Fields that the command has no use for.
     """
     added: dict[str, tuple[str, Any, Any, Any]] = {}
     settings_names: list[str] = []
@@ -107,7 +107,7 @@ def with_options(
     for table in tables:
         types = get_type_hints(table)
         for one in fields(table):
-            if one.name in added or (names is not None and one.name not in names):
+            if one.name in added or one.name in leave_out:
                 continue
             shown = {key: one.metadata[key] for key in ("help", "metavar")}
             type_, default = types[one.name], one.default

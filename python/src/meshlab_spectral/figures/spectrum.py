@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from meshlab_spectral.errors import FormatError
 from meshlab_spectral.extras import check_extras
 from meshlab_spectral.figures.sheet import FONT_SIZE, INK
 from meshlab_spectral.filters.options import FilterOptions
@@ -37,15 +36,6 @@ _LEGEND: dict[str, Any] = {
 # The last octaves, below this fraction of the largest amplitude, come from a few slivers of the
 # mesh and would take up half the plot.
 _SHOWN = 1e-5
-
-
-def check_format(path: Path) -> None:
-    """Raise FormatError unless the extension is one of FORMATS."""
-    if path.suffix.lower() not in FORMATS:
-        raise FormatError(
-            f"{path.name} ends in {path.suffix or 'nothing'}: a plot is a "
-            f"{', '.join(FORMATS[:-1])} or {FORMATS[-1]} file"
-        )
 
 
 def filter_name(options: FilterOptions) -> str:

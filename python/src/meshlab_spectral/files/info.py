@@ -12,7 +12,7 @@ from meshlab_spectral.errors import MeshFileError
 from meshlab_spectral.files.meshes import StageCallback, joined, load_parts
 from meshlab_spectral.files.meshlab_files import read_with_meshlab
 from meshlab_spectral.filters.calling import call_filter, mesh_set_of, plain_report
-from meshlab_spectral.filters.spectrum import FILTER_NAME as SPECTRUM_NAME
+from meshlab_spectral.filters.options import SpectrumOptions
 from meshlab_spectral.plugin.loading import DENOISE_NAME
 
 _OF_SURFACE = ("components", "joined_vertices", "unreferenced_vertices")
@@ -54,7 +54,7 @@ def mesh_info(source: Path, on_stage: StageCallback, mesh: str | None = None) ->
     V, F = joined(parts)
     mesh_set = mesh_set_of(V, F, verbose=True)  # the log has the progress
     on_stage("measuring")
-    spectrum = call_filter(mesh_set, SPECTRUM_NAME, {})
+    spectrum = call_filter(mesh_set, SpectrumOptions.FILTER, {})
     on_stage("looking for noise")
     denoised = call_filter(mesh_set, DENOISE_NAME, {})
     report = {

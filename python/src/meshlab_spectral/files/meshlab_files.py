@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import functools
-import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +10,7 @@ import numpy as np
 from meshlab_spectral.documents.document import Document
 from meshlab_spectral.documents.opening import PATCHED
 from meshlab_spectral.errors import FormatError, MeshFileError
+from meshlab_spectral.files.formats import WRITABLE
 from meshlab_spectral.files.whole_files import USUAL_FORMATS, resolved
 from meshlab_spectral.filters.calling import reason_of
 
@@ -30,7 +29,7 @@ _DUMMY = "dummy.png"
 def check_writable(path: Path) -> None:
     """Fail before the long computation, not after it."""
     ending = path.suffix
-    if _is_writable(ending):
+    if ending[1:].lower() in WRITABLE:
         return
     if ending[1:].lower() in PATCHED:
         raise FormatError(
@@ -39,22 +38,6 @@ def check_writable(path: Path) -> None:
         )
     told = f"ends in {ending}" if ending else "has no extension"
     raise FormatError(f"{path.name} {told}, which MeshLab cannot write: choose {USUAL_FORMATS}")
-
-
-@functools.cache
-def _is_writable(ending: str) -> bool:
-    """Try to write a triangle: pymeshlab has no list of the formats it can write."""
-    import pymeshlab
-
-    mesh_set = pymeshlab.MeshSet()
-    corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
-    mesh_set.add_mesh(pymeshlab.Mesh(corners, [[0, 1, 2]]))
-    with tempfile.TemporaryDirectory() as folder:
-        try:
-            mesh_set.save_current_mesh(str(Path(folder) / f"probe{ending}"))
-        except pymeshlab.PyMeshLabException:
-            return False
-    return True
 
 
 def read_with_meshlab(mesh_set: Any, source: Path) -> None:

@@ -2,5 +2,5 @@
 
 `fractional`, `signals`, `artefacts`, `harmonics` and `spectrum` each call one filter, through
 `calling` and `arrays`; `options` is the table of the fractional filter's options, `transfer` its
-gain, `signatures` the equations of the signatures that harmonics have.
+gain.
 """

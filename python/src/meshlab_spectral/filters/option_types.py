@@ -5,7 +5,7 @@ from __future__ import annotations
 import difflib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
-from numbers import Real
+from numbers import Integral, Real
 from typing import Any, Literal, TypeVar, get_args, get_type_hints
 
 from meshlab_spectral.errors import OptionError
@@ -140,6 +140,8 @@ def _is_of(value: Any, wanted: type) -> bool:
     """Whether a value has a type; integers pass as floats, as in a recipe."""
     if wanted is float:
         return isinstance(value, int | float) and not isinstance(value, bool)
+    if wanted is int:
+        return isinstance(value, Integral) and not isinstance(value, bool)
     return type(value) is wanted
 
 
@@ -186,6 +188,8 @@ class Options:
             wanted = types[one.name]
             if not choices and not _is_of(value, wanted):
                 raise OptionError(f"{one.name} = {value!r}: must be {_NAMED[wanted]}")
+            if wanted is int:  # else of NumPy, perhaps
+                object.__setattr__(self, one.name, int(value))
             default: Any = one.default
             is_automatic = isinstance(value, Length) and value.automatic
             if is_automatic and not default.automatic:

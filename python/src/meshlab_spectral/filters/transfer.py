@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 from dataclasses import astuple, dataclass
 from typing import get_args
 
@@ -10,9 +11,12 @@ from numpy.typing import NDArray
 
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.filters.options import FilterOptions, FilterType, Response
-from meshlab_spectral.plugin.library import transfer_gains
+from meshlab_spectral.plugin.library import function_of
+from meshlab_spectral.plugin.loading import load, loaded_plugin
 
 Array = NDArray[np.float64]
+
+_INTEGER, _NUMBERS = ctypes.c_int, ctypes.POINTER(ctypes.c_double)
 
 
 @dataclass(frozen=True)
@@ -62,11 +66,22 @@ def gain(options: FilterOptions, x: Array, lengths: MeshLengths | None = None) -
         if options.filter_type == "custom":
             raise OptionError("a custom transfer function needs a mesh that its sizes refer to")
         lengths = MeshLengths(1.0, 1.0, 1.0)
-    return transfer_gains(
+    load()
+    types = (_INTEGER, _INTEGER, _NUMBERS, ctypes.c_char_p, _NUMBERS, _NUMBERS, _INTEGER, _NUMBERS)
+    function = function_of(loaded_plugin(), "meshlab_spectral_gains", types)
+    shape = [options.order, options.band_width, options.pass_gain, options.stop_gain, options.power]
+    gains = np.empty(np.shape(x))
+    given = [np.ascontiguousarray(one, dtype=np.float64) for one in (shape, astuple(lengths), x)]
+    numbers = [array.ctypes.data_as(_NUMBERS) for array in (*given, gains)]
+    mistake: bytes | None = function(
         get_args(FilterType).index(options.filter_type),
         get_args(Response).index(options.response),
-        (options.order, options.band_width, options.pass_gain, options.stop_gain, options.power),
-        options.transfer_function,
-        astuple(lengths),
-        x,
+        numbers[0],
+        options.transfer_function.encode(),
+        *numbers[1:3],
+        gains.size,
+        numbers[3],
     )
+    if mistake is not None:
+        raise OptionError(mistake.decode())
+    return gains

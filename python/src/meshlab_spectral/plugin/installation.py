@@ -142,23 +142,7 @@ def install(dry_run: bool = False) -> list[Change]:
 
 
 def uninstall(dry_run: bool = False) -> list[Change]:
-    """Remove what `install` has copied.
-
-    Parameters
-    ----------
-    dry_run
-        Change nothing, only return what would be done.
-
-    Returns
-    -------
-    list of Change
-        One for each precision.
-
-    Raises
-    ------
-    PluginError
-        When a file cannot be removed.
-    """
+    """Remove what `install` has copied; parameter, result and errors are those of `install`."""
     return [_uninstall(host, dry_run) for host in HOSTS]
 
 
