@@ -29,12 +29,8 @@ _END_OF_TIME = 1e12  # seconds since 1970; NaN and infinity are beyond it, too
 def read_report(path: Path) -> Iterator[dict[str, Any]]:
     """Yield the lines of a report in order.
 
-    Skips incomplete lines, such as after a power failure.
-
-    Raises
-    ------
-    BatchError
-        When the file exists but cannot be read, or has a line that no batch has written.
+    Skips incomplete lines, such as after a power failure. Raises BatchError when the file exists
+    but cannot be read, or has a line that no batch has written.
     """
     try:
         with path.open("rb") as file:
@@ -130,15 +126,8 @@ class Report:
 def grouped_warnings(warnings: Mapping[str, Sequence[str]]) -> list[dict[str, Any]]:
     """Group the warnings of many files that differ in their numbers at most, most frequent first.
 
-    Parameters
-    ----------
-    warnings
-        Those of each file, by its name.
-
-    Returns
-    -------
-    list of dict
-        "warning": that of the first file; "files": the names of all.
+    `warnings` are those of each file, by its name. Each group has "warning", that of the first
+    file, and "files", the names of all.
     """
     groups: dict[str, dict[str, Any]] = {}
     for name, texts in sorted(warnings.items()):

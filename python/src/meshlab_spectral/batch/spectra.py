@@ -43,26 +43,13 @@ def plan_spectra(
 ) -> Batch:
     """Plan to measure the spectra of many meshes; the report of each mesh is its spectrum.
 
-    Parameters
-    ----------
-    inputs
-        As for `files.filter_files`.
-    table
-        The file for `write_table`.
-    options
-        As for `spectrum.geometry_spectrum`.
-    settings
-        Of `Settings` recursive, resume, report, timeout and the workers; the report is by default
-        TABLE_report.jsonl, next to the table.
+    `inputs` are those of `files.filter_files`, `table` is the file for `write_table`. Of `settings`
+    count recursive, resume, report, timeout and the workers; the report is by default
+    TABLE_report.jsonl, next to the table.
 
-    Raises
-    ------
-    InputError
-        When inputs are missing, or the table or the report would replace another file.
-    OptionError
-        When both kinds of workers are wanted.
-    BatchError
-        When an earlier report cannot be read.
+    Raises InputError when inputs are missing, or the table or the report would replace another
+    file, OptionError when both kinds of workers are wanted, and BatchError when an earlier report
+    cannot be read.
     """
     settings.check_workers()
     table = table.absolute()

@@ -20,20 +20,10 @@ ATTEMPTS = 2
 
 
 def run_job(job: Job, memory_limit: int | None = None) -> FileResult:
-    """Process one file.
+    """Process one file: "filtered", "unchanged", "measured" or "failed".
 
-    Parameters
-    ----------
-    job
-        The job.
-    memory_limit
-        Memory limit of MeshLab's process in bytes; by default its share of the Dask worker's, or
-        none outside a worker.
-
-    Returns
-    -------
-    FileResult
-        "filtered", "measured" or "failed"; errors of a single file are not raised.
+    Errors of a single file are not raised. `memory_limit` is that of MeshLab's process in bytes; by
+    default its share of the Dask worker's, or none outside a worker.
     """
     begin = time.monotonic()
     result: dict[str, Any] = {"outcome": "failed", "waited": 0.0}

@@ -148,23 +148,11 @@ def with_options(
 def chosen_options(
     table: type[AnyOptions], given: dict[str, Any], recipe: Path | None = None
 ) -> AnyOptions:
-    """Return the options of a recipe, if any, overridden by those given.
+    """Return the options of a recipe, a TOML file, if any, overridden by those given.
 
-    Parameters
-    ----------
-    table
-        The table that they are of.
-    given
-        From `with_options`.
-    recipe
-        A TOML file.
-
-    Raises
-    ------
-    OptionError
-        When an option has an invalid value, or it or the recipe is for another filter.
-    InputError
-        When the recipe cannot be read.
+    `table` is the one that they are of, `given` comes from `with_options`. Raises OptionError when
+    an option has an invalid value, or it or the recipe is for another filter, and InputError when
+    the recipe cannot be read.
     """
     found, options = (table, {}) if recipe is None else load_recipe(recipe)
     if found is not table:

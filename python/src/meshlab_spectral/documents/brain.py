@@ -33,18 +33,11 @@ _OTHERS = (b"\xff\xff\xff", b"\xff\xff\xfd")  # quadrilaterals, or values such a
 
 
 def read(path: Path) -> Document:
-    """Read a surface of GIFTI or FreeSurfer.
+    """Read a surface of GIFTI or FreeSurfer; see open_document.
 
     The vertices are the coordinates that are stored. The matrices of GIFTI, which lead from there
     to other spaces, are not applied, nor is FreeSurfer's volume geometry: nibabel and Connectome
     Workbench show the stored coordinates, too.
-
-    Raises
-    ------
-    MeshFileError
-        When it is damaged, or holds no surface of triangles.
-    MissingPackageError
-        When nibabel, of the extra "formats", is not installed.
     """
     with path.open("rb") as file:
         magic = file.read(3)

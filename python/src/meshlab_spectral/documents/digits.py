@@ -15,12 +15,7 @@ def rounding_told(before: Array, after: Array) -> str | None:
     """Return how single precision rounds a movement, or None where it holds it.
 
     It does if rounding takes, in the root mean square over what moves, at most a hundredth of the
-    displacement.
-
-    Parameters
-    ----------
-    before, after
-        n x 3, in the coordinates to be written.
+    displacement. `before` and `after` are n x 3, in the coordinates to be written.
     """
     moves = (before != after).any(axis=1)
     if not moves.any():

@@ -60,23 +60,9 @@ def draw_basis_file(
 ) -> None:
     """Draw harmonics to a .png file: red is positive, blue negative, a line marks zero.
 
-    Parameters
-    ----------
-    archive
-        Written by `meshlab-spectral basis`.
-    path
-        The picture, written atomically.
-    modes
-        Harmonics to show; by default a dozen from the first non-constant one to the last.
-    scale
-        Resolution; 1 fills a screen.
-
-    Raises
-    ------
-    OptionError
-        When the basis has no such mode.
-    MeshFileError
-        When `path` cannot be written.
+    `archive` was written by `meshlab-spectral basis`. The picture is written atomically; a `scale`
+    of 1 fills a screen. Shows by default a dozen from the first non-constant harmonic to the last;
+    raises OptionError when the basis has no such mode, MeshFileError when `path` cannot be written.
     """
     with np.load(archive) as arrays:
         basis = Harmonics(arrays["eigenvalues"], arrays["harmonics"], arrays["masses"])

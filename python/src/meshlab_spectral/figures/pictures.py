@@ -126,7 +126,7 @@ def scene(
     font_size: int,
     off_screen: bool = True,
 ) -> Any:
-    """Set up meshes in rows, to be shown or saved.
+    """Set up meshes in rows, to be shown or saved; raises MissingPackageError without PyVista.
 
     Parameters
     ----------
@@ -147,11 +147,6 @@ def scene(
     -------
     pyvista.Plotter
         For the caller to close.
-
-    Raises
-    ------
-    MissingPackageError
-        When PyVista is not installed.
     """
     plotter = _plotter((ceil(len(panels) / columns), columns), panel_size, off_screen)
     for cell, panel in enumerate(panels):
@@ -164,26 +159,10 @@ def scene(
 
 
 def render(panel: Panel, frame: Frame, pixels: int) -> Image:
-    """Draw one mesh, without its label.
+    """Draw one mesh, without its label, as height x width x 3 levels from 0 to 255.
 
-    Parameters
-    ----------
-    panel
-        The mesh.
-    frame
-        The rectangle to show.
-    pixels
-        Width of the picture; the height follows from the frame.
-
-    Returns
-    -------
-    array
-        Height x width x 3, values 0 to 255.
-
-    Raises
-    ------
-    MissingPackageError
-        When PyVista is not installed.
+    `pixels` is the width of the picture; the height follows from the rectangle to show. Raises
+    MissingPackageError without PyVista.
     """
     height = max(1, round(pixels * frame.height / frame.width))
     plotter = _plotter((1, 1), (2 * pixels, 2 * height))

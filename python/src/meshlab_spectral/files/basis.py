@@ -22,21 +22,13 @@ def basis_to_scratch(
 ) -> dict[str, Any]:
     """Write the harmonics of a mesh file to a NumPy archive, `scratch` from `writing_whole`.
 
-    Those of all its meshes together, or of the one with the name `mesh`.
+    Those of all its meshes together, or of the one with the name `mesh`. Returns the sizes n and k,
+    as "vertices" and "harmonics". Errors are those of `harmonics.manifold_harmonics`, and
+    MeshFileError when `source` cannot be read.
 
     Its arrays are eigenvalues (k), frequencies (k), harmonics (n x k) and masses (n) as in
     `Harmonics`, and the mesh as read, whose vertices their rows follow: vertices (n x 3), faces
     (m x 3).
-
-    Returns
-    -------
-    dict
-        The sizes n and k, as "vertices" and "harmonics".
-
-    Raises
-    ------
-    SpectralError
-        As `harmonics.manifold_harmonics`; MeshFileError when `source` cannot be read.
     """
     on_stage("reading")
     V, F = load_arrays(source, mesh)

@@ -22,14 +22,9 @@ _LENGTHS = ("diagonal", "mean_edge", "area", "default_feature_size")
 def mesh_info(source: Path, on_stage: StageCallback, mesh: str | None = None) -> dict[str, Any]:
     """Describe a mesh file; several meshes are described together.
 
-    Parameters
-    ----------
-    source
-        The file.
-    on_stage
-        Called with "reading", "measuring" and "looking for noise" as these begin.
-    mesh
-        Describe only the mesh of this name.
+    Parameters and errors are those of `load_parts`; also FilterError when the mesh has no faces, no
+    area or non-finite coordinates. `on_stage` is called with "reading", "measuring" and "looking
+    for noise" as these begin.
 
     Returns
     -------
@@ -40,13 +35,6 @@ def mesh_info(source: Path, on_stage: StageCallback, mesh: str | None = None) ->
         along each axis, "diagonal", "mean_edge", "area" and "default_feature_size"; what Spectral
         Denoise would remove: "noise_summary", "noise_height" and "noise_size", the number of
         "spikes", "voxel_size"; "warnings".
-
-    Raises
-    ------
-    MeshFileError, OptionError
-        As `load_parts`.
-    FilterError
-        When the mesh has no faces, no area or non-finite coordinates.
     """
     on_stage("reading")
     parts = load_parts(source, mesh)

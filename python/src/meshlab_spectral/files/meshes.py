@@ -127,21 +127,9 @@ def load_arrays(source: Path, mesh: str | None = None) -> tuple[Array, Indices]:
 
 
 def load_parts(source: Path, mesh: str | None = None) -> list[Part]:
-    """Read the meshes of a file.
+    """Read the meshes of a file, or only the mesh of a name.
 
-    Parameters
-    ----------
-    source
-        The file.
-    mesh
-        Read only the mesh of this name.
-
-    Raises
-    ------
-    MeshFileError
-        When `source` cannot be read.
-    OptionError
-        When no mesh has the name.
+    Raises MeshFileError when `source` cannot be read, OptionError when no mesh has the name.
     """
     import pymeshlab
 

@@ -67,18 +67,10 @@ def read_with_meshlab(mesh_set: Any, source: Path) -> None:
 def write_with_meshlab(
     mesh_set: Any, scratch: Path, source: Path, settings: dict[str, bool] | None = None
 ) -> None:
-    """Save the current mesh to a file from `writing_whole`; raises MeshFileError.
+    """Save the current mesh of a MeshSet to a file from `writing_whole`; raises MeshFileError.
 
-    Parameters
-    ----------
-    mesh_set
-        A `pymeshlab.MeshSet`.
-    scratch
-        The file to write.
-    source
-        The file that the mesh comes from.
-    settings
-        Of `MeshSet.save_current_mesh`.
+    `source` is the file that the mesh comes from, `settings` are those of
+    `MeshSet.save_current_mesh`.
     """
     import pymeshlab
 
@@ -100,16 +92,10 @@ def write_with_meshlab(
 
 
 def left_behind(document: Document, target: Path, mesh_set: Any = None) -> list[str]:
-    """Return the warning, if any, of what a file in another format comes without.
+    """Return the warning, if any, of what a file in another format than `document` comes without.
 
-    Parameters
-    ----------
-    document
-        The file that was read.
-    target
-        The file in another format. What places a mesh is in its coordinates.
-    mesh_set
-        What MeshLab has read of the file; None where only coordinates and triangles went to it.
+    What places a mesh is in the coordinates of `target`. `mesh_set` is what MeshLab has read of the
+    document; None where only coordinates and triangles went to it.
     """
     written = {"placement"}
     if mesh_set is not None:

@@ -23,14 +23,7 @@ _INTEGER, _NUMBERS = ctypes.c_int, ctypes.POINTER(ctypes.c_double)
 class MeshLengths:
     """Lengths that the sizes of a custom transfer function refer to, in the units of the mesh.
 
-    Attributes
-    ----------
-    feature_size
-        The filter's feature size.
-    diagonal
-        Diagonal of the bounding box.
-    mean_edge
-        Mean edge length.
+    They are the filter's feature size, the diagonal of the bounding box and the mean edge length.
     """
 
     feature_size: float

@@ -16,18 +16,11 @@ from meshlab_spectral.plugin.loading import loaded_plugin
 def last_warnings() -> list[str]:
     """Return the warnings of the plugin's latest filter run in this thread, in its own words.
 
-    pymeshlab drops the strings of a filter's report.
+    pymeshlab drops the strings of a filter's report. They are sentences without the final full
+    stop, none before the first run and after a failed one.
 
-    Returns
-    -------
-    list of str
-        Sentences without the final full stop; empty before the first run and after a failed one.
-
-    Raises
-    ------
-    PluginError
-        When pymeshlab has loaded another copy of the plugin than `load` would, or the plugin is
-        older than this package.
+    Raises PluginError when pymeshlab has loaded another copy of the plugin than `load` would, or
+    the plugin is older than this package.
     """
     function = function_of(loaded_plugin(), "meshlab_spectral_warnings", ())
     text: bytes = function()
@@ -37,15 +30,7 @@ def last_warnings() -> list[str]:
 def last_summary() -> str:
     """Return what the plugin's latest filter run in this thread found and did, in one line.
 
-    Returns
-    -------
-    str
-        Empty where the numbers of the report say it all.
-
-    Raises
-    ------
-    PluginError
-        As `last_warnings`.
+    Empty where the numbers of the report say it all. Errors are those of `last_warnings`.
     """
     text: bytes = function_of(loaded_plugin(), "meshlab_spectral_summary", ())()
     return text.decode()

@@ -125,16 +125,10 @@ class MeshLabProcess:
         on_progress: ProgressCallback | None = None,
         limits: JobLimits = NO_LIMITS,
     ) -> Answer:
-        """Do a job.
+        """Do a job, described as `child` expects it, within its limits.
 
-        Parameters
-        ----------
-        job
-            As `child` expects it.
-        on_progress
-            Called with the current stage and the fraction done, 0 to 1, or None if unknown.
-        limits
-            Limits for this job.
+        `on_progress` is called with the current stage and the fraction done, 0 to 1, or None if
+        unknown.
 
         Raises
         ------
