@@ -109,21 +109,11 @@ def with_options(
         for one in fields(table):
             if one.name in added or one.name in leave_out:
                 continue
-            shown = {key: one.metadata[key] for key in ("help", "metavar")}
-            type_, default = types[one.name], one.default
+            panel: str | None = GROUP_OF.get(one.name, HOW) if table is tables[0] else DENOISE
             if table is Settings:
                 settings_names.append(one.name)
-                shown |= {"min": one.metadata["limits"] and one.metadata["limits"].low}
-            else:
-                own = table is tables[0]
-                shown |= {"rich_help_panel": GROUP_OF.get(one.name, HOW) if own else DENOISE}
-            if type_ is Length:
-                shown |= {"parser": _length, "metavar": "SIZE"}
-                default = str(default)
-            elif one.name == "memory_limit":
-                shown |= {"parser": _bytes}
-            spelled = typer.Option(*one.metadata["flags"], **shown)
-            added[one.name] = (one.name, type_, spelled, default)
+                panel = None
+            added[one.name] = _parameter(one, types[one.name], panel)
 
     def decorate(command: Command) -> Command:
         def run(arguments: dict[str, Any]) -> None:
@@ -143,6 +133,20 @@ def with_options(
         return with_parameters(command, [context, *added.values()], run, {"given", "settings"})
 
     return decorate
+
+
+def _parameter(one: Any, type_: Any, panel: str | None) -> tuple[str, Any, Any, Any]:
+    """Return a field of a table as `with_parameters` takes it; options check their ranges."""
+    shown: dict[str, Any] = {key: one.metadata[key] for key in ("help", "metavar")}
+    shown["rich_help_panel"] = panel
+    if panel is None and one.metadata["limits"]:
+        shown["min"] = one.metadata["limits"].low
+    if type_ is Length:
+        shown |= {"parser": _length, "metavar": "SIZE"}
+    elif one.name == "memory_limit":
+        shown["parser"] = _bytes
+    default = str(one.default) if type_ is Length else one.default
+    return one.name, type_, typer.Option(*one.metadata["flags"], **shown), default
 
 
 def chosen_options(
