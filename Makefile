@@ -5,6 +5,7 @@
 #                       package is fetched into build/
 #   WARNINGS_AS_ERRORS  ON: a compiler warning fails the build
 #   TEST_OPTIONS        of pytest in `make test`, such as --without-posix: as on Windows
+#   MESHES              the folder of the meshes that `make screenshots` shows
 #   BENCH_MESH          the mesh of the C++ benchmark, skipped when there is no such file
 #   BENCH_OPTIONS       of `make bench-basis`, `bench-contract`, `bench-defaults`, `bench-denoise`, `bench-memory`, `bench-signatures`; --help lists them
 #   FUZZ_OPTIONS        of `make fuzz`; tests/fuzz/fuzz_core.cpp lists them
@@ -13,7 +14,8 @@
 PYTHON ?= python3
 MESHLAB_SOURCE_DIR ?=
 WARNINGS_AS_ERRORS ?= OFF
-BENCH_MESH ?= ../shared/data/dragon_40k.ply
+MESHES ?= ../shared/data
+BENCH_MESH ?= $(MESHES)/dragon_40k.ply
 BENCH_OPTIONS ?=
 TEST_OPTIONS ?=
 FUZZ_OPTIONS ?= --cases 1000000
@@ -35,7 +37,7 @@ PACKAGE := .venv/.package
 COMPETITORS := .venv/.competitors
 
 CPP_FILES = find plugin tests -name '*.h' -o -name '*.cpp'
-PYTHON_FILES = python tests
+PYTHON_FILES = python tests screenshots
 # With the folders themselves, whose time changes when a file in them goes.
 PACKAGE_SOURCES := CMakeLists.txt $(shell find plugin python -not -path '*/__pycache__*' \
   -not -path 'python/docs*')
@@ -50,7 +52,7 @@ help:  ## list these commands
 
 demo: $(PACKAGE)  ## filter the Stanford bunny: report, mesh and picture in build/demo
 	@mkdir -p build/demo
-	$(BIN)/python -m meshlab_spectral.cli.demo build/demo
+	$(BIN)/python screenshots/scripts/demo.py build/demo
 
 test: build $(PACKAGE)  ## run every test, C++ and Python
 	ctest --test-dir build --output-on-failure --no-tests=error --parallel $$(nproc)
@@ -79,7 +81,9 @@ docs: $(PACKAGE)  ## write the reference of filters and Python API: build/docs/i
 gui-test: $(PACKAGE)  ## test in the real MeshLab 2025.07, made once (Linux, root or sudo)
 	tests/gui/run.sh
 
-screenshots: $(PACKAGE)  ## take the pictures of MeshLab in screenshots/ anew
+screenshots: $(PACKAGE)  ## draw the figures and take the pictures of MeshLab in screenshots/ anew
+	$(BIN)/python screenshots/scripts/paper.py $(MESHES)/dragon_40k.ply $(MESHES)/angel_50k.ply --output screenshots
+	$(BIN)/python screenshots/scripts/parts.py $(MESHES) screenshots
 	tests/gui/run.sh tests/gui/screenshots.py
 
 setup: $(PACKAGES) $(VENV)  ## install what is missing: Debian packages, .venv

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,8 @@ from typing import Any
 import meshlab_spectral
 import pymeshlab
 import tomllib
-from meshlab_spectral.plugin.library import filter_descriptions
+from meshlab_spectral.plugin.library import function_of
+from meshlab_spectral.plugin.loading import loaded_plugin
 
 WORDS: dict[str, dict[str, str]] = tomllib.loads(
     Path(__file__).with_name("words.toml").read_text(encoding="utf-8")
@@ -74,7 +76,9 @@ class Filter:
 def filters() -> dict[str, Filter]:
     """Return all filters of the plugin, by their Python names."""
     meshlab_spectral.load()
-    return {described["python_name"]: _filter(described) for described in filter_descriptions()}
+    # What the dialogs say: of a filter the fields of Filter, of its parameters those of Parameter.
+    text: bytes = function_of(loaded_plugin(), "meshlab_spectral_filters", ())()
+    return {described["python_name"]: _filter(described) for described in json.loads(text)}
 
 
 def _filter(described: dict[str, Any]) -> Filter:

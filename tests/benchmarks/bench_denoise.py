@@ -24,6 +24,7 @@ they were without it, before and after; all in mean edges.
 from __future__ import annotations
 
 import argparse
+import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -35,14 +36,15 @@ import numpy as np
 import pymeshlab
 import pyvista
 import scipy.sparse as sp
-from meshlab_spectral.figures.pictures import Panel, View, draw_side_by_side
+from meshlab_spectral.figures.pictures import Panel, View
 from meshlab_spectral.filters.arrays import mean_edge
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Method = Callable[[Array, Any], Array]
 
-SHARED = Path(__file__).resolve().parents[3] / "shared"
+REPOSITORY = Path(__file__).resolve().parents[2]
+SHARED, SCRIPTS = REPOSITORY.parent / "shared", REPOSITORY / "screenshots" / "scripts"
 GROUPS = {
     "soft forms": ("igea_n3", "Nicolo0.2", "julius_n2", "child_n3"),
     "machine parts": ("trimstar_n3", "Fandisk0.3", "Block0.4"),
@@ -242,6 +244,9 @@ def draw(panels: list[Panel], name: str, folder: Path) -> None:
         near &= (at[:, 2] > 0.6) | (radius == 1.0)  # of a part the front
         used, faces = np.unique(panel.F[near[panel.F].all(1)], return_inverse=True)
         parts.append(Panel(panel.label, panel.V[used], faces.reshape(-1, 3)))
+    sys.path.append(str(SCRIPTS))
+    from side_by_side import draw_side_by_side
+
     picture = folder / f"denoise_{name}.png"
     draw_side_by_side(parts, picture, view=view, panel_size=(400, 400))
     rows = [folder / f"denoise_{row}.png" for row in README]

@@ -12,8 +12,8 @@ from typing import Any
 
 import numpy as np
 from format_samples import SAMPLES, Sample, Seen
+from helpers import filter_file
 from meshlab_spectral import FilterOptions
-from meshlab_spectral.files.meshes import filter_file
 
 SMOOTH = FilterOptions.from_dict({"feature_size": "15%"})
 KINDS = {

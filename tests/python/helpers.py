@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pymeshlab
 import pytest
+from meshlab_spectral.files.meshes import filter_to_scratch
+from meshlab_spectral.files.whole_files import writing_whole
+from meshlab_spectral.filters.option_types import Options
 from numpy.typing import NDArray
 
 FILTER = "apply_coord_spectral_filter_fractional"
@@ -64,6 +68,14 @@ def filter_arrays(
     mesh_set = mesh_set_of(V, F)
     report = mesh_set.apply_filter(FILTER, **parameters)
     return mesh_set.current_mesh().vertex_matrix().copy(), report
+
+
+def filter_file(
+    source: Path, target: Path, options: Options, mesh: str | None = None
+) -> dict[str, Any]:
+    """Filter a mesh file into another, and return the report."""
+    with writing_whole(target) as scratch:
+        return filter_to_scratch(source, scratch, options, lambda stage: None, mesh=mesh)
 
 
 def refusal(mesh_set: pymeshlab.MeshSet, filter_name: str = FILTER, **parameters: Any) -> str:

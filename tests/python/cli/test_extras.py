@@ -51,7 +51,6 @@ def test_a_command_for_one_file_needs_no_extra(arguments: list[str], cow: Path) 
         (["batch", "memory://in", "--output", "out"], "batch"),
         (["spectra", "COW"], "batch"),
         (["spectrum", "COW"], "plots"),
-        (["figures", "COW"], "plots,render"),
         (["basis", "COW", "--pictures", "out.png"], "plots,render"),
     ],
     ids=lambda value: value if isinstance(value, str) else "-".join(value[:2]),

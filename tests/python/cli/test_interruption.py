@@ -84,8 +84,7 @@ IMPORTS = {
     "meshlab_spectral.batch.engine": ["batch", "COW", "--output", "out"],
     "distributed": ["batch", "COW", "--output", "out"],
     "distributed.worker": ["spectra", "COW", "--output", "out/spectra.csv"],
-    "pymeshlab": ["figures", "COW", "--output", "out", "--only", "5"],
-    "pyvista": ["figures", "COW", "--output", "out", "--only", "5", "--scale", "0.1"],
+    "pyvista": ["basis", "COW", "-k", "10", "--output", "out/cow.npz", "--pictures", "out/cow.png"],
     "matplotlib": ["spectrum", "COW", "--output", "out/cow.png"],
 }
 

@@ -107,7 +107,7 @@ def test_faces_of_any_type_become_triangles(
 def test_strips_become_triangles_that_face_the_same_side(format_: str, tmp_path: Path) -> None:
     strips = ("tristrips", ["list int int vertex_indices"], [[[0, 1, 2, 3, -1, 4, 6, 5]], [[1, 0]]])
     document = read(write(tmp_path / "a.ply", encoded(format_, [vertices(), strips])))
-    assert document.parts[0].faces.tolist() == [[0, 1, 2], [2, 1, 3], [4, 6, 5]]
+    assert document.parts[0].faces.tolist() == [[0, 1, 2], [1, 3, 2], [4, 6, 5]]
 
 
 @pytest.mark.parametrize("format_", FORMATS)

@@ -1,4 +1,4 @@
-"""The command `meshlab-spectral figures`: its pictures, and what it says when a mesh is missing."""
+"""The scripts that draw the figures of the paper and the pictures of the READMEs."""
 
 from __future__ import annotations
 
@@ -13,22 +13,24 @@ import matplotlib.image
 import numpy as np
 import pytest
 import spectral_reference as reference
+from eigenfunctions import most_alike
 from helpers import FILTER, diagonal, largest_distance, mesh_set_of
 from meshlab_spectral import manifold_harmonics
-from meshlab_spectral.figures.eigenfunctions import most_alike
-from meshlab_spectral.figures.paper import FIGURES
-from meshlab_spectral.figures.parts import PICTURES
 from meshlab_spectral.figures.pictures import Frame, Panel, View, render
-from meshlab_spectral.figures.sequences import K, after
-from meshlab_spectral.figures.stability import BAND, LOW_PASS
 from meshlab_spectral.filters.arrays import lumped_areas
 from meshlab_spectral.filters.options import FilterOptions
 from numpy.typing import NDArray
+from paper import FIGURES
+from parts import PICTURES
+from sequences import K, after
+from stability import BAND, LOW_PASS
+
+SCRIPTS = Path(__file__).resolve().parents[3] / "screenshots" / "scripts"
 
 
-def command(*arguments: object) -> subprocess.CompletedProcess[str]:
+def script(name: str, *arguments: object) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        [sys.executable, "-m", "meshlab_spectral.cli", "figures", *map(str, arguments)],
+        [sys.executable, SCRIPTS / name, *map(str, arguments)],
         capture_output=True,
         text=True,
         timeout=300,
@@ -50,7 +52,7 @@ def meshes(decimated: Callable[..., Any], tmp_path: Path) -> list[Path]:
 
 def test_every_figure_of_every_mesh_is_drawn(meshes: list[Path], tmp_path: Path) -> None:
     folder = tmp_path / "new" / "folder"
-    done = command(*meshes, "--output", folder, "--scale", 0.2)
+    done = script("paper.py", *meshes, "--output", folder, "--scale", 0.2)
     assert done.returncode == 0, done.stderr
     assert "Traceback" not in done.stderr
     expected = {f"{name}_{mesh.stem}.png" for mesh in meshes for name, _ in FIGURES.values()}
@@ -69,67 +71,18 @@ def test_the_pictures_of_parts_are_drawn_and_errors_of_normals_printed(
     mesh_set = mesh_set_of(*decimated("cow.obj", 1000))
     for name in ("dragon_40k.ply", "stanford-bunny.obj", "fandisk.off", "gears.stl"):
         mesh_set.save_current_mesh(str(tmp_path / name))
-    module = "meshlab_spectral.figures.parts"
-    done = subprocess.run(
-        [sys.executable, "-m", module, tmp_path, tmp_path],
-        capture_output=True,
-        text=True,
-        timeout=300,
-        check=True,
-    )
+    done = script("parts.py", tmp_path, tmp_path)
+    assert done.returncode == 0, done.stderr
     assert {path.stem for path in tmp_path.glob("*.png")} == PICTURES.keys()
     assert done.stdout.count("mean error of the normals") == 6
 
 
 def test_only_the_wanted_figures_are_drawn(meshes: list[Path], tmp_path: Path) -> None:
-    done = command(meshes[0], "--output", tmp_path / "out", "--only", "1", "--scale", 0.2)
+    done = script(
+        "paper.py", meshes[0], "--output", tmp_path / "out", "--only", "1", "--scale", 0.2
+    )
     assert done.returncode == 0, done.stderr
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["figure1_stability_lying.png"]
-
-
-def test_a_missing_mesh_is_named_with_a_place_to_get_it(meshes: list[Path], tmp_path: Path) -> None:
-    missing = tmp_path / "dragon.ply"
-    done = command(meshes[0], missing, "--output", tmp_path / "out")
-    assert done.returncode == 1
-    assert str(missing) in done.stderr
-    assert "Stanford 3D Scanning Repository" in done.stderr
-    assert "Traceback" not in done.stderr
-    assert not (tmp_path / "out").exists()
-
-
-def test_a_place_where_no_picture_can_be_is_refused_before_the_work(
-    meshes: list[Path], tmp_path: Path
-) -> None:
-    taken = tmp_path / "taken"
-    taken.write_text("a file\n")
-    picture = tmp_path / "out" / f"{FIGURES[5][0]}_{meshes[0].stem}.png"
-    picture.mkdir(parents=True)  # a folder in its place
-    for output, words in ((taken, "choose another one"), (picture.parent, "not a file")):
-        done = command(meshes[0], "--output", output, "--only", "1,5")
-        assert done.returncode == 1
-        assert words in done.stderr
-        assert "Traceback" not in done.stderr
-    assert taken.read_text() == "a file\n"
-    assert list(picture.parent.iterdir()) == [picture], "nothing was drawn"
-
-
-@pytest.mark.parametrize("only", ["2", "1,x", "", "1,,5"])
-def test_an_unknown_figure_is_refused_with_those_there_are(
-    only: str, meshes: list[Path], tmp_path: Path
-) -> None:
-    done = command(meshes[0], "--output", tmp_path / "out", "--only", only)
-    assert done.returncode == 2
-    for number in FIGURES:
-        assert str(number) in done.stderr
-    assert not (tmp_path / "out").exists()
-
-
-def test_meshes_whose_pictures_would_have_one_name_are_refused(
-    meshes: list[Path], tmp_path: Path
-) -> None:
-    done = command(meshes[0], meshes[0], "--output", tmp_path / "out")
-    assert done.returncode == 2
-    assert "lying" in done.stderr
 
 
 @pytest.mark.parametrize(
@@ -170,7 +123,7 @@ def test_a_mesh_too_small_for_its_eigenfunctions_is_refused(tmp_path: Path) -> N
     path = tmp_path / "tetrahedron.ply"
     faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
     mesh_set_of(corners, faces).save_current_mesh(str(path))
-    done = command(path, "--output", tmp_path, "--only", 4, "--scale", 0.2)
+    done = script("paper.py", path, "--output", tmp_path, "--only", 4, "--scale", 0.2)
     assert done.returncode == 1, done.stderr
     assert "basis_size" in done.stderr
     assert "Traceback" not in done.stderr

@@ -16,10 +16,11 @@ from typing import Any
 import numpy as np
 import pymeshlab
 import pytest
+from helpers import filter_file
 from meshlab_spectral import DenoiseOptions, FilterOptions
 from meshlab_spectral.documents.opening import open_document
 from meshlab_spectral.errors import OptionError
-from meshlab_spectral.files.meshes import filter_file, load_arrays
+from meshlab_spectral.files.meshes import load_arrays
 from numpy.typing import NDArray
 from plyfile import PlyData
 

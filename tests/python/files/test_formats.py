@@ -9,7 +9,7 @@ import pytest
 import pyvista
 from format_samples import RGB, SAMPLES, Array, Sample
 from format_table import SMOOTH, compared, outcomes, table
-from meshlab_spectral.files.meshes import filter_file
+from helpers import filter_file
 from plyfile import PlyData
 
 README = Path(__file__).resolve().parents[3] / "python" / "README.md"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import os
+import re
 import subprocess
 import sys
 from dataclasses import fields
@@ -14,32 +15,37 @@ import jedi
 import meshlab_spectral
 import pytest
 from meshlab_spectral import DenoiseOptions, FilterOptions
+from meshlab_spectral.batch.settings import BatchKeywords, Settings
 from meshlab_spectral.filters.denoise import DenoiseKeywords
-from meshlab_spectral.filters.option_types import Length, Options
+from meshlab_spectral.filters.option_types import Length
 from meshlab_spectral.filters.options import FilterKeywords
 
-TABLES: list[tuple[type[Options], Any]] = [
-    (FilterOptions, FilterKeywords),
-    (DenoiseOptions, DenoiseKeywords),
+TABLES: list[tuple[list[type[Any]], Any]] = [
+    ([FilterOptions], FilterKeywords),
+    ([DenoiseOptions], DenoiseKeywords),
+    ([Settings, FilterOptions], BatchKeywords),
 ]
 
 
-@pytest.mark.parametrize(("table", "keywords"), TABLES)
-def test_keywords_are_the_fields_of_the_table(table: type[Options], keywords: Any) -> None:
-    types, keyword_types = get_type_hints(table), get_type_hints(keywords)
-    assert set(keyword_types) == {one.name for one in fields(table)}
+@pytest.mark.parametrize(("tables", "keywords"), TABLES)
+def test_keywords_are_the_fields_of_the_tables(tables: list[type[Any]], keywords: Any) -> None:
+    types = {name: kind for table in tables for name, kind in get_type_hints(table).items()}
+    keyword_types = get_type_hints(keywords)
+    assert set(keyword_types) == {one.name for table in tables for one in fields(table)}
     for name, kind in keyword_types.items():
-        assert kind == types[name] or (types[name] is Length and Length in get_args(kind))
+        assert kind in (types[name], str | types[name]) or Length in get_args(kind)
 
 
-@pytest.mark.parametrize("name", ["filter_mesh", "denoise_mesh", "filter_scalars", "filter_colors"])
+@pytest.mark.parametrize(
+    "name", ["filter_mesh", "denoise_mesh", "filter_scalars", "filter_colors", "filter_files"]
+)
 def test_help_lists_every_option_with_default_and_range(name: str) -> None:
     function = getattr(meshlab_spectral, name)
     document = inspect.getdoc(function) or ""
     parameters = inspect.signature(function).parameters
     assert "named" not in parameters
     assert "**named" not in document
-    assert "--" not in document.partition("Returns\n-------")[0].replace("----------", "")
+    assert "--" not in re.sub("-{3,}", "", document.partition("Raises\n")[0])
     for parameter in parameters:
         assert f"\n{parameter}\n    " in document or f"{parameter}, " in document
     assert all(len(line) <= 100 for line in document.splitlines())
@@ -54,6 +60,7 @@ def test_help_lists_every_option_with_default_and_range(name: str) -> None:
         ("filter_mesh(V, F, weigh", ["weight=", "weights="]),
         ("denoise_mesh(V, F, stre", ["strength="]),
         ("filter_scalars(V, F, q, band", ["band_width="]),
+        ("filter_files(inputs, output, over", ["overwrite="]),
     ],
 )
 def test_a_notebook_completes_options(call: str, completions: list[str]) -> None:

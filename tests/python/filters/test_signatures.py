@@ -11,7 +11,7 @@ import pytest
 import spectral_reference as reference
 from helpers import lower_part
 from meshlab_spectral import FilterError, Harmonics, OptionError, manifold_harmonics, shape_dna
-from meshlab_spectral.filters import signatures
+from meshlab_spectral.filters.harmonics import heat_times, wave_energies
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -197,7 +197,7 @@ def test_heat_and_a_particle_are_somewhere(bunny: tuple[Array, Harmonics]) -> No
     assert (np.diff(heat, axis=1) < 0).all(), "heat spreads"
     np.testing.assert_allclose(basis.masses @ wave, 1, rtol=1e-8)
     # The trace of the heat kernel.
-    t = signatures.heat_times(basis.eigenvalues, 16)
+    t = heat_times(basis.eigenvalues, 16)
     trace = np.exp(-np.outer(basis.eigenvalues, t)).sum(axis=0)
     np.testing.assert_allclose(basis.masses @ heat, trace, rtol=1e-8)
     faded = np.exp(-basis.eigenvalues[[-1, 1]] * t[[0, -1]])
@@ -213,13 +213,12 @@ def test_signatures_scale_as_one_over_area(decimated: Decimated) -> None:
 
 def test_energies_far_from_all_eigenvalues_have_a_finite_signature() -> None:
     lam = np.array([0.0, 1.0, 1e12])
-    e, sigma = signatures.wave_energies(lam, 2000)
-    found = signatures.wave_kernel(lam, np.ones((1, 3)), e, sigma)
+    found = Harmonics(lam, np.ones((1, 3)), np.ones(1)).wave_kernel_signature(2000)
     np.testing.assert_allclose(found, 1, rtol=1e-12)
 
 
 def test_one_energy_is_in_the_middle_of_the_spectrum() -> None:
-    e, sigma = signatures.wave_energies(np.array([0.0, np.exp(1.0), np.exp(5.0)]), 1)
+    e, sigma = wave_energies(np.array([0.0, np.exp(1.0), np.exp(5.0)]), 1)
     assert e == pytest.approx([3])
     assert sigma == pytest.approx(1)
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from meshlab_spectral import FilterError, OptionError, filter_mesh, set_threads, threads
 from meshlab_spectral.batch.processes import Processes
-from meshlab_spectral.plugin.threads import VARIABLE, threads_each
+from meshlab_spectral.plugin.limits import THREADS, threads_each
 from meshlab_spectral.process.parent import NO_LIMITS
 
 
@@ -18,7 +18,7 @@ class NotStartedError(Exception):
 
 @pytest.fixture(autouse=True)
 def _restored(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.delenv(VARIABLE, raising=False)
+    monkeypatch.delenv(THREADS, raising=False)
 
 
 def test_results_have_the_same_bits_for_every_number_of_threads(
@@ -41,10 +41,10 @@ def test_a_number_that_is_none_is_refused(
         set_threads(0)
     V, F = decimated("cow.obj", 2000)
     for value in ("0", "-3", "many", ""):
-        monkeypatch.setenv(VARIABLE, value)
-        with pytest.raises(FilterError, match=f"{VARIABLE} = {value}: give a number of threads"):
+        monkeypatch.setenv(THREADS, value)
+        with pytest.raises(FilterError, match=f"{THREADS} = {value}: give a number of threads"):
             filter_mesh(V, F)
-        with pytest.raises(OptionError, match=f"{VARIABLE} = {value}: must be"):
+        with pytest.raises(OptionError, match=f"{THREADS} = {value}: must be"):
             threads()
 
 
@@ -62,4 +62,4 @@ def test_processes_share_the_threads(monkeypatch: pytest.MonkeyPatch) -> None:
     processes.threads = 2
     with pytest.raises(NotStartedError), processes.one(NO_LIMITS):
         pass
-    assert [environment[VARIABLE] for environment in environments] == ["2"]
+    assert [environment[THREADS] for environment in environments] == ["2"]

@@ -30,7 +30,7 @@ from meshlab_spectral.batch.jobs import FileResult, Job
 from meshlab_spectral.batch.processes import processes
 from meshlab_spectral.batch.task import run_job
 from meshlab_spectral.errors import BatchError
-from meshlab_spectral.plugin.threads import threads_each
+from meshlab_spectral.plugin.limits import threads_each
 from meshlab_spectral.plugin.versions import versions
 
 # Share of the machine's memory for all workers together.
@@ -57,25 +57,12 @@ _NO_STATISTICS = {
 
 @contextlib.contextmanager
 def local_workers(count: int | None = None, memory_limit: int | None = None) -> Iterator[Client]:
-    """Start worker processes on this machine, not reachable from outside.
+    """Start worker processes on this machine, not reachable from outside, for `run_jobs`.
 
-    Parameters
-    ----------
-    count
-        Number of workers, each with one mesh at a time and its share of the threads; by default
-        one per processor.
-    memory_limit
-        Bytes per worker; by default they share nine tenths of the memory available to this process.
-
-    Yields
-    ------
-    Client
-        For `run_jobs`. On exit the workers are ended, whatever they are doing.
-
-    Raises
-    ------
-    BatchError
-        When they fail to start.
+    Each of the `count` workers, by default one per processor, takes one mesh at a time and its
+    share of the threads. `memory_limit` is in bytes per worker; by default they share nine tenths
+    of the memory available to this process. On exit they are ended, whatever they are doing.
+    Raises BatchError when they fail to start.
     """
     count = count or CPU_COUNT
     limit = memory_limit or int(_SHARE_OF_MEMORY * MEMORY_LIMIT / count)
@@ -94,15 +81,8 @@ def local_workers(count: int | None = None, memory_limit: int | None = None) -> 
 def workers_at(address: str) -> Iterator[Client]:
     """Use the workers of a running Dask cluster.
 
-    Parameters
-    ----------
-    address
-        Address of its scheduler, such as tcp://10.0.0.1:8786.
-
-    Raises
-    ------
-    BatchError
-        When it cannot be reached, has no workers, or these have different software versions.
+    `address` is that of its scheduler, such as tcp://10.0.0.1:8786. Raises BatchError when it
+    cannot be reached, has no workers, or these have different software versions.
     """
     with _quiet_log():
         try:
@@ -122,20 +102,10 @@ def workers_at(address: str) -> Iterator[Client]:
 
 
 def run_jobs(client: Client, jobs: Sequence[Job]) -> Iterator[FileResult]:
-    """Run jobs on workers.
+    """Run jobs on workers, and yield the result of each as soon as it is done.
 
     If a worker dies, Dask gives its job to another one, up to three times. The death of a MeshLab
-    process is handled by the worker, see `task`.
-
-    Yields
-    ------
-    FileResult
-        The result of each job, as soon as it is done.
-
-    Raises
-    ------
-    BatchError
-        When the cluster is gone.
+    process is handled by the worker, see `task`. Raises BatchError when the cluster is gone.
     """
     # Submitting all jobs at once would make the scheduler slow to start, and large.
     window = max(_FEWEST_SUBMITTED, 4 * sum(client.nthreads().values()))
@@ -175,16 +145,7 @@ def _failed(job: Job, error: BaseException) -> FileResult:
         )
     else:
         reason = f"unexpected error: {error!r}; please report it"
-    return FileResult(
-        outcome="failed",
-        input=job.source,
-        output=job.target,
-        name=job.name,
-        reason=reason,
-        options=job.options,
-        attempts=attempts,
-        versions=versions(),
-    )
+    return job.result("failed", reason=reason, attempts=attempts, versions=versions())
 
 
 def _check_workers(client: Client, address: str) -> None:

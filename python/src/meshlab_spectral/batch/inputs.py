@@ -41,20 +41,17 @@ def find_inputs(
 ) -> list[Input]:
     """Find the files given by names, folders, patterns such as scans/*.ply, and URLs.
 
+    A file is accepted whatever its extension; in folders, files that MeshLab can read are, hidden
+    ones excepted. They are in the order of the arguments, sorted within each, without duplicates.
+
     Parameters
     ----------
     arguments
-        The user's arguments. A file is accepted whatever its extension; in folders, files that
-        MeshLab can read are, hidden ones excepted.
+        The user's arguments.
     recursive
         Search subfolders, too, and let ** in a pattern match any folders.
     leave_out
         Files and folders to skip in a search: the outputs.
-
-    Returns
-    -------
-    list of Input
-        In the order of the arguments, sorted within each, without duplicates.
 
     Raises
     ------

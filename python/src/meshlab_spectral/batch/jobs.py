@@ -39,6 +39,12 @@ class Job:
     seconds: float | None = None
     overwrite: bool = False
 
+    def result(self, outcome: Outcome, **more: Any) -> FileResult:
+        """Return the result of this job; `more` are attributes that the job does not know."""
+        return FileResult(
+            outcome, self.source, self.target, self.name, options=self.options, **more
+        )
+
 
 @dataclass(frozen=True)
 class FileResult:

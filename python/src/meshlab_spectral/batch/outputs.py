@@ -43,18 +43,16 @@ class Output:
 def plan_outputs(
     inputs: Sequence[Input], folder: str, pattern: str = DEFAULT_PATTERN, ending: str | None = None
 ) -> list[Output]:
-    """Name the output for each input.
+    """Name the output for each input, as from `find_inputs`.
+
+    The inputs' subfolders are recreated in `folder`, a path or URL.
 
     Parameters
     ----------
-    inputs
-        From `find_inputs`.
-    folder
-        Path or URL of the output folder. The inputs' subfolders are recreated in it.
     pattern
-        Pattern for the names, without extension: {stem} and {ending} stand for the parts of the
-        input's name before and after its last dot, {folder} for the name of its folder. A "/"
-        creates folders.
+        For the names, without extension: {stem} and {ending} stand for the parts of the input's
+        name before and after its last dot, {folder} for the name of its folder. A "/" creates
+        folders.
     ending
         Extension of the outputs; by default that of the input, or ply if it cannot be written with
         faces.

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from meshlab_spectral.batch import storage
 from meshlab_spectral.batch.inputs import Input, find_inputs
 from meshlab_spectral.batch.jobs import FileResult, Job
-from meshlab_spectral.batch.outputs import DEFAULT_PATTERN, plan_outputs
+from meshlab_spectral.batch.outputs import plan_outputs
 from meshlab_spectral.batch.report import DEFAULT_NAME, check_report, read_report
 from meshlab_spectral.batch.resume import Records, done_records, proved_done
+from meshlab_spectral.batch.settings import Settings
 from meshlab_spectral.errors import InputError, OptionError
 from meshlab_spectral.files.script import script_filters
 from meshlab_spectral.filters.option_types import Options
@@ -37,11 +38,14 @@ class Batch:
         Results of an earlier run that are still valid.
     report
         Path of the report.
+    settings
+        As for `plan_batch`.
     """
 
     jobs: list[Job]
-    done: list[FileResult] = field(default_factory=list)
-    report: Path = Path(DEFAULT_NAME)
+    done: list[FileResult]
+    report: Path
+    settings: Settings
 
     @property
     def folders(self) -> list[str]:
@@ -53,26 +57,20 @@ class Batch:
 def plan_batch(
     inputs: Sequence[str | Path],
     output: str | Path,
+    settings: Settings,
     options: Options | None = None,
-    *,
-    script: str | Path | None = None,
-    recursive: bool = False,
-    name: str = DEFAULT_PATTERN,
-    ending: str | None = None,
-    overwrite: bool = False,
-    resume: bool = False,
-    report: str | Path | None = None,
-    timeout: float | None = None,
 ) -> Batch:
     """Find the inputs of a batch, name its outputs, and check that no file would be lost.
 
     Parameters and errors are those of `files.filter_files`.
     """
-    work, described = _work(options, script)
+    settings.check_workers()
+    resume, overwrite = settings.resume, settings.overwrite
+    work, described = _work(options, settings.script)
     folder = storage.located(str(output))
     if not storage.is_url(folder) and Path(folder).is_file():
         raise InputError(f"the output {output} is a file: name a folder for the outputs")
-    report_path = _report_path(folder, report)
+    report_path = _report_path(folder, settings.report)
     check_report(report_path)
     records: Records = {}
     begun = None
@@ -81,7 +79,10 @@ def plan_batch(
         records = done_records(lines)
         begun = min((line["begun"] for line in lines if line.get("kind") == "run"), default=None)
     planned = plan_outputs(
-        _inputs(inputs, folder, recursive, report_path, records), folder, name, ending
+        _inputs(inputs, folder, settings.recursive, report_path, records),
+        folder,
+        settings.name,
+        settings.ending,
     )
     jobs = [
         Job(
@@ -90,7 +91,7 @@ def plan_batch(
             output.name,
             work,
             described,
-            seconds=timeout,
+            seconds=settings.timeout,
             overwrite=overwrite or resume,
         )
         for output in planned
@@ -108,7 +109,7 @@ def plan_batch(
         if resume:
             hint = f"pass the report of the run that made them (--report); {report_path} is not it"
         _refuse_to_replace(targets, begun if resume else None, hint)
-    return Batch(left, list(done.values()), report_path)
+    return Batch(left, list(done.values()), report_path, settings)
 
 
 def _work(

@@ -14,9 +14,9 @@ import os
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
-from types import TracebackType
-from typing import Any
+from typing import Any, get_args
 
+from meshlab_spectral.batch.jobs import FileResult, Outcome
 from meshlab_spectral.errors import BatchError, InputError
 
 DEFAULT_NAME = "batch_report.jsonl"
@@ -29,12 +29,8 @@ _END_OF_TIME = 1e12  # seconds since 1970; NaN and infinity are beyond it, too
 def read_report(path: Path) -> Iterator[dict[str, Any]]:
     """Yield the lines of a report in order.
 
-    Skips incomplete lines, such as after a power failure.
-
-    Raises
-    ------
-    BatchError
-        When the file exists but cannot be read, or has a line that no batch has written.
+    Skips incomplete lines, such as after a power failure. Raises BatchError when the file exists
+    but cannot be read, or has a line that no batch has written.
     """
     try:
         with path.open("rb") as file:
@@ -86,12 +82,7 @@ class Report:
     def __enter__(self) -> Report:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self._file.close()
 
     def add(self, kind: str, content: dict[str, Any]) -> None:
@@ -135,15 +126,8 @@ class Report:
 def grouped_warnings(warnings: Mapping[str, Sequence[str]]) -> list[dict[str, Any]]:
     """Group the warnings of many files that differ in their numbers at most, most frequent first.
 
-    Parameters
-    ----------
-    warnings
-        Those of each file, by its name.
-
-    Returns
-    -------
-    list of dict
-        "warning": that of the first file; "files": the names of all.
+    `warnings` are those of each file, by its name. Each group has "warning", that of the first
+    file, and "files", the names of all.
     """
     groups: dict[str, dict[str, Any]] = {}
     for name, texts in sorted(warnings.items()):
@@ -152,6 +136,41 @@ def grouped_warnings(warnings: Mapping[str, Sequence[str]]) -> list[dict[str, An
             if group["files"][-1:] != [name]:  # of several meshes in a file
                 group["files"].append(name)
     return sorted(groups.values(), key=lambda group: -len(group["files"]))
+
+
+class Tally:
+    """What has become of the files of a batch.
+
+    Attributes
+    ----------
+    counts
+        Number of results by outcome.
+    warnings
+        The warnings of each file that has any, by its name.
+    """
+
+    def __init__(self) -> None:
+        self.counts = dict.fromkeys(get_args(Outcome), 0)
+        self.warnings: dict[str, list[str]] = {}
+
+    def add(self, result: FileResult) -> None:
+        """Count a result."""
+        self.counts[result.outcome] += 1
+        if result.warnings:
+            self.warnings[result.name] = result.warnings
+
+    def told(self) -> dict[str, Any]:
+        """Return how many files have warnings, and these, as `grouped_warnings`."""
+        grouped = grouped_warnings(self.warnings)
+        return {"with_warnings": len(self.warnings), "warnings": grouped}
+
+    def summary(self, done: Outcome) -> str:
+        """Format the counts; `done` is the outcome of a successful file."""
+        text = f"{self.counts[done]} {done}, {self.counts['failed']} failed"
+        for outcome in ("unchanged", "already done"):
+            if self.counts[outcome]:
+                text += f", {self.counts[outcome]} {outcome}"
+        return text + (f", {len(self.warnings)} with warnings" if self.warnings else "")
 
 
 def check_report(path: Path) -> None:

@@ -28,24 +28,10 @@ def done_records(report: Iterable[Mapping[str, Any]]) -> Records:
 def proved_done(
     jobs: Iterable[Job], records: Records, versions: Mapping[str, str]
 ) -> dict[Job, FileResult]:
-    """Find the jobs that are already done.
+    """Find the jobs that are already done, and the recorded result of each, as "already done".
 
-    A job is done if a record has its options and the current versions, and the SHA-256 of its
-    input, its output and the output's side files are still those in the record.
-
-    Parameters
-    ----------
-    jobs
-        All of them.
-    records
-        From `done_records`.
-    versions
-        From `versions.versions`.
-
-    Returns
-    -------
-    dict
-        The recorded result of each such job, as "already done".
+    A job is done if a record, one of `done_records`, has its options and the current `versions`,
+    and the SHA-256 of its input, its output and the output's side files are still those in it.
     """
     candidates = [job for job in jobs if job.name in records]
     with ThreadPoolExecutor() as pool:  # most of the time goes into reading
@@ -73,12 +59,8 @@ def _proof(
             and record.get("output_sha256") == output
             and _same_side_files(job, record.get("side_files", {}))
         ):
-            return FileResult(
-                outcome="already done",
-                input=job.source,
-                output=job.target,
-                name=job.name,
-                options=job.options,
+            return job.result(
+                "already done",
                 report=record.get("report"),
                 warnings=record.get("warnings", []),
                 input_sha256=source,

@@ -15,8 +15,10 @@ from meshlab_spectral.batch.outputs import refuse_inputs
 from meshlab_spectral.batch.plan import Batch
 from meshlab_spectral.batch.report import check_report, read_report
 from meshlab_spectral.batch.resume import done_records, proved_done
+from meshlab_spectral.batch.settings import Settings
 from meshlab_spectral.errors import InputError
-from meshlab_spectral.filters.spectrum import GeometrySpectrum, spectrum_parameters
+from meshlab_spectral.filters.options import SpectrumOptions
+from meshlab_spectral.filters.spectrum import GeometrySpectrum
 from meshlab_spectral.plugin.versions import versions
 
 COLUMNS = (
@@ -36,50 +38,37 @@ COLUMNS = (
 def plan_spectra(
     inputs: Sequence[str | Path],
     table: Path,
-    basis_size: int,
-    laplacian: str,
-    boundary: str,
-    *,
-    recursive: bool = False,
-    resume: bool = False,
-    report: Path | None = None,
-    timeout: float | None = None,
+    options: SpectrumOptions,
+    settings: Settings,
 ) -> Batch:
     """Plan to measure the spectra of many meshes; the report of each mesh is its spectrum.
 
-    Parameters
-    ----------
-    inputs, recursive, resume, timeout
-        As for `files.filter_files`.
-    table
-        The file for `write_table`.
-    basis_size, laplacian, boundary
-        As for `spectrum.geometry_spectrum`.
-    report
-        By default TABLE_report.jsonl, next to the table.
+    `inputs` are those of `files.filter_files`, `table` is the file for `write_table`. Of `settings`
+    count recursive, resume, report, timeout and the workers; the report is by default
+    TABLE_report.jsonl, next to the table.
 
-    Raises
-    ------
-    InputError
-        When inputs are missing, or the table or the report would replace another file.
-    OptionError
-        When a parameter has an invalid value.
-    BatchError
-        When an earlier report cannot be read.
+    Raises InputError when inputs are missing, or the table or the report would replace another
+    file, OptionError when both kinds of workers are wanted, and BatchError when an earlier report
+    cannot be read.
     """
-    parameters = spectrum_parameters(basis_size, laplacian, boundary)
+    settings.check_workers()
     table = table.absolute()
-    report = (report or table.parent / f"{table.stem}_report.jsonl").absolute()
+    report = (settings.report or table.parent / f"{table.stem}_report.jsonl").absolute()
     if report == table:
         raise InputError(f"the report {report} is also the table: choose another with --report")
     check_report(report)
-    places = [file.place for file in find_inputs(map(str, inputs), recursive, [table, report])]
+    places = [
+        file.place for file in find_inputs(map(str, inputs), settings.recursive, [table, report])
+    ]
     refuse_inputs([str(table)], places)
-    work = {"task": "spectrum", "parameters": parameters}
-    jobs = [Job(place, None, place, work, parameters, timeout) for place in places]
-    proved = proved_done(jobs, done_records(read_report(report)), versions()) if resume else {}
+    described = options.as_dict()
+    work = {"task": options.TABLE, "options": described}
+    jobs = [Job(place, None, place, work, described, settings.timeout) for place in places]
+    proved = (
+        proved_done(jobs, done_records(read_report(report)), versions()) if settings.resume else {}
+    )
     done = {job: result for job, result in proved.items() if _is_whole(result)}
-    return Batch([job for job in jobs if job not in done], list(done.values()), report)
+    return Batch([job for job in jobs if job not in done], list(done.values()), report, settings)
 
 
 def write_table(path: Path, results: Iterable[FileResult]) -> None:

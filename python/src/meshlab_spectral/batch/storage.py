@@ -52,12 +52,8 @@ def joined(folder: str, name: str) -> str:
 def file_system(url: str) -> tuple[Any, str]:
     """Return the fsspec file system of a URL and the path in it.
 
-    Raises
-    ------
-    InputError
-        When the scheme is unknown or its package is not installed.
-    MissingPackageError
-        When fsspec, of the extra `batch`, is not installed.
+    Raises InputError when the scheme is unknown or its package is not installed,
+    MissingPackageError when fsspec, of the extra `batch`, is not installed.
     """
     check_extras("batch")
     import fsspec
@@ -105,10 +101,7 @@ def existing(places: list[str]) -> list[str]:
 def reading(place: str) -> Iterator[Path]:
     """Yield a local file to read: the one at a path, or a copy of the one at a URL.
 
-    Raises
-    ------
-    MeshFileError
-        When it is missing or cannot be read.
+    Raises MeshFileError when it is missing or cannot be read.
     """
     if not is_url(place):
         check_source(Path(place))
@@ -131,12 +124,8 @@ def writing(place: str, overwrite: bool) -> Iterator[Path]:
     """Yield a scratch file to write; on success, move it and its side files into place.
 
     Folders are created as needed. See `whole_files.writing_whole`; at a URL, however, an existing
-    file is only detected shortly before the upload.
-
-    Raises
-    ------
-    MeshFileError
-        When the place cannot be written to, or exists and must not be overwritten.
+    file is only detected shortly before the upload. Raises MeshFileError when the place cannot be
+    written to, or exists and must not be overwritten.
     """
     if not is_url(place):
         try:

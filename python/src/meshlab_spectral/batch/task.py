@@ -11,7 +11,7 @@ from meshlab_spectral.batch.jobs import FileResult, Job, Outcome
 from meshlab_spectral.batch.processes import processes
 from meshlab_spectral.errors import MemoryLimitError, ProcessDiedError, SpectralError
 from meshlab_spectral.files.whole_files import side_files
-from meshlab_spectral.plugin.threads import threads_each
+from meshlab_spectral.plugin.limits import threads_each
 from meshlab_spectral.plugin.versions import versions
 from meshlab_spectral.process.parent import Answer, JobLimits
 
@@ -20,20 +20,10 @@ ATTEMPTS = 2
 
 
 def run_job(job: Job, memory_limit: int | None = None) -> FileResult:
-    """Process one file.
+    """Process one file: "filtered", "unchanged", "measured" or "failed".
 
-    Parameters
-    ----------
-    job
-        The job.
-    memory_limit
-        Memory limit of MeshLab's process in bytes; by default its share of the Dask worker's, or
-        none outside a worker.
-
-    Returns
-    -------
-    FileResult
-        "filtered", "measured" or "failed"; errors of a single file are not raised.
+    Errors of a single file are not raised. `memory_limit` is that of MeshLab's process in bytes; by
+    default its share of the Dask worker's, or none outside a worker.
     """
     begin = time.monotonic()
     result: dict[str, Any] = {"outcome": "failed", "waited": 0.0}
@@ -58,11 +48,7 @@ def run_job(job: Job, memory_limit: int | None = None) -> FileResult:
         result["reason"] = str(error)
     except OSError as error:
         result["reason"] = f"a file cannot be read or written ({error})"
-    return FileResult(
-        input=job.source,
-        output=job.target,
-        name=job.name,
-        options=job.options,
+    return job.result(
         seconds=round(time.monotonic() - begin - result.pop("waited"), 3),
         versions=versions(),
         **result,

@@ -7,21 +7,15 @@ from typing import Annotated
 
 import typer
 
-from meshlab_spectral.cli.basis import BASIS_HELP, basis_command
-from meshlab_spectral.cli.batch import BATCH_HELP, batch_command
-from meshlab_spectral.cli.command_line import AllCommands, OneCommand, with_verbosity
-from meshlab_spectral.cli.figures import FIGURES_HELP, figures_command
-from meshlab_spectral.cli.filter import (
-    DENOISE_HELP,
-    FILTER_HELP,
-    denoise_command,
-    filter_command,
-)
-from meshlab_spectral.cli.info import INFO_HELP, info_command
-from meshlab_spectral.cli.install import INSTALL_HELP, install_command
+from meshlab_spectral.cli.basis import basis_command
+from meshlab_spectral.cli.batch import batch_command
+from meshlab_spectral.cli.command_line import AllCommands, Command, OneCommand, with_verbosity
+from meshlab_spectral.cli.filter import denoise_command, filter_command
+from meshlab_spectral.cli.info import info_command
+from meshlab_spectral.cli.install import install_command
 from meshlab_spectral.cli.messages import EXIT_CODES
-from meshlab_spectral.cli.spectra import SPECTRA_HELP, spectra_command
-from meshlab_spectral.cli.spectrum import SPECTRUM_HELP, spectrum_command
+from meshlab_spectral.cli.spectra import spectra_command
+from meshlab_spectral.cli.spectrum import spectrum_command
 
 app = typer.Typer(
     cls=AllCommands,
@@ -53,15 +47,15 @@ def _common(
     """Denoise, smooth, sharpen and band-filter meshes by the size of their details."""
 
 
-for _name, _help, _command in (
-    ("info", INFO_HELP, info_command),
-    ("denoise", DENOISE_HELP, denoise_command),
-    ("filter", FILTER_HELP, filter_command),
-    ("batch", BATCH_HELP, batch_command),
-    ("spectrum", SPECTRUM_HELP, spectrum_command),
-    ("spectra", SPECTRA_HELP, spectra_command),
-    ("basis", BASIS_HELP, basis_command),
-    ("figures", FIGURES_HELP, figures_command),
-    ("install", INSTALL_HELP, install_command),
-):
-    app.command(_name, cls=OneCommand, help=_help, epilog=EXIT_CODES)(with_verbosity(_command))
+_COMMANDS: dict[str, Command] = {
+    "info": info_command,
+    "denoise": denoise_command,
+    "filter": filter_command,
+    "batch": batch_command,
+    "spectrum": spectrum_command,
+    "spectra": spectra_command,
+    "basis": basis_command,
+    "install": install_command,
+}
+for _name, _command in _COMMANDS.items():
+    app.command(_name, cls=OneCommand, epilog=EXIT_CODES)(with_verbosity(_command))

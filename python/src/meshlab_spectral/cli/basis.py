@@ -3,34 +3,24 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from meshlab_spectral.cli.filter_options import OneMesh, Source
+from meshlab_spectral.cli.filter_options import OneMesh, Source, with_options
 from meshlab_spectral.cli.messages import errors_reported, print_result
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.extras import check_extras
-from meshlab_spectral.figures.harmonics import check_modes, check_picture, draw_basis_file
+from meshlab_spectral.figures.harmonics import check_modes, draw_basis_file
+from meshlab_spectral.files.formats import check_ending
 from meshlab_spectral.files.whole_files import check_target
-from meshlab_spectral.filters.harmonics import DEFAULT_BASIS_SIZE
-from meshlab_spectral.filters.options import Boundary, LaplacianKind
-from meshlab_spectral.process.single_file import basis_file_in_child
-
-# "\b" keeps a paragraph's lines as they are.
-BASIS_HELP = """Compute manifold harmonics, as arrays and pictures.
-
-The output is a NumPy archive with the arrays eigenvalues (k), frequencies (k, their square roots),
-harmonics (n x k), masses (n, the vertex areas: with these as weights the harmonics are
-orthonormal), and the mesh that their rows belong to, vertices (n x 3) and faces (m x 3).
-
-\b
-  meshlab-spectral basis scan.ply --basis-size 200 --output scan.npz
-  meshlab-spectral basis scan.ply --pictures scan.png --modes 1,2,3,5,8
-"""
+from meshlab_spectral.filters.options import BasisOptions
+from meshlab_spectral.process.single_file import write_in_child
 
 
+@with_options(BasisOptions)
 def basis_command(
+    given: dict[str, Any],
     source: Source,
     output: Annotated[
         Path,
@@ -41,16 +31,6 @@ def basis_command(
             help="NumPy archive to write; replaces an existing file.",
         ),
     ] = Path("basis.npz"),
-    basis_size: Annotated[
-        int,
-        typer.Option("--basis-size", "-k", min=1, help="Number of harmonics, constants included."),
-    ] = DEFAULT_BASIS_SIZE,
-    laplacian: Annotated[
-        LaplacianKind, typer.Option(help="As for the filter.")
-    ] = "intrinsic delaunay",
-    boundary: Annotated[
-        Boundary, typer.Option(help="At the boundary of an open surface: free, or fixed to zero.")
-    ] = "free",
     mesh: OneMesh = None,
     pictures: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Sheet of pictures to draw, a .png file.")
@@ -62,15 +42,25 @@ def basis_command(
         float, typer.Option(min=0.1, max=10, help="Resolution of the pictures; 1 fills a screen.")
     ] = 1.0,
 ) -> None:
-    """Compute manifold harmonics: see `meshlab-spectral basis --help`."""
+    """Compute manifold harmonics, as arrays and pictures.
+
+    The output is a NumPy archive with the arrays eigenvalues (k), frequencies (k, their square
+    roots), harmonics (n x k), masses (n, the vertex areas: with these as weights the harmonics are
+    orthonormal), and the mesh that their rows belong to, vertices (n x 3) and faces (m x 3).
+
+      meshlab-spectral basis scan.ply --basis-size 200 --output scan.npz
+      meshlab-spectral basis scan.ply --pictures scan.png --modes 1,2,3,5,8
+    """
     with errors_reported("finished files are complete"):
-        shown = None if modes is None else _modes(modes, basis_size)
+        options = BasisOptions.from_dict(given)
+        shown = None if modes is None else _modes(modes, options.basis_size)
+        check_ending(output, "a basis is a NumPy archive", ".npz")
         if pictures is not None:
             check_extras("plots", "render")
-            check_picture(pictures)
+            check_ending(pictures, "the pictures are one PNG file", ".png")
             check_target(pictures)
         with progress_shown() as on_progress:
-            basis_file_in_child(source, output, basis_size, laplacian, boundary, on_progress, mesh)
+            write_in_child(source, output, options, on_progress, mesh)
             if pictures is not None:
                 on_progress("drawing", None)
                 draw_basis_file(output, pictures, shown, scale)

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import json
 import time
-from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from meshlab_spectral.batch.files import Workers
-from meshlab_spectral.batch.outputs import DEFAULT_PATTERN
+from meshlab_spectral.batch.jobs import Outcome
 from meshlab_spectral.batch.plan import Batch, plan_batch
-from meshlab_spectral.batch.report import grouped_warnings
+from meshlab_spectral.batch.report import Tally
+from meshlab_spectral.batch.settings import Settings
 from meshlab_spectral.cli.filter_options import (
     AsJson,
     Recipe,
@@ -20,20 +19,7 @@ from meshlab_spectral.cli.filter_options import (
     chosen_options,
     with_options,
 )
-from meshlab_spectral.cli.many_files import (
-    INTERRUPTED,
-    Inputs,
-    MemoryLimit,
-    Recursive,
-    ReportFile,
-    Resume,
-    Scheduler,
-    Tally,
-    Timeout,
-    WorkerCount,
-    planning_shown,
-    run_shown,
-)
+from meshlab_spectral.cli.many_files import INTERRUPTED, Inputs, planning_shown, run_shown
 from meshlab_spectral.cli.messages import (
     EXIT_FAILED,
     errors_reported,
@@ -45,30 +31,11 @@ from meshlab_spectral.filters.denoise import DenoiseOptions
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import FilterOptions
 
-# "\b" keeps a paragraph's lines as they are.
-BATCH_HELP = """Filter or denoise many meshes in parallel, with a report.
 
-\b
-Smooth a folder of scans:
-  meshlab-spectral batch scans --output smooth --feature-size 2%
-Denoise it, as denoise does for one scan, with the same options:
-  meshlab-spectral batch scans --output clean --denoise
-Continue after an interruption, or with more scans:
-  meshlab-spectral batch scans --output smooth --feature-size 2% --resume
-Save the options for next time:
-  meshlab-spectral batch scans --output smooth --feature-size 2% \\
-    --save-recipe smooth.toml
-  meshlab-spectral batch more/*.obj --output more_smooth --recipe smooth.toml
-
-Each file gets a line in the report, DIR/batch_report.jsonl, as soon as it is done: outcome,
-options, the filter's report and warnings, SHA-256 of input and output, seconds, memory, versions.
-A file that fails does not stop the others.
-"""
-
-
-@with_options(FilterOptions, DenoiseOptions)
+@with_options(FilterOptions, DenoiseOptions, Settings)
 def batch_command(
     given: dict[str, Any],
+    settings: Settings,
     inputs: Inputs,
     output: Annotated[
         str,
@@ -76,29 +43,6 @@ def batch_command(
             "--output", "-o", metavar="DIR", help="Output folder, created if needed; or a URL."
         ),
     ],
-    name: Annotated[
-        str,
-        typer.Option(
-            metavar="PATTERN",
-            help="Names of the outputs, without extension, made from those of the inputs: {stem}, "
-            "{ending}, {folder}; such as {stem}_smooth or {folder}/{stem}.",
-        ),
-    ] = DEFAULT_PATTERN,
-    ending: Annotated[
-        str | None,
-        typer.Option(
-            "--format",
-            metavar="ENDING",
-            help="Format of the outputs, such as ply. By default that of the input, or ply if "
-            "MeshLab cannot write that with faces.",
-        ),
-    ] = None,
-    recursive: Recursive = False,
-    overwrite: Annotated[
-        bool,
-        typer.Option("--overwrite", help="Replace existing outputs; inputs are never replaced."),
-    ] = False,
-    resume: Resume = False,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Only list the outputs that would be written.")
     ] = False,
@@ -107,53 +51,42 @@ def batch_command(
     ] = False,
     recipe: Recipe = None,
     save_recipe: SaveRecipe = None,
-    script: Annotated[
-        Path | None,
-        typer.Option(
-            metavar="FILE",
-            help="Apply a MeshLab filter script (.mlx) instead of the options. Sizes in it are "
-            "lengths, not percentages.",
-        ),
-    ] = None,
-    report: ReportFile = None,
-    workers: WorkerCount = None,
-    memory_limit: MemoryLimit = None,
-    timeout: Timeout = None,
-    scheduler: Scheduler = None,
     as_json: AsJson = False,
 ) -> None:
-    """Filter many meshes: see `meshlab-spectral batch --help`."""
-    if script is not None and save_recipe is not None:
+    """Filter or denoise many meshes in parallel, with a report.
+
+    Smooth a folder of scans:
+      meshlab-spectral batch scans --output smooth --feature-size 2%
+    Denoise it, as denoise does for one scan, with the same options:
+      meshlab-spectral batch scans --output clean --denoise
+    Continue after an interruption, or with more scans:
+      meshlab-spectral batch scans --output smooth --feature-size 2% --resume
+    Save the options for next time:
+      meshlab-spectral batch scans -o clean --denoise --save-recipe clean.toml
+      meshlab-spectral batch more/*.obj -o more_clean --recipe clean.toml
+
+    Each file gets a line in the report, DIR/batch_report.jsonl, as soon as it is done: outcome,
+    options, the filter's report and warnings, SHA-256 of input and output, seconds, memory,
+    versions. A file that fails does not stop the others.
+    """
+    if settings.script is not None and save_recipe is not None:
         raise typer.BadParameter(
             "a recipe holds options of the filter, which a script replaces: leave out one of them",
             param_hint="--save-recipe",
         )
     with errors_reported(INTERRUPTED):
-        using = Workers(workers, memory_limit, scheduler)
         options: Options | None = None
-        if script is None or given or recipe is not None or denoise:
+        if settings.script is None or given or recipe is not None or denoise:
             table = FilterOptions if recipe is None else load_recipe(recipe)[0]
             options = chosen_options(DenoiseOptions if denoise else table, given, recipe)
         begin = time.monotonic()
-        with saving_recipe(save_recipe, options), planning_shown(resume):
-            batch = plan_batch(
-                inputs,
-                output,
-                options,
-                script=script,
-                recursive=recursive,
-                name=name,
-                ending=ending,
-                overwrite=overwrite,
-                resume=resume,
-                report=report,
-                timeout=timeout,
-            )
-        warn_of_points_only(ending or "")
+        with saving_recipe(save_recipe, options), planning_shown(settings.resume):
+            batch = plan_batch(inputs, output, settings, options)
+        warn_of_points_only(settings.ending or "")
         if dry_run:
             _print_plan(batch)
             return
-        tally = run_shown(batch, using)
+        tally = run_shown(batch)
         _print_summary(batch, tally, time.monotonic() - begin, as_json)
     if tally.counts["failed"]:
         raise typer.Exit(EXIT_FAILED)
@@ -168,11 +101,10 @@ def _print_plan(batch: Batch) -> None:
 
 def _print_summary(batch: Batch, tally: Tally, seconds: float, as_json: bool) -> None:
     if as_json:
-        outcomes = ("filtered", "failed", "unchanged", "already done")
+        outcomes: tuple[Outcome, ...] = ("filtered", "failed", "unchanged", "already done")
         summary = {
             **{outcome.replace(" ", "_"): tally.counts[outcome] for outcome in outcomes},
-            "with_warnings": len(tally.warnings),
-            "warnings": grouped_warnings(tally.warnings),
+            **tally.told(),
             "seconds": round(seconds, 1),
             "report": str(batch.report),
         }

@@ -6,7 +6,7 @@ import contextlib
 import inspect
 import re
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from typing import Annotated, Any
 
 import typer
@@ -101,7 +101,7 @@ class AllCommands(TyperGroup):
 
 
 def with_verbosity(command: Command) -> Command:
-    """Add the options of VERBOSITY to a command."""
+    """Add the options of VERBOSITY to a command, whose docstring is its help."""
     added = [(name, bool, option, False) for name, option in _VERBOSITY]
 
     def run(arguments: dict[str, Any]) -> None:
@@ -111,14 +111,16 @@ def with_verbosity(command: Command) -> Command:
             raise typer.BadParameter("not together with --verbose", param_hint="--quiet")
         command(**arguments)
 
-    return with_parameters(command, added, run)
+    complete = with_parameters(command, added, run)
+    complete.__doc__ = _with_kept_lines(command.__doc__ or "")
+    return complete
 
 
 def with_parameters(
     command: Command,
     added: Sequence[tuple[str, Any, Any, Any]],
     run: Callable[[dict[str, Any]], None],
-    replaced: str | None = None,
+    replaced: Collection[str] = (),
 ) -> Command:
     """Return `run` as a command with more parameters.
 
@@ -129,11 +131,11 @@ def with_parameters(
     added
         name, type, `typer.Option` and default of each that only `run` has, and
     replaced
-        the name of the parameter that `run` passes in place of these.
+        the names of parameters that `run` passes in place of these.
     """
     own = inspect.signature(command, eval_str=True).parameters.values()
     kind = inspect.Parameter.KEYWORD_ONLY
-    parameters = [one.replace(kind=kind) for one in own if one.name != replaced] + [
+    parameters = [one.replace(kind=kind) for one in own if one.name not in replaced] + [
         inspect.Parameter(name, kind, default=default, annotation=Annotated[type_, option])
         if option is not None
         else inspect.Parameter(name, kind, annotation=type_)
@@ -147,6 +149,12 @@ def with_parameters(
     with_more.__annotations__ = {one.name: one.annotation for one in parameters}
     with_more.__doc__, with_more.__name__ = command.__doc__, command.__name__
     return with_more
+
+
+def _with_kept_lines(text: str) -> str:
+    """Mark for Typer the paragraphs of a help whose lines stay: those with indented ones."""
+    paragraphs = inspect.cleandoc(text).split("\n\n")
+    return "\n\n".join(f"\b\n{one}" if "\n  " in f"\n{one}" else one for one in paragraphs)
 
 
 def _print_usage_error(error: Any) -> None:

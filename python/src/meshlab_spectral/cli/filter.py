@@ -31,14 +31,12 @@ from meshlab_spectral.filters.denoise import DenoiseOptions
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.plugin.versions import versions
-from meshlab_spectral.process.single_file import filter_file_in_child
+from meshlab_spectral.process.single_file import write_in_child
 
-# "\b" keeps a paragraph's lines as they are.
 FILTER_HELP = """Filter one mesh file by the size of its details.
 
 Only coordinates and normals change, as long as INPUT and OUTPUT are of one format.
 
-\b
 Smooth a scan, removing bumps narrower than half a percent of it:
   meshlab-spectral filter scan.ply smooth.ply --feature-size 2%
 Sharpen it:
@@ -51,14 +49,13 @@ Save the options, and filter a folder with them:
 """
 DENOISE_HELP = """Find out what noise a mesh has, of a scanner, spikes or voxels, and remove it.
 
-\b
   meshlab-spectral denoise scan.ply clean.ply
 A folder of scans:
   meshlab-spectral batch scans --output clean --denoise
 """
 
 
-def _command_with(table: type[Options]) -> Command:
+def _command_with(table: type[Options], help_text: str) -> Command:
     """Make the command for the filter of a table."""
 
     @with_options(table)
@@ -105,7 +102,7 @@ def _command_with(table: type[Options]) -> Command:
         with errors_reported():
             options = chosen_options(table, given, recipe)
             with saving_recipe(save_recipe, options), progress_shown() as on_progress:
-                report = filter_file_in_child(source, place, options, on_progress, mesh)
+                report = write_in_child(source, place, options, on_progress, mesh)
         warn_of_points_only(place.suffix)
         for warning in report["warnings"]:
             print_warning(warning)
@@ -115,10 +112,12 @@ def _command_with(table: type[Options]) -> Command:
         else:
             _print_reports(report, source.name, place.name)
 
+    command.__doc__ = help_text
     return command
 
 
-filter_command, denoise_command = _command_with(FilterOptions), _command_with(DenoiseOptions)
+filter_command = _command_with(FilterOptions, FILTER_HELP)
+denoise_command = _command_with(DenoiseOptions, DENOISE_HELP)
 
 
 def _print_reports(report: dict[str, Any], source: str, target: str) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Collection
 from dataclasses import fields
 from pathlib import Path
@@ -9,12 +10,16 @@ from typing import Annotated, Any, get_type_hints
 
 import typer
 
+from meshlab_spectral.batch.settings import Settings
 from meshlab_spectral.cli.command_line import DENOISE, GROUP_OF, HOW, Command, with_parameters
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.files.recipe import load_recipe
-from meshlab_spectral.filters.option_types import AnyOptions, Length, Options
+from meshlab_spectral.filters.option_types import AnyOptions, Length
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.filters.presets import PRESETS, Preset, equalizer_points
+
+_SIZE = re.compile(r"(?P<number>\d+(\.\d+)?)\s*(?P<unit>[KMGT]?)(i?B)?", re.IGNORECASE)
+_UNITS = {"": 1, "K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
 
 Source = Annotated[
     Path, typer.Argument(metavar="MESH", help="Mesh to read: .ply, .obj, .stl, .off, ...")
@@ -79,77 +84,79 @@ _PRESET = typer.Option(
 
 
 def with_options(
-    *tables: type[Options], names: Collection[str] | None = None
+    *tables: type[Any], leave_out: Collection[str] = ()
 ) -> Callable[[Command], Command]:
-    """Add one option per field of some tables to a command, passed as `given`.
+    """Add one option per field of some tables to a command, passed as `given` and `settings`.
 
     `given` is a dict for `chosen_options`, with only the options on the command line and of its
-    preset.
+    preset; `settings` are `Settings`, if these are among the tables.
 
     Parameters
     ----------
     *tables
         The tables. Of fields with one name the first counts. A command with FilterOptions gets
         `--preset` and `--equalizer`, too.
-    names
-        Only these fields.
+    leave_out
+        Fields that the command has no use for.
     """
     added: dict[str, tuple[str, Any, Any, Any]] = {}
+    settings_names: list[str] = []
     if FilterOptions in tables:
         added["preset"] = ("preset", Preset | None, _PRESET, None)
         added["equalizer"] = ("equalizer", str | None, _EQUALIZER, None)
     for table in tables:
         types = get_type_hints(table)
         for one in fields(table):
-            if one.name in added or (names is not None and one.name not in names):
+            if one.name in added or one.name in leave_out:
                 continue
-            settings: dict[str, Any] = {
-                "help": one.metadata["help"],
-                "rich_help_panel": GROUP_OF.get(one.name, HOW) if table is tables[0] else DENOISE,
-            }
-            type_, default = types[one.name], one.default
-            if type_ is Length:
-                settings |= {"parser": _length, "metavar": "SIZE"}
-                default = str(default)
-            added[one.name] = (one.name, type_, typer.Option(**settings), default)
+            panel: str | None = GROUP_OF.get(one.name, HOW) if table is tables[0] else DENOISE
+            if table is Settings:
+                settings_names.append(one.name)
+                panel = None
+            added[one.name] = _parameter(one, types[one.name], panel)
 
     def decorate(command: Command) -> Command:
         def run(arguments: dict[str, Any]) -> None:
             source = arguments.pop("context").get_parameter_source
             values = {name: arguments.pop(name) for name in added}
-            given = {
-                name: value
-                for name, value in values.items()
-                if source(name).name in ("COMMANDLINE", "DEFAULT_MAP")
-            }
-            command(given=given, **arguments)
+            if settings_names:
+                arguments["settings"] = Settings(**{n: values.pop(n) for n in settings_names})
+            if len(settings_names) < len(added):
+                arguments["given"] = {
+                    name: value
+                    for name, value in values.items()
+                    if source(name).name in ("COMMANDLINE", "DEFAULT_MAP")
+                }
+            command(**arguments)
 
         context = ("context", typer.Context, None, None)
-        return with_parameters(command, [context, *added.values()], run, replaced="given")
+        return with_parameters(command, [context, *added.values()], run, {"given", "settings"})
 
     return decorate
+
+
+def _parameter(one: Any, type_: Any, panel: str | None) -> tuple[str, Any, Any, Any]:
+    """Return a field of a table as `with_parameters` takes it; options check their ranges."""
+    shown: dict[str, Any] = {key: one.metadata[key] for key in ("help", "metavar")}
+    shown["rich_help_panel"] = panel
+    if panel is None and one.metadata["limits"]:
+        shown["min"] = one.metadata["limits"].low
+    if type_ is Length:
+        shown |= {"parser": _length, "metavar": "SIZE"}
+    elif one.name == "memory_limit":
+        shown["parser"] = _bytes
+    default = str(one.default) if type_ is Length else one.default
+    return one.name, type_, typer.Option(*one.metadata["flags"], **shown), default
 
 
 def chosen_options(
     table: type[AnyOptions], given: dict[str, Any], recipe: Path | None = None
 ) -> AnyOptions:
-    """Return the options of a recipe, if any, overridden by those given.
+    """Return the options of a recipe, a TOML file, if any, overridden by those given.
 
-    Parameters
-    ----------
-    table
-        The table that they are of.
-    given
-        From `with_options`.
-    recipe
-        A TOML file.
-
-    Raises
-    ------
-    OptionError
-        When an option has an invalid value, or it or the recipe is for another filter.
-    InputError
-        When the recipe cannot be read.
+    `table` is the one that they are of, `given` comes from `with_options`. Raises OptionError when
+    an option has an invalid value, or it or the recipe is for another filter, and InputError when
+    the recipe cannot be read.
     """
     found, options = (table, {}) if recipe is None else load_recipe(recipe)
     if found is not table:
@@ -163,6 +170,16 @@ def chosen_options(
             raise OptionError(f"--{spelled} is not an option of {table.TABLE}{hint}")
     values = {name: value for name, value in given.items() if name not in shortcuts}
     return table.from_dict({**options, **values})
+
+
+def _bytes(text: str | int) -> int:
+    if isinstance(text, int):
+        return text
+    match = _SIZE.fullmatch(text.strip())
+    size = int(float(match["number"]) * _UNITS[match["unit"].upper()]) if match else 0
+    if not size:
+        raise typer.BadParameter(f"{text!r}: give a size such as 4GB or 500MB")
+    return size
 
 
 def _length(text: str | Length) -> Length:

@@ -13,28 +13,20 @@ from meshlab_spectral.cli.messages import errors_reported, print_warning
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.cli.report_table import table_of
 from meshlab_spectral.plugin.versions import versions
-from meshlab_spectral.process.single_file import mesh_info_in_child
-
-# "\b" keeps a paragraph's lines as they are.
-INFO_HELP = """Describe a mesh: its surface, its noise, and a feature size to start with.
-
-Nothing is written. Lengths are in the units of the file; the noise is what denoise would remove,
-the feature size the default of filter.
-
-\b
-  meshlab-spectral info scan.ply
-  meshlab-spectral info scan.ply --json
-"""
+from meshlab_spectral.process.single_file import measure_in_child
 
 
-def info_command(
-    source: Source,
-    mesh: OneMesh = None,
-    as_json: AsJson = False,
-) -> None:
-    """Describe a mesh: see `meshlab-spectral info --help`."""
+def info_command(source: Source, mesh: OneMesh = None, as_json: AsJson = False) -> None:
+    """Describe a mesh: its surface, its noise, and a feature size to start with.
+
+    Nothing is written. Lengths are in the units of the file; the noise is what denoise would
+    remove, the feature size the default of filter.
+
+      meshlab-spectral info scan.ply
+      meshlab-spectral info scan.ply --json
+    """
     with errors_reported("nothing was printed"), progress_shown() as on_progress:
-        report = mesh_info_in_child(source, on_progress, mesh)
+        report = measure_in_child(source, None, on_progress, mesh)
     for warning in report["warnings"]:
         print_warning(warning)
     if as_json:

@@ -16,18 +16,6 @@ from meshlab_spectral.plugin.installation import (
     uninstall,
 )
 
-# "\b" keeps a paragraph's lines as they are.
-INSTALL_HELP = """Install the filters in MeshLab 2025.07, for the current user.
-
-Copies the plugin to the folders from which MeshLab loads extra plugins when it starts: one for the
-usual single-precision MeshLab, one for the double-precision MeshLab 2025.07d. The filters are then
-in the menu Filters, Smoothing, Fairing and Deformation.
-
-\b
-  meshlab-spectral install
-  meshlab-spectral install --uninstall
-"""
-
 
 def install_command(
     remove: Annotated[
@@ -37,7 +25,15 @@ def install_command(
         bool, typer.Option("--dry-run", help="Change nothing, only show what would be done.")
     ] = False,
 ) -> None:
-    """Install the filters in MeshLab: see `meshlab-spectral install --help`."""
+    """Install the filters in MeshLab 2025.07, for the current user.
+
+    Copies the plugin to the folders from which MeshLab loads extra plugins when it starts: one for
+    the usual single-precision MeshLab, one for the double-precision MeshLab 2025.07d. The filters
+    are then in the menu Filters, Smoothing, Fairing and Deformation.
+
+      meshlab-spectral install
+      meshlab-spectral install --uninstall
+    """
     with errors_reported("some files may have been changed"):
         changes = uninstall(dry_run) if remove else install(dry_run)
         tell = typer.echo if dry_run else print_result

@@ -76,20 +76,10 @@ def _line_now_and_then() -> ProgressCallback:
 
 @contextlib.contextmanager
 def batch_progress(files: int) -> Iterator[Callable[[FileResult], None]]:
-    """Show the progress of a batch; none with --quiet.
+    """Show the progress of a batch of so many results, each of which the yielded function takes.
 
     On a terminal the number of files done and failed, the rate and the time left; elsewhere, and
-    with --verbose, a line for each file. Failures are printed in any case.
-
-    Parameters
-    ----------
-    files
-        Number of results expected.
-
-    Yields
-    ------
-    callable
-        To be called with each result.
+    with --verbose, a line for each file; none with --quiet. Failures are printed in any case.
     """
     with Progress(
         SpinnerColumn(),

@@ -13,14 +13,7 @@ _SHOWN_NUMBERS = 6  # of a vector
 def report_table(report: dict[str, Any], title: str, in_full: bool = False) -> Table:
     """Format a report of the filter as a table; lengths are in the units of the mesh.
 
-    Parameters
-    ----------
-    report
-        The dictionary returned by the filter.
-    title
-        Title of the table, plain text.
-    in_full
-        Add every number of the report under its name there.
+    The title is plain text. `in_full` adds every number of the report under its name there.
     """
     same = ": unchanged" if report["max_displacement"] == 0 else ""
     rows = _rows(report)
@@ -49,34 +42,33 @@ def _plain(value: Any) -> str:
 
 
 def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
-    if "noise_height" in report:
-        rows = [("Mean edge", f"{report['mean_edge']:.4g}")]
+    is_of_filter = "noise_height" not in report
+    rows = []
+    if is_of_filter:
+        rows += [
+            ("Feature size", f"{report['feature_size']:.6g}"),
+            ("Cutoff frequency", f"{report['cutoff_frequency']:.6g} rad per unit"),
+            ("Steps", f"{report['steps']}"),
+        ]
+        if report["step_error"]:
+            rows.append(("Estimated error of the steps", f"{report['step_error']:.2g}"))
+        rows.append(("Area", _change(report["area_before"], report["area_after"])))
     else:
-        rows = _rows_of_filter(report)
+        rows.append(("Mean edge", f"{report['mean_edge']:.4g}"))
     rows += [
         ("Largest displacement", f"{report['max_displacement']:.4g}"),
         ("RMS displacement", f"{report['rms_displacement']:.4g}"),
         ("Volume, if closed", _change(report["volume_before"], report["volume_after"])),
         ("Components", f"{report['components']}"),
     ]
-    if report.get("joined_vertices"):
-        rows.append(("Vertices joined at seams", f"{report['joined_vertices']}"))
-    if report.get("unreferenced_vertices"):
-        rows.append(("Vertices without faces", f"{report['unreferenced_vertices']}, unchanged"))
-    if report.get("fixed_vertices"):
-        fixed = f"{report['fixed_vertices']}, unchanged"
-        rows.append(("Vertices on a fixed boundary or crease", fixed))
-    return rows + (_work(report) if "noise_height" not in report else [])
-
-
-def _rows_of_filter(report: dict[str, Any]) -> list[tuple[str, str]]:
-    return [
-        ("Feature size", f"{report['feature_size']:.6g}"),
-        ("Cutoff frequency", f"{report['cutoff_frequency']:.6g} rad per unit"),
-        ("Steps", f"{report['steps']}"),
-        *_automatic(report),
-        ("Area", _change(report["area_before"], report["area_after"])),
-    ]
+    for name, label, more in (
+        ("joined_vertices", "Vertices joined at seams", ""),
+        ("unreferenced_vertices", "Vertices without faces", ", unchanged"),
+        ("fixed_vertices", "Vertices on a fixed boundary or crease", ", unchanged"),
+    ):
+        if report.get(name):
+            rows.append((label, f"{report[name]}{more}"))
+    return rows + (_work(report) if is_of_filter else [])
 
 
 def _work(report: dict[str, Any]) -> list[tuple[str, str]]:
@@ -87,14 +79,7 @@ def _work(report: dict[str, Any]) -> list[tuple[str, str]]:
     else:
         rows.append(("Estimated relative error", f"{report['error_estimate']:.1e}"))
     work = [f"{report[what]} {what}" for what in ("factorizations", "solves", "products")]
-    rows.append(("Work", ", ".join(work)))
-    return rows
-
-
-def _automatic(report: dict[str, Any]) -> list[tuple[str, str]]:
-    if not report["step_error"]:
-        return []
-    return [("Estimated error of the steps", f"{report['step_error']:.2g}")]
+    return [*rows, ("Work", ", ".join(work))]
 
 
 def _change(before: float, after: float) -> str:

@@ -26,52 +26,30 @@ from meshlab_spectral.cli.messages import errors_reported, print_result
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.extras import check_extras
 from meshlab_spectral.figures.spectrum import (
-    check_format,
+    FORMATS,
     draw_spectrum,
     feature_size_of,
     octave_gains,
 )
+from meshlab_spectral.files.formats import check_ending
 from meshlab_spectral.files.meshes import check_source
 from meshlab_spectral.files.whole_files import writing_whole
 from meshlab_spectral.filters.calling import plain_report
-from meshlab_spectral.filters.options import FilterOptions
-from meshlab_spectral.filters.spectrum import DEFAULT_BASIS_SIZE, GeometrySpectrum
+from meshlab_spectral.filters.options import (
+    FilterKeywords,
+    FilterOptions,
+    SpectrumOptions,
+    TransferKeywords,
+)
+from meshlab_spectral.filters.spectrum import GeometrySpectrum
 from meshlab_spectral.plugin.versions import versions
-from meshlab_spectral.process.single_file import measure_spectrum_in_child
-
-# "\b" keeps a paragraph's lines as they are.
-SPECTRUM_HELP = """Plot the geometry spectrum of a mesh, to choose a filter.
-
-The plot shows the amplitude of details, their root mean square height, by feature size: for octaves
-and, at the lowest frequencies, for single harmonics. The filter's gain is drawn over it. The lower
-plot shows the height of random vertex displacements that would explain the details of each size:
-where it levels off there is noise, or detail too fine for the mesh to tell from noise. The boundary
-of an open mesh contributes at all sizes; --boundary fixed leaves it out.
-
-\b
-  meshlab-spectral spectrum scan.ply
-  meshlab-spectral spectrum scan.ply --feature-size 2% --output scan.svg
-  meshlab-spectral spectrum scan.ply --boundary fixed
-  meshlab-spectral spectrum scan.ply --json
-"""
+from meshlab_spectral.process.single_file import measure_in_child
 
 # The options that the filter's curve and the spectrum depend on.
-SHOWN_OPTIONS = (
-    "filter_type",
-    "feature_size",
-    "transfer_function",
-    "response",
-    "order",
-    "band_width",
-    "pass_gain",
-    "stop_gain",
-    "power",
-    "laplacian",
-    "boundary",
-)
+SHOWN_OPTIONS = tuple(TransferKeywords.__annotations__)
 
 
-@with_options(FilterOptions, names=SHOWN_OPTIONS)
+@with_options(FilterOptions, leave_out=FilterKeywords.__annotations__.keys() - SHOWN_OPTIONS)
 def spectrum_command(
     given: dict[str, Any],
     source: Source,
@@ -87,27 +65,42 @@ def spectrum_command(
     ] = None,
     basis_size: Annotated[
         int, typer.Option(min=0, help="Number of lowest harmonics to show individually, too.")
-    ] = DEFAULT_BASIS_SIZE,
+    ] = SpectrumOptions.basis_size,
     mesh: OneMesh = None,
     recipe: Recipe = None,
     as_json: AsJson = False,
 ) -> None:
-    """Show the spectrum of a mesh: see `meshlab-spectral spectrum --help`."""
+    """Plot the geometry spectrum of a mesh, to choose a filter.
+
+    The plot shows the amplitude of details, their root mean square height, by feature size: for
+    octaves and, at the lowest frequencies, for single harmonics. The filter's gain is drawn over
+    it. The lower plot shows the height of random vertex displacements that would explain the
+    details of each size: where it levels off there is noise, or detail too fine for the mesh to
+    tell from noise. The boundary of an open mesh contributes at all sizes; --boundary fixed leaves
+    it out.
+
+      meshlab-spectral spectrum scan.ply
+      meshlab-spectral spectrum scan.ply --feature-size 2% --output scan.svg
+      meshlab-spectral spectrum scan.ply --boundary fixed
+      meshlab-spectral spectrum scan.ply --json
+    """
     if output is None and not as_json:
         output = Path(f"{source.stem}_spectrum.png")
     begin = time.monotonic()
     with errors_reported(), contextlib.ExitStack() as stack:
         options = chosen_options(FilterOptions, given, recipe)
+        measured = SpectrumOptions(
+            basis_size=basis_size, laplacian=options.laplacian, boundary=options.boundary
+        )
         check_source(source)
         scratch = None
         if output is not None:  # fail before the computation if it cannot be written
             check_extras("plots")
-            check_format(output)
+            check_ending(output, "a plot is a picture", *FORMATS)
             scratch = stack.enter_context(writing_whole(output))
         with progress_shown() as on_progress:
-            spectrum = measure_spectrum_in_child(
-                source, basis_size, options.laplacian, options.boundary, on_progress, mesh
-            )
+            report = measure_in_child(source, measured, on_progress, mesh)
+        spectrum = GeometrySpectrum.from_report(report)
         if scratch is not None:
             draw_spectrum(spectrum, options, source.name, scratch)
     if as_json:

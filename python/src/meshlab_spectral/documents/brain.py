@@ -15,13 +15,11 @@ from typing import Any
 
 import numpy as np
 
-from meshlab_spectral.documents.digits import precision_warning
+from meshlab_spectral.documents.digits import precision_warnings
 from meshlab_spectral.documents.document import (
     Array,
     Document,
-    Part,
-    check_indices,
-    check_vertices,
+    checked_part,
     unreadable,
     unsupported,
 )
@@ -35,18 +33,11 @@ _OTHERS = (b"\xff\xff\xff", b"\xff\xff\xfd")  # quadrilaterals, or values such a
 
 
 def read(path: Path) -> Document:
-    """Read a surface of GIFTI or FreeSurfer.
+    """Read a surface of GIFTI or FreeSurfer; see open_document.
 
     The vertices are the coordinates that are stored. The matrices of GIFTI, which lead from there
     to other spaces, are not applied, nor is FreeSurfer's volume geometry: nibabel and Connectome
     Workbench show the stored coordinates, too.
-
-    Raises
-    ------
-    MeshFileError
-        When it is damaged, or holds no surface of triangles.
-    MissingPackageError
-        When nibabel, of the extra "formats", is not installed.
     """
     with path.open("rb") as file:
         magic = file.read(3)
@@ -75,7 +66,7 @@ class _FreeSurfer(Document):
         with target.open("r+b") as file:
             file.seek(self.begin)
             file.write(after.astype(">f4").tobytes())
-        return _precision(before, after, target)
+        return precision_warnings(before, after, target.name)
 
 
 def _read_free_surfer(path: Path) -> Document:
@@ -90,7 +81,7 @@ def _read_free_surfer(path: Path) -> Document:
     faces = np.frombuffer(data, ">i4", 3 * m, begin + 12 * n).reshape(-1, 3).astype(np.int64)
     contents = ["volume geometry"] if tail < len(data) else []
     return _FreeSurfer(
-        path=path, parts=[_checked(path, vertices, faces)], contents=contents, begin=begin
+        path=path, parts=[checked_part(path, vertices, faces)], contents=contents, begin=begin
     )
 
 
@@ -114,7 +105,7 @@ class _Gifti(Document):
             if array.encoding == _TEXT and array.data.dtype.kind == "f":
                 array.encoding = _BINARY
         target.write_bytes(self.image.to_bytes(mode="force"))  # doubles, too
-        return _precision(part.vertices, after, target)
+        return precision_warnings(part.vertices, after, target.name)
 
 
 def _read_gifti(path: Path) -> Document:
@@ -133,7 +124,7 @@ def _read_gifti(path: Path) -> Document:
         )
     with np.errstate(invalid="ignore"):
         vertices = points[0].data.astype(np.float64).reshape(-1, 3)
-    part = _checked(path, vertices, triangles[0].data.astype(np.int64).reshape(-1, 3))
+    part = checked_part(path, vertices, triangles[0].data.astype(np.int64).reshape(-1, 3))
     others = [a for a in image.darrays if a is not points[0] and a is not triangles[0]]
     vectors = [array for array in others if _are_normals(array.data, len(vertices))]
     contents = ["normals"] if vectors else []
@@ -144,19 +135,8 @@ def _read_gifti(path: Path) -> Document:
     )
 
 
-def _checked(path: Path, vertices: Array, faces: Any) -> Part:
-    check_vertices(path, vertices)
-    check_indices(path, faces, len(vertices))
-    return Part("", vertices, faces)
-
-
 def _are_normals(vectors: Any, count: int) -> bool:
     """Whether an array holds vectors of unit length at the vertices."""
     if vectors.shape != (count, 3) or vectors.dtype.kind != "f":
         return False
     return bool(np.allclose(np.linalg.norm(vectors, axis=1), 1, atol=1e-3))
-
-
-def _precision(before: Array, after: Array, target: Path) -> list[str]:
-    warning = precision_warning(before, after, target.name)
-    return [warning] if warning else []

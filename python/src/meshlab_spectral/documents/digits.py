@@ -15,12 +15,7 @@ def rounding_told(before: Array, after: Array) -> str | None:
     """Return how single precision rounds a movement, or None where it holds it.
 
     It does if rounding takes, in the root mean square over what moves, at most a hundredth of the
-    displacement.
-
-    Parameters
-    ----------
-    before, after
-        n x 3, in the coordinates to be written.
+    displacement. `before` and `after` are n x 3, in the coordinates to be written.
     """
     moves = (before != after).any(axis=1)
     if not moves.any():
@@ -41,10 +36,16 @@ def _size(difference: Array) -> float:
     return float(np.sqrt(np.mean(difference**2)))
 
 
-def precision_warning(before: Array, after: Array, name: str) -> str | None:
-    """Return the warning when a file `name` of single precision cannot hold a movement."""
+def precision_warnings(before: Array, after: Array, name: str) -> list[str]:
+    """Return the warning, if any, of a file `name` of single precision for a movement."""
     told = rounding_told(before, after)
-    return told and f"{name}: {told}: choose .ply or .obj, or move the mesh to the origin first"
+    remedy = "choose .ply or .obj, or move the mesh to the origin first"
+    return [f"{name}: {told}: {remedy}"] if told else []
+
+
+def widening_warnings(told: str | None) -> list[str]:
+    """Return the warning, if any, of a file that is written in double precision, see above."""
+    return [f"coordinates are written in double precision, since {told}"] if told else []
 
 
 def digits_for(before: Array, after: Array) -> int:

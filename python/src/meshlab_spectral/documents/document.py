@@ -108,6 +108,15 @@ def unsupported(path: Path, what: str, remedy: str) -> MeshFileError:
 _LARGEST = 1e37
 
 
+def checked_part(
+    path: Path, vertices: Array, faces: Indices, name: str = "", quality: Array | None = None
+) -> Part:
+    """Return a part; raise MeshFileError as `check_vertices` and `check_indices`."""
+    check_vertices(path, vertices)
+    check_indices(path, faces, len(vertices))
+    return Part(name, vertices, faces, quality)
+
+
 def check_vertices(path: Path, vertices: Array) -> None:
     """Raise MeshFileError, which names the first, when coordinates are not finite or too large."""
     lost = ~(np.abs(vertices) <= _LARGEST).all(axis=1)

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from meshlab_spectral.documents.digits import precision_warning
+from meshlab_spectral.documents.digits import precision_warnings
 from meshlab_spectral.documents.document import (
     Array,
     Document,
@@ -56,17 +56,17 @@ class GltfDocument(Document):
 
     def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
         """Write the asset with other positions, normals and tangents; see Document."""
-        warnings: list[str | None] = []
+        warnings: list[str] = []
         with reporting_faults(self.path):
             asset = copy.deepcopy(self._asset)
             for mesh, part, vertices in zip(self._meshes, self.parts, moved, strict=True):
                 table = mesh.table
                 if not np.array_equal(vertices, part.vertices):
                     table = _moved(mesh, part, vertices)
-                    warnings.append(precision_warning(mesh.table[:, _P], table[:, _P], target.name))
+                    warnings += precision_warnings(mesh.table[:, _P], table[:, _P], target.name)
                 _put(asset, mesh, table)
             warnings += copy_side_files(self.path, target, asset.write(target))
-        return [warning for warning in warnings if warning]
+        return warnings
 
 
 def read(path: Path) -> GltfDocument:

@@ -38,12 +38,8 @@ def is_patched(path: Path) -> bool:
 def open_document(path: Path) -> Document:
     """Read a mesh file of one of the formats in `PATCHED`.
 
-    Raises
-    ------
-    MeshFileError
-        When it is damaged, or holds something that cannot be read.
-    MissingPackageError
-        When its format needs a package of the extra "formats".
+    Raises MeshFileError when it is damaged, or holds something that cannot be read, and
+    MissingPackageError when its format needs a package of the extra "formats".
     """
     module = import_module(f"meshlab_spectral.documents.{_MODULES[path.suffix[1:].lower()]}")
     document: Document = module.read(path)

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from plyfile import PlyData, PlyElement, PlyListProperty, PlyParseError
 
-from meshlab_spectral.documents.digits import digits_for, rounding_told
+from meshlab_spectral.documents.digits import digits_for, rounding_told, widening_warnings
 from meshlab_spectral.documents.document import (
     Array,
     Document,
@@ -28,7 +28,7 @@ from meshlab_spectral.documents.document import (
     unsupported,
 )
 from meshlab_spectral.documents.normals import following_normals
-from meshlab_spectral.documents.polygons import triangles
+from meshlab_spectral.documents.polygons import strip_triangles, triangles
 from meshlab_spectral.documents.side_files import copy_side_files
 from meshlab_spectral.documents.text import with_numbers
 
@@ -64,9 +64,8 @@ class PlyDocument(Document):
         told = rounding_told(before, after) if "f4" in types else None
         content = self._moved(after, bool(told)) if (after != before).any() else self.content
         target.write_bytes(content)
-        messages = [f"coordinates are written in double precision, since {told}"] if told else []
         textures = map(os.fsdecode, _TEXTURE.findall(self.header))
-        return messages + copy_side_files(self.path, target, textures)
+        return widening_warnings(told) + copy_side_files(self.path, target, textures)
 
     def _moved(self, after: Array, is_wide: bool) -> bytes:
         part, vertex = self.parts[0], self.ply["vertex"]
@@ -227,7 +226,7 @@ def _read_faces(ply: PlyData, vertices: Array) -> Indices:
             corners = np.concatenate(lists).astype(np.int64)
             if name == "face":
                 return triangles(corners, sizes, vertices)
-            return _strip_triangles(np.insert(corners, np.cumsum(sizes), -1))
+            return strip_triangles(np.insert(corners, np.cumsum(sizes), -1))
     return np.zeros((0, 3), np.int64)
 
 
@@ -242,16 +241,6 @@ def _selected(ply: PlyData) -> NDArray[np.bool_] | None:
         for face in np.flatnonzero(flags & _SELECTED) if held else ():
             chosen[ply["face"][held[0]][face]] = True
     return chosen if chosen.any() else None
-
-
-def _strip_triangles(corners: Indices) -> Indices:
-    """Split strips, each of which ends in -1, into triangles that face the same side."""
-    place = np.arange(len(corners))
-    begin = np.maximum.accumulate(np.where(corners < 0, place + 1, 0))
-    odd = (place - begin)[:-2] % 2 == 1
-    split = np.column_stack([corners[:-2], corners[1:-1], corners[2:]])
-    split[odd] = split[odd][:, [1, 0, 2]]
-    return split[(split >= 0).all(axis=1)]
 
 
 def _contents(ply: PlyData, header: bytes, triangles: int) -> list[str]:

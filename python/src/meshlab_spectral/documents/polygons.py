@@ -56,6 +56,16 @@ def corners_of_triangles(corners: Indices, sizes: NDArray[np.integer], vertices:
     return split
 
 
+def strip_triangles(corners: Indices) -> Indices:
+    """Split strips, each of which ends in -1, into triangles that face the same side."""
+    place = np.arange(len(corners))
+    begin = np.maximum.accumulate(np.where(corners < 0, place + 1, 0))
+    odd = (place - begin)[:-2] % 2 == 1
+    split = np.column_stack([corners[:-2], corners[1:-1], corners[2:]])
+    split[odd] = split[odd][:, [0, 2, 1]]
+    return split[(split >= 0).all(axis=1)]
+
+
 def _folds(P: Array) -> NDArray[np.bool_]:
     """Whether each quadrilateral (q x 4 x 3) folds more along 0-2 than along 1-3."""
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from meshlab_spectral.documents.digits import SINGLE, digits_for, precision_warning
+from meshlab_spectral.documents.digits import SINGLE, digits_for, precision_warnings
 from meshlab_spectral.documents.document import Array, Document, Part, check_vertices, unreadable
 from meshlab_spectral.documents.text import numbers, replace_numbers
 
@@ -33,8 +33,7 @@ class _BinaryStl(Document):
         rows["corners"][changed] = after[part.faces][changed]
         rows["normal"] = _following(rows["normal"], part, after)
         target.write_bytes(content)
-        warning = precision_warning(part.vertices, after, target.name)
-        return [] if warning is None else [warning]
+        return precision_warnings(part.vertices, after, target.name)
 
 
 @dataclass(kw_only=True)

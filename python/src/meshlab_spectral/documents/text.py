@@ -18,10 +18,7 @@ Words = Sequence[bytes]
 def numbers(path: Path, rows: Sequence[Words], first: int = 0, count: int = 3) -> Array:
     """Return the words `first` to `first + count - 1` of each row as numbers, n x count.
 
-    Raises
-    ------
-    MeshFileError
-        When a word is missing or is no number; names the row.
+    Raises MeshFileError, which names the row, when a word is missing or is no number.
     """
     chosen = [row[first : first + count] for row in rows]
     try:
@@ -50,16 +47,9 @@ def with_numbers(
 ) -> bytes:
     """Return a line in which three numbers are replaced where they differ.
 
-    Parameters
-    ----------
-    line
-        The line; words and what is between them stay.
-    first
-        The position, from 0, of the word with the first of the numbers.
-    before, after
-        The three numbers that the line holds, and those that it shall hold.
-    digits
-        How many significant digits they get.
+    The first of them is word `first`, from 0; words and what is between them stay. `before` are the
+    three numbers that the line holds, `after` those that it shall hold, with so many significant
+    digits.
     """
     found = _three_words(first).match(line)
     assert found is not None

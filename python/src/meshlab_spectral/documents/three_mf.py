@@ -23,9 +23,7 @@ from meshlab_spectral.documents.document import (
     Array,
     Document,
     Indices,
-    Part,
-    check_indices,
-    check_vertices,
+    checked_part,
     unreadable,
     unsupported,
 )
@@ -129,9 +127,8 @@ class _ThreeMfDocument(Document):
         """Add an object to the parts."""
         mesh.placement = placement_of(mesh.name, matrices, self.warnings)
         placed = mesh.placement.placed(mesh.own)
-        check_vertices(self.path, placed)
-        check_indices(self.path, mesh.faces, len(placed))
-        self.parts.append(Part(mesh.name, placed, mesh.placement.oriented(mesh.faces)))
+        faces = mesh.placement.oriented(mesh.faces)
+        self.parts.append(checked_part(self.path, placed, faces, mesh.name))
         self.meshes.append((model, mesh))
 
     def save(self, target: Path, moved: Sequence[Array]) -> list[str]:

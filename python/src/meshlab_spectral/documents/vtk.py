@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from meshlab_spectral.documents.digits import rounding_told
+from meshlab_spectral.documents.digits import rounding_told, widening_warnings
 from meshlab_spectral.documents.document import (
     Array,
     Document,
@@ -25,7 +25,7 @@ from meshlab_spectral.documents.document import (
     unsupported,
 )
 from meshlab_spectral.documents.normals import following_normals
-from meshlab_spectral.documents.polygons import triangles
+from meshlab_spectral.documents.polygons import strip_triangles, triangles
 from meshlab_spectral.extras import check_extras
 
 _LARGEST_RATIO = 100  # of counts to bytes; zlib packs less than 86 points into one
@@ -77,7 +77,7 @@ class _VtkDocument(Document):
             turned = (old != new).any(axis=1) & (length[:, 0] != 0)
             normals[turned] = new[turned] / length[turned]
         mesh.save(target, binary=not _TEXT.search(self.path.read_bytes()))
-        return [f"coordinates are written in double precision, since {told}"] if told else []
+        return widening_warnings(told)
 
 
 def _areas(P: Array, owners: Indices, shape: tuple[int, ...]) -> Array:
@@ -122,9 +122,7 @@ def _surface(path: Path, grid: Any, vertices: Array) -> tuple[Indices, Indices]:
         raise ValueError(f"its cells have corners that are not among its {len(vertices)} points")
     polygons, strips = np.isin(types, _POLYGONS), np.flatnonzero(types == _STRIP)
     faces = [triangles(corners[np.repeat(polygons, sizes)], sizes[polygons], vertices)]
-    for end, size in zip(np.cumsum(sizes)[strips], sizes[strips], strict=True):
-        row = corners[end - size : end]
-        faces.append(np.column_stack([row[:-2], row[1:-1], row[2:]]))
-        faces[-1][1::2] = faces[-1][1::2, [0, 2, 1]]
+    joined, ends = corners[np.repeat(types == _STRIP, sizes)], np.cumsum(sizes[strips])
+    faces.append(strip_triangles(np.insert(joined, ends, -1)))
     cells = np.concatenate([np.flatnonzero(polygons), strips])
     return np.concatenate(faces), np.repeat(cells, np.maximum(sizes[cells] - 2, 0))

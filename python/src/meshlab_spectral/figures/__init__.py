@@ -1,4 +1,4 @@
-"""Pictures and plots: the figures of the paper, manifold harmonics, geometry spectra.
+"""Pictures and plots of manifold harmonics and geometry spectra.
 
 `pictures` renders meshes, `sheet` arranges them on a page. Needs the extras
 `plots` and `render`.

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshlab_spectral.errors import FormatError, OptionError
+from meshlab_spectral.errors import OptionError
 from meshlab_spectral.figures.pictures import (
     SIGNED_COLOURS,
     Frame,
@@ -55,51 +55,18 @@ def check_modes(modes: Sequence[int], size: int) -> None:
             raise OptionError(f"mode {mode}: a basis of {size} harmonics has modes 0 to {size - 1}")
 
 
-def check_picture(path: Path) -> None:
-    """Raise FormatError unless a picture is named .png."""
-    if path.suffix != ".png":
-        raise FormatError(f"{path.name}: the pictures are one PNG file, name it .png")
-
-
 def draw_basis_file(
     archive: Path, path: Path, modes: Sequence[int] | None = None, scale: float = 1.0
 ) -> None:
-    """Draw harmonics from an archive written by `meshlab-spectral basis`; see `draw`."""
-    with np.load(archive) as arrays:
-        basis = Harmonics(arrays["eigenvalues"], arrays["harmonics"], arrays["masses"])
-        draw(basis, arrays["vertices"], arrays["faces"], path, modes, scale)
-
-
-def draw(
-    basis: Harmonics,
-    V: NDArray[np.float64],
-    F: NDArray[np.int64],
-    path: Path,
-    modes: Sequence[int] | None = None,
-    scale: float = 1.0,
-) -> None:
     """Draw harmonics to a .png file: red is positive, blue negative, a line marks zero.
 
-    Parameters
-    ----------
-    basis
-        Harmonics of the mesh V, F.
-    V, F
-        The mesh, n x 3 coordinates and m x 3 vertex indices.
-    path
-        The picture, written atomically.
-    modes
-        Harmonics to show; by default a dozen from the first non-constant one to the last.
-    scale
-        Resolution; 1 fills a screen.
-
-    Raises
-    ------
-    OptionError
-        When the basis has no such mode.
-    MeshFileError
-        When `path` cannot be written.
+    `archive` was written by `meshlab-spectral basis`. The picture is written atomically; a `scale`
+    of 1 fills a screen. Shows by default a dozen from the first non-constant harmonic to the last;
+    raises OptionError when the basis has no such mode, MeshFileError when `path` cannot be written.
     """
+    with np.load(archive) as arrays:
+        basis = Harmonics(arrays["eigenvalues"], arrays["harmonics"], arrays["masses"])
+        V, F = arrays["vertices"], arrays["faces"]
     panels = _panels(basis, V, F, modes)
     frame = Frame.around([V], View.of_widest_side(V))
     columns = _columns(len(panels), frame)

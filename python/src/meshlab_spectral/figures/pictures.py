@@ -7,16 +7,12 @@ import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import ceil
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from meshlab_spectral.extras import check_extras
-
-if TYPE_CHECKING:
-    import pymeshlab
 
 Image = NDArray[np.uint8]
 
@@ -46,11 +42,6 @@ class Panel:
     F: NDArray[np.int64]
     signed: NDArray[np.float64] | None = None
     colors: NDArray[np.uint8] | None = None
-
-    @classmethod
-    def of(cls, label: str, mesh: pymeshlab.Mesh) -> Panel:
-        """Copy the triangles of a pymeshlab mesh."""
-        return cls(label, mesh.vertex_matrix().copy(), mesh.face_matrix().astype(np.int64))
 
 
 @dataclass(frozen=True)
@@ -114,7 +105,7 @@ class Frame:
     def row_by_row(cls, rows: Sequence[Sequence[NDArray[np.float64]]], view: View) -> list[Frame]:
         """Fit rows of meshes: all frames have the same width, each row has its own height."""
         axes = view.axes()
-        boxes = [_box([V @ axes.T for V in row]) for row in rows]
+        boxes = [bounding_box([V @ axes.T for V in row]) for row in rows]
         left = min(low[0] for low, _ in boxes)
         right = max(high[0] for _, high in boxes)
         margin = 0.02 * (right - left)
@@ -126,42 +117,6 @@ class Frame:
         return frames
 
 
-def draw_side_by_side(
-    panels: Sequence[Panel],
-    path: Path,
-    *,
-    view: View | None = None,
-    panel_size: tuple[int, int] = (800, 800),
-) -> None:
-    """Draw meshes side by side, with the same camera, so that sizes can be compared.
-
-    Parameters
-    ----------
-    panels
-        The meshes from left to right; the camera is centred on the first.
-    path
-        The .png file to write.
-    view
-        The viewpoint; by default in front of the xy plane.
-    panel_size
-        Width and height of each panel in pixels.
-
-    Raises
-    ------
-    MissingPackageError
-        When PyVista is not installed.
-    """
-    # Half of the largest extent, with a margin for the label.
-    low, high = _box([panels[0].V])
-    height = 1.24 * float((high - low).max())
-    frame = Frame(view or View(), (low + high) / 2, height, height)
-    plotter = scene(panels, frame, len(panels), panel_size, font_size=15)
-    try:
-        plotter.screenshot(str(path))
-    finally:
-        plotter.close()
-
-
 def scene(
     panels: Sequence[Panel],
     frame: Frame,
@@ -171,7 +126,7 @@ def scene(
     font_size: int,
     off_screen: bool = True,
 ) -> Any:
-    """Set up meshes in rows, to be shown or saved.
+    """Set up meshes in rows, to be shown or saved; raises MissingPackageError without PyVista.
 
     Parameters
     ----------
@@ -192,11 +147,6 @@ def scene(
     -------
     pyvista.Plotter
         For the caller to close.
-
-    Raises
-    ------
-    MissingPackageError
-        When PyVista is not installed.
     """
     plotter = _plotter((ceil(len(panels) / columns), columns), panel_size, off_screen)
     for cell, panel in enumerate(panels):
@@ -209,26 +159,10 @@ def scene(
 
 
 def render(panel: Panel, frame: Frame, pixels: int) -> Image:
-    """Draw one mesh, without its label.
+    """Draw one mesh, without its label, as height x width x 3 levels from 0 to 255.
 
-    Parameters
-    ----------
-    panel
-        The mesh.
-    frame
-        The rectangle to show.
-    pixels
-        Width of the picture; the height follows from the frame.
-
-    Returns
-    -------
-    array
-        Height x width x 3, values 0 to 255.
-
-    Raises
-    ------
-    MissingPackageError
-        When PyVista is not installed.
+    `pixels` is the width of the picture; the height follows from the rectangle to show. Raises
+    MissingPackageError without PyVista.
     """
     height = max(1, round(pixels * frame.height / frame.width))
     plotter = _plotter((1, 1), (2 * pixels, 2 * height))
@@ -325,7 +259,7 @@ def _surface(panel: Panel) -> Any:
     )
 
 
-def _box(shapes: Sequence[NDArray[np.float64]]) -> tuple[NDArray[Any], NDArray[Any]]:
+def bounding_box(shapes: Sequence[NDArray[np.float64]]) -> tuple[NDArray[Any], NDArray[Any]]:
     """Corners of the bounding box of several meshes."""
     return (
         np.min([V.min(axis=0) for V in shapes], axis=0),

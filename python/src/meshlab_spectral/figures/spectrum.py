@@ -7,10 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from meshlab_spectral.errors import FormatError
 from meshlab_spectral.extras import check_extras
 from meshlab_spectral.figures.sheet import FONT_SIZE, INK
-from meshlab_spectral.figures.subject import filter_name
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.filters.spectrum import Array, GeometrySpectrum
 from meshlab_spectral.filters.transfer import MeshLengths, gain
@@ -40,13 +38,15 @@ _LEGEND: dict[str, Any] = {
 _SHOWN = 1e-5
 
 
-def check_format(path: Path) -> None:
-    """Raise FormatError unless the extension is one of FORMATS."""
-    if path.suffix.lower() not in FORMATS:
-        raise FormatError(
-            f"{path.name} ends in {path.suffix or 'nothing'}: a plot is a "
-            f"{', '.join(FORMATS[:-1])} or {FORMATS[-1]} file"
-        )
+def filter_name(options: FilterOptions) -> str:
+    """Describe a filter: `low-pass 15 %`."""
+    if options.filter_type == "custom":
+        return f"custom {options.transfer_function}"
+    size = str(options.feature_size).replace("%", " %")
+    name = f"{options.filter_type} {size}"
+    if options.stop_gain == 1:
+        name = f"{options.filter_type} \N{MULTIPLICATION SIGN} {options.pass_gain:g} at {size}"
+    return name if options.power == 1 else f"{name}, power {options.power:g}"
 
 
 def feature_size_of(options: FilterOptions, spectrum: GeometrySpectrum) -> float:

@@ -8,50 +8,33 @@ from typing import Any
 
 import numpy as np
 
-from meshlab_spectral.errors import FormatError
 from meshlab_spectral.files.meshes import load_arrays
 from meshlab_spectral.filters.harmonics import compute
-from meshlab_spectral.filters.options import Boundary, LaplacianKind
-
-
-def check_basis_target(target: Path) -> None:
-    """Raise FormatError unless `target` is named .npz."""
-    if target.suffix != ".npz":
-        raise FormatError(f"{target.name}: a basis is a NumPy archive, name it .npz")
+from meshlab_spectral.filters.options import BasisOptions
 
 
 def basis_to_scratch(
     source: Path,
     scratch: Path,
-    basis_size: int,
-    laplacian: LaplacianKind,
-    boundary: Boundary,
+    options: BasisOptions,
     on_stage: Callable[[str], None],
     mesh: str | None = None,
 ) -> dict[str, Any]:
     """Write the harmonics of a mesh file to a NumPy archive, `scratch` from `writing_whole`.
 
-    Those of all its meshes together, or of the one with the name `mesh`.
+    Those of all its meshes together, or of the one with the name `mesh`. Returns the sizes n and k,
+    as "vertices" and "harmonics". Errors are those of `harmonics.manifold_harmonics`, and
+    MeshFileError when `source` cannot be read.
 
     Its arrays are eigenvalues (k), frequencies (k), harmonics (n x k) and masses (n) as in
     `Harmonics`, and the mesh as read, whose vertices their rows follow: vertices (n x 3), faces
     (m x 3).
-
-    Returns
-    -------
-    dict
-        The sizes n and k, as "vertices" and "harmonics".
-
-    Raises
-    ------
-    SpectralError
-        As `harmonics.manifold_harmonics`; MeshFileError when `source` cannot be read.
     """
     on_stage("reading")
     V, F = load_arrays(source, mesh)
     on_stage("computing")
     # Verbose: MeshLab's log is the only source of progress.
-    basis = compute(V, F, basis_size, laplacian, boundary, verbose=True)
+    basis = compute(V, F, options, verbose=True)
     on_stage("writing")
     with scratch.open("wb") as file:
         np.savez(

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from meshlab_spectral.documents.opening import PATCHED
+from meshlab_spectral.errors import FormatError
 
 _BOTH = {"3ds", "3mf", "ctm", "dae", "e57", "obj", "off", "ply", "stl", "wrl", "x3d", "xyz"}
 _READ_ONLY = {"apts", "asc", "bre", "fbx", "glb", "gltf", "pdb", "pts", "ptx", "qobj", "tri"}
 READABLE = frozenset(_BOTH | _READ_ONLY | {"txt", "vmi", "x3dv"} | PATCHED)
-WRITABLE = frozenset(_BOTH | {"dxf", "idtf", "json", "nxs", "nxz"})
+WRITABLE = frozenset(_BOTH | {"dxf", "idtf", "json", "nxs", "nxz", "u3d"})
 # MeshLab drops the faces in these without an error.
 POINTS_ONLY = frozenset({"e57", "xyz"})
 # Searched for in folders. MeshLab reads any .txt as a point list, which is rarely intended.
@@ -20,3 +23,11 @@ def ending_of(name: str) -> str:
     """Return the extension of a file name as it is written, without the dot."""
     stem, dot, ending = name.rpartition(".")
     return ending if stem and dot else ""
+
+
+def check_ending(path: Path, what: str, *endings: str) -> None:
+    """Raise FormatError, which says `what` the file is, unless it has one of some extensions."""
+    if path.suffix.lower() not in endings:
+        *others, last = endings
+        names = f"{', '.join(others)} or {last}" if others else last
+        raise FormatError(f"{path.name}: {what}, name it {names}")

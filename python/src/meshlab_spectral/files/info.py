@@ -12,7 +12,7 @@ from meshlab_spectral.errors import MeshFileError
 from meshlab_spectral.files.meshes import StageCallback, joined, load_parts
 from meshlab_spectral.files.meshlab_files import read_with_meshlab
 from meshlab_spectral.filters.calling import call_filter, mesh_set_of, plain_report
-from meshlab_spectral.filters.spectrum import FILTER_NAME as SPECTRUM_NAME
+from meshlab_spectral.filters.options import SpectrumOptions
 from meshlab_spectral.plugin.loading import DENOISE_NAME
 
 _OF_SURFACE = ("components", "joined_vertices", "unreferenced_vertices")
@@ -22,14 +22,9 @@ _LENGTHS = ("diagonal", "mean_edge", "area", "default_feature_size")
 def mesh_info(source: Path, on_stage: StageCallback, mesh: str | None = None) -> dict[str, Any]:
     """Describe a mesh file; several meshes are described together.
 
-    Parameters
-    ----------
-    source
-        The file.
-    on_stage
-        Called with "reading", "measuring" and "looking for noise" as these begin.
-    mesh
-        Describe only the mesh of this name.
+    Parameters and errors are those of `load_parts`; also FilterError when the mesh has no faces, no
+    area or non-finite coordinates. `on_stage` is called with "reading", "measuring" and "looking
+    for noise" as these begin.
 
     Returns
     -------
@@ -40,13 +35,6 @@ def mesh_info(source: Path, on_stage: StageCallback, mesh: str | None = None) ->
         along each axis, "diagonal", "mean_edge", "area" and "default_feature_size"; what Spectral
         Denoise would remove: "noise_summary", "noise_height" and "noise_size", the number of
         "spikes", "voxel_size"; "warnings".
-
-    Raises
-    ------
-    MeshFileError, OptionError
-        As `load_parts`.
-    FilterError
-        When the mesh has no faces, no area or non-finite coordinates.
     """
     on_stage("reading")
     parts = load_parts(source, mesh)
@@ -54,7 +42,7 @@ def mesh_info(source: Path, on_stage: StageCallback, mesh: str | None = None) ->
     V, F = joined(parts)
     mesh_set = mesh_set_of(V, F, verbose=True)  # the log has the progress
     on_stage("measuring")
-    spectrum = call_filter(mesh_set, SPECTRUM_NAME, {})
+    spectrum = call_filter(mesh_set, SpectrumOptions.FILTER, {})
     on_stage("looking for noise")
     denoised = call_filter(mesh_set, DENOISE_NAME, {})
     report = {

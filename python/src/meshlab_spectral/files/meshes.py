@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from meshlab_spectral.documents.digits import precision_warning
+from meshlab_spectral.documents.digits import precision_warnings
 from meshlab_spectral.documents.document import Array, Document, Indices, Part
 from meshlab_spectral.documents.opening import is_patched, open_document
 from meshlab_spectral.errors import FilterError, FormatError, MeshFileError, OptionError
@@ -23,8 +23,12 @@ from meshlab_spectral.files.meshlab_files import (
     write_with_meshlab,
 )
 from meshlab_spectral.files.script import apply_script
-from meshlab_spectral.files.whole_files import writing_whole
-from meshlab_spectral.filters.calling import call_filter, plain_report, select_vertices
+from meshlab_spectral.filters.calling import (
+    call_filter,
+    mesh_set_of,
+    plain_report,
+    select_vertices,
+)
 from meshlab_spectral.filters.fractional import DETAILS
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import FilterOptions
@@ -40,11 +44,12 @@ _BARE = {".ply": {"save_vertex_color": False, "save_vertex_quality": False}}
 _COARSE = (".stl", ".3ds", ".3mf", ".ctm", ".dae", ".wrl", ".x3d")
 
 
-def filter_file(
+def filter_to_scratch(
     source: Path,
-    target: Path,
+    scratch: Path,
     options: Options,
-    on_stage: StageCallback = lambda stage: None,
+    on_stage: StageCallback,
+    verbose: bool = True,
     mesh: str | None = None,
 ) -> dict[str, Any]:
     """Filter a mesh file into another.
@@ -54,14 +59,16 @@ def filter_file(
     source
         A mesh file. All of its meshes are filtered, each by itself, at the size at which it is
         placed.
-    target
-        The file to write, atomically. An existing one is replaced. In the format of `source` only
-        coordinates and normals change; another format is written by MeshLab, and a warning lists
-        what it comes without.
+    scratch
+        The file to write, from `writing_whole`; after an error it may be incomplete. In the format
+        of `source` only coordinates and normals change; another format is written by MeshLab, and a
+        warning lists what it comes without.
     options
         Options of the filter.
     on_stage
         Called with "reading", "filtering" and "writing" as these begin.
+    verbose
+        Whether MeshLab writes its log, the only source of progress.
     mesh
         Filter only the mesh of this name.
 
@@ -75,31 +82,13 @@ def filter_file(
     Raises
     ------
     MeshFileError
-        When `source` cannot be read or `target` cannot be written.
+        When `source` cannot be read or `scratch` cannot be written.
     FormatError
-        When the extension of `target` cannot be written.
+        When the extension of `scratch` cannot be written.
     FilterError
         When the filter rejects a mesh or the options.
     OptionError
         When no mesh has the name.
-    """
-    check_source(source)
-    with writing_whole(target) as scratch:
-        return filter_to_scratch(source, scratch, options, on_stage, mesh=mesh)
-
-
-def filter_to_scratch(
-    source: Path,
-    scratch: Path,
-    options: Options,
-    on_stage: StageCallback,
-    verbose: bool = True,
-    mesh: str | None = None,
-) -> dict[str, Any]:
-    """Filter `source` into `scratch`, a file from `writing_whole`.
-
-    Parameters and errors as in `filter_file`; after an error `scratch` may be incomplete. With
-    `verbose`, MeshLab writes its log, the only source of progress.
     """
 
     def apply(mesh_set: Any) -> dict[str, Any]:
@@ -125,8 +114,8 @@ def script_to_scratch(
 ) -> dict[str, Any]:
     """Apply the text of a MeshLab script to `source` and write the result to `scratch`.
 
-    The result is the current mesh at the end of the script. Errors as in `filter_file` and
-    `script.apply_script`, which also describes the report.
+    The result is the current mesh at the end of the script. Errors as in `filter_to_scratch`
+    and `script.apply_script`, which also describes the report.
     """
     return _through_meshlab(
         source, scratch, lambda mesh_set: apply_script(mesh_set, script), on_stage, verbose
@@ -143,21 +132,9 @@ def load_arrays(source: Path, mesh: str | None = None) -> tuple[Array, Indices]:
 
 
 def load_parts(source: Path, mesh: str | None = None) -> list[Part]:
-    """Read the meshes of a file.
+    """Read the meshes of a file, or only the mesh of a name.
 
-    Parameters
-    ----------
-    source
-        The file.
-    mesh
-        Read only the mesh of this name.
-
-    Raises
-    ------
-    MeshFileError
-        When `source` cannot be read.
-    OptionError
-        When no mesh has the name.
+    Raises MeshFileError when `source` cannot be read, OptionError when no mesh has the name.
     """
     import pymeshlab
 
@@ -260,7 +237,7 @@ def _filtered(
     part: Part, apply: Callable[[Any], dict[str, Any]], verbose: bool, is_alone: bool
 ) -> tuple[Array, dict[str, Any]]:
     """Filter a mesh: its vertices, and the report."""
-    mesh_set = _mesh_set(part.vertices, part.faces, part.quality, verbose)
+    mesh_set = mesh_set_of(part.vertices, part.faces, _signal(part), verbose)
     if part.selected is not None:
         select_vertices(mesh_set, part.selected)
     try:
@@ -270,15 +247,6 @@ def _filtered(
             raise
         raise FilterError(f"mesh {part.name}: {error}") from error
     return mesh_set.current_mesh().vertex_matrix(), report
-
-
-def _mesh_set(V: Array, F: Indices, quality: Array | None, verbose: bool) -> Any:
-    import pymeshlab
-
-    mesh_set = pymeshlab.MeshSet(verbose=verbose)
-    signal = {} if quality is None else {"v_scalar_array": quality}
-    mesh_set.add_mesh(pymeshlab.Mesh(V, F, **signal))
-    return mesh_set
 
 
 def joined(parts: Sequence[Part], moved: Sequence[Array] | None = None) -> tuple[Array, Indices]:
@@ -291,16 +259,19 @@ def joined(parts: Sequence[Part], moved: Sequence[Array] | None = None) -> tuple
 
 def _merged(document: Document, verbose: bool, moved: Sequence[Array] | None = None) -> Any:
     """Return a MeshSet with all meshes of a document as one."""
-    quality = document.parts[0].quality if len(document.parts) == 1 else None
-    return _mesh_set(*joined(document.parts, moved), quality, verbose)
+    signal = _signal(document.parts[0]) if len(document.parts) == 1 else {}
+    return mesh_set_of(*joined(document.parts, moved), signal, verbose)
+
+
+def _signal(part: Part) -> dict[str, Array]:
+    return {} if part.quality is None else {"v_scalar_array": part.quality}
 
 
 def _rounded(before: Array, after: Array, scratch: Path) -> list[str]:
     """Return the warning, if any, of a format of MeshLab that cannot hold the movement."""
     if scratch.suffix.lower() not in _COARSE or before.shape != after.shape:
         return []
-    told = precision_warning(before, after, scratch.name)
-    return [told] if told else []
+    return precision_warnings(before, after, scratch.name)
 
 
 def _report(names: list[str], reports: list[dict[str, Any]], warnings: list[str]) -> dict[str, Any]:

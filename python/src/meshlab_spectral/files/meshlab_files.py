@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import functools
-import tempfile
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +10,7 @@ import numpy as np
 from meshlab_spectral.documents.document import Document
 from meshlab_spectral.documents.opening import PATCHED
 from meshlab_spectral.errors import FormatError, MeshFileError
+from meshlab_spectral.files.formats import WRITABLE
 from meshlab_spectral.files.whole_files import USUAL_FORMATS, resolved
 from meshlab_spectral.filters.calling import reason_of
 
@@ -30,7 +29,7 @@ _DUMMY = "dummy.png"
 def check_writable(path: Path) -> None:
     """Fail before the long computation, not after it."""
     ending = path.suffix
-    if _is_writable(ending):
+    if ending[1:].lower() in WRITABLE:
         return
     if ending[1:].lower() in PATCHED:
         raise FormatError(
@@ -39,22 +38,6 @@ def check_writable(path: Path) -> None:
         )
     told = f"ends in {ending}" if ending else "has no extension"
     raise FormatError(f"{path.name} {told}, which MeshLab cannot write: choose {USUAL_FORMATS}")
-
-
-@functools.cache
-def _is_writable(ending: str) -> bool:
-    """Try to write a triangle: pymeshlab has no list of the formats it can write."""
-    import pymeshlab
-
-    mesh_set = pymeshlab.MeshSet()
-    corners = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
-    mesh_set.add_mesh(pymeshlab.Mesh(corners, [[0, 1, 2]]))
-    with tempfile.TemporaryDirectory() as folder:
-        try:
-            mesh_set.save_current_mesh(str(Path(folder) / f"probe{ending}"))
-        except pymeshlab.PyMeshLabException:
-            return False
-    return True
 
 
 def read_with_meshlab(mesh_set: Any, source: Path) -> None:
@@ -84,18 +67,10 @@ def read_with_meshlab(mesh_set: Any, source: Path) -> None:
 def write_with_meshlab(
     mesh_set: Any, scratch: Path, source: Path, settings: dict[str, bool] | None = None
 ) -> None:
-    """Save the current mesh to a file from `writing_whole`; raises MeshFileError.
+    """Save the current mesh of a MeshSet to a file from `writing_whole`; raises MeshFileError.
 
-    Parameters
-    ----------
-    mesh_set
-        A `pymeshlab.MeshSet`.
-    scratch
-        The file to write.
-    source
-        The file that the mesh comes from.
-    settings
-        Of `MeshSet.save_current_mesh`.
+    `source` is the file that the mesh comes from, `settings` are those of
+    `MeshSet.save_current_mesh`.
     """
     import pymeshlab
 
@@ -117,16 +92,10 @@ def write_with_meshlab(
 
 
 def left_behind(document: Document, target: Path, mesh_set: Any = None) -> list[str]:
-    """Return the warning, if any, of what a file in another format comes without.
+    """Return the warning, if any, of what a file in another format than `document` comes without.
 
-    Parameters
-    ----------
-    document
-        The file that was read.
-    target
-        The file in another format. What places a mesh is in its coordinates.
-    mesh_set
-        What MeshLab has read of the file; None where only coordinates and triangles went to it.
+    What places a mesh is in the coordinates of `target`. `mesh_set` is what MeshLab has read of the
+    document; None where only coordinates and triangles went to it.
     """
     written = {"placement"}
     if mesh_set is not None:

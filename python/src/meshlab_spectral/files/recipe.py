@@ -24,19 +24,9 @@ else:
 def load_recipe(path: Path) -> tuple[type[Options], dict[str, Any]]:
     """Read the options in a recipe; options it leaves out keep their defaults.
 
-    Returns
-    -------
-    table : type
-        The table that the options are of.
-    options : dict
-        Validated, for its `from_dict`.
-
-    Raises
-    ------
-    InputError
-        When the file cannot be read.
-    OptionError
-        When it is not TOML, or has an unknown key or an invalid value.
+    Returns the table that the options are of, and the options, validated, for its `from_dict`.
+    Raises InputError when the file cannot be read, OptionError when it is not TOML, or has an
+    unknown key or an invalid value.
     """
     table, options = _content(path)
     try:
@@ -51,13 +41,8 @@ def saving_recipe(path: Path | None, options: Options | None) -> Iterator[None]:
     """Write all options to a recipe, which may replace another recipe but no other file.
 
     It is written when the block has succeeded, and not at all where `path` or `options` is None.
-
-    Raises
-    ------
-    InputError
-        Before the block: when the file exists and is not a recipe.
-    MeshFileError
-        When it cannot be written, if possible before the block.
+    Raises InputError, before the block, when the file exists and is not a recipe, and
+    MeshFileError when it cannot be written, if possible before the block.
     """
     if path is None or options is None:
         yield

@@ -18,27 +18,13 @@ _UNKNOWN_FILTER = "Something really bad happened"
 
 
 def apply_script(mesh_set: Any, text: str) -> dict[str, Any]:
-    """Apply a script to the current mesh of a MeshSet.
+    """Apply the text of a script to the current mesh of a MeshSet.
 
-    Parameters
-    ----------
-    mesh_set
-        A `pymeshlab.MeshSet`.
-    text
-        Contents of the .mlx file.
+    Returns a dict with "filters", a list with the "name" of each filter and, for the plugin's, its
+    "report"; pymeshlab returns no reports of other filters in a script.
 
-    Returns
-    -------
-    dict
-        "filters": a list with the "name" of each filter and, for the plugin's, its "report";
-        pymeshlab returns no reports of other filters in a script.
-
-    Raises
-    ------
-    OptionError
-        When the text is not a filter script, or an empty one.
-    FilterError
-        When a filter is unknown or rejects the mesh; names the filter.
+    Raises OptionError when the text is not a filter script, or an empty one, and FilterError, which
+    names the filter, when one is unknown or rejects the mesh.
     """
     load()
     done = []
@@ -54,10 +40,7 @@ def apply_script(mesh_set: Any, text: str) -> dict[str, Any]:
 def script_filters(text: str) -> list[str]:
     """Return the names of a script's filters, as in MeshLab's menus.
 
-    Raises
-    ------
-    OptionError
-        When the text is not a filter script, or an empty one.
+    Raises OptionError when the text is not a filter script, or an empty one.
     """
     return [single.get("name", "") for single in _filters(text)]
 

@@ -1,6 +1,6 @@
 """The plugin's filters, for meshes given as arrays.
 
 `fractional`, `signals`, `artefacts`, `harmonics` and `spectrum` each call one filter, through
-`calling` and `arrays`; `options` is the table of the fractional filter's options, `transfer` its
-gain, `signatures` the equations of the signatures that harmonics have.
+`calling` and `arrays`; `options` has the tables of their options, `transfer` the gain of the
+fractional filter.
 """

@@ -73,19 +73,8 @@ def vertex_numbers(values: ArrayLike, count: int, name: str) -> NDArray[np.float
 def chosen_vertices(selection: ArrayLike, count: int, F: NDArray[np.integer]) -> NDArray[np.bool_]:
     """Return which of `count` vertices are selected.
 
-    Parameters
-    ----------
-    selection
-        One boolean for each vertex, or indices of faces, which select their corners.
-    count
-        Number of vertices.
-    F
-        m x 3 corners.
-
-    Raises
-    ------
-    ValueError
-        When it is neither, or an index is out of range.
+    `selection` is one boolean for each vertex, or indices of faces, which select their corners:
+    those in `F`, m x 3. Raises ValueError when it is neither, or an index is out of range.
     """
     given = np.asarray(selection)
     if given.dtype == bool and given.shape == (count,):

@@ -81,19 +81,9 @@ def mesh_set_of(
 ) -> Any:
     """Return a `pymeshlab.MeshSet` with one mesh, for filters of the plugin.
 
-    Parameters
-    ----------
-    V, F
-        As from `mesh_arrays`.
-    data
-        Further arguments of `pymeshlab.Mesh`, such as `v_scalar_array`.
-    verbose
-        Whether MeshLab writes its log.
-
-    Raises
-    ------
-    PluginError
-        When the plugin cannot be loaded.
+    `V` and `F` are as from `mesh_arrays`; `data` are further arguments of `pymeshlab.Mesh`, such as
+    `v_scalar_array`. With `verbose`, MeshLab writes its log. Raises PluginError when the plugin
+    cannot be loaded.
     """
     load()  # first: it says what to do where there is no pymeshlab
     import pymeshlab
@@ -119,14 +109,9 @@ def filtered(
 ) -> tuple[Any, dict[str, Any]]:
     """Apply the filter of a table of options to a mesh.
 
-    Parameters
-    ----------
-    mesh_or_vertices, faces
-        As for `mesh_arrays`.
-    options
-        All options.
-    weights, selection
-        What `weight` and `selected` refer to; a mesh of pymeshlab has its own.
+    The mesh and errors are those of `mesh_arrays`, further errors those of `call_filter` and
+    `load`. `weights` and `selection` are what `weight` and `selected` refer to; a mesh of pymeshlab
+    has its own.
 
     Returns
     -------
@@ -134,11 +119,6 @@ def filtered(
         With the result, in which a mesh of pymeshlab has kept its data.
     report : dict
         As from `call_filter`, with lists instead of arrays.
-
-    Raises
-    ------
-    ValueError, TypeError, OptionError, FilterError, PluginError
-        As `mesh_arrays`, `call_filter` and `load`.
     """
     V, F = mesh_arrays(mesh_or_vertices, faces)
     if kind_of(mesh_or_vertices) is PYMESHLAB:

@@ -21,24 +21,11 @@ _NO_GAIN = 1e-12
 
 
 def points_of(gain: Callable[[float], float], feature_size: float) -> str:
-    """Sample a gain, for the option `transfer_function`.
+    """Sample a gain, for the option `transfer_function`, as points `size:gain`.
 
-    Parameters
-    ----------
-    gain
-        Function of w = feature size / wavelength, w > 0; finite, >= 0.
-    feature_size
-        Length, > 0.
-
-    Returns
-    -------
-    str
-        Points `size:gain`, at `feature_size` and 16 octaves on both sides.
-
-    Raises
-    ------
-    OptionError
-        When a gain is negative or not finite; says where.
+    `gain` is a function of w = feature size / wavelength, w > 0; finite, >= 0. The points are at
+    the feature size, a length > 0, and 16 octaves on both sides. Raises OptionError when a gain is
+    negative or not finite; says where.
     """
     points = []
     for w in np.exp2(np.arange(-_OCTAVES * _PER_OCTAVE, _OCTAVES * _PER_OCTAVE + 1) / _PER_OCTAVE):
@@ -60,10 +47,7 @@ def with_gain(
 ) -> FilterOptions:
     """Return the options with a gain of the user, a function of w, for a mesh.
 
-    Raises
-    ------
-    OptionError
-        As `points_of`, or when the options have a filter type of their own.
+    Raises OptionError as `points_of`, or when the options have a filter type of their own.
     """
     if options.filter_type != "low-pass":
         raise OptionError(f"filter_type = {options.filter_type}: gain takes its place; give one")

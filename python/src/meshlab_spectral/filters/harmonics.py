@@ -4,28 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshlab_spectral.errors import FilterError, OptionError
-from meshlab_spectral.filters import signatures
+from meshlab_spectral.errors import FilterError
 from meshlab_spectral.filters.arrays import lumped_areas, mesh_arrays
 from meshlab_spectral.filters.calling import call_filter, mesh_set_of
-from meshlab_spectral.filters.options import (
-    Boundary,
-    LaplacianKind,
-    checked_basis_size,
-    checked_count,
-)
+from meshlab_spectral.filters.options import BasisOptions, Boundary, LaplacianKind, checked_count
 
 Array = NDArray[np.float64]
 
-DEFAULT_BASIS_SIZE = 100
 DEFAULT_TIMES = 16
-
-_FILTER_NAME = "compute_scalar_manifold_harmonic_per_vertex"
+# Of the wave kernel (Aubry et al.): the standard deviation of a distribution in distances of
+# adjacent energies; distance of the outermost ones from the ends of the spectrum, in deviations.
+_DEVIATION, _MARGIN = 7, 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -162,7 +156,10 @@ class Harmonics:
         return self.reconstruct((gains * self.project(f).T).T)
 
     def heat_kernel_signature(self, times: ArrayLike | None = None) -> Array:
-        """Heat kernel signature of every vertex (Sun, Ovsjanikov, Guibas 2009).
+        """Heat kernel signature of every vertex.
+
+        J. Sun, M. Ovsjanikov, L. Guibas: A Concise and Provably Informative Multi-Scale Signature
+        Based on Heat Diffusion, SGP 2009.
 
         ``h_t(x) = sum_i exp(-lambda_i t) phi_i(x)^2``: the share of heat put at x that is still
         there at time t, per area. Small times see curvature and thin parts, large ones the whole
@@ -198,15 +195,19 @@ class Harmonics:
                     f"all {len(self.eigenvalues)} harmonics are constant: compute more, or pass "
                     "times"
                 )
-            t = signatures.heat_times(self.eigenvalues, DEFAULT_TIMES)
+            t = heat_times(self.eigenvalues, DEFAULT_TIMES)
         else:
             t = np.asarray(times, dtype=np.float64)
             if t.ndim != 1 or len(t) == 0 or not (np.isfinite(t) & (t >= 0)).all():
                 raise ValueError(f"times = {times}: pass a list of finite numbers from 0 on")
-        return signatures.heat_kernel(self.eigenvalues, self.harmonics, t)
+        signature: Array = self.harmonics**2 @ np.exp(-np.outer(self.eigenvalues, t))
+        return signature
 
     def wave_kernel_signature(self, count: int = 100) -> Array:
-        """Wave kernel signature of every vertex (Aubry, Schlickewei, Cremers 2011).
+        """Wave kernel signature of every vertex.
+
+        M. Aubry, U. Schlickewei, D. Cremers: The Wave Kernel Signature: A Quantum Mechanical
+        Approach to Shape Analysis, ICCV Workshops 2011.
 
         ``WKS(x, e) = C_e sum_i phi_i(x)^2 exp(-(e - log lambda_i)^2 / (2 sigma^2))``, where C_e
         makes the weights sum to 1: how likely a particle of energy about exp(e) is at x, per area.
@@ -243,14 +244,42 @@ class Harmonics:
                 "energies lie between two different positive eigenvalues, of which the basis has "
                 f"{len(positive)}: compute more harmonics"
             )
-        e, sigma = signatures.wave_energies(self.eigenvalues, count)
-        return signatures.wave_kernel(self.eigenvalues, self.harmonics, e, sigma)
+        e, sigma = wave_energies(self.eigenvalues, count)
+        waves = self.eigenvalues > 0
+        exponent = (np.log(self.eigenvalues[waves])[:, None] - e) ** 2 / (2 * sigma**2)
+        # C_e cancels a common factor: without it all weights of an energy in a gap would underflow.
+        f_e = np.exp(exponent.min(axis=0) - exponent)
+        signature: Array = self.harmonics[:, waves] ** 2 @ (f_e / f_e.sum(axis=0))
+        return signature
+
+
+def heat_times(lam: Array, count: int) -> Array:
+    """Sample times for the ascending eigenvalues `lam`, from fine to coarse, as Sun et al. do.
+
+    At the first one the last harmonic has faded to 1e-4, at the last one all but the constants.
+    """
+    positive = lam[lam > 0]
+    return np.geomspace(4 * np.log(10) / positive[-1], 4 * np.log(10) / positive[0], count)
+
+
+def wave_energies(lam: Array, count: int) -> tuple[Array, float]:
+    """Sample energies, logarithms of eigenvalues, and their sigma, as Aubry et al. do.
+
+    The first and the last one are 2 sigma within the spectrum, so that every distribution lies
+    mostly inside.
+    """
+    log_lam = np.log(lam[lam > 0])
+    first, last = log_lam[0], log_lam[-1]
+    # last - first = (count - 1) delta + 2 * 2 sigma
+    delta = (last - first) / (count - 1 + 2 * _MARGIN * _DEVIATION)
+    sigma = _DEVIATION * delta
+    return first + _MARGIN * sigma + delta * np.arange(count), float(sigma)
 
 
 def manifold_harmonics(
     mesh_or_vertices: Any,
     faces: ArrayLike | None = None,
-    basis_size: int = DEFAULT_BASIS_SIZE,
+    basis_size: int = BasisOptions.basis_size,
     laplacian: LaplacianKind = "intrinsic delaunay",
     boundary: Boundary = "free",
 ) -> Harmonics:
@@ -293,7 +322,8 @@ def manifold_harmonics(
     >>> basis = manifold_harmonics(V, F, 50)
     >>> smooth = basis.reconstruct(basis.project(V))
     """
-    return compute(*mesh_arrays(mesh_or_vertices, faces), basis_size, laplacian, boundary)
+    options = BasisOptions(basis_size=basis_size, laplacian=laplacian, boundary=boundary)
+    return compute(*mesh_arrays(mesh_or_vertices, faces), options)
 
 
 def shape_dna(
@@ -370,36 +400,19 @@ def _rows(name: str, values: ArrayLike, count: int, what: str) -> Array:
 
 
 def compute(
-    V: NDArray[np.float64],
-    F: NDArray[Any],
-    basis_size: int,
-    laplacian: LaplacianKind,
-    boundary: Boundary,
-    verbose: bool = False,
+    V: NDArray[np.float64], F: NDArray[Any], options: BasisOptions, verbose: bool = False
 ) -> Harmonics:
     """Compute the harmonics of validated arrays. With `verbose`, MeshLab writes its log."""
-    basis_size = checked_basis_size(basis_size)
-    for name, value, kind in (
-        ("laplacian", laplacian, LaplacianKind),
-        ("boundary", boundary, Boundary),
-    ):
-        if value not in get_args(kind):
-            raise OptionError(f"{name} = {value}: choose {', '.join(get_args(kind))}")
     mesh_set = mesh_set_of(V, F, verbose=verbose)
-    parameters = {
-        "mode": 0,  # in every basis
-        "basis_size": basis_size,
-        "store_basis": True,
-        "laplacian": laplacian,
-        "boundary": boundary,
-    }
-    report = call_filter(mesh_set, _FILTER_NAME, parameters)
+    parameters = {"mode": 0, "store_basis": True, **options.as_dict()}  # mode 0 is in every basis
+    report = call_filter(mesh_set, options.FILTER, parameters)
     mesh = mesh_set.current_mesh()
     columns = [
-        mesh.vertex_custom_scalar_attribute_array(f"harmonic_{mode}") for mode in range(basis_size)
+        mesh.vertex_custom_scalar_attribute_array(f"harmonic_{mode}")
+        for mode in range(options.basis_size)
     ]
     Phi = np.column_stack(columns)
-    masses = _equal_areas(V, F, Phi) if laplacian == "uniform" else lumped_areas(V, F)
+    masses = _equal_areas(V, F, Phi) if options.laplacian == "uniform" else lumped_areas(V, F)
     return Harmonics(report["eigenvalues"].copy(), Phi, masses)
 
 

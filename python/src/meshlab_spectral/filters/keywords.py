@@ -7,9 +7,10 @@ import re
 import textwrap
 from collections.abc import Callable, Collection
 from dataclasses import fields
+from types import UnionType
 from typing import Any, TypeVar, get_args, get_type_hints
 
-from meshlab_spectral.filters.option_types import Length, Options
+from meshlab_spectral.filters.option_types import Length
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -19,7 +20,7 @@ _FLAG = re.compile(r"--([a-z][a-z-]*)(?: (\d[\d.]*))?")
 
 
 def takes_options(
-    table: type[Options], names: Collection[str] | None = None
+    *tables: type[Any], names: Collection[str] | None = None
 ) -> Callable[[Function], Function]:
     """Spell out the ``**named`` of a function, for its `help` and for completion in notebooks.
 
@@ -27,15 +28,16 @@ def takes_options(
 
     Parameters
     ----------
-    table
-        The options.
+    *tables
+        The options, tables made with `option`.
     names
         Those of them that the function takes; None for all.
     """
 
     def spelled_out(function: Function) -> Function:
-        types = get_type_hints(table)
-        chosen = [one for one in fields(table) if names is None or one.name in names]
+        types = {name: kind for table in tables for name, kind in get_type_hints(table).items()}
+        every = [one for table in tables for one in fields(table)]
+        chosen = [one for one in every if names is None or one.name in names]
         signature = inspect.signature(function)
         *others, named = signature.parameters.values()
         keywords = [
@@ -61,6 +63,8 @@ def takes_options(
 def _type_named(kind: Any) -> str:
     if kind is Length:
         return "str | float"
+    if isinstance(kind, UnionType):  # whose paths may be texts, too
+        return str(kind).replace("pathlib.Path", "str | Path")
     return "str" if get_args(kind) else str(kind.__name__)
 
 
@@ -70,7 +74,7 @@ def _plain(default: Any) -> Any:
 
 def _explained(one: Any, kind: Any) -> str:
     """Return an entry of a docstring: the help in the words of Python, and the range."""
-    facts = [repr(choice) for choice in get_args(kind)]
+    facts = [repr(one) for one in get_args(kind) if not isinstance(kind, UnionType)]
     if one.metadata["limits"]:
         facts.append(_UNLIMITED.sub("", str(one.metadata["limits"])))
     indent = " " * 4

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
-from numbers import Real
+from numbers import Integral, Real
 from typing import Any, Literal, TypeVar, get_args, get_type_hints
 
 from meshlab_spectral.errors import OptionError
@@ -107,9 +107,24 @@ class Length:
         return number + self.unit
 
 
-def option(default: Any, explanation: str, limits: Limits | None = None) -> Any:
-    """Make a field of a table of options."""
-    return field(default=default, metadata={"help": explanation, "limits": limits})
+def option(
+    default: Any,
+    explanation: str,
+    limits: Limits | None = None,
+    flags: Sequence[str] = (),
+    metavar: str | None = None,
+) -> Any:
+    """Make a field of a table of options.
+
+    Parameters
+    ----------
+    default, explanation, limits
+        Its default, help, and range if it is a number.
+    flags, metavar
+        How a command spells the option, unless by its name, and its value.
+    """
+    told = {"help": explanation, "limits": limits, "flags": flags, "metavar": metavar}
+    return field(default=default, metadata=told)
 
 
 _NAMED = {
@@ -125,6 +140,8 @@ def _is_of(value: Any, wanted: type) -> bool:
     """Whether a value has a type; integers pass as floats, as in a recipe."""
     if wanted is float:
         return isinstance(value, int | float) and not isinstance(value, bool)
+    if wanted is int:
+        return isinstance(value, Integral) and not isinstance(value, bool)
     return type(value) is wanted
 
 
@@ -171,6 +188,8 @@ class Options:
             wanted = types[one.name]
             if not choices and not _is_of(value, wanted):
                 raise OptionError(f"{one.name} = {value!r}: must be {_NAMED[wanted]}")
+            if wanted is int:  # else of NumPy, perhaps
+                object.__setattr__(self, one.name, int(value))
             default: Any = one.default
             is_automatic = isinstance(value, Length) and value.automatic
             if is_automatic and not default.automatic:

@@ -66,11 +66,6 @@ def checked_count(name: str, value: Any, least: int = 1) -> int:
     return int(value)
 
 
-def checked_basis_size(value: Any, least: int = 1) -> int:
-    """Return a basis size as an integer; raise OptionError unless it is one from `least` on."""
-    return checked_count("basis_size", value, least)
-
-
 @dataclass(frozen=True, kw_only=True)
 class FilterOptions(Options):
     """Options of the filter, with the names and defaults they have in MeshLab.
@@ -193,4 +188,39 @@ class FilterOptions(Options):
         "details leaves the shape as it is, and stores what the filter takes away: input minus "
         "result as the vertex attribute spectral_details, and along the normal, positive outwards, "
         "as vertex quality. Files: .ply only.",
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class SpectrumOptions(Options):
+    """Options of `geometry_spectrum`."""
+
+    FILTER = "get_geometry_spectrum"
+    TABLE = "spectrum"
+
+    basis_size: int = option(
+        0, "Number of lowest harmonics to measure individually, too.", Limits(0, LARGEST_INTEGER)
+    )
+    laplacian: LaplacianKind = option("intrinsic delaunay", "As for the filter.")
+    boundary: Boundary = option(
+        "free", "Whether boundaries of open surfaces are part of the shape (free)."
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class BasisOptions(Options):
+    """Options of `manifold_harmonics`."""
+
+    FILTER = "compute_scalar_manifold_harmonic_per_vertex"
+    TABLE = "basis"
+
+    basis_size: int = option(
+        100,
+        "Number of harmonics, constants included.",
+        Limits(1, LARGEST_INTEGER),
+        flags=("--basis-size", "-k"),
+    )
+    laplacian: LaplacianKind = option("intrinsic delaunay", "As for the filter.")
+    boundary: Boundary = option(
+        "free", "At the boundary of an open surface: free, or fixed to zero."
     )

@@ -41,15 +41,8 @@ EQUALIZER_EDGES = (96, 48, 24, 12, 6, 3)
 def equalizer_points(gains: Sequence[float]) -> str:
     """Return the transfer function of an equalizer's sliders, as points for the filter.
 
-    Parameters
-    ----------
-    gains
-        One for each of `EQUALIZER_EDGES`, >= 0; what is larger than all of them keeps its height.
-
-    Raises
-    ------
-    ValueError
-        When there are not as many, or one is negative or not finite.
+    There is a gain >= 0 for each of `EQUALIZER_EDGES`; what is larger than all of them keeps its
+    height. Raises ValueError when there are not as many, or one is negative or not finite.
     """
     if len(gains) != len(EQUALIZER_EDGES) or not all(0 <= gain < inf for gain in gains):
         raise ValueError(f"give {len(EQUALIZER_EDGES)} gains from 0 on, such as 1,1,2,1,0.5,0")

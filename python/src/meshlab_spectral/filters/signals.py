@@ -22,7 +22,7 @@ _SCALARS = "apply_scalar_spectral_filter_per_vertex"
 _COLORS = "apply_color_spectral_filter_per_vertex"
 
 
-@takes_options(FilterOptions, TransferKeywords.__annotations__)
+@takes_options(FilterOptions, names=TransferKeywords.__annotations__)
 def filter_scalars(
     mesh_or_vertices: Any,
     faces: ArrayLike | None = None,
@@ -104,7 +104,7 @@ def filter_scalars(
     return mesh_set.current_mesh().vertex_scalar_array().copy(), report
 
 
-@takes_options(FilterOptions, TransferKeywords.__annotations__)
+@takes_options(FilterOptions, names=TransferKeywords.__annotations__)
 def filter_colors(
     mesh_or_vertices: Any,
     faces: ArrayLike | None = None,

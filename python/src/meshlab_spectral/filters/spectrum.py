@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshlab_spectral.errors import OptionError
 from meshlab_spectral.filters.arrays import mesh_arrays
 from meshlab_spectral.filters.calling import call_filter, mesh_set_of
-from meshlab_spectral.filters.options import Boundary, LaplacianKind, checked_basis_size
-
-FILTER_NAME = "get_geometry_spectrum"
-DEFAULT_BASIS_SIZE = 0
+from meshlab_spectral.filters.options import Boundary, LaplacianKind, SpectrumOptions
 
 Array = NDArray[np.float64]
 
@@ -122,7 +118,7 @@ class GeometrySpectrum:
 def geometry_spectrum(
     mesh_or_vertices: Any,
     faces: ArrayLike | None = None,
-    basis_size: int = DEFAULT_BASIS_SIZE,
+    basis_size: int = SpectrumOptions.basis_size,
     laplacian: LaplacianKind = "intrinsic delaunay",
     boundary: Boundary = "free",
 ) -> GeometrySpectrum:
@@ -173,32 +169,13 @@ def geometry_spectrum(
     >>> for size, height in zip(spectrum.octave_feature_sizes, spectrum.octave_amplitudes):
     ...     print(f"details of {size:.3g}: {height:.3g} high")
     """
+    options = SpectrumOptions(basis_size=basis_size, laplacian=laplacian, boundary=boundary)
     V, F = mesh_arrays(mesh_or_vertices, faces)
-    parameters = spectrum_parameters(basis_size, laplacian, boundary)
-    return GeometrySpectrum.from_report(measure(V, F, parameters))
+    return GeometrySpectrum.from_report(measure(V, F, options))
 
 
 def measure(
-    V: Array, F: NDArray[Any], parameters: dict[str, Any], verbose: bool = False
+    V: Array, F: NDArray[Any], options: SpectrumOptions, verbose: bool = False
 ) -> dict[str, Any]:
     """Run the filter on a mesh and return its report. With `verbose`, MeshLab writes its log."""
-    mesh_set = mesh_set_of(V, F, verbose=verbose)
-    return call_filter(mesh_set, FILTER_NAME, parameters)
-
-
-def spectrum_parameters(basis_size: int, laplacian: str, boundary: str) -> dict[str, Any]:
-    """Validate the options; returns the parameters for pymeshlab.
-
-    Raises
-    ------
-    OptionError
-        When an option has an invalid value.
-    """
-    basis_size = checked_basis_size(basis_size, least=0)
-    for name, value, kind in (
-        ("laplacian", laplacian, LaplacianKind),
-        ("boundary", boundary, Boundary),
-    ):
-        if value not in get_args(kind):
-            raise OptionError(f"{name} = {value}: choose {', '.join(get_args(kind))}")
-    return {"basis_size": basis_size, "laplacian": laplacian, "boundary": boundary}
+    return call_filter(mesh_set_of(V, F, verbose=verbose), options.FILTER, options.as_dict())

@@ -1,31 +1,29 @@
-"""The filter's gain as a function of frequency, for plots; the same formulas as the plugin's."""
+"""The filter's gain as a function of frequency, for plots; the plugin computes it."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import ctypes
+from dataclasses import astuple, dataclass
+from typing import get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
 from meshlab_spectral.errors import OptionError
-from meshlab_spectral.filters.options import FilterOptions
-from meshlab_spectral.plugin.library import custom_gains
+from meshlab_spectral.filters.options import FilterOptions, FilterType, Response
+from meshlab_spectral.plugin.library import function_of
+from meshlab_spectral.plugin.loading import load, loaded_plugin
 
 Array = NDArray[np.float64]
+
+_INTEGER, _NUMBERS = ctypes.c_int, ctypes.POINTER(ctypes.c_double)
 
 
 @dataclass(frozen=True)
 class MeshLengths:
     """Lengths that the sizes of a custom transfer function refer to, in the units of the mesh.
 
-    Attributes
-    ----------
-    feature_size
-        The filter's feature size.
-    diagonal
-        Diagonal of the bounding box.
-    mean_edge
-        Mean edge length.
+    They are the filter's feature size, the diagonal of the bounding box and the mean edge length.
     """
 
     feature_size: float
@@ -41,8 +39,7 @@ def gain(options: FilterOptions, x: Array, lengths: MeshLengths | None = None) -
     options
         Options of the filter.
     x
-        Relative frequencies omega / omega_c = feature size / wavelength, >= 0; > 0 for a custom
-        transfer function.
+        Relative frequencies omega / omega_c = feature size / wavelength, >= 0.
     lengths
         Those of the mesh, for a custom transfer function.
 
@@ -55,46 +52,29 @@ def gain(options: FilterOptions, x: Array, lengths: MeshLengths | None = None) -
     ------
     OptionError
         When a custom transfer function is wrong; the message says where.
+    PluginError
+        When the plugin cannot be loaded.
     """
-    if options.filter_type == "custom":
-        return _custom(options, np.asarray(x, dtype=np.float64), lengths) ** options.power
-    B = 1 - _prototype(options, x) if options.filter_type == "band-stop" else _prototype(options, x)
-    whole: Array = options.stop_gain + (options.pass_gain - options.stop_gain) * B
-    return whole**options.power
-
-
-def _custom(options: FilterOptions, x: Array, lengths: MeshLengths | None) -> Array:
     if lengths is None:
-        raise OptionError("a custom transfer function needs a mesh that its sizes refer to")
-    return custom_gains(
-        options.transfer_function,
-        lengths.feature_size,
-        lengths.diagonal,
-        lengths.mean_edge,
-        lengths.feature_size / x,
+        if options.filter_type == "custom":
+            raise OptionError("a custom transfer function needs a mesh that its sizes refer to")
+        lengths = MeshLengths(1.0, 1.0, 1.0)
+    load()
+    types = (_INTEGER, _INTEGER, _NUMBERS, ctypes.c_char_p, _NUMBERS, _NUMBERS, _INTEGER, _NUMBERS)
+    function = function_of(loaded_plugin(), "meshlab_spectral_gains", types)
+    shape = [options.order, options.band_width, options.pass_gain, options.stop_gain, options.power]
+    gains = np.empty(np.shape(x))
+    given = [np.ascontiguousarray(one, dtype=np.float64) for one in (shape, astuple(lengths), x)]
+    numbers = [array.ctypes.data_as(_NUMBERS) for array in (*given, gains)]
+    mistake: bytes | None = function(
+        get_args(FilterType).index(options.filter_type),
+        get_args(Response).index(options.response),
+        numbers[0],
+        options.transfer_function.encode(),
+        *numbers[1:3],
+        gains.size,
+        numbers[3],
     )
-
-
-def _prototype(options: FilterOptions, x: Array) -> Array:
-    """Prototype B(x), 1/sqrt(2) (-3 dB) at the cutoff; a band-stop uses the band-pass's."""
-    # Frequency of the equivalent low-pass, with its cutoff at 1; may be infinite at x = 0.
-    with np.errstate(divide="ignore", over="ignore"):
-        y = _as_low_pass(options, np.asarray(x, dtype=np.float64))
-        if options.response == "gaussian":
-            B = np.exp2(-(y**2) / 2)
-        elif options.response == "butterworth":
-            B = 1 / np.sqrt(1 + y ** (2 * options.order))
-        else:
-            B = np.where(y <= 1, 1.0, 0.0)
-    return B
-
-
-def _as_low_pass(options: FilterOptions, x: Array) -> Array:
-    if options.filter_type == "low-pass":
-        return x
-    if options.filter_type == "high-pass":
-        return 1 / x
-    b = options.band_width
-    if options.response == "butterworth":
-        return np.abs(x - 1 / x) / (2 ** (b / 2) - 2 ** (-b / 2))
-    return 2 * np.abs(np.log2(x)) / b
+    if mistake is not None:
+        raise OptionError(mistake.decode())
+    return gains

@@ -90,24 +90,9 @@ def extra_plugins_folder(
 ) -> Path:
     """Return the folder from which a MeshLab loads extra plugins for the current user.
 
-    Parameters
-    ----------
-    host
-        The build of MeshLab.
-    platform
-        As in `sys.platform`.
-    environment
-        Environment variables, which locate the user's data folder.
-
-    Returns
-    -------
-    Path
-        A folder named after MeshLab's version in its AppDataLocation (Qt); it need not exist.
-
-    Raises
-    ------
-    PluginError
-        When the environment does not locate the user's data folder.
+    It is named after MeshLab's version in its AppDataLocation (Qt), and need not exist. `platform`
+    is as in `sys.platform`; raises PluginError when the variables of the environment do not locate
+    the user's data folder.
     """
     if platform == "win32":
         data = _folder_of(environment, "APPDATA")
@@ -123,42 +108,14 @@ def extra_plugins_folder(
 def install(dry_run: bool = False) -> list[Change]:
     """Copy the plugins of both precisions to where MeshLab looks for them when it starts.
 
-    Parameters
-    ----------
-    dry_run
-        Change nothing, only return what would be done.
-
-    Returns
-    -------
-    list of Change
-        One for each precision.
-
-    Raises
-    ------
-    PluginError
-        When a plugin is missing from this package, or a folder is not writable.
+    A dry run changes nothing, and only returns what would be done. Raises PluginError when a plugin
+    is missing from this package, or a folder is not writable.
     """
     return [_install(host, dry_run) for host in HOSTS]
 
 
 def uninstall(dry_run: bool = False) -> list[Change]:
-    """Remove what `install` has copied.
-
-    Parameters
-    ----------
-    dry_run
-        Change nothing, only return what would be done.
-
-    Returns
-    -------
-    list of Change
-        One for each precision.
-
-    Raises
-    ------
-    PluginError
-        When a file cannot be removed.
-    """
+    """Remove what `install` has copied; parameter, result and errors are those of `install`."""
     return [_uninstall(host, dry_run) for host in HOSTS]
 
 
@@ -167,10 +124,7 @@ def find_meshlab(
 ) -> FoundMeshLab | None:
     """Look for MeshLab on the path, then where its installer puts it, and query its version.
 
-    Parameters
-    ----------
-    platform, environment
-        As for `extra_plugins_folder`.
+    `platform` and `environment` are those of `extra_plugins_folder`.
     """
     places = _usual_places(platform, environment)
     program = next((path for path in places if path.is_file()), None)

@@ -4,38 +4,25 @@ from __future__ import annotations
 
 import ctypes
 import functools
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from meshlab_spectral.errors import OptionError, PluginError
+from meshlab_spectral.errors import PluginError
 from meshlab_spectral.plugin.handle import opened
-from meshlab_spectral.plugin.loading import load, loaded_plugin
-
-_NUMBERS = ctypes.POINTER(ctypes.c_double)
+from meshlab_spectral.plugin.loading import loaded_plugin
 
 
 def last_warnings() -> list[str]:
     """Return the warnings of the plugin's latest filter run in this thread, in its own words.
 
-    pymeshlab drops the strings of a filter's report.
+    pymeshlab drops the strings of a filter's report. They are sentences without the final full
+    stop, none before the first run and after a failed one.
 
-    Returns
-    -------
-    list of str
-        Sentences without the final full stop; empty before the first run and after a failed one.
-
-    Raises
-    ------
-    PluginError
-        When pymeshlab has loaded another copy of the plugin than `load` would, or the plugin is
-        older than this package.
+    Raises PluginError when pymeshlab has loaded another copy of the plugin than `load` would, or
+    the plugin is older than this package.
     """
-    function = _function(loaded_plugin(), "meshlab_spectral_warnings", ())
+    function = function_of(loaded_plugin(), "meshlab_spectral_warnings", ())
     text: bytes = function()
     return text.decode().splitlines()
 
@@ -43,89 +30,15 @@ def last_warnings() -> list[str]:
 def last_summary() -> str:
     """Return what the plugin's latest filter run in this thread found and did, in one line.
 
-    Returns
-    -------
-    str
-        Empty where the numbers of the report say it all.
-
-    Raises
-    ------
-    PluginError
-        As `last_warnings`.
+    Empty where the numbers of the report say it all. Errors are those of `last_warnings`.
     """
-    text: bytes = _function(loaded_plugin(), "meshlab_spectral_summary", ())()
+    text: bytes = function_of(loaded_plugin(), "meshlab_spectral_summary", ())()
     return text.decode()
 
 
-def custom_gains(
-    text: str,
-    feature_size: float,
-    diagonal: float,
-    mean_edge: float,
-    sizes: NDArray[np.float64],
-) -> NDArray[np.float64]:
-    """Return the gains of a custom transfer function, as the filter applies it.
-
-    Parameters
-    ----------
-    text
-        The filter's option `transfer_function`.
-    feature_size, diagonal, mean_edge
-        What sizes are relative to, in the units of the mesh, > 0.
-    sizes
-        Feature sizes in the units of the mesh, > 0.
-
-    Returns
-    -------
-    array
-        The gains, >= 0, in the shape of `sizes`.
-
-    Raises
-    ------
-    OptionError
-        When the text is wrong, or a gain negative or not finite; the message says where.
-    PluginError
-        When the plugin cannot be loaded, or as `last_warnings`.
-    """
-    load()
-    double, integer = ctypes.c_double, ctypes.c_int
-    arguments = (ctypes.c_char_p, double, double, double, _NUMBERS, integer, _NUMBERS)
-    function = _function(loaded_plugin(), "meshlab_spectral_gains", arguments)
-    flat = np.ascontiguousarray(sizes, dtype=np.float64).ravel()
-    gains = np.empty_like(flat)
-    pointers = (array.ctypes.data_as(_NUMBERS) for array in (flat, gains))
-    mistake: bytes | None = function(
-        text.encode(), feature_size, diagonal, mean_edge, next(pointers), flat.size, next(pointers)
-    )
-    if mistake is not None:
-        raise OptionError(mistake.decode())
-    return gains.reshape(np.shape(sizes))
-
-
-def filter_descriptions() -> list[dict[str, Any]]:
-    """Return what the plugin's dialogs say about its filters.
-
-    Returns
-    -------
-    list of dict
-        For each filter its "name" in the menus, "python_name", "menus", "help" in HTML and
-        "parameters": for each its "name", "label", "type" (MeshLab's, such as "RichInt"), "help" in
-        HTML, whether it "is_advanced", and the "choices" of an enumeration.
-
-    Raises
-    ------
-    PluginError
-        When the plugin cannot be loaded, or as `last_warnings`.
-    """
-    load()
-    text: bytes = _function(loaded_plugin(), "meshlab_spectral_filters", ())()
-    described: list[dict[str, Any]] = json.loads(text)
-    return described
-
-
 @functools.cache
-def _function(plugin: Path, name: str, arguments: Sequence[Any]) -> Any:
-    """Return a function of the loaded plugin that returns a text."""
+def function_of(plugin: Path, name: str, arguments: Sequence[Any]) -> Any:
+    """Return a function of the loaded plugin that returns a text; errors as `last_warnings`."""
     try:
         function = getattr(opened(plugin), name)
     except OSError as error:

@@ -71,17 +71,9 @@ def load() -> None:
 
 
 def plugin_path() -> Path:
-    """Return the path of the plugin.
+    """Return the path of the plugin: named by the environment variable, or that of this package.
 
-    Returns
-    -------
-    Path
-        The file named by the environment variable, or the one that comes with this package.
-
-    Raises
-    ------
-    PluginError
-        When that file does not exist.
+    Raises PluginError when that file does not exist.
     """
     named = os.environ.get(PLUGIN_VARIABLE)
     # No fallback if the named file is missing: using another plugin silently would be worse.

@@ -30,9 +30,10 @@ from meshlab_spectral.files.meshes import (
     script_to_scratch,
 )
 from meshlab_spectral.filters.calling import plain_report
+from meshlab_spectral.filters.options import BasisOptions, SpectrumOptions
 from meshlab_spectral.filters.spectrum import measure
 from meshlab_spectral.filters.tables import TABLES
-from meshlab_spectral.plugin.memory import set_memory_limit
+from meshlab_spectral.plugin.limits import set_memory_limit
 
 # In every error of the plugin about memory.
 _TOO_MUCH_MEMORY = re.compile(r"memory, (of which )?\S+ \w+ are free")
@@ -46,14 +47,14 @@ def _report_of(job: dict[str, Any], on_stage: StageCallback) -> dict[str, Any]:
         on_stage("reading")
         V, F = load_arrays(source, job.get("mesh"))
         on_stage("measuring")
-        return plain_report(measure(V, F, job["parameters"], verbose=verbose))
+        spectrum_options = SpectrumOptions.from_dict(job["options"])
+        return plain_report(measure(V, F, spectrum_options, verbose=verbose))
     if task == "info":
         return mesh_info(source, on_stage, job.get("mesh"))
     scratch = Path(job["scratch"])
     if task == "basis":
-        return basis_to_scratch(
-            source, scratch, **job["options"], on_stage=on_stage, mesh=job.get("mesh")
-        )
+        basis_options = BasisOptions.from_dict(job["options"])
+        return basis_to_scratch(source, scratch, basis_options, on_stage, job.get("mesh"))
     if task == "script":
         return script_to_scratch(source, scratch, job["script"], on_stage, verbose)
     options = TABLES[task].from_dict(job["options"])

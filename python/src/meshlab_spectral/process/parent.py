@@ -21,11 +21,10 @@ import time
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
-from types import TracebackType
 from typing import Any
 
 from meshlab_spectral import errors
-from meshlab_spectral.plugin.threads import VARIABLE as THREADS_VARIABLE
+from meshlab_spectral.plugin.limits import THREADS
 
 ProgressCallback = Callable[[str, float | None], None]
 
@@ -91,7 +90,7 @@ class MeshLabProcess:
     def __init__(self, threads: int | None = None) -> None:
         environment = {**os.environ, **_ALLOCATOR}  # Dask workers have opposite settings
         if threads is not None:
-            environment[THREADS_VARIABLE] = str(threads)
+            environment[THREADS] = str(threads)
         self._child = subprocess.Popen(
             [sys.executable, "-m", "meshlab_spectral.process.child"],
             stdin=subprocess.PIPE,
@@ -117,12 +116,7 @@ class MeshLabProcess:
     def __enter__(self) -> MeshLabProcess:
         return self
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self.end()
 
     def run(
@@ -131,16 +125,10 @@ class MeshLabProcess:
         on_progress: ProgressCallback | None = None,
         limits: JobLimits = NO_LIMITS,
     ) -> Answer:
-        """Do a job.
+        """Do a job, described as `child` expects it, within its limits.
 
-        Parameters
-        ----------
-        job
-            As `child` expects it.
-        on_progress
-            Called with the current stage and the fraction done, 0 to 1, or None if unknown.
-        limits
-            Limits for this job.
+        `on_progress` is called with the current stage and the fraction done, 0 to 1, or None if
+        unknown.
 
         Raises
         ------

@@ -11,13 +11,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-
 from meshlab_spectral.figures.pictures import Frame, Panel, render
 from meshlab_spectral.figures.sheet import FONT_SIZE, INK, Sheet
-from meshlab_spectral.figures.subject import Subject, filter_name, scheme_name
+from meshlab_spectral.figures.spectrum import filter_name
 from meshlab_spectral.filters.option_types import Length
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.filters.transfer import gain
+from subject import Subject, scheme_name
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -44,7 +44,6 @@ def draw(subject: Subject, path: Path, scale: float = 1.0) -> None:
     shapes = [[subject.filtered(options) for options in row] for row in rows]
     frames = Frame.row_by_row([[subject.V, *shapes[0]], *shapes[1:]], subject.view)
     sheet = Sheet([frame.width / frame.height for frame in frames], 1 + len(rows[0]), 2, scale)
-    subject.stage("drawing figure 1")
     original = render(Panel("", subject.V, subject.F), frames[0], sheet.pixels)
     sheet.picture(0, 0, original, "original")
     for i, row in enumerate(rows):

@@ -15,14 +15,14 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
-
 from meshlab_spectral.figures.pictures import SIGNED_COLOURS, Frame, Panel, render, to_full_colours
 from meshlab_spectral.figures.sheet import Sheet
-from meshlab_spectral.figures.stability import LOW_PASS
-from meshlab_spectral.figures.subject import Subject, filter_name
+from meshlab_spectral.figures.spectrum import filter_name
 from meshlab_spectral.filters.arrays import lumped_areas
 from meshlab_spectral.filters.harmonics import manifold_harmonics
+from numpy.typing import NDArray
+from stability import LOW_PASS
+from subject import Subject
 
 Array = NDArray[np.float64]
 
@@ -72,7 +72,6 @@ def draw(subject: Subject, path: Path, scale: float = 1.0) -> None:
     d = lumped_areas(subject.V, subject.F)
     of_input: Array | None = None
     for column, (name, V) in enumerate(zip(COLUMNS, shapes, strict=True)):
-        subject.stage(f"{size} harmonics, {name}")
         Psi = manifold_harmonics(V, subject.F, size).harmonics
         of_input = Psi if of_input is None else of_input
         for row, mode in enumerate(shown):

@@ -12,13 +12,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-
 from meshlab_spectral.figures.pictures import Frame, Panel, render
 from meshlab_spectral.figures.sheet import FONT_SIZE, INK, Sheet
-from meshlab_spectral.figures.stability import BAND, LOW_PASS
-from meshlab_spectral.figures.subject import Subject, filter_name
+from meshlab_spectral.figures.spectrum import filter_name
 from meshlab_spectral.filters.options import BasisUpdate, FilterOptions
 from meshlab_spectral.filters.transfer import gain
+from stability import BAND, LOW_PASS
+from subject import Subject
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -53,7 +53,6 @@ def draw(subject: Subject, path: Path, scale: float = 1.0) -> None:
         [[subject.V, *(shapes[row, i] for i in SHOWN)] for row in range(len(ROWS))], subject.view
     )
     sheet = Sheet([frame.width / frame.height for frame in frames], 1 + len(SHOWN), 1, scale)
-    subject.stage("drawing figure 5")
     for row, (options, update) in enumerate(ROWS):
         if row % 2:
             original = render(Panel("", subject.V, subject.F), frames[row], sheet.pixels)

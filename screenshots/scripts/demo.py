@@ -1,4 +1,4 @@
-"""A demonstration: `python -m meshlab_spectral.cli.demo DIR` strongly smooths the Stanford bunny.
+"""A demonstration: `demo.py DIR` strongly smooths the Stanford bunny.
 
 It writes bunny_filtered.ply and before_after.png to DIR, and prints the filter's report.
 """
@@ -8,16 +8,18 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
+from typing import Any
 
-from rich.console import Console
-
+import numpy as np
 from meshlab_spectral.cli.report_table import report_table
 from meshlab_spectral.errors import SpectralError
-from meshlab_spectral.figures.pictures import Panel, View, draw_side_by_side
+from meshlab_spectral.figures.pictures import Panel, View
 from meshlab_spectral.files.whole_files import writing_whole
 from meshlab_spectral.filters.option_types import Length
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.plugin.loading import FILTER_NAME, load
+from rich.console import Console
+from side_by_side import draw_side_by_side
 
 OPTIONS = FilterOptions(feature_size=Length(15, "%"), steps=10, basis_update="conformal")
 BUNNY_VIEW = View(direction=(0.25, 0.2, 1.0))
@@ -31,10 +33,10 @@ def demonstrate(folder: Path) -> None:
     bunny = Path(pymeshlab.__file__).parent / "tests" / "sample_meshes" / "bunny.obj"
     mesh_set = pymeshlab.MeshSet()
     mesh_set.load_new_mesh(str(bunny))
-    before = Panel.of("Stanford bunny", mesh_set.current_mesh())
+    before = _panel("Stanford bunny", mesh_set.current_mesh())
     parameters = OPTIONS.pymeshlab_parameters(mesh_set.current_mesh())
     report = mesh_set.apply_filter(FILTER_NAME, **parameters)
-    after = Panel.of(
+    after = _panel(
         f"low-pass, {OPTIONS.feature_size} of the diagonal, {OPTIONS.steps} steps",
         mesh_set.current_mesh(),
     )
@@ -50,10 +52,12 @@ def demonstrate(folder: Path) -> None:
     console.print(f"Mesh: {mesh_file}\nPicture: {picture}", highlight=False)
 
 
+def _panel(label: str, mesh: Any) -> Panel:
+    return Panel(label, mesh.vertex_matrix().copy(), mesh.face_matrix().astype(np.int64))
+
+
 def _main() -> None:
-    parser = argparse.ArgumentParser(
-        prog="python -m meshlab_spectral.cli.demo", description=__doc__
-    )
+    parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("folder", metavar="DIR", type=Path, help="folder for the results")
     folder = parser.parse_args().folder
     try:

@@ -1,8 +1,8 @@
 """What the filters do beyond a low-pass of a whole mesh, in one picture each.
 
-`python -m meshlab_spectral.figures.parts MESHES PICTURES [NAME ...]` draws equalizer, selection,
-creases, quality, colors and artefacts into the folder PICTURES, from dragon_40k.ply,
-stanford-bunny.obj, fandisk.off and gears.stl in the folder MESHES.
+`parts.py MESHES PICTURES [NAME ...]` draws equalizer, selection, creases, quality, colors and
+artefacts into the folder PICTURES, from dragon_40k.ply, stanford-bunny.obj, fandisk.off and
+gears.stl in the folder MESHES.
 """
 
 from __future__ import annotations
@@ -12,8 +12,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
-
 from meshlab_spectral.figures.pictures import Frame, Panel, View, render
 from meshlab_spectral.figures.sheet import FONT_SIZE, INK, Sheet
 from meshlab_spectral.files.meshes import load_arrays
@@ -24,6 +22,7 @@ from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.filters.signals import filter_colors, filter_scalars
 from meshlab_spectral.filters.transfer import MeshLengths, gain
 from meshlab_spectral.plugin.loading import FILTER_NAME, load
+from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

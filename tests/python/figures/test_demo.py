@@ -11,8 +11,11 @@ from typing import Any
 import matplotlib.image
 import numpy as np
 import pymeshlab
-from meshlab_spectral.figures.pictures import Panel, View, draw_side_by_side
+from meshlab_spectral.figures.pictures import Panel, View
 from numpy.typing import NDArray
+from side_by_side import draw_side_by_side
+
+SCRIPTS = Path(__file__).resolve().parents[3] / "screenshots" / "scripts"
 
 
 def read_picture(path: Path) -> NDArray[Any]:
@@ -29,7 +32,7 @@ def test_the_demo_leaves_a_smoother_bunny_and_a_picture_of_both(
 ) -> None:
     folder = tmp_path / "demo"
     done = subprocess.run(
-        [sys.executable, "-m", "meshlab_spectral.cli.demo", str(folder)],
+        [sys.executable, SCRIPTS / "demo.py", folder],
         capture_output=True,
         text=True,
         timeout=120,

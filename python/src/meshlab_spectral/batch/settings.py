@@ -1,0 +1,119 @@
+"""Settings of a batch: parameters of `filter_files`, and options of the commands for many files."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from meshlab_spectral.batch.jobs import FileResult, Job
+from meshlab_spectral.batch.outputs import DEFAULT_PATTERN
+from meshlab_spectral.errors import OptionError
+from meshlab_spectral.filters.option_types import Limits, option
+from meshlab_spectral.filters.options import FilterKeywords
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """Settings of a batch."""
+
+    name: str = option(
+        DEFAULT_PATTERN,
+        "Names of the outputs, without extension, made from those of the inputs: {stem}, "
+        "{ending}, {folder}; such as {stem}_smooth or {folder}/{stem}.",
+        metavar="PATTERN",
+    )
+    ending: str | None = option(
+        None,
+        "Format of the outputs, such as ply. By default that of the input, or ply if MeshLab "
+        "cannot write that with faces.",
+        flags=("--format",),
+        metavar="ENDING",
+    )
+    recursive: bool = option(
+        False,
+        "Search subfolders of the inputs, too, and keep their structure.",
+        flags=("--recursive", "-r"),
+    )
+    overwrite: bool = option(
+        False,
+        "Replace existing outputs, even ones created meanwhile; inputs are never replaced.",
+        flags=("--overwrite",),
+    )
+    resume: bool = option(
+        False,
+        "Continue an earlier run, if there was one: skip what the report proves done with the same "
+        "input, options and versions; replace outputs changed since.",
+        flags=("--resume",),
+    )
+    script: Path | None = option(
+        None,
+        "Apply a MeshLab filter script (.mlx) instead of the options. Sizes in it are lengths, not "
+        "percentages.",
+        metavar="FILE",
+    )
+    report: Path | None = option(
+        None,
+        "The report, one JSON object per line; appended to if it exists. By default next to the "
+        "outputs.",
+        metavar="FILE",
+    )
+    workers: int | None = option(
+        None, "Files processed at once. By default one per processor.", Limits(1)
+    )
+    memory_limit: int | None = option(
+        None,
+        "Memory limit per worker, such as 4GB; in Python in bytes. By default they share nine "
+        "tenths of the machine's.",
+        metavar="SIZE",
+    )
+    timeout: float | None = option(
+        None, "Time limit per file in seconds. By default none.", Limits(1)
+    )
+    scheduler: str | None = option(
+        None,
+        "Use the workers of a running Dask cluster, such as tcp://host:8786; they must see the "
+        "files under the same paths. Excludes a number of workers and a memory limit.",
+        metavar="ADDRESS",
+    )
+
+    def check_workers(self) -> None:
+        """Raise OptionError when both kinds of workers, new ones and a cluster's, are wanted."""
+        if self.scheduler is not None and (self.workers, self.memory_limit) != (None, None):
+            raise OptionError(
+                "a cluster configures its own workers: with a scheduler, leave out the number of "
+                "workers and the memory limit"
+            )
+
+    @contextmanager
+    def workers_started(self) -> Iterator[Callable[[Sequence[Job]], Iterator[FileResult]]]:
+        """Yield a function that runs jobs, see `engine.run_jobs`."""
+        # A slow import, not needed by commands for a single file.
+        from meshlab_spectral.batch import engine
+
+        cluster: AbstractContextManager[Any] = (
+            engine.workers_at(self.scheduler)
+            if self.scheduler
+            else engine.local_workers(self.workers, self.memory_limit)
+        )
+        with cluster as client:
+            yield partial(engine.run_jobs, client)
+
+
+class BatchKeywords(FilterKeywords, total=False):
+    """All fields of `Settings`, and those of `FilterOptions`."""
+
+    name: str
+    ending: str | None
+    recursive: bool
+    overwrite: bool
+    resume: bool
+    script: str | Path | None
+    report: str | Path | None
+    workers: int | None
+    memory_limit: int | None
+    timeout: float | None
+    scheduler: str | None

@@ -1,0 +1,73 @@
+"""Limits of the plugin, threads and memory: one setting each for the whole process."""
+
+from __future__ import annotations
+
+import os
+
+from meshlab_spectral.errors import OptionError
+
+# The plugin reads them whenever a filter starts.
+THREADS, MEMORY = "MESHLAB_SPECTRAL_THREADS", "MESHLAB_SPECTRAL_MEMORY"
+
+
+def set_threads(count: int | None) -> None:
+    """Set the number of threads for all filters of the plugin started from now on.
+
+    Results do not depend on it. It is stored in the environment variable MESHLAB_SPECTRAL_THREADS,
+    so child processes inherit it.
+
+    Parameters
+    ----------
+    count
+        At least 1; None, the default, for one thread per processor.
+
+    Raises
+    ------
+    OptionError
+        When `count` is below 1.
+    """
+    _set(THREADS, count, f"threads = {count}: give a number of threads")
+
+
+def set_memory_limit(limit: int | None) -> None:
+    """Limit the resident memory of this process, for all filters of the plugin started from now on.
+
+    A filter that would need more is refused with the numbers, before it takes the memory. The limit
+    is stored in the environment variable MESHLAB_SPECTRAL_MEMORY, so child processes inherit it.
+
+    Parameters
+    ----------
+    limit
+        Bytes, above zero, what the process has already taken included; None, the default: as much
+        as the system has free.
+
+    Raises
+    ------
+    OptionError
+        When `limit` is not above zero.
+    """
+    _set(MEMORY, limit, f"memory limit = {limit}: give a number of bytes")
+
+
+def _set(variable: str, number: int | None, told: str) -> None:
+    if number is None:
+        os.environ.pop(variable, None)
+    elif number <= 0:
+        raise OptionError(f"{told} above zero, or None")
+    else:
+        os.environ[variable] = str(number)
+
+
+def threads() -> int | None:
+    """Return the number set by `set_threads` or the environment; None: one per processor."""
+    text = os.environ.get(THREADS)
+    if text is None:
+        return None
+    if not text.isdecimal() or int(text) < 1:
+        raise OptionError(f"the environment variable {THREADS} = {text}: must be above zero")
+    return int(text)
+
+
+def threads_each(processes: int) -> int:
+    """Return the number of threads for each of several processes running at the same time."""
+    return max(1, (threads() or os.cpu_count() or 1) // processes)
