@@ -75,7 +75,7 @@ class Settings:
     )
     scheduler: str | None = option(
         None,
-        "Use the workers of a running Dask cluster, such as tcp://host:8786; they must see the "
+        "Use the workers of the Dask cluster with a scheduler such as host:8786; they must see the "
         "files under the same paths. Excludes a number of workers and a memory limit.",
         metavar="ADDRESS",
     )
