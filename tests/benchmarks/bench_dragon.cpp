@@ -13,7 +13,6 @@
 
 #include "core/filter/fractional_filter.h"
 #include "core/krylov/pole_selection.h"
-#include "core/laplacian/frequency.h"
 #include "core/laplacian/laplacian.h"
 #include "core/ldlt/shifted_ldlt.h"
 #include "core/mesh/measures.h"

@@ -17,10 +17,10 @@
 #include <Eigen/CholmodSupport>
 #endif
 
-#include "core/laplacian/frequency.h"
 #include "core/laplacian/laplacian.h"
 #include "core/ldlt/shifted_ldlt.h"
 #include "core/mesh/measures.h"
+#include "core/support/frequency.h"
 #include "core/support/threads.h"
 #include "support/ply.h"
 

@@ -13,7 +13,6 @@
 #include "core/analysis/geometry_spectrum.h"
 #include "core/filter/fractional_filter.h"
 #include "core/harmonics/truncated_basis.h"
-#include "core/laplacian/frequency.h"
 #include "core/laplacian/interior.h"
 #include "core/laplacian/intrinsic_delaunay.h"
 #include "core/mesh/measures.h"

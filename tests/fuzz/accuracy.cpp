@@ -6,6 +6,7 @@
 
 #include "core/analysis/bands.h"
 #include "core/mesh/measures.h"
+#include "core/support/frequency.h"
 #include "fuzz/dense_reference.h"
 
 namespace spectral::fuzz {

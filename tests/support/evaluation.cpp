@@ -4,7 +4,6 @@
 
 #include "core/harmonics/truncated_basis.h"
 #include "core/krylov/pole_selection.h"
-#include "core/laplacian/frequency.h"
 #include "core/mesh/mesh.h"
 #include "core/transfer/transfer_function.h"
 

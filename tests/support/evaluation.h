@@ -3,10 +3,10 @@
 #include "core/harmonics/harmonic_basis.h"
 #include "core/krylov/full_spectrum.h"
 #include "core/laplacian/constant_modes.h"
-#include "core/laplacian/frequency.h"
 #include "core/laplacian/laplacian.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/surface.h"
+#include "core/support/types.h"
 #include "core/transfer/transfer_function.h"
 #include "support/shapes.h"
 

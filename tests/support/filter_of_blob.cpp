@@ -1,8 +1,8 @@
 #include "support/filter_of_blob.h"
 
-#include "core/laplacian/frequency.h"
 #include "core/laplacian/interior.h"
 #include "core/mesh/mesh.h"
+#include "core/support/frequency.h"
 #include "core/transfer/transfer_function.h"
 #include "support/shapes.h"
 

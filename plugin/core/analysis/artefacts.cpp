@@ -4,6 +4,7 @@
 
 #include "core/krylov/full_spectrum.h"
 #include "core/krylov/pole_selection.h"
+#include "core/support/frequency.h"
 #include "core/support/threads.h"
 
 namespace spectral {

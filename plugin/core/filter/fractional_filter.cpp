@@ -7,12 +7,12 @@
 
 #include "core/filter/automatic_steps.h"
 #include "core/filter/fractional_steps.h"
-#include "core/laplacian/frequency.h"
 #include "core/laplacian/interior.h"
 #include "core/mesh/creases.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/surface.h"
+#include "core/support/frequency.h"
 #include "core/support/threads.h"
 #include "core/transfer/transfer_function.h"
 

@@ -9,6 +9,7 @@
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/surface.h"
 #include "core/support/errors.h"
+#include "core/support/frequency.h"
 #include "core/support/threads.h"
 
 namespace spectral {

@@ -9,7 +9,6 @@
 
 #include "core/harmonics/lanczos.h"
 #include "core/laplacian/constant_modes.h"
-#include "core/laplacian/frequency.h"
 #include "core/mesh/mesh.h"
 #include "core/support/errors.h"
 

@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 
 #include "core/laplacian/constant_modes.h"
-#include "core/laplacian/frequency.h"
 #include "core/laplacian/laplacian.h"
 #include "core/support/types.h"
 

@@ -6,10 +6,10 @@
 #include "core/krylov/krylov_operator.h"
 #include "core/krylov/krylov_spaces.h"
 #include "core/laplacian/constant_modes.h"
-#include "core/laplacian/frequency.h"
 #include "core/laplacian/laplacian.h"
 #include "core/ldlt/shifted_ldlt.h"
 #include "core/support/progress.h"
+#include "core/support/types.h"
 
 namespace spectral {
 

@@ -8,7 +8,7 @@
 #include "core/krylov/krylov_operator.h"
 #include "core/krylov/rows.h"
 #include "core/laplacian/constant_modes.h"
-#include "core/laplacian/frequency.h"
+#include "core/support/types.h"
 
 namespace spectral {
 

@@ -7,7 +7,6 @@
 #include <string>
 #include <utility>
 
-#include "core/laplacian/frequency.h"
 #include "core/support/errors.h"
 #include "core/support/types.h"
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "core/laplacian/frequency.h"
 #include "core/mesh/measures.h"
 #include "core/support/errors.h"
 

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "core/analysis/artefacts.h"
+#include "core/support/steady_progress.h"
 #include "meshlab/filters/common_parameters.h"
-#include "meshlab/host_workarounds/steady_progress.h"
 #include "meshlab/mesh_conversion.h"
 #include "meshlab/mesh_filter.h"
 

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "core/denoise/denoise.h"
+#include "core/support/steady_progress.h"
 #include "meshlab/filters/common_parameters.h"
 #include "meshlab/filters/surface_report.h"
-#include "meshlab/host_workarounds/steady_progress.h"
 #include "meshlab/mesh_conversion.h"
 #include "meshlab/mesh_filter.h"
 

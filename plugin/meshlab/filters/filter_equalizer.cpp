@@ -8,14 +8,13 @@
 #include <vector>
 
 #include "core/filter/fractional_filter.h"
-#include "core/laplacian/frequency.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/mesh_check.h"
 #include "core/support/errors.h"
+#include "core/support/steady_progress.h"
 #include "core/transfer/equalizer.h"
 #include "meshlab/filters/common_parameters.h"
 #include "meshlab/filters/fractional_report.h"
-#include "meshlab/host_workarounds/steady_progress.h"
 #include "meshlab/mesh_conversion.h"
 #include "meshlab/mesh_filter.h"
 

@@ -1,9 +1,9 @@
 #include "core/filter/fractional_filter.h"
 #include "core/mesh/measures.h"
+#include "core/support/steady_progress.h"
 #include "meshlab/filters/fractional_help.h"
 #include "meshlab/filters/fractional_parameters.h"
 #include "meshlab/filters/fractional_report.h"
-#include "meshlab/host_workarounds/steady_progress.h"
 #include "meshlab/mesh_conversion.h"
 #include "meshlab/mesh_filter.h"
 

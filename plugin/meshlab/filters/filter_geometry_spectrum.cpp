@@ -6,10 +6,10 @@
 #include <string>
 
 #include "core/analysis/geometry_spectrum.h"
-#include "core/laplacian/frequency.h"
+#include "core/mesh/measures.h"
+#include "core/support/steady_progress.h"
 #include "core/transfer/transfer_function.h"
 #include "meshlab/filters/common_parameters.h"
-#include "meshlab/host_workarounds/steady_progress.h"
 #include "meshlab/mesh_conversion.h"
 #include "meshlab/mesh_filter.h"
 

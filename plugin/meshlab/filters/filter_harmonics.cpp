@@ -7,10 +7,10 @@
 
 #include "core/analysis/manifold_harmonics.h"
 #include "core/support/errors.h"
+#include "core/support/steady_progress.h"
 #include "meshlab/error_messages.h"
 #include "meshlab/filters/common_parameters.h"
 #include "meshlab/filters/vertex_colors.h"
-#include "meshlab/host_workarounds/steady_progress.h"
 #include "meshlab/mesh_conversion.h"
 #include "meshlab/mesh_filter.h"
 

@@ -11,11 +11,11 @@
 
 #include "core/filter/signal_filter.h"
 #include "core/mesh/measures.h"
+#include "core/support/steady_progress.h"
 #include "meshlab/error_messages.h"
 #include "meshlab/filters/common_parameters.h"
 #include "meshlab/filters/surface_report.h"
 #include "meshlab/filters/transfer_parameters.h"
-#include "meshlab/host_workarounds/steady_progress.h"
 #include "meshlab/mesh_conversion.h"
 #include "meshlab/mesh_filter.h"
 

@@ -2,9 +2,9 @@
 
 #include <common/parameters/rich_parameters.h>
 
-#include "core/laplacian/frequency.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/mesh_check.h"
+#include "core/support/frequency.h"
 #include "core/transfer/custom_gain.h"
 #include "meshlab/filters/common_parameters.h"
 

@@ -7,11 +7,11 @@
 
 #include "core/filter/fractional_filter.h"
 #include "core/laplacian/constant_modes.h"
-#include "core/laplacian/frequency.h"
 #include "core/laplacian/interior.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/surface.h"
 #include "core/support/errors.h"
+#include "core/support/frequency.h"
 #include "core/transfer/transfer_function.h"
 #include "support/dense_eigenpairs.h"
 #include "support/evaluation.h"

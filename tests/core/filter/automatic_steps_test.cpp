@@ -5,9 +5,9 @@
 #include <numeric>
 
 #include "core/filter/fractional_steps.h"
-#include "core/laplacian/frequency.h"
 #include "core/laplacian/interior.h"
 #include "core/mesh/mesh.h"
+#include "core/support/frequency.h"
 #include "core/transfer/transfer_function.h"
 #include "support/filter_of_blob.h"
 #include "support/shapes.h"

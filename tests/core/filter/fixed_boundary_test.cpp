@@ -6,7 +6,6 @@
 #include "core/analysis/manifold_harmonics.h"
 #include "core/filter/fractional_filter.h"
 #include "core/laplacian/constant_modes.h"
-#include "core/laplacian/frequency.h"
 #include "core/laplacian/harmonic_extension.h"
 #include "core/laplacian/interior.h"
 #include "core/mesh/measures.h"

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "core/laplacian/constant_modes.h"
-#include "core/laplacian/frequency.h"
 #include "core/laplacian/interior.h"
 #include "core/laplacian/laplacian.h"
 #include "core/mesh/measures.h"

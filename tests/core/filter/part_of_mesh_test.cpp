@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/filter/fractional_filter.h"
-#include "core/laplacian/selection_weight.h"
+#include "core/laplacian/vertex_weight.h"
 #include "core/mesh/creases.h"
 #include "core/mesh/measures.h"
 #include "core/support/errors.h"

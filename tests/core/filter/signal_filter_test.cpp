@@ -9,6 +9,7 @@
 #include "core/harmonics/harmonic_basis.h"
 #include "core/mesh/measures.h"
 #include "core/support/errors.h"
+#include "core/support/frequency.h"
 #include "support/evaluation.h"
 
 namespace spectral {

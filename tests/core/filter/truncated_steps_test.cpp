@@ -11,6 +11,7 @@
 #include "core/laplacian/laplacian.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/surface.h"
+#include "core/support/frequency.h"
 #include "core/support/memory.h"
 #include "core/support/progress.h"
 #include "core/support/threads.h"

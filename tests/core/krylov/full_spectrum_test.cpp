@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "core/laplacian/constant_modes.h"
-#include "core/laplacian/frequency.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/mesh.h"
+#include "core/support/frequency.h"
 #include "core/transfer/transfer_function.h"
 #include "support/evaluation.h"
 

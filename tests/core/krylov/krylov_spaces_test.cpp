@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <vector>
 
-#include "core/laplacian/frequency.h"
 #include "support/evaluation.h"
 
 namespace spectral {

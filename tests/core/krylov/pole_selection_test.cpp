@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "core/laplacian/frequency.h"
 #include "core/transfer/transfer_function.h"
 #include "support/evaluation.h"
 

@@ -1,4 +1,4 @@
-#include "core/kernels/kernels.h"
+#include "core/ldlt/kernels.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "core/kernels/subnormals.h"
+#include "core/ldlt/subnormals.h"
 #include "core/support/types.h"
 #include "support/evaluation.h"
 #include "support/shapes.h"
