@@ -40,8 +40,8 @@ Eigen::VectorXd displacementWeight(const DenoiseOptions& options, const Surface&
     checkWeights(part);
     Laplacian inEdges;  // as if all edges were of length 1, needles or not
     if (!part.selected.empty()) {
-        inEdges = uniformLaplacian(surface.X, surface.F);
-        inEdges.D.setConstant(0.5 * std::sqrt(3.0));
+        inEdges.W = uniformStiffness(surface.X.rows(), surface.F);
+        inEdges.D.setConstant(surface.X.rows(), 0.5 * std::sqrt(3.0));
     }
     return vertexWeight(part, surface, Interior(surface.F, components, options.boundary), inEdges,
                         kFadingOut);

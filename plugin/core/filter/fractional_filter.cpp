@@ -108,7 +108,7 @@ AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evalua
         // of 1 keeps every bit.
         AutomaticSteps whole;
         if (isIdentity) {
-            requireUsable(laplacians.input());
+            requireUsable(laplacians.current());
             whole.last.X = X;
         } else {
             whole.last = fixedSteps(laplacians, evaluate, X, 1, progress);
@@ -135,10 +135,11 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     const Interior interior(connectedComponents(surface.F, surface.X.rows()),
                             verticesAtRest(surface, options));
 
-    LaplacianBuilder laplacians(surface, options.laplacian, options.basisUpdate,
-                                options.conformalShare);
+    LaplacianBuilder laplacians(surface, interior.surfaceComponents(), options.laplacian,
+                                options.basisUpdate, options.conformalShare);
     const EvaluationOptions evaluation = evaluationFor(options, surface);
     StepEvaluator evaluate(evaluation, interior, transfer);
+    // Kovnatsky et al. 2012, Eq. 11, or its limit.
     const AutomaticSteps steps =
         filterInSteps(laplacians, evaluate, transfer, surface.X, options, progress);
     if (!steps.last.X.allFinite())
@@ -147,8 +148,9 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     if (options.steps == 0 && options.transferFunction.type == FilterType::LowPass &&
         surfaceArea(steps.last.X, surface.F) < kLeastArea * areaBefore)
         throw SolverFailure(ErrorCode::ShrinksToNothing, "the whole surface shrinks to nothing");
+    laplacians.reset();
     const Eigen::VectorXd weight =
-        vertexWeight(options.part, surface, interior, laplacians.input(), options.featureSize);
+        vertexWeight(options.part, surface, interior, laplacians.current(), options.featureSize);
     Vertices displacement = weight.asDiagonal() * (steps.last.X - surface.X);
     Vertices X = surface.X + displacement;
     FilterResult result;

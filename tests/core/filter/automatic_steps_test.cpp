@@ -88,7 +88,8 @@ TEST(AutomaticSteps, AreNotHeldUpByPartsThatShrinkAway) {
     const Interior interior(surface.F, connectedComponents(surface.F, surface.X.rows()),
                             Boundary::Free);
     const TransferFunction F({}, cutoffFrequency(0.3));
-    LaplacianBuilder laplacians(surface, LaplacianKind::IntrinsicDelaunay, BasisUpdate::Conformal);
+    LaplacianBuilder laplacians(surface, interior.surfaceComponents(),
+                                LaplacianKind::IntrinsicDelaunay, BasisUpdate::Conformal);
     EvaluationOptions evaluation;
     StepEvaluator evaluate(evaluation, interior, F);
     const double tolerance = 1e-3;
