@@ -18,7 +18,7 @@ namespace spectral {
 /// W - sigma D counts below the cut (Sylvester's law of inertia), or an error; residuals as
 /// reported (1e-9 is usual, more where triangles have collapsed; from 1e-2 on an error).
 ///
-/// @param k         constants.count() < k < n.
+/// @param k         number of constant modes < k < n.
 /// @param ldlt      shares its symbolic analysis and counts the work; its factor stays.
 /// @throws InvalidOption  when k is out of range; SolverFailure when the basis fails its count;
 ///                        Cancelled.
@@ -36,7 +36,7 @@ HarmonicBasis harmonicsUpTo(double edge, const Laplacian& laplacian, ShiftedLdlt
 /// The eigenpairs first to last - 1, counted from 0, and some on both sides; none is missing
 /// between them, by inertia. Residuals as those of truncatedBasis.
 ///
-/// @param first, last  constants.count() < first < last < n.
+/// @param first, last  number of constant modes < first < last < n.
 /// @throws SolverFailure, Cancelled
 HarmonicBasis harmonicsBetween(const Laplacian& laplacian, Index first, Index last,
                                ShiftedLdlt& ldlt, const Progress& progress);

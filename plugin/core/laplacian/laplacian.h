@@ -6,7 +6,7 @@
 namespace spectral {
 
 /// The Laplace-Beltrami operator A = D^-1 W of a triangle mesh, as the generalized eigenproblem
-/// W phi = lambda D phi (Kovnatsky et al. 2012, Eq. 4), and what it does not see.
+/// W phi = lambda D phi (Kovnatsky et al. 2012, Eq. 4), and its null space.
 ///
 /// Sign: W is positive semidefinite, lambda >= 0 (the paper writes Delta = -div grad).
 /// A frequency is omega = sqrt(lambda), in radians per length unit; its wavelength is 2 pi / omega.
@@ -14,7 +14,7 @@ struct Laplacian {
     SparseMatrix W;     ///< Stiffness (cotangent) matrix, n x n, symmetric, both triangles stored,
                         ///< dimensionless; natural (Neumann) boundary conditions.
     Eigen::VectorXd D;  ///< Lumped mass matrix, n diagonal entries > 0, length units squared.
-    ConstantModes constants{};  ///< Its null space, with the masses D.
+    ConstantModes constants{};  ///< One constant function for each component, with the masses D.
 };
 
 /// W_ij = -(cot a_ij + cot b_ij)/2, W_ii = -sum_j W_ij. A triangle without area gives entries that

@@ -25,8 +25,8 @@ enum class BasisUpdate {
     None        ///< Neither: one basis for all steps (Vallet and Levy 2008).
 };
 
-/// The Laplacian of the shape that a filter is at, one after another: W is a gigabyte on ten
-/// million vertices, and is not copied.
+/// Holds the Laplacian of one shape after another that a filter passes through. It gives no copies,
+/// as W is a gigabyte on ten million vertices.
 class LaplacianBuilder {
   public:
     /// Begins with the input.
@@ -40,7 +40,7 @@ class LaplacianBuilder {
 
     const Laplacian& current() const { return current_; }
 
-    /// Makes the Laplacian of the shape X (n x 3) the current one, updated as BasisUpdate says.
+    /// Makes that of the shape X (n x 3) the current one, updated as BasisUpdate says.
     /// @throws SolverFailure  when nothing of the shape is left.
     void update(const Vertices& X);
 

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "core/filter/fractional_filter.h"
-#include "core/laplacian/constant_modes.h"
 #include "core/laplacian/interior.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/surface.h"

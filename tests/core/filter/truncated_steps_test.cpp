@@ -7,7 +7,6 @@
 #include "core/filter/fractional_filter.h"
 #include "core/harmonics/harmonic_basis.h"
 #include "core/harmonics/truncated_basis.h"
-#include "core/laplacian/constant_modes.h"
 #include "core/laplacian/laplacian.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/surface.h"

@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "core/harmonics/truncated_basis.h"
-#include "core/laplacian/constant_modes.h"
 #include "core/laplacian/laplacian_builder.h"
 #include "core/mesh/mesh.h"
 #include "core/support/errors.h"
