@@ -3,6 +3,7 @@
 #include <string>
 
 #include "core/support/errors.h"
+#include "core/support/frequency.h"
 #include "core/transfer/custom_gain.h"
 #include "core/transfer/transfer_function.h"
 

@@ -75,7 +75,7 @@ Pairs spectraPairs(const MeshLaplacian& mesh, Index k) {
 
 Pairs slicedPairs(const MeshLaplacian& mesh, Index k) {
     ShiftedLdlt ldlt;
-    HarmonicBasis basis = truncatedBasis(mesh.laplacian, mesh.constants, k, ldlt);
+    HarmonicBasis basis = truncatedBasis(mesh.laplacian, k, ldlt);
     return {std::move(basis.lambda), std::move(basis.Phi)};
 }
 

@@ -13,12 +13,12 @@
 
 #include "core/filter/fractional_filter.h"
 #include "core/krylov/pole_selection.h"
-#include "core/laplacian/frequency.h"
 #include "core/laplacian/laplacian.h"
 #include "core/ldlt/shifted_ldlt.h"
 #include "core/mesh/measures.h"
 #include "core/support/threads.h"
 #include "core/transfer/transfer_function.h"
+#include "support/evaluation.h"
 #include "support/ply.h"
 
 using namespace spectral;
@@ -82,7 +82,7 @@ FilterOptions optionsOf(const Case& c, double featureSize) {
 
 /// The same number of factorizations and of solves, three columns at a time, and nothing else.
 double secondsOfWorkAlone(const testing::Mesh& mesh, const FilterResult& result) {
-    const Laplacian laplacian = cotangentLaplacian(mesh.V, mesh.F);
+    const Laplacian laplacian = testing::cotangentLaplacian(mesh.V, mesh.F);
     const double shift = result.cutoffFrequency * result.cutoffFrequency;
     const ThreadTeam team;  // as many threads as the filter
     return medianSeconds([&] {

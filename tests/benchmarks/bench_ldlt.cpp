@@ -17,11 +17,12 @@
 #include <Eigen/CholmodSupport>
 #endif
 
-#include "core/laplacian/frequency.h"
 #include "core/laplacian/laplacian.h"
 #include "core/ldlt/shifted_ldlt.h"
 #include "core/mesh/measures.h"
+#include "core/support/frequency.h"
 #include "core/support/threads.h"
+#include "support/evaluation.h"
 #include "support/ply.h"
 
 using namespace spectral;
@@ -99,7 +100,7 @@ int main(int argc, char** argv) {
     const int subdivisions = argc > 2 ? std::atoi(argv[2]) : 2;
     for (int level = 0; level <= subdivisions; ++level) {
         if (level > 0) mesh = subdivided(mesh);
-        const Laplacian A = cotangentLaplacian(mesh.V, mesh.F);
+        const Laplacian A = testing::cotangentLaplacian(mesh.V, mesh.F);
         const double omega = cutoffFrequency(0.15 * boundingBoxDiagonal(mesh.V));
         SparseMatrix shifted = A.W;
         shifted.diagonal() += omega * omega * A.D;

@@ -18,7 +18,7 @@
 #include "core/filter/fractional_filter.h"
 #include "core/filter/signal_filter.h"
 #include "core/mesh/measures.h"
-#include "meshlab/host_workarounds/steady_progress.h"
+#include "core/support/steady_progress.h"
 #include "support/ply.h"
 
 using namespace spectral;

@@ -61,7 +61,8 @@ class Flow {
         : surface_(surface),
           interior_(surface.F, connectedComponents(surface.F, surface.X.rows()), Boundary::Free),
           F_(options.transferFunction, 2.0 * kPi / options.featureSize),
-          laplacians_(surface, options.laplacian, options.basisUpdate) {}
+          laplacians_(surface, interior_.surfaceComponents(), options.laplacian,
+                      options.basisUpdate) {}
 
     Vertices paper(int K) const {
         StepEvaluator evaluate(evaluation_, interior_, F_);
@@ -150,10 +151,12 @@ void printTruncated(const char* file) {
         FilterOptions options = optionsOf(c, diagonal);
         options.evaluation.spectrum = Spectrum::Truncated;
         const TransferFunction F(options.transferFunction, 2.0 * kPi / options.featureSize);
-        LaplacianBuilder laplacians(surface, options.laplacian, options.basisUpdate);
+        LaplacianBuilder laplacians(surface, interior.surfaceComponents(), options.laplacian,
+                                    options.basisUpdate);
         const auto step = [&](StepEvaluator& evaluate, Vertices& X) {
             const auto start = std::chrono::steady_clock::now();
-            X = evaluate(laplacians(X), X, 1.0 / kSteps, {}).Y.front();
+            laplacians.update(X);
+            X = evaluate(laplacians.current(), X, 1.0 / kSteps, {}).Y.front();
             return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
         };
         StepEvaluator evaluate(options.evaluation, interior, F);

@@ -13,7 +13,6 @@
 #include "core/analysis/geometry_spectrum.h"
 #include "core/filter/fractional_filter.h"
 #include "core/harmonics/truncated_basis.h"
-#include "core/laplacian/frequency.h"
 #include "core/laplacian/interior.h"
 #include "core/laplacian/intrinsic_delaunay.h"
 #include "core/mesh/measures.h"
@@ -62,7 +61,7 @@ class RealMesh : public ::testing::TestWithParam<const char*> {
 TEST_P(RealMesh, FullSpectrumEqualsDenseForEverySmoothTransferFunction) {
     const Operator A(mesh_);
     ASSERT_LE(mesh_.V.rows(), 3000);
-    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    const HarmonicBasis dense = denseBasis(A);
     for (const double feature : {0.1, 0.3})
         for (const auto& options : testing::smoothTransferFunctions()) {
             const TransferFunction F(options, 2.0 * kPi / (feature * diagonal_));
@@ -79,30 +78,29 @@ TEST_P(RealMesh, FullSpectrumEqualsDenseForEverySmoothTransferFunction) {
 
 TEST_P(RealMesh, TruncatedWithAllHarmonicsEqualsDense) {
     const Operator A(mesh_);
-    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    const HarmonicBasis dense = denseBasis(A);
     const TransferFunction F({}, 2.0 * kPi / (0.2 * diagonal_));
     const Gain gain = fractionalPower(F, 1.0);
     // All n as eigenvectors: no residual is left for the residual's gain to act on.
-    EXPECT_LT(largestDifference(applyInBasis(dense, A.laplacian.D, A.constants, gain, 0.5, mesh_.V),
+    EXPECT_LT(largestDifference(applyInBasis(dense, A, gain, 0.5, mesh_.V),
                                 testing::filteredDense(A, dense, gain)),
               1e-12);
 
     // All but the last from the iteration: the residual is then that last harmonic alone.
     ShiftedLdlt ldlt;
     const Index n = mesh_.V.rows();
-    const HarmonicBasis basis = truncatedBasis(A.laplacian, A.constants, n - 1, ldlt);
+    const HarmonicBasis basis = truncatedBasis(A, n - 1, ldlt);
     const double last = gain(std::sqrt(dense.lambda[n - 1]));
-    EXPECT_LT(
-        largestDifference(applyInBasis(basis, A.laplacian.D, A.constants, gain, last, mesh_.V),
-                          testing::filteredDense(A, dense, gain)),
-        1e-8);
+    EXPECT_LT(largestDifference(applyInBasis(basis, A, gain, last, mesh_.V),
+                                testing::filteredDense(A, dense, gain)),
+              1e-8);
 }
 
 TEST_P(RealMesh, TruncatedBasisEqualsTheLowestOfTheDenseOne) {
     const Operator A(mesh_);
-    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    const HarmonicBasis dense = denseBasis(A);
     ShiftedLdlt ldlt;
-    const HarmonicBasis basis = truncatedBasis(A.laplacian, A.constants, 200, ldlt);
+    const HarmonicBasis basis = truncatedBasis(A, 200, ldlt);
     EXPECT_LT((basis.lambda - dense.lambda.head(basis.size())).cwiseAbs().maxCoeff(),
               1e-9 * dense.lambda[basis.size() - 1]);
 }

@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "core/mesh/measures.h"
+#include "core/support/frequency.h"
 #include "core/support/threads.h"
 #include "core/transfer/custom_gain.h"
 #include "support/evaluation.h"

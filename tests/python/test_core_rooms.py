@@ -1,7 +1,4 @@
-"""The folders of plugin/core are small, and include one another in one direction.
-
-The directions are those in plugin/README.md.
-"""
+"""The folders of plugin/core include one another in one direction, as plugin/README.md says."""
 
 from __future__ import annotations
 
@@ -12,11 +9,10 @@ CORE = Path(__file__).resolve().parents[2] / "plugin" / "core"
 # What a folder may include besides itself.
 ARROWS = {
     "support": set(),
-    "kernels": set(),
     "mesh": {"support"},
-    "ldlt": {"kernels", "support"},
+    "ldlt": {"support"},
     "laplacian": {"mesh", "ldlt", "support"},
-    "transfer": {"laplacian", "support"},
+    "transfer": {"support"},
     "krylov": {"laplacian", "ldlt", "mesh", "support"},
     "harmonics": {"laplacian", "ldlt", "mesh", "support"},
     "noise": {"mesh", "support"},

@@ -50,13 +50,19 @@ def numbers(text: str) -> set[int]:
     return found
 
 
-def equations_mentioned(source: Path) -> set[int]:
-    """The equations that a file, or the header next to it, mentions; comments may wrap."""
-    text = source.read_text()
-    if source.suffix == ".cpp" and source.with_suffix(".h").exists():
-        text += "\n" + source.with_suffix(".h").read_text()
-    running = re.sub(r"\s+", " ", re.sub(r"^\s*(///?|#)", "", text, flags=re.MULTILINE))
-    return {number for match in EQUATIONS.findall(running) for number in numbers(match)}
+def definitions(source: Path, function: str) -> str:
+    """The bodies of a function of C++ or Python, and the comments right above; comments run on."""
+    end = r"^\}$" if source.suffix == ".cpp" else r"\n\n^(?=\S)"
+    definition = rf"(?:^//.*\n)*^(?![\s/#}}]).*\b{function}\([^;]*?$[\s\S]*?{end}"
+    text = "\n".join(re.findall(definition, source.read_text() + "\n\nend", flags=re.MULTILINE))
+    return re.sub(r"\s+", " ", re.sub(r"^\s*///?", "", text, flags=re.MULTILINE))
+
+
+def equations_cited(source: Path, function: str) -> set[int]:
+    """The equations that a function cites where it computes them."""
+    text = definitions(source, function)
+    assert source.suffix == ".py" or "Kovnatsky et al. 2012, Eq" in text
+    return {number for match in EQUATIONS.findall(text) for number in numbers(match)}
 
 
 def rows(readme: Path, last_column: str) -> list[list[str]]:
@@ -96,10 +102,6 @@ def test_every_relative_link_leads_to_a_file_and_a_heading_of_it(readme: Path) -
     assert not broken
 
 
-def test_the_main_readme_can_be_read_in_two_minutes() -> None:
-    assert len((REPOSITORY / "README.md").read_text().splitlines()) <= 115
-
-
 def test_the_version_is_below_1_until_everything_is_tested_everywhere() -> None:
     changelog = (REPOSITORY / "python" / "CHANGELOG.md").read_text()
     table = changelog.split("## When it is 1.0.0")[1].split("\n## ")[0]
@@ -118,12 +120,9 @@ def test_the_table_covers_every_equation_of_the_paper_that_is_used() -> None:
 
 @pytest.mark.parametrize("row", ROWS, ids=lambda row: f"{row[0]}, {row[-1].split()[-1]}")
 def test_a_function_of_the_table_is_in_the_file_beside_it(row: list[str]) -> None:
-    source, function = place(row)
-    assert source.is_file()
-    assert re.search(rf"\b{function}\(", source.read_text())
+    assert definitions(*place(row))
 
 
 @pytest.mark.parametrize("row", EQUATION_ROWS, ids=lambda row: f"{row[0]}, {row[-1].split()[-1]}")
-def test_an_equation_is_mentioned_where_the_table_says_that_it_is_computed(row: list[str]) -> None:
-    source, _ = place(row)
-    assert numbers(row[0]) <= equations_mentioned(source)
+def test_a_function_cites_the_equation_that_it_computes(row: list[str]) -> None:
+    assert numbers(row[0]) <= equations_cited(*place(row))

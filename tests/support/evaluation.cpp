@@ -4,33 +4,34 @@
 
 #include "core/harmonics/truncated_basis.h"
 #include "core/krylov/pole_selection.h"
-#include "core/laplacian/frequency.h"
 #include "core/mesh/mesh.h"
 #include "core/transfer/transfer_function.h"
 
 namespace spectral::testing {
 
+Laplacian cotangentLaplacian(const Vertices& V, const Faces& F) {
+    const Eigen::VectorXd D = lumpedMass(V, F);
+    return {cotangentStiffness(V, F), D, ConstantModes(connectedComponents(F, V.rows()), D)};
+}
+
 HarmonicBasis lowestHarmonics(const Operator& A, Index k, const Progress& progress) {
     ShiftedLdlt ldlt;
-    return truncatedBasis(A.laplacian, A.constants, k, ldlt, progress);
+    return truncatedBasis(A, k, ldlt, progress);
 }
 
 Vertices filteredDense(const Operator& A, const HarmonicBasis& dense, const Gain& gain) {
-    return applyInBasis(dense, A.laplacian.D, A.constants, gain, 0.0, A.mesh.V);
+    return applyInBasis(dense, A, gain, 0.0, A.mesh.V);
 }
 
 FullSpectrumResult filteredFullSpectrum(const Operator& A, const Gain& gain, double cutoff,
                                         double accuracy, const std::vector<double>& samples) {
     ShiftedLdlt ldlt;
-    ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D,
-                           selectPole(gain, cutoff, bulkSpectrum(A.laplacian), accuracy));
+    ldlt.factorizeDefinite(A.W, A.D, selectPole(gain, cutoff, bulkSpectrum(A), accuracy));
     FullSpectrumOptions options;
     options.accuracy = accuracy;
     options.samples = samples;
-    options.roundOffAtVertices = roundOffAtVertices(ldlt, A.laplacian);
-    return applyFullSpectrum(A.laplacian.D, A.constants, ShiftInvert(ldlt), {gain}, A.mesh.V,
-                             options)
-        .front();
+    options.roundOffAtVertices = roundOffAtVertices(ldlt, A);
+    return applyFullSpectrum(A, ShiftInvert(ldlt), {gain}, A.mesh.V, options).front();
 }
 
 Eigen::MatrixXd innerProducts(const Eigen::MatrixXd& U, const Eigen::VectorXd& D,
@@ -49,7 +50,7 @@ double orthonormalityError(const Eigen::MatrixXd& Phi, const Eigen::VectorXd& D)
 double relativeError(const Operator& A, const Eigen::MatrixXd& difference) {
     Eigen::MatrixXd centred = A.mesh.V;
     A.constants.remove(centred);
-    const Eigen::VectorXd sqrtD = A.laplacian.D.cwiseSqrt();
+    const Eigen::VectorXd sqrtD = A.D.cwiseSqrt();
     return (sqrtD.asDiagonal() * difference).norm() / (sqrtD.asDiagonal() * centred).norm();
 }
 

@@ -2,28 +2,26 @@
 
 #include "core/harmonics/harmonic_basis.h"
 #include "core/krylov/full_spectrum.h"
-#include "core/laplacian/constant_modes.h"
-#include "core/laplacian/frequency.h"
 #include "core/laplacian/laplacian.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/surface.h"
+#include "core/support/types.h"
 #include "core/transfer/transfer_function.h"
 #include "support/shapes.h"
 
 namespace spectral::testing {
 
-/// A mesh's Laplacian with what every evaluation needs.
-struct Operator {
+/// The paper's Laplacian, of cotangents and areas.
+/// @param F  every vertex is in some triangle.
+Laplacian cotangentLaplacian(const Vertices& V, const Faces& F);
+
+/// The cotangent Laplacian of a mesh that is kept with it.
+struct Operator : Laplacian {
     Mesh mesh;
-    Laplacian laplacian;
-    ConstantModes constants;
 
-    explicit Operator(const Mesh& m)
-        : mesh(m),
-          laplacian(cotangentLaplacian(m.V, m.F)),
-          constants(connectedComponents(m.F, m.V.rows()), laplacian.D) {}
+    explicit Operator(const Mesh& m) : Laplacian(cotangentLaplacian(m.V, m.F)), mesh(m) {}
 
-    double area() const { return laplacian.D.sum(); }
+    double area() const { return D.sum(); }
 };
 
 /// At least the k lowest harmonics, by truncatedBasis.

@@ -1,8 +1,8 @@
 #include "support/filter_of_blob.h"
 
-#include "core/laplacian/frequency.h"
 #include "core/laplacian/interior.h"
 #include "core/mesh/mesh.h"
+#include "core/support/frequency.h"
 #include "core/transfer/transfer_function.h"
 #include "support/shapes.h"
 
@@ -13,7 +13,7 @@ FilterOfBlob::FilterOfBlob(const TransferFunctionOptions& options, double featur
     : surface(surfaceOf(blob().V, blob().F)),
       interior(surface.F, connectedComponents(surface.F, surface.X.rows()), Boundary::Free),
       F(options, cutoffFrequency(featureSize)),
-      laplacians(surface, LaplacianKind::IntrinsicDelaunay, update) {
+      laplacians(surface, interior.surfaceComponents(), LaplacianKind::IntrinsicDelaunay, update) {
     evaluation.accuracy = 1e-9;
 }
 

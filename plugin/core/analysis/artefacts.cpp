@@ -4,6 +4,7 @@
 
 #include "core/krylov/full_spectrum.h"
 #include "core/krylov/pole_selection.h"
+#include "core/support/frequency.h"
 #include "core/support/threads.h"
 
 namespace spectral {
@@ -32,7 +33,7 @@ Artefacts measureArtefacts(const Vertices& V, const Faces& F, const ArtefactOpti
     evaluation.roundOffAtVertices = roundOffAtVertices(ldlt, mesh.laplacian);
     const Vertices& X = mesh.surface.X;
     const FullSpectrumResult smooth =
-        applyFullSpectrum(D, mesh.constants, ShiftInvert(ldlt), {gain}, X, evaluation, progress)
+        applyFullSpectrum(mesh.laplacian, ShiftInvert(ldlt), {gain}, X, evaluation, progress)
             .front();
 
     const Eigen::VectorXd length = (X - smooth.Y).rowwise().norm();

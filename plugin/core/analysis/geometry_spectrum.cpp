@@ -57,7 +57,6 @@ constexpr double kConverged = 0.02;
 /// The signal that is analysed, and the Laplacian of its vertices.
 struct Signal {
     Laplacian laplacian;
-    ConstantModes constants;
     Eigen::MatrixXd U;  ///< Positions without their means, or without their harmonic extension.
 };
 
@@ -65,25 +64,23 @@ Signal signalOf(MeshLaplacian mesh, Boundary boundary) {
     const Interior interior(mesh.surface.F, mesh.components, boundary);
     if (interior.isWhole()) {
         Eigen::MatrixXd U = std::move(mesh.surface.X);
-        mesh.constants.remove(U);
-        mesh.constants.remove(U);  // again: the round-off of components far apart
-        return {std::move(mesh.laplacian), std::move(mesh.constants), std::move(U)};
+        mesh.laplacian.constants.remove(U);
+        mesh.laplacian.constants.remove(U);  // again: the round-off of components far apart
+        return {std::move(mesh.laplacian), std::move(U)};
     }
     if (interior.size() == 0)
         throw InvalidOption(
             ErrorCode::BoundaryFixesAll,
             "boundary = fixed leaves nothing to measure: every vertex is on the boundary");
-    HarmonicExtension extension(interior);
-    extension.setLaplacian(mesh.laplacian);
-    HarmonicExtension::Rest rest = extension.rest(mesh.surface.X);
+    Laplacian inside = interior.restricted(mesh.laplacian);
+    HarmonicExtension::Rest rest =
+        HarmonicExtension(interior).rest(mesh.laplacian, inside, mesh.surface.X);
     if (rest.relativeSize <= kNoShape)
         throw InvalidOption(ErrorCode::BoundaryFixesAll,
                             "boundary = fixed leaves nothing to measure: the boundary determines "
                             "the whole surface, as it does a flat one");
-    Laplacian laplacian = interior.restricted(mesh.laplacian);
-    ConstantModes constants(interior.components(), laplacian.D);
-    constants.remove(rest.U);
-    return {std::move(laplacian), std::move(constants), std::move(rest.U)};
+    inside.constants.remove(rest.U);
+    return {std::move(inside), std::move(rest.U)};
 }
 
 /// Number of harmonics to compute; on a small mesh at most as many as it has.
@@ -135,18 +132,18 @@ MeasuredBands withBands(ShapeAndNoise measures, const GeometrySpectrum& spectrum
 MeasuredBands measureBeyond(ShapeAndNoise measures, const Signal& signal,
                             const Eigen::MatrixXd& signals, double firstPole, ShiftedLdlt& ldlt,
                             const Progress& progress, const GeometrySpectrum& spectrum) {
-    const auto& [W, D] = signal.laplacian;
+    const Laplacian& laplacian = signal.laplacian;
     const auto addPole = [&](double omega, ShapeAndNoise& to, double begin, double end) {
         progress.report(begin, "energies of the octaves");
-        ldlt.factorizeDefinite(W, D, omega * omega);
-        addMeasures(ShiftInvert(ldlt), D, signal.constants, signals, kDimensionOfPole,
+        ldlt.factorizeDefinite(laplacian.W, laplacian.D, omega * omega);
+        addMeasures(ShiftInvert(ldlt), laplacian, signals, kDimensionOfPole,
                     progress.part(begin, end), to);
     };
     double done = 0.4;
     addPole(firstPole, measures, 0.0, done);
-    const Products A(signal.laplacian, std::numeric_limits<double>::infinity());
-    addMeasures(A, D, signal.constants, signals, kDimensionOfProducts,
-                progress.part(done, 2.0 * done), measures);
+    const Products A(laplacian, std::numeric_limits<double>::infinity());
+    addMeasures(A, laplacian, signals, kDimensionOfProducts, progress.part(done, 2.0 * done),
+                measures);
     MeasuredBands bands = withBands(std::move(measures), spectrum);
 
     const double negligible = kNoEnergy * spectrum.totalEnergy;
@@ -172,7 +169,7 @@ MeasuredBands measureSignals(const Signal& signal, const HarmonicBasis& basis, S
                              const Progress& progress, const GeometrySpectrum& spectrum) {
     const Eigen::VectorXd& D = signal.laplacian.D;
     const Index n = D.size();
-    const Index varying = std::max<Index>(0, basis.size() - signal.constants.count());
+    const Index varying = std::max<Index>(0, basis.size() - signal.laplacian.constants.count());
     const Eigen::VectorXd omega = spectrum.frequencies.tail(varying);
     // The noise is a sample. In the basis, its expectation sum_v (phi_i(v) D_v)^2 takes its place;
     // bands beyond have so many harmonics that a sample is close enough.
@@ -273,8 +270,8 @@ HarmonicBasis basisOf(const Signal& signal, Index k, ShiftedLdlt& ldlt, const Pr
         none.Phi.resize(n, 0);
         return none;
     }
-    if (k == n && n <= kWholeBasis) return denseBasis(signal.laplacian, signal.constants);
-    return truncatedBasis(signal.laplacian, signal.constants, k, ldlt, progress);
+    if (k == n && n <= kWholeBasis) return denseBasis(signal.laplacian);
+    return truncatedBasis(signal.laplacian, k, ldlt, progress);
 }
 
 }  // namespace
@@ -290,8 +287,8 @@ GeometrySpectrum geometrySpectrum(const Vertices& V, const Faces& F, const Spect
     const Signal signal = signalOf(std::move(mesh), options.boundary);
     const Laplacian& laplacian = signal.laplacian;
     const Eigen::VectorXd& D = laplacian.D;
-    const Index n = D.size(), constants = signal.constants.count();
-    const Index k = sizeOfBasis(options.basisSize, n, signal.constants.count());
+    const Index n = D.size(), constants = laplacian.constants.count();
+    const Index k = sizeOfBasis(options.basisSize, n, laplacian.constants.count());
 
     ShiftedLdlt ldlt;
     const double basisDone = k > 0 ? kBasisDone : 0.0;
@@ -309,7 +306,7 @@ GeometrySpectrum geometrySpectrum(const Vertices& V, const Faces& F, const Spect
     setFeatureSizes(bands.measures.shape.first(), spectrum);
     if (varying > 0) {
         const Eigen::VectorXd residuals =
-            relativeResiduals(laplacian, constants, basis, progress.part(1.0, 1.0));
+            relativeResiduals(laplacian, basis, progress.part(1.0, 1.0));
         for (Index i = constants; i < basis.size(); ++i)
             spectrum.mismatch += std::min(1.0, residuals[i]) * std::pow(spectrum.amplitudes[i], 2) *
                                  spectrum.area / spectrum.totalEnergy;

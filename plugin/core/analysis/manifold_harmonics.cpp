@@ -34,9 +34,9 @@ ManifoldHarmonics manifoldHarmonics(const Vertices& V, const Faces& F,
                                 std::to_string(interior.size()));
 
     const Laplacian laplacian = interior.restricted(mesh.laplacian);
-    const ConstantModes constants(interior.components(), laplacian.D);
     ShiftedLdlt ldlt;
-    HarmonicBasis basis = truncatedBasis(laplacian, constants, k, ldlt, progress);
+    // Kovnatsky et al. 2012, Eq. 4: W phi = lambda D phi.
+    HarmonicBasis basis = truncatedBasis(laplacian, k, ldlt, progress);
     ManifoldHarmonics harmonics;
     harmonics.wholeSize = static_cast<int>(basis.size());
     basis.Phi.conservativeResize(Eigen::NoChange, k);

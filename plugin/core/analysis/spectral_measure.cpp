@@ -80,10 +80,10 @@ Quadrature SpectralMeasure::last() const {
     return spaces_.empty() ? exact_ : exact_ + spaces_.back().larger;
 }
 
-void addMeasures(const KrylovOperator& S, const Eigen::VectorXd& D, const ConstantModes& constants,
+void addMeasures(const KrylovOperator& S, const Laplacian& laplacian,
                  const Eigen::MatrixXd& signals, int dimension, const Progress& progress,
                  ShapeAndNoise& measures) {
-    KrylovSpaces spaces(S, D, constants, signals, KrylovSpaces::kOrthogonal, KeptBasis::None);
+    KrylovSpaces spaces(S, laplacian, signals, KrylovSpaces::kOrthogonal, KeptBasis::None);
     constexpr int kShape = 3, kSignals = kShape + 1;
     using Columns = std::array<Quadrature, kSignals>;
     const auto grow = [&](int begin, int end) {

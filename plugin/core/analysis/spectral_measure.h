@@ -8,7 +8,6 @@
 #include "core/analysis/bands.h"
 #include "core/krylov/krylov_operator.h"
 #include "core/krylov/krylov_spaces.h"
-#include "core/laplacian/constant_modes.h"
 #include "core/support/progress.h"
 
 namespace spectral {
@@ -61,7 +60,7 @@ struct ShapeAndNoise {
 /// @param signals    n x (3 + 1), without the exact parts: the shape, then the noise.
 /// @param dimension  >= 3; two thirds of it when smaller.
 /// @throws SolverFailure, Cancelled.
-void addMeasures(const KrylovOperator& S, const Eigen::VectorXd& D, const ConstantModes& constants,
+void addMeasures(const KrylovOperator& S, const Laplacian& laplacian,
                  const Eigen::MatrixXd& signals, int dimension, const Progress& progress,
                  ShapeAndNoise& measures);
 

@@ -128,8 +128,10 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
     // The input's Laplacian gives the paper's single step, and the first half steps of the first
     // two passes.
     constexpr double kFirstPasses = 0.1;
+    laplacians.reset();
     std::vector<Eigen::MatrixXd> first =
-        evaluate.predict(laplacians.input(), X, {1.0, 0.5, 0.25}, progress.part(0.0, kFirstPasses))
+        evaluate
+            .predict(laplacians.current(), X, {1.0, 0.5, 0.25}, progress.part(0.0, kFirstPasses))
             .Y;
     const Vertices halves[] = {first[1], first[2]};
     Limit limit(first[0], laplacians);

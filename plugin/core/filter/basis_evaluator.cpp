@@ -20,14 +20,14 @@ constexpr Index kNearTheCut = 5, kLeastHarmonics = 200;
 
 }  // namespace
 
-Evaluation BasisEvaluator::evaluate(const Laplacian& laplacian, const ConstantModes& constants,
-                                    const Eigen::MatrixXd& X, const std::vector<double>& alphas,
-                                    double accuracy, const Progress& progress) {
+Evaluation BasisEvaluator::evaluate(const Laplacian& laplacian, const Eigen::MatrixXd& X,
+                                    const std::vector<double>& alphas, double accuracy,
+                                    const Progress& progress) {
     double done = 0.0;
     if (canDoWithoutBasis_) {
         done = 0.9;
         std::optional<Evaluation> evaluation =
-            aroundTheCut(laplacian, constants, X, alphas, accuracy, progress.part(0.0, done));
+            aroundTheCut(laplacian, X, alphas, accuracy, progress.part(0.0, done));
         if (evaluation) return *std::move(evaluation);
         canDoWithoutBasis_ = false;  // nor will it in the steps that follow
     }
@@ -35,17 +35,17 @@ Evaluation BasisEvaluator::evaluate(const Laplacian& laplacian, const ConstantMo
     HarmonicBasis basis;
     double rest = 0.0;
     if (truncation_) {
-        basis = truncatedBasis(laplacian, constants, truncation_->basisSize, ldlt_, remaining);
+        basis = truncatedBasis(laplacian, truncation_->basisSize, ldlt_, remaining);
         rest = residualGain(laplacian, basis.lambda[basis.size() - 1]);
     } else {
-        basis = harmonicsUpTo(F_.discontinuities().back(), laplacian, constants, ldlt_, remaining);
+        basis = harmonicsUpTo(F_.discontinuities().back(), laplacian, ldlt_, remaining);
         rest = F_(2.0 * F_.discontinuities().back());
     }
     Evaluation evaluation;
     for (const double alpha : alphas)
         // The power of the mean gain, not the mean of the power: K steps then make one filter.
-        evaluation.Y.push_back(applyInBasis(basis, laplacian.D, constants,
-                                            fractionalPower(F_, alpha), std::pow(rest, alpha), X));
+        evaluation.Y.push_back(
+            applyInBasis(basis, laplacian, fractionalPower(F_, alpha), std::pow(rest, alpha), X));
     basis.Phi = {};
     basis_ = std::move(basis);
     if (computedBases_++ == 0)
@@ -57,12 +57,11 @@ Evaluation BasisEvaluator::evaluate(const Laplacian& laplacian, const ConstantMo
 }
 
 std::optional<Evaluation> BasisEvaluator::aroundTheCut(const Laplacian& laplacian,
-                                                       const ConstantModes& constants,
                                                        const Eigen::MatrixXd& X,
                                                        const std::vector<double>& alphas,
                                                        double accuracy, const Progress& progress) {
     const Index k = truncation_->basisSize, margin = k / kNearTheCut, n = laplacian.D.size();
-    if (k - margin <= constants.count() || k + margin >= n) return {};
+    if (k - margin <= laplacian.constants.count() || k + margin >= n) return {};
     FullSpectrumOptions options;
     options.accuracy = accuracy;
     options.atEveryVertex = atEveryVertex_;
@@ -71,14 +70,15 @@ std::optional<Evaluation> BasisEvaluator::aroundTheCut(const Laplacian& laplacia
     const auto numbers = static_cast<double>(n * X.cols() * options.maxDimension);
     if (sizeof(double) * numbers > availableMemory()) return {};
     try {
-        const HarmonicBasis near = harmonicsBetween(laplacian, constants, k - margin, k + margin,
-                                                    ldlt_, progress.part(0.0, 0.6));
+        const HarmonicBasis near =
+            harmonicsBetween(laplacian, k - margin, k + margin, ldlt_, progress.part(0.0, 0.6));
         const std::optional<Index> size = cutOutsideClusters(near.lambda, k, near.first);
         if (!size) return {};
         const Index inside = *size - near.first;
         const double below = near.lambda[inside - 1], above = near.lambda[inside];
         const double cut = std::sqrt(0.5 * (below + above)), rest = residualGain(laplacian, below);
-        std::vector<Gain> gains;  // Eqs. 6 to 9: F on the first harmonics, F_h on all others
+        // Kovnatsky et al. 2012, Eqs. 6 to 10: F on the first harmonics, F_h on all others.
+        std::vector<Gain> gains;
         for (const double alpha : alphas)
             gains.push_back([F = fractionalPower(F_, alpha), Fh = std::pow(rest, alpha),
                              cut](double omega) { return omega < cut ? F(omega) : Fh; });
@@ -90,7 +90,7 @@ std::optional<Evaluation> BasisEvaluator::aroundTheCut(const Laplacian& laplacia
         ldlt_.factorizeDefinite(laplacian.W, laplacian.D, cut * cut,
                                 [&] { progress.report(0.6, "factorizing"); });
         Evaluation evaluation =
-            evaluateInKrylovSpaces(laplacian, constants, ldlt_, gains, X - near.inverseTransform(c),
+            evaluateInKrylovSpaces(laplacian, ldlt_, gains, X - near.inverseTransform(c),
                                    std::move(options), progress.part(0.6, 1.0));
         if (!evaluation.accuracyReached) return {};
         for (std::size_t i = 0; i < gains.size(); ++i)
@@ -102,8 +102,8 @@ std::optional<Evaluation> BasisEvaluator::aroundTheCut(const Laplacian& laplacia
     }
 }
 
-/// F_h (Kovnatsky et al. 2012, Eq. 9): the mean of F over the frequencies beyond the basis; 0 where
-/// the residual is dropped.
+/// F_h: the mean of F over the frequencies beyond the basis (Kovnatsky et al. 2012, Eq. 9), where
+/// the residual is reinjected (Eq. 8); 0 where it is dropped (Eq. 6).
 double BasisEvaluator::residualGain(const Laplacian& laplacian, double lastEigenvalue) const {
     if (!truncation_->reinjectResidual) return 0.0;
     const double from = std::sqrt(lastEigenvalue);

@@ -29,15 +29,14 @@ class BasisEvaluator : public Evaluator {
                    bool atEveryVertex)
         : F_(F), truncation_(truncation), atEveryVertex_(atEveryVertex) {}
 
-    Evaluation evaluate(const Laplacian& laplacian, const ConstantModes& constants,
-                        const Eigen::MatrixXd& X, const std::vector<double>& alphas,
-                        double accuracy, const Progress& progress) override;
+    Evaluation evaluate(const Laplacian& laplacian, const Eigen::MatrixXd& X,
+                        const std::vector<double>& alphas, double accuracy,
+                        const Progress& progress) override;
 
   private:
     /// Empty where it cannot be done: the accuracy is not reached (needles, say), the harmonics
     /// near the cut are one cluster or almost all that there are, or memory is short.
-    std::optional<Evaluation> aroundTheCut(const Laplacian& laplacian,
-                                           const ConstantModes& constants, const Eigen::MatrixXd& X,
+    std::optional<Evaluation> aroundTheCut(const Laplacian& laplacian, const Eigen::MatrixXd& X,
                                            const std::vector<double>& alphas, double accuracy,
                                            const Progress& progress);
     double residualGain(const Laplacian& laplacian, double lastEigenvalue) const;

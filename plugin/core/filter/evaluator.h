@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "core/harmonics/harmonic_basis.h"
-#include "core/laplacian/constant_modes.h"
 #include "core/laplacian/laplacian.h"
 #include "core/ldlt/shifted_ldlt.h"
 #include "core/support/progress.h"
@@ -35,9 +34,9 @@ class Evaluator {
     /// @param alphas    descending; tuned for the one in the middle.
     /// @param accuracy  wanted, relative to the size of X.
     /// @throws InvalidOption, SolverFailure, Cancelled
-    virtual Evaluation evaluate(const Laplacian& laplacian, const ConstantModes& constants,
-                                const Eigen::MatrixXd& X, const std::vector<double>& alphas,
-                                double accuracy, const Progress& progress) = 0;
+    virtual Evaluation evaluate(const Laplacian& laplacian, const Eigen::MatrixXd& X,
+                                const std::vector<double>& alphas, double accuracy,
+                                const Progress& progress) = 0;
 
     /// The last basis that was computed, without its vectors; empty where none is used.
     const HarmonicBasis& basis() const { return basis_; }

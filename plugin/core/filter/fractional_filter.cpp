@@ -7,12 +7,12 @@
 
 #include "core/filter/automatic_steps.h"
 #include "core/filter/fractional_steps.h"
-#include "core/laplacian/frequency.h"
 #include "core/laplacian/interior.h"
 #include "core/mesh/creases.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/surface.h"
+#include "core/support/frequency.h"
 #include "core/support/threads.h"
 #include "core/transfer/transfer_function.h"
 
@@ -108,7 +108,7 @@ AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evalua
         // of 1 keeps every bit.
         AutomaticSteps whole;
         if (isIdentity) {
-            requireUsable(laplacians.input());
+            requireUsable(laplacians.current());
             whole.last.X = X;
         } else {
             whole.last = fixedSteps(laplacians, evaluate, X, 1, progress);
@@ -135,10 +135,11 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     const Interior interior(connectedComponents(surface.F, surface.X.rows()),
                             verticesAtRest(surface, options));
 
-    LaplacianBuilder laplacians(surface, options.laplacian, options.basisUpdate,
-                                options.conformalShare);
+    LaplacianBuilder laplacians(surface, interior.surfaceComponents(), options.laplacian,
+                                options.basisUpdate, options.conformalShare);
     const EvaluationOptions evaluation = evaluationFor(options, surface);
     StepEvaluator evaluate(evaluation, interior, transfer);
+    // Kovnatsky et al. 2012, Eq. 11, or its limit.
     const AutomaticSteps steps =
         filterInSteps(laplacians, evaluate, transfer, surface.X, options, progress);
     if (!steps.last.X.allFinite())
@@ -147,12 +148,14 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     if (options.steps == 0 && options.transferFunction.type == FilterType::LowPass &&
         surfaceArea(steps.last.X, surface.F) < kLeastArea * areaBefore)
         throw SolverFailure(ErrorCode::ShrinksToNothing, "the whole surface shrinks to nothing");
+    laplacians.reset();
     const Eigen::VectorXd weight =
-        vertexWeight(options.part, surface, interior, laplacians.input(), options.featureSize);
+        vertexWeight(options.part, surface, interior, laplacians.current(), options.featureSize);
     Vertices displacement = weight.asDiagonal() * (steps.last.X - surface.X);
     Vertices X = surface.X + displacement;
     FilterResult result;
-    static_cast<SurfaceCounts&>(result) = countsOf(surface, V.rows());
+    static_cast<SurfaceCounts&>(result) =
+        countsOf(surface, V.rows(), interior.surfaceComponents().count, interior.fixedVertices());
     if (options.preserveVolume) {
         result.volumes = preserveVolumes(surface.X, surface.F, interior.surfaceComponents(), weight,
                                          kMostOffset, X);
@@ -176,8 +179,6 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     result.volumeAfter = signedVolume(X, surface.F);
     result.hasVolume = enclosesVolume(surface.X, surface.F);
     result.meanEdge = meanEdgeLength(surface.X, surface.F);
-    result.components = interior.surfaceComponents().count;
-    result.fixedVertices = static_cast<int>(interior.fixedVertices());
     result.factorizations = evaluate.factorizations();
     result.solves = evaluate.solves();
     result.products = evaluate.products();

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "core/filter/step_evaluator.h"
-#include "core/laplacian/frequency.h"
 #include "core/laplacian/interior.h"
 #include "core/laplacian/laplacian_builder.h"
 #include "core/laplacian/vertex_weight.h"

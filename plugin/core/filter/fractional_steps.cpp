@@ -33,17 +33,18 @@ void midpointStep(LaplacianBuilder& laplacians, StepEvaluator& evaluate, double 
         Vertices predicted;
         double area = laplacians.inputMass().sum();
         if (half == nullptr) {
-            const Laplacian& laplacian = laplacians(steps.X);
+            laplacians.update(steps.X);
             area = laplacians.area();
             predicted =
-                evaluate.predict(laplacian, steps.X, {0.5 * h}, progress.part(0.0, 0.5)).Y.front();
+                evaluate.predict(laplacians.current(), steps.X, {0.5 * h}, progress.part(0.0, 0.5))
+                    .Y.front();
             half = &predicted;
         }
-        const Laplacian& laplacian = laplacians(*half);
+        laplacians.update(*half);
         if (laplacians.area() < kLeastArea * area)
             throw SolverFailure(ErrorCode::ShrinksToNothing,
                                 "the whole surface shrinks to nothing in half a step");
-        append(evaluate(laplacian, steps.X, h, progress.part(0.5, 1.0)), h, steps);
+        append(evaluate(laplacians.current(), steps.X, h, progress.part(0.5, 1.0)), h, steps);
     } catch (const SolverFailure&) {
         if (0.5 * h < smallest) throw;
         midpointStep(laplacians, evaluate, 0.5 * h, smallest, nullptr, progress.part(0.0, 0.5),
@@ -73,8 +74,9 @@ FractionalSteps fixedSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate
         const Progress stage =
             progress.part(static_cast<double>(step) / K, (step + 1.0) / K, nameOf(step, K));
         try {
-            const Laplacian& laplacian = step == 0 ? laplacians.input() : laplacians(steps.X);
-            append(evaluate(laplacian, steps.X, 1.0 / K, stage), 1.0 / K, steps);
+            // Kovnatsky et al. 2012, Eq. 11.
+            step == 0 ? laplacians.reset() : laplacians.update(steps.X);
+            append(evaluate(laplacians.current(), steps.X, 1.0 / K, stage), 1.0 / K, steps);
         } catch (const SolverFailure& failure) {
             if (step > 0) throw inCourse(failure, nameOf(step, K));
             throw SolverFailure(failure.code(), nameOf(step, K) + failure.what());

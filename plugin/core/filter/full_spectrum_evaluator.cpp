@@ -29,17 +29,15 @@ Evaluation joined(std::vector<FullSpectrumResult> results) {
 
 }  // namespace
 
-Evaluation evaluateInKrylovSpaces(const Laplacian& laplacian, const ConstantModes& constants,
-                                  const ShiftedLdlt& ldlt, const std::vector<Gain>& gains,
-                                  const Eigen::MatrixXd& X, FullSpectrumOptions options,
-                                  const Progress& progress) {
-    const bool hasFixedBoundary = constants.label().minCoeff() < 0;
+Evaluation evaluateInKrylovSpaces(const Laplacian& laplacian, const ShiftedLdlt& ldlt,
+                                  const std::vector<Gain>& gains, const Eigen::MatrixXd& X,
+                                  FullSpectrumOptions options, const Progress& progress) {
+    const bool hasFixedBoundary = laplacian.constants.label().minCoeff() < 0;
     if (options.atEveryVertex || hasFixedBoundary)
         options.roundOffAtVertices = roundOffAtVertices(ldlt, laplacian);
     // Where a boundary is fixed, no solution is known to be free of constants.
     if (hasFixedBoundary) options.roundOff = *options.roundOffAtVertices;
-    return joined(
-        applyFullSpectrum(laplacian.D, constants, ShiftInvert(ldlt), gains, X, options, progress));
+    return joined(applyFullSpectrum(laplacian, ShiftInvert(ldlt), gains, X, options, progress));
 }
 
 /// The pole is chosen for the spectrum of the first Laplacian: those that follow are much alike.
@@ -52,8 +50,7 @@ double FullSpectrumEvaluator::poleFor(const Laplacian& laplacian, double alpha) 
     return place->second;
 }
 
-Evaluation FullSpectrumEvaluator::evaluate(const Laplacian& laplacian,
-                                           const ConstantModes& constants, const Eigen::MatrixXd& X,
+Evaluation FullSpectrumEvaluator::evaluate(const Laplacian& laplacian, const Eigen::MatrixXd& X,
                                            const std::vector<double>& alphas, double accuracy,
                                            const Progress& progress) {
     FullSpectrumOptions options;
@@ -64,7 +61,7 @@ Evaluation FullSpectrumEvaluator::evaluate(const Laplacian& laplacian,
     std::vector<Gain> gains;
     for (const double alpha : alphas) gains.push_back(fractionalPower(F_, alpha));
 
-    if (auto evaluation = evaluateByProducts(laplacian, constants, gains, X, options, progress))
+    if (auto evaluation = evaluateByProducts(laplacian, gains, X, options, progress))
         return *std::move(evaluation);
     const StopPoint stop = [&] { progress.report(0.0, "factorizing"); };
     stop();
@@ -74,22 +71,23 @@ Evaluation FullSpectrumEvaluator::evaluate(const Laplacian& laplacian,
     } catch (const Error& error) {
         if (error.code() != ErrorCode::OutOfMemory || solver_ == Solver::Factorization) throw;
         lacksMemory_ = true;
-        return *evaluateByProducts(laplacian, constants, gains, X, options, progress);
+        return *evaluateByProducts(laplacian, gains, X, options, progress);
     }
-    return evaluateInKrylovSpaces(laplacian, constants, ldlt_, gains, X, std::move(options),
-                                  progress);
+    return evaluateInKrylovSpaces(laplacian, ldlt_, gains, X, std::move(options), progress);
 }
 
-std::optional<Evaluation> FullSpectrumEvaluator::evaluateByProducts(
-    const Laplacian& laplacian, const ConstantModes& constants, const std::vector<Gain>& gains,
-    const Eigen::MatrixXd& X, FullSpectrumOptions options, const Progress& progress) {
+std::optional<Evaluation> FullSpectrumEvaluator::evaluateByProducts(const Laplacian& laplacian,
+                                                                    const std::vector<Gain>& gains,
+                                                                    const Eigen::MatrixXd& X,
+                                                                    FullSpectrumOptions options,
+                                                                    const Progress& progress) {
     const bool areToDo = solver_ == Solver::Products || lacksMemory_;
     const bool areToTry = solver_ == Solver::Cheapest && !atEveryVertex_ && !areDear_;
     if (!areToDo && !areToTry) return {};
     if (!areToDo) options.affordable = affordableDimension(laplacian.D.size(), products_ == 0);
     const Products A(laplacian, F_.cutoff());
     std::vector<FullSpectrumResult> results =
-        applyFullSpectrum(laplacian.D, constants, A, gains, X, options, progress);
+        applyFullSpectrum(laplacian, A, gains, X, options, progress);
     products_ += A.count();
     areDear_ = results.empty();
     if (results.empty()) return {};

@@ -23,10 +23,9 @@ enum class Solver {
 /// @param ldlt     factorization of W + lambda_p D.
 /// @param gains    continuous, at least where X has harmonics.
 /// @param options  without what this function knows: round-off.
-Evaluation evaluateInKrylovSpaces(const Laplacian& laplacian, const ConstantModes& constants,
-                                  const ShiftedLdlt& ldlt, const std::vector<Gain>& gains,
-                                  const Eigen::MatrixXd& X, FullSpectrumOptions options,
-                                  const Progress& progress);
+Evaluation evaluateInKrylovSpaces(const Laplacian& laplacian, const ShiftedLdlt& ldlt,
+                                  const std::vector<Gain>& gains, const Eigen::MatrixXd& X,
+                                  FullSpectrumOptions options, const Progress& progress);
 
 /// Evaluates over all n harmonics, by a Krylov method that computes none of them (full_spectrum.h):
 /// for a continuous F.
@@ -44,15 +43,17 @@ class FullSpectrumEvaluator : public Evaluator {
                           Solver solver)
         : F_(F), accuracy_(accuracy), atEveryVertex_(atEveryVertex), solver_(solver) {}
 
-    Evaluation evaluate(const Laplacian& laplacian, const ConstantModes& constants,
-                        const Eigen::MatrixXd& X, const std::vector<double>& alphas,
-                        double accuracy, const Progress& progress) override;
+    Evaluation evaluate(const Laplacian& laplacian, const Eigen::MatrixXd& X,
+                        const std::vector<double>& alphas, double accuracy,
+                        const Progress& progress) override;
 
   private:
     /// By products, if these are to be tried; none where a factorization is expected to pay.
-    std::optional<Evaluation> evaluateByProducts(
-        const Laplacian& laplacian, const ConstantModes& constants, const std::vector<Gain>& gains,
-        const Eigen::MatrixXd& X, FullSpectrumOptions options, const Progress& progress);
+    std::optional<Evaluation> evaluateByProducts(const Laplacian& laplacian,
+                                                 const std::vector<Gain>& gains,
+                                                 const Eigen::MatrixXd& X,
+                                                 FullSpectrumOptions options,
+                                                 const Progress& progress);
     double poleFor(const Laplacian& laplacian, double alpha);
 
     const TransferFunction& F_;

@@ -9,6 +9,7 @@
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/surface.h"
 #include "core/support/errors.h"
+#include "core/support/frequency.h"
 #include "core/support/threads.h"
 
 namespace spectral {
@@ -66,7 +67,9 @@ FilteredSignal filterSignal(const Vertices& V, const Faces& F, const Eigen::Matr
     const TransferFunction transfer(options.transferFunction, cutoffFrequency(options.featureSize));
     const Interior interior(surface.F, connectedComponents(surface.F, surface.X.rows()),
                             options.boundary);
-    LaplacianBuilder laplacians(surface, options.laplacian, BasisUpdate::None);
+    const LaplacianBuilder laplacians(surface, interior.surfaceComponents(), options.laplacian,
+                                      BasisUpdate::None);
+    const Laplacian& laplacian = laplacians.current();
     const EvaluationOptions evaluation;
     StepEvaluator evaluate(evaluation, interior, transfer);
 
@@ -78,29 +81,28 @@ FilteredSignal filterSignal(const Vertices& V, const Faces& F, const Eigen::Matr
     if (scale > 0.0) X /= scale;
 
     FilteredSignal result;
-    static_cast<SurfaceCounts&>(result) = countsOf(surface, V.rows());
+    static_cast<SurfaceCounts&>(result) =
+        countsOf(surface, V.rows(), interior.surfaceComponents().count, interior.fixedVertices());
     result.Y = Q;
     result.accuracy = evaluation.accuracy;
-    const Eigen::VectorXd& D = laplacians.inputMass();
-    result.isConstant = isConstant(X, ConstantModes(interior.surfaceComponents(), D));
+    result.isConstant = isConstant(X, laplacian.constants);
     if (!result.isConstant) {
-        const Evaluation filtered = evaluate(laplacians.input(), X, 1.0, progress);
+        // Kovnatsky et al. 2012, Eq. 6, of Q in place of the coordinates.
+        const Evaluation filtered = evaluate(laplacian, X, 1.0, progress);
         const Eigen::MatrixXd change =
-            vertexWeight(options.part, surface, interior, laplacians.input(), options.featureSize)
+            vertexWeight(options.part, surface, interior, laplacian, options.featureSize)
                 .asDiagonal() *
             (scale * (filtered.Y.front() - X));
         result.Y = changed(Q, surface, change);
         result.maxChange = change.cwiseAbs().maxCoeff();
-        result.rmsChange = (D.cwiseSqrt().asDiagonal() * change).eval().stableNorm() /
-                           std::sqrt(D.sum() * static_cast<double>(Q.cols()));
+        result.rmsChange = (laplacian.D.cwiseSqrt().asDiagonal() * change).eval().stableNorm() /
+                           std::sqrt(laplacian.D.sum() * static_cast<double>(Q.cols()));
         result.errorEstimate = filtered.errorEstimate;
         result.accuracyReached = filtered.accuracyReached;
     }
     result.verticesWithoutData = static_cast<int>(hasData.size() - hasData.count());
     result.unreferencedVertices -= result.verticesWithoutData;
     result.cutoffFrequency = transfer.cutoff();
-    result.components = interior.surfaceComponents().count;
-    result.fixedVertices = static_cast<int>(interior.fixedVertices());
     result.factorizations = evaluate.factorizations();
     result.solves = evaluate.solves();
     result.residuals = evaluate.basis().residuals;

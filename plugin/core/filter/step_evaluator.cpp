@@ -70,21 +70,18 @@ Evaluation StepEvaluator::evaluate(const Laplacian& surface, const Eigen::Matrix
                                    const Progress& progress) {
     requireUsable(surface);
     if (interior_.size() == 0) return {std::vector<Eigen::MatrixXd>(alphas.size(), X)};
+    // Kovnatsky et al. 2012, Eq. 11: one step.
     if (interior_.isWhole()) {
-        Evaluation whole =
-            evaluator_->evaluate(surface, ConstantModes(interior_.components(), surface.D), X,
-                                 alphas, accuracy, progress);
+        Evaluation whole = evaluator_->evaluate(surface, X, alphas, accuracy, progress);
         requireUsefulAccuracy(whole.errorEstimate);
         return whole;
     }
 
     progress.report(0.0, "factorizing");
-    extension_.setLaplacian(surface);
-    const auto [U, relativeSize] = extension_.rest(X);
+    const Laplacian inside = interior_.restricted(surface);
+    const auto [U, relativeSize] = extension_.rest(surface, inside, X);
     if (relativeSize < 1.0) accuracy = std::min(accuracy / relativeSize, kCoarsestAccuracy);
-    const Laplacian interior = interior_.restricted(surface);
-    Evaluation evaluation = evaluator_->evaluate(
-        interior, ConstantModes(interior_.components(), interior.D), U, alphas, accuracy, progress);
+    Evaluation evaluation = evaluator_->evaluate(inside, U, alphas, accuracy, progress);
     evaluation.errorEstimate *= relativeSize;
     requireUsefulAccuracy(evaluation.errorEstimate);
     for (Eigen::MatrixXd& Y : evaluation.Y)

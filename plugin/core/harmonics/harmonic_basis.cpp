@@ -8,8 +8,6 @@
 #include <vector>
 
 #include "core/harmonics/lanczos.h"
-#include "core/laplacian/constant_modes.h"
-#include "core/laplacian/frequency.h"
 #include "core/mesh/mesh.h"
 #include "core/support/errors.h"
 
@@ -64,8 +62,8 @@ Eigen::MatrixXd jacobiEigenvectors(Eigen::MatrixXd& A) {
 /// Makes eigenvectors accurate whose errors are round-off relative to the largest eigenvalue, by
 /// Rayleigh-Ritz, and sorts them; returns their eigenvalues. Phi^T W Phi is computed from
 /// differences along edges: among needles, most digits of W Phi would cancel.
-Eigen::VectorXd refine(const SparseMatrix& W, const ConstantModes& constants,
-                       Eigen::MatrixXd& Phi) {
+Eigen::VectorXd refine(const Laplacian& laplacian, Eigen::MatrixXd& Phi) {
+    const SparseMatrix& W = laplacian.W;
     const Index n = W.rows();
     const Eigen::VectorXd sums = W * Eigen::VectorXd::Ones(n);
     Eigen::MatrixXd differences((W.nonZeros() + n) / 2, Phi.cols());
@@ -77,7 +75,7 @@ Eigen::VectorXd refine(const SparseMatrix& W, const ConstantModes& constants,
             weight[edge] = -entry.value();
         }
         differences.row(edge) = Phi.row(j);
-        weight[edge++] = constants.label()[j] < 0 ? sums[j] : 0.0;
+        weight[edge++] = laplacian.constants.label()[j] < 0 ? sums[j] : 0.0;
     }
     Eigen::MatrixXd ritz = differences.transpose() * weight.asDiagonal() * differences;
     const Eigen::MatrixXd Q = Phi * jacobiEigenvectors(ritz);
@@ -92,32 +90,32 @@ Eigen::VectorXd refine(const SparseMatrix& W, const ConstantModes& constants,
 }  // namespace
 
 Eigen::MatrixXd HarmonicBasis::transform(const Eigen::VectorXd& D, const Eigen::MatrixXd& X) const {
-    const Eigen::MatrixXd DX = D.asDiagonal() * X;
+    const Eigen::MatrixXd DX = D.asDiagonal() * X;  // Kovnatsky et al. 2012, Eq. 6
     return Phi.transpose() * DX;
 }
 
 Eigen::MatrixXd HarmonicBasis::inverseTransform(const Eigen::MatrixXd& c) const { return Phi * c; }
 
-HarmonicBasis denseBasis(const Laplacian& laplacian, const ConstantModes& constants) {
+HarmonicBasis denseBasis(const Laplacian& laplacian) {
     const Eigen::VectorXd sqrtD = laplacian.D.cwiseSqrt(), invSqrtD = sqrtD.cwiseInverse();
     Eigen::MatrixXd A =
         invSqrtD.asDiagonal() * Eigen::MatrixXd(laplacian.W) * invSqrtD.asDiagonal();
     // The constants, which are known, become the last: eigenvectors of eigenvalues near theirs
     // would be mixtures with them.
-    const Index varying = A.rows() - constants.count();
+    const Index varying = A.rows() - laplacian.constants.count();
     const double bound = A.cwiseAbs().rowwise().sum().maxCoeff();
-    const Eigen::MatrixXd C = sqrtD.asDiagonal() * constants.orthonormal();
+    const Eigen::MatrixXd C = sqrtD.asDiagonal() * laplacian.constants.orthonormal();
     for (const Eigen::VectorXd c : C.colwise()) {  // (I - c c^T) A (I - c c^T) + 2 bound c c^T
         const Eigen::VectorXd Ac = A.selfadjointView<Eigen::Lower>() * c;
         A.selfadjointView<Eigen::Lower>().rankUpdate(c, (0.5 * c.dot(Ac) + bound) * c - Ac);
     }
     Eigen::MatrixXd Phi = invSqrtD.asDiagonal() * solved(A).eigenvectors().leftCols(varying);
-    const Eigen::VectorXd lambda = refine(laplacian.W, constants, Phi);
+    const Eigen::VectorXd lambda = refine(laplacian, Phi);
     HarmonicBasis basis;
     basis.Phi.resize(A.rows(), A.rows());
-    basis.Phi << constants.orthonormal(), Phi;
+    basis.Phi << laplacian.constants.orthonormal(), Phi;
     basis.lambda.resize(A.rows());
-    basis.lambda << Eigen::VectorXd::Zero(constants.count()), lambda;
+    basis.lambda << Eigen::VectorXd::Zero(laplacian.constants.count()), lambda;
     return basis;
 }
 
@@ -143,20 +141,19 @@ double largestEigenvalue(const Laplacian& laplacian) {
     }
 }
 
-Eigen::MatrixXd applyInBasis(const HarmonicBasis& basis, const Eigen::VectorXd& D,
-                             const ConstantModes& constants, const Gain& gain, double residualGain,
-                             const Eigen::MatrixXd& X) {
-    const Eigen::MatrixXd means = constants.means(X);
+Eigen::MatrixXd applyInBasis(const HarmonicBasis& basis, const Laplacian& laplacian,
+                             const Gain& gain, double residualGain, const Eigen::MatrixXd& X) {
+    const Eigen::MatrixXd means = laplacian.constants.means(X);
     Eigen::MatrixXd centred = X;
-    constants.add(-means, centred);
+    laplacian.constants.add(-means, centred);
 
-    // Phi F c + F_h (X - Phi c) = F_h X + Phi (F - F_h) c.
-    Eigen::MatrixXd c = basis.transform(D, centred);
+    // Kovnatsky et al. 2012, Eqs. 6 to 10: Phi F c + F_h (X - Phi c) = F_h X + Phi (F - F_h) c.
+    Eigen::MatrixXd c = basis.transform(laplacian.D, centred);
     for (Index i = 0; i < basis.size(); ++i)
         c.row(i) *= gain(std::sqrt(std::max(0.0, basis.lambda[i]))) - residualGain;
     Eigen::MatrixXd Y = residualGain * centred + basis.inverseTransform(c);
-    constants.remove(Y);
-    constants.add(means, Y);
+    laplacian.constants.remove(Y);
+    laplacian.constants.add(means, Y);
     return Y;
 }
 

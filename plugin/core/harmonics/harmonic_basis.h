@@ -2,8 +2,6 @@
 
 #include <Eigen/Core>
 
-#include "core/laplacian/constant_modes.h"
-#include "core/laplacian/frequency.h"
 #include "core/laplacian/laplacian.h"
 #include "core/support/types.h"
 
@@ -34,7 +32,7 @@ struct HarmonicBasis {
 /// their own size, and with a fixed boundary one of about 1e-15 times the largest, whatever that
 /// size.
 /// @throws SolverFailure  when the solver does not converge.
-HarmonicBasis denseBasis(const Laplacian& laplacian, const ConstantModes& constants);
+HarmonicBasis denseBasis(const Laplacian& laplacian);
 
 /// Whether the dense solver is the quickest way to harmonics of n vertices.
 bool isDenseQuicker(Index n);
@@ -48,8 +46,7 @@ double largestEigenvalue(const Laplacian& laplacian);
 ///
 /// @param residualGain  gain of all that is beyond the basis (Eq. 9); 0 drops it (Eq. 6).
 /// The constant modes keep gain 1.
-Eigen::MatrixXd applyInBasis(const HarmonicBasis& basis, const Eigen::VectorXd& D,
-                             const ConstantModes& constants, const Gain& gain, double residualGain,
-                             const Eigen::MatrixXd& X);
+Eigen::MatrixXd applyInBasis(const HarmonicBasis& basis, const Laplacian& laplacian,
+                             const Gain& gain, double residualGain, const Eigen::MatrixXd& X);
 
 }  // namespace spectral

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/harmonics/lanczos.h"
-#include "core/laplacian/constant_modes.h"
 
 namespace spectral {
 
@@ -33,12 +32,11 @@ constexpr int kFruitless = 3;
 /// those inside are above 1, as the test for convergence assumes.
 class DeflatedResolvent {
   public:
-    DeflatedResolvent(const Laplacian& laplacian, const ConstantModes& constants,
-                      const ShiftedLdlt& factor, double half, const Eigen::MatrixXd& known,
-                      const StopPoint& stopPoint)
+    DeflatedResolvent(const Laplacian& laplacian, const ShiftedLdlt& factor, double half,
+                      const Eigen::MatrixXd& known, const StopPoint& stopPoint)
         : D_(laplacian.D),
           sqrtD_(D_.cwiseSqrt()),
-          constants_(constants),
+          constants_(laplacian.constants),
           factor_(factor),
           half_(half),
           known_(known),
@@ -94,9 +92,8 @@ double orthonormalize(const Eigen::VectorXd& D, const Eigen::Ref<const Eigen::Ma
     return R.diagonal().minCoeff();
 }
 
-IntervalPairs computeInterval(const Laplacian& laplacian, const ConstantModes& constants,
-                              const SpectralInterval& interval, ShiftedLdlt& factor,
-                              const StopPoint& stopPoint) {
+IntervalPairs computeInterval(const Laplacian& laplacian, const SpectralInterval& interval,
+                              ShiftedLdlt& factor, const StopPoint& stopPoint) {
     const Eigen::VectorXd& D = laplacian.D;
     const Index n = D.size();
     factor.factorize(laplacian.W, D, interval.middle(), stopPoint);
@@ -106,18 +103,18 @@ IntervalPairs computeInterval(const Laplacian& laplacian, const ConstantModes& c
     std::vector<Index> inside;  // columns of `known`
     for (int fruitless = 0; static_cast<Index>(inside.size()) < interval.count;) {
         const Index missing = interval.count - static_cast<Index>(inside.size());
-        const Index free = n - constants.count() - known.cols();
+        const Index free = n - laplacian.constants.count() - known.cols();
         const Index wanted = std::min(missing + kAdditional, free - 1);
         if (wanted < 1) return {};
         const Index dimension =
             std::min(std::max(2 * wanted + kSpareDimension, kLeastDimension), free);
-        const DeflatedResolvent resolvent(laplacian, constants, factor, half, known, stopPoint);
+        const DeflatedResolvent resolvent(laplacian, factor, half, known, stopPoint);
         const Eigenpairs nearest =
             largestPairs(resolvent, n, wanted, {dimension, kMaxRestarts, kTolerance});
         Eigen::MatrixXd U = D.cwiseSqrt().cwiseInverse().asDiagonal() * nearest.vectors;
         // One more inverse iteration removes what is not in the Krylov space.
         factor.applyResolvent(D, U);
-        constants.remove(U);
+        laplacian.constants.remove(U);
         if (orthonormalize(D, known, U) < kOwnPart) return {};
         append(known, U);
         append(lambda, factor.shift() + half * nearest.values.array().inverse());

@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 
 #include "core/harmonics/spectrum_slicing.h"
-#include "core/laplacian/constant_modes.h"
 #include "core/laplacian/laplacian.h"
 #include "core/ldlt/shifted_ldlt.h"
 #include "core/support/threads.h"
@@ -29,9 +28,8 @@ struct IntervalPairs {
 /// @return incomplete where an end of the interval lies on an eigenvalue, which then counts to both
 ///         sides or to none.
 /// @throws SolverFailure  when Spectra does not converge; whatever the stop point throws.
-IntervalPairs computeInterval(const Laplacian& laplacian, const ConstantModes& constants,
-                              const SpectralInterval& interval, ShiftedLdlt& factor,
-                              const StopPoint& stopPoint);
+IntervalPairs computeInterval(const Laplacian& laplacian, const SpectralInterval& interval,
+                              ShiftedLdlt& factor, const StopPoint& stopPoint);
 
 /// D-orthonormalizes the columns of U, also against those of `known`, which are D-orthonormal.
 ///

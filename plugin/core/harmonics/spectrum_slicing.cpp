@@ -81,11 +81,10 @@ void dropOutside(Index first, Index k, std::vector<Count>& counts) {
 
 }  // namespace
 
-std::vector<SpectralInterval> sliceSpectrum(const Laplacian& laplacian, Index constants,
-                                            Index first, Index k, Index width,
-                                            std::vector<ShiftedLdlt>& factors,
+std::vector<SpectralInterval> sliceSpectrum(const Laplacian& laplacian, Index first, Index k,
+                                            Index width, std::vector<ShiftedLdlt>& factors,
                                             const Progress& progress) {
-    std::vector<Count> counts{{0.0, constants}};
+    std::vector<Count> counts{{0.0, laplacian.constants.count()}};
     double done = 0.0;  // how many more rounds there will be is not known
     const auto count = [&](const std::vector<double>& sigmas) {
         const double half = 0.5 * (1.0 + done);

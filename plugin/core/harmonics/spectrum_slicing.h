@@ -26,14 +26,12 @@ struct SpectralInterval {
 /// The inertia of W - sigma D counts the eigenvalues below every cut (Sylvester's law of inertia):
 /// it is known how many harmonics each interval must give. The constant modes are in none.
 ///
-/// @param constants  number of constant modes, <= first.
-/// @param first, k   first < k < n.
-/// @param factors    one for each thread of the team.
-/// @return ascending, without gaps; from the constant modes on where first = constants.
+/// @param first, k  number of constant modes <= first < k < n.
+/// @param factors   one for each thread of the team.
+/// @return ascending, without gaps; from the constant modes on where `first` is their number.
 /// @throws SolverFailure  when there is no such division; Cancelled.
-std::vector<SpectralInterval> sliceSpectrum(const Laplacian& laplacian, Index constants,
-                                            Index first, Index k, Index width,
-                                            std::vector<ShiftedLdlt>& factors,
+std::vector<SpectralInterval> sliceSpectrum(const Laplacian& laplacian, Index first, Index k,
+                                            Index width, std::vector<ShiftedLdlt>& factors,
                                             const Progress& progress);
 
 }  // namespace spectral

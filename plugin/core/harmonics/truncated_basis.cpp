@@ -12,7 +12,6 @@
 
 #include "core/harmonics/interval_pairs.h"
 #include "core/harmonics/spectrum_slicing.h"
-#include "core/laplacian/constant_modes.h"
 #include "core/mesh/mesh.h"
 #include "core/support/errors.h"
 #include "core/support/memory.h"
@@ -65,19 +64,19 @@ bool separate(const std::vector<SpectralInterval>& intervals, const Eigen::Vecto
 
 /// At least the pairs first to k - 1, in intervals of about `width`; empty where an eigenvalue lies
 /// on a cut between two of them.
-std::optional<HarmonicBasis> inIntervals(const Laplacian& laplacian, const ConstantModes& constants,
-                                         Index first, Index k, Index width,
-                                         std::vector<ShiftedLdlt>& factors,
+std::optional<HarmonicBasis> inIntervals(const Laplacian& laplacian, Index first, Index k,
+                                         Index width, std::vector<ShiftedLdlt>& factors,
                                          const Progress& progress) {
     std::vector<SpectralInterval> intervals =
-        sliceSpectrum(laplacian, constants.count(), std::max<Index>(first, constants.count()), k,
-                      width, factors, progress.part(0.0, 0.2));
+        sliceSpectrum(laplacian, std::max<Index>(first, laplacian.constants.count()), k, width,
+                      factors, progress.part(0.0, 0.2));
     HarmonicBasis basis;
     basis.first = first == 0 ? 0 : intervals.front().first;
     for (SpectralInterval& interval : intervals) interval.first -= basis.first;
     const Index size = intervals.back().first + intervals.back().count;
     basis.Phi.resize(laplacian.D.size(), size);
-    if (basis.first == 0) basis.Phi.leftCols(constants.count()) = constants.orthonormal();
+    if (basis.first == 0)
+        basis.Phi.leftCols(laplacian.constants.count()) = laplacian.constants.orthonormal();
     basis.lambda = Eigen::VectorXd::Zero(size);
     std::atomic<bool> isComplete{true};
     runTasks(
@@ -85,9 +84,8 @@ std::optional<HarmonicBasis> inIntervals(const Laplacian& laplacian, const Const
         [&](Index task, int thread, const StopPoint& stopPoint) {
             const SpectralInterval& interval = intervals[static_cast<std::size_t>(task)];
             if (!isComplete) return;
-            const IntervalPairs pairs =
-                computeInterval(laplacian, constants, interval,
-                                factors[static_cast<std::size_t>(thread)], stopPoint);
+            const IntervalPairs pairs = computeInterval(
+                laplacian, interval, factors[static_cast<std::size_t>(thread)], stopPoint);
             if (!pairs.isComplete()) {
                 isComplete = false;
                 return;
@@ -102,15 +100,15 @@ std::optional<HarmonicBasis> inIntervals(const Laplacian& laplacian, const Const
 }
 
 /// At least the pairs first to k - 1.
-HarmonicBasis pairsBetween(const Laplacian& laplacian, const ConstantModes& constants, Index first,
-                           Index k, ShiftedLdlt& ldlt, const Progress& progress) {
+HarmonicBasis pairsBetween(const Laplacian& laplacian, Index first, Index k, ShiftedLdlt& ldlt,
+                           const Progress& progress) {
     std::vector<ShiftedLdlt> factors(static_cast<std::size_t>(ThreadTeam::size()),
                                      ldlt.sibling(laplacian.W));
     double done = 0.0;
     for (const Index width : kWidths) {
         const double end = 0.9 + 0.1 * done;
         std::optional<HarmonicBasis> basis =
-            inIntervals(laplacian, constants, first, k, width, factors, progress.part(done, end));
+            inIntervals(laplacian, first, k, width, factors, progress.part(done, end));
         done = end;
         if (!basis) continue;
         for (const ShiftedLdlt& factor : factors) ldlt.addWork(factor);
@@ -133,9 +131,8 @@ void requireUseful(const Eigen::VectorXd& residuals) {
 }
 
 /// The first `size` pairs of a basis, with their certificate.
-HarmonicBasis certified(const Laplacian& laplacian, const ConstantModes& constants,
-                        HarmonicBasis basis, Index size, ShiftedLdlt& ldlt,
-                        const Progress& progress) {
+HarmonicBasis certified(const Laplacian& laplacian, HarmonicBasis basis, Index size,
+                        ShiftedLdlt& ldlt, const Progress& progress) {
     basis.inertiaCount = size;  // where it holds all that there are
     if (size < basis.size())
         basis.inertiaCount = countEigenvaluesBelow(
@@ -148,7 +145,7 @@ HarmonicBasis certified(const Laplacian& laplacian, const ConstantModes& constan
                                 std::to_string(size) + " were found");
     basis.Phi.conservativeResize(Eigen::NoChange, size);
     basis.lambda.conservativeResize(size);
-    basis.residuals = relativeResiduals(laplacian, constants.count(), basis, progress);
+    basis.residuals = relativeResiduals(laplacian, basis, progress);
     requireUseful(basis.residuals);
     progress.report(1.0, kStage);
     return basis;
@@ -187,10 +184,11 @@ void checkSize(Index k, Index n, Index constants) {
 
 }  // namespace
 
-Eigen::VectorXd relativeResiduals(const Laplacian& laplacian, Index constants,
-                                  const HarmonicBasis& basis, const Progress& progress) {
+Eigen::VectorXd relativeResiduals(const Laplacian& laplacian, const HarmonicBasis& basis,
+                                  const Progress& progress) {
     const SparseMatrix& W = laplacian.W;
     const Eigen::VectorXd& D = laplacian.D;
+    const Index constants = std::max<Index>(0, laplacian.constants.count() - basis.first);
     Eigen::VectorXd residuals = Eigen::VectorXd::Zero(basis.size());
     runTasks(
         basis.size() - constants,
@@ -211,37 +209,35 @@ std::optional<Index> cutOutsideClusters(const Eigen::VectorXd& lambda, Index ask
     return std::nullopt;
 }
 
-HarmonicBasis truncatedBasis(const Laplacian& laplacian, const ConstantModes& constants, Index k,
-                             ShiftedLdlt& ldlt, const Progress& progress) {
+HarmonicBasis truncatedBasis(const Laplacian& laplacian, Index k, ShiftedLdlt& ldlt,
+                             const Progress& progress) {
     const Index n = laplacian.D.size();
-    checkSize(k, n, constants.count());
+    checkSize(k, n, laplacian.constants.count());
     requireMemory(k, n);
     const ThreadTeam team(progress);
     if (isDenseQuicker(n)) {
-        HarmonicBasis all = denseBasis(laplacian, constants);
+        HarmonicBasis all = denseBasis(laplacian);
         const Index size = cutOutsideClusters(all.lambda, k).value_or(n);
-        return certified(laplacian, constants, std::move(all), size, ldlt, progress);
+        return certified(laplacian, std::move(all), size, ldlt, progress);
     }
     // Some pairs beyond k show whether k cuts a cluster; more are taken while it does.
     for (Index more = 8;; more *= 2) {
         const Index total = std::min(k + more, n - 1);
-        HarmonicBasis basis =
-            pairsBetween(laplacian, constants, 0, total, ldlt, progress.part(0.0, 0.95));
+        HarmonicBasis basis = pairsBetween(laplacian, 0, total, ldlt, progress.part(0.0, 0.95));
         std::optional<Index> size = cutOutsideClusters(basis.lambda, k);
         if (!size) {
             if (total < n - 1) continue;
             size = basis.size();  // nothing left to cut off
         }
-        return certified(laplacian, constants, std::move(basis), *size, ldlt,
-                         progress.part(0.95, 1.0));
+        return certified(laplacian, std::move(basis), *size, ldlt, progress.part(0.95, 1.0));
     }
 }
 
-HarmonicBasis harmonicsUpTo(double edge, const Laplacian& laplacian, const ConstantModes& constants,
-                            ShiftedLdlt& ldlt, const Progress& progress) {
+HarmonicBasis harmonicsUpTo(double edge, const Laplacian& laplacian, ShiftedLdlt& ldlt,
+                            const Progress& progress) {
     const Index n = laplacian.D.size();
     if (isDenseQuicker(n)) {
-        HarmonicBasis all = denseBasis(laplacian, constants);
+        HarmonicBasis all = denseBasis(laplacian);
         if (all.lambda[n - 1] * kDenseError > kEdgeAccuracy * edge * edge)
             throw SolverFailure(ErrorCode::SingularMatrix,
                                 "round-off leaves nothing of the harmonics at the edge of the "
@@ -255,19 +251,17 @@ HarmonicBasis harmonicsUpTo(double edge, const Laplacian& laplacian, const Const
                                 std::to_string(below) + " (at most " +
                                 std::to_string(kMostUpToEdge) + ")",
                             kMostUpToEdge);
-    if (below == n) return denseBasis(laplacian, constants);  // nothing to cut
-    return truncatedBasis(laplacian, constants, std::max<Index>(below, constants.count() + 1), ldlt,
+    if (below == n) return denseBasis(laplacian);  // nothing to cut
+    return truncatedBasis(laplacian, std::max<Index>(below, laplacian.constants.count() + 1), ldlt,
                           progress);
 }
 
-HarmonicBasis harmonicsBetween(const Laplacian& laplacian, const ConstantModes& constants,
-                               Index first, Index last, ShiftedLdlt& ldlt,
-                               const Progress& progress) {
+HarmonicBasis harmonicsBetween(const Laplacian& laplacian, Index first, Index last,
+                               ShiftedLdlt& ldlt, const Progress& progress) {
     requireMemory(last - first, laplacian.D.size());
     const ThreadTeam team(progress);
-    HarmonicBasis basis =
-        pairsBetween(laplacian, constants, first, last, ldlt, progress.part(0.0, 0.95));
-    basis.residuals = relativeResiduals(laplacian, 0, basis, progress.part(0.95, 1.0));
+    HarmonicBasis basis = pairsBetween(laplacian, first, last, ldlt, progress.part(0.0, 0.95));
+    basis.residuals = relativeResiduals(laplacian, basis, progress.part(0.95, 1.0));
     requireUseful(basis.residuals);
     return basis;
 }

@@ -214,15 +214,16 @@ std::vector<Eigen::MatrixXd> combined(KrylovSpaces& spaces, const Eigen::MatrixX
 }  // namespace
 
 std::vector<FullSpectrumResult> applyFullSpectrum(
-    const Eigen::VectorXd& D, const ConstantModes& constants, const KrylovOperator& S,
-    const std::vector<Gain>& gains, const Eigen::MatrixXd& X, const FullSpectrumOptions& options,
-    const Progress& progress) {
+    const Laplacian& laplacian, const KrylovOperator& S, const std::vector<Gain>& gains,
+    const Eigen::MatrixXd& X, const FullSpectrumOptions& options, const Progress& progress) {
+    const Eigen::VectorXd& D = laplacian.D;
+    const ConstantModes& constants = laplacian.constants;
     double orthogonal = KrylovSpaces::kOrthogonal;
     if (options.atEveryVertex)  // of small mass, with entries as large in the basis
         orthogonal = std::min(orthogonal, options.accuracy * std::sqrt(D.minCoeff() / D.sum()));
     const KeptBasis kept = keptBasis(S, X, options);
     const double errorOfBasis = kept == KeptBasis::Single ? 1e-7 : 0.0;
-    KrylovSpaces spaces(S, D, constants, X, orthogonal, kept, options.spare);
+    KrylovSpaces spaces(S, laplacian, X, orthogonal, kept, options.spare);
     if (!(spaces.largestEntry() > 0.0)) return {gains.size(), {X, 0.0, 0, true}};
     std::vector<FullSpectrumResult> results(gains.size());
     const Eigen::VectorXd omega = sampleFrequencies(S, options.samples);
@@ -279,6 +280,7 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
         result.converged = result.errorEstimate <= options.accuracy;
         if (!result.converged) result.errorEstimate *= kNotConverged;
     }
+    // Kovnatsky et al. 2012, Eq. 6: Y = Phi F(Lambda^1/2) Phi^T D X, but for the constants.
     std::vector<Eigen::MatrixXd> Y = combined(spaces, X, approximations, kept != KeptBasis::None);
     for (std::size_t g = 0; g < gains.size(); ++g) {
         FullSpectrumResult& result = results[g];

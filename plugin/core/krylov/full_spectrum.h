@@ -5,11 +5,10 @@
 
 #include "core/krylov/krylov_operator.h"
 #include "core/krylov/krylov_spaces.h"
-#include "core/laplacian/constant_modes.h"
-#include "core/laplacian/frequency.h"
 #include "core/laplacian/laplacian.h"
 #include "core/ldlt/shifted_ldlt.h"
 #include "core/support/progress.h"
+#include "core/support/types.h"
 
 namespace spectral {
 
@@ -57,16 +56,14 @@ struct FullSpectrumResult {
 /// (KrylovSpaces::squaredErrorBound), at every vertex from the differences between approximations a
 /// few dimensions apart and their rate of decay.
 ///
-/// @param D      n lumped masses of the Laplacian.
 /// @param gains  continuous, finite and >= 0 on [0, infinity]; constant modes keep gain 1.
 /// @param X      n x c signals, e.g. the three coordinates.
 /// @return       one result for each gain, all from the same Krylov spaces; none if it gives up.
 /// @throws SolverFailure  when the tridiagonal eigenproblem does not converge, or round-off leaves
 ///                        nothing of the solves (KrylovSpaces::roundOff).
 std::vector<FullSpectrumResult> applyFullSpectrum(
-    const Eigen::VectorXd& D, const ConstantModes& constants, const KrylovOperator& S,
-    const std::vector<Gain>& gains, const Eigen::MatrixXd& X, const FullSpectrumOptions& options,
-    const Progress& progress = {});
+    const Laplacian& laplacian, const KrylovOperator& S, const std::vector<Gain>& gains,
+    const Eigen::MatrixXd& X, const FullSpectrumOptions& options, const Progress& progress = {});
 
 /// Largest round-off of any vertex in a solve whose solution is 1 everywhere, the eigenvector of
 /// the largest eigenvalue of the inverse where the boundary is free.

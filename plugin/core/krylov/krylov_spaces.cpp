@@ -85,15 +85,15 @@ Moments<Columns> momentsOf(const Eigen::VectorXd& D, const Eigen::VectorXi& labe
 
 }  // namespace
 
-KrylovSpaces::KrylovSpaces(const KrylovOperator& S, const Eigen::VectorXd& D,
-                           const ConstantModes& constants, const Eigen::MatrixXd& X,
-                           double orthogonal, KeptBasis kept, SpareVectors* spare)
+KrylovSpaces::KrylovSpaces(const KrylovOperator& S, const Laplacian& laplacian,
+                           const Eigen::MatrixXd& X, double orthogonal, KeptBasis kept,
+                           SpareVectors* spare)
     : S_(S),
-      constants_(constants),
+      constants_(laplacian.constants),
       orthogonal_(orthogonal),
       columns_(static_cast<int>(X.cols())),
-      D_(D.size()),
-      label_(D.size()),
+      D_(laplacian.D.size()),
+      label_(laplacian.D.size()),
       kept_(kept),
       spare_(spare),
       alpha_(X.cols()),
@@ -107,15 +107,15 @@ KrylovSpaces::KrylovSpaces(const KrylovOperator& S, const Eigen::VectorXd& D,
     assert(columns_ >= 1 && columns_ <= kMostSignals);
     if (kept == KeptBasis::Single) {
         basis_.emplace<Vectors<float>>();
-        unit_ = 1.0 / std::sqrt(D.sum());
+        unit_ = 1.0 / std::sqrt(laplacian.D.sum());
     }
     for (Eigen::VectorXd* rows : {&newest_, &before_, &next_}) rows->resize(S.rows() * columns_);
     before_.setZero();
     const int* order = S.order();
-    parallelRows(D.size(), [&](Index begin, Index end) {
+    parallelRows(D_.size(), [&](Index begin, Index end) {
         for (Index i = begin; i < end; ++i) {
-            D_[order[i]] = D[i];
-            label_[order[i]] = constants.label()[i];
+            D_[order[i]] = laplacian.D[i];
+            label_[order[i]] = constants_.label()[i];
         }
     });
     withColumns(columns_, [&](auto columns) { start<columns>(X); });
@@ -367,6 +367,7 @@ Eigen::VectorXd KrylovSpaces::coefficients(int column, const Gain& gain) const {
     const Ritz& pairs = ritz(column);
     if (pairs.omega.size() == 0) return {};
     const Eigen::VectorXd gains = pairs.omega.unaryExpr(gain);
+    // Kovnatsky et al. 2012, Eq. 6, with the Ritz values and vectors in place of the harmonics.
     return norms_[column] * (pairs.Q * gains.cwiseProduct(pairs.Q.row(0).transpose()));
 }
 

@@ -7,8 +7,8 @@
 
 #include "core/krylov/krylov_operator.h"
 #include "core/krylov/rows.h"
-#include "core/laplacian/constant_modes.h"
-#include "core/laplacian/frequency.h"
+#include "core/laplacian/laplacian.h"
+#include "core/support/types.h"
 
 namespace spectral {
 
@@ -53,16 +53,15 @@ class KrylovSpaces {
     /// keep T accurate, but not combinations of the basis.
     static constexpr double kOrthogonal = 1e-10;
 
-    /// @param S  kept by reference, like constants.
-    /// @param constants  removed from all vectors.
+    /// @param S, laplacian  kept by reference; the constant modes are removed from all vectors.
     /// @param X  n x c signals, 1 <= c <= kMostSignals.
     /// @param orthogonal  inner product of two vectors at which they are reorthogonalized, where S
     ///                    wants that.
     /// @param kept  the basis; combinations of none are not to be asked for.
     /// @param spare  where vectors are taken from, and left in the end; null for none.
-    KrylovSpaces(const KrylovOperator& S, const Eigen::VectorXd& D, const ConstantModes& constants,
-                 const Eigen::MatrixXd& X, double orthogonal = kOrthogonal,
-                 KeptBasis kept = KeptBasis::Double, SpareVectors* spare = nullptr);
+    KrylovSpaces(const KrylovOperator& S, const Laplacian& laplacian, const Eigen::MatrixXd& X,
+                 double orthogonal = kOrthogonal, KeptBasis kept = KeptBasis::Double,
+                 SpareVectors* spare = nullptr);
     ~KrylovSpaces();
     KrylovSpaces(const KrylovSpaces&) = delete;
     KrylovSpaces& operator=(const KrylovSpaces&) = delete;

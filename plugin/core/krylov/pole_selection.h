@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/laplacian/frequency.h"
 #include "core/laplacian/laplacian.h"
+#include "core/support/types.h"
 
 namespace spectral {
 

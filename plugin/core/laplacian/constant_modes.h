@@ -12,6 +12,8 @@ namespace spectral {
 /// eigenvalue of 1e-12 instead of 0 would move a mesh that lies far from the origin.
 class ConstantModes {
   public:
+    ConstantModes() = default;
+
     /// @param D  n lumped masses, > 0.
     ConstantModes(const Components& components, const Eigen::VectorXd& D);
 

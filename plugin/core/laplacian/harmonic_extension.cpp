@@ -17,31 +17,26 @@ Eigen::MatrixXd applied(const SparseMatrix& W, const Eigen::MatrixXd& X) {
 
 }  // namespace
 
-void HarmonicExtension::setLaplacian(const Laplacian& surface) {
-    surface_ = surface;
-    means_.emplace(interior_.surfaceComponents(), surface.D);
-    Laplacian interior = interior_.restricted(surface);
+HarmonicExtension::Rest HarmonicExtension::rest(const Laplacian& surface, const Laplacian& inside,
+                                                const Eigen::MatrixXd& X) {
     // W_II is singular on components without fixed vertices: there, and only there, masses make it
     // definite. Their H is the mean, not the solution.
-    interior.D = (interior_.components().label.array() < 0).select(0.0, interior.D);
-    ldlt_.factorizeDefinite(interior.W, interior.D, 4.0 * kPi / surface.D.sum());
-}
-
-HarmonicExtension::Rest HarmonicExtension::rest(const Eigen::MatrixXd& X) const {
+    const Eigen::VectorXd D = (interior_.components().label.array() < 0).select(0.0, inside.D);
+    ldlt_.factorizeDefinite(inside.W, D, 4.0 * kPi / surface.D.sum());
     Eigen::MatrixXd centred = X;
-    means_->remove(centred);
+    surface.constants.remove(centred);
 
     // X - H = W_II^-1 (W X)_I: no cancellation where X is nearly harmonic. The second solve, of
     // what the first has left, matters among needles.
     Rest rest{Eigen::MatrixXd::Zero(interior_.size(), X.cols())};
     for (int pass = 0; pass < 2; ++pass)
         rest.U += ldlt_.solve(
-            interior_.restricted(applied(surface_.W, centred - interior_.extended(rest.U))));
+            interior_.restricted(applied(surface.W, centred - interior_.extended(rest.U))));
     const Eigen::MatrixXd moving = interior_.restricted(centred);
     for (Index i = 0; i < moving.rows(); ++i)
         if (interior_.components().label[i] >= 0) rest.U.row(i) = moving.row(i);
 
-    const Eigen::VectorXd sqrtD = surface_.D.cwiseSqrt();
+    const Eigen::VectorXd sqrtD = surface.D.cwiseSqrt();
     const double norm = (interior_.restricted(sqrtD).col(0).asDiagonal() * rest.U).norm();
     rest.relativeSize = std::max(norm / (sqrtD.asDiagonal() * centred).norm(),
                                  rest.U.cwiseAbs().maxCoeff() / centred.cwiseAbs().maxCoeff());

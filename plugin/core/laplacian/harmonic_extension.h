@@ -1,8 +1,5 @@
 #pragma once
 
-#include <optional>
-
-#include "core/laplacian/constant_modes.h"
 #include "core/laplacian/interior.h"
 #include "core/ldlt/shifted_ldlt.h"
 
@@ -20,10 +17,6 @@ class HarmonicExtension {
     /// @param interior  kept by reference.
     explicit HarmonicExtension(const Interior& interior) : interior_(interior) {}
 
-    /// Sets the Laplacian of all following splits.
-    /// @throws SolverFailure  when W_II is not positive definite to working precision.
-    void setLaplacian(const Laplacian& surface);
-
     struct Rest {
         Eigen::MatrixXd U;  ///< X - H at the vertices of the interior.
 
@@ -32,16 +25,16 @@ class HarmonicExtension {
         double relativeSize = 0.0;
     };
 
-    /// @param X  n x c signals on the surface.
-    Rest rest(const Eigen::MatrixXd& X) const;
+    /// @param surface, inside  its Laplacian, and that restricted to the interior.
+    /// @param X                n x c signals on the surface.
+    /// @throws SolverFailure  when W_II is not positive definite to working precision.
+    Rest rest(const Laplacian& surface, const Laplacian& inside, const Eigen::MatrixXd& X);
 
     int factorizations() const { return ldlt_.factorizations(); }
     int solves() const { return ldlt_.solves(); }
 
   private:
     const Interior& interior_;
-    Laplacian surface_;
-    std::optional<ConstantModes> means_;
     ShiftedLdlt ldlt_;
 };
 

@@ -8,7 +8,7 @@ namespace spectral {
 
 std::vector<bool> boundaryVertices(const Faces& F, Index vertexCount) {
     std::vector<bool> onBoundary(static_cast<std::size_t>(vertexCount), false);
-    forEachEdge(sidesByEdge(F), [&](auto first, auto end) {
+    SidesByEdge(F).forEachEdge([&](auto first, auto end) {
         if (end - first == 1) onBoundary[first->low] = onBoundary[first->high] = true;
     });
     return onBoundary;
@@ -45,7 +45,8 @@ Laplacian Interior::restricted(const Laplacian& surface) const {
     std::vector<int> row(static_cast<std::size_t>(surface.D.size()), -1);
     for (Index i = 0; i < size(); ++i) row[vertex_[i]] = static_cast<int>(i);
 
-    Laplacian interior{SparseMatrix(size(), size()), restricted(surface.D)};
+    Laplacian interior{SparseMatrix(size(), size()), restricted(surface.D), {}};
+    interior.constants = ConstantModes(components_, interior.D);
     interior.W.reserve(surface.W.nonZeros());
     for (Index j = 0; j < size(); ++j) {
         interior.W.startVec(j);

@@ -45,7 +45,7 @@ class Interior {
     /// All components, as labels of the vertices of the surface.
     const Components& surfaceComponents() const { return surfaceComponents_; }
 
-    /// W_II and D_II.
+    /// W_II and D_II, with the constant modes of the components without fixed vertices.
     Laplacian restricted(const Laplacian& surface) const;
 
     /// The rows of a signal X (n x c) that belong to interior vertices.

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "core/mesh/sides.h"
 #include "core/support/threads.h"
 
 namespace spectral {
@@ -17,76 +18,24 @@ namespace {
 /// lengths. The value of Sharp and Crane.
 constexpr double kMollification = 1e-5;
 
-/// A side of a triangle of the mesh, and its edge.
-struct EdgeSide {
-    int low, high;  // vertices, low < high
-    int side;
-    bool operator<(const EdgeSide& other) const {
-        return std::pair(high, side) < std::pair(other.high, other.side);
-    }
-};
-
-/// All sides, sorted by edge.
-struct SidesByEdge {
-    std::vector<EdgeSide> sides;
-    std::vector<int> begin;  // of the sides of each lower vertex; then their number
-
-    SidesByEdge(const Faces& F, Index vertexCount)
-        : sides(static_cast<std::size_t>(3 * F.rows())),
-          begin(static_cast<std::size_t>(vertexCount) + 1, 0) {
-        // A bucket sort by the lower vertex, which few sides share.
-        const auto forEachSide = [&F](const auto& visit) {
-            forEachInOrder(F.rows(), [&](Index t) {
-                for (int c = 0; c < 3; ++c) {
-                    const int i = F(t, c), j = F(t, c == 2 ? 0 : c + 1);
-                    visit(EdgeSide{std::min(i, j), std::max(i, j), static_cast<int>(3 * t) + c});
-                }
-            });
-        };
-        forEachSide([&](const EdgeSide& s) { ++begin[s.low + 1]; });
-        std::partial_sum(begin.begin(), begin.end(), begin.begin());
-        std::vector<int> next(begin.begin(), begin.end() - 1);
-        forEachSide([&](const EdgeSide& s) { sides[next[s.low]++] = s; });
-        parallelRows(vertexCount, [&](Index first, Index last) {
-            for (Index i = first; i < last; ++i)
-                std::sort(sides.begin() + begin[i], sides.begin() + begin[i + 1]);
-        });
-    }
-
-    /// Calls visit(first, last) for the sides of every edge, in parallel.
-    template <class Visit>
-    void forEachEdge(const Visit& visit) {
-        parallelRows(static_cast<Index>(begin.size()) - 1, [&](Index from, Index to) {
-            EdgeSide *first = sides.data() + begin[from], *end = sides.data() + begin[to];
-            while (first != end) {
-                EdgeSide* last = std::find_if(first, end, [first](const EdgeSide& s) {
-                    return s.low != first->low || s.high != first->high;
-                });
-                visit(first, last);
-                first = last;
-            }
-        });
-    }
-};
-
 /// Sorts the sides of one edge by the angles of their triangles around it.
-void sortByAngle(const Vertices& V, const Faces& F, EdgeSide* first, EdgeSide* last) {
+void sortByAngle(const Vertices& V, const Faces& F, Side* first, Side* last) {
     const Eigen::RowVector3d origin = V.row(first->low);
     const Eigen::RowVector3d axis = (V.row(first->high) - origin).normalized();
     const Eigen::RowVector3d right = axis.unitOrthogonal(), up = axis.cross(right);
-    const auto angle = [&](const EdgeSide& s) {
-        const Eigen::RowVector3d spoke = V.row(F(s.side / 3, (s.side + 2) % 3)) - origin;
+    const auto angle = [&](const Side& s) {
+        const Eigen::RowVector3d spoke = V.row(F(s.face(), s.opposite())) - origin;
         const double theta = std::atan2(spoke.dot(up), spoke.dot(right));
         return std::isfinite(theta) ? theta : 0.0;  // an edge of length zero has no angles
     };
     // Duplicate triangles have equal angles. They are stacked in the same order at all three edges,
     // by index along the normal of their sorted corners, so that the sheets do not cross.
-    const auto layer = [&](const EdgeSide& s) {
-        const int opposite = F(s.side / 3, (s.side + 2) % 3);
+    const auto layer = [&](const Side& s) {
+        const int opposite = F(s.face(), s.opposite());
         const bool againstNormal = s.low < opposite && opposite < s.high;
-        return againstNormal ? -s.side : s.side;
+        return againstNormal ? -s.number : s.number;
     };
-    std::sort(first, last, [&](const EdgeSide& a, const EdgeSide& b) {
+    std::sort(first, last, [&](const Side& a, const Side& b) {
         return std::pair(angle(a), layer(a)) < std::pair(angle(b), layer(b));
     });
 }
@@ -157,11 +106,11 @@ SparseMatrix stiffnessOf(const IntrinsicTriangulation& triangulation, int copies
 }  // namespace
 
 IntrinsicDelaunay::IntrinsicDelaunay(const Vertices& V, const Faces& F) : vertexCount_(V.rows()) {
-    SidesByEdge edges(F, V.rows());
+    SidesByEdge edges(F);
     const int front = static_cast<int>(3 * F.rows());
-    const auto runsUp = [&](const EdgeSide& s) { return F(s.side / 3, s.side % 3) == s.low; };
+    const auto runsUp = [&](const Side& s) { return F(s.face(), s.corner()) == s.low; };
     std::atomic<bool> closedAndOriented = true;
-    edges.forEachEdge([&](const EdgeSide* first, const EdgeSide* last) {
+    edges.forEachEdgeInParallel([&](const Side* first, const Side* last) {
         if (last - first != 2 || runsUp(first[0]) == runsUp(first[1])) closedAndOriented = false;
     });
     copies_ = closedAndOriented ? 1 : 2;
@@ -174,15 +123,15 @@ IntrinsicDelaunay::IntrinsicDelaunay(const Vertices& V, const Faces& F) : vertex
     const auto back = [front](int side) { return front + 3 * (side / 3) + 2 - side % 3; };
     if (copies_ == 2)
         for (int s = 0; s < front; ++s) tail_[back(s)] = F(s / 3, (s + 1 - 3 * (s / 3)) % 3);
-    edges.forEachEdge([&](EdgeSide* first, EdgeSide* last) {
+    edges.forEachEdgeInParallel([&](Side* first, Side* last) {
         if (last - first > 2) sortByAngle(V, F, first, last);
         // The copy that runs up the edge faces larger angles: it is glued to the copy of the next
         // triangle that runs down. The triangle of a boundary edge is glued to its own back.
-        for (const EdgeSide* here = first; here != last; ++here) {
-            const EdgeSide* there = here + 1 != last ? here + 1 : first;
-            const int up = runsUp(*here) ? here->side : back(here->side);
+        for (const Side* here = first; here != last; ++here) {
+            const Side* there = here + 1 != last ? here + 1 : first;
+            const int up = runsUp(*here) ? here->number : back(here->number);
             if (copies_ == 1 && up >= front) continue;
-            const int down = runsUp(*there) ? back(there->side) : there->side;
+            const int down = runsUp(*there) ? back(there->number) : there->number;
             twin_[up] = down;
             twin_[down] = up;
         }

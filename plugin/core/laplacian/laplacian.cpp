@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include <vector>
 
 #include "core/support/errors.h"
@@ -40,7 +39,7 @@ SparseMatrix stiffnessOf(Index n, const Faces& F, const Cotangents& cotangentsOf
 
 }  // namespace
 
-Laplacian cotangentLaplacian(const Vertices& V, const Faces& F) {
+SparseMatrix cotangentStiffness(const Vertices& V, const Faces& F) {
     const auto cotangents = [&](Index t) {
         Eigen::RowVector3d corner[3];
         for (int c = 0; c < 3; ++c) corner[c] = V.row(F(t, c));
@@ -51,14 +50,12 @@ Laplacian cotangentLaplacian(const Vertices& V, const Faces& F) {
                 (corner[(c + 1) % 3] - corner[c]).dot(corner[(c + 2) % 3] - corner[c]) / twiceArea;
         return result;
     };
-    return {stiffnessOf(V.rows(), F, cotangents), lumpedMass(V, F)};
+    return stiffnessOf(V.rows(), F, cotangents);  // Kovnatsky et al. 2012, Eq. 4
 }
 
-Laplacian uniformLaplacian(const Vertices& V, const Faces& F) {
+SparseMatrix uniformStiffness(Index n, const Faces& F) {
     const Eigen::Vector3d of60Degrees = Eigen::Vector3d::Constant(1.0 / std::sqrt(3.0));
-    SparseMatrix W = stiffnessOf(V.rows(), F, [&](Index) { return of60Degrees; });
-    const double mean = lumpedMass(V, F).mean();
-    return {std::move(W), Eigen::VectorXd::Constant(V.rows(), mean)};
+    return stiffnessOf(n, F, [&](Index) { return of60Degrees; });
 }
 
 Eigen::VectorXd lumpedMass(const Vertices& V, const Faces& F) {
@@ -69,7 +66,7 @@ Eigen::VectorXd lumpedMass(const Vertices& V, const Faces& F) {
             third[t] = (b - a).cross(c - a).norm() / 6.0;
         }
     });
-    Eigen::VectorXd D = Eigen::VectorXd::Zero(V.rows());
+    Eigen::VectorXd D = Eigen::VectorXd::Zero(V.rows());  // Kovnatsky et al. 2012, Eq. 4
     forEachInOrder(F.rows(), [&](Index t) {
         for (int k = 0; k < 3; ++k) D[F(t, k)] += third[t];
     });

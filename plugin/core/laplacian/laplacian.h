@@ -1,11 +1,12 @@
 #pragma once
 
+#include "core/laplacian/constant_modes.h"
 #include "core/mesh/mesh.h"
 
 namespace spectral {
 
 /// The Laplace-Beltrami operator A = D^-1 W of a triangle mesh, as the generalized eigenproblem
-/// W phi = lambda D phi (Kovnatsky et al. 2012, Eq. 4).
+/// W phi = lambda D phi (Kovnatsky et al. 2012, Eq. 4), and its null space.
 ///
 /// Sign: W is positive semidefinite, lambda >= 0 (the paper writes Delta = -div grad).
 /// A frequency is omega = sqrt(lambda), in radians per length unit; its wavelength is 2 pi / omega.
@@ -13,23 +14,22 @@ struct Laplacian {
     SparseMatrix W;     ///< Stiffness (cotangent) matrix, n x n, symmetric, both triangles stored,
                         ///< dimensionless; natural (Neumann) boundary conditions.
     Eigen::VectorXd D;  ///< Lumped mass matrix, n diagonal entries > 0, length units squared.
+    ConstantModes constants{};  ///< One constant function for each component, with the masses D.
 };
 
-/// W_ij = -(cot a_ij + cot b_ij)/2, W_ii = -sum_j W_ij; D_ii is a third of the area of the
-/// triangles at vertex i.
-///
-/// A triangle without area gives entries that are not finite; see `isUsable`.
+/// W_ij = -(cot a_ij + cot b_ij)/2, W_ii = -sum_j W_ij. A triangle without area gives entries that
+/// are not finite; see `isUsable`.
 /// @param F  every vertex is in some triangle.
-Laplacian cotangentLaplacian(const Vertices& V, const Faces& F);
+SparseMatrix cotangentStiffness(const Vertices& V, const Faces& F);
 
 /// As if all triangles were equilateral and of one size: W_ij = -1/sqrt(3) (half of that on a
-/// boundary), D_ii the mean vertex area. Frequencies are those of the surface where the sampling is
-/// even. Noise that is independent at every vertex has the same energy in every harmonic, since D
-/// is constant, and cannot hide in weights that were taken from noisy triangles.
-/// @param F  every vertex is in some triangle.
-Laplacian uniformLaplacian(const Vertices& V, const Faces& F);
+/// boundary). With D_ii the mean vertex area, frequencies are those of the surface where the
+/// sampling is even. Noise that is independent at every vertex has the same energy in every
+/// harmonic, and cannot hide in weights that were taken from noisy triangles.
+/// @param F  every one of the n vertices is in some triangle.
+SparseMatrix uniformStiffness(Index n, const Faces& F);
 
-/// D of the cotangent Laplacian.
+/// D_ii is a third of the area of the triangles at vertex i.
 Eigen::VectorXd lumpedMass(const Vertices& V, const Faces& F);
 
 /// Whether all entries are finite and all masses positive; false when triangles have collapsed.

@@ -23,31 +23,38 @@ void checkMesh(const Vertices& V, const Faces& F, LaplacianKind kind) {
     if (kind == LaplacianKind::Cotangent) checkAreas(V, F);
 }
 
-LaplacianBuilder::LaplacianBuilder(const Surface& surface, LaplacianKind kind, BasisUpdate update,
-                                   double conformalShare)
-    : surface_(surface), kind_(kind), update_(update), conformalShare_(conformalShare) {
+LaplacianBuilder::LaplacianBuilder(const Surface& surface, Components components,
+                                   LaplacianKind kind, BasisUpdate update, double conformalShare)
+    : surface_(surface),
+      components_(std::move(components)),
+      kind_(kind),
+      update_(update),
+      conformalShare_(conformalShare) {
     if (kind == LaplacianKind::IntrinsicDelaunay) intrinsic_.emplace(surface.X, surface.F);
-    current_ = {stiffness(surface.X), mass(surface.X)};
-    inputMass_ = current_.D;
-    area_ = inputMass_.sum();
+    current_.W = stiffness(surface.X);
+    inputMass_ = mass(surface.X);
+    setMass(inputMass_, inputMass_.sum());
     if (update == BasisUpdate::Full)
         inputStiffness_ = current_.W;
     else
         intrinsic_.reset();  // W stays
 }
 
-const Laplacian& LaplacianBuilder::input() {
-    if (update_ == BasisUpdate::Full) current_.W = inputStiffness_;
-    current_.D = inputMass_;
-    area_ = inputMass_.sum();
-    return current_;
+void LaplacianBuilder::setMass(Eigen::VectorXd D, double area) {
+    current_.D = std::move(D);
+    current_.constants = ConstantModes(components_, current_.D);
+    area_ = area;
 }
 
-const Laplacian& LaplacianBuilder::operator()(const Vertices& X) {
-    if (update_ == BasisUpdate::None) return input();
+void LaplacianBuilder::reset() {
+    if (update_ == BasisUpdate::Full) current_.W = inputStiffness_;
+    setMass(inputMass_, inputMass_.sum());
+}
+
+void LaplacianBuilder::update(const Vertices& X) {
+    if (update_ == BasisUpdate::None) return;
     const Eigen::VectorXd D = lumpedMass(X, surface_.F);
-    current_.D = boundedMass(D);
-    area_ = D.sum();
+    setMass(boundedMass(D), D.sum());
     // Relative to the input; a surface that has shrunk to a line has edges, but no area.
     constexpr double kNothing = 1e-10;
     if (area_ <= kNothing * kNothing * inputMass_.sum() &&
@@ -59,12 +66,11 @@ const Laplacian& LaplacianBuilder::operator()(const Vertices& X) {
             current_.W =
                 ((1.0 - conformalShare_) * current_.W + conformalShare_ * inputStiffness_).eval();
     }
-    return current_;
 }
 
 SparseMatrix LaplacianBuilder::stiffness(const Vertices& X) const {
-    if (kind_ == LaplacianKind::Uniform) return uniformLaplacian(X, surface_.F).W;
-    return intrinsic_ ? intrinsic_->stiffness(X) : cotangentLaplacian(X, surface_.F).W;
+    if (kind_ == LaplacianKind::Uniform) return uniformStiffness(X.rows(), surface_.F);
+    return intrinsic_ ? intrinsic_->stiffness(X) : cotangentStiffness(X, surface_.F);
 }
 
 /// From the triangles of the mesh for every kind: intrinsic areas jump where an edge flips, while
@@ -88,10 +94,9 @@ MeshLaplacian meshLaplacian(const Vertices& V, const Faces& F, LaplacianKind kin
     checkMesh(V, F, kind);
     Surface surface = joinedSurface(V, F);
     Components components = connectedComponents(surface.F, surface.X.rows());
-    Laplacian laplacian = LaplacianBuilder(surface, kind, BasisUpdate::None).input();
+    Laplacian laplacian = LaplacianBuilder(surface, components, kind, BasisUpdate::None).current();
     requireUsable(laplacian);
-    ConstantModes constants(components, laplacian.D);
-    return {std::move(surface), std::move(components), std::move(laplacian), std::move(constants)};
+    return {std::move(surface), std::move(components), std::move(laplacian)};
 }
 
 }  // namespace spectral

@@ -2,7 +2,6 @@
 
 #include <optional>
 
-#include "core/laplacian/constant_modes.h"
 #include "core/laplacian/intrinsic_delaunay.h"
 #include "core/laplacian/laplacian.h"
 #include "core/mesh/surface.h"
@@ -26,25 +25,29 @@ enum class BasisUpdate {
     None        ///< Neither: one basis for all steps (Vallet and Levy 2008).
 };
 
-/// Builds the Laplacians of the shapes that a filter passes through.
+/// Holds the Laplacian of one shape after another that a filter passes through. It gives no copies,
+/// as W is a gigabyte on ten million vertices.
 class LaplacianBuilder {
   public:
+    /// Begins with the input.
     /// @param surface  kept by reference; its X is the input shape X_0.
     /// @param conformalShare  for BasisUpdate::Full, from 0, the paper's scheme, to 1, conformal:
     ///                        W = (1 - share) W(X) + share W(X_0). Where a part has shrunk to a
     ///                        line, its mass vanishes but this share of W does not, and contracts
     ///                        the line.
-    LaplacianBuilder(const Surface& surface, LaplacianKind kind, BasisUpdate update,
-                     double conformalShare = 0.0);
+    LaplacianBuilder(const Surface& surface, Components components, LaplacianKind kind,
+                     BasisUpdate update, double conformalShare = 0.0);
 
-    /// The Laplacian of the input; valid until the next Laplacian is built.
-    const Laplacian& input();
+    const Laplacian& current() const { return current_; }
 
-    /// The Laplacian of the shape X (n x 3), updated as BasisUpdate says; valid likewise.
+    /// Makes that of the shape X (n x 3) the current one, updated as BasisUpdate says.
     /// @throws SolverFailure  when nothing of the shape is left.
-    const Laplacian& operator()(const Vertices& X);
+    void update(const Vertices& X);
 
-    /// Area of the shape of the last Laplacian: the sum of D, but for what D is kept above.
+    /// Makes that of the input the current one again.
+    void reset();
+
+    /// Area of the current shape: the sum of D, but for what D is kept above.
     double area() const { return area_; }
 
     /// D of the input.
@@ -54,10 +57,12 @@ class LaplacianBuilder {
     Eigen::VectorXd mass(const Vertices& X) const;
 
   private:
+    void setMass(Eigen::VectorXd D, double area);
     SparseMatrix stiffness(const Vertices& X) const;
     Eigen::VectorXd boundedMass(const Eigen::VectorXd& D) const;
 
     const Surface& surface_;
+    Components components_;
     LaplacianKind kind_;
     BasisUpdate update_;
     double conformalShare_;
@@ -73,7 +78,6 @@ struct MeshLaplacian {
     Surface surface;  ///< Its rows are those of W and D.
     Components components;
     Laplacian laplacian;
-    ConstantModes constants;
 };
 
 /// @param V  n x 3 positions, finite; unreferenced vertices allowed.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "core/kernels/kernels.h"
+#include "core/ldlt/kernels.h"
 #include "core/support/threads.h"
 
 namespace spectral {

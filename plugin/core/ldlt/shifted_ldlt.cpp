@@ -4,7 +4,7 @@
 #include <sstream>
 #include <string>
 
-#include "core/kernels/kernels.h"
+#include "core/ldlt/kernels.h"
 #include "core/support/errors.h"
 #include "core/support/memory.h"
 #include "core/support/threads.h"

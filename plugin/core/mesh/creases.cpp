@@ -10,9 +10,9 @@ namespace spectral {
 
 std::vector<bool> creaseVertices(const Vertices& X, const Faces& F, double angle) {
     std::vector<bool> onCrease(static_cast<std::size_t>(X.rows()), false);
-    forEachEdge(sidesByEdge(F), [&](auto first, auto end) {
+    SidesByEdge(F).forEachEdge([&](auto first, auto end) {
         if (end - first != 2) return;
-        const auto corner = [&](auto side) { return X.row(F(side->face, side->opposite)); };
+        const auto corner = [&](auto side) { return X.row(F(side->face(), side->opposite())); };
         const Eigen::RowVector3d origin = X.row(first->low);
         const Eigen::RowVector3d edge = X.row(first->high) - origin;
         const Eigen::RowVector3d a = edge.cross(corner(first) - origin);

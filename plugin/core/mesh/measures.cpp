@@ -17,6 +17,15 @@ double meanEdgeLength(const Vertices& V, const Faces& F) {
     return F.rows() > 0 ? sum / (3.0 * static_cast<double>(F.rows())) : 0.0;
 }
 
+double defaultFeatureSize(double meanEdge, double diagonal) {
+    const double size = 6.0 * meanEdge, most = 0.05 * diagonal;
+    return size > 0.0 && size < most ? size : most;
+}
+
+double defaultSmallestSize(double meanEdge, double diagonal) {
+    return 0.5 * defaultFeatureSize(meanEdge, diagonal);
+}
+
 double surfaceArea(const Vertices& V, const Faces& F) {
     const double twiceArea = parallelSum(F.rows(), 0.0, [&](Index begin, Index end) {
         double sum = 0.0;

@@ -16,7 +16,7 @@ using Edge = std::array<int, 2>;
 
 std::vector<Edge> boundaryEdges(const Faces& F) {
     std::vector<Edge> edges;
-    forEachEdge(sidesByEdge(F), [&](auto first, auto end) {
+    SidesByEdge(F).forEachEdge([&](auto first, auto end) {
         if (end - first == 1) edges.push_back({first->low, first->high});
     });
     return edges;

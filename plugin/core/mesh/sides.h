@@ -3,30 +3,53 @@
 #include <vector>
 
 #include "core/mesh/mesh.h"
+#include "core/support/threads.h"
 
 namespace spectral {
 
 /// A side of a triangle.
 struct Side {
     int low, high;  ///< Its vertices.
-    int face;
-    int opposite;  ///< Number, 0 to 2, of the corner opposite to it.
+    int number;     ///< 3 face + corner.
 
-    bool isOfEdge(const Side& other) const { return low == other.low && high == other.high; }
+    int face() const { return number / 3; }
+    int corner() const { return number % 3; }          ///< The one that it starts from, 0 to 2.
+    int opposite() const { return (number + 2) % 3; }  ///< The one that is not on it.
 };
 
-/// All sides of all triangles; those of one edge are next to each other, ascending by face.
-std::vector<Side> sidesByEdge(const Faces& F);
+/// All sides of all triangles, by edge: first by the lower vertex, then by the higher one; those of
+/// one edge by face.
+class SidesByEdge {
+  public:
+    explicit SidesByEdge(const Faces& F);
 
-/// Calls work(first, end) for the sides of every edge.
-template <class Work>
-void forEachEdge(const std::vector<Side>& sides, const Work& work) {
-    for (auto first = sides.begin(); first != sides.end();) {
-        auto end = first + 1;
-        while (end != sides.end() && end->isOfEdge(*first)) ++end;
-        work(first, end);
-        first = end;
+    /// Calls work(first, end) for the sides of every edge, ascending.
+    template <class Work>
+    void forEachEdge(const Work& work) const {
+        visit(sides_.data(), sides_.data() + sides_.size(), work);
     }
-}
+
+    /// The same in parallel, in any order; `work` may reorder the sides of its edge.
+    template <class Work>
+    void forEachEdgeInParallel(const Work& work) {
+        parallelRows(static_cast<Index>(begin_.size()) - 1, [&](Index from, Index to) {
+            visit(sides_.data() + begin_[from], sides_.data() + begin_[to], work);
+        });
+    }
+
+  private:
+    template <class SidePointer, class Work>
+    static void visit(SidePointer first, SidePointer end, const Work& work) {
+        while (first != end) {
+            SidePointer next = first + 1;
+            while (next != end && next->low == first->low && next->high == first->high) ++next;
+            work(first, next);
+            first = next;
+        }
+    }
+
+    std::vector<Side> sides_;
+    std::vector<int> begin_;  // of the sides of each lower vertex; then their number
+};
 
 }  // namespace spectral

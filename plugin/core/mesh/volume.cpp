@@ -27,10 +27,10 @@ std::vector<Faces> facesByComponent(const Faces& F, const Components& components
 /// Whether every edge is passed as often in one direction as in the other.
 bool isClosed(const Faces& F) {
     bool isBalanced = true;
-    forEachEdge(sidesByEdge(F), [&](auto first, auto end) {
+    SidesByEdge(F).forEachEdge([&](auto first, auto end) {
         int balance = 0;
         for (auto side = first; side != end; ++side)
-            balance += F(side->face, (side->opposite + 1) % 3) == side->low ? 1 : -1;
+            balance += F(side->face(), side->corner()) == side->low ? 1 : -1;
         isBalanced = isBalanced && balance == 0;
     });
     return isBalanced;

@@ -53,17 +53,17 @@ VertexGraph facesOfVertices(const Faces& F, Index vertexCount) {
     return graph;
 }
 
-VertexGraph neighboursOfVertices(const std::vector<Side>& sides, Index vertexCount) {
+VertexGraph neighboursOfVertices(const SidesByEdge& sides, Index vertexCount) {
     VertexGraph graph;
     graph.first.assign(static_cast<std::size_t>(vertexCount) + 1, 0);
-    forEachEdge(sides, [&](auto first, auto) {
+    sides.forEachEdge([&](auto first, auto) {
         ++graph.first[first->low + 1];
         ++graph.first[first->high + 1];
     });
     accumulate(graph);
     std::vector<Index> next(graph.first);
     // By ascending lower vertex, so that each vertex meets its neighbours in ascending order.
-    forEachEdge(sides, [&](auto first, auto) {
+    sides.forEachEdge([&](auto first, auto) {
         graph.at[next[first->low]++] = first->high;
         graph.at[next[first->high]++] = first->low;
     });
@@ -89,18 +89,18 @@ FaceGraph faceGraph(const Faces& F, Index vertexCount) {
     Eigen::Matrix<bool, Eigen::Dynamic, 3> isOpposite(F.rows(), 3);
     // Whether the face runs through the side from its higher to its lower vertex.
     const auto isReversed = [&](const Side& side) {
-        return F(side.face, (side.opposite + 1) % 3) == side.high;
+        return F(side.face(), side.corner()) == side.high;
     };
-    const std::vector<Side> sides = sidesByEdge(F);
-    forEachEdge(sides, [&](auto first, auto end) {
+    const SidesByEdge sides(F);
+    sides.forEachEdge([&](auto first, auto end) {
         if (end - first != 2) {
             graph.onRim[first->low] = graph.onRim[first->high] = true;
             return;
         }
         const Side &a = *first, &b = *(first + 1);
-        graph.neighbours(a.face, a.opposite) = b.face;
-        graph.neighbours(b.face, b.opposite) = a.face;
-        isOpposite(a.face, a.opposite) = isOpposite(b.face, b.opposite) =
+        graph.neighbours(a.face(), a.opposite()) = b.face();
+        graph.neighbours(b.face(), b.opposite()) = a.face();
+        isOpposite(a.face(), a.opposite()) = isOpposite(b.face(), b.opposite()) =
             isReversed(a) == isReversed(b);
     });
     orient(isOpposite, graph);

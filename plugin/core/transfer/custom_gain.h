@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "core/laplacian/frequency.h"
+#include "core/support/types.h"
 
 namespace spectral {
 

@@ -4,8 +4,8 @@
 #include <cassert>
 #include <cmath>
 
-#include "core/laplacian/frequency.h"
 #include "core/support/errors.h"
+#include "core/support/frequency.h"
 #include "core/support/types.h"
 
 namespace spectral {

@@ -7,7 +7,6 @@
 #include <string>
 #include <utility>
 
-#include "core/laplacian/frequency.h"
 #include "core/support/errors.h"
 #include "core/support/types.h"
 
@@ -186,6 +185,7 @@ bool TransferFunction::isConstantBeyondJumps() const {
 }
 
 Gain fractionalPower(const TransferFunction& F, double alpha) {
+    // Kovnatsky et al. 2012, Eq. 11.
     return [F, alpha](double omega) { return F.power(omega, alpha); };
 }
 
@@ -211,7 +211,7 @@ double meanGain(const TransferFunction& F, double from, double to) {
             width / 6.0 *
             (F(cuts[i] + inset) + 4.0 * F(0.5 * (cuts[i] + cuts[i + 1])) + F(cuts[i + 1] - inset));
     }
-    return integral / (to - from);
+    return integral / (to - from);  // Kovnatsky et al. 2012, Eq. 9
 }
 
 }  // namespace spectral

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "core/laplacian/frequency.h"
+#include "core/support/types.h"
 
 namespace spectral {
 

@@ -36,14 +36,14 @@ TEST(Artefacts, AreWhatAllEigenvectorsSay) {
     for (const Mesh& mesh : classesOfMeshes())
         for (const double part : {0.05, 0.15, 0.5}) {
             const Operator A(mesh);
-            const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+            const HarmonicBasis dense = denseBasis(A);
             const double featureSize = part * boundingBoxDiagonal(mesh.V);
             const double lambda_c = std::pow(2.0 * kPi / featureSize, 2);
             const Vertices smooth = testing::filteredDense(A, dense, [lambda_c](double omega) {
                 return 1.0 / (1.0 + std::pow(omega * omega / (4.0 * lambda_c), 4));
             });
             const Eigen::VectorXd length = (mesh.V - smooth).rowwise().norm();
-            const Eigen::VectorXd& D = A.laplacian.D;
+            const Eigen::VectorXd& D = A.D;
 
             const Artefacts artefacts = measureArtefacts(
                 mesh.V, mesh.F, withFeatureSize(featureSize, LaplacianKind::Cotangent));

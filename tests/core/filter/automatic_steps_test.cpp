@@ -5,9 +5,9 @@
 #include <numeric>
 
 #include "core/filter/fractional_steps.h"
-#include "core/laplacian/frequency.h"
 #include "core/laplacian/interior.h"
 #include "core/mesh/mesh.h"
+#include "core/support/frequency.h"
 #include "core/transfer/transfer_function.h"
 #include "support/filter_of_blob.h"
 #include "support/shapes.h"
@@ -88,7 +88,8 @@ TEST(AutomaticSteps, AreNotHeldUpByPartsThatShrinkAway) {
     const Interior interior(surface.F, connectedComponents(surface.F, surface.X.rows()),
                             Boundary::Free);
     const TransferFunction F({}, cutoffFrequency(0.3));
-    LaplacianBuilder laplacians(surface, LaplacianKind::IntrinsicDelaunay, BasisUpdate::Conformal);
+    LaplacianBuilder laplacians(surface, interior.surfaceComponents(),
+                                LaplacianKind::IntrinsicDelaunay, BasisUpdate::Conformal);
     EvaluationOptions evaluation;
     StepEvaluator evaluate(evaluation, interior, F);
     const double tolerance = 1e-3;

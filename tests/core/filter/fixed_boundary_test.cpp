@@ -6,7 +6,6 @@
 #include "core/analysis/manifold_harmonics.h"
 #include "core/filter/fractional_filter.h"
 #include "core/laplacian/constant_modes.h"
-#include "core/laplacian/frequency.h"
 #include "core/laplacian/harmonic_extension.h"
 #include "core/laplacian/interior.h"
 #include "core/mesh/measures.h"
@@ -69,7 +68,7 @@ class DenseFilter {
   public:
     explicit DenseFilter(const Mesh& mesh) : X_(mesh.V) {
         const Operator A(mesh);
-        const Eigen::MatrixXd W(A.laplacian.W);
+        const Eigen::MatrixXd W(A.W);
         const std::vector<bool> onBoundary = boundaryVertices(mesh.F, mesh.V.rows());
         const Components components = connectedComponents(mesh.F, mesh.V.rows());
         for (int c = 0; c < components.count; ++c) {
@@ -78,7 +77,7 @@ class DenseFilter {
                 if (components.label[i] == c) (onBoundary[i] ? B : I).push_back(i);
             if (I.empty()) continue;
             const Eigen::MatrixXd W_II = W(I, I);
-            const Eigen::VectorXd D = A.laplacian.D(I);
+            const Eigen::VectorXd D = A.D(I);
             const auto [lambda, Phi] = testing::denseEigenpairs(W_II, D);
             Eigen::MatrixXd H_I(I.size(), 3);
             if (B.empty()) {
@@ -224,9 +223,8 @@ TEST(HarmonicExtension, LeavesNothingOfALinearFunctionOnAFlatMesh) {
     flat.V.col(2).setZero();
     const Operator A(flat);
     const Interior interior(flat.F, connectedComponents(flat.F, flat.V.rows()), Boundary::Fixed);
-    HarmonicExtension extension(interior);
-    extension.setLaplacian(A.laplacian);
-    const HarmonicExtension::Rest rest = extension.rest(flat.V);
+    const HarmonicExtension::Rest rest =
+        HarmonicExtension(interior).rest(A, interior.restricted(A), flat.V);
     EXPECT_LT(rest.U.cwiseAbs().maxCoeff(), 1e-14);
     EXPECT_LT(rest.relativeSize, 1e-14);
 }

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/filter/fractional_filter.h"
-#include "core/laplacian/selection_weight.h"
+#include "core/laplacian/vertex_weight.h"
 #include "core/mesh/creases.h"
 #include "core/mesh/measures.h"
 #include "core/support/errors.h"
@@ -48,7 +48,7 @@ TEST(SelectionWeight, FallsFromOneToExactlyZeroWithinTheWidth) {
     std::vector<bool> selected;
     for (Index i = 0; i < plane.mesh.V.rows(); ++i) selected.push_back(plane.mesh.V(i, 0) < 1.0);
     const Components whole = connectedComponents(plane.mesh.F, plane.mesh.V.rows());
-    const Eigen::VectorXd weight = selectionWeight(plane.laplacian, whole, selected, width);
+    const Eigen::VectorXd weight = selectionWeight(plane, whole, selected, width);
     for (Index i = 0; i < weight.size(); ++i) {
         const double distance = plane.mesh.V(i, 0) - 0.95;  // from the last selected column
         if (distance < 0.01) {

@@ -9,6 +9,7 @@
 #include "core/harmonics/harmonic_basis.h"
 #include "core/mesh/measures.h"
 #include "core/support/errors.h"
+#include "core/support/frequency.h"
 #include "support/evaluation.h"
 
 namespace spectral {
@@ -45,7 +46,7 @@ Eigen::MatrixXd filtered(const Mesh& mesh, const Eigen::MatrixXd& Q,
 TEST(SignalFilter, MultipliesEveryEigenfunctionByItsGain) {
     for (const Mesh& mesh : classesOfMeshes()) {
         const Operator A(mesh);
-        const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+        const HarmonicBasis dense = denseBasis(A);
         for (TransferFunctionOptions transfer : testing::smoothTransferFunctions()) {
             SignalFilterOptions options = lowPass(mesh);
             options.transferFunction = transfer;
@@ -64,12 +65,11 @@ TEST(SignalFilter, MultipliesEveryEigenfunctionByItsGain) {
 TEST(SignalFilter, IsWhatAllEigenvectorsGive) {
     for (const Mesh& mesh : classesOfMeshes()) {
         const Operator A(mesh);
-        const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+        const HarmonicBasis dense = denseBasis(A);
         const Eigen::MatrixXd Q = noise(mesh.V.rows(), 4, 5);
         const SignalFilterOptions options = lowPass(mesh);
         const TransferFunction F(options.transferFunction, cutoffFrequency(options.featureSize));
-        const Eigen::MatrixXd expected =
-            applyInBasis(dense, A.laplacian.D, A.constants, fractionalPower(F, 1.0), 0.0, Q);
+        const Eigen::MatrixXd expected = applyInBasis(dense, A, fractionalPower(F, 1.0), 0.0, Q);
         const FilteredSignal result = filterSignal(mesh.V, mesh.F, Q, options);
         EXPECT_FALSE(result.isConstant);
         EXPECT_TRUE(result.accuracyReached);
@@ -77,7 +77,7 @@ TEST(SignalFilter, IsWhatAllEigenvectorsGive) {
         const Eigen::MatrixXd change = expected - Q;
         EXPECT_NEAR(result.maxChange, largest(change), kAccuracy);
         const Eigen::VectorXd squares = change.rowwise().squaredNorm() / 4.0;
-        EXPECT_NEAR(result.rmsChange, std::sqrt(A.laplacian.D.dot(squares) / A.area()), kAccuracy);
+        EXPECT_NEAR(result.rmsChange, std::sqrt(A.D.dot(squares) / A.area()), kAccuracy);
     }
 }
 
@@ -184,13 +184,12 @@ TEST(SignalFilter, DoesNotDependOnScaleAndOffsetOfTheValues) {
 TEST(SignalFilter, WithIdealResponseIsExact) {
     for (const Mesh& mesh : classesOfMeshes()) {
         const Operator A(mesh);
-        const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+        const HarmonicBasis dense = denseBasis(A);
         SignalFilterOptions options = lowPass(mesh, 0.4);
         options.transferFunction.response = Response::Ideal;
         const TransferFunction F(options.transferFunction, cutoffFrequency(options.featureSize));
         const Eigen::MatrixXd Q = noise(mesh.V.rows(), 3, 7);
-        const Eigen::MatrixXd expected =
-            applyInBasis(dense, A.laplacian.D, A.constants, fractionalPower(F, 1.0), 0.0, Q);
+        const Eigen::MatrixXd expected = applyInBasis(dense, A, fractionalPower(F, 1.0), 0.0, Q);
         EXPECT_LT(largest(filtered(mesh, Q, options) - expected), kAccuracy);
     }
 }

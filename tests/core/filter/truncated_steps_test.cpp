@@ -7,10 +7,10 @@
 #include "core/filter/fractional_filter.h"
 #include "core/harmonics/harmonic_basis.h"
 #include "core/harmonics/truncated_basis.h"
-#include "core/laplacian/constant_modes.h"
 #include "core/laplacian/laplacian.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/surface.h"
+#include "core/support/frequency.h"
 #include "core/support/memory.h"
 #include "core/support/progress.h"
 #include "core/support/threads.h"
@@ -37,13 +37,11 @@ FilterOptions truncated(const Mesh& mesh, int k, bool reinjectResidual = true) {
 /// The same steps with all eigenvectors of every shape, by the dense solver.
 Vertices withDenseBases(const Mesh& mesh, const FilterOptions& options) {
     const TransferFunction F(options.transferFunction, cutoffFrequency(options.featureSize));
-    const Components components = connectedComponents(mesh.F, mesh.V.rows());
     const double alpha = 1.0 / options.steps;
     Vertices X = mesh.V;
     for (int step = 0; step < options.steps; ++step) {
-        const Laplacian laplacian = cotangentLaplacian(X, mesh.F);
-        const ConstantModes constants(components, laplacian.D);
-        HarmonicBasis basis = denseBasis(laplacian, constants);
+        const Laplacian laplacian = testing::cotangentLaplacian(X, mesh.F);
+        HarmonicBasis basis = denseBasis(laplacian);
         const double highest = std::sqrt(basis.lambda[basis.size() - 1]);
         const Index k =
             cutOutsideClusters(basis.lambda, options.evaluation.truncation.basisSize).value();
@@ -52,8 +50,7 @@ Vertices withDenseBases(const Mesh& mesh, const FilterOptions& options) {
         const double rest = options.evaluation.truncation.reinjectResidual
                                 ? meanGain(F, std::sqrt(basis.lambda[k - 1]), highest)
                                 : 0.0;
-        X = applyInBasis(basis, laplacian.D, constants, fractionalPower(F, alpha),
-                         std::pow(rest, alpha), X);
+        X = applyInBasis(basis, laplacian, fractionalPower(F, alpha), std::pow(rest, alpha), X);
     }
     return X;
 }
@@ -158,7 +155,7 @@ TEST(TruncatedSteps, ReportTheBasisOfTheInputWhereItIsTheOnlyOne) {
     const Mesh mesh = roughSphere();
     const FilterResult result = fractionalFilter(mesh.V, mesh.F, truncated(mesh, 200));
     const testing::Operator A(mesh);
-    const Eigen::VectorXd lambda = denseBasis(A.laplacian, A.constants).lambda;
+    const Eigen::VectorXd lambda = denseBasis(A).lambda;
     ASSERT_GE(result.eigenvalues.size(), 200);
     EXPECT_EQ(result.inertiaCount, result.eigenvalues.size());
     EXPECT_LT(result.residuals.maxCoeff(), 1e-7);

@@ -25,19 +25,17 @@ SpectralInterval intervalOf(const Eigen::VectorXd& lambda, Index first, Index co
 
 /// The largest part of a vector of `Phi` that is in none of `space`.
 double outside(const Operator& A, const Eigen::MatrixXd& Phi, const Eigen::MatrixXd& space) {
-    const Eigen::MatrixXd rest =
-        Phi - space * (space.transpose() * (A.laplacian.D.asDiagonal() * Phi));
-    return (A.laplacian.D.cwiseSqrt().asDiagonal() * rest).colwise().norm().maxCoeff();
+    const Eigen::MatrixXd rest = Phi - space * (space.transpose() * (A.D.asDiagonal() * Phi));
+    return (A.D.cwiseSqrt().asDiagonal() * rest).colwise().norm().maxCoeff();
 }
 
 TEST(ComputeInterval, FindsWhatTheDenseSolverFinds) {
     const Operator A(testing::blob());
-    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    const HarmonicBasis dense = denseBasis(A);
     ShiftedLdlt factor;
     for (const Index first : {1, 30, 200}) {
         const SpectralInterval interval = intervalOf(dense.lambda, first, 12);
-        const IntervalPairs pairs =
-            computeInterval(A.laplacian, A.constants, interval, factor, kNeverStops);
+        const IntervalPairs pairs = computeInterval(A, interval, factor, kNeverStops);
         ASSERT_TRUE(pairs.isComplete()) << first;
         EXPECT_LT((pairs.lambda - dense.lambda.segment(first, 12)).cwiseAbs().maxCoeff(),
                   1e-10 * dense.lambda[first + 12]);
@@ -47,24 +45,23 @@ TEST(ComputeInterval, FindsWhatTheDenseSolverFinds) {
 
 TEST(ComputeInterval, IsIncompleteWhereItsCountIsWrong) {
     const Operator A(testing::blob());
-    const Eigen::VectorXd lambda = denseBasis(A.laplacian, A.constants).lambda;
+    const Eigen::VectorXd lambda = denseBasis(A).lambda;
     ShiftedLdlt factor;
     for (const Index wrong : {-1, 1}) {
         SpectralInterval interval = intervalOf(lambda, 30, 12);
         interval.count += wrong;
-        EXPECT_FALSE(
-            computeInterval(A.laplacian, A.constants, interval, factor, kNeverStops).isComplete());
+        EXPECT_FALSE(computeInterval(A, interval, factor, kNeverStops).isComplete());
     }
 }
 
 TEST(Orthonormalize, TellsAVectorThatIsAlreadyThere) {
     const Operator A(testing::blob());
-    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    const HarmonicBasis dense = denseBasis(A);
     Eigen::MatrixXd U = dense.Phi.middleCols(5, 3) + 0.1 * dense.Phi.leftCols(3);
-    EXPECT_GT(orthonormalize(A.laplacian.D, dense.Phi.leftCols(5), U), kOwnPart);
+    EXPECT_GT(orthonormalize(A.D, dense.Phi.leftCols(5), U), kOwnPart);
     EXPECT_LT(outside(A, U, dense.Phi.middleCols(5, 3)), 1e-12);
     U.col(1) = dense.Phi.col(2) + 1e-3 * U.col(1);
-    EXPECT_LT(orthonormalize(A.laplacian.D, dense.Phi.leftCols(5), U), kOwnPart);
+    EXPECT_LT(orthonormalize(A.D, dense.Phi.leftCols(5), U), kOwnPart);
 }
 
 }  // namespace

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "core/laplacian/constant_modes.h"
-#include "core/laplacian/frequency.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/mesh.h"
+#include "core/support/frequency.h"
 #include "core/transfer/transfer_function.h"
 #include "support/evaluation.h"
 
@@ -28,7 +28,7 @@ std::vector<Mesh> classesOfMeshes() {
 TEST(FullSpectrum, EqualsAllEigenvectorsWithinTheRequestedAccuracy) {
     for (const Mesh& mesh : classesOfMeshes()) {
         const Operator A(mesh);
-        const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+        const HarmonicBasis dense = denseBasis(A);
         for (const double feature : {0.3, 1.0})
             for (const auto& options : testing::smoothTransferFunctions())
                 for (const double alpha : {1.0, 0.1}) {
@@ -54,7 +54,7 @@ TEST(FullSpectrum, EqualsAllEigenvectorsWithinTheRequestedAccuracy) {
 
 TEST(FullSpectrum, ReachesTightAccuracies) {
     const Operator A(testing::blob());
-    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    const HarmonicBasis dense = denseBasis(A);
     const TransferFunction F({}, 2.0 * kPi / 0.8);
     const Gain gain = fractionalPower(F, 1.0);
     const Vertices expected = testing::filteredDense(A, dense, gain);
@@ -70,7 +70,7 @@ TEST(FullSpectrum, ReachesTightAccuracies) {
 
 TEST(FullSpectrum, OfANarrowBandIsNotStoppedBeforeTheBandIsSeen) {
     const Operator A(testing::blob());
-    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    const HarmonicBasis dense = denseBasis(A);
     TransferFunctionOptions options;
     options.type = FilterType::BandPass;
     options.stopGain = 1.0;
@@ -92,7 +92,7 @@ TEST(FullSpectrum, DoesNotClaimAnAccuracyForABandThatItsSpacesHaveNotSeen) {
     // So narrow that it lies between Ritz values, on both sides of which the gain is 1: all
     // approximations without the band agree.
     const Operator A(testing::joined(testing::blob(), testing::torus(2, 0.7, 24, 12)));
-    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    const HarmonicBasis dense = denseBasis(A);
     TransferFunctionOptions options;
     options.type = FilterType::BandPass;
     options.stopGain = 1.0;
@@ -117,7 +117,7 @@ TEST(FullSpectrum, DoesNotClaimAnAccuracyForABandThatItsSpacesHaveNotSeen) {
 
 TEST(FullSpectrum, OfAFeatureSizeFarFromAllSizesOfTheMeshReportsItsAccuracy) {
     const Operator A(testing::blob());
-    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    const HarmonicBasis dense = denseBasis(A);
     for (const double feature : {1e-7, 1e-3, 1e3, 1e7})
         for (const auto& options : testing::smoothTransferFunctions()) {
             const TransferFunction F(options, 2.0 * kPi / feature);
@@ -146,7 +146,7 @@ TEST(FullSpectrum, IsExactWhenTheKrylovSpaceIsInvariant) {
     const Operator A(testing::icosphere(0));  // three frequencies in all
     const FullSpectrumResult result =
         testing::filteredFullSpectrum(A, [](double omega) { return omega; }, 1.0, 1e-12);
-    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    const HarmonicBasis dense = denseBasis(A);
     const Vertices expected = testing::filteredDense(A, dense, [](double omega) { return omega; });
     EXPECT_LT((result.Y - expected).cwiseAbs().maxCoeff(), 1e-12);
 }
@@ -155,7 +155,7 @@ TEST(FullSpectrum, IsAccurateAtVerticesOfHardlyAnyMass) {
     Mesh tiny = testing::icosphere(0);  // the larger one alone has an invariant space
     tiny.V *= 1e-6;
     const Operator A(testing::joined(testing::icosphere(0), tiny));
-    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    const HarmonicBasis dense = denseBasis(A);
     const double cutoff = 1.5e6;
     const Gain gain = fractionalPower(TransferFunction({}, cutoff), 1.0);
     const FullSpectrumResult result = testing::filteredFullSpectrum(A, gain, cutoff, 1e-8);
@@ -167,9 +167,9 @@ TEST(FullSpectrum, IsAccurateAtVerticesOfHardlyAnyMass) {
 TEST(FullSpectrum, DoesNotTakeAVertexWithoutMassForRoundOff) {
     // As a step finds it where a thin part has shrunk to nothing.
     Operator A(testing::blob());
-    A.laplacian.D[0] = 1e-12 * A.laplacian.D.mean();
-    A.constants = ConstantModes(connectedComponents(A.mesh.F, A.mesh.V.rows()), A.laplacian.D);
-    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    A.D[0] = 1e-12 * A.D.mean();
+    A.constants = ConstantModes(connectedComponents(A.mesh.F, A.mesh.V.rows()), A.D);
+    const HarmonicBasis dense = denseBasis(A);
     const double cutoff = cutoffFrequency(0.2 * boundingBoxDiagonal(A.mesh.V));
     const Gain gain = fractionalPower(TransferFunction({}, cutoff), 0.1);
     const FullSpectrumResult result = testing::filteredFullSpectrum(A, gain, cutoff, 1e-7);
@@ -195,27 +195,24 @@ TEST(FullSpectrum, SeesAPartOfHardlyAnyMassWhereAllElseVanishes) {
 TEST(FullSpectrum, LeavesASignalOfConstantsAlone) {
     const Operator A(testing::blob());
     ShiftedLdlt ldlt;
-    ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, 1.0);
+    ldlt.factorizeDefinite(A.W, A.D, 1.0);
     const Eigen::MatrixXd X = Eigen::MatrixXd::Constant(A.mesh.V.rows(), 2, 4.0);
     const FullSpectrumResult result =
-        applyFullSpectrum(A.laplacian.D, A.constants, ShiftInvert(ldlt),
-                          {[](double) { return 0.0; }}, X, {})
-            .front();
+        applyFullSpectrum(A, ShiftInvert(ldlt), {[](double) { return 0.0; }}, X, {}).front();
     EXPECT_TRUE(result.converged);
     EXPECT_LT((result.Y - X).cwiseAbs().maxCoeff(), 1e-14);
 }
 
 TEST(FullSpectrum, SaysWhenATransferFunctionIsTooSteep) {
     const Operator A(testing::blob());
-    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    const HarmonicBasis dense = denseBasis(A);
     ShiftedLdlt ldlt;
-    ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, 40.0);
+    ldlt.factorizeDefinite(A.W, A.D, 40.0);
     const Gain step = [](double omega) { return omega < 6.0 ? 1.0 : 0.0; };
     FullSpectrumOptions options;
     options.maxDimension = 24;
     const FullSpectrumResult result =
-        applyFullSpectrum(A.laplacian.D, A.constants, ShiftInvert(ldlt), {step}, A.mesh.V, options)
-            .front();
+        applyFullSpectrum(A, ShiftInvert(ldlt), {step}, A.mesh.V, options).front();
     EXPECT_FALSE(result.converged);
     EXPECT_EQ(result.dimension, 24);
     EXPECT_LE(testing::relativeError(A, result.Y - testing::filteredDense(A, dense, step)),

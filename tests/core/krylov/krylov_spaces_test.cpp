@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <vector>
 
-#include "core/laplacian/frequency.h"
 #include "support/evaluation.h"
 
 namespace spectral {
@@ -22,9 +21,9 @@ struct Measured {
 };
 Measured measured(const Operator& A, double pole, int dimensions) {
     ShiftedLdlt ldlt;
-    ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, pole);
+    ldlt.factorizeDefinite(A.W, A.D, pole);
     const ShiftInvert S(ldlt);
-    KrylovSpaces space(S, A.laplacian.D, A.constants, A.mesh.V.leftCols(1));
+    KrylovSpaces space(S, A, A.mesh.V.leftCols(1));
     for (int m = 0; m < dimensions; ++m) space.extend();
     return {space.quadrature(0), space.extend()};
 }
@@ -34,9 +33,9 @@ TEST(KrylovSpaces, StayOrthogonalToConstantsAndToThemselves) {
     const Operator A(testing::joined(testing::blob(), testing::icosphere(3)));
     for (const double pole : {0.5, 50.0}) {
         ShiftedLdlt ldlt;
-        ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, pole);
+        ldlt.factorizeDefinite(A.W, A.D, pole);
         const ShiftInvert S(ldlt);
-        KrylovSpaces spaces(S, A.laplacian.D, A.constants, A.mesh.V);
+        KrylovSpaces spaces(S, A, A.mesh.V);
         const int dimensions = 80;
         for (int m = 0; m < dimensions; ++m) spaces.extend();
         const auto vector = [&](int m) {
@@ -46,7 +45,7 @@ TEST(KrylovSpaces, StayOrthogonalToConstantsAndToThemselves) {
         EXPECT_LT(A.constants.means(last).cwiseAbs().maxCoeff(), 1e-12);
         for (int m = 0; m < dimensions; ++m) {
             const Eigen::VectorXd products =
-                testing::innerProducts(vector(m), A.laplacian.D, last).diagonal();
+                testing::innerProducts(vector(m), A.D, last).diagonal();
             const double expected = m == dimensions - 1 ? 1.0 : 0.0;
             EXPECT_LT((products.array() - expected).abs().maxCoeff(), 1e-8) << m;
         }
@@ -59,14 +58,14 @@ TEST(KrylovSpaces, AreAsOrthogonalAsAskedForWhereDirectionsCancel) {
     for (const double pole : {1e3, 1e6, 1e9})
         for (const double orthogonal : {1e-10, 1e-12, 1e-14}) {
             ShiftedLdlt ldlt;
-            ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, pole);
+            ldlt.factorizeDefinite(A.W, A.D, pole);
             const ShiftInvert S(ldlt);
-            KrylovSpaces spaces(S, A.laplacian.D, A.constants, A.mesh.V.leftCols(1), orthogonal);
+            KrylovSpaces spaces(S, A, A.mesh.V.leftCols(1), orthogonal);
             for (int m = 0; m < dimensions; ++m) spaces.extend();
             Eigen::MatrixXd Q(A.mesh.V.rows(), dimensions);
             for (int m = 0; m < dimensions; ++m)
                 Q.col(m) = spaces.combine({Eigen::VectorXd::Unit(dimensions, m)});
-            EXPECT_LT(testing::orthonormalityError(Q, A.laplacian.D), orthogonal) << pole;
+            EXPECT_LT(testing::orthonormalityError(Q, A.D), orthogonal) << pole;
         }
 }
 
@@ -74,24 +73,24 @@ TEST(KrylovSpaces, AreNormalizedWhereSolvesHaveConstantsOfRoundOff) {
     // A ribbon: new directions are about as small as the round-off of S.
     const Operator A(testing::rectangle(1.0, 1e-7, 7, 2));
     ShiftedLdlt ldlt;
-    ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, 1e9);
+    ldlt.factorizeDefinite(A.W, A.D, 1e9);
     const ShiftInvert S(ldlt);
-    KrylovSpaces spaces(S, A.laplacian.D, A.constants, A.mesh.V.leftCols(1));
+    KrylovSpaces spaces(S, A, A.mesh.V.leftCols(1));
     for (int m = 0; m < 6; ++m) spaces.extend();
     for (int m = 0; m < 6; ++m) {
         const Eigen::VectorXd q = spaces.combine({Eigen::VectorXd::Unit(6, m)});
-        EXPECT_NEAR(q.dot(A.laplacian.D.cwiseProduct(q)), 1.0, 1e-10) << m;
+        EXPECT_NEAR(q.dot(A.D.cwiseProduct(q)), 1.0, 1e-10) << m;
     }
 }
 
 TEST(KrylovSpaces, LeaveTheMemoryOfTheirBasisToTheNext) {
     const Operator A(testing::blob());
-    const Products S(A.laplacian, 1.0);
+    const Products S(A, 1.0);
     SpareVectors spare;
     for (const Index columns : {3, 3, 1}) {
-        KrylovSpaces spaces(S, A.laplacian.D, A.constants, A.mesh.V.leftCols(columns),
-                            KrylovSpaces::kOrthogonal, KeptBasis::Double, &spare);
-        KrylovSpaces own(S, A.laplacian.D, A.constants, A.mesh.V.leftCols(columns));
+        KrylovSpaces spaces(S, A, A.mesh.V.leftCols(columns), KrylovSpaces::kOrthogonal,
+                            KeptBasis::Double, &spare);
+        KrylovSpaces own(S, A, A.mesh.V.leftCols(columns));
         for (int m = 0; m < 8; ++m) EXPECT_EQ(spaces.extend(), own.extend());
         std::vector<Eigen::VectorXd> ones(static_cast<std::size_t>(columns),
                                           Eigen::VectorXd::Ones(8));
@@ -104,9 +103,9 @@ TEST(KrylovSpaces, LeaveTheMemoryOfTheirBasisToTheNext) {
 TEST(KrylovSpaces, TellTheLargestEntryOfACombination) {
     const Operator A(testing::blob());
     ShiftedLdlt ldlt;
-    ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, 5.0);
+    ldlt.factorizeDefinite(A.W, A.D, 5.0);
     const ShiftInvert S(ldlt);
-    KrylovSpaces spaces(S, A.laplacian.D, A.constants, A.mesh.V);
+    KrylovSpaces spaces(S, A, A.mesh.V);
     for (int m = 0; m < 4; ++m) spaces.extend();
     std::srand(5);
     std::vector<Eigen::VectorXd> coefficients(3);
@@ -123,8 +122,8 @@ double integral(const Quadrature& measure, const Gain& f) {
 
 TEST(LanczosQuadrature, IsExactForPolynomialsOfTwiceItsDimension) {
     const Operator A(testing::blob());
-    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
-    Eigen::VectorXd c = testing::innerProducts(dense.Phi, A.laplacian.D, A.mesh.V.col(0));
+    const HarmonicBasis dense = denseBasis(A);
+    Eigen::VectorXd c = testing::innerProducts(dense.Phi, A.D, A.mesh.V.col(0));
     c[0] = 0.0;
     const double pole = 20.0;
     const int m = 5;
@@ -148,12 +147,12 @@ TEST(LanczosQuadrature, IsExactForPolynomialsOfTwiceItsDimension) {
 
 TEST(LanczosQuadrature, OfAnInvariantSpaceIsTheSpectralMeasure) {
     const Operator A(testing::icosphere(0));  // its coordinates are harmonics of one frequency
-    const HarmonicBasis dense = denseBasis(A.laplacian, A.constants);
+    const HarmonicBasis dense = denseBasis(A);
     const auto [measure, canBeExtended] = measured(A, 3.0, 4);
     EXPECT_FALSE(canBeExtended);
     ASSERT_EQ(measure.omega.size(), 1);
     EXPECT_NEAR(measure.omega[0], std::sqrt(dense.lambda[1]), 1e-12);
-    EXPECT_NEAR(measure.weight[0], A.mesh.V.col(0).cwiseAbs2().dot(A.laplacian.D), 1e-12);
+    EXPECT_NEAR(measure.weight[0], A.mesh.V.col(0).cwiseAbs2().dot(A.D), 1e-12);
 }
 
 TEST(LanczosQuadrature, IsTheSameAtAnyScaleOfTheMesh) {
@@ -175,10 +174,9 @@ TEST(LanczosQuadrature, IsTheSameAtAnyScaleOfTheMesh) {
 TEST(LanczosQuadrature, OfNothingHasNoNodes) {
     const Operator A(testing::icosphere(0));
     ShiftedLdlt ldlt;
-    ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, 1.0);
+    ldlt.factorizeDefinite(A.W, A.D, 1.0);
     const ShiftInvert S(ldlt);
-    KrylovSpaces space(S, A.laplacian.D, A.constants,
-                       Eigen::MatrixXd::Constant(A.mesh.V.rows(), 1, 5.0));
+    KrylovSpaces space(S, A, Eigen::MatrixXd::Constant(A.mesh.V.rows(), 1, 5.0));
     EXPECT_FALSE(space.extend());
     EXPECT_EQ(space.quadrature(0).omega.size(), 0);
 }

@@ -4,7 +4,6 @@
 
 #include <cmath>
 
-#include "core/laplacian/frequency.h"
 #include "core/transfer/transfer_function.h"
 #include "support/evaluation.h"
 
@@ -15,10 +14,9 @@ using testing::Operator;
 
 int dimensionWithPole(const Operator& A, const Gain& gain, double pole) {
     ShiftedLdlt ldlt;
-    ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, pole);
+    ldlt.factorizeDefinite(A.W, A.D, pole);
     const FullSpectrumResult result =
-        applyFullSpectrum(A.laplacian.D, A.constants, ShiftInvert(ldlt), {gain}, A.mesh.V, {})
-            .front();
+        applyFullSpectrum(A, ShiftInvert(ldlt), {gain}, A.mesh.V, {}).front();
     return result.converged ? result.dimension : 1000;
 }
 
@@ -28,7 +26,7 @@ TEST(SelectPole, IsNearTheBestOfAllPolesTried) {
         for (const double alpha : {1.0, 0.1}) {
             const double cutoff = 6.0;
             const Gain gain = fractionalPower(TransferFunction(options, cutoff), alpha);
-            const double pole = selectPole(gain, cutoff, bulkSpectrum(A.laplacian), 1e-6);
+            const double pole = selectPole(gain, cutoff, bulkSpectrum(A), 1e-6);
             int best = 1000;
             for (double power = -6; power <= 12; power += 2)
                 best =
@@ -57,7 +55,7 @@ TEST(SelectPole, SeesABandFarFromTheCutoff) {
     options.stopGain = 1.0;
     options.passGain = 2.0;
     const Gain gain = fractionalPower(TransferFunction(options, 3.0), 1.0);
-    const SpectrumRange range = bulkSpectrum(A.laplacian);
+    const SpectrumRange range = bulkSpectrum(A);
     const int best = dimensionWithPole(A, gain, selectPole(gain, 3.0, range, 1e-6));
     EXPECT_LE(dimensionWithPole(A, gain, selectPole(gain, 12.0, range, 1e-6)), best + 6);
     EXPECT_LE(dimensionWithPole(A, gain, selectPole(gain, 48.0, range, 1e-6)), best + 6);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/laplacian/constant_modes.h"
+#include "core/laplacian/laplacian_builder.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/surface.h"
@@ -27,7 +28,7 @@ Mesh rightTriangle() {
 
 TEST(CotangentLaplacian, OfARightTriangleIsAsByHand) {
     const Mesh mesh = rightTriangle();
-    const Laplacian laplacian = cotangentLaplacian(mesh.V, mesh.F);
+    const Laplacian laplacian = testing::cotangentLaplacian(mesh.V, mesh.F);
     Eigen::Matrix3d expected;
     // w_01 = cot at 2 / 2 = 1, w_02 = cot at 1 / 2 = 1/4, w_12 = cot at 0 / 2 = 0.
     expected << 1.25, -1.0, -0.25, -1.0, 1.0, 0.0, -0.25, 0.0, 0.25;
@@ -37,17 +38,17 @@ TEST(CotangentLaplacian, OfARightTriangleIsAsByHand) {
 
 TEST(UniformLaplacian, OfEquilateralTrianglesOfOneSizeIsTheCotangentOne) {
     const Mesh mesh = testing::icosphere(0);
-    const Laplacian uniform = uniformLaplacian(mesh.V, mesh.F);
-    const Laplacian cotangent = cotangentLaplacian(mesh.V, mesh.F);
+    const Laplacian uniform = meshLaplacian(mesh.V, mesh.F, LaplacianKind::Uniform).laplacian;
+    const Laplacian cotangent = testing::cotangentLaplacian(mesh.V, mesh.F);
     EXPECT_LT(Eigen::MatrixXd(uniform.W - cotangent.W).cwiseAbs().maxCoeff(), 1e-14);
     EXPECT_LT((uniform.D - cotangent.D).cwiseAbs().maxCoeff(), 1e-14);
 }
 
 TEST(UniformLaplacian, DependsOnTheConnectivityAndTheAreaAlone) {
     Mesh mesh = testing::blob();
-    const Laplacian before = uniformLaplacian(mesh.V, mesh.F);
+    const Laplacian before = meshLaplacian(mesh.V, mesh.F, LaplacianKind::Uniform).laplacian;
     mesh.V = testing::withNoise(mesh, 0.2, 1).V;
-    const Laplacian after = uniformLaplacian(mesh.V, mesh.F);
+    const Laplacian after = meshLaplacian(mesh.V, mesh.F, LaplacianKind::Uniform).laplacian;
     EXPECT_EQ(Eigen::MatrixXd(before.W), Eigen::MatrixXd(after.W));
     EXPECT_NEAR(after.D.sum(), surfaceArea(mesh.V, mesh.F), 1e-12 * after.D.sum());
     EXPECT_EQ(after.D.minCoeff(), after.D.maxCoeff());
@@ -55,7 +56,7 @@ TEST(UniformLaplacian, DependsOnTheConnectivityAndTheAreaAlone) {
 
 TEST(CotangentLaplacian, MassesSumToTheArea) {
     for (const Mesh& mesh : {testing::blob(), testing::rectangle(2, 3, 7, 5), testing::cube(4)}) {
-        const Laplacian laplacian = cotangentLaplacian(mesh.V, mesh.F);
+        const Laplacian laplacian = testing::cotangentLaplacian(mesh.V, mesh.F);
         const double area = surfaceArea(mesh.V, mesh.F);
         EXPECT_NEAR(laplacian.D.sum(), area, 1e-12 * area);
         EXPECT_EQ(laplacian.D, lumpedMass(mesh.V, mesh.F));
@@ -64,7 +65,7 @@ TEST(CotangentLaplacian, MassesSumToTheArea) {
 
 TEST(CotangentLaplacian, IsSymmetricPositiveSemidefiniteWithTheConstantsAsNullSpace) {
     for (const Mesh& mesh : {testing::blob(), testing::withNoise(testing::cube(4), 0.05, 1)}) {
-        const Eigen::MatrixXd W = cotangentLaplacian(mesh.V, mesh.F).W;
+        const Eigen::MatrixXd W = testing::cotangentLaplacian(mesh.V, mesh.F).W;
         EXPECT_EQ(W, W.transpose());
         EXPECT_LT(W.rowwise().sum().cwiseAbs().maxCoeff(), 1e-12 * W.cwiseAbs().maxCoeff());
         const Eigen::VectorXd lambda = testing::denseEigenvalues(W);
@@ -75,7 +76,7 @@ TEST(CotangentLaplacian, IsSymmetricPositiveSemidefiniteWithTheConstantsAsNullSp
 
 TEST(CotangentLaplacian, OfLinearFunctionsVanishesInsideAPlane) {
     const Mesh mesh = testing::rectangle(1.0, 1.0, 6, 6);
-    const Eigen::VectorXd residual = cotangentLaplacian(mesh.V, mesh.F).W * mesh.V.col(0);
+    const Eigen::VectorXd residual = testing::cotangentLaplacian(mesh.V, mesh.F).W * mesh.V.col(0);
     for (Index i = 0; i < mesh.V.rows(); ++i)
         if (mesh.V(i, 0) > 0.01 && mesh.V(i, 0) < 0.99) {
             EXPECT_NEAR(residual[i], 0.0, 1e-14);
@@ -84,9 +85,9 @@ TEST(CotangentLaplacian, OfLinearFunctionsVanishesInsideAPlane) {
 
 TEST(IsUsable, TellsCollapsedTriangles) {
     Mesh mesh = rightTriangle();
-    EXPECT_TRUE(isUsable(cotangentLaplacian(mesh.V, mesh.F)));
+    EXPECT_TRUE(isUsable(testing::cotangentLaplacian(mesh.V, mesh.F)));
     mesh.V.row(2) << 2, 0, 0;  // all corners on a line
-    EXPECT_FALSE(isUsable(cotangentLaplacian(mesh.V, mesh.F)));
+    EXPECT_FALSE(isUsable(testing::cotangentLaplacian(mesh.V, mesh.F)));
 }
 
 TEST(ConnectedComponents, AreLabelledInTheOrderOfTheirFirstVertex) {

@@ -39,9 +39,9 @@ TEST(ShiftedLdlt, SolvesWithinTheSpectrumAndBelowIt) {
         const Operator A = lumpySphere(subdivisions);
         ShiftedLdlt ldlt;
         for (const double sigma : {-3.0, 7.0, 25.0}) {
-            ldlt.factorize(A.laplacian.W, A.laplacian.D, sigma);
+            ldlt.factorize(A.W, A.D, sigma);
             EXPECT_EQ(ldlt.shift(), sigma);
-            EXPECT_LT(relativeResidual(ldlt, A.laplacian), 1e-9) << subdivisions << ' ' << sigma;
+            EXPECT_LT(relativeResidual(ldlt, A), 1e-9) << subdivisions << ' ' << sigma;
         }
     }
 }
@@ -54,7 +54,7 @@ TEST(ShiftedLdlt, SolvesForEveryPattern) {
     for (const auto& mesh :
          {testing::icosphere(0), testing::rectangle(2.0, 1.0, 23, 9), testing::cube(40),
           testing::joined(testing::torus(2.0, 1.0, 17, 9), testing::cube(3))})
-        all.push_back(Operator(mesh).laplacian);
+        all.push_back(Operator(mesh));
     for (const Laplacian& laplacian : all)
         for (const int threads : {1, 3}) {
             const ThreadTeam team(threads);
@@ -68,8 +68,8 @@ TEST(ShiftedLdlt, CountsAsEigenDoes) {
     const Operator A = lumpySphere(3);
     ShiftedLdlt ldlt;
     for (const double sigma : {-1.0, 1e-3, 1.0, 5.0, 30.0, 1e3, 1e6}) {
-        ldlt.factorize(A.laplacian.W, A.laplacian.D, sigma);
-        const Eigen::SimplicialLDLT<SparseMatrix> eigen(shifted(A.laplacian, sigma));
+        ldlt.factorize(A.W, A.D, sigma);
+        const Eigen::SimplicialLDLT<SparseMatrix> eigen(shifted(A, sigma));
         EXPECT_EQ(ldlt.eigenvaluesBelow(), (eigen.vectorD().array() < 0.0).count()) << sigma;
     }
 }
@@ -79,19 +79,19 @@ TEST(ShiftedLdlt, TakesMatricesOfOtherPatterns) {
     ShiftedLdlt ldlt;
     for (const int subdivisions : {2, 3, 1, 2}) {
         const Operator A = lumpySphere(subdivisions);
-        ldlt.factorize(A.laplacian.W, A.laplacian.D, 4.0);
-        EXPECT_LT(relativeResidual(ldlt, A.laplacian), 1e-9) << subdivisions;
+        ldlt.factorize(A.W, A.D, 4.0);
+        EXPECT_LT(relativeResidual(ldlt, A), 1e-9) << subdivisions;
     }
     // As many vertices and edges as before, otherwise connected.
     Operator A = lumpySphere(2);
-    const Eigen::Index n = A.laplacian.W.rows();
+    const Eigen::Index n = A.W.rows();
     Eigen::PermutationMatrix<Eigen::Dynamic> reversed(n);
     for (Eigen::Index i = 0; i < n; ++i) reversed.indices()[i] = static_cast<int>(n - 1 - i);
-    const SparseMatrix PW = reversed * A.laplacian.W;
-    A.laplacian.W = PW * reversed.transpose();
-    A.laplacian.D = (reversed * A.laplacian.D).eval();
-    ldlt.factorize(A.laplacian.W, A.laplacian.D, 4.0);
-    EXPECT_LT(relativeResidual(ldlt, A.laplacian), 1e-9);
+    const SparseMatrix PW = reversed * A.W;
+    A.W = PW * reversed.transpose();
+    A.D = (reversed * A.D).eval();
+    ldlt.factorize(A.W, A.D, 4.0);
+    EXPECT_LT(relativeResidual(ldlt, A), 1e-9);
 }
 
 /// The mesh with the edge opposite to the first corner of some triangles flipped.
@@ -112,25 +112,25 @@ testing::Mesh withFlips(testing::Mesh mesh, int every) {
 TEST(ShiftedLdlt, AdaptsItsOrderToPatternsThatDifferALittle) {
     std::srand(6);
     const testing::Mesh mesh = testing::withNoise(testing::icosphere(4), 0.003, 5);
-    const SymbolicLdlt before(Operator(mesh).laplacian.W);
+    const SymbolicLdlt before(Operator(mesh).W);
     for (const int threads : {1, 3}) {
         const ThreadTeam team(threads);
         ShiftedLdlt ldlt;
         for (const int every : {5000, 600, 80, 9}) {  // from one flip to a ninth of the triangles
             const Operator A(withFlips(mesh, every));
-            const SymbolicLdlt adapted(A.laplacian.W, &before);
+            const SymbolicLdlt adapted(A.W, &before);
             EXPECT_LT(adapted.valueStarts.back(), 1.25 * before.valueStarts.back()) << every;
-            ldlt.factorize(A.laplacian.W, A.laplacian.D, 4.0);
-            EXPECT_LT(relativeResidual(ldlt, A.laplacian), 1e-9) << every;
+            ldlt.factorize(A.W, A.D, 4.0);
+            EXPECT_LT(relativeResidual(ldlt, A), 1e-9) << every;
         }
     }
-    const SymbolicLdlt one(Operator(withFlips(mesh, 5000)).laplacian.W, &before);
+    const SymbolicLdlt one(Operator(withFlips(mesh, 5000)).W, &before);
     const Eigen::VectorXi moved = (one.order - before.order).cwiseAbs();
     EXPECT_LT(moved.cast<double>().mean(), 2.0);
 }
 
 TEST(ShiftedLdlt, FindsAnOrderOfItsOwnForOtherPatterns) {
-    const SparseMatrix W = Operator(testing::icosphere(4)).laplacian.W;
+    const SparseMatrix W = Operator(testing::icosphere(4)).W;
     const SymbolicLdlt before(W);
     Eigen::PermutationMatrix<Eigen::Dynamic> reversed(W.rows());
     for (Eigen::Index i = 0; i < W.rows(); ++i)
@@ -177,12 +177,12 @@ TEST(ShiftedLdlt, SolvesEveryNumberOfColumns) {
     std::srand(4);
     const Operator A = lumpySphere(3);
     ShiftedLdlt ldlt;
-    ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, 3.0);
+    ldlt.factorizeDefinite(A.W, A.D, 3.0);
     EXPECT_EQ(ldlt.shift(), -3.0);
     int solves = 0;
     for (int columns = 1; columns <= 19; ++columns) {
-        const Eigen::MatrixXd X = Eigen::MatrixXd::Random(A.laplacian.W.rows(), columns);
-        const Eigen::MatrixXd B = shifted(A.laplacian, -3.0) * X;
+        const Eigen::MatrixXd X = Eigen::MatrixXd::Random(A.W.rows(), columns);
+        const Eigen::MatrixXd B = shifted(A, -3.0) * X;
         EXPECT_LT((ldlt.solve(B) - X).cwiseAbs().maxCoeff(), 1e-11) << columns;
         solves += columns;
     }
@@ -193,18 +193,18 @@ TEST(ShiftedLdlt, SolvesEveryNumberOfColumns) {
 TEST(ShiftedLdlt, RefusesAnIndefiniteMatrixWhereItMustBeDefinite) {
     const Operator A = lumpySphere(2);
     ShiftedLdlt ldlt;
-    EXPECT_THROW(ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, -50.0), SolverFailure);
+    EXPECT_THROW(ldlt.factorizeDefinite(A.W, A.D, -50.0), SolverFailure);
 }
 
 TEST(ShiftedLdlt, CountsEigenvaluesBelowAShiftExactly) {
     for (const auto& mesh :
          {testing::blob(), testing::icosphere(2), testing::rectangle(3, 1, 24, 8)}) {
         const Operator A(mesh);
-        const Eigen::VectorXd lambda = denseBasis(A.laplacian, A.constants).lambda;
+        const Eigen::VectorXd lambda = denseBasis(A).lambda;
         ShiftedLdlt ldlt;
         for (const double part : {0.0007, 0.013, 0.11, 0.47, 0.93}) {
             const double sigma = part * lambda[lambda.size() - 1];
-            EXPECT_EQ(countEigenvaluesBelow(A.laplacian.W, A.laplacian.D, sigma, ldlt),
+            EXPECT_EQ(countEigenvaluesBelow(A.W, A.D, sigma, ldlt),
                       (lambda.array() < sigma).count());
         }
         EXPECT_EQ(ldlt.factorizations(), 5);
@@ -214,9 +214,9 @@ TEST(ShiftedLdlt, CountsEigenvaluesBelowAShiftExactly) {
 TEST(ShiftedLdlt, KeepsItsFactorWhileASiblingCounts) {
     const Operator A(testing::blob()), other(testing::torus(2, 1, 20, 10));
     ShiftedLdlt ldlt;
-    ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, 1.0);
+    ldlt.factorizeDefinite(A.W, A.D, 1.0);
     const Eigen::MatrixXd before = ldlt.solve(A.mesh.V);
-    countEigenvaluesBelow(other.laplacian.W, other.laplacian.D, 0.3, ldlt);
+    countEigenvaluesBelow(other.W, other.D, 0.3, ldlt);
     EXPECT_EQ(ldlt.solve(A.mesh.V), before);
 }
 

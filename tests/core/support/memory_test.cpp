@@ -45,13 +45,13 @@ TEST_F(Memory, OfAFactorIsAskedForBeforeItIsTaken) {
     setMemoryLimit(1.0);
     ShiftedLdlt ldlt;
     try {
-        ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, 1.0);
+        ldlt.factorizeDefinite(A.W, A.D, 1.0);
         FAIL();
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::OutOfMemory) << error.what();
     }
     setMemoryLimit(0.0);
-    ldlt.factorizeDefinite(A.laplacian.W, A.laplacian.D, 1.0);
+    ldlt.factorizeDefinite(A.W, A.D, 1.0);
 }
 
 TEST_F(Memory, EndsAutomaticStepsAtOnce) {
@@ -92,7 +92,7 @@ TEST_F(Memory, OfABasisIsAskedForAndTheSizeThatFitsIsTold) {
     limitTo(50.0);
     ShiftedLdlt ldlt;
     try {
-        truncatedBasis(A.laplacian, A.constants, 5000, ldlt);
+        truncatedBasis(A, 5000, ldlt);
         FAIL();
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::BasisOutOfMemory) << error.what();

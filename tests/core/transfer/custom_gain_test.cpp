@@ -11,6 +11,7 @@
 #include "core/filter/fractional_filter.h"
 #include "core/mesh/measures.h"
 #include "core/support/errors.h"
+#include "core/support/frequency.h"
 #include "core/support/types.h"
 #include "core/transfer/transfer_function.h"
 #include "support/evaluation.h"

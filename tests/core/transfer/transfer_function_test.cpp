@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/laplacian/frequency.h"
+#include "core/mesh/measures.h"
 #include "core/support/errors.h"
 #include "core/support/types.h"
 

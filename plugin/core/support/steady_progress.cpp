@@ -1,4 +1,4 @@
-#include "meshlab/host_workarounds/steady_progress.h"
+#include "core/support/steady_progress.h"
 
 #include <atomic>
 #include <chrono>

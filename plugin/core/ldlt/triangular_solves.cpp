@@ -1,8 +1,8 @@
 // Compiled once for each instruction set: see README.md.
 #include <Eigen/Core>
 
-#include "core/kernels/kernels.h"
-#include "core/kernels/subnormals.h"
+#include "core/ldlt/kernels.h"
+#include "core/ldlt/subnormals.h"
 
 namespace spectral {
 

@@ -2,8 +2,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 
-#include "core/kernels/kernels.h"
-#include "core/kernels/subnormals.h"
+#include "core/ldlt/kernels.h"
+#include "core/ldlt/subnormals.h"
 
 namespace spectral {
 

@@ -1,4 +1,4 @@
-#include "core/kernels/kernels.h"
+#include "core/ldlt/kernels.h"
 
 #if defined(SPECTRAL_AVX2) && defined(_WIN32)
 #include <windows.h>

@@ -1,6 +1,6 @@
 // Work beside a thread that goes on reporting, also where there is no thread for it.
 
-#include "meshlab/host_workarounds/steady_progress.h"
+#include "core/support/steady_progress.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/kernels/kernels.h"
+#include "core/ldlt/kernels.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "core/kernels/subnormals.h"
+#include "core/ldlt/subnormals.h"
 #include "core/support/types.h"
 #include "support/evaluation.h"
 #include "support/shapes.h"
@@ -142,7 +142,7 @@ std::vector<char> joinedColumns(const SparseMatrix& L) {
 class SparseKernelsOfEverySet : public KernelsOfEverySet {
   protected:
     const testing::Operator A_{testing::withNoise(testing::icosphere(3), 0.03, 5)};
-    const Index n_ = A_.laplacian.W.rows();
+    const Index n_ = A_.W.rows();
 };
 
 INSTANTIATE_TEST_SUITE_P(Widest, SparseKernelsOfEverySet,
@@ -150,8 +150,8 @@ INSTANTIATE_TEST_SUITE_P(Widest, SparseKernelsOfEverySet,
 
 TEST_P(SparseKernelsOfEverySet, SolvesWithAFactorization) {
     std::srand(6);
-    SparseMatrix shifted = A_.laplacian.W;
-    shifted.diagonal() -= 7.0 * A_.laplacian.D;
+    SparseMatrix shifted = A_.W;
+    shifted.diagonal() -= 7.0 * A_.D;
     const Eigen::SimplicialLDLT<SparseMatrix> ldlt(shifted);
     const SparseMatrix L = ldlt.matrixL().nestedExpression();
     const Eigen::VectorXd pivots = ldlt.vectorD();
