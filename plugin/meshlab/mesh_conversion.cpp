@@ -5,7 +5,48 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 
-#include "meshlab/normals.h"
+#include "core/mesh/normals.h"
+#include "core/support/threads.h"
+
+namespace {
+
+Eigen::RowVector3d positionOf(const CVertexO& vertex) {
+    return {vertex.cP()[0], vertex.cP()[1], vertex.cP()[2]};
+}
+
+/// Whether a mesh is the one that was read, without the memory for another copy.
+bool isUnchanged(const MeshMatrices& input, const CMeshO& mesh) {
+    if (mesh.vn != input.V.rows() || mesh.fn != input.F.rows()) return false;
+    Eigen::Index i = 0, t = 0;
+    for (std::size_t v = 0; v < mesh.vert.size(); ++v) {
+        if (mesh.vert[v].IsD()) continue;
+        if (input.vertexIndex[i] != v || input.V.row(i) != positionOf(mesh.vert[v])) return false;
+        ++i;
+    }
+    for (const CFaceO& face : mesh.face) {
+        if (face.IsD()) continue;
+        for (int c = 0; c < 3; ++c)
+            if (input.vertexIndex[input.F(t, c)] != vcg::tri::Index(mesh, face.cV(c))) return false;
+        ++t;
+    }
+    return true;
+}
+
+// MeshModel::updateBoxAndNormals takes a thirteenth of the default filter's time on two threads.
+void setNormals(const MeshMatrices& input, const spectral::Vertices& V, CMeshO& mesh) {
+    const spectral::ThreadTeam team;
+    const auto normals = spectral::angleWeightedNormals<Scalarm>(V, input.F);
+    const auto toPoint = [](const auto& row) { return Point3m(row[0], row[1], row[2]); };
+    Eigen::Index t = 0;
+    for (CFaceO& face : mesh.face) {
+        if (face.IsD()) continue;
+        face.N() = toPoint(normals.faces.row(t));
+        for (int c = 0; c < 3; ++c) face.V(c)->N() = toPoint(normals.vertices.row(input.F(t, c)));
+        ++t;
+    }
+}
+
+}  // namespace
 
 MeshMatrices toMatrices(const CMeshO& mesh) {
     MeshMatrices matrices;
@@ -17,10 +58,8 @@ MeshMatrices toMatrices(const CMeshO& mesh) {
         matrices.vertexIndex.push_back(i);
     }
     matrices.V.resize(mesh.vn, 3);
-    for (int i = 0; i < mesh.vn; ++i) {
-        const Point3m& p = mesh.vert[matrices.vertexIndex[i]].cP();
-        matrices.V.row(i) << p[0], p[1], p[2];
-    }
+    for (int i = 0; i < mesh.vn; ++i)
+        matrices.V.row(i) = positionOf(mesh.vert[matrices.vertexIndex[i]]);
 
     matrices.F.resize(mesh.fn, 3);
     int t = 0;
@@ -68,7 +107,7 @@ void checkExtent(const CMeshO& mesh) {
     Eigen::AlignedBox3d box;
     for (const CVertexO& vertex : mesh.vert) {
         if (vertex.IsD()) continue;
-        const Eigen::Vector3d p(vertex.cP()[0], vertex.cP()[1], vertex.cP()[2]);
+        const Eigen::Vector3d p = positionOf(vertex);
         if (!p.allFinite()) continue;  // the core counts these
         if (p.cwiseAbs().maxCoeff() > largest)
             throw MLException(QString("vertex %1 has a coordinate of %2, and the largest that can "
@@ -91,22 +130,18 @@ void checkExtent(const CMeshO& mesh) {
 void reportWriting(const MeshMatrices& input, const CMeshO& mesh,
                    const spectral::Progress& progress) {
     progress.report(1.0, "writing the mesh");
-    const MeshMatrices now = toMatrices(mesh);
-    if (now.vertexIndex != input.vertexIndex || now.F.rows() != input.F.rows() ||
-        now.F != input.F || now.V != input.V)
+    if (!isUnchanged(input, mesh))
         throw MLException(
             "the mesh was edited while the filter was running, and has not been filtered: "
             "apply the filter again");
 }
 
-void setPositions(const std::vector<std::size_t>& vertexIndex, const spectral::Vertices& V,
-                  MeshModel& mesh) {
-    for (std::size_t i = 0; i < vertexIndex.size(); ++i)
+void setPositions(const MeshMatrices& input, const spectral::Vertices& V, MeshModel& mesh) {
+    for (Eigen::Index i = 0; i < V.rows(); ++i)
         for (int c = 0; c < 3; ++c)
-            mesh.cm.vert[vertexIndex[i]].P()[c] =
-                static_cast<Scalarm>(V(static_cast<Eigen::Index>(i), c));
+            mesh.cm.vert[input.vertexIndex[i]].P()[c] = static_cast<Scalarm>(V(i, c));
     vcg::tri::UpdateBounding<CMeshO>::Box(mesh.cm);
-    updateNormals(mesh.cm);
+    setNormals(input, V, mesh.cm);
 }
 
 void setQuality(const std::vector<std::size_t>& vertexIndex, const Eigen::VectorXd& values,

@@ -36,9 +36,9 @@ Eigen::VectorXd vertexQuality(const CMeshO& mesh, const MeshMatrices& matrices);
 void reportWriting(const MeshMatrices& input, const CMeshO& mesh,
                    const spectral::Progress& progress);
 
-/// Moves the vertices to the rows of V, and updates bounding box and normals.
-void setPositions(const std::vector<std::size_t>& vertexIndex, const spectral::Vertices& V,
-                  MeshModel& mesh);
+/// Moves the vertices to the rows of V, and updates bounding box and normals, to MeshLab's bits;
+/// vertices without faces keep their normals.
+void setPositions(const MeshMatrices& input, const spectral::Vertices& V, MeshModel& mesh);
 
 /// Sets the vertex quality to the entries of `values`.
 void setQuality(const std::vector<std::size_t>& vertexIndex, const Eigen::VectorXd& values,

@@ -34,7 +34,7 @@ void checkOptions(const DenoiseOptions& options) {
 
 /// Part of its displacement that each vertex of the surface makes, 0 to 1.
 Eigen::VectorXd displacementWeight(const DenoiseOptions& options, const Surface& surface,
-                                   const Components& components) {
+                                   const Interior& interior) {
     constexpr double kFadingOut = 4.0;  // edges
     const WeightOptions part{options.selected, {}};
     checkWeights(part);
@@ -43,8 +43,7 @@ Eigen::VectorXd displacementWeight(const DenoiseOptions& options, const Surface&
         inEdges.W = uniformStiffness(surface.X.rows(), surface.F);
         inEdges.D.setConstant(surface.X.rows(), 0.5 * std::sqrt(3.0));
     }
-    return vertexWeight(part, surface, Interior(surface.F, components, options.boundary), inEdges,
-                        kFadingOut);
+    return vertexWeight(part, surface, interior, inEdges, kFadingOut);
 }
 
 /// The triangles of a surface at which a vertex moves, and their vertices.
@@ -170,17 +169,14 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
     checkOptions(options);
     progress.report(0.0, "measuring the noise");
     const Surface whole = joinedSurface(V, F);
-    const Components components = connectedComponents(whole.F, whole.X.rows());
-    const Eigen::VectorXd weight = displacementWeight(options, whole, components);
+    const Interior interior(whole.F, connectedComponents(whole.F, whole.X.rows()),
+                            options.boundary);
+    const Components& components = interior.surfaceComponents();
+    const Eigen::VectorXd weight = displacementWeight(options, whole, interior);
 
     DenoiseResult result;
-    static_cast<SurfaceCounts&>(result) = countsOf(whole, V.rows());
-    result.components = components.count;
-    if (options.boundary == Boundary::Fixed) {
-        const std::vector<bool> onBoundary = boundaryVertices(whole.F, whole.X.rows());
-        result.fixedVertices =
-            static_cast<int>(std::count(onBoundary.begin(), onBoundary.end(), true));
-    }
+    static_cast<SurfaceCounts&>(result) =
+        countsOf(whole, V.rows(), components.count, interior.fixedVertices());
 
     Vertices moved = whole.X;
     const MovingPart part(whole, weight);

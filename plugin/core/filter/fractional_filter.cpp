@@ -154,7 +154,8 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     Vertices displacement = weight.asDiagonal() * (steps.last.X - surface.X);
     Vertices X = surface.X + displacement;
     FilterResult result;
-    static_cast<SurfaceCounts&>(result) = countsOf(surface, V.rows());
+    static_cast<SurfaceCounts&>(result) =
+        countsOf(surface, V.rows(), interior.surfaceComponents().count, interior.fixedVertices());
     if (options.preserveVolume) {
         result.volumes = preserveVolumes(surface.X, surface.F, interior.surfaceComponents(), weight,
                                          kMostOffset, X);
@@ -178,8 +179,6 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     result.volumeAfter = signedVolume(X, surface.F);
     result.hasVolume = enclosesVolume(surface.X, surface.F);
     result.meanEdge = meanEdgeLength(surface.X, surface.F);
-    result.components = interior.surfaceComponents().count;
-    result.fixedVertices = static_cast<int>(interior.fixedVertices());
     result.factorizations = evaluate.factorizations();
     result.solves = evaluate.solves();
     result.products = evaluate.products();

@@ -81,7 +81,8 @@ FilteredSignal filterSignal(const Vertices& V, const Faces& F, const Eigen::Matr
     if (scale > 0.0) X /= scale;
 
     FilteredSignal result;
-    static_cast<SurfaceCounts&>(result) = countsOf(surface, V.rows());
+    static_cast<SurfaceCounts&>(result) =
+        countsOf(surface, V.rows(), interior.surfaceComponents().count, interior.fixedVertices());
     result.Y = Q;
     result.accuracy = evaluation.accuracy;
     result.isConstant = isConstant(X, laplacian.constants);
@@ -102,8 +103,6 @@ FilteredSignal filterSignal(const Vertices& V, const Faces& F, const Eigen::Matr
     result.verticesWithoutData = static_cast<int>(hasData.size() - hasData.count());
     result.unreferencedVertices -= result.verticesWithoutData;
     result.cutoffFrequency = transfer.cutoff();
-    result.components = interior.surfaceComponents().count;
-    result.fixedVertices = static_cast<int>(interior.fixedVertices());
     result.factorizations = evaluate.factorizations();
     result.solves = evaluate.solves();
     result.residuals = evaluate.basis().residuals;

@@ -91,8 +91,10 @@ Eigen::MatrixXd extendedByZero(Eigen::MatrixXd values, const std::vector<Index>&
     return extended;
 }
 
-SurfaceCounts countsOf(const Surface& surface, Index n) {
+SurfaceCounts countsOf(const Surface& surface, Index n, int components, Index fixed) {
     SurfaceCounts counts;
+    counts.components = components;
+    counts.fixedVertices = static_cast<int>(fixed);
     counts.joinedVertices = static_cast<int>(surface.copies.size());
     counts.unreferencedVertices = static_cast<int>(n - surface.X.rows()) - counts.joinedVertices;
     counts.nearlyJoined = surface.nearlyCopies;

@@ -55,8 +55,9 @@ struct SurfaceCounts {
     int fixedVertices = 0;         ///< Vertices of the surface that must not move.
 };
 
-/// @param n  the number of vertices of the mesh.
-SurfaceCounts countsOf(const Surface& surface, Index n);
+/// @param n      number of vertices of the mesh.
+/// @param fixed  number of vertices of the surface that must not move.
+SurfaceCounts countsOf(const Surface& surface, Index n, int components, Index fixed);
 
 /// The connected components of a surface: triangles that share a vertex are connected.
 struct Components {

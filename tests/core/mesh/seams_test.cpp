@@ -88,7 +88,7 @@ TEST_P(CutSurface, IsTheWholeSurface) {
     EXPECT_EQ(surface.X.rows(), whole.V.rows());
     EXPECT_EQ(connectedComponents(surface.F, surface.X.rows()).count, 1);
     EXPECT_EQ(surface.nearlyCopies, 0);
-    const SurfaceCounts counts = countsOf(surface, cut.mesh.V.rows());
+    const SurfaceCounts counts = countsOf(surface, cut.mesh.V.rows(), 1, 0);
     EXPECT_EQ(counts.joinedVertices, cut.mesh.V.rows() - whole.V.rows());
     EXPECT_EQ(counts.unreferencedVertices, 0);
 }
