@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <sstream>
+#include <type_traits>
 #include <utility>
 
 #include "core/support/errors.h"
@@ -32,32 +33,21 @@ spectral::Progress meshlabProgress(vcg::CallBackPos* callback, std::function<boo
     return spectral::Progress(report, std::move(isOvertaken));
 }
 
-/// The number of threads in MESHLAB_SPECTRAL_THREADS; 0, one per core, if it is not set.
-/// @throws spectral::InvalidOption  when it is not a number above zero.
-int threadsOfEnvironment() {
-    const char* const variable = "MESHLAB_SPECTRAL_THREADS";
+/// The number in an environment variable; 0 if it is not set.
+/// @throws spectral::InvalidOption  when it is not above zero.
+template <class Number>
+Number ofEnvironment(const char* variable, const char* unit) {
     if (!qEnvironmentVariableIsSet(variable)) return 0;
     bool isNumber = false;
-    const int count = qEnvironmentVariableIntValue(variable, &isNumber);
-    if (!isNumber || count < 1)
-        throw spectral::InvalidOption(std::string("the environment variable ") + variable + " = " +
-                                      qgetenv(variable).toStdString() +
-                                      ": give a number of threads above zero, or unset it");
-    return count;
-}
-
-/// The limit in MESHLAB_SPECTRAL_MEMORY, bytes; 0, as much as there is, if it is not set.
-/// @throws spectral::InvalidOption  when it is not a number above zero.
-double memoryLimitOfEnvironment() {
-    const char* const variable = "MESHLAB_SPECTRAL_MEMORY";
-    if (!qEnvironmentVariableIsSet(variable)) return 0.0;
-    bool isNumber = false;
-    const double bytes = qgetenv(variable).toDouble(&isNumber);
-    if (!isNumber || !(bytes > 0.0))
-        throw spectral::InvalidOption(std::string("the environment variable ") + variable + " = " +
-                                      qgetenv(variable).toStdString() +
-                                      ": give a number of bytes above zero, or unset it");
-    return bytes;
+    Number number = 0;
+    if constexpr (std::is_integral_v<Number>)
+        number = qEnvironmentVariableIntValue(variable, &isNumber);
+    else
+        number = qgetenv(variable).toDouble(&isNumber);
+    if (isNumber && number > 0) return number;
+    throw spectral::InvalidOption(std::string("the environment variable ") + variable + " = " +
+                                  qgetenv(variable).toStdString() + ": give a number of " + unit +
+                                  " above zero, or unset it");
 }
 
 }  // namespace
@@ -153,8 +143,8 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
     // MLException and bad_alloc.
     try {
         const spectral::Progress progress = meshlabProgress(callback, isWanted, isOvertaken);
-        spectral::setThreadCount(threadsOfEnvironment());
-        setMemoryLimit(memoryLimitOfEnvironment());
+        spectral::setThreadCount(ofEnvironment<int>("MESHLAB_SPECTRAL_THREADS", "threads"));
+        setMemoryLimit(ofEnvironment<double>("MESHLAB_SPECTRAL_MEMORY", "bytes"));
         spectral::setMemoryMeasure(freeMemory);
         progress.report(0.0, "reading the mesh");
         checkExtent(document.mm()->cm);

@@ -20,6 +20,10 @@ struct FilterOutcome {
     std::string summary{};  ///< What was found and done in one line, if that needs words.
 };
 
+/// MeshFilter::changes of what moves vertices.
+inline constexpr int kMovesVertices =
+    MeshModel::MM_VERTCOORD | MeshModel::MM_VERTNORMAL | MeshModel::MM_FACENORMAL;
+
 /// One filter of the plugin.
 struct MeshFilter {
     QString name;        ///< In menus and filter scripts: unique, must never change.

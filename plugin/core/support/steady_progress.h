@@ -23,11 +23,12 @@ namespace spectral {
 /// @throws whatever `work` throws; Cancelled.
 void runBeside(const Progress& progress, const std::function<void(const Progress&)>& work);
 
-/// runBeside for a function that gives a value.
-template <class Work>
-auto withSteadyProgress(const Progress& progress, const Work& work) {
-    std::optional<std::invoke_result_t<const Work&, const Progress&>> result;
-    runBeside(progress, [&](const Progress& steady) { result.emplace(work(steady)); });
+/// runBeside for a function that gives a value: work(arguments..., progress).
+template <class Work, class... Arguments>
+auto withSteadyProgress(const Progress& progress, const Work& work, const Arguments&... arguments) {
+    std::optional<std::invoke_result_t<const Work&, const Arguments&..., const Progress&>> result;
+    runBeside(progress,
+              [&](const Progress& steady) { result.emplace(work(arguments..., steady)); });
     return *std::move(result);
 }
 

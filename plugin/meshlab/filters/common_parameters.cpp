@@ -53,12 +53,11 @@ double featureSize(const RichParameterList& parameters) {
 
 RichBool selectedParameter(const MeshModel& mesh, const QString& width) {
     const bool isAnySelected = hasSelectedFaces(mesh.cm);
-    return {
-        "selected", isAnySelected, "Only the selection",
-        QString("Filter the selected faces and vertices. Around them the filter fades out within "
-                "%1, so that no crease is left; everything beyond stays where it is.")
-            .arg(width),
-        !isAnySelected};
+    return {"selected", isAnySelected, "Only the selection",
+            QString("Filter the selected faces and vertices. Around them the filter fades out "
+                    "within %1, so that no crease is left; everything beyond stays where it is.")
+                .arg(width),
+            !isAnySelected};
 }
 
 std::vector<bool> chosenVertices(const RichParameterList& parameters, const MeshModel& mesh,
@@ -75,10 +74,17 @@ std::string selectionTold(const std::vector<bool>& selected) {
            " vertices";
 }
 
-RichEnum laplacianParameter(const QString& help) {
-    return {"laplacian",  static_cast<int>(spectral::LaplacianKind::IntrinsicDelaunay),
-            laplacians(), "Laplacian",
-            help,         true};
+RichEnum laplacianParameter() {
+    return {"laplacian",
+            static_cast<int>(spectral::LaplacianKind::IntrinsicDelaunay),
+            laplacians(),
+            "Laplacian",
+            "How the frequencies of the surface are measured. <b>intrinsic delaunay</b> works on "
+            "any triangles, including slivers, holes, duplicate or intersecting sheets, and is "
+            "stable for strong filters. <b>cotangent</b> is the formula of the paper; every "
+            "triangle needs an area. <b>uniform</b> looks at the connections only, as if the "
+            "vertices were evenly spaced: for noise that differs from vertex to vertex.",
+            true};
 }
 
 spectral::LaplacianKind laplacianKind(const RichParameterList& parameters) {
@@ -86,7 +92,11 @@ spectral::LaplacianKind laplacianKind(const RichParameterList& parameters) {
 }
 
 RichEnum boundaryParameter(const QString& help) {
-    return {"boundary", static_cast<int>(spectral::Boundary::Free), boundaries(), "Boundary", help,
+    return {"boundary",
+            static_cast<int>(spectral::Boundary::Free),
+            boundaries(),
+            "Boundary",
+            "The boundary of an open surface, holes included. " + help,
             true};
 }
 

@@ -49,7 +49,7 @@ std::string selectionTold(const std::vector<bool>& selected);
 constexpr double kDefaultTolerance = 0.0005;
 
 /// `laplacian`; default: intrinsic Delaunay.
-RichEnum laplacianParameter(const QString& help);
+RichEnum laplacianParameter();
 
 spectral::LaplacianKind laplacianKind(const RichParameterList& parameters);
 
@@ -57,6 +57,7 @@ spectral::LaplacianKind laplacianKind(const RichParameterList& parameters);
 QStringList boundaries();
 
 /// `boundary`; default: free.
+/// @param help  what its choices do.
 RichEnum boundaryParameter(const QString& help);
 
 spectral::Boundary boundaryCondition(const RichParameterList& parameters);

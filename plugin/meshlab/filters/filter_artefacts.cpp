@@ -24,11 +24,7 @@ RichParameterList artefactsParameters(const MeshModel& mesh) {
         mesh,
         "Feature size of the low-pass or band that was applied. A percentage refers to this mesh, "
         "whose diagonal the filter may have changed: enter the length that the filter reported."));
-    list.addParam(
-        laplacianParameter("How the frequencies of the surface are measured, as in the filter. "
-                           "<b>intrinsic delaunay</b> works on any triangles; for <b>cotangent</b> "
-                           "every triangle needs an area; <b>uniform</b> looks at the connections "
-                           "only."));
+    list.addParam(laplacianParameter());
     return list;
 }
 
@@ -48,10 +44,8 @@ FilterOutcome applyArtefacts(const RichParameterList& parameters, MeshModel& mes
     spectral::ArtefactOptions options;
     options.featureSize = featureSize(parameters);
     options.laplacian = laplacianKind(parameters);
-    const spectral::Artefacts artefacts =
-        spectral::withSteadyProgress(progress, [&](const spectral::Progress& steady) {
-            return spectral::measureArtefacts(input.V, input.F, options, steady);
-        });
+    const spectral::Artefacts artefacts = spectral::withSteadyProgress(
+        progress, spectral::measureArtefacts, input.V, input.F, options);
 
     reportWriting(input, mesh.cm, progress);
     setQuality(input.vertexIndex, artefacts.length, mesh);
@@ -69,13 +63,11 @@ FilterOutcome applyArtefacts(const RichParameterList& parameters, MeshModel& mes
 }  // namespace
 
 MeshFilter artefactsMeshFilter() {
-    MeshFilter filter;
-    filter.name = "Spectral Artefacts";
-    filter.pythonName = "compute_scalar_spectral_artefacts_per_vertex";
-    filter.help = kArtefactsHelp;
-    filter.category = FilterPlugin::FilterClass(FilterPlugin::Quality | FilterPlugin::Measure);
-    filter.changes = MeshModel::MM_VERTQUALITY | MeshModel::MM_VERTCOLOR;
-    filter.parameters = artefactsParameters;
-    filter.apply = applyArtefacts;
-    return filter;
+    return {"Spectral Artefacts",
+            "compute_scalar_spectral_artefacts_per_vertex",
+            kArtefactsHelp,
+            FilterPlugin::FilterClass(FilterPlugin::Quality | FilterPlugin::Measure),
+            MeshModel::MM_VERTQUALITY | MeshModel::MM_VERTCOLOR,
+            artefactsParameters,
+            applyArtefacts};
 }

@@ -44,14 +44,12 @@ RichParameterList denoiseParameters(const MeshModel& mesh) {
         "mean edge it differs from vertex to vertex. 0: as measured." +
             edge));
     list.addParam(selectedParameter(mesh, "four edges"));
-    list.addParam(RichBool("keep_creases", defaults.keepCreases, "Keep creases",
-                           "Do not smooth across edges. Off: rounds them; for shapes that have "
-                           "none.",
-                           true));
-    list.addParam(boundaryParameter(
-        "The boundary of an open surface, holes included. <b>free</b>: it follows along its "
-        "normals, "
-        "as far as the noise explains. <b>fixed</b>: it stays exactly in place."));
+    list.addParam(
+        RichBool("keep_creases", defaults.keepCreases, "Keep creases",
+                 "Do not smooth across edges. Off: rounds them; for shapes that have none.", true));
+    list.addParam(
+        boundaryParameter("<b>free</b>: it follows along its normals, as far as the noise "
+                          "explains. <b>fixed</b>: it stays exactly in place."));
     return list;
 }
 
@@ -100,8 +98,7 @@ std::string nothingTold(const DenoiseResult& result) {
     switch (result.diagnosis.kind) {
         case NoiseKind::Tessellation:
             return "no scan but the needle triangles of a designed part: no noise is looked for. "
-                   "If "
-                   "there is some, give its noise height, or remesh first";
+                   "If there is some, give its noise height, or remesh first";
         case NoiseKind::TooFew:
             return "too few vertices to tell noise from shape. If there is some, give its noise "
                    "height";
@@ -146,9 +143,7 @@ std::vector<std::string> warningsOf(const spectral::DenoiseOptions& options,
                                     const std::string& summary, const DenoiseResult& result) {
     std::vector<std::string> warnings = surfaceWarnings(result);
     if (result.rounds > 0 && isAllFixed(result, result.V.rows()))
-        warnings.emplace_back(
-            "nothing can move: every vertex lies on the boundary, which is fixed. Choose boundary "
-            "= free; if the triangles are not connected, apply 'Merge Close Vertices' first");
+        warnings.push_back(allFixedWarning("move"));
     else if (options.strength > 0.0 && (result.maxDisplacement == 0.0 || result.isCrumpled))
         warnings.push_back(summary);
     constexpr double kHalf = 0.34;  // of an edge without the noise, which lengthens edges
@@ -170,11 +165,9 @@ FilterOutcome applyDenoise(const RichParameterList& parameters, MeshModel& mesh,
     options.keepCreases = parameters.getBool("keep_creases");
     options.boundary = boundaryCondition(parameters);
     const DenoiseResult result =
-        spectral::withSteadyProgress(progress, [&](const spectral::Progress& steady) {
-            return spectral::denoise(input.V, input.F, options, steady);
-        });
+        spectral::withSteadyProgress(progress, spectral::denoise, input.V, input.F, options);
     reportWriting(input, mesh.cm, progress);
-    setPositions(input.vertexIndex, result.V, mesh);
+    setPositions(input, result.V, mesh);
     const std::string summary = summaryOf(options, result);
     const spectral::NoiseEstimate& noise = result.diagnosis.noise;
     std::map<std::string, QVariant> report{
@@ -186,13 +179,8 @@ FilterOutcome applyDenoise(const RichParameterList& parameters, MeshModel& mesh,
         {"spikes", static_cast<int>(result.diagnosis.spikes)},
         {"voxel_size", QVariant::fromValue(Eigen::VectorXd(result.diagnosis.voxel))},
         {"mean_edge", noise.meanEdge},
-        {"rms_displacement", result.rmsDisplacement},
-        {"max_displacement", result.maxDisplacement},
-        {"volume_before", result.volumeBefore},
-        {"volume_after", result.volumeAfter},
-        {"preserved_volumes", result.volumes.preserved},
         {"rounds", result.rounds}};
-    addSurfaceCounts(result, report);
+    addMovement(result, report);
     return {std::move(report), reportText(summary, result), warningsOf(options, summary, result),
             summary};
 }
@@ -200,13 +188,8 @@ FilterOutcome applyDenoise(const RichParameterList& parameters, MeshModel& mesh,
 }  // namespace
 
 MeshFilter denoiseMeshFilter() {
-    MeshFilter filter;
-    filter.name = "Spectral Denoise";
-    filter.pythonName = "apply_coord_spectral_denoise";
-    filter.help = kDenoiseHelp;
-    filter.category = FilterPlugin::Smoothing;
-    filter.changes = MeshModel::MM_VERTCOORD | MeshModel::MM_VERTNORMAL | MeshModel::MM_FACENORMAL;
-    filter.parameters = denoiseParameters;
-    filter.apply = applyDenoise;
-    return filter;
+    return {"Spectral Denoise", "apply_coord_spectral_denoise",
+            kDenoiseHelp,       FilterPlugin::Smoothing,
+            kMovesVertices,     denoiseParameters,
+            applyDenoise};
 }

@@ -66,15 +66,13 @@ RichParameterList equalizerParameters(const MeshModel& mesh) {
             meanEdgeTold(edge)));
     list.addParam(selectedParameter(mesh, "eight times the smallest size"));
     list.addParam(boundaryParameter(
-        "What happens at the boundary of an open surface, holes included. <b>free</b>: it moves "
-        "like the rest. <b>fixed</b>: it stays exactly in place."));
-    list.addParam(
-        RichBool("accurate", false, "Accurate",
-                 "Off: quick enough for the preview, in two steps at most. Changes by gains of 0.5 "
-                 "to 2 are then accurate to about a hundredth of them, by a gain of 0 to a tenth; "
-                 "the log says how far. On: as many steps as an accuracy of 0.05 % of the diagonal "
-                 "takes.",
-                 true));
+        "<b>free</b>: it moves like the rest. <b>fixed</b>: it stays exactly in place."));
+    list.addParam(RichBool(
+        "accurate", false, "Accurate",
+        "Off: quick enough for the preview, in two steps at most. Changes by gains of 0.5 to 2 are "
+        "then accurate to about a hundredth of them, by a gain of 0 to a tenth; the log says how "
+        "far. On: as many steps as an accuracy of 0.05 % of the diagonal takes.",
+        true));
     return list;
 }
 
@@ -87,8 +85,8 @@ std::vector<double> chosenGains(const RichParameterList& parameters) {
         if (!std::isfinite(gain) || gain < 0.0)
             throw spectral::InvalidOption(gainName(times).toStdString() + " = " +
                                           spectral::textOf(gain) +
-                                          ": must be finite and not negative; 0 removes details, "
-                                          "1 keeps them, 2 doubles them");
+                                          ": must be finite and not negative; 0 removes details, 1 "
+                                          "keeps them, 2 doubles them");
         gains.insert(gains.begin(), gain);
     }
     return gains;
@@ -132,10 +130,8 @@ FilterOutcome applyEqualizer(const RichParameterList& parameters, MeshModel& mes
     if (!isAccurate) options.mostSteps = kQuickSteps;
     options.boundary = boundaryCondition(parameters);
     options.part.selected = chosenVertices(parameters, mesh, input);
-    const spectral::FilterResult result =
-        spectral::withSteadyProgress(progress, [&](const spectral::Progress& steady) {
-            return spectral::fractionalFilter(input.V, input.F, options, steady);
-        });
+    const spectral::FilterResult result = spectral::withSteadyProgress(
+        progress, spectral::fractionalFilter, input.V, input.F, options);
     const spectral::FilterResult told = isAccurate ? result : withoutTolerance(result);
     const std::string changes = changesTold(parameters, smallest, diagonal);
     FilterOutcome outcome{reportDictionary(result), "",
@@ -147,20 +143,15 @@ FilterOutcome applyEqualizer(const RichParameterList& parameters, MeshModel& mes
     }
     outcome.text = fractionalReportText(options, told, diagonal, "Spectral Equalizer: " + changes);
     reportWriting(input, mesh.cm, progress);
-    setPositions(input.vertexIndex, result.V, mesh);
+    setPositions(input, result.V, mesh);
     return outcome;
 }
 
 }  // namespace
 
 MeshFilter equalizerMeshFilter() {
-    MeshFilter filter;
-    filter.name = "Spectral Equalizer";
-    filter.pythonName = "apply_coord_spectral_equalizer";
-    filter.help = kEqualizerHelp;
-    filter.category = FilterPlugin::Smoothing;
-    filter.changes = MeshModel::MM_VERTCOORD | MeshModel::MM_VERTNORMAL | MeshModel::MM_FACENORMAL;
-    filter.parameters = equalizerParameters;
-    filter.apply = applyEqualizer;
-    return filter;
+    return {"Spectral Equalizer", "apply_coord_spectral_equalizer",
+            kEqualizerHelp,       FilterPlugin::Smoothing,
+            kMovesVertices,       equalizerParameters,
+            applyEqualizer};
 }

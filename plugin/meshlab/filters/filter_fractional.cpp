@@ -1,13 +1,19 @@
 #include "core/filter/fractional_filter.h"
 #include "core/mesh/measures.h"
 #include "core/support/steady_progress.h"
-#include "meshlab/filters/fractional_help.h"
 #include "meshlab/filters/fractional_parameters.h"
 #include "meshlab/filters/fractional_report.h"
+#include "meshlab/filters/surface_report.h"
 #include "meshlab/mesh_conversion.h"
 #include "meshlab/mesh_filter.h"
 
 namespace {
+
+// Three lines, as MeshLab shows all of it above the parameters.
+const char* const kFractionalHelp =
+    "Smooths, sharpens or enhances details <b>by their size</b>, as an equalizer filters sound. "
+    "Low-pass: details larger than the feature size stay, smaller ones go. <small>Kovnatsky, "
+    "Bronstein, Bronstein: <i>Stable Spectral Mesh Filtering</i>, 2012</small>";
 
 /// Name of the vertex attribute with the details.
 const char* const kDetails = "spectral_details";
@@ -17,10 +23,8 @@ FilterOutcome applyFractional(const RichParameterList& parameters, MeshModel& me
     const MeshMatrices input = toMatrices(mesh.cm);
     const spectral::FilterOptions options = fractionalFilterOptions(parameters, mesh, input);
     const bool detailsOnly = areDetailsWanted(parameters);
-    const spectral::FilterResult result =
-        spectral::withSteadyProgress(progress, [&](const spectral::Progress& steady) {
-            return spectral::fractionalFilter(input.V, input.F, options, steady);
-        });
+    const spectral::FilterResult result = spectral::withSteadyProgress(
+        progress, spectral::fractionalFilter, input.V, input.F, options);
     reportWriting(input, mesh.cm, progress);
     const double diagonal = spectral::boundingBoxDiagonal(input.V);
     std::string text = fractionalReportText(options, result, diagonal);
@@ -29,24 +33,21 @@ FilterOutcome applyFractional(const RichParameterList& parameters, MeshModel& me
         text += "\n  no vertex has moved: the details are the vertex quality, and the attribute ";
         text += kDetails;
     } else {
-        setPositions(input.vertexIndex, result.V, mesh);
+        setPositions(input, result.V, mesh);
     }
     std::vector<std::string> warnings = fractionalWarnings(options, result, diagonal);
-    for (std::string& unused : unusedParameters(parameters)) warnings.push_back(std::move(unused));
+    append(unusedParameters(parameters), warnings);
     return {reportDictionary(result), text, std::move(warnings)};
 }
 
 }  // namespace
 
 MeshFilter fractionalMeshFilter() {
-    MeshFilter filter;
-    filter.name = "Spectral Filter (Fractional)";
-    filter.pythonName = "apply_coord_spectral_filter_fractional";
-    filter.help = fractionalFilterHelp();
-    filter.category = FilterPlugin::Smoothing;
-    filter.changes = MeshModel::MM_VERTCOORD | MeshModel::MM_VERTNORMAL | MeshModel::MM_FACENORMAL |
-                     MeshModel::MM_VERTQUALITY;
-    filter.parameters = fractionalFilterParameters;
-    filter.apply = applyFractional;
-    return filter;
+    return {"Spectral Filter (Fractional)",
+            "apply_coord_spectral_filter_fractional",
+            kFractionalHelp,
+            FilterPlugin::Smoothing,
+            kMovesVertices | MeshModel::MM_VERTQUALITY,
+            fractionalFilterParameters,
+            applyFractional};
 }

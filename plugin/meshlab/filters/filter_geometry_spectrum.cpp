@@ -29,14 +29,10 @@ RichParameterList geometrySpectrumParameters(const MeshModel&) {
                 "Number of the largest features (manifold harmonics) that are also computed one by "
                 "one, constant ones included, for scripts that need them: it takes most of the "
                 "time. The octaves cover all features in any case. A small mesh gets all it has."));
+    list.addParam(laplacianParameter());
     list.addParam(
-        laplacianParameter("How the frequencies of the surface are measured, as in the filter. "
-                           "<b>intrinsic delaunay</b> works on any triangles; for <b>cotangent</b> "
-                           "every triangle needs an area; <b>uniform</b> looks at the connections "
-                           "only."));
-    list.addParam(boundaryParameter(
-        "The boundary of an open surface, holes included, as in the filter. <b>free</b>: it is "
-        "part of the shape. <b>fixed</b>: only what it does not determine is measured."));
+        boundaryParameter("<b>free</b>: it is part of the shape. <b>fixed</b>: only what it does "
+                          "not determine is measured."));
     return list;
 }
 
@@ -93,10 +89,8 @@ FilterOutcome applyGeometrySpectrum(const RichParameterList& parameters, MeshMod
     options.basisSize = parameters.getInt("basis_size");
     options.laplacian = laplacianKind(parameters);
     options.boundary = boundaryCondition(parameters);
-    const GeometrySpectrum spectrum =
-        spectral::withSteadyProgress(progress, [&](const spectral::Progress& steady) {
-            return spectral::geometrySpectrum(input.V, input.F, options, steady);
-        });
+    const GeometrySpectrum spectrum = spectral::withSteadyProgress(
+        progress, spectral::geometrySpectrum, input.V, input.F, options);
     return {{{"diagonal", spectrum.diagonal},
              {"mean_edge", spectrum.meanEdge},
              {"default_feature_size",
@@ -125,12 +119,7 @@ FilterOutcome applyGeometrySpectrum(const RichParameterList& parameters, MeshMod
 }  // namespace
 
 MeshFilter geometrySpectrumMeshFilter() {
-    MeshFilter filter;
-    filter.name = "Geometry Spectrum";
-    filter.pythonName = "get_geometry_spectrum";
-    filter.help = kGeometrySpectrumHelp;
-    filter.category = FilterPlugin::Measure;
-    filter.parameters = geometrySpectrumParameters;
-    filter.apply = applyGeometrySpectrum;
-    return filter;
+    return {"Geometry Spectrum",   "get_geometry_spectrum", kGeometrySpectrumHelp,
+            FilterPlugin::Measure, MeshModel::MM_NONE,      geometrySpectrumParameters,
+            applyGeometrySpectrum};
 }

@@ -1,5 +1,6 @@
 #include <common/parameters/rich_parameters.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
@@ -10,7 +11,6 @@
 #include "core/support/steady_progress.h"
 #include "meshlab/error_messages.h"
 #include "meshlab/filters/common_parameters.h"
-#include "meshlab/filters/vertex_colors.h"
 #include "meshlab/mesh_conversion.h"
 #include "meshlab/mesh_filter.h"
 
@@ -36,19 +36,14 @@ RichParameterList harmonicsParameters(const MeshModel&) {
         RichInt("basis_size", spectral::HarmonicsOptions().basisSize, "Basis size",
                 "Number of harmonics to compute, constant ones included. Must be below the number "
                 "of vertices that are not fixed; time and memory grow with it."));
-    list.addParam(RichBool(
-        "store_basis", false, "Store basis",
-        "Keep all harmonics as vertex attributes named harmonic_0, harmonic_1 and so on, one "
-        "number per vertex each. Those of an earlier run are replaced. They are orthonormal with "
-        "the vertex areas as weights."));
-    list.addParam(laplacianParameter(
-        "How the frequencies of the surface are measured. <b>intrinsic delaunay</b> works on any "
-        "triangles, including slivers, holes, duplicate or intersecting sheets. <b>cotangent</b> "
-        "is the classical formula; every triangle needs an area. <b>uniform</b> looks at the "
-        "connections only, as if the vertices were evenly spaced."));
-    list.addParam(boundaryParameter(
-        "Boundary conditions of an open surface, holes included. <b>free</b>: the waves have zero "
-        "slope across the boundary. <b>fixed</b>: they are zero there, like the skin of a drum."));
+    list.addParam(RichBool("store_basis", false, "Store basis",
+                           "Keep all harmonics as vertex attributes named harmonic_0, harmonic_1 "
+                           "and so on, one number per vertex each. Those of an earlier run are "
+                           "replaced. They are orthonormal with the vertex areas as weights."));
+    list.addParam(laplacianParameter());
+    list.addParam(
+        boundaryParameter("<b>free</b>: the waves have zero slope across the boundary. "
+                          "<b>fixed</b>: they are zero there, like the skin of a drum."));
     return list;
 }
 
@@ -75,6 +70,25 @@ std::string textOf(const spectral::ManifoldHarmonics& harmonics, int mode) {
     return text.str();
 }
 
+/// @param t  in [-1, 1].
+vcg::Color4b blueWhiteRed(double t) {
+    const auto faded =
+        static_cast<unsigned char>(std::lround(255.0 * (1.0 - std::min(std::abs(t), 1.0))));
+    return t < 0.0 ? vcg::Color4b(faded, faded, 255, 255) : vcg::Color4b(255, faded, faded, 255);
+}
+
+/// Colours a signed function: blue below 0, white at 0, red above; the largest modulus has the full
+/// colour.
+void setDivergingColors(const std::vector<std::size_t>& vertexIndex, const Eigen::VectorXd& values,
+                        MeshModel& mesh) {
+    mesh.updateDataMask(MeshModel::MM_VERTCOLOR);
+    const double extreme = values.cwiseAbs().maxCoeff();
+    const double scale = extreme > 0.0 ? 1.0 / extreme : 0.0;
+    for (std::size_t i = 0; i < vertexIndex.size(); ++i)
+        mesh.cm.vert[vertexIndex[i]].C() =
+            blueWhiteRed(scale * values[static_cast<Eigen::Index>(i)]);
+}
+
 FilterOutcome applyHarmonics(const RichParameterList& parameters, MeshModel& mesh,
                              const spectral::Progress& progress) {
     const int mode = parameters.getInt("mode");
@@ -84,10 +98,8 @@ FilterOutcome applyHarmonics(const RichParameterList& parameters, MeshModel& mes
     options.boundary = boundaryCondition(parameters);
     checkMode(mode, options.basisSize);
     const MeshMatrices input = toMatrices(mesh.cm);
-    const spectral::ManifoldHarmonics harmonics =
-        spectral::withSteadyProgress(progress, [&](const spectral::Progress& steady) {
-            return spectral::manifoldHarmonics(input.V, input.F, options, steady);
-        });
+    const spectral::ManifoldHarmonics harmonics = spectral::withSteadyProgress(
+        progress, spectral::manifoldHarmonics, input.V, input.F, options);
 
     reportWriting(input, mesh.cm, progress);
     if (parameters.getBool("store_basis"))
@@ -104,13 +116,11 @@ FilterOutcome applyHarmonics(const RichParameterList& parameters, MeshModel& mes
 }  // namespace
 
 MeshFilter harmonicsMeshFilter() {
-    MeshFilter filter;
-    filter.name = "Manifold Harmonics";
-    filter.pythonName = "compute_scalar_manifold_harmonic_per_vertex";
-    filter.help = kHarmonicsHelp;
-    filter.category = FilterPlugin::Quality;
-    filter.changes = MeshModel::MM_VERTQUALITY | MeshModel::MM_VERTCOLOR;
-    filter.parameters = harmonicsParameters;
-    filter.apply = applyHarmonics;
-    return filter;
+    return {"Manifold Harmonics",
+            "compute_scalar_manifold_harmonic_per_vertex",
+            kHarmonicsHelp,
+            FilterPlugin::Quality,
+            MeshModel::MM_VERTQUALITY | MeshModel::MM_VERTCOLOR,
+            harmonicsParameters,
+            applyHarmonics};
 }

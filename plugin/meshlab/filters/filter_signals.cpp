@@ -36,28 +36,21 @@ const char* const kQualityHelp =
 const char* const kColorHelp =
     "Filters the <b>vertex colours</b> by the size of their details on the surface, as <i>Spectral "
     "Filter (Fractional)</i> does the shape, which stays as it is: removes the noise of a "
-    "scanner's "
-    "colours, sharpens a painting.";
+    "scanner's colours, sharpens a painting.";
 
 RichParameterList signalsParameters(const MeshModel& mesh) {
     RichParameterList list;
     addTransferParameters(mesh, list);
     list.addParam(selectedParameter(mesh));
-    list.addParam(laplacianParameter(
-        "How the frequencies of the surface are measured. <b>intrinsic delaunay</b> works on any "
-        "triangles, including slivers, holes, duplicate or intersecting sheets. <b>cotangent</b> "
-        "is the classical formula; every triangle needs an area. <b>uniform</b> looks at the "
-        "connections only, as if the vertices were evenly spaced."));
-    list.addParam(boundaryParameter(
-        "What happens at the boundary of an open surface, holes included. <b>free</b>: values "
-        "there are filtered like the rest. <b>fixed</b>: they are kept exactly, and the values in "
-        "between are filtered."));
+    list.addParam(laplacianParameter());
+    list.addParam(
+        boundaryParameter("<b>free</b>: values there are filtered like the rest. <b>fixed</b>: "
+                          "they are kept exactly, and the values in between are filtered."));
     return list;
 }
 
-spectral::FilteredSignal filtered(const RichParameterList& parameters, const MeshModel& mesh,
-                                  const MeshMatrices& input, const Eigen::MatrixXd& Q,
-                                  const spectral::Progress& progress) {
+spectral::SignalFilterOptions signalOptions(const RichParameterList& parameters,
+                                            const MeshModel& mesh, const MeshMatrices& input) {
     spectral::SignalFilterOptions options;
     const ChosenTransfer transfer = chosenTransfer(parameters, input);
     options.transferFunction = transfer.options;
@@ -65,9 +58,7 @@ spectral::FilteredSignal filtered(const RichParameterList& parameters, const Mes
     options.laplacian = laplacianKind(parameters);
     options.boundary = boundaryCondition(parameters);
     options.part.selected = chosenVertices(parameters, mesh, input);
-    return spectral::withSteadyProgress(progress, [&](const spectral::Progress& steady) {
-        return spectral::filterSignal(input.V, input.F, Q, options, steady);
-    });
+    return options;
 }
 
 std::vector<std::string> warningsOf(const std::vector<bool>& selected,
@@ -79,26 +70,21 @@ std::vector<std::string> warningsOf(const std::vector<bool>& selected,
             "nothing to filter: every connected component has one value throughout. Apply a filter "
             "that computes qualities or colours first");
     else if (isAllFixed(result, result.Y.rows() - result.verticesWithoutData))
-        warnings.emplace_back(
-            "nothing can change: every vertex lies on the boundary, which is fixed. Choose "
-            "boundary = free; if the triangles are not connected, apply 'Merge Close Vertices' "
-            "first");
+        warnings.push_back(allFixedWarning("change"));
     if (!result.accuracyReached)
         warnings.push_back(accuracyWarning(result.accuracy, result.errorEstimate));
-    for (std::string& warning : residualWarnings(result.residuals))
-        warnings.push_back(std::move(warning));
+    append(residualWarnings(result.residuals), warnings);
     return warnings;
 }
 
 /// What both filters report.
 /// @param signal  "quality changed", ...
 FilterOutcome outcomeOf(const char* name, const char* signal, const RichParameterList& parameters,
-                        const MeshModel& mesh, const MeshMatrices& input,
+                        const spectral::SignalFilterOptions& options, const MeshMatrices& input,
                         const spectral::FilteredSignal& result) {
-    const ChosenTransfer transfer = chosenTransfer(parameters, input);
-    const double size = transfer.featureSize;
+    const double size = options.featureSize;
     std::ostringstream text;
-    text << std::setprecision(4) << name << ": " << nameOf(transfer.options.type)
+    text << std::setprecision(4) << name << ": " << nameOf(options.transferFunction.type)
          << " at feature size " << size << " ("
          << 100.0 * size / spectral::boundingBoxDiagonal(input.V) << " % of the diagonal); "
          << signal << " by " << result.rmsChange << " (root mean square), by " << result.maxChange
@@ -118,9 +104,8 @@ FilterOutcome outcomeOf(const char* name, const char* signal, const RichParamete
                                            {"factorizations", result.factorizations},
                                            {"solves", result.solves}};
     addSurfaceCounts(result, report);
-    std::vector<std::string> warnings = warningsOf(chosenVertices(parameters, mesh, input), result);
-    for (std::string& unused : unusedTransferParameters(parameters))
-        warnings.push_back(std::move(unused));
+    std::vector<std::string> warnings = warningsOf(options.part.selected, result);
+    append(unusedTransferParameters(parameters), warnings);
     return {std::move(report), text.str(), std::move(warnings)};
 }
 
@@ -140,17 +125,19 @@ FilterOutcome applyToQuality(const RichParameterList& parameters, MeshModel& mes
             "e.g. 'Per Vertex Quality Function'");
     const MeshMatrices input = toMatrices(mesh.cm);
     const Eigen::VectorXd Q = vertexQuality(mesh.cm, input);
-    const spectral::FilteredSignal result = filtered(parameters, mesh, input, Q, progress);
+    const spectral::SignalFilterOptions options = signalOptions(parameters, mesh, input);
+    const spectral::FilteredSignal result = spectral::withSteadyProgress(
+        progress, spectral::filterSignal, input.V, input.F, Q, options);
     if (!(result.Y.cwiseAbs().maxCoeff<Eigen::PropagateNumbers>() <=
           std::numeric_limits<Scalarm>::max()))
         throw MLException(
-            "the filtered quality is too large for a number: choose smaller gains, or apply "
-            "'Per Vertex Quality Function', q / 1000, first");
+            "the filtered quality is too large for a number: choose smaller gains, or apply 'Per "
+            "Vertex Quality Function', q / 1000, first");
 
     reportWriting(input, mesh.cm, progress);
     setQuality(input.vertexIndex, result.Y.col(0), mesh);
     FilterOutcome outcome =
-        outcomeOf(kQualityName, "quality changed", parameters, mesh, input, result);
+        outcomeOf(kQualityName, "quality changed", parameters, options, input, result);
     outcome.text += "\n  quality: " + rangeOf(Q) + " -> " + rangeOf(result.Y);
     return outcome;
 }
@@ -165,7 +152,9 @@ FilterOutcome applyToColor(const RichParameterList& parameters, MeshModel& mesh,
     Eigen::MatrixXd Q(input.V.rows(), 3);
     for (Eigen::Index i = 0; i < Q.rows(); ++i)
         for (int c = 0; c < 3; ++c) Q(i, c) = mesh.cm.vert[input.vertexIndex[i]].cC()[c];
-    const spectral::FilteredSignal result = filtered(parameters, mesh, input, Q, progress);
+    const spectral::SignalFilterOptions options = signalOptions(parameters, mesh, input);
+    const spectral::FilteredSignal result = spectral::withSteadyProgress(
+        progress, spectral::filterSignal, input.V, input.F, Q, options);
 
     reportWriting(input, mesh.cm, progress);
     mesh.updateDataMask(MeshModel::MM_VERTCOLOR);
@@ -177,7 +166,7 @@ FilterOutcome applyToColor(const RichParameterList& parameters, MeshModel& mesh,
     const auto clamped = static_cast<int>((levels < 0.0 || levels > kWhite).count());
     FilterOutcome outcome =
         outcomeOf(kColorName, "colours changed (in levels of 0 to 255, before rounding)",
-                  parameters, mesh, input, result);
+                  parameters, options, input, result);
     outcome.report["clamped_values"] = clamped;
     outcome.text +=
         "\n  clamped: " + std::to_string(clamped) + " of " + std::to_string(Q.size()) + " values";
@@ -187,26 +176,21 @@ FilterOutcome applyToColor(const RichParameterList& parameters, MeshModel& mesh,
 }  // namespace
 
 MeshFilter qualityMeshFilter() {
-    MeshFilter filter;
-    filter.name = kQualityName;
-    filter.pythonName = "apply_scalar_spectral_filter_per_vertex";
-    filter.help = kQualityHelp;
-    filter.category = FilterPlugin::FilterClass(FilterPlugin::Smoothing | FilterPlugin::Quality);
-    filter.changes = MeshModel::MM_VERTQUALITY;
-    filter.parameters = signalsParameters;
-    filter.apply = applyToQuality;
-    return filter;
+    return {kQualityName,
+            "apply_scalar_spectral_filter_per_vertex",
+            kQualityHelp,
+            FilterPlugin::FilterClass(FilterPlugin::Smoothing | FilterPlugin::Quality),
+            MeshModel::MM_VERTQUALITY,
+            signalsParameters,
+            applyToQuality};
 }
 
 MeshFilter colorMeshFilter() {
-    MeshFilter filter;
-    filter.name = kColorName;
-    filter.pythonName = "apply_color_spectral_filter_per_vertex";
-    filter.help = kColorHelp;
-    filter.category =
-        FilterPlugin::FilterClass(FilterPlugin::Smoothing | FilterPlugin::VertexColoring);
-    filter.changes = MeshModel::MM_VERTCOLOR;
-    filter.parameters = signalsParameters;
-    filter.apply = applyToColor;
-    return filter;
+    return {kColorName,
+            "apply_color_spectral_filter_per_vertex",
+            kColorHelp,
+            FilterPlugin::FilterClass(FilterPlugin::Smoothing | FilterPlugin::VertexColoring),
+            MeshModel::MM_VERTCOLOR,
+            signalsParameters,
+            applyToColor};
 }

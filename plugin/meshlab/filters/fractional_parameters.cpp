@@ -25,24 +25,23 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
 
     addTransferParameters(mesh, list);
     list.addParam(selectedParameter(mesh));
-    list.addParam(RichInt(
-        "steps", defaults.steps, "Steps (0 = automatic)",
-        "The filter is applied in this many weak steps, because a single strong one turns thin "
-        "parts into spikes or balloons. 0 takes as many as the tolerance needs; 10 is the "
-        "scheme of the paper with ten steps; 1 is the classical one-shot filter.",
-        true));
+    list.addParam(
+        RichInt("steps", defaults.steps, "Steps (0 = automatic)",
+                "The filter is applied in this many weak steps, because a single strong one turns "
+                "thin parts into spikes or balloons. 0 takes as many as the tolerance needs; 10 is "
+                "the scheme of the paper with ten steps; 1 is the classical one-shot filter.",
+                true));
     list.addParam(RichPercentage(
         "tolerance", static_cast<Scalarm>(kDefaultTolerance) * diagonal, 0, diagonal, "Tolerance",
-        "With 0 steps: largest distance of the surface from that of infinitely many steps "
-        "(except for a thousandth of it). Larger is faster.",
+        "With 0 steps: largest distance of the surface from that of infinitely many steps (except "
+        "for a thousandth of it). Larger is faster.",
         true));
     list.addParam(RichEnum(
         "basis_update", static_cast<int>(defaults.basisUpdate), basisUpdates(), "Basis update",
         "What every step recomputes from the current shape. <b>full</b>, the paper's scheme: all "
-        "of its frequencies. <b>conformal</b>: its areas only, each vertex a quarter of its own "
-        "at least (Kazhdan et al. 2012); thin parts do not turn into spikes. <b>none</b>: nothing; "
-        "the number of steps "
-        "then makes no difference.",
+        "of its frequencies. <b>conformal</b>: its areas only, each vertex a quarter of its own at "
+        "least (Kazhdan et al. 2012); thin parts do not turn into spikes. <b>none</b>: nothing; "
+        "the number of steps then makes no difference.",
         true));
     list.addParam(RichFloat(
         "conformal_share", static_cast<Scalarm>(defaults.conformalShare), "Conformal share",
@@ -65,17 +64,10 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
                            "For a truncated spectrum: keep the details beyond the basis, with the "
                            "mean gain of their frequencies. Off: drop them.",
                            true));
-    list.addParam(laplacianParameter(
-        "How the frequencies of the surface are measured. <b>intrinsic delaunay</b> works on any "
-        "triangles, including slivers, holes, duplicate or intersecting sheets, and is stable for "
-        "strong filters. <b>cotangent</b> is the formula of the paper; every triangle needs an "
-        "area. <b>uniform</b> looks at the connections only, as if the vertices were evenly "
-        "spaced: "
-        "for noise that differs from vertex to vertex."));
+    list.addParam(laplacianParameter());
     list.addParam(boundaryParameter(
-        "What happens at the boundary of an open surface, holes included. <b>free</b>: it moves "
-        "like the rest; strong smoothing rounds it off and pulls it in. <b>fixed</b>: it stays "
-        "exactly in place, and the surface in between is filtered."));
+        "<b>free</b>: it moves like the rest; strong smoothing rounds it off and pulls it in. "
+        "<b>fixed</b>: it stays exactly in place, and the surface in between is filtered."));
     list.addParam(RichFloat(
         "crease_angle", static_cast<Scalarm>(defaults.creaseAngle), "Crease angle (0 = off)",
         "Edges whose two faces meet at more than this angle, in degrees, stay where they are, and "
@@ -85,11 +77,11 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
                            "Move the surface along its normals until every closed component has "
                            "its volume back. Open ones have none.",
                            true));
-    list.addParam(RichEnum(
-        "weight", 0, weights(), "Weight",
-        "<b>vertex quality</b>: how much of the filter each vertex gets, from 0 (nothing) to 1 "
-        "(all), to paint where to filter. <b>none</b>: all of it.",
-        true));
+    list.addParam(
+        RichEnum("weight", 0, weights(), "Weight",
+                 "<b>vertex quality</b>: how much of the filter each vertex gets, from 0 (nothing) "
+                 "to 1 (all), to paint where to filter. <b>none</b>: all of it.",
+                 true));
     list.addParam(RichEnum(
         "result", 0, results(), "Result",
         "<b>details</b>: no vertex moves. What the filter would take away, input minus result, is "

@@ -20,13 +20,8 @@ std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& r
         {"steps", result.steps},
         {"cutoff_frequency", result.cutoffFrequency},
         {"feature_size", result.featureSize},
-        {"max_displacement", result.maxDisplacement},
-        {"rms_displacement", result.rmsDisplacement},
         {"area_before", result.areaBefore},
         {"area_after", result.areaAfter},
-        {"volume_before", result.volumeBefore},
-        {"volume_after", result.volumeAfter},
-        {"preserved_volumes", result.volumes.preserved},
         {"factorizations", result.factorizations},
         {"solves", result.solves},
         {"products", result.products},
@@ -41,7 +36,7 @@ std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& r
          QVariant::fromValue(Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
              result.stepSizes.data(), static_cast<Eigen::Index>(result.stepSizes.size()))))},
     };
-    addSurfaceCounts(result, report);
+    addMovement(result, report);
     if (result.eigenvalues.size() > 0) {
         report["eigenvalues"] = QVariant::fromValue(result.eigenvalues);
         report["cutoff_reached"] = result.cutoffReached;
@@ -175,13 +170,10 @@ std::vector<std::string> fractionalWarnings(const spectral::FilterOptions& optio
         warnings.push_back(told);
     const bool isAtRest = isAllFixed(result, result.V.rows());
     if (isAtRest)
-        warnings.emplace_back(
-            options.creaseAngle > 0.0
-                ? "nothing can move: every vertex lies on a crease or a fixed boundary. Choose a "
-                  "larger crease_angle"
-                : "nothing can move: every vertex lies on the boundary, which is fixed. Choose "
-                  "boundary = free; if the triangles are not connected, apply 'Merge Close "
-                  "Vertices' first");
+        warnings.push_back(options.creaseAngle > 0.0
+                               ? "nothing can move: every vertex lies on a crease or a fixed "
+                                 "boundary. Choose a larger crease_angle"
+                               : allFixedWarning("move"));
     if (options.transferFunction.type != spectral::FilterType::Custom &&
         result.featureSize < result.meanEdge && !isAtRest)
         warnings.push_back(edgeWarning(result));
@@ -199,8 +191,7 @@ std::vector<std::string> fractionalWarnings(const spectral::FilterOptions& optio
                            "Isotropic Explicit Remeshing' first");
     if (!result.toleranceReached) warnings.push_back(toleranceWarning(options, result));
     if (!result.cutoffReached) warnings.push_back(cutoffWarning(result, lastFrequency(result)));
-    for (std::string& warning : residualWarnings(result.residuals))
-        warnings.push_back(std::move(warning));
+    append(residualWarnings(result.residuals), warnings);
     return warnings;
 }
 

@@ -2,6 +2,7 @@
 
 #include <iomanip>
 #include <sstream>
+#include <utility>
 
 void addSurfaceCounts(const spectral::SurfaceCounts& counts,
                       std::map<std::string, QVariant>& report) {
@@ -33,6 +34,16 @@ std::string volumeTold(bool hasVolume, double before, double after) {
 bool isAllFixed(const spectral::SurfaceCounts& counts, Eigen::Index n) {
     return counts.fixedVertices > 0 &&
            counts.fixedVertices + counts.joinedVertices + counts.unreferencedVertices == n;
+}
+
+std::string allFixedWarning(const std::string& verb) {
+    return "nothing can " + verb +
+           ": every vertex lies on the boundary, which is fixed. Choose boundary = free; if the "
+           "triangles are not connected, apply 'Merge Close Vertices' first";
+}
+
+void append(std::vector<std::string> more, std::vector<std::string>& warnings) {
+    for (std::string& warning : more) warnings.push_back(std::move(warning));
 }
 
 std::vector<std::string> surfaceWarnings(const spectral::SurfaceCounts& counts) {

@@ -23,38 +23,34 @@ void addTransferParameters(const MeshModel& mesh, RichParameterList& list) {
     const spectral::TransferFunctionOptions transfer;
     list.addParam(RichEnum(
         "filter_type", static_cast<int>(transfer.type), filterTypes(), "Filter type",
-        "Which details to change, by their size. <b>low-pass</b> keeps details larger "
-        "than the feature size and removes the rest. <b>high-pass</b> acts on smaller "
-        "ones: with stop gain 1 and pass gain 2 it sharpens. <b>band-pass</b> acts on "
-        "details of about the feature size: with stop gain 1 and pass gain above 1 it "
-        "enhances them. <b>band-stop</b> removes them. <b>custom</b>: the transfer function "
-        "below."));
+        "Which details to change, by their size. <b>low-pass</b> keeps details larger than the "
+        "feature size and removes the rest. <b>high-pass</b> acts on smaller ones: with stop gain "
+        "1 and pass gain 2 it sharpens. <b>band-pass</b> acts on details of about the feature "
+        "size: with stop gain 1 and pass gain above 1 it enhances them. <b>band-stop</b> removes "
+        "them. <b>custom</b>: the transfer function below."));
     list.addParam(featureSizeParameter(
         mesh,
         "Size at which the filter cuts off: the wavelength of a wave along the surface, a bump and "
         "the hollow next to it. A low-pass leaves a quarter of the height of waves half as long, "
-        "and "
-        "nine tenths of waves twice as long. To remove bumps, try four times their width. Default: "
-        "six mean "
-        "edges of this mesh, at most 5 % of its diagonal, which removes the noise of a scan."));
+        "and nine tenths of waves twice as long. To remove bumps, try four times their width. "
+        "Default: six mean edges of this mesh, at most 5 % of its diagonal, which removes the "
+        "noise of a scan."));
     list.addParam(RichFloat("pass_gain", static_cast<Scalarm>(transfer.passGain), "Pass gain",
                             "Factor for the details that the filter passes: 1 keeps them, 2 "
                             "doubles their height, 0 removes them. Not negative."));
-    list.addParam(RichFloat(
-        "stop_gain", static_cast<Scalarm>(transfer.stopGain), "Stop gain",
-        "Factor for all other details: 0 removes them, 0.5 halves their height, 1 keeps them. Not "
-        "negative."));
-    list.addParam(RichString(
-        "transfer_function", kExample, "Transfer function",
-        "For the type custom: gains at feature sizes, like an equalizer, as size:gain with sizes "
-        "in percent of the diagonal (5%), mean edges (6e) or as lengths; or an expression of w, "
-        "the feature size over the wavelength, such as 1/(1 + w^4) (f is the frequency, l = "
-        "f^2)."));
-    list.addParam(
-        RichFloat("band_width", static_cast<Scalarm>(transfer.bandWidth), "Band width (octaves)",
-                  "Width of the band for band-pass and band-stop, in octaves: with 1, its "
-                  "largest details are twice as large as its smallest.",
-                  true));
+    list.addParam(RichFloat("stop_gain", static_cast<Scalarm>(transfer.stopGain), "Stop gain",
+                            "Factor for all other details: 0 removes them, 0.5 halves their "
+                            "height, 1 keeps them. Not negative."));
+    list.addParam(RichString("transfer_function", kExample, "Transfer function",
+                             "For the type custom: gains at feature sizes, like an equalizer, as "
+                             "size:gain with sizes in percent of the diagonal (5%), mean edges "
+                             "(6e) or as lengths; or an expression of w, the feature size over the "
+                             "wavelength, such as 1/(1 + w^4) (f is the frequency, l = f^2)."));
+    list.addParam(RichFloat("band_width", static_cast<Scalarm>(transfer.bandWidth),
+                            "Band width (octaves)",
+                            "Width of the band for band-pass and band-stop, in octaves: with 1, "
+                            "its largest details are twice as large as its smallest.",
+                            true));
     list.addParam(RichEnum("response", static_cast<int>(transfer.response), responses(), "Response",
                            "How sharply the filter separates sizes. <b>gaussian</b> is gradual and "
                            "never rings; <b>butterworth</b> is sharper the higher its order; "
