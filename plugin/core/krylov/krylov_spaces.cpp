@@ -26,7 +26,7 @@ constexpr double kRoundOff = 1e-15;
 
 /// Number of tasks parallelRows splits the rows into.
 std::size_t taskCount(Index rows) {
-    return static_cast<std::size_t>((rows + kRowsOfTask - 1) / kRowsOfTask);
+    return static_cast<std::size_t>((rows + kRowsPerTask - 1) / kRowsPerTask);
 }
 
 template <int Columns>
@@ -60,7 +60,7 @@ Moments<Columns> momentsOf(const Eigen::VectorXd& D, const Eigen::VectorXi& labe
     Moments<Columns> moments;
     moments.squares =
         parallelSum(D.size(), Row<Columns>::Zero().eval(), [&](Index begin, Index end) {
-            std::vector<ComponentSum<Columns>>& sums = parts[begin / kRowsOfTask];
+            std::vector<ComponentSum<Columns>>& sums = parts[begin / kRowsPerTask];
             Row<Columns> squares = Row<Columns>::Zero();
             for (Index i = begin; i < end;) {
                 ComponentSum<Columns> component{label[i], Row<Columns>::Zero()};
@@ -169,7 +169,7 @@ void KrylovSpaces::start(const Eigen::MatrixXd& X) {
                 sum += D_[i] * x * x;
                 taskMax = taskMax.max(x.abs());
             }
-            largest[begin / kRowsOfTask] = taskMax.maxCoeff();  // once: tasks share a cache line
+            largest[begin / kRowsPerTask] = taskMax.maxCoeff();  // once: tasks share a cache line
             return sum;
         });
     norms_ = squares.sqrt().transpose();
@@ -437,7 +437,7 @@ double KrylovSpaces::largestEntryOf(const std::vector<Eigen::VectorXd>& coeffici
     std::vector<double> largest(taskCount(D_.size()));
     withColumns(columns_, [&](auto columns) {
         combineColumns<columns>(coefficients, [&](Index i, const auto& row) {
-            double& taskMax = largest[i / kRowsOfTask];
+            double& taskMax = largest[i / kRowsPerTask];
             taskMax = std::max(taskMax, row.abs().maxCoeff());
         });
     });
