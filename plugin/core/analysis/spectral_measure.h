@@ -17,7 +17,7 @@ struct BandEnergy {
     double change = 0.0;  ///< Change of the energy when the Krylov space grew by half, >= 0.
 };
 
-/// Gauss quadratures in a Krylov space at two dimensions.
+/// Gauss quadratures from a Krylov space at two stages of its growth.
 struct MeasureInSpace {
     Quadrature smaller, larger;
     /// Range of frequencies resolved.

@@ -183,7 +183,7 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
         const Points displacement = denoisePart(part, graph, options, progress, result);
         for (Index i = 0; i < displacement.rows(); ++i)
             moved.row(part.surface.vertex[i]) += displacement.row(i);
-        // The faces of the graph are oriented; if the part is the whole, their indices are, too.
+        // Prefer the oriented faces of the graph; their indices are valid only if the part is all.
         const bool isWhole = part.surface.F.rows() == whole.F.rows();
         if (result.rounds > 0)
             result.volumes = preserveVolumes(whole.X, isWhole ? graph.F : whole.F, components,

@@ -25,8 +25,8 @@ struct LinearSteps {
 /// @param mayMove   n: whether a vertex may move; those on rims are averaged along the rim.
 /// @param height    standard deviation of the noise, mean edges.
 /// @param isTailed  whether the noise has heavier tails than a normal distribution.
-/// @return  none if even the least error is large, or the displacement is large in places: a filter
-///          that preserves creases and details does better there.
+/// @return  none if the least error is large, as when few steps are best, or the displacement is
+///          large in places: a filter that preserves creases and details does better there.
 std::optional<LinearSteps> linearSteps(const FaceGraph& graph, const Points& X,
                                        const std::vector<bool>& mayMove, double height,
                                        bool isTailed);

@@ -90,7 +90,7 @@ class System {
     const Eigen::VectorXd& mass() const { return mass_; }
 
     /// Solves A X = B by conjugate gradients with a diagonal preconditioner. Takes few iterations:
-    /// the eigenvalues of A exceed those of M by at most 6 t.
+    /// the eigenvalues of A exceed those of M by about 6 t at most.
     /// @param X          initial guess.
     /// @param tolerance  squared norms of the columns of the residual.
     void solve(const Points& B, const Columns& tolerance, Points& X) const {

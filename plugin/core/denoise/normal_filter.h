@@ -24,8 +24,8 @@ struct NormalFilterOptions {
 /// (Kovnatsky et al. 2012, Eq. 11) whose signal is the field of normals. Where edges are short,
 /// noise tilts faces more: s^2 grows there by the amount that the height of the noise explains.
 ///
-/// Twicing (Tukey 1977), which applies F again to what it has removed, halves the loss of
-/// low-frequency detail and passes hardly more of the high frequencies.
+/// Twicing (Tukey 1977) applies F again to what it has removed, which squares the loss 1 - F: low
+/// frequencies keep their detail, and hardly more of the high ones passes.
 ///
 /// @param guess  m x 3 normals near the result, such as those of the previous round; or empty.
 Points filterNormals(const FaceGraph& graph, const Points& X, const NormalFilterOptions& options,

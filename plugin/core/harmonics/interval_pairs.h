@@ -33,9 +33,9 @@ IntervalPairs computeInterval(const Laplacian& laplacian, const SpectralInterval
 
 /// D-orthonormalizes the columns of U, also against those of `known`, which are D-orthonormal.
 ///
-/// @return the smallest remainder of a normalized column after projecting out all others; 0 if the
-///         columns are linearly dependent, and U is then meaningless. Below kOwnPart, U repeats a
-///         column of `known`.
+/// @return the smallest norm of a unit column after projecting out `known` and the columns before
+///         it; 0 if these are linearly dependent, and U is then meaningless. Below kOwnPart, U
+///         repeats a column of `known`.
 double orthonormalize(const Eigen::VectorXd& D, const Eigen::Ref<const Eigen::MatrixXd>& known,
                       Eigen::Ref<Eigen::MatrixXd> U);
 inline constexpr double kOwnPart = 0.5;

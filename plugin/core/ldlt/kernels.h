@@ -13,7 +13,7 @@ inline constexpr std::ptrdiff_t kLane = 4;
 /// order.
 struct FrontalMatrix {
     std::ptrdiff_t width = 0;  ///< Number of pivot columns.
-    std::ptrdiff_t below = 0;  ///< Number of rows below the pivots: those of the other columns.
+    std::ptrdiff_t below = 0;  ///< Number of the other columns.
 
     /// The pivot columns, `stride` numbers apart. Each starts with `offset` zeros of padding, so
     /// that the rows below the pivots start at a multiple of kLane; the padding at its end is 0,

@@ -32,7 +32,7 @@ double medianQuality(const FaceGraph& graph, const Points& X) {
 
 struct FoundSpikes {
     Spikes spikes;
-    bool areTail = false;  ///< They are no isolated spikes but the heavy tail of the noise itself.
+    bool areTail = false;  ///< Not isolated spikes but the heavy tail of the noise itself.
 };
 
 FoundSpikes sparseSpikes(const FaceGraph& graph, const Points& X, const std::vector<bool>& mayMove,

@@ -140,7 +140,7 @@ NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X,
                             double meanEdge) {
     constexpr double kMinNoiseShare = 0.45;  // share of an octave that must be noise
     constexpr double kMaxRise = 2.03;        // of noise, from an octave to the next coarser one
-    // Ratio of the height to what is left of it outside the shape, for noise of 1.5 edges.
+    // Height over the part of it that the shape does not hide, for noise of 1.5 edges.
     constexpr double kHidden = 1.3;
     const Points N = vertexNormals(graph, blurredNormals(graph, areaNormals(X, graph.F), kBlurs));
     const auto [deviation, white] = octaveDeviations(graph, X, N, isMeasured);

@@ -30,7 +30,7 @@ enum class ErrorCode {
     BasisTooSmall,        ///< Constant modes only; limit(): the smallest useful basis size.
     BasisIncomplete,      ///< Some or all eigenvectors could not be computed.
     TooManyHarmonics,     ///< A discontinuous gain needs more harmonics than limit().
-    BoundaryFixesAll,     ///< A fixed boundary leaves nothing to change.
+    BoundaryFixesAll,     ///< A fixed boundary leaves nothing free.
     TooSteep,             ///< The gain is too steep for a rational Krylov space.
     SolverFailed,         ///< A numerical method failed; the text says which.
     Cancelled,
