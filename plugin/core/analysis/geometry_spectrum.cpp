@@ -127,8 +127,8 @@ MeasuredBands withBands(ShapeAndNoise measures, const GeometrySpectrum& spectrum
 /// Adds to the measures in a basis those beyond it.
 ///
 /// The lowest octaves come from a space with a pole, the highest from products with A. If these do
-/// not meet, as on large meshes or with needle triangles, the octaves in between get their own
-/// poles.
+/// not meet, as on large meshes or with needle triangles, octaves in between get poles of their
+/// own.
 /// @param signals    n x 4, orthogonal to the basis: the shape, then the noise.
 /// @param firstPole  frequency of the first pole.
 MeasuredBands measureBeyond(ShapeAndNoise measures, const Signal& signal,
@@ -165,8 +165,7 @@ MeasuredBands measureBeyond(ShapeAndNoise measures, const Signal& signal,
     }
 }
 
-/// The measures of the shape and the noise in the harmonics of a basis and, if it is not complete,
-/// beyond it.
+/// The measures of the shape and the noise in the harmonics of a basis and beyond it.
 MeasuredBands measureSignals(const Signal& signal, const HarmonicBasis& basis, ShiftedLdlt& ldlt,
                              const Progress& progress, const GeometrySpectrum& spectrum) {
     const Eigen::VectorXd& D = signal.laplacian.D;

@@ -32,8 +32,7 @@ struct GeometrySpectrum {
     double area = 0.0;         ///< Sum of D, length^2, including fixed vertices.
     double totalEnergy = 0.0;  ///< |U|_D^2, length^4.
 
-    // The lowest harmonics: basisSize, or more to avoid splitting a multiple eigenvalue; may be
-    // empty.
+    // The lowest harmonics: basisSize, or more so as not to split a multiple eigenvalue; or none.
     Eigen::VectorXd frequencies;  ///< omega_i, ascending, radians per length unit; constants: 0.
     Eigen::VectorXd amplitudes;   ///< |Phi_i^T D U| / sqrt(area), length units; constants: 0.
 

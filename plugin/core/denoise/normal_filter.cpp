@@ -163,8 +163,7 @@ class System {
 
 Points filterNormals(const FaceGraph& graph, const Points& X, const NormalFilterOptions& options,
                      const Points& guess) {
-    // Relative residual; a hundred times smaller one leaves the angles of a denoised mesh
-    // unchanged.
+    // Relative residual; a hundredth of it changes no angle of a denoised mesh.
     constexpr double kAccuracy = 1e-2;
     Points N = areaNormals(X, graph.F);
     if (!(N.cwiseAbs().maxCoeff() > 0.0)) return N;  // all faces are degenerate

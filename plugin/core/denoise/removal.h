@@ -36,8 +36,7 @@ Removal removeWhiteNoise(const FaceGraph& graph, const Points& X, const RemovalO
                          const Progress& progress);
 
 /// Removes noise correlated over several edges, by rounds whose time and blurs scale with l^2 and
-/// whose sweeps scale with l, l being its correlation length, until the discrepancy principle ends
-/// them.
+/// whose sweeps scale with l, its correlation length, until the discrepancy principle stops them.
 Removal removeCorrelatedNoise(const FaceGraph& graph, const Points& X,
                               const RemovalOptions& options, const Progress& progress);
 

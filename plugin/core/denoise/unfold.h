@@ -8,8 +8,8 @@ namespace spectral {
 
 /// Unfolds faces that point away from their filtered normals: noise along the surface has folded
 /// them, which displacements along normals cannot undo. Only their corners move, within the surface
-/// to the mean of their neighbours, unless that is farther than noise can have moved them, as among
-/// needle triangles.
+/// to the mean of their neighbours, unless noise cannot have moved them that far, as among needle
+/// triangles.
 ///
 /// @param N                m x 3 filtered normals.
 /// @param maxDisplacement  largest displacement, length units.

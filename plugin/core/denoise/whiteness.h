@@ -10,8 +10,7 @@ namespace spectral {
 Eigen::VectorXd displacementAlongNormals(const FaceGraph& graph, const Points& X0, const Points& X);
 
 /// Fraction of the standard deviation of a signal (n values) left by one step of diffusion,
-/// relative to that of white noise: 1 for white noise, more for slowly varying signals such as
-/// shapes.
+/// relative to that of white noise: 1 for white noise, more for smooth ones such as shapes.
 double smoothness(const VertexGraph& graph, const Eigen::VectorXd& signal);
 
 /// Ratio of the 99 % quantile to the standard deviation, relative to that of a normal distribution;

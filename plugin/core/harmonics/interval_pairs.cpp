@@ -18,8 +18,7 @@ constexpr Index kExtraPairs = 1;
 /// Dimension of the Krylov space: twice the number of pairs, as Spectra recommends, and a few more.
 constexpr Index kExtraDimension = 4, kMinDimension = 20;
 
-/// Relative accuracy of the eigenvalues of the inverse; the inverse iteration that follows adds a
-/// few digits.
+/// Relative accuracy of the eigenvalues of the inverse; inverse iteration then adds a few digits.
 constexpr double kTolerance = 1e-9;
 constexpr int kMaxRestarts = 100;
 

@@ -16,8 +16,7 @@ namespace spectral {
 /// The basis never ends inside a cluster of equal eigenvalues: if lambda_k and lambda_k+1 are equal
 /// or nearly so, a few more than k pairs are returned. The certificate: the inertia of W - sigma D
 /// counts as many eigenvalues below the cut (Sylvester's law of inertia), or an error is thrown;
-/// residuals are reported (typically 1e-9, more where triangles have collapsed; above 1e-2 an
-/// error).
+/// residuals are reported (typically 1e-9, more with collapsed triangles; above 1e-2 an error).
 ///
 /// @param k         constants.count() < k < n.
 /// @param ldlt      provides the symbolic analysis and counts the work; its factor is kept.

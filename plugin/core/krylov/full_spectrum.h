@@ -23,9 +23,8 @@ struct FullSpectrumOptions {
     /// KrylovSpaces::roundOff.
     double roundOff = 0.0;
 
-    /// Value of roundOffAtVertices(), if known, for the error at every vertex. Without it that
-    /// error is bounded by the smallest mass, a gross overestimate where parts have shrunk to
-    /// nothing.
+    /// Value of roundOffAtVertices(), if known, for the error at every vertex. Without it, the
+    /// bound uses the smallest mass: a gross overestimate where parts have shrunk to nothing.
     std::optional<double> roundOffAtVertices;
 
     SpareVectors* spare = nullptr;  ///< Memory for the basis (krylov_spaces.h).

@@ -9,15 +9,13 @@ namespace spectral {
 inline constexpr std::ptrdiff_t kLane = 4;
 
 /// A frontal matrix of the multifrontal method: a dense symmetric matrix whose first rows and
-/// columns, the pivot columns, are to be eliminated. Stores the lower triangle in column-major
-/// order.
+/// columns, the pivot columns, are to be eliminated. The lower triangle is stored column-major.
 struct FrontalMatrix {
     std::ptrdiff_t width = 0;  ///< Number of pivot columns.
     std::ptrdiff_t below = 0;  ///< Number of the other columns.
 
-    /// The pivot columns, `stride` numbers apart. Each starts with `offset` zeros of padding, so
-    /// that the rows below the pivots start at a multiple of kLane; the padding at its end is 0,
-    /// too.
+    /// The pivot columns, `stride` numbers apart. Each starts with `offset` zeros, so that the rows
+    /// below the pivots start at a multiple of kLane, and is padded with zeros at its end.
     double* columns = nullptr;
     std::ptrdiff_t stride = 0, offset = 0;
 
@@ -48,8 +46,7 @@ inline constexpr int kMaxRightHandSides = 4;
 
 /// The inner loops of a factorization and its solves, compiled for one instruction set.
 ///
-/// Right-hand sides are in the order of the factor, row-major, with 1 to kMaxRightHandSides
-/// columns.
+/// Right-hand sides: in the order of the factor, row-major, 1 to kMaxRightHandSides columns.
 struct Kernels {
     /// Replaces the pivot columns with those of L, with the pivots on the diagonal, and the
     /// contribution block with the Schur complement. False when a pivot is 0.

@@ -146,8 +146,7 @@ class Elimination {
         }
     }
 
-    /// Replaces the children on the stack with the front's contribution block; returns its
-    /// position.
+    /// Replaces a front's children on the stack with its contribution block; returns the position.
     Index push(const SymbolicLdlt::Front& supernode, const FrontalMatrix& front) {
         for (int i = 0; i < supernode.children; ++i, pending_.pop_back()) top_ = pending_.back().at;
         const Index at = top_;

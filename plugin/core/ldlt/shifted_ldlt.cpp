@@ -121,8 +121,7 @@ void ShiftedLdlt::solveOrdered(double* Y, int columns) const {
         for (Index i = begin; i < end; ++i) rows.row(i) /= numbers_.pivots[i];
     };
 
-    // L Z = Y: first the subtrees, each on its own rows and its copies of shared rows, then the
-    // rest.
+    // L Z = Y: the subtrees, each on its own rows and its copies of shared ones, then the rest.
     rows.bottomRows(orderedRows() - n).setZero();
     parallelFor(count, [&](Index task) {
         const SymbolicLdlt::Subtree& tree = subtrees[symbolic.largestFirst[task]];

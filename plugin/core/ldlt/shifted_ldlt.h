@@ -45,7 +45,7 @@ class ShiftedLdlt {
     /// (W - sigma D)^-1 B for every column of B (n x c).
     Eigen::MatrixXd solve(const Eigen::MatrixXd& B) const;
 
-    /// U <- (W - sigma D)^-1 D U for every column of U (n x c, contiguous): the resolvent of D^-1 W
+    /// U <- (W - sigma D)^-1 D U for each column of U (n x c, contiguous): the resolvent of D^-1 W
     /// at sigma.
     /// @param D  n masses, or a multiple of them.
     void applyResolvent(const Eigen::VectorXd& D, Eigen::Ref<Eigen::MatrixXd> U) const;

@@ -29,8 +29,7 @@ constexpr Relaxation kRelaxations[] = {
 /// waking a thread.
 constexpr Index kMinParts = 4, kMaxParts = 200, kMinShared = 30000;
 
-/// A range of closed rows, found before the tree is known, has at most 1 / kClosedParts of all
-/// rows.
+/// A range found before the tree is known has at most 1 / kClosedParts of all rows.
 constexpr Index kClosedParts = 16;
 
 /// The order of a similar pattern is reused while L has at most this many times the entries it had

@@ -11,7 +11,7 @@ namespace spectral {
 ///
 /// @param X      n x 3 positions.
 /// @param F      m x 3 indices into X.
-/// @param angle  dihedral angle in degrees: 0 for a flat edge, 90 for that of a cube.
+/// @param angle  angle between the planes in degrees: 0 at a flat edge, 90 on a cube.
 /// @return       n flags.
 std::vector<bool> creaseVertices(const Vertices& X, const Faces& F, double angle);
 

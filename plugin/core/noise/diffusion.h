@@ -23,8 +23,7 @@ void forEachMean(const VertexGraph& graph, const Rows& X, const Visit& visit) {
     });
 }
 
-/// One step of lazy diffusion, X <- (X + P X) / 2. Damps all frequencies of the graph without
-/// oscillation.
+/// One step of lazy diffusion, X <- (X + P X) / 2. Damps all frequencies without oscillation.
 template <class Rows>
 void diffuse(const VertexGraph& graph, Rows& X) {
     Rows next = X;

@@ -93,8 +93,7 @@ Octaves shapePart(const Octaves& height) {
 
 /// Diffusion powers in the middle of each octave; their roots are lengths in edges.
 constexpr std::array<double, kOctaves> kPowers{0.5, 1.5, 3.0, 6.0, 12.0, 24.0, 48.0};
-/// Number of octaves in which white noise defines the length of 1: the coarser ones have too
-/// little.
+/// Octaves in which white noise defines the length 1: the coarser ones have too little.
 constexpr int kWhiteOctaves = 5;
 
 /// Mean length, in edges, of a signal with these energies, over its first octaves.

@@ -88,8 +88,7 @@ Eigen::VectorXd heightsOf(const std::vector<bool>& isSpike, const UniformLaplaci
     return z;
 }
 
-/// Drops spikes with at least two more neighbouring spikes on their own side of the surface than on
-/// the other.
+/// Drops spikes with at least two more neighbouring spikes on their own side than on the other.
 void dropClusters(const VertexGraph& graph, const Eigen::VectorXd& height,
                   std::vector<bool>& isSpike) {
     constexpr int kCluster = 2;

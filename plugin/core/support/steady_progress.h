@@ -9,8 +9,7 @@
 
 namespace spectral {
 
-/// Runs `work` on another thread, while the calling thread reports its progress twenty times a
-/// second.
+/// Runs `work` on another thread, while the calling one reports progress twenty times a second.
 ///
 /// For callers that need steady reports: factorizing a large mesh takes seconds and cannot report
 /// from within, and a window repainted only in the callback, such as MeshLab's, would freeze.

@@ -40,9 +40,8 @@ int threadCount() {
 
 void setThreadCount(int count) { chosenThreads = std::max(0, count); }
 
-/// Tasks are claimed from one atomic number, the ticket, which combines the number of the call with
-/// the number of unclaimed tasks. A thread that wakes up late finds none left, and nobody waits for
-/// it.
+/// Tasks are claimed from one atomic number, the ticket: the numbers of the call and of the
+/// unclaimed tasks. A thread that wakes up late finds none left, and nobody waits for it.
 class ThreadTeam::Implementation {
   public:
     explicit Implementation(int threads) : requested_(threads) {

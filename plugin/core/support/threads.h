@@ -27,11 +27,9 @@ void setThreadCount(int count);
 /// The threads of the last team sleep until the next team of the same size takes them over.
 class ThreadTeam {
   public:
-    /// @param threads  number of threads, including the calling one; fewer if the system has no
-    /// more.
+    /// @param threads  number of threads, including the calling one; there may be fewer.
     explicit ThreadTeam(int threads = threadCount());
-    /// A team that the caller can interrupt at any time: parallelFor and stopPoint then throw
-    /// Cancelled.
+    /// A team the caller can interrupt at any time: parallelFor and stopPoint then throw Cancelled.
     /// @param progress  kept by reference.
     explicit ThreadTeam(const Progress& progress) : ThreadTeam() { listenTo(progress); }
     ~ThreadTeam();
@@ -49,8 +47,7 @@ class ThreadTeam {
     /// Number of threads of the calling thread's team, including itself; 1 without a team.
     static int size();
 
-    /// Index of the calling thread in its team; 0 for the thread that created it, or without a
-    /// team.
+    /// Index of the calling thread in its team; 0 for the one that created it, or without one.
     static int threadIndex();
 
     /// Checks for an interruption, in long loops without parallelFor.
@@ -131,9 +128,8 @@ using StopPoint = std::function<void()>;
 /// task throws.
 ///
 /// Tasks start in ascending order. Only the calling thread reports, at its own stop points.
-/// @param work   work(task, thread, stopPoint), 0 <= thread < ThreadTeam::size(). The thread
-/// selects
-///               memory reused from task to task; results must not depend on it.
+/// @param work   work(task, thread, stopPoint), 0 <= thread < ThreadTeam::size(): selects memory
+///               that is reused by later tasks; results must not depend on it.
 /// @param stage  name of the stage to report.
 /// @throws the first exception of a task; Cancelled.
 void runTasks(Index count, const std::function<void(Index, int, const StopPoint&)>& work,
