@@ -124,8 +124,8 @@ void measure(const char* file) {
         core.note();
         const double seconds = 1e-3 * milliseconds(Clock::now() - start);
         Gaps plugin;
-        runBeside(plugin.progress(),
-                  [&](const Progress& steady) { setting.run(mesh, diagonal, steady); });
+        runInBackground(plugin.progress(),
+                        [&](const Progress& steady) { setting.run(mesh, diagonal, steady); });
         plugin.note();
         std::printf("| %s | %s | %.1f | %.0f (%s) | %.0f |\n", file, setting.name, seconds,
                     core.longest(), core.before().c_str(), plugin.longest());

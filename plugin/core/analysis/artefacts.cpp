@@ -16,7 +16,7 @@ double artefactFreeGain(double omega, double cutoff) {
 
 Artefacts measureArtefacts(const Vertices& V, const Faces& F, const ArtefactOptions& options,
                            const Progress& progress) {
-    // Relative to the size of the shape. Artefacts of good results are 1e-4 of it: four digits.
+    // Relative to the size of the shape. In good results artefacts are 1e-4 of it: four digits.
     constexpr double kAccuracy = 1e-8;
     const ThreadTeam team(progress);
     const MeshLaplacian mesh = meshLaplacian(V, F, options.laplacian);

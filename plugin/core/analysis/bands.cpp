@@ -8,8 +8,8 @@ namespace spectral {
 
 namespace {
 
-/// Largest overlap of two windows, in octaves: less separates sizes better, but needs more
-/// dimensions of the quadrature.
+/// Largest overlap of two windows, in octaves: a smaller one separates sizes better, but takes
+/// larger Krylov spaces.
 constexpr double kTransition = 0.5;
 
 }  // namespace
@@ -43,7 +43,7 @@ double Bands::end(int j) const {
     return 2.0 * kPi / edge(j) * std::exp2(0.5 * transition_);
 }
 
-/// The part of a harmonic that is in the bands 0 to `edge`.
+/// The fraction of a harmonic in bands 0 to `edge`.
 double Bands::below(int edge, double omega) const {
     if (edge < 0) return 0.0;
     if (edge >= count_ - 1) return 1.0;

@@ -9,12 +9,12 @@ namespace spectral {
 /// The centre of band j is at the feature size diagonal 2^-((first + j) / p), so that bands of
 /// different meshes agree relative to the diagonal. Between neighbouring bands one window falls as
 /// cos^2 while the other rises, over half an octave or one band, whichever is less; the first band
-/// includes all lower frequencies, the last all higher ones. A sharp edge would need the
-/// frequencies of single harmonics, which quadrature does not give.
+/// includes all lower frequencies, the last all higher ones. Sharp edges would require the
+/// frequencies of single harmonics, which quadrature does not provide.
 class Bands {
   public:
-    /// @param diagonal  length unit of the feature sizes, > 0.
-    /// @param lowest, highest  frequencies to be covered, 0 < lowest <= highest.
+    /// @param diagonal  reference length of the feature sizes, > 0.
+    /// @param lowest, highest  frequencies to cover, 0 < lowest <= highest.
     /// @param perOctave  p >= 1.
     Bands(double diagonal, double lowest, double highest, int perOctave = 1);
 
@@ -26,13 +26,13 @@ class Bands {
     /// Feature size at the edge between bands j and j + 1, where both windows are 1/2.
     double edge(int j) const;
 
-    /// Band whose centre is nearest to this feature size, in octaves.
+    /// Index of the band whose centre is nearest to this feature size, in octaves.
     int nearest(double featureSize) const;
 
     /// Value of window j, in [0, 1], at a frequency >= 0; infinity is allowed.
     double window(int j, double omega) const;
 
-    /// Frequency above which window j is 0; infinity for the last.
+    /// Frequency above which window j is 0; infinity for the last window.
     double end(int j) const;
 
   private:

@@ -21,43 +21,44 @@ namespace spectral {
 
 namespace {
 
-/// Vertices up to which a basis as large as the mesh is computed: a dense problem, of seconds.
-constexpr Index kWholeBasis = 2000;
+/// Largest number of vertices for which a basis as large as the mesh is computed: a dense problem
+/// that takes seconds.
+constexpr Index kMaxWholeBasis = 2000;
 
-/// Share of the progress bar for the basis; the energies beyond it have the rest.
+/// Fraction of the progress for the basis; the rest is for the energies beyond it.
 constexpr double kBasisDone = 0.6;
 
-/// Relative energy that is round-off: the square of a relative amplitude of 1e-13.
+/// Relative energy below which all is round-off: the square of a relative amplitude of 1e-13.
 constexpr double kNoEnergy = 1e-26;
 
-/// A signal of less relative size is round-off of the solve for the harmonic extension.
+/// Relative size below which a signal is round-off from the solve for the harmonic extension.
 constexpr double kNoShape = 1e-11;
 
-/// Harmonics, or as much of the noise, below which the noise height of a band is too uncertain:
-/// the amplitude of n random coefficients scatters by up to 1/sqrt(2 n), 13 %.
-constexpr double kFewHarmonics = 30.0;
+/// Number of harmonics, or equivalent noise, below which the noise height of a band is too
+/// uncertain: the amplitude of n random coefficients scatters by up to 1/sqrt(2 n), 13 %.
+constexpr double kMinHarmonics = 30.0;
 
-/// Lower bound of the first eigenvalue relative to its scale 4 pi / area. Only a surface a million
-/// times as long as wide would fall below; it bounds the number of octaves.
+/// Lower bound of the first eigenvalue relative to its scale 4 pi / area; bounds the number of
+/// octaves. Only a surface a million times as long as wide would be below it.
 constexpr double kLowest = 1e-6;
 
 /// Dimensions of Krylov spaces: around a pole, enough for its octave and two or three on each side;
-/// without one, for the highest four or so.
-constexpr int kDimensionOfPole = 36, kDimensionOfProducts = 144;
+/// for products with A, for the highest four or so.
+constexpr int kPoleDimension = 36, kProductsDimension = 144;
 
-/// The first pole is at this harmonic of those that are asked for, counted by Weyl's law: some
-/// octaves above the lowest, which converge best.
-constexpr double kHarmonicOfPole = 32.0;
+/// The first pole is at this multiple of the number of computed harmonics, by Weyl's law: a few
+/// octaves above the lowest ones, which converge best.
+constexpr double kPoleHarmonic = 32.0;
 
-/// Largest change of the energy of an octave relative to itself: beyond it, the octave gets a pole.
-/// The error is some times smaller: a space that grows by half converges. Third octaves are only
-/// plotted, and fitted to noise.
+/// Largest relative change of the energy of an octave; beyond it, the octave gets its own pole. The
+/// error is several times smaller, as the space has grown by half. Third octaves are not checked:
+/// they are only plotted and fitted to noise.
 constexpr double kConverged = 0.02;
 
-/// The signal that is analysed, and the Laplacian of its vertices.
+/// The analysed signal, and the Laplacian of its vertices.
 struct Signal {
     Laplacian laplacian;
-    Eigen::MatrixXd U;  ///< Positions without their means, or without their harmonic extension.
+    Eigen::MatrixXd U;  ///< Positions minus their means, or minus their harmonic extension.
 };
 
 Signal signalOf(MeshLaplacian mesh, Boundary boundary) {
@@ -65,7 +66,7 @@ Signal signalOf(MeshLaplacian mesh, Boundary boundary) {
     if (interior.isWhole()) {
         Eigen::MatrixXd U = std::move(mesh.surface.X);
         mesh.laplacian.constants.remove(U);
-        mesh.laplacian.constants.remove(U);  // again: the round-off of components far apart
+        mesh.laplacian.constants.remove(U);  // again, for round-off if components are far apart
         return {std::move(mesh.laplacian), std::move(U)};
     }
     if (interior.size() == 0)
@@ -78,19 +79,19 @@ Signal signalOf(MeshLaplacian mesh, Boundary boundary) {
     if (rest.relativeSize <= kNoShape)
         throw InvalidOption(ErrorCode::BoundaryFixesAll,
                             "boundary = fixed leaves nothing to measure: the boundary determines "
-                            "the whole surface, as it does a flat one");
+                            "the whole surface, as on a flat one");
     inside.constants.remove(rest.U);
     return {std::move(inside), std::move(rest.U)};
 }
 
 /// Number of harmonics to compute; on a small mesh at most as many as it has.
-Index sizeOfBasis(int asked, Index vertices, int components) {
-    if (asked < 0)
-        throw InvalidOption("basis_size = " + std::to_string(asked) +
-                            ": must be 0, for no single harmonics, or more");
-    if (asked == 0) return 0;
-    const Index size = std::max(asked, components + 1);
-    return vertices <= kWholeBasis ? std::min(size, vertices) : size;
+Index sizeOfBasis(int requested, Index vertices, int components) {
+    if (requested < 0)
+        throw InvalidOption("basis_size = " + std::to_string(requested) +
+                            ": must be 0, for no individual harmonics, or above");
+    if (requested == 0) return 0;
+    const Index size = std::max(requested, components + 1);
+    return vertices <= kMaxWholeBasis ? std::min(size, vertices) : size;
 }
 
 /// |X|_D^2 over all columns.
@@ -98,7 +99,7 @@ double energyOf(const Eigen::MatrixXd& X, const Eigen::VectorXd& D) {
     return X.rowwise().squaredNorm().dot(D);
 }
 
-/// Random signs: the white noise whose energies have the least variance.
+/// Random signs: white noise whose energies have the least variance.
 Eigen::VectorXd noiseOfUnitHeight(Index vertices) {
     std::mt19937 bits(1);  // fixed, for reproducible results
     return Eigen::VectorXd::NullaryExpr(vertices, [&] { return bits() & 1U ? 1.0 : -1.0; });
@@ -110,10 +111,10 @@ struct MeasuredBands {
     Bands octaves, thirds;
 };
 
-/// @param measures  the first of its spaces has the lowest frequencies, the last the highest.
+/// @param measures  its first space has the lowest frequencies, its last one the highest.
 MeasuredBands withBands(ShapeAndNoise measures, const GeometrySpectrum& spectrum) {
-    // All harmonics are in the noise, and the extreme Ritz values are the first to converge. On a
-    // mesh of a few vertices all random signs may be equal, and nothing is in it.
+    // The noise contains all harmonics, and extreme Ritz values converge first. On a mesh of a few
+    // vertices, though, all random signs may be equal, and the noise contains none.
     const Eigen::VectorXd low = measures.noise.first().omega, high = measures.noise.last().omega;
     const double lowest = std::max(low.size() > 0 ? low.minCoeff() : 0.0,
                                    std::sqrt(kLowest * 4.0 * kPi / spectrum.area));
@@ -123,12 +124,13 @@ MeasuredBands withBands(ShapeAndNoise measures, const GeometrySpectrum& spectrum
             {spectrum.diagonal, lowest, highest, 3}};
 }
 
-/// Adds to the measures of a basis what is beyond it.
+/// Adds to the measures in a basis those beyond it.
 ///
-/// The lowest octaves come from a space with a pole, the highest from products with A. Where these
-/// do not meet, as on large meshes or with needles, octaves get poles of their own.
-/// @param signals    n x 4, without the basis: the shape, then the noise.
-/// @param firstPole  its frequency.
+/// The lowest octaves come from a space with a pole, the highest from products with A. If these do
+/// not meet, as on large meshes or with needle triangles, octaves in between get poles of their
+/// own.
+/// @param signals    n x 4, orthogonal to the basis: the shape, then the noise.
+/// @param firstPole  frequency of the first pole.
 MeasuredBands measureBeyond(ShapeAndNoise measures, const Signal& signal,
                             const Eigen::MatrixXd& signals, double firstPole, ShiftedLdlt& ldlt,
                             const Progress& progress, const GeometrySpectrum& spectrum) {
@@ -136,13 +138,13 @@ MeasuredBands measureBeyond(ShapeAndNoise measures, const Signal& signal,
     const auto addPole = [&](double omega, ShapeAndNoise& to, double begin, double end) {
         progress.report(begin, "energies of the octaves");
         ldlt.factorizeDefinite(laplacian.W, laplacian.D, omega * omega);
-        addMeasures(ShiftInvert(ldlt), laplacian, signals, kDimensionOfPole,
+        addMeasures(ShiftInvert(ldlt), laplacian, signals, kPoleDimension,
                     progress.part(begin, end), to);
     };
     double done = 0.4;
     addPole(firstPole, measures, 0.0, done);
     const Products A(laplacian, std::numeric_limits<double>::infinity());
-    addMeasures(A, laplacian, signals, kDimensionOfProducts, progress.part(done, 2.0 * done),
+    addMeasures(A, laplacian, signals, kProductsDimension, progress.part(done, 2.0 * done),
                 measures);
     MeasuredBands bands = withBands(std::move(measures), spectrum);
 
@@ -163,16 +165,15 @@ MeasuredBands measureBeyond(ShapeAndNoise measures, const Signal& signal,
     }
 }
 
-/// The measures of the shape and the noise in the harmonics of a basis and, if that is not all
-/// there are, beyond it.
+/// The measures of the shape and the noise in the harmonics of a basis and beyond it.
 MeasuredBands measureSignals(const Signal& signal, const HarmonicBasis& basis, ShiftedLdlt& ldlt,
                              const Progress& progress, const GeometrySpectrum& spectrum) {
     const Eigen::VectorXd& D = signal.laplacian.D;
     const Index n = D.size();
     const Index varying = std::max<Index>(0, basis.size() - signal.laplacian.constants.count());
     const Eigen::VectorXd omega = spectrum.frequencies.tail(varying);
-    // The noise is a sample. In the basis, its expectation sum_v (phi_i(v) D_v)^2 takes its place;
-    // bands beyond have so many harmonics that a sample is close enough.
+    // In the basis, use the expectation sum_v (phi_i(v) D_v)^2 of the noise energy; bands beyond it
+    // have enough harmonics for a random sample.
     ShapeAndNoise measures{
         SpectralMeasure({omega, spectrum.amplitudes.tail(varying).cwiseAbs2() * spectrum.area}),
         SpectralMeasure(
@@ -185,7 +186,7 @@ MeasuredBands measureSignals(const Signal& signal, const HarmonicBasis& basis, S
     if (energyOf(signals.leftCols(signal.U.cols()), D) <= kNoEnergy * spectrum.totalEnergy)
         signals.leftCols(signal.U.cols()).setZero();
     // By Weyl's law, area omega^2 / (4 pi) frequencies are below omega.
-    const double firstPole = std::sqrt(4.0 * kPi / spectrum.area * kHarmonicOfPole *
+    const double firstPole = std::sqrt(4.0 * kPi / spectrum.area * kPoleHarmonic *
                                        static_cast<double>(std::max<Index>(1, varying)));
     return measureBeyond(std::move(measures), signal, signals, firstPole, ldlt, progress, spectrum);
 }
@@ -198,13 +199,13 @@ void setOctaves(const MeasuredBands& bands, GeometrySpectrum& spectrum) {
         energies[j] = energy;
         spectrum.mismatch += change / spectrum.totalEnergy;
     }
-    // A triangle of nearly no area has very high frequencies, and no energy in them.
+    // Drop empty octaves at the end: a triangle of almost no area has very high frequencies, but no
+    // energy in them.
     Index filled = octaves.count();
     while (filled > 0 && !(energies[filled - 1] > kNoEnergy * spectrum.totalEnergy)) --filled;
     if (filled == 0)
         throw SolverFailure(
-            "round-off leaves nothing of the shape: its parts are tiny compared with their "
-            "distance");
+            "the shape is lost in round-off: its parts are tiny compared with their distance");
     spectrum.octaveFeatureSizes.resize(filled);
     for (int j = 0; j < filled; ++j) spectrum.octaveFeatureSizes[j] = octaves.featureSize(j);
     const double sum = energies.head(filled).sum();
@@ -217,17 +218,17 @@ void setOctaves(const MeasuredBands& bands, GeometrySpectrum& spectrum) {
     spectrum.cumulativeEnergy /= spectrum.cumulativeEnergy[filled - 1];
 }
 
-/// The third octaves with enough harmonics, and their noise floor.
+/// Sets the third octaves with enough harmonics, and the noise floor.
 void setBands(const MeasuredBands& bands, Index vertices, GeometrySpectrum& spectrum) {
     const Bands& thirds = bands.thirds;
-    const double least = kFewHarmonics / static_cast<double>(vertices) * spectrum.area;
+    const double minEnergy = kMinHarmonics / static_cast<double>(vertices) * spectrum.area;
     std::vector<double> featureSizes, amplitudes, noise;
     for (int t = 0; t < thirds.count(); ++t) {
-        const double ofNoise = bands.measures.noise.in(thirds, t).energy;
-        if (ofNoise < least) continue;
+        const double noiseEnergy = bands.measures.noise.in(thirds, t).energy;
+        if (noiseEnergy < minEnergy) continue;
         featureSizes.push_back(thirds.featureSize(t));
         amplitudes.push_back(std::sqrt(bands.measures.shape.in(thirds, t).energy / spectrum.area));
-        noise.push_back(std::sqrt(ofNoise / spectrum.area));
+        noise.push_back(std::sqrt(noiseEnergy / spectrum.area));
     }
     const auto vectorOf = [](const std::vector<double>& values) {
         return Eigen::VectorXd::Map(values.data(), static_cast<Index>(values.size()));
@@ -241,15 +242,15 @@ void setBands(const MeasuredBands& bands, Index vertices, GeometrySpectrum& spec
     spectrum.noiseFeatureSize = floor.featureSize;
 }
 
-/// Sets the feature sizes at and above which parts of the energy are: of single harmonics, or of
-/// Ritz values. The low ones, which have nearly all of the energy, are converged to harmonics.
+/// Sets the feature sizes at and above which given fractions of the energy lie, from harmonics or
+/// Ritz values. The low ones, with nearly all of the energy, have converged to harmonics.
 void setFeatureSizes(const Quadrature& measure, GeometrySpectrum& spectrum) {
     if (measure.omega.size() == 0) return;
     std::vector<Index> order(static_cast<std::size_t>(measure.omega.size()));
     std::iota(order.begin(), order.end(), 0);
     std::sort(order.begin(), order.end(),
               [&](Index i, Index j) { return measure.omega[i] < measure.omega[j]; });
-    const auto holding = [&](double part) {
+    const auto sizeHolding = [&](double part) {
         double energy = 0.0;
         for (const Index i : order)
             if ((energy += measure.weight[i]) >= part * spectrum.totalEnergy &&
@@ -257,9 +258,9 @@ void setFeatureSizes(const Quadrature& measure, GeometrySpectrum& spectrum) {
                 return 2.0 * kPi / measure.omega[i];
         return 2.0 * kPi / measure.omega[order.back()];
     };
-    spectrum.featureSize50 = holding(0.50);
-    spectrum.featureSize90 = holding(0.90);
-    spectrum.featureSize99 = holding(0.99);
+    spectrum.featureSize50 = sizeHolding(0.50);
+    spectrum.featureSize90 = sizeHolding(0.90);
+    spectrum.featureSize99 = sizeHolding(0.99);
 }
 
 /// The lowest k harmonics, all of them, or none.
@@ -270,7 +271,7 @@ HarmonicBasis basisOf(const Signal& signal, Index k, ShiftedLdlt& ldlt, const Pr
         none.Phi.resize(n, 0);
         return none;
     }
-    if (k == n && n <= kWholeBasis) return denseBasis(signal.laplacian);
+    if (k == n && n <= kMaxWholeBasis) return denseBasis(signal.laplacian);
     return truncatedBasis(signal.laplacian, k, ldlt, progress);
 }
 

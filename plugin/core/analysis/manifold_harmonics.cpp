@@ -11,8 +11,8 @@
 namespace spectral {
 
 void fixSigns(Eigen::MatrixXd& Phi) {
-    // Relative difference of entries that count as equal: well above the error of an eigenvector,
-    // well below the differences on a mesh without symmetry.
+    // Relative difference below which entries count as equal: well above the error of an
+    // eigenvector, well below the differences on a mesh without symmetry.
     constexpr double kTie = 1e-6;
     for (Index j = 0; j < Phi.cols(); ++j) {
         const double extreme = Phi.col(j).cwiseAbs().maxCoeff();
@@ -29,9 +29,9 @@ ManifoldHarmonics manifoldHarmonics(const Vertices& V, const Faces& F,
     const Interior interior(mesh.surface.F, mesh.components, options.boundary);
     const Index k = options.basisSize;
     if (interior.size() < 2)
-        throw InvalidOption(ErrorCode::BoundaryFixesAll,
-                            "boundary = fixed leaves too few vertices for a harmonic: " +
-                                std::to_string(interior.size()));
+        throw InvalidOption(ErrorCode::BoundaryFixesAll, "boundary = fixed leaves " +
+                                                             std::to_string(interior.size()) +
+                                                             " vertices, too few for a harmonic");
 
     const Laplacian laplacian = interior.restricted(mesh.laplacian);
     ShiftedLdlt ldlt;

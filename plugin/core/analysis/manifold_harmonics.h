@@ -7,7 +7,7 @@
 namespace spectral {
 
 struct HarmonicsOptions {
-    int basisSize = 100;  ///< k, constant modes included: above their number, below the number of
+    int basisSize = 100;  ///< k, including constant modes: above their number, below the number of
                           ///< vertices that are on triangles and not fixed.
     LaplacianKind laplacian = LaplacianKind::IntrinsicDelaunay;
     Boundary boundary = Boundary::Free;
@@ -18,12 +18,12 @@ struct ManifoldHarmonics {
                              ///< mode of every component without fixed vertices.
     Eigen::MatrixXd Phi;     ///< n x k, D-orthonormal, 1 / length; 0 at unreferenced vertices and
                              ///< on a fixed boundary.
-    int wholeSize = 0;       ///< >= k: the size at which no multiple eigenvalue is split.
+    int wholeSize = 0;       ///< Size >= k that splits no multiple eigenvalue.
 
     // The certificate; see HarmonicBasis.
-    Eigen::VectorXd residuals;  ///< k, relative, 0 for the constant modes.
-    int inertiaCount = 0;       ///< Eigenvalues below the first beyond wholeSize, by the inertia of
-                                ///< W - sigma D: equal to wholeSize, none is missing.
+    Eigen::VectorXd residuals;  ///< k relative residuals; 0 for the constant modes.
+    int inertiaCount = 0;  ///< Eigenvalues below the first one beyond wholeSize, by the inertia
+                           ///< of W - sigma D: none is missing if it equals wholeSize.
 };
 
 /// The k lowest manifold harmonics of a mesh, W phi = lambda D phi (Vallet and Levy 2008; Kovnatsky
@@ -37,8 +37,8 @@ struct ManifoldHarmonics {
 ManifoldHarmonics manifoldHarmonics(const Vertices& V, const Faces& F,
                                     const HarmonicsOptions& options, const Progress& progress = {});
 
-/// Gives every column of Phi the sign that makes its entry of largest modulus positive: the first
-/// such entry, to within 1e-6 relative, as entries of a symmetric mesh are equal up to round-off.
+/// Flips columns of Phi to make the entry of largest modulus positive. Among entries equal to
+/// within a relative 1e-6, as on symmetric meshes, the first one decides.
 void fixSigns(Eigen::MatrixXd& Phi);
 
 }  // namespace spectral

@@ -4,7 +4,7 @@
 
 namespace spectral {
 
-/// The small details of a shape that are indistinguishable from noise of its vertices.
+/// The small details of a shape that are indistinguishable from noise on its vertices.
 struct NoiseFloor {
     double height = 0.0;       ///< Root mean square height of the noise, length units; 0: none.
     double featureSize = 0.0;  ///< Largest feature size of these details, length units; 0: none.
@@ -12,22 +12,23 @@ struct NoiseFloor {
 
 /// Finds where the spectrum of a shape turns into that of white noise.
 ///
-/// Independent noise of all vertices, of equal root mean square height across the surface, has a
-/// known share of its energy in every band of a mesh. The height of noise that would explain a band
-/// is thus amplitude / noise. For relief it falls towards small features; where it levels off there
-/// is noise, or detail of the width of an edge, indistinguishable from it.
+/// Independent vertex noise, of equal root mean square height across the surface, has a known share
+/// of its energy in each band of a mesh. So the height of noise that would explain a band is
+/// amplitude / noise. For relief this falls towards small features; it levels off where there is
+/// noise, or detail as small as the edges, which cannot be told from it.
 ///
-/// From the smallest features up, a band belongs to the floor as long as it needs at most 1.6 times
+/// From the smallest features up, a band belongs to the floor as long as it takes at most 1.6 times
 /// the height that explains all smaller ones together. The smallest bands that hold 5 % of the
 /// noise are always accepted; if the next one fails, there is no floor.
 ///
-/// The height is that of all bands of the floor but the last, which has the most relief; relief in
-/// the others makes it up to 20 % too large. Noise higher than about a quarter of the edge length
-/// folds the surface and changes its harmonics: its height and feature size are underestimated.
+/// The height is that of all bands of the floor except the last, which has the most relief; relief
+/// in the others makes it up to 20 % too large. Noise higher than about a quarter of the edge
+/// length folds the surface and changes its harmonics: its height and feature size are
+/// underestimated.
 ///
-/// @param featureSize  of the bands, third octaves, length units, descending.
-/// @param amplitude    root mean square height of the shape in each, length units.
-/// @param noise        that of noise of height 1 in each, > 0.
+/// @param featureSize  feature sizes of the bands, third octaves, length units, descending.
+/// @param amplitude    root mean square height of the shape in each band, length units.
+/// @param noise        the same for noise of height 1, > 0.
 NoiseFloor noiseFloor(const Eigen::VectorXd& featureSize, const Eigen::VectorXd& amplitude,
                       const Eigen::VectorXd& noise);
 

@@ -19,10 +19,10 @@ double energyIn(const Bands& bands, int j, const Quadrature& measure) {
     return energy;
 }
 
-/// Error of S relative to its norm: that of its last digits, which long recurrences amplify.
+/// Error of S relative to its norm: round-off, amplified by long recurrences.
 constexpr double kRoundOff = 1e-10;
 
-/// All nodes of both.
+/// The nodes of both quadratures.
 Quadrature operator+(const Quadrature& one, const Quadrature& other) {
     const Index a = one.omega.size(), b = other.omega.size();
     Quadrature sum{Eigen::VectorXd(a + b), Eigen::VectorXd(a + b)};
@@ -31,20 +31,20 @@ Quadrature operator+(const Quadrature& one, const Quadrature& other) {
     return sum;
 }
 
-/// Narrows the range of frequencies to those that the nodes of one column resolve.
+/// Narrows the range of frequencies to that resolved by the nodes of one column.
 ///
-/// The last node at an end that is not resolved stands for all harmonics beyond it, with an energy
-/// that changes as little as that of a single one. Either it moves as the space grows, or it is
-/// their mean, far from the frequencies that are resolved best.
+/// At an unresolved end, the last node stands for all harmonics beyond it, although its energy
+/// changes as little as that of a single harmonic. It is recognized because it moves as the space
+/// grows, or because it is far from the frequency that is resolved best.
 void narrow(Eigen::VectorXd smaller, Eigen::VectorXd larger, double best, MeasureInSpace& space) {
-    constexpr double kMoves = 0.01;   // relative change of a frequency
-    constexpr double kFar = 16.0;     // ratio of two frequencies
-    constexpr Index kUnresolved = 4;  // nodes near such an end
+    constexpr double kMaxMove = 0.01;  // relative change of a frequency
+    constexpr double kFar = 16.0;      // ratio of two frequencies
+    constexpr Index kUnresolved = 4;   // nodes to discard near an unresolved end
     if (smaller.size() <= kUnresolved) return;
     std::sort(smaller.begin(), smaller.end());
     std::sort(larger.begin(), larger.end());
     const auto isResolved = [&](double before, double now) {
-        return std::abs(now - before) <= kMoves * now && now >= best / kFar && now <= best * kFar;
+        return std::abs(now - before) <= kMaxMove * now && now >= best / kFar && now <= best * kFar;
     };
     const Index last = larger.size() - 1;
     if (!isResolved(smaller[0], larger[0])) space.from = std::max(space.from, larger[kUnresolved]);

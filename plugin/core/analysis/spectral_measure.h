@@ -12,26 +12,27 @@
 
 namespace spectral {
 
-/// An energy, and by how much it changed when the Krylov space grew by half; both length^4, >= 0.
 struct BandEnergy {
-    double energy = 0.0, change = 0.0;
+    double energy = 0.0;  ///< length^4, >= 0.
+    double change = 0.0;  ///< Change of the energy when the Krylov space grew by half, >= 0.
 };
 
-/// Gauss quadrature in a Krylov space, and when that was smaller.
+/// Gauss quadratures from a Krylov space at two stages of its growth.
 struct MeasureInSpace {
     Quadrature smaller, larger;
-    double from = 0.0, to = std::numeric_limits<double>::infinity();  ///< What it resolves.
+    /// Range of frequencies resolved.
+    double from = 0.0, to = std::numeric_limits<double>::infinity();
 };
 
-/// The spectral measure of a signal, over all its columns: how much of its energy is at which
+/// The spectral measure of a signal, summed over its columns: the distribution of its energy over
 /// frequency.
 ///
-/// Some of it may be known exactly, in a basis of harmonics. The rest is known from Gauss
-/// quadrature in several Krylov spaces, each of which resolves frequencies of its own: those around
-/// its pole or, without one, the highest.
+/// One part may be known exactly, from a basis of harmonics. The rest is estimated by Gauss
+/// quadrature in several Krylov spaces, each of which resolves its own range of frequencies: around
+/// its pole or, without a pole, the highest.
 class SpectralMeasure {
   public:
-    /// @param exact  part of the measure.
+    /// @param exact  the exact part of the measure.
     explicit SpectralMeasure(Quadrature exact) : exact_(std::move(exact)) {}
 
     /// Adds another estimate of the rest.
@@ -41,10 +42,10 @@ class SpectralMeasure {
     /// least.
     BandEnergy in(const Bands& bands, int j) const;
 
-    /// The measure as the first of the spaces has it, or its exact part without one.
+    /// The measure as estimated in the first space; the exact part if there is none.
     Quadrature first() const;
 
-    /// The measure as the last of the spaces has it, or its exact part without one.
+    /// The measure as estimated in the last space; the exact part if there is none.
     Quadrature last() const;
 
   private:
@@ -56,9 +57,9 @@ struct ShapeAndNoise {
     SpectralMeasure shape, noise;
 };
 
-/// Adds what Krylov spaces of S see.
+/// Adds the measures estimated in Krylov spaces of S.
 /// @param signals    n x (3 + 1), without the exact parts: the shape, then the noise.
-/// @param dimension  >= 3; two thirds of it when smaller.
+/// @param dimension  dimension of the larger spaces, >= 3; the smaller ones have two thirds of it.
 /// @throws SolverFailure, Cancelled.
 void addMeasures(const KrylovOperator& S, const Laplacian& laplacian,
                  const Eigen::MatrixXd& signals, int dimension, const Progress& progress,

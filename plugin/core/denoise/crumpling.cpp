@@ -8,7 +8,7 @@ namespace spectral {
 
 namespace {
 
-/// Share of the pairs of neighbouring faces that lie upon each other.
+/// Share of the pairs of neighbouring faces that are folded onto each other.
 double foldedShare(const FaceGraph& graph, const Points& X) {
     constexpr double kFolded = -0.5;  // cosine of the angle between the normals
     Points N = areaNormals(X, graph.F);
@@ -27,7 +27,7 @@ double foldedShare(const FaceGraph& graph, const Points& X) {
     return sums[1] > 0.0 ? sums[0] / sums[1] : 0.0;
 }
 
-/// Share of the vertices that have moved farther than the highest of their triangles is high.
+/// Share of the vertices that have moved farther than the largest height of their triangles.
 double shareMovedFar(const FaceGraph& graph, const Points& X0, const Points& X) {
     const Points N = areaNormals(X0, graph.F);
     Eigen::VectorXd height(N.rows());
@@ -56,9 +56,9 @@ double shareMovedFar(const FaceGraph& graph, const Points& X0, const Points& X) 
 }  // namespace
 
 bool isCrumpled(const FaceGraph& graph, const Points& X0, const Points& X) {
-    constexpr double kMostFolded = 0.01, kMostMovedFar = 0.4;
-    return foldedShare(graph, X) > foldedShare(graph, X0) + kMostFolded ||
-           shareMovedFar(graph, X0, X) > kMostMovedFar;
+    constexpr double kMaxFolded = 0.01, kMaxMovedFar = 0.4;
+    return foldedShare(graph, X) > foldedShare(graph, X0) + kMaxFolded ||
+           shareMovedFar(graph, X0, X) > kMaxMovedFar;
 }
 
 }  // namespace spectral

@@ -4,12 +4,10 @@
 
 namespace spectral {
 
-/// Whether a filter has crumpled a surface instead of smoothing it: it has folded more than a
-/// hundredth of the edges over, or moved two fifths of the vertices farther than their triangles
-/// are high.
-///
-/// Wherever noise was removed from scans, at most 0.003 and 0.3 were seen; on CAD tessellations
-/// with a height that does not fit them 0.03 and more, or 0.6 and more.
+/// Whether a filter has crumpled a surface instead of smoothing it: it has folded more than 1 % of
+/// the edges, or moved more than 40 % of the vertices farther than their triangles are high. Both
+/// limits are well above what removing noise takes, and well below what happens to a CAD
+/// tessellation when the noise height is too large for it.
 /// @param X0, X  n x 3 positions before and after.
 bool isCrumpled(const FaceGraph& graph, const Points& X0, const Points& X);
 

@@ -22,23 +22,23 @@ namespace {
 void checkOptions(const DenoiseOptions& options) {
     if (!(options.strength >= 0.0 && std::isfinite(options.strength)))
         throw InvalidOption("strength = " + textOf(options.strength) +
-                            ": must be 0 (nothing) or above, e.g. 1 for the noise as measured");
+                            ": must be 0 (no change) or above, e.g. 1 for the measured noise");
     const auto checkLength = [](const char* name, double length) {
         if (!(length >= 0.0 && std::isfinite(length)))
             throw InvalidOption(std::string(name) + " = " + textOf(length) +
-                                ": must be a length, or 0 to have it measured");
+                                ": must be a length, or 0 to measure it");
     };
     checkLength("noise_height", options.noiseHeight);
     checkLength("noise_size", options.noiseSize);
 }
 
-/// Part of its displacement that each vertex of the surface makes, 0 to 1.
+/// Fraction of its displacement that each vertex of the surface moves by, 0 to 1.
 Eigen::VectorXd displacementWeight(const DenoiseOptions& options, const Surface& surface,
                                    const Interior& interior) {
     constexpr double kFadingOut = 4.0;  // edges
     const WeightOptions part{options.selected, {}};
     checkWeights(part);
-    Laplacian inEdges;  // as if all edges were of length 1, needles or not
+    Laplacian inEdges;  // measures distances in edges, as if all had length 1
     if (!part.selected.empty()) {
         inEdges.W = uniformStiffness(surface.X.rows(), surface.F);
         inEdges.D.setConstant(surface.X.rows(), 0.5 * std::sqrt(3.0));
@@ -48,9 +48,8 @@ Eigen::VectorXd displacementWeight(const DenoiseOptions& options, const Surface&
 
 /// The triangles of a surface at which a vertex moves, and their vertices.
 struct MovingPart {
-    Surface surface;  ///< Its vertices are rows of the whole surface.
-    Eigen::VectorXd
-        weight;  ///< Part of its displacement that each vertex makes, above 0 to 1; or 0.
+    Surface surface;         ///< Its `vertex` holds rows of the whole surface.
+    Eigen::VectorXd weight;  ///< Fraction of its displacement that each vertex moves by, 0 to 1.
 
     MovingPart(const Surface& whole, const Eigen::VectorXd& weightOfWhole) {
         Faces F(whole.F.rows(), 3);
@@ -64,18 +63,18 @@ struct MovingPart {
     }
 };
 
-/// What the options say of the noise, and what was measured.
+/// The noise to remove: as given by the options, or else as measured.
 RemovalOptions removalOptions(const DenoiseOptions& options, const Diagnosis& diagnosis) {
-    constexpr double kMostHeight = 1.0;  // mean edges: more is filtered as if it were that
+    constexpr double kMaxHeight = 1.0;  // mean edges; larger heights are clamped
     const NoiseEstimate& noise = diagnosis.noise;
     const double edge = noise.meanEdge;
     RemovalOptions removal;
     removal.meanEdge = edge;
     removal.height = std::min(std::max(options.strength, 1.0) *
                                   (options.noiseHeight > 0.0 ? options.noiseHeight : noise.height),
-                              kMostHeight * edge);
-    // Of noise over several edges only the part in the finest octaves can be told from the shape:
-    // it is about twice as long as it looks.
+                              kMaxHeight * edge);
+    // Only the finest octaves of correlated noise can be told from the shape: its true length is
+    // about twice the measured one.
     constexpr double kHidden = 2.0;
     removal.size = options.noiseSize > 0.0 ? options.noiseSize / edge
                    : noise.size > 1.0      ? kHidden * noise.size
@@ -85,8 +84,8 @@ RemovalOptions removalOptions(const DenoiseOptions& options, const Diagnosis& di
     return removal;
 }
 
-/// Mean edges: below, noise is independent at every vertex to the filters.
-constexpr double kSizeOfWhite = 1.25;
+/// Correlation length, in mean edges, up to which noise is filtered as white noise.
+constexpr double kMaxWhiteSize = 1.25;
 
 bool isNoise(const Diagnosis& diagnosis) {
     return diagnosis.kind == NoiseKind::White || diagnosis.kind == NoiseKind::Impulses ||
@@ -98,16 +97,16 @@ Removal removeNoise(const FaceGraph& graph, const Points& X, const Diagnosis& di
     if (diagnosis.kind == NoiseKind::Voxels)
         return removeVoxelSteps(graph, X, diagnosis.voxel, removal, progress);
     if (!(removal.height > 0.0) || !(isKnown || isNoise(diagnosis))) return {diagnosis.X, 0};
-    return removal.size > kSizeOfWhite
+    return removal.size > kMaxWhiteSize
                ? removeCorrelatedNoise(graph, diagnosis.X, removal, progress)
                : removeWhiteNoise(graph, diagnosis.X, removal, progress);
 }
 
-/// Share of the time that measuring takes, for the progress.
+/// Fraction of the progress for the measurement.
 constexpr double kMeasuring = 0.3;
 
-/// Measures and removes, and fills in what is told of both.
-/// @return  the displacement of the part, n x 3.
+/// Measures and removes the noise, and records both in `result`.
+/// @return  displacement of the part, n x 3.
 Points denoisePart(const MovingPart& part, const FaceGraph& graph, const DenoiseOptions& options,
                    const Progress& progress, DenoiseResult& result) {
     const Points X0 = part.surface.X;
@@ -131,22 +130,21 @@ Points denoisePart(const MovingPart& part, const FaceGraph& graph, const Denoise
     const double strength = std::min(options.strength, 1.0);
     if (done.rounds > 0 && diagnosis.kind != NoiseKind::Voxels) {
         result.noiseHeight = strength * removal.height;
-        if (removal.size > kSizeOfWhite) result.noiseSize = removal.size * removal.meanEdge;
+        if (removal.size > kMaxWhiteSize) result.noiseSize = removal.size * removal.meanEdge;
     }
     return strength * part.weight.asDiagonal() * (done.X - X0);
 }
 
-/// Draws coordinates back that an offset for the volume has moved farther than their limits.
-void keepWithin(const Eigen::RowVector3d& most, const Vertices& X0, Vertices& X) {
+/// Clamps coordinates that the volume correction has moved farther than `limit` from X0.
+void keepWithin(const Eigen::RowVector3d& limit, const Vertices& X0, Vertices& X) {
     for (Index i = 0; i < X.rows(); ++i)
-        X.row(i) = X.row(i).cwiseMax(X0.row(i) - most).cwiseMin(X0.row(i) + most);
+        X.row(i) = X.row(i).cwiseMax(X0.row(i) - limit).cwiseMin(X0.row(i) + limit);
 }
 
-/// Fills in what is told of the displacement (n x 3) of a surface of a mesh V, and moves the mesh.
+/// Moves the mesh V by the displacement (n x 3) of its surface, and records its statistics.
 void report(const Vertices& V, const Surface& surface, const Vertices& displacement,
             DenoiseResult& result) {
-    if (!displacement.allFinite())
-        throw SolverFailure("the denoised coordinates are not finite numbers");
+    if (!displacement.allFinite()) throw SolverFailure("the denoised coordinates are not finite");
     result.V = changed(V, surface, displacement);
     result.maxDisplacement = displacement.rowwise().norm().maxCoeff();
     result.rmsDisplacement =
@@ -156,9 +154,9 @@ void report(const Vertices& V, const Surface& surface, const Vertices& displacem
     result.hasVolume = enclosesVolume(surface.X, surface.F);
 }
 
-/// An offset that makes up for lost volume is at most so many times the displacement. Noise lies on
-/// both sides of a surface, and takes little volume away with it.
-constexpr double kMostOffset = 2.0;
+/// Largest offset that restores volume, as a multiple of the displacement: noise lies on both sides
+/// of a surface, so removing it changes the volume little.
+constexpr double kMaxOffset = 2.0;
 
 }  // namespace
 
@@ -185,11 +183,11 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
         const Points displacement = denoisePart(part, graph, options, progress, result);
         for (Index i = 0; i < displacement.rows(); ++i)
             moved.row(part.surface.vertex[i]) += displacement.row(i);
-        // The faces of the graph are oriented; they are numbered as the whole, if they are all.
+        // Prefer the oriented faces of the graph; their indices are valid only if the part is all.
         const bool isWhole = part.surface.F.rows() == whole.F.rows();
         if (result.rounds > 0)
             result.volumes = preserveVolumes(whole.X, isWhole ? graph.F : whole.F, components,
-                                             weight, kMostOffset, moved);
+                                             weight, kMaxOffset, moved);
         if (result.diagnosis.kind == NoiseKind::Voxels)
             keepWithin(0.5 * result.diagnosis.voxel, whole.X, moved);
     }

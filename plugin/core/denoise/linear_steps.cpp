@@ -11,11 +11,11 @@ namespace spectral {
 
 namespace {
 
-/// Positions, and white noise that takes the same steps.
+/// Positions, and white noise that undergoes the same steps.
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
 
-/// The neighbours of every vertex that its mean is taken of: none where it may not move, those on
-/// the rim of one on the rim.
+/// The neighbours each vertex is averaged with: none if it may not move, only those on the rim if
+/// it is on the rim itself.
 VertexGraph averagedNeighbours(const FaceGraph& graph, const std::vector<bool>& mayMove) {
     VertexGraph averaged;
     averaged.first.push_back(0);
@@ -40,7 +40,7 @@ void takeSteps(const VertexGraph& graph, int count, Rows& X) {
         }
 }
 
-/// Mean square of the differences along the edges off the rim.
+/// Mean squared difference along the edges without a vertex on the rim.
 double squaredSlope(const FaceGraph& graph, const Eigen::VectorXd& y) {
     const VertexGraph& vertices = graph.vertices;
     const Eigen::Array2d sums =
@@ -68,9 +68,9 @@ std::optional<LinearSteps> linearSteps(const FaceGraph& graph, const Points& X,
                                        bool isTailed) {
     constexpr std::array<int, 11> kSteps{5, 10, 14, 20, 28, 40, 56, 80, 113, 160, 226};
     constexpr int kStepsToNormals = 20;
-    // Of the slopes, over those of the noise: what the filter of the normals leaves of it.
-    const double mostError = isTailed ? 0.19 : 0.17 - 0.2 * height;
-    constexpr double kMostTail = 1.1, kNoTail = 1.02;
+    // Error of the slopes, relative to those of the noise, that the normal filter achieves.
+    const double maxError = isTailed ? 0.19 : 0.17 - 0.2 * height;
+    constexpr double kMaxTail = 1.1, kNoTail = 1.02;
     const VertexGraph averaged = averagedNeighbours(graph, mayMove);
     const Eigen::VectorXd white = whiteNoise(X.rows());
     const double whiteSlope = squaredSlope(graph, white);
@@ -79,11 +79,11 @@ std::optional<LinearSteps> linearSteps(const FaceGraph& graph, const Points& X,
 
     Rows Y = start;
     takeSteps(averaged, kStepsToNormals, Y);
-    // The same normals for all, lest a change of the normals counts as the shape's.
+    // The same normals for all steps, so that a change of normals is not mistaken for shape.
     const Points N = smoothNormals(graph, Y.leftCols<3>());
     Y = start;
     LinearSteps best;
-    double least = 0.0, noise = 0.0;  // squares: of the error, and of the height of the noise
+    double least = 0.0, noise = 0.0;  // squared error, and squared height of the noise
     int taken = 0;
     for (const int steps : kSteps) {
         takeSteps(averaged, steps - taken, Y);
@@ -91,7 +91,7 @@ std::optional<LinearSteps> linearSteps(const FaceGraph& graph, const Points& X,
         const Eigen::VectorXd along = (Y.leftCols<3>() - X).cwiseProduct(N).rowwise().sum();
         const double takenFromNoise = squaredSlope(graph, white - Y.col(3));
         const double ratio = squaredSlope(graph, along) / takenFromNoise;
-        if (noise == 0.0) noise = ratio;  // the first steps take noise alone
+        if (noise == 0.0) noise = ratio;  // the first steps remove only noise
         if (!(noise > 0.0)) return std::nullopt;
         const double shape = std::max(0.0, ratio / noise - 1.0) * takenFromNoise;
         const double error = (shape + squaredSlope(graph, Y.col(3))) / whiteSlope;
@@ -102,9 +102,9 @@ std::optional<LinearSteps> linearSteps(const FaceGraph& graph, const Points& X,
     }
     const Points ownN = smoothNormals(graph, best.X);
     const Eigen::VectorXd along = (best.X - X).cwiseProduct(ownN).rowwise().sum();
-    const double most = tail(graph.vertices, along);
-    const bool isEven = isTailed || most < kMostTail;
-    if (!(isEven && least < mostError * mostError) && !(most < kNoTail)) return std::nullopt;
+    const double heaviness = tail(graph.vertices, along);
+    const bool isEven = isTailed || heaviness < kMaxTail;
+    if (!(isEven && least < maxError * maxError) && !(heaviness < kNoTail)) return std::nullopt;
     best.N = areaNormals(best.X, graph.F);
     normalizeRows(best.N);
     best.X = X + along.asDiagonal() * ownN;

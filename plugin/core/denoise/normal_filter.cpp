@@ -9,14 +9,16 @@ namespace spectral {
 
 namespace {
 
-/// Of a face, relative to the mean: bounds the condition of the system.
-constexpr double kSmallestArea = 0.05;
+/// Lower bound of a face's area relative to the mean; bounds the condition number of the system.
+constexpr double kMinArea = 0.05;
 
-/// How much noise tilts blurred normals, and from which area on: less than half of the mean.
-constexpr double kTilt = 0.5, kShort = 2.0;
+/// How strongly noise tilts blurred normals.
+constexpr double kTilt = 0.5;
+/// Inverse of the relative local area below which the tilt matters: half of the mean.
+constexpr double kShort = 2.0;
 
-/// Area around each face over the mean, from the square roots: a weighted mean over the neighbours,
-/// repeated, so that noise does not show in it.
+/// Smoothed area around each face, relative to the mean: square roots of the areas, repeatedly
+/// averaged with the neighbours to suppress noise.
 Eigen::VectorXd localAreas(const FaceGraph& graph, const Eigen::VectorXd& area) {
     constexpr int kRepetitions = 6;
     constexpr double kOwn = 0.25;
@@ -38,12 +40,12 @@ Eigen::VectorXd localAreas(const FaceGraph& graph, const Eigen::VectorXd& area) 
     return length.cwiseAbs2();
 }
 
-/// M + t L.
+/// The matrix A = M + t L.
 class System {
   public:
     using Columns = Eigen::Array<double, 1, 3>;
 
-    /// @param N  normals of length twice the area.
+    /// @param N  face normals with length twice the area.
     System(const FaceGraph& graph, const Points& X, const Points& N,
            const NormalFilterOptions& options)
         : neighbours_(graph.neighbours),
@@ -63,7 +65,7 @@ class System {
         const double lengths = parallelSum(N.rows(), 0.0, [&](Index begin, Index end) {
             double sum = 0.0;
             for (Index f = begin; f < end; ++f) {
-                mass_[f] = std::sqrt(std::max(area[f] / mean, kSmallestArea));
+                mass_[f] = std::sqrt(std::max(area[f] / mean, kMinArea));
                 for (int c = 0; c < 3; ++c) {
                     const Eigen::RowVector3d side =
                         X.row(graph.F(f, (c + 1) % 3)) - X.row(graph.F(f, (c + 2) % 3));
@@ -87,21 +89,21 @@ class System {
 
     const Eigen::VectorXd& mass() const { return mass_; }
 
-    /// Solves A X = B by conjugate gradients, preconditioned by the diagonal. A few iterations: the
-    /// eigenvalues are those of M and 6 t.
-    /// @param X       initial guess.
-    /// @param enough  squared norms of the residuals' columns.
-    void solve(const Points& B, const Columns& enough, Points& X) const {
-        constexpr int kMostIterations = 300;
+    /// Solves A X = B by conjugate gradients with a diagonal preconditioner. Takes few iterations:
+    /// the eigenvalues of A exceed those of M by about 6 t at most.
+    /// @param X          initial guess.
+    /// @param tolerance  squared norms of the columns of the residual.
+    void solve(const Points& B, const Columns& tolerance, Points& X) const {
+        constexpr int kMaxIterations = 300;
         Points Q(B.rows(), 3), R(B.rows(), 3), D(B.rows(), 3);
         multiply(X, Q);
-        Columns squares = Columns::Zero();  // of the residual
+        Columns squares = Columns::Zero();  // squared norms of the residual
         Columns descent = sumOverRows(B.rows(), squares, [&](Index f) {
             R.row(f) = B.row(f) - Q.row(f);
             D.row(f) = R.row(f) / diagonal_[f];
             return R.row(f);
         });
-        for (int k = 0; k < kMostIterations && (squares > enough).any(); ++k) {
+        for (int k = 0; k < kMaxIterations && (squares > tolerance).any(); ++k) {
             const Columns curvature = multiply(D, Q);
             const Columns step = (curvature > 0.0).select(descent / curvature, 0.0);
             const Columns next = sumOverRows(B.rows(), squares, [&](Index f) {
@@ -119,7 +121,7 @@ class System {
     }
 
   private:
-    /// Y = A X; returns the products of their columns.
+    /// Y = A X; returns the inner products of the columns of X and Y.
     Columns multiply(const Points& X, Points& Y) const {
         return parallelSum(X.rows(), Columns(Columns::Zero()), [&](Index begin, Index end) {
             Columns products = Columns::Zero();
@@ -134,8 +136,8 @@ class System {
         });
     }
 
-    /// Visits every row of a residual; returns the squares of its columns in the preconditioner's
-    /// norm, sets those in the Euclidean one.
+    /// Visits every row of a residual; returns the squared norms of its columns in the
+    /// preconditioner's norm, and sets `squares` to the Euclidean ones.
     template <class Visit>
     Columns sumOverRows(Index count, Columns& squares, const Visit& visit) const {
         using Sums = Eigen::Array<double, 2, 3>;
@@ -153,7 +155,7 @@ class System {
     }
 
     const Faces& neighbours_;
-    Points weight_;  // of each side, t times that of L
+    Points weight_;  // m x 3: for each side, t times the weight in L
     Eigen::VectorXd mass_, diagonal_;
 };
 
@@ -161,19 +163,19 @@ class System {
 
 Points filterNormals(const FaceGraph& graph, const Points& X, const NormalFilterOptions& options,
                      const Points& guess) {
-    // Relative residual. A hundredth of it changes no angle of a denoised mesh.
+    // Relative residual; a hundredth of it changes no angle of a denoised mesh.
     constexpr double kAccuracy = 1e-2;
     Points N = areaNormals(X, graph.F);
-    if (!(N.cwiseAbs().maxCoeff() > 0.0)) return N;  // needles all, without normals
+    if (!(N.cwiseAbs().maxCoeff() > 0.0)) return N;  // all faces are degenerate
     const System A(graph, X, N, options);
     normalizeRows(N);
     const Points B = A.mass().asDiagonal() * N;
-    const System::Columns enough = kAccuracy * kAccuracy * B.colwise().squaredNorm().array();
+    const System::Columns tolerance = kAccuracy * kAccuracy * B.colwise().squaredNorm().array();
     Points filtered = guess.rows() == N.rows() ? guess : N;
-    A.solve(B, enough, filtered);
-    if (options.isTwice) {
+    A.solve(B, tolerance, filtered);
+    if (options.useTwicing) {
         Points again = Points::Zero(N.rows(), 3);
-        A.solve(A.mass().asDiagonal() * (N - filtered), enough, again);
+        A.solve(A.mass().asDiagonal() * (N - filtered), tolerance, again);
         filtered += again;
     }
     normalizeRows(filtered);

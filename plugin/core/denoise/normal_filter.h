@@ -6,28 +6,28 @@
 namespace spectral {
 
 struct NormalFilterOptions {
-    double time = 0.0;       ///< t, >= 0.
-    double edgeScale = 0.0;  ///< s: distance of unit normals from which they hardly mix, > 0.
-    double height = 0.0;     ///< Of the noise, mean edges.
-    int blurs = 2;           ///< Of the normals that the weights are taken from, >= 0.
-    bool isTwice = false;    ///< F + F (1 - F) instead of F: flatter where the shape is.
+    double time = 0.0;        ///< Diffusion time t, >= 0.
+    double edgeScale = 0.0;   ///< s: distance of unit normals beyond which they hardly mix, > 0.
+    double height = 0.0;      ///< Standard deviation of the noise, mean edges.
+    int blurs = 2;            ///< Number of blurs of the normals that define the weights, >= 0.
+    bool useTwicing = false;  ///< F + F (1 - F) instead of F: flatter at the shape's frequencies.
 };
 
-/// The normals of the shape X (n x 3), smoothed over the faces but not across creases:
+/// The face normals of the shape X (n x 3), smoothed over the faces but not across creases:
 ///
-///     N' = F N,  F = (M + t L)^-1 M,  scaled to length 1,
+///     N' = F N,  F = (M + t L)^-1 M,  scaled to length 1.
 ///
-/// L the Laplacian of the face graph with the weights |e| / mean |e| exp(-|q_a - q_b|^2 / (2 s^2))
-/// between faces a and b with the common edge e, q the normals blurred over the neighbours; M
-/// the roots of the areas over the mean area, as the normal of a small face is the less certain. L
-/// is thus taken from the shape as it is: one weak part of a fractional filter (Kovnatsky et al.
-/// 2012, Eq. 11) whose signal is the field of normals. Where edges are short, noise tilts faces the
-/// more: s^2 grows there by what the height of the noise explains.
+/// L is the Laplacian of the face graph with weights |e| / mean |e| exp(-|q_a - q_b|^2 / (2 s^2))
+/// between faces a and b with common edge e, where q are the normals blurred over the neighbours. M
+/// holds the square roots of the areas over the mean area, as the normal of a small face is less
+/// certain. L depends on the current shape: one call is a weak part of a fractional filter
+/// (Kovnatsky et al. 2012, Eq. 11) whose signal is the field of normals. Where edges are short,
+/// noise tilts faces more: s^2 grows there by the amount that the height of the noise explains.
 ///
-/// Applied once more to what it has taken away (Tukey's twicing, 1977), F passes twice as much of
-/// the low frequencies' detail and as good as nothing more of the high ones.
+/// Twicing (Tukey 1977) applies F again to what it has removed, which squares the loss 1 - F: low
+/// frequencies keep their detail, and hardly more of the high ones passes.
 ///
-/// @param guess  m x 3 normals near the result, such as those of the part before; or none.
+/// @param guess  m x 3 normals near the result, such as those of the previous round; or empty.
 Points filterNormals(const FaceGraph& graph, const Points& X, const NormalFilterOptions& options,
                      const Points& guess = {});
 

@@ -15,11 +15,11 @@ namespace spectral {
 
 namespace {
 
-/// No vertex moves farther than noise of this many standard deviations had moved it.
-constexpr double kMostDeviations = 6.0;
+/// Largest displacement of a vertex, in standard deviations of the noise.
+constexpr double kMaxDeviations = 6.0;
 const char* const kStage = "removing the noise";
 
-/// The height of the noise that had moved the vertices from X to X0, by its median.
+/// The height of the noise removed by moving the vertices from X0 to X, from the median.
 double removedHeight(const Points& X0, const Points& X, const std::vector<bool>& mayMove) {
     std::vector<double> displacements;
     for (Index i = 0; i < X.rows(); ++i)
@@ -27,27 +27,27 @@ double removedHeight(const Points& X0, const Points& X, const std::vector<bool>&
     return medianDeviation(std::move(displacements));
 }
 
-/// Draws the vertices of X back to within `farthest` of where they were: where triangles are
-/// narrower than the noise is high, normals mean little.
-void limitDisplacement(const Points& X0, double farthest, Points& X) {
+/// Limits displacements to `limit`: where triangles are narrower than the height of the noise,
+/// normals are unreliable.
+void limitDisplacement(const Points& X0, double limit, Points& X) {
     for (Index i = 0; i < X.rows(); ++i) {
         const Eigen::RowVector3d displacement = X.row(i) - X0.row(i);
         const double length = displacement.norm();
-        if (length > farthest) X.row(i) = X0.row(i) + farthest / length * displacement;
+        if (length > limit) X.row(i) = X0.row(i) + limit / length * displacement;
     }
 }
 
-double farthestMove(const RemovalOptions& options, double deviations) {
+double maxDisplacement(const RemovalOptions& options, double deviations) {
     const double edges = options.areImpulses ? 3.0 : 0.3;
     return std::max(deviations * options.height, edges * options.meanEdge);
 }
 
-/// Turns folded faces back, within the limits that all displacements have.
+/// Unfolds faces, within the limit of all displacements.
 void finish(const FaceGraph& graph, const Points& X0, const Points& N,
             const RemovalOptions& options, Points& X) {
-    constexpr double kMostAlongSurface = 5.0;  // heights of the noise
-    unfoldFaces(graph, N, kMostAlongSurface * options.height, options.mayMove, X);
-    limitDisplacement(X0, farthestMove(options, kMostDeviations), X);
+    constexpr double kMaxAlongSurface = 5.0;  // heights of the noise
+    unfoldFaces(graph, N, kMaxAlongSurface * options.height, options.mayMove, X);
+    limitDisplacement(X0, maxDisplacement(options, kMaxDeviations), X);
 }
 
 double edgeScale(const RemovalOptions& options, double scale) {
@@ -75,11 +75,11 @@ Removal removeWhiteNoise(const FaceGraph& graph, const Points& X0, const Removal
         double edgeScale;
     };
     constexpr Round kWeak{4.0, 16, 0.25}, kStrong{8.0, 32, 0.22};
-    constexpr int kWeakRounds = 6, kMostRounds = 10;
-    constexpr double kHalfTimeAt = 0.13;   // mean edges: less noise takes weaker rounds
-    constexpr double kMostRemoved = 1.03;  // of the height
-    constexpr double kMostSmoothness = 0.957, kSmoothnessOfFirst = 0.76, kColour = 0.75;
-    constexpr double kMostDeviationsOfRound = 3.0;
+    constexpr int kWeakRounds = 6, kMaxRounds = 10;
+    constexpr double kHalfTimeAt = 0.13;  // height in mean edges; weaker noise gets weaker rounds
+    constexpr double kMaxRemoved = 1.03;  // multiple of the height
+    constexpr double kMaxSmoothness = 0.957, kFirstSmoothness = 0.76, kColour = 0.75;
+    constexpr double kMaxDeviationsPerRound = 3.0;
 
     progress.report(0.0, kStage);
     if (std::optional<LinearSteps> linear = linearSteps(
@@ -88,29 +88,30 @@ Removal removeWhiteNoise(const FaceGraph& graph, const Points& X0, const Removal
         return {std::move(linear->X), linear->steps};
     }
 
-    const double farthest = farthestMove(options, kMostDeviationsOfRound);
+    const double limit = maxDisplacement(options, kMaxDeviationsPerRound);
     const double weaker = 1.0 + std::pow(kHalfTimeAt * options.meanEdge / options.height, 3);
     Removal removal{X0, 0};
     Points N;
-    double most = 0.0;
-    while (removal.rounds < kMostRounds) {
-        progress.report(double(removal.rounds) / kMostRounds, kStage);
+    double maxSmoothness = 0.0;
+    while (removal.rounds < kMaxRounds) {
+        progress.report(double(removal.rounds) / kMaxRounds, kStage);
         const Round& round = removal.rounds < kWeakRounds ? kWeak : kStrong;
         const Points next = filterNormals(graph, removal.X,
                                           {round.time / weaker, edgeScale(options, round.edgeScale),
                                            options.height / options.meanEdge, 2, true},
                                           N);
         Points X = followNormals(graph, X0, next, options.mayMove, round.sweeps);
-        limitDisplacement(X0, farthest, X);
+        limitDisplacement(X0, limit, X);
         const double smooth = smoothness(graph.vertices, displacementAlongNormals(graph, X0, X));
         if (removal.rounds == 0)
-            most = kMostSmoothness * std::pow(std::max(1.0, smooth / kSmoothnessOfFirst), kColour);
-        else if (smooth > most)
+            maxSmoothness =
+                kMaxSmoothness * std::pow(std::max(1.0, smooth / kFirstSmoothness), kColour);
+        else if (smooth > maxSmoothness)
             break;
         N = next;
         removal.X = X;
         ++removal.rounds;
-        if (removedHeight(X0, X, options.mayMove) > kMostRemoved * options.height) break;
+        if (removedHeight(X0, X, options.mayMove) > kMaxRemoved * options.height) break;
     }
     finish(graph, X0, N, options, removal.X);
     return removal;
@@ -118,21 +119,21 @@ Removal removeWhiteNoise(const FaceGraph& graph, const Points& X0, const Removal
 
 Removal removeCorrelatedNoise(const FaceGraph& graph, const Points& X0,
                               const RemovalOptions& options, const Progress& progress) {
-    constexpr double kLength = 0.8, kMostLength = 4.0;
-    constexpr double kEnough = 0.8;  // the rest is as long as details of the shape
-    constexpr int kLeastRounds = 2, kMostRounds = 6;
-    const double length = std::min(kLength * options.size, kMostLength);
-    const double farthest = farthestMove(options, kMostDeviations);
+    constexpr double kLength = 0.8, kMaxLength = 4.0;
+    constexpr double kMinRemoved = 0.8;  // part of the height; the rest is as long as details
+    constexpr int kMinRounds = 2, kMaxRounds = 6;
+    const double length = std::min(kLength * options.size, kMaxLength);
+    const double limit = maxDisplacement(options, kMaxDeviations);
     Removal removal{X0, 0};
     Points N;
     double removed = 0.0;
-    while (removal.rounds < kLeastRounds ||
-           (removed < kEnough * options.height && removal.rounds < kMostRounds)) {
-        progress.report(double(removal.rounds) / kMostRounds, kStage);
+    while (removal.rounds < kMinRounds ||
+           (removed < kMinRemoved * options.height && removal.rounds < kMaxRounds)) {
+        progress.report(double(removal.rounds) / kMaxRounds, kStage);
         N = filterNormals(graph, removal.X, filterOfLength(length, options), N);
         removal.X = followNormals(graph, X0, N, options.mayMove, sweepsOfLength(length));
         removed = removedHeight(X0, removal.X, options.mayMove);
-        limitDisplacement(X0, farthest, removal.X);
+        limitDisplacement(X0, limit, removal.X);
         ++removal.rounds;
     }
     finish(graph, X0, N, options, removal.X);
@@ -143,7 +144,7 @@ Removal removeVoxelSteps(const FaceGraph& graph, const Points& X0, const Eigen::
                          const RemovalOptions& options, const Progress& progress) {
     constexpr double kLength = 1.5, kThickness = 0.5;
     constexpr int kRounds = 3;
-    // Thick slices: the filter works in units between lengths and voxels.
+    // For thick slices, the filter works in units between lengths and voxels.
     const Eigen::RowVector3d scale =
         (voxel.minCoeff() * voxel.cwiseInverse()).array().pow(kThickness);
     const Eigen::RowVector3d half = 0.5 * voxel.cwiseProduct(scale);
@@ -158,7 +159,7 @@ Removal removeVoxelSteps(const FaceGraph& graph, const Points& X0, const Eigen::
                 removal.X.row(i).cwiseMax(start.row(i) - half).cwiseMin(start.row(i) + half);
         ++removal.rounds;
     }
-    // Added to X0, so that a vertex that has not moved keeps its bits.
+    // Add to X0, so that a vertex that has not moved stays bit-identical.
     removal.X = X0 + (removal.X - start) * scale.cwiseInverse().asDiagonal();
     return removal;
 }

@@ -7,42 +7,41 @@
 
 namespace spectral {
 
-/// What removes noise from the positions X: the normals of the faces are filtered, the vertices
-/// follow them, and the operator is taken anew from the shape. Each pass begins at X: it is the
-/// normals that are filtered, the vertices only show them.
+/// Result of the removal of noise. Each round filters the face normals, moves the vertices to
+/// follow them, and rebuilds the operator from the shape. The vertices always start from the
+/// original positions: only the normals are filtered repeatedly.
 struct Removal {
-    Points X;        ///< n x 3
-    int rounds = 0;  ///< Weak parts of the filter of the normals, or linear steps.
+    Points X;        ///< n x 3 positions.
+    int rounds = 0;  ///< Rounds of the normal filter, or linear steps.
 };
 
 struct RemovalOptions {
-    double height = 0.0;    ///< Of the noise, length units.
-    double size = 0.0;      ///< Its correlation length, mean edges.
-    double meanEdge = 0.0;  ///< Length units.
-    bool keepCreases = true;
-    bool areImpulses = false;  ///< White noise with many large values.
-    std::vector<bool> mayMove;
+    double height = 0.0;        ///< Standard deviation of the noise, length units.
+    double size = 0.0;          ///< Correlation length of the noise, mean edges.
+    double meanEdge = 0.0;      ///< Mean edge length, length units.
+    bool keepCreases = true;    ///< If false, smooths across creases, too.
+    bool areImpulses = false;   ///< White noise with many large values.
+    std::vector<bool> mayMove;  ///< n: whether a vertex may move.
 };
 
-/// Noise that is independent at every vertex.
+/// Removes noise that is independent at every vertex.
 ///
-/// Linear steps where they do better (linear_steps.h). Else weak, then stronger rounds, until what
-/// they take is smoother than noise (whiteness.h) or the vertices have moved farther than the noise
-/// had moved them, by their median: the discrepancy principle (Morozov 1966). Faces that the noise
-/// has folded are turned back.
+/// Takes linear steps where they do better (linear_steps.h). Otherwise weak, then stronger rounds,
+/// until the displacement is smoother than noise (whiteness.h) or its median exceeds that of the
+/// noise: the discrepancy principle (Morozov 1966). Unfolds faces that the noise has folded.
 ///
 /// All constants of this folder and the meshes they were chosen on are in
 /// tests/benchmarks/README.md.
 Removal removeWhiteNoise(const FaceGraph& graph, const Points& X, const RemovalOptions& options,
                          const Progress& progress);
 
-/// Noise over several edges: rounds in units of its correlation length l, with times of l^2, blurs
-/// of l^2, and sweeps of l, until the discrepancy principle ends them.
+/// Removes noise correlated over several edges, by rounds whose time and blurs scale with l^2 and
+/// whose sweeps scale with l, its correlation length, until the discrepancy principle stops them.
 Removal removeCorrelatedNoise(const FaceGraph& graph, const Points& X,
                               const RemovalOptions& options, const Progress& progress);
 
-/// Steps of voxels: no coordinate moves farther than half a voxel.
-/// @param voxel  size along each axis, length units.
+/// Removes the staircase of voxels; no coordinate moves farther than half a voxel.
+/// @param voxel  voxel size along each axis, length units.
 Removal removeVoxelSteps(const FaceGraph& graph, const Points& X, const Eigen::RowVector3d& voxel,
                          const RemovalOptions& options, const Progress& progress);
 

@@ -6,16 +6,16 @@
 
 namespace spectral {
 
-/// Turns faces back that point against their filtered normals: noise along the surface has folded
-/// them, and vertices that move along normals alone cannot undo that. Their corners, and no other
-/// vertices, move within the surface to the mean of their neighbours, unless that is farther than
-/// the noise can have moved them, as among needles.
+/// Unfolds faces that point away from their filtered normals: noise along the surface has folded
+/// them, which displacements along normals cannot undo. Only their corners move, within the surface
+/// to the mean of their neighbours, unless noise cannot have moved them that far, as among needle
+/// triangles.
 ///
-/// @param N         m x 3 filtered normals.
-/// @param farthest  of a move, length units.
-/// @param mayMove   n
-/// @param X         n x 3 positions, moved.
-void unfoldFaces(const FaceGraph& graph, const Points& N, double farthest,
+/// @param N                m x 3 filtered normals.
+/// @param maxDisplacement  largest displacement, length units.
+/// @param mayMove          n: whether a vertex may move.
+/// @param X                n x 3 positions, updated.
+void unfoldFaces(const FaceGraph& graph, const Points& N, double maxDisplacement,
                  const std::vector<bool>& mayMove, Points& X);
 
 }  // namespace spectral

@@ -24,7 +24,7 @@ Eigen::VectorXd displacementAlongNormals(const FaceGraph& graph, const Points& X
 }
 
 double smoothness(const VertexGraph& graph, const Eigen::VectorXd& signal) {
-    double white = 0.0;  // variance that is left of white noise of variance 1
+    double white = 0.0;  // variance that one step leaves of white noise of variance 1
     for (Index i = 0; i < graph.size(); ++i)
         white += graph.degree(i) > 0 ? 0.25 + 0.25 / static_cast<double>(graph.degree(i)) : 1.0;
     white = std::sqrt(white / static_cast<double>(graph.size()));
@@ -35,18 +35,19 @@ double smoothness(const VertexGraph& graph, const Eigen::VectorXd& signal) {
 }
 
 double tail(const VertexGraph& graph, const Eigen::VectorXd& signal) {
-    constexpr double kShare = 0.99, kDeviations = 2.5758;  // of a normal distribution
+    constexpr double kShare = 0.99, kDeviations = 2.5758;  // normal distribution
     Eigen::VectorXd y = signal;
-    double most = 0.0;
+    double largest = 0.0;
     int step = 0;
     for (const int end : {1, 2, 4}) {
         for (; step < end; ++step) diffuse(graph, y);
         const double mean = y.mean();
         std::vector<double> moduli(y.begin(), y.end());
         for (double& value : moduli) value = std::abs(value - mean);
-        most = std::max(most, quantile(std::move(moduli), kShare) / deviation(y) / kDeviations);
+        largest =
+            std::max(largest, quantile(std::move(moduli), kShare) / deviation(y) / kDeviations);
     }
-    return most;
+    return largest;
 }
 
 }  // namespace spectral

@@ -15,30 +15,30 @@ namespace spectral {
 
 namespace {
 
-/// Up to this many vertices the dense solver is about as fast as spectral intervals, whose Krylov
-/// spaces must be small compared with n.
-constexpr Index kDenseVertices = 300;
+/// Largest number of vertices for the dense solver. Below it, spectrum slicing is no faster: its
+/// Krylov spaces must be small compared with n.
+constexpr Index kMaxDenseVertices = 300;
 
-/// Restarts of Lanczos' method for the largest eigenvalue, which has no shift to speed it up.
-constexpr int kMostRestarts = 300;
+/// Lanczos restarts for the largest eigenvalue; many, as no shift speeds up convergence.
+constexpr int kMaxRestarts = 300;
 
 using DenseSolver = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>;
 
 DenseSolver solved(const Eigen::MatrixXd& A) {
     DenseSolver solver(A);
     if (solver.info() == Eigen::Success) return solver;
-    throw SolverFailure("the dense eigenproblem of " + std::to_string(A.rows()) +
-                        " vertices did not converge");
+    throw SolverFailure("the dense eigensolver did not converge for " + std::to_string(A.rows()) +
+                        " vertices");
 }
 
-/// Eigenvectors of a positive semidefinite matrix, in any order, by Jacobi's rotations: each
-/// eigenvalue to its own relative accuracy, where methods that begin with a tridiagonal matrix
-/// spread round-off of the largest over all (Demmel and Veselic 1992). A becomes diagonal.
+/// Eigenvectors of a positive semidefinite matrix, in any order, by Jacobi rotations: each
+/// eigenvalue is accurate relative to itself, whereas methods that first tridiagonalize have
+/// round-off relative to the largest in all of them (Demmel and Veselic 1992). Diagonalizes A.
 Eigen::MatrixXd jacobiEigenvectors(Eigen::MatrixXd& A) {
     constexpr double kRoundOff = 1e-15;
-    constexpr int kMostSweeps = 60;  // converges quadratically: ten are many
+    constexpr int kMaxSweeps = 60;  // convergence is quadratic: ten are plenty
     Eigen::MatrixXd Q = Eigen::MatrixXd::Identity(A.rows(), A.cols());
-    for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+    for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
         bool isDiagonal = true;
         for (Index q = 1; q < A.cols(); ++q) {
             for (Index p = 0; p < q; ++p) {
@@ -55,13 +55,13 @@ Eigen::MatrixXd jacobiEigenvectors(Eigen::MatrixXd& A) {
         }
         if (isDiagonal) return Q;
     }
-    throw SolverFailure("the dense eigenproblem of " + std::to_string(A.rows()) +
-                        " harmonics did not converge");
+    throw SolverFailure("Jacobi's method did not converge for " + std::to_string(A.rows()) +
+                        " harmonics");
 }
 
-/// Makes eigenvectors accurate whose errors are round-off relative to the largest eigenvalue, by
-/// Rayleigh-Ritz, and sorts them; returns their eigenvalues. Phi^T W Phi is computed from
-/// differences along edges: among needles, most digits of W Phi would cancel.
+/// Refines eigenvectors whose round-off is relative to the largest eigenvalue, by Rayleigh-Ritz,
+/// and sorts them; returns their eigenvalues. Phi^T W Phi is computed from differences along edges:
+/// with needle triangles, most digits of W Phi would cancel.
 Eigen::VectorXd refine(const Laplacian& laplacian, Eigen::MatrixXd& Phi) {
     const SparseMatrix& W = laplacian.W;
     const Index n = W.rows();
@@ -100,8 +100,8 @@ HarmonicBasis denseBasis(const Laplacian& laplacian) {
     const Eigen::VectorXd sqrtD = laplacian.D.cwiseSqrt(), invSqrtD = sqrtD.cwiseInverse();
     Eigen::MatrixXd A =
         invSqrtD.asDiagonal() * Eigen::MatrixXd(laplacian.W) * invSqrtD.asDiagonal();
-    // The constants, which are known, become the last: eigenvectors of eigenvalues near theirs
-    // would be mixtures with them.
+    // The constant modes are known: move them to the end of the spectrum, or they would mix with
+    // eigenvectors of almost zero eigenvalues.
     const Index varying = A.rows() - laplacian.constants.count();
     const double bound = A.cwiseAbs().rowwise().sum().maxCoeff();
     const Eigen::MatrixXd C = sqrtD.asDiagonal() * laplacian.constants.orthonormal();
@@ -119,20 +119,21 @@ HarmonicBasis denseBasis(const Laplacian& laplacian) {
     return basis;
 }
 
-bool isDenseQuicker(Index n) { return n <= kDenseVertices; }
+bool isDenseQuicker(Index n) { return n <= kMaxDenseVertices; }
 
 double largestEigenvalue(const Laplacian& laplacian) {
     const Eigen::VectorXd invSqrtD = laplacian.D.cwiseSqrt().cwiseInverse();
     SparseMatrix A = invSqrtD.asDiagonal() * laplacian.W * invSqrtD.asDiagonal();
-    // Spectra's test for convergence assumes eigenvalues of about 1. Gershgorin's bound:
+    // Spectra's convergence test assumes eigenvalues of about 1: divide by Gershgorin's bound.
     const double bound = (A.cwiseAbs() * Eigen::VectorXd::Ones(A.cols())).maxCoeff();
-    // Spectra starts from A times a random vector: where one eigenvalue is far above all others, an
-    // eigenvector, with a residual of round-off (yixuan/spectra#159). Those of A + I are in [1, 2].
+    // Spectra starts from A times a random vector. If one eigenvalue is far above all others, this
+    // is an eigenvector with a residual of round-off (yixuan/spectra#159). A + I avoids that: its
+    // eigenvalues are in [1, 2].
     A = A / bound;
     const auto shifted = [&A](const Eigen::Ref<const Eigen::VectorXd>& x) -> Eigen::VectorXd {
         return A * x + x;
     };
-    const LanczosOptions options{std::min<Index>(A.rows(), 30), kMostRestarts, 1e-8};
+    const LanczosOptions options{std::min<Index>(A.rows(), 30), kMaxRestarts, 1e-8};
     try {
         return bound * (largestPairs(shifted, A.rows(), 1, options).values[0] - 1.0);
     } catch (const SolverFailure&) {

@@ -11,25 +11,23 @@ namespace spectral {
 
 namespace {
 
-/// Eigenpairs that a Lanczos run is to find in addition to those of the interval: the shift is in
-/// the middle of the interval, not of its eigenvalues.
-constexpr Index kAdditional = 1;
+/// Eigenpairs that a Lanczos run seeks beyond those of the interval: the shift is in the middle of
+/// the interval, not of its eigenvalues.
+constexpr Index kExtraPairs = 1;
 
-/// Dimension of the Krylov space: twice the number of pairs and some more. Spectra asks for twice
-/// at least; 2.2 to 2.5 times measured fastest on the dragon.
-constexpr Index kSpareDimension = 4, kLeastDimension = 20;
+/// Dimension of the Krylov space: twice the number of pairs, as Spectra recommends, and a few more.
+constexpr Index kExtraDimension = 4, kMinDimension = 20;
 
-/// Relative accuracy of the eigenvalues of the inverse; the inverse iteration that follows gains
-/// some digits more.
+/// Relative accuracy of the eigenvalues of the inverse; inverse iteration then adds a few digits.
 constexpr double kTolerance = 1e-9;
 constexpr int kMaxRestarts = 100;
 
-/// Lanczos runs without a pair in the interval after which its count must be wrong.
-constexpr int kFruitless = 3;
+/// Consecutive Lanczos runs without a pair in the interval after which its count must be wrong.
+constexpr int kMaxFruitless = 3;
 
 /// u -> h D^1/2 (W - sigma D)^-1 D^1/2 u on the complement of the constants and of known vectors:
-/// symmetric, with eigenvalues h / (lambda - sigma). With h the half of an interval around sigma
-/// those inside are above 1, as the test for convergence assumes.
+/// symmetric, with eigenvalues h / (lambda - sigma). If h is the half-width of an interval around
+/// sigma, the eigenvalues inside have modulus above 1, as the convergence test assumes.
 class DeflatedResolvent {
   public:
     DeflatedResolvent(const Laplacian& laplacian, const ShiftedLdlt& factor, double half,
@@ -71,7 +69,7 @@ void append(Eigen::VectorXd& a, const Eigen::VectorXd& b) {
     a.tail(b.size()) = b;
 }
 
-/// U^T D U; the lower half alone.
+/// U^T D U, lower triangle only.
 Eigen::MatrixXd gramOf(const Eigen::VectorXd& D, const Eigen::Ref<const Eigen::MatrixXd>& U) {
     const Eigen::MatrixXd scaled = D.cwiseSqrt().asDiagonal() * U;
     Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(U.cols(), U.cols());
@@ -104,15 +102,15 @@ IntervalPairs computeInterval(const Laplacian& laplacian, const SpectralInterval
     for (int fruitless = 0; static_cast<Index>(inside.size()) < interval.count;) {
         const Index missing = interval.count - static_cast<Index>(inside.size());
         const Index free = n - laplacian.constants.count() - known.cols();
-        const Index wanted = std::min(missing + kAdditional, free - 1);
+        const Index wanted = std::min(missing + kExtraPairs, free - 1);
         if (wanted < 1) return {};
         const Index dimension =
-            std::min(std::max(2 * wanted + kSpareDimension, kLeastDimension), free);
+            std::min(std::max(2 * wanted + kExtraDimension, kMinDimension), free);
         const DeflatedResolvent resolvent(laplacian, factor, half, known, stopPoint);
         const Eigenpairs nearest =
             largestPairs(resolvent, n, wanted, {dimension, kMaxRestarts, kTolerance});
         Eigen::MatrixXd U = D.cwiseSqrt().cwiseInverse().asDiagonal() * nearest.vectors;
-        // One more inverse iteration removes what is not in the Krylov space.
+        // One more inverse iteration reduces the error outside the Krylov space.
         factor.applyResolvent(D, U);
         laplacian.constants.remove(U);
         if (orthonormalize(D, known, U) < kOwnPart) return {};
@@ -122,7 +120,7 @@ IntervalPairs computeInterval(const Laplacian& laplacian, const SpectralInterval
         for (Index i = lambda.size() - U.cols(); i < lambda.size(); ++i)
             if (lambda[i] >= interval.from && lambda[i] < interval.to) inside.push_back(i);
         fruitless = inside.size() == before ? fruitless + 1 : 0;
-        if (fruitless == kFruitless) return {};
+        if (fruitless == kMaxFruitless) return {};
     }
     if (static_cast<Index>(inside.size()) > interval.count) return {};
     std::sort(inside.begin(), inside.end(),

@@ -11,7 +11,7 @@ namespace spectral {
 
 namespace {
 
-/// What Spectra asks of an operator.
+/// A SymmetricOperator with the interface that Spectra requires.
 class SpectraOperator {
   public:
     using Scalar = double;
@@ -37,12 +37,12 @@ Eigenpairs largestPairs(const SymmetricOperator& S, Index n, Index wanted,
     try {
         Spectra::SymEigsSolver<SpectraOperator> solver(op, wanted, options.dimension);
         solver.init();
-        if (solver.compute(Spectra::SortRule::LargestMagn, options.mostRestarts,
-                           options.tolerance) > 0)
+        if (solver.compute(Spectra::SortRule::LargestMagn, options.maxRestarts, options.tolerance) >
+            0)
             return {solver.eigenvalues(), solver.eigenvectors()};
     } catch (const Error&) {
         throw;
-    } catch (const std::exception& error) {  // Spectra's own, of a breakdown
+    } catch (const std::exception& error) {  // a breakdown in Spectra
         throw SolverFailure(ErrorCode::BasisIncomplete,
                             std::string("the harmonics could not be computed: ") + error.what());
     }

@@ -11,9 +11,9 @@ namespace spectral {
 using SymmetricOperator = std::function<Eigen::VectorXd(const Eigen::Ref<const Eigen::VectorXd>&)>;
 
 struct LanczosOptions {
-    Index dimension = 0;     ///< Of the Krylov space, above the number of pairs wanted, up to n.
-    int mostRestarts = 0;    ///< >= 1.
-    double tolerance = 0.0;  ///< Of the eigenvalues, relative to those of about 1.
+    Index dimension = 0;     ///< Dimension of the Krylov space, wanted < dimension <= n.
+    int maxRestarts = 0;     ///< Maximum number of restarts, >= 1.
+    double tolerance = 0.0;  ///< Relative error of the eigenvalues, which should be about 1.
 };
 
 struct Eigenpairs {
@@ -24,7 +24,7 @@ struct Eigenpairs {
 /// The eigenpairs of largest modulus, by Spectra's implicitly restarted Lanczos method.
 ///
 /// @param wanted  number of pairs, 1 <= wanted < n.
-/// @return at least one pair; fewer than wanted where others have not converged.
+/// @return at least one pair; fewer than wanted if the others have not converged.
 /// @throws SolverFailure  when none converges, or Spectra breaks down.
 /// @throws whatever the operator throws.
 Eigenpairs largestPairs(const SymmetricOperator& S, Index n, Index wanted,

@@ -12,16 +12,17 @@ namespace spectral {
 
 namespace {
 
-/// Factor by which the end is moved up while it has too few eigenvalues below it; the second one
-/// where the last move has met none: a large part of few vertices has all of its eigenvalues far
-/// below those of small parts. Moves after which something must be wrong.
-constexpr double kFarther = 1.25, kAcrossGap = 4.0;
-constexpr int kMostMoves = 60;
+/// Factor by which the upper end is raised while too few eigenvalues are below it. The larger one
+/// applies when the last move passed no eigenvalue: those of a large, coarse component lie far
+/// below those of small ones.
+constexpr double kRaise = 1.25, kRaiseInGap = 4.0;
+/// Number of such moves after which something must be wrong.
+constexpr int kMaxMoves = 60;
 
-/// Intervals with more than so many times the wanted eigenvalues are divided, unless they are
-/// narrower than this part of their eigenvalues: a cluster.
+/// Intervals with this many times the wanted number of eigenvalues are divided, unless their
+/// relative width is below kMinRelativeWidth: a cluster.
 constexpr Index kTooMany = 2;
-constexpr double kNarrowest = 1e-3;
+constexpr double kMinRelativeWidth = 1e-3;
 
 /// Number of eigenvalues below a shift.
 struct Count {
@@ -29,7 +30,7 @@ struct Count {
     Index below = 0;
 };
 
-/// Counts the eigenvalues below more shifts.
+/// Adds the numbers of eigenvalues below the given shifts to `counts`, and sorts these.
 void countAt(const std::vector<double>& sigmas, const Laplacian& laplacian,
              std::vector<ShiftedLdlt>& factors, const Progress& progress,
              std::vector<Count>& counts) {
@@ -48,7 +49,7 @@ void countAt(const std::vector<double>& sigmas, const Laplacian& laplacian,
               [](const Count& a, const Count& b) { return a.sigma < b.sigma; });
 }
 
-/// A first division, by Weyl's law: lambda_i ~ 4 pi i / area.
+/// Initial cuts by Weyl's law: lambda_i ~ 4 pi i / area.
 std::vector<double> firstCuts(Index first, Index k, Index width, double area) {
     std::vector<double> sigmas;
     for (Index i = first + width; i < k + width; i += width)
@@ -56,14 +57,14 @@ std::vector<double> firstCuts(Index first, Index k, Index width, double area) {
     return sigmas;
 }
 
-/// Cuts that divide the intervals with too many eigenvalues, if they were evenly spaced; below the
-/// eigenvalue `first` one at most.
+/// Cuts that divide the intervals with too many eigenvalues, assumed evenly spaced; at most one of
+/// them below the eigenvalue number `first`.
 std::vector<double> moreCuts(const std::vector<Count>& counts, Index first, Index width) {
     std::vector<double> sigmas;
     for (std::size_t i = 1; i < counts.size(); ++i) {
         const Count &a = counts[i - 1], &b = counts[i];
         const Index parts = (b.below - a.below) / width;
-        if (parts < kTooMany || b.sigma - a.sigma <= kNarrowest * b.sigma) continue;
+        if (parts < kTooMany || b.sigma - a.sigma <= kMinRelativeWidth * b.sigma) continue;
         const Index below = std::max<Index>(first - a.below, 0) * parts / (b.below - a.below);
         for (Index j = std::max<Index>(below, 1); j < parts; ++j)
             sigmas.push_back(a.sigma + (b.sigma - a.sigma) * static_cast<double>(j) /
@@ -85,7 +86,7 @@ std::vector<SpectralInterval> sliceSpectrum(const Laplacian& laplacian, Index fi
                                             Index width, std::vector<ShiftedLdlt>& factors,
                                             const Progress& progress) {
     std::vector<Count> counts{{0.0, laplacian.constants.count()}};
-    double done = 0.0;  // how many more rounds there will be is not known
+    double done = 0.0;  // each round takes half of the rest: their number is unknown
     const auto count = [&](const std::vector<double>& sigmas) {
         const double half = 0.5 * (1.0 + done);
         countAt(sigmas, laplacian, factors, progress.part(done, half), counts);
@@ -93,11 +94,11 @@ std::vector<SpectralInterval> sliceSpectrum(const Laplacian& laplacian, Index fi
     };
     count(firstCuts(first, k, width, laplacian.D.sum()));
     for (int move = 0; counts.back().below < k; ++move) {
-        if (move == kMostMoves)
+        if (move == kMaxMoves)
             throw SolverFailure(ErrorCode::BasisIncomplete,
-                                "no shift beyond harmonic " + std::to_string(k) + " was found");
+                                "no shift above harmonic " + std::to_string(k) + " was found");
         const bool isGap = counts.back().below == counts[counts.size() - 2].below;
-        count({(isGap ? kAcrossGap : kFarther) * counts.back().sigma});
+        count({(isGap ? kRaiseInGap : kRaise) * counts.back().sigma});
     }
     dropOutside(first, k, counts);
     for (std::vector<double> cuts = moreCuts(counts, first, width); !cuts.empty();
@@ -106,12 +107,12 @@ std::vector<SpectralInterval> sliceSpectrum(const Laplacian& laplacian, Index fi
         dropOutside(first, k, counts);
     }
 
-    // Neighbours with few eigenvalues make one interval.
+    // Merge neighbouring intervals with few eigenvalues.
     std::vector<SpectralInterval> intervals;
     for (std::size_t i = 1; i < counts.size(); ++i) {
         const Count &a = counts[i - 1], &b = counts[i];
         const Index inside = b.below - a.below;
-        if (inside == 0) continue;  // a gap: the middle of an interval is near its eigenvalues
+        if (inside == 0) continue;  // leave out gaps: the shift must be close to the eigenvalues
         if (!intervals.empty() && intervals.back().count + inside <= width) {
             intervals.back().to = b.sigma;
             intervals.back().count += inside;

@@ -19,16 +19,17 @@ struct SpectralInterval {
     double middle() const { return 0.5 * (from + to); }
 };
 
-/// Divides a part of the spectrum, at least the eigenvalues first to k - 1, counted from 0, into
+/// Divides a part of the spectrum, at least eigenvalues first to k - 1, counted from 0, into
 /// intervals of about `width` eigenvalues (spectrum slicing; the bands of Vallet and Levy 2008,
 /// section 3.3).
 ///
-/// The inertia of W - sigma D counts the eigenvalues below every cut (Sylvester's law of inertia):
-/// it is known how many harmonics each interval must give. The constant modes are in none.
+/// The inertia of W - sigma D counts the eigenvalues below each cut (Sylvester's law of inertia),
+/// so the number of harmonics in each interval is known. The constant modes are in no interval.
 ///
 /// @param first, k  number of constant modes <= first < k < n.
 /// @param factors   one for each thread of the team.
-/// @return ascending, without gaps; from the constant modes on where `first` is their number.
+/// @return ascending intervals that miss no eigenvalue; they start after the constant modes if
+///         `first` is the number of these.
 /// @throws SolverFailure  when there is no such division; Cancelled.
 std::vector<SpectralInterval> sliceSpectrum(const Laplacian& laplacian, Index first, Index k,
                                             Index width, std::vector<ShiftedLdlt>& factors,

@@ -21,29 +21,30 @@ namespace spectral {
 
 namespace {
 
-/// Eigenvalues of an interval, and again where one lies on a cut between intervals. Few are best:
-/// our factorization costs less than the orthogonalization of a large Krylov space (bench_basis).
+/// Eigenvalues per interval; the next width is tried if an eigenvalue lies on a cut. Few are best:
+/// a factorization costs less than orthogonalizing a large Krylov space (bench_basis).
 constexpr Index kWidths[] = {12, 17, 23, 31};
 
-/// Neighbouring eigenvalues nearer than this part of the mean spacing lambda_k / k (Weyl's law)
-/// belong to one cluster: equal ones by symmetry, told apart by the mesh or by round-off only.
+/// Neighbouring eigenvalues closer than this fraction of the mean spacing lambda_k / k (Weyl's law)
+/// form a cluster: equal by symmetry, and split only by the triangulation or round-off.
 constexpr double kClusterSpacing = 0.1;
 
-/// Relative residual beyond which a vector is none of the harmonics.
+/// Relative residual above which a vector is not a harmonic.
 constexpr double kUselessResidual = 1e-2;
 
 /// More harmonics than this up to an edge take minutes: almost certainly unintended.
-constexpr Index kMostUpToEdge = 1000;
+constexpr Index kMaxUpToEdge = 1000;
 
-/// Error of dense eigenvalues relative to the largest, and what is tolerable relative to the one at
-/// an edge, below which an eigenvalue belongs or not.
-constexpr double kDenseError = 1e-15, kEdgeAccuracy = 1e-6;
+/// Error of dense eigenvalues, relative to the largest.
+constexpr double kDenseError = 1e-15;
+/// Tolerable error, relative to the eigenvalue at an edge, in deciding which are below the edge.
+constexpr double kEdgeAccuracy = 1e-6;
 
 constexpr const char* kStage = "computing the harmonics";
 
 /// Orthogonalizes every second interval against its neighbours: eigenvectors of close eigenvalues
-/// from different Lanczos runs overlap by their residuals, divided by the distance.
-/// @return false where two intervals have found the same vector.
+/// from different Lanczos runs overlap by their residuals divided by the distance.
+/// @return false if two intervals have found the same vector.
 bool separate(const std::vector<SpectralInterval>& intervals, const Eigen::VectorXd& D,
               Eigen::MatrixXd& Phi, const Progress& progress) {
     const auto columns = [&](std::size_t i) {
@@ -62,8 +63,8 @@ bool separate(const std::vector<SpectralInterval>& intervals, const Eigen::Vecto
     return differ;
 }
 
-/// At least the pairs first to k - 1, in intervals of about `width`; empty where an eigenvalue lies
-/// on a cut between two of them.
+/// At least the pairs first to k - 1, in intervals of about `width`; empty if an eigenvalue lies on
+/// a cut between two intervals.
 std::optional<HarmonicBasis> inIntervals(const Laplacian& laplacian, Index first, Index k,
                                          Index width, std::vector<ShiftedLdlt>& factors,
                                          const Progress& progress) {
@@ -115,7 +116,7 @@ HarmonicBasis pairsBetween(const Laplacian& laplacian, Index first, Index k, Shi
         return *std::move(basis);
     }
     throw SolverFailure(ErrorCode::BasisIncomplete,
-                        "not all harmonics were found: the inertia of W - sigma D counts more");
+                        "the solver found fewer harmonics than the inertia of W - sigma D counts");
 }
 
 /// @throws SolverFailure  when a harmonic is useless.
@@ -124,25 +125,25 @@ void requireUseful(const Eigen::VectorXd& residuals) {
     const double largest = residuals.maxCoeff<Eigen::PropagateNaN>(&worst);
     if (largest <= kUselessResidual) return;
     std::ostringstream text;
-    text << "round-off leaves nothing of harmonic " << worst << ", whose relative residual is "
+    text << "harmonic " << worst << " is lost in round-off (relative residual "
          << std::setprecision(2) << largest
-         << ": triangles are needles, or parts of the mesh are far away";
+         << "): the mesh has needle triangles, or parts that are far apart";
     throw SolverFailure(ErrorCode::SingularMatrix, text.str());
 }
 
-/// The first `size` pairs of a basis, with their certificate.
+/// The first `size` pairs of a basis, certified.
 HarmonicBasis certified(const Laplacian& laplacian, HarmonicBasis basis, Index size,
                         ShiftedLdlt& ldlt, const Progress& progress) {
-    basis.inertiaCount = size;  // where it holds all that there are
+    basis.inertiaCount = size;  // if the basis is complete
     if (size < basis.size())
         basis.inertiaCount = countEigenvaluesBelow(
             laplacian.W, laplacian.D, 0.5 * (basis.lambda[size - 1] + basis.lambda[size]), ldlt);
     // Sylvester's law of inertia: none is missing below the cut.
     if (basis.inertiaCount != size)
         throw SolverFailure(ErrorCode::BasisIncomplete,
-                            "of the " + std::to_string(basis.inertiaCount) +
-                                " harmonics that the inertia of W - sigma D counts, " +
-                                std::to_string(size) + " were found");
+                            "the solver found " + std::to_string(size) +
+                                " harmonics, but the inertia of W - sigma D counts " +
+                                std::to_string(basis.inertiaCount));
     basis.Phi.conservativeResize(Eigen::NoChange, size);
     basis.lambda.conservativeResize(size);
     basis.residuals = relativeResiduals(laplacian, basis, progress);
@@ -151,18 +152,18 @@ HarmonicBasis certified(const Laplacian& laplacian, HarmonicBasis basis, Index s
     return basis;
 }
 
-/// Refuses a basis that there is no memory for, before it is taken.
+/// Rejects a basis that does not fit in memory, before it is allocated.
 void requireMemory(Index k, Index n) {
-    // Phi, its copies for the certificate, and the vectors of the intervals in work.
-    const double ofHarmonic = 1.3 * sizeof(double) * static_cast<double>(n);
+    // Phi, its copies for the certificate, and the vectors of the intervals being computed.
+    const double bytesPerHarmonic = 1.3 * sizeof(double) * static_cast<double>(n);
     const double available = availableMemory();
-    if (ofHarmonic * static_cast<double>(k) <= available) return;
+    if (bytesPerHarmonic * static_cast<double>(k) <= available) return;
     std::ostringstream text;
     text << k << " harmonics of " << n << " vertices need about "
-         << Bytes{ofHarmonic * static_cast<double>(k)} << " of memory, " << Bytes{available}
+         << Bytes{bytesPerHarmonic * static_cast<double>(k)} << " of memory, " << Bytes{available}
          << " are free";
     throw Error(ErrorCode::BasisOutOfMemory, text.str(),
-                static_cast<Index>(0.9 * available / ofHarmonic));
+                static_cast<Index>(0.9 * available / bytesPerHarmonic));
 }
 
 void checkSize(Index k, Index n, Index constants) {
@@ -175,10 +176,9 @@ void checkSize(Index k, Index n, Index constants) {
                             n - 1);
     if (k <= constants)
         throw InvalidOption(ErrorCode::BasisTooSmall,
-                            size +
-                                " leaves no room for more than the constant modes, one for each "
-                                "connected component without a fixed boundary: " +
-                                std::to_string(constants),
+                            size + " leaves no room beyond the " + std::to_string(constants) +
+                                " constant modes, one for each connected component without a "
+                                "fixed boundary",
                             constants + 1);
 }
 
@@ -220,7 +220,7 @@ HarmonicBasis truncatedBasis(const Laplacian& laplacian, Index k, ShiftedLdlt& l
         const Index size = cutOutsideClusters(all.lambda, k).value_or(n);
         return certified(laplacian, std::move(all), size, ldlt, progress);
     }
-    // Some pairs beyond k show whether k cuts a cluster; more are taken while it does.
+    // A few pairs beyond k show whether k cuts a cluster; take more as long as it does.
     for (Index more = 8;; more *= 2) {
         const Index total = std::min(k + more, n - 1);
         HarmonicBasis basis = pairsBetween(laplacian, 0, total, ldlt, progress.part(0.0, 0.95));
@@ -240,17 +240,17 @@ HarmonicBasis harmonicsUpTo(double edge, const Laplacian& laplacian, ShiftedLdlt
         HarmonicBasis all = denseBasis(laplacian);
         if (all.lambda[n - 1] * kDenseError > kEdgeAccuracy * edge * edge)
             throw SolverFailure(ErrorCode::SingularMatrix,
-                                "round-off leaves nothing of the harmonics at the edge of the "
-                                "filter: triangles are needles");
+                                "the harmonics at the edge of the filter are lost in round-off: "
+                                "the mesh has needle triangles");
         return all;
     }
     const Index below = countEigenvaluesBelow(laplacian.W, laplacian.D, edge * edge, ldlt);
-    if (below > kMostUpToEdge)
+    if (below > kMaxUpToEdge)
         throw InvalidOption(ErrorCode::TooManyHarmonics,
                             "response = ideal needs every harmonic up to its edge, here " +
                                 std::to_string(below) + " (at most " +
-                                std::to_string(kMostUpToEdge) + ")",
-                            kMostUpToEdge);
+                                std::to_string(kMaxUpToEdge) + ")",
+                            kMaxUpToEdge);
     if (below == n) return denseBasis(laplacian);  // nothing to cut
     return truncatedBasis(laplacian, std::max<Index>(below, laplacian.constants.count() + 1), ldlt,
                           progress);

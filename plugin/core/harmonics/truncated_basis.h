@@ -10,31 +10,31 @@
 
 namespace spectral {
 
-/// At least the k lowest eigenpairs, certified: interval by interval (spectrum_slicing.h),
-/// each by Spectra (interval_pairs.h), or by the dense solver where that is quicker.
+/// At least the k lowest eigenpairs, certified. Computed interval by interval (spectrum_slicing.h),
+/// each by Spectra (interval_pairs.h), or by the dense solver where that is faster.
 ///
-/// The cut is never inside a cluster of equal eigenvalues: a few pairs more than k are taken where
-/// lambda_k and lambda_k+1 are equal or nearly so. The certificate: as many pairs as the inertia of
-/// W - sigma D counts below the cut (Sylvester's law of inertia), or an error; residuals as
-/// reported (1e-9 is usual, more where triangles have collapsed; from 1e-2 on an error).
+/// The basis never ends inside a cluster of equal eigenvalues: if lambda_k and lambda_k+1 are equal
+/// or nearly so, a few more than k pairs are returned. The certificate: the inertia of W - sigma D
+/// counts as many eigenvalues below the cut (Sylvester's law of inertia), or an error is thrown;
+/// residuals are reported (typically 1e-9, more with collapsed triangles; above 1e-2 an error).
 ///
 /// @param k         number of constant modes < k < n.
-/// @param ldlt      shares its symbolic analysis and counts the work; its factor stays.
+/// @param ldlt      provides the symbolic analysis and counts the work; its factor is kept.
 /// @throws InvalidOption  when k is out of range; SolverFailure when the basis fails its count;
 ///                        Cancelled.
 HarmonicBasis truncatedBasis(const Laplacian& laplacian, Index k, ShiftedLdlt& ldlt,
                              const Progress& progress = {});
 
-/// All harmonics below an edge of a gain, omega^2 = lambda, at least one besides the constants; all
-/// that there are, where a mesh has few.
+/// All harmonics below an edge of a gain, omega^2 = lambda, and at least one besides the constants;
+/// on small meshes, all n.
 /// @param edge  a frequency > 0.
-/// @throws InvalidOption  when they are more than 1,000.
+/// @throws InvalidOption  when there are more than 1,000.
 /// @throws SolverFailure, Cancelled
 HarmonicBasis harmonicsUpTo(double edge, const Laplacian& laplacian, ShiftedLdlt& ldlt,
                             const Progress& progress = {});
 
-/// The eigenpairs first to last - 1, counted from 0, and some on both sides; none is missing
-/// between them, by inertia. Residuals as those of truncatedBasis.
+/// The eigenpairs first to last - 1, counted from 0, and some more on both sides. The inertia
+/// proves that none in between is missing. Residuals as in truncatedBasis.
 ///
 /// @param first, last  number of constant modes < first < last < n.
 /// @throws SolverFailure, Cancelled
@@ -45,10 +45,10 @@ HarmonicBasis harmonicsBetween(const Laplacian& laplacian, Index first, Index la
 Eigen::VectorXd relativeResiduals(const Laplacian& laplacian, const HarmonicBasis& basis,
                                   const Progress& progress);
 
-/// The number of pairs, from `asked` on, at which a spectrum may be cut: where the next eigenvalue
-/// is not equal to the last one or nearly so. Empty when every candidate lies inside a cluster.
+/// The smallest number of pairs >= `asked` at which the spectrum can be cut: the next eigenvalue
+/// must differ from the last one by more than the width of a cluster. Empty if there is none.
 ///
-/// @param lambda  the eigenvalues from number `first` on, ascending, also the one after `asked`.
+/// @param lambda  eigenvalues from number `first` on, ascending, including the one after `asked`.
 std::optional<Index> cutOutsideClusters(const Eigen::VectorXd& lambda, Index asked,
                                         Index first = 0);
 

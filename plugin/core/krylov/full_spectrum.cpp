@@ -13,27 +13,27 @@ namespace spectral {
 
 namespace {
 
-/// Dimensions between checks of the error: as they grow, so does the cost of a check.
+/// Dimension of the next error check: checks get more expensive as the space grows.
 int nextCheck(int m) { return m + std::max(3, m / 10); }
 
-/// Dimension from which on the error tells how many there will be: its logarithm falls like their
-/// number to the power of one and a half, on real meshes.
-constexpr int kEnoughToJudge = 9;
+/// Dimension from which the error predicts the final one: on real meshes, its logarithm falls like
+/// the dimension to the power 1.5.
+constexpr int kMinDimensionToJudge = 9;
 constexpr double kPace = 1.0 / 1.5;
 
-/// Multiple of the accuracy at which the error at the vertices is estimated as well: a pass over
-/// the basis that would be wasted far from convergence, but needs some checks for its rate.
+/// Multiple of the accuracy below which the error at the vertices is estimated as well. Each
+/// estimate is a pass over the basis, wasted far from convergence, but its rate takes a few checks.
 constexpr double kNearlyConverged = 30.0;
 
 /// Factor on the error estimate without convergence: at a cusp the changes decay more slowly than
-/// any geometric series. A bound for all cusps of full_spectrum_test.
+/// any geometric series. Large enough for all cusps of full_spectrum_test.
 constexpr double kNotConverged = 3.0;
 
 /// Relative round-off of solves beyond which results are useless.
 constexpr double kUselessRoundOff = 0.03;
 
-/// Frequencies at which gains are sampled, ascending: those asked for, and eighths of octaves on
-/// both sides of the central one, up to the last.
+/// Frequencies at which gains are sampled, ascending: the given ones, and eighths of octaves on
+/// both sides of the central frequency, up to the last.
 Eigen::VectorXd sampleFrequencies(const KrylovOperator& S, std::vector<double> samples) {
     constexpr int kOctaves = 32, kPerOctave = 8;
     for (int i = -kOctaves * kPerOctave; i <= kOctaves * kPerOctave; ++i)
@@ -52,7 +52,7 @@ class ErrorEstimate {
   public:
     double operator()(double change) {
         changes_.push_back(change);
-        constexpr std::size_t kMemory = 4;  // checks that the rate is averaged over
+        constexpr std::size_t kMemory = 4;  // checks over which the rate is averaged
         const std::size_t span = std::min(kMemory, changes_.size() - 1);
         if (span == 0) return std::numeric_limits<double>::infinity();
         if (change <= 0.0) return 0.0;
@@ -62,12 +62,11 @@ class ErrorEstimate {
     }
 
   private:
-    static constexpr double kSlowest = 0.9;  // larger rates are scatter, and the sum diverges at 1
+    static constexpr double kSlowest = 0.9;  // larger rates are noise, and the sum diverges at 1
     std::vector<double> changes_;
 };
 
-/// Error of F(sqrt(A)) X, relative to X, that comes of a relative error of all that S is applied
-/// to.
+/// Error of F(sqrt(A)) X, relative to X, caused by a relative error `roundOff` in applying S.
 double roundOffError(const KrylovSpaces& spaces, double roundOff, const Gain& gain,
                      const KrylovOperator& S) {
     double squares = 0.0;
@@ -89,7 +88,7 @@ double roundOffError(const KrylovSpaces& spaces, double roundOff, const Gain& ga
 class Approximation {
   public:
     /// @param omega         frequencies at which the gain is sampled.
-    /// @param smallestMass  of a vertex.
+    /// @param smallestMass  smallest vertex mass.
     Approximation(const KrylovSpaces& spaces, const Gain& gain, const KrylovOperator& S,
                   const Eigen::VectorXd& omega, double smallestMass,
                   const FullSpectrumOptions& options)
@@ -101,7 +100,7 @@ class Approximation {
           options_(options),
           coefficients_(static_cast<std::size_t>(spaces.columns())),
           change_(coefficients_.size()),
-          mostAtVertices_(spaces.norms().matrix().norm() /
+          maxVertexRatio_(spaces.norms().matrix().norm() /
                           (std::sqrt(smallestMass) * spaces.largestEntry())) {}
 
     /// Updates the coefficients of all columns; returns the estimated error.
@@ -120,17 +119,17 @@ class Approximation {
         // larger, and decay more slowly and less evenly: the larger of two changes counts.
         const double before = std::exchange(largest_, spaces_.largestEntryOf(change_));
         double estimate = atVertices_(std::max(before, largest_) / spaces_.largestEntry());
-        // Changes below the error over the surface have not reached the vertices that make it up.
-        if (estimate < error) estimate = error * mostAtVertices_;
-        const double surest = std::max(error, mixingError()) * mostAtVertices_;
-        return std::max(error, std::min(estimate, surest));
+        // Changes smaller than the error over the surface have missed the vertices that cause it.
+        if (estimate < error) estimate = error * maxVertexRatio_;
+        const double bound = std::max(error, mixingError()) * maxVertexRatio_;
+        return std::max(error, std::min(estimate, bound));
     }
 
-    /// The error that comes of round-off in S, by roundOffError; at every vertex if asked for.
-    double ofRoundOff(double roundOff) const {
+    /// The error caused by round-off in S; at every vertex if the options request that.
+    double errorFromRoundOff(double roundOff) const {
         const double error = roundOffError(spaces_, roundOff, gain_, S_);
         if (!options_.atEveryVertex) return error;
-        const double bound = error * mostAtVertices_;
+        const double bound = error * maxVertexRatio_;
         if (!options_.roundOffAtVertices) return bound;
         const double measured = roundOffError(spaces_, *options_.roundOffAtVertices, gain_, S_);
         return std::min(std::max(measured, error), bound);
@@ -140,9 +139,9 @@ class Approximation {
 
   private:
     /// Error of F(sqrt(A)) X, relative to X, where round-off in S mixes eigenvectors: to first
-    /// order, the divided differences of F, as a function of theta, times that round-off.
+    /// order, the divided differences of F as a function of theta, times the round-off.
     double mixingError() const {
-        constexpr double kRoundOff = 1e-15;  // of each theta
+        constexpr double kRoundOff = 1e-15;  // relative, in each theta
         const Eigen::ArrayXd theta =
             omega_.array().unaryExpr([&](double omega) { return S_.theta(omega * omega); });
         double squares = 0.0;
@@ -167,16 +166,16 @@ class Approximation {
     Eigen::VectorXd gains_;
     const FullSpectrumOptions& options_;
     std::vector<Eigen::VectorXd> coefficients_, change_;
-    double mostAtVertices_;  // the error at a vertex, relative to that over the surface
+    double maxVertexRatio_;  // bound of the error at a vertex over the error over the surface
     ErrorEstimate atVertices_;
     double largest_ = 0.0;
 };
 
-/// How the basis is kept: not at all where the largest that may be needed does not fit in memory.
+/// How to keep the basis: not at all if the largest one that may be needed does not fit in memory.
 KeptBasis keptBasis(const KrylovOperator& S, const Eigen::MatrixXd& X,
                     const FullSpectrumOptions& options) {
     constexpr double kNarrow = 1e-6;
-    if (S.isToBeOrthogonal() || options.accuracy < kNarrow) return KeptBasis::Double;
+    if (S.needsOrthogonalBasis() || options.accuracy < kNarrow) return KeptBasis::Double;
     if (options.atEveryVertex) return KeptBasis::Single;
     const int dimensions =
         std::min(options.affordable.value_or(options.maxDimension), options.maxDimension);
@@ -185,7 +184,7 @@ KeptBasis keptBasis(const KrylovOperator& S, const Eigen::MatrixXd& X,
     return bytes > availableMemory() ? KeptBasis::None : KeptBasis::Single;
 }
 
-/// The signals with these coefficients in their bases; X are those that the spaces began with.
+/// The signals with these coefficients in their bases; X are the signals the spaces started from.
 std::vector<Eigen::MatrixXd> combined(KrylovSpaces& spaces, const Eigen::MatrixXd& X,
                                       const std::vector<Approximation>& approximations,
                                       bool isKept) {
@@ -219,7 +218,7 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
     const Eigen::VectorXd& D = laplacian.D;
     const ConstantModes& constants = laplacian.constants;
     double orthogonal = KrylovSpaces::kOrthogonal;
-    if (options.atEveryVertex)  // of small mass, with entries as large in the basis
+    if (options.atEveryVertex)  // at vertices of small mass, basis vectors have large entries
         orthogonal = std::min(orthogonal, options.accuracy * std::sqrt(D.minCoeff() / D.sum()));
     const KeptBasis kept = keptBasis(S, X, options);
     const double errorOfBasis = kept == KeptBasis::Single ? 1e-7 : 0.0;
@@ -231,7 +230,7 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
     for (const Gain& gain : gains)
         approximations.emplace_back(spaces, gain, S, omega, D.minCoeff(), options);
 
-    // A space of all dimensions need not be invariant: where eigenvalues span many decades, its
+    // Even a space of full dimension may not be invariant: where eigenvalues span many decades, its
     // last vectors are round-off.
     const Index largest = std::min<Index>(options.maxDimension, D.size() - constants.count());
     double firstError = 0.0, furthest = 0.0, roundOff = options.roundOff;
@@ -245,8 +244,8 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
         roundOff = std::max(roundOff, spaces.roundOff());
         if (roundOff > kUselessRoundOff)
             throw SolverFailure(ErrorCode::SingularMatrix,
-                                "round-off leaves nothing of the solutions with W + s D: triangles "
-                                "are needles, or parts of the mesh are far away");
+                                "the solutions with W + s D are lost in round-off: the mesh has "
+                                "needle triangles, or parts that are far apart");
 
         bool allConverged = true;
         double largestError = 0.0;
@@ -265,7 +264,7 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
         if (firstError <= 0.0) firstError = std::max(largestError, options.accuracy * 10);
         const double done =
             std::log(firstError / largestError) / std::log(firstError / options.accuracy);
-        if (options.affordable && m >= kEnoughToJudge &&
+        if (options.affordable && m >= kMinDimensionToJudge &&
             m > *options.affordable * std::pow(std::max(0.0, done), kPace))
             return {};
         furthest = std::clamp(done, furthest, 1.0);  // the estimate may increase
@@ -274,13 +273,13 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
     const Eigen::MatrixXd means = constants.means(X);
     for (std::size_t g = 0; g < gains.size(); ++g) {
         FullSpectrumResult& result = results[g];
-        // In an invariant space, this is the only error.
+        // In an invariant space, round-off is the only error.
         result.errorEstimate =
-            std::max(result.errorEstimate, approximations[g].ofRoundOff(roundOff));
+            std::max(result.errorEstimate, approximations[g].errorFromRoundOff(roundOff));
         result.converged = result.errorEstimate <= options.accuracy;
         if (!result.converged) result.errorEstimate *= kNotConverged;
     }
-    // Kovnatsky et al. 2012, Eq. 6: Y = Phi F(Lambda^1/2) Phi^T D X, but for the constants.
+    // Kovnatsky et al. 2012, Eq. 6: Y = Phi F(Lambda^1/2) Phi^T D X, except for the constants.
     std::vector<Eigen::MatrixXd> Y = combined(spaces, X, approximations, kept != KeptBasis::None);
     for (std::size_t g = 0; g < gains.size(); ++g) {
         FullSpectrumResult& result = results[g];

@@ -15,21 +15,22 @@ namespace spectral {
 struct FullSpectrumOptions {
     double accuracy = 1e-6;  ///< Requested error of Y, relative as in FullSpectrumResult.
     int maxDimension = 200;  ///< Krylov dimension at which to give up.
-    /// Krylov dimension at which to give up as soon as more is expected, without a result.
+    /// Give up without a result as soon as more than this Krylov dimension is expected.
     std::optional<int> affordable;
-    bool atEveryVertex = true;  ///< Else only |dY|_D / |X|_D, over the surface, is bounded.
+    bool atEveryVertex = true;  ///< If false, only |dY|_D / |X|_D, over the surface, is bounded.
 
-    /// Round-off of solves, relative to the largest eigenvalue of the inverse, where it is known to
-    /// be more than KrylovSpaces::roundOff.
+    /// Round-off of solves, relative to the largest eigenvalue of the inverse, if known to exceed
+    /// KrylovSpaces::roundOff.
     double roundOff = 0.0;
 
-    /// roundOffAtVertices, where it is known, for the error at every vertex; else that is bounded
-    /// by the smallest mass, far from the truth where parts have shrunk to nothing.
+    /// Value of roundOffAtVertices(), if known, for the error at every vertex. Without it, the
+    /// bound uses the smallest mass: a gross overestimate where parts have shrunk to nothing.
     std::optional<double> roundOffAtVertices;
 
     SpareVectors* spare = nullptr;  ///< Memory for the basis (krylov_spaces.h).
 
-    /// Frequencies between which the gains vary little; eighths of octaves are always among them.
+    /// Extra frequencies at which to sample the gains, besides eighths of octaves; the gains must
+    /// vary little in between.
     std::vector<double> samples;
 };
 
@@ -41,16 +42,16 @@ struct FullSpectrumResult {
     double errorEstimate = 0.0;
     int dimension = 0;  ///< Krylov dimension reached: solves per column.
 
-    /// Whether errorEstimate is within the accuracy. Not so when F is too steep, or has a cusp,
-    /// like fractional powers of a band-stop with stop gain 0 at its centre.
+    /// Whether errorEstimate is within the accuracy. False when F is too steep or has a cusp, as
+    /// fractional powers of a band-stop with stop gain 0 have at its centre.
     bool converged = false;
 };
 
-/// Y = F(sqrt(A)) X over the whole spectrum for several gains F, without computing an eigenvector.
+/// Y = F(sqrt(A)) X over the whole spectrum for several gains F, without computing eigenvectors.
 ///
-/// The same as with all n harmonics, Y = Phi F(Lambda^1/2) Phi^T D X (Kovnatsky et al. 2012, Eq.
-/// 6), by a Lanczos method: rational, with one repeated real pole, or polynomial, as S is
-/// (krylov_operator.h, krylov_spaces.h).
+/// Equals the result with all n harmonics, Y = Phi F(Lambda^1/2) Phi^T D X (Kovnatsky et al. 2012,
+/// Eq. 6). Computed by a Lanczos method, rational with one repeated real pole or polynomial,
+/// depending on S (krylov_operator.h, krylov_spaces.h).
 ///
 /// The stopping rule is a posteriori: over the surface by a bound from the spectral measure
 /// (KrylovSpaces::squaredErrorBound), at every vertex from the differences between approximations a
@@ -58,15 +59,15 @@ struct FullSpectrumResult {
 ///
 /// @param gains  continuous, finite and >= 0 on [0, infinity]; constant modes keep gain 1.
 /// @param X      n x c signals, e.g. the three coordinates.
-/// @return       one result for each gain, all from the same Krylov spaces; none if it gives up.
-/// @throws SolverFailure  when the tridiagonal eigenproblem does not converge, or round-off leaves
-///                        nothing of the solves (KrylovSpaces::roundOff).
+/// @return       one result per gain, all from the same Krylov spaces; empty if it gives up.
+/// @throws SolverFailure  when the tridiagonal eigenproblem does not converge, or the solves are
+///                        lost in round-off (KrylovSpaces::roundOff).
 std::vector<FullSpectrumResult> applyFullSpectrum(
     const Laplacian& laplacian, const KrylovOperator& S, const std::vector<Gain>& gains,
     const Eigen::MatrixXd& X, const FullSpectrumOptions& options, const Progress& progress = {});
 
-/// Largest round-off of any vertex in a solve whose solution is 1 everywhere, the eigenvector of
-/// the largest eigenvalue of the inverse where the boundary is free.
+/// Largest round-off at any vertex in a solve whose solution is 1 everywhere: with a free boundary,
+/// the eigenvector of the largest eigenvalue of the inverse.
 /// @param ldlt  factorization of W + pole D.
 double roundOffAtVertices(const ShiftedLdlt& ldlt, const Laplacian& laplacian);
 

@@ -12,7 +12,7 @@ namespace spectral {
 
 namespace {
 
-/// Y <- D^-1 W Q / unit; returns Q^T D Y by columns.
+/// Y <- D^-1 W Q / unit; returns the diagonal of Q^T D Y.
 template <int Columns>
 Row<Columns> multiply(const Laplacian& laplacian, double unit, const double* Q, double* Y) {
     const double inverse = 1.0 / unit;
@@ -34,7 +34,7 @@ Row<Columns> multiply(const Laplacian& laplacian, double unit, const double* Q, 
     });
 }
 
-/// Q^T D Y by columns.
+/// The diagonal of Q^T D Y.
 template <int Columns>
 Row<Columns> innerProducts(const Eigen::VectorXd& D, const double* Q, const double* Y) {
     return parallelSum(D.size(), Row<Columns>::Zero().eval(), [&](Index begin, Index end) {
@@ -45,8 +45,8 @@ Row<Columns> innerProducts(const Eigen::VectorXd& D, const double* Q, const doub
     });
 }
 
-/// Gershgorin's bound of the largest eigenvalue of D^-1 W.
-double boundOfEigenvalues(const Laplacian& laplacian) {
+/// Gershgorin bound on the eigenvalues of D^-1 W.
+double eigenvalueBound(const Laplacian& laplacian) {
     return parallelMax(laplacian.D.size(), [&](Index begin, Index end) {
         double bound = 0.0;
         for (Index i = begin; i < end; ++i) {
@@ -85,13 +85,13 @@ double ShiftInvert::lastFrequency() const { return std::numeric_limits<double>::
 Products::Products(const Laplacian& laplacian, double central)
     : laplacian_(laplacian),
       central_(central),
-      largest_(std::max(boundOfEigenvalues(laplacian), std::numeric_limits<double>::min())),
+      largest_(std::max(eigenvalueBound(laplacian), std::numeric_limits<double>::min())),
       order_(Eigen::VectorXi::LinSpaced(laplacian.D.size(), 0,
                                         static_cast<int>(laplacian.D.size()) - 1)) {
-    // Of spaces that keep no basis: three vectors, and two results.
-    constexpr double kVectors = 5.0, kOfVector = 3 * sizeof(double);
+    // Spaces that keep no basis need three vectors and two results.
+    constexpr double kVectors = 5.0, kBytesPerVertex = 3 * sizeof(double);
     const Index n = laplacian.D.size();
-    requireMemory(kVectors * kOfVector * static_cast<double>(n), n);
+    requireMemory(kVectors * kBytesPerVertex * static_cast<double>(n), n);
 }
 
 Eigen::ArrayXd Products::apply(const Eigen::VectorXd&, const double* Q, int columns,

@@ -9,18 +9,18 @@
 namespace spectral {
 
 /// An operator S whose Krylov spaces approximate functions of A = D^-1 W: it has the eigenvectors
-/// of A, and eigenvalues theta that are a monotonic function of A's lambda.
+/// of A, and its eigenvalues theta are a monotonic function of the eigenvalues lambda of A.
 ///
-/// Its vectors have an order of their own, with rows of scratch behind the n of the mesh.
+/// Vectors are in the operator's own order, with scratch rows after the n rows of the mesh.
 class KrylovOperator {
   public:
     virtual ~KrylovOperator() = default;
 
     /// Y <- S Q, on the threads of the caller's team.
-    /// @param D  n masses; in the order of S, like all rows.
+    /// @param D  n masses, in the order of S, like all rows.
     /// @param Q  n rows of `columns` numbers each, contiguous.
-    /// @param Y  rows() rows.
-    /// @return   the D-inner product of each column of Q with that of Y.
+    /// @param Y  rows() rows of the same layout.
+    /// @return   the D-inner product of each column of Q with the same column of Y.
     virtual Eigen::ArrayXd apply(const Eigen::VectorXd& D, const double* Q, int columns,
                                  double* Y) const = 0;
 
@@ -29,21 +29,20 @@ class KrylovOperator {
     virtual const int* inverseOrder() const = 0;  ///< The vertex of each row, n.
 
     virtual double theta(double lambda) const = 0;
-    virtual double lambda(double theta) const = 0;  ///< >= 0, whatever round-off has made of theta.
+    virtual double lambda(double theta) const = 0;  ///< >= 0, even if round-off makes theta < 0.
 
-    /// Error of an eigenvalue theta, for a relative error of all that S is applied to.
+    /// Error of an eigenvalue theta, given the relative error of applying S.
     virtual double errorOf(double theta, double relative) const = 0;
 
-    /// The frequency that is resolved best, and one beyond which there is none.
-    virtual double centralFrequency() const = 0;
-    virtual double lastFrequency() const = 0;
+    virtual double centralFrequency() const = 0;  ///< The frequency that is resolved best.
+    virtual double lastFrequency() const = 0;     ///< Upper bound of all frequencies.
 
-    /// Whether the basis is to be kept orthogonal. Applications of A are so cheap that some more of
-    /// them, which make up for what is lost (Druskin and Knizhnerman 1991), cost less.
-    virtual bool isToBeOrthogonal() const = 0;
+    /// Whether the basis must be reorthogonalized. Products with A are so cheap that the few more
+    /// that make up for lost orthogonality (Druskin and Knizhnerman 1991) cost less.
+    virtual bool needsOrthogonalBasis() const = 0;
 };
 
-/// S = (W + lambda_p D)^-1 D, with theta = 1/(lambda + lambda_p): a solve for every dimension.
+/// S = (W + lambda_p D)^-1 D, with theta = 1/(lambda + lambda_p): one solve per dimension.
 class ShiftInvert final : public KrylovOperator {
   public:
     /// @param ldlt  factorization of W + lambda_p D, kept by reference (see selectPole).
@@ -59,24 +58,23 @@ class ShiftInvert final : public KrylovOperator {
     double errorOf(double theta, double relative) const override { return relative * theta; }
     double centralFrequency() const override;
     double lastFrequency() const override;
-    bool isToBeOrthogonal() const override { return true; }
+    bool needsOrthogonalBasis() const override { return true; }
 
   private:
     const ShiftedLdlt& ldlt_;
 };
 
-/// S = A over a bound of its eigenvalues, so that theta is in [0, 1]: a product with W for every
-/// dimension, no factorization, no memory for one.
+/// S = A divided by a bound of its eigenvalues, so that theta is in [0, 1]: one product with W per
+/// dimension; neither a factorization nor memory for one.
 ///
-/// It needs few dimensions where the spectrum ends some octaves beyond the frequencies that F tells
-/// apart, or where little of the signal is in its end, as of some slivers. Errors are relative to
-/// the largest eigenvalue.
+/// Takes few dimensions where the spectrum ends a few octaves above the frequencies at which F
+/// varies, or where little of the signal lies at its end, as with a few slivers. Errors are
+/// relative to the largest eigenvalue.
 class Products final : public KrylovOperator {
   public:
     /// @param laplacian  kept by reference.
     /// @param central    frequency around which F varies.
-    /// @throws Error  of code OutOfMemory, when there is none for the vectors of a space without a
-    /// basis.
+    /// @throws Error  with code OutOfMemory, when even a space that keeps no basis does not fit.
     Products(const Laplacian& laplacian, double central);
 
     Eigen::ArrayXd apply(const Eigen::VectorXd& D, const double* Q, int columns,
@@ -89,14 +87,14 @@ class Products final : public KrylovOperator {
     double errorOf(double, double relative) const override { return relative; }
     double centralFrequency() const override { return central_; }
     double lastFrequency() const override;
-    bool isToBeOrthogonal() const override { return false; }
-    int count() const { return count_; }  ///< Columns that W was multiplied with.
+    bool needsOrthogonalBasis() const override { return false; }
+    int count() const { return count_; }  ///< Products of W with a vector so far.
 
   private:
     const Laplacian& laplacian_;
     double central_;
-    double largest_;         // bound of lambda
-    Eigen::VectorXi order_;  // that of the mesh
+    double largest_;         // upper bound of lambda
+    Eigen::VectorXi order_;  // identity: vectors are in the order of the mesh
     mutable int count_ = 0;
 };
 

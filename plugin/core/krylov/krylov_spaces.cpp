@@ -19,40 +19,40 @@ namespace {
 /// Relative norm below which a new direction may be round-off.
 constexpr double kBreakdown = 1e-13;
 
-/// Inner product of orthogonalized vectors: a few units of round-off. New directions of this
-/// relative norm are nothing else: the space is invariant. Longer ones may be all that is known of
-/// vertices whose share of the mass is 1e-12.
+/// Inner product of orthogonalized vectors: a few units of round-off. A new direction of this
+/// relative norm is pure round-off: the space is invariant. A larger one may carry all information
+/// on vertices whose share of the mass is 1e-12.
 constexpr double kRoundOff = 1e-15;
 
-/// Number of tasks of parallelRows.
+/// Number of tasks parallelRows splits the rows into.
 std::size_t taskCount(Index rows) {
-    return static_cast<std::size_t>((rows + kRowsOfTask - 1) / kRowsOfTask);
+    return static_cast<std::size_t>((rows + kRowsPerTask - 1) / kRowsPerTask);
 }
 
 template <int Columns>
-Row<Columns> lastOf(const std::vector<std::vector<double>>& ofColumns) {
+Row<Columns> lastEntries(const std::vector<std::vector<double>>& columns) {
     Row<Columns> last = Row<Columns>::Zero();
     for (int c = 0; c < Columns; ++c)
-        if (!ofColumns[c].empty()) last[c] = ofColumns[c].back();
+        if (!columns[c].empty()) last[c] = columns[c].back();
     return last;
 }
 
-/// Partial sum of a task, over consecutive rows of one component.
+/// A task's partial sum over consecutive rows of one component.
 template <int Columns>
 struct ComponentSum {
     int label;
     Row<Columns> sum;
 };
 
-/// D-weighted means on every component, count x Columns, and squared D-norms without them.
 template <int Columns>
 struct Moments {
+    /// D-weighted mean of every component, count x Columns.
     Eigen::Array<double, Eigen::Dynamic, Columns> means;
-    Row<Columns> squares;
+    Row<Columns> squares;  ///< Squared D-norms after removal of the means.
 };
 
-/// Moments of the rows that `row` returns. The squared norms are accurate for small means only,
-/// whose squares are subtracted.
+/// Moments of the rows returned by `row`. The squared norms are accurate only for small means,
+/// because the squares of the means are subtracted.
 template <int Columns, class MakeRow>
 Moments<Columns> momentsOf(const Eigen::VectorXd& D, const Eigen::VectorXi& label,
                            const Eigen::VectorXd& mass, const MakeRow& row) {
@@ -60,7 +60,7 @@ Moments<Columns> momentsOf(const Eigen::VectorXd& D, const Eigen::VectorXi& labe
     Moments<Columns> moments;
     moments.squares =
         parallelSum(D.size(), Row<Columns>::Zero().eval(), [&](Index begin, Index end) {
-            std::vector<ComponentSum<Columns>>& sums = parts[begin / kRowsOfTask];
+            std::vector<ComponentSum<Columns>>& sums = parts[begin / kRowsPerTask];
             Row<Columns> squares = Row<Columns>::Zero();
             for (Index i = begin; i < end;) {
                 ComponentSum<Columns> component{label[i], Row<Columns>::Zero()};
@@ -102,7 +102,7 @@ KrylovSpaces::KrylovSpaces(const KrylovOperator& S, const Laplacian& laplacian,
       overlap_(X.cols()),
       overlapBefore_(X.cols()),
       exhausted_(X.cols()),
-      isOfRoundOff_(X.cols()),
+      mayBeRoundOff_(X.cols()),
       roundOff_(kBreakdown) {
     assert(columns_ >= 1 && columns_ <= kMostSignals);
     if (kept == KeptBasis::Single) {
@@ -138,7 +138,7 @@ void KrylovSpaces::restart(const Eigen::MatrixXd& X) {
     alpha_.assign(columns, {});
     beta_.assign(columns, {});
     ritz_.assign(columns, {});
-    isOfRoundOff_.assign(columns, false);
+    mayBeRoundOff_.assign(columns, false);
     withColumns(columns_, [&](auto count) { start<count>(X); });
 }
 
@@ -162,14 +162,14 @@ void KrylovSpaces::start(const Eigen::MatrixXd& X) {
     std::vector<double> largest(taskCount(n));
     const Row<Columns> squares =
         parallelSum(n, Row<Columns>::Zero().eval(), [&](Index begin, Index end) {
-            Row<Columns> sum = Row<Columns>::Zero(), ofTask = sum;
+            Row<Columns> sum = Row<Columns>::Zero(), taskMax = sum;
             for (Index i = begin; i < end; ++i) {
                 auto x = rowOf<Columns>(q, i);
                 if (label_[i] >= 0) x -= mean.row(label_[i]);
                 sum += D_[i] * x * x;
-                ofTask = ofTask.max(x.abs());
+                taskMax = taskMax.max(x.abs());
             }
-            largest[begin / kRowsOfTask] = ofTask.maxCoeff();  // once: threads share its cache line
+            largest[begin / kRowsPerTask] = taskMax.maxCoeff();  // once: tasks share a cache line
             return sum;
         });
     norms_ = squares.sqrt().transpose();
@@ -188,7 +188,7 @@ void KrylovSpaces::start(const Eigen::MatrixXd& X) {
     });
 }
 
-/// Makes the rows of the newest vector, and appends it to the basis.
+/// Computes the rows of the newest vector and appends it to the basis.
 template <int Columns, class MakeRow>
 void KrylovSpaces::append(const MakeRow& row) {
     if (kept_ == KeptBasis::None) {
@@ -223,9 +223,9 @@ void KrylovSpaces::extendColumns() {
     double* w = next_.data();
     const Row<Columns> alpha = S_.apply(D_, q, Columns, w).transpose();
 
-    // w = S q - alpha q - beta p, with p the vector before q. Constants do not arise, except from
-    // round-off, and would be amplified by every step.
-    const Row<Columns> before = lastOf<Columns>(beta_);
+    // w = S q - alpha q - beta p, with p the vector before q. Constants arise only from round-off,
+    // which every step would amplify.
+    const Row<Columns> before = lastEntries<Columns>(beta_);
     const auto moments = momentsOf<Columns>(D_, label_, constants_.masses(), [&](Index i) {
         const Row<Columns> row =
             rowOf<Columns>(w, i) - (alpha * rowOf<Columns>(q, i) + before * rowOf<Columns>(p, i));
@@ -235,19 +235,19 @@ void KrylovSpaces::extendColumns() {
     Eigen::Array<double, Eigen::Dynamic, Columns> constants =
         moments.means.colwise() * constants_.masses().array().sqrt();
     for (int c = 0; c < Columns; ++c)
-        if (isOfRoundOff_[c]) constants.col(c).setZero();  // says nothing about the signal
+        if (mayBeRoundOff_[c]) constants.col(c).setZero();  // unrelated to the signal
     roundOff_ = std::max(roundOff_, constants.matrix().norm() / S_.errorOf(S_.theta(0.0), 1.0));
     Row<Columns> beta = moments.squares.sqrt();
     for (int c = 0; c < Columns; ++c)
         if (!exhausted_[c]) alpha_[c].push_back(alpha[c]);
-    if (kept_ != KeptBasis::None && S_.isToBeOrthogonal() && losesOrthogonality(beta))
+    if (kept_ != KeptBasis::None && S_.needsOrthogonalBasis() && losesOrthogonality(beta))
         beta = orthogonalize<Columns>(beta, w);
 
     Row<Columns> inverse = Row<Columns>::Zero();
     for (int c = 0; c < Columns; ++c) {
         if (exhausted_[c]) continue;
         const double scale = std::hypot(alpha[c], before[c]);
-        isOfRoundOff_[c] = isOfRoundOff_[c] || !(beta[c] > kBreakdown * scale);
+        mayBeRoundOff_[c] = mayBeRoundOff_[c] || !(beta[c] > kBreakdown * scale);
         exhausted_[c] = !(beta[c] > kRoundOff * scale);
         if (exhausted_[c]) continue;
         beta_[c].push_back(beta[c]);
@@ -265,9 +265,9 @@ void KrylovSpaces::extendColumns() {
     newest_.swap(next_);
 }
 
-/// Whether the next vector must be orthogonalized: updates the estimated inner products with all
-/// others by their own recurrence (Simon 1984). If so, the vector after it must be, too: it
-/// inherits the errors of the current one.
+/// Whether the next vector must be orthogonalized. Updates the estimated inner products with all
+/// other vectors by their own recurrence (Simon 1984). If so, the vector after next must be as
+/// well: it inherits the errors of the current one.
 bool KrylovSpaces::losesOrthogonality(const Eigen::Ref<const Eigen::ArrayXd>& beta) {
     bool loses = false;
     for (int c = 0; c < columns_; ++c) {
@@ -276,7 +276,7 @@ bool KrylovSpaces::losesOrthogonality(const Eigen::Ref<const Eigen::ArrayXd>& be
         const std::size_t j = alpha.size() - 1;
         std::vector<double>&now = overlap_[c], next(j + 2), &past = overlapBefore_[c];
         now.resize(j + 1, 1.0);
-        // Round-off of a recurrence whose terms cancel.
+        // Round-off from cancellation between the terms of the recurrence.
         const double local = kRoundOff * std::max(1.0, std::abs(alpha[j]) / beta[c]);
         for (std::size_t k = 0; k < j; ++k) {
             double sum = betas[k] * now[k + 1] + (alpha[k] - alpha[j]) * now[k];
@@ -326,13 +326,13 @@ Eigen::Array<double, 1, Columns> KrylovSpaces::orthogonalize(Eigen::Array<double
                                 rowOf<Columns>(basis[j].data(), i).template cast<double>();
                     }
                 });
-                const Row<Columns> squares =  // without the means, which are still to be removed
+                const Row<Columns> squares =  // without the means, which are removed later
                     momentsOf<Columns>(D_, label_, constants_.masses(), [&](Index i) {
                         return Row<Columns>(rowOf<Columns>(w, i));
                     }).squares;
                 const Row<Columns> before = std::exchange(norm, squares.sqrt());
                 if ((norm >= 0.5 * before).all())
-                    break;  // else cancellation requires a second pass
+                    break;  // otherwise cancellation requires a second pass
             }
         },
         basis_);
@@ -347,8 +347,8 @@ const KrylovSpaces::Ritz& KrylovSpaces::ritz(int column) const {
     if (pairs.omega.size() == m) return pairs;
     Eigen::VectorXd a = Eigen::Map<const Eigen::VectorXd>(alpha_[column].data(), m);
     Eigen::VectorXd b = Eigen::Map<const Eigen::VectorXd>(beta_[column].data(), m - 1);
-    // Eigen scales a full matrix to entries up to 1, but not a tridiagonal one, although its test
-    // for convergence, |b| <= eps sqrt(|a|), assumes that scale.
+    // Eigen scales a full matrix to entries up to 1, but not a tridiagonal one, although its
+    // convergence test, |b| <= eps sqrt(|a|), assumes that scale.
     const double scale = std::max(a.cwiseAbs().maxCoeff(), m > 1 ? b.cwiseAbs().maxCoeff() : 0.0);
     if (scale > 0.0) {
         a /= scale;
@@ -374,7 +374,7 @@ Eigen::VectorXd KrylovSpaces::coefficients(int column, const Gain& gain) const {
 double KrylovSpaces::squaredErrorBound(int column, const Eigen::VectorXd& c,
                                        const Eigen::VectorXd& omega,
                                        const Eigen::VectorXd& gains) const {
-    constexpr double kHuge = 1e100;  // p_k grows geometrically where the signal has nothing
+    constexpr double kHuge = 1e100;  // p_k grows geometrically where the signal has no energy
     if (exhausted_[column]) return 0.0;
     const std::vector<double>&alpha = alpha_[column], &beta = beta_[column];
     using Values = Eigen::ArrayXd;  // at all samples
@@ -398,7 +398,7 @@ double KrylovSpaces::squaredErrorBound(int column, const Eigen::VectorXd& c,
     const Values bound = mismatch.square() / (squares + p.square());
     double sum = 0.0, largest = 0.0;
     for (Index s = 0; s < count; ++s) {
-        // The last polynomial, p_m, changes its sign at the Ritz values.
+        // The last polynomial, p_m, changes sign at the Ritz values.
         if (s > 0 && (p[s] < 0.0) != (p[s - 1] < 0.0)) sum += std::exchange(largest, 0.0);
         largest = std::max(largest, bound[s]);
     }
@@ -437,8 +437,8 @@ double KrylovSpaces::largestEntryOf(const std::vector<Eigen::VectorXd>& coeffici
     std::vector<double> largest(taskCount(D_.size()));
     withColumns(columns_, [&](auto columns) {
         combineColumns<columns>(coefficients, [&](Index i, const auto& row) {
-            double& ofTask = largest[i / kRowsOfTask];
-            ofTask = std::max(ofTask, row.abs().maxCoeff());
+            double& taskMax = largest[i / kRowsPerTask];
+            taskMax = std::max(taskMax, row.abs().maxCoeff());
         });
     });
     return *std::max_element(largest.begin(), largest.end());
@@ -449,7 +449,7 @@ void KrylovSpaces::combineColumns(const std::vector<Eigen::VectorXd>& coefficien
                                   const TakeRow& takeRow) const {
     std::visit(
         [&](const auto& basis) {
-            // Padded with zeros: spaces may have different dimensions.
+            // Padded with zeros, as spaces may differ in dimension.
             std::vector<Row<Columns>> factors(basis.size(), Row<Columns>::Zero());
             for (int c = 0; c < Columns; ++c)
                 for (Index j = 0; j < coefficients[c].size(); ++j)

@@ -8,24 +8,24 @@ namespace spectral {
 
 namespace {
 
-/// Chebyshev nodes: they resolve degrees up to half their number; the most only where needed.
-constexpr int kFewestNodes = 32, kMostNodes = 256;
+/// Number of Chebyshev nodes: n nodes resolve degrees up to n / 2; doubled only where needed.
+constexpr int kMinNodes = 32, kMaxNodes = 256;
 
-/// Poles that are tried, powers of two times omega_c^2: a wide range, as a trial costs no solve.
+/// Candidate poles, powers of two times omega_c^2: a wide range, as a trial costs no solve.
 constexpr int kLowestPower = -6, kHighestPower = 12;
 
-/// Part of the range of a gain by which nodes may miss its peak or notch.
-constexpr double kReached = 0.25;
+/// Fraction of the range of a gain by which the nodes may miss its peak or notch.
+constexpr double kExtremeTolerance = 0.25;
 
-/// A pole is at most this far outside of the range of eigenvalues.
-constexpr double kFarthest = 64.0;
+/// Largest factor by which a pole may lie outside the range of eigenvalues.
+constexpr double kMaxOutside = 64.0;
 
-/// Least and largest values of a gain.
+/// Smallest and largest values of a gain.
 struct Extremes {
     double least, largest;
 };
 
-/// Those in a range, as far as eighths of octaves around the cutoff, and the ends, tell.
+/// Extremes over a range, sampled at eighths of octaves around the cutoff and at both ends.
 Extremes extremesOf(const Gain& gain, double cutoff, const SpectrumRange& range) {
     constexpr double kPerOctave = 8.0;
     const double first = std::sqrt(range.lowest), last = std::sqrt(range.highest);
@@ -72,12 +72,13 @@ class ChebyshevSeries {
 
     /// Whether the values at the nodes come close to the extremes of the gain.
     bool reaches(const Extremes& extremes, double accuracy) const {
-        const double margin = kReached * (largest_ - least_) + accuracy;
+        const double margin = kExtremeTolerance * (largest_ - least_) + accuracy;
         return extremes.least >= least_ - margin && extremes.largest <= largest_ + margin;
     }
 
   private:
-    std::vector<double> tail_;  // sums of moduli from a degree on: bound the truncation error
+    std::vector<double>
+        tail_;  // sums of |coefficients| from each degree on: truncation error bound
     double least_ = 0.0, largest_ = 0.0;
 };
 
@@ -85,14 +86,14 @@ class ChebyshevSeries {
 
 double selectPole(const Gain& gain, double cutoff, const SpectrumRange& range, double accuracy) {
     const double atCutoff =
-        std::clamp(cutoff * cutoff, range.lowest / kFarthest, range.highest * kFarthest);
+        std::clamp(cutoff * cutoff, range.lowest / kMaxOutside, range.highest * kMaxOutside);
     const Extremes extremes = extremesOf(gain, cutoff, range);
     double best = atCutoff;
-    int nodes = kFewestNodes;
+    int nodes = kMinNodes;
     for (double target = accuracy;;) {
         int fewest = nodes + 1;
         for (int power = kLowestPower; power <= kHighestPower; ++power) {
-            const double pole = std::min(std::exp2(power) * atCutoff, range.highest * kFarthest);
+            const double pole = std::min(std::exp2(power) * atCutoff, range.highest * kMaxOutside);
             const ChebyshevSeries series(gain, pole, pole / (range.highest + pole),
                                          pole / (range.lowest + pole), nodes);
             const int dimension = series.requiredDimension(target);
@@ -100,10 +101,10 @@ double selectPole(const Gain& gain, double cutoff, const SpectrumRange& range, d
             fewest = dimension;
             best = pole;
         }
-        // Aliasing makes the upper half of the coefficients meaningless where a gain is not
-        // resolved. With the most nodes, the finest accuracy that a pole reaches decides instead.
+        // If a gain is not resolved, aliasing makes the upper half of the coefficients meaningless.
+        // With the maximum number of nodes, the best accuracy reached by any pole decides instead.
         if (fewest <= nodes / 2) return best;
-        if (nodes < kMostNodes)
+        if (nodes < kMaxNodes)
             nodes *= 2;
         else if (fewest > nodes)
             return atCutoff;  // every series has missed something

@@ -11,21 +11,21 @@ struct SpectrumRange {
     double highest;  ///< Upper end of the bulk, > lowest.
 };
 
-/// The pole with which a rational Krylov space resolves a gain with the fewest dimensions.
+/// The pole with which a rational Krylov space resolves a gain in the fewest dimensions.
 ///
 /// In the variable theta = lambda_p / (lambda + lambda_p) the Krylov method with the repeated pole
-/// -lambda_p approximates F by polynomials on (0, 1]. For a range of poles, the degree that F needs
-/// is read off its Chebyshev coefficients; the pole of lowest degree is taken. A steep cutoff needs
-/// the pole at the cutoff; a Gaussian, smooth there and of exponential decay, one far above it
-/// (half the solves); a small fractional power of a slowly decaying gain one in between.
+/// -lambda_p approximates F by polynomials on (0, 1]. For a range of poles, the required degree is
+/// read off the Chebyshev coefficients of F; the pole of lowest degree is chosen. A steep cutoff
+/// needs the pole at the cutoff; a Gaussian, smooth there and decaying exponentially, one far above
+/// it (half the solves); a small fractional power of a slowly decaying gain one in between.
 ///
-/// A gain that no such polynomial resolves (with a cusp where it vanishes, say) gets the pole that
-/// comes closest. Poles whose nodes miss a peak or a notch, wherever it is, are left out; if all
-/// do, it is the pole at the cutoff. No pole is far beyond the range: (W + lambda_p D)^-1 D would
-/// be a constant to round-off.
+/// A gain that no such polynomial resolves (because of a cusp where it vanishes, say) gets the pole
+/// that comes closest. Poles whose nodes miss a peak or a notch anywhere are rejected; if all are,
+/// the pole at the cutoff is returned. No pole is far beyond the range, where (W + lambda_p D)^-1 D
+/// would be constant to within round-off.
 ///
 /// @param gain      continuous on the range.
-/// @param cutoff    omega_c > 0, around which poles are tried.
+/// @param cutoff    omega_c > 0; candidate poles are powers of two times its square.
 /// @param range     the part of the spectrum that matters; see `bulkSpectrum`.
 /// @param accuracy  absolute error of the gain, > 0.
 /// @return  lambda_p > 0, in units of lambda.
@@ -35,7 +35,7 @@ double selectPole(const Gain& gain, double cutoff, const SpectrumRange& range, d
 ///
 /// Lower end: a tenth of the scale 4 pi / area of the first eigenvalues (Weyl's law). Upper end:
 /// the 99th percentile of 2 W_ii / D_ii (Gershgorin's bound at each vertex), because the largest
-/// eigenvalue is that of the worst sliver alone.
+/// eigenvalue depends on the worst sliver alone.
 SpectrumRange bulkSpectrum(const Laplacian& laplacian);
 
 }  // namespace spectral

@@ -7,10 +7,10 @@
 
 namespace spectral {
 
-/// Most signals that are filtered together.
+/// Maximum number of signals filtered together.
 inline constexpr int kMostSignals = 4;
 
-/// The values of all signals at a vertex, as they lie next to each other in a vector of rows.
+/// The values of all signals at a vertex, contiguous in a vector of rows.
 template <int Columns, class Scalar = double>
 using Row = Eigen::Array<Scalar, 1, Columns, Eigen::RowMajor | Eigen::DontAlign>;
 

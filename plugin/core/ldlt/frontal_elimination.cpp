@@ -14,28 +14,28 @@ using Lane = Eigen::Array<double, kLane, 1>;
 using Matrix = Eigen::Map<Eigen::MatrixXd, Eigen::Unaligned, Eigen::OuterStride<>>;
 using ConstMatrix = Eigen::Map<const Eigen::MatrixXd, Eigen::Unaligned, Eigen::OuterStride<>>;
 
-/// From so many columns and inner dimensions on, Eigen's products are quicker than ours; so many
-/// columns are then taken at a time.
+/// Columns and inner dimensions from which Eigen's product is faster than the loops here; it then
+/// gets blocks of this many columns.
 constexpr Size kManyColumns = 32, kManyInner = 8;
 
-/// Products whose three sizes sum to less Eigen computes coefficient by coefficient.
+/// Eigen computes a product coefficient by coefficient if its three sizes sum to less than this.
 constexpr Size kSmallProduct = 20;
 
-/// From so many multiplications on, sharing them pays.
+/// Multiplications from which it pays to use several threads.
 constexpr Size kMuchWork = 500000;
 
 auto lane(double* at) { return Eigen::Map<Lane>(at); }
 auto lane(const double* at) { return Eigen::Map<const Lane>(at); }
 
-/// The multiple of kLane at or below i.
+/// i rounded down to a multiple of kLane.
 Size aligned(Size i) { return i / kLane * kLane; }
 
-/// A lower half C -= L (L diag(pivots))^T: the columns of a front that have been eliminated, from
-/// the rows of the first column of C on, as they are in L and multiplied by the pivots.
+/// C -= L (L diag(pivots))^T, lower triangle only. L holds the eliminated columns of a frontal
+/// matrix, Lpivots the same columns times the pivots; their first row is that of C's first column.
 struct Subtraction {
     const double *L = nullptr, *Lpivots = nullptr;
-    Size stride = 0;  // of both
-    Size inner = 0;   // columns of both
+    Size stride = 0;  // column stride of L and Lpivots
+    Size inner = 0;   // number of columns of L and Lpivots
     double* C = nullptr;
     Size strideC = 0, columns = 0;
     Size rows = 0;  // a multiple of kLane
@@ -79,12 +79,12 @@ void subtractByLoops(const Subtraction& s) {
     }
 }
 
-/// The columns from j on, at most kManyColumns, by Eigen's product.
+/// Updates up to kManyColumns columns from j on by Eigen's product.
 void subtractProduct(const Subtraction& s, Size j) {
     const Size columns = std::min(kManyColumns, s.columns - j), rows = s.rows - j;
     const double *L = s.L + j, *Lpivots = s.Lpivots + j;
     double* C = s.C + j * s.strideC + j;
-    // Those Eigen rounds differently where vectors start, which depends on the address.
+    // Eigen's rounding of small products depends on the alignment of their address.
     if (rows + columns + s.inner < kSmallProduct)
         return subtractByLoops({L, Lpivots, s.stride, s.inner, C, s.strideC, columns, rows});
     const Eigen::OuterStride<> stride(s.stride), strideC(s.strideC);
@@ -97,7 +97,7 @@ void subtract(const Subtraction& s, const FrontalMatrix& front) {
     if (s.inner < kManyInner || s.columns < kManyColumns) return subtractByLoops(s);
     const Size blocks = (s.columns + kManyColumns - 1) / kManyColumns;
     const auto one = [](const void* subtraction, Size block) {
-        const SubnormalsAreZero mode;  // of another thread
+        const SubnormalsAreZero mode;  // set per thread
         subtractProduct(*static_cast<const Subtraction*>(subtraction), block * kManyColumns);
     };
     if (front.parallelFor != nullptr && s.inner * s.columns * s.rows >= kMuchWork)
@@ -105,15 +105,16 @@ void subtract(const Subtraction& s, const FrontalMatrix& front) {
     for (Size block = 0; block < blocks; ++block) one(&s, block);
 }
 
-/// The elimination of a front's columns.
+/// Eliminates the pivot columns of a frontal matrix.
 class PivotColumns {
   public:
     explicit PivotColumns(const FrontalMatrix& front) : front_(front) {}
 
-    /// Of those from begin to end - 1, which have lost what all before contribute.
+    /// Eliminates columns begin to end - 1, already updated by all columns before. False when a
+    /// pivot is 0.
     bool eliminate(Size begin, Size end) const {
         if (end - begin <= kLane) return eliminateFew(begin, end);
-        // One half, then what it contributes to the other, whose rows begin with a lane.
+        // Eliminate one half, then update the other half, whose rows start at a multiple of kLane.
         Size middle = aligned(front_.offset + (begin + end) / 2) - front_.offset;
         if (middle <= begin) middle += kLane;
         if (!eliminate(begin, middle)) return false;
@@ -125,7 +126,7 @@ class PivotColumns {
         return eliminate(middle, end);
     }
 
-    /// What is eliminated contributes to the rest.
+    /// Updates the contribution block by the eliminated columns.
     void updateContribution() const {
         const Size from = front_.offset + front_.width, rows = front_.stride - from;
         subtract({front_.columns + from, front_.scratch + from, front_.stride, front_.width,

@@ -25,7 +25,7 @@ namespace {
 #ifdef SPECTRAL_AVX2
 /// Whether the processor has AVX2 and FMA, and the system saves their registers.
 bool hasAvx2() {
-#ifdef _WIN32  // MSVC has no such builtin, and takes FMA for a part of AVX2
+#ifdef _WIN32  // MSVC has no such builtin, and treats FMA as part of AVX2
     return IsProcessorFeaturePresent(PF_AVX2_INSTRUCTIONS_AVAILABLE) != 0;
 #else
     return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");

@@ -10,10 +10,10 @@ namespace spectral {
 
 namespace {
 
-/// Fronts between two calls of a stop point: a fraction of a millisecond.
-constexpr int kFrontsToStop = 64;
+/// Fronts between two calls of the stop point: a fraction of a millisecond.
+constexpr int kFrontsPerStopPoint = 64;
 
-/// The frontal matrix of a supernode, without memory.
+/// The layout of a supernode's frontal matrix, without memory.
 FrontalMatrix shapeOf(const SymbolicLdlt::Front& supernode) {
     const auto padded = [](Index rows) { return (rows + kLane - 1) / kLane * kLane; };
     FrontalMatrix front;
@@ -25,22 +25,22 @@ FrontalMatrix shapeOf(const SymbolicLdlt::Front& supernode) {
 }
 
 /// A contribution block that its parent has not yet assembled.
-struct Waiting {
+struct PendingBlock {
     const SymbolicLdlt::Front* supernode = nullptr;
-    Index at = 0;                       // on the stack of this elimination, or
-    const double* elsewhere = nullptr;  // on that of another one
+    Index at = 0;                       // position on the stack of this elimination, or
+    const double* elsewhere = nullptr;  // address on the stack of another one
 };
 
 class Elimination;
 
-/// Consecutive fronts, and the subtree after them that another elimination has done.
-struct Stretch {
+/// Consecutive fronts, followed by a subtree that another elimination has completed.
+struct FrontRange {
     int begin = 0, end = 0;
     const Elimination* subtree = nullptr;
-    const SymbolicLdlt::Front* root = nullptr;  // of the subtree
+    const SymbolicLdlt::Front* root = nullptr;  // root of the subtree
 };
 
-/// Eliminates stretches of fronts, from the leaves up. Contribution blocks wait on a stack.
+/// Eliminates ranges of fronts from the leaves up. A stack holds the pending contribution blocks.
 class Elimination {
   public:
     Elimination(const SymbolicLdlt& symbolic, const double* W, const Eigen::VectorXd& shifts,
@@ -48,32 +48,33 @@ class Elimination {
         : symbolic_(symbolic), W_(W), shifts_(shifts), numbers_(numbers), stop_(stop) {}
 
     /// False when a pivot is 0.
-    bool run(const std::vector<Stretch>& stretches) {
-        allocate(stretches);
-        for (const Stretch& stretch : stretches) {
-            for (int f = stretch.begin; f < stretch.end; ++f) {
-                if (stop_ && f % kFrontsToStop == 0 && ThreadTeam::threadIndex() == 0) stop_();
+    bool run(const std::vector<FrontRange>& ranges) {
+        allocate(ranges);
+        for (const FrontRange& range : ranges) {
+            for (int f = range.begin; f < range.end; ++f) {
+                if (stop_ && f % kFrontsPerStopPoint == 0 && ThreadTeam::threadIndex() == 0)
+                    stop_();
                 if (!eliminateFront(symbolic_.fronts[f])) return false;
             }
-            take(stretch);
+            pushSubtree(range);
         }
         return true;
     }
 
   private:
-    /// Allocates the memory that these fronts will need.
-    void allocate(const std::vector<Stretch>& stretches) {
+    /// Allocates all memory for these fronts.
+    void allocate(const std::vector<FrontRange>& ranges) {
         Index columns = 0, stack = 0;
-        for (const Stretch& stretch : stretches) {
-            for (int f = stretch.begin; f < stretch.end; ++f) {
+        for (const FrontRange& range : ranges) {
+            for (int f = range.begin; f < range.end; ++f) {
                 const FrontalMatrix front = shapeOf(symbolic_.fronts[f]);
                 columns = std::max(columns, front.stride * front.width);
                 stack = std::max(stack, top_ + front.contributionStride() * front.below);
                 push(symbolic_.fronts[f], front);
             }
-            take(stretch);
+            pushSubtree(range);
         }
-        waiting_.clear();
+        pending_.clear();
         top_ = 0;
         columns_.resize(columns);
         scratch_.resize(columns);
@@ -97,11 +98,10 @@ class Elimination {
         return true;
     }
 
-    /// Takes over the contribution block of a subtree's root, alone on the stack of its
-    /// elimination.
-    void take(const Stretch& stretch) {
-        if (stretch.subtree != nullptr && stretch.root->below > 0)
-            waiting_.push_back({stretch.root, top_, stretch.subtree->stack_.data()});
+    /// Adds the contribution block of the subtree's root, the only one on its elimination's stack.
+    void pushSubtree(const FrontRange& range) {
+        if (range.subtree != nullptr && range.root->below > 0)
+            pending_.push_back({range.root, top_, range.subtree->stack_.data()});
     }
 
     /// Sets the front to its part of W - sigma D plus the contribution blocks of its children.
@@ -115,23 +115,23 @@ class Elimination {
         }
         for (Index j = 0; j < front.width; ++j)
             rows[j * front.stride + j] -= shifts_[supernode.first + j];
-        for (std::size_t i = waiting_.size() - supernode.children; i < waiting_.size(); ++i)
-            assembleChild(waiting_[i], front);
+        for (std::size_t i = pending_.size() - supernode.children; i < pending_.size(); ++i)
+            assembleChild(pending_[i], front);
     }
 
-    void assembleChild(const Waiting& child, const FrontalMatrix& front) {
+    void assembleChild(const PendingBlock& child, const FrontalMatrix& front) {
         const int below = child.supernode->below, width = static_cast<int>(front.width);
         const int* places = symbolic_.places.data() + child.supernode->firstPlace;
         const Index stride = shapeOf(*child.supernode).contributionStride();
-        const double* left = child.elsewhere ? child.elsewhere : stack_.data() + child.at;
+        const double* block = child.elsewhere ? child.elsewhere : stack_.data() + child.at;
         for (int j = 0; j < below; ++j) {
-            const double* from = left + j * stride;
-            // The column of the front, and its first row.
-            const bool isEliminated = places[j] < width;
-            double* to = isEliminated ? front.columns + places[j] * front.stride + front.offset
-                                      : front.contribution +
-                                            (places[j] - width) * front.contributionStride();
-            const int first = isEliminated ? 0 : width;
+            const double* from = block + j * stride;
+            // The target column in the front, and its first row.
+            const bool isPivot = places[j] < width;
+            double* to =
+                isPivot ? front.columns + places[j] * front.stride + front.offset
+                        : front.contribution + (places[j] - width) * front.contributionStride();
+            const int first = isPivot ? 0 : width;
             for (int i = j; i < below; ++i) to[places[i] - first] += from[i];
         }
     }
@@ -146,11 +146,11 @@ class Elimination {
         }
     }
 
-    /// Replaces the children on the stack by the front's contribution block; returns its position.
+    /// Replaces a front's children on the stack with its contribution block; returns the position.
     Index push(const SymbolicLdlt::Front& supernode, const FrontalMatrix& front) {
-        for (int i = 0; i < supernode.children; ++i, waiting_.pop_back()) top_ = waiting_.back().at;
+        for (int i = 0; i < supernode.children; ++i, pending_.pop_back()) top_ = pending_.back().at;
         const Index at = top_;
-        if (front.below > 0) waiting_.push_back({&supernode, at, nullptr});
+        if (front.below > 0) pending_.push_back({&supernode, at, nullptr});
         top_ += front.contributionStride() * front.below;
         return at;
     }
@@ -162,8 +162,8 @@ class Elimination {
     const StopPoint& stop_;
     Eigen::VectorXd columns_, scratch_;
     Eigen::VectorXd stack_;
-    std::vector<Waiting> waiting_;
-    Index top_ = 0;  // of the stack
+    std::vector<PendingBlock> pending_;
+    Index top_ = 0;  // top of the stack
 };
 
 }  // namespace
@@ -176,13 +176,13 @@ bool eliminate(const SymbolicLdlt& symbolic, const SparseMatrix& W, const Eigen:
     numbers.pivots.resize(shifts.size());
 
     const Elimination none(symbolic, W.valuePtr(), shifts, numbers, stop);
-    std::vector<Elimination> ofSubtree(symbolic.subtrees.size(), none);
-    std::vector<Stretch> above;
+    std::vector<Elimination> eliminations(symbolic.subtrees.size(), none);
+    std::vector<FrontRange> above;
     int next = 0;
     for (std::size_t t = 0; t < symbolic.subtrees.size(); ++t) {
         const SymbolicLdlt::Subtree& tree = symbolic.subtrees[t];
         above.push_back(
-            {next, tree.firstFront, &ofSubtree[t], &symbolic.fronts[tree.endFront - 1]});
+            {next, tree.firstFront, &eliminations[t], &symbolic.fronts[tree.endFront - 1]});
         next = tree.endFront;
     }
     above.push_back({next, static_cast<int>(symbolic.fronts.size()), nullptr, nullptr});
@@ -191,7 +191,7 @@ bool eliminate(const SymbolicLdlt& symbolic, const SparseMatrix& W, const Eigen:
     parallelFor(static_cast<Index>(done.size()), [&](Index task) {
         const int t = symbolic.largestFirst[task];
         const SymbolicLdlt::Subtree& tree = symbolic.subtrees[t];
-        done[t] = ofSubtree[t].run({{tree.firstFront, tree.endFront, nullptr, nullptr}});
+        done[t] = eliminations[t].run({{tree.firstFront, tree.endFront, nullptr, nullptr}});
     });
     if (std::find(done.begin(), done.end(), 0) != done.end()) return false;
     return Elimination(none).run(above);

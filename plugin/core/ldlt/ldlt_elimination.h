@@ -8,8 +8,8 @@
 
 namespace spectral {
 
-/// P (W - sigma D) P^T = L diag(pivots) L^T. L has a diagonal of ones, which is not stored; the
-/// values of its columns begin at SymbolicLdlt::valueStarts.
+/// P (W - sigma D) P^T = L diag(pivots) L^T. The unit diagonal of L is not stored; the values of
+/// its columns start at SymbolicLdlt::valueStarts.
 struct LdltNumbers {
     std::vector<double> values;
     Eigen::VectorXd pivots;
@@ -19,10 +19,10 @@ struct LdltNumbers {
 /// is added to that of its parent (the multifrontal method: Duff and Reid 1983; Davis, Direct
 /// Methods for Sparse Linear Systems, 2006, section 11).
 ///
-/// @param symbolic  of the pattern of W.
-/// @param numbers   its memory is reused.
-/// @param stop      called every now and then on the caller's thread; may throw. May be empty.
-/// @return false when a pivot is 0: the numbers are then meaningless. They may be infinite.
+/// @param symbolic  symbolic analysis of the pattern of W.
+/// @param numbers   the result; its memory is reused. Entries may be infinite.
+/// @param stop      called now and then on the caller's thread; may throw. May be empty.
+/// @return false when a pivot is 0: the numbers are then meaningless.
 bool eliminate(const SymbolicLdlt& symbolic, const SparseMatrix& W, const Eigen::VectorXd& D,
                double sigma, LdltNumbers& numbers, const StopPoint& stop);
 

@@ -15,29 +15,30 @@ namespace {
 
 constexpr int kMaxAttempts = 4;
 
-/// Memory of the analysis and the factor of a mesh, bytes a row: measured with 1e4 to 2.6e6 rows.
-constexpr double kOfRow = 1000.0;
+/// Memory for the analysis and the factor of a mesh, bytes per row.
+constexpr double kBytesPerRow = 1000.0;
 
-/// Contribution blocks that wait for their parents, relative to the factor; vectors of Krylov
-/// spaces, of three columns each.
-constexpr double kWaiting = 0.3, kVectors = 15.0;
+/// Size of pending contribution blocks, relative to the factor.
+constexpr double kPendingBlocks = 0.3;
+/// Number of Krylov vectors, of three columns each.
+constexpr double kVectors = 15.0;
 
 using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Relative change of a shift that is an eigenvalue of a leading minor: far above round-off, far
-/// below the distance of eigenvalues.
-constexpr double kNudge = 1e-7;
+/// Relative perturbation of a shift that is an eigenvalue of a leading minor: far above round-off,
+/// far below the spacing of eigenvalues.
+constexpr double kPerturbation = 1e-7;
 
 }  // namespace
 
 void ShiftedLdlt::analyze(const SparseMatrix& W, const SymbolicLdlt* similar) {
-    if (analysis_ && analysis_->isOf(W)) return;
-    if (!analysis_) requireMemory(kOfRow * static_cast<double>(W.rows()), W.rows());
+    if (analysis_ && analysis_->hasPatternOf(W)) return;
+    if (!analysis_) requireMemory(kBytesPerRow * static_cast<double>(W.rows()), W.rows());
     analysis_ = std::make_shared<const SymbolicLdlt>(W, similar);
 }
 
 ShiftedLdlt ShiftedLdlt::sibling(const SparseMatrix& W) {
-    analyze(W, nullptr);  // hundreds of solves to come: the best order
+    analyze(W, nullptr);  // hundreds of solves follow: worth finding the best order
     ShiftedLdlt empty;
     empty.analysis_ = analysis_;
     return empty;
@@ -48,12 +49,12 @@ void ShiftedLdlt::factorize(const SparseMatrix& W, const Eigen::VectorXd& D, dou
     analyze(W, analysis_.get());
     symbolic_ = analysis_;
     if (numbers_.values.empty())
-        requireMemory(sizeof(double) * ((1.0 + kWaiting) * symbolic_->valueStarts.back() +
+        requireMemory(sizeof(double) * ((1.0 + kPendingBlocks) * symbolic_->valueStarts.back() +
                                         3.0 * kVectors * static_cast<double>(W.rows())),
                       W.rows());
     ++factorizations_;
     for (int attempt = 0; attempt < kMaxAttempts; ++attempt) {
-        shift_ = sigma * (1.0 + attempt * kNudge);
+        shift_ = sigma * (1.0 + attempt * kPerturbation);
         if (!eliminate(*symbolic_, W, D, shift_, numbers_, stop)) continue;
         if (!numbers_.pivots.allFinite()) continue;
         below_ = (numbers_.pivots.array() < 0.0).count();
@@ -61,7 +62,7 @@ void ShiftedLdlt::factorize(const SparseMatrix& W, const Eigen::VectorXd& D, dou
     }
     std::ostringstream text;
     text << "the LDL^T factorization of W - sigma D (" << W.rows()
-         << " rows) meets a zero pivot at sigma = " << sigma;
+         << " rows) hits a zero pivot at sigma = " << sigma;
     throw SolverFailure(ErrorCode::SingularMatrix, text.str());
 }
 
@@ -91,10 +92,10 @@ Eigen::MatrixXd ShiftedLdlt::solve(const Eigen::MatrixXd& B) const {
 void ShiftedLdlt::applyResolvent(const Eigen::VectorXd& D, Eigen::Ref<Eigen::MatrixXd> U) const {
     // The factor is far larger than the cache: each pass over it serves several columns.
     const Eigen::VectorXi& order = symbolic_->order;
-    std::vector<double> ordered(static_cast<std::size_t>(orderedRows() * kMostRightHandSides));
-    for (Index first = 0; first < U.cols(); first += kMostRightHandSides) {
+    std::vector<double> ordered(static_cast<std::size_t>(orderedRows() * kMaxRightHandSides));
+    for (Index first = 0; first < U.cols(); first += kMaxRightHandSides) {
         const auto columns =
-            static_cast<int>(std::min<Index>(kMostRightHandSides, U.cols() - first));
+            static_cast<int>(std::min<Index>(kMaxRightHandSides, U.cols() - first));
         Eigen::Map<RowMajorMatrix> Y(ordered.data(), orderedRows(), columns);
         for (Index i = 0; i < U.rows(); ++i)
             Y.row(order[i]) = D[i] * U.row(i).segment(first, columns);
@@ -120,7 +121,7 @@ void ShiftedLdlt::solveOrdered(double* Y, int columns) const {
         for (Index i = begin; i < end; ++i) rows.row(i) /= numbers_.pivots[i];
     };
 
-    // L Z = Y: the subtrees, each on its own rows and its copies of others', then what is above.
+    // L Z = Y: the subtrees, each on its own rows and its copies of shared ones, then the rest.
     rows.bottomRows(orderedRows() - n).setZero();
     parallelFor(count, [&](Index task) {
         const SymbolicLdlt::Subtree& tree = subtrees[symbolic.largestFirst[task]];
@@ -138,7 +139,7 @@ void ShiftedLdlt::solveOrdered(double* Y, int columns) const {
     kernels().forward(factor, Y, columns, next, n);
     divideByPivots(next, n);
 
-    // L^T X = Z, the other way round.
+    // L^T X = Z, in reverse order.
     Index end = n;
     for (Index t = count - 1; t >= 0; --t) {
         kernels().backward(factor, Y, columns, subtrees[t].endColumn, end);

@@ -9,11 +9,11 @@ namespace spectral {
 
 namespace {  // compiled for several instruction sets
 
-/// As long as there is one, this thread takes subnormal numbers, those below 2.2e-308, for 0.
+/// While an instance exists, its thread treats subnormal numbers, those below 2.2e-308, as 0.
 ///
-/// Entries of L decay exponentially away from the diagonal, the faster the larger the shift is: in
-/// large fronts many are subnormal, and x86 processors take a hundred cycles for each product of
-/// one. Others take no longer than for any number; there this does nothing.
+/// Entries of L decay exponentially away from the diagonal, faster for larger shifts: many are
+/// subnormal in large fronts, and x86 processors take a hundred cycles for each product with one.
+/// On other processors, where they are as fast as any number, this does nothing.
 class SubnormalsAreZero {
   public:
     SubnormalsAreZero(const SubnormalsAreZero&) = delete;

@@ -14,8 +14,8 @@ namespace spectral {
 
 namespace {
 
-/// Largest part of zeros in a relaxed supernode by its number of columns. Zeros cost memory, wide
-/// supernodes save indirect addressing: narrow ones may have more. (CHOLMOD relaxes alike.)
+/// Largest fraction of zeros in a relaxed supernode by its number of columns. Zeros cost memory,
+/// but wide supernodes save indirect addressing, so narrow ones may have more. (As in CHOLMOD.)
 struct Relaxation {
     Index width;
     double zeros;
@@ -23,28 +23,27 @@ struct Relaxation {
 constexpr Relaxation kRelaxations[] = {
     {4, 0.5}, {16, 0.2}, {48, 0.1}, {std::numeric_limits<Index>::max(), 0.05}};
 
-/// Parallel subtrees have at most one of kLeastParts parts of L, so that there is work for several
-/// threads and little above the subtrees, and at least one of kMostParts, so that each is worth a
-/// task. A factor with fewer entries than kLeastShared is not split: a solve takes no longer than
+/// A parallel subtree has at most 1 / kMinParts of the entries of L, so that several threads get
+/// work and little remains above the subtrees, and at least 1 / kMaxParts, so that it is worth a
+/// task. A factor with fewer than kMinShared entries is not split: a solve takes no longer than
 /// waking a thread.
-constexpr Index kLeastParts = 4, kMostParts = 200, kLeastShared = 30000;
+constexpr Index kMinParts = 4, kMaxParts = 200, kMinShared = 30000;
 
-/// Rows of a task without a tree are at most one of so many parts of all.
+/// A range found before the tree is known has at most 1 / kClosedParts of all rows.
 constexpr Index kClosedParts = 16;
 
-/// An order of elimination is taken over from a similar pattern while L has at most so many times
-/// the entries that it had where the order was made for it: finding one takes as long as a dozen
-/// solves.
-constexpr double kMostFill = 1.2;
+/// The order of a similar pattern is reused while L has at most this many times the entries it had
+/// for the pattern that was ordered: finding an order takes as long as a dozen solves.
+constexpr double kMaxFill = 1.2;
 
 /// Postorder of a forest: children before their parents, subtrees contiguous.
-/// @param parent  of each node, a larger number; -1 for roots.
+/// @param parent  parent of each node, a larger number; -1 for roots.
 std::vector<int> postorder(const std::vector<int>& parent) {
     const auto n = static_cast<int>(parent.size());
-    std::vector<int> size(parent.size(), 1);  // of the subtrees
+    std::vector<int> size(parent.size(), 1);  // number of nodes of each subtree
     for (int i = 0; i < n; ++i)
         if (parent[i] >= 0) size[parent[i]] += size[i];
-    // Subtrees fill their parent's range from its end; a node is the last of its own.
+    // Subtrees fill their parent's range from the end; a node is the last of its own subtree.
     std::vector<int> number(parent.size()), next(parent.size());
     int end = n;
     for (int i = n - 1; i >= 0; --i) {
@@ -59,10 +58,10 @@ std::vector<int> postorder(const std::vector<int>& parent) {
 /// A supernode that may still absorb others.
 struct Supernode {
     Index first = 0, width = 0, below = 0;
-    Index zeros = 0;  // added to L by relaxation
+    Index zeros = 0;  // entries added to L by relaxation
 
-    /// Merged with its parent, whose first column follows its last.
-    Supernode joinedTo(const Supernode& parent) const {
+    /// This supernode merged with its parent, whose first column follows its last.
+    Supernode mergedWith(const Supernode& parent) const {
         const Index wider = width + parent.width, added = parent.width + parent.below - below;
         return {first, wider, parent.below, zeros + parent.zeros + width * added};
     }
@@ -91,8 +90,8 @@ SymbolicLdlt::SymbolicLdlt(const SparseMatrix& W, const SymbolicLdlt* similar)
     });
 }
 
-/// Calls work(begin, end) for the rows of L of each subtree, in parallel, and then for those of
-/// none: a row of a subtree has all of its entries in the subtree's columns.
+/// Calls work(begin, end) for the rows of each subtree, in parallel, and then for all other rows. A
+/// row of L in a subtree has all of its entries in the subtree's columns.
 template <class Work>
 void SymbolicLdlt::forRows(const Work& work) const {
     parallelFor(static_cast<Index>(subtrees.size()),
@@ -114,12 +113,12 @@ SymbolicLdlt::Columns SymbolicLdlt::findOrder(const SparseMatrix& W, const Symbo
         entriesWhenOrdered_ = similar->entriesWhenOrdered_;
         const Columns columns = eliminationTree();
         if (static_cast<double>(entriesOf(columns)) <=
-            kMostFill * static_cast<double>(entriesWhenOrdered_))
+            kMaxFill * static_cast<double>(entriesWhenOrdered_))
             return postordered(columns);
     }
-    Eigen::AMDOrdering<int>::PermutationType leastDegree;  // its indices: what `inverse` is
-    Eigen::AMDOrdering<int>()(W.selfadjointView<Eigen::Lower>(), leastDegree);
-    inverse.assign(leastDegree.indices().begin(), leastDegree.indices().end());
+    Eigen::AMDOrdering<int>::PermutationType minimumDegree;  // its indices are those of `inverse`
+    Eigen::AMDOrdering<int>()(W.selfadjointView<Eigen::Lower>(), minimumDegree);
+    inverse.assign(minimumDegree.indices().begin(), minimumDegree.indices().end());
     order.resize(W.rows());
     for (int j = 0; j < W.rows(); ++j) order[inverse[j]] = j;
     const Columns columns = eliminationTree();
@@ -127,21 +126,21 @@ SymbolicLdlt::Columns SymbolicLdlt::findOrder(const SparseMatrix& W, const Symbo
     return postordered(columns);
 }
 
-/// Takes over the order of a similar pattern. An entry that the other has not may join two subtrees
-/// of its tree, and fill all fronts above both. One of the two rows then moves up to the front
-/// where they meet, as if into a separator: it only becomes one more row of the fronts on its way.
+/// Adapts the order of a similar pattern. A new entry may join two subtrees of the old elimination
+/// tree, and fill all fronts above both. One of its two rows is then moved up to the front where
+/// the subtrees meet, as if into a separator: it only adds one row to each front on its way.
 void SymbolicLdlt::adaptOrder(const SymbolicLdlt& similar) {
     const auto n = static_cast<int>(similar.inverse.size());
-    const auto top = static_cast<int>(similar.fronts.size());  // above all roots
+    const auto top = static_cast<int>(similar.fronts.size());  // a virtual front above all roots
     const auto parent = [&](int f) {
         return similar.parentFront_[f] < 0 ? top : similar.parentFront_[f];
     };
-    // Subtrees are contiguous: that of front g is first[g] to g.
+    // Subtrees are contiguous: front g is the root of fronts first[g] to g.
     std::vector<int> first(similar.fronts.size() + 1);
     std::iota(first.begin(), first.end(), 0);
     for (int f = 0; f < top; ++f) first[parent(f)] = std::min(first[parent(f)], first[f]);
     const auto isWithin = [&first](int f, int g) { return first[g] <= f && f <= g; };
-    std::vector<int> frontOf(similar.inverse.size());  // of each row of W
+    std::vector<int> frontOf(similar.inverse.size());  // front of each row of W
     std::vector<char> isMoved(similar.inverse.size(), 0);
     for (int i = 0; i < n; ++i) frontOf[i] = similar.frontOf_[similar.order[i]];
     for (int j = 0; j < n; ++j)
@@ -163,12 +162,12 @@ void SymbolicLdlt::adaptOrder(const SymbolicLdlt& similar) {
     for (int i = 0; i < n; ++i) inverse[order[i]] = i;
 }
 
-/// Sets `subtrees` to what can be told of them before the tree is known: rows whose first entries
-/// in W are not to the left of them all, and so those in L. In a postorder, as minimum degree
-/// leaves it, most rows are in such ranges.
+/// Sets `subtrees` to ranges that are closed even before the tree is known: no row of a range has
+/// an entry of W, and hence of L, to the left of the range. In a postorder, which minimum degree
+/// returns, most rows are in such ranges.
 void SymbolicLdlt::findClosedRows() {
     const auto n = static_cast<int>(inverse.size());
-    std::vector<int> first(inverse.size());  // entry of each row
+    std::vector<int> first(inverse.size());  // first entry of each row
     parallelRows(n, [&](Index begin, Index end) {
         for (auto k = static_cast<int>(begin); k < end; ++k) {
             first[k] = k;
@@ -180,11 +179,12 @@ void SymbolicLdlt::findClosedRows() {
     for (int begin = 0, end; begin < n; begin = std::max(end, begin + 1)) {
         end = begin;
         while (end < n && end - begin < n / kClosedParts && first[end] >= begin) ++end;
-        if ((end - begin) * kMostParts >= n) subtrees.push_back({0, 0, begin, end, 0});
+        if ((end - begin) * kMaxParts >= n) subtrees.push_back({0, 0, begin, end, 0});
     }
 }
 
-/// Row k of L has entries on the paths in the tree from those of W to k (Davis 2006, section 4.1).
+/// The entries of row k of L are on the tree paths from the entries of row k of W up to k (Davis
+/// 2006, section 4.1).
 SymbolicLdlt::Columns SymbolicLdlt::eliminationTree() {
     findClosedRows();
     Columns columns{std::vector<int>(inverse.size(), -1), std::vector<int>(inverse.size(), 0)};
@@ -223,14 +223,14 @@ void SymbolicLdlt::findFronts(const Columns& columns) {
     std::vector<Supernode> supernodes;
     for (int j = 0; j < n;) {
         Supernode supernode{j, 0, 0, 0};
-        // The rows of a column are among those of its parent: equal if the parent has one less.
+        // A column's rows are the parent and some of the parent's rows: all if the counts match.
         do ++j, ++supernode.width;
         while (j < n && parent[j - 1] == j && count[j - 1] == count[j] + 1);
         supernode.below = count[j - 1];
         // Merge with the last child, then with the last child of both, and so on.
         while (!supernodes.empty()) {
             const Supernode& child = supernodes.back();
-            const Supernode both = child.joinedTo(supernode);
+            const Supernode both = child.mergedWith(supernode);
             const int next = parent[supernode.first - 1];
             if (next < supernode.first || next >= j || !both.isWorthwhile()) break;
             supernode = both;
@@ -243,7 +243,7 @@ void SymbolicLdlt::findFronts(const Columns& columns) {
         [](Index sum, const Supernode& supernode) { return sum + supernode.entries(); });
     if (total > std::numeric_limits<int>::max())
         throw SolverFailure(ErrorCode::TooManyVertices,
-                            "the factorization of W - sigma D (" + std::to_string(n) +
+                            "the factor of W - sigma D (" + std::to_string(n) +
                                 " rows) has too many entries: " + std::to_string(total));
     frontOf_.resize(parent.size());
     valueStarts.assign(parent.size() + 1, 0);
@@ -286,11 +286,11 @@ void SymbolicLdlt::findSubtrees() {
         }
     }
     const Index total = valueStarts.back() + static_cast<Index>(inverse.size());
-    const Index most = total >= kLeastShared ? total / kLeastParts : 0;
-    const auto isWhole = [&](int f) { return size[f] <= most; };
+    const Index maxSize = total >= kMinShared ? total / kMinParts : 0;
+    const auto isSmall = [&](int f) { return size[f] <= maxSize; };
     for (int f = 0; f < count; ++f) {
         const int parent = parentFront_[f];
-        if (!isWhole(f) || size[f] * kMostParts < total || (parent >= 0 && isWhole(parent)))
+        if (!isSmall(f) || size[f] * kMaxParts < total || (parent >= 0 && isSmall(parent)))
             continue;
         Subtree tree;
         tree.firstFront = f + 1 - frontsBelow[f];
@@ -307,13 +307,13 @@ void SymbolicLdlt::findSubtrees() {
 }
 
 void SymbolicLdlt::findRows() {
-    std::vector<int> ends;  // of the rows known so far, by front
+    std::vector<int> ends;  // end of the rows known so far, by front
     for (const Front& front : fronts) {
         std::iota(&frontRows[front.firstRow], &frontRows[front.firstRow] + front.width,
                   front.first);
         ends.push_back(front.firstRow + front.width);
     }
-    // The entries of a row of L are on the paths in the tree that start at the entries of W.
+    // The entries of a row of L are on the tree paths that start at the entries of W.
     std::vector<int> visited(fronts.size(), -1);
     forRows([&](int begin, int end) {
         for (int k = begin; k < end; ++k) {
@@ -334,24 +334,24 @@ void SymbolicLdlt::setPositions(const Front& front, std::vector<int>& position) 
 }
 
 void SymbolicLdlt::findPlaces() {
-    std::vector<int> position(inverse.size());  // of each row in the current front
-    std::vector<int> waiting;                   // fronts whose parents are yet to come
+    std::vector<int> position(inverse.size());  // position of each row in the current front
+    std::vector<int> pending;                   // fronts whose parents are yet to come
     for (int f = 0; f < static_cast<int>(fronts.size()); ++f) {
         Front& front = fronts[f];
         setPositions(front, position);
-        for (; !waiting.empty(); waiting.pop_back(), ++front.children) {
-            Front& child = fronts[waiting.back()];
+        for (; !pending.empty(); pending.pop_back(), ++front.children) {
+            Front& child = fronts[pending.back()];
             const int* below = &frontRows[child.firstRow] + child.width;
             if (frontOf_[*below] != f) break;
             child.firstPlace = static_cast<int>(places.size());
             for (int i = 0; i < child.below; ++i) places.push_back(position[below[i]]);
         }
-        if (front.below > 0) waiting.push_back(f);
+        if (front.below > 0) pending.push_back(f);
     }
 }
 
 void SymbolicLdlt::findEntries() {
-    std::vector<int> position(inverse.size());  // of each row in the current front
+    std::vector<int> position(inverse.size());  // position of each row in the current front
     entries.reserve((rows.size() + inverse.size()) / 2);
     for (Front& front : fronts) {
         setPositions(front, position);
@@ -371,7 +371,7 @@ void SymbolicLdlt::findCopies() {
         tree.firstCopy = static_cast<int>(copied.size());
         const auto below = frontRows.begin() + root.firstRow + root.width;
         copied.insert(copied.end(), below, below + root.below);
-        // The rows of a subtree's fronts are its columns, or among those below the root.
+        // The rows of a subtree's fronts are its own columns or among the rows below its root.
         for (auto row = solveRows.begin() + fronts[tree.firstFront].firstRow;
              row != solveRows.begin() + root.firstRow + root.width + root.below; ++row)
             if (*row >= tree.endColumn)
@@ -380,7 +380,7 @@ void SymbolicLdlt::findCopies() {
     }
 }
 
-bool SymbolicLdlt::isOf(const SparseMatrix& W) const {
+bool SymbolicLdlt::hasPatternOf(const SparseMatrix& W) const {
     const int *start = W.outerIndexPtr(), *row = W.innerIndexPtr();
     return std::equal(starts.begin(), starts.end(), start, start + W.outerSize() + 1) &&
            std::equal(rows.begin(), rows.end(), row, row + W.nonZeros());

@@ -10,11 +10,11 @@ namespace {
 
 using Size = std::ptrdiff_t;
 
-/// A row of the right-hand sides.
+/// One row of the right-hand sides.
 template <int Columns>
 using Row = Eigen::Array<double, 1, Columns>;
 
-/// A few right-hand sides, those of a row next to each other.
+/// A few right-hand sides, row-major.
 template <int Columns>
 class Block {
   public:
@@ -25,10 +25,10 @@ class Block {
     double* Y_;
 };
 
-/// A sparse lower triangular matrix with a diagonal of 1, which is not stored.
+/// A sparse unit lower triangular matrix; the diagonal is not stored.
 ///
-/// Most of its entries are in runs of columns with the same rows below them (supernodes). Several
-/// columns are taken at once: each row of the right-hand side is then fetched once for all.
+/// Most entries are in supernodes, consecutive columns with the same rows below them. Several of
+/// these columns are processed at once: each row of the right-hand sides is then loaded only once.
 class UnitLower {
   public:
     explicit UnitLower(const LdltFactor& factor)
@@ -38,21 +38,21 @@ class UnitLower {
           value_(factor.values),
           joined_(factor.joined) {}
 
-    /// Number of columns from j on, at most so many, that have the same rows below them.
-    int width(Size j, int most) const {
+    /// Number of columns from j on, up to `limit`, that have the same rows below them.
+    int width(Size j, int limit) const {
         int width = 1;
-        while (width < most && joined_[j + width - 1]) ++width;
+        while (width < limit && joined_[j + width - 1]) ++width;
         return width;
     }
 
-    /// The same for the columns that end before `end`.
-    int widthBefore(Size end, int most) const {
+    /// The same for the columns up to `end` - 1.
+    int widthBefore(Size end, int limit) const {
         int width = 1;
-        while (width < most && end > width && joined_[end - width - 1]) ++width;
+        while (width < limit && end > width && joined_[end - width - 1]) ++width;
         return width;
     }
 
-    /// Forward elimination by columns j to j + Width - 1.
+    /// Forward elimination with columns j to j + Width - 1.
     template <int Width, int Columns>
     void eliminate(Size j, Block<Columns> Y) const {
         Row<Columns> y[Width];
@@ -69,7 +69,7 @@ class UnitLower {
         }
     }
 
-    /// Back substitution by the transposes of columns j to j + Width - 1.
+    /// Back substitution with the transposes of columns j to j + Width - 1.
     template <int Width, int Columns>
     void substitute(Size j, Block<Columns> Y) const {
         Row<Columns> y[Width];
@@ -86,7 +86,7 @@ class UnitLower {
     }
 
   private:
-    /// The rows below a group of columns, and their entries there.
+    /// The rows below a group of columns, and the entries in these rows.
     template <int Width>
     struct Tails {
         Tails(const UnitLower& L, Size j)
@@ -107,15 +107,15 @@ class UnitLower {
     const char* joined_;
 };
 
-/// Columns of L at once: as many as fit into the registers.
-constexpr int kMostColumns = 4;
+/// Columns of L processed at once: as many as fit into the registers.
+constexpr int kMaxColumns = 4;
 
 template <int Columns>
 void forwardColumns(const LdltFactor& factor, double* rows, Size begin, Size end) {
     const UnitLower L(factor);
     const Block<Columns> Y(rows);
     for (Size j = begin; j < end;) {
-        const int width = L.width(j, kMostColumns);
+        const int width = L.width(j, kMaxColumns);
         switch (width) {
             case 4: L.eliminate<4>(j, Y); break;
             case 3: L.eliminate<3>(j, Y); break;
@@ -131,7 +131,7 @@ void backwardColumns(const LdltFactor& factor, double* rows, Size begin, Size en
     const UnitLower L(factor);
     const Block<Columns> Y(rows);
     while (end > begin) {
-        const int width = L.widthBefore(end, kMostColumns);
+        const int width = L.widthBefore(end, kMaxColumns);
         switch (width) {
             case 4: L.substitute<4>(end - 4, Y); break;
             case 3: L.substitute<3>(end - 3, Y); break;
@@ -152,7 +152,7 @@ void forward(const LdltFactor& factor, double* Y, int columns, Size begin, Size 
         case 1: return forwardColumns<1>(factor, Y, begin, end);
         case 2: return forwardColumns<2>(factor, Y, begin, end);
         case 3: return forwardColumns<3>(factor, Y, begin, end);
-        default: return forwardColumns<kMostRightHandSides>(factor, Y, begin, end);
+        default: return forwardColumns<kMaxRightHandSides>(factor, Y, begin, end);
     }
 }
 
@@ -162,7 +162,7 @@ void backward(const LdltFactor& factor, double* Y, int columns, Size begin, Size
         case 1: return backwardColumns<1>(factor, Y, begin, end);
         case 2: return backwardColumns<2>(factor, Y, begin, end);
         case 3: return backwardColumns<3>(factor, Y, begin, end);
-        default: return backwardColumns<kMostRightHandSides>(factor, Y, begin, end);
+        default: return backwardColumns<kMaxRightHandSides>(factor, Y, begin, end);
     }
 }
 

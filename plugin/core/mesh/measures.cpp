@@ -18,8 +18,8 @@ double meanEdgeLength(const Vertices& V, const Faces& F) {
 }
 
 double defaultFeatureSize(double meanEdge, double diagonal) {
-    const double size = 6.0 * meanEdge, most = 0.05 * diagonal;
-    return size > 0.0 && size < most ? size : most;
+    const double size = 6.0 * meanEdge, bound = 0.05 * diagonal;
+    return size > 0.0 && size < bound ? size : bound;
 }
 
 double defaultSmallestSize(double meanEdge, double diagonal) {
@@ -39,7 +39,7 @@ double surfaceArea(const Vertices& V, const Faces& F) {
 }
 
 double signedVolume(const Vertices& V, const Faces& F) {
-    // Far from the origin, tetrahedra with an apex there would cancel.
+    // Tetrahedra with their apex at a distant origin would suffer from cancellation.
     const Eigen::RowVector3d o = 0.5 * (V.colwise().maxCoeff() + V.colwise().minCoeff());
     const double sixfoldVolume = parallelSum(F.rows(), 0.0, [&](Index begin, Index end) {
         double sum = 0.0;
@@ -55,7 +55,7 @@ double signedVolume(const Vertices& V, const Faces& F) {
 
 bool enclosesVolume(const Vertices& V, const Faces& F) {
     constexpr double kRoundOff = 1e-9;
-    const Eigen::Vector4d zero = Eigen::Vector4d::Zero();  // area vectors, then their lengths
+    const Eigen::Vector4d zero = Eigen::Vector4d::Zero();  // sum of area vectors, and of lengths
     const Eigen::Vector4d sum = parallelSum(F.rows(), zero, [&](Index begin, Index end) {
         Eigen::Vector4d part = Eigen::Vector4d::Zero();
         for (Index t = begin; t < end; ++t) {

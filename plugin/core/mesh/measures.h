@@ -7,12 +7,12 @@ namespace spectral {
 /// Diagonal of the axis-aligned bounding box.
 double boundingBoxDiagonal(const Vertices& V);
 
-/// Mean side length over all triangles, which counts interior edges twice; 0 without triangles.
+/// Mean side length over all triangles, counting interior edges twice; 0 without triangles.
 double meanEdgeLength(const Vertices& V, const Faces& F);
 
 /// Default feature size: six mean edges, at most 5 % of the diagonal of the bounding box.
 ///
-/// At six edges a Gaussian low-pass removes sampling noise: it leaves 4 % of the shortest wave that
+/// At six edges a Gaussian low-pass removes sampling noise: it keeps 4 % of the shortest wave that
 /// a mesh can represent, two edges long. The bound preserves the shape of a coarse mesh.
 ///
 /// @param meanEdge, diagonal  length units; meanEdge = 0 gives the bound.
@@ -21,8 +21,8 @@ double defaultFeatureSize(double meanEdge, double diagonal);
 /// Default size of the smallest details of an equalizer: three mean edges, at most 2.5 % of the
 /// diagonal, half of the default feature size.
 ///
-/// A mesh holds no wave shorter than two edges, and one of three already poorly. The bound keeps
-/// the sliders of a coarse mesh below the size of its shape.
+/// A mesh cannot represent waves shorter than two edges, and resolves waves of three edges poorly.
+/// The bound keeps the bands of a coarse mesh below the size of its shape.
 double defaultSmallestSize(double meanEdge, double diagonal);
 
 /// Total area of the triangles.
@@ -32,9 +32,8 @@ double surfaceArea(const Vertices& V, const Faces& F);
 /// that of its cone over the centre of the bounding box.
 double signedVolume(const Vertices& V, const Faces& F);
 
-/// Whether the triangles' areas, as vectors along their normals, sum to zero, to round-off: the
-/// signed volume then has no need of the centre. So it is with surfaces that are closed and
-/// consistently oriented.
+/// Whether the area vectors of the triangles sum to zero up to round-off, as they do for closed,
+/// consistently oriented surfaces: the signed volume then does not depend on the centre.
 bool enclosesVolume(const Vertices& V, const Faces& F);
 
 }  // namespace spectral

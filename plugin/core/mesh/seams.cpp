@@ -30,7 +30,7 @@ std::vector<int> verticesOf(const std::vector<Edge>& edges) {
     return vertices;
 }
 
-/// For each end of an edge the first of them at the same point; n.
+/// For each end of an edge, the first end at the same point; n.
 std::vector<int> firstAtPoint(const Vertices& X, const std::vector<Edge>& edges) {
     const auto point = [&](int i) { return std::array{X(i, 0), X(i, 1), X(i, 2)}; };
     std::vector<int> ends = verticesOf(edges);
@@ -43,7 +43,7 @@ std::vector<int> firstAtPoint(const Vertices& X, const std::vector<Edge>& edges)
     return first;
 }
 
-/// Makes the ends of edges one whose ends are at the same points.
+/// Unites the ends of edges that have the same end points.
 UnionFind joined(const Vertices& X, std::vector<Edge> edges) {
     const std::vector<int> place = firstAtPoint(X, edges);
     const auto placed = [&](const Edge& edge) { return Edge{place[edge[0]], place[edge[1]]}; };

@@ -6,17 +6,17 @@
 
 namespace spectral {
 
-/// Where a surface was cut apart, as at the seams of its texture: two boundary edges whose ends are
-/// at the same points are one edge. Closed parts that only touch have no boundary, and stay apart.
+/// Seams along which a surface was cut, e.g. for its texture: boundary edges with the same end
+/// points are one edge. Closed parts that only touch have no boundary, and stay apart.
 struct Seams {
-    std::vector<int> first;  ///< n: for every vertex the first of those that are one with it, often
-                             ///< itself; empty when no two are one.
-    int nearby = 0;  ///< Vertices that would be one with another, were positions rounded to a
-                     ///< millionth of the bounding box diagonal, as some exporters leave them.
+    std::vector<int> first;  ///< n: for each vertex the first one it coincides with, often itself;
+                             ///< empty if no two coincide.
+    int nearby = 0;  ///< Number of further vertices that would coincide if positions were rounded
+                     ///< to a millionth of the bounding box diagonal, as by some exporters.
 };
 
-/// @param X  n x 3, finite.
-/// @param F  m x 3 indices into X; the corners of a triangle differ.
+/// @param X  n x 3 positions, finite.
+/// @param F  m x 3 indices into X; the corners of each triangle are distinct.
 Seams findSeams(const Vertices& X, const Faces& F);
 
 }  // namespace spectral

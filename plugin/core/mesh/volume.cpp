@@ -24,7 +24,7 @@ std::vector<Faces> facesByComponent(const Faces& F, const Components& components
     return faces;
 }
 
-/// Whether every edge is passed as often in one direction as in the other.
+/// Whether every edge is traversed equally often in both directions.
 bool isClosed(const Faces& F) {
     bool isBalanced = true;
     SidesByEdge(F).forEachEdge([&](auto first, auto end) {
@@ -36,7 +36,7 @@ bool isClosed(const Faces& F) {
     return isBalanced;
 }
 
-/// Gradient of six times the volume of a closed surface, n x 3: multiples of the normals.
+/// Gradient of six times the volume of a closed surface, n x 3: along the normals.
 Vertices volumeGradient(const Vertices& X, const Faces& F) {
     Vertices gradient = Vertices::Zero(X.rows(), 3);
     for (Index t = 0; t < F.rows(); ++t)
@@ -47,11 +47,11 @@ Vertices volumeGradient(const Vertices& X, const Faces& F) {
     return gradient;
 }
 
-/// Moves a closed component until it has the volume; returns whether it does.
+/// Offsets a closed component to the given volume; returns false if that fails.
 bool offsetTo(double volume, const Faces& F, const Eigen::VectorXd& weight, Vertices& X) {
-    constexpr int kMostSteps = 50;
+    constexpr int kMaxSteps = 50;
     constexpr double kAccuracy = 1e-12;
-    for (int step = 0; step < kMostSteps; ++step) {
+    for (int step = 0; step < kMaxSteps; ++step) {
         const double missing = volume - signedVolume(X, F);
         if (std::abs(missing) <= kAccuracy * std::abs(volume)) return true;
         // Newton's method, along the current normals.
@@ -69,31 +69,31 @@ bool offsetTo(double volume, const Faces& F, const Eigen::VectorXd& weight, Vert
 }  // namespace
 
 PreservedVolumes preserveVolumes(const Vertices& X0, const Faces& F, const Components& components,
-                                 const Eigen::VectorXd& weight, double mostOffset, Vertices& X) {
-    constexpr double kRoundOff = 1e-9;  // of volumes, as a displacement of the vertices
+                                 const Eigen::VectorXd& weight, double maxOffset, Vertices& X) {
+    constexpr double kRoundOff = 1e-9;  // displacement that compensates round-off of the volume
     PreservedVolumes volumes;
     for (const Faces& component : facesByComponent(F, components)) {
         if (!isClosed(component)) {
             ++volumes.open;
             continue;
         }
-        const Surface before = surfaceOf(X, component);  // alone, and near the origin
-        Eigen::VectorXd itsWeight(before.X.rows());
-        double most = kRoundOff * before.X.cwiseAbs().maxCoeff();
-        for (Index i = 0; i < itsWeight.size(); ++i) {
+        const Surface before = surfaceOf(X, component);  // the component alone, near the origin
+        Eigen::VectorXd localWeight(before.X.rows());
+        double limit = kRoundOff * before.X.cwiseAbs().maxCoeff();
+        for (Index i = 0; i < localWeight.size(); ++i) {
             const Index v = before.vertex[i];
-            itsWeight[i] = weight[v];
-            most = std::max(most, mostOffset * (X.row(v) - X0.row(v)).norm());
+            localWeight[i] = weight[v];
+            limit = std::max(limit, maxOffset * (X.row(v) - X0.row(v)).norm());
         }
         Vertices moved = before.X;
-        if (!offsetTo(signedVolume(X0, component), before.F, itsWeight, moved) ||
-            (moved - before.X).rowwise().norm().maxCoeff() > most) {
+        if (!offsetTo(signedVolume(X0, component), before.F, localWeight, moved) ||
+            (moved - before.X).rowwise().norm().maxCoeff() > limit) {
             ++volumes.lost;
             continue;
         }
         ++volumes.preserved;
-        for (Index i = 0; i < itsWeight.size(); ++i)
-            if (itsWeight[i] > 0.0) X.row(before.vertex[i]) += moved.row(i) - before.X.row(i);
+        for (Index i = 0; i < localWeight.size(); ++i)
+            if (localWeight[i] > 0.0) X.row(before.vertex[i]) += moved.row(i) - before.X.row(i);
     }
     return volumes;
 }

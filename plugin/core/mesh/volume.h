@@ -8,24 +8,23 @@
 namespace spectral {
 
 struct PreservedVolumes {
-    int preserved = 0;  ///< Closed components that have their volume back.
-    int open = 0;       ///< Components that have no volume: open, or of inconsistent orientation.
-    int lost = 0;       ///< Closed components that only too large an offset, if any, gives their
-                        ///< volume back.
+    int preserved = 0;  ///< Closed components whose volume was restored.
+    int open = 0;       ///< Components without a volume: open or inconsistently oriented.
+    int lost = 0;       ///< Closed components whose volume no offset within the limit restores.
 };
 
-/// Gives every closed component its volume back, by an offset along the normals of its shape.
+/// Restores the volume of every closed component by an offset along its normals.
 ///
-/// An offset moves the surface by volume / area, less than a scale about the centroid does where a
-/// shape is long or thin, and can leave parts where they are.
+/// The offset is the lost volume over the area. On long or thin shapes this moves vertices less
+/// than scaling about the centroid, and it can keep parts fixed.
 ///
-/// @param X0          n x 3 positions that have the volumes.
-/// @param F           m x 3 indices into X.
-/// @param weight      n factors of the offset, >= 0; a vertex of weight 0 stays where it is.
-/// @param mostOffset  largest offset of a vertex, relative to the largest displacement in its
-///                    component. Next to no volume, Newton's method goes anywhere.
-/// @param X           n x 3, moved.
+/// @param X0         n x 3 positions with the original volumes.
+/// @param F          m x 3 indices into X.
+/// @param weight     n factors on the offset, >= 0; a vertex of weight 0 stays fixed.
+/// @param maxOffset  largest offset of a vertex, relative to the largest displacement in its
+///                   component: with almost no volume, Newton's method may diverge.
+/// @param X          n x 3 positions, updated.
 PreservedVolumes preserveVolumes(const Vertices& X0, const Faces& F, const Components& components,
-                                 const Eigen::VectorXd& weight, double mostOffset, Vertices& X);
+                                 const Eigen::VectorXd& weight, double maxOffset, Vertices& X);
 
 }  // namespace spectral

@@ -32,42 +32,42 @@ double medianQuality(const FaceGraph& graph, const Points& X) {
 
 struct FoundSpikes {
     Spikes spikes;
-    bool areTail = false;  ///< None of them is single: the noise itself has many large values.
+    bool areTail = false;  ///< Not isolated spikes but the heavy tail of the noise itself.
 };
 
 FoundSpikes sparseSpikes(const FaceGraph& graph, const Points& X, const std::vector<bool>& mayMove,
                          double meanEdge) {
-    constexpr double kJudgedFrom = 4.0, kRemovedFrom = 3.0;  // deviations
-    constexpr Index kFewest = 50;
-    constexpr double kLeastShare = 0.01, kLeastShareOfTail = 0.004;
-    constexpr double kMostClustering = 2.0;
-    constexpr Index kMostMore = 3;  // times as many from fewer deviations on
-    Spikes spikes = findSpikes(graph, X, mayMove, kJudgedFrom, meanEdge);
-    const bool areUnrelated = spikes.count >= kFewest && spikes.clustering < kMostClustering;
-    bool areTail = areUnrelated && spikes.share() >= kLeastShareOfTail;
-    if (areUnrelated && spikes.share() >= kLeastShare) {
-        Spikes all = findSpikes(graph, X, mayMove, kRemovedFrom, meanEdge);
-        areTail = all.count > kMostMore * spikes.count;
+    constexpr double kDetectionLimit = 4.0, kRemovalLimit = 3.0;  // deviations
+    constexpr Index kMinCount = 50;
+    constexpr double kMinShare = 0.01, kMinShareOfTail = 0.004;
+    constexpr double kMaxClustering = 2.0;
+    constexpr Index kMaxRatio = 3;  // of the counts with the lower and the higher limit
+    Spikes spikes = findSpikes(graph, X, mayMove, kDetectionLimit, meanEdge);
+    const bool areUnrelated = spikes.count >= kMinCount && spikes.clustering < kMaxClustering;
+    bool areTail = areUnrelated && spikes.share() >= kMinShareOfTail;
+    if (areUnrelated && spikes.share() >= kMinShare) {
+        Spikes all = findSpikes(graph, X, mayMove, kRemovalLimit, meanEdge);
+        areTail = all.count > kMaxRatio * spikes.count;
         if (!areTail) return {std::move(all)};
     }
     return {certainSpikes(graph, X, std::move(spikes), meanEdge), areTail};
 }
 
-/// Share of the height that is noise. From a correlation of residuals on that a scanner's noise may
-/// have, but coarse shapes with a little noise have, too, more and more of it is the shape's.
+/// Share of the height that is noise. It decreases above a correlation of residuals that may come
+/// from a scanner's noise, but also from a coarse shape with a little noise.
 double noiseShare(double correlation) {
-    constexpr double kNoneOfShape = 0.1, kFall = 14.0, kLeast = 0.3;
-    return std::clamp(1.0 - kFall * (correlation - kNoneOfShape), kLeast, 1.0);
+    constexpr double kMaxPureNoise = 0.1, kSlope = 14.0, kMinShare = 0.3;
+    return std::clamp(1.0 - kSlope * (correlation - kMaxPureNoise), kMinShare, 1.0);
 }
 
 }  // namespace
 
 Diagnosis diagnose(const FaceGraph& graph, const Points& X, const std::vector<bool>& isMeasured,
                    bool isKnown, const Progress& progress) {
-    constexpr Index kFewest = 100, kFewestOfCorrelated = 1000;  // measured vertices
-    constexpr double kLeastQuality = 0.6;
-    constexpr double kLeastHeight = 0.02, kLeastOfCorrelated = 0.045;  // mean edges
-    constexpr double kMostCorrelation = 0.2;                           // of noise
+    constexpr Index kMinMeasured = 100, kMinMeasuredCorrelated = 1000;  // vertices
+    constexpr double kMinQuality = 0.6;
+    constexpr double kMinHeight = 0.02, kMinHeightCorrelated = 0.045;  // mean edges
+    constexpr double kMaxCorrelation = 0.2;  // above it, the residuals are those of a shape
     Diagnosis diagnosis;
     diagnosis.X = X;
     const double edge = diagnosis.noise.meanEdge = meanEdgeLength(X, graph.F);
@@ -77,13 +77,13 @@ Diagnosis diagnose(const FaceGraph& graph, const Points& X, const std::vector<bo
             diagnosis.voxel = *voxel;
             return diagnosis;
         }
-        if (medianQuality(graph, X) < kLeastQuality) {
+        if (medianQuality(graph, X) < kMinQuality) {
             diagnosis.kind = NoiseKind::Tessellation;
             return diagnosis;
         }
     }
     const Index measured = std::count(isMeasured.begin(), isMeasured.end(), true);
-    if (measured < kFewest) {
+    if (measured < kMinMeasured) {
         diagnosis.kind = NoiseKind::TooFew;
         return diagnosis;
     }
@@ -94,20 +94,21 @@ Diagnosis diagnose(const FaceGraph& graph, const Points& X, const std::vector<bo
     progress.report(0.6, kStage);
     const double correlation = residualCorrelation(graph, diagnosis.X, isMeasured);
     diagnosis.kind = NoiseKind::Shape;
-    if (isKnown || correlation < kMostCorrelation)
+    if (isKnown || correlation < kMaxCorrelation)
         diagnosis.noise = estimateNoise(graph, diagnosis.X, isMeasured, correlation, edge);
     diagnosis.noise.correlation = correlation;
-    if (correlation >= kMostCorrelation) return diagnosis;
+    if (correlation >= kMaxCorrelation) return diagnosis;
 
     NoiseEstimate& noise = diagnosis.noise;
     const double share = noiseShare(correlation);
     if (noise.size > 1.0) {
-        if (measured >= kFewestOfCorrelated && share * noise.height >= kLeastOfCorrelated * edge)
+        if (measured >= kMinMeasuredCorrelated &&
+            share * noise.height >= kMinHeightCorrelated * edge)
             diagnosis.kind = NoiseKind::Correlated;
         return diagnosis;
     }
     noise.height *= share;
-    if (noise.height >= kLeastHeight * edge)
+    if (noise.height >= kMinHeight * edge)
         diagnosis.kind = found.areTail ? NoiseKind::Impulses : NoiseKind::White;
     else if (share == 1.0)
         diagnosis.kind = NoiseKind::None;

@@ -8,34 +8,36 @@
 
 namespace spectral {
 
-/// What kind of noise all vertices of a mesh have.
+/// The kind of noise on a mesh.
 enum class NoiseKind {
-    None,          ///< Too little to be seen.
-    Shape,         ///< What looks like noise may as well be a curved, coarse shape.
-    Tessellation,  ///< Needles between the edges of a designed part: nothing can be measured.
-    TooFew,        ///< Vertices; noise and corners are the same.
-    Voxels,        ///< Steps of the surface of a binary volume.
+    None,          ///< Too little noise to measure.
+    Shape,         ///< What looks like noise may be a coarsely sampled, curved shape.
+    Tessellation,  ///< Needle triangles between the edges of a CAD part: nothing can be measured.
+    TooFew,        ///< Too few vertices to tell noise from corners.
+    Voxels,        ///< Staircase of the surface of a binary volume.
     White,         ///< Independent at every vertex.
     Impulses,      ///< Independent, with large values at many vertices.
-    Correlated     ///< Over some edges, as of scanners.
+    Correlated     ///< Correlated over a few edges, as from scanners.
 };
 
 struct Diagnosis {
     NoiseKind kind = NoiseKind::None;
-    NoiseEstimate noise;                                    ///< Without the spikes.
-    Points X;                                               ///< n x 3 positions without spikes.
-    Index spikes = 0;                                       ///< Vertices.
-    Eigen::RowVector3d voxel = Eigen::RowVector3d::Zero();  ///< Size along each axis.
+    NoiseEstimate noise;  ///< Estimate after the removal of spikes.
+    Points X;             ///< n x 3 positions without spikes.
+    Index spikes = 0;     ///< Number of vertices that are spikes.
+    Eigen::RowVector3d voxel = Eigen::RowVector3d::Zero();  ///< Voxel size along each axis.
 };
 
-/// Asks, in this order: Is it a surface of voxels? A tessellation? Are there spikes? Is the rest
-/// noise or shape, and how high and large is it? Medians and medians of moduli answer (Hampel
-/// 1974), so that creases and details of a part of the shape do not count. In doubt it is shape:
-/// smooth noise on a fine mesh and detail on a coarse one look alike.
+/// Classifies the noise by these questions, in order: Is it the surface of a voxel volume? A
+/// tessellation? Are there spikes? Is the rest noise or shape? How high is the noise, and over what
+/// length is it correlated? The answers rest on medians and median absolute deviations (Hampel
+/// 1974), robust against creases and local detail. In doubt it is shape: smooth noise on a fine
+/// mesh and detail on a coarse one look alike.
 ///
 /// @param X           n x 3 positions.
-/// @param isMeasured  n: vertices that count, not on rims.
-/// @param isKnown     whether the user has given the height: the last three questions alone.
+/// @param isMeasured  n: whether a vertex counts; not those on rims.
+/// @param isKnown     whether the user has given the height: only the last three questions are
+///                    asked.
 /// @throws Cancelled
 Diagnosis diagnose(const FaceGraph& graph, const Points& X, const std::vector<bool>& isMeasured,
                    bool isKnown, const Progress& progress = {});

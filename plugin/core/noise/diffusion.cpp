@@ -6,7 +6,7 @@
 namespace spectral {
 
 Eigen::VectorXd whiteNoise(Index count) {
-    // Box and Muller 1958; std::normal_distribution differs between libraries.
+    // Box and Muller 1958; std::normal_distribution differs between standard libraries.
     constexpr double kRange = 4294967296.0;
     std::mt19937 random(1);
     const auto uniform = [&] { return (static_cast<double>(random()) + 0.5) / kRange; };

@@ -8,8 +8,8 @@
 
 namespace spectral {
 
-/// Calls visit(i, mean of the rows of X at the neighbours of vertex i) for every vertex that has
-/// neighbours, in parallel: the rows of P X, where L = I - P is the uniform Laplacian.
+/// Calls visit(i, mean of the rows of X at the neighbours of vertex i), in parallel, for every
+/// vertex that has neighbours: the rows of P X, where L = I - P is the uniform Laplacian.
 template <class Rows, class Visit>
 void forEachMean(const VertexGraph& graph, const Rows& X, const Visit& visit) {
     parallelRows(graph.size(), [&](Index begin, Index end) {
@@ -23,8 +23,7 @@ void forEachMean(const VertexGraph& graph, const Rows& X, const Visit& visit) {
     });
 }
 
-/// One step of lazy diffusion, X <- (X + P X) / 2. It damps every frequency of the graph, without
-/// oscillations.
+/// One step of lazy diffusion, X <- (X + P X) / 2. Damps all frequencies without oscillation.
 template <class Rows>
 void diffuse(const VertexGraph& graph, Rows& X) {
     Rows next = X;
@@ -33,7 +32,7 @@ void diffuse(const VertexGraph& graph, Rows& X) {
     X.swap(next);
 }
 
-/// Independent values of the standard normal distribution, the same on every machine.
+/// Independent samples of the standard normal distribution, the same on every machine.
 Eigen::VectorXd whiteNoise(Index count);
 
 }  // namespace spectral

@@ -11,22 +11,22 @@ namespace spectral {
 
 namespace {
 
-/// Reverses faces until neighbours are oriented alike, from the first face of each component on.
-/// @param isOpposite  m x 3: whether each neighbour is oriented against the face.
+/// Reverses faces to orient neighbours consistently, starting at the first face of each component.
+/// @param isOpposite  m x 3: whether the neighbour has the opposite orientation.
 void orient(const Eigen::Matrix<bool, Eigen::Dynamic, 3>& isOpposite, FaceGraph& graph) {
     std::vector<char> isReached(static_cast<std::size_t>(graph.faceCount()), 0);
-    std::vector<std::pair<int, bool>> left;
+    std::vector<std::pair<int, bool>> stack;
     for (int start = 0; start < graph.faceCount(); ++start) {
-        if (!isReached[start]) left.emplace_back(start, false);
+        if (!isReached[start]) stack.emplace_back(start, false);
         isReached[start] = 1;
-        while (!left.empty()) {
-            const auto [face, isReversed] = left.back();
-            left.pop_back();
+        while (!stack.empty()) {
+            const auto [face, isReversed] = stack.back();
+            stack.pop_back();
             for (int c = 0; c < 3; ++c) {
                 const int next = graph.neighbours(face, c);
                 if (next < 0 || isReached[next]) continue;
                 isReached[next] = 1;
-                left.emplace_back(next, isReversed != isOpposite(face, c));
+                stack.emplace_back(next, isReversed != isOpposite(face, c));
             }
             if (!isReversed) continue;
             std::swap(graph.F(face, 1), graph.F(face, 2));
@@ -35,7 +35,7 @@ void orient(const Eigen::Matrix<bool, Eigen::Dynamic, 3>& isOpposite, FaceGraph&
     }
 }
 
-/// Makes counts of i at first[i + 1] the beginnings of its entries.
+/// Turns the counts at first[i + 1] into offsets.
 void accumulate(VertexGraph& graph) {
     for (std::size_t i = 1; i < graph.first.size(); ++i) graph.first[i] += graph.first[i - 1];
     graph.at.resize(static_cast<std::size_t>(graph.first.back()));
@@ -62,7 +62,7 @@ VertexGraph neighboursOfVertices(const SidesByEdge& sides, Index vertexCount) {
     });
     accumulate(graph);
     std::vector<Index> next(graph.first);
-    // By ascending lower vertex, so that each vertex meets its neighbours in ascending order.
+    // Edges come by ascending lower vertex, so each vertex gets its neighbours in ascending order.
     sides.forEachEdge([&](auto first, auto) {
         graph.at[next[first->low]++] = first->high;
         graph.at[next[first->high]++] = first->low;
@@ -70,8 +70,8 @@ VertexGraph neighboursOfVertices(const SidesByEdge& sides, Index vertexCount) {
     return graph;
 }
 
-/// A vector scaled to length 1; zero stays. Where squares do not underflow, twice as fast as
-/// stableNormalized.
+/// A vector scaled to length 1; zero stays zero. Avoids the slower stableNormalized unless squares
+/// underflow or overflow.
 Eigen::RowVector3d unit(const Eigen::RowVector3d& v) {
     constexpr double kSafe = 1e-280;
     const double squared = v.squaredNorm();
@@ -87,7 +87,7 @@ FaceGraph faceGraph(const Faces& F, Index vertexCount) {
     graph.onRim.assign(static_cast<std::size_t>(vertexCount), false);
     graph.neighbours = Faces::Constant(F.rows(), 3, -1);
     Eigen::Matrix<bool, Eigen::Dynamic, 3> isOpposite(F.rows(), 3);
-    // Whether the face runs through the side from its higher to its lower vertex.
+    // Whether the face traverses the side from its higher to its lower vertex.
     const auto isReversed = [&](const Side& side) {
         return F(side.face(), side.corner()) == side.high;
     };

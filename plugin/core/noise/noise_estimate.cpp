@@ -14,7 +14,7 @@ namespace {
 constexpr int kOctaves = 7;
 using Octaves = Eigen::Array<double, kOctaves, 1>;
 
-/// How often normals are blurred: they are to vary less than the noise does.
+/// Number of times normals are blurred, so that they vary less than the noise.
 constexpr int kBlurs = 3;
 
 /// The standard deviation of the measured values.
@@ -37,19 +37,19 @@ std::vector<double> moduliOf(const Eigen::VectorXd& values, const std::vector<bo
     return moduli;
 }
 
-/// The measured vertices around which there is the least of the shape, as this octave of it shows.
+/// The half of the measured vertices around which the given octave of the shape has least energy.
 std::vector<bool> quietest(const VertexGraph& graph, const Eigen::VectorXd& octave,
                            std::vector<bool> isMeasured) {
     constexpr double kShare = 0.5;
     constexpr int kSteps = 16;
     Eigen::VectorXd energy = octave.cwiseAbs2();
     for (int k = 0; k < kSteps; ++k) diffuse(graph, energy);
-    const double most = quantile(moduliOf(energy, isMeasured), kShare);
-    for (Index i = 0; i < energy.size(); ++i) isMeasured[i] = isMeasured[i] && energy[i] <= most;
+    const double limit = quantile(moduliOf(energy, isMeasured), kShare);
+    for (Index i = 0; i < energy.size(); ++i) isMeasured[i] = isMeasured[i] && energy[i] <= limit;
     return isMeasured;
 }
 
-/// Deviations along the normals in each octave, and those of white noise.
+/// Standard deviations in each octave: of the shape along its normals, and of white noise.
 struct OctaveDeviations {
     Octaves shape, white;
 };
@@ -57,7 +57,7 @@ struct OctaveDeviations {
 OctaveDeviations octaveDeviations(const FaceGraph& graph, const Points& X, const Points& N,
                                   const std::vector<bool>& isMeasured) {
     using Rows = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
-    constexpr int kOctaveOfShape = 3;
+    constexpr int kShapeOctave = 3;
     Rows Y(X.rows(), 4);  // positions and white noise
     Y << X, whiteNoise(X.rows());
     OctaveDeviations deviations;
@@ -70,22 +70,22 @@ OctaveDeviations octaveDeviations(const FaceGraph& graph, const Points& X, const
         along[k] = octave.leftCols<3>().cwiseProduct(N).rowwise().sum();
         deviations.white[k] = deviationOf(octave.col(3), isMeasured);
     }
-    const std::vector<bool> isQuiet = quietest(graph.vertices, along[kOctaveOfShape], isMeasured);
+    const std::vector<bool> isQuiet = quietest(graph.vertices, along[kShapeOctave], isMeasured);
     parallelFor(kOctaves, [&](Index k) {
         deviations.shape[k] = trimmedDeviation(moduliOf(along[k], isQuiet));
     });
     return deviations;
 }
 
-/// The most of each octave that the shape can account for. It rises by a factor from octave to
-/// octave, so the coarser ones, in which the shape is seen, bound the finer ones.
-/// @param height  deviations over those of white noise.
+/// The largest part of each octave that the shape can explain. A shape rises by a factor from
+/// octave to octave, so the coarser octaves, where it dominates, bound the finer ones.
+/// @param height  deviations relative to those of white noise.
 Octaves shapePart(const Octaves& height) {
-    constexpr double kLeastRise = 2.3, kMostRise = 3.0;
+    constexpr double kMinRise = 2.3, kMaxRise = 3.0;
     double rise = 0.0;
     for (int k = 2; k + 1 < kOctaves; ++k)
         if (height[k] > 0.0) rise = std::max(rise, height[k + 1] / height[k]);
-    rise = std::clamp(rise, kLeastRise, kMostRise);
+    rise = std::clamp(rise, kMinRise, kMaxRise);
     Octaves shape = height;
     for (int k = kOctaves - 2; k >= 0; --k) shape[k] = std::min(height[k], shape[k + 1] / rise);
     return shape;
@@ -93,10 +93,10 @@ Octaves shapePart(const Octaves& height) {
 
 /// Diffusion powers in the middle of each octave; their roots are lengths in edges.
 constexpr std::array<double, kOctaves> kPowers{0.5, 1.5, 3.0, 6.0, 12.0, 24.0, 48.0};
-/// Up to this octave white noise is where noise has its length: in the coarser ones is too little.
-constexpr int kOctavesOfWhite = 5;
+/// Octaves in which white noise defines the length 1: the coarser ones have too little.
+constexpr int kWhiteOctaves = 5;
 
-/// Mean length, in edges, of what has these energies in its first octaves.
+/// Mean length, in edges, of a signal with these energies, over its first octaves.
 double meanLength(const Octaves& energy, int octaves) {
     double lengths = 0.0, energies = 0.0;
     for (int k = 0; k < octaves; ++k) {
@@ -137,9 +137,9 @@ double residualCorrelation(const FaceGraph& graph, const Points& X,
 NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X,
                             const std::vector<bool>& isMeasured, double correlation,
                             double meanEdge) {
-    constexpr double kLeastExcess = 0.45;  // share of an octave that must be noise
-    constexpr double kMostRise = 2.03;     // of noise, from an octave to the next coarser one
-    // Of noise of 1.5 edges, height over what the octaves show that the shape does not hide.
+    constexpr double kMinNoiseShare = 0.45;  // share of an octave that must be noise
+    constexpr double kMaxRise = 2.03;        // of noise, from an octave to the next coarser one
+    // Height over the part of it that the shape does not hide, for noise of 1.5 edges.
     constexpr double kHidden = 1.3;
     const Points N = vertexNormals(graph, blurredNormals(graph, areaNormals(X, graph.F), kBlurs));
     const auto [deviation, white] = octaveDeviations(graph, X, N, isMeasured);
@@ -149,21 +149,20 @@ NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X,
     Octaves energy = Octaves::Zero();
     for (int k = 0; k < kOctaves; ++k) {
         const int finer = std::max(k - 1, 0);
-        if (!(noise[k] >= kLeastExcess * height[k] &&
-              height[finer + 1] < kMostRise * height[finer]))
+        if (!(noise[k] >= kMinNoiseShare * height[k] &&
+              height[finer + 1] < kMaxRise * height[finer]))
             break;
         energy[k] = std::pow(noise[k] * white[k], 2);
     }
     NoiseEstimate estimate;
     estimate.meanEdge = meanEdge;
     if (!(energy.sum() > 0.0)) return estimate;
-    const double length =
-        meanLength(energy, kOctaves) / meanLength(white.square(), kOctavesOfWhite);
+    const double length = meanLength(energy, kOctaves) / meanLength(white.square(), kWhiteOctaves);
     estimate.size = std::max(1.0, length);
     estimate.height = kHidden * std::sqrt(energy.sum() / white.square().sum());
-    // White noise is best seen in the first octave, where there is the least shape.
-    constexpr double kLeastSize = 1.22, kMostCorrelationOfWhite = -0.1;
-    if (estimate.size < kLeastSize || correlation < kMostCorrelationOfWhite) {
+    // White noise is measured best in the first octave, which has least of the shape.
+    constexpr double kMinSize = 1.22, kMaxWhiteCorrelation = -0.1;
+    if (estimate.size < kMinSize || correlation < kMaxWhiteCorrelation) {
         estimate.size = 1.0;
         estimate.height = noise[0];
     }

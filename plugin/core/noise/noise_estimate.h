@@ -6,33 +6,33 @@
 
 namespace spectral {
 
-/// What a mesh tells about noise that all its vertices have.
+/// Estimate of the noise on the vertices of a mesh.
 struct NoiseEstimate {
-    double height = 0.0;  ///< Standard deviation along the normals, length units; 0: none seen.
+    double height = 0.0;  ///< Standard deviation along the normals, length units; 0 if none found.
     double size = 1.0;    ///< Correlation length, mean edges; 1: independent at every vertex.
-    double correlation = 1.0;  ///< Of neighbouring vertices, see residualCorrelation.
+    double correlation = 1.0;  ///< Correlation of neighbouring residuals: residualCorrelation.
     double meanEdge = 0.0;     ///< Mean edge length, length units.
 };
 
-/// Correlation of the residuals L X along the normals between neighbours, with residuals clipped at
-/// two deviations.
+/// Correlation between neighbours of the residuals L X along the normals, clipped at two
+/// deviations.
 ///
-/// Independent noise has -0.24, that of scanners up to 0.16; a shape without noise 0.23 and more,
-/// since its curvature varies slowly.
+/// It is -0.24 for independent noise and up to 0.16 for that of scanners; 0.23 and more for a shape
+/// without noise, whose curvature varies slowly.
 /// @param X           n x 3 positions.
-/// @param isMeasured  n: vertices that count.
-/// @return  1 where there is no residual.
+/// @param isMeasured  n: whether a vertex counts.
+/// @return  1 if all residuals vanish.
 double residualCorrelation(const FaceGraph& graph, const Points& X,
                            const std::vector<bool>& isMeasured);
 
-/// Height and correlation length of the noise, from the energies along the normals of seven octaves
+/// Height and correlation length of the noise, from the energies along the normals in seven octaves
 /// of lazy diffusion, (I + P) / 2 to the powers 0, 1, 2, 4, ... 64.
 ///
-/// Each deviation is divided by that of white noise of height 1 in the same octave. White noise
-/// then has the same in all, a scanner's rises by 1.3 to 2 from one to the next coarser one, and a
-/// shape by 2.3 to 3. What a shape alone cannot explain, in octaves from the finest on, is noise.
-/// Medians leave creases and single outliers out.
-/// @param correlation  see residualCorrelation: where it is that of white noise, so is the size.
+/// Each deviation is divided by that of white noise of height 1 in the same octave. White noise is
+/// then the same in all octaves; from each octave to the next coarser one, scanner noise rises by a
+/// factor of 1.3 to 2, and a shape by 2.3 to 3. From the finest octave on, whatever a shape cannot
+/// explain is noise. Medians exclude creases and single outliers.
+/// @param correlation  result of residualCorrelation; if it is that of white noise, the size is 1.
 NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X,
                             const std::vector<bool>& isMeasured, double correlation,
                             double meanEdge);

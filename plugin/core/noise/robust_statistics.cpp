@@ -8,7 +8,7 @@ namespace spectral {
 
 namespace {
 
-/// The value at a share of the first `count` values, which it reorders; 0 for none.
+/// The quantile `share` of the first `count` values, which are reordered; 0 if there are none.
 double valueAt(std::vector<double>& values, std::ptrdiff_t count, double share) {
     if (count == 0) return 0.0;
     const auto at =
@@ -18,7 +18,7 @@ double valueAt(std::vector<double>& values, std::ptrdiff_t count, double share) 
 }
 
 constexpr double kHalf = 0.5;
-constexpr double kMedian = 0.6745;  // of the moduli, for variance 1
+constexpr double kMedian = 0.6745;  // median modulus of the standard normal distribution
 
 }  // namespace
 
@@ -31,7 +31,7 @@ double medianDeviation(std::vector<double> moduli) {
 }
 
 double trimmedDeviation(std::vector<double> moduli) {
-    constexpr double kMedianWithin = 0.6722, kDeviations = 3.0;  // for variance 1
+    constexpr double kDeviations = 3.0, kMedianWithin = 0.6722;  // the same, of moduli below 3
     constexpr int kRepetitions = 5;
     auto count = static_cast<std::ptrdiff_t>(moduli.size());
     double deviation = valueAt(moduli, count, kHalf) / kMedian;

@@ -59,11 +59,11 @@ Points blurredVertexNormals(const FaceGraph& graph, const Points& X, int blurs) 
     return vertexNormals(graph, blurredNormals(graph, areaNormals(X, graph.F), blurs));
 }
 
-/// Heights of the spikes, 0 elsewhere: the least squares solution of L z = r, by conjugate
+/// Heights of the spikes, 0 elsewhere: the least-squares solution of L z = r, by conjugate
 /// gradients on the normal equations.
 Eigen::VectorXd heightsOf(const std::vector<bool>& isSpike, const UniformLaplacian& L,
                           const Eigen::VectorXd& r) {
-    constexpr int kMostIterations = 100;
+    constexpr int kMaxIterations = 100;
     constexpr double kAccuracy = 1e-6;
     const auto restricted = [&](Eigen::VectorXd x) {
         for (Index i = 0; i < x.size(); ++i)
@@ -71,25 +71,24 @@ Eigen::VectorXd heightsOf(const std::vector<bool>& isSpike, const UniformLaplaci
         return x;
     };
     Eigen::VectorXd z = Eigen::VectorXd::Zero(r.size());
-    Eigen::VectorXd left = restricted(L.transposedTimes(r)), direction = left;
-    double squared = left.squaredNorm();
-    const double enough = kAccuracy * kAccuracy * squared;
-    for (int k = 0; k < kMostIterations && squared > enough; ++k) {
+    Eigen::VectorXd residual = restricted(L.transposedTimes(r)), direction = residual;
+    double squared = residual.squaredNorm();
+    const double tolerance = kAccuracy * kAccuracy * squared;
+    for (int k = 0; k < kMaxIterations && squared > tolerance; ++k) {
         const Eigen::VectorXd image = L.times(direction);
         const double curvature = image.squaredNorm();
         if (!(curvature > 0.0)) break;  // all vertices of a component are spikes
         const double step = squared / curvature;
         z += step * direction;
-        left -= step * restricted(L.transposedTimes(image));
-        const double next = left.squaredNorm();
-        direction = left + next / squared * direction;
+        residual -= step * restricted(L.transposedTimes(image));
+        const double next = residual.squaredNorm();
+        direction = residual + next / squared * direction;
         squared = next;
     }
     return z;
 }
 
-/// Takes vertices out that have more neighbours on their own side of the surface than on the other,
-/// by two.
+/// Drops spikes with at least two more neighbouring spikes on their own side than on the other.
 void dropClusters(const VertexGraph& graph, const Eigen::VectorXd& height,
                   std::vector<bool>& isSpike) {
     constexpr int kCluster = 2;
@@ -102,7 +101,8 @@ void dropClusters(const VertexGraph& graph, const Eigen::VectorXd& height,
     }
 }
 
-void judge(const VertexGraph& graph, Spikes& spikes) {
+/// Sets the count and the clustering of the spikes.
+void updateStatistics(const VertexGraph& graph, Spikes& spikes) {
     double neighbours = 0.0, both = 0.0;
     spikes.count = (spikes.height.array() != 0.0).count();
     for (Index i = 0; i < graph.size(); ++i)
@@ -117,25 +117,25 @@ void judge(const VertexGraph& graph, Spikes& spikes) {
 
 Spikes findSpikes(const FaceGraph& graph, const Points& X, const std::vector<bool>& mayMove,
                   double deviations, double meanEdge) {
-    constexpr int kMostRounds = 12, kBlursOfSearch = 4, kBlurs = 3;
-    constexpr double kLeastHeight = 0.1;  // mean edges
-    constexpr double kLeastFound = 1e-4;  // share of the vertices, for another round
+    constexpr int kMaxRounds = 12, kSearchBlurs = 4, kBlurs = 3;
+    constexpr double kMinHeight = 0.1;  // mean edges
+    constexpr double kMinFound = 1e-4;  // share of the vertices that makes another round worthwhile
     const UniformLaplacian L(graph.vertices);
     const VertexGraph& vertices = graph.vertices;
     Points without = X;
     std::vector<bool> isSpike(mayMove.size(), false);
-    for (int round = 0; round < kMostRounds; ++round) {
-        const Points N = blurredVertexNormals(graph, without, kBlursOfSearch);
+    for (int round = 0; round < kMaxRounds; ++round) {
+        const Points N = blurredVertexNormals(graph, without, kSearchBlurs);
         const Eigen::VectorXd d =
             L.transposedTimes(L.residual(without, N)).cwiseQuotient(L.squaredNorm());
         std::vector<double> moduli;
         for (Index i = 0; i < d.size(); ++i)
             if (mayMove[i]) moduli.push_back(std::abs(d[i]));
-        const double least =
-            std::max(deviations * medianDeviation(std::move(moduli)), kLeastHeight * meanEdge);
+        const double threshold =
+            std::max(deviations * medianDeviation(std::move(moduli)), kMinHeight * meanEdge);
         Index found = 0;
         for (Index i = 0; i < d.size(); ++i) {
-            if (!mayMove[i] || !(std::abs(d[i]) > least)) continue;
+            if (!mayMove[i] || !(std::abs(d[i]) > threshold)) continue;
             bool isLargest = true;
             for (Index k = vertices.first[i]; k < vertices.first[i + 1]; ++k)
                 isLargest = isLargest && std::abs(d[i]) >= std::abs(d[vertices.at[k]]);
@@ -144,7 +144,7 @@ Spikes findSpikes(const FaceGraph& graph, const Points& X, const std::vector<boo
             without.row(i) -= d[i] * N.row(i);
             ++found;
         }
-        if (static_cast<double>(found) < std::max(1.0, kLeastFound * static_cast<double>(d.size())))
+        if (static_cast<double>(found) < std::max(1.0, kMinFound * static_cast<double>(d.size())))
             break;
     }
     Spikes spikes;
@@ -152,28 +152,28 @@ Spikes findSpikes(const FaceGraph& graph, const Points& X, const std::vector<boo
     const Eigen::VectorXd r = L.residual(X, spikes.N);
     dropClusters(vertices, heightsOf(isSpike, L, r), isSpike);
     spikes.height = heightsOf(isSpike, L, r);
-    judge(vertices, spikes);
+    updateStatistics(vertices, spikes);
     return spikes;
 }
 
 Spikes certainSpikes(const FaceGraph& graph, const Points& X, Spikes spikes, double meanEdge) {
-    constexpr double kLeastHeight = 1.5;  // mean edges
-    constexpr double kLeastExplained = 0.97;
+    constexpr double kMinHeight = 1.5;  // mean edges
+    constexpr double kMinExplained = 0.97;
     const UniformLaplacian L(graph.vertices);
-    const Eigen::VectorXd r = L.residual(X, spikes.N), left = r - L.times(spikes.height);
+    const Eigen::VectorXd r = L.residual(X, spikes.N), rest = r - L.times(spikes.height);
     const VertexGraph& vertices = graph.vertices;
     for (Index i = 0; i < r.size(); ++i) {
         if (spikes.height[i] == 0.0) continue;
-        double before = r[i] * r[i], after = left[i] * left[i];
+        double before = r[i] * r[i], after = rest[i] * rest[i];
         for (Index k = vertices.first[i]; k < vertices.first[i + 1]; ++k) {
             before += r[vertices.at[k]] * r[vertices.at[k]];
-            after += left[vertices.at[k]] * left[vertices.at[k]];
+            after += rest[vertices.at[k]] * rest[vertices.at[k]];
         }
-        if (!(std::abs(spikes.height[i]) > kLeastHeight * meanEdge &&
-              after < (1.0 - kLeastExplained) * before))
+        if (!(std::abs(spikes.height[i]) > kMinHeight * meanEdge &&
+              after < (1.0 - kMinExplained) * before))
             spikes.height[i] = 0.0;
     }
-    judge(vertices, spikes);
+    updateStatistics(vertices, spikes);
     return spikes;
 }
 

@@ -8,29 +8,30 @@ namespace spectral {
 
 /// Single vertices far off the surface along its normals.
 struct Spikes {
-    Eigen::VectorXd height;  ///< n: along N, length units; 0 where there is no spike.
+    Eigen::VectorXd height;  ///< n: height along N, length units; 0 where there is no spike.
     Points N;                ///< n x 3 unit normals.
-    Index count = 0;
+    Index count = 0;         ///< Number of spikes.
     /// Share of spikes among the neighbours of spikes, over that among all vertices: 0.8 to 1.6 for
-    /// spikes, which know nothing of one another, and 2.6 or more for creases and details.
+    /// spikes, which are independent of one another, and 2.6 or more for creases and details.
     double clustering = 0.0;
 
     double share() const { return double(count) / double(height.size()); }
 };
 
-/// Finds the vertices that a spike explains best, the largest first, by the matched filter L^T of
-/// the residual L X along the normals; then all their heights at once, in the sense of least
-/// squares. Vertices that have more such neighbours on their own side of the surface than on the
-/// other, by two, are left out: creases and details.
+/// Finds spikes, the largest first, by applying the matched filter L^T to the residual L X along
+/// the normals; then fits all their heights at once by least squares. Vertices with at least two
+/// more neighbouring spikes on their own side of the surface than on the other are left out: these
+/// are creases and details.
 ///
 /// @param X           n x 3 positions.
-/// @param deviations  of the matched filter's output, robustly: smaller ones are no spikes.
-/// @param mayMove     n; other vertices are none.
+/// @param mayMove     n: whether a vertex can be a spike.
+/// @param deviations  smallest output of the matched filter for a spike, in robust standard
+///                    deviations.
 Spikes findSpikes(const FaceGraph& graph, const Points& X, const std::vector<bool>& mayMove,
                   double deviations, double meanEdge);
 
-/// The spikes higher than one and a half edges that explain as good as all of the residual around
-/// them, as no tip or corner of a shape does: for where there are too few for statistics.
+/// The spikes higher than one and a half edges that explain nearly all of the residual around them,
+/// which no tip or corner of a shape does. For use when there are too few for statistics.
 Spikes certainSpikes(const FaceGraph& graph, const Points& X, Spikes spikes, double meanEdge);
 
 }  // namespace spectral

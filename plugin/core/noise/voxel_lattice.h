@@ -7,11 +7,11 @@
 
 namespace spectral {
 
-/// The size of the voxels along each axis, if X (n x 3) are the vertices of the surface of a binary
-/// volume, from marching cubes or the like; none otherwise.
+/// Voxel size along each axis if X (n x 3) are the vertices of the surface of a binary volume, from
+/// marching cubes or the like; none otherwise.
 ///
-/// Such a surface passes through the middles of grid edges: of a vertex' coordinates, in voxels,
-/// one ends on a half and two on whole numbers.
+/// The vertices of such a surface are midpoints of grid edges: in units of voxels, one coordinate
+/// is a half-integer and two are integers.
 std::optional<Eigen::RowVector3d> voxelLattice(const Points& X);
 
 }  // namespace spectral

@@ -9,8 +9,8 @@ namespace spectral {
 
 /// The cutoff frequency omega_c = 2 pi / featureSize, radians per length unit.
 ///
-/// @param featureSize  wavelength of the cutoff, length units, > 0.
-/// @throws InvalidOption  when it is not a finite length above zero.
+/// @param featureSize  wavelength at the cutoff, length units, > 0.
+/// @throws InvalidOption  when it is not finite or not above zero.
 inline double cutoffFrequency(double featureSize) {
     if (!std::isfinite(featureSize) || featureSize <= 0.0)
         throw InvalidOption("feature_size = " + textOf(featureSize) +

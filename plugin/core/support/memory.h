@@ -6,22 +6,22 @@
 
 namespace spectral {
 
-/// Memory that this process may still take, bytes; infinite where that is not known.
+/// Returns the memory this process may still allocate, bytes; infinity if unknown.
 using MemoryMeasure = double (*)();
 
-/// Sets the host's measure; without one nothing is refused for want of memory.
+/// Sets the host's measure. Without one, memory counts as unlimited.
 void setMemoryMeasure(MemoryMeasure measure);
 
-/// What the host measures, bytes.
+/// The memory available according to the host's measure, bytes; infinity without one.
 double availableMemory();
 
-/// Refuses work that there is no memory for, before it is taken.
-/// @param bytes  that it needs.
-/// @param rows   vertices that it needs them for.
-/// @throws Error  of code OutOfMemory, with the number of vertices that there is memory for.
+/// Rejects work that does not fit in memory before it starts.
+/// @param bytes  memory required.
+/// @param rows   number of vertices it is required for.
+/// @throws Error  with code OutOfMemory and the number of vertices that would fit as its limit().
 void requireMemory(double bytes, Index rows);
 
-/// "1.5 GiB"; for texts of errors.
+/// Formats a number of bytes as in "1.5 GiB", for error messages.
 struct Bytes {
     double count;
 };

@@ -8,36 +8,36 @@
 
 namespace spectral {
 
-/// Tells the caller how far a computation is, and lets the caller stop it.
+/// Reports the progress of a computation to the caller, and lets the caller cancel it.
 ///
-/// A default-constructed object reports to nobody and never stops.
+/// A default-constructed object reports nothing and never cancels.
 class Progress {
   public:
-    /// Called with the part done, in [0, 1], and the present stage; returns false to stop.
+    /// Called with the fraction done, in [0, 1], and the current stage; returns false to cancel.
     using Callback = std::function<bool(double fraction, const std::string& stage)>;
 
-    /// Returns true to stop even while the callback has not returned: a window's callback may be
-    /// busy with other work of its user. Called from any thread.
+    /// Returns true to cancel, even before the callback has returned: a window's callback may be
+    /// busy with other input. Called from any thread.
     using Interruption = std::function<bool()>;
 
     Progress() = default;
     explicit Progress(Callback callback, Interruption interruption = {})
         : callback_(std::move(callback)), interruption_(std::move(interruption)) {}
 
-    /// Whether anybody listens.
-    bool isHeard() const { return static_cast<bool>(callback_); }
+    /// Whether there is a callback.
+    bool hasCallback() const { return static_cast<bool>(callback_); }
 
     bool isInterrupted() const { return interruption_ && interruption_(); }
 
     /// Reports `fraction` in [0, 1] of this object's own range.
-    /// @throws Cancelled  when the caller wants to stop.
+    /// @throws Cancelled  when the caller cancels.
     void report(double fraction, const std::string& stage) const {
         if (!callback_) return;
         const bool goOn = callback_(begin_ + (end_ - begin_) * fraction, prefix_ + stage);
         if (!goOn || isInterrupted()) throw Cancelled();
     }
 
-    /// A progress whose [0, 1] is [begin, end] of this one; its stages get `prefix`.
+    /// A progress whose range [0, 1] maps to [begin, end] of this one; prepends `prefix` to stages.
     Progress part(double begin, double end, const std::string& prefix = {}) const {
         Progress sub(*this);
         sub.begin_ = begin_ + (end_ - begin_) * begin;

@@ -13,18 +13,18 @@ namespace spectral {
 
 namespace {
 
-/// MeshLab repaints its window every 100 ms at most, and drops reports that come earlier.
+/// MeshLab repaints its window at most every 100 ms, and drops earlier reports.
 constexpr std::chrono::milliseconds kReportInterval{50};
 
 }  // namespace
 
-void runBeside(const Progress& progress, const std::function<void(const Progress&)>& work) {
-    if (!progress.isHeard()) return work(progress);
-    std::mutex mutex;  // guards the next two
+void runInBackground(const Progress& progress, const std::function<void(const Progress&)>& work) {
+    if (!progress.hasCallback()) return work(progress);
+    std::mutex mutex;  // guards latestFraction and latestStage
     double latestFraction = 0.0;
     std::string latestStage = "preparing";
     std::atomic<bool> stop{false};
-    const Progress note(
+    const Progress recorder(
         [&](double fraction, const std::string& stage) {
             const std::lock_guard<std::mutex> lock(mutex);
             latestFraction = fraction;
@@ -33,8 +33,8 @@ void runBeside(const Progress& progress, const std::function<void(const Progress
         },
         [&] { return stop || progress.isInterrupted(); });
 
-    // Not std::async: libc++'s waits for ever for a thread that it could not get.
-    std::packaged_task<void()> task([&] { work(note); });
+    // Not std::async: libc++'s hangs if it cannot start a thread.
+    std::packaged_task<void()> task([&] { work(recorder); });
     std::future<void> done = task.get_future();
     std::thread worker;
     try {

@@ -9,26 +9,25 @@
 
 namespace spectral {
 
-/// Does `work` beside the calling thread, which reports twenty times a second how far it is.
+/// Runs `work` on another thread, while the calling one reports progress twenty times a second.
 ///
-/// For a caller that must hear something all the time, whatever the work is at: a factorization of
-/// a large mesh takes seconds, and nothing can report from within it. A window that is painted anew
-/// only in its callback, as MeshLab's, stands still as long.
+/// For callers that need steady reports: factorizing a large mesh takes seconds and cannot report
+/// from within, and a window repainted only in the callback, such as MeshLab's, would freeze.
 ///
-/// `work` gets a progress that notes what it is told, and is left by Cancelled once the caller
-/// wants to stop: at its next report, or wherever its threads ask (ThreadTeam). Only the calling
-/// thread calls the caller back. Where no thread can be had, or nobody is to be told, it does the
-/// work itself.
+/// The progress passed to `work` only records its reports. Once the caller cancels, it throws
+/// Cancelled at the next report, or wherever the threads of `work` check (ThreadTeam). The callback
+/// is called only on the calling thread. If no thread can be started, or there is no callback, the
+/// calling thread does the work itself.
 ///
 /// @throws whatever `work` throws; Cancelled.
-void runBeside(const Progress& progress, const std::function<void(const Progress&)>& work);
+void runInBackground(const Progress& progress, const std::function<void(const Progress&)>& work);
 
-/// runBeside for a function that gives a value: work(arguments..., progress).
+/// runInBackground for a function that returns a value: work(arguments..., progress).
 template <class Work, class... Arguments>
 auto withSteadyProgress(const Progress& progress, const Work& work, const Arguments&... arguments) {
     std::optional<std::invoke_result_t<const Work&, const Arguments&..., const Progress&>> result;
-    runBeside(progress,
-              [&](const Progress& steady) { result.emplace(work(arguments..., steady)); });
+    runInBackground(progress,
+                    [&](const Progress& steady) { result.emplace(work(arguments..., steady)); });
     return *std::move(result);
 }
 

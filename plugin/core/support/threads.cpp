@@ -20,13 +20,13 @@ namespace spectral {
 
 namespace {
 
-std::atomic<int> chosenThreads{0};  // 0: one for each core
+std::atomic<int> chosenThreads{0};  // 0: one per core
 
-/// How long an idle thread spins before it sleeps: longer than the gaps between the calls of an
+/// Time an idle thread spins before it sleeps: longer than the gaps between the calls of an
 /// evaluation, too short for a user to notice a busy core.
-constexpr std::chrono::microseconds kAwake{200};
+constexpr std::chrono::microseconds kSpinTime{200};
 
-/// Whether the calling thread is within a task, and its number in its team.
+/// Whether the calling thread is running a task, and its index in its team.
 thread_local bool isInTask = false;
 thread_local int indexInTeam = 0;
 
@@ -40,18 +40,18 @@ int threadCount() {
 
 void setThreadCount(int count) { chosenThreads = std::max(0, count); }
 
-/// Tasks are claimed from one atomic number, the ticket: the number of the call and that of the
+/// Tasks are claimed from one atomic number, the ticket: the numbers of the call and of the
 /// unclaimed tasks. A thread that wakes up late finds none left, and nobody waits for it.
 class ThreadTeam::Implementation {
   public:
-    explicit Implementation(int threads) : asked_(threads) {
+    explicit Implementation(int threads) : requested_(threads) {
         try {
             for (int i = 1; i < threads; ++i)
                 threads_.emplace_back([this, i] {
                     indexInTeam = i;
                     serve();
                 });
-        } catch (const std::system_error&) {  // a limit on threads: use those there are
+        } catch (const std::system_error&) {  // a limit on threads: make do with fewer
         } catch (const std::bad_alloc&) {
         }
     }
@@ -71,7 +71,7 @@ class ThreadTeam::Implementation {
         if (progress_ != nullptr && progress_->isInterrupted()) throw Cancelled();
     }
 
-    int asked() const { return asked_; }
+    int requested() const { return requested_; }
     int size() const { return static_cast<int>(threads_.size()) + 1; }
 
     void run(Index count, TaskFunction work) {
@@ -91,23 +91,23 @@ class ThreadTeam::Implementation {
     }
 
   private:
-    /// Tasks may take less than a microsecond, as those of small fronts do.
-    static constexpr Index kBetweenStopPoints = 32;
+    /// Tasks per stop point: tasks may take less than a microsecond, as those of small fronts do.
+    static constexpr Index kTasksPerStopPoint = 32;
 
     static constexpr std::uint64_t kCall = std::uint64_t{1} << 32;
     static Index unclaimed(std::uint64_t ticket) { return static_cast<Index>(ticket % kCall); }
 
-    /// Does tasks of the current call while there are any; returns whether there was one.
+    /// Runs tasks of the current call as long as there are any; returns whether there was one.
     bool doTasks() {
         bool any = false;
         std::uint64_t ticket = ticket_;
         while (unclaimed(ticket) > 0) {
             if (!ticket_.compare_exchange_weak(ticket, ticket - 1)) continue;
-            // The call cannot end before this task: its function and counters stay valid.
+            // The call cannot end before this task does: its function and counters stay valid.
             any = true;
             isInTask = true;
             try {
-                if (unclaimed(ticket) % kBetweenStopPoints == 0 && indexInTeam == 0) stopPoint();
+                if (unclaimed(ticket) % kTasksPerStopPoint == 0 && indexInTeam == 0) stopPoint();
                 if (!failed_) work_.call(work_.function, count_ - unclaimed(ticket));
             } catch (...) {
                 const std::lock_guard<std::mutex> lock(mutex_);
@@ -121,13 +121,13 @@ class ThreadTeam::Implementation {
         return any;
     }
 
-    /// The loop of a thread of the team.
+    /// The main loop of a thread of the team.
     void serve() {
         auto last = std::chrono::steady_clock::now();
         while (!stop_) {
             if (doTasks()) {
                 last = std::chrono::steady_clock::now();
-            } else if (std::chrono::steady_clock::now() - last < kAwake) {
+            } else if (std::chrono::steady_clock::now() - last < kSpinTime) {
                 std::this_thread::yield();
             } else {
                 std::unique_lock<std::mutex> lock(mutex_);
@@ -138,8 +138,8 @@ class ThreadTeam::Implementation {
         }
     }
 
-    const Progress* progress_ = nullptr;  // for the thread that made the team
-    const int asked_;  // number of threads, of which the system may have had fewer
+    const Progress* progress_ = nullptr;  // checked only by the thread that created the team
+    const int requested_;                 // number of threads; the system may have provided fewer
     std::vector<std::thread> threads_;
     TaskFunction work_{};
     Index count_ = 0;
@@ -159,12 +159,12 @@ std::atomic<ThreadTeam::Implementation*> ThreadTeam::idle_{nullptr};
 
 ThreadTeam::ThreadTeam(int threads) {
     if (current_ != nullptr || isInTask) return;
-#ifndef _WIN32  // a forked process has the team, but not its threads
+#ifndef _WIN32  // a forked process inherits the team, but not its threads
     [[maybe_unused]] static const int atFork =
         pthread_atfork(nullptr, nullptr, [] { idle_ = nullptr; });
 #endif
     if (threads > 1) implementation_.reset(idle_.exchange(nullptr));
-    if (!implementation_ || implementation_->asked() != threads)
+    if (!implementation_ || implementation_->requested() != threads)
         implementation_ = std::make_unique<Implementation>(threads);
     current_ = implementation_.get();
 }
@@ -201,7 +201,7 @@ void runTasks(Index count, const std::function<void(Index, int, const StopPoint&
               const Progress& progress, const std::string& stage) {
     std::atomic<Index> finished{0};
     std::atomic<bool> stop{false};
-    std::exception_ptr failure;  // of the task that set `stop`
+    std::exception_ptr failure;  // exception of the task that set `stop`
     const StopPoint stopPoint = [&] {
         if (stop) throw Cancelled();
         if (ThreadTeam::threadIndex() == 0)

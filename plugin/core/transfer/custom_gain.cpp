@@ -20,15 +20,15 @@ constexpr const char* kExamples =
     "; give points as size:gain, e.g. 20%:1, 5%:2, 1%:0.1, or an expression of w = feature size / "
     "wavelength, e.g. 1/(1 + w^4)";
 
-/// @param position  from 0.
+/// @param position  index of the character, from 0.
 [[noreturn]] void reject(const std::string& text, std::size_t position, const std::string& why) {
     const std::size_t place = std::min(position, text.size()) + 1;
     throw InvalidOption("transfer_function = " + text + ": at character " + std::to_string(place) +
                         ", " + why + kExamples);
 }
 
-/// A muParser expression with its variables. The interface of C, because that of C++ differs
-/// between the versions that programs ship.
+/// A muParser expression with its variables. Uses muParser's C interface, as the C++ one differs
+/// between versions.
 class Expression {
   public:
     Expression(const std::string& text, double cutoff)
@@ -62,13 +62,13 @@ class Expression {
     double w_ = 0.0, f_ = 0.0, l_ = 0.0;
 };
 
-/// The number that is all of text[begin, end), but for blanks.
+/// The number in text[begin, end), which holds nothing else but blanks.
 double numberIn(const std::string& text, std::size_t begin, std::size_t end, const char* what) {
     std::istringstream input(text.substr(begin, end - begin));
     input.imbue(std::locale::classic());
     double number = 0.0;
     if (!(input >> number) || !(input >> std::ws).eof())
-        reject(text, begin, std::string("there must be a ") + what);
+        reject(text, begin, std::string("expected a ") + what);
     return number;
 }
 
@@ -87,13 +87,13 @@ double sizeIn(const std::string& text, std::size_t begin, std::size_t end,
     return size;
 }
 
-/// The points of a text, in its order.
+/// The points in a text, in the order written.
 std::vector<SizedGain> pointsOf(const std::string& text, const MeshLengths& lengths) {
     std::vector<SizedGain> points;
     for (std::size_t begin = 0, end = 0; end < text.size(); begin = end + 1) {
         end = std::min(text.find(',', begin), text.size());
         const std::size_t colon = text.find(':', begin);
-        if (colon >= end) reject(text, begin, "there must be a size, a colon and a gain");
+        if (colon >= end) reject(text, begin, "expected a size, a colon and a gain");
         const double size = sizeIn(text, begin, colon, lengths);
         const double gain = numberIn(text, colon + 1, end, "gain");
         if (gain < 0.0) reject(text, colon + 1, "a gain must not be negative");

@@ -6,20 +6,20 @@
 
 namespace spectral {
 
-/// A transfer function that a user has written.
+/// A transfer function written by the user.
 struct CustomGain {
-    Gain gain;  ///< F(omega), not yet checked: may be negative, or not finite. Evaluations
-                ///< of one text are not for several threads at once.
+    Gain gain;            ///< F(omega), unchecked: may be negative or not finite. Not thread-safe:
+                          ///< copies share their state.
     double cutoff = 0.0;  ///< omega_c, radians per length unit: as given, or the middle of points.
 };
 
-/// Lengths of a mesh that sizes may be relative to, length units.
+/// Lengths of a mesh that sizes may refer to, length units.
 struct MeshLengths {
-    double diagonal = 0.0;  ///< Of the bounding box: `5%`.
-    double meanEdge = 0.0;  ///< `6e`.
+    double diagonal = 0.0;  ///< Diagonal of the bounding box, for sizes like `5%`.
+    double meanEdge = 0.0;  ///< Mean edge length, for sizes like `6e`.
 };
 
-/// Reads a transfer function, in one of two notations.
+/// Parses a transfer function in one of two notations.
 ///
 /// Points of an Equalizer, `20%:1, 5%:2, 1%:0.1`: gains at feature sizes, which are percentages of
 /// the diagonal, mean edges (`6e`) or lengths.
@@ -28,7 +28,7 @@ struct MeshLengths {
 /// muParser: `1/(1 + w^4)`, `w < 1 ? 1 : 0.5`.
 ///
 /// @param cutoff  omega_c for expressions, radians per length unit, > 0.
-/// @throws InvalidOption  that names the place of a mistake in the text.
+/// @throws InvalidOption  when the text is wrong; the message says at which character.
 CustomGain parseGain(const std::string& text, double cutoff, const MeshLengths& lengths);
 
 }  // namespace spectral

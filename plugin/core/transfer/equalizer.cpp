@@ -12,7 +12,7 @@ namespace spectral {
 
 namespace {
 
-/// What a gain of 0 stands for.
+/// The gain used in place of 0.
 constexpr double kNoGain = 1e-3;
 
 }  // namespace
@@ -22,7 +22,7 @@ Equalizer::Equalizer(const std::vector<SizedGain>& points) {
     for (const auto& [size, gain] : points) {
         const double omega = cutoffFrequency(size);
         if (!std::isfinite(gain) || gain < 0.0)
-            throw InvalidOption("the gain " + textOf(gain) + " of details of " + textOf(size) +
+            throw InvalidOption("gain = " + textOf(gain) + " for details of size " + textOf(size) +
                                 ": a gain must be finite and not negative; 0 removes, 1 keeps, 2 "
                                 "doubles");
         points_.push_back({std::log2(omega), std::log2(gain > 0.0 ? gain : kNoGain), 0.0});
@@ -31,8 +31,8 @@ Equalizer::Equalizer(const std::vector<SizedGain>& points) {
               [](const Point& a, const Point& b) { return a.octave < b.octave; });
     for (std::size_t i = 0; i + 1 < points_.size(); ++i)
         if (!(points_[i].octave < points_[i + 1].octave))
-            throw InvalidOption("two points have the same size; a size has one gain");
-    // Steeper slopes than the lesser secant's would overshoot.
+            throw InvalidOption("two points have the same size; give one gain for each size");
+    // Slopes steeper than the flatter of both secants would overshoot.
     for (std::size_t i = 1; i + 1 < points_.size(); ++i) {
         const double left = secant(i - 1), right = secant(i);
         if (left * right > 0.0) points_[i].slope = std::abs(left) < std::abs(right) ? left : right;
@@ -55,14 +55,14 @@ double Equalizer::level(double octave) const {
     const Point& a = *(next - 1);
     if (next == points_.end()) return a.level;
     const Point& b = *next;
-    // From the tangent at one point to that at the other, with three continuous derivatives.
+    // Blend between the tangents at both points, with three continuous derivatives.
     const double t = (octave - a.octave) / (b.octave - a.octave);
     const double blend = t * t * t * t * (35.0 - t * (84.0 - t * (70.0 - t * 20.0)));
     return (1.0 - blend) * (a.level + (octave - a.octave) * a.slope) +
            blend * (b.level + (octave - b.octave) * b.slope);
 }
 
-/// Slope of the line from point i to the next.
+/// Slope of the line from point i to point i + 1.
 double Equalizer::secant(std::size_t i) const {
     return (points_[i + 1].level - points_[i].level) / (points_[i + 1].octave - points_[i].octave);
 }

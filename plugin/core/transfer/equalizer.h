@@ -4,17 +4,17 @@
 
 namespace spectral {
 
-/// A gain at a size of details.
+/// The gain for details of one size.
 struct SizedGain {
     double size = 0.0;  ///< Wavelength, length units, > 0.
     double gain = 0.0;  ///< >= 0.
 };
 
-/// The gain through some points, smooth and monotone between them.
+/// A gain through given points, smooth and monotone between them.
 ///
 /// The logarithm of the gain is interpolated over log omega, so that a fractional power of the
-/// points gives that power of the gain. Beyond the first and the last point the gain is theirs. A
-/// gain of 0, which has no logarithm, stands for 0.001: nothing that one can see.
+/// points gives that power of the gain. Beyond the first and the last point the gain is constant. A
+/// gain of 0, which has no logarithm, becomes 0.001: the difference is invisible.
 class Equalizer {
   public:
     /// @param points  at least one, in any order.
@@ -22,21 +22,22 @@ class Equalizer {
     ///                        not finite, or two points have the same size.
     explicit Equalizer(const std::vector<SizedGain>& points);
 
-    /// Gain at the frequency omega >= 0, radians per length unit; 1 exactly where it is 1 at all
-    /// points around.
+    /// Gain at the frequency omega >= 0, radians per length unit; exactly 1 where it is 1 at the
+    /// neighbouring points.
     double operator()(double omega) const;
 
-    /// Frequency in the middle of the points on the scale of log omega, radians per length unit.
+    /// Frequency in the middle of the range of points, on the scale of log omega; radians per
+    /// length unit.
     double middle() const;
 
-    /// Its wavelength, length units.
+    /// Wavelength of middle(), length units.
     double middleSize() const;
 
   private:
     struct Point {
         double octave = 0.0;  // log2 omega
         double level = 0.0;   // log2 of the gain
-        double slope = 0.0;   // of the level, per octave
+        double slope = 0.0;   // derivative of the level, per octave
     };
 
     double level(double octave) const;
@@ -45,12 +46,12 @@ class Equalizer {
     std::vector<Point> points_;  // by ascending frequency
 };
 
-/// The gain of sliders an octave apart, for details of 1, 2, 4, ... times the smallest size. The
-/// first acts on all finer details, too; details larger than twice the largest keep a gain of 1.
+/// An equalizer with points an octave apart, for details of 1, 2, 4, ... times the smallest size.
+/// The first gain also applies to all finer details; from twice the largest size on the gain is 1.
 ///
 /// @param smallestSize  length units, > 0.
 /// @param gains         from fine to coarse, >= 0, at least one.
-/// @throws InvalidOption  when one of them is out of its range.
+/// @throws InvalidOption  when an argument is out of range.
 Equalizer octaveEqualizer(double smallestSize, const std::vector<double>& gains);
 
 }  // namespace spectral

@@ -14,11 +14,11 @@ namespace spectral {
 
 namespace {
 
-/// Beyond this order x^2m overflows within an octave or two and the filter is ideal to round-off.
+/// Beyond this order x^2m overflows within an octave or two: the filter is ideal up to round-off.
 constexpr int kMaxOrder = 64;
 
-/// Range of a custom transfer function, octaves on both sides of the cutoff: wider than the
-/// spectrum of any mesh whose sizes matter.
+/// Range of a custom transfer function, octaves on either side of the cutoff: wider than the
+/// relevant spectrum of any mesh.
 constexpr int kOctaves = 16;
 
 void requireGain(double gain, const char* name) {
@@ -28,13 +28,13 @@ void requireGain(double gain, const char* name) {
                             "of a negative gain does not exist; 0 removes, 1 keeps, 2 doubles");
 }
 
-/// The same of a custom gain at a frequency.
+/// The same for a custom gain at the frequency omega.
 void requireGain(double gain, double omega, double cutoff) {
     if (std::isfinite(gain) && gain >= 0.0) return;
     std::ostringstream text;
-    text << "transfer_function is " << gain << " at w = " << omega / cutoff << ", details of "
+    text << "transfer_function is " << gain << " at w = " << omega / cutoff << " (details of size "
          << 2.0 * kPi / omega
-         << ": a gain must be finite and not negative; max(0, ...) keeps it from being negative";
+         << "): a gain must be finite and not negative; max(0, ...) avoids negative gains";
     throw InvalidOption(text.str());
 }
 
@@ -43,20 +43,20 @@ void requireGain(double gain, double omega, double cutoff) {
 TransferFunction::TransferFunction(const TransferFunctionOptions& options, double cutoff)
     : options_(options), cutoff_(cutoff) {
     if (!std::isfinite(cutoff) || cutoff <= 0.0)
-        throw InvalidOption("the cutoff frequency must be finite and positive, it is " +
-                            textOf(cutoff) + ": choose a feature size above zero");
+        throw InvalidOption("the cutoff frequency is " + textOf(cutoff) +
+                            ", but must be finite and positive: choose a feature size above zero");
     if (options.order < 1 || options.order > kMaxOrder)
         throw InvalidOption("order = " + std::to_string(options.order) +
-                            ": a Butterworth order lies between 1 and " +
+                            ": a Butterworth order must be between 1 and " +
                             std::to_string(kMaxOrder));
     if (!std::isfinite(options.bandWidth) || options.bandWidth <= 0.0)
         throw InvalidOption("band_width = " + textOf(options.bandWidth) +
-                            ": the width of a band is a positive number of octaves");
+                            ": the width of a band must be a positive number of octaves");
     requireGain(options.passGain, "pass_gain");
     requireGain(options.stopGain, "stop_gain");
     if (!(options.power > 0.0 && options.power <= 1.0))
         throw InvalidOption("power = " + textOf(options.power) +
-                            ": the part of the filter to apply is above 0 and at most 1, the whole "
+                            ": the power of the filter must be above 0 and at most 1, the whole "
                             "filter");
     options.type == FilterType::Custom ? sampleCustom() : sample();
 }
@@ -66,12 +66,12 @@ double TransferFunction::operator()(double omega) const { return power(omega, 1.
 double TransferFunction::power(double omega, double alpha) const {
     const double x = omega / cutoff_, exponent = alpha * options_.power;
     if (options_.type == FilterType::Custom) return std::pow(custom(omega), exponent);
-    // A band-stop is 1 minus the band-pass B: it stops where B is 1.
+    // A band-stop is 1 minus the band-pass B: stopGain applies where B is 1.
     double at0 = options_.stopGain, at1 = options_.passGain;
     if (options_.type == FilterType::BandStop) std::swap(at0, at1);
     const double octaves = octavesDown(x), B = std::exp2(-octaves);
     if (at0 == 0.0) return std::pow(at1, exponent) * std::exp2(-exponent * octaves);
-    // 1 - B without cancellation: a small power of its round-off would be large.
+    // 1 - B without cancellation: a small power would amplify its round-off.
     const double gain =
         B < 0.5 ? at0 + (at1 - at0) * B : at1 + (at1 - at0) * std::expm1(-std::log(2.0) * octaves);
     return std::pow(gain, exponent);
@@ -83,9 +83,9 @@ TransferFunction TransferFunction::whole() const {
     return whole;
 }
 
-/// -log2 of the prototype B, >= 0; of the band-pass for a band-stop.
+/// -log2 of the prototype B, >= 0; for a band-stop, that of the band-pass.
 double TransferFunction::octavesDown(double x) const {
-    // The frequency as the low-pass sees it: its cutoff is at 1.
+    // Map the frequency to that of the equivalent low-pass with cutoff 1.
     double y = x;
     switch (options_.type) {
         case FilterType::LowPass: break;
@@ -103,7 +103,7 @@ double TransferFunction::octavesDown(double x) const {
     switch (options_.response) {
         case Response::Gaussian: return 0.5 * y * y;
         case Response::Butterworth: {
-            // log2(1 + y^2m) / 2, without forming a power that overflows
+            // log2(1 + y^2m) / 2 without overflow
             const double exponent = 2.0 * options_.order * std::log(y);
             const double softplus = exponent > 0.0 ? exponent + std::log1p(std::exp(-exponent))
                                                    : std::log1p(std::exp(exponent));
@@ -120,8 +120,8 @@ double TransferFunction::custom(double omega) const {
 }
 
 void TransferFunction::sample() {
-    // A Butterworth filter of order m falls from its pass band within 1/m octaves, or 1/m of the
-    // width of a band; a Gaussian one matters up to four widths away.
+    // A Butterworth filter of order m rolls off within 1/m octaves, or 1/m of the bandwidth; a
+    // Gaussian one within four times that width.
     constexpr int kPerFall = 8;
     const bool isBand =
         options_.type == FilterType::BandPass || options_.type == FilterType::BandStop;
@@ -139,7 +139,7 @@ void TransferFunction::sample() {
 
 void TransferFunction::sampleCustom() {
     constexpr int kPerOctave = 16;
-    constexpr double kResolved = 0.02;  // change between samples, relative to the range of F
+    constexpr double kResolved = 0.02;  // largest change between samples, relative to F's range
     std::vector<double> omega;
     for (int i = -kOctaves * kPerOctave; i <= kOctaves * kPerOctave; ++i)
         omega.push_back(cutoff_ * std::exp2(static_cast<double>(i) / kPerOctave));
@@ -159,7 +159,7 @@ void TransferFunction::sampleCustom() {
 
 /// Appends samples and jumps in the interval (from, to).
 void TransferFunction::sampleBetween(double from, double to, double tolerance) {
-    constexpr double kJump = 1e-9;  // relative width of an interval that no smooth gain varies in
+    constexpr double kJump = 1e-9;  // relative width in which only a discontinuous gain varies
     if (!(std::abs(custom(to) - custom(from)) > tolerance)) return;
     const double middle = std::sqrt(from * to);
     if (to - from <= kJump * to) {
@@ -190,8 +190,8 @@ Gain fractionalPower(const TransferFunction& F, double alpha) {
 }
 
 double meanGain(const TransferFunction& F, double from, double to) {
-    // F varies on the scale of its cutoff, [from, to] may span decades beyond it: panels that grow
-    // geometrically with the distance from the cutoff, cut at the jumps, Simpson's rule in each.
+    // Simpson's rule on panels cut at the jumps. F varies on the scale of its cutoff, but [from,
+    // to] may span decades beyond it: the panels grow geometrically with the frequency.
     constexpr int kPanelsPerOctave = 64;
     std::vector<double> cuts{from, to};
     for (const double jump : F.discontinuities())
@@ -204,7 +204,7 @@ double meanGain(const TransferFunction& F, double from, double to) {
 
     double integral = 0.0;
     for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
-        // A hair inside the panel: at a jump each side has its own value.
+        // Evaluate slightly inside the panel: at a jump, the two sides differ.
         const double width = cuts[i + 1] - cuts[i];
         const double inset = 1e-9 * width;
         integral +=

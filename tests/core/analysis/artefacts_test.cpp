@@ -32,7 +32,7 @@ Artefacts measured(const Mesh& mesh, double part,
                             withFeatureSize(part * boundingBoxDiagonal(mesh.V), kind));
 }
 
-TEST(Artefacts, AreWhatAllEigenvectorsSay) {
+TEST(Artefacts, AgreeWithAllEigenvectors) {
     for (const Mesh& mesh : classesOfMeshes())
         for (const double part : {0.05, 0.15, 0.5}) {
             const Operator A(mesh);
@@ -56,7 +56,7 @@ TEST(Artefacts, AreWhatAllEigenvectorsSay) {
 }
 
 /// Relative error of the closed form on a sphere of radius r: its coordinates are harmonics of
-/// lambda = 2 / r^2, so that with 4 lambda_c = 2 / r^2 just one half of them is called an artefact.
+/// lambda = 2 / r^2, so that with 4 lambda_c = 2 / r^2 exactly half of them counts as an artefact.
 double sphereError(int levels) {
     const double r = 3.0;
     Mesh sphere = testing::icosphere(levels);
@@ -67,21 +67,21 @@ double sphereError(int levels) {
     return std::abs(artefacts.rms / (0.5 * r) - 1.0);
 }
 
-TEST(Artefacts, OfASphereConvergeToTheClosedFormAtLeastAtSecondOrder) {
+TEST(Artefacts, ConvergeToTheClosedFormOnASphereAtLeastAtSecondOrder) {
     const double coarse = sphereError(2), middle = sphereError(3), fine = sphereError(4);
     EXPECT_LT(coarse, 0.05);
     EXPECT_GT(coarse / middle, 4.0);
     EXPECT_GT(middle / fine, 4.0);
 }
 
-TEST(Artefacts, AreNoneInASmoothShapeAndAllOfARoughOne) {
+TEST(Artefacts, AreNothingOfASmoothShapeAndAllOfARoughOne) {
     const Mesh sphere = testing::icosphere(4);
     EXPECT_LT(measured(sphere, 0.2).maximum, 1e-3);
     const Mesh spiky = testing::withNoise(sphere, 0.02, 7);
     EXPECT_GT(measured(spiky, 0.2).rms, 0.005);
 }
 
-TEST(Artefacts, OfASpikeAreAtTheSpike) {
+TEST(Artefacts, AreLocalizedAtASpike) {
     Mesh mesh = testing::icosphere(4);
     const Index tip = 1000;
     mesh.V.row(tip) *= 1.05;
@@ -112,7 +112,7 @@ TEST(Artefacts, ScaleWithTheMesh) {
     }
 }
 
-TEST(Artefacts, DoNotChangeUnderRigidMotions) {
+TEST(Artefacts, AreInvariantUnderRigidMotion) {
     const Eigen::Matrix3d rotation =
         Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, -0.5).normalized()).toRotationMatrix();
     for (const Mesh& mesh : classesOfMeshes()) {
@@ -124,7 +124,7 @@ TEST(Artefacts, DoNotChangeUnderRigidMotions) {
     }
 }
 
-TEST(Artefacts, AtUnreferencedVerticesAreZero) {
+TEST(Artefacts, AreZeroAtUnreferencedVertices) {
     const Mesh mesh = testing::blob();
     Vertices V(mesh.V.rows() + 2, 3);
     V << Eigen::RowVector3d(9, 9, 9), mesh.V, Eigen::RowVector3d(-50, 0, 0);
@@ -137,7 +137,7 @@ TEST(Artefacts, AtUnreferencedVerticesAreZero) {
     EXPECT_LT((with.length.segment(1, mesh.V.rows()) - without.length).cwiseAbs().maxCoeff(), 1e-9);
 }
 
-TEST(Artefacts, EstimateWhatRoundOffDoesToVerticesOfHardlyAnyMass) {
+TEST(Artefacts, EstimateTheRoundOffAtVerticesOfTinyMass) {
     // A ribbon of needles, 6e-7 wide, with a cap at one end: solves keep two digits over the
     // surface, none at the three vertices of the cap. The feature size leaves the ribbon as it is.
     constexpr double h = 5.6729572759190897e-07;
@@ -150,7 +150,7 @@ TEST(Artefacts, EstimateWhatRoundOffDoesToVerticesOfHardlyAnyMass) {
     EXPECT_LE(artefacts.maximum, 3.0 * artefacts.errorEstimate + 1e-5);
 }
 
-TEST(Artefacts, RefuseBadMeshesAndFeatureSizes) {
+TEST(Artefacts, RejectInvalidMeshesAndFeatureSizes) {
     const Mesh mesh = testing::icosphere(2);
     for (const double featureSize : {0.0, -1.0, std::nan("")})
         EXPECT_THROW(measureArtefacts(mesh.V, mesh.F, withFeatureSize(featureSize)), InvalidOption);

@@ -15,7 +15,7 @@ double omegaOf(double featureSize) { return 2.0 * kPi / featureSize; }
 /// From twice the diagonal to a 30th of it.
 Bands octaves() { return {kDiagonal, omegaOf(2.0 * kDiagonal), omegaOf(kDiagonal / 30.0)}; }
 
-TEST(Bands, AreInTheMiddleOfPowersOfTwoOfTheDiagonal) {
+TEST(Bands, AreCentredAtTheDiagonalTimesPowersOfTwo) {
     ASSERT_EQ(octaves().count(), 7);  // 200 % to 3.125 %
     for (int j = 0; j < 7; ++j) {
         EXPECT_DOUBLE_EQ(octaves().featureSize(j), kDiagonal * std::exp2(1 - j));
@@ -23,7 +23,7 @@ TEST(Bands, AreInTheMiddleOfPowersOfTwoOfTheDiagonal) {
     }
 }
 
-TEST(Bands, ArePartitionOfUnity) {
+TEST(Bands, FormAPartitionOfUnity) {
     for (double size = 1e-3 * kDiagonal; size < 100.0 * kDiagonal; size *= 1.01) {
         double sum = 0.0;
         for (int j = 0; j < octaves().count(); ++j) {
@@ -37,7 +37,7 @@ TEST(Bands, ArePartitionOfUnity) {
     EXPECT_EQ(octaves().window(6, std::numeric_limits<double>::infinity()), 1.0);
 }
 
-TEST(Bands, HoldTheirMiddleWhollyAndTheirEdgesByHalves) {
+TEST(Bands, AreOneAtTheirCentreAndOneHalfAtTheirEdges) {
     for (int j = 0; j + 1 < octaves().count(); ++j) {
         EXPECT_DOUBLE_EQ(octaves().window(j, omegaOf(octaves().featureSize(j))), 1.0);
         const double edge = omegaOf(octaves().edge(j));
@@ -48,14 +48,14 @@ TEST(Bands, HoldTheirMiddleWhollyAndTheirEdgesByHalves) {
     }
 }
 
-TEST(Bands, OfOneFrequencyAreOneForAllFrequencies) {
+TEST(Bands, AreASingleOneForARangeOfOneFrequency) {
     const Bands one(kDiagonal, omegaOf(1.0), omegaOf(1.0));
     EXPECT_EQ(one.count(), 1);
     for (const double omega : {0.0, 1.0, 1e9}) EXPECT_EQ(one.window(0, omega), 1.0);
     EXPECT_EQ(one.end(0), std::numeric_limits<double>::infinity());
 }
 
-TEST(Bands, OfThirdsOfOctavesArePartitionOfUnityAndLieInTheirOctaves) {
+TEST(Bands, ThirdOctavesFormAPartitionOfUnityAndLieInTheirOctaves) {
     const double lowest = omegaOf(2.0 * kDiagonal), highest = omegaOf(kDiagonal / 30.0);
     const Bands thirds(kDiagonal, lowest, highest, 3);
     ASSERT_EQ(thirds.count(), 19);  // 200 % to 3.125 %

@@ -1,4 +1,4 @@
-// The spectrum of a shape with a fixed boundary, and what a boundary changes.
+// The spectrum of a shape with a fixed boundary, and the effect of a boundary.
 
 #include <gtest/gtest.h>
 
@@ -24,17 +24,16 @@ using testing::Mesh;
 using testing::Operator;
 using testing::spectrumOf;
 
-/// Open surfaces, one of them beside a closed one.
+/// Open surfaces, one of them together with a closed one.
 std::vector<Mesh> openMeshes() {
     return {testing::hemisphere(14), testing::withNoise(testing::rectangle(2, 1, 32, 16), 0.01, 3),
             testing::joined(testing::blob(), testing::withNoise(testing::hemisphere(8), 0.01, 2))};
 }
 
-TEST(GeometrySpectrumOfAFixedBoundary, IsWhatAllEigenvectorsOfTheInteriorSay) {
+TEST(GeometrySpectrumWithFixedBoundary, AgreesWithAllEigenvectorsOfTheInterior) {
     for (const Mesh& mesh : openMeshes()) {
         expectWhatAllEigenvectorsSay(mesh, Boundary::Fixed);
-        // By hand: U = X - H, H harmonic, W_II H_I = -W_IB X_B; without its mean where nothing is
-        // fixed.
+        // By hand: U = X - H, H harmonic, W_II H_I = -W_IB X_B; minus its mean if nothing is fixed.
         const Operator A(mesh);
         const Components components = connectedComponents(mesh.F, mesh.V.rows());
         const Interior interior(mesh.F, components, Boundary::Fixed);
@@ -57,9 +56,9 @@ TEST(GeometrySpectrumOfAFixedBoundary, IsWhatAllEigenvectorsOfTheInteriorSay) {
     }
 }
 
-TEST(GeometrySpectrumOfAFixedBoundary, ShowsAWaveThatIsZeroThereAndNothingElse) {
-    // Height e sin(p pi x / a) sin(q pi y / b) on a flat rectangle a x b, whose plane is what its
-    // boundary determines: a single harmonic with the root mean square e / 2.
+TEST(GeometrySpectrumWithFixedBoundary, ShowsOnlyAWaveThatVanishesThere) {
+    // Height e sin(p pi x / a) sin(q pi y / b) on a flat rectangle a x b, whose plane is determined
+    // by its boundary: a single harmonic with root mean square e / 2.
     const double a = 2.0, b = 1.0, e = 1e-3;
     const int p = 5, q = 4;
     Mesh mesh = testing::rectangle(a, b, 96, 48);
@@ -67,19 +66,20 @@ TEST(GeometrySpectrumOfAFixedBoundary, ShowsAWaveThatIsZeroThereAndNothingElse) 
         mesh.V(i, 2) =
             e * std::sin(p * kPi * mesh.V(i, 0) / a) * std::sin(q * kPi * mesh.V(i, 1) / b);
     const double featureSize = 2.0 / std::hypot(p / a, q / b);
-    for (const int basisSize : {4, 100}) {  // the wave beyond the basis, and within
+    for (const int basisSize : {4, 100}) {  // the wave is beyond the basis, or in it
         const GeometrySpectrum spectrum = spectrumOf(mesh, basisSize, Boundary::Fixed);
         EXPECT_NEAR(std::sqrt(spectrum.totalEnergy / spectrum.area) / (e / 2), 1.0, 0.01);
         EXPECT_NEAR(std::log2(spectrum.featureSize50 / featureSize), 0.0,
                     basisSize == 100 ? 0.01 : 0.5);
     }
-    // With a free boundary the plane itself is seen.
+    // With a free boundary the plane itself has energy.
     EXPECT_GT(spectrumOf(mesh, 20).octaveAmplitudes.maxCoeff(), 0.5);
 }
 
-TEST(GeometrySpectrumOfAFixedBoundary, FallsOffFasterThanThatOfAFreeOne) {
-    // The cosines of x on a rectangle are 1 / m^2, those of a free boundary: 2^1.5 per octave. The
-    // sines of a dome x (a - x) y (b - y), that is curved at the boundary, are 1 / m^3: 2^2.5.
+TEST(GeometrySpectrumWithFixedBoundary, FallsFasterThanThatOfAFreeOne) {
+    // The cosine coefficients of x on a rectangle with free boundary are 1 / m^2: 2^1.5 per octave.
+    // The sine coefficients of a dome x (a - x) y (b - y), which is curved at the boundary, are
+    // 1 / m^3: 2^2.5.
     const double a = 2.0, b = 1.6;
     Mesh mesh = testing::rectangle(a, b, 120, 96);
     const auto slope = [&](Boundary boundary) {
@@ -94,8 +94,8 @@ TEST(GeometrySpectrumOfAFixedBoundary, FallsOffFasterThanThatOfAFreeOne) {
     EXPECT_NEAR(slope(Boundary::Fixed), 2.5, 0.25);
 }
 
-TEST(GeometrySpectrum, IsWhatAFilterWithTheSameBoundaryActsOn) {
-    // A filter takes (1 - F)^2 of the energy of every harmonic out of the shape.
+TEST(GeometrySpectrum, IsThatOfTheSignalAFilterActsOn) {
+    // A filter removes (1 - F)^2 of the energy of every harmonic.
     for (const Mesh& mesh : openMeshes())
         for (const Boundary boundary : {Boundary::Free, Boundary::Fixed}) {
             const GeometrySpectrum spectrum =
@@ -119,7 +119,7 @@ TEST(GeometrySpectrum, IsWhatAFilterWithTheSameBoundaryActsOn) {
         }
 }
 
-TEST(GeometrySpectrumOfAFixedBoundary, OfAClosedMeshIsThatOfAFreeOne) {
+TEST(GeometrySpectrumWithFixedBoundary, EqualsThatOfAFreeOneOnAClosedMesh) {
     const Mesh mesh = testing::blob();
     const GeometrySpectrum free = spectrumOf(mesh, 30),
                            fixed = spectrumOf(mesh, 30, Boundary::Fixed);
@@ -127,7 +127,7 @@ TEST(GeometrySpectrumOfAFixedBoundary, OfAClosedMeshIsThatOfAFreeOne) {
     EXPECT_EQ(free.frequencies, fixed.frequencies);
 }
 
-TEST(GeometrySpectrumOfAFixedBoundary, OfASingleVertexInsideIsOneFrequency) {
+TEST(GeometrySpectrumWithFixedBoundary, IsOneFrequencyForASingleInteriorVertex) {
     Mesh roof = testing::rectangle(2, 2, 2, 2);
     roof.V(4, 2) = 0.5;  // the middle
     const GeometrySpectrum spectrum = spectrumOf(roof, 200, Boundary::Fixed);
@@ -136,7 +136,7 @@ TEST(GeometrySpectrumOfAFixedBoundary, OfASingleVertexInsideIsOneFrequency) {
     EXPECT_EQ(spectrum.octaveEnergies.size(), 1);
 }
 
-TEST(GeometrySpectrumOfAFixedBoundary, IsRefusedWhereItLeavesNothing) {
+TEST(GeometrySpectrumWithFixedBoundary, IsRejectedIfItLeavesNothing) {
     Mesh flat = testing::rectangle(2, 1, 8, 4);
     flat.V.rowwise() += Eigen::RowVector3d(100, -50, 3);
     for (const Mesh& mesh : {testing::rectangle(1, 1, 1, 1), flat}) {

@@ -1,4 +1,4 @@
-// What the spectrum of a shape says of noise.
+// Noise in the spectrum of a shape.
 
 #include <gtest/gtest.h>
 
@@ -16,22 +16,21 @@ using testing::Mesh;
 using testing::Operator;
 using testing::spectrumOf;
 
-TEST(GeometrySpectrum, OfNoiseRisesTowardsSmallFeatures) {
-    // As many harmonics are in an octave as are in all larger ones, times three, and each has as
-    // much of the noise.
+TEST(GeometrySpectrum, RisesTowardsSmallFeaturesForNoise) {
+    // An octave has three times as many harmonics as all coarser ones, each with the same noise.
     const GeometrySpectrum spectrum =
         spectrumOf(testing::withNoise(testing::icosphere(4), 1e-3, 5), 100);
     const Index last = spectrum.octaveAmplitudes.size() - 1;
     for (Index j = 2; j <= last; ++j)
         EXPECT_GT(spectrum.octaveAmplitudes[j], 1.6 * spectrum.octaveAmplitudes[j - 1]);
-    // Of the three directions of the noise one is across the surface; what moves vertices along it
-    // changes no shape, and is not seen. All but its long waves is in these octaves.
+    // Of the three directions of the noise one is across the surface; displacements within it do
+    // not change the shape. All but the long waves of the noise is in these octaves.
     EXPECT_NEAR(spectrum.octaveAmplitudes.tail(last - 1).norm(), 1e-3 / std::sqrt(3.0), 3e-5);
 }
 
-TEST(GeometrySpectrum, TellsTheHeightOfNoiseAndWhereItBegins) {
-    // A plate with one wave across it, of the height e, and noise of the height s. Nothing but
-    // noise is beyond the wave; with a free boundary there is the rim, too.
+TEST(GeometrySpectrum, ReturnsTheHeightAndFeatureSizeOfNoise) {
+    // A plate with a single wave of height e and noise of height s. Above the frequency of the wave
+    // there is only noise and, with a free boundary, the rim.
     const double e = 0.05;
     const int p = 6;
     for (const double s : {1e-3, 2e-3})
@@ -53,8 +52,8 @@ TEST(GeometrySpectrum, TellsTheHeightOfNoiseAndWhereItBegins) {
         }
 }
 
-TEST(GeometrySpectrum, TellsWhatNoiseWouldHaveInEveryBand) {
-    // All draws of the noise have the mean energy trace(D Phi g Phi^T D), from all eigenvectors.
+TEST(GeometrySpectrum, ReturnsTheAmplitudeOfNoiseInEveryBand) {
+    // The expected energy of the noise is trace(D Phi g Phi^T D), over all eigenvectors.
     const Mesh mesh = testing::blob();
     const GeometrySpectrum dense = spectrumOf(mesh, static_cast<int>(mesh.V.rows()));
     const Operator A(mesh);
@@ -73,7 +72,7 @@ TEST(GeometrySpectrum, TellsWhatNoiseWouldHaveInEveryBand) {
         EXPECT_NEAR(dense.bandNoise[b] / std::sqrt(noise / A.area()), 1.0, 1e-6);
         EXPECT_NEAR(dense.bandAmplitudes[b] / std::sqrt(shape), 1.0, 1e-6);
     }
-    // One draw, for what is beyond a basis, is near to it.
+    // Beyond a basis a single random sample is used, which is close to it.
     const GeometrySpectrum spectrum = spectrumOf(mesh, 30);
     ASSERT_EQ(spectrum.bandNoise.size(), dense.bandNoise.size());
     for (Index b = 0; b < dense.bandNoise.size(); ++b) {

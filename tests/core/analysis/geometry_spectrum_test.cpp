@@ -29,7 +29,7 @@ std::vector<Mesh> classesOfMeshes() {
             testing::withNoise(testing::icosphere(3), 0.005, 4)};
 }
 
-TEST(GeometrySpectrum, HoldsAllOfTheEnergyOfTheShape) {
+TEST(GeometrySpectrum, ContainsAllEnergyOfTheShape) {
     for (const Mesh& mesh : classesOfMeshes())
         for (const int basisSize : {0, 4, 50, 200, 5000}) {
             const Operator A(mesh);
@@ -50,7 +50,7 @@ TEST(GeometrySpectrum, HoldsAllOfTheEnergyOfTheShape) {
         }
 }
 
-TEST(GeometrySpectrum, IsWhatAllEigenvectorsSay) {
+TEST(GeometrySpectrum, AgreesWithAllEigenvectors) {
     for (const Mesh& mesh : classesOfMeshes()) {
         EXPECT_EQ(spectrumOf(mesh, static_cast<int>(mesh.V.rows())).frequencies.size(),
                   mesh.V.rows());
@@ -58,7 +58,7 @@ TEST(GeometrySpectrum, IsWhatAllEigenvectorsSay) {
     }
 }
 
-TEST(GeometrySpectrum, TellsTheFeatureSizesThatHoldPartsOfTheEnergy) {
+TEST(GeometrySpectrum, ReturnsTheFeatureSizesAboveWhichTheEnergyLies) {
     for (const Mesh& mesh : classesOfMeshes()) {
         const GeometrySpectrum dense = spectrumOf(mesh, static_cast<int>(mesh.V.rows()));
         for (const int basisSize : {4, 100}) {
@@ -76,7 +76,7 @@ TEST(GeometrySpectrum, TellsTheFeatureSizesThatHoldPartsOfTheEnergy) {
     }
 }
 
-TEST(GeometrySpectrum, OfASphereIsOneFrequency) {
+TEST(GeometrySpectrum, IsOneFrequencyForASphere) {
     Mesh sphere = testing::icosphere(4);
     sphere.V *= 3.0;
     const GeometrySpectrum spectrum = spectrumOf(sphere, 20);
@@ -90,7 +90,7 @@ TEST(GeometrySpectrum, OfASphereIsOneFrequency) {
     EXPECT_EQ(spectrum.frequencies[0], 0.0);
 }
 
-/// Octave whose middle is nearest to a feature size.
+/// Octave whose centre is nearest to a feature size.
 Index octaveOf(const GeometrySpectrum& spectrum, double featureSize) {
     Index j = 0;
     (spectrum.octaveFeatureSizes.array().log() - std::log(featureSize)).abs().minCoeff(&j);
@@ -108,7 +108,7 @@ TEST(GeometrySpectrum, ShowsAWaveOnARectangleInItsOctaveWithItsAmplitude) {
     for (Index i = 0; i < mesh.V.rows(); ++i)
         mesh.V(i, 2) = e * std::cos(p * kPi * mesh.V(i, 0) / a);
     const double diagonal = boundingBoxDiagonal(mesh.V);
-    for (const int basisSize : {10, 400}) {  // the wave beyond the basis, and within
+    for (const int basisSize : {10, 400}) {  // the wave is beyond the basis, or in it
         const GeometrySpectrum spectrum = spectrumOf(mesh, basisSize);
         const Index j = octaveOf(spectrum, featureSize);
         const Bands octaves(diagonal, spectrum.frequencies[1], 1e3);
@@ -124,7 +124,7 @@ TEST(GeometrySpectrum, ShowsAWaveOnARectangleInItsOctaveWithItsAmplitude) {
 
 TEST(GeometrySpectrum, ShowsABumpySphereInItsOctaveWithItsAmplitude) {
     // Radius 1 + e P_l(z): a bump in the direction of the normal, whose coordinates are harmonics
-    // of l - 1 and l + 1. Its root mean square is e / sqrt(2 l + 1), but for the change of the
+    // of l - 1 and l + 1. Its root mean square is e / sqrt(2 l + 1), up to the change of the
     // harmonics with the surface, which is of relative order 1 / l.
     const double e = 0.02;
     const int l = 14;
@@ -147,8 +147,9 @@ TEST(GeometrySpectrum, ShowsABumpySphereInItsOctaveWithItsAmplitude) {
     EXPECT_LT(others.maxCoeff(), 0.1 * spectrum.octaveAmplitudes[j]);
 }
 
-TEST(GeometrySpectrum, OfLargeFeaturesDoesNotDependOnHowFineTheMeshIs) {
-    // Many octaves lie between the largest features and the edges: no Krylov space sees them all.
+TEST(GeometrySpectrum, DoesNotDependOnTheResolutionForLargeFeatures) {
+    // Many octaves lie between the largest features and the edges: no Krylov space resolves them
+    // all.
     const auto wavy = [](int count) {
         Mesh mesh = testing::rectangle(2.0, 1.0, 2 * count, count);
         for (Index i = 0; i < mesh.V.rows(); ++i)
@@ -162,7 +163,7 @@ TEST(GeometrySpectrum, OfLargeFeaturesDoesNotDependOnHowFineTheMeshIs) {
         EXPECT_NEAR(fine.octaveEnergies[j] / coarse.octaveEnergies[j], 1.0, 0.03) << j;
 }
 
-TEST(GeometrySpectrum, ScalesWithTheMeshAndDoesNotChangeUnderTranslation) {
+TEST(GeometrySpectrum, ScalesWithTheMeshAndIsInvariantUnderTranslation) {
     for (const Mesh& mesh : classesOfMeshes()) {
         const GeometrySpectrum original = spectrumOf(mesh, 30);
         for (const double scale : {1e-5, 1e4}) {
@@ -183,7 +184,7 @@ TEST(GeometrySpectrum, ScalesWithTheMeshAndDoesNotChangeUnderTranslation) {
     }
 }
 
-TEST(GeometrySpectrum, OfPartsDoesNotDependOnWhereTheyAre) {
+TEST(GeometrySpectrum, DoesNotDependOnThePositionOfParts) {
     const Mesh one = testing::blob();
     Mesh other = one;
     other.V.rowwise() += Eigen::RowVector3d(3, 0, 0);
@@ -195,7 +196,7 @@ TEST(GeometrySpectrum, OfPartsDoesNotDependOnWhereTheyAre) {
     EXPECT_EQ(near.amplitudes.head(2).maxCoeff(), 0.0);
 }
 
-TEST(GeometrySpectrum, OfTinyMeshesHasAllTheirHarmonics) {
+TEST(GeometrySpectrum, HasAllHarmonicsOfTinyMeshes) {
     Mesh triangle{Vertices(3, 3), Faces(1, 3)};
     triangle.V << 0, 0, 0, 1, 0, 0, 0, 2, 0;
     triangle.F << 0, 1, 2;
@@ -211,13 +212,13 @@ TEST(GeometrySpectrum, OfTinyMeshesHasAllTheirHarmonics) {
             EXPECT_EQ(none.frequencies.size(), 0);
             EXPECT_NEAR(none.octaveEnergies.sum() / none.totalEnergy, 1.0, 1e-12);
             EXPECT_NEAR(none.featureSize50 / all.featureSize50, 1.0, 1e-6);
-            // A basis that has no room for more than the constants is made larger.
+            // A basis with room for the constants only is enlarged.
             EXPECT_GT(geometrySpectrum(mesh.V, mesh.F, withBasis(1, kind)).frequencies.size(), 1);
         }
 }
 
 TEST(GeometrySpectrum, DoesNotChangeWithATinyPart) {
-    // Its frequencies are so high that the shape's are round-off to products with A.
+    // Its frequencies are so high that those of the shape are lost in round-off of products with A.
     const Mesh shape = testing::blob();
     const GeometrySpectrum alone = spectrumOf(shape, 0);
     for (const double scale : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7}) {
@@ -226,13 +227,13 @@ TEST(GeometrySpectrum, DoesNotChangeWithATinyPart) {
         const GeometrySpectrum both = spectrumOf(testing::joined(shape, tiny), 0);
         EXPECT_NEAR(both.octaveFeatureSizes[0] / alone.octaveFeatureSizes[0], 1.0, 1e-6) << scale;
         EXPECT_LT(both.mismatch, 1e-3) << scale;
-        for (Index j = 0; j + 1 < alone.octaveEnergies.size(); ++j)  // the last has all beyond
+        for (Index j = 0; j + 1 < alone.octaveEnergies.size(); ++j)  // the last includes all beyond
             EXPECT_NEAR(both.octaveEnergies[j] / alone.octaveEnergies[j], 1.0, 0.01) << scale;
     }
 }
 
-TEST(GeometrySpectrum, OfSingleTrianglesWhateverTheirNoise) {
-    // As many as random signs are equal at all corners of some.
+TEST(GeometrySpectrum, AcceptsSingleTrianglesWhateverTheirNoise) {
+    // With many triangles, the random signs are equal at all corners of some.
     for (int count = 1; count <= 12; ++count) {
         Mesh mesh{Vertices(0, 3), Faces(0, 3)};
         for (int i = 0; i < count; ++i) {
@@ -247,7 +248,7 @@ TEST(GeometrySpectrum, OfSingleTrianglesWhateverTheirNoise) {
     }
 }
 
-TEST(GeometrySpectrum, EndsWhereTheShapeDoesEvenIfATriangleHasNoArea) {
+TEST(GeometrySpectrum, HasNoEmptyOctavesForATriangleWithoutArea) {
     Mesh mesh = testing::blob();
     const Index octaves = spectrumOf(mesh, 20).octaveEnergies.size();
     mesh.V.row(mesh.F(0, 0)) = mesh.V.row(mesh.F(0, 1));
@@ -261,8 +262,8 @@ TEST(GeometrySpectrum, EndsWhereTheShapeDoesEvenIfATriangleHasNoArea) {
     EXPECT_NEAR(spectrum.octaveEnergies.sum() / spectrum.totalEnergy, 1.0, 1e-12);
 }
 
-TEST(GeometrySpectrum, IsRefusedWhereRoundOffLeavesNothingOfTheShape) {
-    // Components of a few vertices so far apart that their coordinates hold no shape any more.
+TEST(GeometrySpectrum, IsFiniteOrRejectedIfPartsAreFarApart) {
+    // Components of a few vertices so far apart that round-off destroys their shape.
     for (const double distance : {1e9, 1e13, 1e16}) {
         Mesh mesh = testing::icosphere(0);
         for (int i = 1; i < 4; ++i) {
@@ -281,7 +282,7 @@ TEST(GeometrySpectrum, IsRefusedWhereRoundOffLeavesNothingOfTheShape) {
     }
 }
 
-TEST(GeometrySpectrum, RefusesBadMeshesAndSizes) {
+TEST(GeometrySpectrum, RejectsInvalidMeshesAndSizes) {
     const Mesh mesh = testing::icosphere(2);
     EXPECT_THROW(spectrumOf(mesh, -1), InvalidOption);
     const Mesh large = testing::icosphere(4);
@@ -305,7 +306,7 @@ TEST(GeometrySpectrum, CanBeInterruptedAtAnyStage) {
     const Progress counting([&](double, const std::string&) { return ++reports > 0; });
     geometrySpectrum(mesh.V, mesh.F, withBasis(20), counting);
     ASSERT_GT(reports, 3);
-    // How often the harmonics report depends on the threads.
+    // The number of reports from the harmonics depends on the threads.
     for (int stop = 1; stop <= reports; ++stop) {
         int seen = 0;
         const Progress progress([&](double, const std::string&) { return ++seen < stop; });

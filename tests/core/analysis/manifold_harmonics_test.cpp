@@ -27,7 +27,7 @@ ManifoldHarmonics harmonicsOf(const Mesh& mesh, int k,
     return manifoldHarmonics(mesh.V, mesh.F, ofSize(k, kind));
 }
 
-TEST(ManifoldHarmonics, AreThoseOfTheDenseSolver) {
+TEST(ManifoldHarmonics, AgreeWithTheDenseSolver) {
     const Operator A(testing::blob());
     const HarmonicBasis dense = denseBasis(A);
     const ManifoldHarmonics harmonics = harmonicsOf(A.mesh, 40, LaplacianKind::Cotangent);
@@ -35,13 +35,13 @@ TEST(ManifoldHarmonics, AreThoseOfTheDenseSolver) {
     ASSERT_EQ(harmonics.Phi.cols(), 40);
     EXPECT_LT((harmonics.lambda - dense.lambda.head(40)).cwiseAbs().maxCoeff(),
               1e-9 * dense.lambda[39]);
-    // All eigenvalues differ: vector by vector, but for the sign.
+    // All eigenvalues are simple, so compare vector by vector, up to the sign.
     const Eigen::VectorXd overlap =
         testing::innerProducts(dense.Phi.leftCols(40), A.D, harmonics.Phi).diagonal().cwiseAbs();
     EXPECT_LT((overlap.array() - 1.0).abs().maxCoeff(), 1e-9);
 }
 
-TEST(ManifoldHarmonics, OfTheSphereHaveItsEigenvaluesAndAreOrthonormal) {
+TEST(ManifoldHarmonics, HaveTheSpheresEigenvaluesAndAreOrthonormal) {
     const Mesh sphere = testing::icosphere(4);
     const ManifoldHarmonics harmonics = harmonicsOf(sphere, 25);
     EXPECT_EQ(harmonics.lambda[0], 0.0);
@@ -52,7 +52,7 @@ TEST(ManifoldHarmonics, OfTheSphereHaveItsEigenvaluesAndAreOrthonormal) {
     EXPECT_LT(testing::orthonormalityError(harmonics.Phi, D), 1e-9);
 }
 
-TEST(ManifoldHarmonics, TellTheSizeThatCutsNoGroupOfEqualEigenvalues) {
+TEST(ManifoldHarmonics, ReportTheSizeThatSplitsNoMultipleEigenvalue) {
     const Mesh sphere = testing::icosphere(3);
     const ManifoldHarmonics cut = harmonicsOf(sphere, 11);  // of 1 + 3 + 5 + 7
     EXPECT_EQ(cut.lambda.size(), 11);
@@ -60,7 +60,7 @@ TEST(ManifoldHarmonics, TellTheSizeThatCutsNoGroupOfEqualEigenvalues) {
     EXPECT_EQ(harmonicsOf(sphere, 9).wholeSize, 9);
 }
 
-TEST(ManifoldHarmonics, BeginWithThePositiveConstantOfEveryComponent) {
+TEST(ManifoldHarmonics, StartWithThePositiveConstantOfEveryComponent) {
     const ManifoldHarmonics harmonics =
         harmonicsOf(testing::joined(testing::icosphere(2), testing::icosphere(1)), 10);
     EXPECT_EQ(harmonics.lambda[0], 0.0);
@@ -80,7 +80,7 @@ TEST(ManifoldHarmonics, HaveTheSameSignsAfterAPermutationOfTheVertices) {
     EXPECT_LT((back - expected.Phi).cwiseAbs().maxCoeff(), 1e-6);
 }
 
-TEST(ManifoldHarmonics, OfUnreferencedVerticesAreZero) {
+TEST(ManifoldHarmonics, AreZeroAtUnreferencedVertices) {
     const Mesh mesh = testing::blob();
     Vertices V(mesh.V.rows() + 1, 3);
     V << Eigen::RowVector3d(9, 9, 9), mesh.V;
@@ -90,7 +90,7 @@ TEST(ManifoldHarmonics, OfUnreferencedVerticesAreZero) {
     EXPECT_TRUE((harmonics.Phi.row(0).array() == 0.0).all());
 }
 
-TEST(ManifoldHarmonics, RefuseASizeThatTheMeshCannotHold) {
+TEST(ManifoldHarmonics, RejectASizeTooLargeForTheMesh) {
     const Mesh mesh = testing::icosphere(1);  // 42 vertices
     EXPECT_THROW(harmonicsOf(mesh, 42), InvalidOption);
     EXPECT_THROW(harmonicsOf(mesh, 1), InvalidOption);
@@ -109,7 +109,7 @@ TEST(FixSigns, MakesTheExtremeEntryPositive) {
     EXPECT_EQ(Phi(1, 1), 2.0);
 }
 
-TEST(FixSigns, TakesTheFirstOfEntriesThatDifferByRoundOffOnly) {
+TEST(FixSigns, UsesTheFirstOfEntriesThatDifferOnlyByRoundOff) {
     for (const double noise : {1e-9, -1e-9}) {
         Eigen::MatrixXd Phi(4, 1);
         Phi << 0.1, -1.0, 1.0 + noise, 0.3;

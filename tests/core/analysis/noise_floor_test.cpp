@@ -7,12 +7,13 @@
 namespace spectral {
 namespace {
 
-/// Thirds of octaves, as an even mesh of unit area has them: noise in proportion to the number of
-/// harmonics, that grows by 4 per octave.
+/// Third octaves of a uniform mesh of unit area: noise in proportion to the number of harmonics,
+/// which grows by 4 per octave.
 struct Spectrum {
     Eigen::VectorXd size = Eigen::VectorXd(15), amplitude = size, noise = size;
 
-    /// Noise of a height, and relief that has a height at size 1 and falls by 2^slope per octave.
+    /// Noise of a given height, and relief of a given height at size 1 that falls by 2^slope per
+    /// octave.
     Spectrum(double height, double relief, double slope) {
         for (int b = 0; b < 15; ++b) {
             size[b] = std::exp2((7 - b) / 3.0);
@@ -24,14 +25,14 @@ struct Spectrum {
     NoiseFloor floor() const { return noiseFloor(size, amplitude, noise); }
 };
 
-TEST(NoiseFloor, OfNoiseAloneIsItsHeightAtAllSizes) {
+TEST(NoiseFloor, IsTheHeightOfPureNoiseAtAllSizes) {
     const Spectrum noise(0.02, 0.0, 1.0);
     EXPECT_NEAR(noise.floor().height, 0.02, 1e-12);
     EXPECT_NEAR(noise.floor().featureSize, noise.size[0], 1e-12);
 }
 
-TEST(NoiseFloor, BeginsWhereTheReliefSinksIntoTheNoise) {
-    // Both are as high where relief 2^slope(...) = height noise(size), at sizes from 0.6 to 3.
+TEST(NoiseFloor, StartsWhereReliefFallsBelowTheNoise) {
+    // Both are equally high where relief 2^slope(...) = height noise(size), at sizes from 0.6 to 3.
     for (const double slope : {1.5, 2.0, 3.0})
         for (const double octaves : {-0.7, 0.0, 0.8, 1.6}) {
             const double noiseThere = std::sqrt(0.37) * std::exp2(-7.0 / 3.0 - octaves);
@@ -43,7 +44,7 @@ TEST(NoiseFloor, BeginsWhereTheReliefSinksIntoTheNoise) {
         }
 }
 
-TEST(NoiseFloor, OfReliefAloneIsNone) {
+TEST(NoiseFloor, IsNoneForPureRelief) {
     for (const double slope : {1.5, 2.0, 2.5, 4.0}) {
         const NoiseFloor floor = Spectrum(0.0, 1.0, slope).floor();
         EXPECT_EQ(floor.height, 0.0) << "slope " << slope;
@@ -51,14 +52,14 @@ TEST(NoiseFloor, OfReliefAloneIsNone) {
     }
 }
 
-TEST(NoiseFloor, OfNothingIsNone) {
+TEST(NoiseFloor, IsNoneWithoutBands) {
     EXPECT_EQ(noiseFloor({}, {}, {}).height, 0.0);
     EXPECT_EQ(Spectrum(0.0, 0.0, 1.0).floor().height, 0.0);
     const Eigen::VectorXd one = Eigen::VectorXd::Ones(1);
     EXPECT_EQ(noiseFloor(one, one, one).height, 0.0);
 }
 
-TEST(NoiseFloor, IsFiniteWhereABandHasNoEnergy) {
+TEST(NoiseFloor, IsFiniteIfABandHasNoEnergy) {
     const Eigen::VectorXd size = Eigen::Vector4d(8, 4, 2, 1), noise = Eigen::Vector4d::Ones();
     const NoiseFloor floor = noiseFloor(size, Eigen::Vector4d(1, 1, 0, 1e-80), noise);
     EXPECT_TRUE(std::isfinite(floor.height));

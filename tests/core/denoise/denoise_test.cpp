@@ -21,7 +21,7 @@ using testing::meanDistance;
 using testing::Mesh;
 using testing::withGaussianNoise;
 
-TEST(Denoise, BringsASphereAndACubeNearTheirOriginals) {
+TEST(Denoise, RestoresASphereAndACube) {
     for (const Mesh& mesh : {testing::icosphere(4), testing::cube(20)}) {
         const Mesh noisy = withGaussianNoise(mesh, 0.2, 3);
         const DenoiseResult result = denoise(noisy.V, noisy.F, {});
@@ -41,7 +41,7 @@ TEST(Denoise, KeepsTheEdgesOfACube) {
     EXPECT_LT(kept, 0.5 * meanAngle(denoise(noisy.V, noisy.F, options).V, mesh.V, mesh.F));
 }
 
-TEST(Denoise, LeavesACleanShapeToTheBit) {
+TEST(Denoise, LeavesACleanShapeBitIdentical) {
     for (const Mesh& mesh : {testing::icosphere(4), testing::cube(8), testing::cube(20),
                              testing::blob(), testing::torus(2.0, 0.5, 200, 6)}) {
         const DenoiseResult result = denoise(mesh.V, mesh.F, {});
@@ -55,7 +55,7 @@ TEST(Denoise, LeavesAFewVerticesAlone) {
     EXPECT_EQ(denoise(box.V, box.F, {}).V, box.V);
 }
 
-TEST(Denoise, TakesSpikesAwayAndMovesNothingElse) {
+TEST(Denoise, RemovesSpikesOnly) {
     const Mesh sphere = testing::icosphere(4);
     const Mesh spiky = testing::withSpikes(sphere, 0.05, 0.8, 3);
     const DenoiseResult result = denoise(spiky.V, spiky.F, {});
@@ -88,7 +88,7 @@ TEST(Denoise, SmoothsVoxelStepsWithinHalfAVoxel) {
     EXPECT_LT(roughness(smooth), 0.25 * roughness(V));
 }
 
-TEST(Denoise, StopsBeforeItCrumplesAPart) {
+TEST(Denoise, RefrainsFromCrumplingAPart) {
     const Mesh needles = testing::torus(2.0, 0.5, 300, 5);
     DenoiseOptions options;
     options.noiseHeight = 0.3 * meanEdgeLength(needles.V, needles.F);
@@ -99,7 +99,7 @@ TEST(Denoise, StopsBeforeItCrumplesAPart) {
     EXPECT_FALSE(isCrumpled(graph, needles.V, needles.V));
 }
 
-TEST(Denoise, TurnsFoldedFacesBack) {
+TEST(Denoise, UnfoldsFaces) {
     const Mesh mesh = testing::icosphere(4);
     const auto folded = [&](const Vertices& X) {
         const Points N = areaNormals(mesh.V, mesh.F);
@@ -126,7 +126,7 @@ TEST(Denoise, MovesRimsUnlessTheyAreFixed) {
         }
 }
 
-TEST(Denoise, OfASelectionFadesOutAroundIt) {
+TEST(Denoise, FadesOutAroundASelection) {
     const Mesh mesh = withGaussianNoise(testing::icosphere(5), 0.2, 1);
     DenoiseOptions options;
     for (Index i = 0; i < mesh.V.rows(); ++i) options.selected.push_back(mesh.V(i, 2) > 0.5);
@@ -138,7 +138,7 @@ TEST(Denoise, OfASelectionFadesOutAroundIt) {
             EXPECT_EQ(moved, 0.0);
         }
     }
-    // What is selected is denoised as in the whole.
+    // Selected vertices are denoised as in the whole mesh.
     const Vertices whole = denoise(mesh.V, mesh.F, {}).V;
     for (Index i = 0; i < mesh.V.rows(); ++i)
         if (mesh.V(i, 2) > 0.8) {
@@ -148,14 +148,14 @@ TEST(Denoise, OfASelectionFadesOutAroundIt) {
     EXPECT_THROW(denoise(mesh.V, mesh.F, options), InvalidOption);
 }
 
-TEST(Denoise, DoesNotCareForOrientation) {
+TEST(Denoise, DoesNotDependOnOrientation) {
     Mesh mesh = withGaussianNoise(testing::icosphere(4), 0.2, 1);
     const Vertices expected = denoise(mesh.V, mesh.F, {}).V;
     for (Index t = 1; t < mesh.F.rows(); t += 2) std::swap(mesh.F(t, 0), mesh.F(t, 1));
     EXPECT_LT((denoise(mesh.V, mesh.F, {}).V - expected).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-TEST(Denoise, DoesNotDependOnScalePlaceOrThreads) {
+TEST(Denoise, DoesNotDependOnScalePositionOrThreads) {
     for (const Mesh& shape : {testing::icosphere(4), testing::cube(16)}) {
         const Mesh mesh = withGaussianNoise(shape, 0.2, 1);
         const Vertices expected = denoise(mesh.V, mesh.F, {}).V;
@@ -173,7 +173,7 @@ TEST(Denoise, DoesNotDependOnScalePlaceOrThreads) {
     }
 }
 
-TEST(Denoise, OfStrengthZeroChangesNothingAndOfAGivenHeightTakesThat) {
+TEST(Denoise, AppliesTheGivenStrengthAndHeight) {
     const Mesh mesh = withGaussianNoise(testing::icosphere(4), 0.2, 1);
     const double edge = meanEdgeLength(mesh.V, mesh.F);
     DenoiseOptions options;
@@ -186,7 +186,7 @@ TEST(Denoise, OfStrengthZeroChangesNothingAndOfAGivenHeightTakesThat) {
     EXPECT_NEAR(denoise(mesh.V, mesh.F, options).noiseSize, options.noiseSize, 1e-12 * edge);
 }
 
-TEST(Denoise, RemovesAgainWhatItSaysToHaveRemoved) {
+TEST(Denoise, RemovesTheSameNoiseWhenGivenTheReportedHeightAndSize) {
     const Mesh mesh = withGaussianNoise(testing::cube(16), 0.2, 1);
     const DenoiseResult measured = denoise(mesh.V, mesh.F, {});
     DenoiseOptions options;
@@ -195,7 +195,7 @@ TEST(Denoise, RemovesAgainWhatItSaysToHaveRemoved) {
     EXPECT_EQ(denoise(mesh.V, mesh.F, options).V, measured.V);
 }
 
-TEST(Denoise, AcceptsTrianglesOfAnyKind) {
+TEST(Denoise, AcceptsAnyTriangles) {
     Mesh mesh = withGaussianNoise(testing::cube(6), 0.2, 1);
     const Index n = mesh.V.rows(), m = mesh.F.rows();
     mesh.V.conservativeResize(n + 1, 3);
@@ -224,7 +224,7 @@ TEST(Denoise, AcceptsTrianglesOfAnyKind) {
     }
 }
 
-TEST(Denoise, RefusesWhatIsNoStrengthHeightOrSize) {
+TEST(Denoise, RejectsInvalidStrengthHeightAndSize) {
     const Mesh mesh = testing::blob();
     DenoiseOptions options;
     options.strength = -1.0;
@@ -238,7 +238,7 @@ TEST(Denoise, RefusesWhatIsNoStrengthHeightOrSize) {
     EXPECT_THROW(denoise(mesh.V, Faces(0, 3), {}), InvalidMesh);
 }
 
-TEST(Whiteness, IsOneForWhiteNoiseAndMoreForAShape) {
+TEST(Whiteness, IsOneForWhiteNoiseAndLargerForAShape) {
     const Mesh sphere = testing::icosphere(5);
     const VertexGraph graph = faceGraph(sphere.F, sphere.V.rows()).vertices;
     std::mt19937 random(1);
@@ -252,7 +252,7 @@ TEST(Whiteness, IsOneForWhiteNoiseAndMoreForAShape) {
     EXPECT_GT(tail(graph, white), 1.5);
 }
 
-TEST(LinearSteps, DenoiseASphereButNoCube) {
+TEST(LinearSteps, DenoiseASphereButNotACube) {
     const auto stepsOf = [](const Mesh& shape) {
         const Mesh noisy = withGaussianNoise(shape, 0.2, 1);
         return linearSteps(faceGraph(noisy.F, noisy.V.rows()), noisy.V,

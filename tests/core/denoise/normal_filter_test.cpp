@@ -21,7 +21,7 @@ Points faceNormals(const Points& X, const Faces& F) {
     return N;
 }
 
-/// M + t L, dense, for triangles of which none is in the surroundings of half the mean area.
+/// Dense M + t L, for meshes where no local area is below half of the mean.
 Eigen::MatrixXd denseSystem(const FaceGraph& graph, const Points& X,
                             const NormalFilterOptions& options, const Eigen::VectorXd& M) {
     Points q = blurredNormals(graph, areaNormals(X, graph.F), options.blurs);
@@ -54,16 +54,16 @@ TEST(NormalFilter, SolvesItsEquation) {
     const Eigen::VectorXd area = areaNormals(X, mesh.F).rowwise().norm();
     const Eigen::VectorXd M = (area / area.mean()).cwiseMax(0.05).cwiseSqrt();
     NormalFilterOptions options{1.5, 0.3};
-    for (const bool isTwice : {false, true}) {
-        options.isTwice = isTwice;
+    for (const bool useTwicing : {false, true}) {
+        options.useTwicing = useTwicing;
         const Eigen::LDLT<Eigen::MatrixXd> A(denseSystem(graph, X, options, M));
         Points expected = A.solve(M.asDiagonal() * N);
-        if (isTwice) expected += A.solve(M.asDiagonal() * (N - expected)).eval();
+        if (useTwicing) expected += A.solve(M.asDiagonal() * (N - expected)).eval();
         normalizeRows(expected);
         const Points found = filterNormals(graph, X, options);
         EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 0.03);
         EXPECT_LT((found - expected).norm(), 0.01 * expected.norm());
-        // The guess is where the solver begins, no part of the result.
+        // The guess is only where the solver starts; it does not affect the result.
         const Points again = filterNormals(graph, X, options, found);
         EXPECT_LT((again - expected).norm(), 0.01 * expected.norm());
     }
@@ -91,13 +91,13 @@ TEST(NormalFilter, MixesMoreWhereEdgesAreShort) {
     EXPECT_LT(smallAfter, 0.8 * smallBefore);
 }
 
-TEST(NormalFilter, LeavesNeedlesWithoutNormals) {
+TEST(NormalFilter, LeavesDegenerateFacesWithoutNormals) {
     const Mesh needles{(Vertices(4, 3) << 0, 0, 0, 1, 0, 0, 2, 0, 0, 4, 0, 0).finished(),
                        (Faces(2, 3) << 0, 1, 2, 1, 3, 2).finished()};
     EXPECT_EQ(filterNormals(faceGraph(needles.F, 4), needles.V, {}), Points::Zero(2, 3));
 }
 
-TEST(VertexUpdate, GivesAPlaneItsNormalAndMovesNothingElse) {
+TEST(VertexUpdate, FlattensAPlaneWithoutDrift) {
     Mesh mesh = testing::rectangle(1, 1, 12, 12);
     const Points up = faceNormals(mesh.V, mesh.F);
     std::mt19937 random(4);

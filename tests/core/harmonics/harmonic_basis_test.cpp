@@ -42,14 +42,14 @@ double sphereError(int levels, int maxDegree) {
     return worst;
 }
 
-TEST(TruncatedBasis, OfTheSphereConvergesToItsEigenvaluesAtSecondOrder) {
+TEST(TruncatedBasis, ConvergesToTheSpheresEigenvaluesAtSecondOrder) {
     const double coarse = sphereError(3, 4), middle = sphereError(4, 4), fine = sphereError(5, 4);
     EXPECT_LT(coarse, 0.03);
     EXPECT_NEAR(coarse / middle, 4.0, 0.2);
     EXPECT_NEAR(middle / fine, 4.0, 0.1);
 }
 
-TEST(TruncatedBasis, KeepsTheSpheresMultiplicitiesWhole) {
+TEST(TruncatedBasis, NeverSplitsTheSpheresMultiplets) {
     const Operator A(testing::icosphere(4));
     // Every k cuts some 2l+1-fold eigenvalue unless it is a square.
     for (const Index k : {2, 3, 5, 8, 10, 13, 17, 20, 26, 33, 50}) {
@@ -76,7 +76,7 @@ double rectangleError(int cells) {
     return worst;
 }
 
-TEST(TruncatedBasis, OfAFlatRectangleConvergesToTheNeumannEigenvaluesAtSecondOrder) {
+TEST(TruncatedBasis, ConvergesToTheRectanglesNeumannEigenvaluesAtSecondOrder) {
     const double coarse = rectangleError(16), middle = rectangleError(32),
                  fine = rectangleError(64);
     EXPECT_LT(coarse, 0.05);
@@ -84,7 +84,7 @@ TEST(TruncatedBasis, OfAFlatRectangleConvergesToTheNeumannEigenvaluesAtSecondOrd
     EXPECT_NEAR(middle / fine, 4.0, 0.1);
 }
 
-TEST(TruncatedBasis, OfASquareKeepsEqualEigenvaluesWhole) {
+TEST(TruncatedBasis, NeverSplitsTheSquaresEqualEigenvalues) {
     const Operator A(testing::rectangle(1.0, 1.0, 32, 32));
     // Neumann: 0 | (1,0) (0,1) | (1,1) | (2,0) (0,2) | (2,1) (1,2) | (2,2) | (3,0) (0,3) | ...
     // The lumped grid's eigenvalues are those of the 5-point stencil: (p,q) and (q,p) agree.
@@ -114,9 +114,9 @@ TEST(TruncatedBasis, AgreesWithTheDenseSolver) {
     }
 }
 
-TEST(TruncatedBasis, StandsATriangleAlmostWithoutArea) {
-    // It hangs on the surface by one vertex: beside the masses of its other two, 1e-12 of the mean,
-    // its weights make the largest eigenvalues 1e12 times those of the surface.
+TEST(TruncatedBasis, ToleratesATriangleOfAlmostNoArea) {
+    // It touches the surface at one vertex only. The masses of its other two are 1e-12 of the mean,
+    // which makes the largest eigenvalues 1e12 times those of the surface.
     Mesh mesh = testing::withNoise(testing::rectangle(2, 1, 22, 15), 0.01, 3);
     const Index n = mesh.V.rows();
     mesh.V.conservativeResize(n + 2, 3);
@@ -135,7 +135,7 @@ TEST(TruncatedBasis, StandsATriangleAlmostWithoutArea) {
     EXPECT_LT(basis.residuals.maxCoeff(), 1e-8);
 }
 
-TEST(TruncatedBasis, HoldsTheConstantOfEveryComponentExactly) {
+TEST(TruncatedBasis, ContainsTheConstantOfEveryComponentExactly) {
     const Operator A(testing::joined(testing::joined(testing::blob(), testing::icosphere(1)),
                                      testing::torus(2, 0.7, 12, 8)));
     const HarmonicBasis basis = lowestHarmonics(A, 12);
@@ -143,7 +143,7 @@ TEST(TruncatedBasis, HoldsTheConstantOfEveryComponentExactly) {
     EXPECT_GT(basis.lambda[3], 0.0);
 }
 
-TEST(TruncatedBasis, RefusesASizeThatTheMeshCannotHold) {
+TEST(TruncatedBasis, RejectsASizeTooLargeForTheMesh) {
     const Operator A(testing::icosphere(1));
     EXPECT_THROW(lowestHarmonics(A, 42), InvalidOption);
     EXPECT_THROW(lowestHarmonics(A, 1), InvalidOption);
@@ -170,12 +170,12 @@ TEST(ApplyInBasis, WithAllPairsEqualsDense) {
     const Operator A(testing::blob());
     const HarmonicBasis dense = denseBasis(A);
     const Gain gain = fractionalPower(TransferFunction({}, 5.0), 1.0);
-    // A residual gain has nothing to act on once all n harmonics are there.
+    // With all n harmonics, a residual gain has nothing to act on.
     const Eigen::MatrixXd with = applyInBasis(dense, A, gain, 0.7, A.mesh.V);
     EXPECT_LT((with - testing::filteredDense(A, dense, gain)).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-TEST(ApplyInBasis, ResidualGainActsOnWhatIsBeyondTheBasis) {
+TEST(ApplyInBasis, ResidualGainActsBeyondTheBasis) {
     const Operator A(testing::blob());
     const HarmonicBasis dense = denseBasis(A);
     const HarmonicBasis basis = lowestHarmonics(A, 40);
@@ -188,8 +188,8 @@ TEST(ApplyInBasis, ResidualGainActsOnWhatIsBeyondTheBasis) {
 }
 
 TEST(DenseBasis, IsOrthogonalToTheConstantsOfEveryComponent) {
-    // The largest eigenvalue, of the small one, is 1e10 times the lowest: those of the constants
-    // are round-off of about its size.
+    // The largest eigenvalue, that of the small sphere, is 1e10 times the lowest: round-off in the
+    // eigenvalues of the constants is about as large as the lowest.
     Mesh small = testing::icosphere(1);
     small.V *= 1e-5;
     const Operator A(testing::joined(testing::joined(testing::icosphere(2), small), small));
@@ -198,8 +198,8 @@ TEST(DenseBasis, IsOrthogonalToTheConstantsOfEveryComponent) {
     EXPECT_EQ(dense.lambda.head(A.constants.count()).cwiseAbs().maxCoeff(), 0.0);
 }
 
-TEST(DenseBasis, OfARibbonIsThatOfAnInterval) {
-    // The largest eigenvalue is 1e14 times the lowest, and its round-off as large as that.
+TEST(DenseBasis, IsThatOfAnIntervalOnARibbon) {
+    // The largest eigenvalue is 1e14 times the lowest: its round-off is as large as the lowest.
     const auto lowestOf = [](double height) {
         const Operator A(testing::rectangle(1.0, height, 10, 1));
         return Eigen::VectorXd(denseBasis(A).lambda.segment(1, 9));
@@ -217,7 +217,7 @@ TEST(LargestEigenvalue, ScalesWithTheMesh) {
     }
 }
 
-TEST(LargestEigenvalue, OfAVertexOfHardlyAnyMassIsThatOfItsRow) {
+TEST(LargestEigenvalue, IsThatOfTheRowOfAVertexOfTinyMass) {
     for (const int levels : {0, 3}) {
         Laplacian light = Operator(testing::icosphere(levels));
         for (light.D[0] *= 1e-9; light.D[0] > 1e-24; light.D[0] *= 0.3)
@@ -226,7 +226,7 @@ TEST(LargestEigenvalue, OfAVertexOfHardlyAnyMassIsThatOfItsRow) {
     }
 }
 
-TEST(LargestEigenvalue, OfAnOperatorThatOverflowsIsAnErrorOfOurOwn) {
+TEST(LargestEigenvalue, ThrowsSolverFailureOnOverflow) {
     const Operator A(testing::blob());
     for (const double factor : {1e200, 1e308, std::numeric_limits<double>::quiet_NaN()}) {
         Laplacian huge = A;

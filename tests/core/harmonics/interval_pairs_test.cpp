@@ -14,7 +14,7 @@ using testing::Operator;
 
 const StopPoint kNeverStops = [] {};
 
-/// Half of the way from one eigenvalue to the next.
+/// Halfway from one eigenvalue to the next.
 double between(const Eigen::VectorXd& lambda, Index below) {
     return 0.5 * (lambda[below - 1] + lambda[below]);
 }
@@ -23,13 +23,13 @@ SpectralInterval intervalOf(const Eigen::VectorXd& lambda, Index first, Index co
     return {between(lambda, first), between(lambda, first + count), first, count};
 }
 
-/// The largest part of a vector of `Phi` that is in none of `space`.
+/// Largest norm of the part of a vector of `Phi` that is outside `space`.
 double outside(const Operator& A, const Eigen::MatrixXd& Phi, const Eigen::MatrixXd& space) {
     const Eigen::MatrixXd rest = Phi - space * (space.transpose() * (A.D.asDiagonal() * Phi));
     return (A.D.cwiseSqrt().asDiagonal() * rest).colwise().norm().maxCoeff();
 }
 
-TEST(ComputeInterval, FindsWhatTheDenseSolverFinds) {
+TEST(ComputeInterval, AgreesWithTheDenseSolver) {
     const Operator A(testing::blob());
     const HarmonicBasis dense = denseBasis(A);
     ShiftedLdlt factor;
@@ -43,7 +43,7 @@ TEST(ComputeInterval, FindsWhatTheDenseSolverFinds) {
     }
 }
 
-TEST(ComputeInterval, IsIncompleteWhereItsCountIsWrong) {
+TEST(ComputeInterval, IsIncompleteWhenItsCountIsWrong) {
     const Operator A(testing::blob());
     const Eigen::VectorXd lambda = denseBasis(A).lambda;
     ShiftedLdlt factor;
@@ -54,7 +54,7 @@ TEST(ComputeInterval, IsIncompleteWhereItsCountIsWrong) {
     }
 }
 
-TEST(Orthonormalize, TellsAVectorThatIsAlreadyThere) {
+TEST(Orthonormalize, DetectsARepeatedVector) {
     const Operator A(testing::blob());
     const HarmonicBasis dense = denseBasis(A);
     Eigen::MatrixXd U = dense.Phi.middleCols(5, 3) + 0.1 * dense.Phi.leftCols(3);

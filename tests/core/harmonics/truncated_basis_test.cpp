@@ -14,7 +14,7 @@ using testing::lowestHarmonics;
 using testing::Mesh;
 using testing::Operator;
 
-/// Compares with all eigenvalues by the dense solver: none missing, none twice.
+/// Compares with the dense solver: no eigenvalue is missing, none appears twice.
 void expectLowest(const Mesh& mesh, Index k, const char* name) {
     SCOPED_TRACE(name);
     const Operator A(mesh);
@@ -38,19 +38,19 @@ Mesh copies(const Mesh& mesh, int count) {
     return all;
 }
 
-TEST(TruncatedBasisSlices, AreAllThere) {
+TEST(TruncatedBasisSlices, MissNoPair) {
     expectLowest(testing::blob(), 150, "no symmetry");
     expectLowest(testing::withNoise(testing::rectangle(2, 1, 40, 20), 0.01, 5), 200, "boundary");
 }
 
-TEST(TruncatedBasisSlices, HoldEveryCopyOfAMultipleEigenvalue) {
+TEST(TruncatedBasisSlices, FindEveryCopyOfAMultipleEigenvalue) {
     expectLowest(testing::icosphere(3), 120, "sphere");
     expectLowest(testing::cube(12), 120, "cube");
     expectLowest(testing::rectangle(1, 1, 24, 24), 100, "square");
     expectLowest(copies(testing::icosphere(2), 5), 100, "five equal spheres");
 }
 
-TEST(HarmonicsBetween, AreAllThere) {
+TEST(HarmonicsBetween, MissNoPair) {
     // On the sphere both ends lie inside multiplets: those of degree 9, the 82nd to the 100th, and
     // of degree 12, the 145th to the 169th.
     for (const Mesh& mesh : {testing::blob(), testing::icosphere(3), testing::cube(12),
@@ -69,22 +69,22 @@ TEST(HarmonicsBetween, AreAllThere) {
     }
 }
 
-TEST(TruncatedBasisSlices, OfManyEqualPartsAreAllThere) {
-    // Few different eigenvalues with wide gaps, where a run finds nothing on one side of its shift.
+TEST(TruncatedBasisSlices, MissNoPairOfManyEqualParts) {
+    // Few distinct eigenvalues with wide gaps: a run finds none on one side of its shift.
     expectLowest(copies(testing::icosphere(1), 20), 60, "twenty spheres");
     expectLowest(copies(testing::cube(2), 40), 300, "forty cubes");
 }
 
-TEST(TruncatedBasisSlices, OfALargeCoarsePartAndASmallFineOneAreAllThere) {
-    // A floor of four vertices under a scanned object has nearly all of the area, by which Weyl's
-    // law lays the first shifts: far below the object's eigenvalues.
+TEST(TruncatedBasisSlices, MissNoPairOfALargeCoarsePartAndASmallFineOne) {
+    // A floor of four vertices under a scanned object has nearly all of the area, so Weyl's law
+    // puts the first shifts far below the object's eigenvalues.
     Mesh floor = testing::rectangle(20, 20, 1, 1), hall = testing::icosphere(1);
     hall.V *= 20.0;
     expectLowest(testing::joined(floor, testing::blob()), 60, "floor");
     expectLowest(testing::joined(hall, testing::blob()), 100, "hall");
 }
 
-TEST(TruncatedBasisSlices, AreFewWhereFewAreAsked) {
+TEST(TruncatedBasisSlices, AreFewWhenFewPairsAreRequested) {
     expectLowest(testing::blob(), 2, "one harmonic");
     expectLowest(testing::icosphere(3), 5, "within a group of equal ones");
 }
@@ -96,7 +96,7 @@ TEST(TruncatedBasisSlices, DoNotDependOnTheThreads) {
     EXPECT_TRUE((once.lambda.array() == again.lambda.array()).all());
 }
 
-TEST(TruncatedBasisSlices, StopWhenTheCallerWantsIt) {
+TEST(TruncatedBasisSlices, StopOnRequest) {
     const Operator A(testing::icosphere(4));
     int reports = 0;
     const Progress progress([&](double fraction, const std::string&) {
@@ -107,7 +107,7 @@ TEST(TruncatedBasisSlices, StopWhenTheCallerWantsIt) {
     EXPECT_THROW(lowestHarmonics(A, 100, progress), Cancelled);
 }
 
-TEST(TruncatedBasisSlices, TellTheirProgress) {
+TEST(TruncatedBasisSlices, ReportRisingProgress) {
     const Operator A(testing::icosphere(4));
     double last = 0.0;
     const Progress rising([&](double fraction, const std::string&) {
@@ -119,8 +119,8 @@ TEST(TruncatedBasisSlices, TellTheirProgress) {
     EXPECT_GT(last, 0.9);
 }
 
-TEST(TruncatedBasis, RefusesHarmonicsOfWhichRoundOffLeavesNothing) {
-    // By the dense solver, and in intervals.
+TEST(TruncatedBasis, RejectsHarmonicsLostInRoundOff) {
+    // Both by the dense solver and in intervals.
     for (const auto& [levels, spike] : {std::pair<int, double>{2, 1e14}, {3, 1e7}}) {
         Mesh mesh = testing::withNoise(testing::icosphere(levels), 0.03, 4);
         mesh.V.row(7) *= spike;
@@ -135,9 +135,9 @@ TEST(TruncatedBasis, RefusesHarmonicsOfWhichRoundOffLeavesNothing) {
     }
 }
 
-TEST(TruncatedBasis, OfAFewVerticesStandsASpike) {
-    // The lowest harmonic is that of its tip, the next four are those of its sides; the rest of the
-    // surface does not feel how long it is.
+TEST(TruncatedBasis, ToleratesASpikeOnASmallMesh) {
+    // The lowest harmonic is that of its tip, the next four are those of its sides; those of the
+    // rest of the surface do not depend on its length.
     const auto eigenvalues = [](double spike) {
         Mesh mesh = testing::withNoise(testing::icosphere(2), 0.03, 4);
         mesh.V.row(7) *= spike;

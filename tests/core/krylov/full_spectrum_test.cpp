@@ -39,7 +39,7 @@ TEST(FullSpectrum, EqualsAllEigenvectorsWithinTheRequestedAccuracy) {
                         testing::filteredFullSpectrum(A, gain, F.cutoff(), accuracy);
                     const Vertices expected = testing::filteredDense(A, dense, gain);
                     // The fractional power of a gain that vanishes inside the spectrum has a cusp
-                    // there; it may stop short, and says so.
+                    // there; the solver may stop short, but reports it.
                     const bool cusp = options.type == FilterType::BandStop &&
                                       options.stopGain == 0.0 && alpha < 1.0;
                     EXPECT_TRUE(result.converged || cusp);
@@ -68,7 +68,7 @@ TEST(FullSpectrum, ReachesTightAccuracies) {
     }
 }
 
-TEST(FullSpectrum, OfANarrowBandIsNotStoppedBeforeTheBandIsSeen) {
+TEST(FullSpectrum, DoesNotStopBeforeItSeesANarrowBand) {
     const Operator A(testing::blob());
     const HarmonicBasis dense = denseBasis(A);
     TransferFunctionOptions options;
@@ -88,9 +88,9 @@ TEST(FullSpectrum, OfANarrowBandIsNotStoppedBeforeTheBandIsSeen) {
         }
 }
 
-TEST(FullSpectrum, DoesNotClaimAnAccuracyForABandThatItsSpacesHaveNotSeen) {
-    // So narrow that it lies between Ritz values, on both sides of which the gain is 1: all
-    // approximations without the band agree.
+TEST(FullSpectrum, ClaimsNoAccuracyForABandThatItsSpacesMiss) {
+    // A band so narrow that it lies between Ritz values, with gain 1 at all of them:
+    // approximations that miss the band agree.
     const Operator A(testing::joined(testing::blob(), testing::torus(2, 0.7, 24, 12)));
     const HarmonicBasis dense = denseBasis(A);
     TransferFunctionOptions options;
@@ -115,7 +115,7 @@ TEST(FullSpectrum, DoesNotClaimAnAccuracyForABandThatItsSpacesHaveNotSeen) {
     EXPECT_GT(claims, all / 2);
 }
 
-TEST(FullSpectrum, OfAFeatureSizeFarFromAllSizesOfTheMeshReportsItsAccuracy) {
+TEST(FullSpectrum, ReportsItsAccuracyForFeatureSizesFarOutsideTheSpectrum) {
     const Operator A(testing::blob());
     const HarmonicBasis dense = denseBasis(A);
     for (const double feature : {1e-7, 1e-3, 1e3, 1e7})
@@ -143,7 +143,7 @@ TEST(FullSpectrum, KeepsConstantModesWhateverTheGainAtZero) {
 }
 
 TEST(FullSpectrum, IsExactWhenTheKrylovSpaceIsInvariant) {
-    const Operator A(testing::icosphere(0));  // three frequencies in all
+    const Operator A(testing::icosphere(0));  // only three frequencies
     const FullSpectrumResult result =
         testing::filteredFullSpectrum(A, [](double omega) { return omega; }, 1.0, 1e-12);
     const HarmonicBasis dense = denseBasis(A);
@@ -151,7 +151,7 @@ TEST(FullSpectrum, IsExactWhenTheKrylovSpaceIsInvariant) {
     EXPECT_LT((result.Y - expected).cwiseAbs().maxCoeff(), 1e-12);
 }
 
-TEST(FullSpectrum, IsAccurateAtVerticesOfHardlyAnyMass) {
+TEST(FullSpectrum, IsAccurateAtVerticesOfTinyMass) {
     Mesh tiny = testing::icosphere(0);  // the larger one alone has an invariant space
     tiny.V *= 1e-6;
     const Operator A(testing::joined(testing::icosphere(0), tiny));
@@ -164,8 +164,8 @@ TEST(FullSpectrum, IsAccurateAtVerticesOfHardlyAnyMass) {
     EXPECT_LT((result.Y - expected).cwiseAbs().maxCoeff(), 1e-8);
 }
 
-TEST(FullSpectrum, DoesNotTakeAVertexWithoutMassForRoundOff) {
-    // As a step finds it where a thin part has shrunk to nothing.
+TEST(FullSpectrum, DoesNotMistakeAVertexOfTinyMassForRoundOff) {
+    // As in a step after a thin part has shrunk to nothing.
     Operator A(testing::blob());
     A.D[0] = 1e-12 * A.D.mean();
     A.constants = ConstantModes(connectedComponents(A.mesh.F, A.mesh.V.rows()), A.D);
@@ -178,7 +178,7 @@ TEST(FullSpectrum, DoesNotTakeAVertexWithoutMassForRoundOff) {
     EXPECT_LT(error.cwiseAbs().maxCoeff(), 1e-7 * A.mesh.V.cwiseAbs().maxCoeff());
 }
 
-TEST(FullSpectrum, SeesAPartOfHardlyAnyMassWhereAllElseVanishes) {
+TEST(FullSpectrum, SeesAPartOfTinyMassWhereAllElseVanishes) {
     Mesh tiny = testing::icosphere(0);
     tiny.V *= 1e-5;
     const Operator A(testing::joined(testing::cube(2), tiny));
@@ -192,7 +192,7 @@ TEST(FullSpectrum, SeesAPartOfHardlyAnyMassWhereAllElseVanishes) {
     EXPECT_LT(change.bottomRows(tiny.V.rows()).cwiseAbs().maxCoeff(), 1e-6);
 }
 
-TEST(FullSpectrum, LeavesASignalOfConstantsAlone) {
+TEST(FullSpectrum, LeavesConstantSignalsAlone) {
     const Operator A(testing::blob());
     ShiftedLdlt ldlt;
     ldlt.factorizeDefinite(A.W, A.D, 1.0);
@@ -203,7 +203,7 @@ TEST(FullSpectrum, LeavesASignalOfConstantsAlone) {
     EXPECT_LT((result.Y - X).cwiseAbs().maxCoeff(), 1e-14);
 }
 
-TEST(FullSpectrum, SaysWhenATransferFunctionIsTooSteep) {
+TEST(FullSpectrum, ReportsATransferFunctionThatIsTooSteep) {
     const Operator A(testing::blob());
     const HarmonicBasis dense = denseBasis(A);
     ShiftedLdlt ldlt;

@@ -14,7 +14,7 @@ namespace {
 using testing::Mesh;
 using testing::Operator;
 
-/// The spectral measure of the x coordinate of a mesh from a space of some dimensions.
+/// Spectral measure of the x coordinate, from a Krylov space of the given dimension.
 struct Measured {
     Quadrature measure;
     bool canBeExtended = false;
@@ -29,7 +29,7 @@ Measured measured(const Operator& A, double pole, int dimensions) {
 }
 
 TEST(KrylovSpaces, StayOrthogonalToConstantsAndToThemselves) {
-    // Constants are amplified by S more than all else, and the coordinates are almost harmonics.
+    // S amplifies constants more than anything else, and the coordinates are almost harmonics.
     const Operator A(testing::joined(testing::blob(), testing::icosphere(3)));
     for (const double pole : {0.5, 50.0}) {
         ShiftedLdlt ldlt;
@@ -52,7 +52,7 @@ TEST(KrylovSpaces, StayOrthogonalToConstantsAndToThemselves) {
     }
 }
 
-TEST(KrylovSpaces, AreAsOrthogonalAsAskedForWhereDirectionsCancel) {
+TEST(KrylovSpaces, AreAsOrthogonalAsRequestedDespiteCancellation) {
     const Operator A(testing::rectangle(1.0, 1e-6, 7, 2));
     const int dimensions = 6;
     for (const double pole : {1e3, 1e6, 1e9})
@@ -69,7 +69,7 @@ TEST(KrylovSpaces, AreAsOrthogonalAsAskedForWhereDirectionsCancel) {
         }
 }
 
-TEST(KrylovSpaces, AreNormalizedWhereSolvesHaveConstantsOfRoundOff) {
+TEST(KrylovSpaces, AreNormalizedWhenRoundOffAddsConstantsToSolves) {
     // A ribbon: new directions are about as small as the round-off of S.
     const Operator A(testing::rectangle(1.0, 1e-7, 7, 2));
     ShiftedLdlt ldlt;
@@ -83,7 +83,7 @@ TEST(KrylovSpaces, AreNormalizedWhereSolvesHaveConstantsOfRoundOff) {
     }
 }
 
-TEST(KrylovSpaces, LeaveTheMemoryOfTheirBasisToTheNext) {
+TEST(KrylovSpaces, PassTheMemoryOfTheirBasisOn) {
     const Operator A(testing::blob());
     const Products S(A, 1.0);
     SpareVectors spare;
@@ -100,7 +100,7 @@ TEST(KrylovSpaces, LeaveTheMemoryOfTheirBasisToTheNext) {
     EXPECT_TRUE(std::get<1>(spare).empty());
 }
 
-TEST(KrylovSpaces, TellTheLargestEntryOfACombination) {
+TEST(KrylovSpaces, ReturnTheLargestEntryOfACombination) {
     const Operator A(testing::blob());
     ShiftedLdlt ldlt;
     ldlt.factorizeDefinite(A.W, A.D, 5.0);
@@ -120,7 +120,7 @@ double integral(const Quadrature& measure, const Gain& f) {
     return sum;
 }
 
-TEST(LanczosQuadrature, IsExactForPolynomialsOfTwiceItsDimension) {
+TEST(LanczosQuadrature, IsExactForPolynomialsBelowTwiceItsDimension) {
     const Operator A(testing::blob());
     const HarmonicBasis dense = denseBasis(A);
     Eigen::VectorXd c = testing::innerProducts(dense.Phi, A.D, A.mesh.V.col(0));
@@ -145,7 +145,7 @@ TEST(LanczosQuadrature, IsExactForPolynomialsOfTwiceItsDimension) {
     }
 }
 
-TEST(LanczosQuadrature, OfAnInvariantSpaceIsTheSpectralMeasure) {
+TEST(LanczosQuadrature, IsTheSpectralMeasureInAnInvariantSpace) {
     const Operator A(testing::icosphere(0));  // its coordinates are harmonics of one frequency
     const HarmonicBasis dense = denseBasis(A);
     const auto [measure, canBeExtended] = measured(A, 3.0, 4);
@@ -171,7 +171,7 @@ TEST(LanczosQuadrature, IsTheSameAtAnyScaleOfTheMesh) {
     }
 }
 
-TEST(LanczosQuadrature, OfNothingHasNoNodes) {
+TEST(LanczosQuadrature, HasNoNodesForAConstantSignal) {
     const Operator A(testing::icosphere(0));
     ShiftedLdlt ldlt;
     ldlt.factorizeDefinite(A.W, A.D, 1.0);

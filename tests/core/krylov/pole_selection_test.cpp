@@ -37,7 +37,7 @@ TEST(SelectPole, IsNearTheBestOfAllPolesTried) {
         }
 }
 
-TEST(SelectPole, OfABandTooNarrowToSampleIsAtTheBand) {
+TEST(SelectPole, ReturnsTheBandWhenItIsTooNarrowToSample) {
     TransferFunctionOptions options;
     options.type = FilterType::BandPass;
     options.bandWidth = 1e-6;
@@ -48,7 +48,7 @@ TEST(SelectPole, OfABandTooNarrowToSampleIsAtTheBand) {
 }
 
 TEST(SelectPole, SeesABandFarFromTheCutoff) {
-    // Two octaves below, where the nodes of a pole at the cutoff or above it are sparse.
+    // Two octaves below, where a pole at or above the cutoff has few nodes.
     const Operator A(testing::icosphere(5));
     TransferFunctionOptions options;
     options.type = FilterType::BandPass;
@@ -61,8 +61,8 @@ TEST(SelectPole, SeesABandFarFromTheCutoff) {
     EXPECT_LE(dimensionWithPole(A, gain, selectPole(gain, 48.0, range, 1e-6)), best + 6);
 }
 
-TEST(SelectPole, IsNotFarOutsideOfTheSpectrum) {
-    // Else (W + lambda_p D)^-1 D is a constant to round-off, and the space invariant at once.
+TEST(SelectPole, IsNotFarOutsideTheSpectrum) {
+    // Otherwise (W + lambda_p D)^-1 D is constant to within round-off, and the space invariant.
     const SpectrumRange range{0.01, 1e4};
     for (const auto& options : testing::smoothTransferFunctions())
         for (const double cutoff : {1e-9, 1e9}) {

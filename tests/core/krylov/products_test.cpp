@@ -55,7 +55,7 @@ TEST(Products, EqualAllEigenvectorsWithinTheRequestedAccuracy) {
     }
 }
 
-TEST(Products, AreRepeatedWhereThereIsNoMemoryForABasis) {
+TEST(Products, AreRepeatedWhenABasisDoesNotFitInMemory) {
     const Operator A(
         testing::joined(testing::blob(), testing::withNoise(testing::cube(8), 0.02, 4)));
     const HarmonicBasis dense = denseBasis(A);
@@ -75,7 +75,7 @@ TEST(Products, AreRepeatedWhereThereIsNoMemoryForABasis) {
     setMemoryMeasure(nullptr);
     for (const std::size_t g : {0, 1}) {
         EXPECT_EQ(repeated[g].dimension, kept[g].dimension);
-        EXPECT_GT((repeated[g].Y - kept[g].Y).norm(), 0.0);  // it was not the same path
+        EXPECT_GT((repeated[g].Y - kept[g].Y).norm(), 0.0);  // not the same code path
         EXPECT_LE((repeated[g].Y - kept[g].Y).norm(), 1e-6 * kept[g].Y.norm());
         const Vertices error =
             repeated[g].Y -
@@ -86,7 +86,7 @@ TEST(Products, AreRepeatedWhereThereIsNoMemoryForABasis) {
     }
 }
 
-TEST(Products, GiveUpWhereTheyAreExpectedToBeTooMany) {
+TEST(Products, GiveUpWhenTooManyAreExpected) {
     const Operator A(testing::withNoise(testing::icosphere(4), 0.02, 5));
     TransferFunctionOptions steep;
     steep.response = Response::Butterworth;

@@ -16,16 +16,16 @@
 namespace spectral {
 namespace {
 
-/// Those of the sets that this processor has, by their place: it takes the first, others another.
-class KernelsOfEverySet : public ::testing::TestWithParam<std::size_t> {
+/// All instruction sets that this processor has, by index: it uses the first, others another.
+class DenseKernels : public ::testing::TestWithParam<std::size_t> {
   protected:
     const Kernels& set() const { return availableKernels()[GetParam()]; }
 };
 
-INSTANTIATE_TEST_SUITE_P(Widest, KernelsOfEverySet,
+INSTANTIATE_TEST_SUITE_P(Widest, DenseKernels,
                          ::testing::Range(std::size_t{0}, availableKernels().size()));
 
-/// A front in memory, as it is documented.
+/// A frontal matrix in the documented memory layout.
 class FrontOf {
   public:
     FrontOf(const Eigen::MatrixXd& A, Index width)
@@ -58,12 +58,12 @@ class FrontOf {
     Eigen::MatrixXd panel_, update_, scratch_;
 };
 
-TEST_P(KernelsOfEverySet, EliminatesInFronts) {
+TEST_P(DenseKernels, EliminatesFronts) {
     std::srand(9);
     for (const Index width : {1, 2, 3, 4, 5, 9, 18, 67})
         for (const Index below : {0, 1, 3, 4, 7, 31, 70}) {
             const Index n = width + below;
-            // Indefinite, and of diagonal dominance: no pivot is small.
+            // Indefinite but diagonally dominant: no pivot is small.
             Eigen::MatrixXd A = Eigen::MatrixXd::Random(n, n);
             A = (A + A.transpose()).eval();
             for (Index i = 0; i < n; ++i)
@@ -79,8 +79,8 @@ TEST_P(KernelsOfEverySet, EliminatesInFronts) {
         }
 }
 
-TEST_P(KernelsOfEverySet, HasTheSameBitsAtEveryAddress) {
-    // Blocks of many columns leave over a few, whose product is a small one.
+TEST_P(DenseKernels, IsBitIdenticalAtEveryAddress) {
+    // Blocks of many columns leave a few over, whose product is small.
     constexpr Index kWidth = 8, kBelow = 36, kStride = kWidth + kBelow;
     std::srand(4);
     Eigen::MatrixXd panel = Eigen::MatrixXd::Random(kStride, kWidth), scratch(kStride, kWidth);
@@ -98,9 +98,9 @@ TEST_P(KernelsOfEverySet, HasTheSameBitsAtEveryAddress) {
     }
 }
 
-TEST_P(KernelsOfEverySet, TakesSubnormalNumbersForZeroAndLeavesTheModeAsItWas) {
+TEST_P(DenseKernels, TreatsSubnormalNumbersAsZeroAndRestoresTheMode) {
 #ifndef SPECTRAL_SUBNORMALS_ARE_SLOW
-    GTEST_SKIP() << "subnormal numbers are as quick as others here";
+    GTEST_SKIP() << "subnormal numbers are as fast as others here";
 #endif
     for (const Index width : {2, 40}) {  // by loops, and by Eigen's product
         const Index n = 2 * width + 30;
@@ -118,7 +118,7 @@ TEST_P(KernelsOfEverySet, TakesSubnormalNumbersForZeroAndLeavesTheModeAsItWas) {
     EXPECT_GT(tiny / 8.0, 0.0);
 }
 
-TEST_P(KernelsOfEverySet, SaysWhenAPivotVanishes) {
+TEST_P(DenseKernels, ReportsAZeroPivot) {
     Eigen::MatrixXd A = Eigen::MatrixXd::Ones(7, 7);
     A.diagonal() << 1.0, 1.0, 3.0, 4.0, 5.0, 6.0, 7.0;
     FrontOf one(A, 1), five(A, 5);
@@ -126,7 +126,7 @@ TEST_P(KernelsOfEverySet, SaysWhenAPivotVanishes) {
     EXPECT_FALSE(set().eliminateFront(five.front()));
 }
 
-/// LdltFactor::joined, from the rows themselves.
+/// LdltFactor::joined, derived from the rows.
 std::vector<char> joinedColumns(const SparseMatrix& L) {
     std::vector<char> joined(static_cast<std::size_t>(L.cols()), 0);
     const int *row = L.innerIndexPtr(), *start = L.outerIndexPtr();
@@ -139,16 +139,16 @@ std::vector<char> joinedColumns(const SparseMatrix& L) {
     return joined;
 }
 
-class SparseKernelsOfEverySet : public KernelsOfEverySet {
+class SparseKernels : public DenseKernels {
   protected:
     const testing::Operator A_{testing::withNoise(testing::icosphere(3), 0.03, 5)};
     const Index n_ = A_.W.rows();
 };
 
-INSTANTIATE_TEST_SUITE_P(Widest, SparseKernelsOfEverySet,
+INSTANTIATE_TEST_SUITE_P(Widest, SparseKernels,
                          ::testing::Range(std::size_t{0}, availableKernels().size()));
 
-TEST_P(SparseKernelsOfEverySet, SolvesWithAFactorization) {
+TEST_P(SparseKernels, SolvesWithAFactorization) {
     std::srand(6);
     SparseMatrix shifted = A_.W;
     shifted.diagonal() -= 7.0 * A_.D;
@@ -158,7 +158,7 @@ TEST_P(SparseKernelsOfEverySet, SolvesWithAFactorization) {
     const std::vector<char> joined = joinedColumns(L);
     const LdltFactor factor{L.outerIndexPtr(), L.outerIndexPtr(), L.innerIndexPtr(), L.valuePtr(),
                             joined.data()};
-    for (const int columns : {1, 2, 3, kMostRightHandSides}) {
+    for (const int columns : {1, 2, 3, kMaxRightHandSides}) {
         const Eigen::MatrixXd B = Eigen::MatrixXd::Random(n_, columns);
         Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> Y =
             ldlt.permutationP() * B;

@@ -13,7 +13,7 @@ using testing::Mesh;
 
 Index count(const std::vector<bool>& flags) { return std::count(flags.begin(), flags.end(), true); }
 
-TEST(Creases, OfACubeAreItsTwelveEdges) {
+TEST(Creases, AreTheTwelveEdgesOfACube) {
     const int cells = 5;
     const Mesh cube = testing::cube(cells);
     const Index edges = 8 + 12 * (cells - 1);
@@ -37,7 +37,7 @@ TEST(Creases, AreNoneInAPlaneOrAtABoundary) {
     EXPECT_EQ(count(creaseVertices(plane.V, plane.F, 1e-3)), 0);
 }
 
-TEST(Creases, AFoldedEdgeIsTheSharpest) {
+TEST(Creases, IncludeAFoldedEdge) {
     Vertices V(4, 3);
     V << 0, 0, 0, 1, 0, 0, 0.5, 1, 0, 0.5, 1, 1e-9;
     Faces F(2, 3);

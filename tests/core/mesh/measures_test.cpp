@@ -9,14 +9,14 @@
 namespace spectral {
 namespace {
 
-TEST(EnclosesVolume, IsTrueOfClosedSurfacesFarFromTheOriginToo) {
+TEST(EnclosesVolume, IsTrueForClosedSurfacesEvenFarFromTheOrigin) {
     testing::Mesh mesh = testing::torus(2, 0.7, 24, 12);
     EXPECT_TRUE(enclosesVolume(mesh.V, mesh.F));
     mesh.V.rowwise() += Eigen::RowVector3d(1e5, -2e5, 3e5);
     EXPECT_TRUE(enclosesVolume(mesh.V, mesh.F));
 }
 
-TEST(EnclosesVolume, IsFalseOfOpenSurfacesAndOfFlippedTriangles) {
+TEST(EnclosesVolume, IsFalseForOpenSurfacesAndFlippedTriangles) {
     const testing::Mesh rectangle = testing::rectangle(2, 1, 8, 4);
     EXPECT_FALSE(enclosesVolume(rectangle.V, rectangle.F));
     testing::Mesh sphere = testing::icosphere(2);

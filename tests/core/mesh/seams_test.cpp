@@ -21,7 +21,7 @@ namespace {
 using testing::joined;
 using testing::Mesh;
 
-/// A mesh cut apart, and the vertex of the whole that each of its vertices was.
+/// A mesh cut apart, and the original of each of its vertices.
 struct CutMesh {
     Mesh mesh;
     std::vector<Index> origin;
@@ -29,9 +29,9 @@ struct CutMesh {
     Eigen::MatrixXd cut(const Eigen::MatrixXd& values) const { return values(origin, Eigen::all); }
 };
 
-/// Cuts a mesh between triangles of different charts: the corners at a vertex that are in one chart
-/// stay one vertex.
-/// @param chart  of each triangle.
+/// Cuts a mesh between triangles of different charts: corners at a vertex stay joined within a
+/// chart.
+/// @param chart  chart of each triangle.
 CutMesh cutApart(const Mesh& mesh, const std::vector<int>& chart) {
     CutMesh cut;
     cut.mesh.F.resize(mesh.F.rows(), 3);
@@ -55,7 +55,7 @@ CutMesh soupOf(const Mesh& mesh) {
     return cutApart(mesh, chart);
 }
 
-/// Eight islands, one for each octant that a triangle's centre is in, as in a texture atlas.
+/// Eight islands as in a texture atlas, one for each octant, by the centres of the triangles.
 CutMesh islandsOf(const Mesh& mesh) {
     std::vector<int> chart;
     for (Index t = 0; t < mesh.F.rows(); ++t) {
@@ -83,7 +83,7 @@ class CutSurface : public ::testing::TestWithParam<CutMesh (*)(const Mesh&)> {
     }
 };
 
-TEST_P(CutSurface, IsTheWholeSurface) {
+TEST_P(CutSurface, BecomesTheWholeSurface) {
     const Surface surface = joinedSurface(cut.mesh.V, cut.mesh.F);
     EXPECT_EQ(surface.X.rows(), whole.V.rows());
     EXPECT_EQ(connectedComponents(surface.F, surface.X.rows()).count, 1);
@@ -93,7 +93,7 @@ TEST_P(CutSurface, IsTheWholeSurface) {
     EXPECT_EQ(counts.unreferencedVertices, 0);
 }
 
-TEST_P(CutSurface, IsFilteredAsTheWhole) {
+TEST_P(CutSurface, IsFilteredLikeTheWhole) {
     for (const LaplacianKind kind :
          {LaplacianKind::IntrinsicDelaunay, LaplacianKind::Cotangent, LaplacianKind::Uniform})
         for (const int steps : {0, 3}) {
@@ -111,7 +111,7 @@ TEST_P(CutSurface, IsFilteredAsTheWhole) {
         }
 }
 
-TEST_P(CutSurface, IsFilteredInPartAsTheWhole) {
+TEST_P(CutSurface, IsPartlyFilteredLikeTheWhole) {
     FilterOptions options;
     options.featureSize = 0.1 * diagonal;
     options.tolerance = 0.0005 * diagonal;
@@ -126,7 +126,7 @@ TEST_P(CutSurface, IsFilteredInPartAsTheWhole) {
     expectEqual(fractionalFilter(cut.mesh.V, cut.mesh.F, options).V, expected, 1e-12 * diagonal);
 }
 
-TEST_P(CutSurface, IsDenoisedAsTheWhole) {
+TEST_P(CutSurface, IsDenoisedLikeTheWhole) {
     const Mesh noisy = testing::withGaussianNoise(testing::icosphere(4), 0.2, 3);
     const CutMesh cutNoisy = GetParam()(noisy);
     const DenoiseResult result = denoise(cutNoisy.mesh.V, cutNoisy.mesh.F, {});
@@ -179,7 +179,7 @@ TEST_P(CutSurface, HasTheArtefactsAndTheSpectrumOfTheWhole) {
 
 INSTANTIATE_TEST_SUITE_P(Seams, CutSurface, ::testing::Values(soupOf, islandsOf));
 
-TEST(Seams, CopiesOfAVertexMoveAlikeToTheBit) {
+TEST(Seams, CopiesOfAVertexMoveBitIdentically) {
     const CutMesh cut = soupOf(noisyBlob());
     FilterOptions options;
     options.featureSize = 0.3;
@@ -200,7 +200,7 @@ TEST(Seams, ClosedPartsThatTouchStayApart) {
     EXPECT_EQ(findSeams(both.V, both.F).nearby, 0);
 }
 
-TEST(Seams, OpenSheetsAreOneAlongACommonBoundary) {
+TEST(Seams, OpenSheetsJoinAlongACommonBoundary) {
     const Mesh left = testing::rectangle(1.0, 1.0, 4, 4);
     Mesh right = left;
     right.V.col(0).array() += 1.0;
@@ -210,7 +210,7 @@ TEST(Seams, OpenSheetsAreOneAlongACommonBoundary) {
     EXPECT_EQ(connectedComponents(surface.F, surface.X.rows()).count, 1);
 }
 
-TEST(Seams, DistancesOfRoundOffAreCountedAndNotJoined) {
+TEST(Seams, NearbyVerticesAreCountedButNotJoined) {
     const Mesh left = testing::rectangle(1.0, 1.0, 4, 4);
     Mesh right = left;
     right.V.col(0).array() += 1.0 + 1e-8;
@@ -221,7 +221,7 @@ TEST(Seams, DistancesOfRoundOffAreCountedAndNotJoined) {
     EXPECT_EQ(joinedSurface(left.V, left.F).nearlyCopies, 0);
 }
 
-TEST(Seams, AnEdgeWhereThreeSheetsMeetIsOne) {
+TEST(Seams, ThreeSheetsJoinAtACommonEdge) {
     const Mesh sheet = testing::rectangle(1.0, 1.0, 3, 3);
     Mesh turned = sheet, opposite = sheet;
     turned.V.col(2) = sheet.V.col(0);
@@ -236,7 +236,7 @@ TEST(Seams, AnEdgeWhereThreeSheetsMeetIsOne) {
     EXPECT_TRUE(fractionalFilter(three.V, three.F, options).V.allFinite());
 }
 
-TEST(Seams, AValueOnBothSidesOfASeamBecomesOne) {
+TEST(Seams, ValuesOnBothSidesOfASeamAreMerged) {
     const CutMesh cut = islandsOf(testing::blob());
     Eigen::VectorXd Q = cut.mesh.V.col(0);
     for (Index i = 0; i < Q.size(); ++i) Q[i] += 0.01 * static_cast<double>(i % 7);
@@ -248,7 +248,7 @@ TEST(Seams, AValueOnBothSidesOfASeamBecomesOne) {
         EXPECT_EQ(Y[i], first.try_emplace(cut.origin[i], Y[i]).first->second);
 }
 
-TEST(Seams, ATriangleWithoutAreaJoinsNothingElse) {
+TEST(Seams, ATriangleWithoutAreaJoinsNothing) {
     Vertices V(4, 3);
     V << 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 1, 0;
     Faces F(2, 3);

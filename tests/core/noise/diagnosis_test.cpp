@@ -21,7 +21,7 @@ Diagnosis diagnosed(const Mesh& mesh) {
                     false);
 }
 
-TEST(RobustStatistics, LeaveOutliersOut) {
+TEST(RobustStatistics, IgnoreOutliers) {
     std::mt19937 random(1);
     std::normal_distribution<double> normal(0.0, 2.0);
     std::vector<double> moduli;
@@ -35,7 +35,7 @@ TEST(RobustStatistics, LeaveOutliersOut) {
     EXPECT_EQ(trimmedDeviation({}), 0.0);
 }
 
-TEST(Diffusion, HalvesWhatAlternatesAndKeepsConstants) {
+TEST(Diffusion, KeepsConstantsAndWhiteNoiseHasUnitVariance) {
     const Mesh mesh = testing::blob();
     const FaceGraph graph = faceGraph(mesh.F, mesh.V.rows());
     Eigen::VectorXd ones = Eigen::VectorXd::Ones(mesh.V.rows());
@@ -57,7 +57,7 @@ TEST(Diagnosis, MeasuresTheHeightOfWhiteNoise) {
         }
 }
 
-TEST(Diagnosis, KnowsNoiseThatNeighboursShare) {
+TEST(Diagnosis, MeasuresCorrelatedNoise) {
     Mesh mesh = testing::rectangle(1.0, 1.0, 70, 70);
     const FaceGraph graph = faceGraph(mesh.F, mesh.V.rows());
     Eigen::VectorXd z = whiteNoise(mesh.V.rows());
@@ -72,7 +72,7 @@ TEST(Diagnosis, KnowsNoiseThatNeighboursShare) {
     EXPECT_GT(found.noise.correlation, 0.0);
 }
 
-TEST(Diagnosis, SeesNoNoiseInCleanShapes) {
+TEST(Diagnosis, FindsNoNoiseInCleanShapes) {
     for (const Mesh& mesh : {testing::icosphere(4), testing::cube(20), testing::blob(),
                              testing::torus(2.0, 0.5, 60, 30)}) {
         const Diagnosis found = diagnosed(mesh);
@@ -88,19 +88,18 @@ TEST(Diagnosis, MeasuresNothingOnATessellationOrFewVertices) {
     EXPECT_EQ(diagnosed(testing::cube(2)).kind, NoiseKind::TooFew);
 }
 
-TEST(VoxelLattice, IsFoundOfAnySizeAndPlace) {
+TEST(VoxelLattice, IsNotFoundInOtherMeshes) {
     const Mesh ball = testing::segmentedBall(10);
     EXPECT_FALSE(voxelLattice(testing::withGaussianNoise(ball, 0.2, 1).V));
     EXPECT_FALSE(voxelLattice(testing::icosphere(4).V));
     EXPECT_FALSE(voxelLattice(testing::cube(20).V));
     const auto found = diagnosed(ball);
-    // Marching tetrahedra also have midpoints of diagonals, which are no grid edges.
+    // Marching tetrahedra also put vertices on diagonals, which are not grid edges.
     EXPECT_NE(found.kind, NoiseKind::White);
 }
 
-/// The surface of a ball of voxels by squares of two triangles around every voxel's face would lie
-/// on whole numbers; marching cubes put vertices on the middles of grid edges.
-TEST(VoxelLattice, HasTheSizeOfAVoxelAlongEachAxis) {
+/// Marching cubes puts vertices at the midpoints of grid edges.
+TEST(VoxelLattice, ReturnsTheVoxelSizeAlongEachAxis) {
     std::vector<Eigen::RowVector3d> middles;
     constexpr int kRadius = 8;
     const auto isInside = [](int x, int y, int z) { return x * x + y * y + z * z < 60; };
@@ -138,7 +137,7 @@ TEST(Spikes, AreFoundWithTheirHeights) {
     EXPECT_LT(spikes.clustering, 1.5);
 }
 
-TEST(Spikes, AFewHighOnesAreCertainAndCornersAreNone) {
+TEST(Spikes, AFewHighOnesAreCertainButCornersAreNot) {
     Mesh sphere = testing::icosphere(4);
     const double edge = meanEdgeLength(sphere.V, sphere.F);
     const Mesh clean = sphere;

@@ -14,7 +14,7 @@ using testing::Mesh;
 
 Index count(const std::vector<bool>& flags) { return std::count(flags.begin(), flags.end(), true); }
 
-TEST(FaceGraph, OfAClosedSurfaceHasThreeNeighboursOfEachFace) {
+TEST(FaceGraph, HasThreeNeighboursPerFaceOnAClosedSurface) {
     const Mesh torus = testing::torus(2.0, 0.5, 12, 8);
     const FaceGraph graph = faceGraph(torus.F, torus.V.rows());
     EXPECT_EQ(count(graph.onRim), 0);
@@ -29,7 +29,7 @@ TEST(FaceGraph, OfAClosedSurfaceHasThreeNeighboursOfEachFace) {
         }
 }
 
-TEST(FaceGraph, KnowsTheFacesAndNeighboursOfEveryVertex) {
+TEST(FaceGraph, ListsTheFacesAndNeighboursOfEveryVertex) {
     const Mesh mesh = testing::blob();
     const FaceGraph graph = faceGraph(mesh.F, mesh.V.rows());
     EXPECT_EQ(graph.faces.first.back(), 3 * mesh.F.rows());
@@ -43,7 +43,7 @@ TEST(FaceGraph, KnowsTheFacesAndNeighboursOfEveryVertex) {
     }
 }
 
-TEST(FaceGraph, OrientsNeighboursAlike) {
+TEST(FaceGraph, OrientsFacesConsistently) {
     Mesh mesh = testing::joined(testing::blob(), testing::cube(4));
     const double volume = std::abs(signedVolume(mesh.V, mesh.F));
     for (Index t = 1; t < mesh.F.rows(); t += 3) std::swap(mesh.F(t, 0), mesh.F(t, 1));
@@ -66,7 +66,7 @@ TEST(FaceGraph, HasARimAtABoundaryAndWhereThreeFacesMeet) {
     fins.F.conservativeResize(3, 3);
     fins.F.row(2) << a, b, 4;
     EXPECT_EQ(faceGraph(fins.F, 5).neighbours, Faces::Constant(3, 3, -1))
-        << "three faces at one edge are no neighbours";
+        << "three faces at one edge are not neighbours";
 }
 
 }  // namespace

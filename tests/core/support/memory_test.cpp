@@ -16,11 +16,11 @@ namespace {
 
 using testing::Operator;
 
-/// Limits the memory to what the program has, and some more.
+/// Limits the memory to what the program already uses, plus a given amount.
 class Memory : public ::testing::Test {
   protected:
     void SetUp() override {
-        if (std::isinf(residentMemory())) GTEST_SKIP() << "this system does not tell";
+        if (std::isinf(residentMemory())) GTEST_SKIP() << "not available on this system";
         setMemoryMeasure(freeMemory);
     }
     static void limitTo(double megabytesMore) {
@@ -32,7 +32,7 @@ class Memory : public ::testing::Test {
     }
 };
 
-TEST_F(Memory, IsThatOfTheSystemWithoutALimit) {
+TEST_F(Memory, IsThatOfTheSystemIfUnlimited) {
     EXPECT_GT(availableMemory(), 1e6);
     limitTo(1.0);
     EXPECT_LT(availableMemory(), 1e9);
@@ -40,7 +40,7 @@ TEST_F(Memory, IsThatOfTheSystemWithoutALimit) {
     EXPECT_EQ(availableMemory(), 0.0);
 }
 
-TEST_F(Memory, OfAFactorIsAskedForBeforeItIsTaken) {
+TEST_F(Memory, IsCheckedBeforeAFactorIsAllocated) {
     const Operator A(testing::blob());
     setMemoryLimit(1.0);
     ShiftedLdlt ldlt;
@@ -68,8 +68,8 @@ TEST_F(Memory, EndsAutomaticStepsAtOnce) {
     }
 }
 
-TEST_F(Memory, ThatIsTooLittleForAFactorizationIsEnoughForProducts) {
-    // 40,962 vertices, 41 MB for the analysis alone; a cutoff so steep that products are dear.
+TEST_F(Memory, SufficesForProductsIfTooSmallForAFactorization) {
+    // 40,962 vertices, 41 MB for the analysis alone; products are expensive for so steep a cutoff.
     const testing::Mesh mesh = testing::withNoise(testing::icosphere(6), 0.01, 1);
     FilterOptions options;
     options.transferFunction.response = Response::Butterworth;
@@ -79,7 +79,7 @@ TEST_F(Memory, ThatIsTooLittleForAFactorizationIsEnoughForProducts) {
     const FilterResult best = fractionalFilter(mesh.V, mesh.F, options);
     EXPECT_GT(best.factorizations, 0);
     EXPECT_FALSE(best.lacksMemory);
-    setMemoryMeasure([] { return 3e7; });  // whatever the first run has left in the heap
+    setMemoryMeasure([] { return 3e7; });  // independent of what the first run left in the heap
     const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
     EXPECT_TRUE(result.lacksMemory);
     EXPECT_EQ(result.factorizations, 0);
@@ -87,7 +87,7 @@ TEST_F(Memory, ThatIsTooLittleForAFactorizationIsEnoughForProducts) {
     EXPECT_LE(testing::largestDifference(result.V, best.V), 1e-3);
 }
 
-TEST_F(Memory, OfABasisIsAskedForAndTheSizeThatFitsIsTold) {
+TEST_F(Memory, IsCheckedForABasisAndTheErrorNamesTheSizeThatFits) {
     const Operator A(testing::icosphere(5));  // 10,242 vertices: 10 MB for 100 harmonics
     limitTo(50.0);
     ShiftedLdlt ldlt;

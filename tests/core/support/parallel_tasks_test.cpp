@@ -1,4 +1,4 @@
-// Long tasks on several threads, also where the system has few of them or none.
+// Long tasks on several threads, including systems that provide few or none.
 
 #include <gtest/gtest.h>
 
@@ -32,14 +32,14 @@ Index sumOfSquares(Index count, const Progress& progress = {}) {
 
 constexpr Index kTasks = 100, kSum = 328350;
 
-TEST(RunTasks, DoesEveryTaskOnce) {
+TEST(RunTasks, RunsEveryTaskOnce) {
     EXPECT_EQ(sumOfSquares(kTasks), kSum);
     const ThreadTeam team;
     EXPECT_EQ(sumOfSquares(kTasks), kSum);
     EXPECT_EQ(sumOfSquares(0), 0);
 }
 
-TEST(RunTasks, TheThreadsThereAreDoAllTasks) {
+TEST(RunTasks, RunsAllTasksOnFewerThreads) {
     if (!spectral::testing::ThreadShortage::kIsPossible) GTEST_SKIP() << "only with glibc";
     for (const int threads : {0, 1}) {
         const spectral::testing::ThreadShortage shortage(threads);
@@ -48,7 +48,7 @@ TEST(RunTasks, TheThreadsThereAreDoAllTasks) {
     }
 }
 
-TEST(RunTasks, OnlyTheCallerReports) {
+TEST(RunTasks, ReportsOnlyOnTheCallingThread) {
     const ThreadTeam team(3);
     const std::thread::id caller = std::this_thread::get_id();
     const Progress progress([&](double fraction, const std::string& stage) {
@@ -60,17 +60,17 @@ TEST(RunTasks, OnlyTheCallerReports) {
     EXPECT_EQ(sumOfSquares(kTasks, progress), kSum);
 }
 
-TEST(RunTasks, TheCallerStopsAllTasks) {
+TEST(RunTasks, StopsAllTasksWhenTheCallerCancels) {
     const ThreadTeam team(2);
     const Progress stopping([](double, const std::string&) { return false; });
-    // Endless tasks: without a stop, never.
+    // Endless tasks: without a stop, the test would hang.
     const auto work = [](Index, int, const StopPoint& stopPoint) {
         while (true) stopPoint();
     };
     EXPECT_THROW(runTasks(8, work, stopping, "working"), Cancelled);
 }
 
-TEST(RunTasks, TheFirstFailureStopsAllTasksAndReachesTheCaller) {
+TEST(RunTasks, StopsAllTasksAndRethrowsTheFirstFailure) {
     const ThreadTeam team(3);
     const auto work = [](Index task, int, const StopPoint& stopPoint) {
         if (task == 0) throw SolverFailure("broke down");

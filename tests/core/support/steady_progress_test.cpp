@@ -1,4 +1,4 @@
-// Work beside a thread that goes on reporting, also where there is no thread for it.
+// Work in the background while the caller keeps reporting, including systems without threads.
 
 #include "core/support/steady_progress.h"
 
@@ -19,7 +19,7 @@ using namespace spectral;
 
 namespace {
 
-/// Work that goes on until it is stopped, and notes that it has been left.
+/// Work that runs until it is cancelled, and records that.
 std::function<void(const Progress&)> endlessWork(std::atomic<bool>& left) {
     return [&left](const Progress& steady) {
         try {
@@ -31,8 +31,8 @@ std::function<void(const Progress&)> endlessWork(std::atomic<bool>& left) {
     };
 }
 
-TEST(SteadyProgress, ReportsGoOnWhileTheWorkIsSilent) {
-    // The work waits, without a report, for what the caller hears meanwhile: without it, for ever.
+TEST(SteadyProgress, KeepsReportingWhileTheWorkIsSilent) {
+    // The work waits, without reporting, for reports to the caller: without them, it would hang.
     std::mutex mutex;
     std::condition_variable heard;
     int reports = 0;
@@ -50,7 +50,7 @@ TEST(SteadyProgress, ReportsGoOnWhileTheWorkIsSilent) {
     EXPECT_EQ(result, 42);
 }
 
-TEST(SteadyProgress, OnlyTheCallerReportsWhatTheWorkHasTold) {
+TEST(SteadyProgress, ReportsOnlyOnTheCallingThread) {
     std::mutex mutex;
     std::condition_variable passedOn;
     std::string last;
@@ -62,7 +62,7 @@ TEST(SteadyProgress, OnlyTheCallerReportsWhatTheWorkHasTold) {
         passedOn.notify_one();
         return true;
     });
-    runBeside(progress.part(0.0, 1.0, "step 1: "), [&](const Progress& steady) {
+    runInBackground(progress.part(0.0, 1.0, "step 1: "), [&](const Progress& steady) {
         EXPECT_NE(std::this_thread::get_id(), caller);
         for (const char* stage : {"factorizing", "filtering"}) {
             steady.report(0.5, stage);
@@ -72,26 +72,26 @@ TEST(SteadyProgress, OnlyTheCallerReportsWhatTheWorkHasTold) {
     });
 }
 
-TEST(SteadyProgress, TheCallerStopsTheWorkAtItsNextReport) {
+TEST(SteadyProgress, CancelsTheWorkAtItsNextReport) {
     const Progress stopping([](double, const std::string&) { return false; });
     std::atomic<bool> left{false};
-    EXPECT_THROW(runBeside(stopping, endlessWork(left)), Cancelled);
+    EXPECT_THROW(runInBackground(stopping, endlessWork(left)), Cancelled);
     EXPECT_TRUE(left);
 }
 
-TEST(SteadyProgress, AnInterruptionStopsTheWorkWhileTheCallbackHasNotReturned) {
+TEST(SteadyProgress, InterruptsTheWorkBeforeTheCallbackReturns) {
     std::atomic<bool> left{false};
-    // The callback returns only when the work has been left: without an interruption, never.
+    // The callback returns only after the work has ended: without an interruption, it would hang.
     const Progress busy(
         [&](double, const std::string&) {
             while (!left) std::this_thread::yield();
             return true;
         },
         [] { return true; });
-    EXPECT_THROW(runBeside(busy, endlessWork(left)), Cancelled);
+    EXPECT_THROW(runInBackground(busy, endlessWork(left)), Cancelled);
 }
 
-TEST(SteadyProgress, TheCallerStopsTheThreadsOfWorkThatReportsNothing) {
+TEST(SteadyProgress, CancelsTheThreadsOfSilentWork) {
     const Progress progress([](double, const std::string&) { return false; });
     EXPECT_THROW(withSteadyProgress(progress,
                                     [&](const Progress& steady) {
@@ -102,13 +102,13 @@ TEST(SteadyProgress, TheCallerStopsTheThreadsOfWorkThatReportsNothing) {
                  Cancelled);
 }
 
-TEST(SteadyProgress, AFailureOfTheWorkReachesTheCaller) {
+TEST(SteadyProgress, RethrowsAFailureOfTheWork) {
     const Progress progress([](double, const std::string&) { return true; });
     const auto fail = [](const Progress&) -> int { throw SolverFailure("broke down"); };
     EXPECT_THROW(withSteadyProgress(progress, fail), SolverFailure);
 }
 
-TEST(SteadyProgress, WithoutThreadsTheCallerDoesTheWork) {
+TEST(SteadyProgress, RunsTheWorkOnTheCallingThreadWithoutOthers) {
     if (!spectral::testing::ThreadShortage::kIsPossible) GTEST_SKIP() << "only with glibc";
     const spectral::testing::ThreadShortage noThreads(0);
     std::vector<std::string> stages;
@@ -116,13 +116,13 @@ TEST(SteadyProgress, WithoutThreadsTheCallerDoesTheWork) {
         stages.push_back(stage);
         return true;
     });
-    runBeside(noting, [](const Progress& progress) { progress.report(0.5, "here"); });
+    runInBackground(noting, [](const Progress& progress) { progress.report(0.5, "here"); });
     EXPECT_EQ(stages, std::vector<std::string>{"here"});
 }
 
-TEST(SteadyProgress, WithNobodyToTellTheCallerDoesTheWork) {
+TEST(SteadyProgress, RunsTheWorkOnTheCallingThreadWithoutACallback) {
     std::thread::id worker;
-    runBeside({}, [&](const Progress&) { worker = std::this_thread::get_id(); });
+    runInBackground({}, [&](const Progress&) { worker = std::this_thread::get_id(); });
     EXPECT_EQ(worker, std::this_thread::get_id());
 }
 

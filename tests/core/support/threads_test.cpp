@@ -19,7 +19,7 @@
 namespace spectral {
 namespace {
 
-/// How often each task was done, of calls with these numbers of tasks.
+/// Checks that calls with these numbers of tasks run each task once.
 void expectEveryTaskOnce(const std::vector<Index>& counts) {
     for (const Index count : counts) {
         std::vector<std::atomic<int>> done(static_cast<std::size_t>(count));
@@ -28,7 +28,7 @@ void expectEveryTaskOnce(const std::vector<Index>& counts) {
     }
 }
 
-TEST(ThreadTeam, DoesEveryTaskOnce) {
+TEST(ThreadTeam, RunsEveryTaskOnce) {
     for (const int threads : {1, 2, 3, 8}) {
         const ThreadTeam team(threads);
         expectEveryTaskOnce({0, 1, 2, 5, 1000});
@@ -37,7 +37,7 @@ TEST(ThreadTeam, DoesEveryTaskOnce) {
     expectEveryTaskOnce({0, 1, 7});
 }
 
-TEST(ThreadTeam, GoesOnAfterAPause) {
+TEST(ThreadTeam, WakesUpAfterAPause) {
     const ThreadTeam team(3);
     for (int i = 0; i < 20; ++i) {
         std::this_thread::sleep_for(std::chrono::milliseconds(1));
@@ -45,7 +45,7 @@ TEST(ThreadTeam, GoesOnAfterAPause) {
     }
 }
 
-TEST(ThreadTeam, HandsOverAnExceptionAndStaysOfUse) {
+TEST(ThreadTeam, RethrowsAnExceptionAndRemainsUsable) {
     const ThreadTeam team(2);
     for (int i = 0; i < 100; ++i) {
         EXPECT_THROW(parallelFor(10,
@@ -57,7 +57,7 @@ TEST(ThreadTeam, HandsOverAnExceptionAndStaysOfUse) {
     }
 }
 
-TEST(ThreadTeam, DoesNestedCallsOnTheThreadOfTheTask) {
+TEST(ThreadTeam, RunsNestedCallsOnTheThreadOfTheTask) {
     const ThreadTeam team(2);
     std::atomic<int> sum{0};
     parallelFor(8, [&](Index) {
@@ -68,7 +68,7 @@ TEST(ThreadTeam, DoesNestedCallsOnTheThreadOfTheTask) {
     EXPECT_EQ(sum, 40);
 }
 
-/// The threads of a new team of two: each does one of two tasks that wait for each other.
+/// The threads of a new team of two: each runs one of two tasks that wait for each other.
 std::set<std::thread::id> threadsOfTwo() {
     const ThreadTeam team(2);
     std::atomic<int> begun{0};
@@ -80,24 +80,24 @@ std::set<std::thread::id> threadsOfTwo() {
     return {threads.begin(), threads.end()};
 }
 
-TEST(ThreadTeam, TakesOverTheThreadsOfTheLastTeam) {
+TEST(ThreadTeam, ReusesTheThreadsOfTheLastTeam) {
     const std::set<std::thread::id> threads = threadsOfTwo();
     {
         const ThreadTeam withoutThreads(1);
     }
     EXPECT_EQ(threadsOfTwo(), threads);
     {
-        const ThreadTeam ofThree(3);
+        const ThreadTeam three(3);
     }
     EXPECT_EQ(threadsOfTwo().size(), 2U);
 }
 
 #ifndef _WIN32
-TEST(ThreadTeam, HasThreadsOfItsOwnInAForkedProcess) {
+TEST(ThreadTeam, HasItsOwnThreadsInAForkedProcess) {
     threadsOfTwo();
     const pid_t child = fork();
     if (child == 0) {
-        alarm(20);  // ends it where it waits for threads that it does not have
+        alarm(20);  // ends it if it waits for threads it does not have
         _exit(threadsOfTwo().size() == 2 ? 0 : 1);
     }
     int status = -1;
@@ -106,7 +106,7 @@ TEST(ThreadTeam, HasThreadsOfItsOwnInAForkedProcess) {
 }
 #endif
 
-TEST(ThreadTeam, EndsItsWorkWhenItIsInterrupted) {
+TEST(ThreadTeam, StopsWhenInterrupted) {
     std::atomic<bool> isInterrupted{false};
     const Progress progress([](double, const std::string&) { return true; },
                             [&] { return isInterrupted.load(); });
@@ -123,12 +123,12 @@ TEST(ThreadTeam, EndsItsWorkWhenItIsInterrupted) {
         EXPECT_LT(done, 1000000);
         EXPECT_THROW(ThreadTeam::stopPoint(), Cancelled);
     }
-    const ThreadTeam next;  // of the same threads
+    const ThreadTeam next;  // reuses the same threads
     EXPECT_NO_THROW(parallelFor(100, [](Index) {}));
     EXPECT_NO_THROW(ThreadTeam::stopPoint());
 }
 
-TEST(ThreadTeam, SumsAlikeForEveryNumberOfThreads) {
+TEST(ThreadTeam, ReturnsTheSameSumForAnyNumberOfThreads) {
     const auto sum = [](int threads) {
         const ThreadTeam team(threads);
         return parallelSum(100000, 0.0, [](Index begin, Index end) {
@@ -141,7 +141,7 @@ TEST(ThreadTeam, SumsAlikeForEveryNumberOfThreads) {
     EXPECT_EQ(sum(1), sum(5));
 }
 
-TEST(ThreadCount, IsWhatWasSetOrThatOfTheCores) {
+TEST(ThreadCount, IsAsSetOrTheNumberOfCores) {
     setThreadCount(5);
     EXPECT_EQ(threadCount(), 5);
     setThreadCount(0);

@@ -24,7 +24,7 @@ constexpr double kCutoff = 3.0;
 
 CustomGain parsed(const std::string& text) { return parseGain(text, kCutoff, kLengths); }
 
-/// Frequency of details of a size.
+/// Frequency of details of the given size.
 double frequency(double size) { return 2.0 * kPi / size; }
 
 TransferFunction custom(const std::string& text) {
@@ -47,7 +47,7 @@ bool mentions(const std::string& message, const std::string& words) {
     return message.find(words) != std::string::npos;
 }
 
-TEST(CustomGain, ExpressionKnowsRelativeFrequencyFrequencyAndEigenvalue) {
+TEST(CustomGain, ExpressionsUseRelativeFrequencyFrequencyAndEigenvalue) {
     EXPECT_DOUBLE_EQ(parsed("w").gain(6.0), 2.0);
     EXPECT_DOUBLE_EQ(parsed("f").gain(6.0), 6.0);
     EXPECT_DOUBLE_EQ(parsed("l").gain(6.0), 36.0);
@@ -72,7 +72,7 @@ TEST(CustomGain, PointsAreInterpolatedInAnyOrderAndUnit) {
     EXPECT_NEAR(equalizer.cutoff, frequency(std::sqrt(0.2)), 1e-12);
 }
 
-TEST(CustomGain, PointsAreMonotoneBetweenEachTwo) {
+TEST(CustomGain, PointsAreInterpolatedMonotonically) {
     const Gain gain = parsed("50%:1, 20%:1, 10%:3, 5%:2.9, 1%:0, 0.5%:0").gain;
     double before = gain(frequency(5.0));
     for (double size = 5.0; size > 0.05; size *= 0.999) {
@@ -87,7 +87,7 @@ TEST(CustomGain, PointsAreMonotoneBetweenEachTwo) {
     }
 }
 
-TEST(CustomGain, PointsOnAPowerOfTheFrequencyAreThatPower) {
+TEST(CustomGain, PointsReproduceAPowerOfTheFrequency) {
     const Gain gain = parsed("8:1, 4:2, 2:4, 0.5:16, 0.25:32").gain;
     for (double octave = 1.0; octave <= 4.0; octave += 0.01)
         EXPECT_NEAR(gain(frequency(8.0) * std::exp2(octave)), std::exp2(octave), 1e-12);
@@ -100,11 +100,11 @@ TEST(CustomGain, PowersOfPointsArePointsOfThePower) {
         EXPECT_NEAR(root(frequency(size)), std::sqrt(gain(frequency(size))), 1e-14);
 }
 
-TEST(CustomGain, AGainOfZeroLeavesAThousandth) {
+TEST(CustomGain, AGainOfZeroBecomesAThousandth) {
     EXPECT_NEAR(parsed("8:1, 4:0").gain(frequency(3.0)), 1e-3, 1e-15);
 }
 
-TEST(CustomGain, MistakesAreToldWithTheirPlace) {
+TEST(CustomGain, ErrorsNameThePositionOfTheMistake) {
     for (const auto& [text, words] :
          std::vector<std::pair<std::string, std::string>>{{"1/(1 + q^2)", "at character 8"},
                                                           {"1/(1 + w", "at character 9"},
@@ -119,14 +119,14 @@ TEST(CustomGain, MistakesAreToldWithTheirPlace) {
         EXPECT_TRUE(mentions(messageOf(text), words)) << text << ": " << messageOf(text);
 }
 
-TEST(CustomGain, GainsBelowZeroOrNotFiniteAreToldWithTheirFrequency) {
+TEST(CustomGain, ErrorsNameTheFrequencyOfAnInvalidGain) {
     EXPECT_TRUE(mentions(messageOf("2 - w/4"), "at w = 8.")) << messageOf("2 - w/4");
     EXPECT_TRUE(mentions(messageOf("1/(w - 1)"), "transfer_function is ")) << messageOf("1/(w-1)");
     EXPECT_TRUE(mentions(messageOf("exp(w)"), "transfer_function is inf")) << messageOf("exp(w)");
     EXPECT_TRUE(mentions(messageOf("5%:1, 2%:-1"), "at character 10"));
 }
 
-TEST(CustomGain, JumpsAreFound) {
+TEST(CustomGain, JumpsAreDetected) {
     EXPECT_TRUE(custom("1/(1 + w^64)").discontinuities().empty());
     EXPECT_TRUE(custom("5%:1, 2%:3, 1%:0").discontinuities().empty());
     const TransferFunction step = custom("w < 1.3 ? 1 : 0.25");
@@ -171,7 +171,7 @@ std::vector<Equivalent> equivalents() {
     return all;
 }
 
-TEST(CustomGain, FiltersAsTheBuiltInResponses) {
+TEST(CustomGain, FiltersLikeTheBuiltInResponses) {
     const testing::Mesh mesh = testing::blob();
     const double diagonal = boundingBoxDiagonal(mesh.V);
     for (const Equivalent& equivalent : equivalents()) {
@@ -192,7 +192,7 @@ TEST(CustomGain, FiltersAsTheBuiltInResponses) {
     }
 }
 
-TEST(CustomGain, FiltersByPointsAsByTheResponseTheyAreTakenFrom) {
+TEST(CustomGain, PointsFilterLikeTheResponseTheySample) {
     const testing::Mesh mesh = testing::blob();
     const double diagonal = boundingBoxDiagonal(mesh.V);
     FilterOptions options;
@@ -230,7 +230,7 @@ TEST(CustomGain, FiltersByPointsAsByTheResponseTheyAreTakenFrom) {
         }
 }
 
-TEST(CustomGain, JumpsThatNothingEvaluatesAreToldBeforeTheWork) {
+TEST(CustomGain, UnsupportedJumpsAreRejectedBeforeAnyWork) {
     const testing::Mesh mesh = testing::blob();
     FilterOptions options;
     options.transferFunction.type = FilterType::Custom;

@@ -18,7 +18,7 @@ namespace {
 
 using testing::Mesh;
 
-/// Frequency of details of a size.
+/// Frequency of details of the given size.
 double frequency(double size) { return 2.0 * kPi / size; }
 
 TEST(Equalizer, PassesThroughItsPointsInAnyOrder) {
@@ -38,7 +38,7 @@ TEST(Equalizer, IsConstantBeyondItsPoints) {
     EXPECT_EQ(equalizer(std::numeric_limits<double>::infinity()), 2.0);
 }
 
-TEST(Equalizer, IsMonotoneAndSmoothBetweenEachTwoPoints) {
+TEST(Equalizer, IsMonotoneAndSmoothBetweenPoints) {
     const std::vector<SizedGain> points{{32, 1}, {16, 2}, {8, 4}, {4, 3.9}, {2, 0}, {1, 0.5}};
     const Equalizer equalizer(points);
     constexpr double kOctave = 1e-4;
@@ -58,12 +58,12 @@ TEST(Equalizer, IsMonotoneAndSmoothBetweenEachTwoPoints) {
     }
 }
 
-TEST(Equalizer, OfEqualGainsIsExactlyTheirs) {
+TEST(Equalizer, IsExactlyConstantForEqualGains) {
     const Equalizer one = octaveEqualizer(0.3, {1, 1, 1, 1, 1, 1});
     for (double size = 0.01; size < 100.0; size *= 1.01) EXPECT_EQ(one(frequency(size)), 1.0);
 }
 
-TEST(Equalizer, RefusesWhatHasNoGain) {
+TEST(Equalizer, RejectsInvalidPoints) {
     constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
     constexpr double kInfinity = std::numeric_limits<double>::infinity();
     for (const double gain : {-1.0, kNan, kInfinity})
@@ -86,8 +86,8 @@ TEST(OctaveEqualizer, HasItsGainsAnOctaveApartAndFixedEnds) {
     EXPECT_NEAR(equalizer.middleSize(), std::sqrt(0.5 * 4.0), 1e-14);
 }
 
-/// The unit sphere with small ripples along its normals: a spherical harmonic of one degree, of
-/// which none has the symmetry of the icosphere, hence of its discretization.
+/// The unit sphere with small ripples along its normals: a spherical harmonic of a degree at which
+/// none has the symmetry of the icosphere, hence of its discretization.
 struct RippledSphere {
     static constexpr int kDegree = 14;
     static constexpr double kHeight = 3e-4;
@@ -102,7 +102,7 @@ struct RippledSphere {
     /// Wavelength of the ripples: the eigenvalue is l (l + 1).
     static double size() { return frequency(std::sqrt(kDegree * (kDegree + 1.0))); }
 
-    /// How many times as high as they were the ripples are after an equalizer of six octaves.
+    /// Height of the ripples after an equalizer of six octaves, relative to that before.
     double heightAfter(double smallestSize, const std::vector<double>& gains) const {
         const Equalizer equalizer = octaveEqualizer(smallestSize, gains);
         FilterOptions options;
@@ -123,16 +123,16 @@ struct RippledSphere {
     Eigen::VectorXd harmonic;
 };
 
-/// To first order in the height, the ripples Y n (n: the normal) have coordinates of degree l - 1
-/// and l + 1, with shares l / (2 l + 1) and (l + 1) / (2 l + 1); and the change of the Laplacian
-/// with the shape multiplies the flow of degree j by 1 - 4 / (j (j + 1) - 2). The height is thus
-/// the gain to this power.
+/// The power of the gain by which the height of the ripples changes. To first order in the height,
+/// the ripples Y n (n: the normal) have coordinates of degree l - 1 and l + 1, with shares
+/// l / (2 l + 1) and (l + 1) / (2 l + 1); and the change of the Laplacian with the shape multiplies
+/// the flow of degree j by 1 - 4 / (j (j + 1) - 2).
 double powerOfTheGain(int l) {
     const double below = (l - 1.0) * l - 2.0, above = (l + 1.0) * (l + 2.0) - 2.0;
     return 1.0 - 4.0 * (l / below + (l + 1.0) / above) / (2.0 * l + 1.0);
 }
 
-TEST(OctaveEqualizer, ChangesTheHeightOfRipplesByTheGainOfTheirSize) {
+TEST(OctaveEqualizer, ScalesRipplesByTheGainOfTheirSize) {
     const RippledSphere sphere;
     const double power = powerOfTheGain(RippledSphere::kDegree);
     ASSERT_GT(power, 0.97);
@@ -144,12 +144,12 @@ TEST(OctaveEqualizer, ChangesTheHeightOfRipplesByTheGainOfTheirSize) {
     EXPECT_LT(sphere.heightAfter(RippledSphere::size() / 8, {1, 1, 1, 0, 1, 1}), 0.003);
 }
 
-TEST(OctaveEqualizer, LeavesRipplesBetweenTwoGainsOfOne) {
+TEST(OctaveEqualizer, KeepsRipplesBetweenTwoGainsOfOne) {
     const RippledSphere sphere;
     EXPECT_NEAR(sphere.heightAfter(RippledSphere::size() / 8, {0, 2, 1, 1, 1, 3}), 1.0, 0.01);
 }
 
-TEST(OctaveEqualizer, OfGainsOfOneKeepsEveryBit) {
+TEST(OctaveEqualizer, IsTheIdentityForGainsOfOne) {
     const RippledSphere sphere;
     FilterOptions options;
     options.transferFunction.type = FilterType::Custom;

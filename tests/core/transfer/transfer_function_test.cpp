@@ -41,7 +41,7 @@ TEST(TransferFunction, HighPassIsTheLowPassAtTheInverseFrequency) {
     }
 }
 
-TEST(TransferFunction, SmoothResponsesAreMinusThreeDecibelAtTheirCutoff) {
+TEST(TransferFunction, SmoothResponsesAreMinus3DecibelsAtTheirCutoff) {
     for (const Response r : {Response::Gaussian, Response::Butterworth}) {
         EXPECT_NEAR(TransferFunction(options(FilterType::LowPass, r), 5.0)(5.0), kHalfPower, 1e-15);
         EXPECT_NEAR(TransferFunction(options(FilterType::HighPass, r), 5.0)(5.0), kHalfPower,
@@ -49,7 +49,7 @@ TEST(TransferFunction, SmoothResponsesAreMinusThreeDecibelAtTheirCutoff) {
     }
 }
 
-TEST(TransferFunction, BandIsMinusThreeDecibelHalfItsWidthFromTheCentre) {
+TEST(TransferFunction, BandIsMinus3DecibelsHalfItsWidthFromTheCentre) {
     for (const Response r : {Response::Gaussian, Response::Butterworth})
         for (const double width : {0.25, 1.0, 3.0}) {
             TransferFunctionOptions o = options(FilterType::BandPass, r);
@@ -96,7 +96,7 @@ TEST(TransferFunction, IdealJumpsExactlyAtItsEdges) {
     EXPECT_EQ(band(1.001 * edges[1]), 0.0);
 }
 
-TEST(TransferFunction, ContinuousOnesHaveNoDiscontinuity) {
+TEST(TransferFunction, SmoothResponsesHaveNoDiscontinuity) {
     EXPECT_TRUE(TransferFunction({}, 1.0).discontinuities().empty());
     TransferFunctionOptions flat = options(FilterType::BandPass, Response::Ideal);
     flat.passGain = flat.stopGain = 1.0;
@@ -123,7 +123,7 @@ TEST(TransferFunction, FractionalPowersMultiplyToTheWhole) {
         EXPECT_NEAR(std::pow(power(omega), 10), F(omega), 1e-13);
 }
 
-TEST(TransferFunction, APartOfAFilterIsThatPowerOfTheWhole) {
+TEST(TransferFunction, APartialFilterIsAPowerOfTheWhole) {
     for (const FilterType type : {FilterType::LowPass, FilterType::BandPass, FilterType::BandStop})
         for (const double stop : {0.0, 0.4}) {
             TransferFunctionOptions o = options(type, Response::Gaussian);
@@ -158,8 +158,8 @@ TEST(TransferFunction, FractionalPowersSurviveWhereTheGainUnderflows) {
             }
 }
 
-TEST(TransferFunction, SmallGainsAreNoDifferencesOfLargeOnes) {
-    // Where a band-stop passes nothing, it stops all but a band.
+TEST(TransferFunction, SmallGainsDoNotSufferFromCancellation) {
+    // With a pass gain of 0, a band-stop passes only its band.
     for (const Response r : {Response::Gaussian, Response::Butterworth}) {
         TransferFunctionOptions band = options(FilterType::BandPass, r);
         TransferFunctionOptions stop = options(FilterType::BandStop, r);
@@ -176,7 +176,7 @@ TEST(TransferFunction, SmallGainsAreNoDifferencesOfLargeOnes) {
     EXPECT_NEAR(TransferFunction(high, 1.0)(1e-7) / (0.5 * 1e-14), 1.0, 1e-9);
 }
 
-TEST(TransferFunction, RefusesWhatHasNoFractionalPower) {
+TEST(TransferFunction, RejectsInvalidOptions) {
     TransferFunctionOptions o;
     o.passGain = -0.5;
     EXPECT_THROW(TransferFunction(o, 1.0), InvalidOption);
@@ -198,7 +198,7 @@ TEST(TransferFunction, RefusesWhatHasNoFractionalPower) {
         EXPECT_THROW(TransferFunction({}, cutoff), InvalidOption);
 }
 
-TEST(MeanGain, IsExactForAnIdealFilterAcrossItsJump) {
+TEST(MeanGain, IsExactAcrossTheJumpOfAnIdealFilter) {
     const TransferFunction F(options(FilterType::LowPass, Response::Ideal), 3.0);
     EXPECT_NEAR(meanGain(F, 1.0, 9.0), 2.0 / 8.0, 1e-8);
     EXPECT_NEAR(meanGain(F, 4.0, 9.0), 0.0, 1e-12);
