@@ -11,7 +11,7 @@ from sphinx.util.docutils import SphinxDirective
 from typer.main import get_command
 from typer.testing import CliRunner
 
-# Of the page, wider than which a line would be cut off.
+# Width of the page: longer lines would be cut off.
 _COLUMNS = 88
 
 

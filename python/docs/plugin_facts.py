@@ -17,7 +17,7 @@ from meshlab_spectral.plugin.loading import loaded_plugin
 WORDS: dict[str, dict[str, str]] = tomllib.loads(
     Path(__file__).with_name("words.toml").read_text(encoding="utf-8")
 )
-# Of two meshes, on which a default that depends on the mesh differs.
+# Resolutions of two meshes, which defaults that depend on the mesh differ on.
 COARSE, FINE = 2, 6
 # Runs whose reports hold all entries that there are, besides the run with the defaults.
 MORE_RUNS: dict[str, dict[str, Any]] = {

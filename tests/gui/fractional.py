@@ -16,7 +16,7 @@ MENU = ("Smoothing, Fairing and Deformation", "Spectral Filter (Fractional)")
 FILTER = "apply_coord_spectral_filter_fractional"
 PARAMETERS = [option.name for option in fields(FilterOptions)]
 
-# Of the bunny: the condition for the faces of its head, and qualities from 0 to 1.
+# The faces of the bunny's head, and qualities from 0 to 1, as MeshLab's expressions.
 HEAD = "y0 > 0.33"
 WEIGHT = "0.5 + 0.5 * sin(40 * z)"
 

@@ -27,7 +27,7 @@ from meshlab_spectral import FilterOptions
 from scene import scene_of, share_changed
 from waiting import wait_for
 
-# Of every parameter another value than its default, all together a filter that the bunny can take.
+# A value other than the default for every parameter; together a filter that works on the bunny.
 OTHER_VALUES = {
     "filter_type": "band-pass",
     "feature_size": "8",

@@ -12,15 +12,15 @@ class Page(HTMLParser):
     Attributes
     ----------
     title, text
-        Of its heading; of all of it but for code.
+        Text of its heading; all text but code.
     ids
-        What `#...` may lead to.
+        Targets of `#...`.
     links
-        Where its anchors lead.
+        Targets of its anchors.
     files
         What a browser loads to show it.
     pictures
-        Those of these files that are in figures.
+        The files shown in figures.
     """
 
     def __init__(self, path: Path) -> None:

@@ -114,7 +114,7 @@ class Run:
         name = example["filter"]
         mesh_set = mesh_set_of(example["mesh"])
         _kept.append(mesh_set)
-        # Of a twin: looking at a mesh would pack its deleted elements.
+        # Read from a twin: looking at a mesh would pack its deleted elements.
         twin = mesh_set_of(example["mesh"])
         self.before = _everything(twin)
         self.report: dict[str, Any] = {}

@@ -25,7 +25,7 @@ Source = Annotated[
     Path, typer.Argument(metavar="MESH", help="Mesh to read: .ply, .obj, .stl, .off, ...")
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Print the result as one JSON object.")]
-# Of the commands that measure a file as a whole.
+# For the commands that measure a file as a whole.
 OneMesh = Annotated[
     str | None,
     typer.Option(

@@ -38,7 +38,7 @@ StageCallback = Callable[[str], None]
 
 # What MeshLab reads without losing placement, units or all meshes but one.
 _READ_BY_MESHLAB = (".ply", ".obj", ".off", ".stl")
-# Of a mesh from arrays MeshLab would invent both.
+# MeshLab would invent both for a mesh made from arrays.
 _BARE = {".ply": {"save_vertex_color": False, "save_vertex_quality": False}}
 # Formats of MeshLab that hold coordinates in single precision, or in fewer digits.
 _COARSE = (".stl", ".3ds", ".3mf", ".ctm", ".dae", ".wrl", ".x3d")
@@ -75,9 +75,9 @@ def filter_to_scratch(
     Returns
     -------
     dict
-        The filter's report, as from `filter_mesh`, with the name of a mesh that has one as "mesh".
-        Of several meshes the list of their reports as "meshes"; "warnings" and "max_displacement"
-        of all.
+        The filter's report, as from `filter_mesh`, with the mesh's name, if any, as "mesh". For
+        several meshes their reports as a list "meshes", and "warnings" and "max_displacement"
+        over all of them.
 
     Raises
     ------

@@ -17,8 +17,8 @@ from meshlab_spectral.filters.options import BasisOptions, Boundary, LaplacianKi
 Array = NDArray[np.float64]
 
 DEFAULT_TIMES = 16
-# Of the wave kernel (Aubry et al.): the standard deviation of a distribution in distances of
-# adjacent energies; distance of the outermost ones from the ends of the spectrum, in deviations.
+# Wave kernel (Aubry et al.): standard deviation of each distribution, in steps between energies;
+# distance of the first and last energy from the ends of the spectrum, in standard deviations.
 _DEVIATION, _MARGIN = 7, 2
 
 

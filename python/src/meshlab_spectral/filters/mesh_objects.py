@@ -24,9 +24,9 @@ class MeshKind:
     Attributes
     ----------
     name
-        Of the library and its class.
+        The library and its class.
     mark
-        An attribute of the class that none of the kinds before have.
+        An attribute that tells the class from the kinds before it.
     arrays
         n x 3 coordinates and m x 3 corners of a mesh.
     moved
