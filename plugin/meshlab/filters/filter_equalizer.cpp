@@ -127,7 +127,7 @@ FilterOutcome applyEqualizer(const RichParameterList& parameters, MeshModel& mes
     const double diagonal = spectral::boundingBoxDiagonal(input.V);
     options.tolerance = kDefaultTolerance * diagonal;
     const bool isAccurate = parameters.getBool("accurate");
-    if (!isAccurate) options.mostSteps = kQuickSteps;
+    if (!isAccurate) options.maxSteps = kQuickSteps;
     options.boundary = boundaryCondition(parameters);
     options.part.selected = chosenVertices(parameters, mesh, input);
     const spectral::FilterResult result = spectral::withSteadyProgress(
