@@ -4,5 +4,5 @@
 void setMemoryLimit(double bytes);
 
 /// Memory that this process may still allocate, bytes: the minimum of what the system, its control
-/// group and the limit leave. Infinite if the system (not Linux, Windows or macOS) reports nothing.
+/// group and the limit leave. Infinite if unknown: on other systems than Linux, Windows and macOS.
 double freeMemory();

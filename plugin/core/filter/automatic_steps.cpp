@@ -74,7 +74,7 @@ class Convergence {
 
   private:
     /// Assumed until three shapes give a rate: the error of a single step is then estimated as two
-    /// thirds of its distance from the paper's step, about the worst case on scans.
+    /// thirds of its distance from the paper's step, about the worst case on real meshes.
     static constexpr double kUnknown = 2.5;
 
     double distance_ = std::numeric_limits<double>::infinity(), shrinking_ = kUnknown;

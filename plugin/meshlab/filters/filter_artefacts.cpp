@@ -22,7 +22,7 @@ RichParameterList artefactsParameters(const MeshModel& mesh) {
     RichParameterList list;
     list.addParam(featureSizeParameter(
         mesh,
-        "Feature size of the low-pass or band-pass that was applied. A percentage refers to the "
+        "Feature size of the low-pass or band filter that was applied. A percentage refers to the "
         "diagonal of this mesh, which the filter may have changed: enter the length that the "
         "filter reported."));
     list.addParam(laplacianParameter());
