@@ -10,7 +10,7 @@
 
 namespace {
 
-/// The submenus of MeshLab's menu Filters that show filters of these classes.
+/// The submenus of MeshLab's Filters menu that list filters of these classes.
 QJsonArray menusOf(FilterPlugin::FilterClass classes) {
     QJsonArray menus;
     if (classes & FilterPlugin::VertexColoring) menus.append("Color Creation and Processing");

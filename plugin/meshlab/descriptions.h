@@ -2,10 +2,10 @@
 
 #include <QtGlobal>
 
-/// What the dialogs say about the filters and their parameters, for Python, which finds the
-/// function by name in the plugin's library: pymeshlab passes neither help nor labels on.
+/// Describes the filters and their parameters as the dialogs do, for Python, which looks the
+/// function up by name in the plugin's library: pymeshlab provides neither help texts nor labels.
 ///
-/// @return  a JSON array in UTF-8, valid until the end of the process; of every filter `name`,
-///          `python_name`, `menus`, `help` (HTML) and `parameters`; of every parameter `name`,
-///          `label`, `type` (of the class, "RichInt"), `help` (HTML), `is_advanced` and `choices`.
+/// @return  a JSON array in UTF-8, valid until the process ends. Every filter has `name`,
+///          `python_name`, `menus`, `help` (HTML) and `parameters`; every parameter has `name`,
+///          `label`, `type` (its class, e.g. "RichInt"), `help` (HTML), `is_advanced`, `choices`.
 extern "C" Q_DECL_EXPORT const char* meshlab_spectral_filters();

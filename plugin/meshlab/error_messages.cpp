@@ -18,22 +18,22 @@ bool hasChoice(const RichParameterList& parameters, const char* name, int choice
     return parameters.hasParameter(name) && parameters.getEnum(name) == choice;
 }
 
-/// Whether the filter has gains of several sizes, and no other choice of strength.
+/// Whether the filter is the equalizer, whose strength depends on its gains alone.
 bool isEqualizer(const RichParameterList& parameters) {
     return parameters.hasParameter("smallest_size");
 }
 
 /// Alternatives to changing the basis size.
-std::string otherThanThisBasis(const RichParameterList& parameters) {
+std::string basisAlternatives(const RichParameterList& parameters) {
     std::string text;
     if (hasChoice(parameters, "boundary", 1)) text += ", or boundary = free";
     if (parameters.hasParameter("spectrum")) text += ", or spectrum = full";
     return text;
 }
 
-/// Remedy for triangles without area, or hardly any.
+/// Remedy for triangles with no area, or almost none.
 std::string largerTriangles(const RichParameterList& parameters) {
-    // The default Laplacian accepts them; what defeats it is only tiny compared with the mesh.
+    // The default Laplacian accepts them and fails only on parts tiny compared with the mesh.
     if (!hasChoice(parameters, "laplacian", 1)) return kKeepLargeParts;
     return std::string(
                "choose laplacian = intrinsic delaunay, or apply 'Merge Close Vertices' and 'Remove "
@@ -55,7 +55,7 @@ std::string stablerFilter(const RichParameterList& parameters) {
 /// Remedy for a filter that leaves nothing.
 std::string weakerFilter(const RichParameterList& parameters) {
     constexpr double kSmall = 0.01;
-    // The gain of the largest details: a high-pass or band-pass stops them.
+    // A high-pass or band-pass stops the largest details; the others pass them.
     const bool isStopped =
         hasChoice(parameters, "filter_type", 1) || hasChoice(parameters, "filter_type", 2);
     const char* const name = isStopped ? "stop_gain" : "pass_gain";
@@ -90,7 +90,7 @@ std::string remedy(const spectral::Error& error, const RichParameterList& parame
                    "Selected Vertices'";
         case ErrorCode::ValueNotFinite:
             return "apply 'Per Vertex Quality Function' with abs(q) < 1e30 ? q : 0/0 first, which "
-                   "makes them NaN: no data";
+                   "turns them into NaN, i.e. no data";
         case ErrorCode::NoData:
             return "apply a filter that computes qualities first, e.g. 'Per Vertex Quality "
                    "Function'";
@@ -109,11 +109,11 @@ std::string remedy(const spectral::Error& error, const RichParameterList& parame
                    "limit";
         case ErrorCode::BasisOutOfMemory:
         case ErrorCode::BasisTooLarge:
-            return "choose at most " + limit + otherThanThisBasis(parameters);
+            return "choose at most " + limit + basisAlternatives(parameters);
         case ErrorCode::BasisTooSmall:
-            return "choose at least " + limit + otherThanThisBasis(parameters);
+            return "choose at least " + limit + basisAlternatives(parameters);
         case ErrorCode::BasisIncomplete:
-            return "choose another basis_size" + otherThanThisBasis(parameters);
+            return "choose another basis_size" + basisAlternatives(parameters);
         case ErrorCode::TooManyHarmonics:
             return parameters.hasParameter("spectrum")
                        ? "choose a larger feature_size, response = butterworth with order = 8, or "
@@ -152,7 +152,7 @@ std::vector<std::string> residualWarnings(const Eigen::VectorXd& residuals) {
     text << std::setprecision(2) << "the relative residual of "
          << (residuals.array() > kAccurate).count() << " of " << residuals.size()
          << " harmonics is above " << kAccurate << ", at most " << residuals[worst] << " (number "
-         << worst << "): triangles are needles, or parts of the mesh are far away. To mend it, "
+         << worst << "): the mesh has needle triangles, or parts far away. To fix this, "
          << kRemesh;
     return {text.str()};
 }

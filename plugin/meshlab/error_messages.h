@@ -8,15 +8,14 @@
 
 #include "core/support/errors.h"
 
-/// The text of a core error, and the parameter or MeshLab filter that helps.
+/// The text of a core error, with the parameter or MeshLab filter that helps.
 ///
-/// @param parameters  of the filter that failed; no others are recommended.
+/// @param parameters  of the filter that failed; only these are recommended.
 std::string errorMessage(const spectral::Error& error, const RichParameterList& parameters);
 
-/// A warning of an evaluation that stopped short of the accuracy, both relative; what to choose
-/// instead comes last.
+/// Warns that the requested relative accuracy was not reached, and says what to choose instead.
 std::string accuracyWarning(double accuracy, double errorEstimate);
 
-/// A warning of the least accurate harmonic, where it has fewer than six digits.
-/// @param residuals  relative, of a basis of harmonics; may be empty.
+/// Warns about the least accurate harmonic if it has fewer than six digits.
+/// @param residuals  relative residuals of a basis of harmonics; may be empty.
 std::vector<std::string> residualWarnings(const Eigen::VectorXd& residuals);

@@ -13,7 +13,7 @@
 #include "meshlab/error_messages.h"
 #include "meshlab/free_memory.h"
 #include "meshlab/host_workarounds/apply_lock.h"
-#include "meshlab/host_workarounds/last_words.h"
+#include "meshlab/host_workarounds/last_messages.h"
 #include "meshlab/host_workarounds/late_close.h"
 #include "meshlab/host_workarounds/late_preview.h"
 #include "meshlab/host_workarounds/signals.h"
@@ -21,7 +21,7 @@
 
 namespace {
 
-/// MeshLab's callback as a Progress, which also stops once `isWanted` returns false.
+/// Wraps MeshLab's callback in a Progress that also stops once `isWanted` returns false.
 spectral::Progress meshlabProgress(vcg::CallBackPos* callback, std::function<bool()> isWanted,
                                    spectral::Progress::Interruption isOvertaken) {
     if (callback == nullptr) return {};
@@ -33,10 +33,10 @@ spectral::Progress meshlabProgress(vcg::CallBackPos* callback, std::function<boo
     return spectral::Progress(report, std::move(isOvertaken));
 }
 
-/// The number in an environment variable; 0 if it is not set.
+/// The number in an environment variable; 0 if unset.
 /// @throws spectral::InvalidOption  when it is not above zero.
 template <class Number>
-Number ofEnvironment(const char* variable, const char* unit) {
+Number environmentNumber(const char* variable, const char* unit) {
     if (!qEnvironmentVariableIsSet(variable)) return 0;
     bool isNumber = false;
     Number number = 0;
@@ -69,7 +69,7 @@ const MeshFilter& FilterSpectralPlugin::filterOf(const QAction* action) const {
     return filters_.at(static_cast<std::size_t>(ID(action)));
 }
 
-// Line by line: MeshLab's log joins the lines of an entry.
+// Logs line by line, as MeshLab's log joins the lines of an entry.
 void FilterSpectralPlugin::logLines(const std::string& text) const {
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);) log(line);
@@ -95,14 +95,14 @@ FilterPlugin::FilterClass FilterSpectralPlugin::getClass(const QAction* action) 
     return filterOf(action).category;
 }
 
-// None: a filter allocates what it writes, once there is a result.
+// None: filters allocate what they write once they have a result.
 int FilterSpectralPlugin::getRequirements(const QAction*) { return MeshModel::MM_NONE; }
 
-// None, although faces are needed: the core's message is clearer than "missing items: faces".
+// None, although filters need faces: the core's message is clearer than "missing items: faces".
 int FilterSpectralPlugin::getPreConditions(const QAction*) const { return MeshModel::MM_NONE; }
 
-// MeshLab 2025.07 creates a GL context for every run, which nothing here uses, and leaks it after a
-// run from a dialog: 9 MB per preview with software rendering. It accepts null.
+// MeshLab 2025.07 creates a GL context for every run, which no filter here uses, and leaks it after
+// a run from a dialog: 9 MB per preview with software rendering. It accepts a null context.
 void FilterSpectralPlugin::releaseGLContext() {
     if (glContext == nullptr) return;
     glContext->removePerViewRenderindData();
@@ -126,38 +126,38 @@ RichParameterList FilterSpectralPlugin::initParameterList(const QAction* action,
 std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
     const QAction* action, const RichParameterList& parameters, MeshDocument& document,
     unsigned int&, vcg::CallBackPos* callback) {
-    keepLastWords({}, {});
+    keepLastMessages({}, {});
     releaseGLContext();
-    // MeshLab handles user input in its callback, in the middle of this run: it may switch the
-    // preview off, apply the filter, close its windows, restart the filter for a preview with other
-    // parameters, or delete the mesh.
+    // MeshLab handles user input in its callback, during this run: the user may switch the preview
+    // off, apply the filter, close a window, restart the filter by changing a parameter in preview,
+    // or delete the mesh.
     const LatePreview latePreview;
     const ApplyLock applyLock;
     const LateClose lateClose;
     std::atomic<int>& latest = runs_.at(static_cast<std::size_t>(ID(action)));
     const auto isOvertaken = [&latest, run = ++latest] { return run != latest; };
     const auto isWanted = [&document, &lateClose, mesh = document.mm()->id()] {
-        return document.getMesh(mesh) != nullptr && !lateClose.isAsked();
+        return document.getMesh(mesh) != nullptr && !lateClose.isRequested();
     };
-    // The only place that translates errors of the core. MeshLab terminates on any exception but
+    // The only place that translates core errors. MeshLab terminates on any exception other than
     // MLException and bad_alloc.
     try {
         const spectral::Progress progress = meshlabProgress(callback, isWanted, isOvertaken);
-        spectral::setThreadCount(ofEnvironment<int>("MESHLAB_SPECTRAL_THREADS", "threads"));
-        setMemoryLimit(ofEnvironment<double>("MESHLAB_SPECTRAL_MEMORY", "bytes"));
+        spectral::setThreadCount(environmentNumber<int>("MESHLAB_SPECTRAL_THREADS", "threads"));
+        setMemoryLimit(environmentNumber<double>("MESHLAB_SPECTRAL_MEMORY", "bytes"));
         spectral::setMemoryMeasure(freeMemory);
         progress.report(0.0, "reading the mesh");
         checkExtent(document.mm()->cm);
         FilterOutcome outcome = filterOf(action).apply(parameters, *document.mm(), progress);
         logLines(outcome.text);
         for (const std::string& warning : outcome.warnings) logLines("  WARNING: " + warning);
-        keepLastWords(outcome.summary, outcome.warnings);
+        keepLastMessages(outcome.summary, outcome.warnings);
         return std::move(outcome.report);
     } catch (const spectral::Cancelled& cancelled) {
-        // No error message: the newer run's result stays, or the project is closed.
+        // No error message: the result of the newer run stays, or the project is closed.
         if (isOvertaken())
-            log("stopped: the filter was started anew meanwhile");
-        else if (lateClose.isAsked())
+            log("stopped: the filter was restarted meanwhile");
+        else if (lateClose.isRequested())
             log("stopped: its window is being closed");
         else
             throw MLException(cancelled.what());
@@ -178,4 +178,4 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
 
 MESHLAB_PLUGIN_NAME_EXPORTER(FilterSpectralPlugin)
 
-#include "moc_filter_spectral.cpp"  // else compiled by itself, with MeshLab's headers once more
+#include "moc_filter_spectral.cpp"  // included here to parse MeshLab's headers only once

@@ -7,10 +7,10 @@
 
 #include "meshlab/mesh_filter.h"
 
-/// The plugin as MeshLab sees it: describes the filters, and runs them.
+/// The plugin as MeshLab sees it: describes the filters and runs them.
 ///
-/// Every filter reads parameters and mesh, calls the core, and writes the result only after the
-/// whole computation has succeeded.
+/// Every filter reads the parameters and the mesh, calls the core, and writes the result only after
+/// the whole computation has succeeded.
 class FilterSpectralPlugin : public QObject, public FilterPlugin {
     Q_OBJECT
     MESHLAB_PLUGIN_IID_EXPORTER(FILTER_PLUGIN_IID)
@@ -31,7 +31,7 @@ class FilterSpectralPlugin : public QObject, public FilterPlugin {
     FilterArity filterArity(const QAction* action) const override;
     RichParameterList initParameterList(const QAction* action, const MeshModel& mesh) override;
 
-    /// @throws MLException  saying what is wrong and what to do; the mesh is then unchanged.
+    /// @throws MLException  that says what is wrong and what to do; the mesh is then unchanged.
     std::map<std::string, QVariant> applyFilter(const QAction* action,
                                                 const RichParameterList& parameters,
                                                 MeshDocument& document,
@@ -44,5 +44,5 @@ class FilterSpectralPlugin : public QObject, public FilterPlugin {
     void logLines(const std::string& text) const;
 
     const std::vector<MeshFilter> filters_;  // indexed by ActionIDType
-    std::vector<std::atomic<int>> runs_;     // started so far, of each filter
+    std::vector<std::atomic<int>> runs_;     // number of runs of each filter so far
 };

@@ -1,9 +1,8 @@
 #pragma once
 
-/// Most resident memory that this process shall have, bytes; 0, the default: as much as there is.
+/// Limits the resident memory of this process, bytes; 0 (the default): no limit.
 void setMemoryLimit(double bytes);
 
-/// Memory that this process may still take, bytes: what the system has free, what its control group
-/// leaves, what the limit leaves. Infinite where the system does not tell (Linux, Windows
-/// and macOS do).
+/// Memory that this process may still allocate, bytes: the minimum of what the system, its control
+/// group and the limit leave. Infinite if unknown: on other systems than Linux, Windows and macOS.
 double freeMemory();

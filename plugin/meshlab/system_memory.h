@@ -1,7 +1,7 @@
 #pragma once
 
-/// Memory that the system has free for this process, bytes; infinite where it does not tell.
+/// Memory available to this process, bytes; infinite if the system does not report it.
 double availableSystemMemory();
 
-/// Resident memory of this process, bytes; infinite where the system does not tell.
+/// Resident memory of this process, bytes; infinite if the system does not report it.
 double residentMemory();

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::infinity();
 
-/// The number after a word in a file of words and numbers; infinity if there is none.
+/// The number that follows a word in a file; infinity if there is none.
 double numberAfter(const char* file, const std::string& word) {
     std::ifstream in(file);
     for (std::string read; in >> read;)
@@ -17,17 +17,17 @@ double numberAfter(const char* file, const std::string& word) {
     return kUnknown;
 }
 
-/// The only number of a file; infinity if it has none.
+/// The number that a file starts with; infinity if there is none.
 double numberIn(const char* file) {
     double number = 0.0;
     return std::ifstream(file) >> number ? number : kUnknown;
 }
 
-/// What the control group leaves.
+/// Memory left by the limit of the control group, bytes.
 double availableInGroup() {
     const double used = numberIn("/sys/fs/cgroup/memory.current");
     if (used == kUnknown) return kUnknown;
-    // What files take of a group's memory is given back when it is needed.
+    // Memory used for the file cache is reclaimed when needed.
     const double inFiles = numberAfter("/sys/fs/cgroup/memory.stat", "inactive_file");
     const double held = used - (inFiles < kUnknown ? inFiles : 0.0);
     return std::max(0.0, numberIn("/sys/fs/cgroup/memory.max") - held);

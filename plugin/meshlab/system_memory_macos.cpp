@@ -16,7 +16,7 @@ double availableSystemMemory() {
     if (host_statistics64(mach_host_self(), HOST_VM_INFO64,
                           reinterpret_cast<host_info64_t>(&statistics), &count) != KERN_SUCCESS)
         return kUnknown;
-    // Inactive pages are given back when they are needed.
+    // Inactive pages are reclaimed when needed.
     const double pages = static_cast<double>(statistics.free_count) + statistics.inactive_count;
     return pages * static_cast<double>(vm_kernel_page_size);
 }

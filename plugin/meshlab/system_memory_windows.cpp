@@ -1,5 +1,5 @@
 #include <windows.h>
-// After windows.h, which it needs.
+// Needs windows.h first.
 #include <psapi.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ double availableSystemMemory() {
     MEMORYSTATUSEX status{};
     status.dwLength = sizeof status;
     if (!GlobalMemoryStatusEx(&status)) return kUnknown;
-    // The second is the rest of what Windows has promised to back, with pages on disk included.
+    // The second is what is left of the commit limit, which includes the page file.
     return static_cast<double>(std::min(status.ullAvailPhys, status.ullAvailPageFile));
 }
 

@@ -14,7 +14,7 @@ namespace spectral::fuzz {
 namespace {
 
 /// Most vertices of a reference, whose time is cubic.
-constexpr Index kMostVertices = 420;
+constexpr Index kMaxVertices = 420;
 
 /// Errors beyond so many times the claim are failures.
 constexpr double kLeeway = 3.0;
@@ -114,7 +114,7 @@ Accuracy accuracyOf(const testing::Mesh& mesh, const FilterOptions& options,
                     const FilterResult& result) {
     Accuracy accuracy;
     const bool isOneStep = options.steps == 1 || options.basisUpdate == BasisUpdate::None;
-    if (!isOneStep || !result.accuracyReached || mesh.V.rows() > kMostVertices) return accuracy;
+    if (!isOneStep || !result.accuracyReached || mesh.V.rows() > kMaxVertices) return accuracy;
     if (!options.part.selected.empty() || options.part.weight.size() > 0 ||
         options.creaseAngle > 0.0 || options.preserveVolume)
         return accuracy;  // the reference is that of a whole mesh
@@ -156,7 +156,7 @@ Accuracy accuracyOf(const testing::Mesh& mesh, const FilterOptions& options,
 Accuracy accuracyOf(const testing::Mesh& mesh, const ArtefactOptions& options,
                     const Artefacts& result) {
     Accuracy accuracy;
-    if (mesh.V.rows() > kMostVertices) return accuracy;
+    if (mesh.V.rows() > kMaxVertices) return accuracy;
     DenseReference reference(mesh.V, mesh.F, options.laplacian, Boundary::Free);
     const double cutoff = cutoffFrequency(options.featureSize);
     const auto lengths = [&](const DenseSpectrum& spectrum) {
@@ -205,7 +205,7 @@ Accuracy accuracyOf(const testing::Mesh& mesh, const HarmonicsOptions& options,
         accuracy.failures.push_back(failure("useless residual", worst));
         return accuracy;
     }
-    if (reference.size() > kMostVertices) return accuracy;
+    if (reference.size() > kMaxVertices) return accuracy;
     // Relative errors, of which the residuals are a bound.
     const auto values = [&](const DenseSpectrum& spectrum) {
         return Eigen::MatrixXd(spectrum.lambda.head(k));
@@ -224,7 +224,7 @@ Accuracy accuracyOf(const testing::Mesh& mesh, const HarmonicsOptions& options,
 Accuracy accuracyOf(const testing::Mesh& mesh, const SpectrumOptions& options,
                     const GeometrySpectrum& result) {
     Accuracy accuracy;
-    if (mesh.V.rows() > kMostVertices) return accuracy;
+    if (mesh.V.rows() > kMaxVertices) return accuracy;
     DenseReference reference(mesh.V, mesh.F, options.laplacian, options.boundary);
     const auto frequencyOf = [&](Index octave) {
         return 2.0 * kPi / result.octaveFeatureSizes[octave];

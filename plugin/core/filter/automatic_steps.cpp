@@ -14,16 +14,18 @@ namespace spectral {
 
 namespace {
 
-/// Factor by which distances shrink from one pass to the next: that of a second-order method, and
-/// the least that counts as convergence. Below, a geometric series would promise more than four
-/// times the last distance.
-constexpr double kSecondOrder = 4.0, kLeastShrinking = 1.25;
+/// Factor by which distances shrink from one pass to the next with a second-order method.
+constexpr double kSecondOrder = 4.0;
 
-/// Steps after which a pass that has not converged is singular: an error of second order has shrunk
-/// 64 times since the first pass.
-constexpr int kFewSteps = 8;
+/// Smallest such factor that counts as convergence: below it, the sum of the geometric series would
+/// exceed four times the last distance.
+constexpr double kMinShrinking = 1.25;
 
-/// What a step that fails is divided into at most, however few steps a pass may have.
+/// A pass of this many steps that stagnates counts as singular: a second-order error would have
+/// shrunk 64 times since the first pass.
+constexpr int kSingularSteps = 8;
+
+/// Failing steps are halved down to 1 / kFinest of the filter, however few steps a pass has.
 constexpr int kFinest = 64;
 
 /// Norms of the rows of A - B.
@@ -35,12 +37,12 @@ Eigen::VectorXd distances(const Vertices& A, const Vertices& B) {
     return length;
 }
 
-/// The least length that only a part of kNegligibleArea of the masses D exceeds.
+/// The smallest length that is exceeded on at most kNegligibleArea of the total mass D.
 double largestButNegligible(const Eigen::VectorXd& length, const Eigen::VectorXd& D) {
     std::vector<int> order(static_cast<std::size_t>(length.size()));
     std::iota(order.begin(), order.end(), 0);
     const auto isLonger = [&](int i, int j) { return length[i] > length[j]; };
-    // Usually a few vertices have that much mass: sorts these, four times as many if need be.
+    // A few vertices usually have that much mass: sort only these, or four times as many if needed.
     for (std::size_t count = order.size() / 256 + 1;; count *= 4) {
         const auto end = order.begin() + static_cast<Index>(std::min(count, order.size()));
         std::nth_element(order.begin(), end - 1, order.end(), isLonger);
@@ -52,8 +54,8 @@ double largestButNegligible(const Eigen::VectorXd& length, const Eigen::VectorXd
     }
 }
 
-/// Distances between the shapes of successive passes, over all but kNegligibleArea of a surface,
-/// and how they shrink.
+/// Distance between the shapes of successive passes, over all but kNegligibleArea of the surface,
+/// and the rate at which it shrinks.
 class Convergence {
   public:
     /// @param D  masses of the surface, n.
@@ -64,21 +66,21 @@ class Convergence {
 
     /// Sum of all later changes relative to the last one, as a geometric series.
     double toCome() const {
-        return 1.0 / (std::clamp(shrinking_, kLeastShrinking, kSecondOrder) - 1.0);
+        return 1.0 / (std::clamp(shrinking_, kMinShrinking, kSecondOrder) - 1.0);
     }
 
     double error() const { return toCome() * distance_; }  ///< Estimated error of the last shape.
-    bool stagnates() const { return shrinking_ < kLeastShrinking; }
+    bool stagnates() const { return shrinking_ < kMinShrinking; }
 
   private:
-    /// Assumed while two shapes give no rate yet. On 22 real meshes the error of a single step was
-    /// at most 0.68 of its distance from the paper's step; this makes it 0.67.
+    /// Assumed until three shapes give a rate: the error of a single step is then estimated as two
+    /// thirds of its distance from the paper's step, about the worst case on real meshes.
     static constexpr double kUnknown = 2.5;
 
     double distance_ = std::numeric_limits<double>::infinity(), shrinking_ = kUnknown;
 };
 
-/// The limit of shapes Y_1, Y_2, Y_4, ..., by Richardson's extrapolation.
+/// Limit of the shapes Y_1, Y_2, Y_4, ..., by Richardson extrapolation.
 class Limit {
   public:
     /// @param E1  the shape that Y_1 is compared with.
@@ -98,7 +100,7 @@ class Limit {
 
     const Convergence& convergence() const { return convergence_; }  ///< Over the surface E_K.
 
-    /// Part of the input's surface where the estimated error exceeds the tolerance.
+    /// Fraction of the input surface where the estimated error exceeds the tolerance.
     double partBeyond(double tolerance) const {
         const Eigen::VectorXd& D = laplacians_.inputMass();
         return (convergence_.toCome() * change_.array() > tolerance).select(D, 0.0).sum() / D.sum();
@@ -111,7 +113,7 @@ class Limit {
     Convergence convergence_;
 };
 
-/// Estimated number of steps of the last pass.
+/// Estimated number of steps in the last pass.
 int expectedLastPass(int K, double error, const AutomaticOptions& options) {
     int last = K;
     for (double left = error; left > options.tolerance && last < options.maxSteps;
@@ -125,8 +127,8 @@ int expectedLastPass(int K, double error, const AutomaticOptions& options) {
 AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate,
                               const Vertices& X, const AutomaticOptions& options,
                               const Progress& progress) {
-    // The input's Laplacian gives the paper's single step, and the first half steps of the first
-    // two passes.
+    // The Laplacian of the input gives the paper's single step and the first half step of each of
+    // the first two passes.
     constexpr double kFirstPasses = 0.1;
     laplacians.reset();
     std::vector<Eigen::MatrixXd> first =
@@ -149,11 +151,12 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
         done = end;
         limit.add(std::move(result.last.X));
         result.error = limit.convergence().error();
-        // Of two passes, of which one had to take smaller steps, both may have taken the same ones.
+        // If one of two passes had to take smaller steps, both may have taken the same ones.
         const bool isEven = result.last.sizes.size() == static_cast<std::size_t>(K);
         const bool isComparable = std::exchange(wasEven, isEven) && isEven;
         const bool isReached = isComparable && result.error <= options.tolerance;
-        const bool stagnates = isComparable && K >= kFewSteps && limit.convergence().stagnates();
+        const bool stagnates =
+            isComparable && K >= kSingularSteps && limit.convergence().stagnates();
         if (isReached || stagnates || 2 * K > options.maxSteps) {
             result.last.X = isReached ? limit.extrapolated() : limit.last();
             result.singularPart = limit.partBeyond(options.tolerance);

@@ -13,10 +13,12 @@ namespace spectral {
 
 namespace {
 
-/// In the steps after the first, k / kNearTheCut harmonics are computed on both sides of the cut:
-/// more take longer than the solves that they save. With fewer than kLeastHarmonics it is quicker
-/// to compute all (bench_steps truncated).
-constexpr Index kNearTheCut = 5, kLeastHarmonics = 200;
+/// After the first step, k / kNearTheCut harmonics are computed on each side of the cut: more would
+/// take longer than the solves they save (bench_steps truncated).
+constexpr Index kNearTheCut = 5;
+
+/// Smallest basis for which this is faster than recomputing all harmonics (bench_steps truncated).
+constexpr Index kMinHarmonics = 200;
 
 }  // namespace
 
@@ -29,7 +31,7 @@ Evaluation BasisEvaluator::evaluate(const Laplacian& laplacian, const Eigen::Mat
         std::optional<Evaluation> evaluation =
             aroundTheCut(laplacian, X, alphas, accuracy, progress.part(0.0, done));
         if (evaluation) return *std::move(evaluation);
-        canDoWithoutBasis_ = false;  // nor will it in the steps that follow
+        canDoWithoutBasis_ = false;  // later steps would fail, too
     }
     const Progress remaining = progress.part(done, 1.0);
     HarmonicBasis basis;
@@ -49,9 +51,9 @@ Evaluation BasisEvaluator::evaluate(const Laplacian& laplacian, const Eigen::Mat
     basis.Phi = {};
     basis_ = std::move(basis);
     if (computedBases_++ == 0)
-        // Where the residual is dropped, the jump is so high that a basis takes no longer.
+        // If the residual is dropped, the jump is so large that a basis is no slower.
         canDoWithoutBasis_ = truncation_ && truncation_->reinjectResidual &&
-                             truncation_->basisSize >= kLeastHarmonics &&
+                             truncation_->basisSize >= kMinHarmonics &&
                              F_.discontinuities().empty();
     return evaluation;
 }
@@ -66,7 +68,7 @@ std::optional<Evaluation> BasisEvaluator::aroundTheCut(const Laplacian& laplacia
     options.accuracy = accuracy;
     options.atEveryVertex = atEveryVertex_;
     options.samples = F_.samples();
-    // Krylov spaces of all dimensions may need more memory than the basis has taken.
+    // A Krylov space of maximum dimension may need more memory than the basis did.
     const auto numbers = static_cast<double>(n * X.cols() * options.maxDimension);
     if (sizeof(double) * numbers > availableMemory()) return {};
     try {
@@ -86,7 +88,7 @@ std::optional<Evaluation> BasisEvaluator::aroundTheCut(const Laplacian& laplacia
         const Eigen::MatrixXd c = near.transform(laplacian.D, X);
         const Eigen::ArrayXd omega = near.lambda.cwiseSqrt();
         options.samples.insert(options.samples.end(), {omega[0], omega[omega.size() - 1]});
-        // Seen from a pole at the cut, both sides of the spectrum are equally large.
+        // A pole at the cut makes both sides of the spectrum equally large.
         ldlt_.factorizeDefinite(laplacian.W, laplacian.D, cut * cut,
                                 [&] { progress.report(0.6, "factorizing"); });
         Evaluation evaluation =
@@ -102,13 +104,13 @@ std::optional<Evaluation> BasisEvaluator::aroundTheCut(const Laplacian& laplacia
     }
 }
 
-/// F_h: the mean of F over the frequencies beyond the basis (Kovnatsky et al. 2012, Eq. 9), where
-/// the residual is reinjected (Eq. 8); 0 where it is dropped (Eq. 6).
+/// F_h: the mean of F over the frequencies beyond the basis (Kovnatsky et al. 2012, Eq. 9) if the
+/// residual is reinjected (Eq. 8); 0 if it is dropped (Eq. 6).
 double BasisEvaluator::residualGain(const Laplacian& laplacian, double lastEigenvalue) const {
     if (!truncation_->reinjectResidual) return 0.0;
     const double from = std::sqrt(lastEigenvalue);
     const double to = std::sqrt(largestEigenvalue(laplacian));
-    // The power of the mean here, too, so that parts of a filter make the whole.
+    // Again the power of the mean: fractional parts then compose to the whole filter.
     const TransferFunction whole = F_.whole();
     return std::pow(from < to ? meanGain(whole, from, to) : whole(to), F_.appliedPower());
 }

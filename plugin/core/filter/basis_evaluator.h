@@ -7,24 +7,26 @@
 
 namespace spectral {
 
-/// The k lowest harmonics, and one gain for the rest.
+/// The k lowest harmonics, with a single gain for the rest.
 struct TruncationOptions {
-    int basisSize = 300;           ///< k, below the number of vertices.
-    bool reinjectResidual = true;  ///< Keep what is beyond k (Eq. 8), else drop it (Eq. 6).
+    int basisSize = 300;  ///< k, below the number of vertices.
+    bool reinjectResidual =
+        true;  ///< Keep the part beyond k (Eq. 8) instead of dropping it (Eq. 6).
 };
 
 /// Evaluates in a basis of manifold harmonics: truncated (Kovnatsky et al. 2012, Eqs. 6 to 10), or,
-/// for an F with jumps, up to the last jump, beyond which such an F is constant: exact.
+/// for an F with jumps, up to the last jump. F must be constant beyond it, so this is exact.
 ///
-/// After its first step a truncated filter that keeps the residual needs no basis: to X it is one
-/// gain over all n harmonics, which jumps from F to F_h at the k-th. Only the harmonics near the
-/// jump are computed anew, all of them by inertia, and filtered exactly. The rest of X has nothing
-/// near the jump: a Krylov method resolves it (full_spectrum.h), to the accuracy asked for.
+/// After the first step, a truncated filter that keeps the residual needs no basis: it acts on X as
+/// one gain over all n harmonics, which jumps from F to F_h at the k-th. Only the harmonics near
+/// the jump are recomputed, their completeness verified by inertia, and filtered exactly. The rest
+/// of X has no components near the jump: a Krylov method (full_spectrum.h) filters it to the
+/// requested accuracy.
 class BasisEvaluator : public Evaluator {
   public:
     /// @param F  kept by reference.
-    /// @param truncation  empty: the harmonics up to the last jump of F, which must have one.
-    /// @param atEveryVertex  whether the accuracy is that of every vertex, or over the surface.
+    /// @param truncation  empty: use the harmonics up to the last jump of F, which must have one.
+    /// @param atEveryVertex  whether accuracy bounds the error of every vertex or over the surface.
     BasisEvaluator(const TransferFunction& F, std::optional<TruncationOptions> truncation,
                    bool atEveryVertex)
         : F_(F), truncation_(truncation), atEveryVertex_(atEveryVertex) {}
@@ -34,8 +36,9 @@ class BasisEvaluator : public Evaluator {
                         const Progress& progress) override;
 
   private:
-    /// Empty where it cannot be done: the accuracy is not reached (needles, say), the harmonics
-    /// near the cut are one cluster or almost all that there are, or memory is short.
+    /// Evaluates with the harmonics near the cut only. Empty if impossible: the accuracy is not
+    /// reached (needle triangles, for example), the harmonics near the cut form one cluster or are
+    /// almost all there are, or memory is short.
     std::optional<Evaluation> aroundTheCut(const Laplacian& laplacian, const Eigen::MatrixXd& X,
                                            const std::vector<double>& alphas, double accuracy,
                                            const Progress& progress);

@@ -13,37 +13,37 @@ namespace spectral {
 
 /// F^alpha(sqrt(A)) X for some powers alpha.
 struct Evaluation {
-    std::vector<Eigen::MatrixXd> Y;  ///< n x c each, one for each power.
-    double errorEstimate = 0.0;      ///< The largest one, relative to the size of X.
+    std::vector<Eigen::MatrixXd> Y;  ///< One n x c matrix for each power.
+    double errorEstimate = 0.0;      ///< Largest estimated error, relative to the size of X.
     bool accuracyReached = true;
 };
 
-/// The share of a step of size alpha in the accuracy of the whole filter, as errors of steps add
-/// up; at least what round-off allows.
+/// The share of a step of size alpha in the accuracy of the whole filter, since the errors of steps
+/// add up; limited by round-off.
 inline double accuracyOfStep(double accuracy, double alpha) {
     constexpr double kFinestAccuracy = 1e-13;
     return std::max(accuracy * alpha, kFinestAccuracy);
 }
 
-/// Evaluates powers of a transfer function, for one Laplacian after another.
+/// Evaluates powers of a transfer function for a sequence of Laplacians.
 class Evaluator {
   public:
     virtual ~Evaluator() = default;
 
     /// F^alpha(sqrt(A)) X (Kovnatsky et al. 2012, Eqs. 6 to 8 and 11).
-    /// @param alphas    descending; tuned for the one in the middle.
-    /// @param accuracy  wanted, relative to the size of X.
+    /// @param alphas    powers, descending; the evaluation is tuned for the middle one.
+    /// @param accuracy  requested accuracy, relative to the size of X.
     /// @throws InvalidOption, SolverFailure, Cancelled
     virtual Evaluation evaluate(const Laplacian& laplacian, const Eigen::MatrixXd& X,
                                 const std::vector<double>& alphas, double accuracy,
                                 const Progress& progress) = 0;
 
-    /// The last basis that was computed, without its vectors; empty where none is used.
+    /// The last computed basis, without its vectors; empty if none was used.
     const HarmonicBasis& basis() const { return basis_; }
     int computedBases() const { return computedBases_; }
-    const ShiftedLdlt& ldlt() const { return ldlt_; }  ///< Counts the work.
-    int products() const { return products_; }         ///< Of W with one column each.
-    /// Whether there was no memory for a factorization that would have paid.
+    const ShiftedLdlt& ldlt() const { return ldlt_; }  ///< Counts factorizations and solves.
+    int products() const { return products_; }         ///< Number of products of W with one column.
+    /// Whether a factorization would have paid off but did not fit in memory.
     bool lacksMemory() const { return lacksMemory_; }
 
   protected:

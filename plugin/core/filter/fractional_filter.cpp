@@ -20,31 +20,31 @@ namespace spectral {
 
 namespace {
 
-/// Part of the tolerance of automatic steps that is left to their evaluations, in the root mean
-/// square over the surface: small, so that single vertices may be several times worse.
+/// Share of the tolerance of automatic steps granted to their evaluations, as a root mean square
+/// over the surface: small, as single vertices may be several times worse.
 constexpr double kEvaluationShare = 0.05;
 
-/// Relative accuracy of evaluations at any tolerance: four digits that do not depend on it.
+/// Evaluations have at least this relative accuracy, however large the tolerance.
 constexpr double kLoosestAccuracy = 1e-4;
 
-/// An offset that makes up for lost volume is at most so many times the displacement: a surface
-/// that moves by a length changes its volume by at most its area times that, and its area may
-/// shrink to a small part.
-constexpr double kMostOffset = 10.0;
+/// Maximum offset that restores lost volume, relative to the displacement. A surface that moves by
+/// a distance changes its volume by at most its area times that distance, but the area may have
+/// become much smaller.
+constexpr double kMaxOffset = 10.0;
 
-/// What a low-pass leaves of the area, less than a hundredth of the size: nothing, to its user.
-constexpr double kLeastArea = 1e-4;
+/// A low-pass that leaves less than this fraction of the area, or 1 % of the size, leaves nothing.
+constexpr double kMinArea = 1e-4;
 
-/// What is left of the area at a vertex, relative to it, where a part shrinks to a line or a point.
+/// A vertex that keeps less than this fraction of its area is shrinking to a line or a point.
 constexpr double kShrunken = 0.1;
 
 /// More steps make no difference, and take hours.
-constexpr int kMostSteps = 1000;
+constexpr int kMaxSteps = 1000;
 
 void checkOptions(const FilterOptions& options) {
-    if (options.steps < 0 || options.steps > kMostSteps)
+    if (options.steps < 0 || options.steps > kMaxSteps)
         throw InvalidOption("steps = " + std::to_string(options.steps) +
-                            ": must be between 1 and " + std::to_string(kMostSteps) +
+                            ": must be between 1 and " + std::to_string(kMaxSteps) +
                             ", e.g. 10, or 0 for automatic steps");
     if (options.steps == 0 && !(std::isfinite(options.tolerance) && options.tolerance > 0.0))
         throw InvalidOption("tolerance = " + textOf(options.tolerance) +
@@ -78,14 +78,14 @@ void measureDisplacement(const Vertices& displacement, const Eigen::VectorXd& D,
     result.rmsDisplacement = std::sqrt(squares.dot(D / D.sum()));
 }
 
-/// Part of an area at vertices where little of it is left.
-/// @param before, after  areas at the vertices.
+/// Fraction of the area at vertices where little of it is left.
+/// @param before, after  vertex areas.
 double shrunkenPart(const Eigen::VectorXd& before, const Eigen::VectorXd& after) {
     const auto isShrunken = after.array() < kShrunken * before.array();
     return isShrunken.select(before, 0.0).sum() / before.sum();
 }
 
-/// The evaluations of automatic steps need not be much more accurate than the steps.
+/// Evaluation options; those of automatic steps need not be much more accurate than the steps.
 EvaluationOptions evaluationFor(const FilterOptions& options, const Surface& surface) {
     EvaluationOptions evaluation = options.evaluation;
     if (options.steps > 0) return evaluation;
@@ -97,15 +97,14 @@ EvaluationOptions evaluationFor(const FilterOptions& options, const Surface& sur
     return evaluation;
 }
 
-/// The steps that the options ask for.
+/// Runs the requested steps.
 AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate,
                              const TransferFunction& F, const Vertices& X,
                              const FilterOptions& options, const Progress& progress) {
-    // A truncated spectrum may drop the residual, whatever the gain.
+    // A truncated spectrum may drop the residual even if the gain is 1.
     const bool isIdentity = F.isOne() && options.evaluation.spectrum == Spectrum::Full;
     if (isIdentity || options.basisUpdate == BasisUpdate::None) {
-        // All powers of one operator commute: K steps are the whole filter at once. That of a gain
-        // of 1 keeps every bit.
+        // Powers of one operator commute: K steps are the whole filter. A gain of 1 keeps all bits.
         AutomaticSteps whole;
         if (isIdentity) {
             requireUsable(laplacians.current());
@@ -118,7 +117,7 @@ AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evalua
         return whole;
     }
     if (options.steps == 0)
-        return automaticSteps(laplacians, evaluate, X, {options.tolerance, options.mostSteps},
+        return automaticSteps(laplacians, evaluate, X, {options.tolerance, options.maxSteps},
                               progress);
     return {fixedSteps(laplacians, evaluate, X, options.steps, progress)};
 }
@@ -128,7 +127,8 @@ AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evalua
 FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOptions& options,
                               const Progress& progress) {
     const ThreadTeam team(progress);
-    checkMesh(V, F, options.laplacian);  // first: of an infinite diagonal no feature size is right
+    checkMesh(V, F,
+              options.laplacian);  // first: a mesh that is not finite has no valid feature size
     checkOptions(options);
     const Surface surface = joinedSurface(V, F);
     const TransferFunction transfer(options.transferFunction, cutoffFrequency(options.featureSize));
@@ -142,11 +142,10 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     // Kovnatsky et al. 2012, Eq. 11, or its limit.
     const AutomaticSteps steps =
         filterInSteps(laplacians, evaluate, transfer, surface.X, options, progress);
-    if (!steps.last.X.allFinite())
-        throw SolverFailure("the filtered coordinates are not finite numbers");
+    if (!steps.last.X.allFinite()) throw SolverFailure("the filtered coordinates are not finite");
     const double areaBefore = surfaceArea(surface.X, surface.F);
     if (options.steps == 0 && options.transferFunction.type == FilterType::LowPass &&
-        surfaceArea(steps.last.X, surface.F) < kLeastArea * areaBefore)
+        surfaceArea(steps.last.X, surface.F) < kMinArea * areaBefore)
         throw SolverFailure(ErrorCode::ShrinksToNothing, "the whole surface shrinks to nothing");
     laplacians.reset();
     const Eigen::VectorXd weight =
@@ -158,7 +157,7 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
         countsOf(surface, V.rows(), interior.surfaceComponents().count, interior.fixedVertices());
     if (options.preserveVolume) {
         result.volumes = preserveVolumes(surface.X, surface.F, interior.surfaceComponents(), weight,
-                                         kMostOffset, X);
+                                         kMaxOffset, X);
         displacement = X - surface.X;
     }
 

@@ -10,7 +10,7 @@ namespace spectral {
 namespace {
 
 /// Appends a step of size h.
-/// @throws SolverFailure  when the errors add up to too much; `steps` is then as it was.
+/// @throws SolverFailure  when the accumulated error is too large; `steps` is then unchanged.
 void append(Evaluation step, double h, FractionalSteps& steps) {
     const double error = steps.errorEstimate + step.errorEstimate;
     requireUsefulAccuracy(error);
@@ -20,13 +20,13 @@ void append(Evaluation step, double h, FractionalSteps& steps) {
     steps.sizes.push_back(h);
 }
 
-/// Part of its area that a surface must keep in a half step: the Laplacian of one that has
-/// collapsed says nothing about the step. A high-pass would leave the shape as it is, at any number
+/// Fraction of its area that a surface must keep in a half step: the Laplacian of a collapsed
+/// surface says nothing about the step. A high-pass would leave the shape unchanged, for any number
 /// of steps.
-constexpr double kLeastArea = 1e-2;
+constexpr double kMinArea = 1e-2;
 
 /// One step of the midpoint rule, or several smaller ones.
-/// @param half  the shape at the half step from the input, where it is known; else null.
+/// @param half  shape at the half step if it is known, else null.
 void midpointStep(LaplacianBuilder& laplacians, StepEvaluator& evaluate, double h, double smallest,
                   const Vertices* half, const Progress& progress, FractionalSteps& steps) {
     try {
@@ -41,7 +41,7 @@ void midpointStep(LaplacianBuilder& laplacians, StepEvaluator& evaluate, double 
             half = &predicted;
         }
         laplacians.update(*half);
-        if (laplacians.area() < kLeastArea * area)
+        if (laplacians.area() < kMinArea * area)
             throw SolverFailure(ErrorCode::ShrinksToNothing,
                                 "the whole surface shrinks to nothing in half a step");
         append(evaluate(laplacians.current(), steps.X, h, progress.part(0.5, 1.0)), h, steps);
@@ -54,8 +54,8 @@ void midpointStep(LaplacianBuilder& laplacians, StepEvaluator& evaluate, double 
     }
 }
 
-/// The failure of a step that starts from a shape the filter has made.
-SolverFailure inCourse(const SolverFailure& failure, const std::string& where) {
+/// The failure of a step that starts from an already filtered shape.
+SolverFailure failureDuring(const SolverFailure& failure, const std::string& where) {
     const bool hasOwnRemedy =
         failure.code() == ErrorCode::TooSteep || failure.code() == ErrorCode::ShrinksToNothing;
     return {hasOwnRemedy ? failure.code() : ErrorCode::ShapeCollapsed, where + failure.what()};
@@ -78,7 +78,7 @@ FractionalSteps fixedSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate
             step == 0 ? laplacians.reset() : laplacians.update(steps.X);
             append(evaluate(laplacians.current(), steps.X, 1.0 / K, stage), 1.0 / K, steps);
         } catch (const SolverFailure& failure) {
-            if (step > 0) throw inCourse(failure, nameOf(step, K));
+            if (step > 0) throw failureDuring(failure, nameOf(step, K));
             throw SolverFailure(failure.code(), nameOf(step, K) + failure.what());
         }
         stage.report(1.0, "done");
@@ -98,8 +98,8 @@ FractionalSteps midpointSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
             midpointStep(laplacians, evaluate, 1.0 / K, smallest, step == 0 ? firstHalf : nullptr,
                          stage, steps);
         } catch (const SolverFailure& failure) {
-            throw inCourse(failure, "at " + std::to_string(static_cast<int>(100.0 * from)) +
-                                        " % of the filter: ");
+            throw failureDuring(failure, "at " + std::to_string(static_cast<int>(100.0 * from)) +
+                                             " % of the filter: ");
         }
         stage.report(1.0, "done");
     }

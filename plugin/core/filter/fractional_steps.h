@@ -9,20 +9,20 @@
 
 namespace spectral {
 
-/// The way from the input's shape to the filtered one.
+/// Result of a sequence of fractional steps.
 struct FractionalSteps {
     Vertices X;                   ///< n x 3, the filtered shape.
-    std::vector<double> sizes;    ///< The fractional powers of the steps, in their order; sum 1.
-    double errorEstimate = 0.0;   ///< Estimated error of all evaluations, relative.
+    std::vector<double> sizes;    ///< The fractional power of each step; they sum to 1.
+    double errorEstimate = 0.0;   ///< Estimated relative error of all evaluations.
     bool accuracyReached = true;  ///< Whether every evaluation was within its share of accuracy.
 };
 
-/// The paper's scheme: K steps of F^(1/K), each with the Laplacian of the shape that the step
-/// before has left. First order in 1/K.
+/// The paper's scheme: K steps of F^(1/K), each with the Laplacian of the shape left by the
+/// previous step. First order in 1/K.
 ///
 /// Kovnatsky et al. 2012, Eq. 11: X_0 = X, X_(i+1) = F^(1/K)(sqrt(A(X_i))) X_i.
 ///
-/// @throws SolverFailure  naming the step, when triangles collapse or an evaluation fails.
+/// @throws SolverFailure  when triangles collapse or an evaluation fails; it names the step.
 FractionalSteps fixedSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate, const Vertices& X,
                            int K, const Progress& progress);
 
@@ -31,12 +31,12 @@ FractionalSteps fixedSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate
 /// That limit is the flow dX/ds = log F(sqrt(A(X))) X, s from 0 to 1. The paper's scheme is its
 /// exponential Euler method; this is its exponential midpoint rule, with h = 1/K:
 ///     X_h/2 = F^(h/2)(sqrt(A(X))) X,    X_h = F^h(sqrt(A(X_h/2))) X.
-/// X_h/2 is computed with fewer digits (StepEvaluator::predict). A step that fails is taken as two
-/// of half its size, these again, down to 1 / finest.
+/// X_h/2 is computed to fewer digits (StepEvaluator::predict). A step that fails is halved,
+/// recursively, down to 1 / finest.
 ///
 /// @param finest     >= K.
-/// @param firstHalf  X_h/2 of the first step, where it is known.
-/// @throws SolverFailure  saying how far it came, when a step of 1 / finest fails.
+/// @param firstHalf  X_h/2 of the first step if it is known, else null.
+/// @throws SolverFailure  when a step of 1 / finest fails; it says how far the filter got.
 FractionalSteps midpointSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate,
                               const Vertices& X, int K, int finest, const Progress& progress,
                               const Vertices* firstHalf = nullptr);

@@ -10,9 +10,9 @@ namespace spectral {
 
 namespace {
 
-/// Dimensions of products that cost as much as a factorization and its solves, on meshes of n
-/// vertices: measured 20 to 30 with 20,000, 35 to 70 with 200,000, and 70 with 2.5 million. Where
-/// products have served for the first evaluation, the analysis of the pattern is left for fewer.
+/// Dimension at which products cost as much as a factorization and its solves, for n vertices: a
+/// fit to measurements. It is higher after the first evaluation: if products sufficed there, a
+/// symbolic analysis would pay off over fewer evaluations.
 int affordableDimension(Index n, bool isFirst) {
     return static_cast<int>((isFirst ? 36.0 : 54.0) * std::pow(static_cast<double>(n) / 1e5, 0.2));
 }
@@ -35,12 +35,12 @@ Evaluation evaluateInKrylovSpaces(const Laplacian& laplacian, const ShiftedLdlt&
     const bool hasFixedBoundary = laplacian.constants.label().minCoeff() < 0;
     if (options.atEveryVertex || hasFixedBoundary)
         options.roundOffAtVertices = roundOffAtVertices(ldlt, laplacian);
-    // Where a boundary is fixed, no solution is known to be free of constants.
+    // With a fixed boundary, solutions may contain constants.
     if (hasFixedBoundary) options.roundOff = *options.roundOffAtVertices;
     return joined(applyFullSpectrum(laplacian, ShiftInvert(ldlt), gains, X, options, progress));
 }
 
-/// The pole is chosen for the spectrum of the first Laplacian: those that follow are much alike.
+/// The pole is chosen for the spectrum of the first Laplacian; later ones are similar.
 double FullSpectrumEvaluator::poleFor(const Laplacian& laplacian, double alpha) {
     if (!spectrum_) spectrum_ = bulkSpectrum(laplacian);
     const auto [place, isNew] = poles_.try_emplace(alpha);
@@ -81,15 +81,16 @@ std::optional<Evaluation> FullSpectrumEvaluator::evaluateByProducts(const Laplac
                                                                     const Eigen::MatrixXd& X,
                                                                     FullSpectrumOptions options,
                                                                     const Progress& progress) {
-    const bool areToDo = solver_ == Solver::Products || lacksMemory_;
-    const bool areToTry = solver_ == Solver::Cheapest && !atEveryVertex_ && !areDear_;
-    if (!areToDo && !areToTry) return {};
-    if (!areToDo) options.affordable = affordableDimension(laplacian.D.size(), products_ == 0);
+    const bool isRequired = solver_ == Solver::Products || lacksMemory_;
+    const bool isWorthTrying =
+        solver_ == Solver::Cheapest && !atEveryVertex_ && !areProductsCostly_;
+    if (!isRequired && !isWorthTrying) return {};
+    if (!isRequired) options.affordable = affordableDimension(laplacian.D.size(), products_ == 0);
     const Products A(laplacian, F_.cutoff());
     std::vector<FullSpectrumResult> results =
         applyFullSpectrum(laplacian, A, gains, X, options, progress);
     products_ += A.count();
-    areDear_ = results.empty();
+    areProductsCostly_ = results.empty();
     if (results.empty()) return {};
     return joined(std::move(results));
 }

@@ -11,34 +11,34 @@
 
 namespace spectral {
 
-/// What Krylov spaces are made with (krylov_operator.h).
+/// Operator that builds the Krylov spaces (krylov_operator.h).
 enum class Solver {
-    Cheapest,       ///< Products for as long as they are expected to be cheaper, or where there is
-                    ///< no memory for a factorization.
-    Factorization,  ///< For tests, like the next.
-    Products
+    Cheapest,       ///< Products while they are expected to be cheaper, or if a factorization does
+                    ///< not fit in memory.
+    Factorization,  ///< Factorizations only, for tests.
+    Products        ///< Products only, for tests.
 };
 
-/// Gains over all n harmonics from the Krylov spaces of one factor (full_spectrum.h).
+/// Applies gains over all n harmonics in Krylov spaces of one factorization (full_spectrum.h).
 /// @param ldlt     factorization of W + lambda_p D.
-/// @param gains    continuous, at least where X has harmonics.
-/// @param options  without what this function knows: round-off.
+/// @param gains    continuous, at least where X has components.
+/// @param options  all but the round-off, which is set here.
 Evaluation evaluateInKrylovSpaces(const Laplacian& laplacian, const ShiftedLdlt& ldlt,
                                   const std::vector<Gain>& gains, const Eigen::MatrixXd& X,
                                   FullSpectrumOptions options, const Progress& progress);
 
-/// Evaluates over all n harmonics, by a Krylov method that computes none of them (full_spectrum.h):
-/// for a continuous F.
+/// Evaluates a continuous F over all n harmonics, by a Krylov method that computes none of them
+/// (full_spectrum.h).
 ///
-/// Products with W alone are tried first where the accuracy is that of the surface as a whole: they
-/// cost a tenth of a solve, without a factorization, but may need many dimensions: where triangles
-/// are needles, where F is steep, or the feature size is many edges. Once they have been expected
-/// to cost more than a factorization, all later Laplacians are factorized.
+/// Products with W alone are tried first if the accuracy refers to the surface as a whole: they
+/// cost a tenth of a solve and need no factorization, but may need many dimensions if triangles are
+/// needles, F is steep, or the feature size spans many edges. Once they are expected to cost more
+/// than a factorization, all later Laplacians are factorized.
 class FullSpectrumEvaluator : public Evaluator {
   public:
     /// @param F  kept by reference.
-    /// @param accuracy  of the whole filter, which the poles are chosen for.
-    /// @param atEveryVertex  whether the accuracy is that of every vertex, or over the surface.
+    /// @param accuracy  of the whole filter; the poles are chosen for it.
+    /// @param atEveryVertex  whether accuracy bounds the error of every vertex or over the surface.
     FullSpectrumEvaluator(const TransferFunction& F, double accuracy, bool atEveryVertex,
                           Solver solver)
         : F_(F), accuracy_(accuracy), atEveryVertex_(atEveryVertex), solver_(solver) {}
@@ -48,7 +48,7 @@ class FullSpectrumEvaluator : public Evaluator {
                         const Progress& progress) override;
 
   private:
-    /// By products, if these are to be tried; none where a factorization is expected to pay.
+    /// Evaluates by products; empty if a factorization is chosen or expected to be cheaper.
     std::optional<Evaluation> evaluateByProducts(const Laplacian& laplacian,
                                                  const std::vector<Gain>& gains,
                                                  const Eigen::MatrixXd& X,
@@ -60,10 +60,10 @@ class FullSpectrumEvaluator : public Evaluator {
     double accuracy_;
     bool atEveryVertex_;
     Solver solver_;
-    bool areDear_ = false;                   // products
+    bool areProductsCostly_ = false;         // more than a factorization, as estimated
     std::optional<SpectrumRange> spectrum_;  // of the first Laplacian
     SpareVectors spare_;
-    std::map<double, double> poles_;  // for the powers asked for so far
+    std::map<double, double> poles_;  // by power, for those requested so far
 };
 
 }  // namespace spectral

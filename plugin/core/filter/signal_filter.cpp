@@ -42,7 +42,7 @@ Faces trianglesWithData(const Faces& F, const Eigen::Array<bool, Eigen::Dynamic,
     return withData;
 }
 
-/// Whether each component has one value, to round-off: there is nothing to filter, and an error
+/// Whether X is constant on each component, to round-off: there is nothing to filter, and an error
 /// relative to the size of the signal would be meaningless.
 /// @param X  entries in [-1, 1].
 bool isConstant(Eigen::MatrixXd X, const ConstantModes& constants) {
@@ -55,7 +55,7 @@ bool isConstant(Eigen::MatrixXd X, const ConstantModes& constants) {
 
 FilteredSignal filterSignal(const Vertices& V, const Faces& F, const Eigen::MatrixXd& Q,
                             const SignalFilterOptions& options, const Progress& progress) {
-    assert(Q.rows() == V.rows() && Q.cols() >= 1 && Q.cols() <= kMostSignals);
+    assert(Q.rows() == V.rows() && Q.cols() >= 1 && Q.cols() <= kMaxSignals);
     const ThreadTeam team(progress);
     checkMesh(V, F);
     checkSignal(Q);
@@ -73,8 +73,7 @@ FilteredSignal filterSignal(const Vertices& V, const Faces& F, const Eigen::Matr
     const EvaluationOptions evaluation;
     StepEvaluator evaluate(evaluation, interior, transfer);
 
-    // About the middle of the range and scaled to 1: no digit is lost to a large mean, and no
-    // square overflows.
+    // Centred and scaled to 1: a large mean costs no digits, and squares cannot overflow.
     Eigen::MatrixXd X = restricted(Q, surface);
     X.rowwise() -= (0.5 * X.colwise().minCoeff() + 0.5 * X.colwise().maxCoeff()).eval();
     const double scale = X.cwiseAbs().maxCoeff();
@@ -87,7 +86,7 @@ FilteredSignal filterSignal(const Vertices& V, const Faces& F, const Eigen::Matr
     result.accuracy = evaluation.accuracy;
     result.isConstant = isConstant(X, laplacian.constants);
     if (!result.isConstant) {
-        // Kovnatsky et al. 2012, Eq. 6, of Q in place of the coordinates.
+        // Kovnatsky et al. 2012, Eq. 6, with Q in place of the coordinates.
         const Evaluation filtered = evaluate(laplacian, X, 1.0, progress);
         const Eigen::MatrixXd change =
             vertexWeight(options.part, surface, interior, laplacian, options.featureSize)

@@ -21,20 +21,20 @@ struct SignalFilterOptions {
 };
 
 struct FilteredSignal : SurfaceCounts {
-    Eigen::MatrixXd Y;  ///< n x c, the filtered signals; Q at vertices beyond the surface.
+    Eigen::MatrixXd Y;  ///< n x c, the filtered signals; Q at vertices not on the surface.
 
-    bool isConstant = false;       ///< Each component has one value: nothing to filter.
+    bool isConstant = false;       ///< Constant on each component: nothing to filter.
     int verticesWithoutData = 0;   ///< Vertices with a NaN, unchanged.
     double cutoffFrequency = 0.0;  ///< omega_c, radians per length unit.
-    double rmsChange = 0.0;        ///< Of Y - Q over the surface and all signals, units of Q.
+    double rmsChange = 0.0;        ///< RMS of Y - Q over the surface and all signals, units of Q.
     double maxChange = 0.0;        ///< Largest modulus of an entry of Y - Q.
-    double accuracy = 0.0;         ///< Requested error, as errorEstimate.
+    double accuracy = 0.0;         ///< Requested accuracy, relative like errorEstimate.
     double errorEstimate = 0.0;    ///< Estimated error of Y, relative to the largest modulus of Q
                                    ///< without its means, over all signals together.
     bool accuracyReached = true;   ///< Whether errorEstimate is within the accuracy.
     int factorizations = 0;        ///< Sparse LDL^T factorizations.
     int solves = 0;                ///< Solves with one right-hand side.
-    Eigen::VectorXd residuals;     ///< Of the harmonics, where F needs any (see HarmonicBasis).
+    Eigen::VectorXd residuals;     ///< Residuals of the harmonics, if F needs any (HarmonicBasis).
 };
 
 /// Filters signals on a mesh, such as vertex qualities or colours: Y = F(sqrt(A)) Q over the whole
@@ -43,14 +43,14 @@ struct FilteredSignal : SurfaceCounts {
 ///
 /// Every connected component keeps the area-weighted mean of each signal, whatever F(0) is. With a
 /// fixed boundary the values there are kept instead, and F acts on the rest of the signal
-/// (harmonic_extension.h). What F does not change keeps its value to the bit.
+/// (harmonic_extension.h). Values that F does not change keep every bit.
 ///
 /// A vertex with a NaN has no data. The surface consists of the triangles with data at all corners;
-/// it ends at the others with a natural boundary.
+/// it has a natural boundary towards the others.
 ///
 /// @param V  n x 3 positions, finite.
 /// @param F  m x 3 vertex indices, m >= 1; any topology, unreferenced vertices allowed.
-/// @param Q  n x c values, not infinite, 1 <= c <= kMostSignals.
+/// @param Q  n x c values, not infinite, 1 <= c <= kMaxSignals.
 /// @throws InvalidMesh  as checkMesh, and when a value is infinite, or no triangle has data.
 /// @throws InvalidOption, SolverFailure, Cancelled
 FilteredSignal filterSignal(const Vertices& V, const Faces& F, const Eigen::MatrixXd& Q,

@@ -11,23 +11,24 @@ namespace spectral {
 
 namespace {
 
-/// Relative accuracy of a signal that is negligible compared with the shape: two digits of it.
+/// Even a signal that is negligible compared with the shape gets two digits.
 constexpr double kCoarsestAccuracy = 1e-2;
 
-/// Error of a shape that a Laplacian is taken of, relative to that of a result, and three digits at
-/// least. It enters the result through the change of the Laplacian alone, but where parts shrink
-/// away that change is large; a digit costs two solves.
+/// Relative error of a predicted shape: a share of that of the result, but at least three digits.
+/// It affects the result only through the change of the Laplacian, but that change is large where
+/// parts shrink away; a digit costs two solves.
 constexpr double kPredictionShare = 0.3, kPredictionAccuracy = 1e-3;
 
 /// Relative error beyond which a result is useless.
 constexpr double kUselessError = 0.1;
 
-/// @throws InvalidOption  when neither a Krylov space nor a basis evaluates F.
+/// @throws InvalidOption  when neither a Krylov space nor a basis can evaluate F.
 void requireOneResidualGain(const TransferFunction& F) {
     if (F.isConstantBeyondJumps()) return;
     std::ostringstream text;
     text << "transfer_function jumps at w = " << F.discontinuities().back() / F.cutoff()
-         << " and is not constant beyond: make the jump a smooth fall, e.g. 1/(1 + w^16) for "
+         << " and is not constant beyond it: replace the jump by a smooth fall, e.g. 1/(1 + w^16) "
+            "for "
             "w < 1, or choose spectrum = truncated";
     throw InvalidOption(text.str());
 }

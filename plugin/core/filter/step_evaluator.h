@@ -18,43 +18,44 @@ namespace spectral {
 /// How F(sqrt(A)) X is evaluated.
 enum class Spectrum {
     Full,      ///< All n harmonics, by a rational Krylov method that computes none of them.
-    Truncated  ///< The k lowest harmonics, and one gain for the rest.
+    Truncated  ///< The k lowest harmonics, with a single gain for the rest.
 };
 
 struct EvaluationOptions {
     Spectrum spectrum = Spectrum::Full;
     TruncationOptions truncation;  ///< For Spectrum::Truncated.
 
-    /// Error of all steps together that are evaluated without a basis, relative to the size of the
-    /// shape (see FullSpectrumResult).
+    /// Maximum error of all steps together, relative to the size of the shape (FullSpectrumResult),
+    /// if they are evaluated without a basis.
     double accuracy = 1e-6;
-    bool atEveryVertex = true;  ///< Whether that is the error of every vertex, or over the surface.
+    bool atEveryVertex =
+        true;  ///< Whether it bounds the error of every vertex or over the surface.
     Solver solver = Solver::Cheapest;  ///< For Spectrum::Full.
 };
 
 /// Evaluates fractional steps F^alpha(sqrt(A)) X (Eq. 11) on a surface.
 ///
-/// With a fixed boundary a step is H + F^alpha(sqrt(A_II)) (X - H), H the harmonic extension of the
-/// boundary's positions (harmonic_extension.h).
+/// With a fixed boundary a step is H + F^alpha(sqrt(A_II)) (X - H), where H is the harmonic
+/// extension of the boundary positions (harmonic_extension.h).
 class StepEvaluator {
   public:
     /// The arguments are kept by reference.
     StepEvaluator(const EvaluationOptions& options, const Interior& interior,
                   const TransferFunction& F);
 
-    /// F^alpha(sqrt(A)) X.
+    /// Evaluates F^alpha(sqrt(A)) X.
     /// @param surface  the Laplacian of the surface.
-    /// @throws SolverFailure  where triangles have collapsed so far that this is impossible, or the
-    ///                        result would be useless.
+    /// @throws SolverFailure  when collapsed triangles leave no usable Laplacian, or the result
+    ///                        would be useless.
     Evaluation operator()(const Laplacian& surface, const Eigen::MatrixXd& X, double alpha,
                           const Progress& progress);
 
-    /// The same for several powers: for shapes that Laplacians are taken of, not in the result
-    /// themselves.
+    /// The same for several powers, less accurately: for shapes that only provide Laplacians and do
+    /// not enter the result themselves.
     Evaluation predict(const Laplacian& surface, const Eigen::MatrixXd& X,
                        const std::vector<double>& alphas, const Progress& progress);
 
-    const HarmonicBasis& basis() const { return evaluator_->basis(); }  ///< Empty without one.
+    const HarmonicBasis& basis() const { return evaluator_->basis(); }  ///< Empty if none was used.
     int computedBases() const { return evaluator_->computedBases(); }
     int factorizations() const {
         return evaluator_->ldlt().factorizations() + extension_.factorizations();
@@ -74,8 +75,8 @@ class StepEvaluator {
     std::unique_ptr<Evaluator> evaluator_;
 };
 
-/// Refuses a relative error, of one step or of several, that makes a result useless.
-/// @throws SolverFailure  of code TooSteep.
+/// Rejects a relative error, of one or several steps, that makes the result useless.
+/// @throws SolverFailure  with code TooSteep.
 void requireUsefulAccuracy(double errorEstimate);
 
 }  // namespace spectral

@@ -104,7 +104,7 @@ KrylovSpaces::KrylovSpaces(const KrylovOperator& S, const Laplacian& laplacian,
       exhausted_(X.cols()),
       mayBeRoundOff_(X.cols()),
       roundOff_(kBreakdown) {
-    assert(columns_ >= 1 && columns_ <= kMostSignals);
+    assert(columns_ >= 1 && columns_ <= kMaxSignals);
     if (kept == KeptBasis::Single) {
         basis_.emplace<Vectors<float>>();
         unit_ = 1.0 / std::sqrt(laplacian.D.sum());

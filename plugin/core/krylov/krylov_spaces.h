@@ -53,7 +53,7 @@ class KrylovSpaces {
     static constexpr double kOrthogonal = 1e-10;
 
     /// @param S, laplacian  kept by reference; the constant modes are removed from all vectors.
-    /// @param X  n x c signals, 1 <= c <= kMostSignals.
+    /// @param X  n x c signals, 1 <= c <= kMaxSignals.
     /// @param orthogonal  largest inner product of two basis vectors before reorthogonalization, if
     ///                    S needs an orthogonal basis.
     /// @param kept  how the basis is kept; with None, combine and largestEntryOf are not available.

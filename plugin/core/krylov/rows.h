@@ -8,7 +8,7 @@
 namespace spectral {
 
 /// Maximum number of signals filtered together.
-inline constexpr int kMostSignals = 4;
+inline constexpr int kMaxSignals = 4;
 
 /// The values of all signals at a vertex, contiguous in a vector of rows.
 template <int Columns, class Scalar = double>
@@ -30,7 +30,7 @@ auto withColumns(int columns, const Call& call) {
         case 1: return call(std::integral_constant<int, 1>());
         case 2: return call(std::integral_constant<int, 2>());
         case 3: return call(std::integral_constant<int, 3>());
-        default: return call(std::integral_constant<int, kMostSignals>());
+        default: return call(std::integral_constant<int, kMaxSignals>());
     }
 }
 

@@ -4,8 +4,8 @@
 
 namespace spectral {
 
-/// The constant modes of a Laplacian: its null space, one constant function for each component.
-/// Vertices of label -1 have none: their component has a fixed boundary (interior.h).
+/// The constant modes of a Laplacian: its null space, one constant function per component. Vertices
+/// with label -1 have none: their component has a fixed boundary (interior.h).
 ///
 /// A filter changes shape, not place: the gain of these modes is 1 whatever F(0) is. They are
 /// removed from a signal before F is applied and restored afterwards, both exactly; a computed
@@ -20,18 +20,18 @@ class ConstantModes {
     int count() const { return static_cast<int>(mass_.size()); }
 
     const Eigen::VectorXi& label() const { return label_; }  ///< n, -1 at vertices without a mode.
-    const Eigen::VectorXd& masses() const { return mass_; }  ///< `count` sums of D.
+    const Eigen::VectorXd& masses() const { return mass_; }  ///< Sum of D over each component.
 
     /// D-weighted mean of every column of X (n x c) on every component: count x c.
     Eigen::MatrixXd means(const Eigen::Ref<const Eigen::MatrixXd>& X) const;
 
-    /// Adds the means (count x c) of its component to every row of X (n x c).
+    /// Adds to every row of X (n x c) the means (count x c) of its component.
     void add(const Eigen::MatrixXd& means, Eigen::Ref<Eigen::MatrixXd> X) const;
 
     /// D-orthogonal projection of X onto the complement of the constants, in place.
     void remove(Eigen::Ref<Eigen::MatrixXd> X) const { add(-means(X), X); }
 
-    /// The modes themselves, n x count, D-orthonormal: 1/sqrt(mass) on one component, 0 elsewhere.
+    /// The D-orthonormal modes, n x count: 1/sqrt(mass) on one component, 0 elsewhere.
     Eigen::MatrixXd orthonormal() const;
 
   private:

@@ -6,7 +6,7 @@ namespace spectral {
 
 namespace {
 
-/// W X from differences along edges, which no digit cancels in where X varies little.
+/// W X from differences along edges: no cancellation where X varies little.
 Eigen::MatrixXd applied(const SparseMatrix& W, const Eigen::MatrixXd& X) {
     Eigen::MatrixXd WX = Eigen::MatrixXd::Zero(X.rows(), X.cols());
     for (Index j = 0; j < W.cols(); ++j)
@@ -19,15 +19,15 @@ Eigen::MatrixXd applied(const SparseMatrix& W, const Eigen::MatrixXd& X) {
 
 HarmonicExtension::Rest HarmonicExtension::rest(const Laplacian& surface, const Laplacian& inside,
                                                 const Eigen::MatrixXd& X) {
-    // W_II is singular on components without fixed vertices: there, and only there, masses make it
-    // definite. Their H is the mean, not the solution.
+    // W_II is singular on components without fixed vertices: adding masses there, and only there,
+    // makes it definite. On these components H is the mean, not the solution.
     const Eigen::VectorXd D = (interior_.components().label.array() < 0).select(0.0, inside.D);
     ldlt_.factorizeDefinite(inside.W, D, 4.0 * kPi / surface.D.sum());
     Eigen::MatrixXd centred = X;
     surface.constants.remove(centred);
 
-    // X - H = W_II^-1 (W X)_I: no cancellation where X is nearly harmonic. The second solve, of
-    // what the first has left, matters among needles.
+    // X - H = W_II^-1 (W X)_I: no cancellation where X is nearly harmonic. A second solve, for the
+    // residual of the first, matters for needle triangles.
     Rest rest{Eigen::MatrixXd::Zero(interior_.size(), X.cols())};
     for (int pass = 0; pass < 2; ++pass)
         rest.U += ldlt_.solve(

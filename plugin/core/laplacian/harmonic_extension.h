@@ -7,11 +7,11 @@ namespace spectral {
 
 /// Splits signals on a surface with a fixed boundary into their harmonic extension H and the rest.
 ///
-/// H is determined by the boundary values, and has no detail of its own:
+/// H is determined by the boundary values and adds no detail:
 ///     W_II H_I = -W_IB X_B,  H_B = X_B.
 /// The rest is zero on the boundary; a filter with a fixed boundary acts on it alone,
 ///     Y = H + F(sqrt(A_II)) (X - H).
-/// On a component without boundary H is the D-weighted mean, which every filter preserves.
+/// On a component without a boundary, H is the D-weighted mean, which every filter preserves.
 class HarmonicExtension {
   public:
     /// @param interior  kept by reference.
@@ -25,7 +25,7 @@ class HarmonicExtension {
         double relativeSize = 0.0;
     };
 
-    /// @param surface, inside  its Laplacian, and that restricted to the interior.
+    /// @param surface, inside  Laplacian of the surface, and its restriction to the interior.
     /// @param X                n x c signals on the surface.
     /// @throws SolverFailure  when W_II is not positive definite to working precision.
     Rest rest(const Laplacian& surface, const Laplacian& inside, const Eigen::MatrixXd& X);

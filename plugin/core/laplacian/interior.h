@@ -14,35 +14,35 @@ enum class Boundary {
     Fixed  ///< Dirichlet conditions: boundary vertices do not move, harmonics vanish there.
 };
 
-/// Whether each vertex lies on the boundary, that is on an edge of exactly one triangle.
+/// Whether each vertex lies on the boundary, i.e. on an edge of exactly one triangle.
 ///
 /// @param F  m x 3 indices in [0, vertexCount).
 std::vector<bool> boundaryVertices(const Faces& F, Index vertexCount);
 
-/// The boundary vertices, if the boundary is fixed; else none.
+/// Whether each vertex is fixed: the boundary vertices for Boundary::Fixed, else none.
 std::vector<bool> verticesAtRest(const Faces& F, Index vertexCount, Boundary boundary);
 
-/// The vertices of a surface that can move: all, or all but a fixed boundary.
+/// The vertices of a surface that can move: all, or all except a fixed boundary.
 ///
 /// The eigenproblem of the interior is W_II phi = lambda D_II phi, phi = 0 on the boundary.
 class Interior {
   public:
     /// @param F           m x 3 triangles of the surface.
-    /// @param components  of the surface, n vertices.
+    /// @param components  connected components of the surface, n vertices.
     Interior(const Faces& F, Components components, Boundary boundary);
 
-    /// @param fixed  n, the vertices that cannot move.
+    /// @param fixed  n, whether each vertex is fixed.
     Interior(Components components, const std::vector<bool>& fixed);
 
     Index size() const { return static_cast<Index>(vertex_.size()); }
     Index fixedVertices() const { return surfaceComponents_.label.size() - size(); }
     bool isWhole() const { return fixedVertices() == 0; }
 
-    /// The components without fixed vertices, which have a constant mode, as labels of the interior
-    /// vertices; -1 on the other components.
+    /// Labels of the interior vertices on components without fixed vertices, which have a constant
+    /// mode; -1 on the other components.
     const Components& components() const { return components_; }
 
-    /// All components, as labels of the vertices of the surface.
+    /// Labels of all vertices of the surface.
     const Components& surfaceComponents() const { return surfaceComponents_; }
 
     /// W_II and D_II, with the constant modes of the components without fixed vertices.
@@ -58,7 +58,7 @@ class Interior {
 
   private:
     Components surfaceComponents_;
-    std::vector<Index> vertex_;  // of the surface for each row of the interior, ascending
+    std::vector<Index> vertex_;  // surface vertex of each row of the interior, ascending
     Components components_;
 };
 

@@ -14,8 +14,8 @@ namespace spectral {
 
 namespace {
 
-/// Mollification: two sides of a triangle are longer than the third by at least this many mean edge
-/// lengths. The value of Sharp and Crane.
+/// Mollification: two sides of a triangle exceed the third by at least this many mean edge lengths,
+/// as in Sharp and Crane.
 constexpr double kMollification = 1e-5;
 
 /// Sorts the sides of one edge by the angles of their triangles around it.
@@ -40,11 +40,12 @@ void sortByAngle(const Vertices& V, const Faces& F, Side* first, Side* last) {
     });
 }
 
-/// The cotangent matrix of an intrinsic triangulation, whose cover has so many copies of every
-/// triangle: W_ij = -weight, W_ii = -sum_j W_ij; zero weights are stored, too.
+/// The cotangent matrix of an intrinsic triangulation: W_ij = -weight, W_ii = -sum_j W_ij; zero
+/// weights are stored, too.
+/// @param copies  number of copies of every triangle in the cover.
 SparseMatrix stiffnessOf(const IntrinsicTriangulation& triangulation, int copies,
                          Index vertexCount) {
-    // Column j has room for an entry of every side that starts in j, and the diagonal.
+    // Column j has room for one entry per side that starts at j, and the diagonal.
     const auto n = static_cast<std::size_t>(vertexCount);
     std::vector<int> begin(n + 1, 1);
     begin[0] = 0;
@@ -75,7 +76,8 @@ SparseMatrix stiffnessOf(const IntrinsicTriangulation& triangulation, int copies
                 entries.front().value += weight;
                 entries.push_back({i, -weight});
             }
-            // By value, too: W_ij and W_ji sum in the same order; W is symmetric to the bit.
+            // Sorted by value, too: W_ij and W_ji are summed in the same order, so W is symmetric
+            // to the bit.
             std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
                 return std::pair(a.row, a.value) < std::pair(b.row, b.value);
             });
@@ -90,7 +92,7 @@ SparseMatrix stiffnessOf(const IntrinsicTriangulation& triangulation, int copies
             end[j] = at + 1;
         }
     });
-    // Columns move up, if any has room left.
+    // Close the gaps that merged entries leave between columns.
     int* starts = W.outerIndexPtr();
     for (std::size_t j = 0; j < n; ++j) {
         const int size = end[j] - begin[j];
@@ -150,11 +152,12 @@ IntrinsicTriangulation IntrinsicDelaunay::triangulation(const Vertices& V) const
         std::accumulate(length.begin(), length.end(), 0.0) / static_cast<double>(length.size());
     const double epsilon =
         parallelMax(static_cast<Index>(length.size()), [&](Index begin, Index end) {
-            double most = 0.0;
+            double largest = 0.0;
             for (int s = static_cast<int>(begin); s < end; ++s)
-                most = std::max(most, length[s] - length[nextSide(s)] - length[previousSide(s)] +
+                largest =
+                    std::max(largest, length[s] - length[nextSide(s)] - length[previousSide(s)] +
                                           kMollification * meanLength);
-            return most;
+            return largest;
         });
     if (epsilon > 0.0)
         for (double& l : length) l += epsilon;

@@ -15,26 +15,26 @@ namespace spectral {
 /// weights and is positive semidefinite for any triangles: boundaries, non-manifold edges,
 /// duplicate and zero-area faces are allowed.
 ///
-/// The gluing depends on connectivity alone, except around non-manifold edges, where the first
-/// embedding decides: it is computed once for all steps of a filter.
+/// The gluing depends only on connectivity, except around non-manifold edges, where it depends on
+/// the first embedding. It is computed once for all steps of a filter.
 class IntrinsicDelaunay {
   public:
-    /// @param V  n x 3, sorts the triangles around non-manifold edges.
-    /// @param F  m x 3; the corners of a triangle differ, every vertex is in some triangle.
+    /// @param V  n x 3 positions, used to sort the triangles around non-manifold edges.
+    /// @param F  m x 3; the corners of a triangle are distinct, every vertex is in some triangle.
     IntrinsicDelaunay(const Vertices& V, const Faces& F);
 
-    /// Delaunay triangulation of the tufted cover: one copy of every triangle for a closed,
-    /// oriented surface, else a front and a back.
-    /// @param V  n x 3, finite, not all in one point.
+    /// Delaunay triangulation of the tufted cover, which has one copy of every triangle if the
+    /// surface is closed and oriented, else a front and a back.
+    /// @param V  n x 3, finite, not all at one point.
     /// @throws SolverFailure  when the flips do not terminate.
     IntrinsicTriangulation triangulation(const Vertices& V) const;
 
-    /// W of the embedding V, likewise: n x n, symmetric, rows sum to 0.
+    /// W of the embedding V: n x n, symmetric, rows sum to 0; same requirements and errors.
     SparseMatrix stiffness(const Vertices& V) const;
 
   private:
     Index vertexCount_;
-    int copies_;             // of every triangle in the cover: 1 or 2
+    int copies_;             // copies of every triangle in the cover: 1 or 2
     std::vector<int> tail_;  // first vertex of each side, see IntrinsicTriangulation
     std::vector<int> twin_;  // side glued to each side
 };

@@ -15,15 +15,15 @@ namespace spectral {
 namespace {
 
 /// An edge is flipped when its two cotangents sum to less than minus this; otherwise round-off
-/// would flip nearly cocircular corners back and forth. The absolute part is for rectangles, whose
-/// cotangents are zero up to round-off; the relative part is for needles, whose large cotangents
-/// have larger errors. Both are far above round-off, and bound the resulting error of W.
+/// would flip nearly cocircular corners back and forth. The absolute part covers rectangles, whose
+/// cotangents are zero up to round-off, the relative part needles, whose large cotangents have
+/// larger errors. Both are far above round-off and bound the resulting error of W.
 double flipTolerance(double a, double b) { return 1e-10 + 1e-11 * (std::abs(a) + std::abs(b)); }
 
 /// Flips per edge before giving up; one or two are usual.
 constexpr Index kMaxFlipsPerEdge = 100;
 
-/// Area of a triangle with these sides, by Kahan's form of Heron's formula, stable for needles.
+/// Area of a triangle from its sides, by Kahan's form of Heron's formula, stable for needles.
 double triangleArea(double a, double b, double c) {
     if (a < b) std::swap(a, b);
     if (a < c) std::swap(a, c);
@@ -109,12 +109,13 @@ void IntrinsicTriangulation::flip(int s) {
     const double ljk = length_[nextSide(s)], lki = length_[previousSide(s)];
     const double lil = length_[nextSide(t)], llj = length_[previousSide(t)];
 
-    // Both triangles in the plane, i at the origin, j on the first axis.
+    // Lay out both triangles in the plane: i at the origin, j on the first axis.
     const double kx = 0.5 * (lij + (lki - ljk) * (lki + ljk) / lij);
     const double lx = 0.5 * (lij + (lil - llj) * (lil + llj) / lij);
     const double ky = 2.0 * triangleArea(lij, ljk, lki) / lij;
     const double ly = -2.0 * triangleArea(lij, lil, llj) / lij;
-    const double lkl = std::hypot(kx - lx, ky - ly);  // to the last bit: needles depend on it
+    const double lkl =
+        std::hypot(kx - lx, ky - ly);  // accurate to the last bit, as needles require
 
     const int k = tail_[previousSide(s)], l = tail_[previousSide(t)];
     std::array<int, 4> tails, twins;
@@ -127,7 +128,7 @@ void IntrinsicTriangulation::flip(int s) {
     for (int q = 0; q < 4; ++q) {
         tail_[slot[q]] = tails[q];
         length_[slot[q]] = lengths[q];
-        // The twin may be another of the four outer sides, and have moved, too.
+        // The twin may be another of the four outer sides, which have moved, too.
         const auto moved = std::find(old.begin(), old.end(), twins[q]);
         if (moved != old.end()) {
             twin_[slot[q]] = slot[moved - old.begin()];

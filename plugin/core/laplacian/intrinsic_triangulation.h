@@ -8,19 +8,19 @@ namespace spectral {
 inline int nextSide(int side) { return side % 3 == 2 ? side - 2 : side + 1; }
 inline int previousSide(int side) { return side % 3 == 0 ? side + 2 : side - 1; }
 
-/// A closed triangulation given by edge lengths alone, which flips make Delaunay.
+/// A closed triangulation given by edge lengths alone, made Delaunay by edge flips.
 ///
-/// Every side of a triangle is glued to its twin, of opposite direction; the two are an edge. Any
+/// Every side of a triangle is glued to its oppositely directed twin; the two form an edge. Any
 /// gluing is allowed: an edge may be a loop, and several edges may join the same two vertices.
 class IntrinsicTriangulation {
   public:
     /// @param tail    first vertex of each side.
     /// @param twin    side glued to each side.
-    /// @param length  of each side, the same for twins; triangle inequalities hold strictly.
+    /// @param length  length of each side, equal for twins; triangle inequalities hold strictly.
     IntrinsicTriangulation(std::vector<int> tail, std::vector<int> twin,
                            std::vector<double> length);
 
-    /// Flips edges until the opposite cotangents of each sum to 0 or more, up to round-off.
+    /// Flips edges until the two cotangents opposite each sum to at least 0, up to round-off.
     /// @throws SolverFailure  when the flips do not terminate.
     void makeDelaunay();
 
@@ -28,7 +28,7 @@ class IntrinsicTriangulation {
     int tail(int side) const { return tail_[side]; }
     int twin(int side) const { return twin_[side]; }
 
-    /// Sum of the two cotangents opposite to the edge of a side.
+    /// Sum of the two cotangents opposite the edge of a side.
     double edgeCotangents(int side) const { return cotangent_[side] + cotangent_[twin_[side]]; }
 
   private:
@@ -38,7 +38,7 @@ class IntrinsicTriangulation {
 
     std::vector<int> tail_, twin_;
     std::vector<double> length_;
-    std::vector<double> cotangent_;  // of the angle opposite to each side
+    std::vector<double> cotangent_;  // cotangent of the angle opposite each side
 };
 
 }  // namespace spectral

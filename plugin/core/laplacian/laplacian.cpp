@@ -12,8 +12,8 @@ namespace spectral {
 
 namespace {
 
-/// W with the weights (cot a_ij + cot b_ij)/2.
-/// @param cotangentsOf  t -> cotangents of the angles at the corners of triangle t.
+/// W with weights (cot a_ij + cot b_ij)/2.
+/// @param cotangentsOf  maps t to the cotangents of the angles of triangle t.
 template <class Cotangents>
 SparseMatrix stiffnessOf(Index n, const Faces& F, const Cotangents& cotangentsOf) {
     Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(n);
@@ -22,7 +22,7 @@ SparseMatrix stiffnessOf(Index n, const Faces& F, const Cotangents& cotangentsOf
     for (Index t = 0; t < F.rows(); ++t) {
         const Eigen::Vector3d cotangents = cotangentsOf(t);
         for (int c = 0; c < 3; ++c) {
-            // The angle at corner c lies opposite to the edge (i, j).
+            // The angle at corner c is opposite the edge (i, j).
             const int i = F(t, (c + 1) % 3), j = F(t, (c + 2) % 3);
             const double w = 0.5 * cotangents[c];
             entries.emplace_back(i, j, -w);
@@ -54,12 +54,12 @@ SparseMatrix cotangentStiffness(const Vertices& V, const Faces& F) {
 }
 
 SparseMatrix uniformStiffness(Index n, const Faces& F) {
-    const Eigen::Vector3d of60Degrees = Eigen::Vector3d::Constant(1.0 / std::sqrt(3.0));
-    return stiffnessOf(n, F, [&](Index) { return of60Degrees; });
+    const Eigen::Vector3d equilateral = Eigen::Vector3d::Constant(1.0 / std::sqrt(3.0));
+    return stiffnessOf(n, F, [&](Index) { return equilateral; });
 }
 
 Eigen::VectorXd lumpedMass(const Vertices& V, const Faces& F) {
-    Eigen::VectorXd third(F.rows());  // of a triangle's area
+    Eigen::VectorXd third(F.rows());  // a third of each triangle's area
     parallelRows(F.rows(), [&](Index begin, Index end) {
         for (Index t = begin; t < end; ++t) {
             const Eigen::RowVector3d a = V.row(F(t, 0)), b = V.row(F(t, 1)), c = V.row(F(t, 2));
@@ -87,7 +87,7 @@ bool isUsable(const Laplacian& laplacian) {
 void requireUsable(const Laplacian& laplacian) {
     if (!isUsable(laplacian))
         throw SolverFailure(ErrorCode::DegenerateTriangles,
-                            "some triangles have hardly any area, or have collapsed: a cotangent "
+                            "some triangles have almost no area or have collapsed: a cotangent "
                             "or a mass is not finite");
 }
 

@@ -14,19 +14,19 @@ struct Laplacian {
     SparseMatrix W;     ///< Stiffness (cotangent) matrix, n x n, symmetric, both triangles stored,
                         ///< dimensionless; natural (Neumann) boundary conditions.
     Eigen::VectorXd D;  ///< Lumped mass matrix, n diagonal entries > 0, length units squared.
-    ConstantModes constants{};  ///< One constant function for each component, with the masses D.
+    ConstantModes constants{};  ///< One constant function per component, D-weighted.
 };
 
-/// W_ij = -(cot a_ij + cot b_ij)/2, W_ii = -sum_j W_ij. A triangle without area gives entries that
+/// W_ij = -(cot a_ij + cot b_ij)/2, W_ii = -sum_j W_ij. A triangle of zero area gives entries that
 /// are not finite; see `isUsable`.
 /// @param F  every vertex is in some triangle.
 SparseMatrix cotangentStiffness(const Vertices& V, const Faces& F);
 
-/// As if all triangles were equilateral and of one size: W_ij = -1/sqrt(3) (half of that on a
-/// boundary). With D_ii the mean vertex area, frequencies are those of the surface where the
-/// sampling is even. Noise that is independent at every vertex has the same energy in every
-/// harmonic, and cannot hide in weights that were taken from noisy triangles.
-/// @param F  every one of the n vertices is in some triangle.
+/// W as if all triangles were equilateral: W_ij = -1/sqrt(3) (half of that on a boundary). With
+/// D_ii the mean vertex area, frequencies are those of the surface where the sampling is even.
+/// Noise that is independent at every vertex then has the same energy in every harmonic, and cannot
+/// hide in weights computed from noisy triangles.
+/// @param F  each of the n vertices is in some triangle.
 SparseMatrix uniformStiffness(Index n, const Faces& F);
 
 /// D_ii is a third of the area of the triangles at vertex i.
@@ -35,7 +35,7 @@ Eigen::VectorXd lumpedMass(const Vertices& V, const Faces& F);
 /// Whether all entries are finite and all masses positive; false when triangles have collapsed.
 bool isUsable(const Laplacian& laplacian);
 
-/// @throws SolverFailure  of code DegenerateTriangles, unless isUsable.
+/// @throws SolverFailure  with code DegenerateTriangles, unless isUsable.
 void requireUsable(const Laplacian& laplacian);
 
 }  // namespace spectral

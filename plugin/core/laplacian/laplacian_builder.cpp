@@ -10,11 +10,10 @@ namespace spectral {
 
 namespace {
 
-/// Part of its mass in the input that every vertex keeps with BasisUpdate::Conformal: where lengths
-/// have shrunk to less than a half, they count as a half. Without it, a part that is thinner than
-/// the feature size would shrink to a line, and that to a point, infinitely fast: masses vanish
-/// there, W does not.
-constexpr double kLeastMass = 0.25;
+/// Fraction of its input mass that every vertex keeps with BasisUpdate::Conformal: lengths that
+/// have shrunk to less than a half count as a half. Otherwise a part thinner than the feature size
+/// would shrink to a line, and then to a point, infinitely fast: masses vanish there, W does not.
+constexpr double kMinMass = 0.25;
 
 }  // namespace
 
@@ -55,10 +54,10 @@ void LaplacianBuilder::update(const Vertices& X) {
     if (update_ == BasisUpdate::None) return;
     const Eigen::VectorXd D = lumpedMass(X, surface_.F);
     setMass(boundedMass(D), D.sum());
-    // Relative to the input; a surface that has shrunk to a line has edges, but no area.
-    constexpr double kNothing = 1e-10;
-    if (area_ <= kNothing * kNothing * inputMass_.sum() &&
-        meanEdgeLength(X, surface_.F) <= kNothing * meanEdgeLength(surface_.X, surface_.F))
+    // Relative to the input. A surface that has shrunk to a line has no area, but still has edges.
+    constexpr double kVanished = 1e-10;
+    if (area_ <= kVanished * kVanished * inputMass_.sum() &&
+        meanEdgeLength(X, surface_.F) <= kVanished * meanEdgeLength(surface_.X, surface_.F))
         throw SolverFailure(ErrorCode::ShrinksToNothing, "the whole surface shrinks to nothing");
     if (update_ == BasisUpdate::Full) {
         current_.W = stiffness(X);
@@ -73,20 +72,20 @@ SparseMatrix LaplacianBuilder::stiffness(const Vertices& X) const {
     return intrinsic_ ? intrinsic_->stiffness(X) : cotangentStiffness(X, surface_.F);
 }
 
-/// From the triangles of the mesh for every kind: intrinsic areas jump where an edge flips, while
-/// second-order steps need D continuous in the shape.
+/// Uses the triangles of the mesh for every kind: intrinsic areas jump when an edge flips, while
+/// second-order steps need D to depend continuously on the shape.
 Eigen::VectorXd LaplacianBuilder::mass(const Vertices& X) const {
     return boundedMass(lumpedMass(X, surface_.F));
 }
 
 Eigen::VectorXd LaplacianBuilder::boundedMass(const Eigen::VectorXd& D) const {
-    // Smallest mass, in mean masses, of parts that have shrunk to a line or a point. The D-inner
-    // product needs it positive; its value does not matter, as such a vertex is at the harmonic
-    // mean of its neighbours.
+    // Smallest mass, relative to the mean, in parts that have shrunk to a line or a point. The
+    // D-inner product needs it to be positive; its value does not matter, as such a vertex is at
+    // the harmonic mean of its neighbours.
     constexpr double kFloor = 1e-12;
     if (kind_ == LaplacianKind::Uniform) return Eigen::VectorXd::Constant(D.size(), D.mean());
     if (update_ == BasisUpdate::Conformal && inputMass_.size() > 0)
-        return D.cwiseMax(kLeastMass * inputMass_);
+        return D.cwiseMax(kMinMass * inputMass_);
     return D.cwiseMax(kFloor * D.mean());
 }
 

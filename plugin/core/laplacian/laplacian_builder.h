@@ -10,50 +10,50 @@ namespace spectral {
 
 enum class LaplacianKind {
     IntrinsicDelaunay,  ///< Any triangles, non-negative weights (intrinsic_delaunay.h).
-    Cotangent,          ///< The paper's: plain cotangents, every triangle needs an area.
-    Uniform             ///< That of sampled noise: depends on the connectivity and the area alone.
+    Cotangent,          ///< The paper's plain cotangents; every triangle needs a positive area.
+    Uniform             ///< For vertex noise: depends only on the connectivity and the area.
 };
 
 /// Rejects a mesh that has no Laplacian of this kind.
-/// @throws InvalidMesh  as mesh_check.h says.
+/// @throws InvalidMesh  see mesh_check.h.
 void checkMesh(const Vertices& V, const Faces& F, LaplacianKind kind);
 
-/// What a step updates from the current shape.
+/// What a step recomputes from the current shape.
 enum class BasisUpdate {
     Full,       ///< W and D: the paper's scheme.
-    Conformal,  ///< D only, W stays that of the input (Kazhdan, Solomon, Ben-Chen 2012).
+    Conformal,  ///< D only; W remains that of the input (Kazhdan, Solomon, Ben-Chen 2012).
     None        ///< Neither: one basis for all steps (Vallet and Levy 2008).
 };
 
-/// Holds the Laplacian of one shape after another that a filter passes through. It gives no copies,
-/// as W is a gigabyte on ten million vertices.
+/// Holds the Laplacian of the current shape as a filter proceeds. It returns no copies, as W takes
+/// a gigabyte for ten million vertices.
 class LaplacianBuilder {
   public:
-    /// Begins with the input.
+    /// Starts with the input.
     /// @param surface  kept by reference; its X is the input shape X_0.
-    /// @param conformalShare  for BasisUpdate::Full, from 0, the paper's scheme, to 1, conformal:
-    ///                        W = (1 - share) W(X) + share W(X_0). Where a part has shrunk to a
-    ///                        line, its mass vanishes but this share of W does not, and contracts
-    ///                        the line.
+    /// @param conformalShare  for BasisUpdate::Full, from 0 (the paper's scheme) to 1 (conformal):
+    ///                        W = (1 - share) W(X) + share W(X_0). If a part has shrunk to a line,
+    ///                        its mass vanishes but this share of W does not, and contracts the
+    ///                        line.
     LaplacianBuilder(const Surface& surface, Components components, LaplacianKind kind,
                      BasisUpdate update, double conformalShare = 0.0);
 
     const Laplacian& current() const { return current_; }
 
-    /// Makes that of the shape X (n x 3) the current one, updated as BasisUpdate says.
-    /// @throws SolverFailure  when nothing of the shape is left.
+    /// Updates the Laplacian for the shape X (n x 3), according to BasisUpdate.
+    /// @throws SolverFailure  when the shape has vanished.
     void update(const Vertices& X);
 
-    /// Makes that of the input the current one again.
+    /// Returns to the Laplacian of the input.
     void reset();
 
-    /// Area of the current shape: the sum of D, but for what D is kept above.
+    /// Area of the current shape: the sum of D before its lower bound is applied.
     double area() const { return area_; }
 
     /// D of the input.
     const Eigen::VectorXd& inputMass() const { return inputMass_; }
 
-    /// D of the shape X, > 0; with BasisUpdate::Conformal at least a quarter of that of the input.
+    /// D of the shape X, > 0; with BasisUpdate::Conformal at least a quarter of D of the input.
     Eigen::VectorXd mass(const Vertices& X) const;
 
   private:
@@ -67,15 +67,15 @@ class LaplacianBuilder {
     BasisUpdate update_;
     double conformalShare_;
     std::optional<IntrinsicDelaunay> intrinsic_;
-    SparseMatrix inputStiffness_;  // empty where W stays that of the input
+    SparseMatrix inputStiffness_;  // empty if W is never updated
     Eigen::VectorXd inputMass_;
     Laplacian current_;
     double area_ = 0.0;
 };
 
-/// The Laplacian of a mesh as it is, for the filters of `analysis`.
+/// The Laplacian of an unfiltered mesh, for `analysis`.
 struct MeshLaplacian {
-    Surface surface;  ///< Its rows are those of W and D.
+    Surface surface;  ///< Its vertices are the rows of W and D.
     Components components;
     Laplacian laplacian;
 };

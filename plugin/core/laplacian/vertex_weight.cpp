@@ -31,7 +31,7 @@ void checkWeights(const WeightOptions& options) {
 
 Eigen::VectorXd selectionWeight(const Laplacian& laplacian, const Components& components,
                                 const std::vector<bool>& selected, double width) {
-    constexpr double kLengths = 3.0;  // in a width
+    constexpr double kLengths = 3.0;  // decay lengths in a width
     const Interior rest(components, selected);
     Eigen::VectorXd m(laplacian.D.size());
     for (Index i = 0; i < m.size(); ++i) m[i] = selected[i] ? 1.0 : 0.0;

@@ -8,31 +8,31 @@
 
 namespace spectral {
 
-/// Which part of a mesh is filtered, and how much of it.
+/// Which part of a mesh is filtered, and how strongly.
 struct WeightOptions {
-    std::vector<bool> selected;  ///< n: what to filter; empty: everything.
-    Eigen::VectorXd weight;  ///< n, 0 to 1: part of its change that each vertex makes; empty: 1.
+    std::vector<bool> selected;  ///< n, whether to filter each vertex; empty: all.
+    Eigen::VectorXd weight;      ///< n, 0 to 1: fraction of its change each vertex makes; empty: 1.
 };
 
 /// @throws InvalidOption  when nothing is selected, or a weight is not between 0 and 1.
 void checkWeights(const WeightOptions& options);
 
-/// A smooth weight that is 1 on a selection and exactly 0 beyond about a distance from it.
+/// A smooth weight that is 1 on a selection and exactly 0 beyond about `width` from it.
 ///
-/// It is a smooth step of the solution m of W m = -D m / l^2 around the selection, m = 1 on it,
-/// that falls like exp(-distance / l): l is a third of the width, and the step begins at exp(-3).
+/// It is a smooth step applied to the solution m of W m = -D m / l^2 outside the selection, with
+/// m = 1 on it, which decays like exp(-distance / l); l is a third of the width, and the step
+/// starts at exp(-3).
 ///
-/// @param components  of the surface, n vertices.
-/// @param selected    n.
+/// @param components  connected components of the surface, n vertices.
+/// @param selected    n, whether each vertex is selected.
 /// @param width       length units, > 0.
-/// @return  n weights, 0 to 1; without a slope at both ends, so that what is weighted has no
-/// crease.
+/// @return  n weights, 0 to 1, with zero slope at both ends, so that weighting leaves no crease.
 /// @throws SolverFailure  when the system is singular to working precision.
 Eigen::VectorXd selectionWeight(const Laplacian& laplacian, const Components& components,
                                 const std::vector<bool>& selected, double width);
 
-/// Part of its change that each vertex of a surface makes, 0 to 1. Around a selection it falls
-/// smoothly to 0 within about a feature size, see selectionWeight; at fixed vertices it is 0.
+/// Fraction of its change that each vertex of a surface makes, 0 to 1. Around a selection it falls
+/// smoothly to 0 within about a feature size (selectionWeight); at fixed vertices it is 0.
 Eigen::VectorXd vertexWeight(const WeightOptions& options, const Surface& surface,
                              const Interior& interior, const Laplacian& laplacian,
                              double featureSize);

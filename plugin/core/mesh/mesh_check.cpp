@@ -10,12 +10,12 @@ namespace spectral {
 
 namespace {
 
-/// Smallest ratio of height to longest edge. Its inverse bounds the cotangents: at 1e10 they leave
-/// six digits to the other entries of a row of W.
+/// Smallest ratio of height to longest edge. Its inverse bounds the cotangents: next to 1e10, the
+/// other entries of a row of W keep six digits.
 constexpr double kDegenerateAspect = 1e-10;
 
-/// Largest modulus of a coordinate: the fourth power of a length is still finite.
-constexpr double kLargest = 1e75;
+/// Largest modulus of a coordinate: the fourth power of a length must be finite.
+constexpr double kMaxCoordinate = 1e75;
 
 bool isDegenerate(const Vertices& V, const Faces& F, Index t) {
     const Eigen::RowVector3d a = V.row(F(t, 0)), b = V.row(F(t, 1)), c = V.row(F(t, 2));
@@ -44,7 +44,7 @@ void checkMesh(const Vertices& V, const Faces& F) {
 
     Index notFinite = 0, first = -1;
     for (Index i = 0; i < V.rows(); ++i)
-        if (!(V.row(i).array().abs() <= kLargest).all() && notFinite++ == 0) first = i;
+        if (!(V.row(i).array().abs() <= kMaxCoordinate).all() && notFinite++ == 0) first = i;
     if (notFinite > 0)
         throw InvalidMesh(ErrorCode::NotFinite,
                           counted(notFinite, "vertex has", "vertices have") +
@@ -56,7 +56,7 @@ void checkMesh(const Vertices& V, const Faces& F) {
     for (Index t = 0; t < F.rows(); ++t)
         if (!isDegenerate(V, F, t)) return;
     throw InvalidMesh(ErrorCode::NoArea,
-                      "no triangle has an area: the mesh is a line or a point, not a surface");
+                      "all triangles have zero area: the mesh is a line or a point, not a surface");
 }
 
 void checkAreas(const Vertices& V, const Faces& F) {

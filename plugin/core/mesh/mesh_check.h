@@ -4,10 +4,10 @@
 
 namespace spectral {
 
-/// Rejects a mesh that no Laplacian exists for.
+/// Rejects a mesh without a Laplacian.
 ///
-/// @throws InvalidMesh  without vertices or triangles, with an index out of range, a coordinate
-///                      that is not finite, or no triangle of positive area.
+/// @throws InvalidMesh  when there are no vertices or no triangles, an index is out of range, a
+///                      coordinate is not finite, or no triangle has a positive area.
 void checkMesh(const Vertices& V, const Faces& F);
 
 /// Rejects a mesh with infinite cotangents.

@@ -10,7 +10,7 @@ namespace spectral {
 
 namespace {
 
-// Sums from left to right, as VCG takes them: Eigen's have other last bits.
+// Sums from left to right, like VCG: Eigen's results differ in the last bits.
 template <class Vector>
 auto dot(const Vector& a, const Vector& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

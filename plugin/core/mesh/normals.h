@@ -10,11 +10,11 @@ namespace spectral {
 template <class Scalar>
 struct Normals {
     using Rows = Eigen::Matrix<Scalar, Eigen::Dynamic, 3, Eigen::RowMajor>;
-    Rows faces;     ///< m x 3, of unit length; 0 where a face has no area.
-    Rows vertices;  ///< n x 3, the sum of those of the faces around, each times its angle there.
+    Rows faces;     ///< m x 3, unit length; 0 for a face of zero area.
+    Rows vertices;  ///< n x 3, sum of the adjacent face normals, weighted by their angles.
 };
 
-/// @tparam Scalar  float or double, which everything is computed in.
+/// @tparam Scalar  precision of the computation, float or double.
 template <class Scalar>
 Normals<Scalar> angleWeightedNormals(const Vertices& V, const Faces& F);
 

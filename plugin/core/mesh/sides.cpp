@@ -9,7 +9,7 @@ namespace spectral {
 SidesByEdge::SidesByEdge(const Faces& F)
     : sides_(static_cast<std::size_t>(F.size())),
       begin_(static_cast<std::size_t>(F.size() > 0 ? F.maxCoeff() + 2 : 1), 0) {
-    // A bucket sort by the lower vertex, which few sides share.
+    // Bucket sort by the lower vertex: only few sides share one.
     const auto forEachSide = [&F](const auto& visit) {
         forEachInOrder(F.rows(), [&](Index t) {
             for (int c = 0; c < 3; ++c) {

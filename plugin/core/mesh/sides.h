@@ -9,21 +9,21 @@ namespace spectral {
 
 /// A side of a triangle.
 struct Side {
-    int low, high;  ///< Its vertices.
+    int low, high;  ///< Its vertices, low <= high.
     int number;     ///< 3 face + corner.
 
     int face() const { return number / 3; }
-    int corner() const { return number % 3; }          ///< The one that it starts from, 0 to 2.
-    int opposite() const { return (number + 2) % 3; }  ///< The one that is not on it.
+    int corner() const { return number % 3; }          ///< Corner it starts from, 0 to 2.
+    int opposite() const { return (number + 2) % 3; }  ///< Corner opposite it, 0 to 2.
 };
 
-/// All sides of all triangles, by edge: first by the lower vertex, then by the higher one; those of
-/// one edge by face.
+/// All sides of all triangles, sorted by lower vertex, then higher vertex, then face: the sides of
+/// an edge are consecutive.
 class SidesByEdge {
   public:
     explicit SidesByEdge(const Faces& F);
 
-    /// Calls work(first, end) for the sides of every edge, ascending.
+    /// Calls work(first, end) with the sides of every edge, in order.
     template <class Work>
     void forEachEdge(const Work& work) const {
         visit(sides_.data(), sides_.data() + sides_.size(), work);
@@ -49,7 +49,7 @@ class SidesByEdge {
     }
 
     std::vector<Side> sides_;
-    std::vector<int> begin_;  // of the sides of each lower vertex; then their number
+    std::vector<int> begin_;  // first side of each lower vertex, and the number of sides
 };
 
 }  // namespace spectral

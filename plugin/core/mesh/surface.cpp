@@ -42,7 +42,7 @@ Surface joinedSurface(const Vertices& V, const Faces& F) {
         return cut;
     }
     Surface surface = surfaceOf(cut.X, cut.F.unaryExpr([&](int i) { return seams.first[i]; }));
-    if (surface.F.rows() == 0) return cut;  // corners that are one point but for their last bits
+    if (surface.F.rows() == 0) return cut;  // all triangles degenerate once joined
     surface.nearlyCopies = seams.nearby;
     std::vector<Index> row(seams.first.size(), -1);
     for (Index i = 0; i < surface.X.rows(); ++i) row[surface.vertex[i]] = i;
@@ -58,7 +58,7 @@ Eigen::MatrixXd restricted(const Eigen::MatrixXd& values, const Surface& surface
     if (surface.copies.empty()) return mean;
     Eigen::VectorXd count = Eigen::VectorXd::Ones(mean.rows());
     for (const Surface::Copy& copy : surface.copies) count[copy.row] += 1.0;
-    // From differences: the mean of equal values is that value, to the bit.
+    // By differences: the mean of equal values is that value, to the bit.
     for (const auto& [vertex, row] : surface.copies)
         mean.row(row) += (values.row(vertex) - values.row(surface.vertex[row])) / count[row];
     return mean;
@@ -107,7 +107,7 @@ Components connectedComponents(const Faces& F, Index vertexCount) {
         sets.unite(F(t, 0), F(t, 1));
         sets.unite(F(t, 0), F(t, 2));
     }
-    // Numbered by their first vertices, which are the roots.
+    // Components are numbered by their first vertices, which are the roots.
     Components components{Eigen::VectorXi(vertexCount), 0};
     for (int i = 0; i < vertexCount; ++i) {
         const int first = sets.root(i);

@@ -9,36 +9,36 @@ namespace spectral {
 
 /// The part of a mesh that a Laplacian is defined on.
 struct Surface {
-    /// A vertex of the mesh that is one with another, see seams.h.
+    /// A vertex of the mesh that is joined to another (seams.h).
     struct Copy {
         Index vertex;  ///< Row in the mesh.
         Index row;     ///< Row of X.
     };
 
-    Vertices X;  ///< n x 3, centred at the bounding box: no digits are lost far from the origin.
-    Faces F;     ///< m x 3, indices into X; the corners of a triangle differ.
+    Vertices X;  ///< n x 3, centred by bounding box: no digits are lost far from the origin.
+    Faces F;     ///< m x 3, indices into X; the corners of a triangle are distinct.
     std::vector<Index> vertex;   ///< Row in the mesh of each row of X, ascending.
-    std::vector<Copy> copies{};  ///< Vertices of the mesh that are one with those, ascending.
-    int nearlyCopies = 0;        ///< Vertices at a distance of round-off from being copies.
+    std::vector<Copy> copies{};  ///< Vertices of the mesh that are joined to those, ascending.
+    int nearlyCopies = 0;        ///< Vertices that would be copies but for round-off.
 };
 
-/// The triangles with three different corners, and their vertices, renumbered. Unreferenced
-/// vertices are left out.
+/// The triangles with three distinct corners, and their vertices, renumbered. Unreferenced vertices
+/// are dropped.
 Surface surfaceOf(const Vertices& V, const Faces& F);
 
-/// The same, with vertices at seams as one: each row of X is the first of them in the mesh, the
-/// others are its copies.
+/// The same, with the vertices along seams joined: each row of X is the first such vertex of the
+/// mesh, the others are its copies.
 Surface joinedSurface(const Vertices& V, const Faces& F);
 
-/// Values at the vertices of a mesh as values on its surface: at a seam their mean.
-/// @param values  one row for each vertex of the mesh.
+/// Restricts values at the vertices of a mesh to its surface; at a seam, to the mean of the copies.
+/// @param values  one row per vertex of the mesh.
 Eigen::MatrixXd restricted(const Eigen::MatrixXd& values, const Surface& surface);
 
-/// Values on a surface as values at the n vertices of its mesh: zero beyond the surface.
+/// Extends values on a surface to the n vertices of its mesh, by zero off the surface.
 Eigen::MatrixXd extended(Eigen::MatrixXd values, const Surface& surface, Index n);
 
-/// Adds what changes on a surface to the values of its mesh. At a seam all copies get the same
-/// value; one whose change is zero keeps its bits, the sign of a zero included.
+/// Adds a change on a surface to the values of its mesh. At a seam all copies get the same value; a
+/// value whose change is zero keeps every bit, including the sign of a zero.
 Eigen::MatrixXd changed(const Eigen::MatrixXd& values, const Surface& surface,
                         const Eigen::MatrixXd& change);
 
@@ -46,12 +46,12 @@ Eigen::MatrixXd changed(const Eigen::MatrixXd& values, const Surface& surface,
 /// the result (n x c).
 Eigen::MatrixXd extendedByZero(Eigen::MatrixXd values, const std::vector<Index>& vertex, Index n);
 
-/// What a surface is made of.
+/// Numbers of components and special vertices of a surface.
 struct SurfaceCounts {
     int components = 0;            ///< Connected components.
-    int unreferencedVertices = 0;  ///< Vertices of no triangle, unchanged.
-    int joinedVertices = 0;        ///< Vertices of the mesh that are one with another (seams.h).
-    int nearlyJoined = 0;          ///< Vertices at a distance of round-off from being that.
+    int unreferencedVertices = 0;  ///< Vertices in no triangle; they do not change.
+    int joinedVertices = 0;        ///< Vertices of the mesh joined to another (seams.h).
+    int nearlyJoined = 0;          ///< Vertices that would be joined but for round-off.
     int fixedVertices = 0;         ///< Vertices of the surface that must not move.
 };
 
@@ -61,7 +61,7 @@ SurfaceCounts countsOf(const Surface& surface, Index n, int components, Index fi
 
 /// The connected components of a surface: triangles that share a vertex are connected.
 struct Components {
-    Eigen::VectorXi label;  ///< n labels, 0 <= label < count; -1 at vertices of no component.
+    Eigen::VectorXi label;  ///< n labels, 0 <= label < count; -1: no component.
     int count = 0;
 };
 

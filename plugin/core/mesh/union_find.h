@@ -8,20 +8,20 @@
 
 namespace spectral {
 
-/// Disjoint sets of the numbers 0 to n - 1, each named by its smallest member; with path halving.
+/// Disjoint sets of the numbers 0 to n - 1, each represented by its smallest member; path halving.
 class UnionFind {
   public:
     explicit UnionFind(Index n) : parent_(static_cast<std::size_t>(n)), count_(n) {
         std::iota(parent_.begin(), parent_.end(), 0);
     }
 
-    /// The smallest member of the set of i.
+    /// The smallest member of the set that contains i.
     int root(int i) {
         while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
         return i;
     }
 
-    /// Makes the sets of i and j one.
+    /// Merges the sets of i and j.
     void unite(int i, int j) {
         const auto [first, second] = std::minmax({root(i), root(j)});
         if (first != second) --count_;
@@ -34,7 +34,7 @@ class UnionFind {
         return parent_;
     }
 
-    Index count() const { return count_; }  ///< How many sets there are.
+    Index count() const { return count_; }  ///< Number of sets.
 
   private:
     std::vector<int> parent_;

@@ -31,9 +31,9 @@ double meanEdge(const MeshModel& mesh) {
     return spectral::meanEdgeLength(matrices.V, matrices.F);
 }
 
-QString meanEdgeTold(double meanEdge) {
+QString meanEdgeText(double meanEdge) {
     if (meanEdge == 0.0) return {};
-    return QString(" A mean edge of this mesh is %1 long.").arg(meanEdge, 0, 'g', 3);
+    return QString(" The mean edge length of this mesh is %1.").arg(meanEdge, 0, 'g', 3);
 }
 
 RichPercentage featureSizeParameter(const MeshModel& mesh, const QString& help) {
@@ -44,7 +44,7 @@ RichPercentage featureSizeParameter(const MeshModel& mesh, const QString& help) 
             0,
             diagonal,
             "Feature size",
-            help + meanEdgeTold(edge)};
+            help + meanEdgeText(edge)};
 }
 
 double featureSize(const RichParameterList& parameters) {
@@ -54,8 +54,8 @@ double featureSize(const RichParameterList& parameters) {
 RichBool selectedParameter(const MeshModel& mesh, const QString& width) {
     const bool isAnySelected = hasSelectedFaces(mesh.cm);
     return {"selected", isAnySelected, "Only the selection",
-            QString("Filter the selected faces and vertices. Around them the filter fades out "
-                    "within %1, so that no crease is left; everything beyond stays where it is.")
+            QString("Filter only the selected faces and vertices. Around them the filter fades out "
+                    "within %1, so that no crease is left; everything beyond is unchanged.")
                 .arg(width),
             !isAnySelected};
 }
@@ -66,7 +66,7 @@ std::vector<bool> chosenVertices(const RichParameterList& parameters, const Mesh
     return selectedVertices(mesh.cm, matrices);
 }
 
-std::string selectionTold(const std::vector<bool>& selected) {
+std::string selectionText(const std::vector<bool>& selected) {
     const auto count = std::count(selected.begin(), selected.end(), true);
     const auto all = static_cast<std::ptrdiff_t>(selected.size());
     if (count == all) return {};
@@ -81,9 +81,9 @@ RichEnum laplacianParameter() {
             "Laplacian",
             "How the frequencies of the surface are measured. <b>intrinsic delaunay</b> works on "
             "any triangles, including slivers, holes, duplicate or intersecting sheets, and is "
-            "stable for strong filters. <b>cotangent</b> is the formula of the paper; every "
-            "triangle needs an area. <b>uniform</b> looks at the connections only, as if the "
-            "vertices were evenly spaced: for noise that differs from vertex to vertex.",
+            "stable for strong filters. <b>cotangent</b> is the formula of the paper; no triangle "
+            "may have zero area. <b>uniform</b> uses the connectivity only, as if the vertices "
+            "were evenly spaced: for noise that differs from vertex to vertex.",
             true};
 }
 

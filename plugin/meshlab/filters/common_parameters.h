@@ -11,9 +11,9 @@
 #include "core/laplacian/laplacian_builder.h"
 #include "meshlab/mesh_conversion.h"
 
-/// The value of an enumeration, in which a script can have any number.
+/// The value of an enumeration parameter, which a script can set to any number.
 /// @param choices  in the order of the core's enumeration.
-/// @throws spectral::InvalidOption  when it is none of the choices.
+/// @throws spectral::InvalidOption  when it is not one of the choices.
 int choice(const RichParameterList& parameters, const char* name, const QStringList& choices);
 
 // Parameters that several filters share, with the same names and defaults.
@@ -21,8 +21,8 @@ int choice(const RichParameterList& parameters, const char* name, const QStringL
 /// Mean edge length, in the mesh's units; 0 without faces.
 double meanEdge(const MeshModel& mesh);
 
-/// A sentence for the help of sizes: how long a mean edge is; none for 0.
-QString meanEdgeTold(double meanEdge);
+/// A sentence with the mean edge length, for the help of size parameters; empty for 0.
+QString meanEdgeText(double meanEdge);
 
 /// `feature_size`, a percentage of the bounding box diagonal; default:
 /// spectral::defaultFeatureSize.
@@ -31,18 +31,18 @@ RichPercentage featureSizeParameter(const MeshModel& mesh, const QString& help);
 /// The feature size as a length.
 double featureSize(const RichParameterList& parameters);
 
-/// `selected`; default: whether a face is, as in MeshLab's own filters.
-/// @param width  within which a filter fades out around the selection, in words.
+/// `selected`; default: whether any face is selected, as in MeshLab's own filters.
+/// @param width  distance within which the filter fades out around the selection, in words.
 RichBool selectedParameter(const MeshModel& mesh, const QString& width = "about a feature size");
 
-/// Whether `selected` chooses each vertex; empty: all are.
+/// Whether each vertex is to be filtered, according to `selected`; empty: all.
 std::vector<bool> chosenVertices(const RichParameterList& parameters, const MeshModel& mesh,
                                  const MeshMatrices& matrices);
 
-/// "only the selection: 44 of 642 vertices", since other filters leave selections behind unasked;
-/// empty if everything is filtered.
-/// @param selected  one value for each vertex, or none.
-std::string selectionTold(const std::vector<bool>& selected);
+/// "only the selection: 44 of 642 vertices": other filters leave selections behind unnoticed. Empty
+/// if everything is filtered.
+/// @param selected  one value per vertex, or empty.
+std::string selectionText(const std::vector<bool>& selected);
 
 /// Default tolerance of automatic steps, relative to the bounding box diagonal: half a pixel of a
 /// mesh shown 1,000 pixels wide.
@@ -57,7 +57,7 @@ spectral::LaplacianKind laplacianKind(const RichParameterList& parameters);
 QStringList boundaries();
 
 /// `boundary`; default: free.
-/// @param help  what its choices do.
+/// @param help  describes the effect of each choice.
 RichEnum boundaryParameter(const QString& help);
 
 spectral::Boundary boundaryCondition(const RichParameterList& parameters);

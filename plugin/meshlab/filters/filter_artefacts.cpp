@@ -15,15 +15,16 @@ namespace {
 
 const char* const kArtefactsHelp =
     "Measures the <b>artefacts</b> that a filter has left in a shape: spikes, creases and ripples "
-    "much finer than what it should have left. Apply it to the filtered mesh, with the filter's "
-    "feature size; their length becomes the vertex quality, and no vertex moves.";
+    "much finer than the details it should keep. Apply it to the filtered mesh, with the filter's "
+    "feature size. Their length becomes the vertex quality; no vertex moves.";
 
 RichParameterList artefactsParameters(const MeshModel& mesh) {
     RichParameterList list;
     list.addParam(featureSizeParameter(
         mesh,
-        "Feature size of the low-pass or band that was applied. A percentage refers to this mesh, "
-        "whose diagonal the filter may have changed: enter the length that the filter reported."));
+        "Feature size of the low-pass or band filter that was applied. A percentage refers to the "
+        "diagonal of this mesh, which the filter may have changed: enter the length that the "
+        "filter reported."));
     list.addParam(laplacianParameter());
     return list;
 }

@@ -21,14 +21,14 @@ using spectral::DenoiseResult;
 using spectral::NoiseKind;
 
 const char* const kDenoiseHelp =
-    "Finds out what noise a mesh has, of a scanner, spikes or voxels, and removes that: <b>nothing "
-    "to choose</b>. Creases become sharp; a mesh without noise stays as it is, to the bit. The log "
+    "Detects which noise a mesh has (scanner noise, spikes or voxel steps) and removes it, with "
+    "<b>nothing to choose</b>. Creases become sharp; a mesh without noise keeps every bit. The log "
     "says what was found.";
 
 RichParameterList denoiseParameters(const MeshModel& mesh) {
     const spectral::DenoiseOptions defaults;
     const Scalarm diagonal = mesh.cm.bbox.Diag();
-    const QString edge = meanEdgeTold(meanEdge(mesh));
+    const QString edge = meanEdgeText(meanEdge(mesh));
     RichParameterList list;
     list.addParam(RichFloat("strength", static_cast<Scalarm>(defaults.strength), "Strength",
                             "1 removes the noise as measured. More removes finer details, too; "
@@ -36,39 +36,39 @@ RichParameterList denoiseParameters(const MeshModel& mesh) {
     list.addParam(RichPercentage(
         "noise_height", static_cast<Scalarm>(defaults.noiseHeight), 0, diagonal, "Noise height",
         "Standard deviation of the noise along the normals. 0: as measured; the log then says how "
-        "high it is. Give it where details were taken for noise, or noise for details." +
+        "high it is. Set it if details were mistaken for noise, or noise for details." +
             edge));
     list.addParam(RichPercentage(
         "noise_size", static_cast<Scalarm>(defaults.noiseSize), 0, diagonal, "Noise size",
-        "How far the noise of neighbouring vertices is alike: half the width of its bumps. Up to a "
-        "mean edge it differs from vertex to vertex. 0: as measured." +
+        "Distance over which the noise is correlated: half the width of its bumps. Up to a mean "
+        "edge, it is independent at each vertex. 0: as measured." +
             edge));
     list.addParam(selectedParameter(mesh, "four edges"));
+    list.addParam(RichBool(
+        "keep_creases", defaults.keepCreases, "Keep creases",
+        "Do not smooth across creases. Off: creases are rounded; for shapes without any.", true));
     list.addParam(
-        RichBool("keep_creases", defaults.keepCreases, "Keep creases",
-                 "Do not smooth across edges. Off: rounds them; for shapes that have none.", true));
-    list.addParam(
-        boundaryParameter("<b>free</b>: it follows along its normals, as far as the noise "
+        boundaryParameter("<b>free</b>: it moves along its normals, no further than the noise "
                           "explains. <b>fixed</b>: it stays exactly in place."));
     return list;
 }
 
-/// A length, and the same in mean edges.
-std::string lengthTold(double length, double edge) {
+/// A length, in mean edges and in length units.
+std::string lengthText(double length, double edge) {
     std::ostringstream text;
     text << std::setprecision(2) << length / edge << " edges" << std::setprecision(3) << " ("
          << length << ")";
     return text.str();
 }
 
-std::string voxelsTold(const Eigen::RowVector3d& voxel) {
+std::string voxelsText(const Eigen::RowVector3d& voxel) {
     std::ostringstream text;
     text << std::setprecision(3) << "voxel steps of " << voxel[0] << " x " << voxel[1] << " x "
          << voxel[2] << ": smoothed within half a voxel";
     return text.str();
 }
 
-std::string removedTold(const spectral::DenoiseOptions& options, const DenoiseResult& result) {
+std::string removedText(const spectral::DenoiseOptions& options, const DenoiseResult& result) {
     const double edge = result.diagnosis.noise.meanEdge;
     const bool isGiven = options.noiseHeight > 0.0;
     std::string text = isGiven                                          ? "noise"
@@ -76,10 +76,10 @@ std::string removedTold(const spectral::DenoiseOptions& options, const DenoiseRe
                        : result.diagnosis.kind == NoiseKind::Impulses   ? "impulse noise"
                                                                         : "white noise";
     text += ": height " +
-            lengthTold(isGiven ? options.noiseHeight : result.diagnosis.noise.height, edge);
+            lengthText(isGiven ? options.noiseHeight : result.diagnosis.noise.height, edge);
     if (result.noiseSize > 0.0)
         text += ", size " +
-                lengthTold(isGiven ? result.noiseSize : result.diagnosis.noise.size * edge, edge);
+                lengthText(isGiven ? result.noiseSize : result.diagnosis.noise.size * edge, edge);
     text += isGiven ? ", as given: removed" : ": removed";
     if (options.strength != 1.0) {
         std::ostringstream strength;
@@ -89,23 +89,24 @@ std::string removedTold(const spectral::DenoiseOptions& options, const DenoiseRe
     return text;
 }
 
-/// Why there is nothing to remove, and what overrules that.
-std::string nothingTold(const DenoiseResult& result) {
+/// Why there is nothing to remove, and how to override that.
+std::string nothingText(const DenoiseResult& result) {
     if (result.isCrumpled)
-        return "the noise was not removed: that would have folded the surface over, as among the "
-               "needle triangles of a designed part. Remesh first, or give a smaller noise height "
-               "or size";
+        return "the noise was not removed: that would have folded the surface over, which happens "
+               "at needle triangles, e.g. of CAD models. Remesh first, or give a smaller noise "
+               "height or size";
     switch (result.diagnosis.kind) {
         case NoiseKind::Tessellation:
-            return "no scan but the needle triangles of a designed part: no noise is looked for. "
-                   "If there is some, give its noise height, or remesh first";
+            return "needle triangles as in a CAD model, not a scan: the mesh was not searched for "
+                   "noise. If it has noise, give the noise height, or remesh first";
         case NoiseKind::TooFew:
-            return "too few vertices to tell noise from shape. If there is some, give its noise "
+            return "too few vertices to tell noise from shape. If the mesh has noise, give the "
+                   "noise "
                    "height";
         default:
-            return "no noise found that is not shape as well. For ripples over several edges, give "
-                   "noise height and noise size, e.g. a tenth of an edge and two edges, or use "
-                   "Spectral Filter (Fractional)";
+            return "no noise found that could not be part of the shape. For ripples several edges "
+                   "wide, give noise height and noise size, e.g. a tenth of an edge and two edges, "
+                   "or use Spectral Filter (Fractional)";
     }
 }
 
@@ -113,19 +114,19 @@ std::string nothingTold(const DenoiseResult& result) {
 std::string summaryOf(const spectral::DenoiseOptions& options, const DenoiseResult& result) {
     if (options.strength == 0.0) return "strength 0; nothing changed";
     std::ostringstream text;
-    if (const std::string told = selectionTold(options.selected); !told.empty())
-        text << told << "; ";
+    if (const std::string note = selectionText(options.selected); !note.empty())
+        text << note << "; ";
     if (result.diagnosis.spikes > 0)
         text << (result.diagnosis.spikes == 1 ? "a spike" : "spikes at ")
              << (result.diagnosis.spikes == 1 ? "" : std::to_string(result.diagnosis.spikes))
              << (result.diagnosis.spikes == 1 ? ": removed; " : " vertices: removed; ");
     if (result.rounds == 0) {
-        text << nothingTold(result);
+        text << nothingText(result);
         if (result.maxDisplacement == 0.0) text << "; nothing changed";
     } else if (result.noiseHeight == 0.0) {
-        text << voxelsTold(result.diagnosis.voxel);
+        text << voxelsText(result.diagnosis.voxel);
     } else {
-        text << removedTold(options, result);
+        text << removedText(options, result);
     }
     return text.str();
 }
@@ -133,9 +134,9 @@ std::string summaryOf(const spectral::DenoiseOptions& options, const DenoiseResu
 std::string reportText(const std::string& summary, const DenoiseResult& result) {
     std::ostringstream text;
     text << "Spectral Denoise: " << summary << std::setprecision(3) << "\n  the vertices moved by "
-         << result.rmsDisplacement << " (root mean square), by " << result.maxDisplacement
-         << " at most\n  " << volumeTold(result.hasVolume, result.volumeBefore, result.volumeAfter)
-         << "\n  " << surfaceTold(result) << "\n  work: " << result.rounds << " rounds";
+         << result.rmsDisplacement << " (root mean square), at most by " << result.maxDisplacement
+         << "\n  " << volumeText(result.hasVolume, result.volumeBefore, result.volumeAfter)
+         << "\n  " << surfaceText(result) << "\n  work: " << result.rounds << " rounds";
     return text.str();
 }
 
@@ -146,11 +147,11 @@ std::vector<std::string> warningsOf(const spectral::DenoiseOptions& options,
         warnings.push_back(allFixedWarning("move"));
     else if (options.strength > 0.0 && (result.maxDisplacement == 0.0 || result.isCrumpled))
         warnings.push_back(summary);
-    constexpr double kHalf = 0.34;  // of an edge without the noise, which lengthens edges
+    constexpr double kHalf = 0.34;  // half a noiseless edge: noise lengthens edges
     if (result.diagnosis.noise.height > kHalf * result.diagnosis.noise.meanEdge)
         warnings.emplace_back(
-            "the noise is higher than half an edge: what it hides cannot be told from it. Look at "
-            "the result, or remesh more coarsely first");
+            "the noise is higher than half an edge: it hides details that cannot be recovered. "
+            "Check the result, or remesh more coarsely first");
     return warnings;
 }
 

@@ -20,23 +20,23 @@
 
 namespace {
 
-// Short: MeshLab shows all of it above the parameters.
+// Three lines: MeshLab shows all of it above the parameters.
 const char* const kEqualizerHelp =
     "Each slider scales the height of <b>details of one size</b>, from coarse to fine: 1 keeps, 2 "
     "doubles, 0 removes them. With <i>Preview</i> the shape follows. To deepen the folds of a "
     "robe, set the slider of their size to 2.";
 
-/// Sizes of the sliders, from coarse to fine, as multiples of the smallest one.
+/// Sizes of the sliders from coarse to fine, as multiples of the smallest size.
 constexpr int kTimes[] = {32, 16, 8, 4, 2, 1};
 
-constexpr Scalarm kLargestGain = 4;
+constexpr Scalarm kMaxGain = 4;
 
-/// Most automatic steps of a preview that follows the sliders: five evaluations.
-constexpr int kQuickSteps = 2;
+/// Maximum number of automatic steps if previews are to follow the sliders: five evaluations.
+constexpr int kMaxPreviewSteps = 2;
 
 QString gainName(int times) { return QString("gain_%1x").arg(times); }
 
-/// "0.24 (12 %)": a length, and the same in percent of the diagonal.
+/// "0.24 (12 %)": a length, also as a percentage of the diagonal.
 QString lengthAndPercentage(double length, double diagonal) {
     return QString("%1 (%2 %)").arg(length, 0, 'g', 3).arg(100.0 * length / diagonal, 0, 'g', 3);
 }
@@ -47,12 +47,12 @@ RichParameterList equalizerParameters(const MeshModel& mesh) {
     const double smallest = spectral::defaultSmallestSize(edge, diagonal);
     RichParameterList list;
     for (const int times : kTimes) {
-        // Without a mesh, for the reference of the filters, there are no sizes.
+        // The reference documentation is generated without a mesh: there are no sizes.
         const QString size = edge > 0.0 ? lengthAndPercentage(times * smallest, diagonal)
                                         : QString("%1 x the smallest size").arg(times);
         const QString finer = times == 1 ? " and of all finer ones" : "";
         list.addParam(RichDynamicFloat(
-            gainName(times), 1, 0, kLargestGain, "Details of " + size,
+            gainName(times), 1, 0, kMaxGain, "Details of " + size,
             QString("Factor for the height of details of %1 times the smallest size%2: 1 keeps "
                     "them, 2 doubles them, 0.5 halves them, 0 removes them.")
                 .arg(times)
@@ -60,24 +60,24 @@ RichParameterList equalizerParameters(const MeshModel& mesh) {
     }
     list.addParam(RichPercentage(
         "smallest_size", static_cast<Scalarm>(smallest), 0, diagonal, "Smallest size",
-        "Size of the details of the last slider; each slider above it has twice the size. The "
-        "sizes that the sliders are labelled with are those for the default: three mean edges of "
-        "this mesh, as it hardly holds finer details." +
-            meanEdgeTold(edge)));
+        "Size of the details that the last slider scales; it doubles with each slider above. The "
+        "labels of the sliders show the sizes for the default, three mean edges of this mesh: it "
+        "has hardly any finer details." +
+            meanEdgeText(edge)));
     list.addParam(selectedParameter(mesh, "eight times the smallest size"));
     list.addParam(boundaryParameter(
         "<b>free</b>: it moves like the rest. <b>fixed</b>: it stays exactly in place."));
     list.addParam(RichBool(
         "accurate", false, "Accurate",
-        "Off: quick enough for the preview, in two steps at most. Changes by gains of 0.5 to 2 are "
-        "then accurate to about a hundredth of them, by a gain of 0 to a tenth; the log says how "
-        "far. On: as many steps as an accuracy of 0.05 % of the diagonal takes.",
+        "Off: at most two steps, fast enough for the preview. Changes by gains of 0.5 to 2 are "
+        "then accurate to about 1 %, changes by a gain of 0 to about 10 %; the log states the "
+        "error. On: as many steps as needed for an accuracy of 0.05 % of the diagonal.",
         true));
     return list;
 }
 
 /// The sliders' gains, from fine to coarse.
-/// @throws spectral::InvalidOption  that names the slider.
+/// @throws spectral::InvalidOption  when a gain is invalid; it names the slider.
 std::vector<double> chosenGains(const RichParameterList& parameters) {
     std::vector<double> gains;
     for (const int times : kTimes) {
@@ -92,8 +92,8 @@ std::vector<double> chosenGains(const RichParameterList& parameters) {
     return gains;
 }
 
-/// "details of 0.24 (12 %) x 2, of 0.12 (6 %) x 0.5": the sliders that are not at 1.
-std::string changesTold(const RichParameterList& parameters, double smallest, double diagonal) {
+/// "details of 0.24 (12 %) x 2, of 0.12 (6 %) x 0.5": the sliders not at 1.
+std::string changesText(const RichParameterList& parameters, double smallest, double diagonal) {
     std::ostringstream text;
     text << std::setprecision(3);
     const char* before = "details of ";
@@ -106,7 +106,7 @@ std::string changesTold(const RichParameterList& parameters, double smallest, do
     return text.str();
 }
 
-/// The result as a quick run tells it: with its error, which nobody has limited.
+/// The result of a quick run, which has no tolerance to reach; its error is still reported.
 spectral::FilterResult withoutTolerance(spectral::FilterResult result) {
     result.toleranceReached = true;
     result.singularPart = 0.0;
@@ -127,21 +127,22 @@ FilterOutcome applyEqualizer(const RichParameterList& parameters, MeshModel& mes
     const double diagonal = spectral::boundingBoxDiagonal(input.V);
     options.tolerance = kDefaultTolerance * diagonal;
     const bool isAccurate = parameters.getBool("accurate");
-    if (!isAccurate) options.mostSteps = kQuickSteps;
+    if (!isAccurate) options.maxSteps = kMaxPreviewSteps;
     options.boundary = boundaryCondition(parameters);
     options.part.selected = chosenVertices(parameters, mesh, input);
     const spectral::FilterResult result = spectral::withSteadyProgress(
         progress, spectral::fractionalFilter, input.V, input.F, options);
-    const spectral::FilterResult told = isAccurate ? result : withoutTolerance(result);
-    const std::string changes = changesTold(parameters, smallest, diagonal);
+    const spectral::FilterResult reported = isAccurate ? result : withoutTolerance(result);
+    const std::string changes = changesText(parameters, smallest, diagonal);
     FilterOutcome outcome{reportDictionary(result), "",
-                          fractionalWarnings(options, told, diagonal)};
+                          fractionalWarnings(options, reported, diagonal)};
     if (changes.empty()) {
         outcome.summary = "all gains are 1; nothing changed";
         outcome.text = "Spectral Equalizer: " + outcome.summary;
         return outcome;
     }
-    outcome.text = fractionalReportText(options, told, diagonal, "Spectral Equalizer: " + changes);
+    outcome.text =
+        fractionalReportText(options, reported, diagonal, "Spectral Equalizer: " + changes);
     reportWriting(input, mesh.cm, progress);
     setPositions(input, result.V, mesh);
     return outcome;

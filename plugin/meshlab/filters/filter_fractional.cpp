@@ -9,13 +9,13 @@
 
 namespace {
 
-// Three lines, as MeshLab shows all of it above the parameters.
+// Three lines: MeshLab shows all of it above the parameters.
 const char* const kFractionalHelp =
     "Smooths, sharpens or enhances details <b>by their size</b>, as an equalizer filters sound. "
     "Low-pass: details larger than the feature size stay, smaller ones go. <small>Kovnatsky, "
     "Bronstein, Bronstein: <i>Stable Spectral Mesh Filtering</i>, 2012</small>";
 
-/// Name of the vertex attribute with the details.
+/// Vertex attribute that holds the details.
 const char* const kDetails = "spectral_details";
 
 FilterOutcome applyFractional(const RichParameterList& parameters, MeshModel& mesh,
@@ -30,7 +30,9 @@ FilterOutcome applyFractional(const RichParameterList& parameters, MeshModel& me
     std::string text = fractionalReportText(options, result, diagonal);
     if (detailsOnly) {
         setDetails(input.vertexIndex, kDetails, input.V - result.V, mesh);
-        text += "\n  no vertex has moved: the details are the vertex quality, and the attribute ";
+        text +=
+            "\n  no vertex has moved: the details are stored as the vertex quality and the "
+            "attribute ";
         text += kDetails;
     } else {
         setPositions(input, result.V, mesh);

@@ -18,25 +18,26 @@ namespace {
 using spectral::GeometrySpectrum;
 
 const char* const kGeometrySpectrumHelp =
-    "Measures how much of a shape is in details of which size, and where noise begins: look here "
-    "to <b>choose a feature size</b>. The log lists the root mean square height of the details of "
+    "Measures how much of a shape lies in details of each size, and where noise begins: use it to "
+    "<b>choose a feature size</b>. The log lists the root mean square height of the details in "
     "each octave of sizes; no vertex moves.";
 
 RichParameterList geometrySpectrumParameters(const MeshModel&) {
     RichParameterList list;
     list.addParam(
         RichInt("basis_size", spectral::SpectrumOptions().basisSize, "Basis size",
-                "Number of the largest features (manifold harmonics) that are also computed one by "
-                "one, constant ones included, for scripts that need them: it takes most of the "
-                "time. The octaves cover all features in any case. A small mesh gets all it has."));
+                "Number of the largest features (manifold harmonics, constant ones included) that "
+                "are also computed individually, for scripts that need them; this takes most of "
+                "the time. The octaves cover all features in any case. On a small mesh, all "
+                "harmonics are computed."));
     list.addParam(laplacianParameter());
     list.addParam(
-        boundaryParameter("<b>free</b>: it is part of the shape. <b>fixed</b>: only what it does "
-                          "not determine is measured."));
+        boundaryParameter("<b>free</b>: it is part of the shape. <b>fixed</b>: only the details "
+                          "that it does not determine are measured."));
     return list;
 }
 
-/// A length, also in percent of the diagonal.
+/// A length, also as a percentage of the diagonal.
 std::string withPercent(double length, double diagonal) {
     std::ostringstream text;
     text << std::setprecision(4) << length << " (" << std::setprecision(3)
@@ -49,11 +50,11 @@ std::string textOf(const GeometrySpectrum& spectrum) {
     text << std::setprecision(4) << "Geometry Spectrum: octaves of all details";
     if (spectrum.frequencies.size() > 0)
         text << ", and " << spectrum.frequencies.size() << " harmonics";
-    text << "; in brackets percent of the diagonal, " << spectrum.diagonal << "; energy of this "
-         << "size and all above\n"
+    text << "; in brackets: percent of the diagonal, " << spectrum.diagonal << "; energy: of this "
+         << "size and all larger ones\n"
          << std::left << "  " << std::setw(20) << "feature size" << std::setw(11) << "amplitude"
          << "energy";
-    // Not wider than MeshLab's log, which would break the lines.
+    // Narrow enough for MeshLab's log, which would wrap the lines.
     for (Eigen::Index j = 0; j < spectrum.octaveEnergies.size(); ++j)
         text << "\n  " << std::setw(20)
              << withPercent(spectrum.octaveFeatureSizes[j], spectrum.diagonal) << std::setw(11)
@@ -63,7 +64,7 @@ std::string textOf(const GeometrySpectrum& spectrum) {
     if (spectrum.noiseHeight > 0.0)
         text << "\n  details smaller than "
              << withPercent(spectrum.noiseFeatureSize, spectrum.diagonal)
-             << " are like noise of the vertices, of root mean square height "
+             << " look like vertex noise, with a root mean square height of "
              << withPercent(spectrum.noiseHeight, spectrum.diagonal);
     text << "\n  50 % of the energy at feature sizes of at least "
          << withPercent(spectrum.featureSize50, spectrum.diagonal) << ", 90 % "
@@ -77,8 +78,8 @@ std::vector<std::string> warningsOf(const GeometrySpectrum& spectrum) {
     if (spectrum.mismatch <= kAccurate) return {};
     std::ostringstream text;
     text << std::setprecision(3) << "up to " << 100.0 * std::min(1.0, spectrum.mismatch)
-         << " % of the energy may belong to other sizes: triangles are needles, or parts of the "
-            "mesh are far away";
+         << " % of the energy may belong to other sizes: the mesh has needle triangles, or parts "
+            "far away";
     return {text.str()};
 }
 

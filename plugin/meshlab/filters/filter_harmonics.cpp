@@ -48,7 +48,8 @@ RichParameterList harmonicsParameters(const MeshModel&) {
 }
 
 void checkMode(int mode, int basisSize) {
-    if (mode >= 0 && (mode < basisSize || basisSize < 1)) return;  // truncatedBasis rejects it
+    if (mode >= 0 && (mode < basisSize || basisSize < 1))
+        return;  // truncatedBasis rejects basisSize < 1
     throw spectral::InvalidOption("mode = " + std::to_string(mode) +
                                   ": a basis of basis_size = " + std::to_string(basisSize) +
                                   " has the modes 0 to " + std::to_string(basisSize - 1));
@@ -77,8 +78,7 @@ vcg::Color4b blueWhiteRed(double t) {
     return t < 0.0 ? vcg::Color4b(faded, faded, 255, 255) : vcg::Color4b(255, faded, faded, 255);
 }
 
-/// Colours a signed function: blue below 0, white at 0, red above; the largest modulus has the full
-/// colour.
+/// Colours a signed function: blue below 0, white at 0, red above; full colour at the extreme.
 void setDivergingColors(const std::vector<std::size_t>& vertexIndex, const Eigen::VectorXd& values,
                         MeshModel& mesh) {
     mesh.updateDataMask(MeshModel::MM_VERTCOLOR);

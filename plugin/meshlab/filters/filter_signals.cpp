@@ -19,7 +19,7 @@
 #include "meshlab/mesh_conversion.h"
 #include "meshlab/mesh_filter.h"
 
-// Two filters of signals on a shape that does not change: vertex quality, and vertex colours.
+// The two filters of signals on a fixed shape: vertex quality and vertex colours.
 
 namespace {
 
@@ -29,14 +29,14 @@ const char* const kColorName = "Spectral Filter: Vertex Color";
 constexpr double kWhite = 255.0;
 
 const char* const kQualityHelp =
-    "Filters the <b>vertex quality</b>, any number at every vertex, by the size of its details on "
-    "the surface, as <i>Spectral Filter (Fractional)</i> does the shape, which stays as it is. "
-    "Where the quality is NaN there is no data.";
+    "Filters the <b>vertex quality</b>, i.e. any number per vertex, by the size of its details on "
+    "the surface, as <i>Spectral Filter (Fractional)</i> filters shapes. The shape does not "
+    "change; a quality of NaN means no data.";
 
 const char* const kColorHelp =
     "Filters the <b>vertex colours</b> by the size of their details on the surface, as <i>Spectral "
-    "Filter (Fractional)</i> does the shape, which stays as it is: removes the noise of a "
-    "scanner's colours, sharpens a painting.";
+    "Filter (Fractional)</i> filters shapes: removes noise from scanned colours, or sharpens a "
+    "painting. The shape does not change.";
 
 RichParameterList signalsParameters(const MeshModel& mesh) {
     RichParameterList list;
@@ -64,11 +64,11 @@ spectral::SignalFilterOptions signalOptions(const RichParameterList& parameters,
 std::vector<std::string> warningsOf(const std::vector<bool>& selected,
                                     const spectral::FilteredSignal& result) {
     std::vector<std::string> warnings = surfaceWarnings(result);
-    if (const std::string told = selectionTold(selected); !told.empty()) warnings.push_back(told);
+    if (const std::string note = selectionText(selected); !note.empty()) warnings.push_back(note);
     if (result.isConstant)
         warnings.emplace_back(
-            "nothing to filter: every connected component has one value throughout. Apply a filter "
-            "that computes qualities or colours first");
+            "nothing to filter: the values are constant on every connected component. Apply a "
+            "filter that computes qualities or colours first");
     else if (isAllFixed(result, result.Y.rows() - result.verticesWithoutData))
         warnings.push_back(allFixedWarning("change"));
     if (!result.accuracyReached)
@@ -77,8 +77,8 @@ std::vector<std::string> warningsOf(const std::vector<bool>& selected,
     return warnings;
 }
 
-/// What both filters report.
-/// @param signal  "quality changed", ...
+/// The report of both filters.
+/// @param signal  "quality changed", for example.
 FilterOutcome outcomeOf(const char* name, const char* signal, const RichParameterList& parameters,
                         const spectral::SignalFilterOptions& options, const MeshMatrices& input,
                         const spectral::FilteredSignal& result) {
@@ -87,9 +87,9 @@ FilterOutcome outcomeOf(const char* name, const char* signal, const RichParamete
     text << std::setprecision(4) << name << ": " << nameOf(options.transferFunction.type)
          << " at feature size " << size << " ("
          << 100.0 * size / spectral::boundingBoxDiagonal(input.V) << " % of the diagonal); "
-         << signal << " by " << result.rmsChange << " (root mean square), by " << result.maxChange
-         << " at most; estimated relative error " << std::setprecision(2) << result.errorEstimate
-         << "\n  " << surfaceTold(result);
+         << signal << " by " << result.rmsChange << " (root mean square), at most by "
+         << result.maxChange << "; estimated relative error " << std::setprecision(2)
+         << result.errorEstimate << "\n  " << surfaceText(result);
     if (result.verticesWithoutData > 0)
         text << ", " << result.verticesWithoutData << " vertices without a value (NaN) unchanged";
     text << "\n  work: " << result.factorizations << " factorizations, " << result.solves
@@ -109,7 +109,7 @@ FilterOutcome outcomeOf(const char* name, const char* signal, const RichParamete
     return {std::move(report), text.str(), std::move(warnings)};
 }
 
-/// Of the values that are not NaN.
+/// "minimum to maximum" of the values that are not NaN.
 std::string rangeOf(const Eigen::VectorXd& values) {
     std::ostringstream text;
     text << std::setprecision(4) << values.minCoeff<Eigen::PropagateNumbers>() << " to "
@@ -131,7 +131,7 @@ FilterOutcome applyToQuality(const RichParameterList& parameters, MeshModel& mes
     if (!(result.Y.cwiseAbs().maxCoeff<Eigen::PropagateNumbers>() <=
           std::numeric_limits<Scalarm>::max()))
         throw MLException(
-            "the filtered quality is too large for a number: choose smaller gains, or apply 'Per "
+            "the filtered quality exceeds the largest number: choose smaller gains, or apply 'Per "
             "Vertex Quality Function', q / 1000, first");
 
     reportWriting(input, mesh.cm, progress);

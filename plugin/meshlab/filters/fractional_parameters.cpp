@@ -33,15 +33,15 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
                 true));
     list.addParam(RichPercentage(
         "tolerance", static_cast<Scalarm>(kDefaultTolerance) * diagonal, 0, diagonal, "Tolerance",
-        "With 0 steps: largest distance of the surface from that of infinitely many steps (except "
-        "for a thousandth of it). Larger is faster.",
+        "With 0 steps: largest distance of the surface from the result of infinitely many steps, "
+        "for all but a thousandth of it. Larger is faster.",
         true));
     list.addParam(RichEnum(
         "basis_update", static_cast<int>(defaults.basisUpdate), basisUpdates(), "Basis update",
         "What every step recomputes from the current shape. <b>full</b>, the paper's scheme: all "
-        "of its frequencies. <b>conformal</b>: its areas only, each vertex a quarter of its own at "
-        "least (Kazhdan et al. 2012); thin parts do not turn into spikes. <b>none</b>: nothing; "
-        "the number of steps then makes no difference.",
+        "of its frequencies. <b>conformal</b>: its areas only, where each vertex keeps at least a "
+        "quarter of its own (Kazhdan et al. 2012); thin parts do not turn into spikes. "
+        "<b>none</b>: nothing; the number of steps then makes no difference.",
         true));
     list.addParam(RichFloat(
         "conformal_share", static_cast<Scalarm>(defaults.conformalShare), "Conformal share",
@@ -70,12 +70,12 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "<b>fixed</b>: it stays exactly in place, and the surface in between is filtered."));
     list.addParam(RichFloat(
         "crease_angle", static_cast<Scalarm>(defaults.creaseAngle), "Crease angle (0 = off)",
-        "Edges whose two faces meet at more than this angle, in degrees, stay where they are, and "
-        "nothing is filtered across them: the edges of a machine part, at e.g. 40.",
+        "Edges whose two faces meet at more than this angle, in degrees, stay in place, and "
+        "nothing is filtered across them. For the edges of a machine part, e.g. 40.",
         true));
     list.addParam(RichBool("preserve_volume", defaults.preserveVolume, "Preserve volume",
                            "Move the surface along its normals until every closed component has "
-                           "its volume back. Open ones have none.",
+                           "regained its volume. Open components have none.",
                            true));
     list.addParam(
         RichEnum("weight", 0, weights(), "Weight",
@@ -84,7 +84,7 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
                  true));
     list.addParam(RichEnum(
         "result", 0, results(), "Result",
-        "<b>details</b>: no vertex moves. What the filter would take away, input minus result, is "
+        "<b>details</b>: no vertex moves. What the filter would remove, input minus result, is "
         "stored as the vertex attribute spectral_details, and its length along the normal, "
         "positive outwards, replaces the vertex quality (after it has served as the weight).",
         true));

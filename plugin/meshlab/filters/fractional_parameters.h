@@ -9,19 +9,19 @@
 #include "core/filter/fractional_filter.h"
 #include "meshlab/mesh_conversion.h"
 
-/// The parameters of the dialog, in the order of decisions: what, which size, how strong, how.
+/// The parameters of the dialog, in the order users decide: what, which size, how strong, how.
 RichParameterList fractionalFilterParameters(const MeshModel& mesh);
 
-/// Whether only the details are wanted that the filter takes away, `result` = `details`.
-/// @throws spectral::InvalidOption  when a value is none that the dialog could have.
+/// Whether only the details that the filter removes are wanted (`result` = `details`).
+/// @throws spectral::InvalidOption  when the value is not one of the dialog's choices.
 bool areDetailsWanted(const RichParameterList& parameters);
 
-/// Those that are not at their defaults and have no effect on the others, as warnings.
+/// Warnings about parameters that are not at their defaults but have no effect with the others.
 std::vector<std::string> unusedParameters(const RichParameterList& parameters);
 
-/// The values of the dialog, or of a script, as the core's options.
+/// Converts the parameters of a dialog or script to the core's options.
 /// @param matrices  of the mesh.
-/// @throws spectral::InvalidOption  when a value is none that the dialog could have.
+/// @throws spectral::InvalidOption  when a value is not one of the dialog's choices.
 spectral::FilterOptions fractionalFilterOptions(const RichParameterList& parameters,
                                                 const MeshModel& mesh,
                                                 const MeshMatrices& matrices);

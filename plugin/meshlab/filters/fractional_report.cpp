@@ -51,7 +51,7 @@ std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& r
 
 namespace {
 
-/// Part of a surface that one would miss: half the tail of an elephant.
+/// Fraction of a surface whose loss is noticeable, e.g. half the tail of an elephant.
 constexpr double kNoticeable = 0.003;
 
 /// A share in percent, to two or three digits.
@@ -72,8 +72,8 @@ std::string headline(const spectral::FilterOptions& options, const spectral::Fil
     else
         text << "Spectral Filter: " << nameOf(options.transferFunction.type) << " at feature size "
              << result.featureSize << " (" << percent * result.featureSize << " % of the diagonal)";
-    text << "; it moves the surface by " << result.rmsDisplacement << " (root mean square), by "
-         << result.maxDisplacement << " at most; ";
+    text << "; the surface moves by " << result.rmsDisplacement
+         << " (root mean square), at most by " << result.maxDisplacement << "; ";
     text << std::setprecision(2);
     if (options.steps > 0)
         text << result.steps << (result.steps == 1 ? " step" : " steps") << ", as requested";
@@ -87,18 +87,18 @@ std::string headline(const spectral::FilterOptions& options, const spectral::Fil
     return text.str();
 }
 
-/// @param last  frequency of the last harmonic.
+/// @param last  frequency of the highest harmonic.
 std::string cutoffWarning(const spectral::FilterResult& result, double last) {
     std::ostringstream text;
     text << std::setprecision(4) << "the " << result.eigenvalues.size()
          << " harmonics end at features of " << 2.0 * spectral::kPi / last
          << ", above the feature size of " << result.featureSize
-         << ": details between the two are treated like all finer ones. Choose a larger "
+         << ": details between these sizes are treated like all finer ones. Choose a larger "
             "feature_size, a larger basis_size, or spectrum = full";
     return text.str();
 }
 
-/// What to change where the steps do not converge.
+/// Why the steps do not converge, and what to change.
 std::string convergingFilter(const spectral::FilterOptions& options) {
     const spectral::TransferFunctionOptions& transfer = options.transferFunction;
     const bool stopsLargeDetails = transfer.type == spectral::FilterType::HighPass ||
@@ -132,17 +132,17 @@ std::string volumeWarning(const spectral::FilterResult& result) {
          << " components is preserved: " << result.volumes.open
          << " are open, or not consistently oriented";
     if (result.volumes.lost > 0)
-        text << ", and " << result.volumes.lost << " have shrunk too far, or may not move";
-    return text.str() + ". Close holes and orient the faces first, or leave preserve_volume off";
+        text << ", and " << result.volumes.lost << " have shrunk too far, or must not move";
+    return text.str() + ". Close holes and orient the faces first, or turn preserve_volume off";
 }
 
-/// A size that the mesh has no details of, which is no error of a script for many meshes.
+/// Only a warning, as scripts use one feature size for many meshes.
 std::string edgeWarning(const spectral::FilterResult& result) {
     std::ostringstream text;
     text << std::setprecision(3) << "the mesh has no details of the feature size "
-         << result.featureSize << ", which is below its mean edge of " << result.meanEdge
+         << result.featureSize << ", which is below its mean edge length of " << result.meanEdge
          << ". Choose at least two edges, " << 2.0 * result.meanEdge
-         << "; of a model of few triangles, apply 'Subdivision Surfaces: Midpoint' first";
+         << "; if the model has few triangles, apply 'Subdivision Surfaces: Midpoint' first";
     return text.str();
 }
 
@@ -150,7 +150,7 @@ std::string shrinkingWarning(const spectral::FilterResult& result, double diagon
     const double half = 0.5 * result.featureSize;
     std::ostringstream text;
     text << percentOf(result.shrunkenPart) << std::setprecision(2)
-         << " of the surface shrinks to lines or points, being thin compared with the feature "
+         << " of the surface shrinks to lines or points, as it is thin compared with the feature "
             "size. Try feature_size = "
          << half << " (" << 100.0 * half / diagonal
          << " % of the diagonal), or filter a selection without these parts";
@@ -166,8 +166,8 @@ double lastFrequency(const spectral::FilterResult& result) {
 std::vector<std::string> fractionalWarnings(const spectral::FilterOptions& options,
                                             const spectral::FilterResult& result, double diagonal) {
     std::vector<std::string> warnings = surfaceWarnings(result);
-    if (const std::string told = selectionTold(options.part.selected); !told.empty())
-        warnings.push_back(told);
+    if (const std::string note = selectionText(options.part.selected); !note.empty())
+        warnings.push_back(note);
     const bool isAtRest = isAllFixed(result, result.V.rows());
     if (isAtRest)
         warnings.push_back(options.creaseAngle > 0.0
@@ -203,13 +203,13 @@ std::string fractionalReportText(const spectral::FilterOptions& options,
     text << headline(options, result, diagonal, subject) << "\n  steps: " << result.steps
          << ", cutoff frequency " << result.cutoffFrequency << " rad per unit\n"
          << "  area: " << result.areaBefore << " -> " << result.areaAfter << "\n"
-         << "  " << volumeTold(result.hasVolume, result.volumeBefore, result.volumeAfter) << "\n  "
-         << surfaceTold(result, "vertices fixed, on the boundary or a crease");
+         << "  " << volumeText(result.hasVolume, result.volumeBefore, result.volumeAfter) << "\n  "
+         << surfaceText(result, "vertices fixed, on the boundary or a crease");
     if (options.preserveVolume)
         text << ", " << result.volumes.preserved << " with the volume preserved";
     text << "\n  work: " << result.factorizations << " factorizations, " << result.solves
          << " solves, " << result.products << " products";
-    if (result.lacksMemory) text << ", as there is no memory for a factorization";
+    if (result.lacksMemory) text << ", as a factorization does not fit in memory";
     if (result.eigenvalues.size() > 0)
         text << ", " << result.eigenvalues.size() << " harmonics up to frequency "
              << lastFrequency(result) << ", bases computed: " << result.computedBases;

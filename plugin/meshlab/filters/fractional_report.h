@@ -10,14 +10,14 @@
 /// The dictionary that pymeshlab returns.
 std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& result);
 
-/// The same as lines for MeshLab's log, the most important facts first.
-/// @param diagonal  of the bounding box of the input.
-/// @param subject   what the text is about; without one, the filter's type and feature size.
+/// The report as lines for MeshLab's log, most important facts first.
+/// @param diagonal  bounding box diagonal of the input.
+/// @param subject   starts the text; empty: the filter's type and feature size.
 std::string fractionalReportText(const spectral::FilterOptions& options,
                                  const spectral::FilterResult& result, double diagonal,
                                  const std::string& subject = {});
 
-/// What the user should act on: sentences, each with its remedy; empty if there is nothing.
-/// @param diagonal  of the bounding box of the input.
+/// What the user should act on: sentences, each with a remedy; empty if there is nothing.
+/// @param diagonal  bounding box diagonal of the input.
 std::vector<std::string> fractionalWarnings(const spectral::FilterOptions& options,
                                             const spectral::FilterResult& result, double diagonal);

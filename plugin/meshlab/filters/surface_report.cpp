@@ -12,7 +12,7 @@ void addSurfaceCounts(const spectral::SurfaceCounts& counts,
     report["fixed_vertices"] = counts.fixedVertices;
 }
 
-std::string surfaceTold(const spectral::SurfaceCounts& counts, const char* fixed) {
+std::string surfaceText(const spectral::SurfaceCounts& counts, const char* fixed) {
     std::string text = "surface: " + std::to_string(counts.components) +
                        (counts.components == 1 ? " component" : " components");
     const auto add = [&](int count, const char* what) {
@@ -24,8 +24,8 @@ std::string surfaceTold(const spectral::SurfaceCounts& counts, const char* fixed
     return text;
 }
 
-std::string volumeTold(bool hasVolume, double before, double after) {
-    if (!hasVolume) return "volume: none, as the surface is open, or not consistently oriented";
+std::string volumeText(bool hasVolume, double before, double after) {
+    if (!hasVolume) return "volume: none, as the surface is open or not consistently oriented";
     std::ostringstream text;
     text << std::setprecision(6) << "volume: " << before << " -> " << after;
     return text.str();

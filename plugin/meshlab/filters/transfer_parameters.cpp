@@ -14,7 +14,7 @@ namespace {
 QStringList filterTypes() { return {"low-pass", "high-pass", "band-pass", "band-stop", "custom"}; }
 QStringList responses() { return {"gaussian", "butterworth", "ideal"}; }
 
-/// The transfer function that is there to be changed.
+/// Default transfer function, an example to edit.
 const char* const kExample = "20%:1, 5%:2, 1%:0.1";
 
 }  // namespace
@@ -30,9 +30,9 @@ void addTransferParameters(const MeshModel& mesh, RichParameterList& list) {
         "them. <b>custom</b>: the transfer function below."));
     list.addParam(featureSizeParameter(
         mesh,
-        "Size at which the filter cuts off: the wavelength of a wave along the surface, a bump and "
-        "the hollow next to it. A low-pass leaves a quarter of the height of waves half as long, "
-        "and nine tenths of waves twice as long. To remove bumps, try four times their width. "
+        "Size at which the filter cuts off: a wavelength along the surface, i.e. a bump and the "
+        "hollow next to it. A low-pass leaves a quarter of the height of waves half as long, and "
+        "nine tenths of that of waves twice as long. To remove bumps, try four times their width. "
         "Default: six mean edges of this mesh, at most 5 % of its diagonal, which removes the "
         "noise of a scan."));
     list.addParam(RichFloat("pass_gain", static_cast<Scalarm>(transfer.passGain), "Pass gain",

@@ -9,32 +9,32 @@
 #include "core/transfer/transfer_function.h"
 #include "meshlab/mesh_conversion.h"
 
-// The parameters of a transfer function, which all filters of shapes and signals share with the
-// same names, defaults and texts.
+// The parameters of a transfer function: all filters of shapes and signals share their names,
+// defaults and texts.
 
-/// Adds them to the parameters of a dialog, what comes first and what strength, then the shape of
-/// the gain: `filter_type`, `feature_size`, `pass_gain`, ..., `power`.
+/// Adds the parameters to a dialog: first what to change and how strongly, then the shape of the
+/// gain (`filter_type`, `feature_size`, `pass_gain`, ..., `power`).
 void addTransferParameters(const MeshModel& mesh, RichParameterList& list);
 
-/// Their values.
+/// The transfer function chosen in a dialog or script.
 struct ChosenTransfer {
     spectral::TransferFunctionOptions options;
-    double featureSize = 0.0;  ///< Length units; of points, that in their middle.
+    double featureSize = 0.0;  ///< Length units; for gains at sizes, the middle of these sizes.
 };
 
-/// @param mesh  what sizes are relative to.
-/// @throws spectral::InvalidOption  when an enumeration has none of its values, or the transfer
-///                                  function of the user a mistake.
+/// @param mesh  the mesh that relative sizes refer to.
+/// @throws spectral::InvalidOption  when an enumeration has no such value, or the custom transfer
+///                                  function has a mistake.
 ChosenTransfer chosenTransfer(const RichParameterList& parameters, const MeshMatrices& mesh);
 
-/// Those that are not at their defaults and have no effect on the others, as warnings that say what
-/// they would need.
+/// Warnings about parameters that are not at their defaults but have no effect with the others;
+/// they say what would be needed.
 std::vector<std::string> unusedTransferParameters(const RichParameterList& parameters);
 
-/// The warning that a parameter has no effect; none where it has, or is at its default.
-/// @param condition  when it has none: "without filter_type = custom".
+/// Warns that a parameter has no effect, unless it is used or at its default.
+/// @param condition  when it has no effect: "without filter_type = custom".
 void warnIfUnused(bool isChanged, bool isUsed, const char* name, const char* condition,
                   std::vector<std::string>& warnings);
 
-/// The name of a filter type among the choices of `filter_type`.
+/// The name of a filter type, as in the choices of `filter_type`.
 std::string nameOf(spectral::FilterType type);

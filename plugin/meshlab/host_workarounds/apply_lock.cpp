@@ -19,7 +19,7 @@ ApplyLock::ApplyLock() {
 ApplyLock::~ApplyLock() {
     if (button_.isNull()) return;
     button_->setEnabled(true);
-    // The focus returns to the button, unless the user has moved it meanwhile.
+    // The focus returns to the button unless the user has moved it in the meantime.
     if (!focusAfter_.isNull() && focusAfter_ == QApplication::focusWidget()) button_->setFocus();
     // Posted: the button receives the press of this click only after the run.
     if (release_ != nullptr) QCoreApplication::postEvent(button_, release_.release());

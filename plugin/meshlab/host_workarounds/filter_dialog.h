@@ -2,6 +2,6 @@
 
 #include <QWidget>
 
-/// The filter dialog that is open in MeshLab; null without one, as in pymeshlab and for filter
-/// scripts, and on any thread but that of the GUI.
+/// The filter dialog open in MeshLab; null if there is none, as in pymeshlab and for filter
+/// scripts, and on any thread other than that of the GUI.
 QWidget* openFilterDialog();

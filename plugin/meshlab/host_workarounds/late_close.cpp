@@ -15,7 +15,7 @@ LateClose::LateClose() {
 
 LateClose::~LateClose() {
     // Queued: MeshLab has not finished the run yet.
-    if (isAsked()) QMetaObject::invokeMethod(window_, "close", Qt::QueuedConnection);
+    if (isRequested()) QMetaObject::invokeMethod(window_, "close", Qt::QueuedConnection);
 }
 
 bool LateClose::eventFilter(QObject* object, QEvent* event) {

@@ -7,18 +7,17 @@
 /// Postpones closing a project, or MeshLab, until the running filter has stopped.
 ///
 /// MeshLab handles user input in the filter's callback. Closing the project there deletes it during
-/// the run, and MeshLab 2025.07 crashes at the end of the run of any filter; closing MeshLab leaves
-/// it computing without a window. Instead, the run is stopped (see isAsked), and then the window is
-/// closed.
+/// the run, and MeshLab 2025.07 crashes when the run ends, whatever the filter; closing MeshLab
+/// leaves it computing without a window. Instead, the run is stopped, then the window is closed.
 ///
-/// Does nothing without windows or on any thread but theirs, as in pymeshlab.
+/// Does nothing without windows, as in pymeshlab, or on any thread other than that of the GUI.
 class LateClose : public QObject {
   public:
     LateClose();
     ~LateClose() override;
 
     /// Whether the user has tried to close a window during the run.
-    bool isAsked() const { return !window_.isNull(); }
+    bool isRequested() const { return !window_.isNull(); }
 
     bool eventFilter(QObject* object, QEvent* event) override;
 

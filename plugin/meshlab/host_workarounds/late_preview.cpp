@@ -12,7 +12,7 @@ LatePreview::LatePreview() : dialog_(openFilterDialog()) {
 
 LatePreview::~LatePreview() {
     if (dialog_.isNull() || box_.isNull() || box_->isChecked()) return;
-    // Queued: MeshLab has not recorded the result as the mesh with this preview yet.
+    // Queued: MeshLab has not yet recorded the result as the previewed mesh.
     QMetaObject::invokeMethod(dialog_, "on_previewCheckBox_stateChanged", Qt::QueuedConnection,
                               Q_ARG(int, Qt::Unchecked));
 }

@@ -7,11 +7,11 @@
 /// Reverts a preview that was switched off while the filter was running.
 ///
 /// MeshLab handles user input in the filter's callback. Switching Preview off there restores the
-/// mesh, but the run of any filter then ends with its result on the mesh, in MeshLab 2025.07.
-/// Therefore the dialog is told again, after the run, that Preview is off. After Apply this changes
-/// nothing: by then the dialog has recorded the result as the mesh without preview.
+/// mesh, but in MeshLab 2025.07 the run of any filter still ends by writing its result. The dialog
+/// is therefore told again, after the run, that Preview is off. After Apply this changes nothing:
+/// by then the dialog has recorded the result as the mesh without preview.
 ///
-/// Does nothing without an open dialog, as in pymeshlab and for filter scripts.
+/// Does nothing without an open dialog, i.e. in pymeshlab and for filter scripts.
 class LatePreview {
   public:
     LatePreview();

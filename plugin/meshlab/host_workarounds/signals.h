@@ -2,14 +2,13 @@
 
 #include <QtGlobal>
 
-// A filter that Python has called keeps the interpreter waiting: its handler of Ctrl-C would run
-// only once the filter is done.
+// A filter called from Python blocks the interpreter: Ctrl-C would be handled only after the run.
 
-/// Sets how to run the interpreter's handlers of signals, between two parts of a computation and in
-/// the thread that has called the filter: PyGILState_Ensure, PyErr_CheckSignals, which is not 0
-/// once a handler has raised an exception, and PyGILState_Release. Null: not at all.
+/// Sets the functions that run the interpreter's signal handlers, between parts of a computation
+/// and in the thread that called the filter: PyGILState_Ensure, PyErr_CheckSignals (nonzero once a
+/// handler has raised an exception) and PyGILState_Release. Null: handlers are not run.
 extern "C" Q_DECL_EXPORT void meshlab_spectral_check_signals(int (*lock)(), int (*check)(),
                                                              void (*release)(int));
 
-/// Whether a signal's handler asks for the end of the computation.
+/// Whether a signal handler asks to stop the computation.
 bool isInterruptedBySignal();

@@ -68,7 +68,7 @@ TEST(FractionalFilter, EndsAtTheMostStepsAndTellsTheError) {
     FilterOptions options = smoothing(mesh, 0, BasisUpdate::Conformal);
     options.tolerance = 1e-6 * boundingBoxDiagonal(mesh.V);
     const FilterResult accurate = fractionalFilter(mesh.V, mesh.F, options);
-    options.mostSteps = 2;
+    options.maxSteps = 2;
     const FilterResult quick = fractionalFilter(mesh.V, mesh.F, options);
     EXPECT_TRUE(accurate.toleranceReached);
     EXPECT_GT(accurate.steps, 2);

@@ -1,13 +1,13 @@
-#include "meshlab/host_workarounds/last_words.h"
+#include "meshlab/host_workarounds/last_messages.h"
 
 namespace {
 
-// One for each thread: between a run and the question for its words others may run filters, too.
+// One per thread: other threads may run filters before the messages are read.
 thread_local std::string lastWarnings, lastSummary;
 
 }  // namespace
 
-void keepLastWords(const std::string& summary, const std::vector<std::string>& warnings) {
+void keepLastMessages(const std::string& summary, const std::vector<std::string>& warnings) {
     lastSummary = summary;
     lastWarnings.clear();
     for (const std::string& warning : warnings) lastWarnings += warning + '\n';

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <QtGlobal>
+#include <string>
+#include <vector>
+
+// The messages of a filter, as pymeshlab drops the strings of a report.
+
+/// Keeps the messages of the latest filter run in this thread: none while it runs or if it failed.
+void keepLastMessages(const std::string& summary, const std::vector<std::string>& warnings);
+
+// For Python, which looks these up by name in the plugin's library. UTF-8, one copy per thread,
+// valid until a filter of this plugin runs in the calling thread again.
+
+/// The warnings, each followed by a newline; empty if there are none.
+extern "C" Q_DECL_EXPORT const char* meshlab_spectral_warnings();
+
+/// What was found and done, in one line; empty if the numbers of the report say it all.
+extern "C" Q_DECL_EXPORT const char* meshlab_spectral_summary();
