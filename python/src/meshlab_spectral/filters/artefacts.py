@@ -64,7 +64,7 @@ def measure_artefacts(
         Feature size of the applied low-pass or band, length units, > 0.
     laplacian
         "intrinsic delaunay" works with any triangles; "cotangent" needs non-degenerate ones;
-        "uniform" looks at the connections only.
+        "uniform" uses the connectivity only.
 
     Returns
     -------

@@ -296,7 +296,7 @@ def manifold_harmonics(
         Number of harmonics k, constants included; less than the number of vertices not fixed.
     laplacian
         "intrinsic delaunay" works with any triangles; "cotangent" needs non-degenerate ones;
-        "uniform" looks at the connections only.
+        "uniform" uses the connectivity only.
     boundary
         "free": Neumann conditions at the boundary of an open surface; "fixed": zero there.
 

@@ -141,7 +141,7 @@ def geometry_spectrum(
         0 for the octaves alone.
     laplacian
         "intrinsic delaunay" works with any triangles; "cotangent" needs non-degenerate ones;
-        "uniform" looks at the connections only.
+        "uniform" uses the connectivity only.
     boundary
         Boundary of an open surface. "free": part of the shape, it contributes at every size;
         "fixed": measures the shape relative to the harmonic extension of the boundary.
