@@ -42,8 +42,8 @@ class DenoiseOptions(Options):
     )
     noise_size: Length = option(
         Length(automatic=True),
-        "Distance over which the noise is correlated, half the width of its bumps, such as 2e; up to "
-        "1e it is independent at each vertex. auto: as measured.",
+        "Distance over which the noise is correlated, half the width of its bumps, such as 2e; up "
+        "to 1e it is independent at each vertex. auto: as measured.",
     )
     selected: bool = option(
         False,
