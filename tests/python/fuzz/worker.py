@@ -57,7 +57,7 @@ REMEDY = re.compile(
     r"Possible values|between 0 and 100|select faces or"
 )
 # There is nothing to do about these but to look at the mesh.
-PLAIN = re.compile(r"has an area: the mesh is a line or a point")
+PLAIN = re.compile(r"zero area: the mesh is a line or a point")
 NO_NUMBER = re.compile(r"\b(nan|inf|-nan|-inf)\b")
 
 _kept: list[pymeshlab.MeshSet] = []
