@@ -69,6 +69,28 @@ TEST(KrylovSpaces, AreAsOrthogonalAsRequestedDespiteCancellation) {
         }
 }
 
+TEST(KrylovSpaces, AreNotOrthogonalizedWhileTheRecurrenceKeepsThemOrthogonal) {
+    const Operator A(testing::blob());
+    ShiftedLdlt ldlt;
+    ldlt.factorizeDefinite(A.W, A.D, 50.0);
+    const ShiftInvert S(ldlt);
+    const double never = 2.0;
+    KrylovSpaces recurrence(S, A, A.mesh.V.leftCols(1), never);
+    KrylovSpaces spaces(S, A, A.mesh.V.leftCols(1));
+    const int dimensions = 20;
+    for (int m = 0; m < dimensions; ++m) {
+        recurrence.extend();
+        spaces.extend();
+    }
+    Eigen::MatrixXd Q(A.mesh.V.rows(), dimensions);
+    for (int m = 0; m < dimensions; ++m) {
+        const Eigen::VectorXd unit = Eigen::VectorXd::Unit(dimensions, m);
+        Q.col(m) = recurrence.combine({unit});
+        EXPECT_EQ(Q.col(m), spaces.combine({unit}).col(0)) << m;
+    }
+    EXPECT_LT(testing::orthonormalityError(Q, A.D), KrylovSpaces::kOrthogonal);
+}
+
 TEST(KrylovSpaces, AreNormalizedWhenRoundOffAddsConstantsToSolves) {
     // A ribbon: new directions are about as small as the round-off of S.
     const Operator A(testing::rectangle(1.0, 1e-7, 7, 2));

@@ -6,10 +6,9 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-import pymeshlab
 import pytest
 import spectral_reference as reference
-from helpers import assert_same, diagonal, length, mesh_set_of, percent, refusal, snapshot
+from helpers import assert_same, diagonal, mesh_set_of, percent, snapshot
 from meshlab_spectral import Artefacts, FilterError, OptionError, measure_artefacts
 from numpy.typing import NDArray
 
@@ -86,32 +85,6 @@ def test_the_filter_fills_quality_and_colours_and_moves_nothing(decimated: Decim
         before.pop(name, None)
         del after[name]
     assert_same(before, after)
-
-
-REFUSED: dict[str, tuple[dict[str, Any], str]] = {
-    "feature size of nothing": ({"feature_size": percent(0)}, "feature_size"),
-    "negative feature size": ({"feature_size": length(-1.0)}, "feature_size"),
-    "feature size that is no number": ({"feature_size": length(float("nan"))}, "feature_size"),
-}
-
-
-@pytest.mark.parametrize("case", REFUSED)
-def test_a_refused_parameter_is_named_and_leaves_the_mesh_as_it_was(
-    case: str, decimated: Decimated
-) -> None:
-    parameters, named = REFUSED[case]
-    mesh_set = mesh_set_of(*decimated("cow.obj"))
-    before = snapshot(mesh_set.current_mesh())
-    assert named in refusal(mesh_set, filter_name=ARTEFACTS, **parameters)
-    assert_same(before, snapshot(mesh_set.current_mesh()))
-
-
-def test_a_point_cloud_is_refused_and_left_as_it_was(decimated: Decimated) -> None:
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.add_mesh(pymeshlab.Mesh(decimated("cow.obj")[0]))
-    before = snapshot(mesh_set.current_mesh())
-    assert "point cloud" in refusal(mesh_set, filter_name=ARTEFACTS)
-    assert_same(before, snapshot(mesh_set.current_mesh()))
 
 
 @pytest.mark.parametrize("feature_size", [0.0, -1.0, float("nan"), float("inf"), 1e39, "5%"])

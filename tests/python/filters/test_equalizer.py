@@ -157,19 +157,6 @@ def test_a_quick_run_tells_its_error_and_an_accurate_one_keeps_within_the_tolera
         assert (report["step_error"] <= 0.0005 * diagonal(V)) == accurate
 
 
-def test_an_empty_mesh_is_refused() -> None:
-    mesh_set = mesh_set_of([[0.0, 0.0, 0.0]], np.zeros((0, 3), dtype=np.int32))
-    mesh_set.set_selection_all()
-    mesh_set.meshing_remove_selected_vertices()
-    assert "empty" in refusal(mesh_set, EQUALIZER)
-
-
-def test_a_mesh_without_faces_is_refused_with_gains_of_one_too(cow: Arrays) -> None:
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.add_mesh(pymeshlab.Mesh(cow[0]))
-    assert "point cloud" in refusal(mesh_set, EQUALIZER)
-
-
 def test_only_the_selection_moves_on_request(cow: Arrays) -> None:
     V, F = cow
     parameters: dict[str, Any] = {"gain_1x": 0.0, "smallest_size": percent(0.8)}

@@ -12,51 +12,62 @@ import pytest
 from helpers import FILTER, assert_same, length, mesh_set_of, percent, refusal, snapshot
 from meshlab_spectral.plugin.loading import FILTERS
 
-REFUSED_OPTIONS: dict[str, tuple[dict[str, Any], str]] = {
-    "basis as large as the mesh": (
-        {"spectrum": "truncated", "basis_size": 1202},
-        "spectrum = full",
-    ),
-    "basis larger than the mesh": (
-        {"spectrum": "truncated", "basis_size": 5000},
-        "spectrum = full",
-    ),
-    "negative pass gain": ({"pass_gain": -1.0}, "pass_gain"),
-    "negative stop gain": ({"stop_gain": -0.01}, "stop_gain"),
-    "gain that is no number": ({"pass_gain": float("nan")}, "pass_gain"),
-    "infinite gain": ({"stop_gain": float("inf")}, "stop_gain"),
-    "negative steps": ({"steps": -1}, "steps"),
-    "automatic steps without tolerance": ({"steps": 0, "tolerance": percent(0)}, "tolerance"),
-    "feature size of nothing": ({"feature_size": percent(0)}, "feature_size"),
-    "negative feature size": ({"feature_size": length(-1.0)}, "feature_size"),
-    "feature size that is no number": ({"feature_size": length(float("nan"))}, "feature_size"),
-    "band without width": ({"filter_type": "band-pass", "band_width": 0.0}, "band_width"),
-    "order of nothing": ({"response": "butterworth", "order": 0}, "order"),
-}
+DENOISE, ARTEFACTS = FILTERS["Spectral Denoise"], FILTERS["Spectral Artefacts"]
+HARMONICS, SPECTRUM = FILTERS["Manifold Harmonics"], FILTERS["Geometry Spectrum"]
+
+# Filter, its parameters, and words of the message; the mesh has 1,202 vertices.
+REFUSED: tuple[tuple[str, dict[str, Any], str], ...] = (
+    (FILTER, {"spectrum": "truncated", "basis_size": 1202}, "spectrum = full"),
+    (FILTER, {"spectrum": "truncated", "basis_size": 5000}, "spectrum = full"),
+    (FILTER, {"pass_gain": -1.0}, "pass_gain"),
+    (FILTER, {"stop_gain": -0.01}, "stop_gain"),
+    (FILTER, {"pass_gain": float("nan")}, "pass_gain"),
+    (FILTER, {"stop_gain": float("inf")}, "stop_gain"),
+    (FILTER, {"steps": -1}, "steps"),
+    (FILTER, {"steps": 0, "tolerance": percent(0)}, "tolerance"),
+    (FILTER, {"feature_size": percent(0)}, "feature_size"),
+    (FILTER, {"feature_size": length(-1.0)}, "feature_size"),
+    (FILTER, {"feature_size": length(float("nan"))}, "feature_size"),
+    (FILTER, {"filter_type": "band-pass", "band_width": 0.0}, "band_width"),
+    (FILTER, {"response": "butterworth", "order": 0}, "order"),
+    (DENOISE, {"strength": -1.0}, "strength"),
+    (ARTEFACTS, {"feature_size": percent(0)}, "feature_size"),
+    (ARTEFACTS, {"feature_size": length(-1.0)}, "feature_size"),
+    (ARTEFACTS, {"feature_size": length(float("nan"))}, "feature_size"),
+    (HARMONICS, {"mode": -1}, "mode = -1"),
+    (HARMONICS, {"mode": 20, "basis_size": 20}, "modes 0 to 19"),
+    (HARMONICS, {"basis_size": 1202}, "at most 1201"),
+    (HARMONICS, {"basis_size": 0}, "at least 2"),
+    (HARMONICS, {"basis_size": -5, "store_basis": True}, "at least 2"),
+    (HARMONICS, {"mode": 0, "basis_size": 1}, "at least 2"),
+    (SPECTRUM, {"basis_size": -1}, "basis_size"),
+)
 
 # Percentages and edges in it are measured on the mesh.
 SIZES_OF_THE_MESH = {"filter_type": "custom", "transfer_function": "20%:1, 6e:2"}
 
 
-@pytest.mark.parametrize("case", REFUSED_OPTIONS)
-def test_a_refused_option_is_named_and_leaves_the_mesh_as_it_was(
-    case: str, decimated: Callable[..., Any]
+@pytest.mark.parametrize(("name", "parameters", "named"), REFUSED)
+def test_a_refused_parameter_is_named_and_leaves_the_mesh_as_it_was(
+    name: str, parameters: dict[str, Any], named: str, decimated: Callable[..., Any]
 ) -> None:
-    parameters, named = REFUSED_OPTIONS[case]
     mesh_set = mesh_set_of(*decimated("cow.obj", 2400))
     assert mesh_set.current_mesh().vertex_number() == 1202
     before = snapshot(mesh_set.current_mesh())
-    assert named in refusal(mesh_set, **parameters)
+    assert named in refusal(mesh_set, name, **parameters)
     assert_same(before, snapshot(mesh_set.current_mesh()))
 
 
-@pytest.mark.parametrize("parameters", [{}, SIZES_OF_THE_MESH], ids=["default", "custom"])
-def test_an_empty_mesh_is_refused_and_stays_empty(parameters: dict[str, Any]) -> None:
+@pytest.mark.parametrize(
+    ("name", "parameters"),
+    [*((name, {}) for name in FILTERS.values()), (FILTER, SIZES_OF_THE_MESH)],
+)
+def test_an_empty_mesh_is_refused_and_stays_empty(name: str, parameters: dict[str, Any]) -> None:
     mesh_set = mesh_set_of([[0.0, 0.0, 0.0]], np.zeros((0, 3), dtype=np.int32))
     mesh_set.set_selection_all()
     mesh_set.meshing_remove_selected_vertices()
     assert mesh_set.current_mesh().vertex_number() == 0
-    assert "empty" in refusal(mesh_set, **parameters)
+    assert "empty" in refusal(mesh_set, name, **parameters)
     assert mesh_set.current_mesh().vertex_number() == 0
 
 
@@ -64,12 +75,17 @@ def test_no_mesh_at_all_is_refused() -> None:
     assert "at least one mesh" in refusal(pymeshlab.MeshSet())
 
 
-def test_a_point_cloud_is_refused_with_a_way_to_a_surface(decimated: Callable[..., Any]) -> None:
+@pytest.mark.parametrize("name", FILTERS.values())
+def test_a_point_cloud_is_refused_with_a_way_to_a_surface(
+    name: str, decimated: Callable[..., Any]
+) -> None:
     V, _ = decimated("cow.obj")
     mesh_set = pymeshlab.MeshSet()
-    mesh_set.add_mesh(pymeshlab.Mesh(V))
+    mesh_set.add_mesh(
+        pymeshlab.Mesh(V, v_scalar_array=V[:, 0], v_color_matrix=np.full((len(V), 4), 0.5))
+    )
     before = snapshot(mesh_set.current_mesh())
-    message = refusal(mesh_set)
+    message = refusal(mesh_set, name)
     assert "point cloud" in message
     assert "Surface Reconstruction" in message
     assert_same(before, snapshot(mesh_set.current_mesh()))

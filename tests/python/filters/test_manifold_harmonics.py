@@ -12,7 +12,7 @@ import pytest
 import scipy.sparse
 import scipy.sparse.linalg
 import spectral_reference as reference
-from helpers import assert_same, lower_part, mesh_set_of, refusal, snapshot
+from helpers import assert_same, lower_part, mesh_set_of, snapshot
 from meshlab_spectral import OptionError, manifold_harmonics
 from meshlab_spectral.files.meshes import load_arrays
 from numpy.typing import NDArray
@@ -213,39 +213,7 @@ def test_the_basis_is_stored_only_when_asked_for_and_replaces_an_older_one(
     assert (mesh.vertex_custom_scalar_attribute_array("age") == 1).all()
 
 
-REFUSED: dict[str, tuple[dict[str, Any], str]] = {
-    "negative mode": ({"mode": -1}, "mode = -1"),
-    "mode beyond the basis": ({"mode": 20, "basis_size": 20}, "modes 0 to 19"),
-    "basis as large as the mesh": ({"basis_size": 1202}, "at most 1201"),
-    "no basis": ({"basis_size": 0}, "at least 2"),
-    "negative basis": ({"basis_size": -5}, "at least 2"),
-    "only the constant": ({"mode": 0, "basis_size": 1}, "at least 2"),
-}
-
-
-@pytest.mark.parametrize("case", REFUSED)
-def test_a_refused_parameter_is_named_and_leaves_the_mesh_as_it_was(
-    case: str, decimated: Decimated
-) -> None:
-    parameters, named = REFUSED[case]
-    mesh_set = mesh_set_of(*decimated("cow.obj"))
-    mesh = mesh_set.current_mesh()
-    assert mesh.vertex_number() == 1202
-    before = snapshot(mesh)
-    assert named in refusal(mesh_set, HARMONICS, store_basis=True, **parameters)
-    assert_same(before, snapshot(mesh))
-    assert not has_attribute(mesh, "harmonic_0")
-
-
 @pytest.mark.parametrize("basis_size", [0, 2.5, True, "ten", 2**31])
 def test_a_basis_size_that_is_no_number_of_harmonics_is_refused(basis_size: Any) -> None:
     with pytest.raises(OptionError, match="basis_size"):
         manifold_harmonics([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], basis_size)
-
-
-def test_a_point_cloud_is_refused_and_left_as_it_was(decimated: Decimated) -> None:
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.add_mesh(pymeshlab.Mesh(decimated("cow.obj")[0]))
-    before = snapshot(mesh_set.current_mesh())
-    assert "point cloud" in refusal(mesh_set, HARMONICS)
-    assert_same(before, snapshot(mesh_set.current_mesh()))

@@ -319,16 +319,6 @@ def test_a_mesh_without_the_signal_is_refused_with_a_filter_that_makes_one(
 
 
 @pytest.mark.parametrize("name", TARGETS)
-def test_a_point_cloud_is_refused(name: str, decimated: Decimated) -> None:
-    V, _ = decimated("cow.obj")
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.add_mesh(
-        pymeshlab.Mesh(V, v_scalar_array=noisy_field(V), v_color_matrix=colours(V) / 255)
-    )
-    assert "point cloud" in refusal(mesh_set, name)
-
-
-@pytest.mark.parametrize("name", TARGETS)
 def test_the_transfer_functions_parameters_are_those_of_the_main_filter(
     name: str, decimated: Decimated
 ) -> None:
