@@ -127,8 +127,8 @@ AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evalua
 FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOptions& options,
                               const Progress& progress) {
     const ThreadTeam team(progress);
-    checkMesh(V, F,
-              options.laplacian);  // first: a mesh that is not finite has no valid feature size
+    // First: a mesh that is not finite has no valid feature size.
+    checkMesh(V, F, options.laplacian);
     checkOptions(options);
     const Surface surface = joinedSurface(V, F);
     const TransferFunction transfer(options.transferFunction, cutoffFrequency(options.featureSize));

@@ -27,9 +27,8 @@ void requireOneResidualGain(const TransferFunction& F) {
     if (F.isConstantBeyondJumps()) return;
     std::ostringstream text;
     text << "transfer_function jumps at w = " << F.discontinuities().back() / F.cutoff()
-         << " and is not constant beyond it: replace the jump by a smooth fall, e.g. 1/(1 + w^16) "
-            "for "
-            "w < 1, or choose spectrum = truncated";
+         << " and is not constant beyond it: replace the jump by a smooth fall, e.g. "
+            "1/(1 + w^16) for w < 1, or choose spectrum = truncated";
     throw InvalidOption(text.str());
 }
 

@@ -66,8 +66,8 @@ class Settings:
     )
     memory_limit: int | None = option(
         None,
-        "Memory limit per worker, such as 4GB; in Python in bytes. By default they share nine "
-        "tenths of the machine's.",
+        "Memory limit per worker, such as 4GB (in Python, bytes). By default, the workers share "
+        "nine tenths of the machine's.",
         metavar="SIZE",
     )
     timeout: float | None = option(

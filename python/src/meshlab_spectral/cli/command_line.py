@@ -38,7 +38,10 @@ _UsageError: type[Exception] = typer.BadParameter.__mro__[1]
 
 _MORE = "Print all numbers, files and warnings, and MeshLab's log."
 _VERBOSITY = (
-    ("quiet", typer.Option("--quiet", "-q", help="Print only errors and warnings.")),
+    (
+        "quiet",
+        typer.Option("--quiet", "-q", help="Print only errors, warnings and what was asked for."),
+    ),
     ("verbose", typer.Option("--verbose", "-v", help=_MORE)),
     ("debug", typer.Option("--debug", hidden=True)),
 )

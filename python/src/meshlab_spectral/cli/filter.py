@@ -47,7 +47,7 @@ Save the options, and filter a folder with them:
     --save-recipe smooth.toml
   meshlab-spectral batch scans --output smooth --recipe smooth.toml
 """
-DENOISE_HELP = """Find out what noise a mesh has, of a scanner, spikes or voxels, and remove it.
+DENOISE_HELP = """Detect which noise a mesh has (scanner, spikes or voxel steps) and remove it.
 
   meshlab-spectral denoise scan.ply clean.ply
 A folder of scans:

@@ -74,12 +74,12 @@ _EQUALIZER = typer.Option(
     callback=_use_equalizer,
     metavar="GAINS",
     help="Gains of details of 96, 48, 24, 12, 6 and 3 mean edges, such as 1,1,2,1,0.5,0: the "
-    "sliders of MeshLab's Spectral Equalizer. In place of --filter-type and --transfer-function.",
+    "sliders of MeshLab's Spectral Equalizer. Replaces --filter-type and --transfer-function.",
 )
 _PRESET = typer.Option(
     is_eager=True,
     callback=_use_preset,
-    help="Start from the options for a purpose; those given besides replace its own.",
+    help="Start from the options for a purpose; those given as well override them.",
 )
 
 

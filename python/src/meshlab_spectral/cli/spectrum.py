@@ -64,7 +64,7 @@ def spectrum_command(
         ),
     ] = None,
     basis_size: Annotated[
-        int, typer.Option(min=0, help="Number of lowest harmonics to show individually, too.")
+        int, typer.Option(min=0, help="Number of lowest harmonics to show one by one as well.")
     ] = SpectrumOptions.basis_size,
     mesh: OneMesh = None,
     recipe: Recipe = None,

@@ -49,7 +49,7 @@ class DenoiseOptions(Options):
         False,
         "Denoise only the selected faces and vertices, fading out around them within four edges.",
     )
-    keep_creases: bool = option(True, "Do not smooth across edges.")
+    keep_creases: bool = option(True, "Do not smooth across creases; off: creases are rounded.")
     boundary: Boundary = option(
         "free",
         "Boundary of an open surface, holes included: free lets it follow along its normals, fixed "

@@ -119,7 +119,7 @@ class FilterOptions(Options):
     )
     power: float = option(
         1.0,
-        "Fractional power of the filter to apply: 0.5 is half the filter, a gain of 4 becomes 2.",
+        "Fractional power of the filter to apply: 0.5 is half the filter: a gain of 4 becomes 2.",
         Limits(0, 1, low_open=True),
     )
     selected: bool = option(
@@ -169,15 +169,15 @@ class FilterOptions(Options):
         "Boundary of an open surface, holes included: free lets it move like the rest, so strong "
         "smoothing draws it in; fixed keeps it exactly in place.",
     )
-
     crease_angle: float = option(
         0.0,
-        "Edges whose faces meet at more than this angle in degrees, e.g. 40, stay in place and let "
-        "nothing across; 0 is off.",
+        "Edges whose faces meet at more than this angle in degrees, e.g. 40, stay in place, and "
+        "nothing is smoothed across them; 0 is off.",
         Limits(0, 180),
     )
     preserve_volume: bool = option(
-        False, "Move the surface along its normals until every closed component has its volume."
+        False,
+        "Move the surface along its normals until every closed component has regained its volume.",
     )
     weight: Weight = option(
         "none",
@@ -199,11 +199,12 @@ class SpectrumOptions(Options):
     TABLE = "spectrum"
 
     basis_size: int = option(
-        0, "Number of lowest harmonics to measure individually, too.", Limits(0, LARGEST_INTEGER)
+        0, "Number of lowest harmonics to measure one by one as well.", Limits(0, LARGEST_INTEGER)
     )
     laplacian: LaplacianKind = option("intrinsic delaunay", "As for the filter.")
     boundary: Boundary = option(
-        "free", "Whether boundaries of open surfaces are part of the shape (free)."
+        "free",
+        "Whether the boundary of an open surface is part of the shape (free) or left out (fixed).",
     )
 
 
