@@ -18,6 +18,7 @@ template <class Result>
 void addMovement(const Result& result, std::map<std::string, QVariant>& report) {
     report["rms_displacement"] = result.rmsDisplacement;
     report["max_displacement"] = result.maxDisplacement;
+    report["has_volume"] = result.hasVolume;
     report["volume_before"] = result.volumeBefore;
     report["volume_after"] = result.volumeAfter;
     report["preserved_volumes"] = result.volumes.preserved;

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import json
 import shutil
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pymeshlab
 import pytest
 from commands import arrays_of, assert_fails, command, messages_in, write_ply
-from helpers import FILTER, percent
+from helpers import FILTER, lower_part, mesh_set_of, percent
 from meshlab_spectral import FilterOptions
 
 
@@ -84,6 +86,15 @@ def test_report_is_a_table_with_the_input_and_the_output_as_they_are_called(
     for row in ("Feature size", "Largest displacement", "Area", "Volume", "Work"):
         assert row in done.stdout
     assert len(arrays_of(tmp_path / "[bold]öut.ply")[0]) == len(arrays_of(cow)[0])
+
+
+def test_an_open_surface_has_no_volume_in_the_table(
+    decimated: Callable[..., Any], tmp_path: Path
+) -> None:
+    mesh_set_of(*lower_part(*decimated("cow.obj"))).save_current_mesh(str(tmp_path / "half.ply"))
+    done = command("filter", tmp_path / "half.ply", tmp_path / "smooth.ply", "--steps", 1)
+    assert "Area" in done.stdout
+    assert "Volume" not in done.stdout
 
 
 def test_a_vertex_that_is_no_number_is_named(existing: Path, tmp_path: Path) -> None:

@@ -78,6 +78,12 @@ def test_measures_agree_with_those_of_numpy(
         assert report[name] == pytest.approx(value, rel=1e-9), name
 
 
+def test_only_a_closed_surface_has_a_volume(decimated: Callable[..., Any]) -> None:
+    V, F = decimated("cow.obj")
+    assert filter_arrays(V, F, steps=1)[1]["has_volume"]
+    assert not filter_arrays(*lower_part(V, F), steps=1)[1]["has_volume"]
+
+
 @pytest.mark.parametrize("basis_update", ["full", "conformal"])
 def test_automatic_steps_keep_their_tolerance(
     basis_update: str, decimated: Callable[..., Any]

@@ -58,9 +58,10 @@ def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
     rows += [
         ("Largest displacement", f"{report['max_displacement']:.4g}"),
         ("RMS displacement", f"{report['rms_displacement']:.4g}"),
-        ("Volume, if closed", _change(report["volume_before"], report["volume_after"])),
-        ("Components", f"{report['components']}"),
     ]
+    if report["has_volume"]:
+        rows.append(("Volume", _change(report["volume_before"], report["volume_after"])))
+    rows.append(("Components", f"{report['components']}"))
     for name, label, more in (
         ("joined_vertices", "Vertices joined at seams", ""),
         ("unreferenced_vertices", "Vertices without faces", ", unchanged"),
