@@ -4,9 +4,9 @@ Eigenfunctions of the Laplacian (manifold harmonics) of the input, of the shape 
 power of a low-pass, and of the shape after the whole low-pass in one shot (Kovnatsky et al. 2012,
 Figure 4). This is why the filter takes weak steps: the basis remains valid within each of them.
 
-A filter may swap eigenvalues. Each eigenfunction of the input is therefore shown next to the most
-similar one of the filtered shape, with matching sign: the one with the largest correlation, given
-in the label with its number. 1 is the same function, 0 an entirely different one.
+A filter may reorder the eigenvalues. Each eigenfunction of the input is therefore shown next to the
+most similar one of the filtered shape, with matching sign: the one with the largest correlation,
+given in the label with its number. 1 is the same function, 0 an unrelated one.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from subject import Subject
 Array = NDArray[np.float64]
 
 SHOWN = (5, 10, 20)
-# More than shown, to find an eigenfunction whose eigenvalue the filter has swapped.
+# More than shown, to find eigenfunctions whose eigenvalues the filter has reordered.
 BASIS_SIZE = 40
 TENTH = replace(LOW_PASS, steps=1, basis_update="none", power=0.1)
 WHOLE = replace(TENTH, power=1.0)

@@ -1,4 +1,4 @@
-"""What the filters do beyond a low-pass of a whole mesh, in one picture each.
+"""Pictures of what the filters do beyond a low-pass of a whole mesh.
 
 `parts.py MESHES PICTURES [NAME ...]` draws equalizer, selection, creases, quality, colors and
 artefacts into the folder PICTURES, from dragon_40k.ply, stanford-bunny.obj, fandisk.off and
@@ -32,9 +32,9 @@ Indices = NDArray[np.int64]
 
 # Percent of the diagonal, and gain: from the shape of the body to the scales.
 BANDS = ((30, 1.0), (12, 2.2), (5, 0.25), (2, 1.5))
-SCALE = 0.5  # of the pages: small files
+SCALE = 0.5  # of the pages, to keep files small
 
-SHADES = (0.02, 1.0)  # without 0, at which a line would be drawn
+SHADES = (0.02, 1.0)  # excludes 0, where a line would be drawn
 FULL_RED = 0.005  # length of artefacts, in diagonals
 
 
@@ -80,7 +80,7 @@ def _plot_bands(axes: Axes, options: FilterOptions, lengths: MeshLengths) -> Non
 
 
 def selection(meshes: Path, path: Path) -> None:
-    """Draw the bunny, its head selected, and after a low-pass of the selection."""
+    """Draw the bunny with its head selected, and after a low-pass of the selection."""
     import pymeshlab
 
     V, F = load_arrays(meshes / "stanford-bunny.obj")
@@ -106,7 +106,7 @@ def selection(meshes: Path, path: Path) -> None:
 
 
 def creases(meshes: Path, path: Path) -> None:
-    """Draw machine parts with noise, after a low-pass without and with a crease angle."""
+    """Draw machine parts with noise, and after a low-pass without and with a crease angle."""
     rows = [
         _creases(meshes / "fandisk.off", 0.1, View((0.6, 1.0, 0.7), (0.0, 0.0, 1.0))),
         _creases(meshes / "gears.stl", 0.03, View((0.3, -0.5, 1.0), (0.0, 1.0, 0.0))),
@@ -140,13 +140,13 @@ def _creases(source: Path, noise: float, view: View) -> tuple[list[Panel], View]
         error = _mean_angle(Y, V, F)
         print(f"{source.name}, {label}: mean error of the normals {error:.1f} degrees")
         label = f"{label}\nnormals off by {error:.1f}\N{DEGREE SIGN}"
-        # Corners of their own: every triangle is shaded flat.
+        # Every triangle has its own vertices, to be shaded flat.
         panels.append(Panel(label, Y[F].reshape(-1, 3), np.arange(F.size).reshape(-1, 3)))
     return panels, view
 
 
 def _mean_angle(Y: Array, V: Array, F: Indices) -> float:
-    """Return the angle between the normals of two shapes, degrees, weighted by the areas of V."""
+    """Return the mean angle between the normals of two shapes, degrees, weighted by V's areas."""
     ofY, ofV = (np.cross(X[F[:, 1]] - X[F[:, 0]], X[F[:, 2]] - X[F[:, 0]]) for X in (Y, V))
     angles = np.arctan2(np.linalg.norm(np.cross(ofY, ofV), axis=1), np.sum(ofY * ofV, axis=1))
     return float(np.degrees(np.average(angles, weights=np.linalg.norm(ofV, axis=1))))
@@ -188,7 +188,7 @@ def colors(meshes: Path, path: Path) -> None:
 
 
 def artefacts(meshes: Path, path: Path) -> None:
-    """Draw the dragon after three ways of a low-pass, coloured by the artefacts they have left."""
+    """Draw the dragon after a low-pass in three schemes, coloured by the artefacts they leave."""
     V, F = load_arrays(meshes / "dragon_40k.ply")
     size, shapes = 0.15 * _diagonal(V), {}
     for label, scheme in (

@@ -33,7 +33,7 @@ def draw_side_by_side(
     MissingPackageError
         When PyVista is not installed.
     """
-    # Half of the largest extent, with a margin for the label.
+    # The largest extent, with a margin for the label.
     low, high = bounding_box([panels[0].V])
     height = 1.24 * float((high - low).max())
     frame = Frame(view or View(), (low + high) / 2, height, height)

@@ -21,7 +21,7 @@ class Subject:
     name
         The file's name without extension.
     V, F
-        n x 3 coordinates, m x 3 indices of the corners of triangles.
+        n x 3 coordinates, m x 3 vertex indices of triangles.
     view
         Viewpoint of the figures.
 

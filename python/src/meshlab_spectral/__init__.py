@@ -1,4 +1,4 @@
-"""Spectral Filter (Fractional) for MeshLab 2025.07: for pymeshlab and the shell.
+"""The MeshLab 2025.07 plugin Spectral Filter (Fractional), for pymeshlab and the shell.
 
 >>> import pymeshlab, meshlab_spectral
 >>> meshlab_spectral.load()
@@ -17,7 +17,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-# Imported when first used: the command must not wait for them before it can handle Ctrl-C.
+# Imported on first use, so that the command can handle Ctrl-C without waiting for them.
 _EXPORT = re.compile(r"^from (\S+) import (\w+) as", re.MULTILINE)
 _STUB = Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8")
 _MODULES = {name: module for module, name in _EXPORT.findall(_STUB)}

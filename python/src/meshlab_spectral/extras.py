@@ -16,7 +16,7 @@ _PACKAGES = {
 
 
 def check_extras(*extras: str) -> None:
-    """Raise MissingPackageError, which says what to install, unless all of `extras` are there."""
+    """Raise MissingPackageError, which says what to install, if one of `extras` is missing."""
     lacking = {
         extra: [package for package in _PACKAGES[extra] if find_spec(package) is None]
         for extra in extras

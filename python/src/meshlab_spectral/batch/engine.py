@@ -33,17 +33,17 @@ from meshlab_spectral.errors import BatchError
 from meshlab_spectral.plugin.limits import threads_each
 from meshlab_spectral.plugin.versions import versions
 
-# Share of the machine's memory for all workers together.
+# Fraction of the machine's memory that all workers share.
 _SHARE_OF_MEMORY = 0.9
 _SECONDS_TO_CONNECT = 10
 _SECONDS_TO_CLOSE = 5
 _FEWEST_SUBMITTED = 200
 # While MeshLab filters one mesh, the worker copies and hashes the files of another.
 _JOBS_PER_WORKER = 2
-# Loggers to which Dask gives their own levels.
+# Loggers whose levels Dask sets itself.
 _LOGGERS = ("distributed", "distributed.client")
-# Dask profiles itself for its dashboard a hundred times a second: a tenth of the work for small
-# meshes on few processors.
+# Dask profiles itself for its dashboard a hundred times a second, which slows down small meshes on
+# few processors.
 _NO_STATISTICS = {
     "distributed.worker.profile.enabled": False,
     "distributed.admin.tick.interval": "1s",
@@ -57,11 +57,11 @@ _NO_STATISTICS = {
 
 @contextlib.contextmanager
 def local_workers(count: int | None = None, memory_limit: int | None = None) -> Iterator[Client]:
-    """Start worker processes on this machine, not reachable from outside, for `run_jobs`.
+    """Start worker processes for `run_jobs`, reachable from this machine only.
 
-    Each of the `count` workers, by default one per processor, takes one mesh at a time and its
+    Each of the `count` workers, by default one per processor, filters one mesh at a time, with its
     share of the threads. `memory_limit` is in bytes per worker; by default they share nine tenths
-    of the memory available to this process. On exit they are ended, whatever they are doing.
+    of the memory available to this process. On exit they are killed, whatever they are doing.
     Raises BatchError when they fail to start.
     """
     count = count or CPU_COUNT
@@ -81,8 +81,8 @@ def local_workers(count: int | None = None, memory_limit: int | None = None) -> 
 def workers_at(address: str) -> Iterator[Client]:
     """Use the workers of a running Dask cluster.
 
-    `address` is that of its scheduler, such as tcp://10.0.0.1:8786. Raises BatchError when it
-    cannot be reached, has no workers, or these have different software versions.
+    `address` is the scheduler's, such as tcp://10.0.0.1:8786. Raises BatchError when it cannot be
+    reached, has no workers, or has workers with other software versions.
     """
     with _quiet_log():
         try:
@@ -105,9 +105,9 @@ def run_jobs(client: Client, jobs: Sequence[Job]) -> Iterator[FileResult]:
     """Run jobs on workers, and yield the result of each as soon as it is done.
 
     If a worker dies, Dask gives its job to another one, up to three times. The death of a MeshLab
-    process is handled by the worker, see `task`. Raises BatchError when the cluster is gone.
+    process is handled by the worker, see `task`. Raises BatchError when the cluster is lost.
     """
-    # Submitting all jobs at once would make the scheduler slow to start, and large.
+    # Submitting all jobs at once would delay the start and take much of the scheduler's memory.
     window = max(_FEWEST_SUBMITTED, 4 * sum(client.nthreads().values()))
     waiting = iter(jobs)
     job_of: dict[Future, Job] = {}
@@ -197,11 +197,11 @@ def _start_cluster(count: int, memory_limit: int) -> LocalCluster:
 
 @contextlib.contextmanager
 def _interrupts_held_back() -> Iterator[None]:
-    """Block Ctrl-C in the processes started meanwhile, and defer it in this one.
+    """Block Ctrl-C in processes started within this context, and defer it in this one.
 
-    It reaches every process of the terminal, but this one alone handles it. Threads and workers
-    started here inherit the mask, unless they start Python's resource tracker, which clears it.
-    Windows has no masks: there, workers ignore Ctrl-C from their setup on.
+    The terminal sends it to all its processes, but only this one handles it. Threads and workers
+    started here inherit the signal mask, unless they start Python's resource tracker, which clears
+    it. Windows has no signal masks: there, workers ignore Ctrl-C once they are set up.
     """
     if sys.platform == "win32":
         yield
@@ -215,7 +215,7 @@ def _interrupts_held_back() -> Iterator[None]:
 
 
 def _kill_workers(cluster: LocalCluster) -> None:
-    """End workers at once; closing would let them finish their current meshes."""
+    """Kill the workers; closing them would let them finish their current meshes."""
     for nanny in cluster.workers.values():
         nanny.close_gracefully()  # else it would restart the worker
         if nanny.pid is not None:

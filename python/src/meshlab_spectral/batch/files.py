@@ -30,14 +30,14 @@ def filter_files(
 ) -> Generator[FileResult, None, None]:
     """Filter many mesh files in worker processes, and iterate over the results.
 
-    Work starts when the first result is requested. The workers import the main module of the
-    program, so a script needs a guard, see the example. They are ended with the iteration, or by
-    the iterator's `close`.
+    Work starts when the first result is requested. The workers import the program's main module,
+    so a script needs the guard shown in the example. They end with the iteration, or when the
+    iterator is closed.
 
     Parameters
     ----------
     inputs
-        Files, folders, patterns such as ``"scans/*.ply"``, URLs supported by fsspec.
+        Files, folders, patterns such as ``"scans/*.ply"``, and URLs supported by fsspec.
     output
         Output folder, a path or a URL; created if needed.
     **named
@@ -45,7 +45,7 @@ def filter_files(
     Yields
     ------
     FileResult
-        The result of each file, as soon as it is done; those of an earlier run first.
+        The result of each file as soon as it is done; those of an earlier run come first.
 
     Raises
     ------
@@ -55,7 +55,7 @@ def filter_files(
     BatchError
         When the report cannot be written, or the Dask cluster cannot be reached.
     MissingPackageError
-        When Dask, of the extra `batch`, is not installed.
+        When Dask (extra `batch`) is not installed.
 
     Examples
     --------
@@ -92,7 +92,7 @@ def run_batch(batch: Batch, tally: Tally) -> Generator[FileResult, None, None]:
                         tally.add(result)
                         yield result
             finally:
-                for folder in batch.folders:  # of workers that were ended
+                for folder in batch.folders:  # left by killed workers
                     storage.tidy(folder)
         seconds = round(time.monotonic() - begin, 3)
         report.add("summary", {**tally.counts, **tally.told(), "seconds": seconds})

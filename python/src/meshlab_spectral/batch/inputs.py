@@ -22,9 +22,9 @@ class Input:
     Attributes
     ----------
     place
-        Absolute path with "/", or URL. An unreadable file is an input, too, and will fail.
+        Absolute path with "/", or URL. An unreadable file is an input, too; its job fails.
     folder
-        Its folder relative to the one given by the user; "" if the same.
+        Its folder, relative to the one given by the user; "" for that one itself.
     """
 
     place: str
@@ -41,8 +41,8 @@ def find_inputs(
 ) -> list[Input]:
     """Find the files given by names, folders, patterns such as scans/*.ply, and URLs.
 
-    A file is accepted whatever its extension; in folders, files that MeshLab can read are, hidden
-    ones excepted. They are in the order of the arguments, sorted within each, without duplicates.
+    A named file is accepted whatever its extension; in folders, only visible files that MeshLab can
+    read are. Inputs are in the order of the arguments, sorted within each, without duplicates.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def find_inputs(
     recursive
         Search subfolders, too, and let ** in a pattern match any folders.
     leave_out
-        Files and folders to skip in a search: the outputs.
+        Outputs: files and folders that a search skips.
 
     Raises
     ------
@@ -96,7 +96,7 @@ def _from_path(path: Path, recursive: bool, outputs: set[Path]) -> Iterator[Inpu
     within = list(_search(path, "", recursive, outputs))
     yield from within
     if not within and _looks_like_mesh(path.name):
-        yield Input(path.as_posix())  # will fail as a folder
+        yield Input(path.as_posix())  # its job reports that it is a folder
 
 
 def _search(folder: Path, relative: str, recursive: bool, outputs: set[Path]) -> Iterator[Input]:

@@ -11,7 +11,7 @@ Outcome = Literal["filtered", "unchanged", "measured", "failed", "already done"]
 
 @dataclass(frozen=True)
 class Job:
-    """All that a worker needs to process one file; plain values, to be sent between processes.
+    """Everything a worker needs to process one file, as plain values that can be sent to it.
 
     Attributes
     ----------
@@ -21,9 +21,9 @@ class Job:
     name
         Name of the output, relative to the output folder.
     work
-        The job for `child` without its files: "task" and its parameters.
+        The job for `child`: "task" and its parameters, without the files.
     options
-        What the result depends on, for the report: jobs with equal options and equal inputs have
+        What the result depends on besides the input, for the report: equal options and inputs give
         equal results.
     seconds
         Time limit; None: no limit.
@@ -40,7 +40,7 @@ class Job:
     overwrite: bool = False
 
     def result(self, outcome: Outcome, **more: Any) -> FileResult:
-        """Return the result of this job; `more` are attributes that the job does not know."""
+        """Return the result of this job; `more` are the attributes not known to the job."""
         return FileResult(
             outcome, self.source, self.target, self.name, options=self.options, **more
         )
@@ -53,9 +53,9 @@ class FileResult:
     Attributes
     ----------
     outcome
-        "filtered": the output has been written; "unchanged": as well, but no vertex has moved, as
-        where there is no noise; "measured": done, without an output; "failed": the output path is
-        untouched; "already done": the report proves that an earlier run has written the output.
+        "filtered": the output was written; "unchanged": likewise, but no vertex moved, for example
+        because there is no noise; "measured": done, without an output; "failed": the output path is
+        untouched; "already done": the report proves that an earlier run wrote the output.
     input, output
         Absolute paths or URLs.
     name
@@ -68,7 +68,7 @@ class FileResult:
         The filter's report, as from `filter_mesh`; for a script see `script.apply_script`. None if
         the filter failed.
     warnings
-        All warnings in the report: what fell short, and what to do about it.
+        All warnings in the report: problems that were not errors, and what to do about them.
     input_sha256, output_sha256
         SHA-256 of the files; None if missing.
     side_files
@@ -77,7 +77,7 @@ class FileResult:
     attempts
         Number of attempts.
     seconds
-        Time taken, reading and writing included.
+        Time taken, including reading and writing.
     peak_memory
         Peak memory of MeshLab's process in bytes; None if it did not start or died.
     versions

@@ -1,4 +1,4 @@
-"""Naming the outputs of a batch: from a pattern, unique, never an input."""
+"""Naming the outputs of a batch by a pattern, without collisions or replaced inputs."""
 
 from __future__ import annotations
 
@@ -43,16 +43,16 @@ class Output:
 def plan_outputs(
     inputs: Sequence[Input], folder: str, pattern: str = DEFAULT_PATTERN, ending: str | None = None
 ) -> list[Output]:
-    """Name the output for each input, as from `find_inputs`.
+    """Name the output of each input found by `find_inputs`.
 
     The inputs' subfolders are recreated in `folder`, a path or URL.
 
     Parameters
     ----------
     pattern
-        For the names, without extension: {stem} and {ending} stand for the parts of the input's
-        name before and after its last dot, {folder} for the name of its folder. A "/" creates
-        folders.
+        Pattern of the names, without extension: {stem} and {ending} stand for the parts of the
+        input's name before and after its last dot, {folder} for the name of its folder. A "/"
+        creates folders.
     ending
         Extension of the outputs; by default that of the input, or ply if it cannot be written with
         faces.
@@ -115,7 +115,7 @@ def _output(file: Input, folder: str, pattern: str, ending: str | None) -> Outpu
 def _refuse_collisions(outputs: Sequence[Output]) -> None:
     groups: dict[str, list[Output]] = {}
     for output in outputs:
-        # Names that differ in case alone are one file there.
+        # Names that differ only in case are the same file there.
         ignores_case = sys.platform in ("win32", "darwin") and not is_url(output.target)
         key = output.target.casefold() if ignores_case else output.target
         groups.setdefault(key, []).append(output)
@@ -131,7 +131,7 @@ def _refuse_collisions(outputs: Sequence[Output]) -> None:
 
 
 def refuse_inputs(targets: Iterable[str], sources: Iterable[str]) -> None:
-    """Raise InputError if an output is one of the inputs, under any name."""
+    """Raise InputError if an output is one of the inputs, even under another name."""
     sources = list(sources)
     places = {source for source in sources if is_url(source)}
     files = {key for source in sources for key in _identities(source)}

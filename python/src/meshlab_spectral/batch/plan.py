@@ -33,7 +33,7 @@ class Batch:
     Attributes
     ----------
     jobs
-        Jobs to do, in the order of the inputs.
+        Remaining jobs, in the order of the inputs.
     done
         Results of an earlier run that are still valid.
     report
@@ -115,7 +115,7 @@ def plan_batch(
 def _work(
     options: Options | None, script: str | Path | None
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the work of each job, and its description in the report."""
+    """Return the `work` and the `options` of every `Job`."""
     if script is None:
         options = options or FilterOptions()
         described = options.as_dict()
@@ -154,7 +154,7 @@ def _inputs(
     report: Path,
     records: Records,
 ) -> list[Input]:
-    """Find the inputs, without the outputs of an earlier run among them."""
+    """Find the inputs, excluding outputs of an earlier run."""
     leave_out = [report]
     given = {storage.located(str(place)) for place in inputs}
     if not storage.is_url(folder):
@@ -182,6 +182,6 @@ def _refuse_to_replace(targets: Sequence[str], begun: float | None, hint: str) -
 
 def _made_since(target: str, begun: float) -> bool:
     if storage.is_url(target):
-        return True  # without a reliable modification time
+        return True  # its modification time may be unreliable
     path = Path(target)
     return path.is_file() and path.stat().st_mtime >= begun - _CLOCK_SLACK

@@ -21,7 +21,7 @@ class Processes:
     Attributes
     ----------
     at_once
-        Maximum number of processes at work; None: no limit.
+        Maximum number of processes working at once; None: no limit.
     threads
         Number of threads for the plugin in each process; None: not set yet.
     """
@@ -34,13 +34,13 @@ class Processes:
         self._idle: list[MeshLabProcess] = []
 
     def limit(self, at_once: int) -> None:
-        """Set the maximum number of processes at work. Call it before the first job."""
+        """Set the maximum number of processes working at once. Call it before the first job."""
         self.at_once = at_once
         self._turns = threading.BoundedSemaphore(at_once)
 
     @contextlib.contextmanager
     def one(self, limits: JobLimits) -> Iterator[MeshLabProcess]:
-        """Yield a process for one job, as soon as one may work."""
+        """Yield a process for one job, once the limit allows it."""
         with self._turns:
             process = self._take()
             try:

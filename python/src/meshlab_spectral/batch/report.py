@@ -23,14 +23,14 @@ DEFAULT_NAME = "batch_report.jsonl"
 
 _BEGIN = b'{"kind": '  # start of every line
 _NUMBER = re.compile(r"\d+([.,]\d+)*(e[-+]?\d+)?")
-_END_OF_TIME = 1e12  # seconds since 1970; NaN and infinity are beyond it, too
+_END_OF_TIME = 1e12  # seconds since 1970; comparison with it also rejects NaN and infinity
 
 
 def read_report(path: Path) -> Iterator[dict[str, Any]]:
     """Yield the lines of a report in order.
 
-    Skips incomplete lines, such as after a power failure. Raises BatchError when the file exists
-    but cannot be read, or has a line that no batch has written.
+    Skips incomplete lines, as left by a power failure. Raises BatchError when the file exists but
+    cannot be read, or has a line that was not written by a batch.
     """
     try:
         with path.open("rb") as file:
@@ -124,29 +124,29 @@ class Report:
 
 
 def grouped_warnings(warnings: Mapping[str, Sequence[str]]) -> list[dict[str, Any]]:
-    """Group the warnings of many files that differ in their numbers at most, most frequent first.
+    """Group warnings of many files that differ only in their numbers, most frequent first.
 
-    `warnings` are those of each file, by its name. Each group has "warning", that of the first
-    file, and "files", the names of all.
+    `warnings` maps the name of each file to its warnings. Each group has "warning", the text in
+    the first file, and "files", the names of all of them.
     """
     groups: dict[str, dict[str, Any]] = {}
     for name, texts in sorted(warnings.items()):
         for text in texts:
             group = groups.setdefault(_NUMBER.sub("0", text), {"warning": text, "files": []})
-            if group["files"][-1:] != [name]:  # of several meshes in a file
+            if group["files"][-1:] != [name]:  # several meshes of a file may share it
                 group["files"].append(name)
     return sorted(groups.values(), key=lambda group: -len(group["files"]))
 
 
 class Tally:
-    """What has become of the files of a batch.
+    """Counts the results of a batch, and collects their warnings.
 
     Attributes
     ----------
     counts
         Number of results by outcome.
     warnings
-        The warnings of each file that has any, by its name.
+        Name of each file with warnings -> its warnings.
     """
 
     def __init__(self) -> None:
@@ -160,7 +160,7 @@ class Tally:
             self.warnings[result.name] = result.warnings
 
     def told(self) -> dict[str, Any]:
-        """Return how many files have warnings, and these, as `grouped_warnings`."""
+        """Return the number of files with warnings, and the warnings as from `grouped_warnings`."""
         grouped = grouped_warnings(self.warnings)
         return {"with_warnings": len(self.warnings), "warnings": grouped}
 
@@ -190,7 +190,7 @@ def check_report(path: Path) -> None:
 
 
 class _ForeignLineError(Exception):
-    """A whole line with values that a batch does not write; says which."""
+    """A complete line with a value that no batch writes; says which."""
 
 
 def _record(line: bytes) -> dict[str, Any] | None:
@@ -225,7 +225,7 @@ def _is_digests(value: Any) -> bool:
     return isinstance(value, dict) and all(map(_is_name, value))
 
 
-# Values that other modules rely on.
+# Checks of the values that other modules rely on.
 _FITTING: dict[str, Callable[[Any], bool]] = {
     "begun": _is_time,
     "name": _is_name,

@@ -28,13 +28,13 @@ def done_records(report: Iterable[Mapping[str, Any]]) -> Records:
 def proved_done(
     jobs: Iterable[Job], records: Records, versions: Mapping[str, str]
 ) -> dict[Job, FileResult]:
-    """Find the jobs that are already done, and the recorded result of each, as "already done".
+    """Find the jobs that are already done, with their recorded results as "already done".
 
-    A job is done if a record, one of `done_records`, has its options and the current `versions`,
-    and the SHA-256 of its input, its output and the output's side files are still those in it.
+    A job is done if one of the `records`, from `done_records`, has its options, the current
+    `versions`, and the current SHA-256 of its input, its output and the output's side files.
     """
     candidates = [job for job in jobs if job.name in records]
-    with ThreadPoolExecutor() as pool:  # most of the time goes into reading
+    with ThreadPoolExecutor() as pool:  # most of the time is spent reading
         found = pool.map(lambda job: _proof(job, records[job.name], versions), candidates)
         return {job: result for job, result in zip(candidates, found, strict=True) if result}
 

@@ -81,7 +81,7 @@ class Settings:
     )
 
     def check_workers(self) -> None:
-        """Raise OptionError when both kinds of workers, new ones and a cluster's, are wanted."""
+        """Raise OptionError when both new workers and those of a cluster are requested."""
         if self.scheduler is not None and (self.workers, self.memory_limit) != (None, None):
             raise OptionError(
                 "a cluster configures its own workers: with a scheduler, leave out the number of "

@@ -41,15 +41,14 @@ def plan_spectra(
     options: SpectrumOptions,
     settings: Settings,
 ) -> Batch:
-    """Plan to measure the spectra of many meshes; the report of each mesh is its spectrum.
+    """Plan the measurement of many spectra; the report on each mesh is its spectrum.
 
-    `inputs` are those of `files.filter_files`, `table` is the file for `write_table`. Of `settings`
-    count recursive, resume, report, timeout and the workers; the report is by default
+    `inputs` are those of `files.filter_files`, `table` is the file for `write_table`. Only
+    recursive, resume, report, timeout and the workers are used of `settings`; the default report is
     TABLE_report.jsonl, next to the table.
 
     Raises InputError when inputs are missing, or the table or the report would replace another
-    file, OptionError when both kinds of workers are wanted, and BatchError when an earlier report
-    cannot be read.
+    file, OptionError as from `check_workers`, and BatchError when an earlier report cannot be read.
     """
     settings.check_workers()
     table = table.absolute()

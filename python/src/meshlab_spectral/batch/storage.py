@@ -24,7 +24,7 @@ from meshlab_spectral.files.whole_files import (
     writing_whole,
 )
 
-# With schemes chained in front, such as filecache::s3://; a file may be called a::b.ply.
+# Schemes may be chained, as in filecache::s3://; a::b.ply, however, is a file name.
 _SCHEME = re.compile(r"([a-z][a-z0-9+.-]*::)*[a-z][a-z0-9+.-]*://", re.IGNORECASE)
 _PART = 2**20  # bytes per read
 _PARTIAL = re.compile(r"\..+\.[a-z0-9]{8}\.partial")
@@ -53,7 +53,7 @@ def file_system(url: str) -> tuple[Any, str]:
     """Return the fsspec file system of a URL and the path in it.
 
     Raises InputError when the scheme is unknown or its package is not installed,
-    MissingPackageError when fsspec, of the extra `batch`, is not installed.
+    MissingPackageError when fsspec (extra `batch`) is not installed.
     """
     check_extras("batch")
     import fsspec
@@ -175,7 +175,7 @@ def tidy(folder: str) -> None:
 
 @contextlib.contextmanager
 def _scratch_folder() -> Iterator[Path]:
-    """Make a folder for copies in that of the Dask worker, which Dask removes if it is killed."""
+    """Make a folder for copies inside the Dask worker's, which Dask removes if the worker dies."""
     from distributed import get_worker
 
     try:

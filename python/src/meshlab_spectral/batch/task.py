@@ -1,4 +1,4 @@
-"""The work on one file, in a worker: from input to output, whatever happens."""
+"""Processing of one file in a worker; every error becomes a result."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ ATTEMPTS = 2
 
 
 def run_job(job: Job, memory_limit: int | None = None) -> FileResult:
-    """Process one file: "filtered", "unchanged", "measured" or "failed".
+    """Process one file; the outcome is "filtered", "unchanged", "measured" or "failed".
 
-    Errors of a single file are not raised. `memory_limit` is that of MeshLab's process in bytes; by
-    default its share of the Dask worker's, or none outside a worker.
+    Errors with a single file are not raised. `memory_limit` is in bytes, for MeshLab's process; by
+    default its share of the Dask worker's limit, or none outside a worker.
     """
     begin = time.monotonic()
     result: dict[str, Any] = {"outcome": "failed", "waited": 0.0}

@@ -1,4 +1,4 @@
-"""What all commands have in common: --quiet and --verbose, help in groups, usage errors."""
+"""Shared by all commands: --quiet and --verbose, grouped help, usage errors."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from meshlab_spectral.cli.messages import EXIT_USAGE, VERBOSITY, print_error
 
 Command = Callable[..., None]
 
-# The groups of --help, and the options in them; all others are under "Options", or where
-# `rich_help_panel` says.
+# The groups of --help and their options; all other options are under "Options", or in the group
+# named by `rich_help_panel`.
 HOW, DENOISE = "How", "With --denoise"
 _GROUPS = {
     "What to do": """preset equalizer recipe script denoise only filter_type feature_size pass_gain
@@ -33,7 +33,7 @@ _GROUPS = {
 }
 GROUP_OF = {name: group for group, names in _GROUPS.items() for name in names.split()}
 
-# Typer comes with its own copy of Click, or in older versions with Click itself.
+# Typer bundles its own copy of Click; older versions depend on Click itself.
 _UsageError: type[Exception] = typer.BadParameter.__mro__[1]
 
 _MORE = "Print all numbers, files and warnings, and MeshLab's log."
@@ -48,9 +48,9 @@ _VERBOSITY = (
 
 
 class OneCommand(TyperCommand):
-    """A command whose --help has its options in groups.
+    """A command whose --help lists its options in groups.
 
-    Typer's own panels leave the help of an option a third of a terminal with 80 columns.
+    Typer's own panels leave only a third of an 80-column terminal for the help texts.
     """
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
@@ -69,19 +69,19 @@ class OneCommand(TyperCommand):
                     formatter.write_dl(groups[group])
 
     def parse_args(self, ctx: Any, args: list[str]) -> Any:
-        """Parse the command line; usage errors know the command."""
+        """Parse the command line; usage errors carry the command's context."""
         with _known_to(ctx):
             return super().parse_args(ctx, args)
 
     def invoke(self, ctx: Any) -> Any:
-        """Run the command; usage errors know it."""
+        """Run the command; usage errors carry its context."""
         with _known_to(ctx):
             return super().invoke(ctx)
 
 
 @contextlib.contextmanager
 def _known_to(ctx: Any) -> Iterator[None]:
-    """Add the command's context to usage errors that come without."""
+    """Add the command's context to usage errors that lack one."""
     try:
         yield
     except _UsageError as error:
@@ -90,7 +90,7 @@ def _known_to(ctx: Any) -> Iterator[None]:
 
 
 class AllCommands(TyperGroup):
-    """The commands; usage errors look like all other errors."""
+    """The group of all commands; usage errors are printed like all other errors."""
 
     def main(self, *args: Any, **extra: Any) -> Any:
         """Run a command line and exit with its exit code."""
@@ -125,16 +125,16 @@ def with_parameters(
     run: Callable[[dict[str, Any]], None],
     replaced: Collection[str] = (),
 ) -> Command:
-    """Return `run` as a command with more parameters.
+    """Return a command that passes its arguments to `run`, as a dict.
 
     Parameters
     ----------
     command
-        The command that `run` calls: it has the same parameters, but for
+        The command that `run` calls; its name, docstring and parameters are kept.
     added
-        name, type, `typer.Option` and default of each that only `run` has, and
+        Name, type, `typer.Option` and default of each additional parameter.
     replaced
-        the names of parameters that `run` passes in place of these.
+        Names of parameters of `command` that `run` supplies instead.
     """
     own = inspect.signature(command, eval_str=True).parameters.values()
     kind = inspect.Parameter.KEYWORD_ONLY
@@ -155,13 +155,13 @@ def with_parameters(
 
 
 def _with_kept_lines(text: str) -> str:
-    """Mark for Typer the paragraphs of a help whose lines stay: those with indented ones."""
+    """Mark the paragraphs with indented lines, so that Typer keeps their line breaks."""
     paragraphs = inspect.cleandoc(text).split("\n\n")
     return "\n\n".join(f"\b\n{one}" if "\n  " in f"\n{one}" else one for one in paragraphs)
 
 
 def _print_usage_error(error: Any) -> None:
-    if error.message.startswith("Usage:"):  # no command at all: the whole help
+    if error.message.startswith("Usage:"):  # no command was given: print the whole help
         typer.echo(error.message, err=True)
         return
     print_error(_described(error))

@@ -56,7 +56,7 @@ A folder of scans:
 
 
 def _command_with(table: type[Options], help_text: str) -> Command:
-    """Make the command for the filter of a table."""
+    """Make the command for the filter that a table of options belongs to."""
 
     @with_options(table)
     def command(
@@ -123,7 +123,7 @@ denoise_command = _command_with(DenoiseOptions, DENOISE_HELP)
 def _print_reports(report: dict[str, Any], source: str, target: str) -> None:
     for one in report.get("meshes", [report]):
         name = f", {one['mesh']}" if "meshes" in report else ""
-        # A summary may be among the warnings, of several meshes with their names.
+        # The warnings may contain the summary, after the mesh's name if there are several.
         if (told := one.get("summary")) and not any(w.endswith(told) for w in report["warnings"]):
             print_result(f"{source}{name}: {told}")
         print_result(report_table(one, f"{source} -> {target}{name}", VERBOSITY.verbose))

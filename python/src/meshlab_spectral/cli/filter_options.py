@@ -86,16 +86,16 @@ _PRESET = typer.Option(
 def with_options(
     *tables: type[Any], leave_out: Collection[str] = ()
 ) -> Callable[[Command], Command]:
-    """Add one option per field of some tables to a command, passed as `given` and `settings`.
+    """Add the fields of tables to a command as options, passed on as `given` and `settings`.
 
-    `given` is a dict for `chosen_options`, with only the options on the command line and of its
-    preset; `settings` are `Settings`, if these are among the tables.
+    `given` is a dict for `chosen_options`, with only the options set on the command line or by a
+    preset; `settings` is a `Settings`, if that is among the tables.
 
     Parameters
     ----------
     *tables
-        The tables. Of fields with one name the first counts. A command with FilterOptions gets
-        `--preset` and `--equalizer`, too.
+        The tables; of fields with the same name the first is used. FilterOptions brings `--preset`
+        and `--equalizer`, too.
     leave_out
         Fields that the command has no use for.
     """
@@ -136,7 +136,7 @@ def with_options(
 
 
 def _parameter(one: Any, type_: Any, panel: str | None) -> tuple[str, Any, Any, Any]:
-    """Return a field of a table as `with_parameters` takes it; options check their ranges."""
+    """Convert a field for `with_parameters`; ranges of filter options are checked by `Options`."""
     shown: dict[str, Any] = {key: one.metadata[key] for key in ("help", "metavar")}
     shown["rich_help_panel"] = panel
     if panel is None and one.metadata["limits"]:
@@ -152,11 +152,11 @@ def _parameter(one: Any, type_: Any, panel: str | None) -> tuple[str, Any, Any, 
 def chosen_options(
     table: type[AnyOptions], given: dict[str, Any], recipe: Path | None = None
 ) -> AnyOptions:
-    """Return the options of a recipe, a TOML file, if any, overridden by those given.
+    """Return the options of a recipe, if any, overridden by those given.
 
-    `table` is the one that they are of, `given` comes from `with_options`. Raises OptionError when
-    an option has an invalid value, or it or the recipe is for another filter, and InputError when
-    the recipe cannot be read.
+    `table` is the class of the options, `given` comes from `with_options`. Raises OptionError when
+    a value is invalid, or an option or the recipe is for another filter, and InputError when the
+    recipe cannot be read.
     """
     found, options = (table, {}) if recipe is None else load_recipe(recipe)
     if found is not table:

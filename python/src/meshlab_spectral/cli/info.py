@@ -40,7 +40,7 @@ def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
     percent = 100 / report["diagonal"]
 
     def length(name: str) -> str:
-        """Format a length, in mean edges and percent of the diagonal, too."""
+        """Format a length, also in mean edges and in percent of the diagonal."""
         x = report[name]
         return f"{x:.4g} ({x / report['mean_edge']:.2g}e, {x * percent:.2g} %)" if x else "none"
 

@@ -1,4 +1,4 @@
-"""What Ctrl-C does, and SIGTERM (kill, shutdown): light, for the first thing that is imported."""
+"""Handling of Ctrl-C and SIGTERM (kill, shutdown); imported first, so it imports little itself."""
 
 from __future__ import annotations
 
@@ -10,23 +10,23 @@ EXIT_INTERRUPTED = 130
 
 
 def end_at_once() -> None:
-    """End the process quietly: while it is importing there is nothing to clean up."""
+    """On an interrupt, end the process at once: during imports there is nothing to clean up."""
     _handle_with(_end)
 
 
 def raise_interrupts() -> None:
-    """Raise KeyboardInterrupt, for the work to be cleaned up."""
+    """On an interrupt, raise KeyboardInterrupt, so that unfinished work is cleaned up."""
     _handle_with(signal.default_int_handler)
 
 
 def ignore_interrupts() -> None:
-    """Let nothing disturb the end of a process that has done its work."""
+    """Ignore interrupts: the process has done its work and is about to exit."""
     _handle_with(signal.SIG_IGN)
 
 
 def _handle_with(handler: Any) -> None:
     for number in (signal.SIGINT, signal.SIGTERM):
-        if signal.getsignal(number) != signal.SIG_IGN:  # as in a background job of a shell
+        if signal.getsignal(number) != signal.SIG_IGN:  # a shell's background jobs ignore it
             signal.signal(number, handler)
 
 

@@ -37,7 +37,7 @@ def planning_shown(resume: bool) -> AbstractContextManager[object]:
 
 
 def run_shown(batch: Batch, take: Callable[[FileResult], None] = lambda result: None) -> Tally:
-    """Run a batch, pass each result to `take`, and print progress and finally the warnings."""
+    """Run a batch, pass each result to `take`, and print progress and, at the end, warnings."""
     tally = Tally()
     with (
         batch_progress(len(batch.jobs) + len(batch.done)) as on_result,
@@ -51,7 +51,7 @@ def run_shown(batch: Batch, take: Callable[[FileResult], None] = lambda result: 
 
 
 def _print_warnings(groups: list[dict[str, Any]], report: Path) -> None:
-    """Print warnings with the names of their files; many only with --verbose."""
+    """Print warnings with the names of their files; only the first few without --verbose."""
     most, named = (len(groups), None) if VERBOSITY.verbose else (_WARNINGS_AT_MOST, _NAMED_AT_MOST)
     for group in groups[:most]:
         first, *others = group["files"]

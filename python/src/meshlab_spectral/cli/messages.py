@@ -1,4 +1,4 @@
-"""What all commands print: results, warnings, and errors with their exit codes."""
+"""Output of all commands: results, warnings, and errors with their exit codes."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ EXIT_CODES = (
     "line; 130 interrupted."
 )
 
-# Colons are part of a transfer function, or of a file name: ":x:" is no emoji.
+# Transfer functions and file names may contain ":x:", which is not an emoji.
 MESSAGES = Console(stderr=True, emoji=False)
 
 
@@ -66,7 +66,7 @@ def errors_reported(when_interrupted: str = "no output was written") -> Iterator
 
 
 def print_result(result: Table | object) -> None:
-    """Print on standard output, a table or a line, unless --quiet."""
+    """Print a table or a line on standard output, unless --quiet."""
     if VERBOSITY.quiet:
         return
     if isinstance(result, Table):
@@ -87,12 +87,12 @@ def print_error(text: str) -> None:
 
 
 def print_warning(text: str) -> None:
-    """Print a warning, of which --quiet prints as many."""
+    """Print a warning, even with --quiet."""
     print_message(f"Warning: {text}.")
 
 
 def warn_of_points_only(ending: str) -> None:
-    """Warn of a format, such as .xyz, in which MeshLab silently drops the faces."""
+    """Warn about a format, such as .xyz, in which MeshLab silently drops the faces."""
     plain = ending.removeprefix(".")
     if plain.lower() in POINTS_ONLY:
         print_warning(f".{plain} files hold points only, the faces are not written")

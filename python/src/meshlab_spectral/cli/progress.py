@@ -27,7 +27,7 @@ from meshlab_spectral.cli.messages import MESSAGES, VERBOSITY, print_message
 from meshlab_spectral.process.parent import ProgressCallback
 
 _FEWEST_PER_SECOND = 0.1
-# Between plain lines: a run that is over sooner has none.
+# Between plain lines; a shorter run prints none.
 _SECONDS_BETWEEN = 5.0
 
 
@@ -76,10 +76,10 @@ def _line_now_and_then() -> ProgressCallback:
 
 @contextlib.contextmanager
 def batch_progress(files: int) -> Iterator[Callable[[FileResult], None]]:
-    """Show the progress of a batch of so many results, each of which the yielded function takes.
+    """Show the progress of a batch of `files` results; pass each to the yielded function.
 
-    On a terminal the number of files done and failed, the rate and the time left; elsewhere, and
-    with --verbose, a line for each file; none with --quiet. Failures are printed in any case.
+    On a terminal, shows the number of files done and failed, the rate and the time left; elsewhere,
+    and with --verbose, a line per file; with --quiet, nothing. Failures are always printed.
     """
     with Progress(
         SpinnerColumn(),
@@ -107,7 +107,7 @@ def batch_progress(files: int) -> Iterator[Callable[[FileResult], None]]:
                 MESSAGES.print(
                     f"[red]Failed:[/red] {escape(named)}", highlight=False, soft_wrap=True
                 )
-            elif has_lines and result.outcome != "already done":  # which are there at once
+            elif has_lines and result.outcome != "already done":  # these come all at once
                 print_message(f"[{done}/{files}] {result.name}: {result.outcome}")
             worked += result.outcome != "already done"
             failures = f"[red]{failed} failed[/red]" if failed else "0 failed"

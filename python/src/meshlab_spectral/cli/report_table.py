@@ -13,7 +13,7 @@ _SHOWN_NUMBERS = 6  # of a vector
 def report_table(report: dict[str, Any], title: str, in_full: bool = False) -> Table:
     """Format a report of the filter as a table; lengths are in the units of the mesh.
 
-    The title is plain text. `in_full` adds every number of the report under its name there.
+    The title is plain text. `in_full` adds every number of the report, under its own name.
     """
     same = ": unchanged" if report["max_displacement"] == 0 else ""
     rows = _rows(report)

@@ -1,4 +1,4 @@
-"""Mesh files as documents: coordinates are read and replaced, and everything else stays.
+"""Mesh files as documents: coordinates are read and replaced, everything else is kept.
 
-`opening` chooses the module for a file; `document` is what all of them offer.
+`opening` chooses the module for a file; `document` is their common interface.
 """

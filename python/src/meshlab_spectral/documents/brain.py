@@ -1,8 +1,8 @@
-"""Surfaces of brains: GIFTI (.gii), and FreeSurfer's geometry (lh.pial, lh.white).
+"""Brain surfaces: GIFTI (.gii) and FreeSurfer geometry (lh.pial, lh.white).
 
-nibabel reads and writes GIFTI. It drops comments of the XML, keeps one coordinate system an array,
-and writes matrices with six decimals; it would do so with numbers in text, which become binary.
-FreeSurfer's coordinates are replaced where they lie.
+nibabel reads and writes GIFTI. It drops XML comments, keeps one coordinate system per array, and
+writes matrices with six decimals. Arrays of numbers as text would also lose digits: they become
+binary. FreeSurfer's coordinates are replaced in place.
 """
 
 from __future__ import annotations
@@ -27,17 +27,16 @@ from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.errors import MeshFileError, SpectralError
 from meshlab_spectral.extras import check_extras
 
-_TRIANGLES = b"\xff\xff\xfe"  # how a surface of FreeSurfer begins
+_TRIANGLES = b"\xff\xff\xfe"  # first bytes of a FreeSurfer surface
 _TEXT, _BINARY = 1, 2  # encodings of GIFTI
 _OTHERS = (b"\xff\xff\xff", b"\xff\xff\xfd")  # quadrilaterals, or values such as curvature
 
 
 def read(path: Path) -> Document:
-    """Read a surface of GIFTI or FreeSurfer; see open_document.
+    """Read a GIFTI or FreeSurfer surface; see `open_document`.
 
-    The vertices are the coordinates that are stored. The matrices of GIFTI, which lead from there
-    to other spaces, are not applied, nor is FreeSurfer's volume geometry: nibabel and Connectome
-    Workbench show the stored coordinates, too.
+    Vertices have the stored coordinates, as in nibabel and Connectome Workbench: neither GIFTI's
+    matrices, which transform to other spaces, nor FreeSurfer's volume geometry are applied.
     """
     with path.open("rb") as file:
         magic = file.read(3)
@@ -58,7 +57,7 @@ def read(path: Path) -> Document:
 
 @dataclass(kw_only=True)
 class _FreeSurfer(Document):
-    begin: int  # of the coordinates
+    begin: int  # byte offset of the coordinates
 
     def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
         before, after = self.parts[0].vertices, moved[0]
@@ -71,12 +70,12 @@ class _FreeSurfer(Document):
 
 def _read_free_surfer(path: Path) -> Document:
     data = path.read_bytes()
-    begin = data.index(b"\n", data.index(b"\n") + 1) + 9  # behind two lines, and two counts
+    begin = data.index(b"\n", data.index(b"\n") + 1) + 9  # after two lines and two counts
     n, m = np.frombuffer(data, ">i4", 2, begin - 8).tolist()
     tail = begin + 12 * (n + m)
     if n < 0 or m < 0 or tail > len(data):
         raise ValueError(f"it says {n} vertices and {m} triangles, for {len(data)} bytes")
-    with np.errstate(invalid="ignore"):  # what is no number is found when checked
+    with np.errstate(invalid="ignore"):  # checked_part reports non-finite values
         vertices = np.frombuffer(data, ">f4", 3 * n, begin).reshape(-1, 3).astype(np.float64)
     faces = np.frombuffer(data, ">i4", 3 * m, begin + 12 * n).reshape(-1, 3).astype(np.int64)
     contents = ["volume geometry"] if tail < len(data) else []
@@ -89,7 +88,7 @@ def _read_free_surfer(path: Path) -> Document:
 class _Gifti(Document):
     image: Any  # nibabel.gifti.GiftiImage
     points: Any  # its GiftiDataArray with the coordinates
-    vectors: list[Any]  # those with normals
+    vectors: list[Any]  # its arrays of normals
 
     def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
         (part,), (after,) = self.parts, moved
@@ -104,7 +103,7 @@ class _Gifti(Document):
         for array in self.image.darrays:
             if array.encoding == _TEXT and array.data.dtype.kind == "f":
                 array.encoding = _BINARY
-        target.write_bytes(self.image.to_bytes(mode="force"))  # doubles, too
+        target.write_bytes(self.image.to_bytes(mode="force"))  # force: doubles are allowed, too
         return precision_warnings(part.vertices, after, target.name)
 
 

@@ -1,4 +1,4 @@
-"""Digits of coordinates: as few as hold a movement."""
+"""Precision of written coordinates: as few digits as the displacements need."""
 
 from __future__ import annotations
 
@@ -6,16 +6,16 @@ import numpy as np
 
 from meshlab_spectral.documents.document import Array
 
-# Rounding may take this part of the displacement.
+# Tolerated rounding error, as a fraction of the displacement.
 _TOLERATED = 0.01
-SINGLE, DOUBLE = 9, 17  # significant digits that hold a number of that precision
+SINGLE, DOUBLE = 9, 17  # significant digits for an exact round trip
 
 
 def rounding_told(before: Array, after: Array) -> str | None:
-    """Return how single precision rounds a movement, or None where it holds it.
+    """Describe the error of writing displacements in single precision; None if it is tolerable.
 
-    It does if rounding takes, in the root mean square over what moves, at most a hundredth of the
-    displacement. `before` and `after` are n x 3, in the coordinates to be written.
+    It is tolerable if its root mean square over the moved vertices is at most a hundredth of their
+    displacement's. `before` and `after` are n x 3, in the coordinates to be written.
     """
     moves = (before != after).any(axis=1)
     if not moves.any():
@@ -37,17 +37,17 @@ def _size(difference: Array) -> float:
 
 
 def precision_warnings(before: Array, after: Array, name: str) -> list[str]:
-    """Return the warning, if any, of a file `name` of single precision for a movement."""
+    """Return the warning, if any, that single precision in the file `name` is too coarse."""
     told = rounding_told(before, after)
     remedy = "choose .ply or .obj, or move the mesh to the origin first"
     return [f"{name}: {told}: {remedy}"] if told else []
 
 
 def widening_warnings(told: str | None) -> list[str]:
-    """Return the warning, if any, of a file that is written in double precision, see above."""
+    """Return the warning that a file is written in double precision, if `told` says why."""
     return [f"coordinates are written in double precision, since {told}"] if told else []
 
 
 def digits_for(before: Array, after: Array) -> int:
-    """Return how many significant digits a text needs to hold a movement."""
+    """Return the number of significant digits that text needs for the displacements."""
     return SINGLE if rounding_told(before, after) is None else DOUBLE

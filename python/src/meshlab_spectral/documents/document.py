@@ -1,4 +1,4 @@
-"""A mesh file whose coordinates can be replaced: what all formats have in common."""
+"""Mesh files whose coordinates can be replaced: the common interface of all formats."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ Indices = NDArray[np.int64]
 
 @dataclass(frozen=True, eq=False)
 class Part:
-    """A mesh of a file, of the size and shape that it has where it is placed.
+    """A mesh of a file, as placed in its scene.
 
     Attributes
     ----------
     name
-        Its name in the file; "" where there is none.
+        Its name in the file; "" if it has none.
     vertices
-        n x 3, placed: in the units of the file, with the transforms of its scene applied.
+        n x 3, in the units of the file, with the transforms of its scene applied.
     faces
-        m x 3 indices of vertices; polygons are split into triangles.
+        m x 3 vertex indices; polygons are split into triangles.
     quality
         n numbers that MeshLab would read as the vertex quality; None if there are none.
     selected
         n booleans, the vertices that MeshLab would show as selected and those of selected faces;
-        None if the format holds no selection.
+        None if nothing is selected.
     """
 
     name: str
@@ -53,10 +53,10 @@ class Document(ABC):
     parts
         Its meshes, at least one.
     contents
-        What it holds beside coordinates and triangles, in a user's words ("colours", "texture
-        coordinates"), for the warning of what another format cannot hold.
+        What it holds besides coordinates and triangles, in the user's terms ("colours", "texture
+        coordinates"), for the warning about what another format loses.
     warnings
-        What was noticed on reading, and may be told.
+        Problems noticed while reading.
     """
 
     path: Path
@@ -66,22 +66,22 @@ class Document(ABC):
 
     @abstractmethod
     def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
-        """Write the file with other coordinates, in its own format.
+        """Write the file with new coordinates, in its own format.
 
-        Coordinates that have not moved keep their bytes. Normals follow the new shape.
+        Unchanged coordinates keep their bytes. Normals follow the new shape.
 
         Parameters
         ----------
         target
-            The file to write; side files that it refers to by relative paths are copied beside it,
-            unless they are there.
+            The file to write; side files that it refers to by relative paths are copied next to it,
+            unless they are already there.
         moved
-            For each part its vertices, n x 3, placed.
+            The new vertices of each part, n x 3, as placed in the scene.
 
         Returns
         -------
         list of str
-            Warnings: what could not follow, or is held with too few digits.
+            Warnings about what could not be updated, or is written with too few digits.
 
         Raises
         ------
@@ -100,25 +100,25 @@ def unreadable(path: Path, reason: object) -> MeshFileError:
 
 
 def unsupported(path: Path, what: str, remedy: str) -> MeshFileError:
-    """Return the error for a sound file with something in it that this package does not know."""
+    """Return the error for a valid file with something that this package does not support."""
     return MeshFileError(f"{path} {what}, which meshlab-spectral does not read: {remedy}")
 
 
-# The largest coordinate that the filters take: MeshLab keeps lengths in single precision.
+# The largest coordinate that the filters accept: MeshLab keeps lengths in single precision.
 _LARGEST = 1e37
 
 
 def checked_part(
     path: Path, vertices: Array, faces: Indices, name: str = "", quality: Array | None = None
 ) -> Part:
-    """Return a part; raise MeshFileError as `check_vertices` and `check_indices`."""
+    """Return a part; raise MeshFileError as `check_vertices` and `check_indices` do."""
     check_vertices(path, vertices)
     check_indices(path, faces, len(vertices))
     return Part(name, vertices, faces, quality)
 
 
 def check_vertices(path: Path, vertices: Array) -> None:
-    """Raise MeshFileError, which names the first, when coordinates are not finite or too large."""
+    """Raise MeshFileError for the first vertex with non-finite or too large coordinates, if any."""
     lost = ~(np.abs(vertices) <= _LARGEST).all(axis=1)
     if lost.any():
         first = int(np.argmax(lost))
@@ -131,7 +131,7 @@ def check_vertices(path: Path, vertices: Array) -> None:
 
 
 def check_indices(path: Path, faces: Indices, vertices: int) -> None:
-    """Raise MeshFileError, which names the first, when a face refers to no vertex."""
+    """Raise MeshFileError for the first face that refers to a missing vertex, if any."""
     wrong = ((faces < 0) | (faces >= vertices)).any(axis=1)
     if wrong.any():
         first = int(np.argmax(wrong))

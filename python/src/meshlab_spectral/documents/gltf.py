@@ -30,32 +30,32 @@ _COMPRESSIONS = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_m
 _LISTED = ("materials", "textures", "skins", "animations", "cameras")
 _ATTRIBUTES = {"TEXCOORD": "texture coordinates", "COLOR": "colours", "NORMAL": "normals"}
 _TRANSFORM = {"translation": [0, 0, 0], "rotation": [0, 0, 0, 1], "scale": [1, 1, 1]}
-# The columns of a table of vertices.
+# The columns of a vertex table.
 _COLUMNS = {"POSITION": slice(0, 3), "NORMAL": slice(3, 6), "TANGENT": slice(6, 10)}
 _P, _N, _ = _COLUMNS.values()
-_Key = tuple[int | None, ...]  # the accessors of these columns
-_Node = tuple[Json, Array]  # with the transform to its scene
+_Key = tuple[int | None, ...]  # the accessor of each column
+_Node = tuple[Json, Array]  # a node, and its transform to the scene
 
 
 @dataclass(frozen=True)
 class _Mesh:
-    """What one part was read from."""
+    """The source of one part."""
 
     number: int
-    rows: dict[_Key, slice]  # of the table
+    rows: dict[_Key, slice]  # the table's rows for each key
     table: Array  # zeros where there are no normals or tangents
     placement: Placement
 
 
 @dataclass
 class GltfDocument(Document):
-    """A glTF asset: its JSON stays, its buffers are patched."""
+    """A glTF asset; its JSON is kept, its buffers are patched."""
 
     _asset: Asset = field(kw_only=True, repr=False)
     _meshes: list[_Mesh] = field(default_factory=list, kw_only=True, repr=False)
 
     def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
-        """Write the asset with other positions, normals and tangents; see Document."""
+        """Write the asset with new positions, normals and tangents; see `Document`."""
         warnings: list[str] = []
         with reporting_faults(self.path):
             asset = copy.deepcopy(self._asset)
@@ -92,7 +92,7 @@ def _key(primitive: Json) -> _Key:
 
 
 def _add_part(document: GltfDocument, number: int, mesh: Json, nodes: list[_Node]) -> None:
-    """Read a mesh, unless it has no triangles."""
+    """Add a mesh as a part, unless it has no triangles."""
     tables: list[Array] = []
     rows: dict[_Key, slice] = {}
     faces: list[Indices] = []
@@ -146,7 +146,7 @@ def _read_faces(asset: Asset, primitive: Json, rows: slice) -> Indices:
 
 
 def _nodes_of_meshes(asset: Asset) -> dict[int, list[_Node]]:
-    """Return the nodes that place each mesh."""
+    """Return the nodes that place each mesh, by the mesh's index."""
     nodes = asset.tree.get("nodes", [])
     children = [child for node in nodes for child in node.get("children", [])]
     inner = set(children)
@@ -154,12 +154,12 @@ def _nodes_of_meshes(asset: Asset) -> dict[int, list[_Node]]:
         raise ValueError("a node is the child of two")
     result: dict[int, list[_Node]] = defaultdict(list)
     found = [(number, IDENTITY) for number in range(len(nodes)) if number not in inner]
-    for number, outer in found:  # grows
+    for number, outer in found:  # grows while iterating
         node = asset.entry("nodes", number)
         matrix = outer @ _local_matrix(node)
         found += [(child, matrix) for child in node.get("children", [])]
         if "mesh" in node:
-            # The joints of a skin place its mesh, the node does not.
+            # A mesh with a skin is placed by its joints, not by its node.
             result[node["mesh"]].append((node, IDENTITY if "skin" in node else matrix))
     if len(found) < len(nodes):
         raise ValueError("its nodes are children of each other, in a circle")
@@ -197,7 +197,7 @@ def _moved(mesh: _Mesh, part: Part, vertices: Array) -> Array:
     after[:, _P] = mesh.placement.back(before[:, _P], part.vertices, vertices)
     if before[:, _N].any():
         after[:, _N] = following_normals(before[:, _P], after[:, _P], part.faces, before[:, _N])
-    # Tangents are turned back into the planes of new normals, but for those along them.
+    # Project tangents onto the planes of the new normals, except those parallel to them.
     T, N = before[:, 6:9], after[:, _N]
     new = T - np.einsum("ij,ij->i", T, N)[:, None] * N
     length = np.linalg.norm(new, axis=1, keepdims=True)
@@ -207,7 +207,7 @@ def _moved(mesh: _Mesh, part: Part, vertices: Array) -> Array:
 
 
 def _put(asset: Asset, mesh: _Mesh, table: Array) -> None:
-    """Put a table into the accessors that it was read from, or into new ones."""
+    """Write a table to the accessors that it was read from, or to new ones."""
     users = defaultdict[_Key, list[Json]](list)
     for primitive in asset.entry("meshes", mesh.number)["primitives"]:
         users[_key(primitive)].append(primitive)

@@ -28,7 +28,7 @@ Json = dict[str, Any]
 
 @contextlib.contextmanager
 def reporting_faults(path: Path) -> Iterator[None]:
-    """Turn what Python raises for a malformed asset into MeshFileError."""
+    """Turn any exception that a malformed asset causes into MeshFileError."""
     try:
         with np.errstate(all="ignore"):
             yield
@@ -50,10 +50,10 @@ class Asset:
     buffers: list[bytearray] = field(default_factory=list)
     _patched: set[int] = field(default_factory=set)
     _written: dict[int, list[tuple[int, Array]]] = field(default_factory=lambda: defaultdict(list))
-    _left: int = 1_000_000  # elements
+    _left: int = 1_000_000  # accessor elements that may still be read
 
     def entry(self, kind: str, index: object) -> Any:
-        """Return an object of one of the top-level arrays."""
+        """Return an entry of one of the top-level arrays."""
         entries = self.tree.get(kind, [])
         if type(index) is not int or not 0 <= index < len(entries):
             raise ValueError(f"it refers to {kind}[{index!r:.80}], of {len(entries)}")
@@ -80,7 +80,7 @@ class Asset:
         return values
 
     def put(self, index: int, before: Array, values: Array) -> int:
-        """Replace the elements of an accessor, or append one for them; return its number."""
+        """Replace the elements of an accessor, or append a new accessor; return its number."""
         for number, others in self._written[index]:
             if np.array_equal(others, values):
                 return number
@@ -91,7 +91,7 @@ class Asset:
         return number
 
     def write(self, target: Path) -> list[str]:
-        """Write the asset, with patched buffers beside it; return the other files it refers to."""
+        """Write the asset, with patched buffers next to it; return the other files it refers to."""
         entries = [*self.tree.get("buffers", []), *self.tree.get("images", [])]
         uris = [entry["uri"] for entry in entries if "uri" in entry]
         names = [unquote(uri) for uri in uris if not uri.startswith(("data:", "http:", "https:"))]
@@ -122,7 +122,7 @@ class Asset:
                 data = base64.b64decode(uri.partition(";base64,")[2], validate=True)
             elif uri:
                 file = (self.path.parent / unquote(uri)).resolve()
-                if not file.is_file() or file in files:  # a device has no end
+                if not file.is_file() or file in files:  # reading a device might never end
                     raise ValueError(f"its file {unquote(uri)[:200]} is missing, or named twice")
                 files.add(file)
                 data = file.read_bytes()
@@ -144,7 +144,7 @@ class Asset:
         return np.ndarray((count, width), dtype, room, offset, (stride, dtype.itemsize))
 
     def _replaced(self, index: int, values: Array) -> bool:
-        """Replace elements where they are; return whether that can be."""
+        """Replace elements in place, if possible; return whether it was."""
         accessor = self.entry("accessors", index)
         if accessor["componentType"] != _FLOAT or "sparse" in accessor:
             return False
@@ -202,7 +202,7 @@ def _bounds(values: Array) -> dict[str, list[float]]:
 
 
 def _name_for(name: str, target: Path, taken: set[str]) -> str:
-    """Return the name for a buffer: its own, unless that is another file's or leads elsewhere."""
+    """Return the name for a buffer: its own, unless that is taken or leads outside the folder."""
     folders = [folder.resolve() for folder in target.parents[:2]]  # it may be in a scratch folder
     is_within = (folders[0] / name).resolve().is_relative_to(folders[0])
     if is_within and not any((folder / name).exists() for folder in folders):

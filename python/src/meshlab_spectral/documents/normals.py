@@ -10,12 +10,12 @@ from meshlab_spectral.documents.document import Array, Indices
 def following_normals(
     before: Array, after: Array, faces: Indices, normals: Array, which: Indices | None = None
 ) -> Array:
-    """Return the normals of a shape whose vertices have moved.
+    """Return the updated normals of a shape whose vertices have moved.
 
-    A normal becomes the mean of those of its corners, weighted by their angles, on the side of the
-    surface where it was; one whose corners' triangles have not moved stays as it is. Normals that
-    were equal at one place, as along the seams of a texture, stay equal: an edge is as hard as it
-    was.
+    A new normal is the angle-weighted mean of the face normals at its corners, on the side of the
+    surface where it was; a normal whose triangles have not moved is kept. Normals that were equal
+    at the same position, as along texture seams, stay equal: hard edges stay hard, smooth ones
+    smooth.
 
     Parameters
     ----------
@@ -26,11 +26,11 @@ def following_normals(
     normals
         k x 3.
     which
-        The normal of each corner, m x 3; by default normals belong to vertices, k = n.
+        m x 3 indices of each corner's normal; by default `faces`: one normal per vertex, k = n.
 
     Returns
     -------
-    k x 3, of unit length where they are new.
+    k x 3; new normals have unit length.
     """
     which = faces if which is None else which
     group = _groups(before, faces, normals, which)
@@ -39,7 +39,7 @@ def following_normals(
     moved = np.zeros(len(normals), dtype=bool)
     touched = (after[faces] != before[faces]).any(axis=(1, 2))
     moved[corner_groups[touched]] = True
-    # On the other side of the surface in a file whose faces are turned.
+    # The file's normals may disagree with the orientation of its faces.
     turned = np.einsum("ij,ij->i", _sums(normals, group), old) < 0
     new[turned] *= -1
     length = np.linalg.norm(new, axis=1)
@@ -51,9 +51,9 @@ def following_normals(
 
 
 def _groups(before: Array, faces: Indices, normals: Array, which: Indices) -> Indices:
-    """Give every normal a number, the same to those that are equal and at one place."""
+    """Assign a number to each normal; equal ones at the same position share it."""
     place = np.full(len(normals), -1, dtype=np.int64)
-    place[which.ravel()] = faces.ravel()  # of several corners any: they share the normal anyway
+    place[which.ravel()] = faces.ravel()  # any one of its corners: they share the normal
     used = np.flatnonzero(place >= 0)
     key = np.hstack([before[place[used]], normals[used]])
     _, first, inverse = np.unique(key + 0.0, axis=0, return_index=True, return_inverse=True)
@@ -69,7 +69,7 @@ def _sums(values: Array, group: Indices) -> Array:
 
 
 def _means(vertices: Array, faces: Indices, corner_groups: Indices, count: int) -> Array:
-    """Angle-weighted sums of face normals over the corners of each group, count x 3."""
+    """Return angle-weighted sums of face normals over the corners of each group, count x 3."""
     P = vertices[faces]
     normal = np.cross(P[:, 1] - P[:, 0], P[:, 2] - P[:, 0])
     length = np.linalg.norm(normal, axis=1)

@@ -48,7 +48,7 @@ _TEXTURE = re.compile(
 @dataclass(kw_only=True)
 class _Obj(Document):
     lines: list[bytes]
-    where: dict[bytes, list[int]]  # the lines of each keyword
+    where: dict[bytes, list[int]]  # the line numbers of each keyword
     normals: Array
     which: Indices  # the normal of each corner of the triangles; -1 where it has none
 
@@ -117,7 +117,7 @@ def _document(path: Path, lines: list[bytes]) -> Document:
 
 
 def _rows(lines: list[bytes]) -> Iterator[tuple[int, list[bytes]]]:
-    """Yield the number and words of each line, or of the last one of a continued face."""
+    """Yield the number and words of each line; a continued face has its last line's number."""
     row: list[bytes] = []
     for number, line in enumerate(lines):
         row += line.partition(b"#")[0].split()
@@ -131,7 +131,7 @@ def _rows(lines: list[bytes]) -> Iterator[tuple[int, list[bytes]]]:
 def _corners(
     faces: list[Words], owners: Indices, where: dict[bytes, list[int]]
 ) -> tuple[Indices, Indices]:
-    """Return the vertices and normals of all corners, which belong to lines `owners`."""
+    """Return the vertex and normal indices of all corners; `owners` are their line numbers."""
     words = [word for row in faces for word in row[1:]]
     corners = _indices([int(word.split(b"/")[0]) for word in words], owners, where[b"v"])
     if (corners < 0).any():
@@ -142,7 +142,7 @@ def _corners(
 
 
 def _indices(chosen: list[int], owners: Indices, lines: list[int]) -> Indices:
-    """Turn numbers from 1, or relative to a face's line, into indices; -1 where there is none."""
+    """Turn numbers from 1, or relative to a face's line, into indices; -1 if out of range."""
     number = np.array(chosen, dtype=np.int64)
     index = np.where(number > 0, number - 1, np.searchsorted(lines, owners) + number)
     return np.where((number != 0) & (index >= 0) & (index < len(lines)), index, -1)

@@ -44,7 +44,7 @@ class _Off(Document):
 
 
 def read(path: Path) -> Document:
-    """Read an OFF file of text; raise MeshFileError when it is damaged, or of another kind."""
+    """Read a text OFF file; raise MeshFileError when it is damaged or of another kind."""
     try:
         return _document(path, path.read_bytes().splitlines(keepends=True))
     except (ValueError, IndexError, OverflowError) as error:
@@ -97,7 +97,7 @@ def _check_bounds(path: Path, rows: Sequence[Words], begin: int, middle: int, en
 
 
 def _polygons(rows: Sequence[Words]) -> tuple[Indices, Indices]:
-    """Return the corners of all faces, and how many each has."""
+    """Return the corners of all faces, and the number of corners of each."""
     sizes = [int(row[0]) for row in rows]
     chosen = [row[1 : size + 1] for row, size in zip(rows, sizes, strict=True)]
     if list(map(len, chosen)) != sizes:

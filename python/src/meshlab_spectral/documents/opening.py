@@ -39,7 +39,7 @@ def open_document(path: Path) -> Document:
     """Read a mesh file of one of the formats in `PATCHED`.
 
     Raises MeshFileError when it is damaged, or holds something that cannot be read, and
-    MissingPackageError when its format needs a package of the extra "formats".
+    MissingPackageError when its format needs the extra "formats", which is not installed.
     """
     module = import_module(f"meshlab_spectral.documents.{_MODULES[path.suffix[1:].lower()]}")
     document: Document = module.read(path)

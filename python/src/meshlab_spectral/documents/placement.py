@@ -21,17 +21,17 @@ class Placement:
     matrix: Array
 
     def placed(self, own: Array) -> Array:
-        """Return vertices of the mesh, n x 3, where they are placed."""
+        """Transform vertices of the mesh, n x 3, to the scene."""
         with np.errstate(over="ignore", invalid="ignore"):
             result: Array = own @ self.matrix[:3, :3].T + self.matrix[:3, 3]
         return result
 
     def oriented(self, faces: Indices) -> Indices:
-        """Return triangles, turned if the transform mirrors: their outside stays outside."""
+        """Return triangles, flipped if the transform mirrors, so that the outside stays outside."""
         return faces[:, [0, 2, 1]] if np.linalg.det(self.matrix[:3, :3]) < 0 else faces
 
     def back(self, own: Array, placed: Array, moved: Array) -> Array:
-        """Return the mesh's own vertices once its placed ones have moved; others stay exactly."""
+        """Return the mesh's own vertices after placed ones have moved; the others stay exact."""
         if np.array_equal(self.matrix, IDENTITY):
             return np.where(moved == placed, own, moved)
         moves = (moved != placed).any(axis=1)
@@ -41,9 +41,9 @@ class Placement:
 
 
 def placement_of(name: str, matrices: Sequence[Array], warnings: list[str]) -> Placement:
-    """Return the first placement of a mesh, none for a mesh that is not placed.
+    """Return the first placement of a mesh, or the identity if it has none or a singular one.
 
-    Appends to `warnings` that it cannot be placed, or has other sizes elsewhere.
+    Appends to `warnings` if it is singular, or if others have another scale.
     """
     if not matrices:
         return Placement(IDENTITY)
@@ -63,13 +63,13 @@ def placement_of(name: str, matrices: Sequence[Array], warnings: list[str]) -> P
 
 
 def same_scale(first: Array, second: Array) -> bool:
-    """Return whether two transforms stretch alike."""
+    """Return whether two transforms have the same singular values."""
     a, b = _scales(first), _scales(second)
     return bool((np.abs(a - b) <= _SAME_SCALE * a).all())
 
 
 def _scales(matrix: Array) -> Array:
-    """Singular values of the linear part, descending; zeros where it is not finite."""
+    """Return the singular values of the linear part, descending; zeros if it is not finite."""
     linear = matrix[:3, :3]
     linear = linear if np.isfinite(linear).all() else np.zeros((3, 3))
     return np.asarray(np.linalg.svd(linear, compute_uv=False), dtype=np.float64)

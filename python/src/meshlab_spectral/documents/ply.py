@@ -1,4 +1,4 @@
-"""PLY files: coordinates and normals of vertices are replaced, and all other bytes stay."""
+"""PLY files: vertex coordinates and normals are replaced, all other bytes are kept."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ from meshlab_spectral.documents.side_files import copy_side_files
 from meshlab_spectral.documents.text import with_numbers
 
 _AXES, _NORMALS = ("x", "y", "z"), ("nx", "ny", "nz")
-_LINE = re.compile(rb"\s*\S[^\n]*\n?")  # with the empty ones before it
-_PLAIN = bytes.maketrans(b"\r\x1c\x1d\x1e\x1f\x85\xa0", b" ??????")  # blanks to str, not to bytes
+_LINE = re.compile(rb"\s*\S[^\n]*\n?")  # a line, with the empty ones before it
+_PLAIN = bytes.maketrans(b"\r\x1c\x1d\x1e\x1f\x85\xa0", b" ??????")  # blanks in str, not in bytes
 _TEXTURE = re.compile(rb"(?m)^[ \t]*comment[ \t]+TextureFile[ \t]+(.*\S)")
 _COMMENT = re.compile(rb"(?m)^[ \t]*(comment|obj_info)[ \t]+(?!TextureFile|VCGLIB generated)\S")
 _CORNERS = ("vertex_indices", "vertex_index")
@@ -44,14 +44,14 @@ _KNOWN = {
     "texture coordinates": {"s", "t", "u", "v", "texture_u", "texture_v", "texcoord", "texnumber"},
     "quality": {"quality"},
 }
-_SELECTED = 0x20  # VCG's bit
+_SELECTED = 0x20  # VCG's flag
 _Rows = np.ndarray[Any, Any]
 _Changes = dict[tuple[str, str, str], tuple[Array, Array]]  # before and after
 
 
 @dataclass(kw_only=True)
 class PlyDocument(Document):
-    """A PLY file with its bytes; `span` is where those of the vertices are."""
+    """A PLY file with its bytes; `span` is the byte range of the vertices."""
 
     content: bytes
     header: bytes
@@ -83,7 +83,7 @@ class PlyDocument(Document):
 
 
 def _with_words(rows: bytes, type_: Any, changes: _Changes) -> bytes:
-    """Return lines with other words for what has changed."""
+    """Return text rows with the changed numbers replaced."""
     lines, digits = _LINE.findall(rows), digits_for(*changes[_AXES])
     for names, (before, after) in changes.items():
         first = type_.fields[names[0]][1] // 8
@@ -93,7 +93,7 @@ def _with_words(rows: bytes, type_: Any, changes: _Changes) -> bytes:
 
 
 def _with_columns(rows: _Rows, changes: _Changes, wide: str | None) -> bytes:
-    """Return binary rows with other numbers; coordinates as double in the byte order `wide`."""
+    """Return binary rows with new numbers; `wide` is the byte order of doubles, if needed."""
     fields = [
         (name, f"{wide}f8" if wide and name in _AXES else type_, *shape)
         for name, type_, *shape in rows.dtype.descr
@@ -106,18 +106,18 @@ def _with_columns(rows: _Rows, changes: _Changes, wide: str | None) -> bytes:
 
 
 def _widened(header: bytes) -> bytes:
-    """Return a header with the type double for coordinates."""
-    vertex = re.compile(rb"(?ms)^[ \t]*element\s+vertex\s.*?^[ \t]*e")  # another, or the end
+    """Return the header with coordinates declared as double."""
+    vertex = re.compile(rb"(?ms)^[ \t]*element\s+vertex\s.*?^[ \t]*e")  # next element or end
     axis = re.compile(rb"(?m)^([ \t]*property[ \t]+)\S+(?=[ \t]+[xyz]\s*$)")
     return vertex.sub(lambda found: axis.sub(rb"\1double", found[0]), header)
 
 
 def read(path: Path) -> PlyDocument:
-    """Read a PLY file; raises MeshFileError when it is damaged, or holds something rare."""
+    """Read a PLY file; raises MeshFileError when it is damaged or its layout is not supported."""
     content = path.read_bytes()
     try:
         with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # of empty lists, and of numbers that are no integers
+            warnings.simplefilter("ignore")  # about empty lists and non-integers
             ply, counts, header = _read_header(content)
             span = _read_rows(content, ply, counts, len(header))
             _check_vertices(path, ply)
@@ -135,7 +135,7 @@ def read(path: Path) -> PlyDocument:
 
 
 def _read_header(content: bytes) -> tuple[PlyData, list[int], bytes]:
-    """Read the header with plyfile, which gets no comments (ASCII to it) and counts of 0."""
+    """Read the header with plyfile, without comments (it accepts only ASCII), with counts of 0."""
     end = re.search(rb"(?s)\n[ \t]*element\s+vertex\s.*?\n[ \t]*end_header[ \t]*\r?\n", content)
     if not end:
         raise ValueError("it has no PLY header with vertices")
@@ -148,13 +148,13 @@ def _read_header(content: bytes) -> tuple[PlyData, list[int], bytes]:
 
 
 def _read_rows(content: bytes, ply: PlyData, counts: list[int], start: int) -> slice:
-    """Read the rows of all elements, and return where those of the vertices are."""
+    """Read the rows of all elements, and return the byte range of the vertices."""
     read_rows, span = _text_rows if ply.text else _binary_rows, slice(0)
     for element, count in zip(ply, counts, strict=True):
         body = content[start:]
         if not 0 <= count <= len(body):
             raise ValueError(f"element {element.name!r} cannot have {count} rows")
-        element.data, size = read_rows(element, count, body, ply)  # in bytes
+        element.data, size = read_rows(element, count, body, ply)  # size in bytes
         span = slice(start, start + size) if element.name == "vertex" else span
         start += size
     return span
@@ -175,7 +175,7 @@ def _binary_rows(element: PlyElement, count: int, body: bytes, ply: PlyData) -> 
 
 
 def _even_rows(element: PlyElement, form: str, parse: Callable[[Any], _Rows]) -> _Rows | None:
-    """Return rows whose lists are all those of triangles, or all those of quadrilaterals."""
+    """Return the rows if their lists fit triangles alone, or quadrilaterals alone; else None."""
     for corners in (3, 4):
         fields = list[Any]()
         for one in element.properties:
@@ -184,7 +184,7 @@ def _even_rows(element: PlyElement, form: str, parse: Callable[[Any], _Rows]) ->
                 shape = (2 * corners if one.name == "texcoord" else corners,)
                 fields.append((f"{one.name}\n", form.format(one.len_dtype)))
             fields.append((one.name, form.format(one.val_dtype), shape))
-        with suppress(ValueError, TypeError):  # for want of columns, or bytes
+        with suppress(ValueError, TypeError):  # too few columns or bytes
             rows = parse(np.dtype(fields))
             lists = [one.name for one in element.properties if isinstance(one, PlyListProperty)]
             if all((rows[f"{name}\n"] == rows[name].shape[1]).all() for name in lists):
@@ -193,7 +193,7 @@ def _even_rows(element: PlyElement, form: str, parse: Callable[[Any], _Rows]) ->
 
 
 def _uneven_rows(element: PlyElement, count: int, body: bytes, ply: PlyData) -> tuple[_Rows, int]:
-    """Return rows with lists of any length, slowly, and how many bytes they are in a binary."""
+    """Return rows with lists of any length, slowly, and their size in bytes, 0 for text."""
     format_, own = ply.header.split("\n")[1], element.header.replace(" 0\n", f" {count}\n", 1)
     stream = io.BytesIO(f"ply\n{format_}\n{own}\nend_header\n".encode() + body)
     rows = PlyData.read(stream)[element.name].data
@@ -231,7 +231,7 @@ def _read_faces(ply: PlyData, vertices: Array) -> Indices:
 
 
 def _selected(ply: PlyData) -> NDArray[np.bool_] | None:
-    """Read MeshLab's flags of vertices and faces."""
+    """Return which vertices MeshLab's flags select, directly or by a face; None if none."""
     chosen = np.zeros(ply["vertex"].count, bool)
     if "flags" in ply["vertex"]:
         chosen |= ply["vertex"]["flags"].astype(np.int64) & _SELECTED > 0

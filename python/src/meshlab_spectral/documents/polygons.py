@@ -1,4 +1,4 @@
-"""Polygons as triangles."""
+"""Triangulation of polygons and triangle strips."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from meshlab_spectral.documents.document import Array, Indices
 
 
 def triangles(corners: Indices, sizes: NDArray[np.integer], vertices: Array) -> Indices:
-    """Split polygons into triangles, in their order.
+    """Split polygons into triangles, in order.
 
-    A quadrilateral is split along the diagonal that folds it less, of two equal ones along the
-    first; a larger polygon is a fan around its first corner; what has less than three corners is
-    left out.
+    A quadrilateral is split along the diagonal that folds it less, in a tie along the first; a
+    larger polygon becomes a fan around its first corner; one with fewer than three corners is
+    dropped.
 
     Parameters
     ----------
     corners
         Vertex indices of all polygons, one after the other.
     sizes
-        The number of corners of each.
+        Number of corners of each polygon.
     vertices
         n x 3.
 
@@ -34,7 +34,7 @@ def triangles(corners: Indices, sizes: NDArray[np.integer], vertices: Array) -> 
 def corners_of_triangles(corners: Indices, sizes: NDArray[np.integer], vertices: Array) -> Indices:
     """Return the triangles of `triangles` as m x 3 positions in `corners`.
 
-    With them whatever belongs to corners, such as normals, is found for triangles, too.
+    They map data of corners, such as normals, to the triangles, too.
     """
     sizes = np.asarray(sizes, dtype=np.int64)
     if (sizes == 3).all():
@@ -57,7 +57,7 @@ def corners_of_triangles(corners: Indices, sizes: NDArray[np.integer], vertices:
 
 
 def strip_triangles(corners: Indices) -> Indices:
-    """Split strips, each of which ends in -1, into triangles that face the same side."""
+    """Split strips, each terminated by -1, into consistently oriented triangles."""
     place = np.arange(len(corners))
     begin = np.maximum.accumulate(np.where(corners < 0, place + 1, 0))
     odd = (place - begin)[:-2] % 2 == 1

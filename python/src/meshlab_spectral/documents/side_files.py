@@ -1,4 +1,4 @@
-"""Files beside a mesh that it refers to by name, such as textures."""
+"""Files that a mesh file refers to by name, such as textures."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path, PureWindowsPath
 
 
 def copy_side_files(source: Path, target: Path, names: Iterable[str]) -> list[str]:
-    """Copy what `source` refers to by `names` beside `target`, and never elsewhere.
+    """Copy the files `names` that `source` refers to next to `target`, and never elsewhere.
 
     Returns a warning for each file that cannot be copied. Nothing is copied into the folder of
     `source`, nor into a scratch folder in it. Raises OSError when a file cannot be written.
@@ -23,8 +23,8 @@ def copy_side_files(source: Path, target: Path, names: Iterable[str]) -> list[st
 
 
 def _copy(source: Path, target: Path, name: str, referrer: str) -> str | None:
-    """Copy one file between folders; return the warning if it must not be."""
-    path = PureWindowsPath(name)  # which takes both kinds of slashes
+    """Copy one file between folders; return a warning if that is not possible."""
+    path = PureWindowsPath(name)  # accepts both kinds of slashes
     if path.anchor or ".." in path.parts:
         return f"{name}, which {referrer} refers to, is outside its folder and is not copied"
     origin, copy = source / name, target / name

@@ -1,4 +1,4 @@
-"""STL files, binary and text: corners that coincide are one vertex of a connected surface."""
+"""STL files, binary and text: coincident corners are merged into one vertex."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from meshlab_spectral.documents.text import numbers, replace_numbers
 
 _HEADER, _LOOKED_AT = 84, 1000  # bytes
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
-_EXCESS = 1 / 20  # of its length, which a binary file may have at its end
-_FACET = [b"facet", b"vertex", b"vertex", b"vertex", b"endfacet"]  # without loops
+_EXCESS = 1 / 20  # trailing bytes that a binary file may have, relative to its size
+_FACET = [b"facet", b"vertex", b"vertex", b"vertex", b"endfacet"]  # loops left out
 
 
 @dataclass(kw_only=True)
@@ -39,7 +39,7 @@ class _BinaryStl(Document):
 @dataclass(kw_only=True)
 class _TextStl(Document):
     lines: list[bytes]
-    facets: list[int]  # their lines
+    facets: list[int]  # line numbers
     corners: list[int]
     normals: Array
 
@@ -67,7 +67,7 @@ def _is_text(content: bytes) -> bool:
     head = content[: _HEADER + _LOOKED_AT]
     if len(head) < _HEADER:
         return True
-    # A binary file may begin with the word solid, as a text does.
+    # A binary file may begin with the word solid, like a text file.
     is_whole = len(content) == _size(content)
     return head.isascii() and b"\0" not in head and not is_whole
 
@@ -87,7 +87,7 @@ def _read_binary(path: Path, content: bytes) -> Document:
     if not _size(content) <= size <= _size(content) * (1 + _EXCESS):
         raise ValueError(f"it claims {count} triangles, which does not fit its {size} bytes")
     rows = np.frombuffer(content, _TRIANGLE, count, _HEADER)
-    with np.errstate(invalid="ignore"):  # what is no number is found when checked
+    with np.errstate(invalid="ignore"):  # check_vertices reports non-finite values
         points = rows["corners"].reshape(-1, 3).astype(np.float64)
     part = _connected(path, points)
     contents = ["attribute bytes"] if rows["attribute"].any() else []
@@ -117,7 +117,7 @@ def _read_text(path: Path, content: bytes) -> Document:
 
 
 def _connected(path: Path, points: Array) -> Part:
-    """Make one vertex of corners of triangles, three by three, that coincide."""
+    """Merge coincident corners; every three of `points` are the corners of a triangle."""
     if not len(points):
         raise ValueError("it has no triangles")
     check_vertices(path, points)
@@ -129,10 +129,10 @@ def _connected(path: Path, points: Array) -> Part:
 
 
 def _following(normals: NDArray[np.floating], part: Part, after: Array) -> Array:
-    """Return the normals of facets, those of moved triangles computed anew.
+    """Return the facet normals, recomputed for triangles that have moved.
 
-    They stay on the side of the surface where they were; a facet without normal or without area
-    keeps what it has.
+    They stay on the side of the surface where they were; a facet without a normal or without area
+    is left as it is.
     """
     with np.errstate(invalid="ignore"):
         result = normals.astype(np.float64)
@@ -146,5 +146,5 @@ def _following(normals: NDArray[np.floating], part: Part, after: Array) -> Array
 
 
 def _area_vectors(corners: Array) -> Array:
-    """Return a normal of each triangle, twice as long as its area."""
+    """Return a normal of each triangle, of length twice its area."""
     return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

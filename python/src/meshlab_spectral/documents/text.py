@@ -1,4 +1,4 @@
-"""Lines of text files: words as numbers, and numbers replaced where they are."""
+"""Lines of text files: reading numbers, and replacing them in place."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Words = Sequence[bytes]
 def numbers(path: Path, rows: Sequence[Words], first: int = 0, count: int = 3) -> Array:
     """Return the words `first` to `first + count - 1` of each row as numbers, n x count.
 
-    Raises MeshFileError, which names the row, when a word is missing or is no number.
+    Raises MeshFileError, which names the row, when a word is missing or is not a number.
     """
     chosen = [row[first : first + count] for row in rows]
     try:
@@ -45,11 +45,10 @@ def _is_number(word: bytes) -> bool:
 def with_numbers(
     line: bytes, first: int, before: Sequence[float], after: Sequence[float], digits: int
 ) -> bytes:
-    """Return a line in which three numbers are replaced where they differ.
+    """Return a line in which those of three numbers that have changed are replaced.
 
-    The first of them is word `first`, from 0; words and what is between them stay. `before` are the
-    three numbers that the line holds, `after` those that it shall hold, with so many significant
-    digits.
+    They begin at word `first`, from 0; other words and all whitespace are kept. `before` are the
+    three numbers in the line, `after` the new ones, written with `digits` significant digits.
     """
     found = _three_words(first).match(line)
     assert found is not None
@@ -63,7 +62,7 @@ def with_numbers(
 def replace_numbers(
     lines: list[bytes], where: Sequence[int], first: int, before: Array, after: Array, digits: int
 ) -> None:
-    """Replace three numbers, which begin at word `first`, in those lines where they differ."""
+    """Replace the three numbers from word `first` on in those lines where they have changed."""
     rows = np.flatnonzero((before != after).any(axis=1))
     for k, old, new in zip(rows.tolist(), before[rows].tolist(), after[rows].tolist(), strict=True):
         lines[where[k]] = with_numbers(lines[where[k]], first, old, new, digits)

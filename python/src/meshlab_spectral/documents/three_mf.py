@@ -1,4 +1,4 @@
-"""3MF, a zip archive of models in XML: digits of vertices are replaced, and all else stays."""
+"""3MF, a zip archive of XML models: only the digits of vertices are replaced."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from meshlab_spectral.documents.document import (
 )
 from meshlab_spectral.documents.placement import IDENTITY, Placement, placement_of, same_scale
 
-# XML of vertices compresses to a tenth; what grows far more is made to fill the memory.
+# XML of vertices compresses to about a tenth; a far higher ratio indicates a zip bomb.
 _LARGEST_RATIO, _HARMLESS = 200, 64 << 20
 _VERTEX = re.compile(rb"<(?:[^\s<>/:!]+:)?vertex(?=\s)")
 _ATTRIBUTE = re.compile(rb"""\s+([^\s=]+)\s*=\s*("[^"]*"|'[^']*')""")
@@ -66,17 +66,17 @@ class _Object:
     name: str
     is_part: bool
     own: Array  # vertices, without transforms
-    offsets: list[int]  # where they are in the model
+    offsets: list[int]  # their byte offsets in the model
     faces: Indices
     components: list[_Placed]
     placement: Placement = Placement(IDENTITY)
 
 
 class _Model:
-    """A model of an archive: objects, and what is built of them."""
+    """A model of an archive: its objects, and the items built from them."""
 
     def __init__(self, path: Path, name: str, data: bytes) -> None:
-        if b"<!DOCTYPE" in data or b"\0" in data:  # zeros are in UTF-16
+        if b"<!DOCTYPE" in data or b"\0" in data:  # UTF-16 has null bytes
             raise unsupported(path, f"has a document type or UTF-16 in {name}", "save it in UTF-8")
         root = ElementTree.fromstring(data)
         if not root.tag.endswith("model"):
@@ -121,7 +121,7 @@ class _Model:
 @dataclass(kw_only=True)
 class _ThreeMfDocument(Document):
     data: bytes
-    meshes: list[tuple[str, _Object]]  # of the parts, with the names of their models
+    meshes: list[tuple[str, _Object]]  # the model's name and the object of each part
 
     def add(self, model: str, mesh: _Object, matrices: list[Array]) -> None:
         """Add an object to the parts."""
@@ -149,7 +149,7 @@ class _ThreeMfDocument(Document):
 
 
 def _patched(data: bytes, changes: list[tuple[_Object, Array]]) -> bytes:
-    """Return a model with other coordinates where they have changed."""
+    """Return a model with the changed coordinates replaced."""
     pieces: list[bytes] = []
     position = 0
     for mesh, after in changes:  # in the order of the file
@@ -194,7 +194,7 @@ def _document(path: Path, data: bytes, archive: zipfile.ZipFile) -> Document:
 
 
 def _models(path: Path, archive: zipfile.ZipFile, root: str) -> dict[str, _Model]:
-    """Read a model, and those that it refers to."""
+    """Read the root model and all models that it refers to."""
     models: dict[str, _Model] = {}
     wanted = [root]
     while wanted:
@@ -207,14 +207,14 @@ def _models(path: Path, archive: zipfile.ZipFile, root: str) -> dict[str, _Model
 
 
 def _matrices(objects: dict[_Key, _Object], items: list[_Placed]) -> dict[_Key, list[Array]]:
-    """Return each object's first transform, and if there is one the first of another scale."""
+    """Return each object's first transform and, if any, the first one of another scale."""
     graph = {key: [child for child, _ in found.components] for key, found in objects.items()}
     for key in [*(key for key, _ in items), *chain(*graph.values())]:
         if key not in objects:
             raise ValueError(f"{key[0]} has no object {key[1]}")
     matrices: dict[_Key, list[Array]] = {key: [] for key in objects}
     _place(matrices, items, IDENTITY)
-    for key in reversed([*TopologicalSorter(graph).static_order()]):  # components follow
+    for key in reversed([*TopologicalSorter(graph).static_order()]):  # parents before components
         for matrix in matrices[key]:
             _place(matrices, objects[key].components, matrix)
     return matrices

@@ -1,7 +1,7 @@
-"""VTK files, which PyVista reads and writes: legacy .vtk, and XML .vtp and .vtu.
+"""VTK files, read and written with PyVista: legacy .vtk, and XML .vtp and .vtu.
 
-All arrays stay, but VTK writes its own version of the format, without comments and other
-compression than zlib. Legacy text becomes binary: VTK would keep six digits of it.
+All arrays are kept, but VTK writes its own version of the format, without comments and with no
+compression but zlib. Legacy text becomes binary: VTK would write only six digits.
 """
 
 from __future__ import annotations
@@ -28,15 +28,15 @@ from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.documents.polygons import strip_triangles, triangles
 from meshlab_spectral.extras import check_extras
 
-_LARGEST_RATIO = 100  # of counts to bytes; zlib packs less than 86 points into one
+_LARGEST_RATIO = 100  # of counts to bytes; zlib packs fewer than 86 points into a byte
 _COUNTS = re.compile(rb'(?:NumberOf\w+="|\n(?:POINTS|CELLS|POLYGONS|LINES|VERTICES)\s+)(-?\d+)')
 _TEXT = re.compile(rb'<Points>\s*<DataArray[^>]*format="ascii"')
-_OTHERS, _STRIP, _POLYGONS = (0, 1, 2, 3, 4), 6, (5, 7, 9)  # VTK's types of cells
+_OTHERS, _STRIP, _POLYGONS = (0, 1, 2, 3, 4), 6, (5, 7, 9)  # VTK cell types
 _EXTRACT = "extract its surface first (in ParaView: Filters > Extract Surface), and save it as .vtp"
 
 
 def read(path: Path) -> Document:
-    """Read a mesh of points and flat cells; see open_document."""
+    """Read a mesh of points and flat cells; see `open_document`."""
     check_extras("formats")
     import pyvista
 
@@ -72,7 +72,7 @@ class _VtkDocument(Document):
             normals[:] = following_normals(before, after, faces, np.array(normals))
         for normals in _normals(mesh.cell_data):
             old, new = (_areas(P[faces], self.owners, normals.shape) for P in (before, after))
-            side = np.sign((old * normals).sum(axis=1, keepdims=True))  # they stay on it
+            side = np.sign((old * normals).sum(axis=1, keepdims=True))  # normals stay on their side
             length = np.linalg.norm(new, axis=1, keepdims=True) * side
             turned = (old != new).any(axis=1) & (length[:, 0] != 0)
             normals[turned] = new[turned] / length[turned]
@@ -81,7 +81,7 @@ class _VtkDocument(Document):
 
 
 def _areas(P: Array, owners: Indices, shape: tuple[int, ...]) -> Array:
-    """Vector areas of cells from the corners of triangles."""
+    """Return the vector areas of cells, from the corners of their triangles, m x 3 x 3."""
     areas = np.zeros(shape)
     np.add.at(areas, owners, np.cross(P[:, 1] - P[:, 0], P[:, 2] - P[:, 0]))
     return areas
@@ -111,7 +111,7 @@ def _document(path: Path, mesh: Any) -> Document:
 
 
 def _surface(path: Path, grid: Any, vertices: Array) -> tuple[Indices, Indices]:
-    """Triangles of polygons and strips, m x 3, and the cell of each."""
+    """Return the triangles of polygons and strips, m x 3, and the cell of each."""
     from pyvista import convert_array
 
     corners = convert_array(grid.GetCells().GetConnectivityArray()).astype(np.int64)

@@ -32,9 +32,9 @@ if TYPE_CHECKING:
 # Default number of pictures, and how many in a row.
 _SHOWN = 12
 _COLUMNS, _COLUMNS_UPRIGHT = 4, 6
-# Colours compress worse than the other figures: this brings the file back to a megabyte.
+# Coloured pictures compress worse than the others: this keeps the file to a megabyte.
 _RESOLUTION = 0.92
-# In notebooks, pixels.
+# In pixels, for notebooks.
 _PANEL_WIDTH, _LABEL_HEIGHT = 320, 46
 
 
@@ -47,7 +47,7 @@ def spread_modes(first: int, size: int) -> list[int]:
 
 
 def check_modes(modes: Sequence[int], size: int) -> None:
-    """Raise OptionError unless every mode is in a basis of `size` harmonics, and there is one."""
+    """Raise OptionError unless there are modes, all of them in a basis of `size` harmonics."""
     if len(modes) == 0:
         raise OptionError("no modes to show: name at least one")
     for mode in modes:
@@ -61,8 +61,8 @@ def draw_basis_file(
     """Draw harmonics to a .png file: red is positive, blue negative, a line marks zero.
 
     `archive` was written by `meshlab-spectral basis`. The picture is written atomically; a `scale`
-    of 1 fills a screen. Shows by default a dozen from the first non-constant harmonic to the last;
-    raises OptionError when the basis has no such mode, MeshFileError when `path` cannot be written.
+    of 1 fills a screen. The default is a dozen modes, from the first non-constant one to the last.
+    Raises OptionError when a mode is not in the basis, MeshFileError when `path` cannot be written.
     """
     with np.load(archive) as arrays:
         basis = Harmonics(arrays["eigenvalues"], arrays["harmonics"], arrays["masses"])
@@ -91,19 +91,19 @@ def plot_harmonics(
 ) -> Plotter:
     """Plot harmonics on their mesh: red is positive, blue negative, a line marks zero.
 
-    One camera moves all of them. Wavelengths are in percent of the diagonal of the mesh, as feature
-    sizes are.
+    All views share one camera. Wavelengths are in percent of the bounding box diagonal, like
+    feature sizes.
 
     Parameters
     ----------
     mesh_or_vertices, faces
-        As for `manifold_harmonics`; a mesh has no faces but its own, None.
+        As for `manifold_harmonics`; `faces` is None for a mesh object.
     harmonics
         Harmonics of this mesh, as from `manifold_harmonics`.
     indices
-        Which to show, from 0; by default a dozen from the first non-constant one to the last.
+        Which to show, from 0; by default a dozen, from the first non-constant one to the last.
     off_screen
-        Whether to do without a window. A notebook shows the plot either way.
+        Whether to render without a window. A notebook shows the plot either way.
 
     Returns
     -------
@@ -113,12 +113,12 @@ def plot_harmonics(
     Raises
     ------
     ValueError
-        When an array of the mesh has the wrong shape or type, or the harmonics are not of a mesh of
-        n vertices.
+        When an array of the mesh has the wrong shape or type, or the harmonics belong to a mesh
+        with another number of vertices.
     OptionError
-        When there is no such harmonic.
+        When one of `indices` is not in the basis.
     MissingPackageError
-        When PyVista, the extra `render`, is not installed.
+        When PyVista (extra `render`) is not installed.
 
     Examples
     --------
@@ -133,7 +133,7 @@ def plot_harmonics(
     panels = _panels(harmonics, V, F, indices)
     frame = Frame.around([V], View.of_widest_side(V))
     columns = _columns(len(panels), frame)
-    # As much above as the label takes below: the camera turns about the middle of the mesh.
+    # Leave the height of the label above, too: the camera turns about the centre of the mesh.
     frame = replace(frame, height=frame.height + 2 * _LABEL_HEIGHT * frame.width / _PANEL_WIDTH)
     panel_size = (_PANEL_WIDTH, round(_PANEL_WIDTH * frame.height / frame.width))
     plotter = scene(panels, frame, columns, panel_size, font_size=8, off_screen=off_screen)

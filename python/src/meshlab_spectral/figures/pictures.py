@@ -30,11 +30,11 @@ class Panel:
     V
         n x 3 coordinates.
     F
-        m x 3 indices of the corners of triangles.
+        m x 3 vertex indices of triangles.
     signed
         n values to colour the mesh by, from -1 (blue) to 1 (red); a line marks 0 (grey).
     colors
-        n x 3 levels of red, green and blue, 0 to 255, instead.
+        n x 3 levels of red, green and blue, 0 to 255, in place of `signed`.
     """
 
     label: str
@@ -126,14 +126,14 @@ def scene(
     font_size: int,
     off_screen: bool = True,
 ) -> Any:
-    """Set up meshes in rows, to be shown or saved; raises MissingPackageError without PyVista.
+    """Set up a plot of meshes in rows; raises MissingPackageError without PyVista.
 
     Parameters
     ----------
     panels
         The meshes, row by row.
     frame
-        The rectangle to show of each.
+        The rectangle shown in each panel.
     columns
         Number of panels in a row.
     panel_size
@@ -141,12 +141,12 @@ def scene(
     font_size
         Size of the labels.
     off_screen
-        Whether to do without a window.
+        Whether to render without a window.
 
     Returns
     -------
     pyvista.Plotter
-        For the caller to close.
+        To be closed by the caller.
     """
     plotter = _plotter((ceil(len(panels) / columns), columns), panel_size, off_screen)
     for cell, panel in enumerate(panels):
@@ -177,7 +177,7 @@ def render(panel: Panel, frame: Frame, pixels: int) -> Image:
 
 
 def to_full_colours(values: NDArray[np.float64], areas: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Scale to -1 .. 1, clipping the extreme hundredth of the area, which is mostly spikes.
+    """Scale values to -1 .. 1, clipping the extreme hundredth of the area, mostly spikes.
 
     Parameters
     ----------
@@ -260,7 +260,7 @@ def _surface(panel: Panel) -> Any:
 
 
 def bounding_box(shapes: Sequence[NDArray[np.float64]]) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Corners of the bounding box of several meshes."""
+    """Return the lowest and highest corner of the bounding box of several meshes."""
     return (
         np.min([V.min(axis=0) for V in shapes], axis=0),
         np.max([V.max(axis=0) for V in shapes], axis=0),

@@ -20,7 +20,7 @@ FONT_SIZE = 9.0
 
 # Width of a page: scaled to 900 pixels on a web page, its letters are 12 pixels high.
 _PAGE_WIDTH = 9.0
-# Kept small for a repository: pixels per page, about 1 MB as PNG, and dots per inch.
+# Pixels per page, about 1 MB as PNG to suit a repository, and dots per inch.
 _PAGE_PIXELS = 1.9e6
 _DOTS_PER_INCH = 200
 _LINE = 0.165

@@ -82,11 +82,11 @@ def draw_spectrum(
 def plot_spectrum(
     spectrum: GeometrySpectrum, options: FilterOptions | None = None, title: str = ""
 ) -> Figure:
-    """Plot the spectrum of a mesh, if wanted with a filter's transfer function over it.
+    """Plot the spectrum of a mesh, optionally with a filter's transfer function over it.
 
     Large features are on the left, small ones on the right, like low and high notes. The lower plot
-    has the height of the vertex noise that would explain the details of each size: where it levels
-    off they are noise, and shaded.
+    shows the height of the vertex noise that would explain the details of each size: where it
+    levels off, they are noise (shaded).
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def plot_spectrum(
     Raises
     ------
     MissingPackageError
-        When Matplotlib, the extra `plots`, is not installed.
+        When Matplotlib (extra `plots`) is not installed.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Files in and out: meshes, bases, recipes and filter scripts.
+"""Reading and writing files: meshes, bases, recipes and filter scripts.
 
 `meshes` reads, filters and writes a mesh; `whole_files` writes outputs atomically.
 """

@@ -22,12 +22,12 @@ def basis_to_scratch(
 ) -> dict[str, Any]:
     """Write the harmonics of a mesh file to a NumPy archive, `scratch` from `writing_whole`.
 
-    Those of all its meshes together, or of the one with the name `mesh`. Returns the sizes n and k,
-    as "vertices" and "harmonics". Errors are those of `harmonics.manifold_harmonics`, and
+    Uses all meshes of the file as one, or only the one named `mesh`. Returns the sizes n and
+    k as "vertices" and "harmonics". Errors are those of `harmonics.manifold_harmonics`, and
     MeshFileError when `source` cannot be read.
 
-    Its arrays are eigenvalues (k), frequencies (k), harmonics (n x k) and masses (n) as in
-    `Harmonics`, and the mesh as read, whose vertices their rows follow: vertices (n x 3), faces
+    The arrays are eigenvalues (k), frequencies (k), harmonics (n x k) and masses (n) as in
+    `Harmonics`, and the mesh as read, to whose vertices the rows belong: vertices (n x 3), faces
     (m x 3).
     """
     on_stage("reading")

@@ -20,13 +20,13 @@ FALLBACK = "ply"
 
 
 def ending_of(name: str) -> str:
-    """Return the extension of a file name as it is written, without the dot."""
+    """Return the extension of a file name, in its original case and without the dot."""
     stem, dot, ending = name.rpartition(".")
     return ending if stem and dot else ""
 
 
 def check_ending(path: Path, what: str, *endings: str) -> None:
-    """Raise FormatError, which says `what` the file is, unless it has one of some extensions."""
+    """Raise FormatError, which says `what` the file is, unless its extension is in `endings`."""
     if path.suffix.lower() not in endings:
         *others, last = endings
         names = f"{', '.join(others)} or {last}" if others else last

@@ -1,4 +1,4 @@
-"""What is in a mesh file: its size and surface, its noise, and a feature size to start with."""
+"""Description of a mesh file: its size, surface and noise, and a feature size to start with."""
 
 from __future__ import annotations
 
@@ -30,9 +30,9 @@ def mesh_info(source: Path, on_stage: StageCallback, mesh: str | None = None) ->
     -------
     dict
         "meshes", their names; the numbers of "vertices", "faces", "components", "rims" (boundary
-        loops), "joined_vertices" (at seams) and "unreferenced_vertices"; those of
-        "selected_vertices" and "selected_faces" in a PLY file; in the units of the file "extent"
-        along each axis, "diagonal", "mean_edge", "area" and "default_feature_size"; what Spectral
+        loops), "joined_vertices" (at seams) and "unreferenced_vertices", and, in a PLY file, of
+        "selected_vertices" and "selected_faces"; in the units of the file, "extent" along each
+        axis, "diagonal", "mean_edge", "area" (squared) and "default_feature_size"; what Spectral
         Denoise would remove: "noise_summary", "noise_height" and "noise_size", the number of
         "spikes", "voxel_size"; "warnings".
     """
@@ -40,7 +40,7 @@ def mesh_info(source: Path, on_stage: StageCallback, mesh: str | None = None) ->
     parts = load_parts(source, mesh)
     selected = _selected(source)
     V, F = joined(parts)
-    mesh_set = mesh_set_of(V, F, verbose=True)  # the log has the progress
+    mesh_set = mesh_set_of(V, F, verbose=True)  # progress is read from the log
     on_stage("measuring")
     spectrum = call_filter(mesh_set, SpectrumOptions.FILTER, {})
     on_stage("looking for noise")
@@ -65,7 +65,7 @@ def mesh_info(source: Path, on_stage: StageCallback, mesh: str | None = None) ->
 
 
 def _boundary_loops(V: NDArray[np.float64], F: NDArray[np.int64]) -> int:
-    """Count the connected sets of edges with one face, vertices at the same place being one."""
+    """Count the connected sets of boundary edges; vertices at the same position are one."""
     _, place = np.unique(V, axis=0, return_inverse=True)
     corners = place.ravel()[F]
     sides = np.vstack([corners[:, [k, (k + 1) % 3]] for k in range(3)])
@@ -83,7 +83,7 @@ def _boundary_loops(V: NDArray[np.float64], F: NDArray[np.int64]) -> int:
 
 
 def _selected(source: Path) -> dict[str, int]:
-    """Count what is selected in a file of MeshLab's; only its PLY files hold a selection."""
+    """Count the selected vertices and faces; only MeshLab's PLY files hold a selection."""
     if source.suffix.lower() != ".ply":
         return {}
     import pymeshlab
@@ -91,7 +91,7 @@ def _selected(source: Path) -> dict[str, int]:
     mesh_set = pymeshlab.MeshSet()
     try:
         read_with_meshlab(mesh_set, source)
-    except MeshFileError:  # which we have read nevertheless
+    except MeshFileError:  # `load_parts` has read it nevertheless
         return {}
     mesh = mesh_set.current_mesh()
     return {

@@ -1,7 +1,7 @@
-"""Mesh files: read one, filter its meshes, write it.
+"""Mesh files: reading them, filtering their meshes, writing them.
 
-A file that stays in its format is patched: its coordinates change, and nothing else (`documents`).
-Another format, a script, and a format that only MeshLab knows go through MeshLab.
+If the format stays the same, the file is patched (`documents`): only coordinates and normals
+change. Conversions, scripts, and formats that only MeshLab knows go through MeshLab.
 """
 
 from __future__ import annotations
@@ -36,11 +36,11 @@ from meshlab_spectral.plugin.loading import load
 
 StageCallback = Callable[[str], None]
 
-# What MeshLab reads without losing placement, units or all meshes but one.
+# Formats that MeshLab reads without losing placement, units or all meshes but one.
 _READ_BY_MESHLAB = (".ply", ".obj", ".off", ".stl")
 # MeshLab would invent both for a mesh made from arrays.
 _BARE = {".ply": {"save_vertex_color": False, "save_vertex_quality": False}}
-# Formats of MeshLab that hold coordinates in single precision, or in fewer digits.
+# Formats in which MeshLab writes coordinates in single precision, or with fewer digits.
 _COARSE = (".stl", ".3ds", ".3mf", ".ctm", ".dae", ".wrl", ".x3d")
 
 
@@ -57,12 +57,11 @@ def filter_to_scratch(
     Parameters
     ----------
     source
-        A mesh file. All of its meshes are filtered, each by itself, at the size at which it is
-        placed.
+        A mesh file. All its meshes are filtered, each on its own, as placed in the scene.
     scratch
         The file to write, from `writing_whole`; after an error it may be incomplete. In the format
-        of `source` only coordinates and normals change; another format is written by MeshLab, and a
-        warning lists what it comes without.
+        of `source` only coordinates and normals change; another format is written by MeshLab, with
+        a warning that lists what is lost.
     options
         Options of the filter.
     on_stage
@@ -70,14 +69,14 @@ def filter_to_scratch(
     verbose
         Whether MeshLab writes its log, the only source of progress.
     mesh
-        Filter only the mesh of this name.
+        Filter only the mesh with this name.
 
     Returns
     -------
     dict
         The filter's report, as from `filter_mesh`, with the mesh's name, if any, as "mesh". For
-        several meshes their reports as a list "meshes", and "warnings" and "max_displacement"
-        over all of them.
+        several meshes, a list of their reports as "meshes", and "warnings" and "max_displacement"
+        of all of them.
 
     Raises
     ------
@@ -123,16 +122,16 @@ def script_to_scratch(
 
 
 def load_arrays(source: Path, mesh: str | None = None) -> tuple[Array, Indices]:
-    """Read a mesh file: n x 3 coordinates, placed, and m x 3 vertex indices of triangles.
+    """Read a mesh file: n x 3 placed coordinates, and m x 3 vertex indices of triangles.
 
-    Several meshes become one, of as many components. Parameters and errors are those of
+    Several meshes become one, with several components. Parameters and errors are those of
     `load_parts`.
     """
     return joined(load_parts(source, mesh))
 
 
 def load_parts(source: Path, mesh: str | None = None) -> list[Part]:
-    """Read the meshes of a file, or only the mesh of a name.
+    """Read the meshes of a file, or only the one named `mesh`.
 
     Raises MeshFileError when `source` cannot be read, OptionError when no mesh has the name.
     """
@@ -164,7 +163,7 @@ def check_source(source: Path) -> None:
 
 
 def _check_name(path: Path, shown: Path) -> None:
-    """Raise MeshFileError, with the path `shown`, when pymeshlab cannot take a path."""
+    """Raise MeshFileError, with the path as `shown`, when pymeshlab cannot open such a path."""
     try:
         str(path).encode()
     except UnicodeEncodeError as error:
@@ -187,7 +186,7 @@ def _filter_document(
     verbose: bool,
     name: str | None,
 ) -> dict[str, Any]:
-    """Filter the meshes of a document, each by itself."""
+    """Filter the meshes of a document, each on its own."""
     is_same_format = _is_same_format(source, scratch)
     if not is_same_format:
         check_writable(scratch)
@@ -236,7 +235,7 @@ def _check_weight(part: Part, options: Options) -> None:
 def _filtered(
     part: Part, apply: Callable[[Any], dict[str, Any]], verbose: bool, is_alone: bool
 ) -> tuple[Array, dict[str, Any]]:
-    """Filter a mesh: its vertices, and the report."""
+    """Filter a mesh; return its vertices and the report."""
     mesh_set = mesh_set_of(part.vertices, part.faces, _signal(part), verbose)
     if part.selected is not None:
         select_vertices(mesh_set, part.selected)
@@ -250,7 +249,7 @@ def _filtered(
 
 
 def joined(parts: Sequence[Part], moved: Sequence[Array] | None = None) -> tuple[Array, Indices]:
-    """Several meshes as one."""
+    """Return several meshes as one, with the vertices `moved`, if given."""
     vertices = [part.vertices for part in parts] if moved is None else moved
     begins = np.cumsum([0, *(len(V) for V in vertices)])
     faces = [part.faces + begin for part, begin in zip(parts, begins, strict=False)]
@@ -268,14 +267,14 @@ def _signal(part: Part) -> dict[str, Array]:
 
 
 def _rounded(before: Array, after: Array, scratch: Path) -> list[str]:
-    """Return the warning, if any, of a format of MeshLab that cannot hold the movement."""
+    """Return the warning, if any, that MeshLab writes this format with too few digits."""
     if scratch.suffix.lower() not in _COARSE or before.shape != after.shape:
         return []
     return precision_warnings(before, after, scratch.name)
 
 
 def _report(names: list[str], reports: list[dict[str, Any]], warnings: list[str]) -> dict[str, Any]:
-    """Make one report of those of all meshes."""
+    """Combine the reports of all meshes."""
     if len(reports) == 1:
         named = {"mesh": names[0]} if names[0] else {}
         return {**named, **reports[0], "warnings": reports[0]["warnings"] + warnings}
@@ -299,7 +298,7 @@ def _through_meshlab(
     verbose: bool,
     settings: dict[str, bool] | None = None,
 ) -> dict[str, Any]:
-    """Let MeshLab read, if it reads the whole of the format, and write."""
+    """Let MeshLab write the file and, if it reads all of its contents, also read it."""
     load()
     on_stage("reading")
     check_source(source)
@@ -318,7 +317,7 @@ def _through_meshlab(
 
 
 def _loaded(source: Path, document: Document | None, verbose: bool) -> tuple[Any, bool]:
-    """Return a MeshSet, and whether MeshLab has read the file or only got arrays of it."""
+    """Return a MeshSet, and whether MeshLab has read the file itself or only got its arrays."""
     import pymeshlab
 
     if document is None or source.suffix.lower() in _READ_BY_MESHLAB:

@@ -14,20 +14,20 @@ from meshlab_spectral.files.formats import WRITABLE
 from meshlab_spectral.files.whole_files import USUAL_FORMATS, resolved
 from meshlab_spectral.filters.calling import reason_of
 
-# Formats in which MeshLab joins triangles again that it read as one polygon.
+# Formats in which MeshLab joins triangles back into the polygons that it has read.
 _POLYGON_FORMATS = (".obj", ".off")
-# What MeshLab writes of the `contents` of a document that it has read, beside the triangles.
+# The `contents` of a document that MeshLab, having read it, also writes, by format.
 _WRITTEN = {
     ".ply": {"normals", "colours", "texture coordinates", "quality", "texture names"},
     ".obj": {"normals", "colours", "texture coordinates", "materials", "texture names"},
     ".off": {"normals", "colours", "texture coordinates"},
 }
-# Stands for textures that it does not find, such as those with blanks in their names.
+# MeshLab's substitute for textures not found, such as those with blanks in their names.
 _DUMMY = "dummy.png"
 
 
 def check_writable(path: Path) -> None:
-    """Fail before the long computation, not after it."""
+    """Raise FormatError, before a long computation, unless MeshLab can write `path`."""
     ending = path.suffix
     if ending[1:].lower() in WRITABLE:
         return
@@ -92,16 +92,16 @@ def write_with_meshlab(
 
 
 def left_behind(document: Document, target: Path, mesh_set: Any = None) -> list[str]:
-    """Return the warning, if any, of what a file in another format than `document` comes without.
+    """Return the warning, if any, about what `target`, in another format than `document`, loses.
 
-    What places a mesh is in the coordinates of `target`. `mesh_set` is what MeshLab has read of the
-    document; None where only coordinates and triangles went to it.
+    Placements are in the coordinates of `target`. `mesh_set` is what MeshLab has read of the
+    document; None if it got only coordinates and triangles.
     """
     written = {"placement"}
     if mesh_set is not None:
         written |= _WRITTEN.get(target.suffix.lower(), set())
         if (document.path.suffix.lower(), target.suffix.lower()) == (".obj", ".ply"):
-            written.remove("normals")  # which belong to corners there
+            written.remove("normals")  # an OBJ file has them at corners
     lost = [content for content in document.contents if content not in written]
     if mesh_set is not None and _DUMMY in mesh_set.current_mesh().textures():
         lost.append("textures that MeshLab does not find")
@@ -119,9 +119,8 @@ def _has_non_manifold_edges(mesh_set: Any) -> bool:
 def _textures_to_be_saved(mesh_set: Any, scratch: Path, source: Path) -> bool:
     """Whether to save copies of the texture images next to the output.
 
-    Not next to the input, where they already are. And not if the mesh refers to an image outside
-    its own folder, which would be written outside the scratch folder, over whatever is there; nor a
-    dummy.
+    Not next to the input, where they already are; not if the mesh refers to an image outside its
+    folder, which would overwrite a file outside the scratch folder; and not MeshLab's substitute.
     """
     names = [Path(name) for name in mesh_set.current_mesh().textures()]
     if Path(_DUMMY) in names:

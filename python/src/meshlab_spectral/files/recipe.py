@@ -24,7 +24,7 @@ else:
 def load_recipe(path: Path) -> tuple[type[Options], dict[str, Any]]:
     """Read the options in a recipe; options it leaves out keep their defaults.
 
-    Returns the table that the options are of, and the options, validated, for its `from_dict`.
+    Returns the class of the options, and the validated options for its `from_dict`.
     Raises InputError when the file cannot be read, OptionError when it is not TOML, or has an
     unknown key or an invalid value.
     """
@@ -40,7 +40,7 @@ def load_recipe(path: Path) -> tuple[type[Options], dict[str, Any]]:
 def saving_recipe(path: Path | None, options: Options | None) -> Iterator[None]:
     """Write all options to a recipe, which may replace another recipe but no other file.
 
-    It is written when the block has succeeded, and not at all where `path` or `options` is None.
+    It is written once the block has succeeded, and not at all if `path` or `options` is None.
     Raises InputError, before the block, when the file exists and is not a recipe, and
     MeshFileError when it cannot be written, if possible before the block.
     """
@@ -62,7 +62,7 @@ def saving_recipe(path: Path | None, options: Options | None) -> Iterator[None]:
 
 
 def _content(path: Path) -> tuple[type[Options], dict[str, Any]]:
-    """Read the one table of options."""
+    """Read the only table: the class of its options, and their values."""
     names = " or ".join(f"[{name}]" for name in TABLES)
     try:
         content = tomllib.loads(path.read_text(encoding="utf-8"))

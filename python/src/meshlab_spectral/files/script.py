@@ -24,7 +24,7 @@ def apply_script(mesh_set: Any, text: str) -> dict[str, Any]:
     "report"; pymeshlab returns no reports of other filters in a script.
 
     Raises OptionError when the text is not a filter script, or an empty one, and FilterError, which
-    names the filter, when one is unknown or rejects the mesh.
+    names the filter, when a filter is unknown or rejects the mesh.
     """
     load()
     done = []
@@ -90,7 +90,7 @@ def _apply(mesh_set: Any, name: str, single: ElementTree.Element) -> dict[str, A
 
 def _load_single(mesh_set: Any, single: ElementTree.Element) -> None:
     content = _HEAD + ElementTree.tostring(single, encoding="unicode") + _FOOT
-    with tempfile.TemporaryDirectory() as folder:  # Windows reads no temporary file that is open
+    with tempfile.TemporaryDirectory() as folder:  # Windows cannot read an open temporary file
         file = Path(folder, "script.mlx")
         file.write_text(content, encoding="utf-8")
         mesh_set.load_filter_script(str(file))

@@ -100,7 +100,7 @@ def remove_leftovers(folder: Path, target_name: str | None = None) -> None:
 
 @contextlib.contextmanager
 def _scratch_folder(target: Path, place: Path) -> Iterator[Path]:
-    """Make a hidden folder next to `place`, which `target` resolves to; finally remove it."""
+    """Make a hidden folder next to `place`, which `target` resolves to; remove it on exit."""
     folder = place.parent
     if os.path.lexists(place) and not place.is_file():
         raise MeshFileError(
@@ -204,7 +204,7 @@ def _put_new(path: Path, place: Path, scratch: Path) -> None:
 
 
 def _refuse_another(path: Path, place: Path, scratch: Path) -> None:
-    """Refuse to replace a file not given up for it, such as another model's texture."""
+    """Raise MeshFileError if another file is in the way, such as another model's texture."""
     if not place.exists() or (place.is_file() and filecmp.cmp(path, place, shallow=False)):
         return
     if path == scratch:
@@ -216,7 +216,7 @@ def _refuse_another(path: Path, place: Path, scratch: Path) -> None:
 
 
 def why_kept(place: object) -> str:
-    """Message for a file that has appeared since the work began, and is not replaced."""
+    """Return the message for a file that appeared during the work, and is not replaced."""
     return (
         f"{place} has meanwhile been written by another program and is kept: choose another "
         "folder, or replace it with --overwrite"
@@ -230,7 +230,7 @@ def _sync(path: Path) -> None:
 
 
 def _sync_folder(folder: Path) -> None:
-    with contextlib.suppress(PermissionError):  # Windows opens no folders
+    with contextlib.suppress(PermissionError):  # Windows cannot open folders
         descriptor = os.open(folder, os.O_RDONLY)
         try:
             os.fsync(descriptor)

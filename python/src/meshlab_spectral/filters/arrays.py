@@ -1,4 +1,4 @@
-"""Validation of meshes and of data of their vertices; vertex areas and edges."""
+"""Validation of meshes and of data at their vertices; vertex areas and mean edges."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def mesh_arrays(
     mesh_or_vertices
         A mesh of `mesh_objects`, or n x 3 coordinates.
     faces
-        With coordinates: m x 3 indices of the corners of triangles, from 0 to n - 1.
+        With coordinates: m x 3 vertex indices of triangles, from 0 to n - 1.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def _class_of(mesh: Any) -> str:
 
 
 def vertex_numbers(values: ArrayLike, count: int, name: str) -> NDArray[np.float64]:
-    """Return one number for each of `count` vertices; raise ValueError if there are not as many."""
+    """Return one number for each of `count` vertices; raise ValueError unless there are as many."""
     numbers = np.asarray(values, dtype=np.float64)
     if numbers.shape != (count,):
         raise ValueError(
@@ -73,8 +73,8 @@ def vertex_numbers(values: ArrayLike, count: int, name: str) -> NDArray[np.float
 def chosen_vertices(selection: ArrayLike, count: int, F: NDArray[np.integer]) -> NDArray[np.bool_]:
     """Return which of `count` vertices are selected.
 
-    `selection` is one boolean for each vertex, or indices of faces, which select their corners:
-    those in `F`, m x 3. Raises ValueError when it is neither, or an index is out of range.
+    `selection` is one boolean per vertex, or indices of faces in `F`, m x 3, which select their
+    corners. Raises ValueError when it is neither, or an index is out of range.
     """
     given = np.asarray(selection)
     if given.dtype == bool and given.shape == (count,):
@@ -95,7 +95,7 @@ def chosen_vertices(selection: ArrayLike, count: int, F: NDArray[np.integer]) ->
 
 
 def lumped_areas(V: NDArray[np.float64], F: NDArray[np.integer]) -> NDArray[np.float64]:
-    """Vertex areas, a third of the area of the incident triangles each: the diagonal of D."""
+    """Return the n vertex areas, each a third of its triangles' area: the diagonal of D."""
     a, b, c = (V[F[:, corner]] for corner in range(3))
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
     lumped = np.zeros(len(V))
@@ -104,7 +104,7 @@ def lumped_areas(V: NDArray[np.float64], F: NDArray[np.integer]) -> NDArray[np.f
 
 
 def mean_edge(V: NDArray[np.float64], F: NDArray[np.integer]) -> float:
-    """Mean side length over all triangles; 0 without triangles."""
+    """Return the mean side length over all triangles; 0 without triangles."""
     if len(F) == 0:
         return 0.0
     return float(np.linalg.norm(V[F] - V[np.roll(F, 1, axis=1)], axis=2).mean())

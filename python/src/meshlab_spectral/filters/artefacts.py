@@ -57,9 +57,9 @@ def measure_artefacts(
     Parameters
     ----------
     vertices
-        n x 3 coordinates, finite.
+        Finite n x 3 coordinates.
     faces
-        m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
+        m x 3 vertex indices of triangles, from 0 to n - 1; any topology.
     feature_size
         Feature size of the applied low-pass or band, length units, > 0.
     laplacian

@@ -38,15 +38,15 @@ def call_filter(mesh_set: Any, name: str, parameters: dict[str, Any]) -> dict[st
     Returns
     -------
     dict
-        pymeshlab's report, and in the plugin's words "warnings", a list of what fell short without
-        being an error, and of a filter that chooses by itself "summary", what it found and did.
+        pymeshlab's report; in addition, in the plugin's words, "warnings", a list of problems that
+        were not errors, and "summary", what a filter that chooses by itself found and did.
 
     Raises
     ------
     FilterError
         When the filter rejects the mesh or the parameters; says what is wrong and what to do.
     KeyboardInterrupt
-        On Ctrl-C, within 0.3 s; nothing has changed.
+        On Ctrl-C, within 0.3 s; the mesh is unchanged.
     PluginError
         When the plugin's warnings are not available, see `last_warnings`.
     """
@@ -85,14 +85,14 @@ def mesh_set_of(
     `v_scalar_array`. With `verbose`, MeshLab writes its log. Raises PluginError when the plugin
     cannot be loaded.
     """
-    load()  # first: it says what to do where there is no pymeshlab
+    load()  # first: its error says what to do if pymeshlab is missing
     import pymeshlab
 
     return _set_of(pymeshlab.Mesh(V, F, **(data or {})), verbose)
 
 
 def _set_of(mesh: Any, verbose: bool = False) -> Any:
-    """Return a MeshSet with a copy of a mesh, once the plugin is loaded."""
+    """Return a MeshSet with a copy of a mesh; the plugin must be loaded."""
     import pymeshlab
 
     mesh_set = pymeshlab.MeshSet(verbose=verbose)
@@ -107,16 +107,16 @@ def filtered(
     weights: ArrayLike | None = None,
     selection: ArrayLike | None = None,
 ) -> tuple[Any, dict[str, Any]]:
-    """Apply the filter of a table of options to a mesh.
+    """Apply the filter that `options` belong to.
 
-    The mesh and errors are those of `mesh_arrays`, further errors those of `call_filter` and
-    `load`. `weights` and `selection` are what `weight` and `selected` refer to; a mesh of pymeshlab
-    has its own.
+    The mesh is as for `mesh_arrays`; errors are those of `mesh_arrays`, `call_filter` and `load`.
+    `weights` and `selection` are what the options `weight` and `selected` refer to; a pymeshlab
+    mesh has its own.
 
     Returns
     -------
     mesh_set : pymeshlab.MeshSet
-        With the result, in which a mesh of pymeshlab has kept its data.
+        With the result; a pymeshlab mesh keeps its data.
     report : dict
         As from `call_filter`, with lists instead of arrays.
     """
@@ -150,7 +150,7 @@ def filtered(
 
 
 def given_back(mesh_or_vertices: Any, mesh_set: Any) -> Any:
-    """Return the current mesh of a MeshSet as what was passed: coordinates, or a mesh."""
+    """Return the current mesh of a MeshSet in the form that was passed: coordinates or a mesh."""
     kind = kind_of(mesh_or_vertices)
     if kind is PYMESHLAB:
         return owned_mesh(mesh_set)
@@ -159,7 +159,7 @@ def given_back(mesh_or_vertices: Any, mesh_set: Any) -> Any:
 
 
 def select_vertices(mesh_set: Any, chosen: NDArray[np.bool_]) -> None:
-    """Select vertices, which pymeshlab only does by a condition."""
+    """Select vertices, which pymeshlab can only do by a condition."""
     mesh_set.current_mesh().add_vertex_custom_scalar_attribute(chosen.astype(float), "chosen")
     mesh_set.compute_selection_by_condition_per_vertex(condselect="chosen > 0.5")
 
@@ -185,7 +185,7 @@ def _no_such_choice(parameters: dict[str, Any], reason: str) -> str:
 
 
 def _wrong_types(parameters: dict[str, Any], defaults: dict[str, Any]) -> str:
-    """Name the parameters that have not the types of their defaults, as pymeshlab does not."""
+    """Name the parameters whose types are not those of their defaults; pymeshlab does not."""
     kinds = {bool: "true or false", int: "an integer of 32 bits", float: "a number"}
     wrong = [
         f"{name} = {value}: must be {kinds.get(type(defaults[name]), 'of another type')}"

@@ -77,35 +77,34 @@ def denoise_mesh(
     selection: ArrayLike | None = None,
     **named: Unpack[DenoiseKeywords],
 ) -> tuple[Any, dict[str, Any]]:
-    """Find out what kind of noise a mesh has, and remove it; without noise, nothing moves.
+    """Detect what kind of noise a mesh has, and remove it; without noise, nothing moves.
 
     Parameters
     ----------
     mesh_or_vertices
-        n x 3 coordinates, finite; or a mesh of pyvista, trimesh, meshio, Open3D or pymeshlab, of
-        triangles.
+        Finite n x 3 coordinates, or a pyvista, trimesh, meshio, Open3D or pymeshlab triangle mesh.
     faces
-        With coordinates: m x 3 indices of the corners of triangles, from 0 to n - 1; any topology
-        and orientation.
+        With coordinates: m x 3 vertex indices of triangles, from 0 to n - 1; any topology and
+        orientation.
     options
-        All options below in one object, in place of those by name.
+        All options below in one object, instead of by name.
     selection
-        What to denoise: n booleans, one for each vertex, or indices of faces; it fades out around
-        them within four edges.
+        What to denoise: n booleans, one per vertex, or indices of faces; around it, the effect
+        fades out within four edges.
     **named
 
     Returns
     -------
     denoised
-        n x 3 coordinates, or a mesh as it was passed, with its data; the faces do not change.
+        n x 3 coordinates, or a mesh of the type passed, with its data; the faces do not change.
     report : dict
         "summary" says in one line what was found and done, such as "scanner noise: height 0.08
-        edges (0.012), size 2.1 edges (0.31): removed". Numbers, in the units of the mesh:
-        `noise_height` and `noise_size` of what was removed, both 0 if nothing was; as measured
+        edges (0.012), size 2.1 edges (0.31): removed". Numbers, lengths in the units of the mesh:
+        `noise_height` and `noise_size` of the removed noise, both 0 if none was; the measured
         `estimated_noise_height`, `estimated_noise_size` and `noise_correlation` of neighbours;
         `spikes`, a number of vertices; `voxel_size` along each axis; `mean_edge`,
-        `max_displacement`, `rms_displacement` and others. "warnings" lists what fell short and
-        what to do about it; that nothing has changed is one.
+        `max_displacement`, `rms_displacement` and others. "warnings" lists problems and what to
+        do about them, and says so if nothing has changed.
 
     Raises
     ------

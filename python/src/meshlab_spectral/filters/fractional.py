@@ -33,34 +33,33 @@ def filter_mesh(
 ) -> tuple[Any, dict[str, Any]]:
     """Filter a mesh by the size of its details.
 
-    Sizes are a string such as "2%" of the bounding box diagonal or "6e" (mean edges), or a length
+    A size is a string such as "2%" (of the bounding box diagonal) or "6e" (mean edges), or a length
     in the units of the mesh.
 
     Parameters
     ----------
     mesh_or_vertices
-        n x 3 coordinates, finite; or a mesh of pyvista, trimesh, meshio, Open3D or pymeshlab, of
-        triangles.
+        Finite n x 3 coordinates, or a pyvista, trimesh, meshio, Open3D or pymeshlab triangle mesh.
     faces
-        With coordinates: m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
+        With coordinates: m x 3 vertex indices of triangles, from 0 to n - 1; any topology.
     options
-        All options below in one object, in place of those by name.
+        All options below in one object, instead of by name.
     weights
         n numbers: how much of the filter each vertex gets, from 0 (nothing) to 1 (all).
     selection
-        What to filter: n booleans, one for each vertex, or indices of faces; it fades out around
-        them within about a feature size.
+        What to filter: n booleans, one per vertex, or indices of faces; around it, the effect fades
+        out within about a feature size.
     gain
-        Gain as a function of w, the feature size over the wavelength, w > 0; finite, >= 0. In place
-        of filter_type="custom". Called some thousand times, with one number each.
+        Gain, finite and >= 0, as a function of w > 0, the feature size over the wavelength; in
+        place of filter_type="custom". Called a few thousand times, with one number each.
     **named
 
     Returns
     -------
     filtered
-        n x 3 coordinates, or a mesh as it was passed, with its data; the faces do not change. With
-        result="details" what the filter takes away instead, n x 3: the coordinates minus the
-        filtered ones.
+        n x 3 coordinates, or a mesh of the type passed, with its data; the faces do not change.
+        With result="details", n x 3 differences instead, which the filter takes away: the
+        coordinates minus the filtered ones.
     report : dict
         Numbers, and lists for vectors; lengths in the units of the mesh. "warnings" lists what fell
         short of the options, or had no effect, and what to do about it.

@@ -1,4 +1,4 @@
-"""Gains that are Python functions, as the points that the plugin takes."""
+"""Sampling of gains given as Python functions, for the plugin."""
 
 from __future__ import annotations
 
@@ -12,20 +12,20 @@ from meshlab_spectral.errors import OptionError
 from meshlab_spectral.filters.arrays import mean_edge
 from meshlab_spectral.filters.options import FilterOptions
 
-# Between points the plugin interpolates the gain's logarithm, here to about 1e-5 of a smooth gain;
-# beyond them, where no mesh has details, the gain stays as it is.
+# The plugin interpolates the gain's logarithm between points, here to about 1e-5 of a smooth gain;
+# beyond them, where no mesh has details, the gain is constant.
 _OCTAVES, _PER_OCTAVE = 16, 128
 
-# The plugin takes a gain of exactly 0 for one that cannot be seen, 1e-3.
+# The plugin replaces a gain of exactly 0 by 1e-3, which is not visible.
 _NO_GAIN = 1e-12
 
 
 def points_of(gain: Callable[[float], float], feature_size: float) -> str:
     """Sample a gain, for the option `transfer_function`, as points `size:gain`.
 
-    `gain` is a function of w = feature size / wavelength, w > 0; finite, >= 0. The points are at
-    the feature size, a length > 0, and 16 octaves on both sides. Raises OptionError when a gain is
-    negative or not finite; says where.
+    `gain` is a function of w = feature size / wavelength > 0. The points extend 16 octaves to both
+    sides of `feature_size`, a length > 0. Raises OptionError, which names w, when a gain is
+    negative or not finite.
     """
     points = []
     for w in np.exp2(np.arange(-_OCTAVES * _PER_OCTAVE, _OCTAVES * _PER_OCTAVE + 1) / _PER_OCTAVE):
@@ -45,9 +45,9 @@ def with_gain(
     V: NDArray[np.float64],
     F: NDArray[np.integer],
 ) -> FilterOptions:
-    """Return the options with a gain of the user, a function of w, for a mesh.
+    """Return the options with the user's `gain`, a function of w, sampled for a mesh.
 
-    Raises OptionError as `points_of`, or when the options have a filter type of their own.
+    Raises OptionError as `points_of` does, or when the options choose a filter type, too.
     """
     if options.filter_type != "low-pass":
         raise OptionError(f"filter_type = {options.filter_type}: gain takes its place; give one")

@@ -1,4 +1,4 @@
-"""Manifold harmonics of a mesh, as NumPy arrays, and what they tell of functions and shapes."""
+"""Manifold harmonics of a mesh as NumPy arrays; projections, filters and shape descriptors."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Harmonics:
     """The k lowest eigenpairs of a mesh's Laplacian, ``W phi = lambda D phi``.
 
     With Phi the harmonics and D the masses, a function f at the vertices has coefficients
-    ``c = Phi^T D f``, and ``Phi c`` is its part in the basis: the nearest function to it, by area.
+    ``c = Phi^T D f``, and ``Phi c`` is its projection, the nearest function in the D-norm.
 
     Attributes
     ----------
@@ -39,8 +39,8 @@ class Harmonics:
         ``Phi.T @ (masses[:, None] * Phi) = I``; 0 at unreferenced vertices and fixed boundaries.
         The entry of largest magnitude in each column is positive.
     masses
-        Areas of the n vertices, the diagonal of D, length^2: a third of their incident triangles;
-        with the uniform Laplacian the mean of these.
+        Areas of the n vertices, the diagonal of D, length^2: a third of the area of the incident
+        triangles; with the uniform Laplacian, the mean of these.
     """
 
     eigenvalues: Array
@@ -49,12 +49,12 @@ class Harmonics:
 
     @property
     def frequencies(self) -> Array:
-        """Square roots of the eigenvalues, radians per length unit; wavelengths are 2 pi / them."""
+        """The k square roots of the eigenvalues, radians per length unit: 2 pi / wavelength."""
         roots: Array = np.sqrt(self.eigenvalues)
         return roots
 
     def project(self, f: ArrayLike) -> Array:
-        """Coefficients of functions in the basis, ``c = Phi^T D f``.
+        """Compute the coefficients of functions in the basis, ``c = Phi^T D f``.
 
         Parameters
         ----------
@@ -64,7 +64,7 @@ class Harmonics:
         Returns
         -------
         array
-            k coefficients, or k x c; the unit of f times length.
+            k coefficients, or k x c, in the unit of f times length.
 
         Raises
         ------
@@ -80,9 +80,9 @@ class Harmonics:
         return coefficients
 
     def reconstruct(self, c: ArrayLike) -> Array:
-        """Functions from their coefficients, ``f = Phi c``.
+        """Compute functions from their coefficients, ``f = Phi c``.
 
-        ``reconstruct(project(f))`` is the part of f in the basis.
+        ``reconstruct(project(f))`` is the projection of f onto the basis.
 
         Parameters
         ----------
@@ -109,9 +109,9 @@ class Harmonics:
     def filter(self, f: ArrayLike, gain: Callable[[Array], ArrayLike]) -> Array:
         """Filter functions within the basis, ``Phi diag(F(omega)) Phi^T D f``.
 
-        Constants keep gain 1, as in every filter of this package: f keeps its mean over each
-        component without a fixed boundary. What f has beyond the basis is dropped; `filter_scalars`
-        filters all of it.
+        Constants have gain 1, as in every filter of this package: f keeps its mean over each
+        component without a fixed boundary. The part of f outside the basis is dropped;
+        `filter_scalars` filters the whole spectrum.
 
         Parameters
         ----------
@@ -120,7 +120,7 @@ class Harmonics:
         gain
             The transfer function F. Called once, with the positive frequencies of the basis,
             ascending, in radians per length unit: 2 pi / feature size. Returns a finite gain for
-            each, or one for all; negative ones invert.
+            each, or one for all; a negative gain flips the sign.
 
         Returns
         -------
@@ -156,21 +156,21 @@ class Harmonics:
         return self.reconstruct((gains * self.project(f).T).T)
 
     def heat_kernel_signature(self, times: ArrayLike | None = None) -> Array:
-        """Heat kernel signature of every vertex.
+        """Compute the heat kernel signature of every vertex.
 
         J. Sun, M. Ovsjanikov, L. Guibas: A Concise and Provably Informative Multi-Scale Signature
         Based on Heat Diffusion, SGP 2009.
 
-        ``h_t(x) = sum_i exp(-lambda_i t) phi_i(x)^2``: the share of heat put at x that is still
-        there at time t, per area. Small times see curvature and thin parts, large ones the whole
-        shape; bending without stretching changes none of it.
+        ``h_t(x) = sum_i exp(-lambda_i t) phi_i(x)^2``: the fraction of heat placed at x that is
+        still there at time t, per area. Small times capture curvature and thin parts, large times
+        the overall shape; bending without stretching does not change it.
 
         Parameters
         ----------
         times
-            T times, >= 0, length^2; heat spreads over a distance of about sqrt(4 t). By default 16
-            in geometric progression from ``4 ln 10 / lambda`` of the last eigenvalue to that of the
-            first positive one, as in the paper: they scale with the mesh. Smaller times need a
+            T times, >= 0, length^2; heat spreads over a distance of about sqrt(4 t). By default 16,
+            geometrically spaced from ``4 ln 10 / lambda`` of the last eigenvalue to that of the
+            first positive one, as in the paper, so they scale with the mesh. Smaller times need a
             larger basis.
 
         Returns
@@ -181,8 +181,8 @@ class Harmonics:
         Raises
         ------
         ValueError
-            When `times` are not finite numbers from 0 on, or all harmonics are constant and there
-            are no default times.
+            When `times` are not finite and >= 0, or all harmonics are constant, so that there are
+            no default times.
 
         Examples
         --------
@@ -204,14 +204,14 @@ class Harmonics:
         return signature
 
     def wave_kernel_signature(self, count: int = 100) -> Array:
-        """Wave kernel signature of every vertex.
+        """Compute the wave kernel signature of every vertex.
 
         M. Aubry, U. Schlickewei, D. Cremers: The Wave Kernel Signature: A Quantum Mechanical
         Approach to Shape Analysis, ICCV Workshops 2011.
 
         ``WKS(x, e) = C_e sum_i phi_i(x)^2 exp(-(e - log lambda_i)^2 / (2 sigma^2))``, where C_e
-        makes the weights sum to 1: how likely a particle of energy about exp(e) is at x, per area.
-        Unlike the heat kernel's it separates sizes: each energy is a band of wavelengths.
+        makes the weights sum to 1: the probability density of a particle of energy about exp(e) at
+        x. Unlike the heat kernel signature it separates sizes: an energy is a band of wavelengths.
 
         Parameters
         ----------
@@ -231,7 +231,7 @@ class Harmonics:
         OptionError
             When `count` is not a positive integer.
         ValueError
-            When the basis has less than two different positive eigenvalues.
+            When the basis has fewer than two different positive eigenvalues.
 
         Examples
         --------
@@ -247,7 +247,7 @@ class Harmonics:
         e, sigma = wave_energies(self.eigenvalues, count)
         waves = self.eigenvalues > 0
         exponent = (np.log(self.eigenvalues[waves])[:, None] - e) ** 2 / (2 * sigma**2)
-        # C_e cancels a common factor: without it all weights of an energy in a gap would underflow.
+        # Divide by a factor that C_e cancels: else weights of an energy in a gap would underflow.
         f_e = np.exp(exponent.min(axis=0) - exponent)
         signature: Array = self.harmonics[:, waves] ** 2 @ (f_e / f_e.sum(axis=0))
         return signature
@@ -256,7 +256,7 @@ class Harmonics:
 def heat_times(lam: Array, count: int) -> Array:
     """Sample times for the ascending eigenvalues `lam`, from fine to coarse, as Sun et al. do.
 
-    At the first one the last harmonic has faded to 1e-4, at the last one all but the constants.
+    At the first time the last harmonic has decayed to 1e-4, at the last all but the constants.
     """
     positive = lam[lam > 0]
     return np.geomspace(4 * np.log(10) / positive[-1], 4 * np.log(10) / positive[0], count)
@@ -265,8 +265,8 @@ def heat_times(lam: Array, count: int) -> Array:
 def wave_energies(lam: Array, count: int) -> tuple[Array, float]:
     """Sample energies, logarithms of eigenvalues, and their sigma, as Aubry et al. do.
 
-    The first and the last one are 2 sigma within the spectrum, so that every distribution lies
-    mostly inside.
+    The first and the last one lie 2 sigma inside the spectrum, and so does most of every
+    distribution.
     """
     log_lam = np.log(lam[lam > 0])
     first, last = log_lam[0], log_lam[-1]
@@ -283,15 +283,14 @@ def manifold_harmonics(
     laplacian: LaplacianKind = "intrinsic delaunay",
     boundary: Boundary = "free",
 ) -> Harmonics:
-    """Compute the manifold harmonics of lowest frequency of a mesh.
+    """Compute the lowest-frequency manifold harmonics of a mesh.
 
     Parameters
     ----------
     mesh_or_vertices
-        n x 3 coordinates, finite; or a mesh of pyvista, trimesh, meshio, Open3D or pymeshlab, of
-        triangles.
+        Finite n x 3 coordinates, or a pyvista, trimesh, meshio, Open3D or pymeshlab triangle mesh.
     faces
-        With coordinates: m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
+        With coordinates: m x 3 vertex indices of triangles, from 0 to n - 1; any topology.
     basis_size
         Number of harmonics k, constants included; less than the number of vertices not fixed.
     laplacian
@@ -339,25 +338,25 @@ def shape_dna(
     M. Reuter, F.-E. Wolter, N. Peinecke: Laplace-Beltrami Spectra as "Shape-DNA" of Surfaces and
     Solids, Computer-Aided Design 38(4), 2006.
 
-    Shapes that differ by a motion or by bending without stretching have the same one, up to what
-    their triangles resolve. The distance of two shapes is that of their Shape-DNAs.
+    Shapes that differ by a rigid motion or by bending without stretching have the same Shape-DNA,
+    up to discretization error. The distance between two shapes is that between their Shape-DNAs.
 
     Parameters
     ----------
     mesh_or_vertices, faces
         As for `manifold_harmonics`.
     count
-        Number of eigenvalues, the zeros of constants included; at least 2, and less than the number
-        of vertices not fixed.
+        Number of eigenvalues, including the zeros of constants; at least 2, and less than the
+        number of vertices not fixed.
     normalize
-        Whether to multiply by the area of the surface, so that size does not count.
+        Whether to multiply by the area of the surface, so that scale does not matter.
     laplacian, boundary
         As for `manifold_harmonics`.
 
     Returns
     -------
     array
-        `count` eigenvalues lambda, ascending: ``lambda * area``, without unit, which grow by 4 pi
+        `count` eigenvalues lambda, ascending: ``lambda * area``, dimensionless, which grow by 4 pi
         on average (Weyl's law); or lambda itself, 1 / length^2.
 
     Raises
@@ -365,7 +364,7 @@ def shape_dna(
     ValueError
         When an array has the wrong shape or type, or an index is out of range.
     OptionError
-        When `laplacian` or `boundary` is unknown, or `count` is not an integer from 2 on.
+        When `laplacian` or `boundary` is unknown, or `count` is not an integer >= 2.
     FilterError
         When the mesh has no faces, no area, non-finite coordinates, or too few vertices.
     PluginError
@@ -379,9 +378,9 @@ def shape_dna(
     basis_size = checked_count("count", count, least=2)
     try:
         basis = manifold_harmonics(mesh_or_vertices, faces, basis_size, laplacian, boundary)
-    except FilterError as error:  # in the words of this function
+    except FilterError as error:  # with this function's parameter name
         raise FilterError(str(error).replace("basis_size", "count")) from error
-    # lambda is 1 / length^2: area^(2 / dimension) is the paper's factor, the dimension 2.
+    # The paper's factor is area^(2 / dimension), and the dimension of a surface is 2.
     return basis.eigenvalues * basis.masses.sum() if normalize else basis.eigenvalues
 
 
@@ -417,10 +416,10 @@ def compute(
 
 
 def _equal_areas(V: Array, F: NDArray[Any], Phi: Array) -> Array:
-    """Vertex areas of the uniform Laplacian: their mean, 0 at unreferenced vertices.
+    """Return the vertex areas of the uniform Laplacian: their mean, 0 at unreferenced vertices.
 
-    The copies of a vertex along a seam are one vertex there, and share its area. Unlike vertices
-    of two parts that only touch, they have the same harmonics to the bit.
+    For the plugin, copies of a vertex along a seam are one vertex: they share its area. Unlike
+    vertices of two parts that only touch, they have bitwise equal harmonics.
     """
     used = np.unique(F)
     told_apart_by = np.column_stack([V, Phi.sum(axis=1)])[used]

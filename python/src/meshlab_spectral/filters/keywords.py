@@ -14,7 +14,7 @@ from meshlab_spectral.filters.option_types import Length
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
-# Ends of ranges that a user has no use for.
+# Upper bounds that only reflect the number type.
 _UNLIMITED = re.compile(r",? (to|at most) (3\.4e\+38|2147483647)$")
 _FLAG = re.compile(r"--([a-z][a-z-]*)(?: (\d[\d.]*))?")
 
@@ -29,9 +29,9 @@ def takes_options(
     Parameters
     ----------
     *tables
-        The options, tables made with `option`.
+        Tables of options, whose fields are made with `option`.
     names
-        Those of them that the function takes; None for all.
+        Names of the options that the function takes; None: all.
     """
 
     def spelled_out(function: Function) -> Function:
@@ -53,7 +53,7 @@ def takes_options(
         function.__signature__ = signature.replace(  # type: ignore[attr-defined]
             parameters=[*others, *keywords]
         )
-        # From Python 3.13 on a docstring has no indentation, before it has that of the source.
+        # getdoc, because before Python 3.13 docstrings keep the indentation of the source.
         function.__doc__ = (inspect.getdoc(function) or "").replace("**named\n", texts)
         return function
 
@@ -63,7 +63,7 @@ def takes_options(
 def _type_named(kind: Any) -> str:
     if kind is Length:
         return "str | float"
-    if isinstance(kind, UnionType):  # whose paths may be texts, too
+    if isinstance(kind, UnionType):  # paths may be given as strings, too
         return str(kind).replace("pathlib.Path", "str | Path")
     return "str" if get_args(kind) else str(kind.__name__)
 
@@ -73,7 +73,7 @@ def _plain(default: Any) -> Any:
 
 
 def _explained(one: Any, kind: Any) -> str:
-    """Return an entry of a docstring: the help in the words of Python, and the range."""
+    """Return the docstring entry of an option: its help, with flags as keywords, and its range."""
     facts = [repr(one) for one in get_args(kind) if not isinstance(kind, UnionType)]
     if one.metadata["limits"]:
         facts.append(_UNLIMITED.sub("", str(one.metadata["limits"])))

@@ -1,6 +1,6 @@
-"""Meshes of other libraries: read by what they offer, and given back as their own kind.
+"""Meshes of other libraries: recognized by an attribute, and returned as their own type.
 
-None of these libraries is imported: whoever passes such a mesh has it.
+None of these libraries is imported: whoever passes such a mesh has done so.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class MeshKind:
-    """The meshes of a library.
+    """The mesh class of a library.
 
     Attributes
     ----------
     name
-        The library and its class.
+        The library and the class.
     mark
-        An attribute that tells the class from the kinds before it.
+        An attribute that distinguishes the class from the kinds before it.
     arrays
-        n x 3 coordinates and m x 3 corners of a mesh.
+        Returns the n x 3 coordinates and m x 3 vertex indices of a mesh.
     moved
-        A copy of a mesh, with other coordinates.
+        Returns a copy of a mesh with new coordinates, n x 3.
     """
 
     name: str
@@ -52,7 +52,7 @@ def known_kinds() -> str:
 def owned_mesh(mesh_set: Any) -> Any:
     """Return the current mesh of a `pymeshlab.MeshSet`, which then lives as long as the mesh."""
     mesh = mesh_set.current_mesh()
-    weakref.finalize(mesh, id, mesh_set)  # holds the MeshSet, and does nothing
+    weakref.finalize(mesh, id, mesh_set)  # only keeps the MeshSet alive
     return mesh
 
 

@@ -1,4 +1,4 @@
-"""Kinds of options, and tables of them: what is given is checked and converted for pymeshlab."""
+"""Types of options, and tables of them: values are checked and converted for pymeshlab."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from meshlab_spectral.filters.arrays import mean_edge
 
 AnyOptions = TypeVar("AnyOptions", bound="Options")
 
-# What pymeshlab can pass on: 32-bit integers, and floats of single precision.
+# What pymeshlab can pass on: 32-bit integers and single-precision floats.
 LARGEST_INTEGER = 2**31 - 1
 _SMALLEST_FLOAT, _LARGEST_FLOAT = 2.0**-126, (2 - 2.0**-23) * 2.0**127
 
@@ -95,7 +95,7 @@ class Length:
         return cls(value, unit)
 
     def in_units_of_mesh(self, diagonal: float, mean_edge: float) -> float:
-        """Convert to the units of a mesh, from its lengths in them; auto is a feature size."""
+        """Convert to the units of `diagonal` and `mean_edge`; auto is the default feature size."""
         if self.automatic:
             return min(6 * mean_edge or diagonal, diagonal / 20)
         return self.value * {"": 1.0, "%": diagonal / 100, "e": mean_edge}[self.unit]
@@ -121,7 +121,7 @@ def option(
     default, explanation, limits
         Its default, help, and range if it is a number.
     flags, metavar
-        How a command spells the option, unless by its name, and its value.
+        How a command spells the option, unless like its name, and what it calls the value.
     """
     told = {"help": explanation, "limits": limits, "flags": flags, "metavar": metavar}
     return field(default=default, metadata=told)
@@ -151,9 +151,9 @@ def _is_text_or_number(value: Any) -> bool:
 
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """Base of the tables of options: a frozen dataclass with a field for each, made by `option`.
+    """Base of the tables of options, frozen dataclasses whose fields are made by `option`.
 
-    A length may be given as a `Length`, as a text such as "2%" or as a number, in the units of the
+    A length may be given as a `Length`, a string such as "2%", or a number in the units of the
     mesh.
 
     Attributes
@@ -188,7 +188,7 @@ class Options:
             wanted = types[one.name]
             if not choices and not _is_of(value, wanted):
                 raise OptionError(f"{one.name} = {value!r}: must be {_NAMED[wanted]}")
-            if wanted is int:  # else of NumPy, perhaps
+            if wanted is int:  # it may be a NumPy integer
                 object.__setattr__(self, one.name, int(value))
             default: Any = one.default
             is_automatic = isinstance(value, Length) and value.automatic
@@ -199,7 +199,7 @@ class Options:
                 raise OptionError(f"{one.name} = {value}: must be {limits}")
 
     def as_dict(self) -> dict[str, Any]:
-        """All options as plain values: strings, numbers, booleans."""
+        """Return all options as plain values: strings, numbers, booleans."""
         plain = {one.name: getattr(self, one.name) for one in fields(self)}
         return {
             name: str(value) if isinstance(value, Length) else value
@@ -221,12 +221,12 @@ class Options:
     def given(
         cls: type[AnyOptions], options: AnyOptions | None, named: Mapping[str, object]
     ) -> AnyOptions:
-        """Return the options of a call, which are one object or values by name.
+        """Return the options of a call, given as one object or by name.
 
         Raises
         ------
         OptionError
-            When both are given, or the object is of another filter.
+            When both are given, or the object is for another filter.
         """
         if options is None:
             return cls.from_dict(named)
@@ -239,12 +239,12 @@ class Options:
         return options
 
     def pymeshlab_parameters(self, mesh: Any) -> dict[str, Any]:
-        """Keyword arguments for pymeshlab; automatic options are left out.
+        """Return the keyword arguments for pymeshlab; automatic options are left out.
 
         Parameters
         ----------
         mesh
-            The `pymeshlab.Mesh` to filter, which says how long a mean edge is.
+            The `pymeshlab.Mesh` to filter, for its mean edge length.
         """
         import pymeshlab
 

@@ -1,6 +1,6 @@
 """The fractional filter's options: names, defaults, limits, help.
 
-`FilterOptions` is the only such table: the command line, recipes and calls of pymeshlab are derived
+`FilterOptions` is their only definition: the command line, recipes and calls of pymeshlab derive
 from it. A test compares its names, choices and defaults with those of the plugin.
 """
 
@@ -26,7 +26,7 @@ Size = Length | str | float
 
 
 class TransferKeywords(TypedDict, total=False):
-    """What a call may say about the transfer function; the fields of `FilterOptions`."""
+    """The fields of `FilterOptions` that define the transfer function and the Laplacian."""
 
     filter_type: FilterType
     feature_size: Size
@@ -59,7 +59,7 @@ class FilterKeywords(TransferKeywords, total=False):
 
 
 def checked_count(name: str, value: Any, least: int = 1) -> int:
-    """Return a count as an integer; raise OptionError unless it is one from `least` on."""
+    """Return a count as an int; raise OptionError unless it is an integer >= `least`."""
     limits = Limits(least, LARGEST_INTEGER)
     if not isinstance(value, Integral) or isinstance(value, bool) or not limits.contain(value):
         raise OptionError(f"{name} = {value}: must be an integer {limits}")

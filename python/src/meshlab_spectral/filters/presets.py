@@ -1,4 +1,4 @@
-"""Names for what users want, and the options that do it."""
+"""Presets: names for common tasks, and the options for them."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Literal, get_args
 
 Preset = Literal["smooth", "remove-details", "sharpen", "enhance", "caricature", "extract-details"]
 
-# Values as on the command line. Sizes are left to the user where the wish contains one.
+# Values as on the command line.
 PRESETS: dict[Preset, dict[str, str]] = {
     # The default size: about the finest waves that the mesh can represent.
     "smooth": {"filter_type": "low-pass", "feature_size": "auto"},
@@ -41,8 +41,8 @@ EQUALIZER_EDGES = (96, 48, 24, 12, 6, 3)
 def equalizer_points(gains: Sequence[float]) -> str:
     """Return the transfer function of an equalizer's sliders, as points for the filter.
 
-    There is a gain >= 0 for each of `EQUALIZER_EDGES`; what is larger than all of them keeps its
-    height. Raises ValueError when there are not as many, or one is negative or not finite.
+    `gains` has a gain >= 0 for each of `EQUALIZER_EDGES`; larger details keep their height. Raises
+    ValueError when their number differs, or one is negative or not finite.
     """
     if len(gains) != len(EQUALIZER_EDGES) or not all(0 <= gain < inf for gain in gains):
         raise ValueError(f"give {len(EQUALIZER_EDGES)} gains from 0 on, such as 1,1,2,1,0.5,0")

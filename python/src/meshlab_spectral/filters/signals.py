@@ -1,4 +1,4 @@
-"""Filters of numbers and colours at the vertices of a mesh, given as arrays."""
+"""Filters for scalars and colours at the vertices of a mesh, on arrays."""
 
 from __future__ import annotations
 
@@ -38,21 +38,20 @@ def filter_scalars(
     the coordinates, the result is ``F(sqrt(A)) values`` over the whole spectrum. The area-weighted
     mean of every connected component is kept; values are not clamped.
 
-    Sizes are a string such as "2%" of the bounding box diagonal or "6e" (mean edges), or a length
-    in the units of the mesh. With boundary="fixed", the values on the boundary stay.
+    A size is a string such as "2%" (of the bounding box diagonal) or "6e" (mean edges), or a length
+    in the units of the mesh. With boundary="fixed", values on the boundary do not change.
 
     Parameters
     ----------
     mesh_or_vertices
-        n x 3 coordinates, finite; or a mesh of pyvista, trimesh, meshio, Open3D or pymeshlab, of
-        triangles.
+        Finite n x 3 coordinates, or a pyvista, trimesh, meshio, Open3D or pymeshlab triangle mesh.
     faces
-        With coordinates: m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
+        With coordinates: m x 3 vertex indices of triangles, from 0 to n - 1; any topology.
     values
-        n numbers, or n x k for k fields, each filtered by itself. NaN is no data: it stays, and the
-        surface ends there for the rest. Values at vertices without faces are kept to the bit.
+        n numbers, or n x k for k fields, each filtered on its own. NaN means no data: it stays, and
+        the surface ends there for the others. Values at unreferenced vertices are kept exactly.
     options
-        All options below in one object, in place of those by name; others must have their defaults.
+        All options below in one object, instead of by name; others must have their defaults.
     gain
         As for `filter_mesh`.
     **named
@@ -60,11 +59,11 @@ def filter_scalars(
     Returns
     -------
     values : array
-        The filtered values, of the shape that was given.
+        The filtered values, in the shape of the input.
     report : dict
         Numbers: `rms_change` over the surface and `max_change`, in the units of the values;
         `error_estimate`, relative to their largest deviation from the means; and others.
-        "warnings" lists what fell short and what to do about it. Of n x k values, a list of the k
+        "warnings" lists problems and what to do about them. For n x k values, a list of the k
         reports as "columns".
 
     Raises
@@ -72,7 +71,7 @@ def filter_scalars(
     ValueError
         When an array has the wrong shape or type, or an index is out of range.
     OptionError
-        When an option is unknown, has an invalid value, or is not for values on a fixed shape.
+        When an option is unknown, has an invalid value, or applies only to shapes.
     FilterError
         When the mesh has no faces, no area or non-finite coordinates, a value is infinite, or all
         are NaN.
@@ -114,24 +113,24 @@ def filter_colors(
     gain: Callable[[float], float] | None = None,
     **named: Unpack[TransferKeywords],
 ) -> tuple[NDArray[Any], dict[str, Any]]:
-    """Filter colours at the vertices, as `filter_scalars` does red, green and blue.
+    """Filter colours at the vertices: red, green and blue as by `filter_scalars`.
 
     Parameters
     ----------
     mesh_or_vertices, faces, options, gain
         As for `filter_scalars`.
     colors
-        n x 3 or n x 4 integers from 0 to 255, or floating-point numbers from 0 to 1; the fourth,
-        alpha, is kept.
+        n x 3 or n x 4 integers from 0 to 255, or floating-point numbers from 0 to 1; the fourth
+        channel, alpha, is kept.
     **named
 
     Returns
     -------
     colors : array
-        The filtered levels, of the shape and in the range that was given: integers as uint8,
-        clamped and rounded; floating-point numbers in steps of 1/255, as MeshLab has them.
+        The filtered levels, in the shape and range of the input: integers as uint8, clamped and
+        rounded; floating-point numbers in steps of 1/255, as MeshLab stores them.
     report : dict
-        As from `filter_scalars`, changes in levels; and `clamped_values`.
+        As from `filter_scalars`, with changes in levels, and `clamped_values`.
     """
     V, F = mesh_arrays(mesh_or_vertices, faces)
     if colors is None:
@@ -153,10 +152,10 @@ def filter_colors(
 def _options_for(
     V: Any, F: Any, options: FilterOptions | None, named: Any, gain: Callable[[float], float] | None
 ) -> FilterOptions:
-    """Return the options of a call, which has to do without those for shapes."""
+    """Return the options of a call; raise OptionError for those that apply only to shapes."""
     for name in named:
         if name not in TransferKeywords.__annotations__:
-            FilterOptions.from_dict(named)  # an unknown one is told as such
+            FilterOptions.from_dict(named)  # an unknown name has an error of its own
             raise OptionError(
                 f"{name}: not for values on a fixed shape; choose "
                 f"{', '.join(TransferKeywords.__annotations__)}"
@@ -168,7 +167,7 @@ def _options_for(
 def _filtered(
     name: str, V: Any, F: Any, options: FilterOptions, signal: dict[str, NDArray[Any]]
 ) -> tuple[Any, dict[str, Any]]:
-    """Apply a filter of signals to a mesh with one: a MeshSet with the result, and the report."""
+    """Apply a filter to a signal on a mesh; return a MeshSet with the result, and the report."""
     mesh_set = mesh_set_of(V, F, signal)
     known = mesh_set.filter_parameter_values(name)
     all_given = options.pymeshlab_parameters(mesh_set.current_mesh())

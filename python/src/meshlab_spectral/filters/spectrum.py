@@ -41,8 +41,8 @@ class GeometrySpectrum:
         Surface integral of the squared length of the shape, length^4.
     frequencies
         Frequencies of the lowest harmonics, ascending, radians per length unit, 0 for constants. At
-        least `basis_size` of them, as groups of equal frequencies are not split, or all there are;
-        empty for 0.
+        least `basis_size` of them, since groups of equal frequencies are not split, or all that
+        exist; empty if `basis_size` is 0.
     amplitudes
         Amplitudes of these harmonics; 0 for constants.
     octave_feature_sizes
@@ -63,16 +63,16 @@ class GeometrySpectrum:
         Amplitudes in these bands of white vertex noise of height 1 across the surface; > 0.
     noise_height
         Root mean square height of the vertex noise that accounts for all details smaller than
-        `noise_feature_size`: noise, or what the mesh is too coarse to tell from noise. 0 if there
-        are none. Up to 20 % too large because of the shape's own details.
+        `noise_feature_size`: noise, or details too fine for the mesh to tell from noise. 0 if there
+        is none. Up to 20 % too large because of the shape's own details.
     noise_feature_size
         Feature size at which this noise floor begins; 0 if there is none.
     feature_size_50, feature_size_90, feature_size_99
         Feature sizes above which 50, 90 and 99 % of the energy lie.
     mismatch
-        Part of the energy that may belong to another octave: the estimated error of the energies
-        beyond the harmonics, and the energies of harmonics times their relative residuals. A
-        warning above 0.01.
+        Fraction of the energy that may belong to another octave: the estimated error of the
+        energies beyond the harmonics, and the energies of harmonics times their relative residuals.
+        Above 0.01 the filter warns.
     """
 
     diagonal: float
@@ -125,20 +125,19 @@ def geometry_spectrum(
     """Measure the geometry spectrum of a mesh.
 
     With the harmonics ``W phi_i = omega_i^2 D phi_i`` of the mesh and its shape U, an energy is a
-    sum of ``|phi_i^T D U|^2``: over octaves, to about a percent, for the whole spectrum and, if
-    asked for, over single harmonics for the lowest frequencies.
+    sum of ``|phi_i^T D U|^2``: over each octave of the whole spectrum, to about a percent, and, on
+    request, for each harmonic of the lowest frequencies.
 
     Parameters
     ----------
     mesh_or_vertices
-        n x 3 coordinates, finite; or a mesh of pyvista, trimesh, meshio, Open3D or pymeshlab, of
-        triangles.
+        Finite n x 3 coordinates, or a pyvista, trimesh, meshio, Open3D or pymeshlab triangle mesh.
     faces
-        With coordinates: m x 3 indices of the corners of triangles, from 0 to n - 1; any topology.
+        With coordinates: m x 3 vertex indices of triangles, from 0 to n - 1; any topology.
     basis_size
-        Number of harmonics measured individually, constants included, which takes most of the
-        time; less than the number of vertices not fixed if there are more than 2,000 of these.
-        0 for the octaves alone.
+        Number of harmonics to measure individually, including constants, which takes most of the
+        time; 0 for the octaves alone. Less than the number of vertices not fixed if there are more
+        than 2,000 of these.
     laplacian
         "intrinsic delaunay" works with any triangles; "cotangent" needs non-degenerate ones;
         "uniform" uses the connectivity only.
@@ -156,7 +155,7 @@ def geometry_spectrum(
     ValueError
         When an array has the wrong shape or type, or an index is out of range.
     OptionError
-        When `laplacian` or `boundary` is unknown, or `basis_size` is not an integer from 0 on.
+        When `laplacian` or `boundary` is unknown, or `basis_size` is not an integer >= 0.
     FilterError
         When the mesh has no faces, no area or non-finite coordinates, `basis_size` is too large, or
         a fixed boundary leaves nothing to measure, as in a flat mesh.

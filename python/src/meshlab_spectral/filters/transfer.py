@@ -32,7 +32,7 @@ class MeshLengths:
 
 
 def gain(options: FilterOptions, x: Array, lengths: MeshLengths | None = None) -> Array:
-    """Gain F of a filter, (stop_gain + (pass_gain - stop_gain) B(x))^power, or that of the user.
+    """Compute the gain of a filter, (stop_gain + (pass_gain - stop_gain) B(x))^power or custom.
 
     Parameters
     ----------
@@ -41,17 +41,17 @@ def gain(options: FilterOptions, x: Array, lengths: MeshLengths | None = None) -
     x
         Relative frequencies omega / omega_c = feature size / wavelength, >= 0.
     lengths
-        Those of the mesh, for a custom transfer function.
+        Lengths of the mesh, which a custom transfer function needs.
 
     Returns
     -------
     array
-        The gains. The constant mode of a surface always has gain 1, whatever F(0) is.
+        Gains at `x`. The constant mode of a surface always has gain 1, whatever the gain at 0.
 
     Raises
     ------
     OptionError
-        When a custom transfer function is wrong; the message says where.
+        When a custom transfer function is invalid; the message says where.
     PluginError
         When the plugin cannot be loaded.
     """

@@ -1,5 +1,5 @@
-"""The plugin: its libraries and everything that is not about a single filter.
+"""The plugin: its libraries, and everything that is not specific to one filter.
 
-`loading` makes it known to pymeshlab, `installation` to MeshLab; `limits` sets its number of
-threads and its memory, `versions` identifies it, `library` has its functions that are no filters.
+`loading` loads it into pymeshlab, `installation` installs it in MeshLab; `limits` sets its threads
+and memory, `versions` identifies it, `library` has its functions other than filters.
 """

@@ -1,9 +1,9 @@
-"""What pymeshlab leaves undone after a filter has thrown.
+"""Workarounds for what pymeshlab does wrong after a filter has thrown.
 
-pymeshlab 2025.7 goes on writing to the log of the MeshSet in which a filter has thrown last
-(cnr-isti-vclab/PyMeshLab#384), also when that MeshSet does not exist any more: the next load would
-crash. It is therefore kept alive until another one takes its place. And pymeshlab replaces the
-KeyboardInterrupt that has stopped a filter of this plugin by an exception of its own.
+pymeshlab 2025.7 keeps writing to the log of the MeshSet in which a filter last threw
+(cnr-isti-vclab/PyMeshLab#384), even after that MeshSet is destroyed: the next load would crash. It
+is therefore kept alive until another one takes its place. pymeshlab also replaces the
+KeyboardInterrupt that has stopped a filter of this plugin with an exception of its own.
 """
 
 from __future__ import annotations
@@ -17,18 +17,18 @@ _last_failed: Any = None
 
 
 def keep_failed(mesh_set: Any) -> None:
-    """Keep the MeshSet alive in which a filter has failed, in place of the one before."""
+    """Keep alive the MeshSet in which a filter has failed, instead of the previous one."""
     global _last_failed
     _last_failed = mesh_set
 
 
 def is_interrupt(error: Exception) -> bool:
-    """Whether a filter has stopped for a signal, which is all that stops one called by Python."""
+    """Whether a signal stopped the filter; nothing else cancels a filter called from Python."""
     return str(error).rstrip().endswith(_STOPPED)
 
 
 def kept_when_failed(method: Callable[..., Any]) -> Callable[..., Any]:
-    """Return a method of MeshSet, a filter, that keeps its MeshSet alive when it throws."""
+    """Wrap a filter, a method of MeshSet, so that its MeshSet is kept alive when it throws."""
 
     @functools.wraps(method)
     def keeping(mesh_set: Any, *arguments: Any, **parameters: Any) -> Any:

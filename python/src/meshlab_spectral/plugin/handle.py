@@ -27,9 +27,9 @@ def opened(plugin: Path) -> ctypes.CDLL:
 
 
 def let_signals_interrupt(plugin: Path) -> None:
-    """Let the plugin's filters run Python's handlers of signals, so that Ctrl-C stops them."""
+    """Let the plugin's filters run Python's signal handlers, so that Ctrl-C stops them."""
     function = getattr(opened(plugin), "meshlab_spectral_check_signals", None)
-    if function is not None:  # a plugin of another version is asked for with a message of its own
+    if function is not None:  # else it is of another version, which is reported elsewhere
         python = ctypes.pythonapi
         steps = (python.PyGILState_Ensure, python.PyErr_CheckSignals, python.PyGILState_Release)
         function.argtypes, function.restype = [ctypes.c_void_p] * len(steps), None

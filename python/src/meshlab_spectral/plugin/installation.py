@@ -49,7 +49,7 @@ HOSTS = (SINGLE, DOUBLE)
 
 @dataclass(frozen=True)
 class Change:
-    """What was done to one file, or would be done in a dry run.
+    """A change to one file, made or, in a dry run, only planned.
 
     Attributes
     ----------

@@ -16,8 +16,8 @@ from meshlab_spectral.plugin.loading import loaded_plugin
 def last_warnings() -> list[str]:
     """Return the warnings of the plugin's latest filter run in this thread, in its own words.
 
-    pymeshlab drops the strings of a filter's report. They are sentences without the final full
-    stop, none before the first run and after a failed one.
+    They are sentences without the final full stop; none before the first run or after a failed one.
+    pymeshlab itself drops the strings of a filter's report.
 
     Raises PluginError when pymeshlab has loaded another copy of the plugin than `load` would, or
     the plugin is older than this package.
@@ -30,7 +30,7 @@ def last_warnings() -> list[str]:
 def last_summary() -> str:
     """Return what the plugin's latest filter run in this thread found and did, in one line.
 
-    Empty where the numbers of the report say it all. Errors are those of `last_warnings`.
+    Empty if the numbers of the report say it all. Errors are those of `last_warnings`.
     """
     text: bytes = function_of(loaded_plugin(), "meshlab_spectral_summary", ())()
     return text.decode()
@@ -38,7 +38,7 @@ def last_summary() -> str:
 
 @functools.cache
 def function_of(plugin: Path, name: str, arguments: Sequence[Any]) -> Any:
-    """Return a function of the loaded plugin that returns a text; errors as `last_warnings`."""
+    """Return a text-valued function of the loaded plugin; errors are those of `last_warnings`."""
     try:
         function = getattr(opened(plugin), name)
     except OSError as error:

@@ -32,14 +32,15 @@ def set_threads(count: int | None) -> None:
 def set_memory_limit(limit: int | None) -> None:
     """Limit the resident memory of this process, for all filters of the plugin started from now on.
 
-    A filter that would need more is refused with the numbers, before it takes the memory. The limit
-    is stored in the environment variable MESHLAB_SPECTRAL_MEMORY, so child processes inherit it.
+    A filter that would need more is refused, with the numbers, before it allocates the memory. The
+    limit is stored in the environment variable MESHLAB_SPECTRAL_MEMORY, so child processes inherit
+    it.
 
     Parameters
     ----------
     limit
-        Bytes, above zero, what the process has already taken included; None, the default: as much
-        as the system has free.
+        Bytes, above zero, including what the process already uses; None, the default: as much as
+        the system has free.
 
     Raises
     ------

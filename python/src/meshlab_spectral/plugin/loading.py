@@ -27,7 +27,7 @@ PYMESHLAB_VERSION = "2025.7.post1"
 
 
 def library_name(plugin: str, platform: str = sys.platform) -> str:
-    """Return the file name of a plugin's library, like those of MeshLab's own on a platform."""
+    """Return the file name of a plugin's library, named like MeshLab's own on the platform."""
     return f"{plugin}.dll" if platform == "win32" else f"lib{plugin}.so"
 
 

@@ -35,14 +35,14 @@ from meshlab_spectral.filters.spectrum import measure
 from meshlab_spectral.filters.tables import TABLES
 from meshlab_spectral.plugin.limits import set_memory_limit
 
-# In every error of the plugin about memory.
+# Matches every error of the plugin about memory.
 _TOO_MUCH_MEMORY = re.compile(r"memory, (of which )?\S+ \w+ are free")
 
 
 def _report_of(job: dict[str, Any], on_stage: StageCallback) -> dict[str, Any]:
-    """Do a job."""
+    """Do a job, and return its report."""
     source, task = Path(job["source"]), job["task"]
-    verbose = job.get("verbose", True)  # the log has the progress within a mesh
+    verbose = job.get("verbose", True)  # progress within a mesh is read from the log
     if task == "spectrum":
         on_stage("reading")
         V, F = load_arrays(source, job.get("mesh"))
@@ -62,9 +62,9 @@ def _report_of(job: dict[str, Any], on_stage: StageCallback) -> dict[str, Any]:
 
 
 def _read(jobs: queue.SimpleQueue[str]) -> None:
-    """Take jobs from standard input, and end the process with it.
+    """Queue the jobs from standard input, and end the process at its end.
 
-    A thread can, although MeshLab cannot be interrupted: pymeshlab releases the interpreter lock.
+    A thread can do so although MeshLab cannot be interrupted: pymeshlab releases the GIL.
     """
     for line in sys.stdin:
         jobs.put(line)

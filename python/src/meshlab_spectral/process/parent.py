@@ -28,17 +28,17 @@ from meshlab_spectral.plugin.limits import THREADS
 
 ProgressCallback = Callable[[str, float | None], None]
 
-# Takes the lines of MeshLab's log but for its progress.
+# Receives MeshLab's log, except for its progress.
 LOG = logging.getLogger("meshlab_spectral.meshlab")
 
 _LOG_BEGIN = re.compile(r"^LOG: \d+ ")
 _LOG_LINE = re.compile(_LOG_BEGIN.pattern + r"(?P<stage>.*?)\s+\[ (?P<percent>\d+)% \]")
 _KEPT_LOG_LINES = 30
-# Seconds between looks at the child, in which its memory can grow by some 100 MB.
+# Seconds between polls of the child, within which its memory can grow by some 100 MB.
 _LOOK_INTERVAL = 0.05
 # By default glibc returns the memory of every matrix to the system and requests it again for the
-# next one, which costs a tenth of the time for a small mesh, a fifth with two processes. These
-# settings keep up to 128 MiB.
+# next one, which is slow for small meshes, more so with several processes. These settings keep up
+# to 128 MiB.
 _ALLOCATOR = {
     "MALLOC_MMAP_THRESHOLD_": str(32 * 2**20),
     "MALLOC_TRIM_THRESHOLD_": str(128 * 2**20),
@@ -47,7 +47,7 @@ _ALLOCATOR = {
 
 @dataclass(frozen=True)
 class JobLimits:
-    """Limits of a job, beyond which its process is ended.
+    """Limits of a job, beyond which its process is killed.
 
     Attributes
     ----------
@@ -68,7 +68,7 @@ NO_LIMITS = JobLimits()
 class Answer:
     """Result of a job: the filter's report and the peak memory of the process in bytes.
 
-    The peak is the highest of the looks at the process, which are 0.05 s apart or closer.
+    The peak is that of samples taken at least every 0.05 s.
     """
 
     report: dict[str, Any]
@@ -88,7 +88,7 @@ class MeshLabProcess:
     """
 
     def __init__(self, threads: int | None = None) -> None:
-        environment = {**os.environ, **_ALLOCATOR}  # Dask workers have opposite settings
+        environment = {**os.environ, **_ALLOCATOR}  # Dask workers set the opposite
         if threads is not None:
             environment[THREADS] = str(threads)
         self._child = subprocess.Popen(
@@ -102,7 +102,7 @@ class MeshLabProcess:
             env=environment,
         )
         self._log: deque[str] = deque(maxlen=_KEPT_LOG_LINES)
-        # What the child sends: stages and the answer of a job; None at its end.
+        # Messages from the child: stages and the answer of a job; None at its end.
         self._messages: queue.SimpleQueue[dict[str, Any] | None] = queue.SimpleQueue()
         self._readers = [
             threading.Thread(target=read, daemon=True)
@@ -144,7 +144,7 @@ class MeshLabProcess:
         self.usable = False  # until the job has succeeded
         assert self._child.stdin is not None
         with contextlib.suppress(OSError):  # the child has died: reported below
-            # The plugin refuses what it knows to need more; what it does not know of is seen here.
+            # The plugin refuses work beyond the limit; what it cannot foresee is caught below.
             self._child.stdin.write(json.dumps({**job, "memory": limits.memory}) + "\n")
             self._child.stdin.flush()
         answer, peak_memory = self._await_answer(on_progress or _ignore, limits)
@@ -171,7 +171,7 @@ class MeshLabProcess:
 
     def memory(self) -> int:
         """Resident memory of the child in bytes; 0 if it is gone."""
-        import psutil  # takes a while, as does the start of the child
+        import psutil  # a slow import, while the child is starting
 
         try:
             return int(psutil.Process(self.pid).memory_info().rss)
@@ -181,7 +181,7 @@ class MeshLabProcess:
     def _await_answer(
         self, on_progress: ProgressCallback, limits: JobLimits
     ) -> tuple[dict[str, Any], int]:
-        """Return the answer to a job and the peak memory meanwhile."""
+        """Return the answer to a job, and the peak memory during it."""
         begin = time.monotonic()
         peak_memory = 0
         while True:
@@ -222,7 +222,7 @@ class MeshLabProcess:
         return error
 
     def _await_end(self) -> int:
-        """Return the exit status of the child, once all that it has sent is read."""
+        """Return the exit status of the child, once everything that it sent has been read."""
         status = self._child.wait()
         for reader in self._readers:
             reader.join()
@@ -231,7 +231,7 @@ class MeshLabProcess:
     def _read_answers(self) -> None:
         assert self._child.stdout is not None
         for line in self._child.stdout:
-            if line.endswith("\n"):  # else the child was ended while it wrote
+            if line.endswith("\n"):  # else the child was killed while writing
                 self._messages.put(json.loads(line))
         self._messages.put(None)
 

@@ -30,16 +30,16 @@ def write_in_child(
     target
         The file to write, atomically. An existing one is replaced.
     options
-        Those of the filter, see `meshes.filter_to_scratch`, or of `basis.basis_to_scratch`.
+        Options for `meshes.filter_to_scratch` or `basis.basis_to_scratch`.
     on_progress
         Called with the current stage and the fraction done, 0 to 1, or None if unknown.
     mesh
-        Only the mesh of this name; by default all of the file.
+        Only the mesh with this name; by default all meshes of the file.
 
     Returns
     -------
     dict
-        The filter's report; of harmonics the numbers of "vertices" and "harmonics".
+        The filter's report; for harmonics, the numbers of "vertices" and "harmonics".
 
     Raises
     ------
@@ -63,9 +63,9 @@ def measure_in_child(
     mesh: str | None = None,
     more: dict[str, Any] | None = None,
 ) -> dict[str, Any]:
-    """Measure a mesh file in a child process: its spectrum, or without options `info.mesh_info`.
+    """Measure a mesh file in a child process: its spectrum or, without options, `mesh_info`.
 
-    Parameters and errors are those of `write_in_child`; `more` is for the child.
+    Parameters and errors are those of `write_in_child`; `more` extends the child's job.
     """
     check_source(source)
     task = {"task": options.TABLE, "options": options.as_dict()} if options else {"task": "info"}
