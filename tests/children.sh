@@ -1,6 +1,6 @@
 # shellcheck shell=bash
-# For bash scripts to source: programs that end when a signal ends the script, with all that they
-# have started and mounted. The script's trap on EXIT calls end_child.
+# For bash scripts to source: runs programs that end when a signal ends the script, with all that
+# they have started and mounted. The script's trap on EXIT calls end_child.
 
 child='' child_signal=''
 

@@ -8,12 +8,12 @@
 #   --demo           `make demo` alone
 #   --user           as a user with sudo, not as root
 #   --ci             then .ci/run too, in a second clone
-#   --shared FOLDER  shown beside the clone as ../shared, read-only (meshes of the benchmarks)
-#   ROOT             new folder for the Debian system, kept for a look; without it a temporary one,
+#   --shared FOLDER  mounted as ../shared of the clone, read-only (meshes of the benchmarks)
+#   ROOT             new folder for the Debian system, to be kept; without it a temporary one,
 #                    deleted afterwards (4 GB either way)
 #
-# Needs root. What the network needs (mirror, apt and pip settings, certificates, name servers) is
-# taken from this machine.
+# Needs root. Network settings (mirror, apt and pip settings, certificates, name servers) are taken
+# from this machine.
 set -euo pipefail
 
 usage() { sed -n '2,/^set /{s/^# \{0,1\}//p}' "$0" >&2; exit 2; }
@@ -69,7 +69,7 @@ for name in $(compgen -e | grep -E '^(PIP_(CERT|INDEX_URL|EXTRA_INDEX_URL|TRUSTE
     settings+=("$name=${!name}")
 done
 
-# In namespaces of its own, so that the mounts and whatever still runs go when it ends, in any way.
+# In namespaces of its own, so that mounts and remaining processes vanish however it ends.
 inside() {
     # A mount point as its root: without one, .ci/run could not have such namespaces in there.
     mount --bind "$root" "$root"

@@ -33,7 +33,7 @@ python try_wheel.py
 meshlab-spectral install
 meshlab-spectral install --uninstall
 END
-# In namespaces of its own, so that the mount and whatever still runs go when it ends, in any way.
+# In namespaces of its own, so that the mount and remaining processes vanish however it ends.
 unshare --mount --pid --fork --kill-child bash -c \
     'mount --bind "$1" "$1" && mount -t proc proc "$1/proc" && exec chroot "$1" bash /root/try.sh' - "$root"
 echo "=== the wheel works in $suite"

@@ -1,6 +1,6 @@
-"""The eigenproblem that bench_basis.py gives to every program, and what it holds against a result.
+"""The eigenproblem that bench_basis.py gives to every program, and the check of a result.
 
-Arrays lie in a folder as they lie in memory, one a file, as bench_basis.cpp writes them.
+Arrays are raw binary files in a folder, one array each, as bench_basis.cpp writes them.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 Pairs = tuple[Array, Array]
-"""k eigenvalues and n x k eigenvectors, in any order and of any length."""
+"""k eigenvalues and n x k eigenvectors, in any order and of any norm."""
 
 
 @dataclass(frozen=True)
@@ -29,9 +29,9 @@ class Problem:
 
     @property
     def shift(self) -> float:
-        """Mean distance of eigenvalues by Weyl's law: W + shift D is what solvers factorize.
+        """Mean spacing of eigenvalues by Weyl's law; solvers factorize W + shift D.
 
-        In proportion to the spectrum, whatever the unit of length, and far above round-off.
+        Proportional to the spectrum, whatever the unit of length, and far above round-off.
         """
         return float(4 * np.pi / self.D.sum())
 
@@ -60,7 +60,7 @@ def write_pairs(folder: pathlib.Path, pairs: Pairs) -> None:
 
 
 def read_pairs(folder: pathlib.Path, D: Array) -> Pairs:
-    """Read a result: eigenvalues ascending, eigenvectors of length 1 with the masses D."""
+    """Read a result: eigenvalues ascending, eigenvectors of D-norm 1."""
     lam = np.fromfile(folder / "lambda")
     Phi = np.fromfile(folder / "Phi").reshape(len(lam), len(D)).T
     order = np.argsort(lam)
@@ -70,30 +70,30 @@ def read_pairs(folder: pathlib.Path, D: Array) -> Pairs:
 
 @dataclass(frozen=True)
 class Check:
-    """What is wrong with a result of k pairs."""
+    """The errors of a result of k pairs."""
 
     residual: float
-    """Largest |D^-1/2 (W phi - lambda D phi)| / lambda of all but the constants."""
+    """Largest |D^-1/2 (W phi - lambda D phi)| / lambda of all but the constant modes."""
 
     difference: float
-    """Largest relative difference of an eigenvalue from the reference's of the same number."""
+    """Largest relative error of an eigenvalue, against the reference's of the same index."""
 
     missing: int
-    """Dimensions of the span of the k lowest harmonics that it does not have."""
+    """Number of dimensions that it lacks of the span of the k lowest harmonics."""
 
 
 def check(problem: Problem, constants: int, k: int, found: Pairs, reference: Pairs) -> Check:
-    """Measure a result in the same way whoever made it.
+    """Measure a result, in the same way for every program.
 
     Parameters
     ----------
     constants
         Number of constant modes, whose eigenvalue 0 has no relative error.
     k
-        How many pairs were asked for; the lowest of them are looked at.
+        Number of pairs requested; only the lowest k are checked.
     found, reference
-        As from `read_pairs`. The reference may have more than k pairs, where k would cut a group of
-        equal eigenvalues; its number is certified by inertia.
+        As from `read_pairs`. The reference may have more than k pairs, where k would split equal
+        eigenvalues; their number is certified by inertia.
     """
     lam, Phi = found[0][:k], found[1][:, :k]
     root = np.sqrt(problem.D)
@@ -102,7 +102,7 @@ def check(problem: Problem, constants: int, k: int, found: Pairs, reference: Pai
     common = min(len(lam), len(reference[0]))
     compared = slice(constants, common)
     differences = np.abs(lam[compared] / reference[0][compared] - 1)
-    # A pair that is there twice, or that is not an eigenpair, does not add to the common span.
+    # A duplicate, or a pair that is not an eigenpair, adds nothing to the common span.
     overlaps = np.linalg.svd(
         (root[:, None] * reference[1]).T @ (root[:, None] * Phi), compute_uv=False
     )

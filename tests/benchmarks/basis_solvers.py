@@ -2,23 +2,23 @@
 
 usage: basis_solvers.py NAME FOLDER K
 
-Reads the problem from FOLDER, writes the pairs there and prints what they took as JSON, or
-{"skipped": the reason} where a package is missing. Importing, reading and everything else that a
-program does before it first sees k is not in the time.
+Reads the problem from FOLDER, writes the pairs there and prints their cost as JSON, or
+{"skipped": the reason} if a package is missing. Times exclude imports, reading and everything else
+that a program does before it first sees k.
 
-Every program has the best settings that were found for it on the 40,000-vertex dragon:
+Every program has the best settings found for it on the 40,000-vertex dragon:
 
 - eigsh in shift-invert mode. ARPACK's tol bounds the residual of the inverted operator, and
   eigenvectors are purified, so that residuals come out below 1e-10. From 1e-4 to 0 tol changes
-  neither the number of solves nor the residuals: it is given as 1e-8.
+  neither the number of solves nor the residuals: it is set to 1e-8.
 - SuperLU "as it is" is what eigsh does when asked for sigma, with its own ncv, 2k + 1. The other
-  two have ncv = 1.5k, which takes a tenth fewer solves and less time than 2k or 1.2k.
-- SuperLU in symmetric mode, with the order of A + A^T and without pivoting, which a positive
+  two have ncv = 1.5k, which needs a tenth fewer solves and less time than 2k or 1.2k.
+- SuperLU in symmetric mode, ordered by A + A^T and without pivoting, which a positive
   definite matrix allows: a solve takes half the time.
-- CHOLMOD simplicial, METIS order: solves with one right-hand side are faster so than supernodal
+- CHOLMOD simplicial, METIS order: with one right-hand side its solves are faster than supernodal
   ones.
-- LaPy has no tolerance to choose (it is 0) and its own shift. It builds W and D itself, the same
-  ones up to round-off.
+- LaPy has a fixed tolerance (0) and its own shift. It builds W and D itself, equal up to
+  round-off.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ from collections.abc import Callable
 from basis_problem import Array, Pairs, Problem, read_problem, write_pairs
 
 Work = Callable[[], Pairs]
-"""What is timed."""
+"""The part of a program that is timed."""
 
 TOLERANCE = 1e-8
 SEED = 1
@@ -78,7 +78,7 @@ def lapy_cholmod(problem: Problem, k: int) -> Work:
 
 
 def meshlab_spectral(problem: Problem, k: int) -> Work:
-    """From arrays to arrays, through pymeshlab and the plugin: W and D are in this time."""
+    """From arrays to arrays, through pymeshlab and the plugin: the time includes W and D."""
     import meshlab_spectral
 
     meshlab_spectral.load()
@@ -106,7 +106,7 @@ SOLVERS: dict[str, Callable[[Problem, int], Work]] = {
 def eigsh_over(
     problem: Problem, k: int, factorized: Callable[[object], Callable[[object], object]]
 ) -> Work:
-    """Prepare eigsh with a factorization of W + s D of our choice."""
+    """Prepare eigsh with a chosen factorization of W + s D."""
     import scipy.sparse
     import scipy.sparse.linalg as linalg
 
@@ -139,14 +139,14 @@ def lapy_eigs(problem: Problem, k: int, use_cholmod: bool) -> Work:
 
 
 def start(problem: Problem) -> Array:
-    """Make the vector that ARPACK starts from."""
+    """Make the start vector of ARPACK."""
     import numpy as np
 
     return np.random.default_rng(SEED).uniform(-1, 1, len(problem.D))
 
 
 def peak_megabytes() -> float:
-    """Peak memory of this program; ru_maxrss would begin with that of the one that started it."""
+    """Peak memory of this process; ru_maxrss would start from the peak of its parent."""
     status = pathlib.Path("/proc/self/status").read_text()
     return int(status.split("VmHWM:")[1].split()[0]) / 1024
 

@@ -1,11 +1,11 @@
-"""Artefacts that strong filters leave, by step schemes, as a table.
+"""Artefacts that strong filters leave, by step scheme, as a table.
 
 usage: bench_artefacts.py [MESH...]
 
 Every cell holds the root mean square and the maximum of the part of a shape above twice the
 filter's cutoff, in the shape's own spectrum (meshlab_spectral.measure_artefacts), both in diagonals
-of the filter's input. The column "input" is the unfiltered mesh itself, by which one judges the
-others. Meshes default to the dragon and the angel beside the repository; absent ones are skipped.
+of the filter's input. The column "input" is the unfiltered mesh itself, for comparison. Meshes
+default to the dragon and the angel next to the repository; absent ones are skipped.
 """
 
 import pathlib
@@ -57,7 +57,7 @@ def cell(meshes: pymeshlab.MeshSet, feature_size: float, diagonal: float) -> str
 def filtered_cell(
     mesh: pathlib.Path, feature_size: float, diagonal: float, options: dict[str, Any]
 ) -> str:
-    """Filter a mesh and measure the result; a refusal in short."""
+    """Filter a mesh and measure the result; abbreviate a refusal."""
     meshes = loaded(mesh)
     try:
         meshes.apply_coord_spectral_filter_fractional(

@@ -1,9 +1,9 @@
 // The C++ part of bench_basis.py, which runs it: bases of manifold harmonics of a mesh.
-//   bench_basis matrices MESH.ply FOLDER    W and D of the cotangent Laplacian, for everyone
-//   bench_basis slices MESH.ply FOLDER K    our basis, slice by slice (core/truncated_basis.h)
-//   bench_basis spectra MESH.ply FOLDER K   one run of Spectra over our Cholesky factorization
-// Arrays go to FOLDER as they lie in memory, one a file; figures go to standard output as JSON.
-// Times are those of the basis alone, factorizations included, without W and D.
+//   bench_basis matrices MESH.ply FOLDER    W and D of the cotangent Laplacian, for every program
+//   bench_basis slices MESH.ply FOLDER K    our basis (core/harmonics/truncated_basis.h)
+//   bench_basis spectra MESH.ply FOLDER K   Spectra, over our Cholesky factorization
+// Arrays go to FOLDER as raw binary files, one each; figures go to standard output as JSON.
+// Times are those of the basis, including factorizations but not W and D.
 
 #include <Spectra/SymEigsSolver.h>
 
@@ -29,7 +29,7 @@ using namespace spectral;
 namespace {
 
 /// Residual of Spectra's Ritz pairs of the inverse operator. From 1e-6 to 1e-10 it changes neither
-/// the time nor the residuals of W phi = lambda D phi: 40,000 vertices converge all at once.
+/// the time nor the residuals of W phi = lambda D phi: on 40,000 vertices all converge at once.
 constexpr double kSpectraTolerance = 1e-8;
 constexpr int kSpectraRestarts = 1000;
 
@@ -60,7 +60,7 @@ class InverseOperator {
 };
 
 Pairs spectraPairs(const MeshLaplacian& mesh, Index k) {
-    // The mean distance of eigenvalues, by Weyl's law: as bench_basis.py has it.
+    // The mean spacing of eigenvalues by Weyl's law, as in basis_problem.py.
     const double shift = 4.0 * kPi / mesh.laplacian.D.sum();
     InverseOperator op(mesh.laplacian, shift);
     Spectra::SymEigsSolver<InverseOperator> solver(op, k, std::min(2 * k, op.rows()));

@@ -2,22 +2,22 @@
 
 usage: bench_basis.py [--help] [--mesh MESH] [-k K] [--programs NAME,NAME...] ...
 
-Everyone gets the k lowest eigenpairs of W phi = lambda D phi of the same mesh, with the cotangent
-Laplacian, free (Neumann) boundary and lumped masses: the same numbers for everyone that takes
-matrices (LaPy builds its own, equal up to round-off). What is fair, and what is measured:
+Every program computes the k lowest eigenpairs of W phi = lambda D phi of the same mesh, with the
+cotangent Laplacian, free (Neumann) boundary and lumped masses; W and D are given (LaPy builds its
+own, equal up to round-off). How the comparison is made fair, and what is measured:
 
-- Relative residuals of at most 1e-8 are asked for. They are measured here, in the same way for
-  everyone (basis_problem.py), as are the eigenvalues and the pairs missing.
+- Relative residuals of at most 1e-8 are requested. They are measured here, in the same way for
+  every program (basis_problem.py), as are the errors of eigenvalues and the missing pairs.
 - Times begin with the factorization and end with the eigenvectors; reading the mesh, building W and
-  D, and importing are outside, except where a row says "from arrays to arrays".
-- Everyone has the same cores (--cores), for threads of its own as for those of BLAS (unless
-  --blas-threads says less), and a process of its own for every run. The programs take turns, so
-  that a change of the machine's pace meets all of them. Ratios compare the best times.
-- Memory is the peak of the process above what it had before it began; n k doubles of it are the
-  basis itself.
-- The settings of the other programs, and why, are in basis_solvers.py; Spectra runs over our own
-  Cholesky factorization with ncv = 2k, as its documentation has it (bench_basis.cpp).
-- geogram is not here: Debian 12 has no package, and the one on PyPI is compiled without the loading
+  D, and importing are excluded, except where a row says "from arrays to arrays".
+- Every program has the same cores (--cores), for its own threads and for those of BLAS (unless
+  --blas-threads says less), and a new process for every run. The programs take turns, so that a
+  change of the machine's speed affects all of them. Ratios compare the best times.
+- Memory is the increase of the process's peak over its memory at the start; n k doubles of it are
+  the basis itself.
+- The settings of the other programs are explained in basis_solvers.py; Spectra uses our own
+  Cholesky factorization with ncv = 2k, as its documentation recommends (bench_basis.cpp).
+- geogram is missing: Debian 12 has no package, and the one on PyPI is compiled without the loading
   of ARPACK, which its manifold harmonics need.
 
 A program that is not installed is skipped, with the reason.
@@ -49,7 +49,7 @@ BINARY = REPOSITORY / "build" / "tests" / "benchmarks" / "bench_basis"
 
 @dataclass(frozen=True)
 class Program:
-    """One row: who computes, on how many cores (all that there are when None), how many pairs."""
+    """One row: the program, the number of its cores (None: all) and of its pairs."""
 
     title: str
     task: str
@@ -59,7 +59,7 @@ class Program:
 
 
 PACKAGES = ("numpy", "scipy", "scikit-sparse", "lapy", "cholespy")
-"""What may make a difference; their versions are printed."""
+"""Packages that may affect the results; their versions are printed."""
 
 OURS = "ours"
 PROGRAMS = {
@@ -78,7 +78,7 @@ PROGRAMS = {
 
 @dataclass
 class Row:
-    """What the runs of a program gave."""
+    """The results of the runs of a program."""
 
     k: int
     seconds: list[float] = field(default_factory=list)
@@ -113,7 +113,7 @@ class Bench:
         return took, read_pairs(self.folder, self.problem.D)
 
     def started(self, command: list[object], cores: int) -> dict[str, float]:
-        """Run a command on the first of the cores; the JSON of its last line."""
+        """Run a command on the first `cores` cores; return the JSON of its last line."""
         own = sorted(os.sched_getaffinity(0))[:cores]
         pinned = ["taskset", "--cpu-list", ",".join(map(str, own)), *map(str, command)]
         blas = str(self.options.blas_threads or len(own))
@@ -126,7 +126,7 @@ class Bench:
 
 
 def measured(bench: Bench, names: list[str]) -> tuple[dict[str, Row], dict[str, str]]:
-    """Let the programs take turns; the rows, and why a program has none."""
+    """Run the programs in turns; return the rows, and why a program has none."""
     options = bench.options
     rows: dict[str, Row] = {}
     reasons: dict[str, str] = {}
@@ -154,7 +154,7 @@ def measured(bench: Bench, names: list[str]) -> tuple[dict[str, Row], dict[str, 
 
 
 def table_of(rows: dict[str, Row]) -> Table:
-    """Lay the rows out; Markdown, for the README."""
+    """Format the rows as a Markdown table, for the README."""
     table = Table(box=MARKDOWN)
     for title in ("program", "k", "seconds", "median", "ratio", "residual", "eigenvalues"):
         table.add_column(title, justify="left" if title == "program" else "right", no_wrap=True)
@@ -178,7 +178,7 @@ def table_of(rows: dict[str, Row]) -> Table:
 
 
 def versions() -> str:
-    """Name the packages that are installed."""
+    """List the installed packages and their versions."""
     present = {package.name.lower() for package in importlib.metadata.distributions()}
     return ", ".join(
         f"{name} {importlib.metadata.version(name)}"

@@ -5,7 +5,7 @@ usage: bench_batch.py [--meshes 1000] [--workers 2] [--vertices 5000]
 The meshes are tori with noise, made in a temporary folder, and filtered with the defaults. One
 process: a plain loop of pymeshlab that loads, filters and saves, without hashes, report or safe
 writing. The batch runs with one worker and with several; meanwhile the memory of all its processes
-is looked at twice a second.
+is sampled twice a second.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def seconds_of_loop(source: Path, target: Path) -> float:
 
 
 class MemoryLog(threading.Thread):
-    """Resident bytes of the processes below one, by process, over time."""
+    """Resident bytes of the descendants of a process, by process, over time."""
 
     def __init__(self, pid: int) -> None:
         super().__init__(daemon=True)

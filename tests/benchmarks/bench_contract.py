@@ -1,13 +1,13 @@
-"""Every filter of the plugin on real meshes, at three settings: what comes of it.
+"""The outcome of every filter of the plugin on real meshes, at three settings.
 
 usage: bench_contract.py [--timeout SECONDS] [--most VERTICES] [--json FILE] [MESH ...]
 
 One row per call: mesh, filter, setting, outcome, seconds, and the peak memory of the process above
 that before the call. Errors and warnings follow the row in full. An outcome is "ok", "warning",
-"error" (an exception of pymeshlab that leaves the mesh as it was), or "FAILED": anything else, such
+"error" (an exception of pymeshlab that leaves the mesh unchanged), or "FAILED": anything else, such
 as a crash, coordinates that are not finite, or a changed mesh. The exit code is 1 if any failed.
 
-MESH defaults to everything in ../shared/data beside the repository.
+MESH defaults to everything in ../shared/data next to the repository.
 """
 
 from __future__ import annotations
@@ -71,9 +71,9 @@ CALLS = [
     Call("spectrum", "large", {"basis_size": 300}),
     Call("spectrum", "fixed", {"boundary": "fixed"}),
 ]
-# What a filter may change; of the rest, positions and faces are compared to the bit.
+# Filters that may move vertices; the others must keep positions and faces to the bit.
 MOVES = {"filter", "denoise", "equalizer"}
-# Filters of a signal that the files need not have: it is the height.
+# Filters of a signal, for which the height is used: files need not have one.
 SIGNALS = {"quality", "color"}
 
 _failed: list[Any] = []  # pymeshlab may crash when a MeshSet with an error is destroyed
@@ -145,7 +145,7 @@ def make_calls(path: str, first: int, most: int) -> None:
 
 
 def rows_of(path: str, timeout: float, most: int) -> Iterator[dict[str, Any]]:
-    """Give the rows of a mesh; a process that crashes or hangs is replaced."""
+    """Yield the rows of a mesh; a process that crashes or hangs is replaced."""
     first = 0
     while first < len(CALLS):
         command = [sys.executable, __file__, path, "--first", str(first), "--most", str(most)]
@@ -188,7 +188,7 @@ def rows_of(path: str, timeout: float, most: int) -> Iterator[dict[str, Any]]:
 
 
 def default_meshes() -> list[str]:
-    """Return the meshes beside the repository, smallest file first."""
+    """Return the meshes next to the repository, smallest file first."""
     folder = pathlib.Path(__file__).resolve().parents[3] / "shared" / "data"
     files = [file for file in folder.iterdir() if file.suffix != ".md"]
     return [str(file) for file in sorted(files, key=lambda file: file.stat().st_size)]

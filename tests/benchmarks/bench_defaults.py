@@ -1,4 +1,4 @@
-"""The run that most users make: open a mesh, leave everything as it is, press Apply.
+"""What most users do: open a mesh, leave every parameter at its default, press Apply.
 
 usage: bench_defaults.py [--setting NAME] [--reference [TIMES]] [--timeout SECONDS] [MESH ...]
 
@@ -6,11 +6,11 @@ One row per mesh, each measured in a process of its own: seconds of the filter c
 three, or of as many as fit into a fifth of a second), its ratios to MeshLab's Taubin smoothing with
 50 and 10 steps and to its Laplacian smoothing with 100 on the same mesh in the same process, the
 work, the process's peak memory above that before, and the warnings. With --reference also the
-error, in tolerances: estimated; real, over all but 0.1 % of the filtered surface, and of the
-input's; and at most. Real ones are against another scheme: the paper's with 16 (TIMES) times the
+error, in tolerances: the estimate; the true error, on all but 0.1 % of the filtered surface and of
+the input's; and its maximum. The truth is another scheme: the paper's with 16 (TIMES) times the
 steps, at most 500, and with twice as many, extrapolated (twice the second minus the first).
 
-MESH defaults to every mesh with faces in ../shared/data beside the repository.
+MESH defaults to every mesh with faces in ../shared/data next to the repository.
 """
 
 from __future__ import annotations
@@ -46,13 +46,13 @@ SMOOTHINGS: dict[str, tuple[str, int]] = {
     "Taubin 10": ("apply_coord_taubin_smoothing", 10),
     "Lapl. 100": ("apply_coord_laplacian_smoothing", 100),
 }
-LARGE = 5000  # vertices; the ratio of smaller ones is that of calls
-LONG = 2.0  # seconds; a call that takes longer is timed once, others
-LEAST_CALLS = 3  # times, and until they have taken, together,
-ENOUGH = 0.2  # seconds: a single millisecond says little
+LARGE = 5000  # vertices; on smaller meshes the ratio is that of the overheads of calls
+LONG = 2.0  # seconds; a call that takes longer is timed once,
+LEAST_CALLS = 3  # others at least so many times,
+ENOUGH = 0.2  # and for so many seconds in all: a single millisecond says little
 UNRESOLVED_AREA = 1e-3
 REFERENCE_STEPS = 16  # times those of the result
-MOST_STEPS = 1000  # that the filter takes
+MOST_STEPS = 1000  # the maximum of the filter
 
 
 def peak_megabytes() -> float:
@@ -62,7 +62,7 @@ def peak_megabytes() -> float:
 
 
 def forget_peak() -> float:
-    """Have the peak begin anew; return the memory that is resident now, in megabytes."""
+    """Reset the peak; return the memory that is resident now, in megabytes."""
     pathlib.Path("/proc/self/clear_refs").write_text("5")
     return peak_megabytes()
 
@@ -82,7 +82,7 @@ def measure(mesh: str, setting: str, reference_steps: int) -> dict[str, Any]:
         options["feature_size"] = pymeshlab.PercentageValue(options["feature_size"])
 
     def timed(call: Any) -> tuple[float, Any, Any]:
-        """Call with a new mesh: the least time, the report, and the vertices."""
+        """Call with new meshes: return the least time, the report and the vertices."""
         times: list[float] = []
         while sum(times) < ENOUGH or (len(times) < LEAST_CALLS and min(times) < LONG):
             meshes = pymeshlab.MeshSet()
@@ -138,7 +138,7 @@ def measure(mesh: str, setting: str, reference_steps: int) -> dict[str, Any]:
 
 
 def default_meshes() -> list[str]:
-    """Return the meshes with faces beside the repository, smallest file first."""
+    """Return the meshes with faces next to the repository, smallest file first."""
     folder = pathlib.Path(__file__).resolve().parents[3] / "shared" / "data"
     files = [f for f in folder.iterdir() if f.suffix != ".md" and "points" not in f.name]
     return [str(f) for f in sorted(files, key=lambda f: f.stat().st_size)]

@@ -4,21 +4,21 @@ usage: bench_denoise.py [--pairs FOLDER] [--all-methods] [--pictures FOLDER] [NA
        bench_denoise.py --clean [MESH ...]
        bench_denoise.py --estimates [MESH ...]
 
-For every pair NAME_noisy.ply, NAME_clean.ply: mean angle between the normals of the faces in
-degrees / mean distance of a vertex to its clean place along the normals, in mean edges; before,
-and after Spectral Denoise, with nothing chosen, and after MeshLab's smoothing filters at their
-best, the number of steps with the least angle for each mesh. For NAME_surface.ply, the true
-surface of a staircase with faces of its own, the angle between normals of nearest points. Seconds
-are those of a call of pymeshlab's, over those of MeshLab's Taubin smoothing with 50 steps.
-FOLDER defaults to ../shared/denoise beside the repository. --all-methods adds VTK's windowed sinc
-and bilateral normals. --pictures writes pictures of some, before, after and the truth.
+For every pair NAME_noisy.ply, NAME_clean.ply: mean angle between the face normals in degrees / mean
+distance of the vertices from their clean positions along the normals, in mean edges; before, after
+Spectral Denoise with its defaults, and after MeshLab's smoothing filters at their best, with the
+number of steps that has the least angle for each mesh. For NAME_surface.ply, the true surface of a
+staircase as another mesh, the angle is between the normals of nearest points. Seconds are those of
+a pymeshlab call; their ratio is to those of MeshLab's Taubin smoothing with 50 steps.
+FOLDER defaults to ../shared/denoise next to the repository. --all-methods adds VTK's windowed sinc
+and bilateral normals. --pictures draws some meshes before and after, and the truth.
 
---clean: the largest displacement of meshes without noise, by default those of ../shared, and some
-of them decimated; with 0.05 mean edges of noise added, the angle before and after.
+--clean: the largest displacement on meshes without noise, by default those of ../shared, some also
+decimated; and the angle before and after with 0.05 mean edges of noise added.
 
 --estimates: for every MESH, by default some of ../shared/data, without noise and with noise of
-known kind and height: what is found, and the root mean square distance of the vertices to where
-they were without it, before and after; all in mean edges.
+known kind and height: the estimate, and the root mean square distance of the vertices from their
+positions without noise, before and after; all in mean edges.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ GROUPS = {
         for noise in (1, 2, 3)
     ),
 }
-# What is drawn: the part within so much of the extent around a point, both relative to the extent.
+# The part drawn: its centre and its half width, both relative to the extent of the mesh.
 PICTURED = {
     "kinect_Cone": ((0.5, 0.5), 1.0),
     "stair64x1_igea": ((0.5, 0.5), 1.0),
@@ -94,7 +94,7 @@ def load(file: Path) -> tuple[Array, NDArray[Any]]:
 
 
 def meshlab(name: str, parameter: str | None = None) -> Method:
-    """Return a smoothing of MeshLab's or of the plugin's as a method."""
+    """Wrap a smoothing filter of MeshLab or of the plugin as a method."""
 
     def method(V: Array, F: Any, value: Any = None) -> Array:
         meshes = pymeshlab.MeshSet()
@@ -138,7 +138,7 @@ def bilateral_normals(V: Array, F: Any, chosen: tuple[float, int]) -> Array:
     return X
 
 
-# Method, and the values that its best is taken from.
+# Methods, and the parameters of which the best is taken.
 METHODS: dict[str, tuple[Method, list[Any]]] = {
     "Laplacian": (meshlab("apply_coord_laplacian_smoothing", "stepsmoothnum"), [1, 2, 3, 5, 8]),
     "Taubin": (
@@ -241,7 +241,7 @@ def draw(panels: list[Panel], name: str, folder: Path) -> None:
     for panel in panels:
         at = (panel.V @ view.axes().T - low) / extent
         near = np.abs(at[:, :2] - middle).max(1) < radius
-        near &= (at[:, 2] > 0.6) | (radius == 1.0)  # of a part the front
+        near &= (at[:, 2] > 0.6) | (radius == 1.0)  # of a part only the front
         used, faces = np.unique(panel.F[near[panel.F].all(1)], return_inverse=True)
         parts.append(Panel(panel.label, panel.V[used], faces.reshape(-1, 3)))
     sys.path.append(str(SCRIPTS))
@@ -256,7 +256,7 @@ def draw(panels: list[Panel], name: str, folder: Path) -> None:
 
 
 def print_pairs(folder: Path, names: list[str], more: bool, pictures: Path | None) -> None:
-    """Print a line for every pair, and means of groups; draw some."""
+    """Print a line for every pair, and the means of groups; draw some."""
     methods = METHODS | (MORE_METHODS if more else {})
     taubin = METHODS["Taubin"][0]
     print(
@@ -315,7 +315,7 @@ def noise_of(kind: str, height: float, V: Array, F: Any) -> Array:
 
 
 def print_estimates(files: list[Path]) -> None:
-    """Print what is found, moved and left on meshes with noise of known height."""
+    """Print estimates, displacements and remaining errors for noise of known height."""
     for file in files:
         V, F = load(file)
         edge = mean_edge(V, F)
@@ -352,7 +352,7 @@ def clean_meshes(given: list[str]) -> Iterator[tuple[str, Array, NDArray[Any]]]:
 
 
 def print_clean(given: list[str]) -> None:
-    """Print what moves where nothing should, and what becomes of a little noise."""
+    """Print what moves where nothing should, and how much of a little noise remains."""
     moved = worse = count = 0
     for name, V, F in clean_meshes(given):
         if len(F) == 0:

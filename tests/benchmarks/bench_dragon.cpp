@@ -1,7 +1,7 @@
-// What a whole filter costs beside its factorizations and solves alone, and how much faster it is
-// on two threads than on one, in one run of the program:
+// What a whole filter costs compared with its factorizations and solves alone, and how much faster
+// it is on two threads than on one, in one run of the program:
 //   bench_dragon MESH.ply [FEATURE_SIZE as part of the diagonal, default 0.15]
-// Times are medians of several runs; compare the ratios, the machine's speed cancels out of them.
+// Times are medians of several runs; compare the ratios, in which the machine's speed cancels out.
 
 #include <algorithm>
 #include <chrono>
@@ -80,7 +80,7 @@ FilterOptions optionsOf(const Case& c, double featureSize) {
     return options;
 }
 
-/// The same number of factorizations and of solves, three columns at a time, and nothing else.
+/// Seconds of the result's factorizations and solves alone, three columns at a time.
 double secondsOfWorkAlone(const testing::Mesh& mesh, const FilterResult& result) {
     const Laplacian laplacian = testing::cotangentLaplacian(mesh.V, mesh.F);
     const double shift = result.cutoffFrequency * result.cutoffFrequency;

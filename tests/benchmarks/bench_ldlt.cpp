@@ -1,6 +1,6 @@
 // Our LDL^T against Eigen's and CHOLMOD's, on W + s D of a mesh and of its midpoint subdivisions:
 //   bench_ldlt MESH.ply [SUBDIVISIONS, default 2]
-// Numeric factorization with the symbolic analysis done, and a solve with three right-hand sides,
+// Numeric factorization without symbolic analysis, and a solve with three right-hand sides,
 // in milliseconds: medians of five. s is the lambda of a feature size of 15 % of the diagonal.
 
 #include <Eigen/SparseCholesky>

@@ -1,12 +1,12 @@
-"""Memory: of many runs in one process, and of one run on a large mesh, with and without a limit.
+"""Memory of many runs in one process, and of one run on a large mesh, with and without a limit.
 
 usage: bench_memory.py [--runs N] [--subdivisions N] [MESH]
 
 Prints the resident memory of a process after 10 runs of each filter and after all; then, of MESH
 with every triangle divided into four N times, the seconds and the peak of one step, the mesh
-included, and what a batch with a memory limit of 2 GB says to it.
+included, and the outcome of a batch with a memory limit of 2 GB.
 
-MESH defaults to ../shared/data/dragon_40k.ply beside the repository.
+MESH defaults to ../shared/data/dragon_40k.ply next to the repository.
 """
 
 from __future__ import annotations

@@ -31,7 +31,7 @@ double milliseconds(Clock::duration time) {
     return std::chrono::duration<double, std::milli>(time).count();
 }
 
-/// The times between the calls of a progress, from its making on.
+/// The times between the calls of a progress callback, from its construction on.
 class Gaps {
   public:
     Progress progress() {

@@ -2,9 +2,9 @@
 
 usage: bench_pymeshlab.py [MESH]
 
-MESH defaults to the 40k-vertex dragon beside the repository, or, where that is absent, to the
-bunny that comes with pymeshlab. Peak memory is the process's own (ru_maxrss): Python, pymeshlab
-and the mesh are in it; the line "load only" is to be subtracted for the filter's share.
+MESH defaults to the 40k-vertex dragon next to the repository or, if that is absent, to the bunny
+that comes with pymeshlab. Peak memory is that of the process (ru_maxrss), with Python, pymeshlab
+and the mesh; subtract the line "load only" for the filter's share.
 """
 
 import json
@@ -46,7 +46,7 @@ def measure(mesh: str, case: str) -> dict[str, float]:
 
 
 def default_mesh() -> pathlib.Path:
-    """Return the dragon where it is, else pymeshlab's bunny."""
+    """Return the dragon if it is there, else pymeshlab's bunny."""
     dragon = pathlib.Path(__file__).parents[3] / "shared" / "data" / "dragon_40k.ply"
     if dragon.exists():
         return dragon

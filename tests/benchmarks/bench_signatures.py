@@ -2,16 +2,16 @@
 
 usage: bench_signatures.py [--repetitions N] [-k K] [MESH ...]
 
-A row is a result that another program computes, too: the seconds of both, the least of N (3) runs
-by turns in one process, and the largest relative difference of an entry. Everyone has the cotangent
-Laplacian with lumped masses and a free boundary. "From arrays" begins with coordinates and
-triangles and includes the K (100) harmonics, for which LaPy has CHOLMOD; "of a basis" begins with
-ours, and is the formula alone.
+A row is a result that another program computes, too: the seconds of both, the least of N (3)
+alternating runs in one process, and the largest relative difference of an entry. All use the
+cotangent Laplacian with lumped masses and a free boundary. "From arrays" starts from coordinates
+and triangles and includes the K (100) harmonics, for which LaPy uses CHOLMOD; "of a basis" starts
+from our harmonics and times the formula alone.
 
-Times and energies are ours: LaPy leaves times to its user, and pyFM takes a sigma of 7 parts in
-COUNT of the whole range of energies, before it takes off the margins.
+Times and energies are ours: LaPy leaves times to its user, and pyFM's sigma is 7 / COUNT of the
+whole range of energies, before the margins are removed.
 
-MESH defaults to meshes of ../shared/data beside the repository; absent ones are skipped.
+MESH defaults to meshes of ../shared/data next to the repository; absent ones are skipped.
 """
 
 from __future__ import annotations
@@ -73,7 +73,7 @@ def cases(V: Array, F: NDArray[Any], k: int) -> list[Case]:
         return np.asarray(lapy.shapedna.normalize_ev(mesh, found["Eigenvalues"]))
 
     def lapy_heat(lam: Array, Phi: Array) -> Array:
-        # As matrices, whose product is that of every eigenvalue with every time.
+        # As a row and a column: their product has every eigenvalue times every time.
         return np.asarray(lapy.heat.diagonal(t[None], vertices, Phi, lam[:, None], len(lam)))
 
     def our_basis() -> Harmonics:
@@ -131,7 +131,7 @@ def timed(work: Callable[[], Array]) -> tuple[float, Array]:
 
 
 def difference(ours: Array, theirs: Array) -> float:
-    """Return the largest relative difference; a zero, the constant's eigenvalue, has none."""
+    """Return the largest relative difference, leaving out the zero eigenvalue of the constant."""
     positive = ours > 0
     return float(np.abs(theirs[positive] / ours[positive] - 1).max())
 

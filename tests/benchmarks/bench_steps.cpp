@@ -54,7 +54,7 @@ FilterOptions optionsOf(const Case& c, double diagonal) {
     return options;
 }
 
-/// The two schemes of the core, without a filter around them.
+/// The two step schemes of the core, without the rest of the filter.
 class Flow {
   public:
     Flow(const Surface& surface, const FilterOptions& options)
@@ -162,7 +162,7 @@ void printTruncated(const char* file) {
         StepEvaluator evaluate(options.evaluation, interior, F);
         Vertices X = surface.X, withBases = surface.X;
         double seconds = 0.0, secondsWithBases = 0.0;
-        for (int i = 0; i < kSteps; ++i) {  // in turns: a machine's pace changes
+        for (int i = 0; i < kSteps; ++i) {  // in turns: a machine's speed varies
             seconds += step(evaluate, X);
             StepEvaluator fresh(options.evaluation, interior, F);
             secondsWithBases += step(fresh, withBases);

@@ -2,10 +2,10 @@
 
 usage: export_sample_meshes.py FOLDER
 
-Beside each mesh NAME.ply goes NAME.stiffness, the matrix W of its intrinsic Delaunay Laplacian by
+Next to each mesh NAME.ply goes NAME.stiffness, the matrix W of its intrinsic Delaunay Laplacian by
 the package robust_laplacian: rows of three doubles (i, j, W_ij).
 
-Exit code 77, which ctest takes for "skipped", when a package that this needs is not installed.
+Exit code 77, which ctest counts as skipped, when a required package is not installed.
 """
 
 import pathlib
@@ -21,7 +21,7 @@ except ImportError as error:
     sys.exit(77)
 
 VERTICES = 1500
-"""Size of the meshes: a dense eigenproblem of so many unknowns takes seconds."""
+"""Size of the meshes: a dense eigenproblem of this size takes seconds."""
 
 Vertices = Any
 Faces = Any

@@ -26,7 +26,7 @@ namespace {
 using testing::Mesh;
 using testing::Operator;
 
-/// The W that export_sample_meshes.py has written beside a mesh.
+/// The W that export_sample_meshes.py has written next to a mesh.
 SparseMatrix readStiffness(const std::string& path, Index n) {
     std::ifstream in(path, std::ios::binary);
     std::vector<Eigen::Triplet<double>> entries;
@@ -81,12 +81,12 @@ TEST_P(RealMesh, TruncatedWithAllHarmonicsEqualsDense) {
     const HarmonicBasis dense = denseBasis(A);
     const TransferFunction F({}, 2.0 * kPi / (0.2 * diagonal_));
     const Gain gain = fractionalPower(F, 1.0);
-    // All n as eigenvectors: no residual is left for the residual's gain to act on.
+    // With all n eigenvectors there is no residual.
     EXPECT_LT(largestDifference(applyInBasis(dense, A, gain, 0.5, mesh_.V),
                                 testing::filteredDense(A, dense, gain)),
               1e-12);
 
-    // All but the last from the iteration: the residual is then that last harmonic alone.
+    // With all but the last one, the residual is that harmonic alone.
     ShiftedLdlt ldlt;
     const Index n = mesh_.V.rows();
     const HarmonicBasis basis = truncatedBasis(A, n - 1, ldlt);
@@ -135,7 +135,7 @@ TEST_P(RealMesh, OctavesOfTheGeometrySpectrumAreThoseOfAllEigenvectors) {
 class OpenRealMesh : public RealMesh {};
 
 TEST_P(OpenRealMesh, WithAFixedBoundaryFullSpectrumAndTruncatedAgree) {
-    // A gain that is one number beyond the basis: its residual is then no approximation.
+    // A gain that is constant beyond the basis: the residual is then exact.
     FilterOptions options;
     options.featureSize = 0.5 * diagonal_;
     options.steps = 1;
@@ -155,7 +155,7 @@ INSTANTIATE_TEST_SUITE_P(Samples, OpenRealMesh, ::testing::Values("half_bunny"),
 
 class RealOrBrokenMesh : public RealMesh {};
 
-TEST_P(RealOrBrokenMesh, IntrinsicDelaunayWeightsAreThoseOfItsInventors) {
+TEST_P(RealOrBrokenMesh, IntrinsicDelaunayWeightsAgreeWithRobustLaplacian) {
     const SparseMatrix ours = IntrinsicDelaunay(mesh_.V, mesh_.F).stiffness(mesh_.V);
     const SparseMatrix theirs = readStiffness(path_ + ".stiffness", mesh_.V.rows());
     ASSERT_GT(theirs.nonZeros(), 0);

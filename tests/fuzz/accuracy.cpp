@@ -13,19 +13,19 @@ namespace spectral::fuzz {
 
 namespace {
 
-/// Most vertices of a reference, whose time is cubic.
+/// Largest number of vertices with a reference, whose time is cubic.
 constexpr Index kMaxVertices = 420;
 
-/// Errors beyond so many times the claim are failures.
+/// Errors above this multiple of the claimed accuracy are failures.
 constexpr double kLeeway = 3.0;
 
-/// So many times the difference of two references is what nobody can know.
+/// Uncertainty of a reference, as a multiple of its difference from the perturbed ones.
 constexpr double kUncertainty = 10.0;
 
-/// Round-off of a filter, relative to the diagonal, in the norm over the surface: that of solves.
+/// Round-off of a filter, from its solves: relative to the diagonal, in the norm over the surface.
 constexpr double kSurfaceRoundOff = 1e-12;
 
-/// A harmonic with a larger residual is none.
+/// A vector with a larger residual is not a harmonic.
 constexpr double kUselessResidual = 1e-2;
 
 template <class... Parts>
@@ -36,11 +36,11 @@ std::pair<std::string, std::string> failure(const char* kind, const Parts&... pa
     return {kind, text.str()};
 }
 
-/// Compares what was computed with a reference, first in double precision, and if need be in
-/// extended precision, three times.
+/// Compares a result with a reference, first in double precision and, if necessary, in extended
+/// precision, three times.
 /// @param ofReference  maps a DenseSpectrum to a matrix of the size of `computed`.
-/// @param size         of a difference of two such matrices: a number.
-/// @return             whether a difference above `tolerance` is the fault of `computed`.
+/// @param size         norm of a difference of two such matrices.
+/// @param accuracy     gets a failure if the error exceeds `tolerance` beyond uncertainty.
 template <class OfReference, class Size>
 void compare(const char* kind, const Eigen::MatrixXd& computed, double tolerance, double unit,
              DenseReference& reference, const OfReference& ofReference, const Size& size,
@@ -85,14 +85,14 @@ Eigen::VectorXd gainsOf(const FilterOptions& options, const FilterResult& result
 
 double largestRow(const Eigen::MatrixXd& X) { return X.rowwise().norm().maxCoeff(); }
 
-/// Rows of the mesh that belong to vertices of the interior.
+/// Rows of the vertices of the interior.
 Eigen::MatrixXd interiorRows(const DenseReference& reference, const Eigen::MatrixXd& ofMesh) {
     const std::vector<Index>& vertex = reference.mesh().surface.vertex;
     return reference.interior().restricted(Eigen::MatrixXd(ofMesh(vertex, Eigen::all)));
 }
 
 /// With residuals r_i = W phi_i - lambda_i D phi_i, (lambda_i - lambda_j) phi_i^T D phi_j is
-/// phi_j^T r_i - phi_i^T r_j: what round-off leaves of orthogonality.
+/// phi_j^T r_i - phi_i^T r_j: the loss of orthogonality that residuals allow.
 void checkOrthogonality(const Eigen::MatrixXd& gram, const ManifoldHarmonics& harmonics,
                         Accuracy& accuracy) {
     const Eigen::VectorXd norms = harmonics.residuals.cwiseProduct(harmonics.lambda);
@@ -117,7 +117,7 @@ Accuracy accuracyOf(const testing::Mesh& mesh, const FilterOptions& options,
     if (!isOneStep || !result.accuracyReached || mesh.V.rows() > kMaxVertices) return accuracy;
     if (!options.part.selected.empty() || options.part.weight.size() > 0 ||
         options.creaseAngle > 0.0 || options.preserveVolume)
-        return accuracy;  // the reference is that of a whole mesh
+        return accuracy;  // the reference filters whole meshes only
     DenseReference reference(mesh.V, mesh.F, options.laplacian, options.boundary);
     if (reference.size() == 0) return accuracy;
 
@@ -131,11 +131,11 @@ Accuracy accuracyOf(const testing::Mesh& mesh, const FilterOptions& options,
     };
     const bool isBasis = result.eigenvalues.size() > 0;
     double claimed = std::max(result.errorEstimate, result.accuracy);
-    // A warning tells residuals above the accuracy.
+    // A warning reports residuals above the accuracy.
     if (result.residuals.size() > 0) claimed = std::max(claimed, result.residuals.maxCoeff());
     const double tolerance = kLeeway * claimed * diagonal + roundOff;
     if (options.steps > 0 || isBasis) {
-        // Round-off in the norm over the surface is as much larger at vertices of small mass.
+        // At a vertex of small mass, round-off is larger than in the norm over the surface.
         const Eigen::VectorXd most =
             (D / area).cwiseSqrt().cwiseInverse() * (kSurfaceRoundOff * diagonal);
         const auto largest = [&](const Eigen::MatrixXd& Y) {
@@ -164,7 +164,7 @@ Accuracy accuracyOf(const testing::Mesh& mesh, const ArtefactOptions& options,
             [&](double omega) { return artefactFreeGain(omega, cutoff); });
         return Eigen::MatrixXd(spectrum.change(gains).rowwise().norm());
     };
-    constexpr double kAccuracy = 1e-8;  // that measureArtefacts asks for
+    constexpr double kAccuracy = 1e-8;  // what measureArtefacts requests
     const double diagonal = boundingBoxDiagonal(reference.mesh().surface.X);
     compare("accuracy of artefacts", interiorRows(reference, result.length),
             kLeeway * std::max(result.errorEstimate, kAccuracy * diagonal), diagonal, reference,
@@ -178,7 +178,7 @@ Accuracy accuracyOf(const testing::Mesh& mesh, const HarmonicsOptions& options,
     DenseReference reference(mesh.V, mesh.F, options.laplacian, options.boundary);
     const Laplacian& A = reference.laplacian();
     const Eigen::MatrixXd Phi = interiorRows(reference, result.Phi);
-    double copied = 0.0;  // at seams
+    double copied = 0.0;  // squared norm at seams
     for (const auto& [vertex, row] : reference.mesh().surface.copies)
         copied += result.Phi.row(vertex).squaredNorm();
     if (result.Phi.squaredNorm() - copied > Phi.squaredNorm() * (1.0 + 1e-9))
@@ -206,7 +206,7 @@ Accuracy accuracyOf(const testing::Mesh& mesh, const HarmonicsOptions& options,
         return accuracy;
     }
     if (reference.size() > kMaxVertices) return accuracy;
-    // Relative errors, of which the residuals are a bound.
+    // Relative errors, which the residuals bound.
     const auto values = [&](const DenseSpectrum& spectrum) {
         return Eigen::MatrixXd(spectrum.lambda.head(k));
     };

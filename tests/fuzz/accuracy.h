@@ -10,7 +10,7 @@ namespace spectral::fuzz {
 
 /// How a result compares with all eigenvectors of the same W and D.
 struct Accuracy {
-    bool isCompared = false;  ///< There is a reference: one Laplacian, not too many vertices.
+    bool isCompared = false;  ///< A reference exists: one Laplacian, not too many vertices.
     bool isExcused = false;   ///< As in Verdict.
     std::vector<std::pair<std::string, std::string>> failures;  ///< Kind and text.
 };

@@ -117,7 +117,7 @@ std::vector<bool> selectionOf(Choices& choices, Index vertices) {
     return selected;
 }
 
-/// `text` of every number, in order.
+/// A list of numbers, in order.
 class Numbers {
   public:
     Numbers& operator<<(double x) {
@@ -286,7 +286,7 @@ Case makeDenoiseCase(Choices& choices) {
     const double diagonal = V.rows() > 0 ? boundingBoxDiagonal(V) : 1.0;
     DenoiseOptions options;
     options.strength = choices.pick({0.0, 1.0, 1.0, 0.5, 3.0, 1e3});
-    if (!choices.oneIn(3))  // few vertices do not tell the noise
+    if (!choices.oneIn(3))  // few vertices do not reveal the noise
         options.noiseHeight = choices.logUniform(1e-4, 10.0) * diagonal;
     if (choices.oneIn(3)) options.noiseSize = choices.logUniform(1e-4, 10.0) * diagonal;
     if (V.rows() > 0 && choices.oneIn(4))
@@ -313,7 +313,7 @@ void addPart(Choices& choices, Case& to) {
             options->transferFunction.type = FilterType::Custom;
             options->transferFunction.custom = gain.gain;
             options->featureSize = 2.0 * kPi / gain.cutoff;
-        } catch (const Error&) {  // two points at one size, or a mesh without one
+        } catch (const Error&) {  // two points of equal size, or a mesh of size 0
         }
     if (choices.oneIn(3)) options->part.selected = selectionOf(choices, V.rows());
     if (choices.oneIn(3)) {

@@ -16,7 +16,7 @@
 
 namespace spectral::fuzz {
 
-/// Arguments of `Bands`, which has no mesh.
+/// Arguments of `Bands`, which takes no mesh.
 struct BandsOptions {
     double diagonal, lowest, highest;
     int perOctave;
@@ -31,8 +31,8 @@ using Result =
 struct Case {
     NamedMesh mesh;
     Options options;
-    bool mustThrow = false;  ///< An option is out of its range.
-    bool repeats = false;    ///< Is to be run again, with one thread and with two.
+    bool mustThrow = false;  ///< An option is out of range.
+    bool repeats = false;    ///< Run again, with one thread and with two.
     int cancelAt = 0;        ///< The report at which the caller cancels; 0: never.
     std::string gain;        ///< The text of a custom transfer function.
 };
@@ -41,18 +41,18 @@ Case makeCase(Choices& choices, Sizes sizes = Sizes::MostlySmall);
 
 Case makeDenoiseCase(Choices& choices);
 
-/// Gives a filter what seeds had no bytes for at first: custom gains, a part of the mesh, creases,
-/// volumes. The bytes are those of another stream; other entry points stay as they are.
+/// Adds to a filter what older seeds do not encode: custom gains, a part of the mesh, creases,
+/// volumes. `choices` must read another stream of bytes. Other entry points are unchanged.
 void addPart(Choices& choices, Case& to);
 
 /// The call with all its options, in one line.
 std::string describe(const Case& of);
 
-/// What came of a call.
+/// The outcome of a call.
 struct Outcome {
     std::optional<Result> result;
-    std::optional<ErrorCode> code;  ///< Of an Error of the core.
-    std::string text;               ///< Of whatever was thrown.
+    std::optional<ErrorCode> code;  ///< Code of an Error of the core.
+    std::string text;               ///< Message of any exception.
     bool isProgressSound = true;    ///< All reports were in [0, 1].
 };
 

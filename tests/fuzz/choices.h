@@ -29,7 +29,7 @@ class Choices {
     const std::uint8_t *next_, *end_;
 };
 
-/// Seeds nearer to one another have bytes in common.
+/// Seeds closer to each other share bytes.
 inline constexpr std::uint64_t kSeedDistance = 64;
 
 /// The bytes of a seed, the same on every platform.

@@ -164,7 +164,7 @@ void checkDenoise(const Case& of, const DenoiseOptions& options, const DenoiseRe
     if (result.diagnosis.spikes > 0 || result.diagnosis.kind == NoiseKind::Voxels ||
         result.diagnosis.kind == NoiseKind::Impulses)
         return;
-    // To preserve volumes, it may be made up for by an offset of twice the size.
+    // Preserving volumes may add an offset of twice that size.
     const double most = std::max(6.0 * result.noiseHeight, 0.3 * result.diagnosis.noise.meanEdge) *
                         (result.volumes.preserved > 0 ? 3.0 : 1.0);
     if (!(result.maxDisplacement <= most * (1.0 + 1e-9) + 1e-15 * V.cwiseAbs().maxCoeff()))
@@ -229,7 +229,7 @@ std::vector<Failure> checkBands(const BandsOptions& options) {
     return {};
 }
 
-/// What a result of each kind of options promises by itself.
+/// Checks what a result promises, for each kind of options.
 struct CheckResult {
     const Case& of;
     Verdict& verdict;

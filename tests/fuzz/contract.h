@@ -9,7 +9,7 @@ namespace spectral::fuzz {
 
 /// A promise of the core that a case has broken.
 struct Failure {
-    std::string kind;  ///< One word or two, to count by.
+    std::string kind;  ///< One or two words; failures are counted by kind.
     std::string text;
 };
 
@@ -17,19 +17,19 @@ struct Verdict {
     Outcome outcome;
     std::vector<Failure> failures;
     bool isCompared = false;  ///< With a dense reference.
-    bool isExcused = false;   ///< Differs from it, but by no more than round-off in the input does.
+    bool isExcused = false;   ///< Differs from it no more than round-off in the input explains.
 };
 
 /// Runs a case and checks what the headers of the core promise:
-///  - nothing but an Error with a text is thrown, and an option out of range is one;
-///  - the input stays as it is, and all numbers of a result are finite and fit one another;
+///  - only an Error with a message is thrown, and always for an option out of range;
+///  - the input is unchanged, and all numbers of a result are finite and consistent;
 ///  - unreferenced and fixed vertices keep their coordinates to the bit, components their
 ///  centroids;
 ///  - repeated, and with two threads, the result is the same to the bit;
-///  - a filter of one step is accurate as it claims, harmonics and energies are those of a dense
+///  - a filter of one step is as accurate as it claims, harmonics and energies are those of a dense
 ///    solver.
 ///
-/// @param compares  whether with a dense solver: most of the time.
+/// @param compares  whether to compare with a dense solver, which takes most of the time.
 Verdict check(const Case& of, bool compares = true);
 
 }  // namespace spectral::fuzz

@@ -54,7 +54,7 @@ Pairs pairsInExtended(const Matrix& W, const Vector& D) {
     return {solver.eigenvalues(), Phi * solver.eigenvectors()};
 }
 
-/// W, D and X in extended precision, and in another order; rows of W sum to zero without round-off.
+/// W, D and X in extended precision, reordered if perturbed; otherwise rows of W sum to zero.
 struct Problem {
     Matrix W, X;
     Vector D;
@@ -67,7 +67,7 @@ struct Problem {
         const bool isPerturbed = precision >= Precision::Perturbed;
         if (isPerturbed)
             for (Index i = n - 1; i > 0; --i) std::swap(order[i], order[bits() % (i + 1)]);
-        // A few units of double precision, whatever that of the scalar.
+        // A few ulps of double precision, whatever the scalar type.
         const auto factor = [&] {
             constexpr Scalar kUnit = std::numeric_limits<double>::epsilon();
             const Scalar random = static_cast<Scalar>(bits()) / Scalar{4294967296} - Scalar{0.5};
@@ -106,11 +106,11 @@ void centre(const Vector& D, const std::vector<int>& label, Matrix& X) {
 
 DenseSpectrum spectrumOf(const MeshLaplacian& mesh, const Interior& interior, Precision precision) {
     Problem all(mesh, precision);
-    std::vector<Index> rowOf(all.order.size(), -1);  // in the interior
+    std::vector<Index> rowOf(all.order.size(), -1);  // row in the interior
     const Eigen::MatrixXd marks = interior.extended(Eigen::MatrixXd::Ones(interior.size(), 1));
     for (Index i = 0, m = 0; i < marks.rows(); ++i)
         if (marks(i, 0) > 0.0) rowOf[i] = m++;
-    std::vector<Index> rows;  // of `all`, that can move
+    std::vector<Index> rows;  // rows of `all` that can move
     std::vector<int> label, surfaceLabel;
     for (std::size_t i = 0; i < all.order.size(); ++i) {
         surfaceLabel.push_back(interior.surfaceComponents().label[all.order[i]]);

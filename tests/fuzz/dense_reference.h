@@ -8,8 +8,8 @@
 
 namespace spectral::fuzz {
 
-/// How a dense reference is computed. Where double precision disagrees with a result, the extended
-/// one decides; what the perturbed one differs from it, nobody can know.
+/// How a dense reference is computed. If double precision disagrees with a result, the extended one
+/// decides; its differences from the perturbed ones are its uncertainty.
 enum class Precision {
     Double,     ///< Eigenpairs in double precision, the rest in long double.
     Extended,   ///< long double, which on some systems is double.
@@ -31,12 +31,12 @@ struct DenseSpectrum {
 /// The Laplacian of a mesh with all its eigenvectors, by Eigen's dense solver.
 class DenseReference {
   public:
-    /// Of a mesh that the core has accepted.
+    /// The mesh must be one that the core accepts.
     DenseReference(const Vertices& V, const Faces& F, LaplacianKind kind, Boundary boundary);
 
     const MeshLaplacian& mesh() const { return mesh_; }
     const Interior& interior() const { return interior_; }
-    const Laplacian& laplacian() const { return laplacian_; }  ///< Of the interior, m vertices.
+    const Laplacian& laplacian() const { return laplacian_; }  ///< For the m interior vertices.
     Index size() const { return interior_.size(); }
 
     const DenseSpectrum& at(Precision precision);

@@ -3,10 +3,10 @@
 //
 // usage: fuzz_core [--cases N] [--first-seed S] [--seconds T] [--seeds FILE] [--limit SECONDS]
 //                  [--errors yes] [--compare no] [--solver factorization|products]
-//        fuzz_core --seed S    one seed, in this process, with everything that came of it
+//        fuzz_core --seed S    one seed, in this process, with its full outcome
 //
-// Cases have seeds S, S + 64, ...: nearer ones share bytes. Seeds below 1e12 make meshes of any
-// size, larger ones mostly small meshes, of which there are more in an hour; those from 1e15 on
+// Cases have seeds S, S + 64, ...: closer ones share bytes. Seeds below 1e12 make meshes of any
+// size, larger ones mostly small meshes, which allow more cases per hour; those from 1e15 on
 // also give filters custom gains, parts of the mesh, creases and volumes; those from 2e15 denoise.
 // --limit is for one case; --errors prints the errors that are allowed, too; --compare no leaves
 // out the dense solver, for sanitizers; --solver makes filters use it whatever it costs, and with
@@ -48,7 +48,7 @@ constexpr std::uint64_t kFirstOfDenoise = 2000000000000000;
 struct Arguments {
     std::uint64_t cases = 1000, firstSeed = kFirstOfSmall;
     double seconds = std::numeric_limits<double>::infinity(), limit = 60.0;
-    std::optional<std::vector<std::uint64_t>> seeds;  ///< Instead of a range.
+    std::optional<std::vector<std::uint64_t>> seeds;  ///< Replaces the range.
     bool isVerbose = false, showsErrors = false, compares = true;
     spectral::Solver solver = spectral::Solver::Cheapest;
 };
@@ -116,7 +116,7 @@ Case caseOf(std::uint64_t seed, spectral::Solver solver) {
     return made;
 }
 
-/// What is counted, in memory that all processes share.
+/// Counters, in memory that all processes share.
 struct Counts {
     static constexpr int kCodes = static_cast<int>(spectral::ErrorCode::Cancelled) + 1;
     static constexpr int kKinds = 64, kName = 32;

@@ -29,7 +29,7 @@ Mesh fan(int rim, bool isClosed, double height) {
     return mesh;
 }
 
-/// Random triangles between random points; a corner may be there twice.
+/// Random triangles between random points; a triangle may repeat a vertex.
 Mesh soup(Choices& choices, int most) {
     const int n = choices.between(3, std::min(40, most));
     const int m = choices.between(1, std::min(80, 2 * most));
@@ -65,7 +65,7 @@ Mesh crumbs(Choices& choices, int most) {
 }
 
 /// A shape of about unit size, and its name.
-/// @param most  about so many vertices at most, >= 4.
+/// @param most  approximate upper bound of the number of vertices, >= 4.
 NamedMesh baseShape(Choices& choices, int most) {
     const int side = static_cast<int>(std::sqrt(most));
     switch (choices.below(13)) {
@@ -110,7 +110,7 @@ NamedMesh baseShape(Choices& choices, int most) {
                     "ribbon"};
         default:
             if (most < 300) return {tetrahedron(), "wheel"};
-            // More than the dense solver of the core takes.
+            // Too many vertices for the dense solver of the core.
             switch (choices.below(3)) {
                 case 0: return {testing::torus(1.0, 0.4, 19, choices.between(16, 20)), "torus"};
                 case 1: return {testing::cube(8), "box"};
@@ -221,7 +221,7 @@ std::string change(Choices& choices, Mesh& mesh, int most) {
     }
 }
 
-/// Makes what the core must reject.
+/// Damages a mesh so that the core must reject it.
 std::string spoil(Choices& choices, Mesh& mesh) {
     switch (choices.below(6)) {
         case 0:

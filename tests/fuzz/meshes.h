@@ -9,16 +9,16 @@ namespace spectral::fuzz {
 
 struct NamedMesh {
     testing::Mesh mesh;
-    std::string name;  ///< The shape and what has been done to it.
+    std::string name;  ///< The shape, and the changes made to it.
 };
 
-/// How many vertices meshes have: their number decides how many cases there are in an hour.
+/// Number of vertices of the meshes, which decides how many cases run per hour.
 enum class Sizes {
     Any,         ///< Up to about 400, seldom more.
     MostlySmall  ///< One in 30 like that, the others 4 to about 60, small ones as often as large.
 };
 
-/// A mesh of any quality: smooth surfaces, soups, needles, spikes, any scale, some that are no
+/// A mesh of any quality: smooth surfaces, soups, needles, spikes, any scale, some that are not
 /// meshes at all.
 NamedMesh makeMesh(Choices& choices, Sizes sizes);
 

@@ -1,6 +1,6 @@
-"""A Qt program's widgets as its accessibility interface tells them: roles, names, values.
+"""A Qt program's widgets as its accessibility interface reports them: roles, names, values.
 
-Spoken directly to the program, over a bus of its own. AT-SPI's registry is left out: Qt 5 does not
+Talks directly to the program, over a private bus. AT-SPI's registry is left out: Qt 5 does not
 always succeed in registering with it, but answers all the same.
 """
 
@@ -38,7 +38,7 @@ class Box(NamedTuple):
 
 
 class Bus:
-    """The bus on which a program tells its widgets.
+    """The bus on which a program exposes its widgets.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ class Bus:
         return str(address).removeprefix("unix:path=").partition(",")[0] or None
 
     def program(self, pid: int) -> Widget | None:
-        """Give the root of a process's widgets; None while it is not on the bus."""
+        """Return the root of a process's widgets; None while it is not on the bus."""
         for name in self._call(self._daemon, "ListNames")[0]:
             if not name.startswith(":") or name == self._connection.unique_name:
                 continue
@@ -137,7 +137,7 @@ class Widget:
 
     @property
     def text(self) -> str:
-        """Text in a field of entry."""
+        """Text in an entry field."""
         return str(self._call("Text", "GetText", "ii", (0, -1)))
 
     @property
@@ -175,15 +175,15 @@ class Widget:
             return False
 
     def press(self) -> None:
-        """Press a button or box, or choose a menu entry. Does not wait for what comes of it."""
+        """Press a button or box, or choose a menu entry. Does not wait for the effect."""
         self._bus.send(self._program, self._path, "Action", "DoAction", "i", (0,))
 
     def focus(self) -> None:
-        """Let this widget have the keys that are pressed while its window is the active one."""
+        """Give this widget the keyboard focus within its window."""
         self._call("Component", "GrabFocus")
 
     def children(self) -> list[Widget]:
-        """The widgets within, in order; none when this one is gone."""
+        """The child widgets, in order; none if this widget is gone."""
         try:
             answer = self._call("Accessible", "GetChildren")
         except DBusErrorResponse:
@@ -191,18 +191,18 @@ class Widget:
         return [Widget(self._bus, name, path) for name, path in answer if path != _NOWHERE]
 
     def child(self, name: str) -> Widget | None:
-        """The widget of this name directly within."""
+        """The child of this name."""
         return next((child for child in self.children() if child.has_name(name)), None)
 
     def walk(self, without: tuple[str, ...] = ("menu bar",)) -> Iterator[Widget]:
-        """All widgets within, outer ones first; none below those of the roles `without`."""
+        """All descendants, outer ones first; none below those of the roles `without`."""
         for child in self.children():
             yield child
             if not child.has_role(*without):
                 yield from child.walk(without)
 
     def find(self, role: str, name: str | None = None) -> Widget | None:
-        """The first widget within, of a role and perhaps a name."""
+        """The first descendant of a role and, if given, a name."""
         return next(
             (
                 widget
@@ -216,21 +216,21 @@ class Widget:
         return [widget for widget in self.walk() if widget.has_role(role)]
 
     def has_role(self, *roles: str) -> bool:
-        """Whether this widget is there and of one of the roles."""
+        """Whether this widget still exists and has one of the roles."""
         try:
             return self.role in roles
         except DBusErrorResponse:
             return False
 
     def has_name(self, name: str) -> bool:
-        """Whether this widget is there and has this name."""
+        """Whether this widget still exists and has this name."""
         try:
             return self.name == name
         except DBusErrorResponse:
             return False
 
     def _has(self, state: int) -> bool:
-        """Whether this widget has a state; one that is gone has none."""
+        """Whether this widget has a state; a widget that is gone has none."""
         try:
             low, high = self._call("Accessible", "GetState")
         except DBusErrorResponse:

@@ -1,4 +1,4 @@
-"""How long a preview takes in MeshLab, from the tick to the last change of the picture; no tests.
+"""How long a preview takes in MeshLab, from the tick to the last change of the picture; not tests.
 
 Run by pytest for its fixtures: `tests/gui/run.sh -s tests/gui/bench_preview.py`.
 """

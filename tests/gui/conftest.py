@@ -62,7 +62,7 @@ def install(home: Path) -> Callable[[], None]:
 
 @pytest.fixture
 def bunny(home: Path) -> Path:
-    """The bunny of 28,088 vertices, at places that both precisions can tell exactly."""
+    """The bunny of 28,088 vertices, with coordinates that both precisions represent exactly."""
     mesh_set = pymeshlab.MeshSet()
     mesh_set.load_new_mesh(str(BUNNY))
     mesh = mesh_set.current_mesh()
@@ -94,7 +94,7 @@ def noisy_bunny(bunny: Path) -> Path:
 def start(
     desktop: Desktop, home: Path, request: pytest.FixtureRequest
 ) -> Iterator[Callable[[Path], MeshLab]]:
-    """Start MeshLab with a mesh; it is ended after the test, when a picture of it was taken."""
+    """Start MeshLab with a mesh; after the test a picture is taken, and MeshLab is ended."""
     running: list[MeshLab] = []
 
     def run(mesh: Path) -> MeshLab:

@@ -1,4 +1,4 @@
-"""A screen that nobody sees, in a Debian system of its own, with a keyboard and a mouse."""
+"""A virtual screen, in a Debian system of its own, with a keyboard and a mouse."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ class Desktop:
         return self.root / "tmp"
 
     def inside(self, path: Path) -> str:
-        """Tell the path of a file in the Debian system as programs in there know it."""
+        """Return the path of a file as programs inside the Debian system see it."""
         return f"/{path.relative_to(self.root)}"
 
     def start(
@@ -77,7 +77,7 @@ class Desktop:
         return program
 
     def run(self, *command: str) -> bytes:
-        """Run a program to its end, which must be a good one; what it printed."""
+        """Run a program, which must succeed; return what it printed."""
         done = self._run(*command)
         assert done.returncode == 0, f"{' '.join(command)}: {done.stderr.decode()}"
         return done.stdout
@@ -91,7 +91,7 @@ class Desktop:
         return ["chroot", str(self.root), *command]
 
     def wait_for_socket(self, program: subprocess.Popen[bytes], socket: Path) -> None:
-        """Wait until a program that was started listens."""
+        """Wait until a program that was started listens on a socket."""
 
         def listens() -> bool:
             assert program.poll() is None, f"{program.args} has ended"
@@ -139,7 +139,7 @@ class Desktop:
         return pictures[-1]
 
     def point_at(self, box: Box) -> None:
-        """Move the mouse into the middle of a rectangle, with the last bit as a movement in it."""
+        """Move the mouse into the middle of a rectangle, the last pixels as a movement inside."""
         x, y = box.center
         self.run("xdotool", "mousemove", str(x - 4), str(y), "mousemove", str(x), str(y))
 
@@ -156,7 +156,7 @@ class Desktop:
         self.run("xdotool", "key", "--delay", "20", *keys)
 
     def enter(self, field: Widget, text: str) -> None:
-        """Write into the field of entry that has the keys, in place of what is there."""
+        """Replace the text of an entry field, which must have the keyboard focus."""
         wait_for(f"{field} to have the keys", lambda: field.focused)
         self.press_keys("ctrl+a")
         self.type(text)
@@ -168,7 +168,7 @@ class Desktop:
         return self._run("xdotool", "search", "--onlyvisible", "--name", pattern).returncode == 0
 
     def clipboard(self) -> str:
-        """What was copied; nothing as long as nothing was."""
+        """The text copied last; empty if there is none."""
         return self._run(
             *("xclip", "-selection", "clipboard", "-target", "UTF8_STRING", "-out")
         ).stdout.decode()

@@ -23,11 +23,11 @@ class Row:
     Attributes
     ----------
     label
-        What stands to the left.
+        Text to the left.
     tooltip
-        What the label explains to the mouse, and the button Help to the right.
+        Help, which the label shows under the mouse and the button Help to the right.
     editors
-        The fields of entry: one, or for a percentage two, the length and the percentage.
+        The entry fields: one, or for a percentage two, the length and the percentage.
     """
 
     label: str
@@ -52,7 +52,7 @@ class FilterDialog:
         widget.press()
 
     def move(self, x: int, y: int) -> None:
-        """Move the dialog's left upper corner."""
+        """Move the dialog's upper left corner."""
         # It covers the mesh at first; and a window at the edge of the screen stays within it.
         self._desktop.run(
             *("xdotool", "search", "--onlyvisible", "--name", f"^{re.escape(self.name)}$"),
@@ -66,7 +66,7 @@ class FilterDialog:
         wait_for("the advanced parameters", lambda: all(row.showing for row in self.rows()))
 
     def rows(self) -> list[Row]:
-        """All parameters in their order, those that are folded away too."""
+        """All parameters in their order, including those that are folded away."""
         rows: list[Row] = []
         editors: list[Widget] = []
         label = None
@@ -96,7 +96,7 @@ class FilterDialog:
         return next(filter(has_editors, self.window.walk()))
 
     def set_value(self, row: Row, value: str) -> None:
-        """Set a parameter as a person does; a percentage by its percent."""
+        """Set a parameter as a user does; a percentage in percent."""
         editor = row.editors[-1]
         if editor.has_role("check box"):
             if editor.checked != (value == "true"):
@@ -109,13 +109,13 @@ class FilterDialog:
             self._desktop.press_keys("Tab")
 
     def type_value(self, row: Row, value: str) -> None:
-        """Write into a parameter's field, and stay there: the dialog does not yet know of it."""
+        """Type into a parameter's field without leaving it: the dialog does not know it yet."""
         editor = row.editors[-1]
         wait_for(f"{row.label} to have the keys", lambda: self.focus(editor))
         self._desktop.enter(editor, value)
 
     def focus(self, editor: Widget) -> bool:
-        """Try to direct the keys to a field of entry, which its window may not have at once."""
+        """Try to give an entry field the keyboard focus, which its window may not have at once."""
         # On the help: nothing happens there, whereas two clicks on the title dock the dialog.
         text = self.window.find("label")
         assert text is not None
@@ -144,13 +144,13 @@ class FilterDialog:
             self.wait_for_result(before)
 
     def apply(self) -> str:
-        """Apply the filter, and wait until it is done: what it has logged."""
+        """Apply the filter, wait until it is done, and return what it has logged."""
         before = len(self._meshlab.log())
         self.press("Apply")
         return self.wait_for_result(before)
 
     def wait_for_result(self, before: int) -> str:
-        """Wait until the filter has run: what was logged after the first `before` letters."""
+        """Wait until the filter has run; return the log after its first `before` characters."""
         done = f"Applied filter: {self.name} in"
 
         def ended() -> bool:
@@ -162,12 +162,12 @@ class FilterDialog:
         return self._meshlab.log()[before:]
 
     def fail(self) -> str:
-        """Apply the filter, which must refuse: its message, which is closed again."""
+        """Apply the filter, which must refuse; close its message and return the text."""
         self.press("Apply")
         return self._meshlab.message(_FAILURE)
 
     def pymeshlab_call(self) -> str:
-        """Copy the call for pymeshlab, and give it."""
+        """Copy the call for pymeshlab, and return it."""
         self.press("Copy PyMeshLab call to clipboard")
         return wait_for("the call in the clipboard", self._desktop.clipboard)
 

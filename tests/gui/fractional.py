@@ -47,7 +47,7 @@ def mean_edge(mesh_set: pymeshlab.MeshSet) -> float:
 
 
 def default_feature_size(mesh_set: pymeshlab.MeshSet) -> float:
-    """Tell the feature size that the filter has by default: six mean edges, at most 5 %."""
+    """Return the default feature size of the filter: six mean edges, at most 5 %."""
     return min(6 * mean_edge(mesh_set), 0.05 * diagonal(vertices(mesh_set)))
 
 

@@ -1,4 +1,4 @@
-"""MeshLab as a person uses it: its windows, its menus, its log, the saving of a mesh."""
+"""MeshLab as a user sees it: its windows, its menus, its log, the saving of a mesh."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from filter_dialog import FilterDialog
 from session import Session
 from waiting import wait_for
 
-# A start without the questions and the look for updates of the first one.
+# Without the questions and the check for updates of a first start.
 _SETTINGS = """[General]
 informativeShown=true
 lastTimeMeshLabVersionCheckedOnStart=Fri Jan 1 2100
@@ -20,12 +20,12 @@ _PLUGIN_ERROR = "Error while loading plugins."
 
 
 class MeshLab:
-    """A running MeshLab, with its main window or with the window that tells of a bad plugin.
+    """A running MeshLab, with its main window or with the window that reports a bad plugin.
 
     Parameters
     ----------
     desktop
-        The screen on which it shows itself.
+        The screen on which it appears.
     home
         Folder of its user, below the desktop's scratch folder: with the plugins that were installed
         there, and the mesh.
@@ -46,7 +46,7 @@ class MeshLab:
             output=self._log,
             QT_QPA_PLATFORM="xcb",
             QT_LINUX_ACCESSIBILITY_ALWAYS_ON="1",
-            # What is freed goes back to the system, so that what is kept can be measured.
+            # Freed memory returns to the system, so that leaks can be measured.
             MALLOC_MMAP_THRESHOLD_="131072",
         )
         wait_for("MeshLab's window", self._shows_itself)
@@ -63,7 +63,7 @@ class MeshLab:
         self._session.close()
 
     def wait_for_end(self) -> int:
-        """Wait until it has ended by itself: its exit code, 0 for a good end."""
+        """Wait until it has ended by itself; return its exit code."""
         wait_for("MeshLab to end", lambda: self._process.poll() is not None)
         return self._process.wait()
 
@@ -79,7 +79,7 @@ class MeshLab:
         return self._log.read_text(errors="replace")
 
     def plugin_error(self) -> str | None:
-        """What the window says that tells of plugins that cannot be loaded; None without one."""
+        """The text of the window that reports plugins that cannot be loaded; None without one."""
         if not self.desktop.has_window(_PLUGIN_ERROR):
             return None
         return wait_for("the words in this window", lambda: _words(self.window(_PLUGIN_ERROR)))
@@ -95,7 +95,7 @@ class MeshLab:
         return wait_for("the main window", find)
 
     def menu_entry(self, *path: str) -> Widget | None:
-        """Give an entry of the menus: menu_entry("File", "Exit"); None when there is none."""
+        """Return an entry of the menus: menu_entry("File", "Exit"); None if there is none."""
         entry = next((w for w in self.main_window().children() if w.has_role("menu bar")), None)
         for depth, name in enumerate(path):
             if depth > 0 and entry is not None:
@@ -116,14 +116,14 @@ class MeshLab:
 
         def find() -> Widget | None:
             self._check_alive()
-            # One that was closed may still be there, hidden, beside its successor.
+            # A closed one may still exist, hidden, next to its successor.
             windows = self._program.children()
             return next((w for w in windows if w.has_name(title) and w.showing), None)
 
         return wait_for(f"the window {title!r}", find)
 
     def open_filter(self, *path: str) -> FilterDialog:
-        """Choose a filter from the menus, and give its dialog."""
+        """Choose a filter from the menus, and return its dialog."""
         self.choose("Filters", *path)
         return FilterDialog(self, self.window(path[-1]))
 
@@ -181,7 +181,7 @@ class MeshLab:
         )
 
     def _dialog(self, title: str) -> Widget:
-        """Wait for a modal dialog whose title begins so: the last one that was opened."""
+        """Wait for a modal dialog whose title begins with `title`: the last one that was opened."""
 
         def find() -> Widget | None:
             self._check_alive()

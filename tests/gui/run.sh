@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Tests the plugin in the real MeshLab 2025.07: Debian's, in a Debian system of its own, on a screen
-# that nobody sees. That system is made at the first run, and kept; later runs need no network.
+# Tests the plugin in the real MeshLab 2025.07: Debian's, in a Debian system of its own, on a
+# virtual screen. That system is made at the first run, and kept; later runs need no network.
 #
 # usage: run.sh [ARGUMENTS OF PYTEST]
 #
@@ -27,7 +27,7 @@ mount_point=''
 finish() {
     end_child
     [ -z "$mount_point" ] || rmdir "$mount_point"
-    # Of sudo's caller, for whom else nothing in here would be deletable.
+    # Give the files to sudo's caller, who could not delete them otherwise.
     if [ -n "${SUDO_UID:-}" ]; then chown -R "$SUDO_UID:$SUDO_GID" build/gui screenshots; fi
 }
 trap finish EXIT

@@ -17,5 +17,5 @@ def scene_of(meshlab: MeshLab, dialog: FilterDialog) -> Box:
 
 
 def share_changed(before: Picture, after: Picture) -> float:
-    """Which part of the pixels is of another colour than before, visibly."""
+    """The share of the pixels whose colour has changed visibly."""
     return float((np.abs(after.astype(int) - before).max(axis=2) > 8).mean())

@@ -1,4 +1,4 @@
-"""The pictures of MeshLab in screenshots/, taken anew by `make screenshots`; no tests.
+"""The pictures of MeshLab in screenshots/, made by `make screenshots`; not tests.
 
 Run by pytest for its fixtures: the screen, and MeshLab with the plugin installed.
 """

@@ -1,4 +1,4 @@
-"""A user's session on the desktop: a home, and the buses over which programs tell their widgets."""
+"""A user's session on the desktop: a home, and the buses on which programs expose widgets."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ class Session:
     Parameters
     ----------
     desktop
-        The screen on which the session's programs show themselves.
+        The screen on which the session's programs appear.
     home
         The user's folder, below the desktop's scratch folder.
     """
@@ -51,12 +51,12 @@ class Session:
         return program
 
     def listen(self) -> Bus:
-        """Start the bus on which programs tell their widgets, and listen to it.
+        """Start the bus on which programs expose their widgets, and listen to it.
 
-        Only when the program shows its first window: Qt 5 often stays mute when the bus was there
-        before it had begun to handle events.
+        Call this only when the program shows its first window: Qt 5 often stays silent if the bus
+        exists before it handles events.
         """
-        # Without a DISPLAY: it would note its address on the screen, too, where Qt finds it early.
+        # Without a DISPLAY: it would publish its address there, where Qt would find it too early.
         self.start("/usr/libexec/at-spi-bus-launcher", "--launch-immediately", DISPLAY="")
         session = Bus(self._socket)
         address = wait_for("the accessibility bus", session.address_of_accessibility)

@@ -1,4 +1,4 @@
-"""Spectral Denoise in MeshLab's dialog, with nothing chosen."""
+"""Spectral Denoise in MeshLab's dialog, with its defaults."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from meshlab import MeshLab
 MENU = ("Smoothing, Fairing and Deformation", "Spectral Denoise")
 
 
-def test_a_scan_is_denoised_with_nothing_chosen(
+def test_a_scan_is_denoised_with_the_defaults(
     install: Callable[[], None], start: Callable[[Path], MeshLab], noisy_bunny: Path
 ) -> None:
     install()

@@ -1,4 +1,4 @@
-"""Many previews in a row: MeshLab does not end, and takes no more memory than for the first."""
+"""Many previews in a row: MeshLab keeps running, and its memory does not grow."""
 
 from __future__ import annotations
 
@@ -12,19 +12,18 @@ from fractional import PARAMETERS
 from meshlab import MeshLab
 
 PREVIEWS, WARM_UP = 50, 10
-# Seen: 8 to 10. Of these, 6.6 are MeshLab's own: after every preview it makes icons and menus anew,
-# and keeps the old ones. What lives in it after all previews is, to 0.01, what lives there after as
-# many of a filter that does nothing; the rest is scatter of the heap, which levels off. A filter
-# that keeps 0.5 of every preview is seen with 27, one that does not give up the GL context which
-# MeshLab makes for it with hundreds.
+# Measured: 8 to 10. Of these, 6.6 are MeshLab's own: after every preview it recreates icons and
+# menus, and keeps the old ones. Live memory after all previews is, to 0.01, that after as many of a
+# filter that does nothing; the rest is fragmentation of the heap, which levels off. A filter that
+# leaks 0.5 per preview takes 27, one that leaks the GL context that MeshLab makes for it, hundreds.
 MEBIBYTES_ALLOWED = 13.0
 
 
 def mebibytes_taken(pid: int) -> float:
-    """What a process has taken from the system to hold data in: in use, or free to be used again.
+    """Memory that a process has obtained for data, in use or free for reuse.
 
-    Other than its resident part this does not grow while MeshLab gets round to pages of its heap
-    that were freed long ago.
+    Unlike the resident part, this does not grow when MeshLab reuses pages of its heap that were
+    freed long ago.
     """
     status = Path(f"/proc/{pid}/status").read_text()
     (kibibytes,) = re.findall(r"^VmData:\s+(\d+) kB$", status, re.MULTILINE)
@@ -43,9 +42,9 @@ def test_fifty_previews_need_no_more_memory_than_the_first_ten(
         before = len(meshlab.log())
         dialog.set_value(rows["feature_size"], str(2 + i % WARM_UP))
         dialog.wait_for_result(before)
-        assert dialog.window.showing  # MeshLab answers once all that follows on a filter is done
+        assert dialog.window.showing  # MeshLab answers once it has finished the work after a filter
         taken.append(mebibytes_taken(meshlab.pid))
     record_property("MiB taken after each preview", taken)
-    # Medians: the heap grows by leaps, when a preview has found no room in what is free.
+    # Medians: the heap grows in jumps, when a preview does not fit into free memory.
     grown = median(taken[-WARM_UP:]) - median(taken[WARM_UP : 2 * WARM_UP])
     assert grown < MEBIBYTES_ALLOWED, taken

@@ -1,4 +1,4 @@
-"""The filter in MeshLab's dialog: its parameters, Preview, Apply, refusals, and what it leaves."""
+"""The filter in MeshLab's dialog: parameters, Preview, Apply, refusals, and resulting mesh."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def test_the_dialog_shows_every_parameter_with_its_default(
     defaults = FilterOptions().as_dict()
     assert len(rows) == len(PARAMETERS)
     assert len({row.label for row in rows}) == len(PARAMETERS)
-    # What a custom filter needs is not behind the arrow.
+    # The parameters of a custom filter are not among the advanced ones.
     assert dict(zip(PARAMETERS, rows, strict=True))["transfer_function"].showing
     dialog.show_advanced()
     for name, row in zip(PARAMETERS, rows, strict=True):
@@ -94,9 +94,9 @@ def test_every_parameter_set_in_the_dialog_is_in_the_copied_call_and_the_saved_s
     for row, value in zip(dialog.rows(), OTHER_VALUES.values(), strict=True):
         dialog.set_value(row, value)
     call = dialog.pymeshlab_call()
-    # At their defaults, which a call leaves out: nothing is selected, nor has the bunny a quality,
-    # details would leave nothing to compare, and an offset by so much volume makes single-precision
-    # sizes visible in the normals of small triangles.
+    # These keep their defaults, which a call leaves out: the bunny has no selection or quality,
+    # details would leave nothing to compare, and so large an offset to preserve the volume would
+    # show single-precision sizes in the normals of small triangles.
     for name in set(PARAMETERS) - {"selected", "preserve_volume", "weight", "result"}:
         assert f"{name} = " in call, name
     dialog.apply()
@@ -120,7 +120,7 @@ def test_every_parameter_set_in_the_dialog_is_in_the_copied_call_and_the_saved_s
     assert_same_in_floats(in_meshlab, vertices(other))
 
 
-def test_preview_changes_the_picture_and_without_it_the_mesh_is_back(
+def test_preview_changes_the_picture_and_switching_it_off_restores_the_mesh(
     dialog: FilterDialog, meshlab: MeshLab, desktop: Desktop, bunny: Path
 ) -> None:
     # Strong enough to be seen from afar.
@@ -144,11 +144,11 @@ def test_preview_changes_the_picture_and_without_it_the_mesh_is_back(
     [("script", "dialog") * 2 + ("script",), ("dialog", "script") * 2],
     ids=["script first", "dialog first"],
 )
-def test_scripts_and_the_dialog_take_turns(
+def test_scripts_and_the_dialog_alternate_as_in_pymeshlab(
     meshlab: MeshLab, bunny: Path, turns: tuple[str, ...]
 ) -> None:
     ms = load(bunny)
-    sizes: list[float] = []  # of the script: MeshLab notes lengths in it, not percentages
+    sizes: list[float] = []  # of the script, in which MeshLab stores lengths, not percentages
 
     def apply(size: float) -> None:
         ms.apply_filter(FILTER, steps=1, feature_size=pymeshlab.PureValue(size))
@@ -166,7 +166,7 @@ def test_scripts_and_the_dialog_take_turns(
             for size in sizes:
                 apply(size)
         else:
-            # Anew each time: Apply starts from the mesh of when the dialog was opened.
+            # Reopened each time: Apply starts from the mesh at the opening of the dialog.
             dialog = meshlab.open_filter(*MENU)
             dialog.show_advanced()
             dialog.set_value(dialog.rows()[PARAMETERS.index("steps")], "1")
@@ -177,7 +177,7 @@ def test_scripts_and_the_dialog_take_turns(
     assert_same_in_floats(saved_vertices(meshlab), vertices(ms))
 
 
-def test_a_selection_of_meshlabs_own_is_filtered_with_all_that_acts_on_a_part(
+def test_a_selection_made_in_meshlab_is_filtered_with_every_option_for_parts(
     with_selection: MeshLab, bunny: Path
 ) -> None:
     dialog = with_selection.open_filter(*MENU)
@@ -242,7 +242,7 @@ def test_apply_logs_the_report_and_the_saved_mesh_is_that_of_pymeshlab(
     assert_same_in_floats(saved_vertices(meshlab), vertices(ms))
 
 
-def test_a_refused_parameter_is_explained_and_the_mesh_is_as_it_was(
+def test_a_refused_parameter_is_explained_and_the_mesh_is_unchanged(
     dialog: FilterDialog, meshlab: MeshLab, bunny: Path
 ) -> None:
     row = dialog.rows()[PARAMETERS.index("stop_gain")]

@@ -16,17 +16,17 @@ from meshlab import MeshLab
 from numpy.typing import NDArray
 from waiting import wait_for
 
-STEPS = 100  # for seconds, on the bunny
+STEPS = 100  # takes seconds on the bunny
 STEPS_FOR_A_MINUTE = 1000
 PROJECT = "Project_"  # in the title of MeshLab's window while it has one
 
-# Found before a run: during one MeshLab answers ten questions a second.
+# Looked up before a run: during one, MeshLab answers only ten queries a second.
 Begin = Callable[[Widget], int]
 
 
 @pytest.fixture
 def begin(dialog: FilterDialog, meshlab: MeshLab) -> Begin:
-    """Start a run that takes seconds, by a button or box: the length of the log at its start."""
+    """Start a run of seconds by a button or box; return the length of the log at its start."""
     dialog.show_advanced()
     rows = dict(zip(PARAMETERS, dialog.rows(), strict=True))
     dialog.set_value(rows["steps"], str(STEPS))
@@ -110,7 +110,7 @@ def test_apply_pressed_again_while_it_is_at_work_applies_once(
     assert_filtered_once(meshlab, bunny)
 
 
-def test_apply_clicked_from_a_field_with_a_new_value_is_done_after_the_preview_of_that_value(
+def test_apply_clicked_from_a_field_with_a_new_value_waits_for_the_preview_of_that_value(
     dialog: FilterDialog, meshlab: MeshLab, desktop: Desktop, bunny: Path
 ) -> None:
     dialog.show_advanced()
@@ -127,7 +127,7 @@ def test_apply_clicked_from_a_field_with_a_new_value_is_done_after_the_preview_o
     assert_filtered_once(meshlab, bunny)
 
 
-def test_a_dialog_closed_while_it_previews_leaves_the_preview_as_one_closed_later_does(
+def test_a_dialog_closed_during_a_preview_leaves_the_same_mesh_as_one_closed_later(
     dialog: FilterDialog, meshlab: MeshLab, bunny: Path, begin: Begin
 ) -> None:
     close = part(dialog, "push button", "Close")

@@ -1,4 +1,4 @@
-"""MeshLab loads the plugin that a user has installed, and tells of one that it cannot load."""
+"""MeshLab loads the plugin that a user has installed, and reports one that it cannot load."""
 
 from __future__ import annotations
 
@@ -43,13 +43,13 @@ def test_the_installed_plugin_is_loaded_without_an_error_and_its_filters_are_in_
         assert entry.enabled
 
 
-def test_without_the_plugin_there_is_no_such_menu_entry(
+def test_without_the_plugin_its_menu_entry_is_missing(
     start: Callable[[Path], MeshLab], bunny: Path
 ) -> None:
     assert start(bunny).menu_entry("Filters", *ENTRIES[0]) is None
 
 
-def test_a_damaged_plugin_is_told_of_at_the_start(
+def test_a_damaged_plugin_is_reported_at_startup(
     install: Callable[[], None], home: Path, start: Callable[[Path], MeshLab], bunny: Path
 ) -> None:
     install()
@@ -60,7 +60,7 @@ def test_a_damaged_plugin_is_told_of_at_the_start(
     assert plugin.name in error
 
 
-def test_a_plugin_of_the_other_precision_is_told_of_at_the_start(
+def test_a_plugin_of_the_other_precision_is_reported_at_startup(
     install: Callable[[], None], home: Path, start: Callable[[Path], MeshLab], bunny: Path
 ) -> None:
     install()

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 from typing import TypeVar
 
-# So long that only something that will never come takes it.
+# Long enough that only what never happens takes so long.
 PATIENCE_SECONDS = 120.0
 PAUSE_SECONDS = 0.05
 
@@ -16,7 +16,7 @@ Result = TypeVar("Result")
 def wait_for(
     what: str, condition: Callable[[], Result | None], patience: float = PATIENCE_SECONDS
 ) -> Result:
-    """Call `condition` until it gives something true, and return that."""
+    """Call `condition` until it returns something true, and return that."""
     end = time.monotonic() + patience
     while True:
         result = condition()

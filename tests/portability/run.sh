@@ -76,7 +76,7 @@ case $target in
     macos_*) exit ;;
     mingw)
         export WINEPREFIX="$folder/wine" WINEDEBUG=-all
-        # A server that goes on between the tests; it must not keep this script's output open.
+        # A server that keeps running between the tests; it must not keep this script's output open.
         /usr/lib/wine/wine64 wineboot --init >"$folder/wine.log" 2>&1 </dev/null
         /usr/lib/wine/wineserver64 --persistent >>"$folder/wine.log" 2>&1 </dev/null || true
         trap '/usr/lib/wine/wineserver64 --kill || true' EXIT ;;

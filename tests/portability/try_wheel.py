@@ -15,7 +15,7 @@ import pymeshlab
 
 
 def main() -> None:
-    """Filter a noisy sphere by every way that leads to the plugin."""
+    """Filter a noisy sphere in every way that leads to the plugin."""
     meshlab_spectral.load()
     meshes = pymeshlab.MeshSet()
     meshes.create_sphere(subdiv=5)

@@ -44,8 +44,8 @@ for system in macos_arm64 macos_x86_64; do
     sed "s/^/$system lacks /" "$folder/missing.txt"
     [ ! -s "$folder/missing.txt" ] || status=1
 done
-# Microsoft's names have other words for types: functions by their names alone. A class's typeinfo is
-# no symbol there, but comes with each object.
+# Microsoft's names spell types differently: functions are compared by name alone. A class's
+# typeinfo is not a symbol there, but comes with each object file.
 llvm-nm "$folder/windows/meshlab-common.lib" 2>/dev/null | awk '{ print $NF }' | grep '^?' |
     llvm-undname >"$folder/windows.txt" 2>/dev/null || true  # it does not know some of Qt's templates
 grep -v '^typeinfo for ' "$folder/needed.txt" | sed 's/(.*//' | sort -u >"$folder/functions.txt"

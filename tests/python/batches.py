@@ -1,4 +1,4 @@
-"""What the tests of whole batches need: meshes, running batches, comparing what they leave."""
+"""What the tests of whole batches need: meshes, running batches, comparing their outputs."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ REPORT = "batch_report.jsonl"
 
 
 def make_meshes(folder: Path, count: int, seed: int = 0, rings: int = 12) -> list[Path]:
-    """Write noisy tori as .ply files, each another one."""
+    """Write noisy tori as .ply files, no two alike."""
     folder.mkdir(parents=True, exist_ok=True)
     rng = np.random.default_rng(seed)
     k = np.arange(rings)
@@ -28,7 +28,7 @@ def make_meshes(folder: Path, count: int, seed: int = 0, rings: int = 12) -> lis
     c, d = ((corner + rings) % rings**2 for corner in (b, a))
     F = np.vstack([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
     u, v = (index * 2 * np.pi / rings for index in (i, j))
-    radius = 1 + 0.7 * np.cos(v)  # triangles that are no needles
+    radius = 1 + 0.7 * np.cos(v)  # triangles that are not needles
     torus = np.column_stack([radius * np.cos(u), radius * np.sin(u), 0.7 * np.sin(v)])
     paths = []
     for number in range(count):
@@ -41,7 +41,7 @@ def make_meshes(folder: Path, count: int, seed: int = 0, rings: int = 12) -> lis
 
 
 def records(report: Path, kind: str = "file") -> list[dict[str, Any]]:
-    """Give the lines of a report; a line that is being written is left out."""
+    """Return the lines of a report, without a line that is still being written."""
     if not report.is_file():
         return []
     lines = report.read_text(encoding="utf-8").splitlines(keepends=True)
@@ -50,7 +50,7 @@ def records(report: Path, kind: str = "file") -> list[dict[str, Any]]:
 
 
 def contents(folder: Path) -> dict[str, bytes]:
-    """Give every file below a folder, hidden ones too, but for the report."""
+    """Return every file below a folder, including hidden ones but not the report."""
     return {
         path.relative_to(folder).as_posix(): path.read_bytes()
         for path in folder.rglob("*")
@@ -71,7 +71,7 @@ def start_batch(*arguments: object) -> subprocess.Popen[str]:
 
 
 def below(process: subprocess.Popen[str], word: str = "") -> list[psutil.Process]:
-    """Give the processes that a command has started whose command line holds a word."""
+    """Return the processes started by a command whose command line contains a word."""
     found = []
     for child in psutil.Process(process.pid).children(recursive=True):
         try:

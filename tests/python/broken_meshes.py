@@ -17,12 +17,12 @@ def make_broken_meshes(folder: Path, whole: Path) -> dict[str, str]:
     folder
         Where to; it exists.
     whole
-        A binary .ply file of some 10 kB at least, to be cut off.
+        A binary .ply file of at least some 10 kB, which will be cut off.
 
     Returns
     -------
     dict
-        Name of each file -> a word of the reason for which it must fail.
+        Name of each file -> a word of the reason why it must fail.
     """
     content = whole.read_bytes()
     (folder / "cut_off.ply").write_bytes(content[: len(content) // 2])

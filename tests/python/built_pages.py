@@ -12,7 +12,7 @@ class Page(HTMLParser):
     Attributes
     ----------
     title, text
-        Text of its heading; all text but code.
+        Text of its heading; all text except code.
     ids
         Targets of `#...`.
     links

@@ -56,7 +56,7 @@ def command_on_terminal(*arguments: object) -> tuple[int, bytes, bytes]:
 
 
 def messages_in(stderr: str) -> str:
-    """What is on standard error but for progress, of which a busy machine has more."""
+    """Standard error without progress, of which a busy machine prints more."""
     return re.sub(r"^\[[^\]]+\] .*\n", "", stderr, flags=re.MULTILINE)
 
 

@@ -1,4 +1,4 @@
-"""Fixtures: pymeshlab with the plugin, its sample meshes, the real meshes beside the project."""
+"""Fixtures: pymeshlab with the plugin, its sample meshes, the real meshes next to the project."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-# Before NumPy is loaded: with as many threads as cores, the many middling eigenproblems of the
-# tests take ten times as long as soon as another program wants a core.
+# Before NumPy is loaded: with as many threads as cores, the many medium-sized eigenproblems of the
+# tests take ten times as long as soon as another program uses a core.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import meshlab_spectral
@@ -24,7 +24,7 @@ SAMPLES = Path(pymeshlab.__file__).parent / "tests" / "sample_meshes"
 SAMPLE_NAMES = ("bunny.obj", "bone.ply", "cow.obj")
 DATA_VARIABLE = "MESHLAB_SPECTRAL_DATA"
 
-# The same examples in every run; and a busy machine is no failure.
+# The same examples in every run; and a busy machine is not a failure.
 settings.register_profile(
     "seeded", derandomize=True, deadline=None, suppress_health_check=[HealthCheck.too_slow]
 )
@@ -81,7 +81,7 @@ def _decimated(name: str, faces: int) -> Arrays:
 
 @pytest.fixture(scope="session")
 def decimated() -> Callable[..., Arrays]:
-    """Give n x 3 coordinates and triangles of a sample, decimated: decimated("cow.obj", 2000)."""
+    """Return n x 3 coordinates and triangles of a decimated sample: decimated("cow.obj", 2000)."""
 
     def get(name: str, faces: int = 2400) -> Arrays:
         return _decimated(name, faces)
@@ -91,7 +91,7 @@ def decimated() -> Callable[..., Arrays]:
 
 @pytest.fixture
 def shared_mesh() -> Callable[[str], Path]:
-    """Give the path of a mesh of the project's collection; skip the test where it is absent."""
+    """Return the path of a mesh of the project's collection; skip the test if it is absent."""
     repository = Path(__file__).resolve().parents[2]
     folder = Path(os.environ.get(DATA_VARIABLE) or repository.parent / "shared" / "data")
 

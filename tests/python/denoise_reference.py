@@ -1,4 +1,4 @@
-"""Spectral Denoise's equations on closed meshes, written a second time with SciPy."""
+"""Spectral Denoise's equations on closed meshes, implemented independently with SciPy."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def upper_median(values: Array) -> float:
 
 
 def white_noise(count: int) -> Array:
-    """The plugin's, by Box and Muller from a Mersenne twister."""
+    """The plugin's white noise: Box-Muller on numbers of a Mersenne twister."""
     twister = np.random.MT19937()
     twister._legacy_seeding(1)
     raw = twister.random_raw(2 * ((count + 1) // 2)).reshape(-1, 2)
@@ -41,7 +41,7 @@ def white_noise(count: int) -> Array:
 
 
 class Reference:
-    """A closed, oriented manifold mesh, and the parts of the filter on it."""
+    """The parts of the filter on a closed, oriented manifold mesh."""
 
     def __init__(self, F: NDArray[Any], n: int) -> None:
         sides = np.concatenate([F[:, [0, 1]], F[:, [1, 2]], F[:, [2, 0]]])
@@ -75,7 +75,7 @@ class Reference:
             x = (x + self.P @ x) / 2
         return x
 
-    # Measuring.
+    # Measurement.
 
     def noise(self, X: Array) -> tuple[float, float]:
         """Height and size of the noise, by the octaves of diffusion."""
@@ -178,7 +178,7 @@ class Reference:
             X = X + (self.volume(X0) - self.volume(X)) / size * unit(G)
         return X
 
-    # Kinds of noise, of a given height.
+    # Removal of each kind of noise, of a given height.
 
     def without_white_noise(self, X0: Array, height: float) -> Array:
         edge = mean_edge(X0, self.F)

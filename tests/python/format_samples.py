@@ -1,7 +1,7 @@
 """A small file of every mesh format with every kind of content, and what other programs see in it.
 
 The shape is a noisy sphere of quadrilaterals, with triangles at its poles. It is closed, but cut
-along a seam where the format has texture coordinates. No reader here is one of the package.
+along a seam where the format has texture coordinates. No reader here comes from the package.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from nibabel import gifti
 from numpy.typing import NDArray
 from plyfile import PlyData, PlyElement
 
-# Contents by kind: "coordinates", where they are placed, and "normals" are arrays of n x 3, all
-# others are compared by ==.
+# Contents by kind: "coordinates", after placement, and "normals" are arrays of n x 3, all others
+# are compared by ==.
 Seen = dict[str, Any]
 Array = NDArray[Any]
 

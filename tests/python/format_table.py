@@ -1,4 +1,4 @@
-"""Prints, as a table for the README, what of a file is kept when it is filtered.
+"""Prints a table for the README: which contents of a file are kept when it is filtered.
 
 In the environment of the project: `python tests/python/format_table.py`.
 """
@@ -33,7 +33,7 @@ KINDS = {
 
 
 def table() -> str:
-    """Filter every sample; the table in Markdown, kinds of content by formats."""
+    """Filter every sample; return a Markdown table, kinds of content by formats."""
     columns: dict[str, list[dict[str, str]]] = {}
     with tempfile.TemporaryDirectory() as folder:
         for number, sample in enumerate(SAMPLES):
@@ -46,7 +46,7 @@ def table() -> str:
 
 
 def outcomes(sample: Sample, folder: Path) -> dict[str, str]:
-    """Filter a sample; what has become of each kind of content in it."""
+    """Filter a sample; return the outcome for each kind of content in it."""
     source, target = (folder / side / sample.name for side in ("in", "out"))
     source.parent.mkdir(parents=True)
     target.parent.mkdir()
@@ -56,7 +56,7 @@ def outcomes(sample: Sample, folder: Path) -> dict[str, str]:
 
 
 def compared(before: Seen, after: Seen, report: dict[str, Any]) -> dict[str, str]:
-    """Tell for each kind of content in `before` what has become of it.
+    """Return the outcome for each kind of content in `before`.
 
     "kept", "follow" the shape, "told" in a warning, or "LOST".
     """

@@ -1,8 +1,8 @@
-"""An implementation of the filter of its own, with all eigenvectors, in NumPy and SciPy.
+"""An independent implementation of the filter, with all eigenvectors, in NumPy and SciPy.
 
 Written from the mathematics (Kovnatsky et al. 2012; Vallet and Levy 2008), not from the plugin's
 source, so that an error has to be made twice to pass. The intrinsic Delaunay Laplacian is that of
-the package robust_laplacian, by its inventors. Slow and plain on purpose: n up to about
+the package robust_laplacian, by its authors. Slow and plain on purpose: n up to about
 1,500 vertices.
 """
 
@@ -300,7 +300,7 @@ def cut_outside_clusters(lam: Array, asked: int) -> int:
     """Take more eigenpairs than asked while the next eigenvalue is nearly equal to the last one.
 
     Nearly equal, as the filter's documentation has it: nearer than a tenth of the mean spacing
-    lambda_k / k. Every step of a filter may so have a basis of another size.
+    lambda_k / k. Every step of a filter may thus have a basis of another size.
     """
     k = asked
     while k < len(lam) and lam[k] - lam[k - 1] <= 0.1 * lam[asked - 1] / asked:

@@ -14,7 +14,7 @@ FOLDER = str(Path(__file__).parent / "without_posix")
 
 
 @pytest.mark.parametrize("importer", ["meshlab_spectral.files", "somebody_else"])
-def test_only_the_package_is_refused_what_is_of_posix(importer: str) -> None:
+def test_only_the_package_is_refused_posix_modules(importer: str) -> None:
     code = f"exec('import fcntl', {{'__package__': {importer!r}}})"
     done = subprocess.run(
         [sys.executable, "-c", code],

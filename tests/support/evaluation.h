@@ -12,10 +12,10 @@
 namespace spectral::testing {
 
 /// The paper's Laplacian, of cotangents and areas.
-/// @param F  every vertex is in some triangle.
+/// @param F  triangles; every vertex is in one of them.
 Laplacian cotangentLaplacian(const Vertices& V, const Faces& F);
 
-/// The cotangent Laplacian of a mesh that is kept with it.
+/// A mesh with its cotangent Laplacian.
 struct Operator : Laplacian {
     Mesh mesh;
 
@@ -27,10 +27,10 @@ struct Operator : Laplacian {
 /// At least the k lowest harmonics, by truncatedBasis.
 HarmonicBasis lowestHarmonics(const Operator& A, Index k, const Progress& progress = {});
 
-/// Y = F(sqrt(A)) V by all eigenvectors: the yardstick.
+/// Y = F(sqrt(A)) V by all eigenvectors: the reference.
 Vertices filteredDense(const Operator& A, const HarmonicBasis& dense, const Gain& gain);
 
-/// The same by the rational Krylov method, with a pole as the filter chooses it.
+/// The same by the rational Krylov method, with the pole that the filter would choose.
 /// @param samples  see FullSpectrumOptions.
 FullSpectrumResult filteredFullSpectrum(const Operator& A, const Gain& gain, double cutoff,
                                         double accuracy, const std::vector<double>& samples = {});

@@ -9,12 +9,12 @@
 
 namespace spectral::testing {
 
-/// What the steps of a filter of `blob` need.
+/// Everything that the steps of a filter of `blob` need.
 struct FilterOfBlob {
     Surface surface;
     Interior interior;
     TransferFunction F;
-    EvaluationOptions evaluation;         ///< Of accuracy 1e-9.
+    EvaluationOptions evaluation;         ///< With accuracy 1e-9.
     mutable LaplacianBuilder laplacians;  ///< Keeps `surface` by reference.
 
     /// @param featureSize  length units; the blob's own size is about 2.

@@ -2,8 +2,8 @@
 
 namespace spectral::testing {
 
-/// The most memory that this program has had, resident, in MB; ru_maxrss would begin with that of
-/// the one that started it. 0 where the system does not tell.
+/// Peak resident memory of this process in MB, 0 where the system does not report it. (ru_maxrss
+/// would start from the peak of the parent process.)
 double peakMegabytes();
 
 }  // namespace spectral::testing

@@ -129,7 +129,7 @@ Mesh segmentedBall(int radius) {
         const double hole = 0.4 * radius;
         return p.norm() < radius - 0.5 && (p - Eigen::RowVector3d(hole, 0, 0)).norm() > hole;
     };
-    std::vector<Eigen::RowVector3d> corners;  // of one triangle after the other
+    std::vector<Eigen::RowVector3d> corners;  // triangle by triangle
     const auto addTetrahedron = [&](std::array<Eigen::RowVector3d, 4> p) {
         const auto inside = std::stable_partition(p.begin(), p.end(), isInside) - p.begin();
         const auto middle = [&p](int i, int j) { return (0.5 * (p[i] + p[j])).eval(); };

@@ -17,7 +17,7 @@ std::atomic<int> threadsLeft{kNoLimit};
 }  // namespace
 
 #ifdef __GLIBC__
-// Stands before the C library's for the whole program, the C++ library's threads included.
+// Replaces the C library's in the whole program, including the C++ library's threads.
 extern "C" __attribute__((visibility("default"))) int pthread_create(
     pthread_t* thread, const pthread_attr_t* attributes, void* (*start)(void*),
     void* argument) noexcept {

@@ -4,11 +4,11 @@
 
 namespace spectral::testing {
 
-/// As long as it lives, the system refuses every thread after the first `left` of them.
+/// During its lifetime, the system refuses every thread after the first `left` ones.
 class ThreadShortage {
   public:
-    /// Whether a program can stand in front of the system's threads here; elsewhere this does
-    /// nothing.
+    /// Whether a program can replace the creation of threads on this system; otherwise this class
+    /// does nothing.
 #ifdef __GLIBC__
     static constexpr bool kIsPossible = true;
 #else

@@ -74,7 +74,7 @@ TEST(Artefacts, ConvergeToTheClosedFormOnASphereAtLeastAtSecondOrder) {
     EXPECT_GT(middle / fine, 4.0);
 }
 
-TEST(Artefacts, AreNothingOfASmoothShapeAndAllOfARoughOne) {
+TEST(Artefacts, AreNegligibleOnASmoothShapeButNotOnARoughOne) {
     const Mesh sphere = testing::icosphere(4);
     EXPECT_LT(measured(sphere, 0.2).maximum, 1e-3);
     const Mesh spiky = testing::withNoise(sphere, 0.02, 7);

@@ -48,7 +48,7 @@ TEST(Bands, AreOneAtTheirCentreAndOneHalfAtTheirEdges) {
     }
 }
 
-TEST(Bands, AreASingleOneForARangeOfOneFrequency) {
+TEST(Bands, AreASingleBandForASingleFrequency) {
     const Bands one(kDiagonal, omegaOf(1.0), omegaOf(1.0));
     EXPECT_EQ(one.count(), 1);
     for (const double omega : {0.0, 1.0, 1e9}) EXPECT_EQ(one.window(0, omega), 1.0);

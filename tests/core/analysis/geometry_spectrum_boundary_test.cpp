@@ -24,7 +24,7 @@ using testing::Mesh;
 using testing::Operator;
 using testing::spectrumOf;
 
-/// Open surfaces, one of them together with a closed one.
+/// Open surfaces, the last one joined with a closed one.
 std::vector<Mesh> openMeshes() {
     return {testing::hemisphere(14), testing::withNoise(testing::rectangle(2, 1, 32, 16), 0.01, 3),
             testing::joined(testing::blob(), testing::withNoise(testing::hemisphere(8), 0.01, 2))};
@@ -33,7 +33,7 @@ std::vector<Mesh> openMeshes() {
 TEST(GeometrySpectrumWithFixedBoundary, AgreesWithAllEigenvectorsOfTheInterior) {
     for (const Mesh& mesh : openMeshes()) {
         expectWhatAllEigenvectorsSay(mesh, Boundary::Fixed);
-        // By hand: U = X - H, H harmonic, W_II H_I = -W_IB X_B; minus its mean if nothing is fixed.
+        // By hand: U = X - H, H harmonic, W_II H_I = -W_IB X_B; minus the mean if none is fixed.
         const Operator A(mesh);
         const Components components = connectedComponents(mesh.F, mesh.V.rows());
         const Interior interior(mesh.F, components, Boundary::Fixed);
@@ -56,7 +56,7 @@ TEST(GeometrySpectrumWithFixedBoundary, AgreesWithAllEigenvectorsOfTheInterior) 
     }
 }
 
-TEST(GeometrySpectrumWithFixedBoundary, ShowsOnlyAWaveThatVanishesThere) {
+TEST(GeometrySpectrumWithFixedBoundary, ShowsOnlyAWaveThatVanishesOnTheBoundary) {
     // Height e sin(p pi x / a) sin(q pi y / b) on a flat rectangle a x b, whose plane is determined
     // by its boundary: a single harmonic with root mean square e / 2.
     const double a = 2.0, b = 1.0, e = 1e-3;
@@ -76,7 +76,7 @@ TEST(GeometrySpectrumWithFixedBoundary, ShowsOnlyAWaveThatVanishesThere) {
     EXPECT_GT(spectrumOf(mesh, 20).octaveAmplitudes.maxCoeff(), 0.5);
 }
 
-TEST(GeometrySpectrumWithFixedBoundary, FallsFasterThanThatOfAFreeOne) {
+TEST(GeometrySpectrumWithFixedBoundary, FallsFasterThanWithAFreeBoundary) {
     // The cosine coefficients of x on a rectangle with free boundary are 1 / m^2: 2^1.5 per octave.
     // The sine coefficients of a dome x (a - x) y (b - y), which is curved at the boundary, are
     // 1 / m^3: 2^2.5.
@@ -119,7 +119,7 @@ TEST(GeometrySpectrum, IsThatOfTheSignalAFilterActsOn) {
         }
 }
 
-TEST(GeometrySpectrumWithFixedBoundary, EqualsThatOfAFreeOneOnAClosedMesh) {
+TEST(GeometrySpectrumWithFixedBoundary, EqualsTheFreeSpectrumOnAClosedMesh) {
     const Mesh mesh = testing::blob();
     const GeometrySpectrum free = spectrumOf(mesh, 30),
                            fixed = spectrumOf(mesh, 30, Boundary::Fixed);
@@ -136,7 +136,7 @@ TEST(GeometrySpectrumWithFixedBoundary, IsOneFrequencyForASingleInteriorVertex) 
     EXPECT_EQ(spectrum.octaveEnergies.size(), 1);
 }
 
-TEST(GeometrySpectrumWithFixedBoundary, IsRejectedIfItLeavesNothing) {
+TEST(GeometrySpectrumWithFixedBoundary, IsRejectedIfTheBoundaryDeterminesTheWholeShape) {
     Mesh flat = testing::rectangle(2, 1, 8, 4);
     flat.V.rowwise() += Eigen::RowVector3d(100, -50, 3);
     for (const Mesh& mesh : {testing::rectangle(1, 1, 1, 1), flat}) {

@@ -23,8 +23,8 @@ TEST(GeometrySpectrum, RisesTowardsSmallFeaturesForNoise) {
     const Index last = spectrum.octaveAmplitudes.size() - 1;
     for (Index j = 2; j <= last; ++j)
         EXPECT_GT(spectrum.octaveAmplitudes[j], 1.6 * spectrum.octaveAmplitudes[j - 1]);
-    // Of the three directions of the noise one is across the surface; displacements within it do
-    // not change the shape. All but the long waves of the noise is in these octaves.
+    // Of the three components of the noise only the normal one changes the shape. These octaves
+    // hold all of it but its long waves.
     EXPECT_NEAR(spectrum.octaveAmplitudes.tail(last - 1).norm(), 1e-3 / std::sqrt(3.0), 3e-5);
 }
 

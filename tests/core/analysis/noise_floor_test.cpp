@@ -7,8 +7,8 @@
 namespace spectral {
 namespace {
 
-/// Third octaves of a uniform mesh of unit area: noise in proportion to the number of harmonics,
-/// which grows by 4 per octave.
+/// Third octaves of a uniform mesh of unit area: noise energy is proportional to the number of
+/// harmonics, which quadruples per octave.
 struct Spectrum {
     Eigen::VectorXd size = Eigen::VectorXd(15), amplitude = size, noise = size;
 
@@ -44,7 +44,7 @@ TEST(NoiseFloor, StartsWhereReliefFallsBelowTheNoise) {
         }
 }
 
-TEST(NoiseFloor, IsNoneForPureRelief) {
+TEST(NoiseFloor, IsZeroForPureRelief) {
     for (const double slope : {1.5, 2.0, 2.5, 4.0}) {
         const NoiseFloor floor = Spectrum(0.0, 1.0, slope).floor();
         EXPECT_EQ(floor.height, 0.0) << "slope " << slope;
@@ -52,7 +52,7 @@ TEST(NoiseFloor, IsNoneForPureRelief) {
     }
 }
 
-TEST(NoiseFloor, IsNoneWithoutBands) {
+TEST(NoiseFloor, IsZeroWithoutBandsOrEnergy) {
     EXPECT_EQ(noiseFloor({}, {}, {}).height, 0.0);
     EXPECT_EQ(Spectrum(0.0, 0.0, 1.0).floor().height, 0.0);
     const Eigen::VectorXd one = Eigen::VectorXd::Ones(1);

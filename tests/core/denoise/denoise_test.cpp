@@ -50,7 +50,7 @@ TEST(Denoise, LeavesACleanShapeBitIdentical) {
     }
 }
 
-TEST(Denoise, LeavesAFewVerticesAlone) {
+TEST(Denoise, LeavesATinyMeshAlone) {
     const Mesh box = testing::cube(1);
     EXPECT_EQ(denoise(box.V, box.F, {}).V, box.V);
 }
@@ -88,7 +88,7 @@ TEST(Denoise, SmoothsVoxelStepsWithinHalfAVoxel) {
     EXPECT_LT(roughness(smooth), 0.25 * roughness(V));
 }
 
-TEST(Denoise, RefrainsFromCrumplingAPart) {
+TEST(Denoise, DoesNotCrumpleAMeshOfNeedles) {
     const Mesh needles = testing::torus(2.0, 0.5, 300, 5);
     DenoiseOptions options;
     options.noiseHeight = 0.3 * meanEdgeLength(needles.V, needles.F);
@@ -201,8 +201,8 @@ TEST(Denoise, AcceptsAnyTriangles) {
     mesh.V.conservativeResize(n + 1, 3);
     mesh.V.row(n) << 9, 9, 9;  // unreferenced
     mesh.F.conservativeResize(m + 3, 3);
-    mesh.F.row(m) = mesh.F.row(0);                                  // twice
-    mesh.F.row(m + 1) << mesh.F(1, 0), mesh.F(1, 0), mesh.F(1, 1);  // a line
+    mesh.F.row(m) = mesh.F.row(0);                                  // duplicate
+    mesh.F.row(m + 1) << mesh.F(1, 0), mesh.F(1, 0), mesh.F(1, 1);  // degenerate
     mesh.F.row(m + 2) << mesh.F(2, 0), mesh.F(2, 1), mesh.F(30, 2);
     DenoiseOptions options;
     for (const double height : {0.0, 0.05}) {

@@ -69,7 +69,7 @@ TEST(NormalFilter, SolvesItsEquation) {
     }
 }
 
-TEST(NormalFilter, MixesMoreWhereEdgesAreShort) {
+TEST(NormalFilter, SmoothsNoiseMoreWhereEdgesAreShort) {
     const Mesh large = testing::rectangle(20.0, 20.0, 20, 20);
     const Mesh small = testing::rectangle(5.0, 5.0, 20, 20);
     Mesh mesh = testing::joined(large, small);
@@ -79,7 +79,7 @@ TEST(NormalFilter, MixesMoreWhereEdgesAreShort) {
     for (Index i = 0; i < mesh.V.rows(); ++i) mesh.V(i, 2) = normal(random);
     const FaceGraph graph = faceGraph(mesh.F, mesh.V.rows());
     NormalFilterOptions options{4.0, 0.22};
-    const auto slopes = [&] {  // of the large triangles, and of the small ones
+    const auto slopes = [&] {  // of the large and of the small triangles
         const Points N = filterNormals(graph, mesh.V, options);
         const auto squares = N.leftCols<2>().rowwise().squaredNorm();
         return std::pair(squares.head(large.F.rows()).sum(), squares.tail(small.F.rows()).sum());

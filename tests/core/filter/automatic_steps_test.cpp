@@ -18,7 +18,7 @@ namespace {
 using testing::boost;
 using testing::largestDifference;
 
-/// Automatic steps and the equal steps that they are compared with.
+/// Automatic steps, and the equal steps to compare them with.
 struct Setting : testing::FilterOfBlob {
     using FilterOfBlob::FilterOfBlob;
 
@@ -64,7 +64,7 @@ TEST(AutomaticSteps, HavePowersThatSumToOne) {
     }
 }
 
-TEST(AutomaticSteps, TellWhenTheirBoundStopsThem) {
+TEST(AutomaticSteps, ReportWhenTheMaximumNumberStopsThem) {
     const Setting setting(boost(), 1.0, BasisUpdate::Full);
     const AutomaticSteps steps = setting.automatic(1e-8, 8);
     EXPECT_EQ(steps.last.sizes.size(), 8u);
@@ -75,8 +75,8 @@ TEST(AutomaticSteps, TellWhenTheirBoundStopsThem) {
 }
 
 TEST(AutomaticSteps, AreNotHeldUpByPartsThatShrinkAway) {
-    // Fragments of all sizes around the one that vanishes just at the end of the filter: for some
-    // of them no number of steps is enough.
+    // Fragments of all sizes around the one that vanishes exactly at the end of the filter: for
+    // some of them no number of steps suffices.
     testing::Mesh mesh = testing::blob();
     for (int i = 0; i < 40; ++i) {
         testing::Mesh fragment = testing::icosphere(1);
@@ -101,7 +101,7 @@ TEST(AutomaticSteps, AreNotHeldUpByPartsThatShrinkAway) {
     EXPECT_LT(steps.singularPart, 0.1);
 }
 
-TEST(AutomaticSteps, ReportProgressThatNeverRunsBackwards) {
+TEST(AutomaticSteps, ReportProgressThatNeverDecreases) {
     const Setting setting(boost(), 1.0, BasisUpdate::Full);
     double last = 0.0;
     int reports = 0;

@@ -1,4 +1,4 @@
-// What the fractional filter tells: its report, progress, and errors.
+// The report, the progress and the errors of the fractional filter.
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ FilterOptions smoothing(const Mesh& mesh, int steps, BasisUpdate update) {
     return options;
 }
 
-TEST(FractionalFilter, ReportsTheAreaOfWhatShrinksToALine) {
+TEST(FractionalFilter, ReportsTheAreaOfPartsThatShrinkToALine) {
     // The tube of a thin ring has no harmonic below the cutoff, a ball has.
     Mesh ring = testing::torus(2, 0.1, 120, 12);
     ring.V.rowwise() += Eigen::RowVector3d(8, 0, 0);
@@ -63,7 +63,7 @@ TEST(FractionalFilter, ReportsWhatItDid) {
     EXPECT_EQ(result.eigenvalues.size(), 0);
 }
 
-TEST(FractionalFilter, EndsAtTheMostStepsAndTellsTheError) {
+TEST(FractionalFilter, StopsAtTheMaximumNumberOfStepsAndReportsTheError) {
     const Mesh mesh = testing::blob();
     FilterOptions options = smoothing(mesh, 0, BasisUpdate::Conformal);
     options.tolerance = 1e-6 * boundingBoxDiagonal(mesh.V);
@@ -80,7 +80,7 @@ TEST(FractionalFilter, EndsAtTheMostStepsAndTellsTheError) {
     EXPECT_LT(error, 0.1 * quick.maxDisplacement);
 }
 
-TEST(FractionalFilter, WarnsWhenTheAccuracyIsNotReached) {
+TEST(FractionalFilter, ReportsThatTheAccuracyIsNotReached) {
     // The tenth root of a gain that vanishes inside the spectrum has a cusp there.
     const Mesh mesh = testing::withNoise(testing::icosphere(4), 0.02, 5);
     FilterOptions options = smoothing(mesh, 10, BasisUpdate::Conformal);
@@ -95,7 +95,7 @@ TEST(FractionalFilter, WarnsWhenTheAccuracyIsNotReached) {
     EXPECT_TRUE(smooth.accuracyReached);
 }
 
-TEST(FractionalFilter, TellsWhenTheHarmonicsEndBelowTheCutoff) {
+TEST(FractionalFilter, ReportsThatTheHarmonicsEndBelowTheCutoff) {
     const Mesh mesh = testing::blob();
     FilterOptions options = smoothing(mesh, 2, BasisUpdate::Full);
     options.evaluation.spectrum = Spectrum::Truncated;
@@ -108,7 +108,7 @@ TEST(FractionalFilter, TellsWhenTheHarmonicsEndBelowTheCutoff) {
     EXPECT_LT(std::sqrt(few.eigenvalues[few.eigenvalues.size() - 1]), few.cutoffFrequency);
     EXPECT_FALSE(few.cutoffReached);
 
-    // An ideal response needs no harmonic beyond its edge.
+    // An ideal response needs no harmonic beyond its cutoff.
     options.evaluation.spectrum = Spectrum::Full;
     options.transferFunction.response = Response::Ideal;
     const FilterResult ideal = fractionalFilter(mesh.V, mesh.F, options);
@@ -133,7 +133,7 @@ TEST(FractionalFilter, ReportsProgressUpToTheEnd) {
     EXPECT_GT(last, 0.8);
 }
 
-TEST(FractionalFilter, StopsWhenTheCallerSaysSo) {
+TEST(FractionalFilter, StopsWhenTheCallerCancels) {
     const Mesh mesh = testing::blob();
     for (const Spectrum spectrum : {Spectrum::Full, Spectrum::Truncated}) {
         FilterOptions options = smoothing(mesh, 5, BasisUpdate::Full);
@@ -146,7 +146,7 @@ TEST(FractionalFilter, StopsWhenTheCallerSaysSo) {
     }
 }
 
-TEST(FractionalFilter, RefusesOptionsOutOfTheirRange) {
+TEST(FractionalFilter, RefusesOptionsOutOfRange) {
     const Mesh mesh = testing::icosphere(2);
     const auto refuses = [&](auto change) {
         FilterOptions options = smoothing(mesh, 2, BasisUpdate::Full);
@@ -168,7 +168,7 @@ TEST(FractionalFilter, RefusesOptionsOutOfTheirRange) {
     });
 }
 
-TEST(FractionalFilter, TellsSmallNumbersInErrors) {
+TEST(FractionalFilter, DoesNotRoundSmallNumbersInErrorsToZero) {
     const Mesh mesh = testing::icosphere(1);
     FilterOptions options = smoothing(mesh, 2, BasisUpdate::Full);
     options.transferFunction.passGain = -1e-9;
@@ -180,7 +180,7 @@ TEST(FractionalFilter, TellsSmallNumbersInErrors) {
     }
 }
 
-TEST(FractionalFilter, SaysInWhichStepThinPartsCollapsed) {
+TEST(FractionalFilter, NamesTheStepInWhichThinPartsCollapsed) {
     // A needle: a strong low-pass with full update pinches it to a line.
     Mesh mesh = testing::icosphere(4);
     mesh.V.col(0) *= 60.0;
@@ -199,7 +199,7 @@ TEST(FractionalFilter, SaysInWhichStepThinPartsCollapsed) {
     }
 }
 
-TEST(FractionalFilter, SaysThatAFeatureSizeBeyondTheShapeLeavesNothing) {
+TEST(FractionalFilter, RefusesAFeatureSizeThatShrinksTheShapeToNothing) {
     const Mesh mesh = testing::withNoise(testing::icosphere(3), 0.03, 5);
     FilterOptions options;
     options.tolerance = 1e-3;

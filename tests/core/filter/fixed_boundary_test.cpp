@@ -119,7 +119,7 @@ TEST(BoundaryVertices, AreTheEndsOfEdgesOfOneTriangle) {
     EXPECT_EQ(std::count(closed.begin(), closed.end(), true), 0);
 }
 
-TEST(BoundaryVertices, AreNotThoseOfEdgesOfThreeTriangles) {
+TEST(BoundaryVertices, ExcludeTheEndsOfEdgesOfThreeTriangles) {
     Faces F(7, 3);  // two tetrahedra with the wall 0 1 2 between them
     F << 0, 1, 2, 0, 1, 3, 1, 2, 3, 2, 0, 3, 0, 1, 4, 1, 2, 4, 2, 0, 4;
     const std::vector<bool> none = boundaryVertices(F, 5);
@@ -167,7 +167,7 @@ TEST(FixedHarmonics, OfAFlatRectangleConvergeToTheDirichletEigenvaluesAtSecondOr
 }
 
 TEST(FixedHarmonics, OfTheHemisphereAreTheSpheresOddOnes) {
-    // l(l+1), of its 2l+1 harmonics the l that vanish at the equator.
+    // l(l+1), with those l of its 2l+1 harmonics that vanish on the equator.
     const Mesh mesh = testing::hemisphere(24);
     HarmonicsOptions options;
     options.basisSize = 10;
@@ -218,7 +218,7 @@ TEST(FixedHarmonics, ASizeThatTheInteriorCannotHoldIsRefused) {
     EXPECT_THROW(manifoldHarmonics(triangle().V, triangle().F, options), InvalidOption);
 }
 
-TEST(HarmonicExtension, LeavesNothingOfALinearFunctionOnAFlatMesh) {
+TEST(HarmonicExtension, ReproducesALinearFunctionOnAFlatMesh) {
     Mesh flat = testing::withNoise(testing::rectangle(2, 1, 20, 10), 0.03, 3);
     flat.V.col(2).setZero();
     const Operator A(flat);
@@ -247,7 +247,7 @@ TEST(FixedBoundary, FilterEqualsAllEigenvectorsOfTheInterior) {
     }
 }
 
-TEST(FixedBoundary, StaysWhereItIsToTheBit) {
+TEST(FixedBoundary, StaysBitIdentical) {
     for (const Mesh& mesh : openMeshes())
         for (const BasisUpdate update : kUpdates)
             for (const Spectrum spectrum : {Spectrum::Full, Spectrum::Truncated})
@@ -278,7 +278,7 @@ TEST(FixedBoundary, WithUnitGainNothingMoves) {
             }
 }
 
-TEST(FixedBoundary, AFlatPatchKeepsEveryVertexAndAFreeOneShrinks) {
+TEST(FixedBoundary, KeepsAFlatPatchThatShrinksWithAFreeBoundary) {
     Mesh flat = testing::withNoise(testing::rectangle(2, 1, 20, 10), 0.02, 3);
     flat.V.col(2).setZero();
     FilterOptions options = smoothing(flat, 4);
@@ -287,7 +287,7 @@ TEST(FixedBoundary, AFlatPatchKeepsEveryVertexAndAFreeOneShrinks) {
     EXPECT_GT(fractionalFilter(flat.V, flat.F, options).maxDisplacement, 1e-3);
 }
 
-TEST(FixedBoundary, OfAClosedMeshChangesNotABit) {
+TEST(FixedBoundary, ChangesNothingOnAClosedMesh) {
     for (const Mesh& mesh : {testing::blob(), testing::joined(testing::cube(5), testing::blob())})
         for (const int steps : {0, 2}) {
             FilterOptions options = smoothing(mesh, steps, BasisUpdate::Conformal);
@@ -314,7 +314,7 @@ TEST(FixedBoundary, FiltersEveryComponentAsIfItWereAlone) {
     }
 }
 
-TEST(FixedBoundary, WhereNothingCanMoveNothingMoves) {
+TEST(FixedBoundary, MovesNothingOnASingleTriangle) {
     const Mesh mesh = triangle();
     for (const int steps : {0, 3})
         for (const Spectrum spectrum : {Spectrum::Full, Spectrum::Truncated}) {
@@ -365,7 +365,7 @@ TEST(FixedBoundary, AutomaticStepsReachTheLimitOfManySteps) {
     EXPECT_LT(largestDifference(automatic.V, finer.V), 50.0 * options.tolerance);
 }
 
-TEST(FixedBoundary, IdealResponseKeepsTheHarmonicsBelowItsEdge) {
+TEST(FixedBoundary, IdealResponseKeepsTheHarmonicsBelowItsCutoff) {
     const Mesh mesh = openBlob();
     FilterOptions options = smoothing(mesh, 1);
     options.laplacian = LaplacianKind::Cotangent;

@@ -72,9 +72,9 @@ TEST(FractionalFilter, InManyStepsWithoutUpdateEqualsOneStep) {
         }
 }
 
-TEST(FractionalFilter, HasTheSameBitsForEveryNumberOfThreads) {
-    // Large enough for several subtrees of the factorization and blocks of rows, and of two
-    // components; then one with a fixed boundary.
+TEST(FractionalFilter, IsBitIdenticalForEveryNumberOfThreads) {
+    // Large enough for several subtrees of the factorization and several blocks of rows; one mesh
+    // of two components, one with a fixed boundary.
     const Mesh closed = testing::joined(testing::icosphere(5), testing::cube(20));
     const Mesh sheet = testing::withNoise(testing::rectangle(2, 1, 120, 60), 0.01, 3);
     for (const Boundary boundary : {Boundary::Free, Boundary::Fixed})
@@ -157,7 +157,7 @@ TEST(FractionalFilter, KeepsTheCentroidOfEveryComponent) {
 }
 
 TEST(FractionalFilter, IsTheCompositionOfItsSteps) {
-    // Eq. 11: each step is the one-step filter of the shape that the step before has left.
+    // Eq. 11: each step is the one-step filter of the previous shape.
     const Mesh mesh = testing::blob();
     FilterOptions options = smoothing(mesh, 3, BasisUpdate::Full);
     options.laplacian = LaplacianKind::Cotangent;
@@ -174,8 +174,8 @@ TEST(FractionalFilter, IsTheCompositionOfItsSteps) {
     EXPECT_LT(largestDifference(whole, current.V), 1e-7 * boundingBoxDiagonal(mesh.V));
 }
 
-TEST(FractionalFilter, WithAPowerIsTheShapeOnTheWay) {
-    // Three steps of F^(1/5), and from there the other two: also the residual of a truncated basis.
+TEST(FractionalFilter, WithAPowerIsAnIntermediateShape) {
+    // Three steps of F^(1/5), then the other two; with a truncated basis also of the residual.
     const Mesh mesh = testing::blob();
     for (const Spectrum spectrum : {Spectrum::Full, Spectrum::Truncated}) {
         FilterOptions options = boost(mesh);
@@ -194,7 +194,7 @@ TEST(FractionalFilter, WithAPowerIsTheShapeOnTheWay) {
     }
 }
 
-TEST(FractionalFilter, ConformalUpdateTakesTheMassesAnewAndKeepsTheStiffness) {
+TEST(FractionalFilter, ConformalUpdateRecomputesTheMassesAndKeepsTheStiffness) {
     const Mesh mesh = testing::blob();
     FilterOptions options = smoothing(mesh, 3, BasisUpdate::Conformal);
     options.laplacian = LaplacianKind::Cotangent;
@@ -268,9 +268,9 @@ TEST(FractionalFilter, IsReproducibleToTheBit) {
     }
 }
 
-TEST(FractionalFilter, InAutomaticStepsDoesNotTakeACollapseForNoChange) {
-    // The half step of this high-pass shrinks the tetrahedron to 1e-8 of its size, whose
-    // frequencies all pass.
+TEST(FractionalFilter, InAutomaticStepsDoesNotMistakeACollapseForConvergence) {
+    // The half step of this high-pass shrinks the tetrahedron to 1e-8 of its size, where all of
+    // its frequencies pass.
     Mesh mesh{Vertices(4, 3), Faces(4, 3)};
     mesh.V << 1, 1, 1, 1, -1, -1, -1, 1, -1, -1, -1, 1;
     mesh.F << 0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2;
@@ -282,7 +282,7 @@ TEST(FractionalFilter, InAutomaticStepsDoesNotTakeACollapseForNoChange) {
     EXPECT_LT(result.areaAfter, 0.1 * result.areaBefore);
 }
 
-TEST(FractionalFilter, ConformalShareLeadsFromTheFullToTheConformalUpdate) {
+TEST(FractionalFilter, ConformalShareInterpolatesBetweenFullAndConformalUpdate) {
     const Mesh mesh = testing::blob();
     FilterOptions options = smoothing(mesh, 5, BasisUpdate::Full);
     const Vertices full = fractionalFilter(mesh.V, mesh.F, options).V;
@@ -315,7 +315,7 @@ TEST(FractionalFilter, OfATruncatedSpectrumDoesNotDependOnTheScale) {
     }
 }
 
-TEST(FractionalFilter, KeepsTheNegativeZerosOfWhatDoesNotMove) {
+TEST(FractionalFilter, KeepsNegativeZerosOfFixedVertices) {
     Mesh mesh = testing::withNoise(testing::rectangle(1, 1, 6, 6), 0.01, 3);
     mesh.V.row(0).setConstant(-0.0);  // a corner
     FilterOptions options;

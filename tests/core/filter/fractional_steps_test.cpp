@@ -15,7 +15,7 @@ namespace {
 using testing::boost;
 using testing::largestDifference;
 
-/// Steps of both kinds, and what they converge to.
+/// Steps of both kinds, and their common limit.
 struct Setting : testing::FilterOfBlob {
     using FilterOfBlob::FilterOfBlob;
 
@@ -29,7 +29,7 @@ struct Setting : testing::FilterOfBlob {
         return midpointSteps(laplacians, evaluate, surface.X, K, 64 * K, {});
     }
 
-    /// Of infinitely many steps, far nearer than any K below 64.
+    /// The limit of infinitely many steps, far more accurate than any K below 64.
     Vertices limit() const {
         const Vertices Y = midpoint(64).X;
         return Y + (Y - midpoint(32).X) / 3.0;

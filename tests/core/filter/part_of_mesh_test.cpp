@@ -30,7 +30,7 @@ std::vector<bool> above(const Mesh& mesh, double height) {
     return selected;
 }
 
-/// One sphere of many, as a mesh of components, some of them open.
+/// Many noisy spheres of different sizes in a row.
 Mesh bubbles(int count) {
     Mesh all = testing::withNoise(testing::icosphere(2), 0.03, 1);
     for (int k = 1; k < count; ++k) {
@@ -64,7 +64,7 @@ TEST(SelectionWeight, FallsFromOneToExactlyZeroWithinTheWidth) {
     }
 }
 
-TEST(PartOfMesh, SelectionIsFilteredAsTheWholeAndWhatIsFarStaysToTheBit) {
+TEST(PartOfMesh, SelectionIsFilteredAsInTheWholeAndDistantVerticesStayBitIdentical) {
     const Mesh mesh = testing::withNoise(testing::icosphere(4), 0.01, 2);
     FilterOptions options = smoothing(mesh);
     const Vertices whole = fractionalFilter(mesh.V, mesh.F, options).V;
@@ -83,7 +83,7 @@ TEST(PartOfMesh, SelectionIsFilteredAsTheWholeAndWhatIsFarStaysToTheBit) {
     EXPECT_GT(blended, 100);
 }
 
-TEST(PartOfMesh, EverythingSelectedIsTheWholeToTheBit) {
+TEST(PartOfMesh, SelectingEverythingIsBitIdenticalToNoSelection) {
     const Mesh mesh = testing::blob();
     FilterOptions options = smoothing(mesh);
     const Vertices whole = fractionalFilter(mesh.V, mesh.F, options).V;
@@ -91,7 +91,7 @@ TEST(PartOfMesh, EverythingSelectedIsTheWholeToTheBit) {
     EXPECT_EQ(fractionalFilter(mesh.V, mesh.F, options).V, whole);
 }
 
-TEST(PartOfMesh, ASelectedComponentIsFilteredAloneAndOthersStay) {
+TEST(PartOfMesh, OnlyASelectedComponentIsFiltered) {
     const Mesh mesh =
         testing::joined(testing::blob(), testing::withNoise(testing::cube(5), 0.02, 3));
     const Index first = testing::blob().V.rows();
@@ -103,7 +103,7 @@ TEST(PartOfMesh, ASelectedComponentIsFilteredAloneAndOthersStay) {
     EXPECT_EQ(part.bottomRows(mesh.V.rows() - first), mesh.V.bottomRows(mesh.V.rows() - first));
 }
 
-TEST(PartOfMesh, NothingSelectedIsAnError) {
+TEST(PartOfMesh, AnEmptySelectionIsRefused) {
     const Mesh mesh = testing::blob();
     FilterOptions options = smoothing(mesh);
     options.part.selected.assign(static_cast<std::size_t>(mesh.V.rows()), false);
@@ -127,7 +127,7 @@ TEST(PartOfMesh, WeightsScaleTheDisplacementOfEachVertex) {
     }
 }
 
-TEST(PartOfMesh, EveryClosedComponentGetsItsVolumeBack) {
+TEST(PartOfMesh, EveryClosedComponentKeepsItsVolume) {
     const Mesh mesh = testing::joined(bubbles(45), testing::hemisphere(6));
     FilterOptions options = smoothing(mesh);
     options.featureSize = 0.4;
@@ -160,7 +160,7 @@ TEST(PartOfMesh, AnInsideOutComponentKeepsItsVolumeToo) {
     EXPECT_NEAR(result.volumeAfter, result.volumeBefore, 1e-9 * std::abs(result.volumeBefore));
 }
 
-TEST(PartOfMesh, PreservingTheVolumeMovesNothingThatTheSelectionLeaves) {
+TEST(PartOfMesh, PreservingTheVolumeMovesNothingFarFromTheSelection) {
     const Mesh mesh = testing::withNoise(testing::icosphere(4), 0.01, 2);
     FilterOptions options = smoothing(mesh);
     options.part.selected = above(mesh, 0.5);
@@ -175,14 +175,14 @@ TEST(PartOfMesh, PreservingTheVolumeMovesNothingThatTheSelectionLeaves) {
 
 TEST(PartOfMesh, CreasesStayAndFacesAreFiltered) {
     const Mesh clean = testing::cube(8);
-    Mesh noisy = clean;  // the faces only
+    Mesh noisy = clean;  // only inside the faces
     const std::vector<bool> onCrease = creaseVertices(clean.V, clean.F, 40.0);
     const Vertices noise = testing::withNoise(clean, 0.03, 5).V - clean.V;
     for (Index i = 0; i < clean.V.rows(); ++i)
         if (!onCrease[i]) noisy.V.row(i) += noise.row(i);
     FilterOptions options = smoothing(noisy);
     options.featureSize = 1.5;  // six edges
-    // From the planes: a filter leaves noise within a plane where it is.
+    // From the planes: a filter keeps noise within a plane.
     const auto distance = [](const Vertices& V) {
         return (V.rowwise().lpNorm<Eigen::Infinity>().array() - 1.0).matrix().norm();
     };

@@ -21,7 +21,7 @@ using testing::Operator;
 
 constexpr double kAccuracy = 1e-6;
 
-/// A low-pass that does something in every octave of these meshes.
+/// A low-pass that affects every octave of these meshes.
 SignalFilterOptions lowPass(const Mesh& mesh, double part = 0.2) {
     SignalFilterOptions options;
     options.featureSize = part * boundingBoxDiagonal(mesh.V);
@@ -62,7 +62,7 @@ TEST(SignalFilter, MultipliesEveryEigenfunctionByItsGain) {
     }
 }
 
-TEST(SignalFilter, IsWhatAllEigenvectorsGive) {
+TEST(SignalFilter, AgreesWithAllEigenvectors) {
     for (const Mesh& mesh : classesOfMeshes()) {
         const Operator A(mesh);
         const HarmonicBasis dense = denseBasis(A);
@@ -156,7 +156,7 @@ TEST(SignalFilter, KeepsTheMeanOfEveryComponentWhateverTheGainThere) {
     }
 }
 
-TEST(SignalFilter, KeepsWhatIsConstantOnEveryComponentToTheBit) {
+TEST(SignalFilter, KeepsSignalsThatAreConstantOnEveryComponentBitIdentical) {
     for (const Mesh& mesh : classesOfMeshes())
         for (const Boundary boundary : {Boundary::Free, Boundary::Fixed}) {
             const Components components = connectedComponents(mesh.F, mesh.V.rows());
@@ -200,7 +200,7 @@ TEST(SignalFilter, KeepsUnreferencedAndFixedVerticesToTheBit) {
     with.V << Eigen::RowVector3d(9, 9, 9), mesh.V, Eigen::RowVector3d(-50, 0, 0);
     Eigen::MatrixXd Q = noise(with.V.rows(), 1, 8);
     Q(0, 0) = 0.1;
-    Q(Q.rows() - 1, 0) = 1e12;  // must not count in the scale of the signal either
+    Q(Q.rows() - 1, 0) = 1e12;  // must not affect the scale of the signal either
     const std::vector<bool> onBoundary = boundaryVertices(with.F, with.V.rows());
     for (Index i = 0; i < Q.rows(); ++i)
         if (onBoundary[i] && i % 2 == 0) Q(i, 0) = -0.0;
@@ -236,7 +236,7 @@ TEST(SignalFilter, CountsAndLocatesInfiniteValues) {
     EXPECT_EQ(message(), "2 vertices have an infinite value, the first is vertex 17");
 }
 
-TEST(SignalFilter, EndsTheSurfaceWhereThereIsNoData) {
+TEST(SignalFilter, TreatsVerticesWithoutDataAsHoles) {
     const Mesh mesh = testing::icosphere(3);
     Eigen::MatrixXd Q = noise(mesh.V.rows(), 1, 9);
     Eigen::VectorXd hole = Q;
@@ -278,7 +278,7 @@ TEST(SignalFilter, RefusesBadMeshesAndOptions) {
     EXPECT_THROW(filterSignal(mesh.V, mesh.F, Q, options), InvalidOption);
 }
 
-TEST(SignalFilter, TellsOfAGainThatItCannotReach) {
+TEST(SignalFilter, ReportsAGainThatItCannotReach) {
     const Mesh mesh = testing::blob();
     SignalFilterOptions options = lowPass(mesh);
     options.transferFunction.type = FilterType::BandStop;

@@ -71,7 +71,7 @@ TEST(TruncatedSteps, ComputeOneBasisWhereTheResidualIsKept) {
     for (const Mesh& mesh : {roughSphere(), two}) {
         FilterOptions options = truncated(mesh, 200);
         expectAgreement(mesh, options, 1);
-        options.transferFunction.type = FilterType::HighPass;  // a high jump at the cut
+        options.transferFunction.type = FilterType::HighPass;  // large jump at the end of the basis
         options.transferFunction.passGain = 2.0;
         options.transferFunction.stopGain = 1.0;
         expectAgreement(mesh, options, 1);
@@ -80,13 +80,13 @@ TEST(TruncatedSteps, ComputeOneBasisWhereTheResidualIsKept) {
     }
 }
 
-TEST(TruncatedSteps, DoNotCutAClusterOfHarmonics) {
-    // 200 harmonics would cut the sphere's of degree 14, the 197th to the 225th.
+TEST(TruncatedSteps, DoNotSplitAClusterOfHarmonics) {
+    // 200 harmonics would split those of degree 14, the 197th to the 225th.
     const Mesh mesh = testing::icosphere(3);
     expectAgreement(mesh, truncated(mesh, 200), 1);
 }
 
-TEST(TruncatedSteps, ComputeEveryBasisWhereThatIsQuicker) {
+TEST(TruncatedSteps, ComputeEveryBasisWhereThatIsFaster) {
     const Mesh mesh = roughSphere();
     expectAgreement(mesh, truncated(mesh, 200, false), 3);
     expectAgreement(mesh, truncated(mesh, 50), 3);
@@ -106,7 +106,7 @@ TEST(TruncatedSteps, ComputeEveryBasisOfAlmostAllHarmonics) {
 
 TEST(TruncatedSteps, ComputeEveryBasisOnceTheAccuracyIsNotReached) {
     Mesh mesh = roughSphere();
-    mesh.V.row(7) *= 30.0;  // needles, whose round-off no more solves make up for
+    mesh.V.row(7) *= 30.0;  // needles, whose round-off more solves do not reduce
     FilterOptions options = truncated(mesh, 200);
     options.evaluation.accuracy = 1e-12;
     double last = 0.0;
@@ -128,7 +128,7 @@ TEST(TruncatedSteps, ComputeEveryBasisWhereMemoryIsShort) {
     setMemoryMeasure(nullptr);
 }
 
-TEST(TruncatedSteps, HaveTheSameBitsForEveryNumberOfThreads) {
+TEST(TruncatedSteps, AreBitIdenticalForEveryNumberOfThreads) {
     const Mesh mesh = testing::withNoise(testing::icosphere(4), 0.02, 7);  // several blocks of rows
     std::vector<Vertices> results;
     for (const int threads : {1, 2, 3}) {
@@ -140,7 +140,7 @@ TEST(TruncatedSteps, HaveTheSameBitsForEveryNumberOfThreads) {
     EXPECT_TRUE(results[0] == results[2]);
 }
 
-TEST(TruncatedSteps, StopWhenTheCallerSaysSo) {
+TEST(TruncatedSteps, StopWhenTheCallerCancels) {
     const Mesh mesh = roughSphere();
     for (const char* stage : {"counting the harmonics", "computing the harmonics", "filtering"}) {
         const std::string last = std::string("step 2 of 3: ") + stage;

@@ -51,7 +51,7 @@ TEST(TruncatedBasis, ConvergesToTheSpheresEigenvaluesAtSecondOrder) {
 
 TEST(TruncatedBasis, NeverSplitsTheSpheresMultiplets) {
     const Operator A(testing::icosphere(4));
-    // Every k cuts some 2l+1-fold eigenvalue unless it is a square.
+    // Every k that is not a square splits a 2l+1-fold eigenvalue.
     for (const Index k : {2, 3, 5, 8, 10, 13, 17, 20, 26, 33, 50}) {
         const Index kept = lowestHarmonics(A, k).size();
         const Index root = std::lround(std::sqrt(static_cast<double>(kept)));
@@ -84,7 +84,7 @@ TEST(TruncatedBasis, ConvergesToTheRectanglesNeumannEigenvaluesAtSecondOrder) {
     EXPECT_NEAR(middle / fine, 4.0, 0.1);
 }
 
-TEST(TruncatedBasis, NeverSplitsTheSquaresEqualEigenvalues) {
+TEST(TruncatedBasis, NeverSplitsTheSquaresMultipleEigenvalues) {
     const Operator A(testing::rectangle(1.0, 1.0, 32, 32));
     // Neumann: 0 | (1,0) (0,1) | (1,1) | (2,0) (0,2) | (2,1) (1,2) | (2,2) | (3,0) (0,3) | ...
     // The lumped grid's eigenvalues are those of the 5-point stencil: (p,q) and (q,p) agree.
@@ -170,7 +170,7 @@ TEST(ApplyInBasis, WithAllPairsEqualsDense) {
     const Operator A(testing::blob());
     const HarmonicBasis dense = denseBasis(A);
     const Gain gain = fractionalPower(TransferFunction({}, 5.0), 1.0);
-    // With all n harmonics, a residual gain has nothing to act on.
+    // With all n harmonics there is no residual.
     const Eigen::MatrixXd with = applyInBasis(dense, A, gain, 0.7, A.mesh.V);
     EXPECT_LT((with - testing::filteredDense(A, dense, gain)).cwiseAbs().maxCoeff(), 1e-12);
 }
@@ -217,7 +217,7 @@ TEST(LargestEigenvalue, ScalesWithTheMesh) {
     }
 }
 
-TEST(LargestEigenvalue, IsThatOfTheRowOfAVertexOfTinyMass) {
+TEST(LargestEigenvalue, IsTheDiagonalEntryOfAVertexOfTinyMass) {
     for (const int levels : {0, 3}) {
         Laplacian light = Operator(testing::icosphere(levels));
         for (light.D[0] *= 1e-9; light.D[0] > 1e-24; light.D[0] *= 0.3)

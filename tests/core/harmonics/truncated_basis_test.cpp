@@ -70,7 +70,7 @@ TEST(HarmonicsBetween, MissNoPair) {
 }
 
 TEST(TruncatedBasisSlices, MissNoPairOfManyEqualParts) {
-    // Few distinct eigenvalues with wide gaps: a run finds none on one side of its shift.
+    // Few eigenvalues with wide gaps: a Lanczos run finds none on one side of its shift.
     expectLowest(copies(testing::icosphere(1), 20), 60, "twenty spheres");
     expectLowest(copies(testing::cube(2), 40), 300, "forty cubes");
 }
@@ -89,7 +89,7 @@ TEST(TruncatedBasisSlices, AreFewWhenFewPairsAreRequested) {
     expectLowest(testing::icosphere(3), 5, "within a group of equal ones");
 }
 
-TEST(TruncatedBasisSlices, DoNotDependOnTheThreads) {
+TEST(TruncatedBasisSlices, AreReproducibleToTheBit) {
     const Operator A(testing::icosphere(3));
     const HarmonicBasis once = lowestHarmonics(A, 100), again = lowestHarmonics(A, 100);
     EXPECT_TRUE((once.Phi.array() == again.Phi.array()).all());
@@ -102,7 +102,7 @@ TEST(TruncatedBasisSlices, StopOnRequest) {
     const Progress progress([&](double fraction, const std::string&) {
         EXPECT_GE(fraction, 0.0);
         EXPECT_LE(fraction, 1.0);
-        return ++reports < 2;  // there are many slices
+        return ++reports < 2;  // there are many spectral intervals
     });
     EXPECT_THROW(lowestHarmonics(A, 100, progress), Cancelled);
 }
@@ -120,7 +120,7 @@ TEST(TruncatedBasisSlices, ReportRisingProgress) {
 }
 
 TEST(TruncatedBasis, RejectsHarmonicsLostInRoundOff) {
-    // Both by the dense solver and in intervals.
+    // Both with the dense solver and in spectral intervals.
     for (const auto& [levels, spike] : {std::pair<int, double>{2, 1e14}, {3, 1e7}}) {
         Mesh mesh = testing::withNoise(testing::icosphere(levels), 0.03, 4);
         mesh.V.row(7) *= spike;

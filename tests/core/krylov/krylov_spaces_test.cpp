@@ -105,7 +105,7 @@ TEST(KrylovSpaces, AreNormalizedWhenRoundOffAddsConstantsToSolves) {
     }
 }
 
-TEST(KrylovSpaces, PassTheMemoryOfTheirBasisOn) {
+TEST(KrylovSpaces, PassOnTheMemoryOfTheirBasis) {
     const Operator A(testing::blob());
     const Products S(A, 1.0);
     SpareVectors spare;

@@ -31,7 +31,7 @@ TEST(SelectPole, IsNearTheBestOfAllPolesTried) {
             for (double power = -6; power <= 12; power += 2)
                 best =
                     std::min(best, dimensionWithPole(A, gain, std::exp2(power) * cutoff * cutoff));
-            if (best > 100) continue;  // a cusp, which no pole resolves: nothing to choose between
+            if (best > 100) continue;  // a cusp, which no pole resolves: all poles are equally bad
             EXPECT_LE(dimensionWithPole(A, gain, pole), best + std::max(6, best / 2))
                 << testing::describe(options) << " alpha " << alpha;
         }

@@ -110,7 +110,7 @@ double leastEdgeCotangents(const Mesh& mesh) {
     return least;
 }
 
-/// Meshes with many edges that are diagonals of rectangles: both opposite angles are right ones.
+/// Meshes with many edges that are diagonals of rectangles: both opposite angles are right angles.
 std::vector<Mesh> rectangularMeshes() {
     std::vector<Mesh> meshes{testing::rectangle(1, 1, 1, 1),
                              testing::rectangle(3, 1, 40, 7),
@@ -127,7 +127,7 @@ std::vector<Mesh> rectangularMeshes() {
             const double scale = std::pow(10.0, 3 * turn / 2 - 15);
             turned.V = scale * (turned.V * q.toRotationMatrix());
             turned.V.rowwise() += scale * Eigen::RowVector3d::Random();
-            if (turn % 3 == 0)  // as a file of floats has them
+            if (turn % 3 == 0)  // as in a file of floats
                 turned.V = turned.V.cast<float>().cast<double>().eval();
             meshes.push_back(turned);
         }
@@ -141,7 +141,7 @@ TEST(IntrinsicDelaunay, LeavesNoEdgeWithANegativeWeight) {
 }
 
 TEST(IntrinsicDelaunay, OfARectangleIsThatOfItsGrid) {
-    // Whatever the diagonals are, their weights are 0: W is that of a grid of squares, with half
+    // Diagonals have weight 0, whichever way they run: W is that of a grid of squares, with half
     // the weight along the boundary.
     Mesh mesh = testing::rectangle(8, 5, 8, 5);
     const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()));
@@ -165,14 +165,14 @@ TEST(IntrinsicDelaunay, EqualsTheCotangentMatrixWhereTheMeshIsDelaunay) {
 }
 
 TEST(IntrinsicDelaunay, FlipsTheLongDiagonalOfAKite) {
-    // Two obtuse triangles on the edge (0, 1), turned into the two on (2, 3): as by hand, on the
+    // Two obtuse triangles on the edge (0, 1), flipped to the edge (2, 3): computed by hand, on the
     // double cover of a sheet with boundary.
     Mesh kite{Vertices(4, 3), Faces(2, 3)};
     kite.V << -2, 0, 0, 2, 0, 0, 0, 1, 0, 0, -1, 0;
     kite.F << 0, 1, 2, 1, 0, 3;
     const Eigen::MatrixXd W = intrinsicStiffness(kite);
     EXPECT_NEAR(W(0, 1), 0.0, 1e-12);
-    // Opposite angles of (2, 3) at 0 and 1: tan of the half is 1/2, so cot is 3/4.
+    // Opposite angles of (2, 3) at 0 and 1: tan of half of it is 1/2, so cot is 3/4.
     EXPECT_NEAR(W(2, 3), -0.75, 1e-12);
     // Opposite angle of (0, 2) at 3: tan is 2.
     EXPECT_NEAR(W(0, 2), -0.25, 1e-12);
@@ -187,7 +187,7 @@ TEST(IntrinsicDelaunay, TakesOneCopyOfAClosedOrientedSurfaceAndTwoOfAnyOther) {
     EXPECT_EQ(sidesOfCover(sheet), 2 * 3 * sheet.F.rows());
 }
 
-TEST(IntrinsicDelaunay, DoesNotCareForTheOrientationOfFaces) {
+TEST(IntrinsicDelaunay, DoesNotDependOnTheOrientationOfFaces) {
     const Mesh mesh = testing::withNoise(testing::blob(), 0.05, 2);
     Mesh turned = mesh;
     for (Index t = 0; t < mesh.F.rows(); t += 3) std::swap(turned.F(t, 1), turned.F(t, 2));
@@ -196,8 +196,8 @@ TEST(IntrinsicDelaunay, DoesNotCareForTheOrientationOfFaces) {
 }
 
 TEST(IntrinsicDelaunay, OfAPlaneDoesNotDependOnItsTriangulation) {
-    // Points in general position have one Delaunay triangulation, whichever they came with; inside,
-    // away from the mollified boundary, the weights are the same.
+    // Points in general position have one Delaunay triangulation, whatever the given one; away from
+    // the mollified boundary the weights are the same.
     Mesh mesh = testing::rectangle(2, 1, 12, 6);
     const Vertices shaken = testing::withNoise(mesh, 0.03, 8).V;
     for (Index i = 0; i < mesh.V.rows(); ++i) {

@@ -26,7 +26,7 @@ Mesh rightTriangle() {
     return mesh;
 }
 
-TEST(CotangentLaplacian, OfARightTriangleIsAsByHand) {
+TEST(CotangentLaplacian, OfARightTriangleMatchesTheHandComputation) {
     const Mesh mesh = rightTriangle();
     const Laplacian laplacian = testing::cotangentLaplacian(mesh.V, mesh.F);
     Eigen::Matrix3d expected;
@@ -36,7 +36,7 @@ TEST(CotangentLaplacian, OfARightTriangleIsAsByHand) {
     EXPECT_LT((laplacian.D.array() - 1.0 / 3.0).abs().maxCoeff(), 1e-15);
 }
 
-TEST(UniformLaplacian, OfEquilateralTrianglesOfOneSizeIsTheCotangentOne) {
+TEST(UniformLaplacian, EqualsTheCotangentOneOnCongruentEquilateralTriangles) {
     const Mesh mesh = testing::icosphere(0);
     const Laplacian uniform = meshLaplacian(mesh.V, mesh.F, LaplacianKind::Uniform).laplacian;
     const Laplacian cotangent = testing::cotangentLaplacian(mesh.V, mesh.F);
@@ -44,7 +44,7 @@ TEST(UniformLaplacian, OfEquilateralTrianglesOfOneSizeIsTheCotangentOne) {
     EXPECT_LT((uniform.D - cotangent.D).cwiseAbs().maxCoeff(), 1e-14);
 }
 
-TEST(UniformLaplacian, DependsOnTheConnectivityAndTheAreaAlone) {
+TEST(UniformLaplacian, DependsOnlyOnTheConnectivityAndTheArea) {
     Mesh mesh = testing::blob();
     const Laplacian before = meshLaplacian(mesh.V, mesh.F, LaplacianKind::Uniform).laplacian;
     mesh.V = testing::withNoise(mesh, 0.2, 1).V;
@@ -83,7 +83,7 @@ TEST(CotangentLaplacian, OfLinearFunctionsVanishesInsideAPlane) {
         }
 }
 
-TEST(IsUsable, TellsCollapsedTriangles) {
+TEST(IsUsable, IsFalseForCollapsedTriangles) {
     Mesh mesh = rightTriangle();
     EXPECT_TRUE(isUsable(testing::cotangentLaplacian(mesh.V, mesh.F)));
     mesh.V.row(2) << 2, 0, 0;  // all corners on a line
@@ -112,7 +112,7 @@ TEST(ConstantModes, AreOrthonormalAndProjectedOut) {
     EXPECT_LT((X - mesh.V).cwiseAbs().maxCoeff(), 1e-15);
 }
 
-TEST(Measures, OfACubeAreAsByHand) {
+TEST(Measures, OfACubeMatchTheHandComputation) {
     const Mesh mesh = testing::cube(3);
     EXPECT_NEAR(surfaceArea(mesh.V, mesh.F), 24.0, 1e-12);
     EXPECT_NEAR(signedVolume(mesh.V, mesh.F), 8.0, 1e-12);

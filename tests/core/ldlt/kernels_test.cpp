@@ -16,7 +16,7 @@
 namespace spectral {
 namespace {
 
-/// All instruction sets that this processor has, by index: it uses the first, others another.
+/// All instruction sets of this processor, by index; filters use the first.
 class DenseKernels : public ::testing::TestWithParam<std::size_t> {
   protected:
     const Kernels& set() const { return availableKernels()[GetParam()]; }
@@ -45,7 +45,7 @@ class FrontOf {
                 offset_,       update_.data(), scratch_.data()};
     }
 
-    /// The columns of L with the pivots in place of the ones.
+    /// The columns of L, with the pivots on the diagonal instead of ones.
     Eigen::MatrixXd columns() const {
         return panel_.middleRows(offset_, panel_.cols() + below_).triangularView<Eigen::Lower>();
     }
@@ -58,7 +58,7 @@ class FrontOf {
     Eigen::MatrixXd panel_, update_, scratch_;
 };
 
-TEST_P(DenseKernels, EliminatesFronts) {
+TEST_P(DenseKernels, EliminatesFrontalMatrices) {
     std::srand(9);
     for (const Index width : {1, 2, 3, 4, 5, 9, 18, 67})
         for (const Index below : {0, 1, 3, 4, 7, 31, 70}) {
@@ -80,7 +80,7 @@ TEST_P(DenseKernels, EliminatesFronts) {
 }
 
 TEST_P(DenseKernels, IsBitIdenticalAtEveryAddress) {
-    // Blocks of many columns leave a few over, whose product is small.
+    // Blocks of many columns leave a remainder of a few columns, whose product is small.
     constexpr Index kWidth = 8, kBelow = 36, kStride = kWidth + kBelow;
     std::srand(4);
     Eigen::MatrixXd panel = Eigen::MatrixXd::Random(kStride, kWidth), scratch(kStride, kWidth);
@@ -102,7 +102,7 @@ TEST_P(DenseKernels, TreatsSubnormalNumbersAsZeroAndRestoresTheMode) {
 #ifndef SPECTRAL_SUBNORMALS_ARE_SLOW
     GTEST_SKIP() << "subnormal numbers are as fast as others here";
 #endif
-    for (const Index width : {2, 40}) {  // by loops, and by Eigen's product
+    for (const Index width : {2, 40}) {  // with loops, and with Eigen's product
         const Index n = 2 * width + 30;
         Eigen::MatrixXd A = Eigen::MatrixXd::Constant(n, n, 1e-160);
         A.diagonal().setOnes();

@@ -32,7 +32,7 @@ TEST(Creases, DoNotDependOnOrientation) {
     EXPECT_EQ(creaseVertices(cube.V, cube.F, 40.0), expected);
 }
 
-TEST(Creases, AreNoneInAPlaneOrAtABoundary) {
+TEST(Creases, AreAbsentInAPlaneAndAtABoundary) {
     const Mesh plane = testing::rectangle(2, 1, 8, 4);
     EXPECT_EQ(count(creaseVertices(plane.V, plane.F, 1e-3)), 0);
 }

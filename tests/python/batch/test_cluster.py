@@ -92,7 +92,7 @@ def test_a_cluster_takes_urls_of_shared_files(
     assert contents(out) == expected
 
 
-def test_a_cluster_that_is_not_there_is_told(
+def test_a_cluster_that_is_not_there_is_reported(
     meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(engine, "_SECONDS_TO_CONNECT", 0.5)
@@ -100,7 +100,7 @@ def test_a_cluster_that_is_not_there_is_told(
         list(filter_files(meshes, tmp_path / "out", scheduler="tcp://127.0.0.1:1"))
 
 
-def test_a_cluster_that_goes_in_the_middle_is_told_in_one_line(tmp_path: Path) -> None:
+def test_a_cluster_that_disappears_midway_is_reported_in_one_line(tmp_path: Path) -> None:
     folder, out = tmp_path / "in", tmp_path / "out"
     make_meshes(folder, 12, rings=32)
     with dask_cluster(tmp_path) as (address, scheduler):

@@ -40,7 +40,7 @@ def test_filter_mesh_is_the_filter(decimated: Callable[..., tuple[np.ndarray, np
     np.testing.assert_allclose(by_length, expected, atol=1e-6)
 
 
-def test_filter_mesh_names_what_is_wrong() -> None:
+def test_filter_mesh_names_the_mistake() -> None:
     V, F = np.eye(3), [[0, 1, 2]]
     with pytest.raises(OptionError, match="did you mean feature_size"):
         filter_mesh(V, F, feature_siz="8%")
@@ -88,7 +88,7 @@ def test_filter_files_checks_everything_before_it_begins(meshes: Path, tmp_path:
 
 def test_an_output_that_appears_before_its_turn_is_kept(meshes: Path, tmp_path: Path) -> None:
     inputs, out = sorted(meshes.iterdir())[:2], tmp_path / "out"
-    results = filter_files(inputs, out, workers=1, steps=1)  # planned, not begun
+    results = filter_files(inputs, out, workers=1, steps=1)  # planned, not started
     out.mkdir()
     taken = out / inputs[0].name
     taken.write_bytes(PRECIOUS)
@@ -139,7 +139,7 @@ list(filter_files(sys.argv[1], sys.argv[2], workers=1, steps=1))
 """
 
 
-def test_a_script_that_its_workers_cannot_import_is_told_how_to_mend_it(
+def test_a_script_that_workers_cannot_import_is_refused_with_the_remedy(
     meshes: Path, tmp_path: Path
 ) -> None:
     script = tmp_path / "script.py"
@@ -170,7 +170,7 @@ def test_workers_that_do_not_start_leave_ctrl_c_as_it_was(
     assert signal.pthread_sigmask(signal.SIG_BLOCK, []) == before
 
 
-def test_the_public_names_are_there() -> None:
+def test_all_public_names_exist() -> None:
     for name in meshlab_spectral.__all__:
         assert hasattr(meshlab_spectral, name)
 

@@ -36,7 +36,7 @@ def test_folders_in_folders_are_searched_only_when_asked(tmp_path: Path) -> None
     assert [file.folder for file in found] == ["", "deep", "deep/er"]
 
 
-def test_a_pattern_is_taken_and_so_is_a_file_of_any_ending(tmp_path: Path) -> None:
+def test_a_pattern_is_accepted_and_so_is_a_file_of_any_ending(tmp_path: Path) -> None:
     files(tmp_path, "a.ply", "b.ply", "b.obj", "odd.xyz3")
     found = find_inputs([str(tmp_path / "*.ply"), str(tmp_path / "odd.xyz3")])
     assert names(found, tmp_path) == ["a.ply", "b.ply", "odd.xyz3"]
@@ -73,7 +73,7 @@ def test_a_loop_of_links_is_an_input_that_will_fail_alone(recursive: bool, tmp_p
         assert [name for name in names(found, tmp_path) if name in expected] == expected
 
 
-def test_a_relative_path_is_one_from_the_working_folder(
+def test_a_relative_path_starts_at_the_working_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     files(tmp_path, "a.ply")
@@ -89,7 +89,7 @@ def test_outputs_among_the_inputs_are_left_out(tmp_path: Path) -> None:
         assert names(found, tmp_path) == ["a.ply", "raw/c.ply"]
 
 
-def test_a_folder_that_is_called_like_a_mesh_is_an_input_that_will_fail(tmp_path: Path) -> None:
+def test_a_folder_named_like_a_mesh_is_an_input_that_will_fail(tmp_path: Path) -> None:
     (tmp_path / "x.ply").mkdir()
     assert names(find_inputs([str(tmp_path)]), tmp_path) == ["x.ply"]
     files(tmp_path, "x.ply/a.ply")
@@ -97,7 +97,7 @@ def test_a_folder_that_is_called_like_a_mesh_is_an_input_that_will_fail(tmp_path
 
 
 @pytest.mark.parametrize("wrong", ["missing.ply", "*.nothing", "empty"])
-def test_an_argument_that_leads_to_nothing_is_named(wrong: str, tmp_path: Path) -> None:
+def test_an_argument_that_matches_nothing_is_named(wrong: str, tmp_path: Path) -> None:
     (tmp_path / "empty").mkdir()
     with pytest.raises(InputError, match=r"missing\.ply|nothing|empty"):
         find_inputs([str(tmp_path / wrong)])
@@ -124,7 +124,7 @@ def test_a_url_of_an_unknown_kind_is_refused() -> None:
         find_inputs(["nokind://scans"])
 
 
-def test_a_file_with_colons_in_its_name_is_no_url(
+def test_a_file_with_colons_in_its_name_is_not_a_url(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     names_ = ["a::b.ply", "a:b.ply", "memory::c/d.ply"]

@@ -1,4 +1,4 @@
-"""Batches that are killed, interrupted, or whose workers are: nothing is lost."""
+"""Batches that are killed or interrupted, or whose workers are killed: nothing is lost."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from batches import REPORT, alive, below, contents, make_meshes, records, start_
 from commands import command, messages_in
 
 MESHES = 12
-# So long that the batch is at work still when a busy machine delivers the signal late.
+# Long enough that the batch is still working when a busy machine delivers the signal late.
 OPTIONS = ["--steps", 600, "--workers", 2]
 
 

@@ -48,7 +48,7 @@ def test_folders_within_the_inputs_are_kept() -> None:
 
 
 @pytest.mark.parametrize("ending", ["ptx", "fbx", "mesh3", "xyz", "E57"])
-def test_what_cannot_be_written_with_faces_becomes_ply(ending: str) -> None:
+def test_a_format_that_cannot_be_written_with_faces_becomes_ply(ending: str) -> None:
     (output,) = plan_outputs(inputs(f"/in/a.{ending}"), "/out")
     assert output.name == "a.ply"
 
@@ -63,7 +63,7 @@ def test_a_format_that_cannot_be_written_is_refused() -> None:
         plan_outputs(inputs("/in/a.ply"), "/out", ending="ptx")
 
 
-def test_one_stem_with_two_endings_collides_in_one_format_only() -> None:
+def test_one_stem_with_two_endings_collides_only_in_one_format() -> None:
     both = inputs("/in/a.ply", "/in/a.obj")
     assert len(plan_outputs(both, "/out")) == 2
     with pytest.raises(InputError, match=r"a\.ply.*a\.obj.*\{stem\}_\{ending\}"):
@@ -96,7 +96,7 @@ def test_an_input_is_never_an_output(how: str, tmp_path: Path) -> None:
         plan_outputs(inputs(str(source)), str(out))
 
 
-def test_an_output_is_not_another_input_either() -> None:
+def test_an_output_is_never_another_input() -> None:
     with pytest.raises(InputError, match="input itself"):
         plan_outputs(inputs("/in/a.ply", "/in/a_x.ply"), "/in", "{stem}_x")
 
@@ -113,7 +113,7 @@ def test_a_wrong_pattern_is_refused(pattern: str) -> None:
 @pytest.mark.parametrize(
     ("place", "pattern"), [("/in/scan", "{ending}/{stem}"), ("/scan.ply", "{folder}/{stem}")]
 )
-def test_a_pattern_that_leads_elsewhere_for_one_file_is_refused(place: str, pattern: str) -> None:
+def test_a_pattern_that_leaves_the_folder_for_one_file_is_refused(place: str, pattern: str) -> None:
     with pytest.raises(InputError, match=r"'/scan'"):
         plan_outputs(inputs(place), "/out", pattern)
 
@@ -178,7 +178,7 @@ def test_the_formats_are_those_of_pymeshlab(ending: str, tmp_path: Path) -> None
 @pytest.mark.parametrize(
     ("name", "ending"), [("a.ply", "ply"), ("a.b.OBJ", "OBJ"), ("a", ""), (".ply", ""), ("a.", "")]
 )
-def test_the_ending_of_a_name(name: str, ending: str) -> None:
+def test_the_ending_of_a_name_is_recognized(name: str, ending: str) -> None:
     assert ending_of(name) == ending
 
 

@@ -35,7 +35,7 @@ def write_report(path: Path, records: list[dict[str, Any]]) -> None:
 
 @REUSED_FOLDER
 @given(records=RECORDS, more=RECORDS, cut=st.integers(0, 200))
-def test_whatever_is_cut_off_the_whole_lines_are_read_and_later_ones_stand_for_themselves(
+def test_a_report_cut_off_anywhere_keeps_its_whole_lines_and_can_be_continued(
     records: list[dict[str, Any]], more: list[dict[str, Any]], cut: int, tmp_path: Path
 ) -> None:
     path = tmp_path / "report.jsonl"
@@ -48,7 +48,7 @@ def test_whatever_is_cut_off_the_whole_lines_are_read_and_later_ones_stand_for_t
     whole = kept.count(b"\n")
     expected = [{"kind": "file"} | record for record in records[:whole]]
     rest = kept.rpartition(b"\n")[2]
-    if whole < len(records) and rest and is_json(rest):  # only its end of line was cut off
+    if whole < len(records) and rest and is_json(rest):  # only its line break was cut off
         expected.append({"kind": "file"} | records[whole])
     expected += [{"kind": "file"} | record for record in more]
     assert list(read_report(path)) == expected
@@ -62,7 +62,7 @@ def is_json(text: bytes) -> bool:
     return True
 
 
-def test_a_report_that_is_not_there_is_empty(tmp_path: Path) -> None:
+def test_a_missing_report_is_empty(tmp_path: Path) -> None:
     assert list(read_report(tmp_path / "none.jsonl")) == []
 
 
@@ -75,7 +75,7 @@ def test_two_batches_cannot_write_one_report(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("content", ["", '{"ki', '{"kind": "run"}\n'])
-def test_a_report_is_known_by_its_begin(content: str, tmp_path: Path) -> None:
+def test_a_report_is_recognized_by_its_beginning(content: str, tmp_path: Path) -> None:
     path = tmp_path / "report.jsonl"
     check_report(path)
     path.write_text(content)
@@ -83,14 +83,14 @@ def test_a_report_is_known_by_its_begin(content: str, tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("content", ["ply\nformat ascii 1.0\n", "{}", '{"kinds": 3}', "\n"])
-def test_a_file_that_is_no_report_is_not_added_to(content: str, tmp_path: Path) -> None:
+def test_a_file_that_is_not_a_report_is_refused(content: str, tmp_path: Path) -> None:
     path = tmp_path / "precious.ply"
     path.write_text(content)
     with pytest.raises(InputError, match=r"precious\.ply is not a batch report"):
         check_report(path)
 
 
-def test_a_line_that_the_disk_takes_in_parts_is_whole(tmp_path: Path) -> None:
+def test_a_line_written_in_parts_is_whole(tmp_path: Path) -> None:
     path = tmp_path / "report.jsonl"
     with Report(path) as report:
         file = report._file
@@ -108,7 +108,7 @@ def test_a_report_that_cannot_be_written_is_named(tmp_path: Path) -> None:
         Report(tmp_path / "file" / "report.jsonl")
 
 
-def test_a_record_holds_no_numbers_that_json_has_not() -> None:
+def test_a_record_holds_only_numbers_that_json_can_represent() -> None:
     report = {"a": math.nan, "b": [1.0, math.inf], "c": {"d": -math.inf}}
     record = FileResult("filtered", "in", "out", "out", report=report).as_record()
     assert record["report"] == {"a": None, "b": [1.0, None], "c": {"d": None}}
@@ -130,7 +130,7 @@ FOREIGN_LINES = {
 
 
 @pytest.mark.parametrize("case", FOREIGN_LINES)
-def test_a_line_that_no_batch_writes_is_named_with_the_file(case: str, tmp_path: Path) -> None:
+def test_a_line_that_no_batch_writes_is_reported_with_the_file(case: str, tmp_path: Path) -> None:
     path = tmp_path / "report.jsonl"
     path.write_text('{"kind": "run", "begun": 3.0}\n' + FOREIGN_LINES[case] + "\n")
     with pytest.raises(BatchError, match="line 2 of the report") as error:

@@ -1,4 +1,4 @@
-"""A batch over all of the real meshes beside the project; skipped where they are absent."""
+"""A batch over all of the real meshes next to the project; skipped where they are absent."""
 
 from __future__ import annotations
 

@@ -80,7 +80,7 @@ def test_a_process_is_replaced_after_its_share_of_meshes(
 
 
 def test_a_process_that_has_grown_is_replaced(cow: Path, tmp_path: Path) -> None:
-    """It holds some 80 MiB from its start on: half of 150 MiB, but not of 1 GiB."""
+    """It has some 80 MiB from the start: more than half of 150 MiB, but not of 1 GiB."""
     job = job_of(cow, tmp_path / "out.ply")
     assert pid_after(job, memory_limit=2**30) is not None
     assert pid_after(job, memory_limit=150 * 2**20) is None
@@ -109,7 +109,7 @@ def test_a_mesh_that_kills_its_process_is_tried_again_once(
     assert result.output_sha256 is None
 
 
-def test_a_process_killed_once_is_no_failure(
+def test_a_process_killed_once_is_not_a_failure(
     cow: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def kill_first(process: MeshLabProcess, *arguments: Any, **options: Any) -> Any:
@@ -142,7 +142,7 @@ def test_files_at_urls_are_read_and_written(cow: Path) -> None:
         assert [Path(path).name for path in memory.find("/out")] == ["cow.ply"]
         assert storage.digest_at("memory://out/deep/cow.ply") == result.output_sha256
         again = run_job(job_of("memory://in/cow.obj", "memory://out/deep/cow.ply"))
-        assert again.outcome == "filtered", again.reason  # of the same content
+        assert again.outcome == "filtered", again.reason  # with the same content
         memory.pipe("/out/deep/cow.ply", PRECIOUS)
         taken = run_job(job_of("memory://in/cow.obj", "memory://out/deep/cow.ply"))
         assert "another program" in (taken.reason or "")
@@ -173,7 +173,7 @@ def test_a_folder_that_cannot_be_written_to_fails_the_file_alone(cow: Path) -> N
     assert "/proc/new" in (result.reason or "")
 
 
-def test_a_pipe_called_like_a_mesh_does_not_hang_the_worker(tmp_path: Path) -> None:
+def test_a_pipe_named_like_a_mesh_does_not_hang_the_worker(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe.ply")
     result = run_job(job_of(tmp_path / "pipe.ply", tmp_path / "out.ply"))
     assert result.outcome == "failed"

@@ -86,7 +86,7 @@ def test_the_function_gives_the_same_as_the_command(half_bunny: Path, tmp_path: 
             np.testing.assert_array_equal(getattr(found, name), archive[name], err_msg=name)
 
 
-def test_the_cotangent_laplacian_and_lists_are_taken(decimated: Decimated) -> None:
+def test_the_cotangent_laplacian_and_lists_are_accepted(decimated: Decimated) -> None:
     V, F = decimated("cow.obj", 1000)
     W, d = reference.matrices(V, F, "cotangent")
     (expected,) = reference.spectra(W, d, [np.arange(len(V))])
@@ -108,7 +108,7 @@ def test_the_chosen_pictures_are_drawn(half_bunny: Path, tmp_path: Path) -> None
 
 
 @pytest.mark.parametrize(("first", "size"), [(1, 100), (0, 40), (1, 13), (3, 300), (2, 5), (0, 1)])
-def test_a_dozen_pictures_go_from_the_first_wave_to_the_last(first: int, size: int) -> None:
+def test_a_dozen_pictures_range_from_the_first_harmonic_to_the_last(first: int, size: int) -> None:
     modes = spread_modes(first, size)
     assert modes[0] == first
     assert modes == sorted(set(modes))
@@ -130,7 +130,7 @@ WRONG: dict[str, tuple[list[object], int, str]] = {
 
 
 @pytest.mark.parametrize("case", WRONG)
-def test_what_is_wrong_is_named_and_nothing_is_written(
+def test_a_wrong_option_is_named_and_nothing_is_written(
     case: str, half_bunny: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     arguments, code, named = WRONG[case]
@@ -164,7 +164,7 @@ def test_a_missing_mesh_and_one_without_faces_are_named(
     assert not output.exists()
 
 
-def test_arrays_and_options_that_do_not_fit_are_refused() -> None:
+def test_invalid_arrays_and_options_are_refused() -> None:
     V, F = TRIANGLE
     with pytest.raises(ValueError, match="vertex 3"):
         manifold_harmonics(V, F + 1)
@@ -178,7 +178,7 @@ def test_arrays_and_options_that_do_not_fit_are_refused() -> None:
         manifold_harmonics(V, F, 1, boundary="fixed")
 
 
-def test_the_scale_of_a_mesh_is_that_of_its_harmonics(decimated: Decimated) -> None:
+def test_frequencies_and_masses_scale_with_the_mesh(decimated: Decimated) -> None:
     V, F = decimated("cow.obj", 1000)
     one, ten = manifold_harmonics(V, F, 10), manifold_harmonics(10 * V, F, 10)
     np.testing.assert_allclose(10 * ten.frequencies, one.frequencies, rtol=1e-7)

@@ -67,13 +67,13 @@ def test_good_meshes_are_filtered_and_bad_ones_reported(cow: Path, tmp_path: Pat
     assert (summary["filtered"], summary["failed"]) == (3, 10)
 
 
-def test_resume_leaves_out_what_is_proved_and_does_the_rest(tmp_path: Path) -> None:
+def test_resume_skips_what_is_proved_done_and_does_the_rest(tmp_path: Path) -> None:
     source, out = tmp_path / "in", tmp_path / "out"
     paths = make_meshes(source, 4)
     batch = ["batch", source, "--output", out, "--steps", 1, "--workers", 1, "--json"]
     assert command(*batch).returncode == 0
     before = contents(out)
-    make_meshes(source, 1, seed=9)  # another content for the first
+    make_meshes(source, 1, seed=9)  # new content for the first
     (out / paths[1].name).unlink()
     (out / paths[2].name).write_bytes(PRECIOUS)
     done = command(*batch, "--resume")
@@ -105,7 +105,7 @@ def test_resume_restores_materials_and_textures(samples: Path, tmp_path: Path) -
     assert contents(out) == before
 
 
-def test_nothing_that_exists_is_replaced_unasked(tmp_path: Path) -> None:
+def test_no_existing_file_is_replaced_unasked(tmp_path: Path) -> None:
     source, out = tmp_path / "in", tmp_path / "out"
     paths = make_meshes(source, 2)
     out.mkdir()
@@ -117,12 +117,12 @@ def test_nothing_that_exists_is_replaced_unasked(tmp_path: Path) -> None:
     done = command(*batch, "--overwrite")
     assert done.returncode == 0, done.stderr
     assert len(arrays_of(out / paths[1].name)[0]) == 144
-    # A file that was there before the run is none of the run's.
+    # A file that is older than the run is not one of its outputs.
     (out / REPORT).write_text('{"kind": "run", "begun": 32503680000.0}\n')
     assert_fails(command(*batch, "--resume"), 2, "already exist")
 
 
-def test_a_dry_run_tells_and_does_nothing(tmp_path: Path) -> None:
+def test_a_dry_run_lists_the_outputs_and_does_nothing(tmp_path: Path) -> None:
     source = tmp_path / "in"
     make_meshes(source, 2)
     out = tmp_path / "out"
@@ -173,7 +173,7 @@ def test_results_that_fell_short_are_counted_and_their_warnings_kept(
     assert "nothing can move" in "".join(warnings["flat.ply"])
 
 
-def test_an_output_that_is_a_file_is_told(cow: Path, existing: Path) -> None:
+def test_an_output_folder_that_is_a_file_is_refused(cow: Path, existing: Path) -> None:
     assert_fails(command("batch", cow, "--output", existing), 2, f"{existing} is a file")
 
 
@@ -186,7 +186,7 @@ def test_a_format_without_faces_is_written_with_a_warning(cow: Path, tmp_path: P
     assert sorted(contents(tmp_path)) == ["cow.xyz", "one.xyz"]
 
 
-def test_a_report_takes_the_place_of_no_other_file(cow: Path, tmp_path: Path) -> None:
+def test_a_report_never_replaces_another_file(cow: Path, tmp_path: Path) -> None:
     out = tmp_path / "out"
     batch = ["batch", cow, "--output", out]
     before = cow.read_bytes()
@@ -196,7 +196,7 @@ def test_a_report_takes_the_place_of_no_other_file(cow: Path, tmp_path: Path) ->
     assert not out.exists()
 
 
-def test_a_script_is_no_recipe(cow: Path, tmp_path: Path) -> None:
+def test_a_script_is_not_a_recipe(cow: Path, tmp_path: Path) -> None:
     recipe = tmp_path / "recipe.toml"
     arguments = ["--script", tmp_path / "x.mlx", "--save-recipe", recipe]
     done = command("batch", cow, "--output", tmp_path / "out", *arguments)
@@ -204,7 +204,7 @@ def test_a_script_is_no_recipe(cow: Path, tmp_path: Path) -> None:
     assert not recipe.exists()
 
 
-def test_outputs_beside_their_inputs_are_not_filtered_again(tmp_path: Path) -> None:
+def test_outputs_next_to_their_inputs_are_not_filtered_again(tmp_path: Path) -> None:
     source = tmp_path / "in"
     make_meshes(source, 1)
     batch = [
@@ -226,7 +226,7 @@ def test_outputs_beside_their_inputs_are_not_filtered_again(tmp_path: Path) -> N
     assert_fails(command("batch", source, "--output", source), 2, "input itself")
 
 
-def test_a_recipe_gives_the_options_and_the_command_line_comes_first(
+def test_a_recipe_gives_the_options_and_the_command_line_overrides_it(
     cow: Path, tmp_path: Path
 ) -> None:
     recipe, again = tmp_path / "a.toml", tmp_path / "b.toml"
@@ -266,7 +266,7 @@ def test_a_script_applies_our_filter_and_meshlabs_own(cow: Path, tmp_path: Path)
 
 
 @pytest.mark.parametrize("text", ["no script", "<html/>", "<FilterScript/>"])
-def test_what_is_no_script_is_refused(text: str, cow: Path, tmp_path: Path) -> None:
+def test_a_file_that_is_not_a_script_is_refused(text: str, cow: Path, tmp_path: Path) -> None:
     script = tmp_path / "x.mlx"
     script.write_text(text)
     done = command("batch", cow, "--output", tmp_path / "out", "--script", script)

@@ -20,7 +20,7 @@ SECTION = re.compile(r"^(\S.*):$", re.MULTILINE)
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_help_has_a_short_name_and_names_what_every_command_takes(name: str) -> None:
+def test_help_has_a_short_option_and_lists_the_common_options(name: str) -> None:
     done = command(name, "-h", COLUMNS="80")
     assert done.returncode == 0
     assert done.stdout == command(name, "--help", COLUMNS="80").stdout
@@ -49,7 +49,7 @@ def test_help_has_options_in_groups(name: str) -> None:
         assert re.findall(r"^  --([a-z-]+)", group, re.MULTILINE) == options
 
 
-def test_quiet_leaves_errors_warnings_and_what_is_asked_for(cow: Path, tmp_path: Path) -> None:
+def test_quiet_leaves_errors_warnings_and_requested_output(cow: Path, tmp_path: Path) -> None:
     flat = write_ply(tmp_path / "flat.ply", "0 0 0\n1 0 0\n0 1 0", "3 0 1 2")
     out = tmp_path / "out.ply"
     done = command("filter", flat, out, "--boundary", "fixed", "-q")
@@ -80,7 +80,7 @@ def test_verbose_adds_every_number_and_meshlabs_log(cow: Path, tmp_path: Path) -
     assert_fails(command(*arguments, "-v", "-q"), 2, "--quiet: not together with --verbose")
 
 
-def test_an_output_is_named_by_place_or_by_option(cow: Path, tmp_path: Path) -> None:
+def test_an_output_is_named_by_position_or_by_option(cow: Path, tmp_path: Path) -> None:
     one, other = tmp_path / "one.obj", tmp_path / "other.obj"
     assert command("filter", cow, one, "--steps", 1).returncode == 0
     assert command("filter", cow, "-o", other, "--steps", 1).returncode == 0
@@ -119,7 +119,7 @@ def test_a_usage_error_is_one_line_and_the_help_to_read(
     assert see == f"See: meshlab-spectral{help_of} --help"
 
 
-def test_no_command_at_all_is_the_help() -> None:
+def test_without_a_command_the_help_is_shown() -> None:
     done = command()
     assert done.returncode == 2
     assert done.stderr == command("--help").stdout
@@ -144,7 +144,7 @@ def test_long_runs_have_plain_progress_every_few_seconds(
     assert capsys.readouterr().err == ""
 
 
-def test_a_file_that_is_left_as_it_is_counts_as_unchanged(tmp_path: Path) -> None:
+def test_a_file_that_does_not_change_counts_as_unchanged(tmp_path: Path) -> None:
     source, out = tmp_path / "in", tmp_path / "out"
     make_meshes(source, 2)
     flat = write_ply(source / "flat.ply", "0 0 0\n1 0 0\n0 1 0", "3 0 1 2")

@@ -24,7 +24,7 @@ def scan(tmp_path: Path) -> Path:
 
 
 def denoised(path: Path, noise_height: float = 0.0) -> np.ndarray:
-    """Positions that pymeshlab computes; a height of 0 has it measured."""
+    """Positions that pymeshlab computes; at a height of 0 it measures the height itself."""
     mesh_set = pymeshlab.MeshSet()
     mesh_set.load_new_mesh(str(path))
     mesh_set.apply_filter(FILTER, noise_height=pymeshlab.PureValue(noise_height))

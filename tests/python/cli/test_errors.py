@@ -35,7 +35,7 @@ def test_a_cut_off_input_is_refused(cow: Path, existing: Path, tmp_path: Path) -
     assert_fails(command("filter", cut, existing), 1, str(cut), "damaged")
 
 
-def test_an_input_that_is_no_mesh_format_is_refused_with_formats(
+def test_an_input_of_an_unknown_format_is_refused_with_the_known_ones(
     existing: Path, tmp_path: Path
 ) -> None:
     text = tmp_path / "notes.txt2"
@@ -57,12 +57,12 @@ def test_a_basis_as_large_as_the_mesh_is_refused(cow: Path, existing: Path) -> N
     assert_fails(command("filter", cow, existing, *arguments), 1, "2904", "spectrum = full")
 
 
-def test_a_missing_plugin_is_told_without_traceback(cow: Path, existing: Path) -> None:
+def test_a_missing_plugin_is_reported_without_traceback(cow: Path, existing: Path) -> None:
     done = command("filter", cow, existing, MESHLAB_SPECTRAL_PLUGIN="/no/such/plugin.so")
     assert_fails(done, 1, "/no/such/plugin.so", "MESHLAB_SPECTRAL_PLUGIN")
 
 
-def test_names_that_are_not_utf_8_are_told(cow: Path, existing: Path, tmp_path: Path) -> None:
+def test_names_that_are_not_utf_8_are_refused(cow: Path, existing: Path, tmp_path: Path) -> None:
     source = tmp_path / "caf\udce9.obj"
     shutil.copy(cow, source)
     folder = tmp_path / "d\udce9"
@@ -85,5 +85,5 @@ def test_debug_shows_where_an_error_arose(existing: Path, tmp_path: Path) -> Non
     assert "filter_to_scratch" in done.stderr
 
 
-def test_colons_of_a_message_are_no_emoji(tmp_path: Path) -> None:
+def test_colons_in_a_message_do_not_become_emoji(tmp_path: Path) -> None:
     assert ":x:none.ply does not exist" in command("info", tmp_path / ":x:none.ply").stderr

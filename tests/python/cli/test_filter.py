@@ -75,7 +75,7 @@ def test_json_holds_the_eigenvalues_of_a_truncated_spectrum(cow: Path, tmp_path:
     assert record["options"]["reinject_residual"] is False
 
 
-def test_report_is_a_table_with_the_input_and_the_output_as_they_are_called(
+def test_report_is_a_table_with_the_input_and_the_output_as_they_were_named(
     cow: Path, tmp_path: Path
 ) -> None:
     source = tmp_path / "[red] kühe.obj"
@@ -97,8 +97,8 @@ def test_an_open_surface_has_no_volume_in_the_table(
     assert "Volume" not in done.stdout
 
 
-def test_a_vertex_that_is_no_number_is_named(existing: Path, tmp_path: Path) -> None:
-    """MeshLab would drop it, and its faces: a hole that nobody asked for."""
+def test_a_vertex_that_is_not_a_number_is_named(existing: Path, tmp_path: Path) -> None:
+    """MeshLab would drop it and its faces, and so leave an unexpected hole."""
     vertices = "0 0 0\n1 0 0\n0 1 0\n0 0 1\nnan 0 0"
     faces = "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n3 0 1 4"
     source = write_ply(tmp_path / "nan.ply", vertices, faces)
@@ -106,7 +106,7 @@ def test_a_vertex_that_is_no_number_is_named(existing: Path, tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize("element", ["vertex", "face"])
-def test_what_a_ply_file_holds_as_selected_is_filtered_alone(
+def test_only_the_selection_stored_in_a_ply_file_is_filtered(
     element: str, samples: Path, tmp_path: Path
 ) -> None:
     mesh_set = pymeshlab.MeshSet()

@@ -14,7 +14,7 @@ from helpers import diagonal, mesh_set_of
 from meshlab_spectral import denoise_mesh, geometry_spectrum
 from meshlab_spectral.files.meshes import load_arrays
 
-# Two squares with a common side, cut there, and a triangle with a vertex too many.
+# Two squares cut apart along their common side, a triangle, and an unreferenced vertex.
 CUT = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n1 0 0\n2 0 0\n2 1 0\n1 1 0\n5 0 0\n6 0 0\n5 1 0\n9 9 9"
 CUT_FACES = "3 0 1 2\n3 0 2 3\n3 4 5 6\n3 4 6 7\n3 8 9 10"
 
@@ -50,7 +50,7 @@ def test_lengths_and_noise_are_those_of_the_filters(tmp_path: Path) -> None:
     assert [path.name for path in tmp_path.iterdir()] == [scan.name]
 
 
-def test_a_table_says_it_to_people(tmp_path: Path) -> None:
+def test_without_json_a_labelled_table_is_printed(tmp_path: Path) -> None:
     (scan,) = make_meshes(tmp_path, 1, rings=48)
     done = command("info", scan)
     assert done.returncode == 0, done.stderr
@@ -84,7 +84,7 @@ def test_closed_surfaces_have_no_rims_and_holes_one_each(tmp_path: Path) -> None
     assert (info(torus)["rims"], info(holes)["rims"]) == (0, 2)
 
 
-def test_what_is_no_surface_is_refused(tmp_path: Path) -> None:
+def test_an_input_that_is_not_a_surface_is_refused(tmp_path: Path) -> None:
     cloud = write_ply(tmp_path / "cloud.ply", "0 0 0\n1 0 0\n0 1 0", "")
     assert_fails(command("info", cloud), 1, "point cloud")
     assert_fails(command("info", tmp_path / "none.ply"), 1, "does not exist")

@@ -1,4 +1,4 @@
-"""The command `meshlab-spectral install`: what it puts where, what it says, what it refuses."""
+"""The command `meshlab-spectral install`: what it installs where, what it prints and refuses."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def command(home: Path, programs: Path) -> Command:
 
 
 def installed(data: Path) -> dict[str, Path]:
-    """Where the plugins must be below a user's folder of data, by precision."""
+    """Where the plugins must be below a user's data folder, by precision."""
     return {
         "single": data
         / "VCG/MeshLab_64bit_fp/MeshLabExtraPlugins/2025.07/libfilter_spectral_float.so",
@@ -92,9 +92,7 @@ def test_install_puts_the_plugin_of_each_precision_where_its_meshlab_looks(
         assert f"{precision} precision: {path} installed" in done.stdout
 
 
-def test_a_folder_of_data_elsewhere_is_respected(
-    command: Command, home: Path, tmp_path: Path
-) -> None:
+def test_a_custom_data_folder_is_respected(command: Command, home: Path, tmp_path: Path) -> None:
     data = tmp_path / "data"
     assert command(XDG_DATA_HOME=str(data)).returncode == 0
     assert files_below(data) == sorted(installed(data).values())
@@ -135,7 +133,7 @@ def test_uninstall_removes_only_its_own_files(command: Command, home: Path) -> N
 
 
 @pytest.mark.parametrize("arguments", [(), ("--uninstall",)])
-def test_a_dry_run_tells_the_same_and_changes_nothing(
+def test_a_dry_run_prints_the_same_and_changes_nothing(
     arguments: tuple[str, ...], command: Command, home: Path
 ) -> None:
     if arguments:
@@ -195,7 +193,7 @@ def test_a_meshlab_is_found_on_the_path_or_where_its_installer_puts_it(
     assert (found.program, found.host) == (on_path, DOUBLE)
 
 
-def test_without_a_meshlab_the_wanted_versions_are_told(command: Command) -> None:
+def test_without_a_meshlab_the_required_versions_are_named(command: Command) -> None:
     assert "No MeshLab was found; the plugin is for MeshLab 2025.07 or 2025.07d." in (
         command().stdout
     )
@@ -209,7 +207,7 @@ def test_a_folder_that_cannot_be_made_is_named(command: Command, home: Path) -> 
     assert "Error:" in done.stderr
 
 
-def test_a_package_without_a_plugin_says_how_to_mend_it(
+def test_a_package_without_a_plugin_names_the_remedy(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr(installation, "_PLUGINS", tmp_path)
@@ -250,7 +248,7 @@ def test_the_folders_follow_the_rules_of_the_system(
         ("win32", ["filter_spectral_float.dll", "filter_spectral.dll"]),
     ],
 )
-def test_the_names_are_those_that_meshlab_takes_for_plugins(
+def test_the_file_names_are_those_of_plugins_on_each_system(
     platform: str, names: list[str]
 ) -> None:
     assert [library_name(host.plugin, platform) for host in (SINGLE, DOUBLE)] == names

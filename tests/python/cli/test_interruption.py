@@ -35,7 +35,7 @@ def long_run(samples: Path, existing: Path) -> Iterator[subprocess.Popen[str]]:
 
 
 def child_of(process: subprocess.Popen[str]) -> int:
-    """Process id of the command's own child, 0 as long as there is none."""
+    """Process id of the command's own child, 0 if there is none yet."""
     children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
     return int(children[0]) if children else 0
 
@@ -106,7 +106,7 @@ def test_an_interruption_in_an_import_ends_with_130_and_leaves_nothing_half_writ
     assert not [path for path in out.rglob("*") if not path.name.endswith("report.jsonl")]
 
 
-def test_the_death_of_the_working_process_is_told(long_run: subprocess.Popen[str]) -> None:
+def test_the_death_of_the_working_process_is_reported(long_run: subprocess.Popen[str]) -> None:
     os.kill(child_of(long_run), signal.SIGKILL)
     stdout, stderr = long_run.communicate(timeout=20)
     assert long_run.returncode == 1
@@ -117,7 +117,7 @@ def test_the_death_of_the_working_process_is_told(long_run: subprocess.Popen[str
 
 
 def test_progress_is_shown_on_a_terminal_only(samples: Path, tmp_path: Path) -> None:
-    # So many steps that some are seen, however quick they are.
+    # Enough steps that some are seen, however fast they are.
     arguments = ["filter", str(samples / "bunny.obj"), str(tmp_path / "out.ply"), "--steps", "100"]
     code, stdout, shown = command_on_terminal(*arguments)
     assert code == 0

@@ -119,7 +119,7 @@ def test_pip_installs_the_command_under_its_name() -> None:
     assert done.stdout.startswith("meshlab-spectral ")
 
 
-def test_a_preset_is_its_options(cow: Path, tmp_path: Path) -> None:
+def test_a_preset_equals_its_options(cow: Path, tmp_path: Path) -> None:
     for name, given in PRESETS.items():
         spelled = [f"--{key.replace('_', '-')}={value}" for key, value in given.items()]
         one, other = tmp_path / f"{name}.ply", tmp_path / f"{name}_spelled.ply"
@@ -153,7 +153,7 @@ def test_options_given_besides_a_preset_replace_its_own(cow: Path, tmp_path: Pat
     assert one.read_bytes() == other.read_bytes()
 
 
-def test_a_batch_takes_a_preset_over_a_recipe(cow: Path, tmp_path: Path) -> None:
+def test_in_a_batch_a_preset_overrides_a_recipe(cow: Path, tmp_path: Path) -> None:
     recipe = tmp_path / "recipe.toml"
     recipe.write_text('[filter]\nfeature_size = "20%"\nsteps = 1\n', encoding="utf-8")
     saved = tmp_path / "saved.toml"
@@ -177,7 +177,7 @@ def test_a_recipe_is_tried_on_one_mesh_and_serves_a_batch(cow: Path, tmp_path: P
     assert (chosen["steps"], chosen["pass_gain"], chosen["crease_angle"]) == (2, 2.0, 120.0)
 
 
-def test_a_recipe_is_saved_only_of_what_has_succeeded(cow: Path, tmp_path: Path) -> None:
+def test_a_recipe_is_saved_only_after_success(cow: Path, tmp_path: Path) -> None:
     recipe, out = tmp_path / "recipe.toml", tmp_path / "out.ply"
     for wrong in ((tmp_path / "none.ply", out), (cow, tmp_path / "out.xyzzy")):
         assert command("filter", *wrong, "--save-recipe", recipe).returncode in (1, 2)
@@ -211,7 +211,7 @@ def test_the_shell_completes_commands_options_and_choices(line: str, completed: 
     assert done.stdout.split() == [completed], done.stderr
 
 
-def test_an_equalizer_is_that_of_meshlab(samples: Path, tmp_path: Path) -> None:
+def test_the_equalizer_agrees_with_that_of_meshlab(samples: Path, tmp_path: Path) -> None:
     bunny, target = samples / "bunny.obj", tmp_path / "out.ply"
     done = command(
         "filter", bunny, target, "--equalizer", "1,1,2,1,0.5,0", "--tolerance", "0.01%", "--json"

@@ -1,4 +1,4 @@
-"""The output files of `meshlab-spectral filter`: formats, textures, whole or as they were."""
+"""The output files of `meshlab-spectral filter`: formats, textures, whole or unchanged."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def test_every_usual_format_is_written(ending: str, cow: Path, tmp_path: Path) -
 
 @pytest.mark.parametrize("ending", [".obj", ".off"])
 def test_polygons_that_meet_in_a_non_manifold_edge_are_written(ending: str, tmp_path: Path) -> None:
-    """On some of them MeshLab's writer of polygons does not end."""
+    """On some of them MeshLab's polygon writer never returns."""
     source, target = tmp_path / "in.obj", tmp_path / f"out{ending}"
     corners = "0 0 0", "1 0 0", "1 1 0", "0 1 0", "0 0 1", "1 0 1", "0 -1 0", "1 -1 0"
     quads = "1 2 3 4", "1 2 6 5", "1 2 8 7", "1 2 3 4"
@@ -117,7 +117,7 @@ def test_a_texture_outside_of_the_folder_is_never_written(samples: Path, tmp_pat
     assert names == ["bunny.obj", MATERIAL]
 
 
-def test_a_foreign_file_in_the_place_of_a_texture_is_not_replaced(
+def test_a_foreign_file_in_place_of_a_texture_is_not_replaced(
     samples: Path, existing: Path, tmp_path: Path
 ) -> None:
     source = textured_bunny(samples, tmp_path / "in", "skin.png")
@@ -179,7 +179,7 @@ def test_an_unwritable_output_folder_is_refused_before_the_work(cow: Path) -> No
 
 
 def test_a_full_disk_leaves_the_old_output(cow: Path, existing: Path) -> None:
-    """The disk is played by a limit on the size of files."""
+    """A limit on the size of files stands in for a full disk."""
     limited = ["bash", "-c", 'ulimit -f 20; exec "$@"', "bash", *COMMAND]
     done = subprocess.run(
         [*limited, "filter", str(cow), str(existing), "--steps", "1"],

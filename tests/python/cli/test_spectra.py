@@ -48,11 +48,11 @@ def test_a_mistake_leaves_the_old_table(cow: Path, existing: Path, tmp_path: Pat
 
 
 @pytest.mark.parametrize("table", [".", "/"])
-def test_a_table_that_is_a_folder_is_told(table: str, cow: Path) -> None:
+def test_a_table_that_is_a_folder_is_refused(table: str, cow: Path) -> None:
     assert_fails(command("spectra", cow, "--output", table), 1, "is a folder or a device")
 
 
-def test_the_table_is_not_the_report(cow: Path, tmp_path: Path) -> None:
+def test_one_file_for_table_and_report_is_refused(cow: Path, tmp_path: Path) -> None:
     table = tmp_path / "x.csv"
     done = command("spectra", cow, "--output", table, "--report", table)
     assert_fails(done, 2, "is also the table")

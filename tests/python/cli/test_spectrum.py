@@ -47,7 +47,7 @@ def test_the_plot_and_a_table_of_the_octaves_are_made(cow: Path, tmp_path: Path)
     assert 0.1 < (picture < 0.98).any(axis=2).mean() < 0.9
 
 
-def test_noise_is_told_and_shaded(samples: Path, tmp_path: Path) -> None:
+def test_noise_is_reported_and_shaded(samples: Path, tmp_path: Path) -> None:
     mesh_set = pymeshlab.MeshSet()
     mesh_set.load_new_mesh(str(samples / "bunny.obj"))
     mesh_set.meshing_decimation_quadric_edge_collapse(targetfacenum=12000)
@@ -58,13 +58,13 @@ def test_noise_is_told_and_shaded(samples: Path, tmp_path: Path) -> None:
     done = command(tmp_path / "noisy.ply", "--basis-size", 50, folder=tmp_path)
     assert "Noise: details smaller than" in done.stdout
     shaded = colours(tmp_path / "noisy_spectrum.png")
-    # A pale brown that nothing else in the plot has, over the last part of its width.
+    # A pale brown that only the shading has, over the right part of the plot.
     brown = (shaded[:, :, 0] > shaded[:, :, 2] + 0.03) & (shaded.min(axis=2) > 0.8)
     columns = np.flatnonzero(brown.sum(axis=0) > 200)
     assert 0.5 * shaded.shape[1] < columns.min() < columns.max()
 
 
-def test_a_mesh_too_small_to_tell_noise_by_is_drawn(samples: Path, tmp_path: Path) -> None:
+def test_a_mesh_too_small_to_estimate_noise_is_drawn(samples: Path, tmp_path: Path) -> None:
     mesh_set_of(
         np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]])
     ).save_current_mesh(str(tmp_path / "triangle.ply"))
@@ -73,7 +73,7 @@ def test_a_mesh_too_small_to_tell_noise_by_is_drawn(samples: Path, tmp_path: Pat
     assert "No noise found" in done.stdout
 
 
-def test_a_fixed_boundary_makes_another_spectrum(tmp_path: Path, decimated: Any) -> None:
+def test_a_fixed_boundary_changes_the_spectrum(tmp_path: Path, decimated: Any) -> None:
     mesh_set_of(*lower_part(*decimated("bunny.obj", 1500))).save_current_mesh(
         str(tmp_path / "open.ply")
     )
@@ -89,7 +89,7 @@ def test_a_fixed_boundary_makes_another_spectrum(tmp_path: Path, decimated: Any)
     assert fixed["spectrum"]["total_energy"] != free["spectrum"]["total_energy"]
 
 
-def test_another_filter_makes_another_plot(cow: Path, tmp_path: Path) -> None:
+def test_the_filter_options_change_the_plot(cow: Path, tmp_path: Path) -> None:
     plots = [tmp_path / "low.png", tmp_path / "band.png"]
     command(cow, "--output", plots[0], "--basis-size", 20)
     command(cow, "--output", plots[1], "--basis-size", 20, "--filter-type", "band-pass")
@@ -149,7 +149,7 @@ def test_help_names_the_options_that_make_the_curve_and_no_others() -> None:
         (["COW", "--steps", "3"], 2, "--steps"),
     ],
 )
-def test_what_cannot_be_done_is_refused_and_leaves_nothing(
+def test_an_invalid_request_is_refused_and_leaves_no_file(
     arguments: list[str], code: int, words: str, cow: Path, tmp_path: Path
 ) -> None:
     done = command(*[cow if a == "COW" else a for a in arguments], folder=tmp_path)
@@ -160,7 +160,7 @@ def test_what_cannot_be_done_is_refused_and_leaves_nothing(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_refusal_leaves_an_existing_plot_as_it_was(samples: Path, tmp_path: Path) -> None:
+def test_a_refusal_leaves_an_existing_plot_unchanged(samples: Path, tmp_path: Path) -> None:
     plot = tmp_path / "plot.png"
     plot.write_bytes(b"precious")
     assert command(samples / "cow.obj", "--output", plot, "--basis-size", 100000).returncode == 1

@@ -101,7 +101,7 @@ def all_parameters() -> list[plugin_facts.Parameter]:
     return [parameter for each in filters().values() for parameter in each.parameters]
 
 
-def test_every_number_has_a_unit_and_no_unit_is_left_over() -> None:
+def test_every_number_has_a_unit_and_every_unit_is_used() -> None:
     assert WORDS["units"].keys() == {each.name for each in all_parameters() if each.is_number}
     for parameter in all_parameters():
         if parameter.is_length:

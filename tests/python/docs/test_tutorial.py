@@ -1,4 +1,4 @@
-"""Tutorial and gallery do what they say: the code runs, and prints the numbers that stand there."""
+"""Tutorial and gallery are true: their code runs, and prints the numbers that they show."""
 
 from __future__ import annotations
 

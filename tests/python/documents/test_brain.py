@@ -46,7 +46,7 @@ def surface(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
 
 @pytest.fixture
 def pial(tmp_path: Path) -> Path:
-    """A FreeSurfer surface with what it writes behind the triangles."""
+    """A FreeSurfer surface with the data that follow the triangles."""
     path = tmp_path / "lh.pial"
     volume = {
         "head": np.array([2, 0, 20], dtype="i4"),
@@ -90,7 +90,7 @@ def test_points_and_normals_of_gifti_change_and_nothing_else(surface: Path) -> N
     assert [a.data.dtype for a in after.darrays] == [a.data.dtype for a in before.darrays]
 
 
-def test_what_has_not_moved_is_the_same_file(surface: Path, pial: Path) -> None:
+def test_a_file_in_which_nothing_moves_is_unchanged(surface: Path, pial: Path) -> None:
     for path in (surface, pial):
         document = read(path)
         target = path.with_name(f"new.{path.name}")
@@ -111,13 +111,13 @@ def test_coordinates_of_free_surfer_change_and_nothing_else(pial: Path) -> None:
     assert document.contents == ["volume geometry"]
 
 
-def test_single_precision_that_rounds_the_movement_is_told(pial: Path) -> None:
+def test_a_movement_lost_in_single_precision_is_a_warning(pial: Path) -> None:
     document = read(pial)
     (warning,) = document.save(pial.with_name("new.pial"), [document.parts[0].vertices + 1e-8])
     assert "single precision" in warning
 
 
-def test_values_without_a_surface_are_refused_with_what_to_name(tmp_path: Path) -> None:
+def test_values_without_a_surface_are_refused_with_the_file_to_pass(tmp_path: Path) -> None:
     path = tmp_path / "lh.thickness.gii"
     values = gifti.GiftiDataArray(V[:, 0], intent="NIFTI_INTENT_SHAPE")
     gifti.GiftiImage(darrays=[values]).to_filename(path)

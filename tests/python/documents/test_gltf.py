@@ -16,7 +16,7 @@ from meshlab_spectral.errors import MeshFileError
 from meshlab_spectral.files.whole_files import writing_whole
 from numpy.typing import NDArray
 
-# A cube's corners; its faces turn outwards.
+# A cube's corners; its normals point outwards.
 CUBE = np.array([[x, y, z] for x in (0, 1) for y in (0, 1) for z in (0, 1)], dtype="<f4")
 FACES = np.array([*"013032467475045051237276026064157173"], dtype="<u2").reshape(-1, 3)
 COMPONENTS = {"b": 5120, "B": 5121, "h": 5122, "H": 5123, "I": 5125, "f": 5126}
@@ -87,7 +87,7 @@ def opened(path: Path) -> tuple[dict[str, Any], bytes]:
 
 
 def floats(path: Path, accessor: int, width: int = 3) -> NDArray[np.float32]:
-    """The elements of an accessor of floats that lie one after the other."""
+    """The elements of an accessor of contiguous floats."""
     tree, blob = opened(path)
     entry = tree["accessors"][accessor]
     view = tree["bufferViews"][entry["bufferView"]]
@@ -132,7 +132,7 @@ def test_only_positions_and_their_bounds_change(suffix: str, tmp_path: Path) -> 
     del before["accessors"][0]["min"], before["accessors"][0]["max"]
     for tree in (before, after):
         tree["buffers"][0].pop("uri", None)
-    assert json.dumps(before) == json.dumps(after)  # with the order of the keys
+    assert json.dumps(before) == json.dumps(after)  # including the order of the keys
 
 
 def test_nested_nodes_place_a_mesh_and_a_mirrored_one_stays_outside_out(tmp_path: Path) -> None:
@@ -204,7 +204,7 @@ def test_interleaved_positions_are_replaced_where_they_are(tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize("kind", ["quantized", "sparse"])
-def test_positions_that_are_no_plain_floats_get_a_successor(kind: str, tmp_path: Path) -> None:
+def test_positions_that_are_not_plain_floats_get_a_new_accessor(kind: str, tmp_path: Path) -> None:
     asset, points = cube(), CUBE.copy()
     if kind == "quantized":
         asset = cube((127 * CUBE - 10).astype("i1"))
@@ -225,7 +225,7 @@ def test_positions_that_are_no_plain_floats_get_a_successor(kind: str, tmp_path:
 
 
 @pytest.mark.parametrize("alike", [True, False])
-def test_meshes_that_share_positions_part_if_they_move_apart(alike: bool, tmp_path: Path) -> None:
+def test_meshes_that_share_positions_split_if_they_move_apart(alike: bool, tmp_path: Path) -> None:
     asset = cube()
     asset.mesh(*asset.tree["meshes"][0]["primitives"])
     document, target = read(asset.write(tmp_path / "in.glb")), tmp_path / "out.glb"
@@ -263,7 +263,7 @@ def test_normals_and_tangents_follow_and_hard_edges_stay_hard(tmp_path: Path) ->
     np.testing.assert_array_equal(T[:, 3], tangents[:, 3])
 
 
-def test_what_cannot_follow_is_told(tmp_path: Path) -> None:
+def test_data_that_cannot_follow_the_shape_are_reported(tmp_path: Path) -> None:
     asset = cube(CUBE + np.float32(4e6))
     asset.tree["meshes"][0]["primitives"][0]["targets"] = [{"POSITION": asset.accessor(CUBE)}]
     document = read(asset.write(tmp_path / "in.glb"))
@@ -302,7 +302,7 @@ def test_the_buffer_of_the_input_is_never_overwritten(name: str, tmp_path: Path)
         (("nodes", 0, "children"), [1, 1], "child of two"),
     ],
 )
-def test_what_cannot_be_read_is_told(keys: Any, value: Any, match: str, tmp_path: Path) -> None:
+def test_a_damaged_file_is_refused(keys: Any, value: Any, match: str, tmp_path: Path) -> None:
     with pytest.raises(MeshFileError, match=match):
         read(spoiled(keys, value).write(tmp_path / "in.glb"))
 
@@ -317,7 +317,7 @@ def spoiled(keys: tuple[Any, ...], value: Any) -> Asset:
     return asset
 
 
-def test_any_value_of_another_type_is_told_or_harmless(tmp_path: Path) -> None:
+def test_any_value_of_the_wrong_type_is_refused_or_harmless(tmp_path: Path) -> None:
     def places(entry: Any, *keys: Any) -> list[tuple[Any, ...]]:
         below = entry.items() if isinstance(entry, dict) else []
         below = enumerate(entry) if isinstance(entry, list) else below

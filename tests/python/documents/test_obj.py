@@ -48,9 +48,7 @@ def saved(path: Path, moved: Array | None = None) -> bytes:
         b"f 1 2\nf 1 2 3\nf 1 3 4",
     ],
 )
-def test_every_kind_of_face_is_read_and_the_file_stays_as_it_is(
-    faces: bytes, tmp_path: Path
-) -> None:
+def test_every_kind_of_face_is_read_and_the_file_is_unchanged(faces: bytes, tmp_path: Path) -> None:
     content = SQUARE + b"vn 0 0 1\n" * 3 + faces
     path = write(tmp_path / "in.obj", content)
     (part,) = read(path).parts
@@ -76,7 +74,7 @@ def test_polygons_become_triangles(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("names", ["größe".encode("latin-1"), "表".encode("shift-jis")])
 def test_names_and_comments_of_any_encoding_stay(names: bytes, tmp_path: Path) -> None:
-    """In Shift-JIS the name ends in a backslash, which continues no line."""
+    """In Shift-JIS the name ends in a backslash, which does not continue the line."""
     content = b"# " + names + b"\ng " + names + b"\no " + names + b"\n" + SQUARE
     content += b"usemtl " + names + b"\nf 1 2 3\n# v 9 9 9 \\\nf 1 3 4 #"
     path = write(tmp_path / "in.obj", content)
@@ -103,7 +101,7 @@ def test_normals_follow_and_one_that_no_face_uses_stays(tmp_path: Path) -> None:
     normal = np.array(lines[4].split()[1:], dtype=float)
     expected = np.cross([1, 0, 0.5], [1, 1, 0])
     np.testing.assert_allclose(normal, expected / np.linalg.norm(expected), atol=1e-8)
-    assert lines[5:] == SHADED.split(b"\n")[5:]  # of the triangle that has not moved, and after
+    assert lines[5:] == SHADED.split(b"\n")[5:]  # of the unmoved triangle, and the rest
 
 
 def test_normals_follow_where_only_some_faces_have_them(tmp_path: Path) -> None:

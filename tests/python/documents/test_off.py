@@ -50,7 +50,7 @@ def saved(path: Path, moved: Array | None = None) -> bytes:
 
 
 @pytest.mark.parametrize("name", VARIANTS)
-def test_every_variant_is_read_and_stays_as_it_is(name: str, tmp_path: Path) -> None:
+def test_every_variant_is_read_and_stays_unchanged(name: str, tmp_path: Path) -> None:
     path = write(tmp_path, VARIANTS[name])
     (part,) = read(path).parts
     np.testing.assert_array_equal(part.vertices, V)

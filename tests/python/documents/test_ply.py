@@ -23,7 +23,7 @@ HALVES = [half for a, b, c, d in QUADS for half in ([a, b, c], [a, c, d])]
 
 
 def encoded(format_: str, elements: list[Element], notes: list[str] | None = None) -> bytes:
-    """Write a PLY file without the help of what is tested."""
+    """Write a PLY file independently of the code under test."""
     header = ["ply", f"format {format_} 1.0", *(notes or [])]
     for name, properties, rows in elements:
         header += [f"element {name} {len(rows)}", *(f"property {one}" for one in properties)]
@@ -118,7 +118,7 @@ def test_a_file_without_faces_is_a_part_without_faces(format_: str, tmp_path: Pa
         assert document.parts[0].quality is None
 
 
-def test_quality_is_preferred_to_confidence_if_it_is_no_integer(tmp_path: Path) -> None:
+def test_quality_is_preferred_to_confidence_unless_it_is_an_integer(tmp_path: Path) -> None:
     for type_, expected in (("double", 2), ("int", 1)):
         names = ["float x", "float y", "float z", "float confidence", f"{type_} quality"]
         content = encoded("ascii", [("vertex", names, [[0, 0, 0, 1, 2]])])
@@ -127,7 +127,7 @@ def test_quality_is_preferred_to_confidence_if_it_is_no_integer(tmp_path: Path) 
 
 @pytest.mark.parametrize("newline", [b"\n", b"\r\n"])
 @pytest.mark.parametrize("format_", FORMATS)
-def test_where_nothing_moves_the_file_is_the_same_to_the_byte(
+def test_where_nothing_moves_the_file_is_identical(
     format_: str, newline: bytes, tmp_path: Path
 ) -> None:
     content = encoded(format_, decorated(), ["comment  \u00e9t\u00e9 ", "obj_info x"])
@@ -159,7 +159,7 @@ def test_only_coordinates_and_normals_change(format_: str, tmp_path: Path) -> No
                 assert all(np.array_equal(a, b) for a, b in pairs)
 
 
-def test_in_a_text_only_the_words_that_moved_are_other_words(tmp_path: Path) -> None:
+def test_in_a_text_file_only_the_numbers_that_changed_are_rewritten(tmp_path: Path) -> None:
     content = (
         b"ply\r\nformat ascii 1.0\r\nelement vertex 3\r\nproperty int id\r\nproperty float x\r\n"
         b"property float y\r\nproperty float z\r\nelement face 1\r\n"
@@ -174,7 +174,7 @@ def test_in_a_text_only_the_words_that_moved_are_other_words(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize("format_", FORMATS)
-def test_coordinates_become_double_where_single_does_not_hold_the_movement(
+def test_coordinates_become_double_where_single_precision_loses_the_movement(
     format_: str, tmp_path: Path
 ) -> None:
     points = (np.array(CORNERS) + 500000).tolist()
@@ -191,7 +191,7 @@ def test_coordinates_become_double_where_single_does_not_hold_the_movement(
 @pytest.mark.parametrize(
     "names", ["int x|int y|int z", "float y|float x|float z", "float x|float y|list uchar float z"]
 )
-def test_rare_coordinates_are_refused_with_what_to_do(names: str, tmp_path: Path) -> None:
+def test_unusual_coordinates_are_refused_with_a_remedy(names: str, tmp_path: Path) -> None:
     row: list[object] = [[0] if "list" in name else 0 for name in names.split("|")]
     path = write(tmp_path / "a.ply", encoded("ascii", [("vertex", names.split("|"), [row])]))
     with pytest.raises(MeshFileError, match="open it in MeshLab"):
@@ -217,7 +217,7 @@ CUBE = encoded("ascii", [vertices(), faces(HALVES)])
         (b"\n3 0 3 1\n", b"\nthree 0 3 1\n", "element 'face': row 1"),
     ],
 )
-def test_a_damaged_text_is_refused_with_the_place(
+def test_a_damaged_text_file_is_refused_with_the_place(
     old: bytes, new: bytes, words: str, tmp_path: Path
 ) -> None:
     assert CUBE.count(old) == 1
@@ -238,7 +238,7 @@ def test_a_file_cut_off_or_with_a_vast_count_is_refused(
             read(write(tmp_path / "a.ply", damaged))
 
 
-def test_textures_are_copied_beside_the_file_and_never_elsewhere(tmp_path: Path) -> None:
+def test_textures_are_copied_next_to_the_file_and_never_elsewhere(tmp_path: Path) -> None:
     for name in ("in/maps", "out/scratch", "elsewhere"):
         (tmp_path / name).mkdir(parents=True)
     for name in ("in/my skin.png", "in/maps/b.png", "secret.png", "in/a.ply"):
@@ -250,7 +250,7 @@ def test_textures_are_copied_beside_the_file_and_never_elsewhere(tmp_path: Path)
     notes = [f"comment TextureFile {name}" for name in names]
     document = read(write(tmp_path / "in/a.ply", encoded("ascii", [vertices()], notes)))
     target = tmp_path / "out/scratch/a.ply"
-    for _ in range(2):  # the second time the same are there
+    for _ in range(2):  # the second time the same files exist
         warnings = document.save(target, [document.parts[0].vertices * 2])
         assert [warning.split(" is not")[0].split(",")[0] for warning in warnings] == names[2:]
     assert (target.parent / "maps/b.png").read_bytes() == b"in/maps/b.png"

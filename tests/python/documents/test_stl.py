@@ -84,7 +84,7 @@ def raised(path: Path) -> Array:
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_corners_that_coincide_are_one_vertex_and_the_file_stays_as_it_is(
+def test_coincident_corners_are_one_vertex_and_the_file_is_unchanged(
     name: str, tmp_path: Path
 ) -> None:
     path = write(tmp_path, FILES[name])
@@ -111,7 +111,7 @@ def test_only_moved_corners_and_the_normals_of_their_triangles_change(
 
 
 @pytest.mark.parametrize("name", ["text", "text in capitals"])
-def test_only_numbers_of_moved_triangles_change_in_a_text(name: str, tmp_path: Path) -> None:
+def test_only_numbers_of_moved_triangles_change_in_a_text_file(name: str, tmp_path: Path) -> None:
     path = write(tmp_path, FILES[name])
     content, _ = saved(path, raised(path))
     before, after = (text.split(b"\n") for text in (FILES[name], content))
@@ -122,7 +122,7 @@ def test_only_numbers_of_moved_triangles_change_in_a_text(name: str, tmp_path: P
     assert all(new.split()[:2] == old.split()[:2] for old, new in changed.items())
 
 
-def test_a_facet_without_normal_or_area_keeps_what_it_has(tmp_path: Path) -> None:
+def test_a_facet_without_normal_or_area_keeps_its_normal(tmp_path: Path) -> None:
     normals = NORMALS.astype(np.float32)
     normals[0] = 0
     path = write(tmp_path, binary(normals=normals))

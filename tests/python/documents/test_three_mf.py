@@ -91,7 +91,7 @@ def moved_in_place(text: str, tmp_path: Path, **others: str) -> Document:
     return document
 
 
-def test_only_the_digits_of_what_has_moved_change(tmp_path: Path) -> None:
+def test_only_the_digits_of_moved_vertices_change(tmp_path: Path) -> None:
     path, target = archive(tmp_path / "in.3mf", one_object()), tmp_path / "out.3mf"
     document = read(path)
     (part,) = document.parts
@@ -105,7 +105,7 @@ def test_only_the_digits_of_what_has_moved_change(tmp_path: Path) -> None:
     assert content(target).decode() == one_object().replace('y="1.00"', 'y="1.25"')
 
 
-def test_all_other_entries_stay_with_their_marks(tmp_path: Path) -> None:
+def test_all_other_entries_stay_with_their_metadata(tmp_path: Path) -> None:
     path = tmp_path / "in.3mf"
     with zipfile.ZipFile(path, "w") as file:
         file.comment = b"made by hand"
@@ -151,7 +151,7 @@ def test_components_in_other_models_are_placed_and_named(tmp_path: Path) -> None
         np.testing.assert_array_equal(parts[name], 2 * np.add(VERTICES, [10, 0, 0]))
 
 
-def test_any_writing_of_a_vertex_is_patched(tmp_path: Path) -> None:
+def test_a_vertex_is_patched_however_it_is_written(tmp_path: Path) -> None:
     vertices = (
         "<vertex z = '0'\n\ty='0' pid='x=\"7\"' x='0.5'></vertex>"
         "<vertex   x=\"&#49;.5\" y='0e0'  z=\"-0\" extra='>'/>\r\n<vertex y='1' x='.5' z='0'   />"
@@ -170,7 +170,7 @@ def test_any_writing_of_a_vertex_is_patched(tmp_path: Path) -> None:
     assert content(tmp_path / "out.3mf").decode() == text
 
 
-def test_units_materials_and_slices_are_told(tmp_path: Path) -> None:
+def test_units_materials_and_slices_are_reported(tmp_path: Path) -> None:
     text = model(f'<basematerials id="5"/><s:slicestack id="6"/>{OBJECT}', more='unit="inch"')
     document = moved_in_place(text.replace("<model", '<model xmlns:s="urn:s"'), tmp_path)
     assert document.contents == ["units (inch)", "materials", "slices"]
@@ -205,13 +205,13 @@ def test_objects_used_exponentially_often_are_read_once(tmp_path: Path) -> None:
         ("?>\n", '?>\n<!DOCTYPE model [<!ENTITY a "b">]>', "document type"),
     ],
 )
-def test_a_malformed_model_is_told(old: str, new: str, match: str, tmp_path: Path) -> None:
+def test_a_malformed_model_is_refused(old: str, new: str, match: str, tmp_path: Path) -> None:
     path = archive(tmp_path / "in.3mf", one_object().replace(old, new))
     with pytest.raises(MeshFileError, match=match):
         read(path)
 
 
-def test_a_damaged_archive_is_told(tmp_path: Path) -> None:
+def test_a_damaged_archive_is_refused(tmp_path: Path) -> None:
     path = archive(tmp_path / "in.3mf", one_object())
     data = path.read_bytes()
     for size in range(0, len(data), 7):

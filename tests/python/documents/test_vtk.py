@@ -84,7 +84,7 @@ def test_only_points_and_normals_change(name: str, binary: bool, tmp_path: Path)
     assert (tmp_path / f"saved{path.suffix}").read_bytes() == path.read_bytes()
 
 
-def test_points_become_double_where_single_precision_holds_no_movement(tmp_path: Path) -> None:
+def test_points_become_double_where_single_precision_loses_the_movement(tmp_path: Path) -> None:
     path = written(tmp_path)
     after = vtk.read(path).parts[0].vertices + 1e-9
     new, (warning,) = saved(path, after)
@@ -117,7 +117,7 @@ DAMAGE = {
 
 
 @pytest.mark.parametrize(("damage", "message"), DAMAGE.items())
-def test_damage_is_told(damage: tuple[str, str], message: str, tmp_path: Path) -> None:
+def test_a_damaged_file_is_refused(damage: tuple[str, str], message: str, tmp_path: Path) -> None:
     with pytest.raises(MeshFileError, match=message):
         vtk.read(legacy(tmp_path, *damage))
 

@@ -76,7 +76,7 @@ def test_all_panels_have_the_camera_of_the_first(
     assert 0.2 < drawn_share(second) / drawn_share(first) < 0.3
 
 
-def test_a_panel_is_lit_as_it_is_alone(decimated: Callable[..., Any], tmp_path: Path) -> None:
+def test_a_panel_is_lit_as_if_it_were_alone(decimated: Callable[..., Any], tmp_path: Path) -> None:
     panel = Panel("", *decimated("cow.obj"))
     for count, name in ((1, "alone.png"), (3, "beside.png")):
         draw_side_by_side([panel] * count, tmp_path / name, panel_size=(300, 200))

@@ -43,7 +43,7 @@ def meshes(decimated: Callable[..., Any], tmp_path: Path) -> list[Path]:
     """In place of the dragon and the angel: one lying, y up, and one standing, z up."""
     V, F = decimated("cow.obj", 1000)
     x, y, z = V.T
-    standing = np.column_stack([y, z, x])  # turned: the longest axis upwards
+    standing = np.column_stack([y, z, x])  # turned: the longest axis points upwards
     paths = [tmp_path / "lying.ply", tmp_path / "standing.ply"]
     for path, vertices in zip(paths, (V, standing), strict=True):
         mesh_set_of(vertices, F).save_current_mesh(str(path))
@@ -88,7 +88,7 @@ def test_only_the_wanted_figures_are_drawn(meshes: list[Path], tmp_path: Path) -
 @pytest.mark.parametrize(
     ("options", "update"), [(LOW_PASS, "conformal"), (BAND, "full")], ids=["low-pass", "band"]
 )
-def test_sequences_show_shapes_on_the_way_to_the_whole_filter(
+def test_sequences_show_intermediate_shapes_of_the_filter(
     options: FilterOptions, update: Any, decimated: Callable[..., Any]
 ) -> None:
     V, F = decimated("bunny.obj", 1000)
@@ -105,7 +105,7 @@ def test_sequences_show_shapes_on_the_way_to_the_whole_filter(
     np.testing.assert_array_equal(shapes[-1], whole)
 
 
-def test_harmonics_are_orthonormal_and_find_themselves_in_any_order_and_sign(
+def test_harmonics_are_orthonormal_and_matched_in_any_order_and_sign(
     decimated: Callable[..., Any],
 ) -> None:
     V, F = decimated("bunny.obj", 1000)

@@ -58,7 +58,7 @@ def test_the_plot_of_a_spectrum_has_its_harmonics_and_bands(spectrum: GeometrySp
     assert "low-pass" not in " ".join(entries)
 
 
-def test_with_options_it_has_the_gain_of_the_filter(spectrum: GeometrySpectrum) -> None:
+def test_with_options_the_plot_has_the_gain_of_the_filter(spectrum: GeometrySpectrum) -> None:
     figure = plot_spectrum(spectrum, FilterOptions(feature_size="5%"))
     _, _, gains = figure.axes
     curve = gains.lines[0]
@@ -114,7 +114,7 @@ def test_one_camera_moves_all_harmonics(mesh: Mesh, basis: Harmonics) -> None:
         plotter.close()
 
 
-def test_harmonics_that_are_not_there_are_refused(mesh: Mesh, basis: Harmonics) -> None:
+def test_missing_harmonics_and_mismatched_meshes_are_refused(mesh: Mesh, basis: Harmonics) -> None:
     V, F = mesh
     with pytest.raises(OptionError, match="mode 12: a basis of 12 harmonics has modes 0 to 11"):
         plot_harmonics(V, F, basis, [1, 12])

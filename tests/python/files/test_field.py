@@ -1,6 +1,6 @@
 """Files as users bring them: the result is right, and nothing but coordinates and normals differs.
 
-They lie beside the project; the tests are skipped where they are absent.
+They lie next to the project; the tests are skipped where they are absent.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ SMOOTH = FilterOptions.from_dict({"feature_size": "15%"})
 
 @pytest.fixture
 def field(tmp_path: Path) -> Field:
-    """Give the path of a copy of a file, with those beside it."""
+    """Return the path of a copy of a file, with the files next to it."""
 
     def get(name: str) -> Path:
         source = FIELD / name
@@ -79,7 +79,7 @@ def model_of(three_mf: Path) -> str:
         return archive.read("3D/3dmodel.model").decode()
 
 
-def test_a_transform_of_a_node_counts_and_stays(field: Field, target: Target) -> None:
+def test_a_transform_of_a_node_is_applied_and_kept(field: Field, target: Target) -> None:
     source, out = field("node_transform.glb"), target("out.glb")
     V, F = load_arrays(source)
     assert (V[:, 0].min(), V[:, 0].max()) == pytest.approx((4.9, 5.1), abs=2e-3)
@@ -93,7 +93,7 @@ def test_a_transform_of_a_node_counts_and_stays(field: Field, target: Target) ->
     assert without_bounds(json_of(out)) == without_bounds(json_of(source))
 
 
-def test_a_conversion_keeps_the_placement_and_tells_what_is_left(
+def test_a_conversion_keeps_the_placement_and_reports_what_is_lost(
     field: Field, target: Target
 ) -> None:
     source, out = field("node_transform.glb"), target("out.stl")
@@ -130,7 +130,7 @@ def test_a_texture_within_the_file_stays(field: Field, target: Target) -> None:
     assert stl.is_file()
 
 
-def test_all_meshes_of_a_file_are_filtered_or_the_one_that_is_named(
+def test_all_meshes_of_a_file_are_filtered_or_only_a_named_one(
     field: Field, target: Target
 ) -> None:
     source, out = field("two_meshes.glb"), target("out.glb")
@@ -193,7 +193,7 @@ def test_a_cut_surface_stays_closed(
     assert PlyData.read(out)["vertex"].dtype() == PlyData.read(source)["vertex"].dtype()
 
 
-def test_the_patch_of_a_closed_hole_is_told_to_be_all_that_moves(
+def test_the_patch_of_a_closed_hole_is_reported_as_all_that_moves(
     field: Field, target: Target
 ) -> None:
     mesh_set = pymeshlab.MeshSet()
@@ -205,7 +205,7 @@ def test_the_patch_of_a_closed_hole_is_told_to_be_all_that_moves(
     assert any(warning.startswith("only the selection: ") for warning in last_warnings())
 
 
-def test_coordinates_far_from_the_origin_keep_their_digits_or_that_is_told(
+def test_coordinates_far_from_the_origin_keep_their_digits_or_the_loss_is_reported(
     field: Field, target: Target
 ) -> None:
     source, out, stl = field("utm_tile.obj"), target("out.obj"), target("out.stl")
@@ -218,7 +218,7 @@ def test_coordinates_far_from_the_origin_keep_their_digits_or_that_is_told(
 
 
 @pytest.mark.parametrize("name", ["segmentation_staircase.ply", "spikes.ply"])
-def test_what_a_scanner_left_is_removed_and_the_types_stay(
+def test_scanner_noise_is_removed_and_the_types_stay(
     name: str, field: Field, target: Target
 ) -> None:
     source, out = field(name), target(name)

@@ -1,4 +1,4 @@
-"""A file filtered into its own format keeps everything; of another format the rest is told."""
+"""A file filtered into its own format keeps everything; in another format losses are reported."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def test_nothing_is_lost_in_a_file_that_stays_in_its_format(sample: Sample, tmp_
     assert "LOST" not in outcomes(sample, tmp_path).values()
 
 
-def test_the_table_would_show_a_loss(tmp_path: Path) -> None:
+def test_a_loss_appears_in_the_table(tmp_path: Path) -> None:
     BY_NAME["in.ply"].write(tmp_path / "in.ply")
     before = BY_NAME["in.ply"].read(tmp_path / "in.ply")
     after = {kind: before[kind] for kind in ("coordinates", "normals")}
@@ -42,7 +42,7 @@ def test_the_readme_has_the_table() -> None:
 
 
 @pytest.mark.parametrize(("name", "ending"), CONVERSIONS)
-def test_another_format_gets_the_shape_and_what_is_left_behind_is_told(
+def test_another_format_gets_the_shape_and_losses_are_reported(
     name: str, ending: str, tmp_path: Path
 ) -> None:
     (tmp_path / "new").mkdir()

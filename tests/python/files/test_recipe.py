@@ -39,7 +39,7 @@ def write(tmp_path: Path, text: str) -> Path:
     return path
 
 
-def test_options_that_a_recipe_leaves_out_have_their_defaults(tmp_path: Path) -> None:
+def test_options_missing_in_a_recipe_have_their_defaults(tmp_path: Path) -> None:
     _, options = load_recipe(write(tmp_path, '[filter]\nfeature_size = "2%"\nsteps = 4\n'))
     expected = FilterOptions(feature_size=Length(2, "%"), steps=4)
     assert FilterOptions.from_dict(options) == expected
@@ -85,13 +85,13 @@ def test_a_missing_recipe_is_named(tmp_path: Path) -> None:
         load_recipe(tmp_path / "none.toml")
 
 
-def test_a_recipe_replaces_a_recipe_and_nothing_else(tmp_path: Path) -> None:
+def test_a_recipe_replaces_only_a_recipe(tmp_path: Path) -> None:
     path = write(tmp_path, "[filter]\nsteps = 4\n")
     with saving_recipe(path, FilterOptions(steps=5)):
         assert load_recipe(path)[1]["steps"] == 4
     assert load_recipe(path)[1]["steps"] == 5
     with pytest.raises(ZeroDivisionError), saving_recipe(path, FilterOptions(steps=6)):
-        raise ZeroDivisionError  # nothing is saved of what has failed
+        raise ZeroDivisionError  # after a failure nothing is saved
     assert load_recipe(path)[1]["steps"] == 5
     path.write_bytes(PRECIOUS)
     refused = pytest.raises(InputError, match=r"recipe\.toml is not a TOML file.*not replaced")

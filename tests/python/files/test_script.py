@@ -1,4 +1,4 @@
-"""What is wrong in a MeshLab script is named, by the package and by the plugin itself."""
+"""Mistakes in a MeshLab script are named, by the package and by the plugin itself."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def test_a_wrong_type_is_named(
 
 @pytest.mark.parametrize("name", ENUMERATIONS)
 @pytest.mark.parametrize("beyond", [-1, "end", 99])
-def test_the_plugin_itself_refuses_a_choice_that_it_has_not(
+def test_the_plugin_itself_refuses_an_unknown_choice(
     beyond: int | str, name: str, tetrahedron: pymeshlab.MeshSet, tmp_path: Path
 ) -> None:
     value = ENUMERATIONS[name] if beyond == "end" else beyond

@@ -1,4 +1,4 @@
-"""Output files are whole or absent, and take the place of no other file unasked."""
+"""Output files are whole or absent, and never replace another file unasked."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def test_leftovers_of_killed_processes_are_removed_and_nothing_else(tmp_path: Pa
     assert sorted(tmp_path.iterdir()) == sorted([target, *kept])
 
 
-def test_a_scratch_folder_that_another_process_takes_for_a_leftover_is_given_up(
+def test_a_scratch_folder_that_another_process_removes_as_a_leftover_is_given_up(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     folders = []
@@ -53,7 +53,7 @@ def test_a_scratch_folder_that_another_process_takes_for_a_leftover_is_given_up(
 
 
 def put_there_meanwhile(monkeypatch: pytest.MonkeyPatch, path: Path, content: bytes) -> None:
-    """Have another program write a file when all checks have been made, before the moves."""
+    """Have another program write a file after all checks, before the moves."""
     monkeypatch.setattr(
         "meshlab_spectral.files.whole_files._sync", lambda path_: path.write_bytes(content)
     )
@@ -79,7 +79,7 @@ def test_a_texture_that_another_mesh_has_just_brought_is_not_replaced(
 def test_an_output_that_has_appeared_is_kept_unless_it_is_the_same(
     content: bytes, when: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The same: a worker that died had put it there, and the mesh was done again."""
+    """The same if a worker that died had written it, and the mesh was filtered again."""
     target = tmp_path / "out.ply"
     same = content == b"mesh"
     expected = (

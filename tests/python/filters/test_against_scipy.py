@@ -162,7 +162,7 @@ def test_eight_steps_agree_on_every_sample(
 
 @pytest.mark.parametrize("basis_update", ["full", "conformal"])
 @pytest.mark.parametrize("steps", [1, 8])
-def test_intrinsic_delaunay_agrees_with_its_inventors_package(
+def test_intrinsic_delaunay_agrees_with_robust_laplacian(
     sample_name: str,
     steps: int,
     basis_update: str,
@@ -186,7 +186,7 @@ def test_a_conformal_share_agrees(
         "feature_size": percent(10),
         "steps": 4,
         "basis_update": "full",
-        "conformal_share": 0.25,  # goes through a 32-bit float unchanged
+        "conformal_share": 0.25,  # exact in a 32-bit float
     }
     assert_full_spectrum_agrees(decimated("cow.obj"), options, record_property)
 

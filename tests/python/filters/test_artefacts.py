@@ -51,7 +51,7 @@ def test_lengths_rms_and_maximum_agree(
     assert found.diagonal == pytest.approx(diagonal(V), rel=1e-12)
 
 
-def test_it_scales_with_the_mesh_and_does_not_change_under_translation(
+def test_artefacts_scale_with_the_mesh_and_do_not_change_under_translation(
     decimated: Decimated,
 ) -> None:
     V, F = decimated("bone.ply")
@@ -61,7 +61,7 @@ def test_it_scales_with_the_mesh_and_does_not_change_under_translation(
     assert after.rms == pytest.approx(1e3 * before.rms, rel=1e-5)
 
 
-def test_vertices_without_faces_have_none(decimated: Decimated) -> None:
+def test_vertices_without_faces_have_no_artefacts(decimated: Decimated) -> None:
     V, F = decimated("cow.obj")
     found = measure_artefacts(np.vstack([V, V[:1] + 0.01]), F, 0.15 * diagonal(V))
     assert len(found.length) == len(V) + 1
@@ -88,12 +88,12 @@ def test_the_filter_fills_quality_and_colours_and_moves_nothing(decimated: Decim
 
 
 @pytest.mark.parametrize("feature_size", [0.0, -1.0, float("nan"), float("inf"), 1e39, "5%"])
-def test_another_feature_size_is_refused_by_name(feature_size: Any) -> None:
+def test_an_invalid_feature_size_is_refused_by_name(feature_size: Any) -> None:
     with pytest.raises(OptionError, match="feature_size"):
         measure_artefacts(*TRIANGLE, feature_size)
 
 
-def test_another_laplacian_is_refused_with_the_choices() -> None:
+def test_an_unknown_laplacian_is_refused_with_the_choices() -> None:
     with pytest.raises(OptionError, match="intrinsic delaunay, cotangent, uniform"):
         measure_artefacts(*TRIANGLE, 1.0, "umbrella")  # type: ignore[arg-type]
 
@@ -109,7 +109,7 @@ def test_another_laplacian_is_refused_with_the_choices() -> None:
         (TRIANGLE[0], np.array([[0, 1, -1]]), "vertex -1"),
     ],
 )
-def test_arrays_that_are_no_mesh_are_refused(
+def test_arrays_that_are_not_a_mesh_are_refused(
     vertices: NDArray[Any], faces: NDArray[Any], named: str
 ) -> None:
     with pytest.raises(ValueError, match=named):
@@ -124,7 +124,7 @@ def test_a_mesh_that_cannot_be_measured_is_refused_with_the_plugins_reason() -> 
         measure_artefacts([[0, 0, 0], [np.nan, 0, 0], [0, 1, 0]], F, 1.0)
 
 
-def test_the_result_can_be_taken_from_lists() -> None:
+def test_lists_are_accepted() -> None:
     found = measure_artefacts([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], 1.0)
     assert isinstance(found, Artefacts)
     assert found.length.shape == (3,)

@@ -1,4 +1,4 @@
-"""The filter moves vertices and leaves everything else of a mesh as it was."""
+"""The filter moves vertices and leaves everything else of a mesh unchanged."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def test_normals_are_meshlabs_to_the_last_bit(decimated: Callable[..., Any]) -> 
         np.testing.assert_array_equal(getattr(mesh, normals)(), getattr(fresh, normals)())
 
 
-def test_other_meshes_of_the_set_are_left_alone(decimated: Callable[..., Any]) -> None:
+def test_other_meshes_of_the_set_are_unchanged(decimated: Callable[..., Any]) -> None:
     mesh_set = mesh_set_of(*decimated("bone.ply"))
     mesh_set.add_mesh(pymeshlab.Mesh(*decimated("cow.obj")))
     before = snapshot(mesh_set.mesh(0))
@@ -104,7 +104,7 @@ def test_vertices_without_faces_stay_where_they_are(samples: Path) -> None:
 
 
 @pytest.mark.parametrize("what", ["vertices", "faces"])
-def test_after_a_deletion_only_what_is_left_counts(
+def test_after_a_deletion_only_remaining_elements_count(
     what: str, decimated: Callable[..., Any], tmp_path: Path
 ) -> None:
     """Deletion and filter run as one script, so that pymeshlab touches nothing in between."""

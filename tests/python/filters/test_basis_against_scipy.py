@@ -32,18 +32,18 @@ SHARED = ("camelhead.off", "rocker-arm.obj", "fandisk.off", "greek_helmet.obj")
 """A surface with a boundary, one of genus 1, a CAD part with sharp edges, seven components."""
 
 CLUSTER_GAP = 1e-3
-"""Relative gap of eigenvalues that parts two clusters.
+"""Relative gap of eigenvalues that separates two clusters.
 
-A relative residual r turns an eigenspace by about r / gap: residuals of 1e-9, which the plugin's
-are where eigenvalues are equal, stay within 1e-6 across such a gap, and no less wide one. Of a
-cluster only the whole space is defined so well. On the meshes without symmetry nearly every
-eigenvalue is a cluster of its own.
+A relative residual r turns an eigenspace by about r / gap: the plugin's residuals at multiple
+eigenvalues, 1e-9, allow 1e-6 across this gap but not across a smaller one. Within a cluster only
+the whole space is so well defined. On the meshes without symmetry nearly every eigenvalue is a
+cluster of its own.
 """
 
 
 def arpack(W: scipy.sparse.csc_array, d: Array, k: int) -> tuple[Array, Array]:
-    """Give the k lowest eigenpairs by shift-invert; the eigenvectors D-orthonormal."""
-    shift = 4 * np.pi / d.sum()  # the mean distance of eigenvalues (Weyl)
+    """Return the k lowest eigenpairs by shift-invert; the eigenvectors are D-orthonormal."""
+    shift = 4 * np.pi / d.sum()  # the mean spacing of eigenvalues (Weyl)
     mass = scipy.sparse.diags_array(d, format="csc")
     factor = scipy.sparse.linalg.splu(
         scipy.sparse.csc_array(W + shift * mass),
@@ -64,7 +64,7 @@ def arpack(W: scipy.sparse.csc_array, d: Array, k: int) -> tuple[Array, Array]:
 
 
 def clusters(lam: Array, k: int) -> list[slice]:
-    """Group eigenvalues between gaps; of groups that end within the first k of them."""
+    """Group eigenvalues between gaps; return the groups that end within the first k."""
     ends = np.flatnonzero(np.diff(lam) > CLUSTER_GAP * lam[1:]) + 1
     groups = [slice(int(a), int(b)) for a, b in zip([0, *ends[:-1]], ends, strict=True)]
     return [group for group in groups if group.stop <= k]
@@ -73,7 +73,7 @@ def clusters(lam: Array, k: int) -> list[slice]:
 def sine_of_angle(A: Array, B: Array, d: Array) -> float:
     """Sine of the largest principal angle between the spans of D-orthonormal columns.
 
-    As the norm of what is left of B outside A: an angle below 1e-8 is lost in its cosine.
+    Computed as the norm of the part of B outside A: the cosine loses angles below 1e-8.
     """
     rest = B - A @ (A.T @ (d[:, None] * B))
     return float(np.linalg.norm(np.sqrt(d)[:, None] * rest, ord=2))
@@ -89,7 +89,7 @@ def loaded(path: Path) -> pymeshlab.MeshSet:
 def assert_agrees_with_arpack(
     mesh_set: pymeshlab.MeshSet, k: int, record: Callable[..., None]
 ) -> Array:
-    """Compare the filter's basis with ARPACK's; ARPACK's eigenvalues."""
+    """Compare the filter's basis with ARPACK's; return ARPACK's eigenvalues."""
     report = mesh_set.compute_scalar_manifold_harmonic_per_vertex(
         basis_size=k, laplacian="cotangent", store_basis=True
     )
@@ -101,7 +101,7 @@ def assert_agrees_with_arpack(
     W, d = reference.matrices(V, F, "cotangent")
     constants = len(reference.components(len(V), F))
 
-    # The certificate. The count may exceed k: it is that of the whole last group of equal ones.
+    # The certificate. The count may exceed k: it includes the whole last group of equal ones.
     assert len(report["residuals"]) == len(report["eigenvalues"]) == k
     assert report["residuals"].max() < RESIDUAL
     whole = int(report["inertia_count"])
@@ -150,7 +150,7 @@ def test_no_harmonic_of_a_sphere_is_missing(record_property: Callable[..., None]
     mesh_set.create_sphere(radius=1, subdiv=4)
     degrees = np.repeat(np.arange(13), 2 * np.arange(13) + 1)
     lam = assert_agrees_with_arpack(mesh_set, len(degrees), record_property)
-    # lambda = n (n + 1), 2 n + 1 times; the mesh moves it by less than half the way to the next.
+    # lambda = n (n + 1), 2 n + 1 times; the mesh shifts it by less than half the gap to the next.
     found = np.rint(np.sqrt(lam[: len(degrees)] + 0.25) - 0.5)
     np.testing.assert_array_equal(found, degrees)
 

@@ -1,4 +1,4 @@
-"""Spectral Denoise does what its equations say, as an implementation of its own with SciPy does."""
+"""Spectral Denoise agrees with an independent implementation of its equations in SciPy."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def cube(cells: int) -> tuple[Array, NDArray[Any]]:
 
 
 def assert_near(Y: Array, expected: Array, F: NDArray[Any], record: Callable[..., None]) -> None:
-    """The plugin solves to a hundredth; a face that is folded or just not yet may differ."""
+    """The plugin solves to 1 %; a face on the verge of folding may differ."""
     d = np.linalg.norm(Y - expected, axis=1) / mean_edge(expected, F)
     middle, most = np.quantile(d, [0.5, 0.99])
     record("distance_in_edges", (middle, most))
@@ -100,10 +100,10 @@ def test_the_equations_agree_for_correlated_noise(
         ("cow.obj", 0.1, 0.8),
     ],
 )
-def test_noise_goes_and_the_shape_stays(
+def test_noise_is_removed_and_the_shape_stays(
     name: str, height: float, left: float, decimated: Decimated
 ) -> None:
-    # A cow of 5,804 faces is as rough as little noise, of which a part is left.
+    # The cow of 5,804 faces is itself as rough as a little noise, part of which remains.
     V, F = decimated(name, 20000)
     X = noisy(V, F, height)
     Y, report = denoise_mesh(X, F)
@@ -126,13 +126,13 @@ def test_a_coarse_mesh_without_noise_stays_to_the_bit(
     assert report["max_displacement"] == 0
     assert report["warnings"] == [report["summary"]]
     assert "nothing changed" in report["summary"]
-    # A little noise goes, or it stays; the shape does not become worse.
+    # A little noise is removed or stays; the shape does not become worse.
     X = noisy(V, F, 0.05)
     Y, _ = denoise_mesh(X, F)
     assert angles(Y, V, F).mean() <= angles(X, V, F).mean() * (1 + 1e-12)
 
 
-def test_spikes_go_and_nothing_else_moves(decimated: Decimated) -> None:
+def test_spikes_are_removed_and_nothing_else_moves(decimated: Decimated) -> None:
     V, F = decimated("bunny.obj", 20000)
     random = np.random.default_rng(2)
     spiked = random.random(len(V)) < 0.1
@@ -147,7 +147,7 @@ def test_spikes_go_and_nothing_else_moves(decimated: Decimated) -> None:
     assert angles(Y, V, F).mean() < 0.3 * angles(X, V, F).mean()
 
 
-def test_a_designed_part_is_left_alone_and_never_crumpled() -> None:
+def test_a_cad_part_is_left_alone_and_never_crumpled() -> None:
     turns = np.linspace(0, 2 * np.pi, 128, endpoint=False)
     ring = np.stack([np.cos(turns), np.sin(turns), 0 * turns], axis=1)
     up = np.array([[0.0, 0.0, 5.0]])
@@ -181,7 +181,7 @@ def test_only_the_selection_is_denoised(decimated: Decimated) -> None:
     mesh_set = mesh_set_of(X, F)
     middle = (V[:, 1].min() + V[:, 1].max()) / 2
     mesh_set.compute_selection_by_condition_per_face(condselect=f"(y0 > {middle})")
-    report = mesh_set.apply_filter(DENOISE)  # selected: as faces are
+    report = mesh_set.apply_filter(DENOISE)  # `selected` is on by default, since faces are
     Y = mesh_set.current_mesh().vertex_matrix()
     moved = (Y != X).any(axis=1)
     edge = mean_edge(V, F)
@@ -206,7 +206,7 @@ def test_every_other_attribute_survives(decimated: Decimated) -> None:
     assert_same(before, after)
 
 
-def test_a_given_height_and_strength_are_taken(decimated: Decimated) -> None:
+def test_a_given_height_and_strength_are_applied(decimated: Decimated) -> None:
     V, F = decimated("cow.obj", 2000)
     X = noisy(V, F, 0.2)
     edge = mean_edge(X, F)

@@ -68,7 +68,7 @@ def test_the_sliders_stand_at_one_and_the_smallest_size_at_three_edges(
         assert values["smallest_size"] == pytest.approx(size, rel=1e-6)
 
 
-def test_gains_of_one_leave_every_bit_of_everything_and_say_so(cow: Arrays) -> None:
+def test_gains_of_one_change_no_bit_and_say_so(cow: Arrays) -> None:
     mesh_set = decorated(*cow)
     mesh = mesh_set.current_mesh()
     before = snapshot(mesh)
@@ -121,7 +121,7 @@ def test_the_overall_shape_stays(cow: Arrays) -> None:
 
 
 @pytest.mark.parametrize("slider", SLIDERS)
-def test_a_gain_that_is_no_number_is_refused_by_name(slider: str, cow: Arrays) -> None:
+def test_a_gain_that_is_not_a_number_is_refused_by_name(slider: str, cow: Arrays) -> None:
     mesh_set = mesh_set_of(*cow)
     before = snapshot(mesh_set.current_mesh())
     assert f"{slider} = nan" in refusal(mesh_set, EQUALIZER, **{slider: float("nan")})
@@ -131,20 +131,18 @@ def test_a_gain_that_is_no_number_is_refused_by_name(slider: str, cow: Arrays) -
 @pytest.mark.parametrize(
     ("beyond", "end"), [(-1.0, 0.0), (float("-inf"), 0.0), (9.0, 4.0), (float("inf"), 4.0)]
 )
-def test_pymeshlab_takes_a_gain_beyond_the_slider_for_that_at_its_end(
-    beyond: float, end: float, cow: Arrays
-) -> None:
+def test_pymeshlab_clamps_a_gain_beyond_the_slider(beyond: float, end: float, cow: Arrays) -> None:
     expected = equalized(*cow, gain_4x=end)
     np.testing.assert_array_equal(equalized(*cow, gain_4x=beyond), expected)
 
 
 @pytest.mark.parametrize("size", [0.0, float("nan")])
-def test_a_smallest_size_that_is_none_is_refused_by_name(size: float, cow: Arrays) -> None:
+def test_an_invalid_smallest_size_is_refused_by_name(size: float, cow: Arrays) -> None:
     mesh_set = mesh_set_of(*cow)
     assert "smallest_size" in refusal(mesh_set, EQUALIZER, gain_2x=2.0, smallest_size=length(size))
 
 
-def test_a_quick_run_tells_its_error_and_an_accurate_one_keeps_within_the_tolerance(
+def test_a_quick_run_reports_its_error_and_an_accurate_one_keeps_the_tolerance(
     cow: Arrays,
 ) -> None:
     V, F = cow

@@ -1,4 +1,4 @@
-"""Every refusal says what is wrong and what to do, and leaves the mesh exactly as it was."""
+"""Every refusal says what is wrong and what to do, and leaves the mesh unchanged."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ SIZES_OF_THE_MESH = {"filter_type": "custom", "transfer_function": "20%:1, 6e:2"
 
 
 @pytest.mark.parametrize(("name", "parameters", "named"), REFUSED)
-def test_a_refused_parameter_is_named_and_leaves_the_mesh_as_it_was(
+def test_a_refused_parameter_is_named_and_the_mesh_is_unchanged(
     name: str, parameters: dict[str, Any], named: str, decimated: Callable[..., Any]
 ) -> None:
     mesh_set = mesh_set_of(*decimated("cow.obj", 2400))
@@ -93,7 +93,7 @@ def test_a_point_cloud_is_refused_with_a_way_to_a_surface(
 
 @pytest.mark.parametrize("parameters", [{}, SIZES_OF_THE_MESH], ids=["default", "custom"])
 @pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
-def test_coordinates_that_are_no_numbers_are_counted_and_located(
+def test_coordinates_that_are_not_numbers_are_counted_and_located(
     value: float, parameters: dict[str, Any], decimated: Callable[..., Any]
 ) -> None:
     V, F = decimated("cow.obj")
@@ -137,7 +137,7 @@ def test_the_advice_against_numbers_beyond_single_precision_helps(
     assert mesh_set.apply_filter(FILTER, steps=1)["max_displacement"] > 0
 
 
-def test_faces_without_area_are_counted_with_a_way_to_mend_them(
+def test_faces_without_area_are_counted_with_a_remedy(
     decimated: Callable[..., Any],
 ) -> None:
     V, F = decimated("cow.obj")
@@ -153,7 +153,7 @@ def test_faces_without_area_are_counted_with_a_way_to_mend_them(
     assert_same(before, snapshot(mesh_set.current_mesh()))
 
 
-def test_faces_without_area_are_no_fault_for_the_robust_laplacian(
+def test_faces_without_area_are_accepted_by_the_robust_laplacian(
     decimated: Callable[..., Any],
 ) -> None:
     V, F = decimated("cow.obj")
@@ -165,7 +165,7 @@ def test_faces_without_area_are_no_fault_for_the_robust_laplacian(
     assert np.isfinite(mesh_set.current_mesh().vertex_matrix()).all()
 
 
-def test_a_failure_in_the_middle_of_the_steps_leaves_the_mesh_as_it_was(
+def test_a_failure_after_some_steps_leaves_the_mesh_unchanged(
     decimated: Callable[..., Any],
 ) -> None:
     # So strong a low-pass makes triangles collapse after some steps.
@@ -191,7 +191,7 @@ def test_a_failure_in_the_middle_of_the_steps_leaves_the_mesh_as_it_was(
         ({"feature_size": length(1e6)}, "choose a smaller feature_size"),
     ],
 )
-def test_a_filter_that_leaves_nothing_is_told_which_option_keeps_the_shape(
+def test_a_filter_that_leaves_nothing_is_refused_with_an_option_that_keeps_the_shape(
     parameters: dict[str, Any], advice: str
 ) -> None:
     tetrahedron = mesh_set_of(
@@ -202,13 +202,13 @@ def test_a_filter_that_leaves_nothing_is_told_which_option_keeps_the_shape(
     assert advice in message
 
 
-def test_too_large_a_gain_is_named_as_too_steep(decimated: Callable[..., Any]) -> None:
+def test_too_large_a_gain_is_refused_as_too_steep(decimated: Callable[..., Any]) -> None:
     assert refusal(mesh_set_of(*decimated("cow.obj")), pass_gain=1e30).endswith(
         "choose a smaller pass_gain"
     )
 
 
-def test_the_laplacian_in_use_is_no_advice_against_parts_that_round_off_destroys() -> None:
+def test_the_laplacian_in_use_is_not_recommended_for_parts_destroyed_by_round_off() -> None:
     # Unit tetrahedra, two of them where neighbouring numbers differ by 16.
     places = np.vstack([1e17 * np.random.default_rng(101).uniform(size=(2, 3)), np.zeros(3)])
     V = np.vstack([np.vstack([np.zeros(3), np.eye(3)]) + place for place in places])

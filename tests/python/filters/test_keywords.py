@@ -1,4 +1,4 @@
-"""Options by name are known before a call: to `help`, to notebooks and to type checkers."""
+"""Keyword options are known before a call: to `help`, to notebooks and to type checkers."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def test_help_lists_every_option_with_default_and_range(name: str) -> None:
         ("filter_files(inputs, output, over", ["overwrite="]),
     ],
 )
-def test_a_notebook_completes_options(call: str, completions: list[str]) -> None:
+def test_a_notebook_completes_option_names(call: str, completions: list[str]) -> None:
     found = jedi.Interpreter(call, [vars(meshlab_spectral), meshlab_spectral_names()]).complete()
     assert sorted(one.name for one in found) == completions
 

@@ -1,4 +1,4 @@
-"""The filter "Manifold Harmonics" gives what SciPy's eigensolver gives, with definite signs."""
+"""The filter "Manifold Harmonics" agrees with SciPy's eigensolver, with definite signs."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ Decimated = Callable[..., tuple[NDArray[Any], NDArray[Any]]]
 def eigenpairs(
     V: NDArray[Any], F: NDArray[Any], k: int, laplacian: str
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Give the k lowest eigenpairs of W phi = lambda D phi by ARPACK."""
+    """Return the k lowest eigenpairs of W phi = lambda D phi by ARPACK."""
     W, d = reference.matrices(V, F, laplacian)
     lam, Phi = scipy.sparse.linalg.eigsh(
         scipy.sparse.csc_array(W), k, scipy.sparse.diags_array(d, format="csc"), sigma=-1.0
@@ -90,13 +90,13 @@ def test_on_a_fixed_boundary_harmonics_vanish_and_agree_with_scipy(
     np.testing.assert_allclose(report["eigenvalues"], lam, rtol=0, atol=1e-8 * lam[-1])
     basis = stored_basis(mesh_set.current_mesh(), 20)
     assert (basis[rim] == 0).all()
-    # Whole spaces of harmonics, for eigenvalues may be nearly equal.
+    # Whole spaces of harmonics, since eigenvalues may be nearly equal.
     overlap = spectrum.Phi.T[:20] @ (spectrum.d[:, None] * basis[spectrum.of])
     assert np.linalg.norm(overlap[:, :10], axis=0).min() > 1 - 1e-6
 
 
 @pytest.mark.parametrize("laplacian", ["uniform", "cotangent", "intrinsic delaunay"])
-def test_masses_are_those_that_harmonics_are_orthonormal_with(
+def test_harmonics_are_orthonormal_with_the_returned_masses(
     laplacian: Any, decimated: Decimated, cow: Path
 ) -> None:
     V, F = decimated("cow.obj")
@@ -173,7 +173,7 @@ def test_vertices_without_faces_have_zero(samples: Path) -> None:
     assert (mesh.vertex_scalar_array()[lonely] == 0).all()
 
 
-def test_after_a_deletion_harmonics_are_at_the_vertices_that_are_left(
+def test_after_a_deletion_harmonics_are_at_the_remaining_vertices(
     decimated: Decimated, tmp_path: Path
 ) -> None:
     V, F = decimated("cow.obj")
@@ -214,6 +214,6 @@ def test_the_basis_is_stored_only_when_asked_for_and_replaces_an_older_one(
 
 
 @pytest.mark.parametrize("basis_size", [0, 2.5, True, "ten", 2**31])
-def test_a_basis_size_that_is_no_number_of_harmonics_is_refused(basis_size: Any) -> None:
+def test_an_invalid_basis_size_is_refused(basis_size: Any) -> None:
     with pytest.raises(OptionError, match="basis_size"):
         manifold_harmonics([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], basis_size)

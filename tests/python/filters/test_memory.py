@@ -1,4 +1,4 @@
-"""The filters give back the memory that they took: many runs in one process do not let it grow."""
+"""The filters free the memory that they take: many runs in one process do not make it grow."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from meshlab_spectral.plugin.loading import FILTERS
 
 RUNS, WARM_UP = 60, 10
 SLOW, FEWER_RUNS = "get_geometry_spectrum", 25  # half a second each
-# Fifty leaks of a matrix of the cow's harmonics would be 23 MiB. What malloc keeps for itself is
+# Fifty leaks of a matrix of the cow's harmonics would be 23 MiB. Memory kept by malloc would add
 # noise of 10 MiB, hence `malloc_trim` and one arena. A MeshSet's history of runs takes 20 kB each.
 MEBIBYTES_OF_NOISE = 4.0
 ONE_ARENA = {"MALLOC_ARENA_MAX": "1"}

@@ -1,4 +1,4 @@
-"""Meshes of other libraries come back as their own kind, with their data; the input stays."""
+"""Meshes of other libraries keep their type and their data; the input is unchanged."""
 
 from __future__ import annotations
 
@@ -77,7 +77,7 @@ class Open3dMesh:
         self.computed.append("vertex normals")
 
 
-def test_a_mesh_of_pyvista() -> None:
+def test_a_mesh_of_pyvista_keeps_its_type_and_data() -> None:
     mesh = pyvista.PolyData.from_regular_faces(V, F)
     mesh["height"] = V[:, 2]
     mesh.compute_normals(inplace=True, split_vertices=False)
@@ -91,12 +91,12 @@ def test_a_mesh_of_pyvista() -> None:
     assert mesh == given
 
 
-def test_a_mesh_of_pyvista_with_quadrangles_is_told_to_triangulate() -> None:
+def test_a_mesh_of_pyvista_with_quadrangles_is_refused_with_the_advice_to_triangulate() -> None:
     with pytest.raises(ValueError, match=r"no triangles: call its triangulate\(\) first"):
         filter_mesh(pyvista.Plane(i_resolution=2, j_resolution=2))
 
 
-def test_a_mesh_of_trimesh() -> None:
+def test_a_mesh_of_trimesh_keeps_its_type_and_metadata() -> None:
     mesh = Trimesh(V, F)
     moved, _ = filter_mesh(mesh, feature_size="30%")
     assert isinstance(moved, Trimesh)
@@ -120,7 +120,7 @@ def test_a_mesh_of_meshio_with_other_cells_is_refused() -> None:
         filter_mesh(mesh)
 
 
-def test_a_mesh_of_open3d() -> None:
+def test_a_mesh_of_open3d_keeps_its_type_and_normals_are_recomputed() -> None:
     mesh = Open3dMesh()
     mesh.vertices, mesh.triangles = V.tolist(), F.tolist()
     moved, _ = filter_mesh(mesh, feature_size="30%")
@@ -147,14 +147,14 @@ def test_a_mesh_of_pymeshlab_keeps_quality_and_selection() -> None:
         filter_mesh(mesh, weights=quality)
 
 
-def test_what_is_no_mesh_is_told() -> None:
+def test_an_object_that_is_not_a_mesh_is_refused() -> None:
     with pytest.raises(TypeError, match="no faces with types's SimpleNamespace: pass vertices and"):
         filter_mesh(SimpleNamespace())
     with pytest.raises(TypeError, match=r"faces: pyvista\.PolyData has its own"):
         filter_mesh(pyvista.Sphere(), F)
 
 
-def test_every_function_takes_a_mesh() -> None:
+def test_every_function_accepts_a_mesh() -> None:
     mesh = pyvista.PolyData.from_regular_faces(V, F)
     assert isinstance(denoise_mesh(mesh)[0], pyvista.PolyData)
     assert filter_scalars(mesh, values=V[:, 0])[0].shape == (len(V),)
@@ -163,7 +163,7 @@ def test_every_function_takes_a_mesh() -> None:
     assert geometry_spectrum(mesh).area > 3
 
 
-def test_weights_are_the_part_of_the_filter_that_vertices_get() -> None:
+def test_weights_scale_the_displacement_of_each_vertex() -> None:
     weights = np.linspace(0, 1, len(V))
     moved, _ = filter_mesh(V, F, feature_size="30%", weights=weights)
     np.testing.assert_allclose(moved, V + weights[:, None] * (EXPECTED - V), atol=1e-12)
@@ -173,7 +173,7 @@ def test_weights_are_the_part_of_the_filter_that_vertices_get() -> None:
         filter_mesh(V, F, weight="vertex quality")
 
 
-def test_a_selection_is_of_vertices_or_of_faces() -> None:
+def test_a_selection_may_be_of_vertices_or_of_faces() -> None:
     faces = np.flatnonzero(V[F, 2].min(axis=1) > 0)
     corners = np.zeros(len(V), dtype=bool)
     corners[F[faces]] = True
@@ -193,7 +193,7 @@ def test_a_selection_is_of_vertices_or_of_faces() -> None:
         filter_mesh(V, F, selection=np.ones(len(F), dtype=bool))
 
 
-def test_a_gain_is_any_function_of_w() -> None:
+def test_a_gain_may_be_any_function_of_w() -> None:
     text, _ = filter_mesh(
         V, F, filter_type="custom", transfer_function="1/(1 + w^4)", feature_size="30%"
     )

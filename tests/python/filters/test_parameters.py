@@ -128,7 +128,7 @@ def test_an_unknown_choice_is_refused_with_the_choices(name: str) -> None:
         ("feature_size", True),
     ],
 )
-def test_a_value_of_another_type_is_refused_by_the_name_of_the_option(
+def test_a_value_of_the_wrong_type_is_refused_by_the_name_of_the_option(
     name: str, value: Any
 ) -> None:
     with pytest.raises(OptionError, match=name):
@@ -152,7 +152,7 @@ def test_a_number_is_a_length_in_the_units_of_the_mesh() -> None:
         FilterOptions(feature_size=cast(Any, -1))
 
 
-def test_options_are_given_as_one_object_or_by_name(decimated: Callable[..., Any]) -> None:
+def test_options_may_be_given_as_one_object_or_by_name(decimated: Callable[..., Any]) -> None:
     V, F = decimated("cow.obj", 1000)
     by_name, _ = filter_mesh(V, F, feature_size="10%", steps=1)
     as_object, _ = filter_mesh(V, F, FilterOptions(feature_size=Length(10, "%"), steps=1))
@@ -175,12 +175,12 @@ def test_a_size_in_mean_edges_is_that_length(decimated: Callable[..., Any]) -> N
 @pytest.mark.parametrize(
     "text", ["", "%", "five", "0", "0%", "-3%", "nan", "inf", "120%", "5 mm", "e", "6ee"]
 )
-def test_another_feature_size_is_refused_with_an_example(text: str) -> None:
+def test_a_malformed_feature_size_is_refused_with_an_example(text: str) -> None:
     with pytest.raises(OptionError, match="percentage"):
         Length.parse(text)
 
 
-def test_options_survive_the_way_through_plain_values() -> None:
+def test_options_survive_a_round_trip_through_plain_values() -> None:
     options = FilterOptions(
         filter_type="band-pass", feature_size=Length(0.3), pass_gain=2.5, stop_gain=1.0
     )

@@ -1,4 +1,4 @@
-"""Selections, weights, creases and volumes, as pymeshlab's users give them."""
+"""Selections, weights, creases and volumes, as passed by users of pymeshlab."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def head_of(V: NDArray[Any]) -> str:
     return f"{np.quantile(V[:, 0], 2 / 3)}"
 
 
-def test_a_selection_is_filtered_by_default_and_all_beyond_stays_to_the_bit(
+def test_a_selection_is_filtered_by_default_and_all_else_stays_to_the_bit(
     small: tuple[NDArray[Any], NDArray[Any]],
 ) -> None:
     V, F = small
@@ -78,7 +78,7 @@ def bends(V: NDArray[Any], F: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]
 
 
 @pytest.mark.parametrize("name", ["igea.ply", "stanford-bunny.obj"])
-def test_no_crease_is_left_at_the_border_of_a_selection(
+def test_no_crease_appears_at_the_border_of_a_selection(
     name: str, shared_mesh: Callable[[str], Path]
 ) -> None:
     mesh_set = pymeshlab.MeshSet()
@@ -123,7 +123,7 @@ def test_selected_vertices_are_a_selection_too(small: tuple[NDArray[Any], NDArra
         "apply_coord_spectral_equalizer",
     ],
 )
-def test_a_selection_that_another_filter_has_left_is_told(name: str) -> None:
+def test_a_selection_left_by_another_filter_is_reported(name: str) -> None:
     mesh_set = pymeshlab.MeshSet()
     mesh_set.create_sphere(subdiv=3)
     mesh_set.compute_scalar_by_function_per_vertex(q="x")
@@ -166,7 +166,7 @@ def weighted(small: tuple[NDArray[Any], NDArray[Any]], quality: Any) -> pymeshla
     return mesh_set
 
 
-def test_quality_weighs_the_filter_at_every_vertex(
+def test_quality_weights_the_filter_at_every_vertex(
     small: tuple[NDArray[Any], NDArray[Any]],
 ) -> None:
     V, F = small
@@ -181,7 +181,7 @@ def test_quality_weighs_the_filter_at_every_vertex(
 
 
 @pytest.mark.parametrize("quality", [-0.5, 1.5, np.nan])
-def test_a_quality_that_is_no_weight_is_refused(
+def test_a_quality_that_is_not_a_weight_is_refused(
     small: tuple[NDArray[Any], NDArray[Any]], quality: float
 ) -> None:
     qualities = np.full(len(small[0]), 0.5)
@@ -233,7 +233,7 @@ def test_details_are_what_the_filter_takes_away_and_the_shape_stays(
     np.testing.assert_array_equal(taken, details)
 
 
-def test_bumps_are_positive_details_whichever_part_and_weight(
+def test_bumps_are_positive_details_and_details_scale_with_weights(
     small: tuple[NDArray[Any], NDArray[Any]],
 ) -> None:
     V, F = small

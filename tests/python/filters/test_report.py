@@ -1,4 +1,4 @@
-"""What the filter reports is what it did; what must not move does not move."""
+"""The report is true, and what must not move does not move."""
 
 from __future__ import annotations
 
@@ -137,7 +137,7 @@ def test_the_same_call_gives_the_same_vertices_bit_for_bit(decimated: Callable[.
     np.testing.assert_array_equal(first, second)
 
 
-def test_steps_without_update_do_not_matter(decimated: Callable[..., Any]) -> None:
+def test_without_update_the_number_of_steps_does_not_matter(decimated: Callable[..., Any]) -> None:
     V, F = decimated("cow.obj")
     one, _ = filter_arrays(V, F, steps=1, basis_update="none", feature_size=percent(15))
     eight, _ = filter_arrays(V, F, steps=8, basis_update="none", feature_size=percent(15))
@@ -160,7 +160,7 @@ def random_rotation(seed: int) -> np.ndarray[Any, np.dtype[np.float64]]:
     seed=st.integers(0, 10**6),
     scale=st.floats(1e-3, 1e3),
     distance=st.floats(-1e3, 1e3),
-    # Away from 0, where everything is removed and triangles collapse.
+    # Not near 0, where everything is removed and triangles collapse.
     pass_gain=st.floats(0.25, 2),
     stop_gain=st.floats(0.25, 2),
     filter_type=st.sampled_from(["low-pass", "high-pass", "band-pass", "band-stop"]),
@@ -176,7 +176,7 @@ def test_rigid_motion_and_scale_commute_with_the_filter(
 ) -> None:
     V, F = decimated("bone.ply", 1000)
     R, t = random_rotation(seed), np.array([distance, -distance, distance / 2]) * diagonal(V)
-    # As a length: a turned mesh has another bounding box.
+    # A length: a rotated mesh has another bounding box.
     size = 0.15 * diagonal(V)
     options = {
         "filter_type": filter_type,

@@ -1,4 +1,4 @@
-"""The filter on the real meshes beside the project; skipped where they are absent."""
+"""The filter on the real meshes next to the project; skipped where they are absent."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def filtered(
     return mesh_set, report
 
 
-def test_with_nothing_chosen_no_vertex_moves_farther_than_the_feature_size(
+def test_with_the_defaults_no_vertex_moves_farther_than_the_feature_size(
     shared_mesh: Callable[[str], Path],
 ) -> None:
     folder = shared_mesh("elephant.ply").parent

@@ -75,7 +75,7 @@ def expected_signals(
 
 
 @pytest.mark.parametrize("kind", TYPES)
-def test_quality_is_that_of_scipy(
+def test_filtered_quality_agrees_with_scipy(
     kind: str, sample_name: str, decimated: Decimated, record_property: Callable[..., None]
 ) -> None:
     V, F = decimated(sample_name)
@@ -94,7 +94,7 @@ def test_quality_is_that_of_scipy(
         assert report["rms_change"] == pytest.approx(np.sqrt(d @ change**2 / d.sum()), **near)
 
 
-def test_the_default_laplacian_is_that_of_its_inventors(
+def test_the_default_laplacian_agrees_with_robust_laplacian(
     sample_name: str, decimated: Decimated
 ) -> None:
     V, F = decimated(sample_name)
@@ -142,7 +142,7 @@ def test_a_power_is_that_of_the_gains(decimated: Decimated) -> None:
 
 
 @pytest.mark.parametrize("kind", ["low-pass", "sharpening", "enhancement"])
-def test_colours_are_those_of_scipy_to_one_level_and_alpha_is_kept(
+def test_colours_agree_with_scipy_to_one_level_and_alpha_is_kept(
     kind: str, sample_name: str, decimated: Decimated
 ) -> None:
     V, F = decimated(sample_name)
@@ -235,7 +235,7 @@ def test_vertices_without_faces_keep_their_values(name: str, decimated: Decimate
     assert report["unreferenced_vertices"] == 2
 
 
-def test_after_a_deletion_only_what_is_left_counts(decimated: Decimated) -> None:
+def test_after_a_deletion_only_remaining_vertices_count(decimated: Decimated) -> None:
     V, F = decimated("cow.obj")
     Q = noisy_field(V)
     mesh_set = pymeshlab.MeshSet()
@@ -277,7 +277,7 @@ def test_infinite_values_are_counted_and_located_and_the_advice_helps(
     assert report["vertices_without_data"] == 2
 
 
-def test_where_there_is_no_data_the_surface_ends(decimated: Decimated) -> None:
+def test_vertices_without_data_are_treated_as_holes(decimated: Decimated) -> None:
     V, F = decimated("cow.obj")
     Q = noisy_field(V)
     without = V[:, 0] > np.median(V[:, 0])
@@ -329,7 +329,7 @@ def test_the_transfer_functions_parameters_are_those_of_the_main_filter(
     assert list(ours)[: list(ours).index("laplacian")] == list(main)[: list(main).index("steps")]
 
 
-def test_arrays_of_another_shape_are_refused() -> None:
+def test_arrays_of_the_wrong_shape_are_refused() -> None:
     V, F = TRIANGLE
     for values in (np.zeros(2), np.zeros((2, 3)), 1.0):
         with pytest.raises(ValueError, match="pass 3 numbers"):
@@ -353,7 +353,7 @@ def test_options_of_other_filters_and_unknown_ones_are_refused(
         filter_scalars(V, F, np.arange(3.0), **options)
 
 
-def test_what_falls_short_is_a_warning(decimated: Decimated) -> None:
+def test_a_missed_accuracy_or_nothing_to_filter_is_a_warning(decimated: Decimated) -> None:
     V, F = TRIANGLE
     Y, report = filter_scalars(V, F, [1.0, 2.0, 4.0], boundary="fixed")
     np.testing.assert_array_equal(Y, [1.0, 2.0, 4.0])
@@ -382,7 +382,7 @@ def test_what_falls_short_is_a_warning(decimated: Decimated) -> None:
     ],
     ids=str,
 )
-def test_a_gain_out_of_reach_is_an_error_that_recommends_only_what_the_filter_has(
+def test_a_gain_out_of_reach_is_refused_recommending_only_options_of_the_filter(
     options: dict[str, Any], samples: Path
 ) -> None:
     loaded = pymeshlab.MeshSet()
@@ -398,7 +398,7 @@ def test_a_gain_out_of_reach_is_an_error_that_recommends_only_what_the_filter_ha
     assert not [name for name in main.keys() - ours.keys() if re.search(rf"\b{name}\b", message)]
 
 
-def test_of_a_bump_is_left_what_the_readme_says() -> None:
+def test_a_bump_is_reduced_as_the_readme_says() -> None:
     width = 0.1
     plane = pyvista.Plane(i_resolution=160, j_resolution=160).triangulate()
     x, y, _ = np.asarray(plane.points, dtype=np.float64).T

@@ -1,4 +1,4 @@
-"""What harmonics tell of functions, points and shapes: closed forms, identities, SciPy, errors."""
+"""Projections, signatures and shape-DNA: closed forms, identities, SciPy, errors."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ def test_shape_dna_of_a_sphere_is_that_of_spherical_harmonics() -> None:
     np.testing.assert_allclose(unscaled, degree * (degree + 1) / 100, rtol=5e-3)
 
 
-def test_shape_dna_does_not_depend_on_size_and_place_and_its_length_changes_none(
+def test_shape_dna_entries_do_not_depend_on_size_position_or_count(
     decimated: Decimated,
 ) -> None:
     V, F = decimated("cow.obj")
@@ -129,7 +129,7 @@ def test_projection_is_orthogonal_and_reconstruction_its_inverse_in_the_basis(
     assert energies[1] == pytest.approx((basis.project(f) ** 2).sum())
 
 
-def test_filter_is_its_definition_with_the_eigenvectors_of_scipy(decimated: Decimated) -> None:
+def test_filter_agrees_with_its_definition_by_scipy(decimated: Decimated) -> None:
     V, F = decimated("cow.obj", 1000)
     W, d = reference.matrices(V, F, "cotangent")
     (part,) = reference.spectra(W, d, reference.components(len(V), F))
@@ -171,7 +171,7 @@ def test_filter_keeps_the_mean_of_every_component_whatever_the_gain(decimated: D
     assert omega[0] > 0
 
 
-def test_signatures_are_the_sums_of_their_definitions(bunny: tuple[Array, Harmonics]) -> None:
+def test_signatures_agree_with_their_definitions(bunny: tuple[Array, Harmonics]) -> None:
     _, basis = bunny
     lam, Phi = basis.eigenvalues, basis.harmonics
     times = [0.0, 0.1 / lam[5], 1 / lam[5]]
@@ -188,7 +188,7 @@ def test_signatures_are_the_sums_of_their_definitions(bunny: tuple[Array, Harmon
     np.testing.assert_allclose(basis.wave_kernel_signature(T)[[0, 100]], wave, rtol=1e-9)
 
 
-def test_heat_and_a_particle_are_somewhere(bunny: tuple[Array, Harmonics]) -> None:
+def test_signatures_integrate_to_the_heat_trace_and_to_one(bunny: tuple[Array, Harmonics]) -> None:
     V, basis = bunny
     heat, wave = basis.heat_kernel_signature(), basis.wave_kernel_signature()
     assert heat.shape == (len(V), 16)
@@ -268,7 +268,7 @@ def test_a_basis_of_constants_has_neither_times_nor_energies(decimated: Decimate
 
 
 @pytest.mark.parametrize("count", [0, 1, 2.5, True, "ten"])
-def test_a_count_that_is_no_number_of_eigenvalues_is_refused(count: Any) -> None:
+def test_an_invalid_count_of_eigenvalues_is_refused(count: Any) -> None:
     with pytest.raises(OptionError, match=r"count = .* from 2 to"):
         shape_dna([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], count)
 

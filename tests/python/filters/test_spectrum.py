@@ -48,9 +48,9 @@ def reference_spectrum(
 def octave_energies(
     sizes: NDArray[np.float64], omega: NDArray[np.float64], energy: NDArray[np.float64]
 ) -> list[float]:
-    """Energies of octaves with these middles, that merge as cos^2 over half an octave."""
+    """Energies of octaves with these centres, which cross-fade as cos^2 over half an octave."""
     with np.errstate(divide="ignore"):
-        x = -np.log2(2 * np.pi / omega / sizes[0])  # octaves from the first middle
+        x = -np.log2(2 * np.pi / omega / sizes[0])  # octaves from the first centre
     result = []
     for j in range(len(sizes)):
         rise = np.sin(np.pi / 2 * np.clip(2 * (x - j + 0.5) + 0.5, 0, 1)) ** 2 if j else 1.0
@@ -62,7 +62,7 @@ def octave_energies(
 
 @pytest.mark.parametrize("laplacian", ["cotangent", "intrinsic delaunay"])
 @pytest.mark.parametrize("basis_size", [0, 10, 200])
-def test_all_of_it_agrees(
+def test_frequencies_energies_and_feature_sizes_agree(
     sample_name: str, basis_size: int, laplacian: Any, decimated: Decimated
 ) -> None:
     V, F = decimated(sample_name)
@@ -101,7 +101,7 @@ def test_all_of_it_agrees(
 
 @pytest.mark.parametrize("laplacian", ["cotangent", "intrinsic delaunay"])
 @pytest.mark.parametrize("basis_size", [0, 10, 200])
-def test_with_a_fixed_boundary_it_is_what_the_boundary_does_not_determine(
+def test_a_fixed_boundary_leaves_what_the_boundary_does_not_determine(
     sample_name: str, basis_size: int, laplacian: Any, decimated: Decimated
 ) -> None:
     V, F = lower_part(*decimated(sample_name))
@@ -164,17 +164,17 @@ def test_noise_shows_in_the_small_octaves_with_its_height_and_nowhere_else(
     total = [np.linalg.norm(each.octave_amplitudes[: large.sum()]) for each in (before, after)]
     assert total[1] == pytest.approx(total[0], rel=0.02)
     small = [np.linalg.norm(each.octave_amplitudes[-2:]) for each in (before, after)]
-    # Not all of it: some of the noise is longer.
+    # Not all of it: some of the noise has longer waves.
     assert 0.8 * height < np.sqrt(small[1] ** 2 - small[0] ** 2) < 1.05 * height
 
 
 @pytest.mark.parametrize("percent", [0.1, 0.15])
-def test_the_height_of_noise_is_told_and_where_it_begins(
+def test_the_height_and_feature_size_of_noise_are_reported(
     percent: float, decimated: Decimated
 ) -> None:
     V, F = decimated("bunny.obj", 10000)
     smooth, _ = filter_arrays(V, F, feature_size=length(0.06 * diagonal(V)), steps=1)
-    # Next to nothing is left of details of a third of that size.
+    # Details of a third of that size are almost gone.
     height = percent / 100 * diagonal(V)
     noise = height * np.random.default_rng(2).standard_normal(V.shape)
     found = geometry_spectrum(smooth + noise, F, 100)
@@ -183,11 +183,11 @@ def test_the_height_of_noise_is_told_and_where_it_begins(
     below = found.band_feature_sizes < 0.8 * found.noise_feature_size
     assert below.sum() >= 3
     np.testing.assert_allclose(found.noise_heights[below], height, rtol=0.35)
-    # What the triangles themselves make of a smooth shape is less.
+    # The triangulation of a smooth shape alone looks like less noise.
     assert geometry_spectrum(smooth, F, 100).noise_height < 0.8 * height
 
 
-def test_noise_in_a_range_scan_is_told_from_its_relief_and_its_rim(
+def test_noise_in_a_range_scan_is_distinguished_from_its_relief_and_its_rim(
     shared_mesh: Callable[[str], Path],
 ) -> None:
     V, F = load_arrays(shared_mesh("rangescan_lato000.ply"))
@@ -209,7 +209,7 @@ def test_the_bands_agree(sample_name: str, basis_size: int, decimated: Decimated
     omega, energy, area = reference_spectrum(V, F, "cotangent")
     parts = reference.spectra(W, d, reference.components(len(V), F))
     frequencies = np.concatenate([np.sqrt(part.lam) for part in parts])
-    # The mean of the energy over all draws of noise of height 1, constants without.
+    # The mean energy over all draws of noise of height 1, without the constants.
     noise = np.concatenate(
         [
             ((part.d[:, None] * part.Phi) ** 2).sum(axis=0) * (np.arange(len(part.lam)) > 0)
@@ -229,7 +229,7 @@ def test_the_bands_agree(sample_name: str, basis_size: int, decimated: Decimated
             for w, e in ((omega, energy), (frequencies, noise))
         )
         assert amplitude == pytest.approx(shape, rel=0.02)
-        assert of_noise == pytest.approx(mean, rel=0.35)  # of one draw, 30 harmonics or more
+        assert of_noise == pytest.approx(mean, rel=0.35)  # a single draw over 30 harmonics or more
 
 
 def third_window(size: float, omega: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -239,7 +239,7 @@ def third_window(size: float, omega: NDArray[np.float64]) -> NDArray[np.float64]
     return np.asarray(np.cos(np.pi / 2 * np.minimum(thirds, 1)) ** 2)
 
 
-def test_the_filter_reports_everything_and_leaves_the_mesh_as_it_was(decimated: Decimated) -> None:
+def test_the_filter_reports_everything_and_leaves_the_mesh_unchanged(decimated: Decimated) -> None:
     mesh_set = mesh_set_of(*decimated("cow.obj"))
     before = snapshot(mesh_set.current_mesh())
     report = mesh_set.get_geometry_spectrum(basis_size=30)
@@ -262,7 +262,7 @@ def test_a_basis_as_large_as_a_large_mesh_is_refused(decimated: Decimated) -> No
 
 
 @pytest.mark.parametrize("basis_size", [-1, 2.5, True, "ten", 2**31])
-def test_a_basis_size_that_is_no_number_of_harmonics_is_refused(basis_size: Any) -> None:
+def test_an_invalid_basis_size_is_refused(basis_size: Any) -> None:
     with pytest.raises(OptionError, match="basis_size"):
         geometry_spectrum([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], basis_size)
 

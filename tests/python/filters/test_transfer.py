@@ -77,7 +77,7 @@ def test_custom_points_are_interpolated_between_their_gains() -> None:
         ("", "character 1"),
     ],
 )
-def test_a_wrong_custom_function_is_told(text: str, words: str) -> None:
+def test_an_invalid_custom_function_is_refused(text: str, words: str) -> None:
     options = FilterOptions(filter_type="custom", transfer_function=text)
     with pytest.raises(OptionError, match=words):
         gain(options, np.ones(1), LENGTHS)

@@ -29,7 +29,7 @@ from meshlab_spectral.filters.options import TransferKeywords
 from meshlab_spectral.plugin.library import last_warnings
 
 TRIANGLE = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]])
-# Each falls short in its own way.
+# Each falls short in a different way.
 INACCURATE = {"filter_type": "band-stop", "pass_gain": 1.0, "stop_gain": 0.0, "steps": 20}
 FEW_HARMONICS = {"spectrum": "truncated", "basis_size": 30, "steps": 1}
 EVERYTHING_FIXED = {"boundary": "fixed", "steps": 1}
@@ -50,7 +50,7 @@ print("WARNINGS", json.dumps(report["warnings"]))
 
 
 def log_of(source: Path, name: str, options: dict[str, Any]) -> str:
-    """What pymeshlab prints of a call, and a line of its warnings."""
+    """What pymeshlab prints during a call, and a line with its warnings."""
     done = subprocess.run(
         [sys.executable, "-c", PROGRAM, str(source), name, json.dumps(options)],
         capture_output=True,
@@ -84,7 +84,7 @@ def test_the_report_has_the_warnings_of_meshlabs_log(
 
 
 @pytest.mark.parametrize("name", [FILTER, "apply_coord_spectral_denoise"])
-def test_the_log_tells_the_volumes_of_closed_surfaces_alone(
+def test_the_log_has_volumes_of_closed_surfaces_only(
     name: str, samples: Path, tmp_path: Path
 ) -> None:
     open_one = write_ply(tmp_path / "open.ply", "0 0 0\n1 0 0\n0 1 0\n1 1 1", "3 0 1 2\n3 2 1 3")
@@ -106,7 +106,7 @@ def test_the_log_of_a_geometry_spectrum_keeps_its_columns(samples: Path) -> None
 
 
 def test_every_flag_of_a_shortfall_comes_with_a_warning(decimated: Decimated) -> None:
-    """The flags and the warnings are told by two ways, and must agree."""
+    """Flags and warnings come by two separate ways, which must agree."""
     V, F = decimated("cow.obj")
     _, whole = filter_mesh(V, F)
     assert whole["accuracy_reached"]
@@ -128,7 +128,7 @@ def test_every_flag_of_a_shortfall_comes_with_a_warning(decimated: Decimated) ->
         ({"filter_type": "band-pass", "stop_gain": 1.0, "pass_gain": 1e10}, "smaller gains"),
     ],
 )
-def test_steps_that_do_not_converge_come_with_an_option_that_is_not_yet_chosen(
+def test_steps_that_do_not_converge_recommend_an_option_not_yet_chosen(
     options: dict[str, Any], words: str, decimated: Decimated
 ) -> None:
     _, report = filter_mesh(*decimated("cow.obj"), **options)
@@ -231,7 +231,7 @@ def test_json_has_the_warning_that_standard_error_shows(tmp_path: Path) -> None:
         ({"reinject_residual": False}, "reinject_residual has no effect without spectrum"),
     ],
 )
-def test_what_has_no_effect_is_told(
+def test_an_option_without_effect_is_reported(
     options: dict[str, Any], warning: str, decimated: Decimated
 ) -> None:
     V, F = decimated("bunny.obj", 500)
@@ -242,7 +242,7 @@ def test_what_has_no_effect_is_told(
         assert warning in told
 
 
-def test_what_has_an_effect_is_not_told(decimated: Decimated) -> None:
+def test_an_option_with_an_effect_is_not_reported(decimated: Decimated) -> None:
     V, F = decimated("bunny.obj", 500)
     for options in (
         {"filter_type": "custom", "transfer_function": "1/(1 + w^2)"},
@@ -253,14 +253,14 @@ def test_what_has_an_effect_is_not_told(decimated: Decimated) -> None:
         assert filter_mesh(V, F, feature_size="2e", **options)[1]["warnings"] == [], options
 
 
-def test_a_size_below_the_edges_is_told(decimated: Decimated) -> None:
+def test_a_size_below_the_edges_is_a_warning(decimated: Decimated) -> None:
     V, F = decimated("bunny.obj", 500)
     (warning,) = filter_mesh(V, F, feature_size="0.5e")[1]["warnings"]
     assert "the mesh has no details of the feature size" in warning
     assert filter_mesh(V, F, feature_size="1.1e")[1]["warnings"] == []
 
 
-def test_a_part_that_shrinks_to_a_line_is_told_with_a_size_that_keeps_it() -> None:
+def test_a_part_that_shrinks_to_a_line_is_reported_with_a_size_that_keeps_it() -> None:
     # A ball with a long thin handle, of a fifth of the area.
     ball = pyvista.Icosphere(radius=1.0, nsub=4)
     rod = pyvista.Cylinder(center=(0, 0, 3), direction=(0, 0, 1), radius=0.15, height=4.2)

@@ -1,4 +1,4 @@
-"""Damages of a file: parts of it cut out, doubled, or replaced."""
+"""Damage to a file: parts of it cut out, doubled, or replaced."""
 
 from __future__ import annotations
 

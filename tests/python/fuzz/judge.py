@@ -31,7 +31,7 @@ class Judge:
         self._judged = 0
 
     def __call__(self, example: dict[str, Any]) -> dict[str, Any]:
-        """Give the worker's answer; a crash, or no answer in time, is a failure."""
+        """Return the worker's answer; a crash, or no answer in time, is a failure."""
         if self._child is None or self._judged % _EXAMPLES_OF_A_PROCESS == 0:
             self._start()
         self._judged += 1

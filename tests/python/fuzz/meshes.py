@@ -68,7 +68,7 @@ def _wheel(rim: int, closed: bool, height: float) -> Shape:
 
 
 def _soup(n: int, m: int, seed: int) -> Shape:
-    """Random triangles between random points; a corner may be there twice."""
+    """Random triangles between random points; a triangle may repeat a vertex."""
     rng = np.random.default_rng(seed)
     return Shape(rng.standard_normal((n, 3)), rng.integers(n, size=(m, 3)).tolist())
 

@@ -1,4 +1,4 @@
-"""How many examples: few and always the same ones, or as many as MESHLAB_SPECTRAL_FUZZ says."""
+"""The number of examples: a few fixed ones, or as many as MESHLAB_SPECTRAL_FUZZ says."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ VARIABLE = "MESHLAB_SPECTRAL_FUZZ"
 
 
 def as_many_as(examples: int, share: float = 1) -> settings:
-    """Give the settings of a test: `examples`, or that share of the number in the environment."""
+    """Return the settings of a test: `examples`, or that share of the number in the environment."""
     asked = os.environ.get(VARIABLE)
     return settings(
         max_examples=max(1, int(share * int(asked))) if asked else examples,

@@ -1,6 +1,6 @@
 """Where a filter says that its accuracy is reached, all eigenvectors agree.
 
-The core's own fuzzer (tests/fuzz) asks the same with its own reference; this one is SciPy's.
+The core's own fuzzer (tests/fuzz) checks the same against its own reference; this one is SciPy's.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from hypothesis import event, given
 from hypothesis import strategies as st
 from transfer_functions import gain_of
 
-ACCURACY = 1e-6  # of the diagonal, that a filter with given steps asks for
+ACCURACY = 1e-6  # of the diagonal, requested by a filter with given steps
 LEEWAY = 3.0
 
 _sides = st.integers(4, 17)  # at most 289 vertices
@@ -43,7 +43,7 @@ _TRANSFER = st.fixed_dictionaries(
 
 @as_many_as(60, share=0.1)
 @given(_SHAPES, _NOISE, st.sampled_from((3, 8, 15, 30, 45, 70, 100)), _TRANSFER)
-def test_accuracy_that_is_claimed_is_true(
+def test_claimed_accuracy_is_true(
     shape: tuple[Any, ...], noise: tuple[Any, ...], size: int, options: dict[str, Any]
 ) -> None:
     made = shape_of(

@@ -1,4 +1,4 @@
-"""Damaged files of every format: they are read, or refused with a message; nothing else happens."""
+"""Damaged files of every format: they are read, or refused with a message."""
 
 from __future__ import annotations
 

@@ -45,7 +45,7 @@ EMPTIED = {
 @as_many_as(150)
 @given(descriptions(), calls())
 @example(EMPTIED, (FILTER_NAME, {"filter_type": 4}))  # was measured before it was checked
-def test_a_filter_gives_a_finite_result_or_an_error_that_leaves_the_mesh_as_it_was(
+def test_a_filter_gives_a_finite_result_or_an_error_and_an_unchanged_mesh(
     judge: Judge, mesh: Description, call: tuple[str, dict[str, Any]]
 ) -> None:
     name, parameters = call

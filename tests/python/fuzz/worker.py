@@ -56,7 +56,7 @@ REMEDY = re.compile(
     r"has the modes|a positive number|must be finite|above zero|[Mm]ust be a value between|"
     r"Possible values|between 0 and 100|select faces or"
 )
-# There is nothing to do about these but to look at the mesh.
+# These have no remedy other than to look at the mesh.
 PLAIN = re.compile(r"zero area: the mesh is a line or a point")
 NO_NUMBER = re.compile(r"\b(nan|inf|-nan|-inf)\b")
 
@@ -114,7 +114,7 @@ class Run:
         name = example["filter"]
         mesh_set = mesh_set_of(example["mesh"])
         _kept.append(mesh_set)
-        # Read from a twin: looking at a mesh would pack its deleted elements.
+        # Read from a twin: reading a mesh would pack its deleted elements.
         twin = mesh_set_of(example["mesh"])
         self.before = _everything(twin)
         self.report: dict[str, Any] = {}

@@ -1,4 +1,4 @@
-"""Ctrl-C stops a filter that Python has called, and leaves all as it was."""
+"""Ctrl-C stops a filter called from Python, and leaves everything unchanged."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""The plugin's files as the linker left them: for which MeshLab each is, and what it asks of it.
+"""The plugin's files as linked: for which MeshLab each is, and which symbols it needs of it.
 
-The single-precision MeshLab is not to be had from PyPI. What can be seen without it is seen here;
+The single-precision MeshLab is not on PyPI. What can be checked without it is checked here;
 tests/gui loads the file into the program.
 """
 
@@ -19,7 +19,7 @@ from meshlab_spectral.plugin.loading import library_name
 
 CORE_LIBRARY = Path(pymeshlab.__file__).parent / "lib" / "libmeshlab-common.so"
 SCALARS = {SINGLE: "float", DOUBLE: "double"}
-# Found in the other object files of every program, or left open on purpose.
+# Defined in other object files of every program, or left undefined on purpose.
 OF_THE_COMPILER = {"_ITM_deregisterTMCloneTable", "_ITM_registerTMCloneTable", "__gmon_start__"}
 
 each_host = pytest.mark.parametrize("host", HOSTS, ids=lambda host: host.precision)
@@ -60,8 +60,8 @@ def test_only_the_double_plugin_is_for_the_double_version_of_meshlab(host: Host)
 
 
 @each_host
-def test_all_that_is_asked_of_meshlab_is_in_its_core_library(host: Host) -> None:
-    # The same library in the other precision has the same functions, but for their scalars.
+def test_every_symbol_needed_of_meshlab_is_in_its_core_library(host: Host) -> None:
+    # In the other precision the library has the same functions, except for their scalars.
     def in_double(name: str) -> str:
         return re.sub(r"\bfloat\b", "double", name)
 
@@ -69,19 +69,19 @@ def test_all_that_is_asked_of_meshlab_is_in_its_core_library(host: Host) -> None
     asked = asked_of_meshlab(host)
     assert asked
     strange = {name for name in asked if in_double(name) not in offered}
-    # The interface of C, which is that of every version of muParser.
+    # The C interface, which all versions of muParser share.
     assert {name for name in strange if not re.fullmatch(r"mup[A-Z]\w+", name)} == set()
 
 
 @each_host
-def test_libraries_are_those_of_the_program_and_no_folder_is_built_in(host: Host) -> None:
+def test_libraries_are_those_of_the_program_and_no_path_is_built_in(host: Host) -> None:
     dynamic = output_of("readelf", "--dynamic", "--wide", plugin_of(host))
     needed = set(re.findall(r"\(NEEDED\).*\[(.*)\]", dynamic))
     # Python hides what it has loaded from what it loads later; the program does not.
     assert ("libmeshlab-common.so" in needed) == (host is DOUBLE)
     others = needed - {"libmeshlab-common.so"}
-    # The loader itself is asked for the variables of threads. MeshLab's own plugins have loaded
-    # muParser from its folder before, which is then the one that is used.
+    # The loader itself provides thread-local variables. MeshLab's own plugins have already loaded
+    # muParser from its folder, and that one is used.
     system = r"(lib(Qt5\w+|muparser|stdc\+\+|m|gcc_s|c|pthread)|ld-linux[\w-]*)\.so\."
     assert all(re.match(system, name) for name in others)
     assert "RPATH" not in dynamic

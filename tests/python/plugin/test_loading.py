@@ -136,7 +136,7 @@ def test_a_plugin_for_another_meshlab_is_refused_with_the_version_it_needs(tmp_p
 def test_a_plugin_of_the_other_precision_is_refused_with_the_precision_it_needs(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    # MeshLab's own words; a plugin of the other precision is not to be had here.
+    # MeshLab's own words; a plugin of the other precision is not available here.
     def refuse(path: str) -> None:
         raise pymeshlab.PyMeshLabException(
             "libfilter_spectral.so has different floating point precision from the running MeshLab"
@@ -159,7 +159,7 @@ def test_another_pymeshlab_is_refused_with_the_version_to_install(
     assert "2023.12.post3" in str(error.value)
 
 
-def test_an_absent_pymeshlab_is_told_with_the_way_to_install_it() -> None:
+def test_an_absent_pymeshlab_is_reported_with_the_way_to_install_it() -> None:
     done = run_python("import sys\nsys.modules['pymeshlab'] = None\n" + LOAD_AND_SHOW)
     assert "pip install pymeshlab==2025.7.post1" in done.stdout, done.stderr
 
@@ -181,7 +181,7 @@ def test_warnings_are_never_those_of_another_copy_of_the_plugin(tmp_path: Path) 
     assert "meshlab_spectral.load()" in message
 
 
-def test_a_plugin_too_old_to_tell_its_warnings_is_refused(tmp_path: Path) -> None:
+def test_a_plugin_too_old_to_report_warnings_is_refused(tmp_path: Path) -> None:
     code = loading.plugin_path().read_bytes()
     name = b"meshlab_spectral_warnings"
     assert name in code

@@ -24,7 +24,7 @@ def _restored() -> Iterator[None]:
     set_memory_limit(None)
 
 
-def test_a_limit_that_is_none_is_refused() -> None:
+def test_an_invalid_limit_is_refused() -> None:
     with pytest.raises(OptionError, match="memory limit = 0: give a number"):
         set_memory_limit(0)
 

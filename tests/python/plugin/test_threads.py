@@ -13,7 +13,7 @@ from meshlab_spectral.process.parent import NO_LIMITS
 
 
 class NotStartedError(Exception):
-    """Instead of a process."""
+    """Raised instead of starting a process."""
 
 
 @pytest.fixture(autouse=True)
@@ -34,7 +34,7 @@ def test_results_have_the_same_bits_for_every_number_of_threads(
         np.testing.assert_array_equal(results[0], other)
 
 
-def test_a_number_that_is_none_is_refused(
+def test_an_invalid_number_of_threads_is_refused(
     monkeypatch: pytest.MonkeyPatch, decimated: Callable[..., tuple[np.ndarray, np.ndarray]]
 ) -> None:
     with pytest.raises(OptionError, match="threads = 0: give a number"):

@@ -48,14 +48,14 @@ def test_the_peak_of_a_job_grows_with_its_mesh(cow: Path, samples: Path, tmp_pat
     assert 30e6 < peaks[0] < peaks[1] - 30e6
 
 
-def test_a_process_that_is_gone_before_its_job_is_told(samples: Path, tmp_path: Path) -> None:
+def test_a_process_that_died_before_its_job_is_reported(samples: Path, tmp_path: Path) -> None:
     with MeshLabProcess() as process:
         os.kill(process.pid, signal.SIGKILL)
         with pytest.raises(ProcessDiedError, match="SIGKILL"):
             process.run(long_work(samples, tmp_path))
 
 
-def test_a_process_that_ends_in_the_middle_of_its_answer_is_told(
+def test_a_process_that_ends_in_the_middle_of_its_answer_is_reported(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     child = tmp_path / "child"

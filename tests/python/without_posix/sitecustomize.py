@@ -1,7 +1,7 @@
-"""A start of Python, by PYTHONPATH, after which meshlab_spectral cannot import what is POSIX's own.
+"""Start-up code of Python, by PYTHONPATH: keeps meshlab_spectral from importing POSIX modules.
 
-Only its own imports are refused: the libraries that it builds on take them here, and do without
-them on Windows. Of `select` and `selectors` Windows has the part for sockets, but not for pipes.
+Only its own imports are refused: the libraries that it builds on use them here, and do without
+them on Windows. Of `select` and `selectors` Windows supports sockets, but not pipes.
 """
 
 import builtins
