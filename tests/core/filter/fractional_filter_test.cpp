@@ -257,17 +257,6 @@ TEST(FractionalFilter, LeavesUnreferencedVerticesAlone) {
     EXPECT_LT(largestDifference(result.V.middleRows(1, mesh.V.rows()), alone), 1e-12);
 }
 
-TEST(FractionalFilter, IsReproducibleToTheBit) {
-    const Mesh mesh = testing::blob();
-    for (const Spectrum spectrum : {Spectrum::Full, Spectrum::Truncated}) {
-        FilterOptions options = boost(mesh);
-        options.evaluation.spectrum = spectrum;
-        options.evaluation.truncation.basisSize = 50;
-        EXPECT_EQ(fractionalFilter(mesh.V, mesh.F, options).V,
-                  fractionalFilter(mesh.V, mesh.F, options).V);
-    }
-}
-
 TEST(FractionalFilter, InAutomaticStepsDoesNotMistakeACollapseForConvergence) {
     // The half step of this high-pass shrinks the tetrahedron to 1e-8 of its size, where all of
     // its frequencies pass.

@@ -182,7 +182,7 @@ def test_a_format_without_faces_is_written_with_a_warning(cow: Path, tmp_path: P
     for arguments in (batch, ["filter", cow, tmp_path / "one.xyz"]):
         done = command(*arguments, "--steps", 1)
         assert done.returncode == 0
-        assert "Warning: .xyz files hold points only, the faces are not written.\n" in done.stderr
+        assert "Warning: .xyz files hold only points; the faces are not written.\n" in done.stderr
     assert sorted(contents(tmp_path)) == ["cow.xyz", "one.xyz"]
 
 

@@ -77,7 +77,7 @@ def test_verbose_adds_every_number_and_meshlabs_log(cow: Path, tmp_path: Path) -
     assert "LOG:" not in done.stderr
     assert "%]" not in done.stderr.replace(" ", "")  # but for progress
     assert "low-pass at" not in command(*arguments).stderr
-    assert_fails(command(*arguments, "-v", "-q"), 2, "--quiet: not together with --verbose")
+    assert_fails(command(*arguments, "-v", "-q"), 2, "--quiet: cannot be combined with --verbose")
 
 
 def test_an_output_is_named_by_position_or_by_option(cow: Path, tmp_path: Path) -> None:

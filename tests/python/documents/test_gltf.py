@@ -298,8 +298,8 @@ def test_the_buffer_of_the_input_is_never_overwritten(name: str, tmp_path: Path)
         (("buffers", 0, "byteLength"), 10**12, "bytes, of"),
         (("buffers", 0, "uri"), "lost.bin", "lost.bin is missing"),
         (("meshes", 0, "primitives", 0, "indices"), 7, r"accessors\[7\]"),
-        (("nodes", 0, "children"), [0], "circle"),
-        (("nodes", 0, "children"), [1, 1], "child of two"),
+        (("nodes", 0, "children"), [0], "cycle"),
+        (("nodes", 0, "children"), [1, 1], "two parents"),
     ],
 )
 def test_a_damaged_file_is_refused(keys: Any, value: Any, match: str, tmp_path: Path) -> None:

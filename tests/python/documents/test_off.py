@@ -91,8 +91,8 @@ def test_a_cow_is_read_as_meshlab_reads_it(samples: Path, tmp_path: Path) -> Non
     [
         (b"", "first word is not OFF"),
         (b"OFF BINARY\n\0\0\0\4", "is binary.*save it as PLY"),
-        (b"4OFF\n1 0 0\n0 0 0 1\n", "other vertices than x y z"),
-        (PLAIN.replace(b"0\n1 1", b"0 1 1"), "not one line for each vertex"),
+        (b"4OFF\n1 0 0\n0 0 0 1\n", "vertices other than x y z"),
+        (PLAIN.replace(b"0\n1 1", b"0 1 1"), "does not have one line per vertex"),
         (PLAIN.replace(b"4 2", b"4000000000 2"), "claims 4000000000 vertices"),
         (PLAIN.replace(b"4 2", b"-4 2"), "claims -4 vertices"),
         (PLAIN[:-16], "claims 4 vertices and 2 faces, in 4 lines"),

@@ -155,10 +155,10 @@ def test_a_bone_is_read_as_meshlab_reads_it(is_binary: bool, samples: Path, tmp_
     [
         (b"", "no triangles"),
         (bytes(80) + struct.pack("<I", 4_000_000_000) + bytes(50), "4000000000 triangles"),
-        (binary()[:-1], "5 triangles, which does not fit its 333 bytes"),
+        (binary()[:-1], "5 triangles, which does not match its 333 bytes"),
         (binary().replace(struct.pack("<f", 0.5), struct.pack("<f", np.inf), 1), "at inf 0.5 1"),
         (ascii_()[:-40], "ends within a facet"),
-        (ascii_().replace(b"vertex 0", b"edge 0", 1), "line 8 has no vertex"),
+        (ascii_().replace(b"vertex 0", b"edge 0", 1), "line 8 does not begin with 'vertex'"),
         (ascii_().replace(b"\t1\n", b"\tone\n", 1), "row 2 is 'vertex 0.500 5.000000e-01 one'"),
         (ascii_().replace(b"\t1\n", b"\tnan\n", 1), "vertex 2 is at 0.5 0.5 nan"),
     ],

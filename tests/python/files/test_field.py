@@ -101,7 +101,7 @@ def test_a_conversion_keeps_the_placement_and_reports_what_is_lost(
     np.testing.assert_allclose(
         extent(load_arrays(out)[0]), extent(load_arrays(source)[0]), rtol=0.15
     )
-    assert any("out.stl comes without" in warning for warning in report["warnings"])
+    assert any("out.stl loses" in warning for warning in report["warnings"])
 
 
 @pytest.mark.parametrize("name", ["inch.3mf", "item_transform.3mf"])

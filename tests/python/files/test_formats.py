@@ -49,7 +49,7 @@ def test_another_format_gets_the_shape_and_losses_are_reported(
     source, target = tmp_path / name, tmp_path / "new" / f"out{ending}"
     BY_NAME[name].write(source)
     warnings = filter_file(source, target, SMOOTH)["warnings"]
-    (told,) = (warning for warning in warnings if f"{target.name} comes without" in warning)
+    (told,) = (warning for warning in warnings if f"{target.name} loses" in warning)
     before, after = BY_NAME[name].read(source), contents(target)
     points = before["coordinates"]
     bounds = np.column_stack([points.min(axis=0), points.max(axis=0)]).ravel()

@@ -92,7 +92,7 @@ def test_a_mesh_of_pyvista_keeps_its_type_and_data() -> None:
 
 
 def test_a_mesh_of_pyvista_with_quadrangles_is_refused_with_the_advice_to_triangulate() -> None:
-    with pytest.raises(ValueError, match=r"no triangles: call its triangulate\(\) first"):
+    with pytest.raises(ValueError, match=r"not triangles: call its triangulate\(\) first"):
         filter_mesh(pyvista.Plane(i_resolution=2, j_resolution=2))
 
 
@@ -116,7 +116,7 @@ def test_a_mesh_of_meshio_keeps_its_precision() -> None:
 
 def test_a_mesh_of_meshio_with_other_cells_is_refused() -> None:
     mesh = MeshioMesh(V, {"triangle": F, "tetra": F})
-    with pytest.raises(ValueError, match="cells tetra, triangle: pass one of triangles alone"):
+    with pytest.raises(ValueError, match="cells tetra, triangle: pass a mesh of triangles only"):
         filter_mesh(mesh)
 
 
@@ -185,7 +185,7 @@ def test_a_selection_may_be_of_vertices_or_of_faces() -> None:
     assert moved[V[:, 2] < -0.9].max() < 1e-3
     denoised, _ = denoise_mesh(V, F, selection=corners)
     assert denoised.shape == V.shape
-    with pytest.raises(OptionError, match="pass what is selected as selection"):
+    with pytest.raises(OptionError, match="pass the selected vertices or faces as selection"):
         filter_mesh(V, F, selected=True)
     with pytest.raises(ValueError, match=rf"selection has face {len(F)}, but"):
         filter_mesh(V, F, selection=[0, len(F)])
@@ -211,7 +211,7 @@ def test_a_gain_may_be_any_function_of_w() -> None:
 def test_a_gain_must_be_finite_and_not_negative(wrong: float) -> None:
     with pytest.raises(OptionError, match=r"gain\(.*\) = .*: must be finite and not negative"):
         filter_mesh(V, F, gain=lambda w: wrong if w > 3 else 1.0)
-    with pytest.raises(OptionError, match="filter_type = high-pass: gain takes its place"):
+    with pytest.raises(OptionError, match="filter_type = high-pass: gain replaces it"):
         filter_mesh(V, F, gain=lambda w: 1.0, filter_type="high-pass")
 
 

@@ -1,4 +1,8 @@
-"""Small meshes of every kind, made from descriptions that hypothesis draws and shrinks."""
+"""Small meshes of every kind, made from descriptions that hypothesis draws and shrinks.
+
+tests/fuzz/meshes.cpp makes those of the core's fuzzer from seeds, which cannot be shrunk, and knows
+neither polygons nor attributes.
+"""
 
 from __future__ import annotations
 

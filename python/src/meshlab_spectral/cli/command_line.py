@@ -111,7 +111,7 @@ def with_verbosity(command: Command) -> Command:
         for name, _ in _VERBOSITY:
             setattr(VERBOSITY, name, arguments.pop(name))
         if VERBOSITY.quiet and VERBOSITY.verbose:
-            raise typer.BadParameter("not together with --verbose", param_hint="--quiet")
+            raise typer.BadParameter("cannot be combined with --verbose", param_hint="--quiet")
         command(**arguments)
 
     complete = with_parameters(command, added, run)

@@ -95,4 +95,4 @@ def warn_of_points_only(ending: str) -> None:
     """Warn about a format, such as .xyz, in which MeshLab silently drops the faces."""
     plain = ending.removeprefix(".")
     if plain.lower() in POINTS_ONLY:
-        print_warning(f".{plain} files hold points only, the faces are not written")
+        print_warning(f".{plain} files hold only points; the faces are not written")

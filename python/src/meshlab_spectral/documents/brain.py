@@ -74,7 +74,7 @@ def _read_free_surfer(path: Path) -> Document:
     n, m = np.frombuffer(data, ">i4", 2, begin - 8).tolist()
     tail = begin + 12 * (n + m)
     if n < 0 or m < 0 or tail > len(data):
-        raise ValueError(f"it says {n} vertices and {m} triangles, for {len(data)} bytes")
+        raise ValueError(f"it claims {n} vertices and {m} triangles, in {len(data)} bytes")
     with np.errstate(invalid="ignore"):  # checked_part reports non-finite values
         vertices = np.frombuffer(data, ">f4", 3 * n, begin).reshape(-1, 3).astype(np.float64)
     faces = np.frombuffer(data, ">i4", 3 * m, begin + 12 * n).reshape(-1, 3).astype(np.int64)

@@ -27,8 +27,8 @@ def rounding_told(before: Array, after: Array) -> str | None:
         return None
     largest = float(np.abs(after).max())
     return (
-        f"single precision rounds coordinates near {largest:.6g} by {rounding:.2g}, where the "
-        f"filter moves by {displacement:.2g} (root mean square)"
+        f"single precision rounds coordinates near {largest:.6g} by {rounding:.2g}, while the "
+        f"filter moves vertices by {displacement:.2g} (root mean square)"
     )
 
 

@@ -94,7 +94,7 @@ def unreadable(path: Path, reason: object) -> MeshFileError:
     """Return the error for a damaged file, with what is wrong in it and where."""
     told = " ".join(str(reason).split())
     return MeshFileError(
-        f"{path} cannot be read as a mesh ({told}): it is damaged or cut off; copy it anew, or "
+        f"{path} cannot be read as a mesh ({told}): it is damaged or cut off; copy it again, or "
         "export it again from the program that made it"
     )
 

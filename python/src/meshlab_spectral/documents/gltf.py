@@ -151,7 +151,7 @@ def _nodes_of_meshes(asset: Asset) -> dict[int, list[_Node]]:
     children = [child for node in nodes for child in node.get("children", [])]
     inner = set(children)
     if len(inner) < len(children):
-        raise ValueError("a node is the child of two")
+        raise ValueError("a node has two parents")
     result: dict[int, list[_Node]] = defaultdict(list)
     found = [(number, IDENTITY) for number in range(len(nodes)) if number not in inner]
     for number, outer in found:  # grows while iterating
@@ -162,7 +162,7 @@ def _nodes_of_meshes(asset: Asset) -> dict[int, list[_Node]]:
             # A mesh with a skin is placed by its joints, not by its node.
             result[node["mesh"]].append((node, IDENTITY if "skin" in node else matrix))
     if len(found) < len(nodes):
-        raise ValueError("its nodes are children of each other, in a circle")
+        raise ValueError("its node hierarchy has a cycle")
     return result
 
 

@@ -99,7 +99,7 @@ def _document(path: Path, lines: list[bytes]) -> Document:
     if not vertices:
         raise ValueError("it has no vertices, which are lines that begin with v")
     if any(row[-1].endswith(b"\\") for row in vertices + normals):
-        raise unsupported(path, "has vertices of several lines", "write each into one line")
+        raise unsupported(path, "has vertices that span several lines", "write each on one line")
     V = numbers(path, vertices, 1)
     check_vertices(path, V)
     sizes = np.array([len(row) - 1 for row in faces], dtype=np.int64)
@@ -136,7 +136,7 @@ def _corners(
     corners = _indices([int(word.split(b"/")[0]) for word in words], owners, where[b"v"])
     if (corners < 0).any():
         line = owners[np.argmax(corners < 0)] + 1
-        raise ValueError(f"the face in line {line} has a corner that is none of the vertices")
+        raise ValueError(f"the face in line {line} has a corner that refers to a missing vertex")
     normals = [int(word.split(b"/")[2] or 0) if word.count(b"/") > 1 else 0 for word in words]
     return corners, _indices(normals, owners, where[b"vn"])
 

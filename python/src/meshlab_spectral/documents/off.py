@@ -24,7 +24,7 @@ from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.documents.polygons import triangles
 from meshlab_spectral.documents.text import Words, numbers, replace_numbers
 
-_REMEDY = "save it as PLY, or as OFF of text with one vertex x y z in a line"
+_REMEDY = "save it as PLY, or as text OFF with one vertex x y z per line"
 
 
 @dataclass(kw_only=True)
@@ -82,7 +82,7 @@ def _header(path: Path, rows: Sequence[Words]) -> bytes:
     if not header.endswith(b"OFF"):
         raise unreadable(path, "its first word is not OFF, COFF, NOFF or the like")
     if b"4" in header or b"n" in header or b"BINARY" in rows[0]:
-        raise unsupported(path, "is binary, or has other vertices than x y z", _REMEDY)
+        raise unsupported(path, "is binary, or has vertices other than x y z", _REMEDY)
     return header
 
 
@@ -92,7 +92,7 @@ def _check_bounds(path: Path, rows: Sequence[Words], begin: int, middle: int, en
         return
     vertices, faces, left = middle - begin, end - middle, len(rows) - begin
     if 0 < 3 * vertices + faces <= sum(map(len, rows[begin:])):
-        raise unsupported(path, "has not one line for each vertex and face", _REMEDY)
+        raise unsupported(path, "does not have one line per vertex and face", _REMEDY)
     raise ValueError(f"it claims {vertices} vertices and {faces} faces, in {left} lines")
 
 

@@ -85,7 +85,7 @@ def _size(content: bytes) -> int:
 def _read_binary(path: Path, content: bytes) -> Document:
     count, size = _count(content), len(content)
     if not _size(content) <= size <= _size(content) * (1 + _EXCESS):
-        raise ValueError(f"it claims {count} triangles, which does not fit its {size} bytes")
+        raise ValueError(f"it claims {count} triangles, which does not match its {size} bytes")
     rows = np.frombuffer(content, _TRIANGLE, count, _HEADER)
     with np.errstate(invalid="ignore"):  # check_vertices reports non-finite values
         points = rows["corners"].reshape(-1, 3).astype(np.float64)
@@ -100,9 +100,7 @@ def _read_text(path: Path, content: bytes) -> Document:
     chosen = [number for number, keyword in enumerate(keywords) if keyword in _FACET]
     for k, number in enumerate(chosen):
         if keywords[number] != _FACET[k % 5]:
-            raise ValueError(
-                f"line {number + 1} has no {_FACET[k % 5].decode()}, which belongs there"
-            )
+            raise ValueError(f"line {number + 1} does not begin with {_FACET[k % 5].decode()!r}")
     if len(chosen) % 5:
         raise ValueError("it ends within a facet")
     facets, corners = chosen[::5], [number for k, number in enumerate(chosen) if 0 < k % 5 < 4]

@@ -29,7 +29,7 @@ def numbers(path: Path, rows: Sequence[Words], first: int = 0, count: int = 3) -
             if len(words) < count or not all(map(_is_number, words)):
                 told = b" ".join(rows[number]).decode(errors="replace")[:80]
                 raise unreadable(
-                    path, f"row {number} is {told!r}, which has not the {count} numbers it needs"
+                    path, f"row {number} is {told!r}, which lacks the {count} numbers required"
                 ) from None
         raise
 

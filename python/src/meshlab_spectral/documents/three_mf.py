@@ -90,9 +90,9 @@ class _Model:
         elements = list(root.iter(f"{self._namespace}object"))
         self.objects = {element.attrib["id"]: self._object(element) for element in elements}
         if len(self.objects) < len(elements):
-            raise ValueError(f"{name} has two objects of one id")
+            raise ValueError(f"{name} has two objects with the same id")
         if len(places) != sum(len(entry.own) for entry in self.objects.values()):
-            raise unsupported(path, f"has vertices outside meshes in {name}", "export it anew")
+            raise unsupported(path, f"has vertices outside meshes in {name}", "export it again")
 
     def _object(self, element: ElementTree.Element) -> _Object:
         ns, axes, corners = self._namespace, ("x", "y", "z"), ("v1", "v2", "v3")
@@ -175,7 +175,9 @@ def _document(path: Path, data: bytes, archive: zipfile.ZipFile) -> Document:
     if any(e.flag_bits & 1 for e in entries) or b"/keystore" in archive.read("_rels/.rels"):
         raise unsupported(path, "is encrypted", "save it without encryption")
     if sum(info.file_size for info in entries) > max(_HARMLESS, _LARGEST_RATIO * len(data)):
-        raise ValueError(f"its {len(data)} bytes would grow to more than {_LARGEST_RATIO} times")
+        raise ValueError(
+            f"its {len(data)} bytes would grow more than {_LARGEST_RATIO} times when unpacked"
+        )
     if damaged := archive.testzip():
         raise ValueError(f"{damaged} in it is damaged")
     relationships = ElementTree.fromstring(archive.read("_rels/.rels"))

@@ -43,7 +43,7 @@ def read(path: Path) -> Document:
     try:
         counts = [int(count) for count in _COUNTS.findall(path.read_bytes())]
         if counts and not 0 <= min(counts) <= max(counts) <= _LARGEST_RATIO * path.stat().st_size:
-            raise ValueError(f"it says that it holds {counts} points and cells")
+            raise ValueError(f"it claims {counts} points and cells")
         with pyvista.vtk_verbosity("off"), pyvista.VtkErrorCatcher(send_to_logging=False) as caught:
             reader = pyvista.get_reader(path).reader
             reader.Update()

@@ -208,7 +208,7 @@ def _plot_noise(axes: Axes, spectrum: GeometrySpectrum) -> None:
     heights = spectrum.noise_heights[spectrum.noise_heights > 0]
     axes.set_ylim(0.05 * heights.min(), 3 * heights.max())  # room for the legend
     if spectrum.noise_height == 0:
-        axes.plot([], [], " ", label="it does not level off: no noise found")
+        axes.plot([], [], " ", label="no levelling off: no noise found")
         return
     size, percent = spectrum.noise_feature_size, 100 / spectrum.diagonal
     axes.axhline(

@@ -105,7 +105,7 @@ def left_behind(document: Document, target: Path, mesh_set: Any = None) -> list[
     lost = [content for content in document.contents if content not in written]
     if mesh_set is not None and _DUMMY in mesh_set.current_mesh().textures():
         lost.append("textures that MeshLab does not find")
-    return [f"{target.name} comes without {', '.join(lost)}"] if lost else []
+    return [f"{target.name} loses {', '.join(lost)}"] if lost else []
 
 
 def _has_non_manifold_edges(mesh_set: Any) -> bool:

@@ -142,7 +142,7 @@ def filtered(
             select_vertices(mesh_set, chosen_vertices(selection, len(V), F))
             part["selected"] = True
         elif getattr(options, "selected", False):
-            raise OptionError("selected = True: pass what is selected as selection")
+            raise OptionError("selected = True: pass the selected vertices or faces as selection")
         options = replace(options, **part)
     parameters = options.pymeshlab_parameters(mesh_set.current_mesh())
     report = call_filter(mesh_set, options.FILTER, parameters)

@@ -50,7 +50,9 @@ def with_gain(
     Raises OptionError as `points_of` does, or when the options choose a filter type, too.
     """
     if options.filter_type != "low-pass":
-        raise OptionError(f"filter_type = {options.filter_type}: gain takes its place; give one")
+        raise OptionError(
+            f"filter_type = {options.filter_type}: gain replaces it; give one of them"
+        )
     diagonal = float(np.linalg.norm(np.ptp(V, axis=0)))
     size = options.feature_size.in_units_of_mesh(diagonal, mean_edge(V, F))
     points = points_of(gain, size)

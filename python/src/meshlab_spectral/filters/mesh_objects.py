@@ -68,7 +68,7 @@ def _not_moved(mesh: Any, V: Array) -> Any:
 
 def _pyvista_arrays(mesh: Any) -> tuple[Any, Any]:
     if not mesh.is_all_triangles:
-        raise ValueError("the mesh has faces that are no triangles: call its triangulate() first")
+        raise ValueError("the mesh has faces that are not triangles: call its triangulate() first")
     return mesh.points, mesh.regular_faces
 
 
@@ -89,7 +89,7 @@ def _pyvista_moved(mesh: Any, V: Array) -> Any:
 def _meshio_arrays(mesh: Any) -> tuple[Any, Any]:
     surfaces = sorted(set(mesh.cells_dict) - {"vertex", "line"})
     if surfaces != ["triangle"]:
-        raise ValueError(f"the mesh has cells {', '.join(surfaces)}: pass one of triangles alone")
+        raise ValueError(f"the mesh has cells {', '.join(surfaces)}: pass a mesh of triangles only")
     return mesh.points, mesh.cells_dict["triangle"]
 
 

@@ -57,7 +57,9 @@ def gain(options: FilterOptions, x: Array, lengths: MeshLengths | None = None) -
     """
     if lengths is None:
         if options.filter_type == "custom":
-            raise OptionError("a custom transfer function needs a mesh that its sizes refer to")
+            raise OptionError(
+                "a custom transfer function needs the lengths of a mesh for its sizes"
+            )
         lengths = MeshLengths(1.0, 1.0, 1.0)
     load()
     types = (_INTEGER, _INTEGER, _NUMBERS, ctypes.c_char_p, _NUMBERS, _NUMBERS, _INTEGER, _NUMBERS)
