@@ -84,5 +84,5 @@ def test_an_invalid_custom_function_is_refused(text: str, words: str) -> None:
 
 
 def test_a_custom_function_needs_the_lengths_of_a_mesh() -> None:
-    with pytest.raises(OptionError, match="needs a mesh"):
+    with pytest.raises(OptionError, match="needs the lengths of a mesh"):
         gain(FilterOptions(filter_type="custom"), np.ones(1))

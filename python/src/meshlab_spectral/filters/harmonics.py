@@ -49,7 +49,7 @@ class Harmonics:
 
     @property
     def frequencies(self) -> Array:
-        """The k square roots of the eigenvalues, radians per length unit: 2 pi / wavelength."""
+        """The k square roots of the eigenvalues, 2 pi over wavelength, radians per length unit."""
         roots: Array = np.sqrt(self.eigenvalues)
         return roots
 
