@@ -47,7 +47,7 @@ Save the options, and filter a folder with them:
     --save-recipe smooth.toml
   meshlab-spectral batch scans --output smooth --recipe smooth.toml
 """
-DENOISE_HELP = """Detect which noise a mesh has (scanner, spikes or voxel steps) and remove it.
+DENOISE_HELP = """Detect and remove the noise of a scanner, spikes or voxel steps.
 
   meshlab-spectral denoise scan.ply clean.ply
 A folder of scans:

@@ -17,7 +17,7 @@ from meshlab_spectral.process.single_file import measure_in_child
 
 
 def info_command(source: Source, mesh: OneMesh = None, as_json: AsJson = False) -> None:
-    """Describe a mesh: its surface, its noise, and a feature size to start with.
+    """Describe a mesh: surface, noise, and a feature size to try.
 
     Nothing is written. Lengths are in the units of the file; the noise is what denoise would
     remove, the feature size the default of filter.
