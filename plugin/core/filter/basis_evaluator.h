@@ -9,9 +9,8 @@ namespace spectral {
 
 /// The k lowest harmonics, with a single gain for the rest.
 struct TruncationOptions {
-    int basisSize = 300;  ///< k, below the number of vertices.
-    bool reinjectResidual =
-        true;  ///< Keep the part beyond k (Eq. 8) instead of dropping it (Eq. 6).
+    int basisSize = 300;           ///< k, below the number of vertices.
+    bool reinjectResidual = true;  ///< Keep the part beyond k (Eq. 8), or drop it (Eq. 6).
 };
 
 /// Evaluates in a basis of manifold harmonics: truncated (Kovnatsky et al. 2012, Eqs. 6 to 10), or,

@@ -28,8 +28,8 @@ struct EvaluationOptions {
     /// Maximum error of all steps together, relative to the size of the shape (FullSpectrumResult),
     /// if they are evaluated without a basis.
     double accuracy = 1e-6;
-    bool atEveryVertex =
-        true;  ///< Whether it bounds the error of every vertex or over the surface.
+    /// Whether the accuracy bounds the error of every vertex or that over the surface.
+    bool atEveryVertex = true;
     Solver solver = Solver::Cheapest;  ///< For Spectrum::Full.
 };
 

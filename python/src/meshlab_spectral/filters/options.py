@@ -119,7 +119,7 @@ class FilterOptions(Options):
     )
     power: float = option(
         1.0,
-        "Fractional power of the filter to apply: 0.5 is half the filter: a gain of 4 becomes 2.",
+        "Fractional power of the filter to apply: with 0.5, half of it, a gain of 4 becomes 2.",
         Limits(0, 1, low_open=True),
     )
     selected: bool = option(
