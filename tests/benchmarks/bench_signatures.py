@@ -31,7 +31,7 @@ import numpy as np
 import pyFM.signatures
 from meshlab_spectral import Harmonics, load, manifold_harmonics, shape_dna
 from meshlab_spectral.files.meshes import load_arrays
-from meshlab_spectral.filters import signatures
+from meshlab_spectral.filters.harmonics import heat_times, wave_energies
 from numpy.typing import NDArray
 from rich.box import MARKDOWN
 from rich.console import Console
@@ -59,8 +59,8 @@ class Case:
 def cases(V: Array, F: NDArray[Any], k: int) -> list[Case]:
     """List what is compared on a mesh."""
     basis = manifold_harmonics(V, F, k, "cotangent")
-    t = signatures.heat_times(basis.eigenvalues, TIMES)
-    e, sigma = signatures.wave_energies(basis.eigenvalues, ENERGIES)
+    t = heat_times(basis.eigenvalues, TIMES)
+    e, sigma = wave_energies(basis.eigenvalues, ENERGIES)
     vertices = np.arange(len(V))
 
     def lapy_pairs() -> tuple[Array, Array]:

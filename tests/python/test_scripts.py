@@ -1,0 +1,28 @@
+"""Scripts that no test runs import only what the package has."""
+
+from __future__ import annotations
+
+import ast
+import importlib
+from pathlib import Path
+
+import pytest
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+SCRIPTS = [
+    path
+    for folder in ("tests/benchmarks", "screenshots/scripts")
+    for path in sorted((REPOSITORY / folder).glob("*.py"))
+]
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.name)
+def test_every_name_that_a_script_imports_from_the_package_exists(script: Path) -> None:
+    missing = []
+    for node in ast.walk(ast.parse(script.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("meshlab_spectral"):
+            module = importlib.import_module(str(node.module))
+            missing += [
+                f"{node.module}.{a.name}" for a in node.names if not hasattr(module, a.name)
+            ]
+    assert not missing
