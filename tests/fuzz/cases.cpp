@@ -180,9 +180,10 @@ struct Describe {
         const char* updates[] = {"full", "conformal", "none"};
         text << "filter " << testing::describe(o.transferFunction) << " power "
              << o.transferFunction.power << ", size " << o.featureSize / diagonal << ", steps "
-             << o.steps << ", tolerance " << o.tolerance / diagonal << ", " << nameOf(o.laplacian)
-             << ", " << nameOf(o.boundary) << ", update "
-             << updates[static_cast<int>(o.basisUpdate)] << " share " << o.conformalShare;
+             << o.steps << ", passes " << o.passes << (o.keepThinParts ? ", thin parts kept" : "")
+             << ", tolerance " << o.tolerance / diagonal << ", " << nameOf(o.laplacian) << ", "
+             << nameOf(o.boundary) << ", update " << updates[static_cast<int>(o.basisUpdate)]
+             << " share " << o.conformalShare;
         if (o.evaluation.spectrum == Spectrum::Truncated)
             text << ", truncated to " << o.evaluation.truncation.basisSize
                  << (o.evaluation.truncation.reinjectResidual ? "" : " without residual");
@@ -333,6 +334,9 @@ void addPart(Choices& choices, Case& to) {
         !(options->creaseAngle >= 0.0 && options->creaseAngle <= 180.0) ||
         !((weight.array() >= 0.0) && (weight.array() <= 1.0)).all() ||
         (!selected.empty() && std::find(selected.begin(), selected.end(), true) == selected.end());
+    // Last, so that seeds keep their cases.
+    options->keepThinParts = choices.oneIn(2);
+    if (choices.oneIn(6)) options->passes = choices.between(1, 4);
 }
 
 std::string describe(const Case& of) {

@@ -169,11 +169,6 @@ def masses(V: Array, F: Indices, laplacian: str) -> Array:
     return np.full_like(d, d[d > 0].mean()) if laplacian == "uniform" else d
 
 
-def conformal_masses(D: Array, of_input: Array) -> Array:
-    """Return the masses of a conformal update, of which every vertex keeps a quarter."""
-    return np.maximum(D, 0.25 * of_input)
-
-
 def full_filter(
     V: Array,
     F: Indices,
@@ -187,13 +182,13 @@ def full_filter(
     parts = components(len(V), F)
     W, d = matrices(V, F, laplacian)
     spectrum = spectra(W, d, parts)
-    of_input, X = d, V.copy()
+    X = V.copy()
     for step in range(steps):
         if step > 0 and basis_update == "full":
             now, d = matrices(X, F, laplacian)
             spectrum = spectra((1 - conformal_share) * now + conformal_share * W, d, parts)
         if step > 0 and basis_update == "conformal":
-            d = conformal_masses(masses(X, F, laplacian), of_input)
+            d = masses(X, F, laplacian)  # Kazhdan, Solomon and Ben-Chen 2012
             spectrum = spectra(W, d, parts)
         X = apply_gain(X, spectrum, lambda omega: gain(omega) ** (1 / steps))
     return X
@@ -217,13 +212,11 @@ def truncated_filter(
     W, d = cotangent_matrix(V, F), lumped_areas(V, F)
     (spectrum,) = spectra(W, d, [part])
     sizes = []
-    of_input, X = d, V.copy()
+    X = V.copy()
     for step in range(steps):
         if step > 0 and basis_update != "none":
             W = cotangent_matrix(X, F) if basis_update == "full" else W
             d = lumped_areas(X, F)
-            if basis_update == "conformal":
-                d = conformal_masses(d, of_input)
             (spectrum,) = spectra(W, d, [part])
         k = cut_outside_clusters(spectrum.lam, basis_size)
         sizes.append(k)
@@ -270,13 +263,11 @@ def fixed_filter(
     interior = np.setdiff1d(np.arange(len(V)), rim)
     W, d = matrices(V, F, laplacian)
     spectrum = fixed_spectrum(W, d, interior)
-    of_input, X = d, V.copy()
+    X = V.copy()
     for step in range(steps):
         if step > 0 and basis_update != "none":
             W = matrices(X, F, laplacian)[0] if basis_update == "full" else W
             d = lumped_areas(X, F)
-            if basis_update == "conformal":
-                d = conformal_masses(d, of_input)
             spectrum = fixed_spectrum(W, d, interior)
         rows = W[interior]
         H = scipy.linalg.solve(

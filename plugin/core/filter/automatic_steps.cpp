@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "core/filter/fractional_steps.h"
+#include "core/filter/thin_parts.h"
 #include "core/mesh/mesh.h"
 #include "core/support/threads.h"
 
@@ -87,16 +88,17 @@ class Limit {
     Limit(Vertices E1, const LaplacianBuilder& laplacians)
         : laplacians_(laplacians), E_(std::move(E1)) {}
 
-    void add(Vertices Y) {
-        Vertices E = Y_.size() > 0 ? Vertices(Y + (Y - Y_) / (kSecondOrder - 1.0)) : Y;
+    /// @param isComparable  whether Y has twice the steps of the previous shape.
+    void add(Vertices Y, bool isComparable) {
+        const bool isFirst = Y_.size() == 0;
+        Vertices E = isFirst || !isComparable ? Y : Vertices(Y + (Y - Y_) / (kSecondOrder - 1.0));
         change_ = distances(E, E_);
         convergence_.add(change_, laplacians_.mass(E));
         E_ = std::move(E);
         Y_ = std::move(Y);
     }
 
-    const Vertices& last() const { return Y_; }
-    const Vertices& extrapolated() const { return E_; }
+    const Vertices& shape() const { return E_; }
 
     const Convergence& convergence() const { return convergence_; }  ///< Over the surface E_K.
 
@@ -131,10 +133,20 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
     // the first two passes.
     constexpr double kFirstPasses = 0.1;
     laplacians.reset();
-    std::vector<Eigen::MatrixXd> first =
-        evaluate
+    const auto predictFirst = [&] {
+        return evaluate
             .predict(laplacians.current(), X, {1.0, 0.5, 0.25}, progress.part(0.0, kFirstPasses))
             .Y;
+    };
+    std::vector<Eigen::MatrixXd> first = predictFirst();
+    if (options.keepThinParts) {
+        Eigen::VectorXd factors =
+            thinPartFactors(laplacians.current().W, laplacians.faces(), X, first[2], first[0]);
+        if (factors.size() > 0) {
+            laplacians.scaleMass(std::move(factors));
+            first = predictFirst();
+        }
+    }
     const Vertices halves[] = {first[1], first[2]};
     Limit limit(first[0], laplacians);
     first.clear();
@@ -149,20 +161,24 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
         result.last = midpointSteps(laplacians, evaluate, X, K, std::max(K, kFinest),
                                     progress.part(done, end), firstHalf);
         done = end;
-        limit.add(std::move(result.last.X));
-        result.error = limit.convergence().error();
         // If one of two passes had to take smaller steps, both may have taken the same ones.
         const bool isEven = result.last.sizes.size() == static_cast<std::size_t>(K);
         const bool isComparable = std::exchange(wasEven, isEven) && isEven;
+        limit.add(std::move(result.last.X), isComparable);
+        result.error = limit.convergence().error();
+        ++result.passes;
         const bool isReached = isComparable && result.error <= options.tolerance;
         const bool stagnates =
             isComparable && K >= kSingularSteps && limit.convergence().stagnates();
-        if (isReached || stagnates || 2 * K > options.maxSteps) {
-            result.last.X = isReached ? limit.extrapolated() : limit.last();
+        const bool isLast = options.passes > 0 ? result.passes == options.passes
+                                               : isReached || stagnates || 2 * K > options.maxSteps;
+        if (isLast) {
+            result.last.X = limit.shape();
             result.singularPart = limit.partBeyond(options.tolerance);
             return result;
         }
-        last = expectedLastPass(2 * K, result.error / kSecondOrder, options);
+        last = options.passes > 0 ? 1 << (options.passes - 1)
+                                  : expectedLastPass(2 * K, result.error / kSecondOrder, options);
     }
 }
 

@@ -14,14 +14,18 @@ namespace spectral {
 inline constexpr double kNegligibleArea = 1e-3;
 
 struct AutomaticOptions {
-    double tolerance = 0.0;  ///< Maximum error over all but kNegligibleArea of the filtered
-                             ///< surface, length units, > 0.
-    int maxSteps = 64;       ///< Maximum number of steps of one pass, >= 2.
+    double tolerance = 0.0;      ///< Maximum error over all but kNegligibleArea of the filtered
+                                 ///< surface, length units, > 0.
+    int maxSteps = 64;           ///< Maximum number of steps of one pass, >= 2.
+    int passes = 0;              ///< Number of passes, whatever the error; 0: as many as needed.
+    bool keepThinParts = false;  ///< For a low-pass: parts thinner than the feature size stay
+                                 ///< (thin_parts.h).
 };
 
 /// Approximate limit of the paper's scheme for infinitely many steps.
 struct AutomaticSteps {
-    FractionalSteps last;  ///< The last pass; X may be extrapolated from the last two passes.
+    FractionalSteps last;  ///< The last pass; X is extrapolated from the last two passes.
+    int passes = 0;        ///< 0: this is not the automatic scheme.
     double error = 0.0;    ///< Estimated error over all but kNegligibleArea of the filtered
                            ///< surface, length units.
 
@@ -40,9 +44,11 @@ struct AutomaticSteps {
 /// runs end after one pass (two evaluations) or two passes (five). All earlier passes together cost
 /// as much as the last.
 ///
-/// Where parts of the surface shrink away, as they can with BasisUpdate::Full, the flow is singular
-/// and passes converge slowly or not at all: they stop when the distances no longer shrink, or at
-/// maxSteps; X is then Y_K.
+/// Where parts of the surface shrink away, the flow is singular and passes converge slowly: they
+/// stop when the distances no longer shrink, or at maxSteps. E_K is nearer to the limit there, too.
+///
+/// The same number of passes gives the same result, so a run can be repeated exactly, and the tiles
+/// of a surface agree.
 ///
 /// The steps are equal because adapting them to the largest local error at a vertex does not pay: a
 /// collapsing spike has a large local error, but contributes none to the result.

@@ -20,9 +20,12 @@ namespace spectral {
 
 namespace {
 
-/// Share of the tolerance of automatic steps granted to their evaluations, as a root mean square
-/// over the surface: small, as single vertices may be several times worse.
-constexpr double kEvaluationShare = 0.05;
+/// Errors granted to the evaluations of automatic steps, as a root mean square over the surface: a
+/// share of the least of the tolerance, the feature size and the mean edge. Of the tolerance it is
+/// small since single vertices may be several times worse. The tolerance is a length for the eye,
+/// whatever the resolution: on fine meshes it exceeds the details that are filtered, and errors of
+/// a few thousandths of an edge turn faces by as much as the noise that is left.
+constexpr double kShareOfTolerance = 0.05, kShareOfFeatureSize = 1e-3, kShareOfEdge = 1e-3;
 
 /// Evaluations have at least this relative accuracy, however large the tolerance.
 constexpr double kLoosestAccuracy = 1e-4;
@@ -50,6 +53,10 @@ void checkOptions(const FilterOptions& options) {
         throw InvalidOption("tolerance = " + textOf(options.tolerance) +
                             ": automatic steps need a length above zero, e.g. 0.05 % of the "
                             "diagonal of the bounding box");
+    if (options.passes < 0 || options.passes > kMaxPasses)
+        throw InvalidOption("passes = " + std::to_string(options.passes) +
+                            ": must be between 1 and " + std::to_string(kMaxPasses) +
+                            ", e.g. 2, or 0 for as many as the tolerance needs");
     if (!(options.conformalShare >= 0.0 && options.conformalShare <= 1.0))
         throw InvalidOption("conformal_share = " + textOf(options.conformalShare) +
                             ": must be between 0 (the paper's update) and 1 (conformal)");
@@ -85,14 +92,16 @@ double shrunkenPart(const Eigen::VectorXd& before, const Eigen::VectorXd& after)
     return isShrunken.select(before, 0.0).sum() / before.sum();
 }
 
-/// Evaluation options; those of automatic steps need not be much more accurate than the steps.
+/// Evaluation options; those of automatic steps need not be much more accurate than the steps and
+/// the details.
 EvaluationOptions evaluationFor(const FilterOptions& options, const Surface& surface) {
     EvaluationOptions evaluation = options.evaluation;
     if (options.steps > 0) return evaluation;
     const double size = std::sqrt(surface.X.rowwise().squaredNorm().mean());  // X is centred
-    evaluation.accuracy =
-        std::max(evaluation.accuracy,
-                 std::min(kEvaluationShare * options.tolerance / size, kLoosestAccuracy));
+    const double error =
+        std::min({kShareOfTolerance * options.tolerance, kShareOfFeatureSize * options.featureSize,
+                  kShareOfEdge * meanEdgeLength(surface.X, surface.F)});
+    evaluation.accuracy = std::max(evaluation.accuracy, std::min(error / size, kLoosestAccuracy));
     evaluation.atEveryVertex = false;
     return evaluation;
 }
@@ -116,9 +125,13 @@ AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evalua
         whole.last.sizes.assign(static_cast<std::size_t>(K), 1.0 / K);
         return whole;
     }
-    if (options.steps == 0)
-        return automaticSteps(laplacians, evaluate, X, {options.tolerance, options.maxSteps},
+    if (options.steps == 0) {
+        const bool keepThinParts =
+            options.keepThinParts && options.transferFunction.type == FilterType::LowPass;
+        return automaticSteps(laplacians, evaluate, X,
+                              {options.tolerance, options.maxSteps, options.passes, keepThinParts},
                               progress);
+    }
     return {fixedSteps(laplacians, evaluate, X, options.steps, progress)};
 }
 
@@ -163,10 +176,12 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
 
     result.V = changed(V, surface, displacement);
     result.steps = static_cast<int>(steps.last.sizes.size());
+    result.passes = steps.passes;
     result.stepSizes = steps.last.sizes;
     result.stepError = steps.error;
     result.singularPart = steps.singularPart;
-    result.toleranceReached = options.steps > 0 || steps.error <= options.tolerance;
+    result.toleranceReached =
+        options.steps > 0 || options.passes > 0 || steps.error <= options.tolerance;
     result.cutoffFrequency = transfer.cutoff();
     result.featureSize = options.featureSize;
     const Eigen::VectorXd before = lumpedMass(surface.X, surface.F);

@@ -15,6 +15,9 @@
 
 namespace spectral {
 
+/// More passes, i.e. steps, make no difference, and take hours.
+inline constexpr int kMaxPasses = 9;
+
 struct FilterOptions {
     TransferFunctionOptions transferFunction;
     double featureSize = 0.0;  ///< Wavelength of the cutoff, 2 pi / omega_c, length units, > 0.
@@ -23,6 +26,10 @@ struct FilterOptions {
                                ///< infinitely many steps, over all but a thousandth of the filtered
                                ///< surface, length units, > 0.
     int maxSteps = 64;         ///< For automatic steps: limit, whatever the error, >= 2.
+    int passes = 0;  ///< For automatic steps: exactly this many passes of 1, 2, 4, ... steps, up to
+                     ///< kMaxPasses, whatever the error; 0: as many as the tolerance needs.
+    bool keepThinParts = false;  ///< For a low-pass in automatic steps, of a size that nobody
+                                 ///< chose: parts thinner than it stay (thin_parts.h).
     LaplacianKind laplacian = LaplacianKind::IntrinsicDelaunay;
     BasisUpdate basisUpdate = BasisUpdate::Conformal;
     double conformalShare = 0.0;  ///< For BasisUpdate::Full, 0 to 1; see laplacian_builder.h.
@@ -38,7 +45,8 @@ struct FilterOptions {
 struct FilterResult : SurfaceCounts {
     Vertices V;  ///< The filtered positions; unreferenced vertices do not move.
 
-    int steps = 0;
+    int steps = 0;                 ///< K; of automatic steps, those of the last pass.
+    int passes = 0;                ///< Passes of automatic steps; 0: the paper's scheme.
     double cutoffFrequency = 0.0;  ///< omega_c, radians per length unit.
     double featureSize = 0.0;      ///< 2 pi / omega_c, length units.
     double maxDisplacement = 0.0;  ///< Largest vertex displacement, length units.

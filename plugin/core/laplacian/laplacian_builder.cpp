@@ -8,15 +8,6 @@
 
 namespace spectral {
 
-namespace {
-
-/// Fraction of its input mass that every vertex keeps with BasisUpdate::Conformal: lengths that
-/// have shrunk to less than a half count as a half. Otherwise a part thinner than the feature size
-/// would shrink to a line, and then to a point, infinitely fast: masses vanish there, W does not.
-constexpr double kMinMass = 0.25;
-
-}  // namespace
-
 void checkMesh(const Vertices& V, const Faces& F, LaplacianKind kind) {
     checkMesh(V, F);
     if (kind == LaplacianKind::Cotangent) checkAreas(V, F);
@@ -41,6 +32,7 @@ LaplacianBuilder::LaplacianBuilder(const Surface& surface, Components components
 
 void LaplacianBuilder::setMass(Eigen::VectorXd D, double area) {
     current_.D = std::move(D);
+    if (massFactors_.size() > 0) current_.D.array() *= massFactors_.array();
     current_.constants = ConstantModes(components_, current_.D);
     area_ = area;
 }
@@ -48,6 +40,11 @@ void LaplacianBuilder::setMass(Eigen::VectorXd D, double area) {
 void LaplacianBuilder::reset() {
     if (update_ == BasisUpdate::Full) current_.W = inputStiffness_;
     setMass(inputMass_, inputMass_.sum());
+}
+
+void LaplacianBuilder::scaleMass(Eigen::VectorXd factors) {
+    massFactors_ = std::move(factors);
+    reset();
 }
 
 void LaplacianBuilder::update(const Vertices& X) {
@@ -84,8 +81,6 @@ Eigen::VectorXd LaplacianBuilder::boundedMass(const Eigen::VectorXd& D) const {
     // the harmonic mean of its neighbours.
     constexpr double kFloor = 1e-12;
     if (kind_ == LaplacianKind::Uniform) return Eigen::VectorXd::Constant(D.size(), D.mean());
-    if (update_ == BasisUpdate::Conformal && inputMass_.size() > 0)
-        return D.cwiseMax(kMinMass * inputMass_);
     return D.cwiseMax(kFloor * D.mean());
 }
 

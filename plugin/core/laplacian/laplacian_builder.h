@@ -47,14 +47,20 @@ class LaplacianBuilder {
     /// Returns to the Laplacian of the input.
     void reset();
 
-    /// Area of the current shape: the sum of D before its lower bound is applied.
+    /// Multiplies D of the input and of all later shapes (thin_parts.h); returns to the input.
+    /// @param factors  n, > 0.
+    void scaleMass(Eigen::VectorXd factors);
+
+    /// Area of the current shape: the sum of D before its lower bound and factors are applied.
     double area() const { return area_; }
 
-    /// D of the input.
+    /// D of the input, without factors.
     const Eigen::VectorXd& inputMass() const { return inputMass_; }
 
-    /// D of the shape X, > 0; with BasisUpdate::Conformal at least a quarter of D of the input.
+    /// D of the shape X, > 0, without factors.
     Eigen::VectorXd mass(const Vertices& X) const;
+
+    const Faces& faces() const { return surface_.F; }
 
   private:
     void setMass(Eigen::VectorXd D, double area);
@@ -69,6 +75,7 @@ class LaplacianBuilder {
     std::optional<IntrinsicDelaunay> intrinsic_;
     SparseMatrix inputStiffness_;  // empty if W is never updated
     Eigen::VectorXd inputMass_;
+    Eigen::VectorXd massFactors_;  // empty: 1
     Laplacian current_;
     double area_ = 0.0;
 };

@@ -80,6 +80,31 @@ TEST(FractionalFilter, StopsAtTheMaximumNumberOfStepsAndReportsTheError) {
     EXPECT_LT(error, 0.1 * quick.maxDisplacement);
 }
 
+TEST(FractionalFilter, EvaluatesToASmallShareOfTheEdgesWhateverTheTolerance) {
+    const Mesh mesh = testing::withNoise(testing::icosphere(5), 1e-3, 1);
+    const double size = std::sqrt(mesh.V.rowwise().squaredNorm().mean());
+    for (const double tolerance : {1e-3, 0.1}) {
+        FilterOptions options;
+        options.featureSize = 0.2;
+        options.tolerance = tolerance;
+        const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
+        EXPECT_LE(result.accuracy * size, 2e-3 * result.meanEdge) << tolerance;
+        EXPECT_TRUE(result.accuracyReached);
+    }
+}
+
+TEST(FractionalFilter, TellsAutomaticStepsFromThoseOfThePaper) {
+    const Mesh mesh = testing::blob();
+    EXPECT_EQ(fractionalFilter(mesh.V, mesh.F, smoothing(mesh, 2, BasisUpdate::Full)).passes, 0);
+    FilterOptions options = smoothing(mesh, 0, BasisUpdate::Full);
+    options.passes = 2;
+    options.tolerance = 1e-12;
+    const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
+    EXPECT_EQ(result.passes, 2);
+    EXPECT_EQ(result.steps, 2);
+    EXPECT_TRUE(result.toleranceReached);  // nobody asked for it
+}
+
 TEST(FractionalFilter, ReportsThatTheAccuracyIsNotReached) {
     // The tenth root of a gain that vanishes inside the spectrum has a cusp there.
     const Mesh mesh = testing::withNoise(testing::icosphere(4), 0.02, 5);

@@ -102,7 +102,7 @@ TEST(Products, GiveUpWhenTooManyAreExpected) {
     EXPECT_EQ(byProducts(A, F, 1.0, options).size(), 1U);
 }
 
-TEST(LaplacianBuilder, KeepsAQuarterOfEveryMassInAConformalUpdate) {
+TEST(LaplacianBuilder, TakesTheMassesOfTheShapeInAConformalUpdate) {
     const Mesh mesh = testing::blob();
     const Surface surface = surfaceOf(mesh.V, mesh.F);
     const Components components = connectedComponents(surface.F, surface.X.rows());
@@ -113,11 +113,19 @@ TEST(LaplacianBuilder, KeepsAQuarterOfEveryMassInAConformalUpdate) {
     laplacians.update(halved);
     EXPECT_TRUE(laplacians.current().D.isApprox(0.25 * D, 1e-12));
     laplacians.update(tenth);
-    EXPECT_EQ(laplacians.current().D, 0.25 * D);
+    EXPECT_TRUE(laplacians.current().D.isApprox(0.01 * D, 1e-12));
     EXPECT_NEAR(laplacians.area(), 0.01 * D.sum(), 1e-12 * D.sum());
 
     laplacians.reset();
     EXPECT_EQ(laplacians.current().D, D);
+
+    // Factors multiply masses, but are no area.
+    laplacians.scaleMass(Eigen::VectorXd::Constant(D.size(), 3.0));
+    EXPECT_EQ(laplacians.current().D, 3.0 * D);
+    laplacians.update(tenth);
+    EXPECT_TRUE(laplacians.current().D.isApprox(0.03 * D, 1e-12));
+    EXPECT_NEAR(laplacians.area(), 0.01 * D.sum(), 1e-12 * D.sum());
+    EXPECT_EQ(laplacians.inputMass(), D);
 
     LaplacianBuilder full(surface, components, LaplacianKind::IntrinsicDelaunay, BasisUpdate::Full);
     full.update(tenth);

@@ -1,0 +1,69 @@
+#include "core/filter/thin_parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/laplacian/laplacian.h"
+#include "core/support/threads.h"
+
+namespace spectral {
+
+namespace {
+
+/// Fraction of its area that a part keeps. Noise of half an edge takes no more in 99 % of a scan.
+constexpr double kKeptArea = 0.7;
+
+/// Area of a noisy surface relative to that after F^(1/4): noise of 0.3 edges has less on 99.9 % of
+/// a scan, over neighbourhoods of kRings edges.
+constexpr double kNoisyArea = 1.25;
+
+/// Where F^(1/4) leaves less of the area, its own error is what is left, and says nothing.
+constexpr double kLeastArea = 1e-4;
+
+/// Radius of the neighbourhoods in edges: half the default feature size.
+constexpr int kRings = 3;
+
+/// Largest factor: nothing moves.
+constexpr double kMaxFactor = 1e6;
+
+/// Replaces values by `of` all values at the neighbours of a vertex and its own.
+template <typename Reduction>
+Eigen::VectorXd overRing(const SparseMatrix& W, const Eigen::VectorXd& values,
+                         const Reduction& of) {
+    Eigen::VectorXd result(values.size());
+    parallelRows(values.size(), [&](Index begin, Index end) {
+        for (Index j = begin; j < end; ++j) {
+            double value = values[j];
+            for (SparseMatrix::InnerIterator entry(W, j); entry; ++entry)
+                if (entry.row() != j) value = of(value, values[entry.row()]);
+            result[j] = value;
+        }
+    });
+    return result;
+}
+
+/// Logarithms of the areas around each vertex.
+Eigen::ArrayXd logAreas(const SparseMatrix& W, const Faces& F, const Vertices& X) {
+    Eigen::VectorXd area = lumpedMass(X, F);
+    for (int ring = 0; ring < kRings; ++ring)
+        area = overRing(W, area, [](double a, double b) { return a + b; });
+    return area.array().max(std::numeric_limits<double>::min()).log();
+}
+
+}  // namespace
+
+Eigen::VectorXd thinPartFactors(const SparseMatrix& W, const Faces& F, const Vertices& X,
+                                const Vertices& weak, const Vertices& whole) {
+    const Eigen::ArrayXd before = logAreas(W, F, X), quarter = logAreas(W, F, weak),
+                         after = logAreas(W, F, whole);
+    const Eigen::ArrayXd logOfLoss =
+        ((quarter - after) * 4.0 / 3.0).max((before - quarter - std::log(kNoisyArea)) * 4.0);
+    Eigen::VectorXd factors = (before - quarter > -std::log(kLeastArea))
+                                  .select(kMaxFactor, logOfLoss / -std::log(kKeptArea))
+                                  .max(1.0);
+    if (factors.maxCoeff() == 1.0) return {};
+    return overRing(W, factors, [](double a, double b) { return std::max(a, b); });
+}
+
+}  // namespace spectral

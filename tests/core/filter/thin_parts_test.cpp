@@ -1,0 +1,105 @@
+#include "core/filter/thin_parts.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/filter/fractional_filter.h"
+#include "core/laplacian/laplacian_builder.h"
+#include "core/mesh/measures.h"
+#include "support/evaluation.h"
+#include "support/shapes.h"
+
+namespace spectral {
+namespace {
+
+using testing::largestDifference;
+using testing::Mesh;
+
+constexpr double kSize = 1.2;
+
+/// A ring whose tube, of girth 0.63, a low-pass of kSize draws in to a line.
+Mesh thinRing() {
+    Mesh ring = testing::torus(2, 0.1, 120, 12);
+    ring.V.rowwise() += Eigen::RowVector3d(8, 0, 0);
+    return ring;
+}
+
+FilterResult lowPass(const Mesh& mesh, bool keepThinParts) {
+    FilterOptions options;
+    options.featureSize = kSize;
+    options.tolerance = 1e-3;
+    options.keepThinParts = keepThinParts;
+    return fractionalFilter(mesh.V, mesh.F, options);
+}
+
+/// F(sqrt(A)) X of a Gaussian low-pass of a feature size, one shot.
+Vertices oneShot(const Mesh& mesh, double featureSize) {
+    FilterOptions options;
+    options.featureSize = featureSize;
+    options.steps = 1;
+    return fractionalFilter(mesh.V, mesh.F, options).V;
+}
+
+/// For a Gaussian, F^(1/4) is the low-pass of half the size.
+Eigen::VectorXd factors(const Mesh& mesh) {
+    const MeshLaplacian of = meshLaplacian(mesh.V, mesh.F, LaplacianKind::IntrinsicDelaunay);
+    return thinPartFactors(of.laplacian.W, mesh.F, mesh.V, oneShot(mesh, 0.5 * kSize),
+                           oneShot(mesh, kSize));
+}
+
+TEST(ThinParts, KeepHalfOfTheirAreaInsteadOfShrinkingToALine) {
+    const Mesh ring = thinRing(), ball = testing::icosphere(3), both = testing::joined(ball, ring);
+    const FilterResult drawnIn = lowPass(both, false), kept = lowPass(both, true);
+    const Index n = ball.V.rows();
+    const double area = surfaceArea(ring.V, ring.F);
+    EXPECT_GT(drawnIn.shrunkenPart, 0.1);
+    EXPECT_LT(surfaceArea(drawnIn.V.bottomRows(ring.V.rows()), ring.F), 0.1 * area);
+    EXPECT_EQ(kept.shrunkenPart, 0.0);
+    EXPECT_GT(surfaceArea(kept.V.bottomRows(ring.V.rows()), ring.F), 0.5 * area);
+    EXPECT_LT(kept.maxDisplacement, 0.1);
+    // The rest is filtered as before, within the tolerance.
+    EXPECT_LT(largestDifference(kept.V.topRows(n), drawnIn.V.topRows(n)), 2e-3);
+}
+
+TEST(ThinParts, HaveTheFactorThatKeepsSevenTenths) {
+    // The girth of a tube is known: a Gaussian takes it to F(2 pi / girth) at once.
+    const Mesh ring = thinRing();
+    const double exponent = 0.5 * std::log(2.0) * std::pow(kSize / (2.0 * kPi * 0.1), 2);
+    const Eigen::VectorXd found = factors(ring);
+    ASSERT_EQ(found.size(), ring.V.rows());
+    EXPECT_NEAR(found.mean(), exponent / -std::log(0.7), 0.1 * found.mean());
+    EXPECT_LT(found.maxCoeff() - found.minCoeff(), 0.05 * found.mean());
+}
+
+TEST(ThinParts, AreNoneWhereTheShapeIsThickOrNoisy) {
+    const Mesh ball = testing::icosphere(4);
+    EXPECT_EQ(factors(ball).size(), 0);
+    const double edge = meanEdgeLength(ball.V, ball.F);
+    EXPECT_EQ(factors(testing::withNoise(ball, 0.3 * edge, 1)).size(), 0);
+    EXPECT_EQ(lowPass(ball, true).V, lowPass(ball, false).V);
+}
+
+TEST(ThinParts, StayWhereTheyAreWhenNothingOfThemWouldBeLeft) {
+    Mesh speck = testing::icosphere(1);
+    speck.V = (0.01 * speck.V).rowwise() + Eigen::RowVector3d(3, 0, 0);
+    const Mesh ball = testing::icosphere(3), both = testing::joined(ball, speck);
+    const FilterResult kept = lowPass(both, true);
+    const Index n = speck.V.rows();
+    EXPECT_LT(largestDifference(kept.V.bottomRows(n), both.V.bottomRows(n)), 1e-5);
+}
+
+TEST(ThinParts, AreDrawnInByFiltersThatAreNoLowPass) {
+    const Mesh ring = thinRing();
+    FilterOptions options;
+    options.featureSize = kSize;
+    options.tolerance = 1e-3;
+    options.transferFunction.type = FilterType::BandStop;
+    options.transferFunction.stopGain = 0.5;
+    const Vertices without = fractionalFilter(ring.V, ring.F, options).V;
+    options.keepThinParts = true;
+    EXPECT_EQ(fractionalFilter(ring.V, ring.F, options).V, without);
+}
+
+}  // namespace
+}  // namespace spectral
