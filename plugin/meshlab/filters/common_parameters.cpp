@@ -3,6 +3,7 @@
 #include <common/parameters/rich_parameters.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "core/mesh/measures.h"
@@ -49,6 +50,15 @@ RichPercentage featureSizeParameter(const MeshModel& mesh, const QString& help) 
 
 double featureSize(const RichParameterList& parameters) {
     return parameters.getAbsPerc("feature_size");
+}
+
+bool isDefaultFeatureSize(const RichParameterList& parameters, const MeshModel& mesh,
+                          const MeshMatrices& matrices) {
+    // A field of MeshLab's dialog rounds its number.
+    constexpr double kRounding = 1e-4;
+    const double size = spectral::defaultFeatureSize(
+        spectral::meanEdgeLength(matrices.V, matrices.F), mesh.cm.bbox.Diag());
+    return std::abs(featureSize(parameters) - size) <= kRounding * size;
 }
 
 RichBool selectedParameter(const MeshModel& mesh, const QString& width) {

@@ -31,6 +31,10 @@ RichPercentage featureSizeParameter(const MeshModel& mesh, const QString& help);
 /// The feature size as a length.
 double featureSize(const RichParameterList& parameters);
 
+/// Whether `feature_size` is the default of this mesh: a size that nobody chose.
+bool isDefaultFeatureSize(const RichParameterList& parameters, const MeshModel& mesh,
+                          const MeshMatrices& matrices);
+
 /// `selected`; default: whether any face is selected, as in MeshLab's own filters.
 /// @param width  distance within which the filter fades out around the selection, in words.
 RichBool selectedParameter(const MeshModel& mesh, const QString& width = "about a feature size");

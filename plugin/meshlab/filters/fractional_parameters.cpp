@@ -25,22 +25,29 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
 
     addTransferParameters(mesh, list);
     list.addParam(selectedParameter(mesh));
-    list.addParam(
-        RichInt("steps", defaults.steps, "Steps (0 = automatic)",
-                "The filter is applied in this many weak steps, because a single strong one turns "
-                "thin parts into spikes or balloons. 0 takes as many as the tolerance needs; 10 is "
-                "the scheme of the paper with ten steps; 1 is the classical one-shot filter.",
-                true));
+    list.addParam(RichInt(
+        "steps", defaults.steps, "Steps (0 = automatic)",
+        "The filter is applied in this many weak steps, because a single strong one turns "
+        "thin parts into spikes or balloons. 0 approximates infinitely many of them, to the "
+        "tolerance; 10 is the scheme of the paper with ten steps; 1 is the classical "
+        "one-shot filter.",
+        true));
     list.addParam(RichPercentage(
         "tolerance", static_cast<Scalarm>(kDefaultTolerance) * diagonal, 0, diagonal, "Tolerance",
         "With 0 steps: largest distance of the surface from the result of infinitely many steps, "
         "for all but a thousandth of it. Larger is faster.",
         true));
+    list.addParam(RichInt(
+        "passes", defaults.passes, "Passes (0 = automatic)",
+        "With 0 steps: the number of passes of 1, 2, 4, ... steps, whatever the tolerance. A log "
+        "tells how many a run took: with that number it is repeated exactly.",
+        true));
     list.addParam(RichEnum(
         "basis_update", static_cast<int>(defaults.basisUpdate), basisUpdates(), "Basis update",
         "What every step recomputes from the current shape. <b>full</b>, the paper's scheme: all "
-        "of its frequencies. <b>conformal</b>: its areas only, where each vertex keeps at least a "
-        "quarter of its own (Kazhdan et al. 2012); thin parts do not turn into spikes. "
+        "of its frequencies. <b>conformal</b>: its areas only (Kazhdan et al. 2012); thin parts "
+        "are "
+        "drawn in smoothly instead of turning into spikes. "
         "<b>none</b>: nothing; the number of steps then makes no difference.",
         true));
     list.addParam(RichFloat(
@@ -105,6 +112,8 @@ std::vector<std::string> unusedParameters(const RichParameterList& parameters) {
     warnIfUnused(
         parameters.getFloat("conformal_share") != static_cast<Scalarm>(defaults.conformalShare),
         isFull, "conformal_share", "without basis_update = full", warnings);
+    warnIfUnused(parameters.getInt("passes") != defaults.passes, parameters.getInt("steps") == 0,
+                 "passes", "without steps = 0", warnings);
     warnIfUnused(parameters.getInt("basis_size") != defaults.evaluation.truncation.basisSize,
                  isTruncated, "basis_size", "without spectrum = truncated", warnings);
     warnIfUnused(
@@ -121,6 +130,8 @@ FilterOptions fractionalFilterOptions(const RichParameterList& parameters, const
     options.featureSize = transfer.featureSize;
     options.steps = parameters.getInt("steps");
     options.tolerance = parameters.getAbsPerc("tolerance");
+    options.passes = parameters.getInt("passes");
+    options.keepThinParts = isDefaultFeatureSize(parameters, mesh, matrices);
     options.basisUpdate =
         static_cast<spectral::BasisUpdate>(choice(parameters, "basis_update", basisUpdates()));
     options.conformalShare = parameters.getFloat("conformal_share");

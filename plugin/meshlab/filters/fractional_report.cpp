@@ -18,6 +18,7 @@
 std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& result) {
     std::map<std::string, QVariant> report{
         {"steps", result.steps},
+        {"passes", result.passes},
         {"cutoff_frequency", result.cutoffFrequency},
         {"feature_size", result.featureSize},
         {"area_before", result.areaBefore},
@@ -61,6 +62,16 @@ std::string percentOf(double share) {
     return text.str();
 }
 
+/// "10 steps", or "automatic steps, 2 in pass 2": one automatic step is not one of the paper's.
+std::string stepsText(const spectral::FilterResult& result) {
+    std::ostringstream text;
+    if (result.passes > 0)
+        text << "automatic, " << result.steps << " in pass " << result.passes;
+    else
+        text << result.steps << (result.steps == 1 ? " step" : " steps");
+    return text.str();
+}
+
 /// The most important facts in one line: filter and size, displacement, accuracy.
 std::string headline(const spectral::FilterOptions& options, const spectral::FilterResult& result,
                      double diagonal, const std::string& subject) {
@@ -76,7 +87,7 @@ std::string headline(const spectral::FilterOptions& options, const spectral::Fil
          << " (root mean square), at most by " << result.maxDisplacement << "; ";
     text << std::setprecision(2);
     if (options.steps > 0)
-        text << result.steps << (result.steps == 1 ? " step" : " steps") << ", as requested";
+        text << stepsText(result) << ", as requested";
     else if (result.toleranceReached)
         text << "accurate to " << result.stepError << " (" << percent * result.stepError << " %)";
     else
@@ -200,7 +211,7 @@ std::string fractionalReportText(const spectral::FilterOptions& options,
                                  const std::string& subject) {
     std::ostringstream text;
     text << std::setprecision(4);
-    text << headline(options, result, diagonal, subject) << "\n  steps: " << result.steps
+    text << headline(options, result, diagonal, subject) << "\n  steps: " << stepsText(result)
          << ", cutoff frequency " << result.cutoffFrequency << " rad per unit\n"
          << "  area: " << result.areaBefore << " -> " << result.areaAfter << "\n"
          << "  " << volumeText(result.hasVolume, result.volumeBefore, result.volumeAfter) << "\n  "

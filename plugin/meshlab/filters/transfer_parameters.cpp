@@ -34,7 +34,8 @@ void addTransferParameters(const MeshModel& mesh, RichParameterList& list) {
         "hollow next to it. A low-pass leaves a quarter of the height of waves half as long, and "
         "nine tenths of that of waves twice as long. To remove bumps, try four times their width. "
         "Default: six mean edges of this mesh, at most 5 % of its diagonal, which removes the "
-        "noise of a scan."));
+        "noise of a scan. A low-pass of this size keeps parts that are thinner; one of another "
+        "size draws them in."));
     list.addParam(RichFloat("pass_gain", static_cast<Scalarm>(transfer.passGain), "Pass gain",
                             "Factor for the details that the filter passes: 1 keeps them, 2 "
                             "doubles their height, 0 removes them. Not negative."));

@@ -58,6 +58,7 @@ PARAMETERS: dict[str, dict[str, st.SearchStrategy[Any]]] = {
         **_TRANSFER,
         "steps": _STEPS,
         "tolerance": _SIZES,
+        "passes": _of((0, 1, 2, 3), (-1, 10, 1000)),
         "basis_update": _choice(3),
         "conformal_share": _of((1.0, 0.5, 0.1, 1e-9, 1e-60, 0.0), (-0.1, 1.000001, 2.0, NAN)),
         "spectrum": _choice(2),

@@ -48,7 +48,7 @@ def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
         rows += [
             ("Feature size", f"{report['feature_size']:.6g}"),
             ("Cutoff frequency", f"{report['cutoff_frequency']:.6g} rad per unit"),
-            ("Steps", f"{report['steps']}"),
+            ("Steps", _steps(report)),
         ]
         if report["step_error"]:
             rows.append(("Estimated error of the steps", f"{report['step_error']:.2g}"))
@@ -70,6 +70,13 @@ def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
         if report.get(name):
             rows.append((label, f"{report[name]}{more}"))
     return rows + (_work(report) if is_of_filter else [])
+
+
+def _steps(report: dict[str, Any]) -> str:
+    # One automatic step is not one of the paper's.
+    if report["passes"]:
+        return f"automatic, {report['steps']} in pass {report['passes']}"
+    return f"{report['steps']}"
 
 
 def _work(report: dict[str, Any]) -> list[tuple[str, str]]:

@@ -47,6 +47,7 @@ class FilterKeywords(TransferKeywords, total=False):
     selected: bool
     steps: int
     tolerance: Size
+    passes: int
     basis_update: BasisUpdate
     conformal_share: float
     spectrum: Spectrum
@@ -89,7 +90,8 @@ class FilterOptions(Options):
         Length(automatic=True),
         "Size of the details at the filter's cutoff: a percentage of the model's diagonal such as "
         "5%, mean edge lengths such as 6e, a length in the model's units such as 0.02, or auto: "
-        "6e, at most 5%. Try four times the width of what you want to remove.",
+        "6e, at most 5%, where a low-pass keeps thinner parts. Try four times the width of what "
+        "you want to remove.",
     )
     pass_gain: float = option(
         1.0, "Factor for the details that pass: 1 keeps them, 2 doubles their height.", Limits(0)
@@ -129,8 +131,8 @@ class FilterOptions(Options):
     )
     steps: int = option(
         0,
-        "Apply the filter in this many weak steps, so that thin parts survive: 0 takes as many as "
-        "--tolerance requires, 10 is the paper's scheme, 1 the classical one-shot filter.",
+        "Apply the filter in this many weak steps, so that thin parts leave no spikes: 0 "
+        "approximates infinitely many, 10 is the paper's scheme, 1 the classical one-shot filter.",
         Limits(0, LARGEST_INTEGER),
     )
     tolerance: Length = option(
@@ -138,10 +140,17 @@ class FilterOptions(Options):
         "With --steps 0: maximum distance of the surface from the limit of infinitely many steps, "
         "e.g. 0.05% of the diagonal.",
     )
+    passes: int = option(
+        0,
+        "With --steps 0: the number of passes of 1, 2, 4, ... steps, whatever the tolerance. With "
+        "the number in its report, a run is repeated exactly; 0 takes as many as --tolerance "
+        "requires.",
+        Limits(0, 9),
+    )
     basis_update: BasisUpdate = option(
         "conformal",
-        "What a step takes over from the one before: its areas (conformal; thin parts shrink "
-        "smoothly), everything (full; the paper's scheme) or nothing (none).",
+        "What each step recomputes from the current shape: its areas (conformal; thin parts are "
+        "drawn in smoothly), the whole Laplacian (full; the paper's scheme), nothing (none).",
     )
     conformal_share: float = option(
         0.0,
