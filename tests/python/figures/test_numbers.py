@@ -32,7 +32,8 @@ def test_a_picture_shows_what_the_program_computes(
     name: str, shared_mesh: Callable[[str], Path]
 ) -> None:
     changed = differences(recorded(SCREENSHOTS)[f"{name}.png"], computed(name, shared_mesh))
-    assert not changed, f"make {name}.png anew by `make screenshots`, and look at it"
+    lines = "\n".join(["`make screenshots` makes it anew; look at it", *changed])
+    assert not changed, lines
 
 
 def test_numbers_are_recorded_picture_by_picture_to_three_digits(tmp_path: Path) -> None:
