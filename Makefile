@@ -6,6 +6,7 @@
 #   WARNINGS_AS_ERRORS  ON: a compiler warning fails the build
 #   TEST_OPTIONS        of pytest in `make test`, such as --without-posix: as on Windows
 #   MESHES              the folder of the meshes that `make screenshots` shows
+#   PICTURES            of `make screenshots`: only these, such as "denoise colors", none of MeshLab
 #   BENCH_MESH          the mesh of the C++ benchmark, skipped when there is no such file
 #   BENCH_OPTIONS       of `make bench-basis`, `bench-contract`, `bench-defaults`, `bench-denoise`, `bench-memory`, `bench-signatures`; --help lists them
 #   FUZZ_OPTIONS        of `make fuzz`; tests/fuzz/fuzz_core.cpp lists them
@@ -15,6 +16,7 @@ PYTHON ?= python3
 MESHLAB_SOURCE_DIR ?=
 WARNINGS_AS_ERRORS ?= OFF
 MESHES ?= ../shared/data
+PICTURES ?=
 BENCH_MESH ?= $(MESHES)/dragon_40k.ply
 BENCH_OPTIONS ?=
 TEST_OPTIONS ?=
@@ -81,10 +83,9 @@ docs: $(PACKAGE)  ## write the reference of filters and Python API: build/docs/i
 gui-test: $(PACKAGE)  ## test in the real MeshLab 2025.07, made once (Linux, root or sudo)
 	tests/gui/run.sh
 
-screenshots: $(PACKAGE)  ## draw the figures and take the pictures of MeshLab in screenshots/ anew
-	$(BIN)/python screenshots/scripts/paper.py $(MESHES)/dragon_40k.ply $(MESHES)/angel_50k.ply --output screenshots
-	$(BIN)/python screenshots/scripts/parts.py $(MESHES) screenshots
-	tests/gui/run.sh tests/gui/screenshots.py
+screenshots: $(PACKAGE)  ## make the pictures in screenshots/ and their numbers anew
+	PYTHONPATH=tests/benchmarks $(BIN)/python screenshots/scripts/draw.py $(MESHES) screenshots $(PICTURES)
+	$(if $(PICTURES),,tests/gui/run.sh tests/gui/screenshots.py)
 
 setup: $(PACKAGES) $(VENV)  ## install what is missing: Debian packages, .venv
 

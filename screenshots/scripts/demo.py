@@ -6,11 +6,13 @@ It writes bunny_filtered.ply and before_after.png to DIR, and prints the filter'
 from __future__ import annotations
 
 import argparse
+import functools
 import sys
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from figure_numbers import Drawing, MeshFile, displacement
 from meshlab_spectral.cli.report_table import report_table
 from meshlab_spectral.errors import SpectralError
 from meshlab_spectral.figures.pictures import Panel, View
@@ -27,29 +29,53 @@ BUNNY_VIEW = View(direction=(0.25, 0.2, 1.0))
 
 def demonstrate(folder: Path) -> None:
     """Filter the bunny that comes with pymeshlab; write the mesh and a picture to `folder`."""
-    import pymeshlab
-
-    load()
-    bunny = Path(pymeshlab.__file__).parent / "tests" / "sample_meshes" / "bunny.obj"
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.load_new_mesh(str(bunny))
-    before = _panel("Stanford bunny", mesh_set.current_mesh())
-    parameters = OPTIONS.pymeshlab_parameters(mesh_set.current_mesh())
-    report = mesh_set.apply_filter(FILTER_NAME, **parameters)
-    after = _panel(
-        f"low-pass, {OPTIONS.feature_size} of the diagonal, {OPTIONS.steps} steps",
-        mesh_set.current_mesh(),
-    )
-
+    before, mesh_set, report = _filtered_bunny()
     folder.mkdir(parents=True, exist_ok=True)
     mesh_file, picture = folder / "bunny_filtered.ply", folder / "before_after.png"
     with writing_whole(mesh_file) as scratch:
         mesh_set.save_current_mesh(str(scratch))
-    draw_side_by_side([before, after], picture, view=BUNNY_VIEW)
+    _draw([before, _after(mesh_set)], picture)
 
     console = Console(soft_wrap=True)
     console.print(report_table(report, "Stanford bunny, low-pass"))
     console.print(f"Mesh: {mesh_file}\nPicture: {picture}", highlight=False)
+
+
+def before_and_after(mesh: MeshFile) -> Drawing:
+    """Compute the demonstration's picture; it needs no mesh of the collection."""
+    before, mesh_set, _ = _filtered_bunny()
+    after = _after(mesh_set)
+    numbers = displacement(before.V, before.F, after.V)
+    return Drawing(numbers, functools.partial(_draw, [before, after]))
+
+
+def _filtered_bunny() -> tuple[Panel, Any, dict[str, Any]]:
+    """Return the bunny, a MeshSet with the filtered one, and the filter's report."""
+    import pymeshlab
+
+    load()
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.load_new_mesh(str(bunny_file()))
+    before = _panel("Stanford bunny", mesh_set.current_mesh())
+    parameters = OPTIONS.pymeshlab_parameters(mesh_set.current_mesh())
+    return before, mesh_set, mesh_set.apply_filter(FILTER_NAME, **parameters)
+
+
+def bunny_file() -> Path:
+    """Return the bunny that comes with pymeshlab."""
+    import pymeshlab
+
+    return Path(pymeshlab.__file__).parent / "tests" / "sample_meshes" / "bunny.obj"
+
+
+def _after(mesh_set: Any) -> Panel:
+    size = str(OPTIONS.feature_size).replace("%", " %")
+    label = f"low-pass, {size} of the diagonal, {OPTIONS.steps} steps"
+    return _panel(label, mesh_set.current_mesh())
+
+
+def _draw(panels: list[Panel], path: Path) -> None:
+    draw_side_by_side(panels, path, view=BUNNY_VIEW)
 
 
 def _panel(label: str, mesh: Any) -> Panel:

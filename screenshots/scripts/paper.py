@@ -6,7 +6,8 @@ The paper is Kovnatsky, Bronstein, Bronstein: Stable Spectral Mesh Filtering, 20
 4  eigenfunctions before a filter, after a tenth of it, and after all of it
 5  the fractional powers of two filters, and the shapes they produce
 
-Each mesh gets its own pictures, viewed along the shortest axis of its bounding box with y up, or z.
+Each mesh gets its own pictures, viewed along the shortest axis of its bounding box with y up, or z;
+the numbers behind them are in numbers.json next to them.
 The paper's meshes, the dragon and the angel (Lucy), are in the Stanford 3D Scanning Repository,
 https://graphics.stanford.edu/data/3Dscanrep/.
 """
@@ -24,9 +25,9 @@ from meshlab_spectral import SpectralError
 from subject import Subject
 
 FIGURES = {
-    1: ("figure1_stability", stability.draw),
-    4: ("figure4_eigenfunctions", eigenfunctions.draw),
-    5: ("figure5_sequences", sequences.draw),
+    1: ("figure1_stability", stability.figure),
+    4: ("figure4_eigenfunctions", eigenfunctions.figure),
+    5: ("figure5_sequences", sequences.figure),
 }
 
 
@@ -44,9 +45,9 @@ def _main() -> None:
         for source in wanted.meshes:
             subject = Subject(source)
             for number in wanted.only or FIGURES:
-                name, draw = FIGURES[number]
+                name, figure = FIGURES[number]
                 picture = wanted.output / f"{name}_{subject.name}.png"
-                draw(subject, picture, wanted.scale)
+                figure(subject, wanted.scale).save(picture)
                 print(picture)
     except SpectralError as error:
         sys.exit(f"Error: {error}")

@@ -1,28 +1,30 @@
 """Pictures of what the filters do beyond a low-pass of a whole mesh.
 
-`parts.py MESHES PICTURES [NAME ...]` draws equalizer, selection, creases, quality, colors and
-artefacts into the folder PICTURES, from dragon_40k.ply, stanford-bunny.obj, fandisk.off and
-gears.stl in the folder MESHES.
+Each function computes one picture from a mesh of the collection.
 """
 
 from __future__ import annotations
 
-import sys
+import functools
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from figure_numbers import Drawing, MeshFile, Numbers, diagonal, displacement, labelled
 from meshlab_spectral.figures.pictures import Frame, Panel, View, render
 from meshlab_spectral.figures.sheet import FONT_SIZE, INK, Sheet
 from meshlab_spectral.files.meshes import load_arrays
 from meshlab_spectral.filters.arrays import lumped_areas, mean_edge
-from meshlab_spectral.filters.artefacts import measure_artefacts
 from meshlab_spectral.filters.fractional import filter_mesh
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.filters.signals import filter_colors, filter_scalars
 from meshlab_spectral.filters.transfer import MeshLengths, gain
 from meshlab_spectral.plugin.loading import FILTER_NAME, load
 from numpy.typing import NDArray
+from stability import LOW_PASS, schemes
+from subject import scheme_name, subject_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,33 +40,53 @@ SHADES = (0.02, 1.0)  # excludes 0, where a line would be drawn
 FULL_RED = 0.005  # length of artefacts, in diagonals
 
 
-def _diagonal(V: Array) -> float:
-    return float(np.linalg.norm(np.ptp(V, axis=0)))
+@dataclass(frozen=True)
+class Row:
+    """Meshes side by side, seen from the same viewpoint."""
+
+    panels: list[Panel]
+    view: View
 
 
-def _row(panels: list[Panel], view: View, curves: int = 0) -> Sheet:
-    """Draw panels side by side; `curves` columns to the right stay empty."""
-    frame = Frame.around([panel.V for panel in panels], view)
-    sheet = Sheet([frame.width / frame.height], len(panels) + curves, 2, SCALE)
-    for column, panel in enumerate(panels):
-        sheet.picture(0, column, render(panel, frame, sheet.pixels), panel.label)
-    return sheet
+def _drawing(
+    numbers: Numbers,
+    *rows: Row,
+    plot: Callable[[Axes], None] | None = None,
+    scale: float = SCALE,
+) -> Drawing:
+    """Make a picture of rows of meshes; `plot` fills one more column on the right."""
+    return Drawing(numbers, functools.partial(_draw, rows, plot, scale))
 
 
-def equalizer(meshes: Path, path: Path) -> None:
-    """Draw the dragon, the dragon after an equalizer of four bands, and its curve."""
-    V, F = load_arrays(meshes / "dragon_40k.ply")
+def _draw(
+    rows: tuple[Row, ...], plot: Callable[[Axes], None] | None, scale: float, path: Path
+) -> None:
+    frames = [Frame.around([panel.V for panel in row.panels], row.view) for row in rows]
+    columns = len(rows[0].panels)
+    aspects = [frame.width / frame.height for frame in frames]
+    lines = max(1 + panel.label.count("\n") for row in rows for panel in row.panels)
+    sheet = Sheet(aspects, columns + (plot is not None), lines, scale)
+    for i, (row, frame) in enumerate(zip(rows, frames, strict=True)):
+        for j, panel in enumerate(row.panels):
+            sheet.picture(i, j, render(panel, frame, sheet.pixels), panel.label)
+    if plot is not None:
+        plot(sheet.plot(0, columns))
+    sheet.save(path)
+
+
+def equalizer(mesh: MeshFile) -> Drawing:
+    """Show the dragon, the dragon after an equalizer of four bands, and its curve."""
+    V, F = load_arrays(mesh("dragon_40k.ply"))
     points = ", ".join(f"{size}%:{factor}" for size, factor in BANDS)
     options = FilterOptions(filter_type="custom", transfer_function=points)
     Y, _ = filter_mesh(V, F, **options.as_dict())
     panels = [Panel("original", V, F), Panel(f"transfer_function\n{points}", Y, F)]
-    sheet = _row(panels, View.of_widest_side(V), 1)
-    lengths = MeshLengths(0.05 * _diagonal(V), _diagonal(V), mean_edge(V, F))
-    _plot_bands(sheet.plot(0, 2), options, lengths)
-    sheet.save(path)
+    lengths = MeshLengths(0.05 * diagonal(V), diagonal(V), mean_edge(V, F))
+    plot = functools.partial(_plot_bands, options, lengths)
+    return _drawing(displacement(V, F, Y), Row(panels, View.of_widest_side(V)), plot=plot)
 
 
-def _plot_bands(axes: Axes, options: FilterOptions, lengths: MeshLengths) -> None:
+def _plot_bands(options: FilterOptions, lengths: MeshLengths, axes: Axes) -> None:
     sizes = np.geomspace(60, 1, 300)
     gains = gain(options, lengths.feature_size / (sizes / 100 * lengths.diagonal), lengths)
     axes.plot(sizes, gains, color="#b04607", linewidth=1.5)
@@ -79,11 +101,11 @@ def _plot_bands(axes: Axes, options: FilterOptions, lengths: MeshLengths) -> Non
     axes.set_ylabel("gain", fontsize=FONT_SIZE - 1, color=INK)
 
 
-def selection(meshes: Path, path: Path) -> None:
-    """Draw the bunny with its head selected, and after a low-pass of the selection."""
+def selection(mesh: MeshFile) -> Drawing:
+    """Show the bunny with its head selected, and after a low-pass of the selection."""
     import pymeshlab
 
-    V, F = load_arrays(meshes / "stanford-bunny.obj")
+    V, F = load_arrays(mesh("stanford-bunny.obj"))
     load()
     mesh_set = pymeshlab.MeshSet()
     mesh_set.add_mesh(pymeshlab.Mesh(V, F))
@@ -102,24 +124,25 @@ def selection(meshes: Path, path: Path) -> None:
         Panel("low-pass 15 % of the selection", Y, F),
         Panel("how far each vertex moved", Y, F, np.clip(moved, *SHADES)),
     ]
-    _row(panels, View()).save(path)
+    numbers = displacement(V, F, Y)
+    numbers["vertices selected, %"] = 100 * float(np.mean(selected > 0))
+    numbers["vertices moved, %"] = 100 * float(np.mean(distance > 0))
+    return _drawing(numbers, Row(panels, View()))
 
 
-def creases(meshes: Path, path: Path) -> None:
-    """Draw machine parts with noise, and after a low-pass without and with a crease angle."""
-    rows = [
-        _creases(meshes / "fandisk.off", 0.1, View((0.6, 1.0, 0.7), (0.0, 0.0, 1.0))),
-        _creases(meshes / "gears.stl", 0.03, View((0.3, -0.5, 1.0), (0.0, 1.0, 0.0))),
-    ]
-    frames = [Frame.around([panel.V for panel in panels], view) for panels, view in rows]
-    sheet = Sheet([frame.width / frame.height for frame in frames], 3, 2, 0.8 * SCALE)
-    for i, (panels, _) in enumerate(rows):
-        for j, panel in enumerate(panels):
-            sheet.picture(i, j, render(panel, frames[i], sheet.pixels), panel.label)
-    sheet.save(path)
+def creases(mesh: MeshFile) -> Drawing:
+    """Show machine parts with noise, and after a low-pass without and with a crease angle."""
+    fandisk, of_fandisk = _creases(mesh("fandisk.off"), 0.1)
+    gears, of_gears = _creases(mesh("gears.stl"), 0.03)
+    return _drawing(
+        of_fandisk | of_gears,
+        Row(fandisk, View((0.6, 1.0, 0.7), (0.0, 0.0, 1.0))),
+        Row(gears, View((0.3, -0.5, 1.0), (0.0, 1.0, 0.0))),
+        scale=0.8 * SCALE,
+    )
 
 
-def _creases(source: Path, noise: float, view: View) -> tuple[list[Panel], View]:
+def _creases(source: Path, noise: float) -> tuple[list[Panel], Numbers]:
     import pymeshlab
 
     mesh_set = pymeshlab.MeshSet()
@@ -135,14 +158,15 @@ def _creases(source: Path, noise: float, view: View) -> tuple[list[Panel], View]
         "low-pass, 6 mean edges": filter_mesh(X, F, feature_size=size)[0],
         "crease_angle 50": filter_mesh(X, F, feature_size=size, crease_angle=50.0)[0],
     }
-    panels = []
+    panels: list[Panel] = []
+    numbers: Numbers = {}
     for label, Y in shapes.items():
         error = _mean_angle(Y, V, F)
-        print(f"{source.name}, {label}: mean error of the normals {error:.1f} degrees")
+        numbers[f"{source.stem}, {label}: mean error of the normals, degrees"] = error
         label = f"{label}\nnormals off by {error:.1f}\N{DEGREE SIGN}"
         # Every triangle has its own vertices, to be shaded flat.
         panels.append(Panel(label, Y[F].reshape(-1, 3), np.arange(F.size).reshape(-1, 3)))
-    return panels, view
+    return panels, numbers
 
 
 def _mean_angle(Y: Array, V: Array, F: Indices) -> float:
@@ -152,26 +176,29 @@ def _mean_angle(Y: Array, V: Array, F: Indices) -> float:
     return float(np.degrees(np.average(angles, weights=np.linalg.norm(ofV, axis=1))))
 
 
-def quality(meshes: Path, path: Path) -> None:
-    """Draw a scalar field on the bunny, with noise, and the noisy one after a low-pass."""
-    V, F = load_arrays(meshes / "stanford-bunny.obj")
-    x, y, z = (V - V.min(axis=0)).T / _diagonal(V)
+def quality(mesh: MeshFile) -> Drawing:
+    """Show a scalar field on the bunny, with noise, and the noisy one after a low-pass."""
+    V, F = load_arrays(mesh("stanford-bunny.obj"))
+    x, y, z = (V - V.min(axis=0)).T / diagonal(V)
     field = np.sin(22 * x + 8 * np.sin(7 * y)) * np.cos(9 * z + 12 * y)
     noisy = field + 0.5 * np.random.default_rng(1).standard_normal(len(V))
     clean, _ = filter_scalars(V, F, noisy, feature_size="7%")
     areas = lumped_areas(V, F)
-    panels = []
+    panels: list[Panel] = []
+    numbers: Numbers = {}
     for label, values in (("field", field), ("with noise", noisy), ("low-pass 7 %", clean)):
-        error = np.sqrt(np.average((values - field) ** 2, weights=areas))
-        label = label if values is field else f"{label}\nrms error {error:.2f}"
+        if values is not field:
+            error = float(np.sqrt(np.average((values - field) ** 2, weights=areas)))
+            numbers[f"{label}: rms error"] = error
+            label = f"{label}\nrms error {error:.2f}"
         panels.append(Panel(label, V, F, np.clip(0.5 + 0.7 * values, *SHADES)))
-    _row(panels, View()).save(path)
+    return _drawing(numbers, Row(panels, View()))
 
 
-def colors(meshes: Path, path: Path) -> None:
-    """Draw a painting on the bunny, with noise, and the noisy one after a low-pass."""
-    V, F = load_arrays(meshes / "stanford-bunny.obj")
-    x, y, z = (V - V.min(axis=0)).T / _diagonal(V)
+def colors(mesh: MeshFile) -> Drawing:
+    """Show a painting on the bunny, with noise, and the noisy one after a low-pass."""
+    V, F = load_arrays(mesh("stanford-bunny.obj"))
+    x, y, z = (V - V.min(axis=0)).T / diagonal(V)
     patches = np.tanh(12 * np.sin(14 * x + 4 * np.sin(9 * y)) * np.cos(11 * z + 9 * y))[:, None]
     brown, cream = np.array([120.0, 70.0, 40.0]), np.array([235.0, 220.0, 190.0])
     painting = (brown + cream) / 2 + patches * (cream - brown) / 2
@@ -179,35 +206,35 @@ def colors(meshes: Path, path: Path) -> None:
     clean, _ = filter_colors(V, F, noisy / 255, feature_size="6%")
     clean *= 255
     areas = lumped_areas(V, F)
-    panels = []
+    panels: list[Panel] = []
+    numbers: Numbers = {}
     for label, levels in (("painting", painting), ("with noise", noisy), ("low-pass 6 %", clean)):
-        error = np.sqrt(np.average(np.mean((levels - painting) ** 2, axis=1), weights=areas))
-        label = label if levels is painting else f"{label}\nrms error {error:.0f} of 255"
+        if levels is not painting:
+            squares = np.mean((levels - painting) ** 2, axis=1)
+            error = float(np.sqrt(np.average(squares, weights=areas)))
+            numbers[f"{label}: rms error of 255"] = error
+            label = f"{label}\nrms error {error:.0f} of 255"
         panels.append(Panel(label, V, F, colors=np.round(levels).astype(np.uint8)))
-    _row(panels, View()).save(path)
+    return _drawing(numbers, Row(panels, View()))
 
 
-def artefacts(meshes: Path, path: Path) -> None:
-    """Draw the dragon after a low-pass in three schemes, coloured by the artefacts they leave."""
-    V, F = load_arrays(meshes / "dragon_40k.ply")
-    size, shapes = 0.15 * _diagonal(V), {}
-    for label, scheme in (
-        ("one shot", {"steps": 1}),
-        ("10 steps, full update", {"steps": 10, "basis_update": "full"}),
-        ("10 steps, conformal update", {"steps": 10, "basis_update": "conformal"}),
-    ):
-        shapes[label] = filter_mesh(V, F, feature_size=str(size), **scheme)[0]
-    panels = []
-    for label, Y in shapes.items():
-        found = measure_artefacts(Y, F, size)
-        rms, most = (f"{100 * one / _diagonal(V):.2g} %" for one in (found.rms, found.maximum))
-        shares = found.length / _diagonal(V) / FULL_RED
-        label = f"{label}\nartefacts: rms {rms}, largest {most}"
-        panels.append(Panel(label, Y, F, np.clip(shares, *SHADES)))
-    _row(panels, View.of_widest_side(V)).save(path)
+def artefacts(mesh: MeshFile) -> Drawing:
+    """Show the dragon after a low-pass in three schemes, coloured by the artefacts they leave."""
+    subject = subject_of(mesh("dragon_40k.ply"))
+    panels: list[Panel] = []
+    numbers: Numbers = {}
+    for options in schemes(LOW_PASS):
+        size = subject.artefact_numbers(options)
+        label = scheme_name(options)
+        numbers |= labelled(label, size)
+        rms, largest = (f"{percent:.2g} %" for percent in size.values())
+        shares = subject.artefacts(options).length / subject.diagonal / FULL_RED
+        label = f"{label}\nartefacts: rms {rms}, largest {largest}"
+        panels.append(Panel(label, subject.filtered(options), subject.F, np.clip(shares, *SHADES)))
+    return _drawing(numbers, Row(panels, subject.view))
 
 
-PICTURES = {
+PICTURES: dict[str, Callable[[MeshFile], Drawing]] = {
     "equalizer": equalizer,
     "selection": selection,
     "creases": creases,
@@ -215,10 +242,3 @@ PICTURES = {
     "colors": colors,
     "artefacts": artefacts,
 }
-
-
-if __name__ == "__main__":
-    if len(sys.argv) < 3 or not PICTURES.keys() >= set(sys.argv[3:]):
-        sys.exit(__doc__)
-    for name in sys.argv[3:] or PICTURES:
-        PICTURES[name](Path(sys.argv[1]), Path(sys.argv[2], f"{name}.png"))

@@ -7,11 +7,13 @@ after each step (Kovnatsky et al. 2012, Figure 5).
 
 from __future__ import annotations
 
+import functools
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from figure_numbers import Drawing, Numbers, labelled
 from meshlab_spectral.figures.pictures import Frame, Panel, render
 from meshlab_spectral.figures.sheet import FONT_SIZE, INK, Sheet
 from meshlab_spectral.figures.spectrum import filter_name
@@ -25,6 +27,7 @@ if TYPE_CHECKING:
 
 K = 10
 SHOWN = (3, 6, 10)
+RECORDED = (3, 10)  # the others are between these
 # The update that copes best with each filter.
 ROWS: list[tuple[FilterOptions, BasisUpdate]] = [
     (LOW_PASS, "none"),
@@ -42,8 +45,17 @@ def after(options: FilterOptions, i: int, update: BasisUpdate) -> FilterOptions:
     return replace(options, power=i / K, steps=steps, basis_update=update)
 
 
-def draw(subject: Subject, path: Path, scale: float = 1.0) -> None:
-    """Draw the figure for one mesh into a .png file."""
+def figure(subject: Subject, scale: float = 1.0) -> Drawing:
+    """Compute the figure for one mesh."""
+    numbers: Numbers = {}
+    for options, update in ROWS:
+        for i in RECORDED:
+            name = f"{filter_name(options)}, power {i / K:g}, {_ROW_NAMES[update]}"
+            numbers |= labelled(name, subject.displacement(after(options, i, update)))
+    return Drawing(numbers, functools.partial(_draw, subject, scale))
+
+
+def _draw(subject: Subject, scale: float, path: Path) -> None:
     shapes = {
         (row, i): subject.filtered(after(options, i, update))
         for row, (options, update) in enumerate(ROWS)

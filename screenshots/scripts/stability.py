@@ -6,11 +6,13 @@ steps with the conformal update (Kovnatsky et al. 2012, Figure 1).
 
 from __future__ import annotations
 
+import functools
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from figure_numbers import Drawing, Numbers, labelled
 from meshlab_spectral.figures.pictures import Frame, Panel, render
 from meshlab_spectral.figures.sheet import FONT_SIZE, INK, Sheet
 from meshlab_spectral.figures.spectrum import filter_name
@@ -38,8 +40,18 @@ def schemes(options: FilterOptions) -> list[FilterOptions]:
     ]
 
 
-def draw(subject: Subject, path: Path, scale: float = 1.0) -> None:
-    """Draw the figure for one mesh into a .png file."""
+def figure(subject: Subject, scale: float = 1.0) -> Drawing:
+    """Compute the figure for one mesh."""
+    numbers: Numbers = {}
+    for options in [*schemes(LOW_PASS), *schemes(BAND)]:
+        name = f"{filter_name(options)}, {scheme_name(options)}"
+        numbers |= labelled(name, subject.displacement(options))
+        if options.filter_type == LOW_PASS.filter_type:  # after the other, small details are shape
+            numbers |= labelled(name, subject.artefact_numbers(options))
+    return Drawing(numbers, functools.partial(_draw, subject, scale))
+
+
+def _draw(subject: Subject, scale: float, path: Path) -> None:
     rows = [schemes(LOW_PASS), schemes(BAND)]
     shapes = [[subject.filtered(options) for options in row] for row in rows]
     frames = Frame.row_by_row([[subject.V, *shapes[0]], *shapes[1:]], subject.view)

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import functools
 from pathlib import Path
 
 import numpy as np
-from meshlab_spectral import FilterOptions, filter_mesh
+from figure_numbers import Numbers, diagonal, displacement
+from meshlab_spectral import FilterOptions, filter_mesh, measure_artefacts
 from meshlab_spectral.figures.pictures import View
 from meshlab_spectral.files.meshes import load_arrays
+from meshlab_spectral.filters.arrays import mean_edge
+from meshlab_spectral.filters.artefacts import Artefacts
 from numpy.typing import NDArray
 
 Shape = NDArray[np.float64]
@@ -22,6 +26,8 @@ class Subject:
         The file's name without extension.
     V, F
         n x 3 coordinates, m x 3 vertex indices of triangles.
+    diagonal
+        Diagonal of the bounding box.
     view
         Viewpoint of the figures.
 
@@ -34,8 +40,10 @@ class Subject:
     def __init__(self, source: Path) -> None:
         self.name = source.stem
         self.V, self.F = load_arrays(source)
+        self.diagonal = diagonal(self.V)
         self.view = View.of_widest_side(self.V)
         self._shapes: dict[FilterOptions, Shape] = {}
+        self._artefacts: dict[FilterOptions, Artefacts] = {}
 
     def filtered(self, options: FilterOptions) -> Shape:
         """Return the coordinates after a filter.
@@ -48,6 +56,31 @@ class Subject:
         if options not in self._shapes:
             self._shapes[options], _ = filter_mesh(self.V, self.F, **options.as_dict())
         return self._shapes[options]
+
+    def displacement(self, options: FilterOptions) -> Numbers:
+        """Measure how far a filter moves the mesh."""
+        return displacement(self.V, self.F, self.filtered(options))
+
+    def artefacts(self, options: FilterOptions) -> Artefacts:
+        """Measure the artefacts that a filter leaves, above twice its own cutoff."""
+        if options not in self._artefacts:
+            size = options.feature_size.in_units_of_mesh(self.diagonal, mean_edge(self.V, self.F))
+            self._artefacts[options] = measure_artefacts(self.filtered(options), self.F, size)
+        return self._artefacts[options]
+
+    def artefact_numbers(self, options: FilterOptions) -> Numbers:
+        """Return the size of these artefacts, in percent of the diagonal before the filter."""
+        left, percent = self.artefacts(options), 100 / self.diagonal
+        return {
+            "rms artefact, %": percent * left.rms,
+            "largest artefact, %": percent * left.maximum,
+        }
+
+
+@functools.cache
+def subject_of(source: Path) -> Subject:
+    """Return the subject of a file, the same for all figures."""
+    return Subject(source)
 
 
 def scheme_name(options: FilterOptions) -> str:

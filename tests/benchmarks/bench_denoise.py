@@ -1,6 +1,6 @@
 """Denoising against ground truth: noisy meshes whose clean originals are known.
 
-usage: bench_denoise.py [--pairs FOLDER] [--all-methods] [--pictures FOLDER] [NAME ...]
+usage: bench_denoise.py [--pairs FOLDER] [--all-methods] [NAME ...]
        bench_denoise.py --clean [MESH ...]
        bench_denoise.py --estimates [MESH ...]
 
@@ -11,7 +11,7 @@ number of steps that has the least angle for each mesh. For NAME_surface.ply, th
 staircase as another mesh, the angle is between the normals of nearest points. Seconds are those of
 a pymeshlab call; their ratio is to those of MeshLab's Taubin smoothing with 50 steps.
 FOLDER defaults to ../shared/denoise next to the repository. --all-methods adds VTK's windowed sinc
-and bilateral normals. --pictures draws some meshes before and after, and the truth.
+and bilateral normals.
 
 --clean: the largest displacement on meshes without noise, by default those of ../shared, some also
 decimated; and the angle before and after with 0.05 mean edges of noise added.
@@ -24,19 +24,17 @@ positions without noise, before and after; all in mean edges.
 from __future__ import annotations
 
 import argparse
-import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-import matplotlib.pyplot as pyplot
 import meshlab_spectral
 import numpy as np
 import pymeshlab
 import pyvista
 import scipy.sparse as sp
-from meshlab_spectral.figures.pictures import Panel, View
+from meshlab_spectral.figures.pictures import Panel
 from meshlab_spectral.filters.arrays import mean_edge
 from numpy.typing import NDArray
 
@@ -44,7 +42,7 @@ Array = NDArray[np.float64]
 Method = Callable[[Array, Any], Array]
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-SHARED, SCRIPTS = REPOSITORY.parent / "shared", REPOSITORY / "screenshots" / "scripts"
+SHARED = REPOSITORY.parent / "shared"
 GROUPS = {
     "soft forms": ("igea_n3", "Nicolo0.2", "julius_n2", "child_n3"),
     "machine parts": ("trimstar_n3", "Fandisk0.3", "Block0.4"),
@@ -64,14 +62,6 @@ GROUPS = {
         for noise in (1, 2, 3)
     ),
 }
-# The part drawn: its centre and its half width, both relative to the extent of the mesh.
-PICTURED = {
-    "kinect_Cone": ((0.5, 0.5), 1.0),
-    "stair64x1_igea": ((0.5, 0.5), 1.0),
-    "pierrot_i3": ((0.47, 0.7), 0.27),
-    "trimstar_n3": ((0.5, 0.5), 1.0),
-}
-README = ("kinect_Cone", "stair64x1_igea", "pierrot_i3")  # one above the other
 ESTIMATED = (
     "fandisk.off",
     "stanford-bunny.obj",
@@ -231,32 +221,8 @@ def timed(method: Callable[[], Any]) -> tuple[Any, float]:
     return result, min(seconds)
 
 
-def draw(panels: list[Panel], name: str, folder: Path) -> None:
-    """Draw a part of meshes side by side."""
-    view = View.of_widest_side(panels[0].V)
-    seen = panels[0].V @ view.axes().T
-    low, extent = seen.min(0), np.ptp(seen, axis=0)
-    middle, radius = PICTURED[name]
-    parts = []
-    for panel in panels:
-        at = (panel.V @ view.axes().T - low) / extent
-        near = np.abs(at[:, :2] - middle).max(1) < radius
-        near &= (at[:, 2] > 0.6) | (radius == 1.0)  # of a part only the front
-        used, faces = np.unique(panel.F[near[panel.F].all(1)], return_inverse=True)
-        parts.append(Panel(panel.label, panel.V[used], faces.reshape(-1, 3)))
-    sys.path.append(str(SCRIPTS))
-    from side_by_side import draw_side_by_side
-
-    picture = folder / f"denoise_{name}.png"
-    draw_side_by_side(parts, picture, view=view, panel_size=(400, 400))
-    rows = [folder / f"denoise_{row}.png" for row in README]
-    if all(row.exists() for row in rows):
-        images = [pyplot.imread(row) for row in rows]
-        pyplot.imsave(folder / "denoise.png", np.concatenate(images))
-
-
-def print_pairs(folder: Path, names: list[str], more: bool, pictures: Path | None) -> None:
-    """Print a line for every pair, and the means of groups; draw some."""
+def print_pairs(folder: Path, names: list[str], more: bool) -> None:
+    """Print a line for every pair, and the means of groups."""
     methods = METHODS | (MORE_METHODS if more else {})
     taubin = METHODS["Taubin"][0]
     print(
@@ -279,14 +245,6 @@ def print_pairs(folder: Path, names: list[str], more: bool, pictures: Path | Non
             f"{a:7.2f} /{pair.distance(s):6.3f}" for a, s in zip(angles[name], shapes, strict=True)
         ]
         print(f"{name:20}", *cells, f"{ratios[-1]:5.2f}  {report['summary']}", flush=True)
-        taubin_best = best[list(methods).index("Taubin")]
-        if pictures is not None and name in PICTURED:
-            shown = {"before": pair.V, "Spectral Denoise": X, "Taubin, best": taubin_best}
-            draw(
-                [Panel(label, V, pair.F) for label, V in shown.items()] + [pair.truth()],
-                name,
-                pictures,
-            )
     for group, members in GROUPS.items():
         present = [angles[name] for name in members if name in angles]
         if present:
@@ -376,11 +334,10 @@ def print_clean(given: list[str]) -> None:
 
 
 def main() -> None:
-    """Print the table; draw the pictures."""
+    """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", metavar="NAME")
     parser.add_argument("--pairs", type=Path, default=SHARED / "denoise")
-    parser.add_argument("--pictures", type=Path)
     parser.add_argument("--all-methods", action="store_true")
     parser.add_argument("--clean", action="store_true")
     parser.add_argument("--estimates", action="store_true")
@@ -396,7 +353,7 @@ def main() -> None:
             file.name.removesuffix("_noisy.ply")
             for file in sorted(arguments.pairs.glob("*_noisy.ply"))
         ]
-        print_pairs(arguments.pairs, names, arguments.all_methods, arguments.pictures)
+        print_pairs(arguments.pairs, names, arguments.all_methods)
 
 
 if __name__ == "__main__":

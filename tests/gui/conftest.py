@@ -10,17 +10,16 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import meshlab_spectral
-import numpy as np
 import pymeshlab
 import pytest
+import shown
 from desktop import Desktop, save_picture
 from filter_dialog import FilterDialog
-from fractional import HEAD, MENU, WEIGHT, load, mean_edge, vertices
+from fractional import HEAD, MENU, WEIGHT
 from meshlab import MeshLab
 
 ROOT_VARIABLE = "MESHLAB_SPECTRAL_GUI_ROOT"
 PICTURES = Path(__file__).resolve().parents[2] / "build" / "gui"
-BUNNY = Path(pymeshlab.__file__).parent / "tests" / "sample_meshes" / "bunny.obj"
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -63,27 +62,17 @@ def install(home: Path) -> Callable[[], None]:
 @pytest.fixture
 def bunny(home: Path) -> Path:
     """The bunny of 28,088 vertices, with coordinates that both precisions represent exactly."""
-    mesh_set = pymeshlab.MeshSet()
-    mesh_set.load_new_mesh(str(BUNNY))
-    mesh = mesh_set.current_mesh()
-    V = mesh.vertex_matrix().astype(np.float32).astype(np.float64)
-    mesh_set.add_mesh(pymeshlab.Mesh(V, mesh.face_matrix()))
-    path = home / "bunny.ply"
-    # Nothing but the shape: MeshLab then shows it in its own colour, grey.
-    mesh_set.save_current_mesh(
-        str(path), save_vertex_color=False, save_vertex_quality=False, save_vertex_normal=False
-    )
-    return path
+    return save_shape(shown.bunny(), home / "bunny.ply")
 
 
 @pytest.fixture
-def noisy_bunny(bunny: Path) -> Path:
+def noisy_bunny(home: Path) -> Path:
     """The bunny with noise of a fifth of an edge along every axis, as a scanner leaves it."""
-    mesh_set = load(bunny)
-    V, F = vertices(mesh_set), mesh_set.current_mesh().face_matrix()
-    noise = 0.2 * mean_edge(mesh_set) * np.random.default_rng(1).standard_normal(V.shape)
-    mesh_set.add_mesh(pymeshlab.Mesh((V + noise).astype(np.float32), F))
-    path = bunny.with_name("scan.ply")
+    return save_shape(shown.noisy_bunny(), home / "scan.ply")
+
+
+def save_shape(mesh_set: pymeshlab.MeshSet, path: Path) -> Path:
+    """Save nothing but the shape: MeshLab then shows it in its own colour, grey."""
     mesh_set.save_current_mesh(
         str(path), save_vertex_color=False, save_vertex_quality=False, save_vertex_normal=False
     )

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from dataclasses import fields
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pymeshlab
-from meshlab import MeshLab
 from meshlab_spectral import FilterOptions
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from meshlab import MeshLab
 
 MENU = ("Smoothing, Fairing and Deformation", "Spectral Filter (Fractional)")
 FILTER = "apply_coord_spectral_filter_fractional"

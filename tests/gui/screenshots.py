@@ -1,4 +1,4 @@
-"""The pictures of MeshLab in screenshots/, made by `make screenshots`; not tests.
+"""The pictures of MeshLab in screenshots/ with their numbers, by `make screenshots`; not tests.
 
 Run by pytest for its fixtures: the screen, and MeshLab with the plugin installed.
 """
@@ -13,15 +13,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 from accessibility import Box
-from desktop import Desktop, save_picture
+from desktop import Desktop, Picture, save_picture
+from figure_numbers import record
 from meshlab import MeshLab
+from shown import BUST, DRAGON, FEATURE_SIZE, GAINS, MODE, PICTURES
+from shown import MENU as SMOOTHING
 from waiting import wait_for
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 SCREENSHOTS = REPOSITORY / "screenshots"
 DATA = Path(os.environ.get("MESHLAB_SPECTRAL_DATA") or REPOSITORY.parent / "shared" / "data")
 
-SMOOTHING = "Smoothing, Fairing and Deformation"
 FILTER = "Spectral Filter (Fractional)"
 MEASURES = "Quality Measure and Computations"
 
@@ -30,6 +32,13 @@ def middle_of(meshlab: MeshLab) -> Box:
     """The part of the screen with the mesh, without what MeshLab writes below it."""
     window = meshlab.main_window().box
     return Box(window.x + 2, window.y + 100, 1000, 740)
+
+
+def save(picture: Picture, name: str) -> None:
+    """Save a picture, and record the numbers of what it shows."""
+    path = SCREENSHOTS / f"{name}.png"
+    save_picture(picture, path)
+    record(path, PICTURES[name](DATA.joinpath))
 
 
 def test_the_menu(meshlab: MeshLab, desktop: Desktop) -> None:
@@ -43,7 +52,7 @@ def test_the_menu(meshlab: MeshLab, desktop: Desktop) -> None:
         else:
             desktop.click(entry.box)
     desktop.settled_picture(middle_of(meshlab))
-    save_picture(desktop.picture(), SCREENSHOTS / "meshlab_menu.png")
+    save(desktop.picture(), "meshlab_menu")
 
 
 def test_the_dialog(meshlab: MeshLab, desktop: Desktop) -> None:
@@ -51,22 +60,22 @@ def test_the_dialog(meshlab: MeshLab, desktop: Desktop) -> None:
     dialog.move(1020, 60)
     dialog.preview(True)
     desktop.settled_picture(middle_of(meshlab))
-    save_picture(desktop.picture(), SCREENSHOTS / "meshlab_dialog.png")
+    save(desktop.picture(), "meshlab_dialog")
 
 
 def test_the_dialog_with_a_selection(with_selection: MeshLab, desktop: Desktop) -> None:
     dialog = with_selection.open_filter(SMOOTHING, FILTER)
     dialog.move(1020, 60)
-    dialog.set_value(dialog.rows()[1], "10")  # the feature size
+    dialog.set_value(dialog.rows()[1], str(FEATURE_SIZE))
     dialog.preview(True)
     desktop.settled_picture(middle_of(with_selection))
-    save_picture(desktop.picture(), SCREENSHOTS / "meshlab_selection.png")
+    save(desktop.picture(), "meshlab_selection")
 
 
 def test_the_dragon_before_and_after(
     install: Callable[[], None], start: Callable[[Path], MeshLab], home: Path, desktop: Desktop
 ) -> None:
-    dragon = DATA / "dragon_40k.ply"
+    dragon = DATA / DRAGON
     if not dragon.is_file():
         pytest.skip(f"no {dragon.name} in the collection of meshes")
     install()
@@ -78,7 +87,7 @@ def test_the_dragon_before_and_after(
     dialog.apply()
     dialog.close()
     both = np.concatenate([before, desktop.settled_picture(scene)], axis=1)
-    save_picture(both, SCREENSHOTS / "meshlab_dragon_before_after.png")
+    save(both, "meshlab_dragon_before_after")
 
 
 def test_a_scan_before_and_with_the_preview_of_denoising(
@@ -98,13 +107,13 @@ def test_a_scan_before_and_with_the_preview_of_denoising(
     dialog.preview(True)
     desktop.settled_picture(scene)
     after = desktop.picture(scene._replace(width=window.x + window.width - scene.x))
-    save_picture(np.concatenate([before, after], axis=1), SCREENSHOTS / "meshlab_denoise.png")
+    save(np.concatenate([before, after], axis=1), "meshlab_denoise")
 
 
 def test_a_bust_before_and_with_the_preview_of_the_equalizer(
     install: Callable[[], None], start: Callable[[Path], MeshLab], home: Path, desktop: Desktop
 ) -> None:
-    bust = DATA / "Laurana50k.ply"
+    bust = DATA / BUST
     if not bust.is_file():
         pytest.skip(f"no {bust.name} in the collection of meshes")
     install()
@@ -114,19 +123,19 @@ def test_a_bust_before_and_with_the_preview_of_the_equalizer(
     window = meshlab.main_window().box
     scene = Box(window.x + 285, window.y + 150, 560, 730)  # where the bust is seen
     before = desktop.settled_picture(scene)
-    for row, gain in zip(dialog.rows(), ("1", "1", "1", "1.5", "2.5", "1"), strict=False):
-        dialog.set_value(row, gain)
+    for row, gain in zip(dialog.rows(), GAINS, strict=False):
+        dialog.set_value(row, f"{gain:g}")
     dialog.preview(True)
     desktop.settled_picture(scene)
     after = desktop.picture(scene._replace(width=window.x + window.width - scene.x))
-    save_picture(np.concatenate([before, after], axis=1), SCREENSHOTS / "meshlab_equalizer.png")
+    save(np.concatenate([before, after], axis=1), "meshlab_equalizer")
 
 
 def test_a_manifold_harmonic(meshlab: MeshLab, desktop: Desktop) -> None:
     dialog = meshlab.open_filter(MEASURES, "Manifold Harmonics")
     mode = next(row for row in dialog.rows() if row.label == "Mode")
-    dialog.set_value(mode, "12")
+    dialog.set_value(mode, str(MODE))
     dialog.apply()
     dialog.close()
     desktop.settled_picture(middle_of(meshlab))
-    save_picture(desktop.picture(), SCREENSHOTS / "meshlab_harmonic.png")
+    save(desktop.picture(), "meshlab_harmonic")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from collections.abc import Callable
@@ -9,11 +10,14 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+import denoising
 import matplotlib.image
 import numpy as np
+import parts
 import pytest
 import spectral_reference as reference
 from eigenfunctions import most_alike
+from figure_numbers import recorded
 from helpers import FILTER, diagonal, largest_distance, mesh_set_of
 from meshlab_spectral import manifold_harmonics
 from meshlab_spectral.figures.pictures import Frame, Panel, View, render
@@ -21,11 +25,12 @@ from meshlab_spectral.filters.arrays import lumped_areas
 from meshlab_spectral.filters.options import FilterOptions
 from numpy.typing import NDArray
 from paper import FIGURES
-from parts import PICTURES
 from sequences import K, after
 from stability import BAND, LOW_PASS
 
-SCRIPTS = Path(__file__).resolve().parents[3] / "screenshots" / "scripts"
+REPOSITORY = Path(__file__).resolve().parents[3]
+SCRIPTS = REPOSITORY / "screenshots" / "scripts"
+BENCHMARKS = REPOSITORY / "tests" / "benchmarks"
 
 
 def script(name: str, *arguments: object) -> subprocess.CompletedProcess[str]:
@@ -35,6 +40,7 @@ def script(name: str, *arguments: object) -> subprocess.CompletedProcess[str]:
         text=True,
         timeout=300,
         check=False,
+        env={**os.environ, "PYTHONPATH": str(BENCHMARKS)},
     )
 
 
@@ -56,25 +62,38 @@ def test_every_figure_of_every_mesh_is_drawn(meshes: list[Path], tmp_path: Path)
     assert done.returncode == 0, done.stderr
     assert "Traceback" not in done.stderr
     expected = {f"{name}_{mesh.stem}.png" for mesh in meshes for name, _ in FIGURES.values()}
-    assert {path.name for path in folder.iterdir()} == expected
+    assert {path.name for path in folder.glob("*.png")} == expected
+    assert recorded(folder).keys() == expected
     assert {Path(line).name for line in done.stdout.splitlines()} == expected
-    for path in folder.iterdir():
+    for path in folder.glob("*.png"):
         picture = np.asarray(matplotlib.image.imread(path))[:, :, :3]
         assert 0.1 < (picture < 0.98).any(axis=2).mean() < 0.9, path.name
         edges = [picture[0], picture[-1], picture[:, 0], picture[:, -1]]
         assert all((edge > 0.98).all() for edge in edges), path.name
 
 
-def test_the_pictures_of_parts_are_drawn_and_errors_of_normals_printed(
+def test_all_pictures_are_drawn_and_their_numbers_recorded(
     decimated: Callable[..., Any], tmp_path: Path
 ) -> None:
     mesh_set = mesh_set_of(*decimated("cow.obj", 1000))
-    for name in ("dragon_40k.ply", "stanford-bunny.obj", "fandisk.off", "gears.stl"):
+    for folder in (tmp_path / "meshes", tmp_path / Path(denoising.PAIRS).name):
+        folder.mkdir()
+    for name in (
+        "meshes/dragon_40k.ply",
+        "meshes/stanford-bunny.obj",
+        "meshes/fandisk.off",
+        "meshes/gears.stl",
+        "denoise/trimstar_n3_noisy.ply",
+        "denoise/trimstar_n3_clean.ply",
+    ):
         mesh_set.save_current_mesh(str(tmp_path / name))
-    done = script("parts.py", tmp_path, tmp_path)
+    names = [*parts.PICTURES, "harmonics_dragon_40k", "denoise_trimstar_n3"]
+    done = script("draw.py", tmp_path / "meshes", tmp_path / "new", *names)
     assert done.returncode == 0, done.stderr
-    assert {path.stem for path in tmp_path.glob("*.png")} == PICTURES.keys()
-    assert done.stdout.count("mean error of the normals") == 6
+    assert {path.stem for path in (tmp_path / "new").glob("*.png")} == set(names)
+    numbers = recorded(tmp_path / "new")
+    assert {Path(picture).stem for picture in numbers} == set(names)
+    assert all(numbers.values())
 
 
 def test_only_the_wanted_figures_are_drawn(meshes: list[Path], tmp_path: Path) -> None:
@@ -82,7 +101,8 @@ def test_only_the_wanted_figures_are_drawn(meshes: list[Path], tmp_path: Path) -
         "paper.py", meshes[0], "--output", tmp_path / "out", "--only", "1", "--scale", 0.2
     )
     assert done.returncode == 0, done.stderr
-    assert [path.name for path in (tmp_path / "out").iterdir()] == ["figure1_stability_lying.png"]
+    pictures = [path.name for path in (tmp_path / "out").glob("*.png")]
+    assert pictures == ["figure1_stability_lying.png"]
 
 
 @pytest.mark.parametrize(
