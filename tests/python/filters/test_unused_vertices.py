@@ -1,4 +1,4 @@
-"""Vertices that no face uses change no default, and a warning says where they change a percentage."""
+"""Vertices that no face uses change no default; a warning says where they change percentages."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from meshlab_spectral import (
     geometry_spectrum,
     measure_artefacts,
 )
-from meshlab_spectral.plugin.loading import FILTERS
 from meshlab_spectral.plugin.library import last_warnings
+from meshlab_spectral.plugin.loading import FILTERS
 from numpy.typing import NDArray
 
 Array = NDArray[Any]
@@ -128,7 +128,9 @@ def test_a_given_percentage_refers_to_all_vertices_and_a_warning_says_so(shape: 
     assert report["feature_size"] == pytest.approx(0.02 * diagonal(far), rel=1e-6)
     assert report["feature_size"] == pytest.approx(0.02 * box.diagonal(), rel=1e-2)
     (told,) = (warning for warning in report["warnings"] if ENLARGING in warning)
-    numbers = f"2 vertices without faces enlarge {ENLARGING} {diagonal(V):.3g} to {diagonal(far):.3g}"
+    numbers = (
+        f"2 vertices without faces enlarge {ENLARGING} {diagonal(V):.3g} to {diagonal(far):.3g}"
+    )
     assert told.startswith(numbers)
     assert "percentages refer to the larger one" in told
     assert REMEDY in told
@@ -165,7 +167,8 @@ def test_vertices_left_by_deleted_faces_are_unused(shape: Shape) -> None:
     mesh_set.compute_selection_by_condition_per_face(condselect=f"fi == {len(F)}")
     mesh_set.meshing_remove_selected_faces()
     report = mesh_set.apply_coord_spectral_filter_fractional()
-    assert any(f"3 vertices without faces enlarge {ENLARGING}" in warning for warning in last_warnings())
+    told = f"3 vertices without faces enlarge {ENLARGING}"
+    assert any(told in warning for warning in last_warnings())
     expected = mesh_set_of(V, F).apply_coord_spectral_filter_fractional()
     assert_same_report(report, expected)
 
