@@ -3,6 +3,7 @@
 #include <common/ml_shared_data_context/ml_plugin_gl_context.h>
 
 #include <functional>
+#include <limits>
 #include <sstream>
 #include <type_traits>
 #include <utility>
@@ -34,7 +35,7 @@ spectral::Progress meshlabProgress(vcg::CallBackPos* callback, std::function<boo
 }
 
 /// The number in an environment variable; 0 if unset.
-/// @throws spectral::InvalidOption  when it is not above zero.
+/// @throws spectral::InvalidOption  when it is not above zero, or infinite.
 template <class Number>
 Number environmentNumber(const char* variable, const char* unit) {
     if (!qEnvironmentVariableIsSet(variable)) return 0;
@@ -44,7 +45,7 @@ Number environmentNumber(const char* variable, const char* unit) {
         number = qEnvironmentVariableIntValue(variable, &isNumber);
     else
         number = qgetenv(variable).toDouble(&isNumber);
-    if (isNumber && number > 0) return number;
+    if (isNumber && number > 0 && number <= std::numeric_limits<Number>::max()) return number;
     throw spectral::InvalidOption(std::string("the environment variable ") + variable + " = " +
                                   qgetenv(variable).toStdString() + ": give a number of " + unit +
                                   " above zero, or unset it");

@@ -120,8 +120,8 @@ MeasuredBands withBands(ShapeAndNoise measures, const GeometrySpectrum& spectrum
                                    std::sqrt(kLowest * 4.0 * kPi / spectrum.area));
     const double highest = std::max(lowest, high.size() > 0 ? high.maxCoeff() : 0.0);
     return {std::move(measures),
-            {spectrum.diagonal, lowest, highest},
-            {spectrum.diagonal, lowest, highest, 3}};
+            {spectrum.surfaceDiagonal, lowest, highest},
+            {spectrum.surfaceDiagonal, lowest, highest, 3}};
 }
 
 /// Adds to the measures in a basis those beyond it.
@@ -282,7 +282,9 @@ GeometrySpectrum geometrySpectrum(const Vertices& V, const Faces& F, const Spect
     const ThreadTeam team(progress);
     MeshLaplacian mesh = meshLaplacian(V, F, options.laplacian);
     GeometrySpectrum spectrum;
-    spectrum.diagonal = boundingBoxDiagonal(V);
+    const Diagonals diagonals = diagonalsOf(V, F);
+    spectrum.diagonal = diagonals.all;
+    spectrum.surfaceDiagonal = diagonals.surface;
     spectrum.meanEdge = meanEdgeLength(V, F);
     spectrum.area = mesh.laplacian.D.sum();
     const Signal signal = signalOf(std::move(mesh), options.boundary);

@@ -27,17 +27,18 @@ struct SpectrumOptions {
 /// amplitude that falls by 2^1.5 per octave, because no cosine has the slope of X there. A fixed
 /// one has energy where the surface is curved, which falls by 2^2.5.
 struct GeometrySpectrum {
-    double diagonal = 0.0;     ///< Diagonal of the bounding box of all vertices, length units.
-    double meanEdge = 0.0;     ///< Mean side length over all triangles, length units.
-    double area = 0.0;         ///< Sum of D, length^2, including fixed vertices.
-    double totalEnergy = 0.0;  ///< |U|_D^2, length^4.
+    double diagonal = 0.0;         ///< Diagonal of the bounding box of all vertices, length units.
+    double surfaceDiagonal = 0.0;  ///< The same without vertices that no triangle uses.
+    double meanEdge = 0.0;         ///< Mean side length over all triangles, length units.
+    double area = 0.0;             ///< Sum of D, length^2, including fixed vertices.
+    double totalEnergy = 0.0;      ///< |U|_D^2, length^4.
 
     // The lowest harmonics: basisSize, or more so as not to split a multiple eigenvalue; or none.
     Eigen::VectorXd frequencies;  ///< omega_i, ascending, radians per length unit; constants: 0.
     Eigen::VectorXd amplitudes;   ///< |Phi_i^T D U| / sqrt(area), length units; constants: 0.
 
     // The octaves (bands.h), by descending feature size, down to the last that is not empty.
-    Eigen::VectorXd octaveFeatureSizes;  ///< Centres: diagonal times powers of two, length units.
+    Eigen::VectorXd octaveFeatureSizes;  ///< Centres: surfaceDiagonal times powers of two.
     Eigen::VectorXd octaveEnergies;      ///< >= 0, length^4; they sum to totalEnergy.
     Eigen::VectorXd octaveAmplitudes;    ///< sqrt(energy / area), length units.
     Eigen::VectorXd cumulativeEnergy;    ///< Energy of an octave and all larger ones relative to

@@ -13,6 +13,7 @@
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/surface.h"
 #include "core/support/errors.h"
+#include "core/support/memory.h"
 #include "core/support/threads.h"
 
 namespace spectral {
@@ -102,6 +103,10 @@ Removal removeNoise(const FaceGraph& graph, const Points& X, const Diagnosis& di
                : removeWhiteNoise(graph, diagnosis.X, removal, progress);
 }
 
+/// Memory for the graph of the faces, the measurement and the filter of the normals, bytes per
+/// vertex.
+constexpr double kBytesPerVertex = 800.0;
+
 /// Fraction of the progress for the measurement.
 constexpr double kMeasuring = 0.3;
 
@@ -179,6 +184,8 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
     Vertices moved = whole.X;
     const MovingPart part(whole, weight);
     if (options.strength > 0.0 && part.surface.X.rows() > 0) {
+        const Index n = part.surface.X.rows();
+        requireMemory(kBytesPerVertex * static_cast<double>(n), n);
         const FaceGraph graph = faceGraph(part.surface.F, part.surface.X.rows());
         const Points displacement = denoisePart(part, graph, options, progress, result);
         for (Index i = 0; i < displacement.rows(); ++i)

@@ -10,6 +10,29 @@ double boundingBoxDiagonal(const Vertices& V) {
     return (V.colwise().maxCoeff() - V.colwise().minCoeff()).norm();
 }
 
+Diagonals diagonalsOf(const Vertices& V, const Faces& F) {
+    using Position = Eigen::Vector3d;
+    Eigen::AlignedBox3d all, surface;
+    const auto extend = [&V](Eigen::AlignedBox3d& box, Index i) {
+        const Position p = V.row(i).transpose();
+        if (p.allFinite()) box.extend(p);
+    };
+    const auto diagonalOf = [](const Eigen::AlignedBox3d& box) {
+        return box.isEmpty() ? 0.0 : box.sizes().norm();
+    };
+    for (Index i = 0; i < V.rows(); ++i) extend(all, i);
+    for (Index t = 0; t < F.rows(); ++t)
+        for (int c = 0; c < 3; ++c) extend(surface, F(t, c));
+    Diagonals diagonals;
+    diagonals.all = diagonalOf(all);
+    diagonals.surface = diagonalOf(surface.isEmpty() ? all : surface);
+    if (!surface.isEmpty())
+        for (Index i = 0; i < V.rows(); ++i)
+            if (const Position p = V.row(i).transpose(); p.allFinite() && !surface.contains(p))
+                ++diagonals.outside;
+    return diagonals;
+}
+
 double meanEdgeLength(const Vertices& V, const Faces& F) {
     double sum = 0.0;
     for (Index t = 0; t < F.rows(); ++t)

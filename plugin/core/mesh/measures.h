@@ -7,6 +7,17 @@ namespace spectral {
 /// Diagonal of the axis-aligned bounding box.
 double boundingBoxDiagonal(const Vertices& V);
 
+/// Diagonals of the bounding boxes of a mesh, with and without vertices that no triangle uses.
+struct Diagonals {
+    double all = 0.0;      ///< Of all vertices: percentages refer to it.
+    double surface = 0.0;  ///< Of the corners of triangles, without any that of all vertices:
+                           ///< defaults refer to it.
+    Index outside = 0;     ///< Number of vertices outside the box of the corners.
+};
+
+/// @param V  n x 3; positions that are not finite do not count.
+Diagonals diagonalsOf(const Vertices& V, const Faces& F);
+
 /// Mean side length over all triangles, counting interior edges twice; 0 without triangles.
 double meanEdgeLength(const Vertices& V, const Faces& F);
 
@@ -15,7 +26,9 @@ double meanEdgeLength(const Vertices& V, const Faces& F);
 /// At six edges a Gaussian low-pass removes sampling noise: it keeps 4 % of the shortest wave that
 /// a mesh can represent, two edges long. The bound preserves the shape of a coarse mesh.
 ///
-/// @param meanEdge, diagonal  length units; meanEdge = 0 gives the bound.
+/// @param meanEdge, diagonal  length units; meanEdge = 0 gives the bound. The diagonal is that of
+/// the
+///                            surface (Diagonals).
 double defaultFeatureSize(double meanEdge, double diagonal);
 
 /// Default size of the smallest details of an equalizer: three mean edges, at most 2.5 % of the

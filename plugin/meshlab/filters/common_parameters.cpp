@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iomanip>
+#include <sstream>
 
 #include "core/mesh/measures.h"
 #include "core/support/errors.h"
@@ -32,6 +34,34 @@ double meanEdge(const MeshModel& mesh) {
     return spectral::meanEdgeLength(matrices.V, matrices.F);
 }
 
+double surfaceDiagonal(const MeshModel& mesh) {
+    Box3m box;
+    for (const CFaceO& face : mesh.cm.face)
+        if (!face.IsD())
+            for (int c = 0; c < 3; ++c) box.Add(face.cP(c));
+    return box.IsNull() ? mesh.cm.bbox.Diag() : box.Diag();
+}
+
+double defaultTolerance(const MeshModel& mesh) {
+    constexpr double kHalfAPixel = 0.0005;  // of a mesh shown 1,000 pixels wide
+    return kHalfAPixel * surfaceDiagonal(mesh);
+}
+
+std::vector<std::string> percentageWarnings(const MeshMatrices& input) {
+    constexpr double kNoticeable = 1.01;
+    const spectral::Diagonals diagonals = spectral::diagonalsOf(input.V, input.F);
+    if (!(diagonals.all > kNoticeable * diagonals.surface)) return {};
+    const bool isOne = diagonals.outside == 1;
+    std::ostringstream text;
+    text << std::setprecision(3) << diagonals.outside
+         << (isOne ? " vertex without faces enlarges" : " vertices without faces enlarge")
+         << " the diagonal of the bounding box from " << diagonals.surface << " to "
+         << diagonals.all
+         << ": percentages refer to the larger one, defaults to the smaller. Apply 'Remove "
+            "Unreferenced Vertices' first";
+    return {text.str()};
+}
+
 QString meanEdgeText(double meanEdge) {
     if (meanEdge == 0.0) return {};
     return QString(" The mean edge length of this mesh is %1.").arg(meanEdge, 0, 'g', 3);
@@ -41,7 +71,7 @@ RichPercentage featureSizeParameter(const MeshModel& mesh, const QString& help) 
     const Scalarm diagonal = mesh.cm.bbox.Diag();
     const double edge = meanEdge(mesh);
     return {"feature_size",
-            static_cast<Scalarm>(spectral::defaultFeatureSize(edge, diagonal)),
+            static_cast<Scalarm>(spectral::defaultFeatureSize(edge, surfaceDiagonal(mesh))),
             0,
             diagonal,
             "Feature size",

@@ -21,6 +21,15 @@ int choice(const RichParameterList& parameters, const char* name, const QStringL
 /// Mean edge length, in the mesh's units; 0 without faces.
 double meanEdge(const MeshModel& mesh);
 
+/// Diagonal of the bounding box of the vertices that faces use, in the mesh's units; without faces,
+/// of all. Defaults refer to it; percentages refer to the bounding box of all vertices, as in
+/// MeshLab's own filters.
+double surfaceDiagonal(const MeshModel& mesh);
+
+/// Warns of vertices without faces that enlarge the diagonal by more than 1 %: percentages then do
+/// not mean what they seem to.
+std::vector<std::string> percentageWarnings(const MeshMatrices& input);
+
 /// A sentence with the mean edge length, for the help of size parameters; empty for 0.
 QString meanEdgeText(double meanEdge);
 
@@ -48,9 +57,8 @@ std::vector<bool> chosenVertices(const RichParameterList& parameters, const Mesh
 /// @param selected  one value per vertex, or empty.
 std::string selectionText(const std::vector<bool>& selected);
 
-/// Default tolerance of automatic steps, relative to the bounding box diagonal: half a pixel of a
-/// mesh shown 1,000 pixels wide.
-constexpr double kDefaultTolerance = 0.0005;
+/// Default tolerance of automatic steps: 0.05 % of the diagonal.
+double defaultTolerance(const MeshModel& mesh);
 
 /// `laplacian`; default: intrinsic Delaunay.
 RichEnum laplacianParameter();

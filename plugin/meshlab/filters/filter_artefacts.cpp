@@ -58,7 +58,8 @@ FilterOutcome applyArtefacts(const RichParameterList& parameters, MeshModel& mes
              {"maximum", artefacts.maximum},
              {"feature_size", options.featureSize},
              {"diagonal", diagonal}},
-            textOf(artefacts, options.featureSize, diagonal)};
+            textOf(artefacts, options.featureSize, diagonal),
+            percentageWarnings(input)};
 }
 
 }  // namespace

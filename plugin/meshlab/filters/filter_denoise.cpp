@@ -182,8 +182,9 @@ FilterOutcome applyDenoise(const RichParameterList& parameters, MeshModel& mesh,
         {"mean_edge", noise.meanEdge},
         {"rounds", result.rounds}};
     addMovement(result, report);
-    return {std::move(report), reportText(summary, result), warningsOf(options, summary, result),
-            summary};
+    std::vector<std::string> warnings = warningsOf(options, summary, result);
+    append(percentageWarnings(input), warnings);
+    return {std::move(report), reportText(summary, result), std::move(warnings), summary};
 }
 
 }  // namespace

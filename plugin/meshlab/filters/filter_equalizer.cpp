@@ -15,6 +15,7 @@
 #include "core/transfer/equalizer.h"
 #include "meshlab/filters/common_parameters.h"
 #include "meshlab/filters/fractional_report.h"
+#include "meshlab/filters/surface_report.h"
 #include "meshlab/mesh_conversion.h"
 #include "meshlab/mesh_filter.h"
 
@@ -44,7 +45,7 @@ QString lengthAndPercentage(double length, double diagonal) {
 RichParameterList equalizerParameters(const MeshModel& mesh) {
     const Scalarm diagonal = mesh.cm.bbox.Diag();
     const double edge = meanEdge(mesh);
-    const double smallest = spectral::defaultSmallestSize(edge, diagonal);
+    const double smallest = spectral::defaultSmallestSize(edge, surfaceDiagonal(mesh));
     RichParameterList list;
     for (const int times : kTimes) {
         // The reference documentation is generated without a mesh: there are no sizes.
@@ -125,7 +126,7 @@ FilterOutcome applyEqualizer(const RichParameterList& parameters, MeshModel& mes
     options.transferFunction.custom = equalizer;
     options.featureSize = equalizer.middleSize();
     const double diagonal = spectral::boundingBoxDiagonal(input.V);
-    options.tolerance = kDefaultTolerance * diagonal;
+    options.tolerance = defaultTolerance(mesh);
     const bool isAccurate = parameters.getBool("accurate");
     if (!isAccurate) options.maxSteps = kMaxPreviewSteps;
     options.boundary = boundaryCondition(parameters);
@@ -136,6 +137,7 @@ FilterOutcome applyEqualizer(const RichParameterList& parameters, MeshModel& mes
     const std::string changes = changesText(parameters, smallest, diagonal);
     FilterOutcome outcome{reportDictionary(result), "",
                           fractionalWarnings(options, reported, diagonal)};
+    append(percentageWarnings(input), outcome.warnings);
     if (changes.empty()) {
         outcome.summary = "all gains are 1; nothing changed";
         outcome.text = "Spectral Equalizer: " + outcome.summary;

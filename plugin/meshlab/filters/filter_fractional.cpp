@@ -1,6 +1,7 @@
 #include "core/filter/fractional_filter.h"
 #include "core/mesh/measures.h"
 #include "core/support/steady_progress.h"
+#include "meshlab/filters/common_parameters.h"
 #include "meshlab/filters/fractional_parameters.h"
 #include "meshlab/filters/fractional_report.h"
 #include "meshlab/filters/surface_report.h"
@@ -38,6 +39,7 @@ FilterOutcome applyFractional(const RichParameterList& parameters, MeshModel& me
         setPositions(input, result.V, mesh);
     }
     std::vector<std::string> warnings = fractionalWarnings(options, result, diagonal);
+    append(percentageWarnings(input), warnings);
     append(unusedParameters(parameters), warnings);
     return {reportDictionary(result), text, std::move(warnings)};
 }

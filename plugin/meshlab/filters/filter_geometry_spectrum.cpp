@@ -4,12 +4,15 @@
 #include <iomanip>
 #include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "core/analysis/geometry_spectrum.h"
 #include "core/mesh/measures.h"
 #include "core/support/steady_progress.h"
 #include "core/transfer/transfer_function.h"
 #include "meshlab/filters/common_parameters.h"
+#include "meshlab/filters/surface_report.h"
 #include "meshlab/mesh_conversion.h"
 #include "meshlab/mesh_filter.h"
 
@@ -92,10 +95,12 @@ FilterOutcome applyGeometrySpectrum(const RichParameterList& parameters, MeshMod
     options.boundary = boundaryCondition(parameters);
     const GeometrySpectrum spectrum = spectral::withSteadyProgress(
         progress, spectral::geometrySpectrum, input.V, input.F, options);
+    std::vector<std::string> warnings = warningsOf(spectrum);
+    append(percentageWarnings(input), warnings);
     return {{{"diagonal", spectrum.diagonal},
              {"mean_edge", spectrum.meanEdge},
              {"default_feature_size",
-              spectral::defaultFeatureSize(spectrum.meanEdge, spectrum.diagonal)},
+              spectral::defaultFeatureSize(spectrum.meanEdge, spectrum.surfaceDiagonal)},
              {"area", spectrum.area},
              {"total_energy", spectrum.totalEnergy},
              {"frequencies", QVariant::fromValue(spectrum.frequencies)},
@@ -114,7 +119,7 @@ FilterOutcome applyGeometrySpectrum(const RichParameterList& parameters, MeshMod
              {"feature_size_99", spectrum.featureSize99},
              {"mismatch", spectrum.mismatch}},
             textOf(spectrum),
-            warningsOf(spectrum)};
+            std::move(warnings)};
 }
 
 }  // namespace

@@ -105,6 +105,7 @@ FilterOutcome outcomeOf(const char* name, const char* signal, const RichParamete
                                            {"solves", result.solves}};
     addSurfaceCounts(result, report);
     std::vector<std::string> warnings = warningsOf(options.part.selected, result);
+    append(percentageWarnings(input), warnings);
     append(unusedTransferParameters(parameters), warnings);
     return {std::move(report), text.str(), std::move(warnings)};
 }

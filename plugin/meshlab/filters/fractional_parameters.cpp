@@ -33,7 +33,7 @@ RichParameterList fractionalFilterParameters(const MeshModel& mesh) {
         "one-shot filter.",
         true));
     list.addParam(RichPercentage(
-        "tolerance", static_cast<Scalarm>(kDefaultTolerance) * diagonal, 0, diagonal, "Tolerance",
+        "tolerance", static_cast<Scalarm>(defaultTolerance(mesh)), 0, diagonal, "Tolerance",
         "With 0 steps: largest distance of the surface from the result of infinitely many steps, "
         "for all but a thousandth of it. Larger is faster.",
         true));

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/denoise/denoise.h"
 #include "core/filter/fractional_filter.h"
 #include "core/harmonics/truncated_basis.h"
 #include "core/support/errors.h"
@@ -66,6 +67,19 @@ TEST_F(Memory, EndsAutomaticStepsAtOnce) {
     } catch (const Error& error) {
         EXPECT_EQ(error.code(), ErrorCode::OutOfMemory) << error.what();
     }
+}
+
+TEST_F(Memory, IsCheckedBeforeNoiseIsMeasured) {
+    const testing::Mesh mesh = testing::withNoise(testing::icosphere(4), 0.01, 1);
+    setMemoryLimit(1.0);
+    try {
+        denoise(mesh.V, mesh.F, {});
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::OutOfMemory) << error.what();
+    }
+    setMemoryLimit(0.0);
+    EXPECT_GT(denoise(mesh.V, mesh.F, {}).maxDisplacement, 0.0);
 }
 
 TEST_F(Memory, SufficesForProductsIfTooSmallForAFactorization) {

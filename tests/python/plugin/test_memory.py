@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +11,22 @@ import numpy as np
 import pymeshlab
 import pytest
 from helpers import refusal
-from meshlab_spectral import FilterOptions, OptionError, set_memory_limit
+from meshlab_spectral import (
+    FilterError,
+    FilterOptions,
+    OptionError,
+    denoise_mesh,
+    filter_colors,
+    filter_mesh,
+    filter_scalars,
+    geometry_spectrum,
+    manifold_harmonics,
+    measure_artefacts,
+    set_memory_limit,
+    shape_dna,
+)
 from meshlab_spectral.errors import MemoryLimitError
+from meshlab_spectral.plugin.limits import MEMORY, given_memory_limit
 from meshlab_spectral.process.parent import JobLimits, MeshLabProcess
 
 MEBIBYTE = 2**20
@@ -45,6 +59,55 @@ def test_a_filter_beyond_the_limit_is_refused_with_numbers(
     set_memory_limit(1)
     assert re.search(words, refusal(meshes, **options))
     np.testing.assert_array_equal(before, meshes.current_mesh().vertex_matrix())
+
+
+Call = Callable[[np.ndarray, np.ndarray], object]
+CALLS: dict[str, Call] = {
+    "filter_mesh": filter_mesh,
+    "denoise_mesh": denoise_mesh,
+    "filter_scalars": lambda V, F: filter_scalars(V, F, V[:, 0]),
+    "filter_colors": lambda V, F: filter_colors(V, F, np.abs(V) / np.abs(V).max()),
+    "geometry_spectrum": geometry_spectrum,
+    "measure_artefacts": lambda V, F: measure_artefacts(V, F, 0.1),
+    "manifold_harmonics": lambda V, F: manifold_harmonics(V, F, 30),
+    "shape_dna": shape_dna,
+}
+
+
+@pytest.mark.parametrize("call", CALLS.values(), ids=CALLS)
+def test_every_function_keeps_to_the_limit(
+    call: Call,
+    decimated: Callable[..., tuple[np.ndarray, np.ndarray]],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    V, F = decimated("cow.obj", 2000)
+    set_memory_limit(1)
+    with pytest.raises(FilterError, match=r"memory, (of which )?0 MiB are free"):
+        call(V, F)
+    for value in ("", "4GB", "0", "-1", "nan", "inf"):
+        monkeypatch.setenv(MEMORY, value)
+        with pytest.raises(FilterError, match=f"{MEMORY} = {value}: give a number of bytes"):
+            call(V, F)
+        with pytest.raises(OptionError, match=f"{MEMORY} = {value}: give a number of bytes"):
+            given_memory_limit()
+    monkeypatch.setenv(MEMORY, "4e9")
+    call(V, F)
+    assert given_memory_limit() == 4_000_000_000
+
+
+def test_a_job_without_a_limit_has_that_of_the_environment(samples: Path, tmp_path: Path) -> None:
+    options = FilterOptions(steps=1).as_dict()
+    files = {"source": str(samples / "cow.obj"), "scratch": str(tmp_path / "out.ply")}
+    job = {"task": "filter", "options": options, **files}
+    with MeshLabProcess() as process:
+        process.run(job)
+        set_memory_limit(process.memory() + MEBIBYTE)
+        refused = f"raise or unset the environment variable {MEMORY}"
+        with pytest.raises(MemoryLimitError, match=refused):
+            process.run(job | {"source": str(samples / "bunny.obj")})
+    with MeshLabProcess() as process:
+        set_memory_limit(None)
+        process.run(job)
 
 
 def test_the_limit_of_a_job_is_that_of_the_plugin(samples: Path, tmp_path: Path) -> None:

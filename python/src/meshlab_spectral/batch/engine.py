@@ -30,7 +30,7 @@ from meshlab_spectral.batch.jobs import FileResult, Job
 from meshlab_spectral.batch.processes import processes
 from meshlab_spectral.batch.task import run_job
 from meshlab_spectral.errors import BatchError
-from meshlab_spectral.plugin.limits import threads_each
+from meshlab_spectral.plugin.limits import set_memory_limit, threads_each
 from meshlab_spectral.plugin.versions import versions
 
 # Fraction of the machine's memory that all workers share.
@@ -61,8 +61,8 @@ def local_workers(count: int | None = None, memory_limit: int | None = None) -> 
 
     Each of the `count` workers, by default one per processor, filters one mesh at a time, with its
     share of the threads. `memory_limit` is in bytes per worker; by default they share nine tenths
-    of the memory available to this process. On exit they are killed, whatever they are doing.
-    Raises BatchError when they fail to start.
+    of the memory available to this process, and keep to the limit of the environment, if any. On
+    exit they are killed, whatever they are doing. Raises BatchError when they fail to start.
     """
     count = count or CPU_COUNT
     limit = memory_limit or int(_SHARE_OF_MEMORY * MEMORY_LIMIT / count)
@@ -73,7 +73,8 @@ def local_workers(count: int | None = None, memory_limit: int | None = None) -> 
             client = Client(cluster, set_as_default=False)
             stack.callback(_close, client)
             stack.callback(_kill_workers, cluster)  # called first
-            client.register_plugin(_LocalWorker(threads_each(count)))
+            is_limited = memory_limit is not None
+            client.register_plugin(_LocalWorker(threads_each(count), is_limited))
         yield client
 
 
@@ -238,13 +239,15 @@ class _LocalWorker(WorkerPlugin):  # type: ignore[misc]
 
     name = "meshlab-spectral"
 
-    def __init__(self, threads: int) -> None:
-        self.threads = threads
+    def __init__(self, threads: int, is_limited: bool) -> None:
+        self.threads, self.is_limited = threads, is_limited
 
     def setup(self, worker: Any) -> None:
         signal.signal(signal.SIGINT, signal.SIG_IGN)
         processes.limit(1)
         processes.threads = self.threads
+        if self.is_limited:
+            set_memory_limit(None)  # the limit given wins over that of the environment
 
 
 @contextlib.contextmanager

@@ -14,6 +14,7 @@ from meshlab_spectral.batch.outputs import DEFAULT_PATTERN
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.filters.option_types import Limits, option
 from meshlab_spectral.filters.options import FilterKeywords
+from meshlab_spectral.plugin.limits import given_memory_limit
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,7 +68,7 @@ class Settings:
     memory_limit: int | None = option(
         None,
         "Memory limit per worker, such as 4GB (in Python, bytes). By default, the workers share "
-        "nine tenths of the machine's.",
+        "nine tenths of the machine's, and each keeps to MESHLAB_SPECTRAL_MEMORY.",
         metavar="SIZE",
     )
     timeout: float | None = option(
@@ -81,12 +82,17 @@ class Settings:
     )
 
     def check_workers(self) -> None:
-        """Raise OptionError when both new workers and those of a cluster are requested."""
+        """Raise OptionError when both new workers and those of a cluster are requested.
+
+        Also when the memory limit of the environment counts, but is invalid.
+        """
         if self.scheduler is not None and (self.workers, self.memory_limit) != (None, None):
             raise OptionError(
                 "a cluster configures its own workers: with a scheduler, leave out the number of "
                 "workers and the memory limit"
             )
+        if self.scheduler is None and self.memory_limit is None:
+            given_memory_limit()
 
     @contextmanager
     def workers_started(self) -> Iterator[Callable[[Sequence[Job]], Iterator[FileResult]]]:

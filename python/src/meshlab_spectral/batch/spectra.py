@@ -74,8 +74,9 @@ def write_table(path: Path, results: Iterable[FileResult]) -> None:
     """Write spectra as comma-separated values: a row for each octave of each mesh.
 
     The octaves are those of `GeometrySpectrum`, at the same percentages of the diagonal for all
-    meshes, so that rows of different meshes are comparable. Other lengths are in the units of the
-    mesh; noise_feature_size and noise_height are the same for all rows of a mesh, 0 without noise.
+    meshes (but for those that a warning says have far vertices without faces), so that rows of
+    different meshes are comparable. Other lengths are in the units of the mesh; noise_feature_size
+    and noise_height are the same for all rows of a mesh, 0 without noise.
     """
     with path.open("w", newline="", encoding="utf-8", errors="surrogateescape") as file:
         table = csv.writer(file, lineterminator="\n")

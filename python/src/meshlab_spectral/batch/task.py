@@ -11,7 +11,7 @@ from meshlab_spectral.batch.jobs import FileResult, Job, Outcome
 from meshlab_spectral.batch.processes import processes
 from meshlab_spectral.errors import MemoryLimitError, ProcessDiedError, SpectralError
 from meshlab_spectral.files.whole_files import side_files
-from meshlab_spectral.plugin.limits import threads_each
+from meshlab_spectral.plugin.limits import given_memory_limit, threads_each
 from meshlab_spectral.plugin.versions import versions
 from meshlab_spectral.process.parent import Answer, JobLimits
 
@@ -23,13 +23,13 @@ def run_job(job: Job, memory_limit: int | None = None) -> FileResult:
     """Process one file; the outcome is "filtered", "unchanged", "measured" or "failed".
 
     Errors with a single file are not raised. `memory_limit` is in bytes, for MeshLab's process; by
-    default its share of the Dask worker's limit, or none outside a worker.
+    default its share of the Dask worker's limit, or that of the environment if that is lower.
     """
     begin = time.monotonic()
     result: dict[str, Any] = {"outcome": "failed", "waited": 0.0}
-    limits = JobLimits(memory_limit or _worker_memory(), job.seconds)
-    _share_threads()
     try:
+        limits = JobLimits(memory_limit or _default_memory_limit(), job.seconds)
+        _share_threads()
         with storage.reading(job.source) as source:
             # Hashed before MeshLab reads it: a file changed meanwhile does not count as done.
             result["input_sha256"] = storage.digest(source)
@@ -90,6 +90,11 @@ def _attempt(work: dict[str, Any], limits: JobLimits, result: dict[str, Any]) ->
                 if attempt == ATTEMPTS:
                     raise
     raise AssertionError("unreachable")
+
+
+def _default_memory_limit() -> int | None:
+    limits = [limit for limit in (_worker_memory(), given_memory_limit()) if limit is not None]
+    return min(limits, default=None)
 
 
 def _worker_memory() -> int | None:

@@ -53,7 +53,9 @@ def with_gain(
         raise OptionError(
             f"filter_type = {options.filter_type}: gain replaces it; give one of them"
         )
-    diagonal = float(np.linalg.norm(np.ptp(V, axis=0)))
+    # As in the plugin, percentages refer to all vertices, and the default to those of faces.
+    shape = V[F].reshape(-1, 3) if options.feature_size.automatic and len(F) else V
+    diagonal = float(np.linalg.norm(np.ptp(shape, axis=0)))
     size = options.feature_size.in_units_of_mesh(diagonal, mean_edge(V, F))
     points = points_of(gain, size)
     return replace(options, filter_type="custom", transfer_function=points)

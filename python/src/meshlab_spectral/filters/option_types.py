@@ -239,7 +239,7 @@ class Options:
         return options
 
     def pymeshlab_parameters(self, mesh: Any) -> dict[str, Any]:
-        """Return the keyword arguments for pymeshlab; automatic options are left out.
+        """Return the keyword arguments for pymeshlab; automatic and default lengths are left out.
 
         Parameters
         ----------
@@ -253,8 +253,8 @@ class Options:
             value = getattr(self, one.name)
             if not isinstance(value, Length):
                 continue
-            if value.automatic:
-                del parameters[one.name]
+            if value.automatic or value == one.default:
+                del parameters[one.name]  # the plugin's default suits the mesh
             elif value.unit == "%":
                 parameters[one.name] = pymeshlab.PercentageValue(value.value)
             else:

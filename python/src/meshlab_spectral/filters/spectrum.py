@@ -30,7 +30,7 @@ class GeometrySpectrum:
     Attributes
     ----------
     diagonal
-        Diagonal of the bounding box.
+        Diagonal of the bounding box of all vertices, to which percentages refer.
     mean_edge
         Mean edge length.
     default_feature_size
@@ -46,8 +46,8 @@ class GeometrySpectrum:
     amplitudes
         Amplitudes of these harmonics; 0 for constants.
     octave_feature_sizes
-        Centres of the octaves, descending: the diagonal times powers of two, down to the last
-        octave with any energy.
+        Centres of the octaves, descending, down to the last octave with any energy: the diagonal,
+        without vertices that no face uses, times powers of two.
     octave_energies
         Energies of the octaves, length^4; they sum to `total_energy`. Adjacent octaves overlap by
         half an octave, in which a detail is shared between them.

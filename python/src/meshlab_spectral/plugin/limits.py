@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 
 from meshlab_spectral.errors import OptionError
@@ -67,6 +68,29 @@ def threads() -> int | None:
     if not text.isdecimal() or int(text) < 1:
         raise OptionError(f"the environment variable {THREADS} = {text}: must be above zero")
     return int(text)
+
+
+def given_memory_limit() -> int | None:
+    """Return the limit in bytes set by `set_memory_limit` or the environment; None: no limit.
+
+    Raises
+    ------
+    OptionError
+        When the environment variable is not a number above zero.
+    """
+    text = os.environ.get(MEMORY)
+    if text is None:
+        return None
+    try:
+        number = float(text)
+    except ValueError:
+        number = math.nan
+    if not 0 < number < math.inf:
+        raise OptionError(
+            f"the environment variable {MEMORY} = {text}: give a number of bytes above zero, such "
+            "as 4e9, or unset it"
+        )
+    return max(1, int(number))
 
 
 def threads_each(processes: int) -> int:

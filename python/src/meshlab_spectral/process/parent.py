@@ -20,11 +20,11 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from meshlab_spectral import errors
-from meshlab_spectral.plugin.limits import THREADS
+from meshlab_spectral.plugin.limits import MEMORY, THREADS, given_memory_limit
 
 ProgressCallback = Callable[[str, float | None], None]
 
@@ -52,7 +52,7 @@ class JobLimits:
     Attributes
     ----------
     memory
-        Resident memory of the process in bytes; None: no limit.
+        Resident memory of the process in bytes; None: that of the environment, if any.
     seconds
         Time since the start of the job; None: no limit.
     """
@@ -138,7 +138,11 @@ class MeshLabProcess:
             When the child died without an answer.
         TimeLimitError, MemoryLimitError
             When the child exceeded a limit and was ended.
+        OptionError
+            When the memory limit of the environment is invalid.
         """
+        if limits.memory is None:
+            limits = replace(limits, memory=given_memory_limit())
         self._log.clear()
         self.jobs += 1
         self.usable = False  # until the job has succeeded
@@ -252,9 +256,11 @@ def _ignore(stage: str, fraction: float | None) -> None:
 
 
 def _too_much_memory(limit: int, detail: str) -> errors.MemoryLimitError:
+    which, remedy = "the limit of a worker", "raise the memory limit, with fewer workers if need be"
+    if limit == given_memory_limit():
+        which, remedy = "its limit", f"raise or unset the environment variable {MEMORY}"
     return errors.MemoryLimitError(
-        f"needs more than {limit / 2**20:.0f} MiB of memory, the limit of a worker: raise the "
-        f"memory limit, with fewer workers if need be; {detail}"
+        f"needs more than {limit / 2**20:.0f} MiB of memory, {which}: {remedy}; {detail}"
     )
 
 
