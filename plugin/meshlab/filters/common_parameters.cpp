@@ -87,7 +87,7 @@ bool isDefaultFeatureSize(const RichParameterList& parameters, const MeshModel& 
     // A field of MeshLab's dialog rounds its number.
     constexpr double kRounding = 1e-4;
     const double size = spectral::defaultFeatureSize(
-        spectral::meanEdgeLength(matrices.V, matrices.F), mesh.cm.bbox.Diag());
+        spectral::meanEdgeLength(matrices.V, matrices.F), surfaceDiagonal(mesh));
     return std::abs(featureSize(parameters) - size) <= kRounding * size;
 }
 
