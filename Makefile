@@ -9,6 +9,7 @@
 #   PICTURES            of `make screenshots`: only these, such as "denoise colors", none of MeshLab
 #   BENCH_MESH          the mesh of the C++ benchmark, skipped when there is no such file
 #   BENCH_OPTIONS       of `make bench-basis`, `bench-contract`, `bench-defaults`, `bench-denoise`, `bench-memory`, `bench-signatures`; --help lists them
+#   PROMISES_OPTIONS    of `make promises`, such as '--only artefacts speed'; --help lists them
 #   FUZZ_OPTIONS        of `make fuzz`; tests/fuzz/fuzz_core.cpp lists them
 #   FUZZ_EXAMPLES       of `make fuzz-python`: how many, about 20 a second
 #   SANITIZE            ON: `make fuzz` with AddressSanitizer and UndefinedBehaviorSanitizer
@@ -19,6 +20,7 @@ MESHES ?= ../shared/data
 PICTURES ?=
 BENCH_MESH ?= $(MESHES)/dragon_40k.ply
 BENCH_OPTIONS ?=
+PROMISES_OPTIONS ?=
 TEST_OPTIONS ?=
 FUZZ_OPTIONS ?= --cases 1000000
 FUZZ_EXAMPLES ?= 5000
@@ -47,7 +49,7 @@ PACKAGE_SOURCES := CMakeLists.txt $(shell find plugin python -not -path '*/__pyc
 # Two targets at once would fetch MeshLab's headers twice; ninja uses every core anyway.
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help demo test wheel sdist docs gui-test screenshots setup build bench bench-basis bench-batch bench-contract bench-defaults bench-denoise bench-ldlt bench-memory bench-signatures fuzz fuzz-python lint format clean
+.PHONY: help demo test wheel sdist docs gui-test screenshots setup build bench bench-basis bench-batch bench-contract bench-defaults bench-denoise bench-ldlt bench-memory bench-signatures promises fuzz fuzz-python lint format clean
 
 help:  ## list these commands
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 20
@@ -128,6 +130,9 @@ bench-ldlt: $(COMPETITORS) build  ## compare the factorization with Eigen's and 
 
 bench-batch: $(PACKAGE)  ## measure a batch of 1,000 meshes against one process
 	$(BIN)/python tests/benchmarks/bench_batch.py
+
+promises: $(PACKAGE)  ## ask every number that READMEs and benchmarks promise; ten minutes
+	PYTHONPATH=tests/benchmarks:tests/python $(BIN)/python -m promises $(PROMISES_OPTIONS)
 
 fuzz: setup  ## try the core with random meshes and options; about half an hour
 	cmake -S . -B build/fuzz-sanitize-$(SANITIZE) -G Ninja -DSPECTRAL_BUILD_PLUGIN=OFF \

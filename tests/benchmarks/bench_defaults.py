@@ -22,6 +22,7 @@ import statistics
 import subprocess
 import sys
 import time
+from collections.abc import Iterable
 from typing import Any
 
 SETTINGS: dict[str, dict[str, Any]] = {
@@ -67,8 +68,10 @@ def forget_peak() -> float:
     return peak_megabytes()
 
 
-def measure(mesh: str, setting: str, reference_steps: int) -> dict[str, Any]:
-    """Filter one mesh in this process; return its row.
+def measure(
+    mesh: str, setting: str, reference_steps: int, smoothings: Iterable[str]
+) -> dict[str, Any]:
+    """Filter one mesh in this process; return its row, with ratios to some smoothings.
 
     With reference_steps > 0 also the error against that many times the steps of the result.
     """
@@ -105,7 +108,7 @@ def measure(mesh: str, setting: str, reference_steps: int) -> dict[str, Any]:
         "mesh": pathlib.Path(mesh).name,
         "vertices": len(V),
         "seconds": seconds,
-        "ratios": {name: seconds / timed(smoothed(name))[0] for name in SMOOTHINGS},
+        "ratios": {name: seconds / timed(smoothed(name))[0] for name in smoothings},
         "megabytes": peak_megabytes() - before,
         "steps": report["steps"],
         "factorizations": report["factorizations"],
@@ -134,6 +137,30 @@ def measure(mesh: str, setting: str, reference_steps: int) -> dict[str, Any]:
             share = np.cumsum(mass[order]) / mass.sum()
             row[f"error_of_{name}"] = error[order][np.searchsorted(share, 1 - UNRESOLVED_AREA)]
             row["largest_error"] = error[mass > 0].max()
+    return row
+
+
+def measured(
+    mesh: str,
+    setting: str = "default",
+    reference_steps: int = 0,
+    smoothings: Iterable[str] = tuple(SMOOTHINGS),
+    timeout: float = 1800,
+) -> dict[str, Any]:
+    """Filter one mesh in a process of its own; return its row, or one with its "failure"."""
+    options = ["--one", "--setting", setting, "--over", *smoothings]
+    if reference_steps:
+        options += ["--reference", str(reference_steps)]
+    command = [sys.executable, __file__, mesh, *options]
+    name = pathlib.Path(mesh).name
+    try:
+        run = subprocess.run(command, capture_output=True, text=True, timeout=timeout)
+    except subprocess.TimeoutExpired:
+        return {"mesh": name, "failure": f"> {timeout:.0f} s"}
+    if run.returncode != 0:
+        lines = run.stderr.strip().splitlines() or [f"exit status {run.returncode}"]
+        return {"mesh": name, "failure": lines[-1][:200]}
+    row: dict[str, Any] = json.loads(run.stdout.splitlines()[-1])
     return row
 
 
@@ -173,10 +200,11 @@ def main() -> None:
     parser.add_argument("--timeout", type=float, default=1800)
     parser.add_argument("--json", type=pathlib.Path, help="append the rows to this file")
     parser.add_argument("--one", action="store_true", help=argparse.SUPPRESS)
+    parser.add_argument("--over", nargs="*", default=list(SMOOTHINGS), help=argparse.SUPPRESS)
     arguments = parser.parse_args()
+    setting, reference = arguments.setting, arguments.reference
     if arguments.one:
-        row = measure(arguments.meshes[0], arguments.setting, arguments.reference)
-        print(json.dumps(row))
+        print(json.dumps(measure(arguments.meshes[0], setting, reference, arguments.over)))
         return
 
     print(
@@ -191,20 +219,9 @@ def main() -> None:
     )
     rows: list[dict[str, Any]] = []
     for mesh in arguments.meshes or default_meshes():
-        command = [sys.executable, __file__, mesh, "--one", "--setting", arguments.setting]
-        if arguments.reference:
-            command += ["--reference", str(arguments.reference)]
-        row: dict[str, Any]
-        try:
-            run = subprocess.run(command, capture_output=True, text=True, timeout=arguments.timeout)
-            if run.returncode == 0:
-                row = json.loads(run.stdout.splitlines()[-1])
-                rows.append(row)
-            else:
-                lines = run.stderr.strip().splitlines() or [f"exit status {run.returncode}"]
-                row = {"mesh": pathlib.Path(mesh).name, "failure": lines[-1][:200]}
-        except subprocess.TimeoutExpired:
-            row = {"mesh": pathlib.Path(mesh).name, "failure": f"> {arguments.timeout:.0f} s"}
+        row = measured(mesh, setting, reference, timeout=arguments.timeout)
+        if "failure" not in row:
+            rows.append(row)
         print(printed(row), flush=True)
         if arguments.json:
             with arguments.json.open("a") as file:

@@ -27,7 +27,7 @@ import argparse
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import meshlab_spectral
 import numpy as np
@@ -309,28 +309,44 @@ def clean_meshes(given: list[str]) -> Iterator[tuple[str, Array, NDArray[Any]]]:
             yield f"{name}, {faces} faces", mesh.vertex_matrix().copy(), mesh.face_matrix().copy()
 
 
-def print_clean(given: list[str]) -> None:
-    """Print what moves where nothing should, and how much of a little noise remains."""
-    moved = worse = count = 0
+class CleanRow(NamedTuple):
+    """What denoising does to a mesh without noise, and to that mesh with a little."""
+
+    name: str
+    moved: float
+    """Largest displacement, in mean edges."""
+    before: float
+    after: float
+    """Mean angle to the normals of the mesh, with noise of 0.05 mean edges added, in degrees."""
+    summary: str
+
+
+def clean_rows(given: list[str]) -> Iterator[CleanRow]:
+    """Denoise meshes without noise, and with a little added."""
     for name, V, F in clean_meshes(given):
         if len(F) == 0:
             continue
-        count += 1
         edge, N = mean_edge(V, F), unit(face_normals(V, F))
         X, report = meshlab_spectral.denoise_mesh(V, F)
-        largest = np.abs(X - V).max() / edge
         random = np.random.default_rng(5)
         noisy = V + vertex_normals(V, F) * (0.05 * edge * random.standard_normal(len(V)))[:, None]
         Y = meshlab_spectral.denoise_mesh(noisy, F)[0]
         before, after = (mean_angle(unit(face_normals(Z, F)), N) for Z in (noisy, Y))
-        moved += bool(largest > 0)
-        worse += after > before
+        yield CleanRow(name, np.abs(X - V).max() / edge, before, after, report["summary"])
+
+
+def print_clean(given: list[str]) -> None:
+    """Print what moves where nothing should, and how much of a little noise remains."""
+    rows = []
+    for row in clean_rows(given):
+        rows.append(row)
         print(
-            f"{name:36} moved {largest:.4f} edges; noise of 0.05 edges: {before:5.2f} -> "
-            f"{after:5.2f} degrees; {report['summary'][:60]}",
+            f"{row.name:36} moved {row.moved:.4f} edges; noise of 0.05 edges: {row.before:5.2f} -> "
+            f"{row.after:5.2f} degrees; {row.summary[:60]}",
             flush=True,
         )
-    print(f"{count} meshes: {moved} moved; with noise added, {worse} are worse than before")
+    moved, worse = sum(row.moved > 0 for row in rows), sum(row.after > row.before for row in rows)
+    print(f"{len(rows)} meshes: {moved} moved; with noise added, {worse} are worse than before")
 
 
 def main() -> None:

@@ -18,6 +18,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Iterator
 
 from bench_contract import CALLS, NAMES, SIGNALS
 from bench_defaults import peak_megabytes
@@ -31,13 +32,15 @@ def resident_megabytes() -> float:
     return int(status.split("VmRSS:")[1].split()[0]) / 1024
 
 
-def measure_runs(runs: int) -> None:
-    """Run each filter again and again on a small sphere."""
+def measured_runs(runs: int) -> Iterator[tuple[str, float, float]]:
+    """Run each filter again and again on a small sphere.
+
+    Yield its name, and the resident memory after the first few runs and after all.
+    """
     import meshlab_spectral
     import pymeshlab
 
     meshlab_spectral.load()
-    print(f"{'filter':11}{'MB after ' + str(FEW_RUNS):>12}{'after ' + str(runs):>12}")
     for call in [call for call in CALLS if call.setting == "default"]:
         few = 0.0
         for run in range(runs):
@@ -49,7 +52,14 @@ def measure_runs(runs: int) -> None:
             meshes.apply_filter(NAMES[call.short], **call.parameters)
             if run == FEW_RUNS - 1:
                 few = resident_megabytes()
-        print(f"{call.short:11}{few:12.1f}{resident_megabytes():12.1f}", flush=True)
+        yield call.short, few, resident_megabytes()
+
+
+def print_runs(runs: int) -> None:
+    """Print the memory of many runs."""
+    print(f"{'filter':11}{'MB after ' + str(FEW_RUNS):>12}{'after ' + str(runs):>12}")
+    for name, few, all_runs in measured_runs(runs):
+        print(f"{name:11}{few:12.1f}{all_runs:12.1f}", flush=True)
 
 
 def write_large(mesh: str, subdivisions: int, target: str) -> None:
@@ -101,7 +111,7 @@ def main() -> None:
     if arguments.large is not None:
         measure_large(arguments.large)
         return
-    measure_runs(arguments.runs)
+    print_runs(arguments.runs)
     with tempfile.TemporaryDirectory() as folder:
         large = str(pathlib.Path(folder, "large.ply"))
         write_large(arguments.mesh, arguments.subdivisions, large)

@@ -3,16 +3,17 @@
 usage: bench_pymeshlab.py [MESH]
 
 MESH defaults to the 40k-vertex dragon next to the repository or, if that is absent, to the bunny
-that comes with pymeshlab. Peak memory is that of the process (ru_maxrss), with Python, pymeshlab
+that comes with pymeshlab. Peak memory is that of the process (VmHWM), with Python, pymeshlab
 and the mesh; subtract the line "load only" for the filter's share.
 """
 
 import json
 import pathlib
-import resource
 import subprocess
 import sys
 import time
+
+from bench_defaults import peak_megabytes
 
 CASES = {
     "load only": None,
@@ -38,11 +39,19 @@ def measure(mesh: str, case: str) -> dict[str, float]:
         )
     return {
         "seconds": time.perf_counter() - start,
-        "megabytes": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
+        "megabytes": peak_megabytes(),
         "vertices": meshes.current_mesh().vertex_number(),
         "factorizations": report.get("factorizations", 0),
         "solves": report.get("solves", 0),
     }
+
+
+def measured(mesh: str, case: str) -> dict[str, float]:
+    """Run one case in a process of its own and return what it took."""
+    command = [sys.executable, __file__, mesh, case]
+    out = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    row: dict[str, float] = json.loads(out.splitlines()[-1])
+    return row
 
 
 def default_mesh() -> pathlib.Path:
@@ -63,10 +72,7 @@ def main() -> None:
     mesh = sys.argv[1] if len(sys.argv) == 2 else str(default_mesh())
     print(f"{mesh}\n{'case':44}{'seconds':>9}{'peak MB':>9}{'factor.':>9}{'solves':>8}")
     for case in CASES:
-        out = subprocess.run(
-            [sys.executable, __file__, mesh, case], check=True, capture_output=True, text=True
-        ).stdout
-        row = json.loads(out.splitlines()[-1])
+        row = measured(mesh, case)
         print(
             f"{case:44}{row['seconds']:9.2f}{row['megabytes']:9.0f}"
             f"{row['factorizations']:9.0f}{row['solves']:8.0f}"

@@ -1,9 +1,12 @@
-"""Scripts that no test runs import only what the package has."""
+"""Scripts that no test runs import only what the package has; the promises can be asked."""
 
 from __future__ import annotations
 
 import ast
 import importlib
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -12,11 +15,11 @@ REPOSITORY = Path(__file__).resolve().parents[2]
 SCRIPTS = [
     path
     for folder in ("tests/benchmarks", "screenshots/scripts")
-    for path in sorted((REPOSITORY / folder).glob("*.py"))
+    for path in sorted((REPOSITORY / folder).rglob("*.py"))
 ]
 
 
-@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.name)
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: str(path.relative_to(REPOSITORY)))
 def test_every_name_that_a_script_imports_from_the_package_exists(script: Path) -> None:
     missing = []
     for node in ast.walk(ast.parse(script.read_text(encoding="utf-8"))):
@@ -26,3 +29,17 @@ def test_every_name_that_a_script_imports_from_the_package_exists(script: Path) 
                 f"{node.module}.{a.name}" for a in node.names if not hasattr(module, a.name)
             ]
     assert not missing
+
+
+def test_every_promise_is_listed_once() -> None:
+    folders = (str(REPOSITORY / "tests" / name) for name in ("benchmarks", "python"))
+    listed = subprocess.run(
+        [sys.executable, "-m", "promises", "--list", "--large"],
+        env=os.environ | {"PYTHONPATH": os.pathsep.join(folders)},
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=True,
+    )
+    rows = [line for line in listed.stdout.splitlines() if line.startswith("  ")]
+    assert len(set(rows)) == len(rows) > 50

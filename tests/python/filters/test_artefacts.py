@@ -51,6 +51,16 @@ def test_lengths_rms_and_maximum_agree(
     assert found.diagonal == pytest.approx(diagonal(V), rel=1e-12)
 
 
+def test_two_factorizations_give_what_all_eigenvectors_give(
+    sample_name: str, decimated: Decimated
+) -> None:
+    V, F = decimated(sample_name)
+    size = 0.2 * diagonal(V)
+    found = reference.artefacts(V, F, size, reference.lumped_areas(V, F))
+    expected = expected_lengths(V, F, size, "intrinsic delaunay")
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-9 * diagonal(V))
+
+
 def test_artefacts_scale_with_the_mesh_and_do_not_change_under_translation(
     decimated: Decimated,
 ) -> None:
