@@ -10,7 +10,7 @@ from typing import Any
 from unittest.mock import MagicMock
 
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 from meshlab_spectral import BatchError, InputError
 from meshlab_spectral.batch.jobs import FileResult, Job
@@ -35,6 +35,7 @@ def write_report(path: Path, records: list[dict[str, Any]]) -> None:
 
 @REUSED_FOLDER
 @given(records=RECORDS, more=RECORDS, cut=st.integers(0, 200))
+@example(records=[{"a": "\udcff"}], more=[], cut=1)
 def test_a_report_cut_off_anywhere_keeps_its_whole_lines_and_can_be_continued(
     records: list[dict[str, Any]], more: list[dict[str, Any]], cut: int, tmp_path: Path
 ) -> None:
@@ -56,7 +57,7 @@ def test_a_report_cut_off_anywhere_keeps_its_whole_lines_and_can_be_continued(
 
 def is_json(text: bytes) -> bool:
     try:
-        json.loads(text)
+        json.loads(text.decode(errors="surrogateescape"))
     except ValueError:
         return False
     return True
