@@ -133,18 +133,17 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
     // the first two passes.
     constexpr double kFirstPasses = 0.1;
     laplacians.reset();
-    const auto predictFirst = [&] {
-        return evaluate
-            .predict(laplacians.current(), X, {1.0, 0.5, 0.25}, progress.part(0.0, kFirstPasses))
+    const auto predictFirst = [&](double from, double to) {
+        return evaluate.predict(laplacians.current(), X, {1.0, 0.5, 0.25}, progress.part(from, to))
             .Y;
     };
-    std::vector<Eigen::MatrixXd> first = predictFirst();
+    std::vector<Eigen::MatrixXd> first = predictFirst(0.0, 0.5 * kFirstPasses);
     if (options.keepThinParts) {
         Eigen::VectorXd factors =
             thinPartFactors(laplacians.current().W, laplacians.faces(), X, first[2], first[0]);
         if (factors.size() > 0) {
             laplacians.scaleMass(std::move(factors));
-            first = predictFirst();
+            first = predictFirst(0.5 * kFirstPasses, kFirstPasses);
         }
     }
     const Vertices halves[] = {first[1], first[2]};

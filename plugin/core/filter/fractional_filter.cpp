@@ -7,6 +7,7 @@
 
 #include "core/filter/automatic_steps.h"
 #include "core/filter/fractional_steps.h"
+#include "core/filter/thin_parts.h"
 #include "core/laplacian/interior.h"
 #include "core/mesh/creases.h"
 #include "core/mesh/measures.h"
@@ -112,6 +113,11 @@ AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evalua
                              const FilterOptions& options, const Progress& progress) {
     // A truncated spectrum may drop the residual even if the gain is 1.
     const bool isIdentity = F.isOne() && options.evaluation.spectrum == Spectrum::Full;
+    const bool areThinPartsKept =
+        options.keepThinParts && options.transferFunction.type == FilterType::LowPass;
+    const bool isAutomatic = options.steps == 0 && options.basisUpdate != BasisUpdate::None;
+    if (!isIdentity && !isAutomatic && areThinPartsKept)
+        keepThinParts(laplacians, evaluate, X, progress.part(0.0, 0.0));
     if (isIdentity || options.basisUpdate == BasisUpdate::None) {
         // Powers of one operator commute: K steps are the whole filter. A gain of 1 keeps all bits.
         AutomaticSteps whole;
@@ -126,11 +132,9 @@ AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evalua
         return whole;
     }
     if (options.steps == 0) {
-        const bool keepThinParts =
-            options.keepThinParts && options.transferFunction.type == FilterType::LowPass;
-        return automaticSteps(laplacians, evaluate, X,
-                              {options.tolerance, options.maxSteps, options.passes, keepThinParts},
-                              progress);
+        return automaticSteps(
+            laplacians, evaluate, X,
+            {options.tolerance, options.maxSteps, options.passes, areThinPartsKept}, progress);
     }
     return {fixedSteps(laplacians, evaluate, X, options.steps, progress)};
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "core/laplacian/laplacian.h"
 #include "core/support/threads.h"
@@ -11,20 +13,19 @@ namespace spectral {
 
 namespace {
 
-/// Fraction of its area that a part keeps. Noise of half an edge takes no more in 99 % of a scan.
-constexpr double kKeptArea = 0.7;
+/// Fraction of its area that a part keeps; smoothing noise of 0.3 edges takes less.
+constexpr double kKeptArea = 0.75;
 
-/// Area of a noisy surface relative to that after F^(1/4): noise of 0.3 edges has less on 99.9 % of
-/// a scan, over neighbourhoods of kRings edges.
+/// Area of a noisy surface relative to that after F^(1/4): noise of 0.3 edges has less.
 constexpr double kNoisyArea = 1.25;
 
-/// Where F^(1/4) leaves less of the area, its own error is what is left, and says nothing.
-constexpr double kLeastArea = 1e-4;
+/// Where F^(1/4) leaves less of the area, which may be its own error, the part does not move.
+constexpr double kLeastArea = 1e-2;
 
-/// Radius of the neighbourhoods in edges: half the default feature size.
-constexpr int kRings = 3;
+/// Radius of the neighbourhoods in edges: as large as noise needs, as small as rims allow.
+constexpr int kRings = 1;
 
-/// Largest factor: nothing moves.
+/// Factor with which nothing moves.
 constexpr double kMaxFactor = 1e6;
 
 /// Replaces values by `of` all values at the neighbours of a vertex and its own.
@@ -64,6 +65,16 @@ Eigen::VectorXd thinPartFactors(const SparseMatrix& W, const Faces& F, const Ver
                                   .max(1.0);
     if (factors.maxCoeff() == 1.0) return {};
     return overRing(W, factors, [](double a, double b) { return std::max(a, b); });
+}
+
+void keepThinParts(LaplacianBuilder& laplacians, StepEvaluator& evaluate, const Vertices& X,
+                   const Progress& progress) {
+    laplacians.reset();
+    const std::vector<Eigen::MatrixXd> powers =
+        evaluate.predict(laplacians.current(), X, {1.0, 0.25}, progress).Y;
+    Eigen::VectorXd factors =
+        thinPartFactors(laplacians.current().W, laplacians.faces(), X, powers[1], powers[0]);
+    if (factors.size() > 0) laplacians.scaleMass(std::move(factors));
 }
 
 }  // namespace spectral

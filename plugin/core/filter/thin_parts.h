@@ -2,7 +2,10 @@
 
 #include <Eigen/Core>
 
+#include "core/filter/step_evaluator.h"
+#include "core/laplacian/laplacian_builder.h"
 #include "core/mesh/mesh.h"
+#include "core/support/progress.h"
 #include "core/support/types.h"
 
 namespace spectral {
@@ -10,16 +13,16 @@ namespace spectral {
 /// Factors of D that keep the parts of a shape that a low-pass would draw in to lines or points.
 ///
 /// A low-pass of feature size L takes away a part whose girth g is below L: its area shrinks to
-/// q = F(2 pi / g) of what it was. Where q would be below 0.7, vertices get a feature size L_i < L
-/// of their own, at which 0.7 is left. Lengths there count L / L_i times, so D_ii is multiplied by
-///     m_i = (L / L_i)^2 = log q / log 0.7,
+/// q = F(2 pi / g) of what it was. Where q would be below 0.75, vertices get a feature size L_i < L
+/// of their own, at which 0.75 is left. Lengths there count L / L_i times, so D_ii is multiplied by
+///     m_i = (L / L_i)^2 = log q / log 0.75,
 /// which is exact for a Gaussian, where log F is proportional to lambda and thus to 1 / m_i. W does
 /// not change: it is conformally invariant. W phi = lambda m D phi is the Laplacian of the same
 /// surface with another metric, so there is no seam between parts.
 ///
-/// q is measured on two powers of the filter, over neighbourhoods of a few edges. F^(1/4) has
-/// removed most of the noise, whose area is none of the part's; where it takes more area than noise
-/// has, it gives q itself.
+/// q is measured on two powers of the filter, over the triangles around a vertex and its
+/// neighbours. F^(1/4) has removed most of the noise, whose area is none of the part's; where it
+/// takes more area than noise has, it gives q itself.
 ///
 /// @param W      stiffness matrix of X; its pattern gives the neighbours.
 /// @param X      n x 3, the shape.
@@ -28,5 +31,10 @@ namespace spectral {
 /// @return       n factors >= 1; empty if all are 1.
 Eigen::VectorXd thinPartFactors(const SparseMatrix& W, const Faces& F, const Vertices& X,
                                 const Vertices& weak, const Vertices& whole);
+
+/// Keeps the thin parts of X in all evaluations that follow: multiplies D by their factors.
+/// @param evaluate  of a low-pass.
+void keepThinParts(LaplacianBuilder& laplacians, StepEvaluator& evaluate, const Vertices& X,
+                   const Progress& progress);
 
 }  // namespace spectral
