@@ -25,6 +25,9 @@ constexpr double kLeastArea = 1e-2;
 /// Radius of the neighbourhoods in edges: as large as noise needs, as small as rims allow.
 constexpr int kRings = 1;
 
+/// If no part needs a larger factor, none loses half of its area: nothing needs to be kept.
+constexpr double kWorthwhile = 2.0;
+
 /// Factor with which nothing moves.
 constexpr double kMaxFactor = 1e6;
 
@@ -63,7 +66,7 @@ Eigen::VectorXd thinPartFactors(const SparseMatrix& W, const Faces& F, const Ver
     Eigen::VectorXd factors = (before - quarter > -std::log(kLeastArea))
                                   .select(kMaxFactor, logOfLoss / -std::log(kKeptArea))
                                   .max(1.0);
-    if (factors.maxCoeff() == 1.0) return {};
+    if (factors.maxCoeff() <= kWorthwhile) return {};
     return overRing(W, factors, [](double a, double b) { return std::max(a, b); });
 }
 

@@ -28,7 +28,7 @@ namespace spectral {
 /// @param X      n x 3, the shape.
 /// @param weak   F^(1/4)(sqrt(A)) X.
 /// @param whole  F(sqrt(A)) X.
-/// @return       n factors >= 1; empty if all are 1.
+/// @return       n factors >= 1; empty if no part loses half of its area.
 Eigen::VectorXd thinPartFactors(const SparseMatrix& W, const Faces& F, const Vertices& X,
                                 const Vertices& weak, const Vertices& whole);
 
