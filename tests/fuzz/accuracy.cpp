@@ -230,7 +230,7 @@ Accuracy accuracyOf(const testing::Mesh& mesh, const SpectrumOptions& options,
         return 2.0 * kPi / result.octaveFeatureSizes[octave];
     };
     const Index count = result.octaveEnergies.size();
-    const Bands bands(result.diagonal, frequencyOf(0), frequencyOf(count - 1));
+    const Bands bands(result.surfaceDiagonal, frequencyOf(0), frequencyOf(count - 1));
     if (bands.count() != count) {
         accuracy.failures.push_back(failure("octaves", bands.count(), " instead of ", count));
         return accuracy;

@@ -26,7 +26,7 @@ namespace {
 /// small since single vertices may be several times worse. The tolerance is a length for the eye,
 /// whatever the resolution: on fine meshes it exceeds the details that are filtered, and errors of
 /// a few thousandths of an edge turn faces by as much as the noise that is left.
-constexpr double kShareOfTolerance = 0.05, kShareOfFeatureSize = 1e-3, kShareOfEdge = 1e-3;
+constexpr double kShareOfTolerance = 0.05, kShareOfFeatureSize = 1e-3, kShareOfEdge = 2e-3;
 
 /// Evaluations have at least this relative accuracy, however large the tolerance.
 constexpr double kLoosestAccuracy = 1e-4;
