@@ -26,6 +26,7 @@ FILTERS: dict[str, tuple[float, dict[str, Any]]] = {  # feature size in percent,
 }
 COLUMNS: dict[str, dict[str, Any]] = {
     "one shot": {"steps": 1, "basis_update": "none"},
+    "default": {},
     "full, K = 10": {"steps": 10, "basis_update": "full"},
     "conformal, K = 10": {"steps": 10, "basis_update": "conformal"},
     "full, conformal share 0.1, K = 30": {
