@@ -113,8 +113,10 @@ AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evalua
                              const FilterOptions& options, const Progress& progress) {
     // A truncated spectrum may drop the residual even if the gain is 1.
     const bool isIdentity = F.isOne() && options.evaluation.spectrum == Spectrum::Full;
-    const bool areThinPartsKept =
-        options.keepThinParts && options.transferFunction.type == FilterType::LowPass;
+    // A truncated basis is that of the mesh, whose metric must not change.
+    const bool areThinPartsKept = options.keepThinParts &&
+                                  options.transferFunction.type == FilterType::LowPass &&
+                                  options.evaluation.spectrum == Spectrum::Full;
     const bool isAutomatic = options.steps == 0 && options.basisUpdate != BasisUpdate::None;
     if (!isIdentity && !isAutomatic && areThinPartsKept)
         keepThinParts(laplacians, evaluate, X, progress.part(0.0, 0.0));

@@ -28,8 +28,8 @@ struct FilterOptions {
     int maxSteps = 64;         ///< For automatic steps: limit, whatever the error, >= 2.
     int passes = 0;  ///< For automatic steps: exactly this many passes of 1, 2, 4, ... steps, up to
                      ///< kMaxPasses, whatever the error; 0: as many as the tolerance needs.
-    bool keepThinParts = false;  ///< For a low-pass of a size that nobody chose: parts thinner
-                                 ///< than it stay (thin_parts.h).
+    bool keepThinParts = false;  ///< For a low-pass, over the full spectrum, of a size that nobody
+                                 ///< chose: parts thinner than it stay (thin_parts.h).
     LaplacianKind laplacian = LaplacianKind::IntrinsicDelaunay;
     BasisUpdate basisUpdate = BasisUpdate::Conformal;
     double conformalShare = 0.0;  ///< For BasisUpdate::Full, 0 to 1; see laplacian_builder.h.

@@ -14,10 +14,10 @@ namespace {
 /// Even a signal that is negligible compared with the shape gets two digits.
 constexpr double kCoarsestAccuracy = 1e-2;
 
-/// Relative error of a predicted shape: a share of that of the result, but at least three digits.
-/// It affects the result only through the change of the Laplacian, but that change is large where
-/// parts shrink away; a digit costs two solves.
-constexpr double kPredictionShare = 0.3, kPredictionAccuracy = 1e-3;
+/// Relative error of a predicted shape: that of the result, but at least three digits. It affects
+/// the result only through the change of the Laplacian, but that change is large where parts shrink
+/// away.
+constexpr double kPredictionAccuracy = 1e-3;
 
 /// Relative error beyond which a result is useless.
 constexpr double kUselessError = 0.1;
@@ -61,8 +61,7 @@ Evaluation StepEvaluator::operator()(const Laplacian& surface, const Eigen::Matr
 
 Evaluation StepEvaluator::predict(const Laplacian& surface, const Eigen::MatrixXd& X,
                                   const std::vector<double>& alphas, const Progress& progress) {
-    return evaluate(surface, X, alphas, std::min(kPredictionShare * accuracy_, kPredictionAccuracy),
-                    progress);
+    return evaluate(surface, X, alphas, std::min(accuracy_, kPredictionAccuracy), progress);
 }
 
 Evaluation StepEvaluator::evaluate(const Laplacian& surface, const Eigen::MatrixXd& X,

@@ -50,8 +50,8 @@ class StepEvaluator {
     Evaluation operator()(const Laplacian& surface, const Eigen::MatrixXd& X, double alpha,
                           const Progress& progress);
 
-    /// The same for several powers, less accurately: for shapes that only provide Laplacians and do
-    /// not enter the result themselves.
+    /// The same for several powers, with at least three digits: for shapes that only provide
+    /// Laplacians and do not enter the result themselves.
     Evaluation predict(const Laplacian& surface, const Eigen::MatrixXd& X,
                        const std::vector<double>& alphas, const Progress& progress);
 

@@ -71,8 +71,8 @@ RichParameterList equalizerParameters(const MeshModel& mesh) {
     list.addParam(RichBool(
         "accurate", false, "Accurate",
         "Off: at most two steps, fast enough for the preview. Changes by gains of 0.5 to 2 are "
-        "then accurate to about 1 %, changes by a gain of 0 to about 10 %; the log states the "
-        "error. On: as many steps as needed for an accuracy of 0.05 % of the diagonal.",
+        "then accurate to about 1 %, those by a gain of 0 may be off by a third; the log states "
+        "the error. On: as many steps as needed for an accuracy of 0.05 % of the diagonal.",
         true));
     return list;
 }

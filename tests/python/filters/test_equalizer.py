@@ -97,9 +97,10 @@ def test_a_slider_is_a_custom_transfer_function_with_its_points(
     assert largest_distance(expected, V) > 0.0
     assert largest_distance(found, expected) < 1e-6 * diagonal(V)
     quick = equalized(V, F, **chosen)
-    share = 0.25 if gain == 0.0 else 0.03
+    # Where a band vanishes, parts of the cow collapse, in many steps.
+    share = 0.4 if gain == 0.0 else 0.03
     if gain == 0.0 and slider == "gain_32x":
-        share = 0.6  # sizes of two thirds of the cow: its parts collapse, in many steps
+        share = 0.6  # sizes of two thirds of the cow
     assert np.linalg.norm(quick - found) < share * np.linalg.norm(found - V)
 
 
