@@ -62,13 +62,13 @@ std::string percentOf(double share) {
     return text.str();
 }
 
-/// "10 steps", or "automatic steps, 2 in pass 2": one automatic step is not one of the paper's.
+/// "10", or "automatic, 2 in pass 2": one automatic step is not one of the paper's.
 std::string stepsText(const spectral::FilterResult& result) {
     std::ostringstream text;
     if (result.passes > 0)
         text << "automatic, " << result.steps << " in pass " << result.passes;
     else
-        text << result.steps << (result.steps == 1 ? " step" : " steps");
+        text << result.steps;
     return text.str();
 }
 
@@ -87,7 +87,7 @@ std::string headline(const spectral::FilterOptions& options, const spectral::Fil
          << " (root mean square), at most by " << result.maxDisplacement << "; ";
     text << std::setprecision(2);
     if (options.steps > 0)
-        text << stepsText(result) << ", as requested";
+        text << result.steps << (result.steps == 1 ? " step" : " steps") << ", as requested";
     else if (result.toleranceReached)
         text << "accurate to " << result.stepError << " (" << percent * result.stepError << " %)";
     else

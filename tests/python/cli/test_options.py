@@ -32,6 +32,7 @@ def test_every_option_reaches_the_filter(cow: Path, tmp_path: Path) -> None:
         "power": 0.5,
         "steps": 2,
         "tolerance": "0.1%",
+        "passes": 1,
         "basis_update": "conformal",
         "conformal_share": 0.25,
         "spectrum": "truncated",
