@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -21,9 +22,6 @@ constexpr double kNoisyArea = 1.25;
 
 /// Where F^(1/4) leaves less of the area, which may be its own error, the part does not move.
 constexpr double kLeastArea = 1e-2;
-
-/// Radius of the neighbourhoods in edges: as large as noise needs, as small as rims allow.
-constexpr int kRings = 1;
 
 /// If no part needs a larger factor, none loses half of its area: nothing needs to be kept.
 constexpr double kWorthwhile = 2.0;
@@ -47,11 +45,10 @@ Eigen::VectorXd overRing(const SparseMatrix& W, const Eigen::VectorXd& values,
     return result;
 }
 
-/// Logarithms of the areas around each vertex.
+/// Logarithms of the areas around each vertex and its neighbours: as much as noise needs, as little
+/// as narrow rims allow.
 Eigen::ArrayXd logAreas(const SparseMatrix& W, const Faces& F, const Vertices& X) {
-    Eigen::VectorXd area = lumpedMass(X, F);
-    for (int ring = 0; ring < kRings; ++ring)
-        area = overRing(W, area, [](double a, double b) { return a + b; });
+    const Eigen::VectorXd area = overRing(W, lumpedMass(X, F), std::plus<>());
     return area.array().max(std::numeric_limits<double>::min()).log();
 }
 
