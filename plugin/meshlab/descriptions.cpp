@@ -6,6 +6,7 @@
 #include <QJsonDocument>
 #include <QJsonObject>
 
+#include "meshlab/dialog.h"
 #include "meshlab/mesh_filter.h"
 
 namespace {
@@ -32,12 +33,12 @@ QJsonObject described(const RichParameter& parameter) {
 
 QJsonObject described(const MeshFilter& filter) {
     QJsonArray parameters;
-    for (const RichParameter& parameter : filter.parameters(MeshModel(-1, "", "")))
+    for (const RichParameter& parameter : parametersOf(filter.contract, MeshModel(-1, "", "")))
         parameters.append(described(parameter));
-    return {{"name", filter.name},
-            {"python_name", filter.pythonName},
+    return {{"name", QString::fromStdString(filter.contract.name)},
+            {"python_name", QString::fromStdString(filter.contract.pythonName)},
             {"menus", menusOf(filter.category)},
-            {"help", filter.help},
+            {"help", helpOf(filter.contract)},
             {"parameters", parameters}};
 }
 

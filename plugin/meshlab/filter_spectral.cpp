@@ -2,6 +2,7 @@
 
 #include <common/ml_shared_data_context/ml_plugin_gl_context.h>
 
+#include <chrono>
 #include <functional>
 #include <limits>
 #include <sstream>
@@ -11,14 +12,13 @@
 #include "core/support/errors.h"
 #include "core/support/memory.h"
 #include "core/support/threads.h"
-#include "meshlab/error_messages.h"
-#include "meshlab/free_memory.h"
+#include "meshlab/dialog.h"
 #include "meshlab/host_workarounds/apply_lock.h"
+#include "meshlab/host_workarounds/filter_dialog.h"
 #include "meshlab/host_workarounds/last_messages.h"
 #include "meshlab/host_workarounds/late_close.h"
 #include "meshlab/host_workarounds/late_preview.h"
 #include "meshlab/host_workarounds/signals.h"
-#include "meshlab/mesh_conversion.h"
 
 namespace {
 
@@ -51,19 +51,40 @@ Number environmentNumber(const char* variable, const char* unit) {
                                   " above zero, or unset it");
 }
 
-}  // namespace
-
-std::vector<MeshFilter> allMeshFilters() {
-    return {fractionalMeshFilter(), denoiseMeshFilter(),         equalizerMeshFilter(),
-            qualityMeshFilter(),    colorMeshFilter(),           artefactsMeshFilter(),
-            harmonicsMeshFilter(),  geometrySpectrumMeshFilter()};
+/// The report as pymeshlab returns it. Only these types reach Python; strings do not.
+std::map<std::string, QVariant> dictionaryOf(const spectral::Values& report) {
+    std::map<std::string, QVariant> dictionary;
+    for (const auto& [name, value] : report) {
+        QVariant& entry = dictionary[name];
+        if (const auto* vector = std::get_if<Eigen::VectorXd>(&value))
+            entry = QVariant::fromValue(*vector);
+        else if (const auto* number = std::get_if<double>(&value))
+            entry = *number;
+        else if (const auto* integer = std::get_if<int>(&value))
+            entry = *integer;
+        else
+            entry = std::get<bool>(value);
+    }
+    return dictionary;
 }
+
+}  // namespace
 
 FilterSpectralPlugin::FilterSpectralPlugin() : filters_(allMeshFilters()), runs_(filters_.size()) {
     for (std::size_t i = 0; i < filters_.size(); ++i) {
         typeList.push_back(static_cast<ActionIDType>(i));
-        actionList.push_back(new QAction(filters_[i].name, this));
+        actionList.push_back(new QAction(QString::fromStdString(filters_[i].contract.name), this));
     }
+}
+
+// A plugin has one log and one GL context, whose owner MeshLab and pymeshlab change without a lock:
+// runs in several threads would write to each other's.
+std::unique_lock<std::recursive_timed_mutex> FilterSpectralPlugin::waitForOtherThreads() {
+    constexpr std::chrono::milliseconds kBetweenSignals{50};
+    std::unique_lock<std::recursive_timed_mutex> lock(running_, std::defer_lock);
+    while (!lock.try_lock_for(kBetweenSignals))
+        if (isInterruptedBySignal()) throw MLException(spectral::Cancelled().what());
+    return lock;
 }
 
 const MeshFilter& FilterSpectralPlugin::filterOf(const QAction* action) const {
@@ -81,15 +102,16 @@ QString FilterSpectralPlugin::pluginName() const { return "FilterSpectral"; }
 QString FilterSpectralPlugin::vendor() const { return "meshlab-spectral"; }
 
 QString FilterSpectralPlugin::filterName(ActionIDType filter) const {
-    return filters_.at(static_cast<std::size_t>(filter)).name;
+    return QString::fromStdString(filters_.at(static_cast<std::size_t>(filter)).contract.name);
 }
 
 QString FilterSpectralPlugin::pythonFilterName(ActionIDType filter) const {
-    return filters_.at(static_cast<std::size_t>(filter)).pythonName;
+    return QString::fromStdString(
+        filters_.at(static_cast<std::size_t>(filter)).contract.pythonName);
 }
 
 QString FilterSpectralPlugin::filterInfo(ActionIDType filter) const {
-    return filters_.at(static_cast<std::size_t>(filter)).help;
+    return helpOf(filters_.at(static_cast<std::size_t>(filter)).contract);
 }
 
 FilterPlugin::FilterClass FilterSpectralPlugin::getClass(const QAction* action) const {
@@ -121,13 +143,14 @@ FilterPlugin::FilterArity FilterSpectralPlugin::filterArity(const QAction*) cons
 
 RichParameterList FilterSpectralPlugin::initParameterList(const QAction* action,
                                                           const MeshModel& mesh) {
-    return filterOf(action).parameters(mesh);
+    return parametersOf(filterOf(action).contract, mesh);
 }
 
 std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
     const QAction* action, const RichParameterList& parameters, MeshDocument& document,
     unsigned int&, vcg::CallBackPos* callback) {
     keepLastMessages({}, {});
+    const auto lock = waitForOtherThreads();
     releaseGLContext();
     // MeshLab handles user input in its callback, during this run: the user may switch the preview
     // off, apply the filter, close a window, restart the filter by changing a parameter in preview,
@@ -135,8 +158,12 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
     const LatePreview latePreview;
     const ApplyLock applyLock;
     const LateClose lateClose;
+    // Only a dialog restarts a run; runs in other threads wait.
+    const bool hasDialog = openFilterDialog() != nullptr;
     std::atomic<int>& latest = runs_.at(static_cast<std::size_t>(ID(action)));
-    const auto isOvertaken = [&latest, run = ++latest] { return run != latest; };
+    const auto isOvertaken = [&latest, hasDialog, run = hasDialog ? ++latest : latest.load()] {
+        return hasDialog && run != latest;
+    };
     const auto isWanted = [&document, &lateClose, mesh = document.mm()->id()] {
         return document.getMesh(mesh) != nullptr && !lateClose.isRequested();
     };
@@ -145,15 +172,14 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
     try {
         const spectral::Progress progress = meshlabProgress(callback, isWanted, isOvertaken);
         spectral::setThreadCount(environmentNumber<int>("MESHLAB_SPECTRAL_THREADS", "threads"));
-        setMemoryLimit(environmentNumber<double>("MESHLAB_SPECTRAL_MEMORY", "bytes"));
-        spectral::setMemoryMeasure(freeMemory);
-        progress.report(0.0, "reading the mesh");
-        checkExtent(document.mm()->cm);
-        FilterOutcome outcome = filterOf(action).apply(parameters, *document.mm(), progress);
-        logLines(outcome.text);
-        for (const std::string& warning : outcome.warnings) logLines("  WARNING: " + warning);
-        keepLastMessages(outcome.summary, outcome.warnings);
-        return std::move(outcome.report);
+        spectral::setMemoryLimit(environmentNumber<double>("MESHLAB_SPECTRAL_MEMORY", "bytes"));
+        const MeshFilter& filter = filterOf(action);
+        const spectral::FilterOutput output =
+            applyTo(*document.mm(), filter, valuesOf(filter.contract, parameters), progress);
+        logLines(output.text);
+        for (const std::string& warning : output.warnings) logLines("  WARNING: " + warning);
+        keepLastMessages(output.summary, output.warnings);
+        return dictionaryOf(output.report);
     } catch (const spectral::Cancelled& cancelled) {
         // No error message: the result of the newer run stays, or the project is closed.
         if (isOvertaken())
@@ -164,7 +190,7 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
             throw MLException(cancelled.what());
         return {};
     } catch (const spectral::Error& error) {
-        throw MLException(QString::fromStdString(errorMessage(error, parameters)));
+        throw MLException(QString::fromStdString(error.what()));
     } catch (const std::bad_alloc&) {
         throw MLException(
             "not enough memory for this mesh; choose a smaller basis_size or spectrum = full where "

@@ -3,6 +3,7 @@
 #include <common/plugins/interfaces/filter_plugin.h>
 
 #include <atomic>
+#include <mutex>
 #include <vector>
 
 #include "meshlab/mesh_filter.h"
@@ -40,9 +41,11 @@ class FilterSpectralPlugin : public QObject, public FilterPlugin {
 
   private:
     const MeshFilter& filterOf(const QAction* action) const;
+    std::unique_lock<std::recursive_timed_mutex> waitForOtherThreads();
     void releaseGLContext();
     void logLines(const std::string& text) const;
 
     const std::vector<MeshFilter> filters_;  // indexed by ActionIDType
     std::vector<std::atomic<int>> runs_;     // number of runs of each filter so far
+    std::recursive_timed_mutex running_;     // recursive: MeshLab's dialog restarts a run within it
 };

@@ -96,6 +96,13 @@ Eigen::VectorXd vertexQuality(const CMeshO& mesh, const MeshMatrices& matrices) 
     return quality;
 }
 
+Eigen::MatrixXd vertexColors(const CMeshO& mesh, const MeshMatrices& matrices) {
+    Eigen::MatrixXd colors(matrices.V.rows(), 3);
+    for (Eigen::Index i = 0; i < colors.rows(); ++i)
+        for (int c = 0; c < 3; ++c) colors(i, c) = mesh.vert[matrices.vertexIndex[i]].cC()[c];
+    return colors;
+}
+
 void checkExtent(const CMeshO& mesh) {
     // For the bounding box diagonal, MeshLab squares coordinates in its own precision; lengths such
     // as a tolerance of a thousandth of it are stored in single precision.

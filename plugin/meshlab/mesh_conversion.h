@@ -30,6 +30,9 @@ bool hasSelectedFaces(const CMeshO& mesh);
 /// The vertex quality of each row.
 Eigen::VectorXd vertexQuality(const CMeshO& mesh, const MeshMatrices& matrices);
 
+/// Red, green and blue of each row, 0 to 255.
+Eigen::MatrixXd vertexColors(const CMeshO& mesh, const MeshMatrices& matrices);
+
 /// Reports that the mesh is about to be written, the last opportunity to cancel.
 /// @throws MLException  when the mesh differs from `input`: users can edit it during a run.
 void reportWriting(const MeshMatrices& input, const CMeshO& mesh,

@@ -12,13 +12,14 @@ ARROWS = {
     "mesh": {"support"},
     "ldlt": {"support"},
     "laplacian": {"mesh", "ldlt", "support"},
-    "transfer": {"support"},
+    "transfer": {"mesh", "support"},
     "krylov": {"laplacian", "ldlt", "mesh", "support"},
     "harmonics": {"laplacian", "ldlt", "mesh", "support"},
     "noise": {"mesh", "support"},
     "denoise": {"noise", "laplacian", "mesh", "support"},
     "filter": {"transfer", "krylov", "harmonics", "laplacian", "ldlt", "mesh", "support"},
     "analysis": {"krylov", "harmonics", "laplacian", "ldlt", "mesh", "support"},
+    "contract": {"analysis", "denoise", "filter", "noise", "transfer", "laplacian", "mesh", "support"},
 }
 
 

@@ -282,10 +282,10 @@ GeometrySpectrum geometrySpectrum(const Vertices& V, const Faces& F, const Spect
     const ThreadTeam team(progress);
     MeshLaplacian mesh = meshLaplacian(V, F, options.laplacian);
     GeometrySpectrum spectrum;
-    const Diagonals diagonals = diagonalsOf(V, F);
-    spectrum.diagonal = diagonals.all;
-    spectrum.surfaceDiagonal = diagonals.surface;
-    spectrum.meanEdge = meanEdgeLength(V, F);
+    const MeshLengths lengths = lengthsOf(V, F);
+    spectrum.diagonal = lengths.diagonal;
+    spectrum.surfaceDiagonal = lengths.surfaceDiagonal;
+    spectrum.meanEdge = lengths.meanEdge;
     spectrum.area = mesh.laplacian.D.sum();
     const Signal signal = signalOf(std::move(mesh), options.boundary);
     const Laplacian& laplacian = signal.laplacian;

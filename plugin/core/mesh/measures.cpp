@@ -10,7 +10,7 @@ double boundingBoxDiagonal(const Vertices& V) {
     return (V.colwise().maxCoeff() - V.colwise().minCoeff()).norm();
 }
 
-Diagonals diagonalsOf(const Vertices& V, const Faces& F) {
+MeshLengths lengthsOf(const Vertices& V, const Faces& F) {
     using Position = Eigen::Vector3d;
     Eigen::AlignedBox3d all, surface;
     const auto extend = [&V](Eigen::AlignedBox3d& box, Index i) {
@@ -23,14 +23,15 @@ Diagonals diagonalsOf(const Vertices& V, const Faces& F) {
     for (Index i = 0; i < V.rows(); ++i) extend(all, i);
     for (Index t = 0; t < F.rows(); ++t)
         for (int c = 0; c < 3; ++c) extend(surface, F(t, c));
-    Diagonals diagonals;
-    diagonals.all = diagonalOf(all);
-    diagonals.surface = diagonalOf(surface.isEmpty() ? all : surface);
+    MeshLengths lengths;
+    lengths.meanEdge = meanEdgeLength(V, F);
+    lengths.diagonal = diagonalOf(all);
+    lengths.surfaceDiagonal = diagonalOf(surface.isEmpty() ? all : surface);
     if (!surface.isEmpty())
         for (Index i = 0; i < V.rows(); ++i)
             if (const Position p = V.row(i).transpose(); p.allFinite() && !surface.contains(p))
-                ++diagonals.outside;
-    return diagonals;
+                ++lengths.outside;
+    return lengths;
 }
 
 double meanEdgeLength(const Vertices& V, const Faces& F) {

@@ -5,18 +5,21 @@
 namespace spectral {
 
 /// Diagonal of the axis-aligned bounding box.
+/// @param V  n x 3, n >= 1.
 double boundingBoxDiagonal(const Vertices& V);
 
-/// Diagonals of the bounding boxes of a mesh, with and without vertices that no triangle uses.
-struct Diagonals {
-    double all = 0.0;      ///< Of all vertices: percentages refer to it.
-    double surface = 0.0;  ///< Of the corners of triangles, without any that of all vertices:
-                           ///< defaults refer to it.
-    Index outside = 0;     ///< Number of vertices outside the box of the corners.
+/// Lengths of a mesh that sizes and defaults refer to, length units.
+struct MeshLengths {
+    double diagonal = 0.0;  ///< Of the bounding box of all vertices: percentages refer to it.
+    double meanEdge = 0.0;  ///< meanEdgeLength.
+    double surfaceDiagonal = 0.0;  ///< Of the bounding box of the corners of triangles, without any
+                                   ///< that of all vertices: defaults refer to it.
+    Index outside = 0;             ///< Number of vertices outside the box of the corners.
 };
 
-/// @param V  n x 3; positions that are not finite do not count.
-Diagonals diagonalsOf(const Vertices& V, const Faces& F);
+/// @param V  n x 3; positions that are not finite do not count for the diagonals.
+/// @param F  m x 3 indices in [0, n); n and m may be 0.
+MeshLengths lengthsOf(const Vertices& V, const Faces& F);
 
 /// Mean side length over all triangles, counting interior edges twice; 0 without triangles.
 double meanEdgeLength(const Vertices& V, const Faces& F);
@@ -27,8 +30,7 @@ double meanEdgeLength(const Vertices& V, const Faces& F);
 /// a mesh can represent, two edges long. The bound preserves the shape of a coarse mesh.
 ///
 /// @param meanEdge, diagonal  length units; meanEdge = 0 gives the bound. The diagonal is that of
-/// the
-///                            surface (Diagonals).
+///                            the surface (MeshLengths).
 double defaultFeatureSize(double meanEdge, double diagonal);
 
 /// Default size of the smallest details of an equalizer: three mean edges, at most 2.5 % of the
@@ -38,11 +40,16 @@ double defaultFeatureSize(double meanEdge, double diagonal);
 /// The bound keeps the bands of a coarse mesh below the size of its shape.
 double defaultSmallestSize(double meanEdge, double diagonal);
 
+/// Default tolerance of automatic steps: 0.05 % of the diagonal, half a pixel of a mesh shown 1,000
+/// pixels wide.
+inline double defaultTolerance(const MeshLengths& mesh) { return 0.0005 * mesh.surfaceDiagonal; }
+
 /// Total area of the triangles.
 double surfaceArea(const Vertices& V, const Faces& F);
 
 /// Signed volume by the divergence theorem, positive for outward orientation. For an open surface,
 /// that of its cone over the centre of the bounding box.
+/// @param V  n x 3, n >= 1.
 double signedVolume(const Vertices& V, const Faces& F);
 
 /// Whether the area vectors of the triangles sum to zero up to round-off, as they do for closed,

@@ -1,24 +1,31 @@
 #include "core/support/memory.h"
 
+#include <algorithm>
 #include <atomic>
-#include <limits>
+#include <cmath>
 #include <sstream>
 
 #include "core/support/errors.h"
+#include "core/support/system_memory.h"
 
 namespace spectral {
 
 namespace {
 
-std::atomic<MemoryMeasure> hostMeasure{nullptr};
+std::atomic<double> memoryLimit{0.0};
+std::atomic<MemoryMeasure> measureOfTests{nullptr};
 
 }  // namespace
 
-void setMemoryMeasure(MemoryMeasure measure) { hostMeasure = measure; }
+void setMemoryLimit(double bytes) { memoryLimit = bytes; }
+
+void setMemoryMeasure(MemoryMeasure measure) { measureOfTests = measure; }
 
 double availableMemory() {
-    const MemoryMeasure measure = hostMeasure;
-    return measure != nullptr ? measure() : std::numeric_limits<double>::infinity();
+    if (const MemoryMeasure measure = measureOfTests) return measure();
+    const double available = availableSystemMemory(), resident = residentMemory();
+    if (memoryLimit <= 0.0 || std::isinf(resident)) return available;
+    return std::min(available, std::max(0.0, memoryLimit - resident));
 }
 
 void requireMemory(double bytes, Index rows) {

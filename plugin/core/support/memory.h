@@ -6,14 +6,18 @@
 
 namespace spectral {
 
-/// Returns the memory this process may still allocate, bytes; infinity if unknown.
+/// Limits the resident memory of this process, bytes; 0 (the default): no limit.
+void setMemoryLimit(double bytes);
+
+/// Memory that this process may still allocate, bytes: the minimum of what the system, its control
+/// group and the limit leave. Infinite if unknown: on other systems than Linux, Windows and macOS.
+double availableMemory();
+
+/// Returns memory in bytes, as availableMemory.
 using MemoryMeasure = double (*)();
 
-/// Sets the host's measure. Without one, memory counts as unlimited.
+/// Replaces availableMemory, for tests; null restores it.
 void setMemoryMeasure(MemoryMeasure measure);
-
-/// The memory available according to the host's measure, bytes; infinity without one.
-double availableMemory();
 
 /// Rejects work that does not fit in memory before it starts.
 /// @param bytes  memory required.

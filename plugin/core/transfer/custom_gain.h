@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "core/mesh/measures.h"
 #include "core/support/types.h"
 
 namespace spectral {
@@ -13,12 +14,6 @@ struct CustomGain {
     double cutoff = 0.0;  ///< omega_c, radians per length unit: as given, or the middle of points.
 };
 
-/// Lengths of a mesh that sizes may refer to, length units.
-struct MeshLengths {
-    double diagonal = 0.0;  ///< Diagonal of the bounding box, for sizes like `5%`.
-    double meanEdge = 0.0;  ///< Mean edge length, for sizes like `6e`.
-};
-
 /// Parses a transfer function in one of two notations.
 ///
 /// Points of an Equalizer, `20%:1, 5%:2, 1%:0.1`: gains at feature sizes, which are percentages of
@@ -27,7 +22,8 @@ struct MeshLengths {
 /// An expression of w = omega / omega_c, f = omega and l = lambda = omega^2 in the language of
 /// muParser: `1/(1 + w^4)`, `w < 1 ? 1 : 0.5`.
 ///
-/// @param cutoff  omega_c for expressions, radians per length unit, > 0.
+/// @param cutoff   omega_c for expressions, radians per length unit, > 0.
+/// @param lengths  of the mesh that percentages and mean edges refer to.
 /// @throws InvalidOption  when the text is wrong; the message says at which character.
 CustomGain parseGain(const std::string& text, double cutoff, const MeshLengths& lengths);
 

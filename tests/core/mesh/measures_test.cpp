@@ -10,25 +10,26 @@
 namespace spectral {
 namespace {
 
-TEST(Diagonals, AreTheSameToTheBitIfTrianglesUseEveryVertex) {
+TEST(MeshLengths, AreTheSameToTheBitIfTrianglesUseEveryVertex) {
     const testing::Mesh mesh = testing::torus(2, 0.7, 24, 12);
-    const Diagonals diagonals = diagonalsOf(mesh.V, mesh.F);
-    EXPECT_EQ(diagonals.all, boundingBoxDiagonal(mesh.V));
-    EXPECT_EQ(diagonals.surface, diagonals.all);
-    EXPECT_EQ(diagonals.outside, 0);
+    const MeshLengths lengths = lengthsOf(mesh.V, mesh.F);
+    EXPECT_EQ(lengths.diagonal, boundingBoxDiagonal(mesh.V));
+    EXPECT_EQ(lengths.surfaceDiagonal, lengths.diagonal);
+    EXPECT_EQ(lengths.outside, 0);
 }
 
-TEST(Diagonals, TellVerticesOfTrianglesFromOthers) {
+TEST(MeshLengths, TellVerticesOfTrianglesFromOthers) {
     Vertices V(6, 3);
     V << 0, 0, 0, 3, 0, 0, 0, 4, 0, 1, 1, 0, 0, 0, 12, NAN, 0, 0;
     Faces F(1, 3);
     F << 0, 1, 2;
-    const Diagonals diagonals = diagonalsOf(V, F);
-    EXPECT_EQ(diagonals.all, 13.0);
-    EXPECT_EQ(diagonals.surface, 5.0);
-    EXPECT_EQ(diagonals.outside, 1);
-    EXPECT_EQ(diagonalsOf(V, Faces(0, 3)).surface, 13.0);
-    EXPECT_EQ(diagonalsOf(Vertices(0, 3), Faces(0, 3)).all, 0.0);
+    const MeshLengths lengths = lengthsOf(V, F);
+    EXPECT_EQ(lengths.diagonal, 13.0);
+    EXPECT_EQ(lengths.surfaceDiagonal, 5.0);
+    EXPECT_EQ(lengths.outside, 1);
+    EXPECT_EQ(lengths.meanEdge, 4.0);
+    EXPECT_EQ(lengthsOf(V, Faces(0, 3)).surfaceDiagonal, 13.0);
+    EXPECT_EQ(lengthsOf(Vertices(0, 3), Faces(0, 3)).diagonal, 0.0);
 }
 
 TEST(EnclosesVolume, IsTrueForClosedSurfacesEvenFarFromTheOrigin) {

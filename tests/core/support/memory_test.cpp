@@ -8,8 +8,7 @@
 #include "core/filter/fractional_filter.h"
 #include "core/harmonics/truncated_basis.h"
 #include "core/support/errors.h"
-#include "meshlab/free_memory.h"
-#include "meshlab/system_memory.h"
+#include "core/support/system_memory.h"
 #include "support/evaluation.h"
 
 namespace spectral {
@@ -22,7 +21,6 @@ class Memory : public ::testing::Test {
   protected:
     void SetUp() override {
         if (std::isinf(residentMemory())) GTEST_SKIP() << "not available on this system";
-        setMemoryMeasure(freeMemory);
     }
     static void limitTo(double megabytesMore) {
         setMemoryLimit(residentMemory() + 1e6 * megabytesMore);

@@ -1,12 +1,11 @@
-#include "meshlab/error_messages.h"
+#include "core/contract/advice.h"
 
-#include <QString>
 #include <iomanip>
 #include <sstream>
 
-namespace {
+namespace spectral {
 
-using spectral::ErrorCode;
+namespace {
 
 const char* const kRemesh =
     "apply 'Remove Zero Area Faces' or 'Remeshing: Isotropic Explicit Remeshing' first";
@@ -14,27 +13,46 @@ const char* const kRemesh =
 const char* const kKeepLargeParts =
     "parts are tiny compared with the mesh: apply 'Remove Isolated pieces (wrt Diameter)' first";
 
-bool hasChoice(const RichParameterList& parameters, const char* name, int choice) {
-    return parameters.hasParameter(name) && parameters.getEnum(name) == choice;
-}
+/// The values that a filter was called with; only its own parameters are recommended.
+class Given {
+  public:
+    Given(const Filter& filter, const Values& given) {
+        for (const Parameter& one : filter.parameters) {
+            const auto found = given.find(one.name);
+            try {
+                const Value& value = found != given.end() ? found->second : one.usual;
+                values_[one.name] = converted(one, value, {});
+            } catch (const InvalidOption&) {
+                values_[one.name] = one.usual;
+            }
+        }
+    }
+
+    bool has(const char* name) const { return values_.count(name) > 0; }
+    bool isChoice(const char* name, int choice) const {
+        return has(name) && std::get<int>(values_.at(name)) == choice;
+    }
+    double number(const char* name) const { return std::get<double>(values_.at(name)); }
+
+  private:
+    Values values_;
+};
 
 /// Whether the filter is the equalizer, whose strength depends on its gains alone.
-bool isEqualizer(const RichParameterList& parameters) {
-    return parameters.hasParameter("smallest_size");
-}
+bool isEqualizer(const Given& given) { return given.has("smallest_size"); }
 
 /// Alternatives to changing the basis size.
-std::string basisAlternatives(const RichParameterList& parameters) {
+std::string basisAlternatives(const Given& given) {
     std::string text;
-    if (hasChoice(parameters, "boundary", 1)) text += ", or boundary = free";
-    if (parameters.hasParameter("spectrum")) text += ", or spectrum = full";
+    if (given.isChoice("boundary", 1)) text += ", or boundary = free";
+    if (given.has("spectrum")) text += ", or spectrum = full";
     return text;
 }
 
 /// Remedy for triangles with no area, or almost none.
-std::string largerTriangles(const RichParameterList& parameters) {
+std::string largerTriangles(const Given& given) {
     // The default Laplacian accepts them and fails only on parts tiny compared with the mesh.
-    if (!hasChoice(parameters, "laplacian", 1)) return kKeepLargeParts;
+    if (!given.isChoice("laplacian", 1)) return kKeepLargeParts;
     return std::string(
                "choose laplacian = intrinsic delaunay, or apply 'Merge Close Vertices' and 'Remove "
                "Duplicate Faces', or ") +
@@ -42,43 +60,41 @@ std::string largerTriangles(const RichParameterList& parameters) {
 }
 
 /// Remedy for a shape that has collapsed during the filter.
-std::string stablerFilter(const RichParameterList& parameters) {
-    if (hasChoice(parameters, "laplacian", 1)) return "choose laplacian = intrinsic delaunay";
-    if (hasChoice(parameters, "basis_update", 0))
+std::string stablerFilter(const Given& given) {
+    if (given.isChoice("laplacian", 1)) return "choose laplacian = intrinsic delaunay";
+    if (given.isChoice("basis_update", 0))
         return "a strong filter with basis_update = full pinches thin parts off: choose "
                "basis_update = conformal";
-    return (isEqualizer(parameters) ? "choose gains closer to 1, or "
-                                    : "choose a smaller feature_size, or ") +
+    return (isEqualizer(given) ? "choose gains closer to 1, or "
+                               : "choose a smaller feature_size, or ") +
            std::string(kRemesh);
 }
 
 /// Remedy for a filter that leaves nothing.
-std::string weakerFilter(const RichParameterList& parameters) {
+std::string weakerFilter(const Given& given) {
     constexpr double kSmall = 0.01;
     // A high-pass or band-pass stops the largest details; the others pass them.
-    const bool isStopped =
-        hasChoice(parameters, "filter_type", 1) || hasChoice(parameters, "filter_type", 2);
+    const bool isStopped = given.isChoice("filter_type", 1) || given.isChoice("filter_type", 2);
     const char* const name = isStopped ? "stop_gain" : "pass_gain";
-    if (!parameters.hasParameter(name) || parameters.getFloat(name) >= kSmall)
+    if (!given.has(name) || given.number(name) >= kSmall)
         return "choose a smaller feature_size; if the triangles are not connected, apply "
                "'Merge Close Vertices' first";
     return std::string("choose ") + name + " = 1, which keeps the large details";
 }
 
 /// Remedy for a gain that is too steep.
-std::string gentlerFilter(const RichParameterList& parameters) {
-    if (isEqualizer(parameters)) return "choose gains closer to 1";
-    constexpr float kLarge = 100.0f;
+std::string gentlerFilter(const Given& given) {
+    if (isEqualizer(given)) return "choose gains closer to 1";
+    constexpr double kLarge = 100.0;
     for (const char* const name : {"pass_gain", "stop_gain"})
-        if (parameters.hasParameter(name) && parameters.getFloat(name) > kLarge)
+        if (given.has(name) && given.number(name) > kLarge)
             return std::string("choose a smaller ") + name;
     return std::string("choose a stop_gain of 0.05 instead of 0, a lower order or a wider band, ") +
-           (parameters.hasParameter("spectrum")
-                ? "response = gaussian, fewer steps, or spectrum = truncated"
-                : "or response = gaussian");
+           (given.has("spectrum") ? "response = gaussian, fewer steps, or spectrum = truncated"
+                                  : "or response = gaussian");
 }
 
-std::string remedy(const spectral::Error& error, const RichParameterList& parameters) {
+std::string remedy(const Error& error, const Given& given) {
     const std::string limit = std::to_string(error.limit());
     switch (error.code()) {
         case ErrorCode::EmptyMesh: return "load or create a mesh first";
@@ -94,12 +110,12 @@ std::string remedy(const spectral::Error& error, const RichParameterList& parame
         case ErrorCode::NoData:
             return "apply a filter that computes qualities first, e.g. 'Per Vertex Quality "
                    "Function'";
-        case ErrorCode::DegenerateTriangles: return largerTriangles(parameters);
+        case ErrorCode::DegenerateTriangles: return largerTriangles(given);
         case ErrorCode::NoDelaunay:
         case ErrorCode::SolverFailed:
         case ErrorCode::SingularMatrix: return kRemesh;
-        case ErrorCode::ShapeCollapsed: return stablerFilter(parameters);
-        case ErrorCode::ShrinksToNothing: return weakerFilter(parameters);
+        case ErrorCode::ShapeCollapsed: return stablerFilter(given);
+        case ErrorCode::ShrinksToNothing: return weakerFilter(given);
         case ErrorCode::TooManyVertices:
             return "apply 'Simplification: Quadric Edge Collapse Decimation' first";
         case ErrorCode::OutOfMemory:
@@ -108,19 +124,17 @@ std::string remedy(const spectral::Error& error, const RichParameterList& parame
                    " ('Simplification: Quadric Edge Collapse Decimation'), or raise the memory "
                    "limit";
         case ErrorCode::BasisOutOfMemory:
-        case ErrorCode::BasisTooLarge:
-            return "choose at most " + limit + basisAlternatives(parameters);
-        case ErrorCode::BasisTooSmall:
-            return "choose at least " + limit + basisAlternatives(parameters);
+        case ErrorCode::BasisTooLarge: return "choose at most " + limit + basisAlternatives(given);
+        case ErrorCode::BasisTooSmall: return "choose at least " + limit + basisAlternatives(given);
         case ErrorCode::BasisIncomplete:
-            return "choose another basis_size" + basisAlternatives(parameters);
+            return "choose another basis_size" + basisAlternatives(given);
         case ErrorCode::TooManyHarmonics:
-            return parameters.hasParameter("spectrum")
+            return given.has("spectrum")
                        ? "choose a larger feature_size, response = butterworth with order = 8, or "
                          "spectrum = truncated with reinject_residual"
                        : "choose a larger feature_size, or response = butterworth with order = 8";
         case ErrorCode::BoundaryFixesAll: return "choose boundary = free";
-        case ErrorCode::TooSteep: return gentlerFilter(parameters);
+        case ErrorCode::TooSteep: return gentlerFilter(given);
         case ErrorCode::OptionOutOfRange:
         case ErrorCode::BadIndex:
         case ErrorCode::NoArea:
@@ -131,9 +145,8 @@ std::string remedy(const spectral::Error& error, const RichParameterList& parame
 
 }  // namespace
 
-std::string errorMessage(const spectral::Error& error, const RichParameterList& parameters) {
-    const std::string help = remedy(error, parameters);
-    return help.empty() ? error.what() : error.what() + (": " + help);
+std::string advice(const Error& error, const Filter& filter, const Values& given) {
+    return remedy(error, Given(filter, given));
 }
 
 std::string accuracyWarning(double accuracy, double errorEstimate) {
@@ -156,3 +169,5 @@ std::vector<std::string> residualWarnings(const Eigen::VectorXd& residuals) {
          << kRemesh;
     return {text.str()};
 }
+
+}  // namespace spectral

@@ -1,53 +1,83 @@
-#include "meshlab/filters/fractional_report.h"
-
-#include <common/plugins/interfaces/filter_plugin.h>
+#include "core/contract/fractional_report.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
-#include <utility>
 
+#include "core/contract/advice.h"
+#include "core/contract/surface_report.h"
+#include "core/contract/transfer_fields.h"
 #include "core/filter/automatic_steps.h"
 #include "core/support/types.h"
-#include "meshlab/error_messages.h"
-#include "meshlab/filters/common_parameters.h"
-#include "meshlab/filters/surface_report.h"
-#include "meshlab/filters/transfer_parameters.h"
 
-std::map<std::string, QVariant> reportDictionary(const spectral::FilterResult& result) {
-    std::map<std::string, QVariant> report{
-        {"steps", result.steps},
-        {"passes", result.passes},
-        {"cutoff_frequency", result.cutoffFrequency},
-        {"feature_size", result.featureSize},
-        {"area_before", result.areaBefore},
-        {"area_after", result.areaAfter},
-        {"factorizations", result.factorizations},
-        {"solves", result.solves},
-        {"products", result.products},
-        {"error_estimate", result.errorEstimate},
-        {"accuracy_reached", result.accuracyReached},
-        {"step_error", result.stepError},
-        {"tolerance_reached", result.toleranceReached},
-        {"singular_part", result.singularPart},
-        {"shrunken_part", result.shrunkenPart},
-        {"mean_edge", result.meanEdge},
-        {"step_sizes",
-         QVariant::fromValue(Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
-             result.stepSizes.data(), static_cast<Eigen::Index>(result.stepSizes.size()))))},
-    };
-    addMovement(result, report);
-    if (result.eigenvalues.size() > 0) {
-        report["eigenvalues"] = QVariant::fromValue(result.eigenvalues);
-        report["cutoff_reached"] = result.cutoffReached;
-        report["computed_bases"] = result.computedBases;
-    }
-    if (result.residuals.size() > 0) {
-        report["residuals"] = QVariant::fromValue(result.residuals);
-        report["inertia_count"] = result.inertiaCount;
-    }
-    return report;
+namespace spectral {
+
+namespace {
+
+bool hasBasis(const FilterResult& result) { return result.eigenvalues.size() > 0; }
+bool hasResiduals(const FilterResult& result) { return result.residuals.size() > 0; }
+
+}  // namespace
+
+const Entries<FilterResult>& fractionalEntries() {
+    using R = FilterResult;
+    static const Entries<R> entries = joined<R>(
+        {{
+             {"steps", "number of steps; with automatic steps, of the last pass",
+              [](const R& r) -> Value { return r.steps; }},
+             {"passes",
+              "passes of automatic steps, whose number repeats the run exactly; 0: not automatic",
+              [](const R& r) -> Value { return r.passes; }},
+             {"cutoff_frequency", "2 π / feature size, radians per length",
+              [](const R& r) -> Value { return r.cutoffFrequency; }},
+             {"feature_size", "as applied, length",
+              [](const R& r) -> Value { return r.featureSize; }},
+             {"area_before", "of the surface, length²",
+              [](const R& r) -> Value { return r.areaBefore; }},
+             {"area_after", "of the filtered surface, length²",
+              [](const R& r) -> Value { return r.areaAfter; }},
+             {"factorizations", "number of sparse factorizations",
+              [](const R& r) -> Value { return r.factorizations; }},
+             {"solves", "number of solves with one right-hand side",
+              [](const R& r) -> Value { return r.solves; }},
+             {"products",
+              "number of products of the Laplacian with one coordinate, in place of solves",
+              [](const R& r) -> Value { return r.products; }},
+             {"error_estimate",
+              "estimated error of the evaluation, relative to the size of what is filtered",
+              [](const R& r) -> Value { return r.errorEstimate; }},
+             {"accuracy_reached", "whether the evaluation was as accurate as it should be",
+              [](const R& r) -> Value { return r.accuracyReached; }},
+             {"step_error", "with automatic steps, estimated error of the surface, length",
+              [](const R& r) -> Value { return r.stepError; }},
+             {"tolerance_reached",
+              "with automatic steps, whether `step_error` is within `tolerance`",
+              [](const R& r) -> Value { return r.toleranceReached; }},
+             {"singular_part", "share of the surface, 0 to 1, on which `tolerance` was not reached",
+              [](const R& r) -> Value { return r.singularPart; }},
+             {"shrunken_part", "share of the surface, 0 to 1, that shrinks to lines or points",
+              [](const R& r) -> Value { return r.shrunkenPart; }},
+             {"mean_edge", "mean edge, length", [](const R& r) -> Value { return r.meanEdge; }},
+             {"step_sizes", "fractional powers of the steps, in their order; their sum is 1",
+              [](const R& r) -> Value {
+                  return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(
+                      r.stepSizes.data(), static_cast<Index>(r.stepSizes.size())));
+              }},
+             {"eigenvalues", "of the last basis that was computed, ascending, 1 / length²",
+              [](const R& r) -> Value { return r.eigenvalues; }, hasBasis},
+             {"cutoff_reached", "whether the harmonics reach the cutoff frequency",
+              [](const R& r) -> Value { return r.cutoffReached; }, hasBasis},
+             {"computed_bases", "number of bases computed in all steps",
+              [](const R& r) -> Value { return r.computedBases; }, hasBasis},
+             {"residuals", "residuals of the harmonics, relative",
+              [](const R& r) -> Value { return r.residuals; }, hasResiduals},
+             {"inertia_count",
+              "number of harmonics that the basis must hold, by Sylvester's law; 0 if unneeded",
+              [](const R& r) -> Value { return r.inertiaCount; }, hasResiduals},
+         },
+         movementEntries<R>()});
+    return entries;
 }
 
 namespace {
@@ -63,7 +93,7 @@ std::string percentOf(double share) {
 }
 
 /// "10", or "automatic, 2 in pass 2": one automatic step is not one of the paper's.
-std::string stepsText(const spectral::FilterResult& result) {
+std::string stepsText(const FilterResult& result) {
     std::ostringstream text;
     if (result.passes > 0)
         text << "automatic, " << result.steps << " in pass " << result.passes;
@@ -73,8 +103,8 @@ std::string stepsText(const spectral::FilterResult& result) {
 }
 
 /// The most important facts in one line: filter and size, displacement, accuracy.
-std::string headline(const spectral::FilterOptions& options, const spectral::FilterResult& result,
-                     double diagonal, const std::string& subject) {
+std::string headline(const FilterOptions& options, const FilterResult& result, double diagonal,
+                     const std::string& subject) {
     const double percent = 100.0 / diagonal;
     std::ostringstream text;
     text << std::setprecision(4);
@@ -93,29 +123,29 @@ std::string headline(const spectral::FilterOptions& options, const spectral::Fil
     else
         text << "NOT accurate: estimated error " << result.stepError << " ("
              << percent * result.stepError << " %)";
-    if (options.steps == 0 && result.singularPart > spectral::kNegligibleArea)
+    if (options.steps == 0 && result.singularPart > kNegligibleArea)
         text << "; less so on " << percentOf(result.singularPart) << " of the input";
     return text.str();
 }
 
 /// @param last  frequency of the highest harmonic.
-std::string cutoffWarning(const spectral::FilterResult& result, double last) {
+std::string cutoffWarning(const FilterResult& result, double last) {
     std::ostringstream text;
     text << std::setprecision(4) << "the " << result.eigenvalues.size()
-         << " harmonics end at features of " << 2.0 * spectral::kPi / last
-         << ", above the feature size of " << result.featureSize
+         << " harmonics end at features of " << 2.0 * kPi / last << ", above the feature size of "
+         << result.featureSize
          << ": details between these sizes are treated like all finer ones. Choose a larger "
             "feature_size, a larger basis_size, or spectrum = full";
     return text.str();
 }
 
 /// Why the steps do not converge, and what to change.
-std::string convergingFilter(const spectral::FilterOptions& options) {
-    const spectral::TransferFunctionOptions& transfer = options.transferFunction;
-    const bool stopsLargeDetails = transfer.type == spectral::FilterType::HighPass ||
-                                   transfer.type == spectral::FilterType::BandPass;
+std::string convergingFilter(const FilterOptions& options) {
+    const TransferFunctionOptions& transfer = options.transferFunction;
+    const bool stopsLargeDetails =
+        transfer.type == FilterType::HighPass || transfer.type == FilterType::BandPass;
     std::string text = "parts of it shrink away. Choose ";
-    if (transfer.type == spectral::FilterType::Custom)
+    if (transfer.type == FilterType::Custom)
         text += "gains closer to 1";
     else if (std::max(transfer.passGain, transfer.stopGain) > 1.0)
         text = "parts of it grow too fast. Choose smaller gains";
@@ -123,12 +153,11 @@ std::string convergingFilter(const spectral::FilterOptions& options) {
         text += "stop_gain = 1, which keeps the large details";
     else
         text += "a smaller feature_size";
-    if (options.basisUpdate == spectral::BasisUpdate::Full) text += ", basis_update = conformal";
+    if (options.basisUpdate == BasisUpdate::Full) text += ", basis_update = conformal";
     return text + ", or a larger tolerance";
 }
 
-std::string toleranceWarning(const spectral::FilterOptions& options,
-                             const spectral::FilterResult& result) {
+std::string toleranceWarning(const FilterOptions& options, const FilterResult& result) {
     std::ostringstream text;
     text << std::setprecision(2) << "the tolerance of " << options.tolerance
          << " was not reached on " << percentOf(result.singularPart)
@@ -137,7 +166,7 @@ std::string toleranceWarning(const spectral::FilterOptions& options,
     return text.str();
 }
 
-std::string volumeWarning(const spectral::FilterResult& result) {
+std::string volumeWarning(const FilterResult& result) {
     std::ostringstream text;
     text << "the volume of " << result.volumes.preserved << " of " << result.components
          << " components is preserved: " << result.volumes.open
@@ -148,7 +177,7 @@ std::string volumeWarning(const spectral::FilterResult& result) {
 }
 
 /// Only a warning, as scripts use one feature size for many meshes.
-std::string edgeWarning(const spectral::FilterResult& result) {
+std::string edgeWarning(const FilterResult& result) {
     std::ostringstream text;
     text << std::setprecision(3) << "the mesh has no details of the feature size "
          << result.featureSize << ", which is below its mean edge length of " << result.meanEdge
@@ -157,7 +186,7 @@ std::string edgeWarning(const spectral::FilterResult& result) {
     return text.str();
 }
 
-std::string shrinkingWarning(const spectral::FilterResult& result, double diagonal) {
+std::string shrinkingWarning(const FilterResult& result, double diagonal) {
     const double half = 0.5 * result.featureSize;
     std::ostringstream text;
     text << percentOf(result.shrunkenPart) << std::setprecision(2)
@@ -168,14 +197,14 @@ std::string shrinkingWarning(const spectral::FilterResult& result, double diagon
     return text.str();
 }
 
-double lastFrequency(const spectral::FilterResult& result) {
+double lastFrequency(const FilterResult& result) {
     return std::sqrt(result.eigenvalues[result.eigenvalues.size() - 1]);
 }
 
 }  // namespace
 
-std::vector<std::string> fractionalWarnings(const spectral::FilterOptions& options,
-                                            const spectral::FilterResult& result, double diagonal) {
+std::vector<std::string> fractionalWarnings(const FilterOptions& options,
+                                            const FilterResult& result, double diagonal) {
     std::vector<std::string> warnings = surfaceWarnings(result);
     if (const std::string note = selectionText(options.part.selected); !note.empty())
         warnings.push_back(note);
@@ -185,12 +214,11 @@ std::vector<std::string> fractionalWarnings(const spectral::FilterOptions& optio
                                ? "nothing can move: every vertex lies on a crease or a fixed "
                                  "boundary. Choose a larger crease_angle"
                                : allFixedWarning("move"));
-    if (options.transferFunction.type != spectral::FilterType::Custom &&
+    if (options.transferFunction.type != FilterType::Custom &&
         result.featureSize < result.meanEdge && !isAtRest)
         warnings.push_back(edgeWarning(result));
-    const spectral::TransferFunctionOptions& transfer = options.transferFunction;
-    const bool keepsTheRest =
-        transfer.type == spectral::FilterType::LowPass && transfer.passGain >= 1.0;
+    const TransferFunctionOptions& transfer = options.transferFunction;
+    const bool keepsTheRest = transfer.type == FilterType::LowPass && transfer.passGain >= 1.0;
     if (keepsTheRest && result.shrunkenPart > kNoticeable && result.toleranceReached &&
         result.cutoffReached)
         warnings.push_back(shrinkingWarning(result, diagonal));
@@ -206,9 +234,8 @@ std::vector<std::string> fractionalWarnings(const spectral::FilterOptions& optio
     return warnings;
 }
 
-std::string fractionalReportText(const spectral::FilterOptions& options,
-                                 const spectral::FilterResult& result, double diagonal,
-                                 const std::string& subject) {
+std::string fractionalText(const FilterOptions& options, const FilterResult& result,
+                           double diagonal, const std::string& subject) {
     std::ostringstream text;
     text << std::setprecision(4);
     text << headline(options, result, diagonal, subject) << "\n  steps: " << stepsText(result)
@@ -228,3 +255,5 @@ std::string fractionalReportText(const spectral::FilterOptions& options,
         text << ", estimated relative error " << result.errorEstimate;
     return text.str();
 }
+
+}  // namespace spectral

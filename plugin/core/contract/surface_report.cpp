@@ -1,18 +1,14 @@
-#include "meshlab/filters/surface_report.h"
+#include "core/contract/surface_report.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <iomanip>
 #include <sstream>
 #include <utility>
 
-void addSurfaceCounts(const spectral::SurfaceCounts& counts,
-                      std::map<std::string, QVariant>& report) {
-    report["components"] = counts.components;
-    report["unreferenced_vertices"] = counts.unreferencedVertices;
-    report["joined_vertices"] = counts.joinedVertices;
-    report["fixed_vertices"] = counts.fixedVertices;
-}
+namespace spectral {
 
-std::string surfaceText(const spectral::SurfaceCounts& counts, const char* fixed) {
+std::string surfaceText(const SurfaceCounts& counts, const char* fixed) {
     std::string text = "surface: " + std::to_string(counts.components) +
                        (counts.components == 1 ? " component" : " components");
     const auto add = [&](int count, const char* what) {
@@ -31,7 +27,7 @@ std::string volumeText(bool hasVolume, double before, double after) {
     return text.str();
 }
 
-bool isAllFixed(const spectral::SurfaceCounts& counts, Eigen::Index n) {
+bool isAllFixed(const SurfaceCounts& counts, Index n) {
     return counts.fixedVertices > 0 &&
            counts.fixedVertices + counts.joinedVertices + counts.unreferencedVertices == n;
 }
@@ -46,9 +42,33 @@ void append(std::vector<std::string> more, std::vector<std::string>& warnings) {
     for (std::string& warning : more) warnings.push_back(std::move(warning));
 }
 
-std::vector<std::string> surfaceWarnings(const spectral::SurfaceCounts& counts) {
+std::vector<std::string> surfaceWarnings(const SurfaceCounts& counts) {
     if (counts.nearlyJoined == 0) return {};
     return {std::to_string(counts.nearlyJoined) +
             " vertices on the boundary are within round-off of others, but not at the same point: "
             "the surface may tear there. Apply 'Merge Close Vertices' first"};
 }
+
+std::string selectionText(const std::vector<bool>& selected) {
+    const auto count = std::count(selected.begin(), selected.end(), true);
+    const auto all = static_cast<std::ptrdiff_t>(selected.size());
+    if (count == all) return {};
+    return "only the selection: " + std::to_string(count) + " of " + std::to_string(all) +
+           " vertices";
+}
+
+std::vector<std::string> percentageWarnings(const MeshLengths& mesh) {
+    constexpr double kNoticeable = 1.01;
+    if (!(mesh.diagonal > kNoticeable * mesh.surfaceDiagonal)) return {};
+    const bool isOne = mesh.outside == 1;
+    std::ostringstream text;
+    text << std::setprecision(3) << mesh.outside
+         << (isOne ? " vertex without faces enlarges" : " vertices without faces enlarge")
+         << " the diagonal of the bounding box from " << mesh.surfaceDiagonal << " to "
+         << mesh.diagonal
+         << ": percentages refer to the larger one, defaults to the smaller. Apply 'Remove "
+            "Unreferenced Vertices' first";
+    return {text.str()};
+}
+
+}  // namespace spectral

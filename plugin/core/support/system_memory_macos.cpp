@@ -2,7 +2,9 @@
 
 #include <limits>
 
-#include "meshlab/system_memory.h"
+#include "core/support/system_memory.h"
+
+namespace spectral {
 
 namespace {
 
@@ -29,3 +31,5 @@ double residentMemory() {
         return kUnknown;
     return static_cast<double>(info.resident_size);
 }
+
+}  // namespace spectral

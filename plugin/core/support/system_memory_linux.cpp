@@ -3,7 +3,9 @@
 #include <limits>
 #include <string>
 
-#include "meshlab/system_memory.h"
+#include "core/support/system_memory.h"
+
+namespace spectral {
 
 namespace {
 
@@ -40,3 +42,5 @@ double availableSystemMemory() {
 }
 
 double residentMemory() { return 1024.0 * numberAfter("/proc/self/status", "VmRSS:"); }
+
+}  // namespace spectral

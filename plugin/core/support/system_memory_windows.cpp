@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <limits>
 
-#include "meshlab/system_memory.h"
+#include "core/support/system_memory.h"
+
+namespace spectral {
 
 namespace {
 
@@ -26,3 +28,5 @@ double residentMemory() {
     if (!K32GetProcessMemoryInfo(GetCurrentProcess(), &counters, sizeof counters)) return kUnknown;
     return static_cast<double>(counters.WorkingSetSize);
 }
+
+}  // namespace spectral

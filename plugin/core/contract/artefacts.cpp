@@ -1,0 +1,83 @@
+#include "core/analysis/artefacts.h"
+
+#include <iomanip>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "core/contract/common_fields.h"
+#include "core/contract/filters.h"
+#include "core/contract/report.h"
+#include "core/contract/surface_report.h"
+#include "core/contract/transfer_fields.h"
+
+namespace spectral {
+
+namespace {
+
+Fields<ArtefactOptions> artefactFields() {
+    return {
+        featureSizeField<ArtefactOptions>(
+            [](auto& call) -> auto& { return call.featureSize; },
+            "Feature size of the low-pass or band filter that was applied. A percentage refers to "
+            "the diagonal of this mesh, which the filter may have changed: enter the length that "
+            "the filter reported."),
+        laplacianField<ArtefactOptions>([](auto& call) -> auto& { return call.laplacian; }),
+    };
+}
+
+struct Measured : Artefacts {
+    double featureSize = 0.0, diagonal = 0.0;
+};
+
+Entries<Measured> artefactEntries() {
+    using R = Measured;
+    return {
+        {"rms", "root mean square of the artefacts over the surface, length",
+         [](const R& r) -> Value { return r.rms; }},
+        {"maximum", "largest length of the artefacts at a vertex, length",
+         [](const R& r) -> Value { return r.maximum; }},
+        {"feature_size", "as applied, length", [](const R& r) -> Value { return r.featureSize; }},
+        {"diagonal", "of the bounding box, length", [](const R& r) -> Value { return r.diagonal; }},
+    };
+}
+
+std::string textOf(const Measured& artefacts) {
+    std::ostringstream text;
+    text << std::setprecision(4) << "Spectral Artefacts above twice the cutoff of feature size "
+         << artefacts.featureSize << "\n  root mean square " << artefacts.rms << " ("
+         << artefacts.rms / artefacts.diagonal << " diagonals), largest " << artefacts.maximum
+         << " (" << artefacts.maximum / artefacts.diagonal
+         << " diagonals), estimated error of these lengths " << artefacts.errorEstimate;
+    return text.str();
+}
+
+FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values& given,
+                 const Progress& progress) {
+    const ArtefactOptions options = callOf(artefactFields(), given, mesh);
+    Measured artefacts{measureArtefacts(input.V, input.F, options, progress), options.featureSize,
+                       mesh.diagonal};
+    FilterOutput output;
+    output.report = reportOf(artefactEntries(), artefacts);
+    output.text = textOf(artefacts);
+    output.warnings = percentageWarnings(mesh);
+    output.values = std::move(artefacts.length);
+    return output;
+}
+
+}  // namespace
+
+Filter artefactsContract() {
+    return {"Spectral Artefacts",
+            "compute_scalar_spectral_artefacts_per_vertex",
+            "Measures the *artefacts* that a filter has left in a shape: spikes, creases and "
+            "ripples much finer than the details it should keep. Apply it to the filtered mesh, "
+            "with the filter's feature size. Their length becomes the vertex quality; no vertex "
+            "moves.",
+            "",
+            parametersOf(artefactFields()),
+            describedBy(artefactEntries()),
+            run};
+}
+
+}  // namespace spectral

@@ -1,0 +1,222 @@
+#include "core/denoise/denoise.h"
+
+#include <iomanip>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/contract/common_fields.h"
+#include "core/contract/filters.h"
+#include "core/contract/report.h"
+#include "core/contract/surface_report.h"
+
+namespace spectral {
+
+namespace {
+
+struct DenoiseCall {
+    DenoiseOptions options;
+    bool selected = false;
+};
+
+Fields<DenoiseCall> denoiseFields() {
+    using Call = DenoiseCall;
+    return {
+        field<Call>([](auto& call) -> auto& { return call.options.strength; }, "strength",
+                    "Strength",
+                    "1 removes the noise as measured. More removes finer details, too; less leaves "
+                    "some noise; 0 changes nothing.")
+            .in("factor, at least 0"),
+        field<Call>([](auto& call) -> auto& { return call.options.noiseHeight; }, "noise_height",
+                    "Noise height",
+                    "Standard deviation of the noise along the normals, such as 0.2e. Set it if "
+                    "details were mistaken for noise, or noise for details. The default: as "
+                    "measured; the report then says how high it is.")
+            .in("length, at least 0")
+            .length("auto", nullptr, "0: as measured"),
+        field<Call>(
+            [](auto& call) -> auto& { return call.options.noiseSize; }, "noise_size", "Noise size",
+            "Distance over which the noise is correlated: half the width of its bumps, such "
+            "as 2e. Up to a mean edge, it is independent at each vertex. The default: as "
+            "measured.")
+            .in("length, at least 0")
+            .length("auto", nullptr, "0: as measured"),
+        selectedField<Call>([](auto& call) -> auto& { return call.selected; }, "four edges"),
+        field<Call>([](auto& call) -> auto& { return call.options.keepCreases; }, "keep_creases",
+                    "Keep creases",
+                    "Do not smooth across creases. Off: creases are rounded; for shapes without "
+                    "any.")
+            .advanced(),
+        boundaryField<Call>([](auto& call) -> auto& { return call.options.boundary; },
+                            "*free*: it moves along its normals, no further than the noise "
+                            "explains. *fixed*: it stays exactly in place."),
+    };
+}
+
+Entries<DenoiseResult> denoiseEntries() {
+    using R = DenoiseResult;
+    return joined<R>(
+        {{
+             {"noise_height", "of the noise that was filtered or found, length; 0: none",
+              [](const R& r) -> Value { return r.noiseHeight; }},
+             {"noise_size",
+              "of the noise that was filtered, length; 0: independent at every vertex, or none",
+              [](const R& r) -> Value { return r.noiseSize; }},
+             {"estimated_noise_height",
+              "measured standard deviation of the noise along the normals, length",
+              [](const R& r) -> Value { return r.diagnosis.noise.height; }},
+             {"estimated_noise_size",
+              "measured length over which neighbouring vertices have like noise, length",
+              [](const R& r) -> Value {
+                  return r.diagnosis.noise.size * r.diagnosis.noise.meanEdge;
+              }},
+             {"noise_correlation",
+              "of the noise of neighbouring vertices, as measured; above 0.2 it is shape",
+              [](const R& r) -> Value { return r.diagnosis.noise.correlation; }},
+             {"spikes", "number of vertices off the surface that were put back",
+              [](const R& r) -> Value { return static_cast<int>(r.diagnosis.spikes); }},
+             {"voxel_size",
+              "of the volume that the surface is the border of, along each axis, length; 0: none",
+              [](const R& r) -> Value { return Eigen::VectorXd(r.diagnosis.voxel); }},
+             {"mean_edge", "mean edge, length",
+              [](const R& r) -> Value { return r.diagnosis.noise.meanEdge; }},
+             {"rounds",
+              "number of weak parts in which the normals were filtered; 0: nothing changed",
+              [](const R& r) -> Value { return r.rounds; }},
+         },
+         movementEntries<R>()});
+}
+
+/// A length, in mean edges and in length units.
+std::string lengthText(double length, double edge) {
+    std::ostringstream text;
+    text << std::setprecision(2) << length / edge << " edges" << std::setprecision(3) << " ("
+         << length << ")";
+    return text.str();
+}
+
+std::string voxelsText(const Eigen::RowVector3d& voxel) {
+    std::ostringstream text;
+    text << std::setprecision(3) << "voxel steps of " << voxel[0] << " x " << voxel[1] << " x "
+         << voxel[2] << ": smoothed within half a voxel";
+    return text.str();
+}
+
+std::string removedText(const DenoiseOptions& options, const DenoiseResult& result) {
+    const double edge = result.diagnosis.noise.meanEdge;
+    const bool isGiven = options.noiseHeight > 0.0;
+    std::string text = isGiven                                          ? "noise"
+                       : result.diagnosis.kind == NoiseKind::Correlated ? "scanner noise"
+                       : result.diagnosis.kind == NoiseKind::Impulses   ? "impulse noise"
+                                                                        : "white noise";
+    text += ": height " +
+            lengthText(isGiven ? options.noiseHeight : result.diagnosis.noise.height, edge);
+    if (result.noiseSize > 0.0)
+        text += ", size " +
+                lengthText(isGiven ? result.noiseSize : result.diagnosis.noise.size * edge, edge);
+    text += isGiven ? ", as given: removed" : ": removed";
+    if (options.strength != 1.0) {
+        std::ostringstream strength;
+        strength << options.strength;
+        text += ", times " + strength.str();
+    }
+    return text;
+}
+
+/// Why there is nothing to remove, and how to override that.
+std::string nothingText(const DenoiseResult& result) {
+    if (result.isCrumpled)
+        return "the noise was not removed: that would have folded the surface over, which happens "
+               "at needle triangles, e.g. of CAD models. Remesh first, or give a smaller noise "
+               "height or size";
+    switch (result.diagnosis.kind) {
+        case NoiseKind::Tessellation:
+            return "needle triangles as in a CAD model, not a scan: the mesh was not searched for "
+                   "noise. If it has noise, give the noise height, or remesh first";
+        case NoiseKind::TooFew:
+            return "too few vertices to tell noise from shape. If the mesh has noise, give the "
+                   "noise "
+                   "height";
+        default:
+            return "no noise found that could not be part of the shape. For ripples several edges "
+                   "wide, give noise height and noise size, e.g. a tenth of an edge and two edges, "
+                   "or use Spectral Filter (Fractional)";
+    }
+}
+
+/// What was found and done, in one line.
+std::string summaryOf(const DenoiseOptions& options, const DenoiseResult& result) {
+    if (options.strength == 0.0) return "strength 0; nothing changed";
+    std::ostringstream text;
+    if (const std::string note = selectionText(options.selected); !note.empty())
+        text << note << "; ";
+    if (result.diagnosis.spikes > 0)
+        text << (result.diagnosis.spikes == 1 ? "a spike" : "spikes at ")
+             << (result.diagnosis.spikes == 1 ? "" : std::to_string(result.diagnosis.spikes))
+             << (result.diagnosis.spikes == 1 ? ": removed; " : " vertices: removed; ");
+    if (result.rounds == 0) {
+        text << nothingText(result);
+        if (result.maxDisplacement == 0.0) text << "; nothing changed";
+    } else if (result.noiseHeight == 0.0) {
+        text << voxelsText(result.diagnosis.voxel);
+    } else {
+        text << removedText(options, result);
+    }
+    return text.str();
+}
+
+std::string reportText(const std::string& summary, const DenoiseResult& result) {
+    std::ostringstream text;
+    text << "Spectral Denoise: " << summary << std::setprecision(3) << "\n  the vertices moved by "
+         << result.rmsDisplacement << " (root mean square), at most by " << result.maxDisplacement
+         << "\n  " << volumeText(result.hasVolume, result.volumeBefore, result.volumeAfter)
+         << "\n  " << surfaceText(result) << "\n  work: " << result.rounds << " rounds";
+    return text.str();
+}
+
+std::vector<std::string> warningsOf(const DenoiseOptions& options, const std::string& summary,
+                                    const DenoiseResult& result) {
+    std::vector<std::string> warnings = surfaceWarnings(result);
+    if (result.rounds > 0 && isAllFixed(result, result.V.rows()))
+        warnings.push_back(allFixedWarning("move"));
+    else if (options.strength > 0.0 && (result.maxDisplacement == 0.0 || result.isCrumpled))
+        warnings.push_back(summary);
+    constexpr double kHalf = 0.34;  // half a noiseless edge: noise lengthens edges
+    if (result.diagnosis.noise.height > kHalf * result.diagnosis.noise.meanEdge)
+        warnings.emplace_back(
+            "the noise is higher than half an edge: it hides details that cannot be recovered. "
+            "Check the result, or remesh more coarsely first");
+    return warnings;
+}
+
+FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values& given,
+                 const Progress& progress) {
+    DenoiseCall call = callOf(denoiseFields(), given, mesh);
+    if (call.selected) call.options.selected = input.selected;
+    DenoiseResult result = denoise(input.V, input.F, call.options, progress);
+    FilterOutput output;
+    output.report = reportOf(denoiseEntries(), result);
+    output.summary = summaryOf(call.options, result);
+    output.text = reportText(output.summary, result);
+    output.warnings = warningsOf(call.options, output.summary, result);
+    append(percentageWarnings(mesh), output.warnings);
+    output.V = std::move(result.V);
+    return output;
+}
+
+}  // namespace
+
+Filter denoiseContract() {
+    return {"Spectral Denoise",
+            "apply_coord_spectral_denoise",
+            "Detects which noise a mesh has (scanner noise, spikes or voxel steps) and removes it, "
+            "with *nothing to choose*. Creases become sharp; a mesh without noise keeps every bit. "
+            "The log says what was found.",
+            "",
+            parametersOf(denoiseFields()),
+            describedBy(denoiseEntries()),
+            run};
+}
+
+}  // namespace spectral

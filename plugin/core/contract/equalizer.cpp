@@ -1,0 +1,168 @@
+#include "core/contract/equalizer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/contract/common_fields.h"
+#include "core/contract/filters.h"
+#include "core/contract/fractional_report.h"
+#include "core/contract/surface_report.h"
+#include "core/filter/fractional_filter.h"
+#include "core/support/errors.h"
+#include "core/transfer/equalizer.h"
+
+namespace spectral {
+
+namespace {
+
+/// Maximum number of automatic steps if previews are to follow the sliders: five evaluations.
+constexpr int kMaxPreviewSteps = 2;
+
+struct EqualizerCall {
+    std::array<double, kEqualizerTimes.size()> gains{1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
+    double smallestSize = 0.0;
+    bool selected = false;
+    Boundary boundary = Boundary::Free;
+    bool accurate = false;
+};
+
+std::string gainName(std::size_t i) { return "gain_" + std::to_string(kEqualizerTimes[i]) + "x"; }
+
+double smallestSizeOf(const MeshLengths& mesh) {
+    return defaultSmallestSize(mesh.meanEdge, mesh.surfaceDiagonal);
+}
+
+/// "0.24 (12 %)": a length, also as a percentage of the diagonal.
+std::string lengthAndPercentage(double length, double diagonal) {
+    std::ostringstream text;
+    text << std::setprecision(3) << length << " (" << 100.0 * length / diagonal << " %)";
+    return text.str();
+}
+
+Fields<EqualizerCall> equalizerFields() {
+    using Call = EqualizerCall;
+    Fields<Call> fields;
+    for (std::size_t i = 0; i < kEqualizerTimes.size(); ++i) {
+        const std::string times = std::to_string(kEqualizerTimes[i]);
+        const char* const finer = kEqualizerTimes[i] == 1 ? " and of all finer ones" : "";
+        fields.push_back(
+            field<Call>(
+                [i](auto& call) -> auto& { return call.gains[i]; }, gainName(i).c_str(),
+                ("Details of " + times + " x the smallest size").c_str(),
+                ("Factor for the height of details of " + times + " times the smallest size" +
+                 finer + ": 1 keeps them, 2 doubles them, 0.5 halves them, 0 removes them.")
+                    .c_str())
+                .in("factor, 0 to 4")
+                .to(kMaxEqualizerGain));
+    }
+    fields.push_back(
+        field<Call>([](auto& call) -> auto& { return call.smallestSize; }, "smallest_size",
+                    "Smallest size",
+                    "Size of the details that the last slider scales; it doubles with each slider "
+                    "above. The labels of the sliders show the sizes for the default, three mean "
+                    "edges of this mesh: it has hardly any finer details.")
+            .in("length, above 0")
+            .above(0.0)
+            .length("auto", smallestSizeOf, "three mean edges, at most 2.5 % of the diagonal"));
+    fields.push_back(selectedField<Call>([](auto& call) -> auto& { return call.selected; },
+                                         "eight times the smallest size"));
+    fields.push_back(
+        boundaryField<Call>([](auto& call) -> auto& { return call.boundary; },
+                            "*free*: it moves like the rest. *fixed*: it stays exactly in place."));
+    fields.push_back(
+        field<Call>([](auto& call) -> auto& { return call.accurate; }, "accurate", "Accurate",
+                    "Off: at most two steps, fast enough for the preview. Changes by gains of 0.5 "
+                    "to 2 are then accurate to about 1 %, those by a gain of 0 may be off by a "
+                    "third; the report states the error. On: as many steps as needed for an "
+                    "accuracy of 0.05 % of the diagonal.")
+            .advanced());
+    return fields;
+}
+
+/// The sliders' gains, from fine to coarse.
+/// @throws InvalidOption  when a gain is invalid; it names the slider.
+std::vector<double> gainsOf(const EqualizerCall& call) {
+    for (std::size_t i = 0; i < call.gains.size(); ++i)
+        if (!std::isfinite(call.gains[i]) || call.gains[i] < 0.0)
+            throw InvalidOption(gainName(i) + " = " + textOf(call.gains[i]) +
+                                ": must be finite and not negative; 0 removes details, 1 keeps "
+                                "them, 2 doubles them");
+    return {call.gains.rbegin(), call.gains.rend()};
+}
+
+/// "details of 0.24 (12 %) x 2, of 0.12 (6 %) x 0.5": the sliders not at 1.
+std::string changesText(const EqualizerCall& call, double diagonal) {
+    std::ostringstream text;
+    text << std::setprecision(3);
+    const char* before = "details of ";
+    for (std::size_t i = 0; i < call.gains.size(); ++i)
+        if (call.gains[i] != 1.0)
+            text << std::exchange(before, ", of ")
+                 << lengthAndPercentage(kEqualizerTimes[i] * call.smallestSize, diagonal) << " x "
+                 << call.gains[i];
+    return text.str();
+}
+
+/// The result of a quick run, which has no tolerance to reach; its error is still reported.
+FilterResult withoutTolerance(FilterResult result) {
+    result.toleranceReached = true;
+    result.singularPart = 0.0;
+    return result;
+}
+
+FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values& given,
+                 const Progress& progress) {
+    const EqualizerCall call = callOf(equalizerFields(), given, mesh);
+    const Equalizer equalizer = octaveEqualizer(call.smallestSize, gainsOf(call));
+    FilterOptions options;
+    options.transferFunction.type = FilterType::Custom;
+    options.transferFunction.custom = equalizer;
+    options.featureSize = equalizer.middleSize();
+    options.tolerance = defaultTolerance(mesh);
+    if (!call.accurate) options.maxSteps = kMaxPreviewSteps;
+    options.boundary = call.boundary;
+    if (call.selected) options.part.selected = input.selected;
+    FilterResult result = fractionalFilter(input.V, input.F, options, progress);
+    FilterOutput output;
+    output.report = reportOf(fractionalEntries(), result);
+    const FilterResult reported = call.accurate ? result : withoutTolerance(result);
+    output.warnings = fractionalWarnings(options, reported, mesh.diagonal);
+    append(percentageWarnings(mesh), output.warnings);
+    const std::string changes = changesText(call, mesh.diagonal);
+    if (changes.empty()) {
+        output.summary = "all gains are 1; nothing changed";
+        output.text = "Spectral Equalizer: " + output.summary;
+        return output;
+    }
+    output.text =
+        fractionalText(options, reported, mesh.diagonal, "Spectral Equalizer: " + changes);
+    output.V = std::move(result.V);
+    return output;
+}
+
+}  // namespace
+
+std::string equalizerLabel(std::size_t i, const MeshLengths& mesh) {
+    return "Details of " +
+           lengthAndPercentage(kEqualizerTimes[i] * smallestSizeOf(mesh), mesh.diagonal);
+}
+
+Filter equalizerContract() {
+    // Three lines: MeshLab shows all of the help above the parameters.
+    return {"Spectral Equalizer",
+            "apply_coord_spectral_equalizer",
+            "Each slider scales the height of *details of one size*, from coarse to fine: 1 keeps, "
+            "2 doubles, 0 removes them. With *Preview* the shape follows. To deepen the folds of a "
+            "robe, set the slider of their size to 2.",
+            "",
+            parametersOf(equalizerFields()),
+            describedBy(fractionalEntries()),
+            run};
+}
+
+}  // namespace spectral

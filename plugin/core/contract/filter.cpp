@@ -1,0 +1,60 @@
+#include "core/contract/filter.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "core/contract/advice.h"
+#include "core/contract/filters.h"
+#include "core/mesh/mesh_check.h"
+#include "core/support/steady_progress.h"
+
+namespace spectral {
+
+namespace {
+
+/// Throws an error of the same class again, with advice.
+[[noreturn]] void throwAdvised(const Error& error, const Filter& filter, const Values& given) {
+    const std::string help = advice(error, filter, given);
+    const std::string text = help.empty() ? error.what() : error.what() + (": " + help);
+    if (dynamic_cast<const Cancelled*>(&error) != nullptr) throw Cancelled();
+    if (dynamic_cast<const InvalidMesh*>(&error) != nullptr)
+        throw InvalidMesh(error.code(), text, error.limit());
+    if (dynamic_cast<const InvalidOption*>(&error) != nullptr)
+        throw InvalidOption(error.code(), text, error.limit());
+    if (dynamic_cast<const SolverFailure*>(&error) != nullptr)
+        throw SolverFailure(error.code(), text, error.limit());
+    throw Error(error.code(), text, error.limit());
+}
+
+}  // namespace
+
+const std::vector<Filter>& allFilters() {
+    static const std::vector<Filter> filters{
+        fractionalFilterContract(), denoiseContract(),         equalizerContract(),
+        qualityContract(),          colorContract(),           artefactsContract(),
+        harmonicsContract(),        geometrySpectrumContract()};
+    return filters;
+}
+
+const Filter& filterNamed(const std::string& pythonName) {
+    const std::vector<Filter>& all = allFilters();
+    const auto found = std::find_if(all.begin(), all.end(), [&](const Filter& filter) {
+        return filter.pythonName == pythonName;
+    });
+    if (found == all.end()) throw std::out_of_range("there is no filter " + pythonName);
+    return *found;
+}
+
+FilterOutput apply(const Filter& filter, const FilterInput& input, const Values& given,
+                   const Progress& progress) {
+    try {
+        return withSteadyProgress(progress, [&](const Progress& steady) {
+            checkMesh(input.V, input.F);  // before it is measured
+            return filter.run(input, lengthsOf(input.V, input.F), given, steady);
+        });
+    } catch (const Error& error) {
+        throwAdvised(error, filter, given);
+    }
+}
+
+}  // namespace spectral

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/contract/parameter.h"
+#include "core/contract/value.h"
+#include "core/mesh/mesh.h"
+#include "core/support/errors.h"
+#include "core/support/progress.h"
+
+namespace spectral {
+
+/// A mesh, as a host hands it to a filter.
+struct FilterInput {
+    Vertices V;                    ///< n x 3 positions.
+    Faces F;                       ///< m x 3 vertex indices.
+    std::vector<bool> selected{};  ///< n, selected vertices and corners of selected faces, for the
+                                   ///< parameter `selected`.
+    Eigen::MatrixXd values{};  ///< n x c: the vertex quality (c = 1), or red, green and blue from 0
+                               ///< to 255 (c = 3); no rows: the mesh has none.
+};
+
+/// The result of a filter, for a host to write to its mesh.
+struct FilterOutput {
+    Vertices V{};              ///< n x 3 filtered positions; no rows: no vertex moves.
+    Vertices details{};        ///< n x 3, input minus result, if these are wanted instead.
+    Eigen::MatrixXd values{};  ///< n x c new values, like those of the input; no rows: unchanged.
+    Eigen::MatrixXd basis{};   ///< n x k harmonics; no rows unless the filter computes some.
+    Values report{};
+    std::string text{};     ///< The report as lines for a log.
+    std::string summary{};  ///< What was found and done, one line; empty if the numbers say it all.
+    std::vector<std::string> warnings{};  ///< Shortcomings that are not errors.
+};
+
+/// One entry of a filter's report.
+struct ReportEntry {
+    std::string name;
+    std::string meaning;  ///< With its unit.
+};
+
+/// A filter: all that a host needs to offer it.
+struct Filter {
+    std::string name;        ///< In menus: unique, must never change.
+    std::string pythonName;  ///< In pymeshlab: unique, must never change.
+    std::string help;        ///< For the dialog; plain text, *words* stand out.
+    std::string source{};    ///< The publication, if the filter is that of one.
+    std::vector<Parameter> parameters;
+    std::vector<ReportEntry> report;  ///< Entries that there may be, in no order.
+
+    /// @param mesh  measured already: what sizes in `given` refer to.
+    FilterOutput (*run)(const FilterInput& input, const MeshLengths& mesh, const Values& given,
+                        const Progress& progress) = nullptr;
+};
+
+/// All filters; their positions never change.
+const std::vector<Filter>& allFilters();
+
+/// @throws std::out_of_range  when there is no such filter.
+const Filter& filterNamed(const std::string& pythonName);
+
+/// Applies a filter. The calling thread reports progress twenty times a second, others compute.
+///
+/// @param given  values of parameters; the others have their defaults.
+/// @throws Error  as advised says: with what to do about it.
+FilterOutput apply(const Filter& filter, const FilterInput& input, const Values& given,
+                   const Progress& progress = {});
+
+}  // namespace spectral

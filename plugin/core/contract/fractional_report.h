@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/contract/report.h"
+#include "core/filter/fractional_filter.h"
+
+namespace spectral {
+
+/// What filters of shapes report.
+const Entries<FilterResult>& fractionalEntries();
+
+/// The report as lines for a log.
+/// @param diagonal  of the bounding box of the mesh, length units.
+/// @param subject   what was done, in place of the filter type and the feature size.
+std::string fractionalText(const FilterOptions& options, const FilterResult& result,
+                           double diagonal, const std::string& subject = {});
+
+/// Shortcomings of a result, and what to choose instead.
+std::vector<std::string> fractionalWarnings(const FilterOptions& options,
+                                            const FilterResult& result, double diagonal);
+
+}  // namespace spectral

@@ -1,0 +1,156 @@
+#include "core/analysis/geometry_spectrum.h"
+
+#include <algorithm>
+#include <iomanip>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "core/contract/common_fields.h"
+#include "core/contract/filters.h"
+#include "core/contract/report.h"
+#include "core/contract/surface_report.h"
+
+namespace spectral {
+
+namespace {
+
+Fields<SpectrumOptions> spectrumFields() {
+    using Call = SpectrumOptions;
+    return {
+        field<Call>([](auto& call) -> auto& { return call.basisSize; }, "basis_size", "Basis size",
+                    "Number of the largest features (manifold harmonics, constant ones included) "
+                    "that are also computed individually, for scripts that need them; this takes "
+                    "most of the time. The octaves cover all features in any case. On a small "
+                    "mesh, all harmonics are computed.")
+            .in("number of harmonics, at least 0"),
+        laplacianField<Call>([](auto& call) -> auto& { return call.laplacian; }),
+        boundaryField<Call>([](auto& call) -> auto& { return call.boundary; },
+                            "*free*: it is part of the shape. *fixed*: only the details that it "
+                            "does not determine are measured."),
+    };
+}
+
+Entries<GeometrySpectrum> spectrumEntries() {
+    using R = GeometrySpectrum;
+    return {
+        {"diagonal", "of the bounding box, length", [](const R& r) -> Value { return r.diagonal; }},
+        {"mean_edge", "mean edge, length", [](const R& r) -> Value { return r.meanEdge; }},
+        {"default_feature_size", "default of `feature_size` for this mesh, length",
+         [](const R& r) -> Value { return defaultFeatureSize(r.meanEdge, r.surfaceDiagonal); }},
+        {"area", "of the surface, length²", [](const R& r) -> Value { return r.area; }},
+        {"total_energy", "integral of the squared length of the shape over the surface, length⁴",
+         [](const R& r) -> Value { return r.totalEnergy; }},
+        {"frequencies", "of the lowest harmonics, ascending, radians per length; 0 for constants",
+         [](const R& r) -> Value { return r.frequencies; }},
+        {"amplitudes", "amplitudes of the harmonics of `frequencies`, length; 0 for constants",
+         [](const R& r) -> Value { return r.amplitudes; }},
+        {"octave_feature_sizes", "centres of the octaves, descending, length",
+         [](const R& r) -> Value { return r.octaveFeatureSizes; }},
+        {"octave_energies", "energies of the octaves, length⁴",
+         [](const R& r) -> Value { return r.octaveEnergies; }},
+        {"octave_amplitudes",
+         "amplitudes of the octaves, root mean square over the surface, length",
+         [](const R& r) -> Value { return r.octaveAmplitudes; }},
+        {"cumulative_energy",
+         "share of the energy in each octave and all larger ones, ascending to 1",
+         [](const R& r) -> Value { return r.cumulativeEnergy; }},
+        {"band_feature_sizes",
+         "centres of the third octaves with at least 30 harmonics, descending, length",
+         [](const R& r) -> Value { return r.bandFeatureSizes; }},
+        {"band_amplitudes", "amplitudes of the third octaves of `band_feature_sizes`, length",
+         [](const R& r) -> Value { return r.bandAmplitudes; }},
+        {"band_noise",
+         "amplitudes that white noise of height 1 at the vertices has in these third octaves",
+         [](const R& r) -> Value { return r.bandNoise; }},
+        {"noise_height", "of the noise that was filtered or found, length; 0: none",
+         [](const R& r) -> Value { return r.noiseHeight; }},
+        {"noise_feature_size",
+         "details smaller than this are like noise of the vertices, length; 0: none",
+         [](const R& r) -> Value { return r.noiseFeatureSize; }},
+        {"feature_size_50", "half of the energy is in features of at least this size, length",
+         [](const R& r) -> Value { return r.featureSize50; }},
+        {"feature_size_90", "90 % of the energy are in features of at least this size, length",
+         [](const R& r) -> Value { return r.featureSize90; }},
+        {"feature_size_99", "99 % of the energy are in features of at least this size, length",
+         [](const R& r) -> Value { return r.featureSize99; }},
+        {"mismatch",
+         "share of the energy that may belong to other octaves; above 0.01 with a warning",
+         [](const R& r) -> Value { return r.mismatch; }},
+    };
+}
+
+/// A length, also as a percentage of the diagonal.
+std::string withPercent(double length, double diagonal) {
+    std::ostringstream text;
+    text << std::setprecision(4) << length << " (" << std::setprecision(3)
+         << 100.0 * length / diagonal << " %)";
+    return text.str();
+}
+
+std::string textOf(const GeometrySpectrum& spectrum) {
+    std::ostringstream text;
+    text << std::setprecision(4) << "Geometry Spectrum: octaves of all details";
+    if (spectrum.frequencies.size() > 0)
+        text << ", and " << spectrum.frequencies.size() << " harmonics";
+    text << "; in brackets: percent of the diagonal, " << spectrum.diagonal << "; energy: of this "
+         << "size and all larger ones\n"
+         << std::left << "  " << std::setw(20) << "feature size" << std::setw(11) << "amplitude"
+         << "energy";
+    // Narrow enough for MeshLab's log, which would wrap the lines.
+    for (Eigen::Index j = 0; j < spectrum.octaveEnergies.size(); ++j)
+        text << "\n  " << std::setw(20)
+             << withPercent(spectrum.octaveFeatureSizes[j], spectrum.diagonal) << std::setw(11)
+             << std::setprecision(3) << spectrum.octaveAmplitudes[j] << std::fixed
+             << std::setprecision(5) << 100.0 * spectrum.cumulativeEnergy[j] << " %"
+             << std::defaultfloat;
+    if (spectrum.noiseHeight > 0.0)
+        text << "\n  details smaller than "
+             << withPercent(spectrum.noiseFeatureSize, spectrum.diagonal)
+             << " look like vertex noise, with a root mean square height of "
+             << withPercent(spectrum.noiseHeight, spectrum.diagonal);
+    text << "\n  50 % of the energy at feature sizes of at least "
+         << withPercent(spectrum.featureSize50, spectrum.diagonal) << ", 90 % "
+         << withPercent(spectrum.featureSize90, spectrum.diagonal) << ", 99 % "
+         << withPercent(spectrum.featureSize99, spectrum.diagonal);
+    return text.str();
+}
+
+std::vector<std::string> warningsOf(const GeometrySpectrum& spectrum) {
+    constexpr double kAccurate = 0.01;
+    if (spectrum.mismatch <= kAccurate) return {};
+    std::ostringstream text;
+    text << std::setprecision(3) << "up to " << 100.0 * std::min(1.0, spectrum.mismatch)
+         << " % of the energy may belong to other sizes: the mesh has needle triangles, or parts "
+            "far away";
+    return {text.str()};
+}
+
+FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values& given,
+                 const Progress& progress) {
+    const SpectrumOptions options = callOf(spectrumFields(), given, mesh);
+    const GeometrySpectrum spectrum = geometrySpectrum(input.V, input.F, options, progress);
+    FilterOutput output;
+    output.report = reportOf(spectrumEntries(), spectrum);
+    output.text = textOf(spectrum);
+    output.warnings = warningsOf(spectrum);
+    append(percentageWarnings(mesh), output.warnings);
+    return output;
+}
+
+}  // namespace
+
+Filter geometrySpectrumContract() {
+    return {
+        "Geometry Spectrum",
+        "get_geometry_spectrum",
+        "Measures how much of a shape lies in details of each size, and where noise begins: use "
+        "it to *choose a feature size*. The log lists the root mean square height of the "
+        "details in each octave of sizes; no vertex moves.",
+        "",
+        parametersOf(spectrumFields()),
+        describedBy(spectrumEntries()),
+        run};
+}
+
+}  // namespace spectral

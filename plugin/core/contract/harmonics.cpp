@@ -1,0 +1,118 @@
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "core/analysis/manifold_harmonics.h"
+#include "core/contract/advice.h"
+#include "core/contract/common_fields.h"
+#include "core/contract/filters.h"
+#include "core/contract/report.h"
+#include "core/support/errors.h"
+#include "core/support/types.h"
+
+namespace spectral {
+
+namespace {
+
+struct HarmonicsCall {
+    int mode = 1;  // the first that is not constant on a connected surface
+    HarmonicsOptions options;
+    bool storeBasis = false;
+};
+
+Fields<HarmonicsCall> harmonicsFields() {
+    using Call = HarmonicsCall;
+    return {
+        field<Call>([](auto& call) -> auto& { return call.mode; }, "mode", "Mode",
+                    "Number of the harmonic to show, below the basis size. The constant ones come "
+                    "first, one for each component (none with a fixed boundary); higher ones are "
+                    "finer.")
+            .in("number of a harmonic, from 0, below the basis size"),
+        field<Call>([](auto& call) -> auto& { return call.options.basisSize; }, "basis_size",
+                    "Basis size",
+                    "Number of harmonics to compute, constant ones included. Must be below the "
+                    "number of vertices that are not fixed; time and memory grow with it.")
+            .in("number of harmonics, at least 1")
+            .from(1.0),
+        field<Call>(
+            [](auto& call) -> auto& { return call.storeBasis; }, "store_basis", "Store basis",
+            "Keep all harmonics as vertex attributes named harmonic_0, harmonic_1 and so "
+            "on, one number per vertex each. Those of an earlier run are replaced. They are "
+            "orthonormal with the vertex areas as weights."),
+        laplacianField<Call>([](auto& call) -> auto& { return call.options.laplacian; }),
+        boundaryField<Call>([](auto& call) -> auto& { return call.options.boundary; },
+                            "*free*: the waves have zero slope across the boundary. *fixed*: they "
+                            "are zero there, like the skin of a drum."),
+    };
+}
+
+Entries<ManifoldHarmonics> harmonicsEntries() {
+    using R = ManifoldHarmonics;
+    return {
+        {"eigenvalues", "of the last basis that was computed, ascending, 1 / length²",
+         [](const R& r) -> Value { return r.lambda; }},
+        {"residuals", "residuals of the harmonics, relative",
+         [](const R& r) -> Value { return r.residuals; }},
+        {"inertia_count",
+         "number of harmonics that the basis must hold, by Sylvester's law; 0 if unneeded",
+         [](const R& r) -> Value { return r.inertiaCount; }},
+        {"whole_size", "size of basis, at least that computed, that splits no multiple eigenvalue",
+         [](const R& r) -> Value { return r.wholeSize; }},
+    };
+}
+
+void checkMode(int mode, int basisSize) {
+    if (mode >= 0 && (mode < basisSize || basisSize < 1))
+        return;  // truncatedBasis rejects basisSize < 1
+    throw InvalidOption("mode = " + std::to_string(mode) +
+                        ": a basis of basis_size = " + std::to_string(basisSize) +
+                        " has the modes 0 to " + std::to_string(basisSize - 1));
+}
+
+std::string textOf(const ManifoldHarmonics& harmonics, int mode) {
+    const double lambda = harmonics.lambda[mode];
+    const auto size = static_cast<int>(harmonics.lambda.size());
+    std::ostringstream text;
+    text << std::setprecision(4) << "Manifold Harmonics: mode " << mode << " of " << size
+         << ", eigenvalue " << lambda;
+    if (lambda > 0.0) text << ", wavelength " << 2.0 * kPi / std::sqrt(lambda);
+    if (harmonics.wholeSize > size)
+        text << "\n  the basis splits a multiple eigenvalue; basis_size = " << harmonics.wholeSize
+             << " would not";
+    text << "\n  none of the lowest is missing: the inertia of W - sigma D counts "
+         << harmonics.inertiaCount << "; largest relative residual "
+         << harmonics.residuals.maxCoeff();
+    return text.str();
+}
+
+FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values& given,
+                 const Progress& progress) {
+    const HarmonicsCall call = callOf(harmonicsFields(), given, mesh);
+    checkMode(call.mode, call.options.basisSize);
+    ManifoldHarmonics harmonics = manifoldHarmonics(input.V, input.F, call.options, progress);
+    FilterOutput output;
+    output.report = reportOf(harmonicsEntries(), harmonics);
+    output.text = textOf(harmonics, call.mode);
+    output.warnings = residualWarnings(harmonics.residuals);
+    output.values = harmonics.Phi.col(call.mode);
+    output.basis = std::move(harmonics.Phi);
+    return output;
+}
+
+}  // namespace
+
+Filter harmonicsContract() {
+    return {"Manifold Harmonics",
+            "compute_scalar_manifold_harmonic_per_vertex",
+            "Computes the *manifold harmonics* of a surface, its standing waves from low to high "
+            "frequencies, like those of a drum of this shape. One of them becomes the vertex "
+            "quality, in colours: red where it is positive, blue where it is negative.",
+            "",
+            parametersOf(harmonicsFields()),
+            describedBy(harmonicsEntries()),
+            run};
+}
+
+}  // namespace spectral

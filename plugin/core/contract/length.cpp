@@ -1,0 +1,48 @@
+#include "core/contract/length.h"
+
+#include <cmath>
+#include <locale>
+#include <sstream>
+
+#include "core/support/errors.h"
+
+namespace spectral {
+
+Length Length::parse(const std::string& text) {
+    const std::size_t first = text.find_first_not_of(' ');
+    std::string number = first == std::string::npos ? "" : text.substr(first);
+    number.erase(number.find_last_not_of(' ') + 1);
+    if (number == "auto") return {};
+    Length length{0.0, Unit::Absolute};
+    if (!number.empty() && number.back() == '%') length.unit = Unit::Percent;
+    if (!number.empty() && number.back() == 'e') length.unit = Unit::Edges;
+    if (length.unit != Unit::Absolute) number.pop_back();
+    std::istringstream input(number);
+    input.imbue(std::locale::classic());
+    if (!(input >> length.value) || !(input >> std::ws).eof())
+        throw InvalidOption("'" + text +
+                            "': give a percentage of the bounding box diagonal such as 5%, mean "
+                            "edges such as 6e, or a length such as 0.02");
+    if (length.unit == Unit::Percent && length.value > 100.0)
+        throw InvalidOption(
+            text + ": a percentage goes up to 100% of the diagonal; for more, give a length");
+    return length;
+}
+
+double Length::in(const MeshLengths& mesh, double automatic) const {
+    switch (unit) {
+        case Unit::Automatic: return automatic;
+        case Unit::Percent:
+            return inSinglePrecision(mesh.diagonal) * (inSinglePrecision(value) / 100.0F);
+        case Unit::Edges: return inSinglePrecision(value * mesh.meanEdge);
+        case Unit::Absolute: break;
+    }
+    return inSinglePrecision(value);
+}
+
+double inSinglePrecision(double number) {
+    const auto single = static_cast<float>(number);
+    return single == 0.0F || std::isinf(single) ? number : static_cast<double>(single);
+}
+
+}  // namespace spectral

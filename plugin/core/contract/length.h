@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+
+#include "core/mesh/measures.h"
+
+namespace spectral {
+
+/// A length as users write it: `5%` of the diagonal, `6e` (mean edges), `0.02` length units, or
+/// `auto`, chosen to suit the mesh.
+struct Length {
+    enum class Unit { Absolute, Percent, Edges, Automatic };
+
+    double value = 0.0;
+    Unit unit = Unit::Automatic;
+
+    /// @throws InvalidOption  when the text is none of these, or a percentage is above 100.
+    static Length parse(const std::string& text);
+
+    /// In length units, in single precision, which is how MeshLab passes lengths on: one value then
+    /// means the same in all hosts. @param automatic  what `auto` stands for.
+    double in(const MeshLengths& mesh, double automatic) const;
+};
+
+/// The number in single precision, unless that would be zero or infinite.
+double inSinglePrecision(double number);
+
+}  // namespace spectral

@@ -1,0 +1,98 @@
+#include "core/contract/parameter.h"
+
+#include "core/contract/length.h"
+#include "core/support/errors.h"
+
+namespace spectral {
+
+namespace {
+
+using Kind = Parameter::Kind;
+
+std::string shown(const Value& value) {
+    struct {
+        std::string operator()(bool is) const { return is ? "true" : "false"; }
+        std::string operator()(int number) const { return std::to_string(number); }
+        std::string operator()(double number) const { return textOf(number); }
+        std::string operator()(const std::string& text) const { return text; }
+        std::string operator()(const Eigen::VectorXd&) const { return "a list"; }
+    } text;
+    return std::visit(text, value);
+}
+
+[[noreturn]] void reject(const Parameter& parameter, const Value& value,
+                         const std::string& wanted) {
+    throw InvalidOption(parameter.name + " = " + shown(value) + ": " + wanted);
+}
+
+int choiceOf(const Parameter& parameter, const Value& value) {
+    const std::vector<std::string>& choices = parameter.choices;
+    const auto count = static_cast<int>(choices.size());
+    const int* const number = std::get_if<int>(&value);
+    if (number != nullptr && *number >= 0 && *number < count) return *number;
+    std::string all;
+    for (int i = 0; i < count; ++i) {
+        const std::string& choice = choices[static_cast<std::size_t>(i)];
+        if (const auto* const name = std::get_if<std::string>(&value); name && *name == choice)
+            return i;
+        all += (i > 0 ? ", " : "") +
+               (number != nullptr ? std::to_string(i) + " (" + choice + ")" : choice);
+    }
+    reject(parameter, value, "choose " + all);
+}
+
+double numberOf(const Parameter& parameter, const Value& value) {
+    if (const auto* const integer = std::get_if<int>(&value)) return *integer;
+    if (const auto* const number = std::get_if<double>(&value)) return *number;
+    reject(parameter, value, "must be a number");
+}
+
+double lengthOf(const Parameter& parameter, const Value& value, const MeshLengths& mesh) {
+    const double automatic = inSinglePrecision(automaticLength(parameter, mesh));
+    const auto* const text = std::get_if<std::string>(&value);
+    if (text == nullptr) return inSinglePrecision(numberOf(parameter, value));
+    if (value == parameter.usual) return automatic;
+    try {
+        return Length::parse(*text).in(mesh, automatic);
+    } catch (const InvalidOption& error) {
+        throw InvalidOption(parameter.name + " = " + error.what());
+    }
+}
+
+}  // namespace
+
+Value converted(const Parameter& parameter, const Value& value, const MeshLengths& mesh) {
+    switch (parameter.kind) {
+        case Kind::Bool:
+            if (!std::holds_alternative<bool>(value))
+                reject(parameter, value, "must be true or false");
+            return value;
+        case Kind::Integer:
+            if (!std::holds_alternative<int>(value)) reject(parameter, value, "must be an integer");
+            return value;
+        case Kind::Number: return inSinglePrecision(numberOf(parameter, value));
+        case Kind::Length: return lengthOf(parameter, value, mesh);
+        case Kind::Choice: return choiceOf(parameter, value);
+        case Kind::Text:
+            if (!std::holds_alternative<std::string>(value))
+                reject(parameter, value, "must be a text");
+            break;
+    }
+    return value;
+}
+
+void rejectUnknown(const std::vector<Parameter>& parameters, const Values& given) {
+    std::string all;
+    Values unknown = given;
+    for (const Parameter& one : parameters) {
+        all += (all.empty() ? "" : ", ") + one.name;
+        unknown.erase(one.name);
+    }
+    throw InvalidOption("there is no option " + unknown.begin()->first + ": choose " + all);
+}
+
+double automaticLength(const Parameter& parameter, const MeshLengths& mesh) {
+    return parameter.automatic != nullptr ? parameter.automatic(mesh) : 0.0;
+}
+
+}  // namespace spectral

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/contract/report.h"
+#include "core/mesh/measures.h"
+#include "core/mesh/surface.h"
+
+namespace spectral {
+
+// What filters that move or change vertices report about the surface.
+
+/// Entries of the counts.
+template <class Result>
+Entries<Result> surfaceEntries() {
+    return {
+        {"components", "number of connected components of the surface",
+         [](const Result& r) -> Value { return r.components; }},
+        {"unreferenced_vertices", "number of vertices without faces, unchanged",
+         [](const Result& r) -> Value { return r.unreferencedVertices; }},
+        {"joined_vertices", "number of vertices at seams that are one with another",
+         [](const Result& r) -> Value { return r.joinedVertices; }},
+        {"fixed_vertices", "number of vertices on a fixed boundary or a crease, unchanged",
+         [](const Result& r) -> Value { return r.fixedVertices; }},
+    };
+}
+
+/// Entries of displacements, volumes and counts, of filters that move vertices.
+template <class Result>
+Entries<Result> movementEntries() {
+    return joined<Result>({
+        {{"rms_displacement", "root mean square of the displacements, length",
+          [](const Result& r) -> Value { return r.rmsDisplacement; }},
+         {"max_displacement", "largest displacement of a vertex, length",
+          [](const Result& r) -> Value { return r.maxDisplacement; }},
+         {"has_volume", "whether the surface is closed and consistently oriented",
+          [](const Result& r) -> Value { return r.hasVolume; }},
+         {"volume_before", "signed volume of the surface, length³; meaningless unless `has_volume`",
+          [](const Result& r) -> Value { return r.volumeBefore; }},
+         {"volume_after",
+          "signed volume of the filtered surface, length³; meaningless unless `has_volume`",
+          [](const Result& r) -> Value { return r.volumeAfter; }},
+         {"preserved_volumes", "number of closed components whose volume was preserved",
+          [](const Result& r) -> Value { return r.volumes.preserved; }}},
+        surfaceEntries<Result>(),
+    });
+}
+
+/// Part of a log line: "surface: 2 components, 5 boundary vertices fixed".
+/// @param fixed  what is fixed, e.g. "boundary vertices fixed".
+std::string surfaceText(const SurfaceCounts& counts, const char* fixed = "boundary vertices fixed");
+
+/// A log line: "volume: 2.1 -> 2", or that there is none.
+std::string volumeText(bool hasVolume, double before, double after);
+
+/// "only the selection: 44 of 642 vertices": other filters leave selections behind unnoticed. Empty
+/// if everything is filtered.
+/// @param selected  one value per vertex, or empty.
+std::string selectionText(const std::vector<bool>& selected);
+
+/// Whether every vertex of a surface of a mesh of n vertices must stay as it is.
+bool isAllFixed(const SurfaceCounts& counts, Index n);
+
+/// Warns that the boundary fixes every vertex.
+/// @param verb  what no vertex can do: "move" or "change".
+std::string allFixedWarning(const std::string& verb);
+
+/// Warns of what may tear the surface apart, and says what to do about it.
+std::vector<std::string> surfaceWarnings(const SurfaceCounts& counts);
+
+/// Warns of vertices without faces that enlarge the diagonal by more than 1 %: percentages then do
+/// not mean what they seem to.
+std::vector<std::string> percentageWarnings(const MeshLengths& mesh);
+
+/// Appends warnings.
+void append(std::vector<std::string> more, std::vector<std::string>& warnings);
+
+}  // namespace spectral

@@ -1,0 +1,137 @@
+#include "meshlab/dialog.h"
+
+#include <common/parameters/rich_parameters.h>
+
+#include <QStringList>
+
+#include "core/contract/equalizer.h"
+#include "core/mesh/measures.h"
+#include "meshlab/mesh_conversion.h"
+
+namespace {
+
+using spectral::Parameter;
+using Kind = Parameter::Kind;
+
+/// The number of the equalizer's slider that a parameter is; none if it is not one.
+std::size_t sliderOf(const spectral::Filter& filter, const Parameter& parameter) {
+    const auto i = static_cast<std::size_t>(&parameter - filter.parameters.data());
+    const bool isSlider = filter.pythonName == "apply_coord_spectral_equalizer" &&
+                          i < spectral::kEqualizerTimes.size();
+    return isSlider ? i : spectral::kEqualizerTimes.size();
+}
+
+bool isSlider(const spectral::Filter& filter, const Parameter& parameter) {
+    return sliderOf(filter, parameter) < spectral::kEqualizerTimes.size();
+}
+
+QString tooltipOf(const Parameter& parameter, const spectral::MeshLengths& mesh) {
+    QString html = asHtml(parameter.help);
+    if (parameter.kind != Kind::Length) return html;
+    html += QString(" Default: %1.").arg(QString::fromStdString(parameter.automaticText));
+    if (mesh.meanEdge > 0.0)
+        html += QString(" The mean edge length of this mesh is %1.").arg(mesh.meanEdge, 0, 'g', 3);
+    return html;
+}
+
+/// @param isAnySelected  whether any face is.
+void add(const spectral::Filter& filter, const Parameter& one, const spectral::MeshLengths& mesh,
+         Scalarm diagonal, bool isAnySelected, RichParameterList& list) {
+    const QString name = QString::fromStdString(one.name), help = tooltipOf(one, mesh);
+    QString label = QString::fromStdString(one.label);
+    const std::size_t slider = sliderOf(filter, one);
+    switch (one.kind) {
+        case Kind::Bool:
+            // As in MeshLab's own filters.
+            if (one.name == "selected")
+                list.addParam(RichBool(name, isAnySelected, label, help, !isAnySelected));
+            else
+                list.addParam(
+                    RichBool(name, std::get<bool>(one.usual), label, help, one.isAdvanced));
+            break;
+        case Kind::Integer:
+            list.addParam(RichInt(name, std::get<int>(one.usual), label, help, one.isAdvanced));
+            break;
+        case Kind::Number: {
+            const auto usual = static_cast<Scalarm>(std::get<double>(one.usual));
+            if (!isSlider(filter, one)) {
+                list.addParam(RichFloat(name, usual, label, help, one.isAdvanced));
+                break;
+            }
+            // The reference documentation is generated without a mesh: there are no sizes.
+            if (mesh.meanEdge > 0.0)
+                label = QString::fromStdString(spectral::equalizerLabel(slider, mesh));
+            list.addParam(RichDynamicFloat(name, usual, static_cast<Scalarm>(one.low),
+                                           static_cast<Scalarm>(one.high), label, help));
+            break;
+        }
+        case Kind::Length: {
+            const auto usual = static_cast<Scalarm>(spectral::automaticLength(one, mesh));
+            list.addParam(RichPercentage(name, usual, 0, diagonal, label, help, one.isAdvanced));
+            break;
+        }
+        case Kind::Choice: {
+            QStringList choices;
+            for (const std::string& choice : one.choices)
+                choices.push_back(QString::fromStdString(choice));
+            list.addParam(
+                RichEnum(name, std::get<int>(one.usual), choices, label, help, one.isAdvanced));
+            break;
+        }
+        case Kind::Text:
+            list.addParam(RichString(name, QString::fromStdString(std::get<std::string>(one.usual)),
+                                     label, help, one.isAdvanced));
+            break;
+    }
+}
+
+}  // namespace
+
+QString asHtml(const std::string& text) {
+    QString html;
+    bool isBold = false, isName = false;
+    for (const QChar c : QString::fromStdString(text).toHtmlEscaped()) {
+        if (c == '*')
+            html += (isBold = !isBold) ? "<b>" : "</b>";
+        else if (c == '|')
+            isName = !isName;
+        else
+            html += isName && c == '_' ? QChar(' ') : c;
+    }
+    return html;
+}
+
+QString helpOf(const spectral::Filter& filter) {
+    const QString help = asHtml(filter.help);
+    if (filter.source.empty()) return help;
+    return help + " <small>" + asHtml(filter.source) + "</small>";
+}
+
+RichParameterList parametersOf(const spectral::Filter& filter, const MeshModel& mesh) {
+    const MeshMatrices matrices = toMatrices(mesh.cm);
+    const spectral::MeshLengths lengths = spectral::lengthsOf(matrices.V, matrices.F);
+    RichParameterList list;
+    for (const Parameter& one : filter.parameters)
+        add(filter, one, lengths, mesh.cm.bbox.Diag(), hasSelectedFaces(mesh.cm), list);
+    return list;
+}
+
+spectral::Values valuesOf(const spectral::Filter& filter, const RichParameterList& parameters) {
+    spectral::Values values;
+    for (const Parameter& one : filter.parameters) {
+        const QString name = QString::fromStdString(one.name);
+        spectral::Value& value = values[one.name];
+        switch (one.kind) {
+            case Kind::Bool: value = parameters.getBool(name); break;
+            case Kind::Integer: value = parameters.getInt(name); break;
+            case Kind::Number:
+                value = static_cast<double>(isSlider(filter, one) ? parameters.getDynamicFloat(name)
+                                                                  : parameters.getFloat(name));
+                break;
+            case Kind::Length: value = static_cast<double>(parameters.getAbsPerc(name)); break;
+            case Kind::Choice: value = parameters.getEnum(name); break;
+            case Kind::Text: value = parameters.getString(name).toStdString(); break;
+        }
+    }
+    return values;
+}

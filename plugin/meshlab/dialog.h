@@ -1,0 +1,20 @@
+#pragma once
+
+#include <common/ml_document/mesh_model.h>
+#include <common/parameters/rich_parameter_list.h>
+
+#include "core/contract/filter.h"
+
+// Filters as MeshLab's dialogs show them, and what was chosen in one.
+
+/// Plain text with *words* that stand out and |parameters| as HTML.
+QString asHtml(const std::string& text);
+
+/// The text above the parameters, HTML.
+QString helpOf(const spectral::Filter& filter);
+
+/// The parameters, with defaults for a mesh.
+RichParameterList parametersOf(const spectral::Filter& filter, const MeshModel& mesh);
+
+/// The values chosen in a dialog or script.
+spectral::Values valuesOf(const spectral::Filter& filter, const RichParameterList& parameters);
