@@ -19,7 +19,7 @@ ARROWS = {
     "denoise": {"noise", "laplacian", "mesh", "support"},
     "filter": {"transfer", "krylov", "harmonics", "laplacian", "ldlt", "mesh", "support"},
     "analysis": {"krylov", "harmonics", "laplacian", "ldlt", "mesh", "support"},
-    "contract": {"analysis", "denoise", "filter", "noise", "transfer", "laplacian", "mesh", "support"},
+    "contract": {"analysis", "denoise", "filter", "transfer", "laplacian", "mesh", "support"},
 }
 
 

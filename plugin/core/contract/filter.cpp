@@ -7,6 +7,7 @@
 #include "core/contract/filters.h"
 #include "core/mesh/mesh_check.h"
 #include "core/support/steady_progress.h"
+#include "core/support/threads.h"
 
 namespace spectral {
 
@@ -46,9 +47,10 @@ const Filter& filterNamed(const std::string& pythonName) {
 }
 
 FilterOutput apply(const Filter& filter, const FilterInput& input, const Values& given,
-                   const Progress& progress) {
+                   const Progress& progress, int threads) {
     try {
         return withSteadyProgress(progress, [&](const Progress& steady) {
+            const ThreadTeam team(threads > 0 ? threads : threadCount(), steady);
             checkMesh(input.V, input.F);  // before it is measured
             return filter.run(input, lengthsOf(input.V, input.F), given, steady);
         });

@@ -19,6 +19,8 @@ struct FilterInput {
                                    ///< parameter `selected`.
     Eigen::MatrixXd values{};  ///< n x c: the vertex quality (c = 1), or red, green and blue from 0
                                ///< to 255 (c = 3); no rows: the mesh has none.
+    Eigen::MatrixXd gain{};    ///< p x 2, in place of a transfer function: frequencies
+                               ///< w = feature size / wavelength > 0, and a gain >= 0 for each.
 };
 
 /// The result of a filter, for a host to write to its mesh.
@@ -61,9 +63,10 @@ const Filter& filterNamed(const std::string& pythonName);
 
 /// Applies a filter. The calling thread reports progress twenty times a second, others compute.
 ///
-/// @param given  values of parameters; the others have their defaults.
-/// @throws Error  as advised says: with what to do about it.
+/// @param given    values of parameters; the others have their defaults.
+/// @param threads  number of threads; 0: threadCount().
+/// @throws Error  with what to do about it.
 FilterOutput apply(const Filter& filter, const FilterInput& input, const Values& given,
-                   const Progress& progress = {});
+                   const Progress& progress = {}, int threads = 0);
 
 }  // namespace spectral

@@ -170,7 +170,7 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
     FractionalCall call = callOf(fields, given, mesh);
     FilterOptions& options = call.options;
     options.keepThinParts = isDefaultFeatureSize(call.featureSize, mesh);
-    resolveCustomGain(call, mesh);
+    resolveCustomGain(call, mesh, input.gain);
     options.transferFunction = call.transfer;
     options.featureSize = call.featureSize;
     if (call.selected) options.part.selected = input.selected;

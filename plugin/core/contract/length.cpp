@@ -32,8 +32,11 @@ Length Length::parse(const std::string& text) {
 double Length::in(const MeshLengths& mesh, double automatic) const {
     switch (unit) {
         case Unit::Automatic: return automatic;
-        case Unit::Percent:
-            return inSinglePrecision(mesh.diagonal) * (inSinglePrecision(value) / 100.0F);
+        case Unit::Percent: {
+            const float share = static_cast<float>(value) / 100.0F;
+            const float length = static_cast<float>(mesh.diagonal) * share;
+            return length == 0.0F || std::isinf(length) ? mesh.diagonal * value / 100.0 : length;
+        }
         case Unit::Edges: return inSinglePrecision(value * mesh.meanEdge);
         case Unit::Absolute: break;
     }

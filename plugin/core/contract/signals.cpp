@@ -99,7 +99,7 @@ FilterOutput filterValues(const char* name, const char* signal, const FilterInpu
                           const MeshLengths& mesh, const Values& given, const Progress& progress) {
     static const Fields<SignalCall> fields = signalFields();
     SignalCall call = callOf(fields, given, mesh);
-    resolveCustomGain(call, mesh);
+    resolveCustomGain(call, mesh, input.gain);
     SignalFilterOptions& options = call.options;
     options.transferFunction = call.transfer;
     options.featureSize = call.featureSize;

@@ -1,12 +1,38 @@
 #include "core/contract/transfer_fields.h"
 
+#include <algorithm>
+#include <vector>
+
 #include "core/support/frequency.h"
 #include "core/support/types.h"
 #include "core/transfer/custom_gain.h"
+#include "core/transfer/equalizer.h"
 
 namespace spectral {
 
-void resolveCustomGain(TransferCall& call, const MeshLengths& mesh) {
+namespace {
+
+/// Finer than the least gain of an equalizer, 0.001, for which it would take a 0.
+constexpr double kNoGain = 1e-12;
+
+Equalizer equalizerOf(const Eigen::MatrixXd& samples, double featureSize) {
+    std::vector<SizedGain> points;
+    for (Index i = 0; i < samples.rows(); ++i)
+        points.push_back({featureSize / samples(i, 0), std::max(samples(i, 1), kNoGain)});
+    return Equalizer(points);
+}
+
+}  // namespace
+
+void resolveCustomGain(TransferCall& call, const MeshLengths& mesh,
+                       const Eigen::MatrixXd& samples) {
+    if (samples.rows() > 0) {
+        const Equalizer equalizer = equalizerOf(samples, call.featureSize);
+        call.transfer.type = FilterType::Custom;
+        call.transfer.custom = equalizer;
+        call.featureSize = equalizer.middleSize();
+        return;
+    }
     if (call.transfer.type != FilterType::Custom) return;
     const CustomGain custom = parseGain(call.customGain, cutoffFrequency(call.featureSize), mesh);
     call.transfer.custom = custom.gain;

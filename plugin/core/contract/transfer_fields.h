@@ -21,9 +21,10 @@ struct TransferCall {
 template <class Call>
 void addTransferFields(Fields<Call>& fields);
 
-/// Parses a custom transfer function, if that is the type.
-/// @throws InvalidOption  when it has a mistake.
-void resolveCustomGain(TransferCall& call, const MeshLengths& mesh);
+/// Sets the gain of the type custom: parses it, or takes samples (FilterInput::gain), which make
+/// the type custom.
+/// @throws InvalidOption  when there is a mistake.
+void resolveCustomGain(TransferCall& call, const MeshLengths& mesh, const Eigen::MatrixXd& samples);
 
 /// The name of a filter type, as in the choices of `filter_type`.
 std::string nameOf(FilterType type);

@@ -31,7 +31,8 @@ class ThreadTeam {
     explicit ThreadTeam(int threads = threadCount());
     /// A team the caller can interrupt at any time: parallelFor and stopPoint then throw Cancelled.
     /// @param progress  kept by reference.
-    explicit ThreadTeam(const Progress& progress) : ThreadTeam() { listenTo(progress); }
+    explicit ThreadTeam(const Progress& progress) : ThreadTeam(threadCount(), progress) {}
+    ThreadTeam(int threads, const Progress& progress) : ThreadTeam(threads) { listenTo(progress); }
     ~ThreadTeam();
     ThreadTeam(const ThreadTeam&) = delete;
     ThreadTeam& operator=(const ThreadTeam&) = delete;

@@ -13,10 +13,6 @@ class MissingPackageError(SpectralError):
     """A package of an extra is not installed."""
 
 
-class OptionError(SpectralError, ValueError):
-    """A filter option has an invalid value."""
-
-
 class FormatError(SpectralError, ValueError):
     """An output file has an extension that cannot be written."""
 
@@ -26,7 +22,37 @@ class MeshFileError(SpectralError):
 
 
 class FilterError(SpectralError):
-    """The filter rejected a mesh or failed on it."""
+    """The filter rejected a mesh or an option, or failed.
+
+    Attributes
+    ----------
+    code
+        The cause, such as "no_faces" or "out_of_memory"; empty if this package has found it.
+    limit
+        A number that goes with some causes, such as the largest basis size; else 0.
+    """
+
+    code = ""
+    limit = 0
+
+
+class OptionError(FilterError, ValueError):
+    """A filter option has an invalid value, or one that does not suit the mesh."""
+
+
+class MeshError(FilterError):
+    """The mesh cannot be filtered: no faces, no area, coordinates that are not finite."""
+
+
+class SolverError(FilterError):
+    """A numerical method failed, or the filter would leave nothing of the shape."""
+
+
+class Cancelled(SpectralError):  # noqa: N818 - nothing has gone wrong
+    """The function `progress` of a call has returned False; nothing has changed."""
+
+    code = "cancelled"
+    limit = 0
 
 
 class ProcessDiedError(FilterError):
@@ -38,7 +64,7 @@ class TimeLimitError(FilterError):
 
 
 class MemoryLimitError(FilterError):
-    """A mesh needed more than its memory limit."""
+    """A mesh needs more memory than there is, or than its limit."""
 
 
 class InputError(SpectralError, ValueError):

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+
+#include <utility>
+
+#include "core/mesh/mesh.h"
+
+namespace spectral::python {
+
+namespace nb = nanobind;
+
+/// Rows of three contiguous numbers, as NumPy makes them. The package converts what users pass.
+using Positions = nb::ndarray<const double, nb::numpy, nb::shape<-1, 3>, nb::c_contig>;
+using Indices = nb::ndarray<const int, nb::numpy, nb::shape<-1, 3>, nb::c_contig>;
+using Table = nb::ndarray<const double, nb::numpy, nb::shape<-1, -1>, nb::c_contig>;
+using Numbers = nb::ndarray<const double, nb::numpy, nb::shape<-1>, nb::c_contig>;
+using Flags = nb::ndarray<const bool, nb::numpy, nb::shape<-1>, nb::c_contig>;
+
+template <class Array>
+auto mapOf(const Array& array, Eigen::Index columns) {
+    using Scalar = std::remove_const_t<typename Array::Scalar>;
+    using Rows = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    return Eigen::Map<const Rows>(array.data(), static_cast<Eigen::Index>(array.shape(0)), columns);
+}
+
+/// Hands the memory of a matrix to NumPy, without a copy: columns are contiguous, as in the core.
+template <class Matrix>
+nb::object given(Matrix&& matrix) {
+    using M = std::decay_t<Matrix>;
+    auto* held = new M(std::forward<Matrix>(matrix));
+    nb::capsule owner(held, [](void* p) noexcept { delete static_cast<M*>(p); });
+    const auto rows = static_cast<std::size_t>(held->rows());
+    const auto columns = static_cast<std::size_t>(held->cols());
+    if constexpr (M::ColsAtCompileTime == 1)
+        return nb::cast(nb::ndarray<nb::numpy, typename M::Scalar>(held->data(), {rows}, owner));
+    else
+        return nb::cast(nb::ndarray<nb::numpy, typename M::Scalar>(
+            held->data(), {rows, columns}, owner, {1, static_cast<std::int64_t>(rows)}));
+}
+
+/// A copy with contiguous rows, which most libraries expect of coordinates.
+inline nb::object givenByRows(const Eigen::MatrixXd& matrix) {
+    using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+    auto* held = new Rows(matrix);
+    nb::capsule owner(held, [](void* p) noexcept { delete static_cast<Rows*>(p); });
+    return nb::cast(nb::ndarray<nb::numpy, double>(
+        held->data(),
+        {static_cast<std::size_t>(held->rows()), static_cast<std::size_t>(held->cols())}, owner));
+}
+
+}  // namespace spectral::python

@@ -1,0 +1,104 @@
+// meshlab_spectral._core: the core on NumPy arrays. The package checks and converts what users
+// pass.
+
+#include <nanobind/nanobind.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <optional>
+#include <utility>
+
+#include "arrays.h"
+#include "core/contract/filter.h"
+#include "core/contract/gains.h"
+#include "core/laplacian/laplacian_builder.h"
+#include "core/support/memory.h"
+#include "core/support/steady_progress.h"
+#include "core/support/threads.h"
+#include "errors.h"
+#include "running.h"
+#include "values.h"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace spectral::python {
+
+namespace {
+
+nb::dict applyFilter(const std::string& name, const Positions& vertices, const Indices& faces,
+                     const nb::dict& options, const std::optional<Flags>& selected,
+                     const std::optional<Table>& values, const std::optional<Table>& gain,
+                     nb::handle progress, int threads) {
+    FilterInput input{mapOf(vertices, 3), mapOf(faces, 3)};
+    if (selected) input.selected.assign(selected->data(), selected->data() + selected->shape(0));
+    if (values) input.values = mapOf(*values, static_cast<Eigen::Index>(values->shape(1)));
+    if (gain) input.gain = mapOf(*gain, 2);
+    const Values given = valuesOf(options);
+    FilterOutput output = [&] {
+        const Running running;
+        return apply(filterNamed(name), input, given, progressOf(progress), threads);
+    }();
+    nb::dict result;
+    if (output.V.rows() > 0) result["vertices"] = givenByRows(output.V);
+    if (output.details.rows() > 0) result["details"] = givenByRows(output.details);
+    if (output.values.rows() > 0) result["values"] = givenByRows(output.values);
+    if (output.basis.rows() > 0) result["basis"] = python::given(std::move(output.basis));
+    result["report"] = dictOf(std::move(output.report));
+    result["text"] = output.text;
+    result["summary"] = output.summary;
+    result["warnings"] = output.warnings;
+    return result;
+}
+
+nb::object gains(const nb::dict& options, double diagonal, double meanEdge,
+                 const Numbers& frequencies) {
+    const auto w = mapOf(frequencies, 1);
+    return python::given(gainsAt(valuesOf(options), {diagonal, meanEdge, diagonal}, w.col(0)));
+}
+
+/// (data, column indices, row offsets) of W, D, and the vertex of each row.
+nb::tuple laplacian(const Positions& vertices, const Indices& faces, int kind, nb::handle progress,
+                    int threads) {
+    const Vertices V = mapOf(vertices, 3);
+    const Faces F = mapOf(faces, 3);
+    MeshLaplacian mesh = [&] {
+        const Running running;
+        return withSteadyProgress(progressOf(progress), [&](const Progress& steady) {
+            const ThreadTeam team(threads, steady);
+            return meshLaplacian(V, F, static_cast<LaplacianKind>(kind));
+        });
+    }();
+    SparseMatrix& W = mesh.laplacian.W;
+    W.makeCompressed();
+    using Integers = Eigen::VectorXi;
+    using Doubles = Eigen::VectorXd;
+    const std::vector<Index>& rows = mesh.surface.vertex;
+    return nb::make_tuple(
+        python::given(Doubles(Doubles::Map(W.valuePtr(), W.nonZeros()))),
+        python::given(Integers(Integers::Map(W.innerIndexPtr(), W.nonZeros()))),
+        python::given(Integers(Integers::Map(W.outerIndexPtr(), W.outerSize() + 1))),
+        python::given(std::move(mesh.laplacian.D)),
+        python::given(
+            Eigen::Matrix<Index, Eigen::Dynamic, 1>(Eigen::Matrix<Index, Eigen::Dynamic, 1>::Map(
+                rows.data(), static_cast<Index>(rows.size())))));
+}
+
+}  // namespace
+
+}  // namespace spectral::python
+
+NB_MODULE(_core, m) {
+    using namespace spectral;
+    python::translateErrors();
+    python::endRunsAtExit();
+    m.def("filters", python::describedFilters);
+    m.def("apply", python::applyFilter, "name"_a, "vertices"_a, "faces"_a, "options"_a,
+          nb::kw_only(), "selected"_a = nb::none(), "values"_a = nb::none(), "gain"_a = nb::none(),
+          "progress"_a = nb::none(), "threads"_a = 0);
+    m.def("gains", python::gains, "options"_a, "diagonal"_a, "mean_edge"_a, "frequencies"_a);
+    m.def("laplacian", python::laplacian, "vertices"_a, "faces"_a, "kind"_a, nb::kw_only(),
+          "progress"_a = nb::none(), "threads"_a = 0);
+    m.def("set_memory_limit", setMemoryLimit, "limit"_a);
+}

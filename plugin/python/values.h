@@ -1,0 +1,21 @@
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include "core/contract/filter.h"
+
+namespace spectral::python {
+
+namespace nb = nanobind;
+
+/// Values of parameters from a dict of bool, int, float and str.
+/// @throws InvalidOption  for a value of another type.
+Values valuesOf(const nb::dict& given);
+
+/// Numbers, flags and arrays by their names.
+nb::dict dictOf(Values&& report);
+
+/// Everything about all filters that hosts show: a list of dicts.
+nb::list describedFilters();
+
+}  // namespace spectral::python
