@@ -1,6 +1,6 @@
 """Tries an installed wheel, on any system: the filters, an expression, and two commands.
 
-usage: python try_wheel.py    in an environment with the wheel and its extra `batch`
+usage: python try_wheel.py    in an environment with the wheel
 """
 
 from __future__ import annotations
@@ -47,5 +47,5 @@ def command(*arguments: object) -> None:
     subprocess.run(["meshlab-spectral", *map(str, arguments)], check=True, timeout=600)
 
 
-if __name__ == "__main__":  # the workers of a batch import it again
+if __name__ == "__main__":
     main()

@@ -59,6 +59,10 @@ class ProcessDiedError(FilterError):
     """The process running MeshLab died without an answer."""
 
 
+class ProcessStartError(ProcessDiedError):
+    """The process for MeshLab died before it was ready for a mesh."""
+
+
 class TimeLimitError(FilterError):
     """A mesh took longer than its time limit."""
 

@@ -8,7 +8,7 @@ from meshlab_spectral.errors import MissingPackageError
 
 # Extra -> its packages.
 _PACKAGES = {
-    "batch": ["distributed"],
+    "cluster": ["distributed"],
     "formats": ["nibabel", "pyvista"],
     "plots": ["matplotlib"],
     "render": ["pyvista"],

@@ -4,17 +4,27 @@ from __future__ import annotations
 
 import contextlib
 import json
+import os
 import re
+import signal
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
+from unittest.mock import patch
 
+import psutil
 import pytest
-from batches import REPORT, contents, make_meshes, records, start_batch, wait_until
+from batches import REPORT, alive, contents, make_meshes, records, start_batch, wait_until
 from commands import command, messages_in
+from distributed import get_worker
 from meshlab_spectral import BatchError, filter_files
-from meshlab_spectral.batch import engine
+from meshlab_spectral.batch import cluster as cluster_module
+from meshlab_spectral.batch.jobs import FileResult, Job
+from meshlab_spectral.batch.task import run_job
+
+CHILD = "meshlab_spectral.process.child"
 
 
 @pytest.fixture(scope="module")
@@ -32,8 +42,10 @@ def expected(meshes: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str
 
 
 @contextlib.contextmanager
-def dask_cluster(folder: Path) -> Iterator[tuple[str, subprocess.Popen[bytes]]]:
-    """A scheduler and two workers, started by hand; the scheduler's address and process."""
+def dask_cluster(
+    folder: Path, workers: int = 2
+) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
+    """A scheduler and workers, started by hand; the scheduler's address, and all processes."""
     address_file = folder / "scheduler.json"
     dask = [sys.executable, "-m", "dask"]
     common = ["--no-dashboard", "--host", "127.0.0.1"]
@@ -47,14 +59,14 @@ def dask_cluster(folder: Path) -> Iterator[tuple[str, subprocess.Popen[bytes]]]:
     ]
     try:
         wait_until(lambda: address_file.is_file() and address_file.stat().st_size > 0)
-        for number in range(2):
+        for number in range(workers):
             local = ["--local-directory", str(folder / str(number)), "--nthreads", "1"]
             file = ["--scheduler-file", str(address_file)]
             started.append(
                 subprocess.Popen([*dask, "worker", *common, *file, *local], stdout=log, stderr=log)
             )
-        wait_until(lambda: (folder / "log").read_text().count("Registered to:") >= 2)
-        yield json.loads(address_file.read_text())["address"], started[0]
+        wait_until(lambda: (folder / "log").read_text().count("Registered to:") >= workers)
+        yield json.loads(address_file.read_text())["address"], started
     finally:
         for process in reversed(started):
             process.kill()  # a worker ends with its nanny
@@ -64,8 +76,15 @@ def dask_cluster(folder: Path) -> Iterator[tuple[str, subprocess.Popen[bytes]]]:
 
 @pytest.fixture(scope="module")
 def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    with dask_cluster(tmp_path_factory.mktemp("cluster")) as (address, _):
+    with dask_cluster(tmp_path_factory.mktemp("cluster")) as (address, processes):
+        workers = [psutil.Process(process.pid) for process in processes[1:]]
         yield address
+        wait_until(lambda: not meshlab_processes(workers))  # whatever has happened to batches
+
+
+def meshlab_processes(workers: list[psutil.Process]) -> list[psutil.Process]:
+    children = [child for worker in workers for child in worker.children(recursive=True)]
+    return [child for child in alive(children) if CHILD in child.cmdline()]
 
 
 def test_an_existing_cluster_gives_the_same_outputs(
@@ -95,15 +114,123 @@ def test_a_cluster_takes_urls_of_shared_files(
 def test_a_cluster_that_is_not_there_is_reported(
     meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(engine, "_SECONDS_TO_CONNECT", 0.5)
+    monkeypatch.setattr(cluster_module, "_SECONDS_TO_CONNECT", 0.5)
     with pytest.raises(BatchError, match="no Dask scheduler"):
         list(filter_files(meshes, tmp_path / "out", scheduler="tcp://127.0.0.1:1"))
+
+
+def test_a_cluster_without_workers_is_reported(
+    meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cluster_module, "_SECONDS_TO_CONNECT", 1)
+    with (
+        dask_cluster(tmp_path, workers=0) as (address, _),
+        pytest.raises(BatchError, match="has no workers: start some"),
+    ):
+        list(filter_files(meshes, tmp_path / "out", scheduler=address))
+
+
+def test_a_cluster_with_other_versions_is_refused(
+    cluster: str, meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(cluster_module, "versions", lambda: {"plugin": str(os.getpid())})
+    with pytest.raises(BatchError, match="has different software from this machine: plugin"):
+        list(filter_files(meshes, tmp_path / "out", scheduler=cluster))
+
+
+def test_a_file_whose_workers_die_again_and_again_fails_alone(
+    cluster: str, meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    inputs, out = sorted(meshes.iterdir())[:3], tmp_path / "out"
+    deadly = inputs[0].name
+
+    def run_or_die(plugin: str, job: Job) -> FileResult:
+        if job.name != deadly:
+            return run_job(get_worker().plugins[plugin].processes, job)
+        while (out / REPORT).read_text().count('"kind": "file"') < 2:  # of the others
+            time.sleep(0.02)
+        os.kill(os.getpid(), signal.SIGKILL)
+        raise AssertionError("unreachable")
+
+    monkeypatch.setattr(cluster_module, "_run", run_or_die)
+    results = {r.name: r for r in filter_files(inputs, out, scheduler=cluster, steps=1)}
+    failed = results.pop(deadly)
+    assert failed.outcome == "failed"
+    assert "ended from outside" in (failed.reason or "")
+    assert failed.attempts > 1
+    assert [result.outcome for result in results.values()] == ["filtered"] * 2
+
+
+def test_an_interrupted_batch_ends_its_processes_on_the_workers_and_resumes(tmp_path: Path) -> None:
+    folder, out = tmp_path / "in", tmp_path / "out"
+    make_meshes(folder, 12, rings=32)
+    with dask_cluster(tmp_path) as (address, (_, *started)):
+        workers = [psutil.Process(process.pid) for process in started]
+        options = ["--output", out, "--steps", 600, "--scheduler", address]
+        batch = start_batch(folder, *options)
+        try:
+            wait_until(lambda: bool(records(out / REPORT)))
+            assert meshlab_processes(workers)
+            batch.send_signal(signal.SIGINT)
+            _, stderr = batch.communicate(timeout=30)
+        finally:
+            batch.kill()
+            batch.communicate()
+        assert batch.returncode == 130
+        assert messages_in(stderr).startswith("Interrupted: finished files are in the report")
+        wait_until(lambda: not meshlab_processes(workers))
+        done = records(out / REPORT)
+        assert {record["outcome"] for record in done} == {"filtered"}
+        resumed = command("batch", folder, *options, "--resume")
+        assert resumed.returncode == 0, resumed.stderr
+        assert f"{12 - len(done)} filtered, 0 failed, {len(done)} already done" in resumed.stdout
+        assert not list(out.rglob("*.partial"))
+
+
+def test_a_killed_batch_ends_its_work_on_the_workers(tmp_path: Path) -> None:
+    folder, out = tmp_path / "in", tmp_path / "out"
+    make_meshes(folder, 12, rings=32)
+    with dask_cluster(tmp_path) as (address, (_, *started)):
+        workers = [psutil.Process(process.pid) for process in started]
+        batch = start_batch(folder, "--output", out, "--steps", 600, "--scheduler", address)
+        try:
+            wait_until(lambda: bool(records(out / REPORT)))
+        finally:
+            batch.kill()
+            batch.communicate()
+        wait_until(lambda: not any(p.cpu_percent(0.5) > 0 for p in meshlab_processes(workers)))
+        assert len(contents(out)) < 12
+
+
+def test_a_meshlab_process_killed_on_a_worker_is_replaced(
+    meshes: Path, expected: dict[str, bytes], tmp_path: Path
+) -> None:
+    with dask_cluster(tmp_path) as (address, (_, *started)):
+        workers = [psutil.Process(process.pid) for process in started]
+        results = filter_files(meshes, tmp_path / "out", scheduler=address, steps=1)
+        next(results)
+        for process in meshlab_processes(workers):
+            process.kill()
+        assert [result.outcome for result in results] == ["filtered"] * 5
+    assert contents(tmp_path / "out") == expected
+
+
+def test_a_cluster_whose_processes_do_not_start_is_reported(
+    cluster: str, meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def run_without_python(plugin: str, job: Job) -> FileResult:
+        with patch.object(sys, "executable", "/bin/false"):
+            return run_job(get_worker().plugins[plugin].processes, job)
+
+    monkeypatch.setattr(cluster_module, "_run", run_without_python)
+    with pytest.raises(BatchError, match="with status 1 before it was ready"):
+        list(filter_files(meshes, tmp_path / "out", scheduler=cluster, steps=1))
 
 
 def test_a_cluster_that_disappears_midway_is_reported_in_one_line(tmp_path: Path) -> None:
     folder, out = tmp_path / "in", tmp_path / "out"
     make_meshes(folder, 12, rings=32)
-    with dask_cluster(tmp_path) as (address, scheduler):
+    with dask_cluster(tmp_path) as (address, (scheduler, *_)):
         batch = start_batch(folder, "--output", out, "--steps", 60, "--scheduler", address)
         try:
             wait_until(lambda: bool(records(out / REPORT)))

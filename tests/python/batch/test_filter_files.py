@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
+import tempfile
+import threading
+import time
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import Any
 
+import fsspec
 import meshlab_spectral
 import numpy as np
 import psutil
 import pytest
-from batches import REPORT, alive, contents, make_meshes, records, wait_until
+from batches import REPORT, contents, make_meshes, records, wait_until
 from commands import PRECIOUS, command
 from helpers import filter_arrays, percent
 from meshlab_spectral import (
@@ -24,9 +31,7 @@ from meshlab_spectral import (
     filter_files,
     filter_mesh,
 )
-from meshlab_spectral.batch import engine
-from meshlab_spectral.batch.jobs import FileResult, Job
-from meshlab_spectral.batch.task import run_job
+from meshlab_spectral.process.parent import Answer, MeshLabProcess
 
 
 def test_filter_mesh_is_the_filter(decimated: Callable[..., tuple[np.ndarray, np.ndarray]]) -> None:
@@ -97,51 +102,72 @@ def test_an_output_that_appears_before_its_turn_is_kept(meshes: Path, tmp_path: 
     assert taken.read_bytes() == PRECIOUS
 
 
-def test_a_file_whose_workers_die_again_and_again_fails_alone(
+def test_a_file_that_kills_its_process_again_and_again_fails_alone(
     meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    inputs, out = sorted(meshes.iterdir())[:3], tmp_path / "out"
-    deadly = inputs[0].name
+    inputs = sorted(meshes.iterdir())[:3]
 
-    def run_or_die(job: Job) -> FileResult:
-        if job.name != deadly:
-            return run_job(job)
-        wait_until(lambda: len(records(out / REPORT)) == 2)  # of the others
-        os.kill(os.getpid(), signal.SIGKILL)
-        raise AssertionError("unreachable")
+    def run_and_die(process: MeshLabProcess, job: dict[str, Any], **options: Any) -> Answer:
+        def kill(stage: str, fraction: float | None) -> None:
+            if job["source"] == str(inputs[0]):
+                os.kill(process.pid, signal.SIGKILL)
 
-    monkeypatch.setattr(engine, "run_job", run_or_die)
-    results = {r.name: r for r in filter_files(inputs, out, workers=1, steps=1)}
-    failed = results.pop(deadly)
+        return run(process, job, kill, **options)
+
+    run = MeshLabProcess.run
+    monkeypatch.setattr(MeshLabProcess, "run", run_and_die)
+    results = {r.name: r for r in filter_files(inputs, tmp_path / "out", workers=1, steps=1)}
+    failed = results.pop(inputs[0].name)
     assert failed.outcome == "failed"
-    assert "ended from outside" in (failed.reason or "")
-    assert failed.attempts > 1
+    assert "SIGKILL" in (failed.reason or "")
+    assert failed.attempts == 2
     assert [result.outcome for result in results.values()] == ["filtered"] * 2
+    assert children() == []
+
+
+def children() -> list[psutil.Process]:
+    """Return the child processes of this one, also those that have ended but are not reaped."""
+    return psutil.Process().children(recursive=True)
 
 
 def test_stopping_the_iteration_ends_the_workers(meshes: Path, tmp_path: Path) -> None:
-    this = psutil.Process()
-    before = this.children(recursive=True)
     results = filter_files(meshes, tmp_path / "out", workers=1, steps=1)
     next(results)
-    started = [child for child in this.children(recursive=True) if child not in before]
-    workers = [child for child in started if "resource_tracker" not in " ".join(child.cmdline())]
-    assert len(workers) >= 2  # a worker, and MeshLab's process in it
+    assert len(children()) == 1
     results.close()
-    wait_until(lambda: not alive(workers))
+    assert children() == []
     assert not list((tmp_path / "out").glob(".*"))
+
+
+def test_what_is_finished_is_recorded_while_the_program_is_busy_with_a_result(
+    meshes: Path, tmp_path: Path
+) -> None:
+    results = filter_files(meshes, tmp_path / "out", workers=1, steps=1)
+    first = next(results)
+    wait_until(lambda: len(records(tmp_path / "out" / REPORT)) == 6)
+    names = [result.name for result in (first, *results)]
+    assert sorted(names) == sorted(path.name for path in meshes.iterdir())
+
+
+def test_an_error_of_the_program_ends_the_workers(meshes: Path, tmp_path: Path) -> None:
+    def use_first() -> None:
+        for _ in filter_files(meshes, tmp_path / "out", workers=2, steps=1):
+            raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        use_first()
+    assert children() == []
 
 
 UNGUARDED = """
 import sys
 from meshlab_spectral import filter_files
-list(filter_files(sys.argv[1], sys.argv[2], workers=1, steps=1))
+for result in filter_files(sys.argv[1], sys.argv[2], workers=1, steps=1):
+    print(result.outcome)
 """
 
 
-def test_a_script_that_workers_cannot_import_is_refused_with_the_remedy(
-    meshes: Path, tmp_path: Path
-) -> None:
+def test_a_script_needs_no_guard(meshes: Path, tmp_path: Path) -> None:
     script = tmp_path / "script.py"
     script.write_text(UNGUARDED)
     done = subprocess.run(
@@ -151,31 +177,84 @@ def test_a_script_that_workers_cannot_import_is_refused_with_the_remedy(
         timeout=120,
         check=False,
     )
-    assert done.returncode == 1
-    last = done.stderr.splitlines()[-1]
-    assert "BatchError" in last
-    assert 'if __name__ == "__main__":' in last
+    assert done.stdout.split() == ["filtered"] * 6, done.stderr
 
 
-def test_workers_that_do_not_start_leave_ctrl_c_as_it_was(
+def test_batches_in_threads_give_what_one_after_the_other_gives(
+    meshes: Path, tmp_path: Path
+) -> None:
+    def run(name: str) -> list[str]:
+        results = filter_files(meshes, tmp_path / name, workers=2, steps=1)
+        return [result.outcome for result in results]
+
+    assert run("alone") == ["filtered"] * 6
+    with ThreadPoolExecutor() as pool:
+        assert list(pool.map(run, ["a", "b", "c"])) == [["filtered"] * 6] * 3
+    for name in ("a", "b", "c"):
+        assert contents(tmp_path / name) == contents(tmp_path / "alone")
+    assert children() == []
+
+
+def test_workers_that_do_not_start_end_the_batch_soon_with_the_cause(
     meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def fail(**_: object) -> None:
-        raise RuntimeError("no port is free")
-
-    monkeypatch.setattr(engine, "LocalCluster", fail)
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, [])
-    with pytest.raises(BatchError, match="no port"):
+    child, starts = tmp_path / "child", tmp_path / "starts"
+    child.write_text(f"#!/bin/sh\necho >>{starts}\necho no module named numpy >&2\nexit 3\n")
+    child.chmod(0o755)
+    monkeypatch.setattr(sys, "executable", str(child))
+    with pytest.raises(BatchError, match=r"with status 3 before .*no module named numpy"):
         list(filter_files(meshes, tmp_path / "out", workers=1, steps=1))
-    assert signal.pthread_sigmask(signal.SIG_BLOCK, []) == before
+    assert len(starts.read_text()) <= 4  # of 6 files
+    assert records(tmp_path / "out" / REPORT) == []
+    monkeypatch.setattr(sys, "executable", str(tmp_path / "none"))
+    with pytest.raises(BatchError, match="cannot be started"):
+        list(filter_files(meshes, tmp_path / "out", workers=1, steps=1))
+    assert children() == []
+
+
+def test_a_report_that_another_batch_is_writing_is_left_to_it(meshes: Path, tmp_path: Path) -> None:
+    first = filter_files(meshes, tmp_path / "a", workers=1, report=tmp_path / "report", steps=1)
+    next(first)
+    second = filter_files(meshes, tmp_path / "b", workers=1, report=tmp_path / "report", steps=1)
+    with pytest.raises(BatchError, match="another batch"):
+        next(second)
+    assert len(list(first)) == 5
+    assert len(records(tmp_path / "report")) == 6
+    assert not (tmp_path / "b").exists()
+
+
+def test_a_slow_transfer_does_not_hold_up_the_end(
+    meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    started, released = threading.Event(), threading.Event()
+
+    def get_slowly(fs: Any, source: str, target: str) -> None:
+        if started.is_set():
+            Path(target).write_bytes(b"half")
+            released.wait(60)
+        started.set()
+        shutil.copy(sorted(meshes.iterdir())[0], target)
+
+    memory = fsspec.filesystem("memory")
+    monkeypatch.setattr(type(memory), "get_file", get_slowly)
+    monkeypatch.setattr("meshlab_spectral.batch.engine._SECONDS_TO_END", 0.5)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "tmp"))
+    (tmp_path / "tmp").mkdir()
+    for name in ("a.ply", "b.ply", "c.ply"):
+        memory.pipe(f"/in/{name}", b"")
+    try:
+        results = filter_files("memory://in", tmp_path / "out", workers=1, steps=1)
+        assert next(results).outcome == "filtered"
+        begin = time.monotonic()
+        results.close()
+        assert time.monotonic() - begin < 5
+        assert list((tmp_path / "tmp").iterdir()) == []
+    finally:
+        released.set()
+        memory.rm("/in", recursive=True)
+    assert len(records(tmp_path / "out" / REPORT)) == 1
 
 
 def test_all_public_names_exist() -> None:
     for name in meshlab_spectral.__all__:
         assert hasattr(meshlab_spectral, name)
-
-
-def test_workers_leave_an_interruption_to_the_program() -> None:
-    with engine.local_workers(1) as client:
-        handlers = client.run(signal.getsignal, signal.SIGINT)
-    assert list(handlers.values()) == [signal.SIG_IGN]

@@ -13,6 +13,7 @@ from batches import REPORT, alive, below, contents, make_meshes, records, start_
 from commands import command, messages_in
 
 MESHES = 12
+CHILD = "meshlab_spectral.process.child"
 # Long enough that the batch is still working when a busy machine delivers the signal late.
 OPTIONS = ["--steps", 600, "--workers", 2]
 
@@ -53,15 +54,10 @@ def assert_resumes(meshes: Path, out: Path, undisturbed: dict[str, bytes]) -> No
     assert not list(out.rglob("*.partial"))
 
 
-@pytest.mark.parametrize("kind", ["worker", "MeshLab's process"])
 def test_a_killed_process_is_replaced(
-    kind: str,
-    running: subprocess.Popen[str],
-    undisturbed: dict[str, bytes],
-    tmp_path: Path,
+    running: subprocess.Popen[str], undisturbed: dict[str, bytes], tmp_path: Path
 ) -> None:
-    word = "spawn_main" if kind == "worker" else "meshlab_spectral.process.child"
-    below(running, word)[0].kill()
+    below(running, CHILD)[0].kill()
     stdout, stderr = running.communicate(timeout=120)
     assert running.returncode == 0, stderr
     assert messages_in(stderr) == ""
@@ -71,27 +67,38 @@ def test_a_killed_process_is_replaced(
     assert not list(out.rglob("*.partial"))
 
 
-@pytest.mark.parametrize("to", ["command", "terminal"])
+def test_workers_leave_an_interruption_to_the_command(running: subprocess.Popen[str]) -> None:
+    for process in below(running, CHILD):
+        process.send_signal(signal.SIGINT)
+    stdout, stderr = running.communicate(timeout=120)
+    assert running.returncode == 0, stderr
+    assert f"{MESHES} filtered, 0 failed" in stdout
+
+
+@pytest.mark.parametrize("how", ["Ctrl-C", "SIGINT", "SIGTERM", "SIGTERM to all"])
 def test_an_interrupted_batch_ends_soon_with_130_and_resumes(
-    to: str,
+    how: str,
     running: subprocess.Popen[str],
     meshes: Path,
     undisturbed: dict[str, bytes],
     tmp_path: Path,
 ) -> None:
     processes = below(running)
-    assert len(processes) >= 4
-    if to == "command":
-        running.send_signal(signal.SIGINT)
+    assert len(processes) == 2
+    number = signal.SIGTERM if "SIGTERM" in how else signal.SIGINT
+    if how in ("Ctrl-C", "SIGTERM to all"):
+        os.killpg(running.pid, number)
     else:
-        os.killpg(running.pid, signal.SIGINT)
+        running.send_signal(number)
     stdout, stderr = running.communicate(timeout=20)
     assert running.returncode == 130
     assert stdout == ""
     interrupted = "Interrupted: finished files are in the report; continue with --resume.\n"
     assert messages_in(stderr) == interrupted
-    wait_until(lambda: not alive(processes), seconds=5)
+    assert not alive(processes)
     assert not list((tmp_path / "out").rglob("*.partial"))
+    outcomes = {record["outcome"] for record in records(tmp_path / "out" / REPORT)}
+    assert outcomes == {"filtered"}
     assert_resumes(meshes, tmp_path / "out", undisturbed)
 
 
@@ -113,6 +120,26 @@ def test_an_interrupted_batch_leaves_no_copies_of_files_at_urls(
         process.communicate()
     assert process.returncode == 130
     assert not list(temporary.rglob("*.ply"))
+    assert not list(temporary.rglob("*meshlab-spectral*"))
+
+
+def test_copies_left_by_a_killed_batch_are_removed_by_the_next_one(
+    meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    temporary = tmp_path / "tmp"
+    temporary.mkdir()
+    monkeypatch.setenv("TMPDIR", str(temporary))
+    urls = [f"filecache::{path.as_uri()}" for path in sorted(meshes.iterdir())[:2]]
+    batch = [*urls, "--output", tmp_path / "out", *OPTIONS]
+    process = start_batch(*batch)
+    try:
+        wait_until(lambda: bool(list(temporary.rglob("*.ply"))))
+    finally:
+        process.kill()
+        process.communicate()
+    assert list(temporary.rglob("*.ply"))
+    assert command("batch", *batch, "--resume").returncode == 0
+    assert not list(temporary.rglob("*.ply"))
 
 
 def test_a_killed_batch_leaves_no_process_and_resumes(
@@ -122,7 +149,7 @@ def test_a_killed_batch_leaves_no_process_and_resumes(
     tmp_path: Path,
 ) -> None:
     processes = below(running)
-    assert len(processes) >= 4
+    assert len(processes) == 2
     running.kill()
     wait_until(lambda: not alive(processes), seconds=10)
     out = tmp_path / "out"

@@ -4,25 +4,28 @@ from __future__ import annotations
 
 import os
 import signal
-import threading
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import fsspec
+import psutil
 import pytest
 from commands import PRECIOUS, arrays_of
 from meshlab_spectral import FilterOptions
 from meshlab_spectral.batch import storage
 from meshlab_spectral.batch.jobs import Job
-from meshlab_spectral.batch.processes import processes
+from meshlab_spectral.batch.processes import Processes, ProcessesEndedError
 from meshlab_spectral.batch.task import run_job
-from meshlab_spectral.process.parent import MeshLabProcess
+from meshlab_spectral.errors import BatchError
+from meshlab_spectral.process.parent import NO_LIMITS, JobLimits, MeshLabProcess
 
 
-@pytest.fixture(autouse=True)
-def _no_process_left() -> Iterator[None]:
-    yield
+@pytest.fixture
+def processes(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Processes]:
+    processes = Processes(1, NO_LIMITS, tmp_path_factory.mktemp("copies"))
+    yield processes
     processes.end()
 
 
@@ -32,9 +35,11 @@ def job_of(source: object, target: object, **more: Any) -> Job:
     return Job(str(source), str(target), "name", work, options, **more)
 
 
-def test_a_filtered_file_is_described_completely(cow: Path, tmp_path: Path) -> None:
+def test_a_filtered_file_is_described_completely(
+    processes: Processes, cow: Path, tmp_path: Path
+) -> None:
     target = tmp_path / "new" / "folder" / "cow.ply"
-    result = run_job(job_of(cow, target))
+    result = run_job(processes, job_of(cow, target))
     assert result.outcome == "filtered", result.reason
     assert result.reason is None
     assert result.input_sha256 == storage.digest(cow)
@@ -49,59 +54,68 @@ def test_a_filtered_file_is_described_completely(cow: Path, tmp_path: Path) -> N
     assert list(target.parent.iterdir()) == [target]
 
 
-def test_one_process_serves_many_files_until_one_fails(cow: Path, tmp_path: Path) -> None:
+def test_one_process_serves_many_files_until_one_fails(
+    processes: Processes, cow: Path, tmp_path: Path
+) -> None:
     pids = []
     for name in ("a.ply", "b.ply", "broken", "c.ply"):
         source = cow
         if name == "broken":
             source = tmp_path / "broken.ply"
             source.write_text("no mesh")
-        result = run_job(job_of(source, tmp_path / "out" / name))
+        result = run_job(processes, job_of(source, tmp_path / "out" / name))
         assert result.outcome == ("failed" if name == "broken" else "filtered")
         pids += [process.pid for process in processes._idle]
     assert len(pids) == 3
     assert pids[0] == pids[1] != pids[2]
 
 
-def pid_after(job: Job, **limits: int) -> int | None:
+def pid_after(processes: Processes, job: Job) -> int | None:
     """Do a job; the id of the process that waits for the next one."""
-    result = run_job(job, **limits)
+    result = run_job(processes, job)
     assert result.outcome == "filtered", result.reason
     return processes._idle[0].pid if processes._idle else None
 
 
 def test_a_process_is_replaced_after_its_share_of_meshes(
-    cow: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    processes: Processes, cow: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("meshlab_spectral.batch.processes._JOBS_PER_PROCESS", 2)
-    pids = [pid_after(job_of(cow, tmp_path / f"{k}.ply")) for k in range(4)]
+    pids = [pid_after(processes, job_of(cow, tmp_path / f"{k}.ply")) for k in range(4)]
     assert pids[1] is pids[3] is None
     assert pids[0] != pids[2]
 
 
-def test_a_process_that_has_grown_is_replaced(cow: Path, tmp_path: Path) -> None:
+def test_a_process_that_has_grown_is_replaced(
+    processes: Processes, cow: Path, tmp_path: Path
+) -> None:
     """It has some 80 MiB from the start: more than half of 150 MiB, but not of 1 GiB."""
     job = job_of(cow, tmp_path / "out.ply")
-    assert pid_after(job, memory_limit=2**30) is not None
-    assert pid_after(job, memory_limit=150 * 2**20) is None
+    processes.limits = JobLimits(2**30)
+    assert pid_after(processes, job) is not None
+    processes.limits = JobLimits(150 * 2**20)
+    assert pid_after(processes, job) is None
 
 
 def test_a_mesh_that_kills_its_process_is_tried_again_once(
-    samples: Path, existing: Path, monkeypatch: pytest.MonkeyPatch
+    processes: Processes, samples: Path, existing: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     killed = []
 
-    def run_and_kill(process: MeshLabProcess, *arguments: Any, **options: Any) -> Any:
-        timer = threading.Timer(0.3, os.kill, (process.pid, signal.SIGKILL))
-        timer.start()
+    def run_and_kill(process: MeshLabProcess, job: dict[str, Any], **options: Any) -> Any:
+        def kill(stage: str, fraction: float | None) -> None:
+            os.kill(process.pid, signal.SIGKILL)
+
         killed.append(process.pid)
-        return run(process, *arguments, **options)
+        return run(process, job, kill, **options)
 
     run = MeshLabProcess.run
     monkeypatch.setattr(MeshLabProcess, "run", run_and_kill)
     long = FilterOptions(steps=1000).as_dict()
     work = {"task": "filter", "options": long}
-    result = run_job(Job(str(samples / "bunny.obj"), str(existing), "result.ply", work, long))
+    result = run_job(
+        processes, Job(str(samples / "bunny.obj"), str(existing), "result.ply", work, long)
+    )
     assert result.outcome == "failed"
     assert result.attempts == 2
     assert len(set(killed)) == 2
@@ -110,7 +124,7 @@ def test_a_mesh_that_kills_its_process_is_tried_again_once(
 
 
 def test_a_process_killed_once_is_not_a_failure(
-    cow: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    processes: Processes, cow: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def kill_first(process: MeshLabProcess, *arguments: Any, **options: Any) -> Any:
         monkeypatch.setattr(MeshLabProcess, "run", run)
@@ -119,35 +133,38 @@ def test_a_process_killed_once_is_not_a_failure(
 
     run = MeshLabProcess.run
     monkeypatch.setattr(MeshLabProcess, "run", kill_first)
-    result = run_job(job_of(cow, tmp_path / "cow.ply"))
+    result = run_job(processes, job_of(cow, tmp_path / "cow.ply"))
     assert result.outcome == "filtered", result.reason
     assert result.attempts == 2
 
 
-def test_the_memory_limit_holds_for_a_job(samples: Path, existing: Path) -> None:
-    result = run_job(job_of(samples / "bunny.obj", existing), memory_limit=60 * 2**20)
+def test_the_memory_limit_holds_for_a_job(
+    processes: Processes, samples: Path, existing: Path
+) -> None:
+    processes.limits = JobLimits(60 * 2**20)
+    result = run_job(processes, job_of(samples / "bunny.obj", existing))
     assert result.outcome == "failed"
     assert result.attempts == 2
     assert "memory limit" in (result.reason or "")
 
 
-def test_files_at_urls_are_read_and_written(cow: Path) -> None:
+def test_files_at_urls_are_read_and_written(processes: Processes, cow: Path) -> None:
     memory = fsspec.filesystem("memory")
     memory.pipe("/in/cow.obj", cow.read_bytes())
     memory.pipe("/out/.cow.ply.abcd1234.partial", b"half")
     try:
         storage.tidy("memory://out")
-        result = run_job(job_of("memory://in/cow.obj", "memory://out/deep/cow.ply"))
+        result = run_job(processes, job_of("memory://in/cow.obj", "memory://out/deep/cow.ply"))
         assert result.outcome == "filtered", result.reason
         assert [Path(path).name for path in memory.find("/out")] == ["cow.ply"]
         assert storage.digest_at("memory://out/deep/cow.ply") == result.output_sha256
-        again = run_job(job_of("memory://in/cow.obj", "memory://out/deep/cow.ply"))
+        again = run_job(processes, job_of("memory://in/cow.obj", "memory://out/deep/cow.ply"))
         assert again.outcome == "filtered", again.reason  # with the same content
         memory.pipe("/out/deep/cow.ply", PRECIOUS)
-        taken = run_job(job_of("memory://in/cow.obj", "memory://out/deep/cow.ply"))
+        taken = run_job(processes, job_of("memory://in/cow.obj", "memory://out/deep/cow.ply"))
         assert "another program" in (taken.reason or "")
         assert memory.cat("/out/deep/cow.ply") == PRECIOUS
-        missing = run_job(job_of("memory://in/none.obj", "memory://out/none.ply"))
+        missing = run_job(processes, job_of("memory://in/none.obj", "memory://out/none.ply"))
         assert missing.outcome == "failed"
         assert "does not exist" in (missing.reason or "")
     finally:
@@ -155,11 +172,13 @@ def test_files_at_urls_are_read_and_written(cow: Path) -> None:
         memory.rm("/out", recursive=True)
 
 
-def test_a_result_at_a_url_is_that_of_a_file(cow: Path, tmp_path: Path) -> None:
+def test_a_result_at_a_url_is_that_of_a_file(
+    processes: Processes, cow: Path, tmp_path: Path
+) -> None:
     memory = fsspec.filesystem("memory")
     try:
-        at_url = run_job(job_of(cow, "memory://out/cow.ply"))
-        in_file = run_job(job_of(cow, tmp_path / "cow.ply"))
+        at_url = run_job(processes, job_of(cow, "memory://out/cow.ply"))
+        in_file = run_job(processes, job_of(cow, tmp_path / "cow.ply"))
         assert at_url.output_sha256 == in_file.output_sha256
         assert len(arrays_of(tmp_path / "cow.ply")[0]) == len(arrays_of(cow)[0])
     finally:
@@ -167,14 +186,60 @@ def test_a_result_at_a_url_is_that_of_a_file(cow: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.skipif(not Path("/proc/self").is_dir(), reason="no folder here that even root may not")
-def test_a_folder_that_cannot_be_written_to_fails_the_file_alone(cow: Path) -> None:
-    result = run_job(job_of(cow, "/proc/new/cow.ply"))
+def test_a_folder_that_cannot_be_written_to_fails_the_file_alone(
+    processes: Processes, cow: Path
+) -> None:
+    result = run_job(processes, job_of(cow, "/proc/new/cow.ply"))
     assert result.outcome == "failed"
     assert "/proc/new" in (result.reason or "")
 
 
-def test_a_pipe_named_like_a_mesh_does_not_hang_the_worker(tmp_path: Path) -> None:
+def test_a_pipe_named_like_a_mesh_does_not_hang_the_worker(
+    processes: Processes, tmp_path: Path
+) -> None:
     os.mkfifo(tmp_path / "pipe.ply")
-    result = run_job(job_of(tmp_path / "pipe.ply", tmp_path / "out.ply"))
+    result = run_job(processes, job_of(tmp_path / "pipe.ply", tmp_path / "out.ply"))
     assert result.outcome == "failed"
     assert "pipe" in (result.reason or "")
+
+
+def test_a_process_that_dies_between_two_files_is_replaced(
+    processes: Processes, cow: Path, tmp_path: Path
+) -> None:
+    pid = pid_after(processes, job_of(cow, tmp_path / "a.ply"))
+    assert pid is not None
+    os.kill(pid, signal.SIGKILL)
+    os.waitid(os.P_PID, pid, os.WEXITED | os.WNOWAIT)
+    result = run_job(processes, job_of(cow, tmp_path / "b.ply"))
+    assert result.attempts == 1
+    assert not psutil.pid_exists(pid)  # not even as a zombie
+
+
+def test_processes_that_do_not_start_are_not_the_fault_of_the_file(
+    processes: Processes, cow: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sys, "executable", "/bin/false")
+    with pytest.raises(BatchError, match="with status 1 before it was ready"):
+        run_job(processes, job_of(cow, tmp_path / "out" / "cow.ply"))
+    assert list((tmp_path / "out").iterdir()) == []
+
+
+def test_after_their_end_there_are_no_processes(
+    processes: Processes, cow: Path, tmp_path: Path
+) -> None:
+    pid = pid_after(processes, job_of(cow, tmp_path / "a.ply"))
+    assert pid is not None
+    processes.end()
+    assert not psutil.pid_exists(pid)
+    with pytest.raises(ProcessesEndedError):
+        run_job(processes, job_of(cow, tmp_path / "b.ply"))
+    assert [path.name for path in tmp_path.iterdir()] == ["a.ply"]
+
+
+def test_an_unexpected_error_fails_the_file_alone(
+    processes: Processes, cow: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(storage, "digest", lambda path: 1 // 0)
+    result = run_job(processes, job_of(cow, tmp_path / "a.ply"))
+    assert result.outcome == "failed"
+    assert "ZeroDivisionError" in (result.reason or "")

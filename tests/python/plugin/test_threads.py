@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -48,7 +49,7 @@ def test_an_invalid_number_of_threads_is_refused(
             threads()
 
 
-def test_processes_share_the_threads(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_processes_share_the_threads(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     set_threads(8)
     assert [threads_each(count) for count in (1, 2, 3, 8, 50)] == [8, 4, 2, 1, 1]
     environments: list[dict[str, str]] = []
@@ -58,8 +59,6 @@ def test_processes_share_the_threads(monkeypatch: pytest.MonkeyPatch) -> None:
         raise NotStartedError
 
     monkeypatch.setattr("meshlab_spectral.process.parent.subprocess.Popen", start)
-    processes = Processes()
-    processes.threads = 2
-    with pytest.raises(NotStartedError), processes.one(NO_LIMITS):
+    with pytest.raises(NotStartedError), Processes(4, NO_LIMITS, tmp_path).one():
         pass
     assert [environment[THREADS] for environment in environments] == ["2"]

@@ -14,7 +14,12 @@ import psutil
 import pytest
 from batches import alive, wait_until
 from meshlab_spectral import FilterOptions
-from meshlab_spectral.errors import MemoryLimitError, ProcessDiedError, TimeLimitError
+from meshlab_spectral.errors import (
+    MemoryLimitError,
+    ProcessDiedError,
+    ProcessStartError,
+    TimeLimitError,
+)
 from meshlab_spectral.process.parent import JobLimits, MeshLabProcess
 
 
@@ -66,6 +71,47 @@ def test_a_process_that_ends_in_the_middle_of_its_answer_is_reported(
         with pytest.raises(ProcessDiedError, match="with status 0") as error:
             process.run({})
         assert "a word on the end" in str(error.value.__cause__)
+
+
+def test_a_process_that_does_not_start_is_reported_with_the_cause(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "numpy.py").write_text("raise ImportError('numpy is damaged')")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    with (
+        MeshLabProcess() as process,
+        pytest.raises(ProcessStartError, match=r"before it was ready .*numpy is damaged"),
+    ):
+        process.run({})
+
+
+NOISY = """
+import os
+os.write(1, b"3\\n[]\\n{ no JSON\\n" + 10000 * b"standard output \\xff\\n")
+os.write(2, 10000 * b"standard error \\xff\\n" + 100000 * b"x")
+"""
+
+
+def test_output_of_libraries_is_no_answer_and_stops_nothing(
+    cow: Path, samples: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "sitecustomize.py").write_text(NOISY)
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    job = long_work(samples, tmp_path) | {"source": str(cow), "task": "info"}
+    with MeshLabProcess() as process:
+        assert process.run(job, limits=JobLimits(seconds=60)).report
+
+
+def test_a_process_that_reads_nothing_is_given_up(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    child = tmp_path / "child"
+    child.write_text("#!/bin/sh\nexec sleep 60\n")
+    child.chmod(0o755)
+    monkeypatch.setattr(sys, "executable", str(child))
+    job = {"script": 10**6 * "long "}  # more than a pipe holds
+    with MeshLabProcess() as process, pytest.raises(TimeLimitError):
+        process.run(job, limits=JobLimits(seconds=0.5))
 
 
 PARENT = """

@@ -2,7 +2,7 @@
 
 `settings` holds what a user may choose. In order of processing, `inputs` finds the files, `outputs`
 names the results, `resume` recognizes what an earlier run has done, and `plan` turns all this into
-the remaining `jobs`; `engine` sends them through Dask to workers, where `task` runs each in a
-MeshLab process from `processes`; `report` records the results. `files` combines these, `storage`
-handles paths and URLs, `spectra` measures instead of filtering.
+the remaining `jobs`; `engine` distributes them to workers, `local` or on a Dask `cluster`, where
+`task` does each in a MeshLab process from `processes`; `report` records the results. `files`
+combines these, `storage` handles paths and URLs, `spectra` measures instead of filtering.
 """

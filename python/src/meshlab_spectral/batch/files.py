@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Generator, Sequence
+from contextlib import AbstractContextManager, closing
 from dataclasses import fields
 from datetime import datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from meshlab_spectral.batch import storage
+from meshlab_spectral.batch.engine import Workers, run_jobs
 from meshlab_spectral.batch.jobs import FileResult
 from meshlab_spectral.batch.plan import Batch, plan_batch
 from meshlab_spectral.batch.report import Report, Tally
@@ -30,9 +32,8 @@ def filter_files(
 ) -> Generator[FileResult, None, None]:
     """Filter many mesh files in worker processes, and iterate over the results.
 
-    Work starts when the first result is requested. The workers import the program's main module,
-    so a script needs the guard shown in the example. They end with the iteration, or when the
-    iterator is closed.
+    Work starts when the first result is requested, and continues while a result is used. The
+    workers end with the iteration, or when the iterator is closed.
 
     Parameters
     ----------
@@ -53,15 +54,14 @@ def filter_files(
         Before anything is done: when inputs are missing, outputs already exist or would share a
         name, or an option is invalid.
     BatchError
-        When the report cannot be written, or the Dask cluster cannot be reached.
+        When the report cannot be written, no worker starts, or the Dask cluster cannot be reached.
     MissingPackageError
-        When Dask (extra `batch`) is not installed.
+        When a scheduler is given, but Dask (extra `cluster`) is not installed.
 
     Examples
     --------
-    >>> if __name__ == "__main__":
-    ...     for result in filter_files("scans", "smooth", feature_size="2%"):
-    ...         print(result.name, result.outcome, result.reason or "")
+    >>> for result in filter_files("scans", "smooth", feature_size="2%"):
+    ...     print(result.name, result.outcome, result.reason or "")
     """
     options: dict[str, Any] = dict(named)
     own = {one.name: options.pop(one.name) for one in fields(Settings) if one.name in options}
@@ -73,8 +73,8 @@ def filter_files(
 
 def run_batch(batch: Batch, tally: Tally) -> Generator[FileResult, None, None]:
     """Run a planned batch, and count its results; see `filter_files`."""
-    if batch.jobs:
-        check_extras("batch")
+    if batch.jobs and batch.settings.scheduler is not None:
+        check_extras("cluster")
     with Report(batch.report) as report:
         begin = time.monotonic()
         now = datetime.now(timezone.utc).isoformat(timespec="seconds")
@@ -86,13 +86,26 @@ def run_batch(batch: Batch, tally: Tally) -> Generator[FileResult, None, None]:
             storage.tidy(folder)
         if batch.jobs:
             try:
-                with batch.settings.workers_started() as run:
-                    for result in run(batch.jobs):
-                        report.add("file", result.as_record())
+                with (
+                    _workers(batch.settings) as workers,
+                    closing(run_jobs(workers, batch.jobs, report.add_result)) as results,
+                ):
+                    for result in results:
                         tally.add(result)
                         yield result
             finally:
-                for folder in batch.folders:  # left by killed workers
+                for folder in batch.folders:  # left by killed workers of a cluster
                     storage.tidy(folder)
         seconds = round(time.monotonic() - begin, 3)
         report.add("summary", {**tally.counts, **tally.told(), "seconds": seconds})
+
+
+def _workers(settings: Settings) -> AbstractContextManager[Workers]:
+    # Slow imports, not needed by commands for a single file.
+    if settings.scheduler is not None:
+        from meshlab_spectral.batch.cluster import workers_at
+
+        return workers_at(settings.scheduler)
+    from meshlab_spectral.batch.local import local_workers
+
+    return local_workers(settings.workers, settings.memory_limit)

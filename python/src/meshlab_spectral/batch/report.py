@@ -12,6 +12,7 @@ import io
 import json
 import os
 import re
+import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, get_args
@@ -54,7 +55,7 @@ def read_report(path: Path) -> Iterator[dict[str, Any]]:
 class Report:
     """A report open for appending, by one process at a time.
 
-    Every line is on disk when `add` returns.
+    Every line is on disk when `add` returns; several threads may call it.
 
     Raises
     ------
@@ -64,6 +65,7 @@ class Report:
 
     def __init__(self, path: Path) -> None:
         self.path = path
+        self._turn = threading.Lock()
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             self._file = path.open("a+b", buffering=0)
@@ -83,12 +85,18 @@ class Report:
         return self
 
     def __exit__(self, *error: object) -> None:
-        self._file.close()
+        with self._turn:
+            self._file.close()
 
     def add(self, kind: str, content: dict[str, Any]) -> None:
         """Append a line."""
         line = json.dumps({"kind": kind, **content}, ensure_ascii=False, allow_nan=False)
-        self._write(line.encode("utf-8", errors="surrogateescape") + b"\n")
+        with self._turn:
+            self._write(line.encode("utf-8", errors="surrogateescape") + b"\n")
+
+    def add_result(self, result: FileResult) -> None:
+        """Append the line of a file."""
+        self.add("file", result.as_record())
 
     def _write(self, text: bytes) -> None:
         try:

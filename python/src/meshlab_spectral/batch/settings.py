@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
-from typing import Any
 
-from meshlab_spectral.batch.jobs import FileResult, Job
 from meshlab_spectral.batch.outputs import DEFAULT_PATTERN
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.filters.option_types import Limits, option
 from meshlab_spectral.filters.options import FilterKeywords
-from meshlab_spectral.plugin.limits import given_memory_limit
+from meshlab_spectral.plugin.limits import given_memory_limit, threads
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,29 +79,17 @@ class Settings:
     def check_workers(self) -> None:
         """Raise OptionError when both new workers and those of a cluster are requested.
 
-        Also when the memory limit of the environment counts, but is invalid.
+        Also when a limit of the environment counts, but is invalid.
         """
         if self.scheduler is not None and (self.workers, self.memory_limit) != (None, None):
             raise OptionError(
                 "a cluster configures its own workers: with a scheduler, leave out the number of "
                 "workers and the memory limit"
             )
-        if self.scheduler is None and self.memory_limit is None:
-            given_memory_limit()
-
-    @contextmanager
-    def workers_started(self) -> Iterator[Callable[[Sequence[Job]], Iterator[FileResult]]]:
-        """Yield a function that runs jobs, see `engine.run_jobs`."""
-        # A slow import, not needed by commands for a single file.
-        from meshlab_spectral.batch import engine
-
-        cluster: AbstractContextManager[Any] = (
-            engine.workers_at(self.scheduler)
-            if self.scheduler
-            else engine.local_workers(self.workers, self.memory_limit)
-        )
-        with cluster as client:
-            yield partial(engine.run_jobs, client)
+        if self.scheduler is None:
+            threads()
+            if self.memory_limit is None:
+                given_memory_limit()
 
 
 class BatchKeywords(FilterKeywords, total=False):

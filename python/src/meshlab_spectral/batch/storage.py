@@ -14,7 +14,6 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from meshlab_spectral.errors import InputError, MeshFileError
-from meshlab_spectral.extras import check_extras
 from meshlab_spectral.files.meshes import check_source
 from meshlab_spectral.files.whole_files import (
     remove_leftovers,
@@ -52,11 +51,9 @@ def joined(folder: str, name: str) -> str:
 def file_system(url: str) -> tuple[Any, str]:
     """Return the fsspec file system of a URL and the path in it.
 
-    Raises InputError when the scheme is unknown or its package is not installed,
-    MissingPackageError when fsspec (extra `batch`) is not installed.
+    Raises InputError when the scheme is unknown or its package is not installed.
     """
-    check_extras("batch")
-    import fsspec
+    import fsspec  # slow
 
     try:
         found: tuple[Any, str] = fsspec.core.url_to_fs(url)
@@ -98,18 +95,18 @@ def existing(places: list[str]) -> list[str]:
 
 
 @contextlib.contextmanager
-def reading(place: str) -> Iterator[Path]:
+def reading(place: str, folder: Path) -> Iterator[Path]:
     """Yield a local file to read: the one at a path, or a copy of the one at a URL.
 
-    Raises MeshFileError when it is missing or cannot be read.
+    The copy is made in `folder`. Raises MeshFileError when it is missing or cannot be read.
     """
     if not is_url(place):
         check_source(Path(place))
         yield Path(place)
         return
     fs, path = file_system(place)
-    with _scratch_folder() as folder:
-        copy = folder / posixpath.basename(path)
+    with tempfile.TemporaryDirectory(dir=folder) as scratch_folder:
+        copy = Path(scratch_folder, posixpath.basename(path))
         try:
             fs.get_file(path, str(copy))
         except FileNotFoundError:
@@ -120,12 +117,12 @@ def reading(place: str) -> Iterator[Path]:
 
 
 @contextlib.contextmanager
-def writing(place: str, overwrite: bool) -> Iterator[Path]:
+def writing(place: str, overwrite: bool, folder: Path) -> Iterator[Path]:
     """Yield a scratch file to write; on success, move it and its side files into place.
 
-    Folders are created as needed. See `whole_files.writing_whole`; at a URL, however, an existing
-    file is only detected shortly before the upload. Raises MeshFileError when the place cannot be
-    written to, or exists and must not be overwritten.
+    Folders are created as needed. See `whole_files.writing_whole`; a URL, however, is
+    uploaded from a scratch file in `folder`, and an existing file only detected shortly before.
+    Raises MeshFileError when the place cannot be written to, or exists and must not be overwritten.
     """
     if not is_url(place):
         try:
@@ -138,8 +135,8 @@ def writing(place: str, overwrite: bool) -> Iterator[Path]:
             yield scratch
         return
     fs, path = file_system(place)
-    with _scratch_folder() as folder:
-        scratch = folder / posixpath.basename(path)
+    with tempfile.TemporaryDirectory(dir=folder) as scratch_folder:
+        scratch = Path(scratch_folder, posixpath.basename(path))
         yield scratch
         if not scratch.is_file():
             raise MeshFileError(f"MeshLab wrote nothing for {place}: choose another format")
@@ -148,7 +145,7 @@ def writing(place: str, overwrite: bool) -> Iterator[Path]:
                 raise MeshFileError(why_kept(place))
             # The mesh last, when everything it refers to is in place.
             for file in [*side_files(scratch), scratch]:
-                name = file.relative_to(folder).as_posix()
+                name = file.relative_to(scratch_folder).as_posix()
                 _upload(fs, file, posixpath.join(posixpath.dirname(path), name))
         except OSError as error:
             raise MeshFileError(f"{place} cannot be written ({error})") from error
@@ -171,19 +168,6 @@ def tidy(folder: str) -> None:
         for found in fs.ls(path, detail=False):
             if _PARTIAL.fullmatch(posixpath.basename(found.rstrip("/"))):
                 fs.rm(found)
-
-
-@contextlib.contextmanager
-def _scratch_folder() -> Iterator[Path]:
-    """Make a folder for copies inside the Dask worker's, which Dask removes if the worker dies."""
-    from distributed import get_worker
-
-    try:
-        parent = get_worker().local_directory
-    except ValueError:  # outside a worker
-        parent = None
-    with tempfile.TemporaryDirectory(prefix="meshlab-spectral-", dir=parent) as folder:
-        yield Path(folder)
 
 
 def _upload(fs: Any, file: Path, path: str) -> None:

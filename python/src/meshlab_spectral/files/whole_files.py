@@ -18,6 +18,7 @@ USUAL_FORMATS = ".ply, .obj, .stl or .off"
 
 _SCRATCH_ENDING = ".partial"
 _SCRATCH_NAME = re.compile(r"\.(?P<target>.+)\.[a-z0-9_]{8}\.partial")
+_TEMPORARY = "meshlab-spectral"
 _LOCK = ".lock"  # in a scratch folder
 _LONGEST_NAME = 200  # bytes of the output's name used in that of the scratch folder
 
@@ -96,6 +97,14 @@ def remove_leftovers(folder: Path, target_name: str | None = None) -> None:
                 shutil.rmtree(entry.path, ignore_errors=True)
             # Windows keeps the lock file as long as it is open.
             shutil.rmtree(entry.path, ignore_errors=True)
+
+
+@contextlib.contextmanager
+def temporary_folder(parent: Path) -> Iterator[Path]:
+    """Make a folder, removed on exit; first remove those that killed processes have left."""
+    remove_leftovers(parent, _TEMPORARY)
+    with contextlib.ExitStack() as stack:
+        yield _make_locked(parent, _TEMPORARY, stack)
 
 
 @contextlib.contextmanager

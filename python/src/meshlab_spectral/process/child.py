@@ -1,7 +1,8 @@
 """The program of the child process: `python -m meshlab_spectral.process.child`.
 
 It reads jobs from standard input, one JSON object per line, and answers each on standard output
-with JSON lines: {"stage": ...} as the work proceeds, then {"report": ...} or {"error": ...}.
+with JSON lines: {"ready": true} once, then {"stage": ...} as the work proceeds, and {"report": ...}
+or {"error": ...} at its end.
 MeshLab's own output goes to standard error.
 
 It ends at the end of its input, whatever MeshLab is doing: it never outlives its parent.
@@ -97,6 +98,7 @@ def _main() -> None:
     def answer(**content: Any) -> None:
         answers.write(json.dumps(content) + "\n")
 
+    answer(ready=True)
     jobs: queue.SimpleQueue[str] = queue.SimpleQueue()
     threading.Thread(target=_read, args=[jobs], daemon=True).start()
     while True:

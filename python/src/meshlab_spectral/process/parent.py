@@ -20,7 +20,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 from meshlab_spectral import errors
@@ -36,6 +36,8 @@ _LOG_LINE = re.compile(_LOG_BEGIN.pattern + r"(?P<stage>.*?)\s+\[ (?P<percent>\d
 _KEPT_LOG_LINES = 30
 # Seconds between polls of the child, within which its memory can grow by some 100 MB.
 _LOOK_INTERVAL = 0.05
+_ENVIRONMENT_REMEDY = f"its limit: raise or unset the environment variable {MEMORY}"
+_WORKER_REMEDY = "the limit of a worker: raise the memory limit, with fewer workers if need be"
 # By default glibc returns the memory of every matrix to the system and requests it again for the
 # next one, which is slow for small meshes, more so with several processes. These settings keep up
 # to 128 MiB.
@@ -52,13 +54,16 @@ class JobLimits:
     Attributes
     ----------
     memory
-        Resident memory of the process in bytes; None: that of the environment, if any.
+        Resident memory of the process in bytes; None: no limit.
     seconds
         Time since the start of the job; None: no limit.
+    replaces_environment
+        Whether a lower memory limit of the environment does not count.
     """
 
     memory: int | None = None
     seconds: float | None = None
+    replaces_environment: bool = False
 
 
 NO_LIMITS = JobLimits()
@@ -85,22 +90,30 @@ class MeshLabProcess:
     ----------
     threads
         Number of threads for the plugin; None: as in this process.
+
+    Raises
+    ------
+    ProcessStartError
+        When it cannot be started.
     """
 
     def __init__(self, threads: int | None = None) -> None:
         environment = {**os.environ, **_ALLOCATOR}  # Dask workers set the opposite
         if threads is not None:
             environment[THREADS] = str(threads)
-        self._child = subprocess.Popen(
-            [sys.executable, "-m", "meshlab_spectral.process.child"],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-            encoding="utf-8",
-            errors="replace",
-            env=environment,
-        )
+        try:
+            self._child = subprocess.Popen(
+                [sys.executable, "-m", "meshlab_spectral.process.child"],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE,
+                text=True,
+                encoding="utf-8",
+                errors="replace",
+                env=environment,
+            )
+        except OSError as error:
+            raise _not_started(f"cannot be started ({error.strerror})") from error
         self._log: deque[str] = deque(maxlen=_KEPT_LOG_LINES)
         # Messages from the child: stages and the answer of a job; None at its end.
         self._messages: queue.SimpleQueue[dict[str, Any] | None] = queue.SimpleQueue()
@@ -108,10 +121,16 @@ class MeshLabProcess:
             threading.Thread(target=read, daemon=True)
             for read in (self._read_answers, self._read_log)
         ]
-        for reader in self._readers:
-            reader.start()
+        try:
+            for reader in self._readers:
+                reader.start()
+        except RuntimeError as error:
+            self._child.kill()
+            raise _not_started(f"cannot be watched ({error})") from error
         self.jobs = 0
         self.usable = True
+        self.memory_limit: int | None = None
+        self._is_ready = False
 
     def __enter__(self) -> MeshLabProcess:
         return self
@@ -135,29 +154,35 @@ class MeshLabProcess:
         SpectralError
             When the filter, or reading or writing a file, failed in the child.
         ProcessDiedError
-            When the child died without an answer.
+            When the child died without an answer; ProcessStartError: before it was ready for jobs.
         TimeLimitError, MemoryLimitError
             When the child exceeded a limit and was ended.
         OptionError
             When the memory limit of the environment is invalid.
         """
-        if limits.memory is None:
-            limits = replace(limits, memory=given_memory_limit())
+        given = None if limits.replaces_environment else given_memory_limit()
+        if given is not None and (limits.memory is None or given <= limits.memory):
+            self.memory_limit, self._remedy = given, _ENVIRONMENT_REMEDY
+        else:
+            self.memory_limit, self._remedy = limits.memory, _WORKER_REMEDY
         self._log.clear()
         self.jobs += 1
         self.usable = False  # until the job has succeeded
-        assert self._child.stdin is not None
-        with contextlib.suppress(OSError):  # the child has died: reported below
-            # The plugin refuses work beyond the limit; what it cannot foresee is caught below.
-            self._child.stdin.write(json.dumps({**job, "memory": limits.memory}) + "\n")
-            self._child.stdin.flush()
-        answer, peak_memory = self._await_answer(on_progress or _ignore, limits)
-        if limits.memory is not None and answer.get("error") == "MemoryLimitError":
-            raise _too_much_memory(limits.memory, answer["message"])
+        # The plugin refuses work beyond the memory limit; what it cannot foresee is caught below.
+        line = json.dumps({**job, "memory": self.memory_limit}) + "\n"
+        # In a thread: a long script fills the pipe, and the child may hang before it reads it.
+        threading.Thread(target=self._send, args=[line], daemon=True).start()
+        answer, peak_memory = self._await_answer(on_progress or _ignore, limits.seconds)
+        if self.memory_limit is not None and answer.get("error") == "MemoryLimitError":
+            raise self._too_much_memory(answer["message"])
         if "error" in answer:
             raise _error_of(answer)
         self.usable = True
         return Answer(answer["report"], peak_memory)
+
+    def kill(self) -> None:
+        """Kill the child; a `run` in another thread then raises ProcessDiedError."""
+        self._child.kill()
 
     def end(self) -> None:
         """End the child, whatever it is doing."""
@@ -173,6 +198,11 @@ class MeshLabProcess:
         """Process id of the child."""
         return self._child.pid
 
+    @property
+    def is_alive(self) -> bool:
+        """Whether the child is running."""
+        return self._child.poll() is None
+
     def memory(self) -> int:
         """Resident memory of the child in bytes; 0 if it is gone."""
         import psutil  # a slow import, while the child is starting
@@ -183,7 +213,7 @@ class MeshLabProcess:
             return 0
 
     def _await_answer(
-        self, on_progress: ProgressCallback, limits: JobLimits
+        self, on_progress: ProgressCallback, time_limit: float | None
     ) -> tuple[dict[str, Any], int]:
         """Return the answer to a job, and the peak memory during it."""
         begin = time.monotonic()
@@ -196,31 +226,38 @@ class MeshLabProcess:
                 raise self._death()
             memory = self.memory()
             peak_memory = max(peak_memory, memory)
-            if "stage" in message:
+            if "ready" in message:
+                self._is_ready = True
+            elif "stage" in message:
                 on_progress(message["stage"], message.get("fraction"))
             elif message:
                 return message, peak_memory
-            self._enforce(limits, time.monotonic() - begin, memory)
+            if time_limit is not None and time.monotonic() - begin > time_limit:
+                self._child.kill()
+                raise errors.TimeLimitError(
+                    f"not done after {time_limit:g} seconds, the time limit: raise the limit, or "
+                    "check the mesh"
+                )
+            if self.memory_limit is not None and memory > self.memory_limit:
+                self._child.kill()
+                raise self._too_much_memory("the file may be damaged")
 
-    def _enforce(self, limits: JobLimits, seconds: float, memory: int) -> None:
-        if limits.seconds is not None and seconds > limits.seconds:
-            self._child.kill()
-            raise errors.TimeLimitError(
-                f"not done after {limits.seconds:g} seconds, the time limit: raise the limit, or "
-                "check the mesh"
-            )
-        if limits.memory is not None and memory > limits.memory:
-            self._child.kill()
-            raise _too_much_memory(limits.memory, "the file may be damaged")
+    def _too_much_memory(self, detail: str) -> errors.MemoryLimitError:
+        limit = f"more than {(self.memory_limit or 0) / 2**20:.0f} MiB of memory"
+        return errors.MemoryLimitError(f"needs {limit}, {self._remedy}; {detail}")
 
     def _death(self) -> errors.ProcessDiedError:
         status = self._await_end()
         how = f"by signal {signal.Signals(-status).name}" if status < 0 else f"with status {status}"
-        error = errors.ProcessDiedError(
-            f"the process running MeshLab was ended {how} before it had finished. Unless that was "
-            "intentional, the mesh may need more memory than available, or have hit a bug in "
-            "MeshLab or this filter: please report it, with the mesh"
-        )
+        if self._is_ready:
+            error = errors.ProcessDiedError(
+                f"the process running MeshLab was ended {how} before it had finished. Unless that "
+                "was intentional, the mesh may need more memory than available, or have hit a bug "
+                "in MeshLab or this filter: please report it, with the mesh"
+            )
+        else:
+            last = f" ({self._log[-1]})" if self._log else ""
+            error = _not_started(f"was ended {how} before it was ready{last}")
         tail = "\n".join(self._log)
         error.__cause__ = RuntimeError(f"the last lines of its log:\n{tail}")
         return error
@@ -232,11 +269,20 @@ class MeshLabProcess:
             reader.join()
         return status
 
+    def _send(self, line: str) -> None:
+        assert self._child.stdin is not None
+        with contextlib.suppress(OSError, ValueError):  # the child has died: reported by `run`
+            self._child.stdin.write(line)
+            self._child.stdin.flush()
+
     def _read_answers(self) -> None:
         assert self._child.stdout is not None
         for line in self._child.stdout:
-            if line.endswith("\n"):  # else the child was killed while writing
-                self._messages.put(json.loads(line))
+            message = None
+            with contextlib.suppress(ValueError):
+                message = json.loads(line)
+            if isinstance(message, dict):  # else a library wrote it, or the child was killed midway
+                self._messages.put(message)
         self._messages.put(None)
 
     def _read_log(self) -> None:
@@ -255,12 +301,10 @@ def _ignore(stage: str, fraction: float | None) -> None:
     """Ignore progress."""
 
 
-def _too_much_memory(limit: int, detail: str) -> errors.MemoryLimitError:
-    which, remedy = "the limit of a worker", "raise the memory limit, with fewer workers if need be"
-    if limit == given_memory_limit():
-        which, remedy = "its limit", f"raise or unset the environment variable {MEMORY}"
-    return errors.MemoryLimitError(
-        f"needs more than {limit / 2**20:.0f} MiB of memory, {which}: {remedy}; {detail}"
+def _not_started(how: str) -> errors.ProcessStartError:
+    return errors.ProcessStartError(
+        f"the process for MeshLab {how}: check the installation, the memory, and the limits on "
+        "processes and open files"
     )
 
 

@@ -1,0 +1,148 @@
+"""The workers of a batch on a Dask cluster."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import uuid
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from distributed import CancelledError, Client, KilledWorker, Reschedule, WorkerPlugin, get_worker
+from distributed import TimeoutError as DaskTimeoutError  # in Python 3.10, not Python's own
+
+from meshlab_spectral.batch.engine import Workers
+from meshlab_spectral.batch.jobs import FileResult, Job
+from meshlab_spectral.batch.processes import Processes, ProcessesEndedError
+from meshlab_spectral.batch.task import run_job
+from meshlab_spectral.errors import BatchError
+from meshlab_spectral.plugin.versions import versions
+from meshlab_spectral.process.parent import JobLimits
+
+_SECONDS_TO_CONNECT = 10
+_SECONDS_TO_CLOSE = 5
+# Submitting all jobs at once would delay the start and take much of the scheduler's memory.
+_SUBMITTED_PER_THREAD = 2
+_FEWEST_SUBMITTED = 100  # for workers that join later
+
+
+@contextlib.contextmanager
+def workers_at(address: str) -> Iterator[Workers]:
+    """Yield the workers of a running Dask cluster.
+
+    `address` is the scheduler's, such as tcp://10.0.0.1:8786. Raises BatchError when it cannot be
+    reached, has no workers, or has workers with other software versions.
+    """
+    with _quiet_log():
+        try:
+            client = Client(address, timeout=_SECONDS_TO_CONNECT, set_as_default=False)
+        except (OSError, ValueError, DaskTimeoutError) as error:
+            raise BatchError(
+                f"no Dask scheduler can be reached at {address} ({error}): check the address and "
+                "that `dask scheduler` is running there"
+            ) from error
+        name = f"meshlab-spectral-{uuid.uuid4()}"  # other batches may use the cluster, too
+
+        def end() -> None:
+            with contextlib.suppress(OSError, DaskTimeoutError):  # the cluster is gone
+                client.unregister_worker_plugin(name)
+            client.close(timeout=_SECONDS_TO_CLOSE)
+
+        try:
+            _check_workers(client, address)
+            client.register_plugin(_Processes(), name)
+            threads = sum(client.nthreads().values())
+            at_once = max(_FEWEST_SUBMITTED, _SUBMITTED_PER_THREAD * threads)
+            yield Workers(partial(_submit, client, name), at_once, end)
+        finally:
+            client.close(timeout=_SECONDS_TO_CLOSE)
+
+
+@contextlib.contextmanager
+def _quiet_log() -> Iterator[None]:
+    """Silence Dask's log of lost connections; what matters is in the report."""
+    loggers = [logging.getLogger(name) for name in ("distributed", "distributed.client")]
+    levels = [logger.level for logger in loggers]
+    for logger in loggers:
+        logger.setLevel(logging.CRITICAL)
+    try:
+        yield
+    finally:
+        for logger, level in zip(loggers, levels, strict=True):
+            logger.setLevel(level)
+
+
+def _submit(client: Client, plugin: str, job: Job) -> FileResult:
+    """Let a worker do a job.
+
+    If the worker dies, Dask gives it to another one, up to three times. The death of a MeshLab
+    process is handled by the worker, see `task`.
+    """
+    try:
+        result: FileResult = client.submit(_run, plugin, job, pure=False).result()
+        return result
+    except BatchError:
+        raise
+    except (OSError, CancelledError, DaskTimeoutError) as error:
+        raise BatchError(
+            "the Dask cluster is gone: restart it, then run the same command with --resume"
+        ) from error
+    except KilledWorker as error:
+        attempts = error.allowed_failures + 1
+        reason = (
+            "every worker that tried it was ended from outside: if memory is short, use fewer "
+            "workers"
+        )
+    except Exception as error:
+        attempts, reason = 0, f"unexpected error: {error!r}; please report it"
+    return job.result("failed", reason=reason, attempts=attempts, versions=versions())
+
+
+def _run(plugin: str, job: Job) -> FileResult:
+    """Run a job, in a thread of a worker."""
+    try:
+        return run_job(get_worker().plugins[plugin].processes, job)
+    except ProcessesEndedError:
+        raise Reschedule from None  # the worker is closing
+
+
+class _Processes(WorkerPlugin):  # type: ignore[misc]
+    """The MeshLab processes of a worker, for one batch."""
+
+    def setup(self, worker: Any) -> None:
+        at_once, memory = worker.state.nthreads, worker.memory_manager.memory_limit
+        limits = JobLimits(int(memory / at_once) if memory else None)
+        self.processes = Processes(at_once, limits, Path(worker.local_directory))
+
+    def teardown(self, worker: Any) -> None:
+        self.processes.end()
+
+
+def _check_workers(client: Client, address: str) -> None:
+    try:
+        client.wait_for_workers(1, timeout=_SECONDS_TO_CONNECT)
+    except DaskTimeoutError:
+        raise BatchError(
+            f"the Dask scheduler at {address} has no workers: start some with `dask worker "
+            f"{address}`"
+        ) from None
+    try:
+        found: dict[str, Any] = client.run(versions)
+    except ModuleNotFoundError as error:
+        raise BatchError(
+            f"the workers at {address} cannot import {error.name}: install this package there"
+        ) from error
+    here = versions()
+    for worker, there in found.items():
+        different = [
+            f"{name} {there.get(name, '')[:12]} instead of {here[name][:12]}"
+            for name in here
+            if name != "python" and there.get(name) != here[name]
+        ]
+        if different:
+            raise BatchError(
+                f"the worker {worker} has different software from this machine: "
+                f"{', '.join(different)}; install the same versions on both"
+            )
