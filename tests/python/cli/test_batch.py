@@ -273,6 +273,15 @@ def test_a_file_that_is_not_a_script_is_refused(text: str, cow: Path, tmp_path: 
     assert_fails(done, 2, "script")
 
 
+def test_the_logs_of_workers_stay_out_of_the_lines_of_verbose(tmp_path: Path) -> None:
+    (mesh,) = make_meshes(tmp_path / "in", 1)
+    script = tmp_path / "x.mlx"
+    script.write_text('<FilterScript><filter name="Laplacian Smooth"/></FilterScript>')
+    done = command("batch", mesh, "--output", tmp_path / "out", "--script", script, "-v")
+    assert done.returncode == 0
+    assert done.stderr == f"[1/1] {mesh.name}: filtered\n"
+
+
 def test_a_wrong_value_in_a_script_is_named(cow: Path, tmp_path: Path) -> None:
     script = tmp_path / "x.mlx"
     script.write_text(

@@ -35,7 +35,18 @@ def workers_at(address: str) -> Iterator[Workers]:
     `address` is the scheduler's, such as tcp://10.0.0.1:8786. Raises BatchError when it cannot be
     reached, has no workers, or has workers with other software versions.
     """
-    with _quiet_log():
+    plugin = f"meshlab-spectral-{uuid.uuid4()}"  # other batches may use the cluster, too
+
+    def end() -> None:
+        with contextlib.suppress(OSError, DaskTimeoutError):  # the cluster is gone
+            client.unregister_worker_plugin(plugin)
+        client.close(timeout=_SECONDS_TO_CLOSE)
+
+    with contextlib.ExitStack() as stack:
+        for name in ("distributed", "distributed.client"):  # what matters is reported
+            log = logging.getLogger(name)
+            stack.callback(log.setLevel, log.level)
+            log.setLevel(logging.CRITICAL)
         try:
             client = Client(address, timeout=_SECONDS_TO_CONNECT, set_as_default=False)
         except (OSError, ValueError, DaskTimeoutError) as error:
@@ -43,35 +54,12 @@ def workers_at(address: str) -> Iterator[Workers]:
                 f"no Dask scheduler can be reached at {address} ({error}): check the address and "
                 "that `dask scheduler` is running there"
             ) from error
-        name = f"meshlab-spectral-{uuid.uuid4()}"  # other batches may use the cluster, too
-
-        def end() -> None:
-            with contextlib.suppress(OSError, DaskTimeoutError):  # the cluster is gone
-                client.unregister_worker_plugin(name)
-            client.close(timeout=_SECONDS_TO_CLOSE)
-
-        try:
-            _check_workers(client, address)
-            client.register_plugin(_Processes(), name)
-            threads = sum(client.nthreads().values())
-            at_once = max(_FEWEST_SUBMITTED, _SUBMITTED_PER_THREAD * threads)
-            yield Workers(partial(_submit, client, name), at_once, end)
-        finally:
-            client.close(timeout=_SECONDS_TO_CLOSE)
-
-
-@contextlib.contextmanager
-def _quiet_log() -> Iterator[None]:
-    """Silence Dask's log of lost connections; what matters is in the report."""
-    loggers = [logging.getLogger(name) for name in ("distributed", "distributed.client")]
-    levels = [logger.level for logger in loggers]
-    for logger in loggers:
-        logger.setLevel(logging.CRITICAL)
-    try:
-        yield
-    finally:
-        for logger, level in zip(loggers, levels, strict=True):
-            logger.setLevel(level)
+        stack.callback(client.close, timeout=_SECONDS_TO_CLOSE)
+        _check_workers(client, address)
+        client.register_plugin(_Processes(), plugin)
+        threads = sum(client.nthreads().values())
+        at_once = max(_FEWEST_SUBMITTED, _SUBMITTED_PER_THREAD * threads)
+        yield Workers(partial(_submit, client, plugin), at_once, end)
 
 
 def _submit(client: Client, plugin: str, job: Job) -> FileResult:

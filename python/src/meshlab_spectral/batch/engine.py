@@ -19,21 +19,11 @@ _SECONDS_TO_END = 5
 
 @dataclass(frozen=True)
 class Workers:
-    """What does the jobs: processes on this machine, or the workers of a cluster.
+    """What does the jobs: processes on this machine, or the workers of a cluster."""
 
-    Attributes
-    ----------
-    do
-        Does a job, in the calling thread.
-    at_once
-        How many threads should call `do`.
-    end
-        Makes all calls of `do` end soon, whatever they are doing.
-    """
-
-    do: Callable[[Job], FileResult]
-    at_once: int
-    end: Callable[[], None]
+    do: Callable[[Job], FileResult]  # in the calling thread
+    at_once: int  # threads that should call it
+    end: Callable[[], None]  # makes all calls end soon, whatever they are doing
 
 
 def run_jobs(
@@ -66,18 +56,15 @@ def run_jobs(
             thread.start()
             threads.append(thread)
         for _ in jobs:
-            yield _next(results)
+            result = None
+            while result is None:
+                with contextlib.suppress(queue.Empty):
+                    result = results.get(timeout=_SECONDS_TO_WAIT)
+            if isinstance(result, BaseException):
+                raise result
+            yield result
     finally:
         workers.end()
         end = time.monotonic() + _SECONDS_TO_END
         for thread in threads:
             thread.join(max(0.0, end - time.monotonic()))
-
-
-def _next(results: queue.SimpleQueue[FileResult | BaseException]) -> FileResult:
-    while True:
-        with contextlib.suppress(queue.Empty):
-            result = results.get(timeout=_SECONDS_TO_WAIT)
-            if isinstance(result, BaseException):
-                raise result
-            return result

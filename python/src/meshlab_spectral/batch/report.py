@@ -36,16 +36,21 @@ def read_report(path: Path) -> Iterator[dict[str, Any]]:
     try:
         with path.open("rb") as file:
             for number, line in enumerate(file, start=1):
+                record, wrong = None, None
                 try:
-                    record = _record(line)
-                except (RecursionError, _ForeignLineError) as error:
-                    reason = str(error) if isinstance(error, _ForeignLineError) else "too nested"
+                    record = json.loads(line.decode("utf-8", errors="surrogateescape"))
+                except RecursionError:
+                    wrong = "too nested"
+                except ValueError:
+                    continue
+                if isinstance(record, dict):
+                    wrong = _foreign_value(record)
+                    yield from [] if wrong else [record]
+                if wrong:
                     raise BatchError(
                         f"line {number} of the report {path} was not written by a batch "
-                        f"({reason}): delete that line, or choose another report with --report"
-                    ) from error
-                if record is not None:
-                    yield record
+                        f"({wrong}): delete that line, or choose another report with --report"
+                    )
     except FileNotFoundError:
         return
     except OSError as error:
@@ -197,24 +202,15 @@ def check_report(path: Path) -> None:
         )
 
 
-class _ForeignLineError(Exception):
-    """A complete line with a value that no batch writes; says which."""
-
-
-def _record(line: bytes) -> dict[str, Any] | None:
-    try:
-        record = json.loads(line.decode("utf-8", errors="surrogateescape"))
-    except ValueError:
-        return None
-    if not isinstance(record, dict):
-        return None
+def _foreign_value(record: dict[str, Any]) -> str | None:
+    """Return what in a line no batch writes; None if there is no such thing."""
     kind = record.get("kind")
     if kind == "run" and "begun" not in record:
-        raise _ForeignLineError("begun is missing")
+        return "begun is missing"
     for name, fits in _FITTING.items():
         if kind in ("run", "file") and name in record and not fits(record[name]):
-            raise _ForeignLineError(f"{name} has a wrong value")
-    return record
+            return f"{name} has a wrong value"
+    return None
 
 
 def _is_time(value: Any) -> bool:

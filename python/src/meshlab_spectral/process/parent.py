@@ -86,18 +86,22 @@ class MeshLabProcess:
     It cannot be used again after an error: pymeshlab may crash or hang once a filter has failed in
     it. Use it as a context manager, or `end` it.
 
-    Parameters
-    ----------
-    threads
-        Number of threads for the plugin; None: as in this process.
-
-    Raises
-    ------
-    ProcessStartError
-        When it cannot be started.
+    `threads` is the number of threads for the plugin; None: as in this process. Raises
+    ProcessStartError when it cannot be started.
     """
 
     def __init__(self, threads: int | None = None) -> None:
+        self.jobs = 0
+        self.usable = True
+        self.memory_limit: int | None = None
+        self._is_ready = self._is_verbose = False
+        self._log: deque[str] = deque(maxlen=_KEPT_LOG_LINES)
+        # Messages from the child: stages and the answer of a job; None at its end.
+        self._messages: queue.SimpleQueue[dict[str, Any] | None] = queue.SimpleQueue()
+        self._readers = [
+            threading.Thread(target=read, daemon=True)
+            for read in (self._read_answers, self._read_log)
+        ]
         environment = {**os.environ, **_ALLOCATOR}  # Dask workers set the opposite
         if threads is not None:
             environment[THREADS] = str(threads)
@@ -112,25 +116,10 @@ class MeshLabProcess:
                 errors="replace",
                 env=environment,
             )
-        except OSError as error:
-            raise _not_started(f"cannot be started ({error.strerror})") from error
-        self._log: deque[str] = deque(maxlen=_KEPT_LOG_LINES)
-        # Messages from the child: stages and the answer of a job; None at its end.
-        self._messages: queue.SimpleQueue[dict[str, Any] | None] = queue.SimpleQueue()
-        self._readers = [
-            threading.Thread(target=read, daemon=True)
-            for read in (self._read_answers, self._read_log)
-        ]
-        try:
             for reader in self._readers:
                 reader.start()
-        except RuntimeError as error:
-            self._child.kill()
-            raise _not_started(f"cannot be watched ({error})") from error
-        self.jobs = 0
-        self.usable = True
-        self.memory_limit: int | None = None
-        self._is_ready = False
+        except (OSError, RuntimeError) as error:  # RuntimeError: of a thread
+            raise _not_started(f"cannot be started ({error})") from error
 
     def __enter__(self) -> MeshLabProcess:
         return self
@@ -168,6 +157,7 @@ class MeshLabProcess:
         self._log.clear()
         self.jobs += 1
         self.usable = False  # until the job has succeeded
+        self._is_verbose = job.get("verbose", True)
         # The plugin refuses work beyond the memory limit; what it cannot foresee is caught below.
         line = json.dumps({**job, "memory": self.memory_limit}) + "\n"
         # In a thread: a long script fills the pipe, and the child may hang before it reads it.
@@ -293,7 +283,7 @@ class MeshLabProcess:
             if match:
                 fraction = int(match["percent"]) / 100
                 self._messages.put({"stage": match["stage"], "fraction": fraction})
-            elif line.strip():
+            elif line.strip() and self._is_verbose:
                 LOG.info(_LOG_BEGIN.sub("", line.rstrip()))
 
 
