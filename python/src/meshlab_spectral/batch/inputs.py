@@ -17,18 +17,10 @@ from meshlab_spectral.files.whole_files import resolved
 
 @dataclass(frozen=True)
 class Input:
-    """An input file.
+    """An input file; an unreadable one is an input, too, and its job fails."""
 
-    Attributes
-    ----------
-    place
-        Absolute path with "/", or URL. An unreadable file is an input, too; its job fails.
-    folder
-        Its folder, relative to the one given by the user; "" for that one itself.
-    """
-
-    place: str
-    folder: str = ""
+    place: str  # absolute path with "/", or URL
+    folder: str = ""  # relative to the one given by the user; "" for that one itself
 
     @property
     def name(self) -> str:
@@ -42,21 +34,10 @@ def find_inputs(
     """Find the files given by names, folders, patterns such as scans/*.ply, and URLs.
 
     A named file is accepted whatever its extension; in folders, only visible files that MeshLab can
-    read are. Inputs are in the order of the arguments, sorted within each, without duplicates.
-
-    Parameters
-    ----------
-    arguments
-        The user's arguments.
-    recursive
-        Search subfolders, too, and let ** in a pattern match any folders.
-    leave_out
-        Outputs: files and folders that a search skips.
-
-    Raises
-    ------
-    InputError
-        When an argument matches no file.
+    read are. If `recursive`, subfolders are searched, too, and ** in a pattern matches any folders;
+    outputs, the files and folders to `leave_out`, are skipped. Inputs are in the order of the
+    arguments, sorted within each, without duplicates. Raises InputError when an argument matches no
+    file.
     """
     outputs = {resolved(path) for path in leave_out}
     found: dict[str, Input] = {}

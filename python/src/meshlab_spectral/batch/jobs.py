@@ -11,33 +11,16 @@ Outcome = Literal["filtered", "unchanged", "measured", "failed", "already done"]
 
 @dataclass(frozen=True)
 class Job:
-    """Everything a worker needs to process one file, as plain values that can be sent to it.
+    """Everything a worker needs to process one file, as plain values that can be sent to it."""
 
-    Attributes
-    ----------
-    source, target
-        Absolute paths or URLs of the input and the output. Without a target nothing is written and
-        the report is the result.
-    name
-        Name of the output, relative to the output folder.
-    work
-        The job for `child`: "task" and its parameters, without the files.
-    options
-        What the result depends on besides the input, for the report: equal options and inputs give
-        equal results.
-    seconds
-        Time limit; None: no limit.
-    overwrite
-        Whether the output may replace an existing file.
-    """
-
-    source: str
-    target: str | None
-    name: str
-    work: dict[str, Any] = field(hash=False)
+    source: str  # absolute path or URL of the input
+    target: str | None  # that of the output; None: the report is the result
+    name: str  # that of the output, relative to the output folder
+    work: dict[str, Any] = field(hash=False)  # for `child`: "task" and its parameters, no files
+    # For the report, what the result depends on: equal options and inputs give equal results.
     options: dict[str, Any] = field(hash=False)
-    seconds: float | None = None
-    overwrite: bool = False
+    seconds: float | None = None  # time limit
+    overwrite: bool = False  # whether the output may replace an existing file
 
     def result(self, outcome: Outcome, **more: Any) -> FileResult:
         """Return the result of this job; `more` are the attributes not known to the job."""

@@ -23,21 +23,11 @@ _NAMED_AT_MOST = 5
 
 @dataclass(frozen=True)
 class Output:
-    """The output for an input.
+    """The output for an input."""
 
-    Attributes
-    ----------
-    source
-        Path or URL of the input.
-    name
-        Name of the output relative to the output folder, with "/" as separator.
-    target
-        Path or URL of the output.
-    """
-
-    source: str
-    name: str
-    target: str
+    source: str  # path or URL of the input
+    name: str  # relative to the output folder, with "/" as separator
+    target: str  # path or URL
 
 
 def plan_outputs(
@@ -45,24 +35,13 @@ def plan_outputs(
 ) -> list[Output]:
     """Name the output of each input found by `find_inputs`.
 
-    The inputs' subfolders are recreated in `folder`, a path or URL.
+    The inputs' subfolders are recreated in `folder`, a path or URL. In the `pattern` of the names,
+    without extension, {stem} and {ending} stand for the parts of the input's name before and after
+    its last dot, {folder} for the name of its folder; a "/" creates folders. `ending` is by default
+    that of the input, or ply if it cannot be written with faces.
 
-    Parameters
-    ----------
-    pattern
-        Pattern of the names, without extension: {stem} and {ending} stand for the parts of the
-        input's name before and after its last dot, {folder} for the name of its folder. A "/"
-        creates folders.
-    ending
-        Extension of the outputs; by default that of the input, or ply if it cannot be written with
-        faces.
-
-    Raises
-    ------
-    InputError
-        When the pattern is invalid, outputs would share a name, or one would replace an input.
-    FormatError
-        When MeshLab cannot write files with that extension.
+    Raises InputError when the pattern is invalid, outputs would share a name, or one would replace
+    an input, and FormatError when MeshLab cannot write files with that extension.
     """
     check_pattern(pattern)
     if ending is not None:

@@ -28,22 +28,10 @@ _NAMED_AT_MOST = 5
 
 @dataclass(frozen=True)
 class Batch:
-    """A planned batch.
+    """A planned batch."""
 
-    Attributes
-    ----------
-    jobs
-        Remaining jobs, in the order of the inputs.
-    done
-        Results of an earlier run that are still valid.
-    report
-        Path of the report.
-    settings
-        As for `plan_batch`.
-    """
-
-    jobs: list[Job]
-    done: list[FileResult]
+    jobs: list[Job]  # those that remain, in the order of the inputs
+    done: list[FileResult]  # still valid, from an earlier run
     report: Path
     settings: Settings
 

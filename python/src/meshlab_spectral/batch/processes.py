@@ -24,14 +24,8 @@ class ProcessesEndedError(Exception):
 class Processes:
     """A pool of MeshLab processes, for jobs in several threads.
 
-    Parameters
-    ----------
-    at_once
-        Maximum number of processes; they share the threads of the plugin.
-    limits
-        Limits of a job.
-    folder
-        For copies of files at URLs.
+    At most `at_once` of them share the threads of the plugin. `limits` are those of a job, `folder`
+    is for copies of files at URLs.
     """
 
     def __init__(self, at_once: int, limits: JobLimits, folder: Path) -> None:

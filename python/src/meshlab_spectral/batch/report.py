@@ -152,19 +152,11 @@ def grouped_warnings(warnings: Mapping[str, Sequence[str]]) -> list[dict[str, An
 
 
 class Tally:
-    """Counts the results of a batch, and collects their warnings.
-
-    Attributes
-    ----------
-    counts
-        Number of results by outcome.
-    warnings
-        Name of each file with warnings -> its warnings.
-    """
+    """Counts the results of a batch, and collects their warnings."""
 
     def __init__(self) -> None:
-        self.counts = dict.fromkeys(get_args(Outcome), 0)
-        self.warnings: dict[str, list[str]] = {}
+        self.counts = dict.fromkeys(get_args(Outcome), 0)  # by outcome
+        self.warnings: dict[str, list[str]] = {}  # by the name of the file
 
     def add(self, result: FileResult) -> None:
         """Count a result."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
+import os
 import posixpath
 import re
 import secrets
@@ -82,16 +83,14 @@ def digest_at(place: str) -> str | None:
 
 def existing(places: list[str]) -> list[str]:
     """Return the places that exist, as files or otherwise."""
-    found = []
-    for place in places:
-        if is_url(place):
-            fs, path = file_system(place)
-            taken = fs.exists(path)
-        else:
-            taken = Path(place).exists() or Path(place).is_symlink()
-        if taken:
-            found.append(place)
-    return found
+    return [place for place in places if _exists(place)]
+
+
+def _exists(place: str) -> bool:
+    if not is_url(place):
+        return os.path.lexists(place)
+    fs, path = file_system(place)
+    return bool(fs.exists(path))
 
 
 @contextlib.contextmanager

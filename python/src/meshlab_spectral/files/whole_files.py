@@ -101,7 +101,7 @@ def remove_leftovers(folder: Path, target_name: str | None = None) -> None:
 
 @contextlib.contextmanager
 def temporary_folder(parent: Path) -> Iterator[Path]:
-    """Make a folder, removed on exit; first remove those that killed processes have left."""
+    """Make a folder, removed on exit, and first remove those that killed processes have left."""
     remove_leftovers(parent, _TEMPORARY)
     with contextlib.ExitStack() as stack:
         yield _make_locked(parent, _TEMPORARY, stack)

@@ -49,21 +49,11 @@ _ALLOCATOR = {
 
 @dataclass(frozen=True)
 class JobLimits:
-    """Limits of a job, beyond which its process is killed.
+    """Limits of a job, beyond which its process is killed; None: no limit."""
 
-    Attributes
-    ----------
-    memory
-        Resident memory of the process in bytes; None: no limit.
-    seconds
-        Time since the start of the job; None: no limit.
-    replaces_environment
-        Whether a lower memory limit of the environment does not count.
-    """
-
-    memory: int | None = None
-    seconds: float | None = None
-    replaces_environment: bool = False
+    memory: int | None = None  # resident, of the process, bytes
+    seconds: float | None = None  # since the start of the job
+    replaces_environment: bool = False  # whether a lower limit of the environment does not count
 
 
 NO_LIMITS = JobLimits()
@@ -136,18 +126,10 @@ class MeshLabProcess:
         """Do a job, described as `child` expects it, within its limits.
 
         `on_progress` is called with the current stage and the fraction done, 0 to 1, or None if
-        unknown.
-
-        Raises
-        ------
-        SpectralError
-            When the filter, or reading or writing a file, failed in the child.
-        ProcessDiedError
-            When the child died without an answer; ProcessStartError: before it was ready for jobs.
-        TimeLimitError, MemoryLimitError
-            When the child exceeded a limit and was ended.
-        OptionError
-            When the memory limit of the environment is invalid.
+        unknown. Raises the SpectralError of the filter, or of reading or writing a file;
+        ProcessDiedError when the child died without an answer, ProcessStartError if it was not
+        ready yet; TimeLimitError or MemoryLimitError when it exceeded a limit and was ended;
+        OptionError when the memory limit of the environment is invalid.
         """
         given = None if limits.replaces_environment else given_memory_limit()
         if given is not None and (limits.memory is None or given <= limits.memory):

@@ -23,31 +23,14 @@ def write_in_child(
 ) -> dict[str, Any]:
     """Filter a mesh file into another, or write its harmonics to an archive, in a child process.
 
-    Parameters
-    ----------
-    source
-        A mesh file.
-    target
-        The file to write, atomically. An existing one is replaced.
-    options
-        Options for `meshes.filter_to_scratch` or `basis.basis_to_scratch`.
-    on_progress
-        Called with the current stage and the fraction done, 0 to 1, or None if unknown.
-    mesh
-        Only the mesh with this name; by default all meshes of the file.
+    The file is written atomically, and replaces an existing one. `options` are those for
+    `meshes.filter_to_scratch` or `basis.basis_to_scratch`, `on_progress` is that of
+    `MeshLabProcess.run`; without the name of a `mesh`, all meshes of the file are filtered. Returns
+    the filter's report; for harmonics, the numbers of "vertices" and "harmonics".
 
-    Returns
-    -------
-    dict
-        The filter's report; for harmonics, the numbers of "vertices" and "harmonics".
-
-    Raises
-    ------
-    SpectralError
-        When `source` cannot be read, `target` cannot be written, or the filter rejects the mesh or
-        an option; also when the child died without an answer.
-    KeyboardInterrupt
-        After the child has been ended and the scratch files removed.
+    Raises SpectralError when `source` cannot be read, `target` cannot be written, the filter
+    rejects the mesh or an option, or the child died without an answer. KeyboardInterrupt passes
+    after the child has been ended and the scratch files removed.
     """
     check_source(source)
     remove_leftovers(resolved(target).parent, target.name)
