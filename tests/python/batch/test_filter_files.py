@@ -180,6 +180,31 @@ def test_a_script_needs_no_guard(meshes: Path, tmp_path: Path) -> None:
     assert done.stdout.split() == ["filtered"] * 6, done.stderr
 
 
+UNFINISHED = """
+import sys
+from meshlab_spectral import filter_files
+results = filter_files(sys.argv[1], sys.argv[2], workers=2, steps=1000)
+print(next(results).outcome)
+"""
+
+
+def test_a_program_that_ends_before_its_batch_does_so_at_once(tmp_path: Path) -> None:
+    (small,) = make_meshes(tmp_path / "in", 1)
+    small.rename(small.with_name("a.ply"))
+    make_meshes(tmp_path / "in", 2, rings=100)  # minutes of work
+    begin = time.monotonic()
+    done = subprocess.run(
+        [sys.executable, "-c", UNFINISHED, str(tmp_path / "in"), str(tmp_path / "out")],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (0, "filtered\n", "")
+    assert time.monotonic() - begin < 15
+    assert sorted(contents(tmp_path / "out")) == ["a.ply"]
+
+
 def test_batches_in_threads_give_what_one_after_the_other_gives(
     meshes: Path, tmp_path: Path
 ) -> None:

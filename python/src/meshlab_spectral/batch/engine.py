@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 import queue
 import threading
@@ -49,7 +50,14 @@ def run_jobs(
         except BaseException as error:
             results.put(error)
 
+    def stop() -> None:
+        workers.end()
+        end = time.monotonic() + _SECONDS_TO_END
+        for thread in threads:
+            thread.join(max(0.0, end - time.monotonic()))
+
     threads: list[threading.Thread] = []
+    atexit.register(stop)  # at the end of a program that has not ended the iteration
     try:
         for _ in range(min(len(jobs), workers.at_once)):
             thread = threading.Thread(target=work, daemon=True)
@@ -64,7 +72,5 @@ def run_jobs(
                 raise result
             yield result
     finally:
-        workers.end()
-        end = time.monotonic() + _SECONDS_TO_END
-        for thread in threads:
-            thread.join(max(0.0, end - time.monotonic()))
+        stop()
+        atexit.unregister(stop)
