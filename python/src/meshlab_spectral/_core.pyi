@@ -1,5 +1,5 @@
 # plugin/python/module.cpp
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -41,3 +41,43 @@ def laplacian(
     NDArray[np.int64],
 ]: ...
 def set_memory_limit(limit: float) -> None: ...
+def text_lines(
+    text: bytes,
+    begin: int = 0,
+    limit: int = ...,
+    keywords: Sequence[str] = (),
+    *,
+    comments: bool = False,
+    any_case: bool = False,
+    continued: int = -1,
+) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.uint8]]: ...
+def text_numbers(
+    text: bytes,
+    starts: NDArray[np.int64],
+    words: NDArray[np.int32],
+    first: int,
+    are_lists: Sequence[bool],
+    *,
+    comments: bool = False,
+    is_whole: bool = False,
+) -> tuple[NDArray[np.float64], list[tuple[NDArray[np.int64], NDArray[np.float64]]], int]: ...
+def text_corners(
+    text: bytes, starts: NDArray[np.int64], words: NDArray[np.int32]
+) -> tuple[NDArray[np.int64], int]: ...
+def write_patched(
+    text: bytes,
+    begin: int,
+    changes: Sequence[tuple[NDArray[np.int64], int, NDArray[np.float64], NDArray[np.float64], int]],
+    write: Callable[[memoryview], object],
+) -> None: ...
+def xml_elements(
+    text: bytes, name: str, attributes: tuple[str, str, str]
+) -> tuple[NDArray[np.float64], NDArray[np.int64], bytes]: ...
+def first_equal_rows(rows: NDArray[np.float64]) -> NDArray[np.int64]: ...
+def following_normals(
+    before: NDArray[np.float64],
+    after: NDArray[np.float64],
+    faces: NDArray[np.int64],
+    normals: NDArray[np.float64],
+    which: NDArray[np.int64],
+) -> NDArray[np.float64]: ...

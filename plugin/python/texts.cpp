@@ -1,0 +1,137 @@
+#include "texts.h"
+
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include <array>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "arrays.h"
+#include "shapes.h"
+#include "text_numbers.h"
+#include "xml_elements.h"
+
+namespace spectral::python {
+
+namespace {
+
+using namespace nb::literals;
+using Places = nb::ndarray<const std::int64_t, nb::numpy, nb::shape<-1>, nb::c_contig>;
+using Counts = nb::ndarray<const std::int32_t, nb::numpy, nb::shape<-1>, nb::c_contig>;
+
+std::string_view viewOf(const nb::bytes& text) { return {text.c_str(), text.size()}; }
+
+nb::tuple lines(const nb::bytes& text, std::size_t begin, std::size_t limit,
+                const std::vector<std::string>& keywords, bool hasComments, bool isAnyCase,
+                int continued) {
+    Lines found = [&] {
+        const nb::gil_scoped_release released;
+        return findLines(viewOf(text), begin, limit, keywords, {hasComments, isAnyCase, continued});
+    }();
+    return nb::make_tuple(givenRows(std::move(found.starts)), givenRows(std::move(found.words)),
+                          givenRows(std::move(found.kinds)));
+}
+
+nb::tuple numbers(const nb::bytes& text, const Places& starts, const Counts& words, int first,
+                  const std::vector<bool>& areLists, bool hasComments, bool isWhole) {
+    NumberTable found = [&] {
+        const nb::gil_scoped_release released;
+        return readNumbers(viewOf(text), {starts.data(), words.data(), starts.shape(0)},
+                           {first, areLists, isWhole}, {hasComments});
+    }();
+    nb::list lists;
+    for (NumberLists& one : found.lists)
+        lists.append(
+            nb::make_tuple(givenRows(std::move(one.sizes)), givenRows(std::move(one.items))));
+    const std::size_t columns = areLists.size() - found.lists.size();
+    return nb::make_tuple(givenRows(std::move(found.single), columns), lists, found.bad);
+}
+
+nb::tuple corners(const nb::bytes& text, const Places& starts, const Counts& words) {
+    Corners found = [&] {
+        const nb::gil_scoped_release released;
+        return readCorners(viewOf(text), {starts.data(), words.data(), starts.shape(0)});
+    }();
+    return nb::make_tuple(givenRows(std::move(found.numbers), 2), found.bad);
+}
+
+using Replacement = std::tuple<Places, int, Table, Table, int>;
+
+void writePatched(const nb::bytes& text, std::size_t begin,
+                  const std::vector<Replacement>& replacements, const nb::callable& write) {
+    std::vector<Change> changes;
+    for (const auto& [places, first, before, after, digits] : replacements) {
+        const std::size_t n = places.shape(0), k = before.shape(1);
+        if (before.shape(0) != n || after.shape(0) != n || after.shape(1) != k)
+            throw nb::value_error("a change needs a place and two rows of numbers each");
+        changes.push_back({places.data(), n, k, first, before.data(), after.data(), digits});
+    }
+    if (begin > text.size()) throw nb::value_error("a text is written from within it");
+    const nb::gil_scoped_release released;
+    replaceNumbers(viewOf(text), begin, changes, [&write](std::string_view piece) {
+        const nb::gil_scoped_acquire gil;
+        const auto size = static_cast<Py_ssize_t>(piece.size());
+        write(
+            nb::steal(PyMemoryView_FromMemory(const_cast<char*>(piece.data()), size, PyBUF_READ)));
+    });
+}
+
+nb::tuple elements(const nb::bytes& text, const std::string& name,
+                   const std::array<std::string, 3>& attributes) {
+    XmlElements found = [&] {
+        const nb::gil_scoped_release released;
+        return takeElements(viewOf(text), name, attributes);
+    }();
+    return nb::make_tuple(givenRows(std::move(found.values), 3),
+                          givenRows(std::move(found.places), 3),
+                          nb::bytes(found.rest.data(), found.rest.size()));
+}
+
+using IndexTable = nb::ndarray<const std::int64_t, nb::numpy, nb::shape<-1, 3>, nb::c_contig>;
+
+template <class Array>
+auto rowsOf(const Array& array) {
+    using Scalar = std::remove_const_t<typename Array::Scalar>;
+    return Rows<Scalar>(array.data(), static_cast<Eigen::Index>(array.shape(0)),
+                        static_cast<Eigen::Index>(array.shape(1)));
+}
+
+nb::object firstRows(const Table& rows) {
+    std::vector<std::int64_t> first = [&] {
+        const nb::gil_scoped_release released;
+        return firstEqualRows(rowsOf(rows));
+    }();
+    return givenRows(std::move(first));
+}
+
+nb::object normals(const Positions& before, const Positions& after, const IndexTable& faces,
+                   const Positions& given, const IndexTable& which) {
+    Table3 result = [&] {
+        const nb::gil_scoped_release released;
+        return followingNormals(rowsOf(before), rowsOf(after), rowsOf(faces), rowsOf(given),
+                                rowsOf(which));
+    }();
+    return givenByRows(result);
+}
+
+}  // namespace
+
+void addTexts(nb::module_& m) {
+    m.def("text_lines", lines, "text"_a, "begin"_a = 0, "limit"_a = SIZE_MAX / 2,
+          "keywords"_a = nb::make_tuple(), nb::kw_only(), "comments"_a = false,
+          "any_case"_a = false, "continued"_a = -1);
+    m.def("text_numbers", numbers, "text"_a, "starts"_a, "words"_a, "first"_a, "are_lists"_a,
+          nb::kw_only(), "comments"_a = false, "is_whole"_a = false);
+    m.def("text_corners", corners, "text"_a, "starts"_a, "words"_a);
+    m.def("write_patched", writePatched, "text"_a, "begin"_a, "changes"_a, "write"_a);
+    m.def("first_equal_rows", firstRows, "rows"_a);
+    m.def("following_normals", normals, "before"_a, "after"_a, "faces"_a, "normals"_a, "which"_a);
+    m.def("xml_elements", elements, "text"_a, "name"_a, "attributes"_a);
+}
+
+}  // namespace spectral::python
