@@ -81,15 +81,19 @@ void writePatched(const nb::bytes& text, std::size_t begin,
     });
 }
 
-nb::tuple elements(const nb::bytes& text, const std::string& name,
-                   const std::array<std::string, 3>& attributes) {
-    XmlElements found = [&] {
+nb::tuple elements(const nb::bytes& text,
+                   const std::vector<std::tuple<std::string, std::array<std::string, 3>>>& names) {
+    std::vector<XmlKind> kinds;
+    for (const auto& [name, attributes] : names) kinds.push_back({name, attributes});
+    XmlRest rest = [&] {
         const nb::gil_scoped_release released;
-        return takeElements(viewOf(text), name, attributes);
+        return takeElements(viewOf(text), kinds);
     }();
-    return nb::make_tuple(givenRows(std::move(found.values), 3),
-                          givenRows(std::move(found.places), 3),
-                          nb::bytes(found.rest.data(), found.rest.size()));
+    nb::list taken;
+    for (XmlElements& one : rest.elements)
+        taken.append(nb::make_tuple(givenRows(std::move(one.values), 3),
+                                    givenRows(std::move(one.places), 3)));
+    return nb::make_tuple(taken, nb::bytes(rest.text.data(), rest.text.size()));
 }
 
 using IndexTable = nb::ndarray<const std::int64_t, nb::numpy, nb::shape<-1, 3>, nb::c_contig>;
@@ -131,7 +135,7 @@ void addTexts(nb::module_& m) {
     m.def("write_patched", writePatched, "text"_a, "begin"_a, "changes"_a, "write"_a);
     m.def("first_equal_rows", firstRows, "rows"_a);
     m.def("following_normals", normals, "before"_a, "after"_a, "faces"_a, "normals"_a, "which"_a);
-    m.def("xml_elements", elements, "text"_a, "name"_a, "attributes"_a);
+    m.def("xml_elements", elements, "text"_a, "kinds"_a);
 }
 
 }  // namespace spectral::python

@@ -17,17 +17,17 @@ bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 struct Tag {
     Position begin, end;
     std::string_view name;  ///< With its prefix.
+    std::size_t kind;
     std::array<std::string_view, 3> values;
     bool isEmpty;
 };
 
 class Scanner {
   public:
-    Scanner(std::string_view text, std::string_view name,
-            const std::array<std::string, 3>& attributes)
-        : text_(text), name_(name), attributes_(attributes) {}
+    Scanner(std::string_view text, const std::vector<XmlKind>& kinds)
+        : text_(text), kinds_(kinds) {}
 
-    /// Finds the next tag of the name from `at` on; false if there is none.
+    /// Finds the next tag of one of the kinds from `at` on; false if there is none.
     bool find(Position at, Tag& tag) const {
         while ((at = text_.find('<', at)) != std::string_view::npos) {
             if (const Position end = endOfOther(at); end > at) {
@@ -46,8 +46,8 @@ class Scanner {
     }
 
   private:
-    std::string_view text_, name_;
-    const std::array<std::string, 3>& attributes_;
+    std::string_view text_;
+    const std::vector<XmlKind>& kinds_;
 
     char at(Position i) const { return i < text_.size() ? text_[i] : '\0'; }
 
@@ -66,13 +66,18 @@ class Scanner {
             ++i;
         return i;
     }
+    std::size_t kindOf(std::string_view name) const {
+        const Position colon = name.find(':');
+        if (colon != std::string_view::npos) name.remove_prefix(colon + 1);
+        std::size_t kind = 0;
+        while (kind < kinds_.size() && kinds_[kind].name != name) ++kind;
+        return kind;
+    }
     bool read(Position begin, Tag& tag) const {
         Position i = endOfName(begin + 1);
         const std::string_view name = text_.substr(begin + 1, i - begin - 1);
-        if (name.size() < name_.size() || name.substr(name.size() - name_.size()) != name_ ||
-            (name.size() > name_.size() && name[name.size() - name_.size() - 1] != ':'))
-            return false;
-        tag = {begin, 0, name, {}, false};
+        tag = {begin, 0, name, kindOf(name), {}, false};
+        if (tag.kind == kinds_.size()) return false;
         for (Position next = skipBlanks(i); next > i && at(next) != '/' && at(next) != '>';
              next = skipBlanks(i))
             if (!readAttribute(i = next, tag)) return false;
@@ -95,8 +100,9 @@ class Scanner {
         const std::string_view value = text_.substr(i + 1, end - i - 1);
         i = end + 1;
         if (value.find('<') != std::string_view::npos) return false;
-        for (std::size_t k = 0; k < attributes_.size(); ++k) {
-            if (name != attributes_[k]) continue;
+        const std::array<std::string, 3>& attributes = kinds_[tag.kind].attributes;
+        for (std::size_t k = 0; k < attributes.size(); ++k) {
+            if (name != attributes[k]) continue;
             if (tag.values[k].data() != nullptr) return false;
             tag.values[k] = value;
         }
@@ -107,22 +113,28 @@ class Scanner {
 double numberOf(std::string_view value) {
     double number = 0.0;
     const char* const end = value.data() + value.size();
-    const bool isNumber = readNumber(value.data(), end, number) == end;
+    const bool isNumber = !value.empty() && readNumber(value.data(), end, number) == end;
     return isNumber ? number : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace
 
-XmlElements takeElements(std::string_view text, std::string_view name,
-                         const std::array<std::string, 3>& attributes) {
-    const Scanner scanner(text, name, attributes);
-    XmlElements elements;
+XmlRest takeElements(std::string_view text, const std::vector<XmlKind>& kinds) {
+    constexpr std::size_t shortest = 32;  // bytes of an element with three attributes, about
+    const Scanner scanner(text, kinds);
+    XmlRest rest;
+    rest.elements.resize(kinds.size());
+    for (XmlElements& elements : rest.elements) {
+        elements.values.reserve(3 * (text.size() / shortest));  // costs nothing until it is used
+        elements.places.reserve(3 * (text.size() / shortest));
+    }
     Tag tag{}, next{};
     Position copied = 0;
     bool isFound = scanner.find(0, tag);
     while (isFound) {
+        XmlElements& elements = rest.elements[tag.kind];
         const std::size_t begin = elements.values.size() / 3;
-        elements.rest.append(text, copied, tag.begin - copied);
+        rest.text.append(text, copied, tag.begin - copied);
         while (true) {
             for (const std::string_view value : tag.values) {
                 elements.values.push_back(numberOf(value));
@@ -135,16 +147,15 @@ XmlElements takeElements(std::string_view text, std::string_view name,
                 break;
             tag = next;
         }
-        const std::size_t end = elements.values.size() / 3;
-        elements.rest.append("<").append(tag.name);
-        elements.rest.append(" begin=\"").append(std::to_string(begin));
-        elements.rest.append("\" end=\"").append(std::to_string(end));
-        elements.rest.append(tag.isEmpty ? "\"/>" : "\">");
+        rest.text.append("<").append(tag.name);
+        rest.text.append(" begin=\"").append(std::to_string(begin));
+        rest.text.append("\" end=\"").append(std::to_string(elements.values.size() / 3));
+        rest.text.append(tag.isEmpty ? "\"/>" : "\">");
         copied = tag.end;
         tag = next;
     }
-    elements.rest.append(text, copied);
-    return elements;
+    rest.text.append(text, copied);
+    return rest;
 }
 
 }  // namespace spectral::python

@@ -8,20 +8,30 @@
 
 namespace spectral::python {
 
-/// All elements of one name in an XML document, and the document without them.
+/// A kind of elements that a document may hold millions of.
+struct XmlKind {
+    std::string name;  ///< Without a prefix.
+    std::array<std::string, 3> attributes;
+};
+
+/// All elements of a kind.
 struct XmlElements {
     std::vector<double> values;  ///< n x 3 by rows: the attributes; NaN for other texts.
     std::vector<std::int64_t>
-        places;        ///< n x 3 by rows: their byte offsets; -1 where there is none.
-    std::string rest;  ///< The document with one element for each run of them.
+        places;  ///< n x 3 by rows: their byte offsets; -1 where there is none.
 };
 
-/// Takes the elements of a name, with any prefix, out of a document that may hold millions.
+/// An XML document without the elements of some kinds.
+struct XmlRest {
+    std::vector<XmlElements> elements;  ///< For each kind.
+    std::string text;
+};
+
+/// Takes elements, with any prefix, out of a document.
 ///
 /// In their place is one element of the same name for each run of empty elements, with the
 /// attributes `begin` and `end`: which of the n rows it stands for. What is not well-formed stays
 /// for the parser of the rest; comments and character data stay, too.
-XmlElements takeElements(std::string_view text, std::string_view name,
-                         const std::array<std::string, 3>& attributes);
+XmlRest takeElements(std::string_view text, const std::vector<XmlKind>& kinds);
 
 }  // namespace spectral::python
