@@ -1,6 +1,7 @@
 #include "shapes.h"
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -34,17 +35,29 @@ std::vector<std::int64_t> groupsOf(const Rows<double>& V, const Rows<std::int64_
     return firstEqualRows({keys.data(), keys.rows(), keys.cols()});
 }
 
+using Triangle = std::array<Vector, 3>;
+
+Triangle triangleOf(const Rows<double>& V, const std::int64_t* corners) {
+    return {V.row(corners[0]), V.row(corners[1]), V.row(corners[2])};
+}
+
+/// A normal, of length twice the area.
+Vector areaVector(const Triangle& P) { return (P[1] - P[0]).cross(P[2] - P[0]); }
+
 /// Adds a triangle's unit normal to those of its corners, weighted with their angles.
-void addNormal(const Rows<double>& V, const std::int64_t* corners, const std::int64_t* groups,
-               Table3& sums) {
-    const Vector P[3] = {V.row(corners[0]), V.row(corners[1]), V.row(corners[2])};
-    const Vector area = (P[1] - P[0]).cross(P[2] - P[0]);
+void addNormal(const Triangle& P, const std::array<std::int64_t, 3>& groups, Table3& sums) {
+    const Vector area = areaVector(P);
     const double length = area.norm();
     if (!(length > 0.0)) return;
-    for (int c = 0; c < 3; ++c) {
+    for (std::size_t c = 0; c < 3; ++c) {
         const double cosine = (P[(c + 1) % 3] - P[c]).dot(P[(c + 2) % 3] - P[c]);
         sums.row(groups[c]) += std::atan2(length, cosine) / length * area;
     }
+}
+
+/// A new normal's unit vector, on the side of the surface where the given one was.
+Vector turned(const Vector& normal, const Vector& given, const Vector& before) {
+    return (given.dot(before) < 0.0 ? -1.0 : 1.0) / normal.norm() * normal;
 }
 
 }  // namespace
@@ -69,27 +82,36 @@ Table3 followingNormals(const Rows<double>& before, const Rows<double>& after,
                         const Rows<std::int64_t>& F, const Rows<double>& N,
                         const Rows<std::int64_t>& which) {
     const std::vector<std::int64_t> groups = groupsOf(before, F, N, which);
-    Table3 given = Table3::Zero(N.rows(), 3), was = given, is = given;
+    Table3 given = Table3::Zero(N.rows(), 3), old = given, sums = given;
     std::vector<bool> hasMoved(N.rows(), false);
     for (Eigen::Index i = 0; i < N.rows(); ++i) given.row(groups[i]) += N.row(i);
     for (Eigen::Index f = 0; f < F.rows(); ++f) {
-        const std::int64_t group[3] = {groups[which(f, 0)], groups[which(f, 1)],
-                                       groups[which(f, 2)]};
-        const std::int64_t* const corners = F.data() + 3 * f;
-        addNormal(before, corners, group, was);
-        addNormal(after, corners, group, is);
-        bool moves = false;
-        for (int c = 0; c < 3; ++c) moves |= before.row(corners[c]) != after.row(corners[c]);
-        for (int c = 0; c < 3; ++c) hasMoved[group[c]] = hasMoved[group[c]] || moves;
+        const std::array<std::int64_t, 3> group{groups[which(f, 0)], groups[which(f, 1)],
+                                                groups[which(f, 2)]};
+        const Triangle was = triangleOf(before, F.data() + 3 * f);
+        const Triangle is = triangleOf(after, F.data() + 3 * f);
+        addNormal(was, group, old);
+        addNormal(is, group, sums);
+        for (const std::int64_t one : group) hasMoved[one] = hasMoved[one] || is != was;
     }
     Table3 result = N;
     for (Eigen::Index i = 0; i < N.rows(); ++i) {
         const std::int64_t group = groups[i];
-        const double length = is.row(group).norm();
-        if (!hasMoved[group] || !(length > 0.0)) continue;
-        // The file's normals may disagree with the orientation of its faces.
-        const double side = given.row(group).dot(was.row(group)) < 0.0 ? -1.0 : 1.0;
-        result.row(i) = side / length * is.row(group);
+        if (hasMoved[group] && sums.row(group).norm() > 0.0)
+            result.row(i) = turned(sums.row(group), given.row(group), old.row(group));
+    }
+    return result;
+}
+
+Table3 followingFacetNormals(const Rows<double>& before, const Rows<double>& after,
+                             const Rows<std::int64_t>& F, const Rows<double>& N) {
+    Table3 result = N;
+    for (Eigen::Index f = 0; f < F.rows(); ++f) {
+        const Triangle was = triangleOf(before, F.data() + 3 * f);
+        const Triangle is = triangleOf(after, F.data() + 3 * f);
+        const Vector normal = areaVector(is);
+        if (is != was && normal.norm() > 0.0 && (N.row(f).array() != 0.0).any())
+            result.row(f) = turned(normal, N.row(f), areaVector(was));
     }
     return result;
 }

@@ -31,4 +31,8 @@ Table3 followingNormals(const Rows<double>& before, const Rows<double>& after,
                         const Rows<std::int64_t>& F, const Rows<double>& N,
                         const Rows<std::int64_t>& which);
 
+/// The same for m normals of the triangles themselves; one that is zero is kept, too.
+Table3 followingFacetNormals(const Rows<double>& before, const Rows<double>& after,
+                             const Rows<std::int64_t>& F, const Rows<double>& N);
+
 }  // namespace spectral::python

@@ -5,6 +5,7 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <tuple>
@@ -69,6 +70,11 @@ void writePatched(const nb::bytes& text, std::size_t begin,
         const std::size_t n = places.shape(0), k = before.shape(1);
         if (before.shape(0) != n || after.shape(0) != n || after.shape(1) != k)
             throw nb::value_error("a change needs a place and two rows of numbers each");
+        const auto isWithin = [&](std::int64_t place) {
+            return place >= 0 && static_cast<std::size_t>(place) < text.size();
+        };
+        if (!std::all_of(places.data(), places.data() + n, isWithin))
+            throw nb::value_error("a number is not within the text");
         changes.push_back({places.data(), n, k, first, before.data(), after.data(), digits});
     }
     if (begin > text.size()) throw nb::value_error("a text is written from within it");
@@ -123,6 +129,15 @@ nb::object normals(const Positions& before, const Positions& after, const IndexT
     return givenByRows(result);
 }
 
+nb::object facetNormals(const Positions& before, const Positions& after, const IndexTable& faces,
+                        const Positions& given) {
+    Table3 result = [&] {
+        const nb::gil_scoped_release released;
+        return followingFacetNormals(rowsOf(before), rowsOf(after), rowsOf(faces), rowsOf(given));
+    }();
+    return givenByRows(result);
+}
+
 }  // namespace
 
 void addTexts(nb::module_& m) {
@@ -135,6 +150,7 @@ void addTexts(nb::module_& m) {
     m.def("write_patched", writePatched, "text"_a, "begin"_a, "changes"_a, "write"_a);
     m.def("first_equal_rows", firstRows, "rows"_a);
     m.def("following_normals", normals, "before"_a, "after"_a, "faces"_a, "normals"_a, "which"_a);
+    m.def("following_facet_normals", facetNormals, "before"_a, "after"_a, "faces"_a, "normals"_a);
     m.def("xml_elements", elements, "text"_a, "kinds"_a);
 }
 

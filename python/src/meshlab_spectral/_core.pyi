@@ -81,3 +81,9 @@ def following_normals(
     normals: NDArray[np.float64],
     which: NDArray[np.int64],
 ) -> NDArray[np.float64]: ...
+def following_facet_normals(
+    before: NDArray[np.float64],
+    after: NDArray[np.float64],
+    faces: NDArray[np.int64],
+    normals: NDArray[np.float64],
+) -> NDArray[np.float64]: ...

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
-from meshlab_spectral._core import first_equal_rows
+from meshlab_spectral._core import first_equal_rows, following_facet_normals
 from meshlab_spectral.documents.digits import SINGLE, digits_for, precision_warnings
 from meshlab_spectral.documents.document import (
     Array,
@@ -39,8 +38,10 @@ class _BinaryStl(Document):
         content = bytearray(self.content)
         rows = np.frombuffer(content, _TRIANGLE, self.count, _HEADER)
         changed = (after != part.vertices)[part.faces]
-        rows["corners"][changed] = after[part.faces][changed]
-        rows["normal"] = _following(rows["normal"], part, after)
+        np.copyto(rows["corners"], after.astype("<f4")[part.faces], where=changed)
+        with np.errstate(invalid="ignore"):
+            normals = rows["normal"].astype(np.float64)
+        rows["normal"] = following_facet_normals(part.vertices, after, part.faces, normals)
         target.write_bytes(content)
         return precision_warnings(part.vertices, after, target.name)
 
@@ -55,7 +56,7 @@ class _TextStl(Document):
     def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
         (part,), (after,) = self.parts, moved
         before, corners = part.vertices, part.faces.ravel()
-        normals = _following(self.normals, part, after)
+        normals = following_facet_normals(before, after, part.faces, self.normals)
         changes = [
             (self.corners, 1, before[corners], after[corners], digits_for(before, after)),
             (self.facets, 2, self.normals, normals, SINGLE),
@@ -139,25 +140,3 @@ def _connected(path: Path, points: Array) -> Part:
     is_new = first == np.arange(len(points))
     index = np.cumsum(is_new) - 1
     return Part("", points[is_new], index[first].reshape(-1, 3))
-
-
-def _following(normals: NDArray[np.floating], part: Part, after: Array) -> Array:
-    """Return the facet normals, recomputed for triangles that have moved.
-
-    They stay on the side of the surface where they were; a facet without a normal or without area
-    is left as it is.
-    """
-    with np.errstate(invalid="ignore"):
-        result = normals.astype(np.float64)
-    new, old = (_area_vectors(shape[part.faces]) for shape in (after, part.vertices))
-    length = np.linalg.norm(new, axis=1)
-    moved = (after != part.vertices).any(axis=1)[part.faces].any(axis=1)
-    chosen = moved & (length > 0) & result.any(axis=1)
-    new[np.einsum("ij,ij->i", result, old) < 0] *= -1
-    result[chosen] = new[chosen] / length[chosen, None]
-    return result
-
-
-def _area_vectors(corners: Array) -> Array:
-    """Return a normal of each triangle, of length twice its area."""
-    return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])

@@ -212,12 +212,15 @@ def _document(path: Path, data: bytes, archive: zipfile.ZipFile) -> Document:
         raise ValueError(
             f"its {len(data)} bytes would grow more than {_LARGEST_RATIO} times when unpacked"
         )
-    if damaged := archive.testzip():
-        raise ValueError(f"{damaged} in it is damaged")
     relationships = ElementTree.fromstring(archive.read("_rels/.rels"))
     targets = {r.attrib["Type"].rpartition("/")[2]: r.attrib["Target"] for r in relationships}
     root = targets["3dmodel"].lstrip("/")
     models = _models(path, archive, root)
+    others = [info for info in entries if info.filename not in models]
+    if len(others) + len(models) < len(entries):
+        raise ValueError("two models in it have the same name")
+    for info in others:
+        archive.read(info)  # checks it
     objects = {(m, o): found for m, model in models.items() for o, found in model.objects.items()}
     contents = _contents(models, models[root].unit, archive.namelist())
     document = _ThreeMfDocument(path, [], contents, data=data, meshes=[])
