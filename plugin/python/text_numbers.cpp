@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <cstring>
 #include <limits>
+#include <stdexcept>
 
 namespace spectral::python {
 
@@ -155,6 +157,40 @@ bool readCorner(std::string_view word, std::int64_t& vertex, std::int64_t& norma
     return readInteger(at, end, normal) && (at == end || *at == '/');
 }
 
+template <class Scalar>
+double scalarAt(const char* at, bool isReversed) {
+    std::array<char, sizeof(Scalar)> bytes;
+    std::copy_n(at, bytes.size(), bytes.begin());
+    if (isReversed) std::reverse(bytes.begin(), bytes.end());
+    Scalar scalar;
+    std::memcpy(&scalar, bytes.data(), bytes.size());
+    return static_cast<double>(scalar);
+}
+
+struct Decoder {
+    std::size_t size;
+    double (*read)(const char* at, bool isReversed);
+};
+
+Decoder decoderOf(const std::string& type) {
+    if (type == "i1") return {1, scalarAt<std::int8_t>};
+    if (type == "u1") return {1, scalarAt<std::uint8_t>};
+    if (type == "i2") return {2, scalarAt<std::int16_t>};
+    if (type == "u2") return {2, scalarAt<std::uint16_t>};
+    if (type == "i4") return {4, scalarAt<std::int32_t>};
+    if (type == "u4") return {4, scalarAt<std::uint32_t>};
+    if (type == "f4") return {4, scalarAt<float>};
+    if (type == "f8") return {8, scalarAt<double>};
+    throw std::invalid_argument("unknown type " + type);
+}
+
+bool isHostBigEndian() {
+    const std::uint16_t one = 1;
+    char first = 0;
+    std::memcpy(&first, &one, 1);
+    return first == 0;
+}
+
 /// The numbers of a change, one after the other.
 struct Replacing {
     const Change* change;
@@ -257,6 +293,49 @@ NumberTable readNumbers(std::string_view text, const ChosenLines& lines, const L
         }
     }
     return numbers;
+}
+
+NumberTable readBinary(std::string_view data, std::size_t& begin, std::size_t count,
+                       const std::vector<BinaryProperty>& properties, bool isBigEndian) {
+    struct Column {
+        bool isList;
+        Decoder size, number;
+    };
+    std::vector<Column> columns;
+    NumberTable table;
+    for (const auto& [sizeType, type] : properties) {
+        const bool isList = !sizeType.empty();
+        columns.push_back({isList, decoderOf(isList ? sizeType : type), decoderOf(type)});
+        if (isList) table.lists.emplace_back();
+    }
+    const bool isReversed = isBigEndian != isHostBigEndian();
+    std::size_t left = data.size() - begin;
+    const auto append = [&](const Decoder& decoder, std::size_t n, std::vector<double>& numbers) {
+        if (n > left / decoder.size) return false;
+        for (std::size_t k = 0; k < n; ++k, begin += decoder.size)
+            numbers.push_back(decoder.read(data.data() + begin, isReversed));
+        left -= n * decoder.size;
+        return true;
+    };
+    const auto readRow = [&] {
+        std::vector<double> size;
+        std::size_t list = 0;
+        for (const auto& [isList, sizeDecoder, decoder] : columns) {
+            if (!isList) {
+                if (!append(decoder, 1, table.single)) return false;
+                continue;
+            }
+            size.clear();
+            NumberLists& lists = table.lists[list++];
+            if (!append(sizeDecoder, 1, size) || !isSize(size[0], std::int64_t(left))) return false;
+            lists.sizes.push_back(static_cast<std::int64_t>(size[0]));
+            if (!append(decoder, static_cast<std::size_t>(size[0]), lists.items)) return false;
+        }
+        return true;
+    };
+    for (std::size_t i = 0; i < count && table.bad < 0; ++i)
+        if (!readRow()) table.bad = static_cast<std::int64_t>(i);
+    return table;
 }
 
 Corners readCorners(std::string_view text, const ChosenLines& lines) {

@@ -60,6 +60,17 @@ struct Layout {
 NumberTable readNumbers(std::string_view text, const ChosenLines& lines, const Layout& layout,
                         const Syntax& syntax);
 
+/// A number of a binary row, or a list of them.
+struct BinaryProperty {
+    std::string sizeType;  ///< Of a list's size; empty if it is a number.
+    std::string type;      ///< As in NumPy: i1, u1, i2, u2, i4, u4, f4, f8.
+};
+
+/// Reads `count` binary rows from byte `begin` on, which is moved to their end.
+/// @return  with `bad`, the row in which the data end.
+NumberTable readBinary(std::string_view data, std::size_t& begin, std::size_t count,
+                       const std::vector<BinaryProperty>& properties, bool isBigEndian);
+
 /// The corners of faces in OBJ files: words such as 7, 7/1, 7//3 and 7/1/3.
 struct Corners {
     std::vector<std::int64_t>

@@ -38,6 +38,16 @@ nb::tuple lines(const nb::bytes& text, std::size_t begin, std::size_t limit,
                           givenRows(std::move(found.kinds)));
 }
 
+/// The numbers, the lists, the bad row.
+nb::tuple tupleOf(NumberTable&& table, std::size_t properties) {
+    nb::list lists;
+    for (NumberLists& one : table.lists)
+        lists.append(
+            nb::make_tuple(givenRows(std::move(one.sizes)), givenRows(std::move(one.items))));
+    const std::size_t columns = properties - table.lists.size();
+    return nb::make_tuple(givenRows(std::move(table.single), columns), lists, table.bad);
+}
+
 nb::tuple numbers(const nb::bytes& text, const Places& starts, const Counts& words, int first,
                   const std::vector<bool>& areLists, bool hasComments, bool isWhole) {
     NumberTable found = [&] {
@@ -45,12 +55,20 @@ nb::tuple numbers(const nb::bytes& text, const Places& starts, const Counts& wor
         return readNumbers(viewOf(text), {starts.data(), words.data(), starts.shape(0)},
                            {first, areLists, isWhole}, {hasComments});
     }();
-    nb::list lists;
-    for (NumberLists& one : found.lists)
-        lists.append(
-            nb::make_tuple(givenRows(std::move(one.sizes)), givenRows(std::move(one.items))));
-    const std::size_t columns = areLists.size() - found.lists.size();
-    return nb::make_tuple(givenRows(std::move(found.single), columns), lists, found.bad);
+    return tupleOf(std::move(found), areLists.size());
+}
+
+nb::tuple binaryNumbers(const nb::bytes& data, std::size_t begin, std::size_t count,
+                        const std::vector<std::tuple<std::string, std::string>>& types,
+                        bool isBigEndian) {
+    std::vector<BinaryProperty> properties;
+    for (const auto& [sizeType, type] : types) properties.push_back({sizeType, type});
+    if (begin > data.size()) throw nb::value_error("rows begin within the data");
+    NumberTable found = [&] {
+        const nb::gil_scoped_release released;
+        return readBinary(viewOf(data), begin, count, properties, isBigEndian);
+    }();
+    return nb::make_tuple(tupleOf(std::move(found), properties.size()), begin);
 }
 
 nb::tuple corners(const nb::bytes& text, const Places& starts, const Counts& words) {
@@ -146,6 +164,8 @@ void addTexts(nb::module_& m) {
           "any_case"_a = false, "continued"_a = -1);
     m.def("text_numbers", numbers, "text"_a, "starts"_a, "words"_a, "first"_a, "are_lists"_a,
           nb::kw_only(), "comments"_a = false, "is_whole"_a = false);
+    m.def("binary_numbers", binaryNumbers, "data"_a, "begin"_a, "count"_a, "types"_a,
+          "big_endian"_a);
     m.def("text_corners", corners, "text"_a, "starts"_a, "words"_a);
     m.def("write_patched", writePatched, "text"_a, "begin"_a, "changes"_a, "write"_a);
     m.def("first_equal_rows", firstRows, "rows"_a);

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Progress = Callable[[str, float], object]
+_Numbers = tuple[NDArray[np.float64], list[tuple[NDArray[np.int64], NDArray[np.float64]]], int]
 
 def filters() -> list[dict[str, Any]]: ...
 def apply(
@@ -60,7 +61,10 @@ def text_numbers(
     *,
     comments: bool = False,
     is_whole: bool = False,
-) -> tuple[NDArray[np.float64], list[tuple[NDArray[np.int64], NDArray[np.float64]]], int]: ...
+) -> _Numbers: ...
+def binary_numbers(
+    data: bytes, begin: int, count: int, types: Sequence[tuple[str, str]], big_endian: bool
+) -> tuple[_Numbers, int]: ...
 def text_corners(
     text: bytes, starts: NDArray[np.int64], words: NDArray[np.int32]
 ) -> tuple[NDArray[np.int64], int]: ...

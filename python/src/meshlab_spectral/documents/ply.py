@@ -7,15 +7,15 @@ import os
 import re
 import warnings
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from plyfile import PlyData, PlyElement, PlyElementParseError, PlyListProperty, PlyParseError
+from plyfile import PlyData, PlyElement, PlyListProperty, PlyParseError
 
+from meshlab_spectral._core import binary_numbers
 from meshlab_spectral.documents.digits import digits_for, rounding_told, widening_warnings
 from meshlab_spectral.documents.document import (
     Array,
@@ -30,7 +30,7 @@ from meshlab_spectral.documents.document import (
 from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.documents.polygons import strip_triangles, triangles
 from meshlab_spectral.documents.side_files import copy_side_files
-from meshlab_spectral.documents.text import Lines, lines_of, write_patched
+from meshlab_spectral.documents.text import lines_of, write_patched
 
 _AXES, _NORMALS = ("x", "y", "z"), ("nx", "ny", "nz")
 _TEXTURE = re.compile(rb"(?m)^[ \t]*comment[ \t]+TextureFile[ \t]+(.*\S)")
@@ -44,29 +44,19 @@ _KNOWN = {
 }
 _SELECTED = 0x20  # VCG's flag
 _Rows = np.ndarray[Any, Any]
+_Table = dict[str, Any]  # the numbers of a property; for lists their sizes, and all items
 _Changes = dict[tuple[str, str, str], tuple[Array, Array]]  # before and after
-
-
-@dataclass(frozen=True, eq=False)
-class _Table:
-    """The rows of an element."""
-
-    names: list[str]
-    columns: dict[str, NDArray[Any]]
-    lists: dict[str, tuple[Indices, NDArray[Any]]]  # the size of each row's, and all items
-    size: int = 0  # in bytes, if binary
-    rows: Lines | _Rows | None = None  # None for binary rows of several sizes
 
 
 @dataclass(kw_only=True)
 class PlyDocument(Document):
-    """A PLY file with its bytes and its rows of vertices; those of a binary one are a span."""
+    """A PLY file with its bytes."""
 
     content: bytes
     header: bytes
     ply: PlyData
-    rows: Lines | _Rows
-    span: slice
+    rows: Indices | _Rows  # of the vertices: byte offsets of text lines, or binary rows
+    begin: int  # byte offset of binary rows
     normals: Array | None
     first: dict[tuple[str, str, str], int]  # text: the words before coordinates, and before normals
 
@@ -89,14 +79,14 @@ class PlyDocument(Document):
             normals = following_normals(part.vertices, after, part.faces, self.normals)
             changes[_NORMALS] = self.normals, normals
         file.write(_widened(self.header) if is_wide else self.header)
-        if isinstance(rows, Lines):
+        if self.ply.text:
             digits = digits_for(part.vertices, after)
-            words = [(rows.starts, self.first[a], *pair, digits) for a, pair in changes.items()]
+            words = [(rows, self.first[a], *pair, digits) for a, pair in changes.items()]
             write_patched(file, self.content, words, start)
         else:
-            content = memoryview(self.content)
+            content, end = memoryview(self.content), self.begin + rows.nbytes
             new = _with_columns(rows, changes, self.ply.byte_order if is_wide else None)
-            file.writelines([content[start : self.span.start], new, content[self.span.stop :]])
+            file.writelines([content[start : self.begin], new, content[end:]])
 
 
 def _with_columns(rows: _Rows, changes: _Changes, wide: str | None) -> memoryview:
@@ -126,9 +116,9 @@ def read(path: Path) -> PlyDocument:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")  # about empty lists and non-integers
             ply, counts, header = _read_header(content)
-            tables, span = _read_rows(content, ply, counts, len(header))
+            tables, rows, begin = _read_rows(content, ply, counts, len(header))
             vertex = tables["vertex"]
-            rows = _checked_rows(path, ply, vertex)
+            _check_vertices(path, ply, vertex)
             vertices = _columns(vertex, *_AXES)
             check_vertices(path, vertices)
             faces = _read_faces(tables, vertices)
@@ -145,8 +135,8 @@ def read(path: Path) -> PlyDocument:
         content=content,
         header=header,
         ply=ply,
-        rows=rows,
-        span=span,
+        rows=rows if ply.text else np.ndarray(len(vertices), _type(ply, vertex), content, begin),
+        begin=begin,
         normals=_columns(vertex, *_NORMALS) if has_normals else None,
         first={_AXES: _first_word(vertex, "x"), _NORMALS: _first_word(vertex, "nx")},
     )
@@ -168,118 +158,76 @@ def _read_header(content: bytes) -> tuple[PlyData, dict[str, int], bytes]:
 
 def _read_rows(
     content: bytes, ply: PlyData, counts: dict[str, int], start: int
-) -> tuple[dict[str, _Table], slice]:
-    """Read the rows of all elements, and return the byte range of binary vertices, too."""
-    tables, span = dict[str, _Table](), slice(0)
+) -> tuple[dict[str, _Table], Indices, int]:
+    """Read all elements; return the byte offsets of text vertices, and that of binary ones, too."""
+    tables, begin, at = dict[str, _Table](), 0, 0
     if any(not 0 <= count <= len(content) for count in counts.values()):
-        raise ValueError(f"it cannot have the numbers of rows {list(counts.values())}")
+        raise ValueError(f"it cannot have {', '.join(map(str, counts.values()))} rows")
     lines = lines_of(content, begin=start, limit=sum(counts.values()) if ply.text else 0)
+    starts = lines.starts[:0]
     for element in ply:
-        count = counts[element.name]
+        count, properties = counts[element.name], element.properties
+        own = lines[at : at + count]
+        if element.name == "vertex":
+            starts, begin = own.starts, start
         if ply.text:
-            table = _text_rows(element, count, lines[:count], ply)
-            lines = lines[count:]
+            are_lists = [isinstance(one, PlyListProperty) for one in properties]
+            found, at = own.table(are_lists, is_whole=True), at + count
         else:
-            table = _binary_rows(element, count, content, start, ply)
-        tables[element.name] = table
-        span = slice(start, start + table.size) if element.name == "vertex" else span
-        start += table.size
-    return tables, span
-
-
-def _text_rows(element: PlyElement, count: int, lines: Lines, ply: PlyData) -> _Table:
-    are_lists = [isinstance(one, PlyListProperty) for one in element.properties]
-    numbers, lists, bad = lines.table(are_lists, is_whole=True)
-    if bad >= 0:
-        raise _fault(element, bad, lines, ply)
-    if len(lines) < count:
-        raise ValueError(f"element {element.name!r}: row {len(lines)}: early end-of-file")
-    single, several, names = _names(element)
-    columns, found = zip(single, numbers.T, strict=True), zip(several, lists, strict=True)
-    return _Table(names, dict(columns), dict(found), rows=lines)
-
-
-def _fault(element: PlyElement, row: int, lines: Lines, ply: PlyData) -> ValueError:
-    """Return what plyfile says about a row."""
-    try:
-        _with_plyfile(element, 1, b" ".join(lines.words_of(row)), ply)
-    except PlyElementParseError as error:
-        told = PlyElementParseError(error.message, error.element, row, error.prop)
-        return ValueError(str(told))
-    return ValueError(f"element {element.name!r}: row {row}: malformed input")
-
-
-def _names(element: PlyElement) -> tuple[list[str], list[str], list[str]]:
-    """Return the names of the properties that are numbers, of those that are lists, and all."""
-    several = [one.name for one in element.properties if isinstance(one, PlyListProperty)]
-    names = [one.name for one in element.properties]
-    return [name for name in names if name not in several], several, names
-
-
-def _binary_rows(
-    element: PlyElement, count: int, content: bytes, start: int, ply: PlyData
-) -> _Table:
-    single, several, names = _names(element)
-    lists: dict[str, tuple[Indices, NDArray[Any]]]
-    rows = _even_rows(element, count, content, start, ply.byte_order)
-    if rows is not None:
-        lists = {
-            name: (np.full(count, rows[name].shape[1]), rows[name].reshape(-1)) for name in several
+            types = [(getattr(one, "len_dtype", ""), one.val_dtype) for one in properties]
+            is_big = ply.byte_order == ">"
+            found, start = binary_numbers(content, start, count, types, is_big)
+        numbers, lists, bad = found
+        if bad >= 0 or (ply.text and len(own) < count):
+            told = (
+                b" ".join(own.words_of(bad)).decode(errors="replace")[:80]
+                if 0 <= bad < len(own)
+                else ""
+            )
+            reason = f"is {told!r}, unlike its header" if told else "is cut off"
+            raise ValueError(
+                f"element {element.name!r}: row {bad if bad >= 0 else len(own)} {reason}"
+            )
+        single, several = iter(numbers.T), iter(lists)
+        tables[element.name] = {
+            one.name: next(several if isinstance(one, PlyListProperty) else single)
+            for one in properties
         }
-        return _Table(names, {name: rows[name] for name in single}, lists, rows.nbytes, rows)
-    uneven, size = _with_plyfile(element, count, content[start:], ply)
-    sizes = {name: np.array(list(map(len, uneven[name])), np.int64) for name in several}
-    lists = {name: (sizes[name], np.concatenate(uneven[name])) for name in several}
-    return _Table(names, {name: uneven[name] for name in single}, lists, size)
+    return tables, starts, begin
 
 
-def _even_rows(
-    element: PlyElement, count: int, content: bytes, start: int, order: str
-) -> _Rows | None:
-    """Return the rows if their lists fit triangles alone, or quadrilaterals alone; else None."""
-    for corners in (3, 4):
-        fields = list[Any]()
-        for one in element.properties:
-            shape: tuple[int, ...] = ()
-            if isinstance(one, PlyListProperty):
-                shape = (2 * corners if one.name == "texcoord" else corners,)
-                fields.append((f"{one.name}\n", order + one.len_dtype))
-            fields.append((one.name, order + one.val_dtype, shape))
-        with suppress(ValueError, TypeError):  # too few bytes
-            rows = np.ndarray(count, np.dtype(fields), content, start)
-            if all((rows[f"{name}\n"] == rows[name].shape[1]).all() for name in _names(element)[1]):
-                return rows
-    return None
-
-
-def _with_plyfile(element: PlyElement, count: int, body: bytes, ply: PlyData) -> tuple[_Rows, int]:
-    """Return rows with lists of any length, slowly, and their size in bytes."""
-    format_, own = ply.header.split("\n")[1], element.header.replace(" 0\n", f" {count}\n", 1)
-    stream = io.BytesIO(f"ply\n{format_}\n{own}\nend_header\n".encode() + body)
-    rows = PlyData.read(stream)[element.name].data
-    return rows, len(body) - len(stream.read())
+def _sizes(table: _Table) -> dict[str, int]:
+    """Return how many items the lists of each property have in the first row, at least."""
+    lists = {name: one[0] for name, one in table.items() if isinstance(one, tuple)}
+    return {name: int(sizes[0]) if len(sizes) else 0 for name, sizes in lists.items()}
 
 
 def _first_word(table: _Table, name: str) -> int:
     """Return how many words text rows have before a number; their lists have the same size."""
-    before = table.names[: table.names.index(name)] if name in table.names else []
-    sizes = [table.lists[one][0][:1].sum() for one in before if one in table.lists]
-    return len(before) + int(sum(sizes))
+    before = list(table)[: list(table).index(name)] if name in table else []
+    return len(before) + sum(_sizes(table).get(one, 0) for one in before)
 
 
-def _checked_rows(path: Path, ply: PlyData, table: _Table) -> Lines | _Rows:
-    names = " ".join(["", *table.names, ""])
+def _type(ply: PlyData, table: _Table) -> np.dtype[Any]:
+    """Return the type of binary vertices."""
+    order, sizes, fields = ply.byte_order, _sizes(table), list[Any]()
+    for one in ply["vertex"].properties:
+        if one.name in sizes:
+            fields.append((f"{one.name}\n", order + one.len_dtype))
+        fields.append(
+            (one.name, order + one.val_dtype, (sizes[one.name],) if one.name in sizes else ())
+        )
+    return np.dtype(fields)
+
+
+def _check_vertices(path: Path, ply: PlyData, table: _Table) -> None:
+    names = " ".join(["", *table, ""])
     is_apart = " x y z " not in names or (" nx " in names and " nx ny nz " not in names)
-    is_uneven = any((sizes != sizes[0]).any() for sizes, _ in table.lists.values() if len(sizes))
-    if (
-        table.rows is None
-        or is_uneven
-        or (ply.text and is_apart)
-        or not _has_floats(ply["vertex"], *_AXES)
-    ):
+    sizes = _sizes(table)
+    is_uneven = any((table[name][0] != size).any() for name, size in sizes.items())
+    if is_uneven or (ply.text and is_apart) or not _has_floats(ply["vertex"], *_AXES):
         what = "has vertices with lists of several lengths, or without floats x, y, z side by side"
         raise unsupported(path, what, "open it in MeshLab and export it as .ply")
-    return table.rows
 
 
 def _has_floats(element: PlyElement, *names: str) -> bool:
@@ -287,19 +235,19 @@ def _has_floats(element: PlyElement, *names: str) -> bool:
 
 
 def _columns(table: _Table, *names: str) -> Array:
-    return np.column_stack([table.columns[name] for name in names]).astype(np.float64, copy=False)
+    return np.column_stack([table[name] for name in names])
 
 
-def _corners(table: _Table | None) -> tuple[Indices, Indices] | None:
+def _corners(table: _Table) -> tuple[Indices, Indices] | None:
     """Return the corners of all faces or strips, and how many each has; None if there are none."""
-    lists = [table.lists[name] for name in _CORNERS if name in table.lists] if table else []
-    return (lists[0][1].astype(np.int64), lists[0][0]) if lists and len(lists[0][0]) else None
+    held = [table[name] for name in _CORNERS if name in table]
+    return (held[0][1].astype(np.int64), held[0][0]) if held and len(held[0][0]) else None
 
 
 def _read_faces(tables: dict[str, _Table], vertices: Array) -> Indices:
-    if faces := _corners(tables.get("face")):
+    if faces := _corners(tables.get("face", {})):
         return triangles(*faces, vertices)
-    if strips := _corners(tables.get("tristrips")):
+    if strips := _corners(tables.get("tristrips", {})):
         return strip_triangles(np.insert(strips[0], np.cumsum(strips[1]), -1))
     return np.zeros((0, 3), np.int64)
 
@@ -307,11 +255,11 @@ def _read_faces(tables: dict[str, _Table], vertices: Array) -> Indices:
 def _selected(tables: dict[str, _Table], count: int) -> NDArray[np.bool_] | None:
     """Return which vertices MeshLab's flags select, directly or by a face; None if none."""
     chosen = np.zeros(count, bool)
-    if "flags" in tables["vertex"].columns:
-        chosen |= tables["vertex"].columns["flags"].astype(np.int64) & _SELECTED > 0
-    faces = _corners(tables.get("face"))
-    if faces and "flags" in tables["face"].columns:
-        flags = tables["face"].columns["flags"].astype(np.int64) & _SELECTED > 0
+    if "flags" in tables["vertex"]:
+        chosen |= tables["vertex"]["flags"].astype(np.int64) & _SELECTED > 0
+    faces = _corners(tables.get("face", {}))
+    if faces and "flags" in tables["face"]:
+        flags = tables["face"]["flags"].astype(np.int64) & _SELECTED > 0
         chosen[faces[0][np.repeat(flags, faces[1])]] = True
     return chosen if chosen.any() else None
 

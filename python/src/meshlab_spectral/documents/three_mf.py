@@ -14,11 +14,9 @@ from dataclasses import dataclass
 from graphlib import TopologicalSorter
 from itertools import chain
 from pathlib import Path
-from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
-from numpy.typing import NDArray
 
 from meshlab_spectral._core import xml_elements
 from meshlab_spectral.documents.digits import digits_for
@@ -86,23 +84,16 @@ class _Elements:
 
     def among(self, elements: Iterable[ElementTree.Element]) -> tuple[Array, Indices]:
         """Return values and places of those that elements of the rest of the model stand for."""
-        spans = [slice(*(int(one.attrib[end]) for end in ("begin", "end"))) for one in elements]
-        values, places = _joined(self.values, spans), _joined(self.places, spans)
-        for row, column in np.argwhere(np.isnan(values)).tolist():
-            values[row, column] = self._decoded(int(places[row, column]), column)
+        spans = [np.arange(int(one.attrib["begin"]), int(one.attrib["end"])) for one in elements]
+        rows = np.concatenate([np.arange(0), *spans])
+        values, places = self.values[rows], self.places[rows]
+        for row, column in np.argwhere(np.isnan(values)).tolist():  # blanks or &#49; in it
+            place = int(places[row, column])
+            if place < 0:
+                raise KeyError(self.attributes[column])
+            end = self.text.index(self.text[place - 1 : place], place)
+            values[row, column] = float(html.unescape(self.text[place:end].decode()))
         return values, places
-
-    def _decoded(self, place: int, column: int) -> float:
-        """Return an attribute with blanks or references to characters in it."""
-        if place < 0:
-            raise KeyError(self.attributes[column])
-        quote = self.text[place - 1 : place]
-        return float(html.unescape(self.text[place : self.text.index(quote, place)].decode()))
-
-
-def _joined(rows: NDArray[Any], spans: list[slice]) -> Any:
-    parts = [rows[span] for span in spans]
-    return parts[0] if len(parts) == 1 else np.concatenate([rows[:0], *parts])
 
 
 class _Model:
