@@ -1,6 +1,7 @@
 #include "shapes.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -14,13 +15,20 @@ using Vector = Eigen::RowVector3d;
 std::uint64_t hashOf(const double* row, Eigen::Index columns) {
     std::uint64_t hash = 0;
     for (Eigen::Index k = 0; k < columns; ++k) {
-        const double value = row[k] + 0.0;  // no negative zero
+        const double value = row[k] == row[k] ? row[k] + 0.0 : 1.0;  // no negative zero, no payload
         std::uint64_t bits = 0;
         std::memcpy(&bits, &value, sizeof bits);
-        hash = (hash ^ bits) * 0x9E3779B97F4A7C15U;  // 2^64 over the golden ratio
-        hash ^= hash >> 29;
+        hash ^= bits;
+        hash ^= hash >> 32;           // the low bits of short numbers are all zero
+        hash *= 0x9E3779B97F4A7C15U;  // 2^64 over the golden ratio
+        hash ^= hash >> 32;
     }
     return hash;
+}
+
+bool areEqual(const double* a, const double* b, Eigen::Index columns) {
+    const auto same = [](double x, double y) { return x == y || (x != x && y != y); };
+    return std::equal(a, a + columns, b, same);
 }
 
 /// The first of the normals that are equal to each, at the same position.
@@ -70,7 +78,7 @@ std::vector<std::int64_t> firstEqualRows(const Rows<double>& rows) {
     for (Eigen::Index i = 0; i < n; ++i) {
         const double* const row = rows.data() + i * columns;
         std::size_t slot = hashOf(row, columns) & (size - 1);
-        while (table[slot] >= 0 && rows.row(table[slot]) != rows.row(i))
+        while (table[slot] >= 0 && !areEqual(rows.data() + table[slot] * columns, row, columns))
             slot = (slot + 1) & (size - 1);
         if (table[slot] < 0) table[slot] = i;
         first[i] = table[slot];

@@ -13,7 +13,7 @@ using Rows =
     Eigen::Map<const Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>;
 using Table3 = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
-/// For each row, the first one that is equal; zeros of both signs are.
+/// For each row, the first one that is equal, as zeros of both signs are, and what is no number.
 std::vector<std::int64_t> firstEqualRows(const Rows<double>& rows);
 
 /// New normals of a shape whose vertices have moved.

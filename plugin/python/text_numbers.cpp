@@ -230,7 +230,7 @@ struct Replacing {
             cursor.at = std::find(cursor.at, cursor.end, cursor.at[-1]);
         else
             cursor.skipWord();
-        if (value == change->before[row * change->k + column]) return;
+        if (value == change->before[row * change->k + column] || begin < copied) return;
         std::array<char, 64> digits;
         const std::to_chars_result end =
             std::to_chars(digits.data(), digits.data() + digits.size(), value,

@@ -44,13 +44,12 @@ def laplacian(
 def set_memory_limit(limit: float) -> None: ...
 def text_lines(
     text: bytes,
-    begin: int = 0,
-    limit: int = ...,
-    keywords: Sequence[str] = (),
-    *,
-    comments: bool = False,
-    any_case: bool = False,
-    continued: int = -1,
+    begin: int,
+    limit: int,
+    keywords: Sequence[str],
+    comments: bool,
+    any_case: bool,
+    continued: int,
 ) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.uint8]]: ...
 def text_numbers(
     text: bytes,
@@ -58,9 +57,8 @@ def text_numbers(
     words: NDArray[np.int32],
     first: int,
     are_lists: Sequence[bool],
-    *,
-    comments: bool = False,
-    is_whole: bool = False,
+    comments: bool,
+    is_whole: bool,
 ) -> _Numbers: ...
 def binary_numbers(
     data: bytes, begin: int, count: int, types: Sequence[tuple[str, str]], big_endian: bool

@@ -96,7 +96,7 @@ def test_lines_and_words_are_those_that_python_splits(text: str, comments: bool)
         (line.partition(b"#")[0] if comments else line).split()
         for line in text.encode().splitlines()
     ]
-    lines = lines_of(text.encode(), [b"v", b"x"], comments=comments)
+    lines = lines_of(text.encode(), ["v", "x"], comments=comments)
     assert [lines.words_of(k) for k in range(len(lines))] == [row for row in rows if row]
     assert lines.words.tolist() == [len(row) for row in rows if row]
     kinds = {b"v": 0, b"x": 1}
@@ -134,8 +134,20 @@ def test_a_place_outside_of_the_text_is_refused() -> None:
 @given(st.lists(st.sampled_from([0.0, -0.0, 1.0, math.inf]) | doubles, min_size=2).map(np.array))
 def test_equal_rows_are_found(values: Array) -> None:
     rows = values[: len(values) // 2 * 2].reshape(-1, 2)
-    first = [next((j for j in range(i) if (rows[j] == row).all()), i) for i, row in enumerate(rows)]
+    first = [
+        next(j for j in range(i + 1) if np.array_equal(rows[j], rows[i], equal_nan=True))
+        for i in range(len(rows))
+    ]
     assert _core.first_equal_rows(rows).tolist() == first
+
+
+def test_equal_rows_are_found_soon_among_short_and_missing_numbers() -> None:
+    side = np.arange(700.0)
+    rows = np.stack(np.meshgrid(side, side, [0.0, math.nan]), axis=-1).reshape(-1, 3)
+    assert (
+        _core.first_equal_rows(np.vstack([rows, rows])) == np.tile(np.arange(len(rows)), 2)
+    ).all()
+    assert not _core.first_equal_rows(np.full((10**6, 3), math.nan)).any()
 
 
 # A comment, character data and an instruction may hold what looks like elements.

@@ -27,26 +27,24 @@ from meshlab_spectral.documents.side_files import copy_side_files
 from meshlab_spectral.documents.text import Lines, lines_of, write_patched
 
 _CONTENTS = {
-    b"vn": "normals",
-    b"vt": "texture coordinates",
-    b"mtllib": "materials",
-    b"usemtl": "materials",
-    b"g": "groups",
-    b"o": "object names",
-    b"s": "smoothing groups",
-    b"l": "lines and points",
-    b"p": "lines and points",
-    b"cstype": "free-form curves or surfaces",
+    "vn": "normals",
+    "vt": "texture coordinates",
+    "mtllib": "materials",
+    "usemtl": "materials",
+    "g": "groups",
+    "o": "object names",
+    "s": "smoothing groups",
+    "l": "lines and points",
+    "p": "lines and points",
+    "cstype": "free-form curves or surfaces",
 }
 _TEXTURE = re.compile(
     rb"^[ \t]*(?:map_(?!aat\b)\w+|bump|disp|decal|norm|refl)"
     rb"(?:[ \t]+-\w+(?:[ \t]+(?:on|off|sphere|cube_\w+|[rgbmlz]|[-+\d.e]+)(?=[ \t]))*)*[ \t]+(.*)",
     re.MULTILINE | re.IGNORECASE,
 )
-
-
-_KEYWORDS = [b"v", b"f", *_CONTENTS]
-_VERTEX, _FACE, _NORMAL, _LIBRARY = map(_KEYWORDS.index, (b"v", b"f", b"vn", b"mtllib"))
+_KEYWORDS = ["v", "f", *_CONTENTS]
+_VERTEX, _FACE, _NORMAL, _LIBRARY = map(_KEYWORDS.index, ("v", "f", "vn", "mtllib"))
 _COMMENT = re.compile(rb"(?:\A|[\r\n])\s*#")
 _CONTINUED = re.compile(rb"(?:\A|[\r\n])\s*vn?\s[^\r\n#]*\\[ \t]*(?:[\r\n#]|\Z)")
 

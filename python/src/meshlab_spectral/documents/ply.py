@@ -45,7 +45,7 @@ _KNOWN = {
 _SELECTED = 0x20  # VCG's flag
 _Rows = np.ndarray[Any, Any]
 _Table = dict[str, Any]  # the numbers of a property; for lists their sizes, and all items
-_Changes = dict[tuple[str, str, str], tuple[Array, Array]]  # before and after
+_Changes = dict[tuple[str, ...], tuple[Array, Array]]  # before and after
 
 
 @dataclass(kw_only=True)
@@ -58,7 +58,7 @@ class PlyDocument(Document):
     rows: Indices | _Rows  # of the vertices: byte offsets of text lines, or binary rows
     begin: int  # byte offset of binary rows
     normals: Array | None
-    first: dict[tuple[str, str, str], int]  # text: the words before coordinates, and before normals
+    first: dict[tuple[str, ...], int]  # text: the words before coordinates, and before normals
 
     def save(self, target: Path, moved: Sequence[Array]) -> list[str]:  # noqa: D102
         before, (after,) = self.parts[0].vertices, moved
@@ -74,7 +74,7 @@ class PlyDocument(Document):
 
     def _write(self, file: IO[bytes], after: Array, is_wide: bool) -> None:
         (part,), rows, start = self.parts, self.rows, len(self.header)
-        changes = {_AXES: (part.vertices, after)}
+        changes: _Changes = {_AXES: (part.vertices, after)}
         if self.normals is not None:
             normals = following_normals(part.vertices, after, part.faces, self.normals)
             changes[_NORMALS] = self.normals, normals
@@ -178,16 +178,11 @@ def _read_rows(
             is_big = ply.byte_order == ">"
             found, start = binary_numbers(content, start, count, types, is_big)
         numbers, lists, bad = found
+        if ply.text and bad >= 0:
+            told = b" ".join(own.words_of(bad)).decode(errors="replace")[:80]
+            raise ValueError(f"element {element.name!r}: row {bad} is {told!r}, unlike its header")
         if bad >= 0 or (ply.text and len(own) < count):
-            told = (
-                b" ".join(own.words_of(bad)).decode(errors="replace")[:80]
-                if 0 <= bad < len(own)
-                else ""
-            )
-            reason = f"is {told!r}, unlike its header" if told else "is cut off"
-            raise ValueError(
-                f"element {element.name!r}: row {bad if bad >= 0 else len(own)} {reason}"
-            )
+            raise ValueError(f"it ends in element {element.name!r}, which has {count} rows")
         single, several = iter(numbers.T), iter(lists)
         tables[element.name] = {
             one.name: next(several if isinstance(one, PlyListProperty) else single)
@@ -214,9 +209,8 @@ def _type(ply: PlyData, table: _Table) -> np.dtype[Any]:
     for one in ply["vertex"].properties:
         if one.name in sizes:
             fields.append((f"{one.name}\n", order + one.len_dtype))
-        fields.append(
-            (one.name, order + one.val_dtype, (sizes[one.name],) if one.name in sizes else ())
-        )
+        shape = (sizes[one.name],) if one.name in sizes else ()
+        fields.append((one.name, order + one.val_dtype, shape))
     return np.dtype(fields)
 
 

@@ -24,7 +24,7 @@ from meshlab_spectral.documents.text import lines_of, write_patched
 _HEADER, _LOOKED_AT = 84, 1000  # bytes
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _EXCESS = 1 / 20  # trailing bytes that a binary file may have, relative to its size
-_KEYWORDS = [b"facet", b"vertex", b"endfacet", b"solid"]
+_KEYWORDS = ["facet", "vertex", "endfacet", "solid"]
 _FACET = [0, 1, 1, 1, 2]  # loops left out
 
 
@@ -108,18 +108,18 @@ def _read_binary(path: Path, content: bytes) -> Document:
 
 def _read_text(path: Path, content: bytes) -> Document:
     lines = lines_of(content, _KEYWORDS, any_case=True)
-    has_names = (lines.words[lines.kinds == _KEYWORDS.index(b"solid")] > 1).any()
+    has_names = (lines.words[lines.kinds == _KEYWORDS.index("solid")] > 1).any()
     chosen = lines[lines.kinds <= max(_FACET)]
     del lines
     expected = np.resize(np.array(_FACET), len(chosen))
     wrong = chosen.kinds != expected
     if wrong.any():
         first = int(np.argmax(wrong))
-        keyword = _KEYWORDS[expected[first]].decode()
+        keyword = _KEYWORDS[expected[first]]
         raise ValueError(f"line {chosen.place(first)} does not begin with {keyword!r}")
     if len(chosen) % len(_FACET):
         raise ValueError("it ends within a facet")
-    facets, corners = chosen[:: len(_FACET)], chosen[chosen.kinds == _KEYWORDS.index(b"vertex")]
+    facets, corners = chosen[:: len(_FACET)], chosen[chosen.kinds == _KEYWORDS.index("vertex")]
     return _TextStl(
         path,
         [_connected(path, corners.numbers(path, 1))],

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -23,27 +24,17 @@ NumberList = tuple[Indices, Array]  # the sizes of a list in each line, and all 
 
 @dataclass(frozen=True, eq=False)
 class Lines:
-    """Lines with words, of a text.
+    """Lines of a text that have words.
 
-    Attributes
-    ----------
-    text
-        All of it.
-    starts
-        Byte offsets of their first words.
-    words
-        Their numbers of words.
-    kinds
-        The index of each line's keyword; the number of keywords for any other first word.
-    comments
-        Whether # begins a comment.
+    `starts` are the byte offsets of their first words, `words` how many they have, `kinds` the
+    indices of their keywords: the number of keywords for any other first word.
     """
 
     text: bytes
     starts: Indices
     words: NDArray[np.int32]
     kinds: NDArray[np.uint8]
-    comments: bool
+    comments: bool  # whether # begins a comment
 
     def __len__(self) -> int:
         return len(self.starts)
@@ -77,8 +68,9 @@ class Lines:
         Returns n x k numbers, the lists, and the first line that lacks some of them or, with
         `is_whole`, has other words behind them; -1 if there is none.
         """
-        options = {"comments": self.comments, "is_whole": is_whole}
-        return _core.text_numbers(self.text, self.starts, self.words, first, are_lists, **options)
+        return _core.text_numbers(
+            self.text, self.starts, self.words, first, are_lists, self.comments, is_whole
+        )
 
     def numbers(self, path: Path, first: int = 0, count: int = 3) -> Array:
         """Return `count` numbers of each line from word `first` on, n x count.
@@ -95,35 +87,20 @@ class Lines:
 
 def lines_of(
     text: bytes,
-    keywords: Sequence[bytes] = (),
+    keywords: Sequence[str] = (),
     *,
     begin: int = 0,
-    limit: int | None = None,
+    limit: int = sys.maxsize,
     comments: bool = False,
     any_case: bool = False,
     continued: int = -1,
 ) -> Lines:
-    """Return the lines that have words, at most `limit` of them, from a byte offset on.
+    """Return the lines that have words, at most `limit` of them, from byte offset `begin` on.
 
-    Parameters
-    ----------
-    keywords
-        First words to tell apart; in small letters with `any_case`.
-    comments
-        Whether # begins a comment.
-    continued
-        The index of the keyword whose lines go on after a backslash at their end.
+    `keywords` are first words to tell apart, in small letters with `any_case`. Lines of the keyword
+    with the index `continued` go on after a backslash at their end.
     """
-    names = [keyword.decode() for keyword in keywords]
-    found = _core.text_lines(
-        text,
-        begin,
-        len(text) if limit is None else limit,
-        names,
-        comments=comments,
-        any_case=any_case,
-        continued=continued,
-    )
+    found = _core.text_lines(text, begin, limit, keywords, comments, any_case, continued)
     return Lines(text, *found, comments)
 
 
