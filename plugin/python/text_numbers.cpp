@@ -386,8 +386,11 @@ void replaceNumbers(std::string_view text, std::size_t begin, const std::vector<
         std::pop_heap(waiting.begin(), waiting.end(), isLater);
         Replacing one = waiting.back();
         waiting.pop_back();
-        one.append(piece, copied);
-        one.next(text);
+        do {
+            one.append(piece, copied);
+            one.next(text);
+        } while (!one.isDone() && (waiting.empty() || !isLater(one, waiting.front())) &&
+                 piece.size() < pieceSize);
         push(one);
         if (piece.size() < pieceSize) continue;
         write(piece);

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from graphlib import TopologicalSorter
 from itertools import chain
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -84,9 +85,8 @@ class _Elements:
 
     def among(self, elements: Iterable[ElementTree.Element]) -> tuple[Array, Indices]:
         """Return values and places of those that elements of the rest of the model stand for."""
-        spans = [np.arange(int(one.attrib["begin"]), int(one.attrib["end"])) for one in elements]
-        rows = np.concatenate([np.arange(0), *spans])
-        values, places = self.values[rows], self.places[rows]
+        spans = [slice(int(one.attrib["begin"]), int(one.attrib["end"])) for one in elements]
+        values, places = _joined(self.values, spans), _joined(self.places, spans)
         for row, column in np.argwhere(np.isnan(values)).tolist():  # blanks or &#49; in it
             place = int(places[row, column])
             if place < 0:
@@ -94,6 +94,10 @@ class _Elements:
             end = self.text.index(self.text[place - 1 : place], place)
             values[row, column] = float(html.unescape(self.text[place:end].decode()))
         return values, places
+
+
+def _joined(rows: Any, spans: list[slice]) -> Any:
+    return rows[spans[0]] if len(spans) == 1 else np.vstack([rows[:0], *(rows[s] for s in spans)])
 
 
 class _Model:
