@@ -119,9 +119,9 @@ bool readLine(Cursor line, std::int64_t left, const Layout& layout, NumberTable&
         return readWord(line, value);
     };
     std::size_t list = 0;
-    for (const bool isList : layout.areLists) {
+    for (numbers.column = 0; numbers.column < layout.areLists.size(); ++numbers.column) {
         if (!next()) return false;
-        if (!isList) {
+        if (!layout.areLists[numbers.column]) {
             numbers.single.push_back(value);
             continue;
         }
@@ -346,11 +346,13 @@ Corners readCorners(std::string_view text, const ChosenLines& lines) {
         cursor.skipWord();
         for (std::int32_t left = lines.words[i] - 1; left > 0;) {
             cursor.findWord();
+            if (!cursor.isWithin()) break;
             const char* const begin = cursor.at;
             cursor.skipWord();
             std::string_view word(begin, static_cast<std::size_t>(cursor.at - begin));
-            if (word == "\\") continue;
-            if (word.back() == '\\') word.remove_suffix(1);
+            cursor.skipBlanksOfLine();
+            if (word.back() == '\\' && !cursor.isAtWord()) word.remove_suffix(1);
+            if (word.empty()) continue;
             std::int64_t vertex = 0, normal = 0;
             if (!readCorner(word, vertex, normal)) {
                 corners.bad = begin - text.data();

@@ -47,6 +47,7 @@ struct NumberTable {
     std::vector<double> single;      ///< n x k by rows: those that are in no list.
     std::vector<NumberLists> lists;  ///< For each list of the layout.
     std::int64_t bad = -1;           ///< The first line that is otherwise, or -1.
+    std::size_t column = 0;          ///< Which of its numbers or lists; how many if more follows.
 };
 
 /// What a line holds.

@@ -45,14 +45,15 @@ nb::tuple lines(const nb::bytes& text, std::size_t begin, std::size_t limit,
                           givenRows(std::move(found.kinds)));
 }
 
-/// The numbers, the lists, the bad row.
+/// The numbers, the lists, the bad row and its column.
 nb::tuple tupleOf(NumberTable&& table, std::size_t properties) {
     nb::list lists;
     for (NumberLists& one : table.lists)
         lists.append(
             nb::make_tuple(givenRows(std::move(one.sizes)), givenRows(std::move(one.items))));
     const std::size_t columns = properties - table.lists.size();
-    return nb::make_tuple(givenRows(std::move(table.single), columns), lists, table.bad);
+    return nb::make_tuple(givenRows(std::move(table.single), columns), lists, table.bad,
+                          table.column);
 }
 
 nb::tuple numbers(const nb::bytes& text, const Places& starts, const Counts& words, int first,

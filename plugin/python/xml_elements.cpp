@@ -13,6 +13,11 @@ using Position = std::string_view::size_type;
 
 bool isBlank(char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r'; }
 
+bool isPlainInName(char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
+}
+bool isPlainInValue(char c) { return isBlank(c) || (c >= ' ' && c <= '~' && c != '&'); }
+
 /// A start tag or the tag of an empty element.
 struct Tag {
     Position begin, end;
@@ -20,6 +25,7 @@ struct Tag {
     std::size_t kind;
     std::array<std::string_view, 3> values;
     bool isEmpty;
+    bool isPlain;  ///< Has no characters that the parser of the rest must judge.
 };
 
 class Scanner {
@@ -76,7 +82,7 @@ class Scanner {
     bool read(Position begin, Tag& tag) const {
         Position i = endOfName(begin + 1);
         const std::string_view name = text_.substr(begin + 1, i - begin - 1);
-        tag = {begin, 0, name, kindOf(name), {}, false};
+        tag = {begin, 0, name, kindOf(name), {}, false, true};
         if (tag.kind == kinds_.size()) return false;
         for (Position next = skipBlanks(i); next > i && at(next) != '/' && at(next) != '>';
              next = skipBlanks(i))
@@ -100,6 +106,8 @@ class Scanner {
         const std::string_view value = text_.substr(i + 1, end - i - 1);
         i = end + 1;
         if (value.find('<') != std::string_view::npos) return false;
+        tag.isPlain = tag.isPlain && std::all_of(name.begin(), name.end(), isPlainInName) &&
+                      std::all_of(value.begin(), value.end(), isPlainInValue);
         const std::array<std::string, 3>& attributes = kinds_[tag.kind].attributes;
         for (std::size_t k = 0; k < attributes.size(); ++k) {
             if (name != attributes[k]) continue;
@@ -142,16 +150,20 @@ XmlRest takeElements(std::string_view text, const std::vector<XmlKind>& kinds) {
                                                                   : value.data() - text.data());
             }
             isFound = scanner.find(tag.end, next);
-            if (!isFound || !tag.isEmpty || next.name != tag.name ||
-                scanner.skipBlanks(tag.end) != next.begin)
+            if (!isFound || !tag.isEmpty || !tag.isPlain || !next.isPlain ||
+                next.name != tag.name || scanner.skipBlanks(tag.end) != next.begin)
                 break;
             tag = next;
         }
         rest.text.append("<").append(tag.name);
         rest.text.append(" begin=\"").append(std::to_string(begin));
         rest.text.append("\" end=\"").append(std::to_string(elements.values.size() / 3));
-        rest.text.append(tag.isEmpty ? "\"/>" : "\">");
-        copied = tag.end;
+        rest.text.append("\"");
+        copied = tag.begin + 1 + tag.name.size();
+        if (tag.isPlain) {
+            rest.text.append(tag.isEmpty ? "/>" : ">");
+            copied = tag.end;
+        }
         tag = next;
     }
     rest.text.append(text, copied);

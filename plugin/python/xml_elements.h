@@ -30,8 +30,8 @@ struct XmlRest {
 /// Takes elements, with any prefix, out of a document.
 ///
 /// In their place is one element of the same name for each run of empty elements, with the
-/// attributes `begin` and `end`: which of the n rows it stands for. What is not well-formed stays
-/// for the parser of the rest; comments and character data stay, too.
+/// attributes `begin` and `end`: which of the n rows it stands for. Comments, character data and
+/// what is not well-formed stay for the parser of the rest. So do unusual characters in attributes.
 XmlRest takeElements(std::string_view text, const std::vector<XmlKind>& kinds);
 
 }  // namespace spectral::python

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Progress = Callable[[str, float], object]
-_Numbers = tuple[NDArray[np.float64], list[tuple[NDArray[np.int64], NDArray[np.float64]]], int]
+_Lists = list[tuple[NDArray[np.int64], NDArray[np.float64]]]
+_Numbers = tuple[NDArray[np.float64], _Lists, int, int]
 
 def filters() -> list[dict[str, Any]]: ...
 def apply(

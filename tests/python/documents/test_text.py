@@ -42,7 +42,7 @@ def float_of(word: str) -> float | None:
 
 def number_in(word: str) -> float | None:
     """Read a word of a line as the documents do; None if it is no number."""
-    numbers, _, bad = lines_of(f"{word} \r\n".encode()).table([False], is_whole=True)
+    numbers, _, bad, _ = lines_of(f"{word} \r\n".encode()).table([False], is_whole=True)
     return None if bad >= 0 else float(numbers[0, 0])
 
 
@@ -183,6 +183,14 @@ def test_elements_are_those_of_the_document(inner: str) -> None:
     runs = [one.attrib for one in ElementTree.fromstring(rest).iter() if one.tag in ("v", "{n}v")]
     rows = [row for run in runs for row in range(int(run["begin"]), int(run["end"]))]
     assert rows == list(range(len(values)))
+
+
+@pytest.mark.parametrize("extra", ["a='\x01'", "a='\xe9'", "a:b='1'", "a='&b;'", "\xe9='1'"])
+def test_unusual_characters_stay_for_the_parser(extra: str) -> None:
+    text = f"<r><v x='1'/><v x='2' {extra}/><v x='3'/></r>".encode()
+    ((values, _),), rest = _core.xml_elements(text, [("v", ("x", "y", "z"))])
+    assert values[:, 0].tolist() == [1, 2, 3]
+    assert f"""<v begin="1" end="2" x='2' {extra}/>""".encode() in rest
 
 
 @pytest.mark.parametrize(

@@ -135,9 +135,12 @@ def _corners(faces: Lines, vertices: Lines, normals: Lines) -> tuple[Indices, In
     """Return the vertex and normal indices of all corners."""
     found, bad = text_corners(faces.text, faces.starts, faces.words)
     if bad >= 0:
-        word = re.compile(rb"[^\s#]+").match(faces.text, bad)
-        numbers = [int(number) for number in word[0].split(b"/")[::2] if number] if word else []
-        raise ValueError(f"{np.array(numbers, np.int64).tolist()} is no corner")
+        word = faces.text[bad:].split(maxsplit=1)[0].partition(b"#")[0]
+        parts = word.removesuffix(b"\\").split(b"/")
+        np.array(
+            [int(part or 0) if k else int(part) for k, part in enumerate(parts)][::2], np.int64
+        )
+        raise ValueError(f"{word!r} is no corner")
     corners = _indices(found[:, 0], faces, vertices)
     if (corners < 0).any():
         face = np.searchsorted(np.cumsum(faces.words - 1), np.argmax(corners < 0), side="right")

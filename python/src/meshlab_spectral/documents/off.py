@@ -99,7 +99,7 @@ def _check_bounds(path: Path, words: NDArray[np.int32], begin: int, middle: int,
 
 def _polygons(lines: Lines) -> tuple[Indices, Indices]:
     """Return the corners of all faces, and the number of corners of each."""
-    _, ((sizes, corners),), bad = lines.table([True])
+    _, ((sizes, corners),), bad, _ = lines.table([True])
     if bad >= 0:
         list(map(int, lines.words_of(bad)[: int(lines.words_of(bad)[0]) + 1]))  # names the word
         raise ValueError("a face has fewer corners than it claims")

@@ -30,7 +30,7 @@ from meshlab_spectral.documents.document import (
 from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.documents.polygons import strip_triangles, triangles
 from meshlab_spectral.documents.side_files import copy_side_files
-from meshlab_spectral.documents.text import lines_of, write_patched
+from meshlab_spectral.documents.text import lines_of, whole, write_patched
 
 _AXES, _NORMALS = ("x", "y", "z"), ("nx", "ny", "nz")
 _TEXTURE = re.compile(rb"(?m)^[ \t]*comment[ \t]+TextureFile[ \t]+(.*\S)")
@@ -177,10 +177,12 @@ def _read_rows(
             types = [(getattr(one, "len_dtype", ""), one.val_dtype) for one in properties]
             is_big = ply.byte_order == ">"
             found, start = binary_numbers(content, start, count, types, is_big)
-        numbers, lists, bad = found
+        numbers, lists, bad, column = found
         if ply.text and bad >= 0:
+            reasons = [f"property {one.name!r}: missing or malformed" for one in properties]
+            reason = [*reasons, "expected end-of-line"][column]
             told = b" ".join(own.words_of(bad)).decode(errors="replace")[:80]
-            raise ValueError(f"element {element.name!r}: row {bad} is {told!r}, unlike its header")
+            raise ValueError(f"element {element.name!r}: row {bad}: {reason}, in {told!r}")
         if bad >= 0 or (ply.text and len(own) < count):
             raise ValueError(f"it ends in element {element.name!r}, which has {count} rows")
         single, several = iter(numbers.T), iter(lists)
@@ -235,7 +237,7 @@ def _columns(table: _Table, *names: str) -> Array:
 def _corners(table: _Table) -> tuple[Indices, Indices] | None:
     """Return the corners of all faces or strips, and how many each has; None if there are none."""
     held = [table[name] for name in _CORNERS if name in table]
-    return (held[0][1].astype(np.int64), held[0][0]) if held and len(held[0][0]) else None
+    return (whole(held[0][1]), held[0][0]) if held and len(held[0][0]) else None
 
 
 def _read_faces(tables: dict[str, _Table], vertices: Array) -> Indices:

@@ -57,16 +57,18 @@ class Lines:
 
     def place(self, number: int) -> int:
         """Return which line of the text one of the lines is, from 1."""
-        start = int(self.starts[number])
-        return (self.text.count(b"\n", 0, start) or self.text.count(b"\r", 0, start)) + 1
+        newline, carriage_return, both = (
+            self.text.count(end, 0, int(self.starts[number])) for end in (b"\n", b"\r", b"\r\n")
+        )
+        return newline + carriage_return - both + 1
 
     def table(
         self, are_lists: Sequence[bool], first: int = 0, is_whole: bool = False
-    ) -> tuple[Array, list[NumberList], int]:
+    ) -> tuple[Array, list[NumberList], int, int]:
         """Read numbers and lists of numbers, which follow their sizes, from word `first` on.
 
         Returns n x k numbers, the lists, and the first line that lacks some of them or, with
-        `is_whole`, has other words behind them; -1 if there is none.
+        `is_whole`, has other words behind them, or -1, with the number or list that it lacks.
         """
         return _core.text_numbers(
             self.text, self.starts, self.words, first, are_lists, self.comments, is_whole
@@ -77,7 +79,7 @@ class Lines:
 
         Raises MeshFileError, which names the line, when a word is missing or is not a number.
         """
-        values, _, bad = self.table([False] * count, first)
+        values, _, bad, _ = self.table([False] * count, first)
         if bad >= 0:
             told = b" ".join(self.words_of(bad)).decode(errors="replace")[:80]
             reason = f"row {bad} is {told!r}, which lacks the {count} numbers required"
