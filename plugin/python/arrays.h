@@ -3,6 +3,8 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
 
+#include <string>
+#include <type_traits>
 #include <utility>
 
 #include "core/mesh/mesh.h"
@@ -41,13 +43,27 @@ nb::object given(Matrix&& matrix) {
 }
 
 /// A copy with contiguous rows, which most libraries expect of coordinates.
-inline nb::object givenByRows(const Eigen::MatrixXd& matrix) {
+template <class Matrix>
+nb::object givenByRows(const Matrix& matrix) {
     using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     auto* held = new Rows(matrix);
     nb::capsule owner(held, [](void* p) noexcept { delete static_cast<Rows*>(p); });
     return nb::cast(nb::ndarray<nb::numpy, double>(
         held->data(),
         {static_cast<std::size_t>(held->rows()), static_cast<std::size_t>(held->cols())}, owner));
+}
+
+/// Hands the memory of a vector or a text to NumPy: an array, or rows of `columns` numbers.
+template <class Vector>
+nb::object givenRows(Vector&& vector, std::size_t columns = 0) {
+    using V = std::decay_t<Vector>;
+    using Scalar =
+        std::conditional_t<std::is_same_v<V, std::string>, std::uint8_t, typename V::value_type>;
+    auto* held = new V(std::forward<Vector>(vector));
+    nb::capsule owner(held, [](void* p) noexcept { delete static_cast<V*>(p); });
+    auto* const data = reinterpret_cast<Scalar*>(held->data());
+    if (columns == 0) return nb::cast(nb::ndarray<nb::numpy, Scalar>(data, {held->size()}, owner));
+    return nb::cast(nb::ndarray<nb::numpy, Scalar>(data, {held->size() / columns, columns}, owner));
 }
 
 }  // namespace spectral::python

@@ -18,6 +18,7 @@
 #include "core/support/threads.h"
 #include "errors.h"
 #include "running.h"
+#include "texts.h"
 #include "values.h"
 
 namespace nb = nanobind;
@@ -100,5 +101,6 @@ NB_MODULE(_core, m) {
     m.def("gains", python::gains, "options"_a, "diagonal"_a, "mean_edge"_a, "frequencies"_a);
     m.def("laplacian", python::laplacian, "vertices"_a, "faces"_a, "kind"_a, nb::kw_only(),
           "progress"_a = nb::none(), "threads"_a = 0);
+    python::addTexts(m);
     m.def("set_memory_limit", setMemoryLimit, "limit"_a);
 }

@@ -1,11 +1,13 @@
 # plugin/python/module.cpp
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 Progress = Callable[[str, float], object]
+_Lists = list[tuple[NDArray[np.int64], NDArray[np.float64]]]
+_Numbers = tuple[NDArray[np.float64], _Lists, int, int]
 
 def filters() -> list[dict[str, Any]]: ...
 def apply(
@@ -41,3 +43,50 @@ def laplacian(
     NDArray[np.int64],
 ]: ...
 def set_memory_limit(limit: float) -> None: ...
+def text_lines(
+    text: bytes,
+    begin: int,
+    limit: int,
+    keywords: Sequence[str],
+    comments: bool,
+    any_case: bool,
+    continued: int,
+) -> tuple[NDArray[np.int64], NDArray[np.int32], NDArray[np.uint8]]: ...
+def text_numbers(
+    text: bytes,
+    starts: NDArray[np.int64],
+    words: NDArray[np.int32],
+    first: int,
+    are_lists: Sequence[bool],
+    comments: bool,
+    is_whole: bool,
+) -> _Numbers: ...
+def binary_numbers(
+    data: bytes, begin: int, count: int, types: Sequence[tuple[str, str]], big_endian: bool
+) -> tuple[_Numbers, int]: ...
+def text_corners(
+    text: bytes, starts: NDArray[np.int64], words: NDArray[np.int32]
+) -> tuple[NDArray[np.int64], int]: ...
+def write_patched(
+    text: bytes,
+    begin: int,
+    changes: Sequence[tuple[NDArray[np.int64], int, NDArray[np.float64], NDArray[np.float64], int]],
+    write: Callable[[memoryview], object],
+) -> None: ...
+def xml_elements(
+    text: bytes, kinds: Sequence[tuple[str, tuple[str, str, str]]]
+) -> tuple[list[tuple[NDArray[np.float64], NDArray[np.int64]]], bytes]: ...
+def first_equal_rows(rows: NDArray[np.float64]) -> NDArray[np.int64]: ...
+def following_normals(
+    before: NDArray[np.float64],
+    after: NDArray[np.float64],
+    faces: NDArray[np.int64],
+    normals: NDArray[np.float64],
+    which: NDArray[np.int64],
+) -> NDArray[np.float64]: ...
+def following_facet_normals(
+    before: NDArray[np.float64],
+    after: NDArray[np.float64],
+    faces: NDArray[np.int64],
+    normals: NDArray[np.float64],
+) -> NDArray[np.float64]: ...

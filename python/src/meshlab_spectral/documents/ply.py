@@ -6,16 +6,16 @@ import io
 import os
 import re
 import warnings
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 from numpy.typing import NDArray
 from plyfile import PlyData, PlyElement, PlyListProperty, PlyParseError
 
+from meshlab_spectral._core import binary_numbers
 from meshlab_spectral.documents.digits import digits_for, rounding_told, widening_warnings
 from meshlab_spectral.documents.document import (
     Array,
@@ -30,11 +30,9 @@ from meshlab_spectral.documents.document import (
 from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.documents.polygons import strip_triangles, triangles
 from meshlab_spectral.documents.side_files import copy_side_files
-from meshlab_spectral.documents.text import with_numbers
+from meshlab_spectral.documents.text import lines_of, whole, write_patched
 
 _AXES, _NORMALS = ("x", "y", "z"), ("nx", "ny", "nz")
-_LINE = re.compile(rb"\s*\S[^\n]*\n?")  # a line, with the empty ones before it
-_PLAIN = bytes.maketrans(b"\r\x1c\x1d\x1e\x1f\x85\xa0", b" ??????")  # blanks in str, not in bytes
 _TEXTURE = re.compile(rb"(?m)^[ \t]*comment[ \t]+TextureFile[ \t]+(.*\S)")
 _COMMENT = re.compile(rb"(?m)^[ \t]*(comment|obj_info)[ \t]+(?!TextureFile|VCGLIB generated)\S")
 _CORNERS = ("vertex_indices", "vertex_index")
@@ -46,53 +44,52 @@ _KNOWN = {
 }
 _SELECTED = 0x20  # VCG's flag
 _Rows = np.ndarray[Any, Any]
-_Changes = dict[tuple[str, str, str], tuple[Array, Array]]  # before and after
+_Table = dict[str, Any]  # the numbers of a property; for lists their sizes, and all items
+_Changes = dict[tuple[str, ...], tuple[Array, Array]]  # before and after
 
 
 @dataclass(kw_only=True)
 class PlyDocument(Document):
-    """A PLY file with its bytes; `span` is the byte range of the vertices."""
+    """A PLY file with its bytes."""
 
     content: bytes
     header: bytes
     ply: PlyData
-    span: slice
+    rows: Indices | _Rows  # of the vertices: byte offsets of text lines, or binary rows
+    begin: int  # byte offset of binary rows
+    normals: Array | None
+    first: dict[tuple[str, ...], int]  # text: the words before coordinates, and before normals
 
     def save(self, target: Path, moved: Sequence[Array]) -> list[str]:  # noqa: D102
         before, (after,) = self.parts[0].vertices, moved
         types = {self.ply["vertex"].ply_property(name).val_dtype for name in _AXES}
         told = rounding_told(before, after) if "f4" in types else None
-        content = self._moved(after, bool(told)) if (after != before).any() else self.content
-        target.write_bytes(content)
+        with target.open("wb") as file:
+            if (after != before).any():
+                self._write(file, after, bool(told))
+            else:
+                file.write(self.content)
         textures = map(os.fsdecode, _TEXTURE.findall(self.header))
         return widening_warnings(told) + copy_side_files(self.path, target, textures)
 
-    def _moved(self, after: Array, is_wide: bool) -> bytes:
-        part, vertex = self.parts[0], self.ply["vertex"]
+    def _write(self, file: IO[bytes], after: Array, is_wide: bool) -> None:
+        (part,), rows, start = self.parts, self.rows, len(self.header)
         changes: _Changes = {_AXES: (part.vertices, after)}
-        if _has_floats(vertex, *_NORMALS):
-            old = _columns(vertex, *_NORMALS)
-            changes[_NORMALS] = old, following_normals(part.vertices, after, part.faces, old)
+        if self.normals is not None:
+            normals = following_normals(part.vertices, after, part.faces, self.normals)
+            changes[_NORMALS] = self.normals, normals
+        file.write(_widened(self.header) if is_wide else self.header)
         if self.ply.text:
-            rows = _with_words(self.content[self.span], vertex.data.dtype, changes)
+            digits = digits_for(part.vertices, after)
+            words = [(rows, self.first[a], *pair, digits) for a, pair in changes.items()]
+            write_patched(file, self.content, words, start)
         else:
-            rows = _with_columns(vertex.data, changes, self.ply.byte_order if is_wide else None)
-        header = _widened(self.header) if is_wide else self.header
-        between = self.content[len(self.header) : self.span.start]
-        return header + between + rows + self.content[self.span.stop :]
+            content, end = memoryview(self.content), self.begin + rows.nbytes
+            new = _with_columns(rows, changes, self.ply.byte_order if is_wide else None)
+            file.writelines([content[start : self.begin], new, content[end:]])
 
 
-def _with_words(rows: bytes, type_: Any, changes: _Changes) -> bytes:
-    """Return text rows with the changed numbers replaced."""
-    lines, digits = _LINE.findall(rows), digits_for(*changes[_AXES])
-    for names, (before, after) in changes.items():
-        first = type_.fields[names[0]][1] // 8
-        for i in np.flatnonzero((before != after).any(axis=1)).tolist():
-            lines[i] = with_numbers(lines[i], first, before[i].tolist(), after[i].tolist(), digits)
-    return b"".join(lines)
-
-
-def _with_columns(rows: _Rows, changes: _Changes, wide: str | None) -> bytes:
+def _with_columns(rows: _Rows, changes: _Changes, wide: str | None) -> memoryview:
     """Return binary rows with new numbers; `wide` is the byte order of doubles, if needed."""
     fields = [
         (name, f"{wide}f8" if wide and name in _AXES else type_, *shape)
@@ -102,7 +99,7 @@ def _with_columns(rows: _Rows, changes: _Changes, wide: str | None) -> bytes:
     for names, (_, after) in changes.items():
         for name, column in zip(names, after.T, strict=True):
             rows[name] = column
-    return rows.tobytes()
+    return rows.view(np.uint8).data
 
 
 def _widened(header: bytes) -> bytes:
@@ -116,25 +113,36 @@ def read(path: Path) -> PlyDocument:
     """Read a PLY file; raises MeshFileError when it is damaged or its layout is not supported."""
     content = path.read_bytes()
     try:
-        with warnings.catch_warnings():
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")  # about empty lists and non-integers
             ply, counts, header = _read_header(content)
-            span = _read_rows(content, ply, counts, len(header))
-            _check_vertices(path, ply)
-            vertices = _columns(ply["vertex"], *_AXES)
+            tables, rows, begin = _read_rows(content, ply, counts, len(header))
+            vertex = tables["vertex"]
+            _check_vertices(path, ply, vertex)
+            vertices = _columns(vertex, *_AXES)
             check_vertices(path, vertices)
-            faces = _read_faces(ply, vertices)
+            faces = _read_faces(tables, vertices)
     except (PlyParseError, ValueError, LookupError, TypeError, OverflowError) as error:
         raise unreadable(path, error) from error
     check_indices(path, faces, len(vertices))
     values = [name for name in ("quality", "confidence") if _has_floats(ply["vertex"], name)]
-    quality = _columns(ply["vertex"], values[0])[:, 0] if values else None
-    part = Part("", vertices, faces, quality, _selected(ply))
-    held = _contents(ply, header, len(faces))
-    return PlyDocument(path, [part], held, content=content, header=header, ply=ply, span=span)
+    quality = _columns(vertex, values[0])[:, 0] if values else None
+    has_normals = _has_floats(ply["vertex"], *_NORMALS)
+    return PlyDocument(
+        path,
+        [Part("", vertices, faces, quality, _selected(tables, len(vertices)))],
+        _contents(ply, counts, header, len(faces)),
+        content=content,
+        header=header,
+        ply=ply,
+        rows=rows if ply.text else np.ndarray(len(vertices), _type(ply, vertex), content, begin),
+        begin=begin,
+        normals=_columns(vertex, *_NORMALS) if has_normals else None,
+        first={_AXES: _first_word(vertex, "x"), _NORMALS: _first_word(vertex, "nx")},
+    )
 
 
-def _read_header(content: bytes) -> tuple[PlyData, list[int], bytes]:
+def _read_header(content: bytes) -> tuple[PlyData, dict[str, int], bytes]:
     """Read the header with plyfile, without comments (it accepts only ASCII), with counts of 0."""
     end = re.search(rb"(?s)\n[ \t]*element\s+vertex\s.*?\n[ \t]*end_header[ \t]*\r?\n", content)
     if not end:
@@ -144,67 +152,76 @@ def _read_header(content: bytes) -> tuple[PlyData, list[int], bytes]:
     lines = re.sub(rb"(?m)^(comment|obj_info)\b.*", b"comment", lines)
     counts = [int(word) for word in re.findall(rb"(?m)^element\s+\S+\s+(\S+)", lines)]
     empty = re.sub(rb"(?m)^(element\s+\S+)\s+\S+", rb"\1 0", lines)
-    return PlyData.read(io.BytesIO(empty)), counts, header
+    ply = PlyData.read(io.BytesIO(empty))
+    return ply, dict(zip([one.name for one in ply], counts, strict=True)), header
 
 
-def _read_rows(content: bytes, ply: PlyData, counts: list[int], start: int) -> slice:
-    """Read the rows of all elements, and return the byte range of the vertices."""
-    read_rows, span = _text_rows if ply.text else _binary_rows, slice(0)
-    for element, count in zip(ply, counts, strict=True):
-        body = content[start:]
-        if not 0 <= count <= len(body):
-            raise ValueError(f"element {element.name!r} cannot have {count} rows")
-        element.data, size = read_rows(element, count, body, ply)  # size in bytes
-        span = slice(start, start + size) if element.name == "vertex" else span
-        start += size
-    return span
+def _read_rows(
+    content: bytes, ply: PlyData, counts: dict[str, int], start: int
+) -> tuple[dict[str, _Table], Indices, int]:
+    """Read all elements; return the byte offsets of text vertices, and that of binary ones, too."""
+    tables, begin, at = dict[str, _Table](), 0, 0
+    if any(not 0 <= count <= len(content) for count in counts.values()):
+        raise ValueError(f"it cannot have {', '.join(map(str, counts.values()))} rows")
+    lines = lines_of(content, begin=start, limit=sum(counts.values()) if ply.text else 0)
+    starts = lines.starts[:0]
+    for element in ply:
+        count, properties = counts[element.name], element.properties
+        own = lines[at : at + count]
+        if element.name == "vertex":
+            starts, begin = own.starts, start
+        if ply.text:
+            are_lists = [isinstance(one, PlyListProperty) for one in properties]
+            found, at = own.table(are_lists, is_whole=True), at + count
+        else:
+            types = [(getattr(one, "len_dtype", ""), one.val_dtype) for one in properties]
+            is_big = ply.byte_order == ">"
+            found, start = binary_numbers(content, start, count, types, is_big)
+        numbers, lists, bad, column = found
+        if ply.text and bad >= 0:
+            reasons = [f"property {one.name!r}: missing or malformed" for one in properties]
+            reason = [*reasons, "expected end-of-line"][column]
+            told = b" ".join(own.words_of(bad)).decode(errors="replace")[:80]
+            raise ValueError(f"element {element.name!r}: row {bad}: {reason}, in {told!r}")
+        if bad >= 0 or (ply.text and len(own) < count):
+            raise ValueError(f"it ends in element {element.name!r}, which has {count} rows")
+        single, several = iter(numbers.T), iter(lists)
+        tables[element.name] = {
+            one.name: next(several if isinstance(one, PlyListProperty) else single)
+            for one in properties
+        }
+    return tables, starts, begin
 
 
-def _text_rows(element: PlyElement, count: int, body: bytes, ply: PlyData) -> tuple[_Rows, int]:
-    lines = _LINE.findall(body.translate(_PLAIN))[:count]
-    words = list(map(bytes.strip, lines))
-    rows = _even_rows(element, "f8", lambda row: np.loadtxt(words, row, None).reshape(count))
-    if rows is None:
-        rows, _ = _uneven_rows(element, count, b"\n".join(words), ply)
-    return rows, sum(map(len, lines))
+def _sizes(table: _Table) -> dict[str, int]:
+    """Return how many items the lists of each property have in the first row, at least."""
+    lists = {name: one[0] for name, one in table.items() if isinstance(one, tuple)}
+    return {name: int(sizes[0]) if len(sizes) else 0 for name, sizes in lists.items()}
 
 
-def _binary_rows(element: PlyElement, count: int, body: bytes, ply: PlyData) -> tuple[_Rows, int]:
-    rows = _even_rows(element, ply.byte_order + "{}", lambda row: np.ndarray(count, row, body))
-    return _uneven_rows(element, count, body, ply) if rows is None else (rows, rows.nbytes)
+def _first_word(table: _Table, name: str) -> int:
+    """Return how many words text rows have before a number; their lists have the same size."""
+    before = list(table)[: list(table).index(name)] if name in table else []
+    return len(before) + sum(_sizes(table).get(one, 0) for one in before)
 
 
-def _even_rows(element: PlyElement, form: str, parse: Callable[[Any], _Rows]) -> _Rows | None:
-    """Return the rows if their lists fit triangles alone, or quadrilaterals alone; else None."""
-    for corners in (3, 4):
-        fields = list[Any]()
-        for one in element.properties:
-            shape: tuple[int, ...] = ()
-            if isinstance(one, PlyListProperty):
-                shape = (2 * corners if one.name == "texcoord" else corners,)
-                fields.append((f"{one.name}\n", form.format(one.len_dtype)))
-            fields.append((one.name, form.format(one.val_dtype), shape))
-        with suppress(ValueError, TypeError):  # too few columns or bytes
-            rows = parse(np.dtype(fields))
-            lists = [one.name for one in element.properties if isinstance(one, PlyListProperty)]
-            if all((rows[f"{name}\n"] == rows[name].shape[1]).all() for name in lists):
-                return rows
-    return None
+def _type(ply: PlyData, table: _Table) -> np.dtype[Any]:
+    """Return the type of binary vertices."""
+    order, sizes, fields = ply.byte_order, _sizes(table), list[Any]()
+    for one in ply["vertex"].properties:
+        if one.name in sizes:
+            fields.append((f"{one.name}\n", order + one.len_dtype))
+        shape = (sizes[one.name],) if one.name in sizes else ()
+        fields.append((one.name, order + one.val_dtype, shape))
+    return np.dtype(fields)
 
 
-def _uneven_rows(element: PlyElement, count: int, body: bytes, ply: PlyData) -> tuple[_Rows, int]:
-    """Return rows with lists of any length, slowly, and their size in bytes, 0 for text."""
-    format_, own = ply.header.split("\n")[1], element.header.replace(" 0\n", f" {count}\n", 1)
-    stream = io.BytesIO(f"ply\n{format_}\n{own}\nend_header\n".encode() + body)
-    rows = PlyData.read(stream)[element.name].data
-    return rows, 0 if ply.text else len(body) - len(stream.read())
-
-
-def _check_vertices(path: Path, ply: PlyData) -> None:
-    vertex = ply["vertex"]
-    names = " ".join(["", *(one.name for one in vertex.properties), ""])
+def _check_vertices(path: Path, ply: PlyData, table: _Table) -> None:
+    names = " ".join(["", *table, ""])
     is_apart = " x y z " not in names or (" nx " in names and " nx ny nz " not in names)
-    if not _has_floats(vertex, *_AXES) or vertex.data.dtype.hasobject or (ply.text and is_apart):
+    sizes = _sizes(table)
+    is_uneven = any((table[name][0] != size).any() for name, size in sizes.items())
+    if is_uneven or (ply.text and is_apart) or not _has_floats(ply["vertex"], *_AXES):
         what = "has vertices with lists of several lengths, or without floats x, y, z side by side"
         raise unsupported(path, what, "open it in MeshLab and export it as .ply")
 
@@ -213,43 +230,43 @@ def _has_floats(element: PlyElement, *names: str) -> bool:
     return all(name in element and element.ply_property(name).dtype()[1] == "f" for name in names)
 
 
-def _columns(element: PlyElement, *names: str) -> Array:
-    return np.column_stack([element[name] for name in names]).astype(np.float64)
+def _columns(table: _Table, *names: str) -> Array:
+    return np.column_stack([table[name] for name in names])
 
 
-def _read_faces(ply: PlyData, vertices: Array) -> Indices:
-    for name in ("face", "tristrips"):
-        held = [one for one in _CORNERS if name in ply and one in ply[name]]
-        if held and ply[name].count:
-            lists = ply[name][held[0]]
-            sizes = np.array([len(one) for one in lists])
-            corners = np.concatenate(lists).astype(np.int64)
-            if name == "face":
-                return triangles(corners, sizes, vertices)
-            return strip_triangles(np.insert(corners, np.cumsum(sizes), -1))
+def _corners(table: _Table) -> tuple[Indices, Indices] | None:
+    """Return the corners of all faces or strips, and how many each has; None if there are none."""
+    held = [table[name] for name in _CORNERS if name in table]
+    return (whole(held[0][1]), held[0][0]) if held and len(held[0][0]) else None
+
+
+def _read_faces(tables: dict[str, _Table], vertices: Array) -> Indices:
+    if faces := _corners(tables.get("face", {})):
+        return triangles(*faces, vertices)
+    if strips := _corners(tables.get("tristrips", {})):
+        return strip_triangles(np.insert(strips[0], np.cumsum(strips[1]), -1))
     return np.zeros((0, 3), np.int64)
 
 
-def _selected(ply: PlyData) -> NDArray[np.bool_] | None:
+def _selected(tables: dict[str, _Table], count: int) -> NDArray[np.bool_] | None:
     """Return which vertices MeshLab's flags select, directly or by a face; None if none."""
-    chosen = np.zeros(ply["vertex"].count, bool)
-    if "flags" in ply["vertex"]:
-        chosen |= ply["vertex"]["flags"].astype(np.int64) & _SELECTED > 0
-    if "face" in ply and "flags" in ply["face"]:
-        held = [one for one in _CORNERS if one in ply["face"]]
-        flags = ply["face"]["flags"].astype(np.int64)
-        for face in np.flatnonzero(flags & _SELECTED) if held else ():
-            chosen[ply["face"][held[0]][face]] = True
+    chosen = np.zeros(count, bool)
+    if "flags" in tables["vertex"]:
+        chosen |= tables["vertex"]["flags"].astype(np.int64) & _SELECTED > 0
+    faces = _corners(tables.get("face", {}))
+    if faces and "flags" in tables["face"]:
+        flags = tables["face"]["flags"].astype(np.int64) & _SELECTED > 0
+        chosen[faces[0][np.repeat(flags, faces[1])]] = True
     return chosen if chosen.any() else None
 
 
-def _contents(ply: PlyData, header: bytes, triangles: int) -> list[str]:
+def _contents(ply: PlyData, counts: dict[str, int], header: bytes, triangles: int) -> list[str]:
     mesh = [element for element in ply if element.name in ("vertex", "face", "tristrips")]
     names = {one.name for element in mesh for one in element.properties}
     others = names.difference(_AXES, _CORNERS, *_KNOWN.values())
     present: dict[str, object] = {word: names & known for word, known in _KNOWN.items()}
-    present["polygons"] = "face" in ply and ply["face"].count < triangles
+    present["polygons"] = counts.get("face", triangles) < triangles
     present["comments"], present["texture names"] = _COMMENT.search(header), _TEXTURE.search(header)
     present.update((f"property {name}", True) for name in sorted(others))
-    present.update((f"element {one.name}", one.count) for one in ply if one not in mesh)
+    present.update((f"element {one.name}", counts[one.name]) for one in ply if one not in mesh)
     return [word for word, is_there in present.items() if is_there]

@@ -28,6 +28,8 @@ def triangles(corners: Indices, sizes: NDArray[np.integer], vertices: Array) -> 
     -------
     m x 3 vertex indices.
     """
+    if (sizes == 3).all():
+        return corners.reshape(-1, 3)
     return corners[corners_of_triangles(corners, sizes, vertices)]
 
 

@@ -8,16 +8,24 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from meshlab_spectral._core import first_equal_rows, following_facet_normals
 from meshlab_spectral.documents.digits import SINGLE, digits_for, precision_warnings
-from meshlab_spectral.documents.document import Array, Document, Part, check_vertices, unreadable
-from meshlab_spectral.documents.text import numbers, replace_numbers
+from meshlab_spectral.documents.document import (
+    Array,
+    Document,
+    Indices,
+    Part,
+    check_vertices,
+    unreadable,
+)
+from meshlab_spectral.documents.text import lines_of, write_patched
 
 _HEADER, _LOOKED_AT = 84, 1000  # bytes
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _EXCESS = 1 / 20  # trailing bytes that a binary file may have, relative to its size
-_FACET = [b"facet", b"vertex", b"vertex", b"vertex", b"endfacet"]  # loops left out
+_KEYWORDS = ["facet", "vertex", "endfacet", "solid"]
+_FACET = [0, 1, 1, 1, 2]  # loops left out
 
 
 @dataclass(kw_only=True)
@@ -30,27 +38,31 @@ class _BinaryStl(Document):
         content = bytearray(self.content)
         rows = np.frombuffer(content, _TRIANGLE, self.count, _HEADER)
         changed = (after != part.vertices)[part.faces]
-        rows["corners"][changed] = after[part.faces][changed]
-        rows["normal"] = _following(rows["normal"], part, after)
+        np.copyto(rows["corners"], after.astype("<f4")[part.faces], where=changed)
+        with np.errstate(invalid="ignore"):
+            normals = rows["normal"].astype(np.float64)
+        rows["normal"] = following_facet_normals(part.vertices, after, part.faces, normals)
         target.write_bytes(content)
         return precision_warnings(part.vertices, after, target.name)
 
 
 @dataclass(kw_only=True)
 class _TextStl(Document):
-    lines: list[bytes]
-    facets: list[int]  # line numbers
-    corners: list[int]
+    content: bytes
+    facets: Indices  # byte offsets of their lines
+    corners: Indices
     normals: Array
 
     def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
-        (part,), (after,), lines = self.parts, moved, self.lines.copy()
+        (part,), (after,) = self.parts, moved
         before, corners = part.vertices, part.faces.ravel()
-        digits = digits_for(before, after)
-        replace_numbers(lines, self.corners, 1, before[corners], after[corners], digits)
-        normals = _following(self.normals, part, after)
-        replace_numbers(lines, self.facets, 2, self.normals, normals, SINGLE)
-        target.write_bytes(b"".join(lines))
+        normals = following_facet_normals(before, after, part.faces, self.normals)
+        changes = [
+            (self.corners, 1, before[corners], after[corners], digits_for(before, after)),
+            (self.facets, 2, self.normals, normals, SINGLE),
+        ]
+        with target.open("wb") as file:
+            write_patched(file, self.content, changes)
         return []
 
 
@@ -95,22 +107,27 @@ def _read_binary(path: Path, content: bytes) -> Document:
 
 
 def _read_text(path: Path, content: bytes) -> Document:
-    lines = content.splitlines(keepends=True)
-    keywords = [b"".join(line.lower().split(maxsplit=1)[:1]) for line in lines]
-    chosen = [number for number, keyword in enumerate(keywords) if keyword in _FACET]
-    for k, number in enumerate(chosen):
-        if keywords[number] != _FACET[k % 5]:
-            raise ValueError(f"line {number + 1} does not begin with {_FACET[k % 5].decode()!r}")
-    if len(chosen) % 5:
+    lines = lines_of(content, _KEYWORDS, any_case=True)
+    has_names = (lines.words[lines.kinds == _KEYWORDS.index("solid")] > 1).any()
+    chosen = lines[lines.kinds <= max(_FACET)]
+    del lines
+    expected = np.resize(np.array(_FACET), len(chosen))
+    wrong = chosen.kinds != expected
+    if wrong.any():
+        first = int(np.argmax(wrong))
+        keyword = _KEYWORDS[expected[first]]
+        raise ValueError(f"line {chosen.place(first)} does not begin with {keyword!r}")
+    if len(chosen) % len(_FACET):
         raise ValueError("it ends within a facet")
-    facets, corners = chosen[::5], [number for k, number in enumerate(chosen) if 0 < k % 5 < 4]
-    points = numbers(path, [tuple(lines[number].split()) for number in corners], 1)
-    normals = numbers(path, [tuple(lines[number].split()) for number in facets], 2)
-    solids = [lines[number] for number, keyword in enumerate(keywords) if keyword == b"solid"]
-    contents = ["names of solids"] if any(len(line.split()) > 1 for line in solids) else []
-    parts = [_connected(path, points)]
+    facets, corners = chosen[:: len(_FACET)], chosen[chosen.kinds == _KEYWORDS.index("vertex")]
     return _TextStl(
-        path, parts, contents, lines=lines, facets=facets, corners=corners, normals=normals
+        path,
+        [_connected(path, corners.numbers(path, 1))],
+        ["names of solids"] if has_names else [],
+        content=content,
+        facets=facets.starts,
+        corners=corners.starts,
+        normals=facets.numbers(path, 2),
     )
 
 
@@ -119,30 +136,7 @@ def _connected(path: Path, points: Array) -> Part:
     if not len(points):
         raise ValueError("it has no triangles")
     check_vertices(path, points)
-    order = np.lexsort(points.T)
-    is_new = np.append(True, (np.diff(points[order], axis=0) != 0).any(axis=1))
-    index = np.empty(len(points), dtype=np.int64)
-    index[order] = np.cumsum(is_new) - 1
-    return Part("", points[order[is_new]], index.reshape(-1, 3))
-
-
-def _following(normals: NDArray[np.floating], part: Part, after: Array) -> Array:
-    """Return the facet normals, recomputed for triangles that have moved.
-
-    They stay on the side of the surface where they were; a facet without a normal or without area
-    is left as it is.
-    """
-    with np.errstate(invalid="ignore"):
-        result = normals.astype(np.float64)
-    new, old = (_area_vectors(shape[part.faces]) for shape in (after, part.vertices))
-    length = np.linalg.norm(new, axis=1)
-    moved = (after != part.vertices).any(axis=1)[part.faces].any(axis=1)
-    chosen = moved & (length > 0) & result.any(axis=1)
-    new[np.einsum("ij,ij->i", result, old) < 0] *= -1
-    result[chosen] = new[chosen] / length[chosen, None]
-    return result
-
-
-def _area_vectors(corners: Array) -> Array:
-    """Return a normal of each triangle, of length twice its area."""
-    return np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    first = first_equal_rows(points)
+    is_new = first == np.arange(len(points))
+    index = np.cumsum(is_new) - 1
+    return Part("", points[is_new], index[first].reshape(-1, 3))

@@ -1,73 +1,124 @@
-"""Lines of text files: reading numbers, and replacing them in place."""
+"""Lines of text files: reading numbers, and replacing them in place; both in C++."""
 
 from __future__ import annotations
 
 import re
+import sys
 from collections.abc import Sequence
-from functools import cache
-from itertools import chain
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import IO, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from meshlab_spectral.documents.document import Array, unreadable
+from meshlab_spectral import _core
+from meshlab_spectral.documents.document import Array, Indices, unreadable
 
-Words = Sequence[bytes]
+# Ascending byte offsets of n places, words from there to k numbers, the numbers in the text and the
+# new ones (n x k), and significant digits.
+Change = tuple[Indices, int, Array, Array, int]
+_END = re.compile(rb"[\r\n]")
+NumberList = tuple[Indices, Array]  # the sizes of a list in each line, and all items
 
 
-def numbers(path: Path, rows: Sequence[Words], first: int = 0, count: int = 3) -> Array:
-    """Return the words `first` to `first + count - 1` of each row as numbers, n x count.
+@dataclass(frozen=True, eq=False)
+class Lines:
+    """Lines of a text that have words.
 
-    Raises MeshFileError, which names the row, when a word is missing or is not a number.
+    `starts` are the byte offsets of their first words, `words` how many they have, `kinds` the
+    indices of their keywords: the number of keywords for any other first word.
     """
-    chosen = [row[first : first + count] for row in rows]
-    try:
-        values = np.array(list(map(float, chain.from_iterable(chosen))))
-        return values.reshape(len(rows), count)
-    except ValueError:
-        for number, words in enumerate(chosen):
-            if len(words) < count or not all(map(_is_number, words)):
-                told = b" ".join(rows[number]).decode(errors="replace")[:80]
-                raise unreadable(
-                    path, f"row {number} is {told!r}, which lacks the {count} numbers required"
-                ) from None
-        raise
+
+    text: bytes
+    starts: Indices
+    words: NDArray[np.int32]
+    kinds: NDArray[np.uint8]
+    comments: bool  # whether # begins a comment
+
+    def __len__(self) -> int:
+        return len(self.starts)
+
+    def __getitem__(self, which: slice | NDArray[Any]) -> Lines:
+        """Return some of the lines."""
+        columns = {name: getattr(self, name)[which].copy() for name in ("starts", "words", "kinds")}
+        return replace(self, **columns)
+
+    def line(self, number: int) -> bytes:
+        """Return one of the lines from its first word on, with its comment."""
+        start = int(self.starts[number])
+        end = _END.search(self.text, start)
+        return self.text[start : end.start() if end else None]
+
+    def words_of(self, number: int) -> list[bytes]:
+        """Return the words of one of the lines."""
+        line = self.line(number)
+        return (line.partition(b"#")[0] if self.comments else line).split()
+
+    def place(self, number: int) -> int:
+        """Return which line of the text one of the lines is, from 1."""
+        newline, carriage_return, both = (
+            self.text.count(end, 0, int(self.starts[number])) for end in (b"\n", b"\r", b"\r\n")
+        )
+        return newline + carriage_return - both + 1
+
+    def table(
+        self, are_lists: Sequence[bool], first: int = 0, is_whole: bool = False
+    ) -> tuple[Array, list[NumberList], int, int]:
+        """Read numbers and lists of numbers, which follow their sizes, from word `first` on.
+
+        Returns n x k numbers, the lists, and the first line that lacks some of them or, with
+        `is_whole`, has other words behind them, or -1, with the number or list that it lacks.
+        """
+        return _core.text_numbers(
+            self.text, self.starts, self.words, first, are_lists, self.comments, is_whole
+        )
+
+    def numbers(self, path: Path, first: int = 0, count: int = 3) -> Array:
+        """Return `count` numbers of each line from word `first` on, n x count.
+
+        Raises MeshFileError, which names the line, when a word is missing or is not a number.
+        """
+        values, _, bad, _ = self.table([False] * count, first)
+        if bad >= 0:
+            told = b" ".join(self.words_of(bad)).decode(errors="replace")[:80]
+            reason = f"row {bad} is {told!r}, which lacks the {count} numbers required"
+            raise unreadable(path, reason)
+        return values
 
 
-def _is_number(word: bytes) -> bool:
-    try:
-        float(word)
-    except ValueError:
-        return False
-    return True
+def lines_of(
+    text: bytes,
+    keywords: Sequence[str] = (),
+    *,
+    begin: int = 0,
+    limit: int = sys.maxsize,
+    comments: bool = False,
+    any_case: bool = False,
+    continued: int = -1,
+) -> Lines:
+    """Return the lines that have words, at most `limit` of them, from byte offset `begin` on.
 
-
-def with_numbers(
-    line: bytes, first: int, before: Sequence[float], after: Sequence[float], digits: int
-) -> bytes:
-    """Return a line in which those of three numbers that have changed are replaced.
-
-    They begin at word `first`, from 0; other words and all whitespace are kept. `before` are the
-    three numbers in the line, `after` the new ones, written with `digits` significant digits.
+    `keywords` are first words to tell apart, in small letters with `any_case`. Lines of the keyword
+    with the index `continued` go on after a backslash at their end.
     """
-    found = _three_words(first).match(line)
-    assert found is not None
-    pieces = list(found.groups())
-    for k in range(3):
-        if before[k] != after[k]:
-            pieces[2 * k + 1] = b"%.*g" % (digits, after[k])
-    return b"".join(pieces) + line[found.end() :]
+    found = _core.text_lines(text, begin, limit, keywords, comments, any_case, continued)
+    return Lines(text, *found, comments)
 
 
-def replace_numbers(
-    lines: list[bytes], where: Sequence[int], first: int, before: Array, after: Array, digits: int
-) -> None:
-    """Replace the three numbers from word `first` on in those lines where they have changed."""
-    rows = np.flatnonzero((before != after).any(axis=1))
-    for k, old, new in zip(rows.tolist(), before[rows].tolist(), after[rows].tolist(), strict=True):
-        lines[where[k]] = with_numbers(lines[where[k]], first, old, new, digits)
+def write_patched(file: IO[bytes], text: bytes, changes: Sequence[Change], begin: int = 0) -> None:
+    """Write a text, from a byte offset on, with those numbers that have changed replaced.
+
+    A number ends at a blank or #, and one that begins after a quotation mark at the next one.
+    """
+    _core.write_patched(text, begin, changes, file.write)
 
 
-@cache
-def _three_words(first: int) -> re.Pattern[bytes]:
-    return re.compile(rb"(\s*(?:\S+\s+){%d})(\S+)(\s+)(\S+)(\s+)([^\s#]+)" % first)
+def whole(numbers: Array) -> Indices:
+    """Return numbers as integers; raise ValueError if one is none."""
+    with np.errstate(invalid="ignore"):
+        integers = numbers.astype(np.int64)
+    wrong = integers != numbers
+    if wrong.any():
+        raise ValueError(f"{numbers[np.argmax(wrong)]:g} is not an integer")
+    return integers
