@@ -38,6 +38,8 @@ VENV := .venv/.requirements
 MANYLINUX := manylinux_2_35_$(shell uname -m)
 HOST_LIBRARIES := libmeshlab-common.so libQt5Core.so.5 libQt5Gui.so.5 libQt5Widgets.so.5 libQt5Xml.so.5 libQt5OpenGL.so.5
 PACKAGE := .venv/.package
+# Part of the package's libraries: pymeshlab has a shared one of the same name, which is not the system's.
+MUPARSER := $(CURDIR)/build/muparser
 COMPETITORS := .venv/.competitors
 
 CPP_FILES = find plugin tests -name '*.h' -o -name '*.cpp'
@@ -49,7 +51,7 @@ PACKAGE_SOURCES := CMakeLists.txt $(shell find plugin python -not -path '*/__pyc
 # Two targets at once would fetch MeshLab's headers twice; ninja uses every core anyway.
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help demo test wheel sdist docs gui-test screenshots setup build bench bench-basis bench-batch bench-contract bench-defaults bench-denoise bench-ldlt bench-memory bench-signatures promises fuzz fuzz-python lint format clean
+.PHONY: help demo test wheel sdist docs gui-test screenshots setup build bench bench-basis bench-batch bench-contract bench-defaults bench-denoise bench-ldlt bench-memory bench-signatures promises fuzz fuzz-python lint options format clean
 
 help:  ## list these commands
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 20
@@ -64,8 +66,8 @@ test: build $(PACKAGE)  ## run every test, C++ and Python
 
 wheel: $(VENV)  ## build the wheel that PyPI takes: build/wheel/*.whl
 	rm -rf build/wheel/linux build/wheel/*.whl
-	plugin/cmake/static_muparser.sh $(CURDIR)/build/wheel/muparser
-	CMAKE_ARGS="$(CMAKE_OPTIONS) -DCMAKE_PREFIX_PATH=$(CURDIR)/build/wheel/muparser" \
+	plugin/cmake/static_muparser.sh $(MUPARSER)
+	CMAKE_ARGS="$(CMAKE_OPTIONS) -Dmuparser_DIR=$(MUPARSER)/lib/cmake/muparser" \
 	  $(BIN)/pip wheel --quiet --disable-pip-version-check --no-index --no-build-isolation --no-deps \
 	  --config-settings=build-dir="$(CURDIR)/build/wheel/package" --wheel-dir build/wheel/linux ./python
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/auditwheel repair --plat $(MANYLINUX) --wheel-dir build/wheel \
@@ -153,6 +155,9 @@ lint: setup  ## check style and types, change nothing
 	  $(BIN)/mypy --strict --platform $$platform --config-file python/pyproject.toml python/src \
 	  || exit; done
 
+options: $(PACKAGE)  ## write the tables of options of the Python package as the core has them
+	$(BIN)/python python/write_options.py
+
 format: setup  ## rewrite the sources in the project's style
 	$(CPP_FILES) | xargs $(BIN)/clang-format -i
 	$(BIN)/ruff check --fix --config python/pyproject.toml $(PYTHON_FILES)
@@ -184,7 +189,9 @@ $(COMPETITORS): tests/benchmarks/requirements.txt tests/benchmarks/scikit_sparse
 # that a changed file costs its own compilation only. --force-reinstall: the version is the same.
 $(PACKAGE): $(VENV) $(PACKAGE_SOURCES)
 	@echo 'Building the plugin and installing the package: about a minute at first'
-	CMAKE_ARGS="$(CMAKE_OPTIONS)" $(BIN)/pip install --quiet --disable-pip-version-check --no-index \
+	plugin/cmake/static_muparser.sh $(MUPARSER) >/dev/null
+	CMAKE_ARGS="$(CMAKE_OPTIONS) -Dmuparser_DIR=$(MUPARSER)/lib/cmake/muparser" \
+	  $(BIN)/pip install --quiet --disable-pip-version-check --no-index \
 	  --no-build-isolation --no-deps --force-reinstall \
 	  --config-settings=build-dir="$(CURDIR)/build/python" ./python
 	@touch $@

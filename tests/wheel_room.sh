@@ -27,7 +27,7 @@ set -eu
 cd /root
 . /etc/os-release && echo "$PRETTY_NAME, $(python3 --version), $(ldd --version | sed -n 1p)"
 python3 -m venv venv
-venv/bin/pip install --quiet --quiet --disable-pip-version-check meshlab_spectral-*.whl
+venv/bin/pip install --quiet --quiet --disable-pip-version-check "$(ls meshlab_spectral-*.whl)[meshlab]"
 PATH=$PWD/venv/bin:$PATH
 python try_wheel.py
 meshlab-spectral install

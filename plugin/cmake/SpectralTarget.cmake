@@ -91,8 +91,9 @@ function(spectral_plugin_target target)
       COMMAND ${CMAKE_COMMAND} -DPLUGIN=$<TARGET_FILE:${target}>
               -P ${PROJECT_SOURCE_DIR}/plugin/cmake/relocate_qt.cmake)
   else()
-    # Link only the libraries that are used, to require no others of the host.
-    target_link_options(${target} PRIVATE LINKER:--as-needed)
+    # Link only the libraries that are used, to require no others of the host; functions of static ones
+    # are not those of the host.
+    target_link_options(${target} PRIVATE LINKER:--as-needed LINKER:--exclude-libs,libmuparser.a)
     # Resolved by the host at run time: MeshLab loads its core library and Qt before any plugin, and
     # their names depend on the MeshLab package.
     set_target_properties(${target} PROPERTIES SKIP_BUILD_RPATH ON)

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Builds muParser as a static library, from the sources in Debian, once, for plugins that run where
-# no libmuparser.so is installed.
+# Builds muParser as a static library, from the sources in Debian, once: for libraries that run where no
+# libmuparser.so is installed, or beside another one.
 #
 # usage: static_muparser.sh FOLDER [OPTIONS OF CMAKE]    installs it into FOLDER
 set -eu

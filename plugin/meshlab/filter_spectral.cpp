@@ -190,6 +190,7 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
             throw MLException(cancelled.what());
         return {};
     } catch (const spectral::Error& error) {
+        keepLastError(error);
         throw MLException(QString::fromStdString(error.what()));
     } catch (const std::bad_alloc&) {
         throw MLException(

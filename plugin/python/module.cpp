@@ -53,10 +53,11 @@ nb::dict applyFilter(const std::string& name, const Positions& vertices, const I
     return result;
 }
 
-nb::object gains(const nb::dict& options, double diagonal, double meanEdge,
+nb::object gains(const nb::dict& options, double featureSize, double diagonal, double meanEdge,
                  const Numbers& frequencies) {
     const auto w = mapOf(frequencies, 1);
-    return python::given(gainsAt(valuesOf(options), {diagonal, meanEdge, diagonal}, w.col(0)));
+    return python::given(
+        gainsAt(valuesOf(options), featureSize, {diagonal, meanEdge, diagonal}, w.col(0)));
 }
 
 /// (data, column indices, row offsets) of W, D, and the vertex of each row.
@@ -98,7 +99,8 @@ NB_MODULE(_core, m) {
     m.def("apply", python::applyFilter, "name"_a, "vertices"_a, "faces"_a, "options"_a,
           nb::kw_only(), "selected"_a = nb::none(), "values"_a = nb::none(), "gain"_a = nb::none(),
           "progress"_a = nb::none(), "threads"_a = 0);
-    m.def("gains", python::gains, "options"_a, "diagonal"_a, "mean_edge"_a, "frequencies"_a);
+    m.def("gains", python::gains, "options"_a, "feature_size"_a, "diagonal"_a, "mean_edge"_a,
+          "frequencies"_a);
     m.def("laplacian", python::laplacian, "vertices"_a, "faces"_a, "kind"_a, nb::kw_only(),
           "progress"_a = nb::none(), "threads"_a = 0);
     python::addTexts(m);

@@ -44,6 +44,6 @@ nitpicky = True
 nitpick_ignore_regex = [
     ("py:.*", r"(numpy|np|pymeshlab|pathlib|collections|typing|npt)\..*"),
     ("py:class", r"array|ArrayLike|NDArray|Any|Path|Sequence|Generator|LaplacianKind|Boundary"),
-    ("py:class", r"np\..*|Outcome|Figure|Plotter"),
+    ("py:class", r"np\..*|scipy\..*|Outcome|Figure|Plotter|Gain|Progress"),
     ("py:obj", r".*"),
 ]

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from docutils import nodes
-from plugin_facts import WORDS, Filter, Parameter, filters
+from plugin_facts import MEANINGS, Filter, Parameter, filters
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
@@ -69,7 +69,7 @@ def _report(described: Filter) -> Iterator[str]:
     yield from _heading("Report", "-")
     yield from ("The dictionary that the method returns; lengths are in the units of the mesh.", "")
     rows = (
-        (f"``{entry}``", kind, re.sub(r"`(.+?)`", r"``\1``", WORDS["report"][entry]))
+        (f"``{entry}``", kind, re.sub(r"`(.+?)`", r"``\1``", MEANINGS[entry]))
         for entry, kind in sorted(described.report.items())
     )
     yield from _table(("Entry", "Value", "Meaning"), rows, "34 16 50")

@@ -1,22 +1,28 @@
-"""What the reference pages say about the filters: read from the plugin, and from words.toml."""
+"""What the reference pages say about the filters: read from the plugin and from the core."""
 
 from __future__ import annotations
 
 import functools
 import json
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import meshlab_spectral
 import pymeshlab
-import tomllib
+from meshlab_spectral import _core
 from meshlab_spectral.plugin.library import function_of
 from meshlab_spectral.plugin.loading import loaded_plugin
 
-WORDS: dict[str, dict[str, str]] = tomllib.loads(
-    Path(__file__).with_name("words.toml").read_text(encoding="utf-8")
-)
+CONTRACT = {one["python_name"]: one for one in _core.filters()}
+# Entries of reports, and what they mean.
+MEANINGS: dict[str, str] = {name: text for one in CONTRACT.values() for name, text in one["report"]}
+# Defaults that depend on the mesh.
+DEFAULTS: dict[str, str] = {
+    one["name"]: one["default_in_words"]
+    for described in CONTRACT.values()
+    for one in described["parameters"]
+    if "edges" in one["default_in_words"]
+} | {"selected": "on if faces are selected"}
 # Resolutions of two meshes, which defaults that depend on the mesh differ on.
 COARSE, FINE = 2, 6
 # Runs whose reports hold all entries that there are, besides the run with the defaults.
@@ -40,6 +46,7 @@ class Parameter:
     is_advanced: bool
     choices: list[str]
     default: str
+    unit: str
 
     @property
     def is_number(self) -> bool:
@@ -57,7 +64,7 @@ class Parameter:
         if self.choices:
             return ", ".join(self.choices)
         kinds = {"RichBool": "on or off", "RichString": "text"}
-        return kinds.get(self.type) or WORDS["units"][self.name]
+        return kinds.get(self.type) or self.unit
 
 
 @dataclass(frozen=True)
@@ -85,10 +92,11 @@ def _filter(described: dict[str, Any]) -> Filter:
     name = described["python_name"]
     defaults = [_defaults(name, described, mesh_set) for mesh_set in _spheres()]
     parameters = []
+    units = {one["name"]: one["unit"] for one in CONTRACT[name]["parameters"]}
     for parameter in described.pop("parameters"):
         coarse, fine = (of_mesh[parameter["name"]] for of_mesh in defaults)
-        default = coarse if coarse == fine else WORDS["defaults"][parameter["name"]]
-        parameters.append(Parameter(**parameter, default=default))
+        default = coarse if coarse == fine else DEFAULTS[parameter["name"]]
+        parameters.append(Parameter(**parameter, default=default, unit=units[parameter["name"]]))
     return Filter(**described, parameters=parameters, report=_report(name))
 
 

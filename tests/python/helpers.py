@@ -75,7 +75,7 @@ def filter_file(
 ) -> dict[str, Any]:
     """Filter a mesh file into another, and return the report."""
     with writing_whole(target) as scratch:
-        return filter_to_scratch(source, scratch, options, lambda stage: None, mesh=mesh)
+        return filter_to_scratch(source, scratch, options, lambda *stage: None, mesh=mesh)
 
 
 def refusal(mesh_set: pymeshlab.MeshSet, filter_name: str = FILTER, **parameters: Any) -> str:

@@ -42,13 +42,13 @@ Fields<FractionalCall> fractionalFields() {
                     "turns thin parts into spikes or balloons. 0 approximates infinitely many of "
                     "them, to the |tolerance|; 10 is the scheme of the paper with ten steps; 1 is "
                     "the classical one-shot filter.")
-            .in("number of steps, at least 0")
+            .in("number of steps, 0 to 1000")
             .to(1000.0)
             .advanced());
     fields.push_back(
         field<Call>([](auto& call) -> auto& { return call.options.tolerance; }, "tolerance",
                     "Tolerance",
-                    "With 0 |steps|: largest distance of the surface from the result of infinitely "
+                    "With |steps| 0: largest distance of the surface from the result of infinitely "
                     "many steps, for all but a thousandth of it. Larger is faster.")
             .in("length, above 0")
             .above(0.0)
@@ -57,7 +57,7 @@ Fields<FractionalCall> fractionalFields() {
     fields.push_back(
         field<Call>([](auto& call) -> auto& { return call.options.passes; }, "passes",
                     "Passes (0 = automatic)",
-                    "With 0 |steps|: the number of passes of 1, 2, 4, ... steps, whatever the "
+                    "With |steps| 0: the number of passes of 1, 2, 4, ... steps, whatever the "
                     "|tolerance|. A report tells how many a run took: with that number it is "
                     "repeated exactly.")
             .in("number of passes, 0 to 9")

@@ -5,11 +5,13 @@
 
 namespace spectral {
 
-Eigen::VectorXd gainsAt(const Values& given, const MeshLengths& mesh, const Eigen::VectorXd& w) {
+Eigen::VectorXd gainsAt(const Values& given, double featureSize, const MeshLengths& mesh,
+                        const Eigen::VectorXd& w) {
     Fields<TransferCall> fields;
     addTransferFields(fields);
     TransferCall call = callOf(fields, given, mesh);
-    const double unit = cutoffFrequency(call.featureSize);
+    call.featureSize = featureSize;
+    const double unit = cutoffFrequency(featureSize);
     resolveCustomGain(call, mesh, {});
     const TransferFunction F(call.transfer, cutoffFrequency(call.featureSize));
     return w.unaryExpr([&](double x) { return F(x * unit); });

@@ -17,8 +17,9 @@ struct Length {
     /// @throws InvalidOption  when the text is none of these, or a percentage is above 100.
     static Length parse(const std::string& text);
 
-    /// In length units, in single precision, which is how MeshLab passes lengths on: one value then
-    /// means the same in all hosts. @param automatic  what `auto` stands for.
+    /// In length units, in single precision, in which pymeshlab passes lengths on: a size then
+    /// means the same in all hosts, to the bit.
+    /// @param automatic  what `auto` stands for.
     double in(const MeshLengths& mesh, double automatic) const;
 };
 

@@ -70,7 +70,7 @@ Value converted(const Parameter& parameter, const Value& value, const MeshLength
         case Kind::Integer:
             if (!std::holds_alternative<int>(value)) reject(parameter, value, "must be an integer");
             return value;
-        case Kind::Number: return inSinglePrecision(numberOf(parameter, value));
+        case Kind::Number: return numberOf(parameter, value);
         case Kind::Length: return lengthOf(parameter, value, mesh);
         case Kind::Choice: return choiceOf(parameter, value);
         case Kind::Text:

@@ -9,7 +9,6 @@
 #include "core/denoise/removal.h"
 #include "core/laplacian/laplacian.h"
 #include "core/laplacian/vertex_weight.h"
-#include "core/mesh/measures.h"
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/surface.h"
 #include "core/support/errors.h"
@@ -146,19 +145,6 @@ void keepWithin(const Eigen::RowVector3d& limit, const Vertices& X0, Vertices& X
         X.row(i) = X.row(i).cwiseMax(X0.row(i) - limit).cwiseMin(X0.row(i) + limit);
 }
 
-/// Moves the mesh V by the displacement (n x 3) of its surface, and records its statistics.
-void report(const Vertices& V, const Surface& surface, const Vertices& displacement,
-            DenoiseResult& result) {
-    if (!displacement.allFinite()) throw SolverFailure("the denoised coordinates are not finite");
-    result.V = changed(V, surface, displacement);
-    result.maxDisplacement = displacement.rowwise().norm().maxCoeff();
-    result.rmsDisplacement =
-        displacement.stableNorm() / std::sqrt(static_cast<double>(displacement.rows()));
-    result.volumeBefore = signedVolume(surface.X, surface.F);
-    result.volumeAfter = signedVolume(surface.X + displacement, surface.F);
-    result.hasVolume = enclosesVolume(surface.X, surface.F);
-}
-
 /// Largest offset that restores volume, as a multiple of the displacement: noise lies on both sides
 /// of a surface, so removing it changes the volume little.
 constexpr double kMaxOffset = 2.0;
@@ -182,6 +168,7 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
         countsOf(whole, V.rows(), components.count, interior.fixedVertices());
 
     Vertices moved = whole.X;
+    PreservedVolumes volumes;
     const MovingPart part(whole, weight);
     if (options.strength > 0.0 && part.surface.X.rows() > 0) {
         const Index n = part.surface.X.rows();
@@ -193,12 +180,16 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
         // Prefer the oriented faces of the graph; their indices are valid only if the part is all.
         const bool isWhole = part.surface.F.rows() == whole.F.rows();
         if (result.rounds > 0)
-            result.volumes = preserveVolumes(whole.X, isWhole ? graph.F : whole.F, components,
-                                             weight, kMaxOffset, moved);
+            volumes = preserveVolumes(whole.X, isWhole ? graph.F : whole.F, components, weight,
+                                      kMaxOffset, moved);
         if (result.diagnosis.kind == NoiseKind::Voxels)
             keepWithin(0.5 * result.diagnosis.voxel, whole.X, moved);
     }
-    report(V, whole, moved - whole.X, result);
+    const Vertices displacement = moved - whole.X;
+    if (!displacement.allFinite()) throw SolverFailure("the denoised coordinates are not finite");
+    result.V = changed(V, whole, displacement);
+    static_cast<Movement&>(result) = movementOf(
+        whole.X, whole.F, displacement, Eigen::VectorXd::Ones(displacement.rows()), volumes);
     return result;
 }
 

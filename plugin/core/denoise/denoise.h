@@ -4,8 +4,8 @@
 
 #include "core/laplacian/interior.h"
 #include "core/mesh/mesh.h"
+#include "core/mesh/movement.h"
 #include "core/mesh/surface.h"
-#include "core/mesh/volume.h"
 #include "core/noise/diagnosis.h"
 #include "core/support/progress.h"
 
@@ -21,19 +21,14 @@ struct DenoiseOptions {
     std::vector<bool> selected;  ///< n: vertices to denoise; empty: all.
 };
 
-struct DenoiseResult : SurfaceCounts {
+struct DenoiseResult : SurfaceCounts, Movement {
     Vertices V;  ///< Denoised positions; unreferenced vertices keep theirs.
 
     Diagnosis diagnosis;
-    double noiseHeight = 0.0;      ///< Height of the removed noise, length units; 0: none.
-    double noiseSize = 0.0;        ///< Its correlation length, length units; 0: white noise.
-    int rounds = 0;                ///< Rounds of the normal filter, or linear steps; 0: none.
-    bool isCrumpled = false;       ///< Nothing removed: that would have folded the surface.
-    double maxDisplacement = 0.0;  ///< Largest vertex displacement, length units.
-    double rmsDisplacement = 0.0;  ///< Root mean square over the vertices, length units.
-    double volumeBefore = 0.0, volumeAfter = 0.0;  ///< Signed; meaningful only if hasVolume.
-    bool hasVolume = false;                        ///< Whether the surface encloses a volume.
-    PreservedVolumes volumes;                      ///< Volumes of the closed components.
+    double noiseHeight = 0.0;  ///< Height of the removed noise, length units; 0: none.
+    double noiseSize = 0.0;    ///< Its correlation length, length units; 0: white noise.
+    int rounds = 0;            ///< Rounds of the normal filter, or linear steps; 0: none.
+    bool isCrumpled = false;   ///< Nothing removed: that would have folded the surface.
 };
 
 /// Removes noise by a method that depends on the noise it finds.

@@ -25,6 +25,15 @@ inline double accuracyOfStep(double accuracy, double alpha) {
     return std::max(accuracy * alpha, kFinestAccuracy);
 }
 
+/// What an evaluation took.
+struct Work {
+    int factorizations = 0;    ///< Sparse LDL^T factorizations.
+    int solves = 0;            ///< Solves with one right-hand side.
+    int products = 0;          ///< Products of the Laplacian with one column.
+    bool lacksMemory = false;  ///< Whether products replaced a factorization that did not fit in
+                               ///< memory: same result, but slower.
+};
+
 /// Evaluates powers of a transfer function for a sequence of Laplacians.
 class Evaluator {
   public:
@@ -41,10 +50,7 @@ class Evaluator {
     /// The last computed basis, without its vectors; empty if none was used.
     const HarmonicBasis& basis() const { return basis_; }
     int computedBases() const { return computedBases_; }
-    const ShiftedLdlt& ldlt() const { return ldlt_; }  ///< Counts factorizations and solves.
-    int products() const { return products_; }         ///< Number of products of W with one column.
-    /// Whether a factorization would have paid off but did not fit in memory.
-    bool lacksMemory() const { return lacksMemory_; }
+    Work work() const { return {ldlt_.factorizations(), ldlt_.solves(), products_, lacksMemory_}; }
 
   protected:
     ShiftedLdlt ldlt_;

@@ -78,14 +78,6 @@ std::vector<bool> verticesAtRest(const Surface& surface, const FilterOptions& op
     return rest;
 }
 
-/// Sets the largest and the D-weighted root mean square row norm of `displacement`.
-void measureDisplacement(const Vertices& displacement, const Eigen::VectorXd& D,
-                         FilterResult& result) {
-    const Eigen::VectorXd squares = displacement.rowwise().squaredNorm();
-    result.maxDisplacement = std::sqrt(squares.maxCoeff());
-    result.rmsDisplacement = std::sqrt(squares.dot(D / D.sum()));
-}
-
 /// Fraction of the area at vertices where little of it is left.
 /// @param before, after  vertex areas.
 double shrunkenPart(const Eigen::VectorXd& before, const Eigen::VectorXd& after) {
@@ -171,15 +163,20 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
         vertexWeight(options.part, surface, interior, laplacians.current(), options.featureSize);
     Vertices displacement = weight.asDiagonal() * (steps.last.X - surface.X);
     Vertices X = surface.X + displacement;
-    FilterResult result;
-    static_cast<SurfaceCounts&>(result) =
-        countsOf(surface, V.rows(), interior.surfaceComponents().count, interior.fixedVertices());
+    PreservedVolumes volumes;
     if (options.preserveVolume) {
-        result.volumes = preserveVolumes(surface.X, surface.F, interior.surfaceComponents(), weight,
-                                         kMaxOffset, X);
+        volumes = preserveVolumes(surface.X, surface.F, interior.surfaceComponents(), weight,
+                                  kMaxOffset, X);
         displacement = X - surface.X;
     }
 
+    const Eigen::VectorXd before = lumpedMass(surface.X, surface.F);
+    FilterResult result;
+    static_cast<SurfaceCounts&>(result) =
+        countsOf(surface, V.rows(), interior.surfaceComponents().count, interior.fixedVertices());
+    static_cast<Movement&>(result) =
+        movementOf(surface.X, surface.F, displacement, before, volumes);
+    static_cast<Work&>(result) = evaluate.work();
     result.V = changed(V, surface, displacement);
     result.steps = static_cast<int>(steps.last.sizes.size());
     result.passes = steps.passes;
@@ -190,19 +187,10 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
         options.steps > 0 || options.passes > 0 || steps.error <= options.tolerance;
     result.cutoffFrequency = transfer.cutoff();
     result.featureSize = options.featureSize;
-    const Eigen::VectorXd before = lumpedMass(surface.X, surface.F);
-    measureDisplacement(displacement, before, result);
     result.shrunkenPart = shrunkenPart(before, lumpedMass(X, surface.F));
     result.areaBefore = areaBefore;
     result.areaAfter = surfaceArea(X, surface.F);
-    result.volumeBefore = signedVolume(surface.X, surface.F);
-    result.volumeAfter = signedVolume(X, surface.F);
-    result.hasVolume = enclosesVolume(surface.X, surface.F);
     result.meanEdge = meanEdgeLength(surface.X, surface.F);
-    result.factorizations = evaluate.factorizations();
-    result.solves = evaluate.solves();
-    result.products = evaluate.products();
-    result.lacksMemory = evaluate.lacksMemory();
     result.accuracy = evaluation.accuracy;
     result.errorEstimate = steps.last.errorEstimate;
     result.accuracyReached = steps.last.accuracyReached;

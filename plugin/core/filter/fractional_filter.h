@@ -7,8 +7,8 @@
 #include "core/laplacian/laplacian_builder.h"
 #include "core/laplacian/vertex_weight.h"
 #include "core/mesh/mesh.h"
+#include "core/mesh/movement.h"
 #include "core/mesh/surface.h"
-#include "core/mesh/volume.h"
 #include "core/support/progress.h"
 #include "core/support/types.h"
 #include "core/transfer/transfer_function.h"
@@ -42,27 +42,18 @@ struct FilterOptions {
     bool preserveVolume = false;  ///< Restores the volume of closed components (volume.h).
 };
 
-struct FilterResult : SurfaceCounts {
+/// Displacements are weighted by the areas of the input.
+struct FilterResult : SurfaceCounts, Movement, Work {
     Vertices V;  ///< The filtered positions; unreferenced vertices do not move.
 
     int steps = 0;                 ///< K; of automatic steps, those of the last pass.
     int passes = 0;                ///< Passes of automatic steps; 0: the paper's scheme.
     double cutoffFrequency = 0.0;  ///< omega_c, radians per length unit.
     double featureSize = 0.0;      ///< 2 pi / omega_c, length units.
-    double maxDisplacement = 0.0;  ///< Largest vertex displacement, length units.
-    double rmsDisplacement = 0.0;  ///< Root mean square over the input surface.
     double areaBefore = 0.0, areaAfter = 0.0;
-    double volumeBefore = 0.0, volumeAfter = 0.0;  ///< Signed; meaningful only if hasVolume.
-    bool hasVolume = false;                        ///< Whether the surface encloses one.
-    double meanEdge = 0.0;                         ///< Mean edge length of the input.
+    double meanEdge = 0.0;      ///< Mean edge length of the input.
     double shrunkenPart = 0.0;  ///< Fraction of the input surface at vertices that keep less than a
                                 ///< tenth of their area: it shrinks to lines and points.
-    PreservedVolumes volumes;   ///< With preserveVolume.
-    int factorizations = 0;     ///< Sparse LDL^T factorizations.
-    int solves = 0;             ///< Solves with one right-hand side.
-    int products = 0;           ///< Products of the Laplacian with one column.
-    bool lacksMemory = false;   ///< Whether products replaced a factorization that did not fit in
-                                ///< memory: same result, but slower.
     double accuracy = 0.0;      ///< Requested relative accuracy of the evaluation, all steps.
     double errorEstimate = 0.0;   ///< Estimated relative error of the evaluation, all steps.
     bool accuracyReached = true;  ///< Whether every step was within its share of `accuracy`.

@@ -102,8 +102,7 @@ FilteredSignal filterSignal(const Vertices& V, const Faces& F, const Eigen::Matr
     result.verticesWithoutData = static_cast<int>(hasData.size() - hasData.count());
     result.unreferencedVertices -= result.verticesWithoutData;
     result.cutoffFrequency = transfer.cutoff();
-    result.factorizations = evaluate.factorizations();
-    result.solves = evaluate.solves();
+    static_cast<Work&>(result) = evaluate.work();
     result.residuals = evaluate.basis().residuals;
     return result;
 }

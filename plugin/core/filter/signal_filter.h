@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "core/filter/evaluator.h"
 #include "core/laplacian/interior.h"
 #include "core/laplacian/laplacian_builder.h"
 #include "core/laplacian/vertex_weight.h"
@@ -20,7 +21,7 @@ struct SignalFilterOptions {
     WeightOptions part;  ///< Where to filter.
 };
 
-struct FilteredSignal : SurfaceCounts {
+struct FilteredSignal : SurfaceCounts, Work {
     Eigen::MatrixXd Y;  ///< n x c, the filtered signals; Q at vertices not on the surface.
 
     bool isConstant = false;       ///< Constant on each component: nothing to filter.
@@ -32,8 +33,6 @@ struct FilteredSignal : SurfaceCounts {
     double errorEstimate = 0.0;    ///< Estimated error of Y, relative to the largest modulus of Q
                                    ///< without its means, over all signals together.
     bool accuracyReached = true;   ///< Whether errorEstimate is within the accuracy.
-    int factorizations = 0;        ///< Sparse LDL^T factorizations.
-    int solves = 0;                ///< Solves with one right-hand side.
     Eigen::VectorXd residuals;     ///< Residuals of the harmonics, if F needs any (HarmonicBasis).
 };
 

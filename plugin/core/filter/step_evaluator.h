@@ -57,12 +57,13 @@ class StepEvaluator {
 
     const HarmonicBasis& basis() const { return evaluator_->basis(); }  ///< Empty if none was used.
     int computedBases() const { return evaluator_->computedBases(); }
-    int factorizations() const {
-        return evaluator_->ldlt().factorizations() + extension_.factorizations();
+    /// Of all steps so far.
+    Work work() const {
+        Work all = evaluator_->work();
+        all.factorizations += extension_.factorizations();
+        all.solves += extension_.solves();
+        return all;
     }
-    int solves() const { return evaluator_->ldlt().solves() + extension_.solves(); }
-    int products() const { return evaluator_->products(); }
-    bool lacksMemory() const { return evaluator_->lacksMemory(); }
 
   private:
     Evaluation evaluate(const Laplacian& surface, const Eigen::MatrixXd& X,

@@ -24,6 +24,7 @@ def apply(
 ) -> dict[str, Any]: ...
 def gains(
     options: Mapping[str, bool | int | float | str],
+    feature_size: float,
     diagonal: float,
     mean_edge: float,
     frequencies: NDArray[np.float64],

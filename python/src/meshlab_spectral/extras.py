@@ -10,6 +10,8 @@ from meshlab_spectral.errors import MissingPackageError
 _PACKAGES = {
     "cluster": ["distributed"],
     "formats": ["nibabel", "pyvista"],
+    "matrices": ["scipy"],
+    "meshlab": ["pymeshlab"],
     "plots": ["matplotlib"],
     "render": ["pyvista"],
 }

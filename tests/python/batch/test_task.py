@@ -50,7 +50,7 @@ def test_a_filtered_file_is_described_completely(
     assert result.attempts == 1
     assert 0 < result.seconds < 60
     assert 30e6 < (result.peak_memory or 0) < 1e9
-    assert len(result.versions["plugin"]) == 64
+    assert len(result.versions["core"]) == 64
     assert list(target.parent.iterdir()) == [target]
 
 

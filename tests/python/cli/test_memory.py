@@ -45,9 +45,9 @@ def test_a_filter_is_refused_before_it_takes_the_memory(samples: Path, tmp_path:
     """The plugin knows the limit, too: it says what it would need."""
     arguments = ["filter", samples / "bunny.obj", tmp_path / "out.ply", "--spectrum", "truncated"]
     more = ["--basis-size", "4000", "--steps", "1"]
-    limit = str(600 * MEBIBYTE)
+    limit = str(400 * MEBIBYTE)
     done = command(*arguments, *more, MESHLAB_SPECTRAL_MEMORY=limit)
-    assert_fails(done, 1, "more than 600 MiB of memory", REMEDY, "need about", "are free")
+    assert_fails(done, 1, "more than 400 MiB of memory", REMEDY, "need about", "are free")
 
 
 @pytest.mark.parametrize("name", OF_MANY)

@@ -135,9 +135,9 @@ print("stopped")
 """
 
 
-@pytest.mark.parametrize(("ending", "told"), [(INTERRUPTED, ""), (ENDING, "Cancelled")])
+@pytest.mark.parametrize("ending", [INTERRUPTED, ENDING])
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no signals to send")
-def test_an_interrupt_and_the_interpreters_end_stop_a_run(ending: str, told: str) -> None:
+def test_an_interrupt_and_the_interpreters_end_stop_a_run(ending: str) -> None:
     done = subprocess.run(
         [sys.executable, "-c", PROGRAM + ending],
         capture_output=True,
@@ -147,5 +147,3 @@ def test_an_interrupt_and_the_interpreters_end_stop_a_run(ending: str, told: str
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
     )
     assert (done.returncode, done.stdout) == (0, "stopped\n")
-    assert told in done.stderr
-    assert bool(told) == bool(done.stderr)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 
 class Call(NamedTuple):
-    """A filter, and values of parameters; lengths as texts."""
+    """A filter, and values of parameters; lengths as texts, numbers as in single precision."""
 
     name: str
     options: dict[str, Any]
@@ -23,15 +23,15 @@ class Call(NamedTuple):
 FILTER = "apply_coord_spectral_filter_fractional"
 CALLS = [
     Call(FILTER, {}),
-    Call(FILTER, {"feature_size": "15%", "pass_gain": 1.1, "selected": True}),
+    Call(FILTER, {"feature_size": "15%", "pass_gain": 1.125, "selected": True}),
     Call(FILTER, {"filter_type": "high-pass", "stop_gain": 1.0, "weight": "vertex quality"}),
     Call(FILTER, {"filter_type": "custom", "transfer_function": "20%:1, 6e:1.7, 1%:0.1"}),
     Call(FILTER, {"spectrum": "truncated", "basis_size": 20, "steps": 2, "basis_update": "full"}),
     Call("apply_coord_spectral_denoise", {}),
     Call("apply_coord_spectral_denoise", {"noise_height": "0.3%", "keep_creases": False}),
-    Call("apply_coord_spectral_equalizer", {"gain_8x": 1.7, "gain_1x": 0.0}),
+    Call("apply_coord_spectral_equalizer", {"gain_8x": 1.75, "gain_1x": 0.0}),
     Call("apply_scalar_spectral_filter_per_vertex", {"feature_size": "10%"}),
-    Call("apply_color_spectral_filter_per_vertex", {"feature_size": "10%", "stop_gain": 0.3}),
+    Call("apply_color_spectral_filter_per_vertex", {"feature_size": "10%", "stop_gain": 0.25}),
     Call("compute_scalar_spectral_artefacts_per_vertex", {"feature_size": "10%"}),
     Call("compute_scalar_manifold_harmonic_per_vertex", {"basis_size": 20, "mode": 3}),
     Call("get_geometry_spectrum", {"basis_size": 10}),

@@ -20,7 +20,7 @@ from command_pages import command_names
 from meshlab_spectral import DenoiseOptions, FilterOptions
 from meshlab_spectral.filters.option_types import Limits, Options
 from meshlab_spectral.plugin.loading import FILTERS
-from plugin_facts import WORDS, filters
+from plugin_facts import DEFAULTS, MEANINGS, filters
 
 SOURCES = Path(plugin_facts.__file__).parent
 each_filter = pytest.mark.parametrize("name", FILTERS.values())
@@ -101,11 +101,10 @@ def all_parameters() -> list[plugin_facts.Parameter]:
     return [parameter for each in filters().values() for parameter in each.parameters]
 
 
-def test_every_number_has_a_unit_and_every_unit_is_used() -> None:
-    assert WORDS["units"].keys() == {each.name for each in all_parameters() if each.is_number}
+def test_every_number_has_a_unit() -> None:
     for parameter in all_parameters():
-        if parameter.is_length:
-            assert WORDS["units"][parameter.name].startswith("length, ")
+        assert bool(parameter.unit) == parameter.is_number
+        assert parameter.unit.startswith("length, ") == parameter.is_length
 
 
 def range_in_words(limits: Limits) -> str:
@@ -119,29 +118,28 @@ def range_in_words(limits: Limits) -> str:
 
 @pytest.mark.parametrize("table", [FilterOptions, DenoiseOptions])
 def test_ranges_are_those_of_the_options(table: type[Options]) -> None:
+    units = {each.name: each.unit for each in filters()[table.FILTER].parameters}
     for name, one in table.__dataclass_fields__.items():
         if one.metadata["limits"]:
-            assert WORDS["units"][name].endswith(f", {range_in_words(one.metadata['limits'])}")
+            assert units[name].endswith(f", {range_in_words(one.metadata['limits'])}")
 
 
 def test_defaults_in_words_are_those_that_depend_on_the_mesh() -> None:
-    in_words = {
-        each.name for each in all_parameters() if each.default == WORDS["defaults"].get(each.name)
-    }
-    assert in_words == WORDS["defaults"].keys()
+    in_words = {each.name for each in all_parameters() if each.default == DEFAULTS.get(each.name)}
+    assert in_words == DEFAULTS.keys()
 
 
 def test_defaults_are_those_of_the_options() -> None:
     shown = {each.name: each.default for each in filters()[FilterOptions.FILTER].parameters}
     for name, value in FilterOptions().as_dict().items():
-        if name not in WORDS["defaults"]:
+        if name not in DEFAULTS:
             words = {True: "on", False: "off"}.get(value) if isinstance(value, bool) else None
             expected = words or (value if isinstance(value, str) else f"{value:g}")
             assert shown[name] == expected.replace("0.05%", "0.05 % of the diagonal")
 
 
 def test_every_entry_of_a_report_is_explained_and_no_other() -> None:
-    assert WORDS["report"].keys() == {key for each in filters().values() for key in each.report}
+    assert MEANINGS.keys() == {key for each in filters().values() for key in each.report}
 
 
 def test_every_public_name_is_on_the_page_of_the_python_api(site: Site) -> None:
@@ -164,7 +162,7 @@ OTHER_NAMES = {"spectral_details"}  # a vertex attribute
 
 @pytest.mark.parametrize("readme", ["README.md", "python/README.md"])
 def test_names_in_the_readmes_are_those_of_the_plugin_and_the_package(readme: str) -> None:
-    known = {*meshlab_spectral.__all__, *filters(), *WORDS["report"], *OTHER_NAMES}
+    known = {*meshlab_spectral.__all__, *filters(), *MEANINGS, *OTHER_NAMES}
     known |= {parameter.name for parameter in all_parameters()}
     text = (SOURCES.parents[1] / readme).read_text(encoding="utf-8")
     assert set(NAME.findall(text)) - known == set()

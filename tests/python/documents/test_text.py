@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import io
+import locale
 import math
 import subprocess
 import sys
@@ -227,7 +228,9 @@ def write_sheet(path: Path, side: int) -> int:
     meshes = pymeshlab.MeshSet()
     meshes.add_mesh(pymeshlab.Mesh(np.random.default_rng(1).normal(0, 1, (side * side, 3)), F))
     is_text = {"binary": False} if path.suffix in (".ply", ".stl") else {}
+    before = locale.setlocale(locale.LC_ALL)
     meshes.save_current_mesh(str(path), **is_text)
+    locale.setlocale(locale.LC_ALL, before)  # after a 3MF file it would be that of C
     if path.suffix != ".3mf":
         return path.stat().st_size
     with zipfile.ZipFile(path) as file:

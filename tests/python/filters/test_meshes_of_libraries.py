@@ -7,6 +7,7 @@ import sys
 from types import SimpleNamespace
 from typing import Any
 
+import meshlab_spectral
 import numpy as np
 import pymeshlab
 import pytest
@@ -215,7 +216,10 @@ def test_a_gain_must_be_finite_and_not_negative(wrong: float) -> None:
         filter_mesh(V, F, gain=lambda w: 1.0, filter_type="high-pass")
 
 
-def test_without_pymeshlab_a_call_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_arrays_are_filtered_without_pymeshlab(monkeypatch: pytest.MonkeyPatch) -> None:
+    expected, _ = filter_mesh(V, F)
     monkeypatch.setitem(sys.modules, "pymeshlab", None)
+    filtered, _ = filter_mesh(V, F)
+    np.testing.assert_array_equal(filtered, expected)
     with pytest.raises(PluginError, match="pymeshlab"):
-        filter_mesh(V, F)
+        meshlab_spectral.load()

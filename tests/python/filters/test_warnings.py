@@ -18,13 +18,12 @@ from batches import REPORT, make_meshes, records
 from commands import command, messages_in, write_ply
 from helpers import FILTER, mesh_set_of, percent, refusal
 from meshlab_spectral import (
-    FilterError,
     filter_files,
     filter_mesh,
     filter_scalars,
-    geometry_spectrum,
 )
 from meshlab_spectral.files.script import apply_script
+from meshlab_spectral.filters.calling import call_filter
 from meshlab_spectral.filters.options import TransferKeywords
 from meshlab_spectral.plugin.library import last_warnings
 
@@ -140,40 +139,40 @@ def test_steps_that_do_not_converge_recommend_an_option_not_yet_chosen(
     assert not re.search(r"e\+\d+ %", warning)
 
 
+def warnings_in_mesh_set(V: Any, F: Any, name: str = FILTER, **options: Any) -> list[str]:
+    """The warnings of a run of the plugin in this thread."""
+    found: list[str] = call_filter(mesh_set_of(V, F), name, options)["warnings"]
+    assert found == last_warnings()
+    return found
+
+
 def test_an_earlier_runs_warnings_are_not_those_of_a_later_one(decimated: Decimated) -> None:
     V, F = decimated("cow.obj")
-    assert filter_mesh(*TRIANGLE, **EVERYTHING_FIXED)[1]["warnings"]
-    assert last_warnings()
-    assert filter_mesh(V, F, steps=1)[1]["warnings"] == []
-    assert last_warnings() == []
-    assert filter_mesh(*TRIANGLE, **EVERYTHING_FIXED)[1]["warnings"]
-    geometry_spectrum(V, F, 10)  # another filter of the plugin
-    assert last_warnings() == []
+    assert warnings_in_mesh_set(*TRIANGLE, **EVERYTHING_FIXED)
+    assert warnings_in_mesh_set(V, F, steps=1) == []
+    assert warnings_in_mesh_set(*TRIANGLE, **EVERYTHING_FIXED)
+    assert warnings_in_mesh_set(V, F, "get_geometry_spectrum", basis_size=10) == []
 
 
 def test_a_run_that_fails_has_no_warnings() -> None:
-    assert filter_mesh(*TRIANGLE, **EVERYTHING_FIXED)[1]["warnings"]
-    with pytest.raises(FilterError, match="point cloud"):
-        filter_mesh(TRIANGLE[0], np.empty((0, 3), int))
-    assert last_warnings() == []
-    assert filter_mesh(*TRIANGLE, **EVERYTHING_FIXED)[1]["warnings"]
+    assert warnings_in_mesh_set(*TRIANGLE, **EVERYTHING_FIXED)
     refusal(mesh_set_of(*TRIANGLE), order=0, response="butterworth")
     assert last_warnings() == []
 
 
 def test_another_threads_run_leaves_a_threads_warnings_alone(decimated: Decimated) -> None:
-    assert filter_mesh(*TRIANGLE, **EVERYTHING_FIXED)[1]["warnings"]
-    own = last_warnings()
-    found: list[list[str]] = [last_warnings()]
+    own = warnings_in_mesh_set(*TRIANGLE, **EVERYTHING_FIXED)
+    assert own
+    found: list[list[str]] = []
 
     def run() -> None:
         found.append(last_warnings())
-        found.append(filter_mesh(*decimated("cow.obj"), steps=1)[1]["warnings"])
+        found.append(warnings_in_mesh_set(*decimated("cow.obj"), steps=1))
 
     thread = threading.Thread(target=run)
     thread.start()
     thread.join()
-    assert found == [own, [], []]
+    assert found == [[], []]
     assert last_warnings() == own
 
 

@@ -69,8 +69,7 @@ def test_every_symbol_needed_of_meshlab_is_in_its_core_library(host: Host) -> No
     asked = asked_of_meshlab(host)
     assert asked
     strange = {name for name in asked if in_double(name) not in offered}
-    # The C interface, which all versions of muParser share.
-    assert {name for name in strange if not re.fullmatch(r"mup[A-Z]\w+", name)} == set()
+    assert strange == set()
 
 
 @each_host
@@ -80,9 +79,8 @@ def test_libraries_are_those_of_the_program_and_no_path_is_built_in(host: Host) 
     # Python hides what it has loaded from what it loads later; the program does not.
     assert ("libmeshlab-common.so" in needed) == (host is DOUBLE)
     others = needed - {"libmeshlab-common.so"}
-    # The loader itself provides thread-local variables. MeshLab's own plugins have already loaded
-    # muParser from its folder, and that one is used.
-    system = r"(lib(Qt5\w+|muparser|stdc\+\+|m|gcc_s|c|pthread)|ld-linux[\w-]*)\.so\."
+    # The loader itself provides thread-local variables. muParser is inside.
+    system = r"(lib(Qt5\w+|stdc\+\+|m|gcc_s|c|pthread)|ld-linux[\w-]*)\.so\."
     assert all(re.match(system, name) for name in others)
     assert "RPATH" not in dynamic
     assert "RUNPATH" not in dynamic
@@ -90,13 +88,14 @@ def test_libraries_are_those_of_the_program_and_no_path_is_built_in(host: Host) 
 
 @each_host
 def test_the_functions_for_python_can_be_found_by_name(host: Host) -> None:
-    functions = {f"meshlab_spectral_{name}" for name in ("warnings", "gains", "filters")}
+    functions = {f"meshlab_spectral_{name}" for name in ("warnings", "summary", "error", "filters")}
     assert functions <= symbols(plugin_of(host), "defined")
 
 
-def test_the_muparser_of_pymeshlab_is_the_one_that_is_used() -> None:
+def test_the_muparser_of_pymeshlab_is_the_only_shared_one() -> None:
     import_and_list = (
-        "import meshlab_spectral, pathlib; meshlab_spectral.load();"
+        "import meshlab_spectral, pathlib; from meshlab_spectral import _core;"
+        "meshlab_spectral.load();"
         "print(pathlib.Path('/proc/self/maps').read_text())"
     )
     maps = output_of(sys.executable, "-c", import_and_list)

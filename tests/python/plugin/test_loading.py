@@ -166,8 +166,10 @@ def test_an_absent_pymeshlab_is_reported_with_the_way_to_install_it() -> None:
 
 FILTER_AND_SHOW = (
     "import meshlab_spectral\n"
-    "triangle = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]\n"
-    "try: meshlab_spectral.filter_mesh(*triangle, boundary='fixed')\n"
+    "from meshlab_spectral.filters.calling import call_filter, mesh_set_of\n"
+    "import numpy as np\n"
+    "try: call_filter(mesh_set_of(np.eye(3), np.array([[0, 1, 2]])), "
+    f"{FILTER!r}, {{'boundary': 'fixed'}})\n"
     "except meshlab_spectral.PluginError as error: print(error)\n"
 )
 

@@ -45,7 +45,7 @@ def test_an_invalid_number_of_threads_is_refused(
         monkeypatch.setenv(THREADS, value)
         with pytest.raises(FilterError, match=f"{THREADS} = {value}: give a number of threads"):
             filter_mesh(V, F)
-        with pytest.raises(OptionError, match=f"{THREADS} = {value}: must be"):
+        with pytest.raises(OptionError, match=f"{THREADS} = {value}: give a number of threads"):
             threads()
 
 

@@ -15,7 +15,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from meshlab_spectral.errors import InputError, MeshFileError
-from meshlab_spectral.files.meshes import check_source
+from meshlab_spectral.files.sources import check_source
 from meshlab_spectral.files.whole_files import (
     remove_leftovers,
     resolved,

@@ -2,20 +2,15 @@
 
 from __future__ import annotations
 
-from importlib.metadata import version
+import sys
+from importlib import import_module
+from importlib.metadata import PackageNotFoundError, version
 from typing import Annotated
 
 import typer
 
-from meshlab_spectral.cli.basis import basis_command
-from meshlab_spectral.cli.batch import batch_command
-from meshlab_spectral.cli.command_line import AllCommands, Command, OneCommand, with_verbosity
-from meshlab_spectral.cli.filter import denoise_command, filter_command
-from meshlab_spectral.cli.info import info_command
-from meshlab_spectral.cli.install import install_command
+from meshlab_spectral.cli.command_line import AllCommands, OneCommand, with_verbosity
 from meshlab_spectral.cli.messages import EXIT_CODES
-from meshlab_spectral.cli.spectra import spectra_command
-from meshlab_spectral.cli.spectrum import spectrum_command
 
 app = typer.Typer(
     cls=AllCommands,
@@ -30,8 +25,11 @@ app = typer.Typer(
 
 def _print_version(wanted: bool) -> None:
     if wanted:
-        own, host = version("meshlab-spectral"), version("pymeshlab")
-        typer.echo(f"meshlab-spectral {own}, pymeshlab {host}")
+        try:
+            host = f"pymeshlab {version('pymeshlab')}"
+        except PackageNotFoundError:
+            host = "no pymeshlab"
+        typer.echo(f"meshlab-spectral {version('meshlab-spectral')}, {host}")
         raise typer.Exit
 
 
@@ -47,15 +45,20 @@ def _common(
     """Denoise, smooth, sharpen and band-filter meshes by the size of their details."""
 
 
-_COMMANDS: dict[str, Command] = {
-    "info": info_command,
-    "denoise": denoise_command,
-    "filter": filter_command,
-    "batch": batch_command,
-    "spectrum": spectrum_command,
-    "spectra": spectra_command,
-    "basis": basis_command,
-    "install": install_command,
+# Name -> module.
+_COMMANDS = {
+    "info": "info",
+    "denoise": "filter",
+    "filter": "filter",
+    "batch": "batch",
+    "spectrum": "spectrum",
+    "spectra": "spectra",
+    "basis": "basis",
+    "install": "install",
 }
-for _name, _command in _COMMANDS.items():
-    app.command(_name, cls=OneCommand, epilog=EXIT_CODES)(with_verbosity(_command))
+# Importing all of them would take longer than filtering a mesh.
+_called = [word for word in sys.argv[1:2] if word in _COMMANDS]
+for _name in _called or _COMMANDS:
+    _module = import_module(f"meshlab_spectral.cli.{_COMMANDS[_name]}")
+    _command = with_verbosity(getattr(_module, f"{_name}_command"))
+    app.command(_name, cls=OneCommand, epilog=EXIT_CODES)(_command)

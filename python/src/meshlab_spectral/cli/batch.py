@@ -27,9 +27,8 @@ from meshlab_spectral.cli.messages import (
     warn_of_points_only,
 )
 from meshlab_spectral.files.recipe import load_recipe, saving_recipe
-from meshlab_spectral.filters.denoise import DenoiseOptions
 from meshlab_spectral.filters.option_types import Options
-from meshlab_spectral.filters.options import FilterOptions
+from meshlab_spectral.filters.options import DenoiseOptions, FilterOptions
 
 
 @with_options(FilterOptions, DenoiseOptions, Settings)

@@ -27,9 +27,8 @@ from meshlab_spectral.cli.messages import (
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.cli.report_table import report_table
 from meshlab_spectral.files.recipe import saving_recipe
-from meshlab_spectral.filters.denoise import DenoiseOptions
 from meshlab_spectral.filters.option_types import Options
-from meshlab_spectral.filters.options import FilterOptions
+from meshlab_spectral.filters.options import DenoiseOptions, FilterOptions
 from meshlab_spectral.plugin.versions import versions
 from meshlab_spectral.process.single_file import write_in_child
 

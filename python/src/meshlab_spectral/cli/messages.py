@@ -61,7 +61,9 @@ def errors_reported(when_interrupted: str = "no output was written") -> Iterator
         if VERBOSITY.debug:
             MESSAGES.print_exception()
         print_error(str(error))
+        # An option that the core refuses, with a code, does not suit the mesh.
         usage = isinstance(error, OptionError | FormatError | InputError)
+        usage = usage and not getattr(error, "code", "")
         raise typer.Exit(EXIT_USAGE if usage else EXIT_FAILED) from error
 
 

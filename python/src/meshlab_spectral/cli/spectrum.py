@@ -32,15 +32,15 @@ from meshlab_spectral.figures.spectrum import (
     octave_gains,
 )
 from meshlab_spectral.files.formats import check_ending
-from meshlab_spectral.files.meshes import check_source
+from meshlab_spectral.files.sources import check_source
 from meshlab_spectral.files.whole_files import writing_whole
-from meshlab_spectral.filters.calling import plain_report
 from meshlab_spectral.filters.options import (
     FilterKeywords,
     FilterOptions,
     SpectrumOptions,
     TransferKeywords,
 )
+from meshlab_spectral.filters.running import plain
 from meshlab_spectral.filters.spectrum import GeometrySpectrum
 from meshlab_spectral.plugin.versions import versions
 from meshlab_spectral.process.single_file import measure_in_child
@@ -120,7 +120,7 @@ def _record(
         "input": str(source),
         "output": None if output is None else str(output),
         "options": {name: chosen[name] for name in SHOWN_OPTIONS},
-        "spectrum": plain_report(
+        "spectrum": plain(
             {field.name: getattr(spectrum, field.name) for field in fields(spectrum)}
         ),
         "octave_gains": octave_gains(spectrum, options).tolist(),

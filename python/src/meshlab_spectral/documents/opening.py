@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from importlib import import_module
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from meshlab_spectral.documents.document import Document
+if TYPE_CHECKING:
+    from meshlab_spectral.documents.document import Document
 
 # Extension -> module with `read(path) -> Document`. Imported late: some need packages of an extra.
 # FreeSurfer names a surface by what it is, such as lh.pial.

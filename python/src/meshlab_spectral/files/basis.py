@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from meshlab_spectral.files.meshes import load_arrays
+from meshlab_spectral.files.meshes import StageCallback, load_arrays
 from meshlab_spectral.filters.harmonics import compute
 from meshlab_spectral.filters.options import BasisOptions
 
@@ -17,7 +16,7 @@ def basis_to_scratch(
     source: Path,
     scratch: Path,
     options: BasisOptions,
-    on_stage: Callable[[str], None],
+    on_stage: StageCallback,
     mesh: str | None = None,
 ) -> dict[str, Any]:
     """Write the harmonics of a mesh file to a NumPy archive, `scratch` from `writing_whole`.
@@ -30,12 +29,11 @@ def basis_to_scratch(
     `Harmonics`, and the mesh as read, to whose vertices the rows belong: vertices (n x 3), faces
     (m x 3).
     """
-    on_stage("reading")
+    on_stage("reading", None)
     V, F = load_arrays(source, mesh)
-    on_stage("computing")
-    # Verbose: MeshLab's log is the only source of progress.
-    basis = compute(V, F, options, verbose=True)
-    on_stage("writing")
+    on_stage("computing", None)
+    basis = compute(V, F, options, progress=on_stage)
+    on_stage("writing", None)
     with scratch.open("wb") as file:
         np.savez(
             file,

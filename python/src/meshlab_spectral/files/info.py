@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from meshlab_spectral.documents.document import Part
 from meshlab_spectral.errors import MeshFileError
 from meshlab_spectral.files.meshes import StageCallback, joined, load_parts
 from meshlab_spectral.files.meshlab_files import read_with_meshlab
-from meshlab_spectral.filters.calling import call_filter, mesh_set_of, plain_report
 from meshlab_spectral.filters.options import SpectrumOptions
-from meshlab_spectral.plugin.loading import DENOISE_NAME
+from meshlab_spectral.filters.running import plain, run
+from meshlab_spectral.plugin.loading import DENOISE_NAME, load
 
 _OF_SURFACE = ("components", "joined_vertices", "unreferenced_vertices")
 _LENGTHS = ("diagonal", "mean_edge", "area", "default_feature_size")
@@ -24,7 +25,7 @@ def mesh_info(source: Path, on_stage: StageCallback, mesh: str | None = None) ->
 
     Parameters and errors are those of `load_parts`; also FilterError when the mesh has no faces, no
     area or non-finite coordinates. `on_stage` is called with "reading", "measuring" and "looking
-    for noise" as these begin.
+    for noise" as these begin, and with their progress.
 
     Returns
     -------
@@ -36,15 +37,14 @@ def mesh_info(source: Path, on_stage: StageCallback, mesh: str | None = None) ->
         Denoise would remove: "noise_summary", "noise_height" and "noise_size", the number of
         "spikes", "voxel_size"; "warnings".
     """
-    on_stage("reading")
+    on_stage("reading", None)
     parts = load_parts(source, mesh)
-    selected = _selected(source)
+    selected = _selected(source, parts)
     V, F = joined(parts)
-    mesh_set = mesh_set_of(V, F, verbose=True)  # progress is read from the log
-    on_stage("measuring")
-    spectrum = call_filter(mesh_set, SpectrumOptions.FILTER, {})
-    on_stage("looking for noise")
-    denoised = call_filter(mesh_set, DENOISE_NAME, {})
+    on_stage("measuring", None)
+    spectrum = run(SpectrumOptions.FILTER, V, F, {}, progress=on_stage).report
+    on_stage("looking for noise", None)
+    denoised = run(DENOISE_NAME, V, F, {}, progress=on_stage).report
     report = {
         "meshes": [part.name for part in parts if part.name],
         "vertices": len(V),
@@ -61,7 +61,7 @@ def mesh_info(source: Path, on_stage: StageCallback, mesh: str | None = None) ->
         "voxel_size": denoised["voxel_size"],
         "warnings": [told for told in denoised["warnings"] if told != denoised["summary"]],
     }
-    return plain_report(report)
+    return plain(report)
 
 
 def _boundary_loops(V: NDArray[np.float64], F: NDArray[np.int64]) -> int:
@@ -82,10 +82,13 @@ def _boundary_loops(V: NDArray[np.float64], F: NDArray[np.int64]) -> int:
     return sum(vertex == above for vertex, above in parent.items())
 
 
-def _selected(source: Path) -> dict[str, int]:
+def _selected(source: Path, parts: list[Part]) -> dict[str, int]:
     """Count the selected vertices and faces; only MeshLab's PLY files hold a selection."""
     if source.suffix.lower() != ".ply":
         return {}
+    if all(part.selected is None for part in parts):
+        return {"selected_vertices": 0, "selected_faces": 0}
+    load()
     import pymeshlab
 
     mesh_set = pymeshlab.MeshSet()

@@ -6,6 +6,7 @@ change. Conversions, scripts, and formats that only MeshLab knows go through Mes
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
@@ -23,18 +24,15 @@ from meshlab_spectral.files.meshlab_files import (
     write_with_meshlab,
 )
 from meshlab_spectral.files.script import apply_script
-from meshlab_spectral.filters.calling import (
-    call_filter,
-    mesh_set_of,
-    plain_report,
-    select_vertices,
-)
-from meshlab_spectral.filters.fractional import DETAILS
+from meshlab_spectral.files.sources import check_name, check_source
+from meshlab_spectral.filters.calling import DETAILS, call_filter, mesh_set_of
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import FilterOptions
+from meshlab_spectral.filters.running import plain, run
 from meshlab_spectral.plugin.loading import load
 
-StageCallback = Callable[[str], None]
+# Called with the current stage, and the fraction of it that is done or None.
+StageCallback = Callable[[str, float | None], object]
 
 # Formats that MeshLab reads without losing placement, units or all meshes but one.
 _READ_BY_MESHLAB = (".ply", ".obj", ".off", ".stl")
@@ -65,9 +63,10 @@ def filter_to_scratch(
     options
         Options of the filter.
     on_stage
-        Called with "reading", "filtering" and "writing" as these begin.
+        Called with "reading", "filtering" and "writing" as these begin, with None, and with the
+        progress of the filter.
     verbose
-        Whether MeshLab writes its log, the only source of progress.
+        Whether the filter's report goes to standard error, as MeshLab's log does.
     mesh
         Filter only the mesh with this name.
 
@@ -92,7 +91,7 @@ def filter_to_scratch(
 
     def apply(mesh_set: Any) -> dict[str, Any]:
         parameters = options.pymeshlab_parameters(mesh_set.current_mesh())
-        return plain_report(call_filter(mesh_set, options.FILTER, parameters))
+        return plain(call_filter(mesh_set, options.FILTER, parameters))
 
     if isinstance(options, FilterOptions) and options.result == "details":
         if scratch.suffix.lower() != ".ply":
@@ -102,7 +101,7 @@ def filter_to_scratch(
     if is_patched(source) and (
         source.suffix.lower() not in _READ_BY_MESHLAB or _is_same_format(source, scratch)
     ):
-        return _filter_document(source, scratch, apply, options, on_stage, verbose, mesh)
+        return _filter_document(source, scratch, options, on_stage, verbose, mesh)
     if mesh is not None:
         raise OptionError(f"{source} is read as one mesh: leave out the name {mesh!r}")
     return _through_meshlab(source, scratch, apply, on_stage, verbose)
@@ -135,42 +134,16 @@ def load_parts(source: Path, mesh: str | None = None) -> list[Part]:
 
     Raises MeshFileError when `source` cannot be read, OptionError when no mesh has the name.
     """
-    import pymeshlab
-
     check_source(source)
     if is_patched(source):
         return _chosen(open_document(source), mesh)
+    load()
+    import pymeshlab
+
     mesh_set = pymeshlab.MeshSet()
     read_with_meshlab(mesh_set, source)
     current = mesh_set.current_mesh()
     return [Part("", current.vertex_matrix().copy(), current.face_matrix().astype(np.int64))]
-
-
-def check_source(source: Path) -> None:
-    """Raise MeshFileError unless `source` is a readable file."""
-    if source.is_dir():
-        raise MeshFileError(f"{source} is a folder: name a mesh file")
-    if source.exists() and not source.is_file():
-        raise MeshFileError(f"{source} is a device or a pipe, not a file: name a mesh file")
-    _check_name(source, source)
-    try:
-        with source.open("rb"):
-            pass
-    except FileNotFoundError:
-        raise MeshFileError(f"{source} does not exist: check the name and the folder") from None
-    except OSError as error:
-        raise MeshFileError(f"{source} cannot be read ({error.strerror})") from error
-
-
-def _check_name(path: Path, shown: Path) -> None:
-    """Raise MeshFileError, with the path as `shown`, when pymeshlab cannot open such a path."""
-    try:
-        str(path).encode()
-    except UnicodeEncodeError as error:
-        raise MeshFileError(
-            f"{shown} is in a folder or has a name that is not UTF-8, which MeshLab cannot open: "
-            "rename it"
-        ) from error
 
 
 def _is_same_format(source: Path, target: Path) -> bool:
@@ -180,7 +153,6 @@ def _is_same_format(source: Path, target: Path) -> bool:
 def _filter_document(
     source: Path,
     scratch: Path,
-    apply: Callable[[Any], dict[str, Any]],
     options: Options,
     on_stage: StageCallback,
     verbose: bool,
@@ -189,20 +161,19 @@ def _filter_document(
     """Filter the meshes of a document, each on its own."""
     is_same_format = _is_same_format(source, scratch)
     if not is_same_format:
+        load()
         check_writable(scratch)
-    load()
-    on_stage("reading")
+    on_stage("reading", None)
     check_source(source)
     document = open_document(source)
     chosen = _chosen(document, name)
-    on_stage("filtering")
+    on_stage("filtering", None)
     moved = {part: part.vertices for part in document.parts}
     reports = []
     for part in chosen:
-        _check_weight(part, options)
-        moved[part], report = _filtered(part, apply, verbose, is_alone=len(chosen) == 1)
+        moved[part], report = _filtered(part, options, on_stage, verbose, len(chosen) == 1)
         reports.append(report)
-    on_stage("writing")
+    on_stage("writing", None)
     shapes = list(moved.values())
     if is_same_format:
         warnings = document.save(scratch, shapes)
@@ -224,28 +195,27 @@ def _chosen(document: Document, name: str | None) -> list[Part]:
     return parts
 
 
-def _check_weight(part: Part, options: Options) -> None:
-    if isinstance(options, FilterOptions) and options.weight != "none" and part.quality is None:
-        raise FilterError(
-            "weight = vertex quality: the mesh has no vertex quality; compute one, or choose "
-            "weight = none"
-        )
-
-
 def _filtered(
-    part: Part, apply: Callable[[Any], dict[str, Any]], verbose: bool, is_alone: bool
+    part: Part, options: Options, on_stage: StageCallback, verbose: bool, is_alone: bool
 ) -> tuple[Array, dict[str, Any]]:
     """Filter a mesh; return its vertices and the report."""
-    mesh_set = mesh_set_of(part.vertices, part.faces, _signal(part), verbose)
-    if part.selected is not None:
-        select_vertices(mesh_set, part.selected)
     try:
-        report = apply(mesh_set)
+        done = run(
+            options.FILTER,
+            part.vertices,
+            part.faces,
+            options.core_parameters(),
+            selected=part.selected,
+            values=None if part.quality is None else part.quality[:, None],
+            progress=on_stage,
+        )
     except FilterError as error:
         if is_alone:
             raise
-        raise FilterError(f"mesh {part.name}: {error}") from error
-    return mesh_set.current_mesh().vertex_matrix(), report
+        raise type(error)(f"mesh {part.name}: {error}") from error
+    if verbose:
+        print(done.text, *done.report["warnings"], sep="\n", file=sys.stderr)
+    return part.vertices if done.vertices is None else done.vertices, done.plain_report
 
 
 def joined(parts: Sequence[Part], moved: Sequence[Array] | None = None) -> tuple[Array, Indices]:
@@ -300,16 +270,16 @@ def _through_meshlab(
 ) -> dict[str, Any]:
     """Let MeshLab write the file and, if it reads all of its contents, also read it."""
     load()
-    on_stage("reading")
+    on_stage("reading", None)
     check_source(source)
-    _check_name(scratch, scratch.parent.parent / scratch.name)
+    check_name(scratch, scratch.parent.parent / scratch.name)
     check_writable(scratch)
     document = open_document(source) if is_patched(source) else None
     mesh_set, is_whole = _loaded(source, document, verbose)
-    on_stage("filtering")
+    on_stage("filtering", None)
     before = mesh_set.current_mesh().vertex_matrix()
     report = apply(mesh_set)
-    on_stage("writing")
+    on_stage("writing", None)
     write_with_meshlab(mesh_set, scratch, source, settings)
     warnings = left_behind(document, scratch, mesh_set if is_whole else None) if document else []
     warnings += _rounded(before, mesh_set.current_mesh().vertex_matrix(), scratch)

@@ -8,7 +8,8 @@ from typing import Any
 from xml.etree import ElementTree
 
 from meshlab_spectral.errors import FilterError, OptionError
-from meshlab_spectral.filters.calling import call_filter, plain_report, reason_of
+from meshlab_spectral.filters.calling import call_filter, reason_of
+from meshlab_spectral.filters.running import plain
 from meshlab_spectral.plugin.failed_calls import keep_failed
 from meshlab_spectral.plugin.loading import FILTERS, load
 
@@ -74,7 +75,7 @@ def _apply(mesh_set: Any, name: str, single: ElementTree.Element) -> dict[str, A
 
     if name in FILTERS:
         parameters = dict(_parameter(element) for element in single.findall("Param"))
-        return {"report": plain_report(call_filter(mesh_set, FILTERS[name], parameters))}
+        return {"report": plain(call_filter(mesh_set, FILTERS[name], parameters))}
     mesh_set.clear_filter_script()
     _load_single(mesh_set, single)
     try:

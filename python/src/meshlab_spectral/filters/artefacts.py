@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.filters.arrays import mesh_arrays
-from meshlab_spectral.filters.calling import call_filter, mesh_set_of
 from meshlab_spectral.filters.option_types import Length
 from meshlab_spectral.filters.options import LaplacianKind
+from meshlab_spectral.filters.running import run
 
 _FILTER_NAME = "compute_scalar_spectral_artefacts_per_vertex"
 
@@ -79,8 +79,6 @@ def measure_artefacts(
         When `feature_size` is not positive or `laplacian` is unknown.
     FilterError
         When the mesh has no faces, no area, or non-finite coordinates.
-    PluginError
-        When the plugin cannot be loaded.
 
     Examples
     --------
@@ -99,17 +97,11 @@ def measure_artefacts(
     if laplacian not in get_args(LaplacianKind):
         raise OptionError(f"laplacian = {laplacian}: choose {', '.join(get_args(LaplacianKind))}")
 
-    import pymeshlab
-
-    mesh_set = mesh_set_of(V, F)
-    report = call_filter(
-        mesh_set,
-        _FILTER_NAME,
-        {"feature_size": pymeshlab.PureValue(size.value), "laplacian": laplacian},
-    )
+    done = run(_FILTER_NAME, V, F, {"feature_size": float(size.value), "laplacian": laplacian})
+    assert done.values is not None
     return Artefacts(
-        rms=report["rms"],
-        maximum=report["maximum"],
-        length=mesh_set.current_mesh().vertex_scalar_array().copy(),
-        diagonal=report["diagonal"],
+        rms=done.report["rms"],
+        maximum=done.report["maximum"],
+        length=done.values[:, 0],
+        diagonal=done.report["diagonal"],
     )

@@ -1,22 +1,25 @@
-"""Calls of the plugin's filters: adds their warnings, translates their errors."""
+"""Calls of the plugin's filters in MeshSets: adds their warnings, translates their errors."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from meshlab_spectral.errors import FilterError, OptionError
-from meshlab_spectral.filters.arrays import chosen_vertices, mesh_arrays, vertex_numbers
-from meshlab_spectral.filters.mesh_objects import PYMESHLAB, kind_of, owned_mesh
+from meshlab_spectral import errors
+from meshlab_spectral.errors import FilterError
+from meshlab_spectral.filters.mesh_objects import owned_mesh
 from meshlab_spectral.filters.option_types import Options
+from meshlab_spectral.filters.running import plain
 from meshlab_spectral.plugin.failed_calls import is_interrupt, keep_failed
-from meshlab_spectral.plugin.library import last_summary, last_warnings
+from meshlab_spectral.plugin.library import last_error, last_summary, last_warnings
 from meshlab_spectral.plugin.loading import load
+
+# The vertex attribute in which the plugin stores the details.
+DETAILS = "spectral_details"
 
 _PLAIN_SIZE = re.compile(r"Parameter (\w+): must be a pymeshlab\.Percentage")
 _RANGE = re.compile(r"Must be a value between 0 and (\d+)")
@@ -52,14 +55,14 @@ def call_filter(mesh_set: Any, name: str, parameters: dict[str, Any]) -> dict[st
     """
     import pymeshlab
 
-    last_warnings()  # if this fails, fail before the computation
+    last_error()  # so that no older one is taken for this; and if it fails, then at once
     try:
         report: dict[str, Any] = mesh_set.apply_filter(name, **parameters)
     except pymeshlab.PyMeshLabException as error:
         keep_failed(mesh_set)
         if is_interrupt(error):
             raise KeyboardInterrupt from None
-        raise FilterError(_size_wanted(reason_of(error))) from error
+        raise _error_of(reason_of(error)) from error
     except pymeshlab.InvalidEnumException as error:
         keep_failed(mesh_set)
         raise FilterError(_no_such_choice(parameters, str(error))) from error
@@ -100,68 +103,36 @@ def _set_of(mesh: Any, verbose: bool = False) -> Any:
     return mesh_set
 
 
-def filtered(
-    mesh_or_vertices: Any,
-    faces: ArrayLike | None,
-    options: Options,
-    weights: ArrayLike | None = None,
-    selection: ArrayLike | None = None,
-) -> tuple[Any, dict[str, Any]]:
-    """Apply the filter that `options` belong to.
+def filtered_by_plugin(mesh: Any, options: Options) -> tuple[Any, dict[str, Any]]:
+    """Apply the filter that `options` belong to, to a copy of a `pymeshlab.Mesh`.
 
-    The mesh is as for `mesh_arrays`; errors are those of `mesh_arrays`, `call_filter` and `load`.
-    `weights` and `selection` are what the options `weight` and `selected` refer to; a pymeshlab
-    mesh has its own.
-
-    Returns
-    -------
-    mesh_set : pymeshlab.MeshSet
-        With the result; a pymeshlab mesh keeps its data.
-    report : dict
-        As from `call_filter`, with lists instead of arrays.
+    Returns the copy, or the details if these are wanted, and the report with lists for arrays.
     """
-    V, F = mesh_arrays(mesh_or_vertices, faces)
-    if kind_of(mesh_or_vertices) is PYMESHLAB:
-        if weights is not None or selection is not None:
-            raise OptionError(
-                "weights, selection: a pymeshlab mesh has its own; give weight='vertex quality' or "
-                "selected=True, or pass vertices and faces"
-            )
-        load()
-        mesh_set = _set_of(mesh_or_vertices)
-    else:
-        data: dict[str, NDArray[Any]] = {}
-        part: dict[str, Any] = {}
-        if weights is not None:
-            data["v_scalar_array"] = vertex_numbers(weights, len(V), "weights")
-            part["weight"] = "vertex quality"
-        elif getattr(options, "weight", "none") != "none":
-            raise OptionError("weight = vertex quality: pass the quality as weights")
-        mesh_set = mesh_set_of(V, F, data)
-        if selection is not None:
-            select_vertices(mesh_set, chosen_vertices(selection, len(V), F))
-            part["selected"] = True
-        elif getattr(options, "selected", False):
-            raise OptionError("selected = True: pass the selected vertices or faces as selection")
-        options = replace(options, **part)
+    load()
+    mesh_set = _set_of(mesh)
     parameters = options.pymeshlab_parameters(mesh_set.current_mesh())
-    report = call_filter(mesh_set, options.FILTER, parameters)
-    return mesh_set, plain_report(report)
-
-
-def given_back(mesh_or_vertices: Any, mesh_set: Any) -> Any:
-    """Return the current mesh of a MeshSet in the form that was passed: coordinates or a mesh."""
-    kind = kind_of(mesh_or_vertices)
-    if kind is PYMESHLAB:
-        return owned_mesh(mesh_set)
-    V = mesh_set.current_mesh().vertex_matrix().copy()
-    return V if kind is None else kind.moved(mesh_or_vertices, V)
+    report = plain(call_filter(mesh_set, options.FILTER, parameters))
+    if getattr(options, "result", "") == "details":
+        details = mesh_set.current_mesh().vertex_custom_point_attribute_matrix(DETAILS)
+        return details.copy(), report
+    return owned_mesh(mesh_set), report
 
 
 def select_vertices(mesh_set: Any, chosen: NDArray[np.bool_]) -> None:
     """Select vertices, which pymeshlab can only do by a condition."""
     mesh_set.current_mesh().add_vertex_custom_scalar_attribute(chosen.astype(float), "chosen")
     mesh_set.compute_selection_by_condition_per_vertex(condselect="chosen > 0.5")
+
+
+def _error_of(reason: str) -> FilterError:
+    """Return the error that the plugin has thrown, or pymeshlab's."""
+    found = last_error()
+    if found is None:
+        return FilterError(_size_wanted(reason))
+    kind, code, limit = found
+    error: FilterError = getattr(errors, kind)(reason)
+    error.code, error.limit = code, limit
+    return error
 
 
 def _size_wanted(reason: str) -> str:
@@ -201,14 +172,6 @@ def _fits(value: Any, wanted: type) -> bool:
     if wanted is float:
         return value is not None and not isinstance(value, str)
     return isinstance(value, wanted)
-
-
-def plain_report(report: dict[str, Any]) -> dict[str, Any]:
-    """Convert the arrays in a filter's report to lists, for JSON."""
-    return {
-        name: value.tolist() if hasattr(value, "tolist") else value
-        for name, value in report.items()
-    }
 
 
 def reason_of(error: Exception) -> str:

@@ -2,70 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
-from meshlab_spectral.filters.calling import filtered, given_back
 from meshlab_spectral.filters.keywords import takes_options
-from meshlab_spectral.filters.option_types import Length, Limits, Options, option
-from meshlab_spectral.filters.options import Boundary, Size
-from meshlab_spectral.plugin.loading import DENOISE_NAME
+from meshlab_spectral.filters.options import DenoiseKeywords, DenoiseOptions
+from meshlab_spectral.filters.running import Progress
+from meshlab_spectral.filters.shapes import filtered
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
-
-
-@dataclass(frozen=True, kw_only=True)
-class DenoiseOptions(Options):
-    """Options of Spectral Denoise, with the names and defaults they have in MeshLab.
-
-    Raises
-    ------
-    OptionError
-        When a value is invalid; names the option, the value and what is allowed.
-    """
-
-    FILTER = DENOISE_NAME
-    TABLE = "denoise"
-
-    strength: float = option(
-        1.0,
-        "1 removes the noise as measured; more removes finer details, too; less leaves some noise.",
-        Limits(0),
-    )
-    noise_height: Length = option(
-        Length(automatic=True),
-        "Standard deviation of the noise: a length such as 0.02, mean edge lengths such as 0.2e, a "
-        "percentage of the model's diagonal, or auto: as measured.",
-    )
-    noise_size: Length = option(
-        Length(automatic=True),
-        "Distance over which the noise is correlated, half the width of its bumps, such as 2e; up "
-        "to 1e it is independent at each vertex. auto: as measured.",
-    )
-    selected: bool = option(
-        False,
-        "Denoise only the selected faces and vertices, fading out around them within four edges.",
-    )
-    keep_creases: bool = option(True, "Do not smooth across creases; off: creases are rounded.")
-    boundary: Boundary = option(
-        "free",
-        "Boundary of an open surface, holes included: free lets it follow along its normals, fixed "
-        "keeps it exactly in place.",
-    )
-
-
-class DenoiseKeywords(TypedDict, total=False):
-    """All fields of `DenoiseOptions`."""
-
-    strength: float
-    noise_height: Size
-    noise_size: Size
-    selected: bool
-    keep_creases: bool
-    boundary: Boundary
 
 
 @takes_options(DenoiseOptions)
@@ -75,6 +22,8 @@ def denoise_mesh(
     options: DenoiseOptions | None = None,
     *,
     selection: ArrayLike | None = None,
+    progress: Progress | None = None,
+    threads: int | None = None,
     **named: Unpack[DenoiseKeywords],
 ) -> tuple[Any, dict[str, Any]]:
     """Detect what kind of noise a mesh has, and remove it; without noise, nothing moves.
@@ -91,6 +40,8 @@ def denoise_mesh(
     selection
         What to denoise: n booleans, one per vertex, or indices of faces; around it, the effect
         fades out within four edges.
+    progress, threads
+        As for `filter_mesh`.
     **named
 
     Returns
@@ -115,15 +66,21 @@ def denoise_mesh(
     OptionError
         When an option is unknown or has an invalid value.
     FilterError
-        When the filter rejects the mesh: no faces, no area, or non-finite coordinates.
-    PluginError
-        When the plugin cannot be loaded.
+        When the filter rejects the mesh: no faces, no area, or non-finite coordinates. It is a
+        MeshError, SolverError or MemoryLimitError, with the cause as `code`.
+    Cancelled
+        When `progress` has returned False.
 
     Examples
     --------
     >>> V, report = denoise_mesh(vertices, faces)
     >>> print(report["summary"])
     """
-    parameters = DenoiseOptions.given(options, named)
-    mesh_set, report = filtered(mesh_or_vertices, faces, parameters, selection=selection)
-    return given_back(mesh_or_vertices, mesh_set), report
+    return filtered(
+        mesh_or_vertices,
+        faces,
+        DenoiseOptions.given(options, named),
+        selection=selection,
+        progress=progress,
+        threads=threads,
+    )

@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from numpy.typing import ArrayLike
 
-from meshlab_spectral.filters.arrays import mesh_arrays
-from meshlab_spectral.filters.calling import filtered, given_back
-from meshlab_spectral.filters.gain_points import with_gain
 from meshlab_spectral.filters.keywords import takes_options
 from meshlab_spectral.filters.options import FilterKeywords, FilterOptions
+from meshlab_spectral.filters.running import Gain, Progress, require_no_type
+from meshlab_spectral.filters.shapes import filtered
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
-
-# The vertex attribute in which the filter stores the details.
-DETAILS = "spectral_details"
 
 
 @takes_options(FilterOptions)
@@ -28,7 +23,9 @@ def filter_mesh(
     *,
     weights: ArrayLike | None = None,
     selection: ArrayLike | None = None,
-    gain: Callable[[float], float] | None = None,
+    gain: Gain | None = None,
+    progress: Progress | None = None,
+    threads: int | None = None,
     **named: Unpack[FilterKeywords],
 ) -> tuple[Any, dict[str, Any]]:
     """Filter a mesh by the size of its details.
@@ -51,7 +48,12 @@ def filter_mesh(
         out within about a feature size.
     gain
         Gain, finite and >= 0, as a function of w > 0, the feature size over the wavelength; in
-        place of filter_type="custom". Called a few thousand times, with one number each.
+        place of filter_type="custom". Called once, with an array of a few thousand w.
+    progress
+        Called about twenty times a second with the current stage and the fraction done, 0 to 1;
+        cancels by returning False.
+    threads
+        Number of threads of this call; by default that of `set_threads`.
     **named
 
     Returns
@@ -73,9 +75,10 @@ def filter_mesh(
     OptionError
         When an option is unknown or has an invalid value.
     FilterError
-        When the filter rejects the mesh: no faces, no area, or non-finite coordinates.
-    PluginError
-        When the plugin cannot be loaded.
+        When the filter rejects the mesh: no faces, no area, or non-finite coordinates. It is a
+        MeshError, SolverError or MemoryLimitError, with the cause as `code`.
+    Cancelled
+        When `progress` has returned False.
 
     Examples
     --------
@@ -85,9 +88,14 @@ def filter_mesh(
     """
     parameters = FilterOptions.given(options, named)
     if gain is not None:
-        parameters = with_gain(parameters, gain, *mesh_arrays(mesh_or_vertices, faces))
-    mesh_set, report = filtered(mesh_or_vertices, faces, parameters, weights, selection)
-    if parameters.result == "details":
-        mesh = mesh_set.current_mesh()
-        return mesh.vertex_custom_point_attribute_matrix(DETAILS).copy(), report
-    return given_back(mesh_or_vertices, mesh_set), report
+        require_no_type(parameters.filter_type)
+    return filtered(
+        mesh_or_vertices,
+        faces,
+        parameters,
+        weights=weights,
+        selection=selection,
+        gain=gain,
+        progress=progress,
+        threads=threads,
+    )

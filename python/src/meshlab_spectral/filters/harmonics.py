@@ -11,8 +11,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from meshlab_spectral.errors import FilterError
 from meshlab_spectral.filters.arrays import lumped_areas, mesh_arrays
-from meshlab_spectral.filters.calling import call_filter, mesh_set_of
-from meshlab_spectral.filters.options import BasisOptions, Boundary, LaplacianKind, checked_count
+from meshlab_spectral.filters.option_types import checked_count
+from meshlab_spectral.filters.options import BasisOptions, Boundary, LaplacianKind
+from meshlab_spectral.filters.running import Progress, run
 
 Array = NDArray[np.float64]
 
@@ -282,6 +283,9 @@ def manifold_harmonics(
     basis_size: int = BasisOptions.basis_size,
     laplacian: LaplacianKind = "intrinsic delaunay",
     boundary: Boundary = "free",
+    *,
+    progress: Progress | None = None,
+    threads: int | None = None,
 ) -> Harmonics:
     """Compute the lowest-frequency manifold harmonics of a mesh.
 
@@ -298,6 +302,8 @@ def manifold_harmonics(
         "uniform" uses the connectivity only.
     boundary
         "free": Neumann conditions at the boundary of an open surface; "fixed": zero there.
+    progress, threads
+        As for `filter_mesh`.
 
     Returns
     -------
@@ -313,8 +319,6 @@ def manifold_harmonics(
     FilterError
         When the mesh has no faces, no area, non-finite coordinates, or too few vertices for
         `basis_size`.
-    PluginError
-        When the plugin cannot be loaded.
 
     Examples
     --------
@@ -322,7 +326,7 @@ def manifold_harmonics(
     >>> smooth = basis.reconstruct(basis.project(V))
     """
     options = BasisOptions(basis_size=basis_size, laplacian=laplacian, boundary=boundary)
-    return compute(*mesh_arrays(mesh_or_vertices, faces), options)
+    return compute(*mesh_arrays(mesh_or_vertices, faces), options, progress, threads)
 
 
 def shape_dna(
@@ -332,6 +336,9 @@ def shape_dna(
     normalize: bool = True,
     laplacian: LaplacianKind = "intrinsic delaunay",
     boundary: Boundary = "free",
+    *,
+    progress: Progress | None = None,
+    threads: int | None = None,
 ) -> NDArray[np.float64]:
     """Compute the Shape-DNA of a mesh, its lowest eigenvalues.
 
@@ -350,7 +357,7 @@ def shape_dna(
         number of vertices not fixed.
     normalize
         Whether to multiply by the area of the surface, so that scale does not matter.
-    laplacian, boundary
+    laplacian, boundary, progress, threads
         As for `manifold_harmonics`.
 
     Returns
@@ -367,8 +374,6 @@ def shape_dna(
         When `laplacian` or `boundary` is unknown, or `count` is not an integer >= 2.
     FilterError
         When the mesh has no faces, no area, non-finite coordinates, or too few vertices.
-    PluginError
-        When the plugin cannot be loaded.
 
     Examples
     --------
@@ -377,9 +382,17 @@ def shape_dna(
     """
     basis_size = checked_count("count", count, least=2)
     try:
-        basis = manifold_harmonics(mesh_or_vertices, faces, basis_size, laplacian, boundary)
+        basis = manifold_harmonics(
+            mesh_or_vertices,
+            faces,
+            basis_size,
+            laplacian,
+            boundary,
+            progress=progress,
+            threads=threads,
+        )
     except FilterError as error:  # with this function's parameter name
-        raise FilterError(str(error).replace("basis_size", "count")) from error
+        raise type(error)(str(error).replace("basis_size", "count")) from error
     # The paper's factor is area^(2 / dimension), and the dimension of a surface is 2.
     return basis.eigenvalues * basis.masses.sum() if normalize else basis.eigenvalues
 
@@ -399,20 +412,19 @@ def _rows(name: str, values: ArrayLike, count: int, what: str) -> Array:
 
 
 def compute(
-    V: NDArray[np.float64], F: NDArray[Any], options: BasisOptions, verbose: bool = False
+    V: NDArray[np.float64],
+    F: NDArray[Any],
+    options: BasisOptions,
+    progress: Progress | None = None,
+    threads: int | None = None,
 ) -> Harmonics:
-    """Compute the harmonics of validated arrays. With `verbose`, MeshLab writes its log."""
-    mesh_set = mesh_set_of(V, F, verbose=verbose)
-    parameters = {"mode": 0, "store_basis": True, **options.as_dict()}  # mode 0 is in every basis
-    report = call_filter(mesh_set, options.FILTER, parameters)
-    mesh = mesh_set.current_mesh()
-    columns = [
-        mesh.vertex_custom_scalar_attribute_array(f"harmonic_{mode}")
-        for mode in range(options.basis_size)
-    ]
-    Phi = np.column_stack(columns)
+    """Compute the harmonics of validated arrays."""
+    given = {"mode": 0, **options.core_parameters()}  # mode 0 is in every basis
+    done = run(options.FILTER, V, F, given, progress=progress, threads=threads)
+    Phi = done.basis
+    assert Phi is not None
     masses = _equal_areas(V, F, Phi) if options.laplacian == "uniform" else lumped_areas(V, F)
-    return Harmonics(report["eigenvalues"].copy(), Phi, masses)
+    return Harmonics(done.report["eigenvalues"], Phi, masses)
 
 
 def _equal_areas(V: Array, F: NDArray[Any], Phi: Array) -> Array:

@@ -9,7 +9,6 @@ from numbers import Integral, Real
 from typing import Any, Literal, TypeVar, get_args, get_type_hints
 
 from meshlab_spectral.errors import OptionError
-from meshlab_spectral.filters.arrays import mean_edge
 
 AnyOptions = TypeVar("AnyOptions", bound="Options")
 
@@ -238,6 +237,20 @@ class Options:
             )
         return options
 
+    def core_parameters(self) -> dict[str, bool | int | float | str]:
+        """Return the values for `running.run`; default lengths are left out."""
+        parameters = {one.name: getattr(self, one.name) for one in fields(self)}
+        for one in fields(self):
+            value = parameters[one.name]
+            if not isinstance(value, Length):
+                continue
+            if value.automatic or value == one.default:
+                del parameters[one.name]  # chosen by the core to suit the mesh
+            else:
+                length = float(value.value)
+                parameters[one.name] = f"{length!r}{value.unit}" if value.unit else length
+        return parameters
+
     def pymeshlab_parameters(self, mesh: Any) -> dict[str, Any]:
         """Return the keyword arguments for pymeshlab; automatic and default lengths are left out.
 
@@ -247,6 +260,8 @@ class Options:
             The `pymeshlab.Mesh` to filter, for its mean edge length.
         """
         import pymeshlab
+
+        from meshlab_spectral.filters.arrays import mean_edge
 
         parameters = self.as_dict()
         for one in fields(self):
@@ -264,3 +279,11 @@ class Options:
                 length = value.in_units_of_mesh(0.0, edge)
                 parameters[one.name] = pymeshlab.PureValue(length)
         return parameters
+
+
+def checked_count(name: str, value: Any, least: int = 1) -> int:
+    """Return a count as an int; raise OptionError unless it is an integer >= `least`."""
+    limits = Limits(least, LARGEST_INTEGER)
+    if not isinstance(value, Integral) or isinstance(value, bool) or not limits.contain(value):
+        raise OptionError(f"{name} = {value}: must be an integer {limits}")
+    return int(value)

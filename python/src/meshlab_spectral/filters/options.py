@@ -1,18 +1,14 @@
-"""The fractional filter's options: names, defaults, limits, help.
+"""The options of the filters: names, defaults, limits, help.
 
-`FilterOptions` is their only definition: the command line, recipes and calls of pymeshlab derive
-from it. A test compares its names, choices and defaults with those of the plugin.
+Written by python/write_options.py from the tables in plugin/core/contract: edit those.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from numbers import Integral
-from typing import Any, Literal, TypedDict
+from typing import Literal, TypedDict
 
-from meshlab_spectral.errors import OptionError
 from meshlab_spectral.filters.option_types import LARGEST_INTEGER, Length, Limits, Options, option
-from meshlab_spectral.plugin.loading import FILTER_NAME
 
 FilterType = Literal["low-pass", "high-pass", "band-pass", "band-stop", "custom"]
 Response = Literal["gaussian", "butterworth", "ideal"]
@@ -26,7 +22,7 @@ Size = Length | str | float
 
 
 class TransferKeywords(TypedDict, total=False):
-    """The fields of `FilterOptions` that define the transfer function and the Laplacian."""
+    """Fields of `FilterOptions`, by name."""
 
     filter_type: FilterType
     feature_size: Size
@@ -42,7 +38,7 @@ class TransferKeywords(TypedDict, total=False):
 
 
 class FilterKeywords(TransferKeywords, total=False):
-    """All fields of `FilterOptions`."""
+    """Fields of `FilterOptions`, by name."""
 
     selected: bool
     steps: int
@@ -59,17 +55,20 @@ class FilterKeywords(TransferKeywords, total=False):
     result: Result
 
 
-def checked_count(name: str, value: Any, least: int = 1) -> int:
-    """Return a count as an int; raise OptionError unless it is an integer >= `least`."""
-    limits = Limits(least, LARGEST_INTEGER)
-    if not isinstance(value, Integral) or isinstance(value, bool) or not limits.contain(value):
-        raise OptionError(f"{name} = {value}: must be an integer {limits}")
-    return int(value)
+class DenoiseKeywords(TypedDict, total=False):
+    """Fields of `DenoiseOptions`, by name."""
+
+    strength: float
+    noise_height: Size
+    noise_size: Size
+    selected: bool
+    keep_creases: bool
+    boundary: Boundary
 
 
 @dataclass(frozen=True, kw_only=True)
 class FilterOptions(Options):
-    """Options of the filter, with the names and defaults they have in MeshLab.
+    """Options of Spectral Filter (Fractional), named as in MeshLab.
 
     Raises
     ------
@@ -77,160 +76,276 @@ class FilterOptions(Options):
         When a value is invalid; names the option, the value and what is allowed.
     """
 
-    FILTER = FILTER_NAME
+    FILTER = "apply_coord_spectral_filter_fractional"
     TABLE = "filter"
 
     filter_type: FilterType = option(
         "low-pass",
-        "What to do with details: low-pass keeps the large ones and smooths away the rest; "
-        "high-pass acts on the small ones (sharpen with --stop-gain 1 --pass-gain 2); band-pass "
-        "and band-stop act on details of about the feature size; custom takes --transfer-function.",
+        "Which details to change, by their size: low-pass keeps those larger than the "
+        "feature size and removes the rest; high-pass acts on smaller ones (with "
+        "--stop-gain 1 and --pass-gain 2 it sharpens); band-pass acts on details of about "
+        "the feature size (with --stop-gain 1 and --pass-gain above 1 it enhances them), "
+        "band-stop removes them; custom takes the --transfer-function.",
     )
     feature_size: Length = option(
         Length(automatic=True),
-        "Size of the details at the filter's cutoff: a percentage of the model's diagonal such as "
-        "5%, mean edge lengths such as 6e, a length in the model's units such as 0.02, or auto: "
-        "6e, at most 5%, where a low-pass keeps thinner parts. Try four times the width of what "
-        "you want to remove.",
+        "Size at which the filter cuts off: a wavelength along the surface, i.e. a bump and "
+        "the hollow next to it. A low-pass leaves a quarter of the height of waves half as "
+        "long, and nine tenths of that of waves twice as long. To remove bumps, try four "
+        "times their width. A low-pass of the default size, which removes the noise of a "
+        "scan, keeps parts that are thinner; one of another size draws them in. Default: "
+        "six mean edges, at most 5 % of the diagonal.",
     )
     pass_gain: float = option(
-        1.0, "Factor for the details that pass: 1 keeps them, 2 doubles their height.", Limits(0)
+        1.0,
+        "Factor for the details that the filter passes: 1 keeps them, 2 doubles their "
+        "height, 0 removes them.",
+        Limits(0),
     )
     stop_gain: float = option(
-        0.0, "Factor for all other details: 0 removes them, 0.5 halves their height.", Limits(0)
+        0.0,
+        "Factor for all other details: 0 removes them, 0.5 halves their height, 1 keeps them.",
+        Limits(0),
     )
     transfer_function: str = option(
         "20%:1, 5%:2, 1%:0.1",
-        "For --filter-type custom: gains at feature sizes as size:gain, with sizes such as 5% of "
-        "the diagonal, 6e (mean edges) or 0.02, as on an equalizer; or an expression of w, the "
-        "feature size over the wavelength, such as '1/(1 + w^4)'.",
+        "For the type custom: gains at feature sizes, like an equalizer, as size:gain with "
+        "sizes in percent of the diagonal (5%), mean edges (6e) or as lengths; or an "
+        "expression of w, the feature size over the wavelength, such as 1/(1 + w^4) (f is "
+        "the frequency, l = f^2).",
     )
     band_width: float = option(
         1.0,
-        "Width of a band in octaves: 1 means that its largest details are twice the size of its "
-        "smallest.",
+        "Width of the band for band-pass and band-stop, in octaves: with 1, its largest "
+        "details are twice as large as its smallest.",
         Limits(0, low_open=True),
     )
     response: Response = option(
         "gaussian",
-        "How sharply sizes are separated: gaussian is gentle, butterworth is sharper with a higher "
-        "--order, ideal cuts off abruptly and may leave ripples.",
+        "How sharply the filter separates sizes: gaussian is gradual and never rings; "
+        "butterworth is sharper the higher its --order; ideal cuts off abruptly and may "
+        "leave ripples.",
     )
     order: int = option(
-        2, "Steepness of the butterworth response: 1 is gentle, 8 is steep.", Limits(1, 64)
+        2,
+        "Steepness of the butterworth response, from 1 (gentle) to 64 (nearly ideal).",
+        Limits(1, 64),
     )
     power: float = option(
         1.0,
-        "Fractional power of the filter to apply: with 0.5, half of it, a gain of 4 becomes 2.",
+        "Fraction of the filter to apply, as a power of its gains: 0.5 is half of the "
+        "filter (a gain of 4 becomes 2).",
         Limits(0, 1, low_open=True),
     )
     selected: bool = option(
         False,
-        "Filter only the selected faces and vertices, fading out around them within about a "
-        "feature size.",
+        "Filter only the selected faces and vertices. Around them the filter fades out "
+        "within about a feature size, so that no crease is left; everything beyond is "
+        "unchanged.",
     )
     steps: int = option(
         0,
-        "Apply the filter in this many weak steps, so that thin parts leave no spikes: 0 "
-        "approximates infinitely many, 10 is the paper's scheme, 1 the classical one-shot filter.",
-        Limits(0, LARGEST_INTEGER),
+        "The filter is applied in this many weak steps, because a single strong one turns "
+        "thin parts into spikes or balloons. 0 approximates infinitely many of them, to the "
+        "--tolerance; 10 is the scheme of the paper with ten steps; 1 is the classical "
+        "one-shot filter.",
+        Limits(0, 1000),
     )
     tolerance: Length = option(
         Length(0.05, "%"),
-        "With --steps 0: maximum distance of the surface from the limit of infinitely many steps, "
-        "e.g. 0.05% of the diagonal.",
+        "With --steps 0: largest distance of the surface from the result of infinitely many "
+        "steps, for all but a thousandth of it. Larger is faster. Default: 0.05 % of the "
+        "diagonal.",
     )
     passes: int = option(
         0,
-        "With --steps 0: the number of passes of 1, 2, 4, ... steps, whatever the tolerance. With "
-        "the number in its report, a run is repeated exactly; 0 takes as many as --tolerance "
-        "requires.",
+        "With --steps 0: the number of passes of 1, 2, 4, ... steps, whatever the "
+        "--tolerance. A report tells how many a run took: with that number it is repeated "
+        "exactly.",
         Limits(0, 9),
     )
     basis_update: BasisUpdate = option(
         "conformal",
-        "What each step recomputes from the current shape: its areas (conformal; thin parts are "
-        "drawn in smoothly), the whole Laplacian (full; the paper's scheme), nothing (none).",
+        "What every step recomputes from the current shape. full, the paper's scheme: all "
+        "of its frequencies. conformal: its areas only (Kazhdan et al. 2012); thin parts "
+        "are drawn in smoothly instead of turning into spikes. none: nothing; the number of "
+        "steps then makes no difference.",
     )
     conformal_share: float = option(
         0.0,
-        "Blends the full update (0, the paper's) with the conformal one (1); 0.1 draws in thin "
-        "parts that a strong full update leaves as spikes.",
+        "For the full update: from 0, the paper's scheme, to 1, the conformal update. 0.1 "
+        "is enough to contract thin parts that a strong full update leaves as hair-thin "
+        "spikes.",
         Limits(0, 1),
     )
     spectrum: Spectrum = option(
-        "full", "full filters every detail; truncated only the largest ones, as older methods do."
+        "full",
+        "full filters all frequencies of the mesh, and is fast. truncated computes only the "
+        "lowest frequencies (as many as the --basis-size) and treats all others alike, as "
+        "older methods do; every step takes long, so set a number of --steps, e.g. 10.",
     )
     basis_size: int = option(
-        300, "Number of harmonics in a truncated spectrum, e.g. 300.", Limits(1, LARGEST_INTEGER)
+        300,
+        "Number of frequencies (manifold harmonics) of a truncated spectrum, e.g. 300. Must "
+        "be below the number of vertices; time and memory grow with it.",
+        Limits(1, LARGEST_INTEGER),
     )
     reinject_residual: bool = option(
-        True, "Keep the details beyond a truncated spectrum instead of dropping them."
+        True,
+        "For a truncated spectrum: keep the details beyond the basis, with the mean gain of "
+        "their frequencies. Off: drop them.",
     )
     laplacian: LaplacianKind = option(
         "intrinsic delaunay",
-        "Laplacian that defines the frequencies: 'intrinsic delaunay' is stable with any triangle, "
-        "cotangent is the paper's and needs triangles with an area, uniform looks at the "
-        "connections only, as if vertices were evenly spaced.",
+        "How the frequencies of the surface are measured. intrinsic delaunay works on any "
+        "triangles, including slivers, holes, duplicate or intersecting sheets, and is "
+        "stable for strong filters. cotangent is the formula of the paper; no triangle may "
+        "have zero area. uniform uses the connectivity only, as if the vertices were evenly "
+        "spaced: for noise that differs from vertex to vertex.",
     )
     boundary: Boundary = option(
         "free",
-        "Boundary of an open surface, holes included: free lets it move like the rest, so strong "
-        "smoothing draws it in; fixed keeps it exactly in place.",
+        "The boundary of an open surface, holes included. free: it moves like the rest; "
+        "strong smoothing rounds it off and pulls it in. fixed: it stays exactly in place, "
+        "and the surface in between is filtered.",
     )
     crease_angle: float = option(
         0.0,
-        "Edges whose faces meet at more than this angle in degrees, e.g. 40, stay in place, and "
-        "nothing is smoothed across them; 0 is off.",
+        "Edges whose two faces meet at more than this angle, in degrees, stay in place, and "
+        "nothing is filtered across them. For the edges of a machine part, e.g. 40.",
         Limits(0, 180),
     )
     preserve_volume: bool = option(
         False,
-        "Move the surface along its normals until every closed component has regained its volume.",
+        "Move the surface along its normals until every closed component has regained its "
+        "volume. Open components have none.",
     )
     weight: Weight = option(
         "none",
-        "'vertex quality': how much of the filter each vertex gets, from 0 (nothing) to 1 (all).",
+        "vertex quality: how much of the filter each vertex gets, from 0 (nothing) to 1 "
+        "(all), to paint where to filter. none: all of it.",
     )
     result: Result = option(
         "filtered shape",
-        "details leaves the shape as it is, and stores what the filter takes away: input minus "
-        "result as the vertex attribute spectral_details, and along the normal, positive outwards, "
-        "as vertex quality. Files: .ply only.",
+        "details: no vertex moves. What the filter would remove, input minus result, is "
+        "stored as the vertex attribute spectral_details, and its length along the normal, "
+        "positive outwards, replaces the vertex quality (after it has served as the "
+        "weight).",
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class DenoiseOptions(Options):
+    """Options of Spectral Denoise, named as in MeshLab.
+
+    Raises
+    ------
+    OptionError
+        When a value is invalid; names the option, the value and what is allowed.
+    """
+
+    FILTER = "apply_coord_spectral_denoise"
+    TABLE = "denoise"
+
+    strength: float = option(
+        1.0,
+        "1 removes the noise as measured. More removes finer details, too; less leaves some "
+        "noise; 0 changes nothing.",
+        Limits(0),
+    )
+    noise_height: Length = option(
+        Length(automatic=True),
+        "Standard deviation of the noise along the normals, such as 0.2e. Set it if details "
+        "were mistaken for noise, or noise for details. The default: as measured; the "
+        "report then says how high it is. Default: 0: as measured.",
+    )
+    noise_size: Length = option(
+        Length(automatic=True),
+        "Distance over which the noise is correlated: half the width of its bumps, such as "
+        "2e. Up to a mean edge, it is independent at each vertex. The default: as measured. "
+        "Default: 0: as measured.",
+    )
+    selected: bool = option(
+        False,
+        "Filter only the selected faces and vertices. Around them the filter fades out "
+        "within four edges, so that no crease is left; everything beyond is unchanged.",
+    )
+    keep_creases: bool = option(
+        True, "Do not smooth across creases. Off: creases are rounded; for shapes without any."
+    )
+    boundary: Boundary = option(
+        "free",
+        "The boundary of an open surface, holes included. free: it moves along its normals, "
+        "no further than the noise explains. fixed: it stays exactly in place.",
     )
 
 
 @dataclass(frozen=True, kw_only=True)
 class SpectrumOptions(Options):
-    """Options of `geometry_spectrum`."""
+    """Options of Geometry Spectrum, named as in MeshLab.
+
+    Raises
+    ------
+    OptionError
+        When a value is invalid; names the option, the value and what is allowed.
+    """
 
     FILTER = "get_geometry_spectrum"
     TABLE = "spectrum"
 
     basis_size: int = option(
-        0, "Number of lowest harmonics to measure one by one as well.", Limits(0, LARGEST_INTEGER)
+        0,
+        "Number of the largest features (manifold harmonics, constant ones included) that "
+        "are also computed individually, for scripts that need them; this takes most of the "
+        "time. The octaves cover all features in any case. On a small mesh, all harmonics "
+        "are computed.",
+        Limits(0, LARGEST_INTEGER),
     )
-    laplacian: LaplacianKind = option("intrinsic delaunay", "As for the filter.")
+    laplacian: LaplacianKind = option(
+        "intrinsic delaunay",
+        "How the frequencies of the surface are measured. intrinsic delaunay works on any "
+        "triangles, including slivers, holes, duplicate or intersecting sheets, and is "
+        "stable for strong filters. cotangent is the formula of the paper; no triangle may "
+        "have zero area. uniform uses the connectivity only, as if the vertices were evenly "
+        "spaced: for noise that differs from vertex to vertex.",
+    )
     boundary: Boundary = option(
         "free",
-        "Whether the boundary of an open surface is part of the shape (free) or left out (fixed).",
+        "The boundary of an open surface, holes included. free: it is part of the shape. "
+        "fixed: only the details that it does not determine are measured.",
     )
 
 
 @dataclass(frozen=True, kw_only=True)
 class BasisOptions(Options):
-    """Options of `manifold_harmonics`."""
+    """Options of Manifold Harmonics, named as in MeshLab.
+
+    Raises
+    ------
+    OptionError
+        When a value is invalid; names the option, the value and what is allowed.
+    """
 
     FILTER = "compute_scalar_manifold_harmonic_per_vertex"
     TABLE = "basis"
 
     basis_size: int = option(
         100,
-        "Number of harmonics, constants included.",
+        "Number of harmonics to compute, constant ones included. Must be below the number "
+        "of vertices that are not fixed; time and memory grow with it.",
         Limits(1, LARGEST_INTEGER),
         flags=("--basis-size", "-k"),
     )
-    laplacian: LaplacianKind = option("intrinsic delaunay", "As for the filter.")
+    laplacian: LaplacianKind = option(
+        "intrinsic delaunay",
+        "How the frequencies of the surface are measured. intrinsic delaunay works on any "
+        "triangles, including slivers, holes, duplicate or intersecting sheets, and is "
+        "stable for strong filters. cotangent is the formula of the paper; no triangle may "
+        "have zero area. uniform uses the connectivity only, as if the vertices were evenly "
+        "spaced: for noise that differs from vertex to vertex.",
+    )
     boundary: Boundary = option(
-        "free", "At the boundary of an open surface: free, or fixed to zero."
+        "free",
+        "The boundary of an open surface, holes included. free: the waves have zero slope "
+        "across the boundary. fixed: they are zero there, like the skin of a drum.",
     )

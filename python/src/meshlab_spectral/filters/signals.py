@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,10 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.filters.arrays import mesh_arrays
-from meshlab_spectral.filters.calling import call_filter, mesh_set_of, plain_report
-from meshlab_spectral.filters.gain_points import with_gain
 from meshlab_spectral.filters.keywords import takes_options
 from meshlab_spectral.filters.options import FilterOptions, TransferKeywords
+from meshlab_spectral.filters.running import Gain, Progress, Run, require_no_type, run
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -29,7 +27,9 @@ def filter_scalars(
     values: ArrayLike | None = None,
     options: FilterOptions | None = None,
     *,
-    gain: Callable[[float], float] | None = None,
+    gain: Gain | None = None,
+    progress: Progress | None = None,
+    threads: int | None = None,
     **named: Unpack[TransferKeywords],
 ) -> tuple[NDArray[np.float64], dict[str, Any]]:
     """Filter a scalar field on a mesh by the size of its details; the shape stays as it is.
@@ -52,7 +52,7 @@ def filter_scalars(
         the surface ends there for the others. Values at unreferenced vertices are kept exactly.
     options
         All options below in one object, instead of by name; others must have their defaults.
-    gain
+    gain, progress, threads
         As for `filter_mesh`.
     **named
 
@@ -75,8 +75,6 @@ def filter_scalars(
     FilterError
         When the mesh has no faces, no area or non-finite coordinates, a value is infinite, or all
         are NaN.
-    PluginError
-        When the plugin cannot be loaded.
 
     Examples
     --------
@@ -86,21 +84,24 @@ def filter_scalars(
     V, F = mesh_arrays(mesh_or_vertices, faces)
     if values is None:
         raise TypeError("values: pass numbers to filter, one for each vertex")
-    parameters = _options_for(V, F, options, named, gain)
+    parameters = _options_for(options, named, gain)
     Q = np.asarray(values, dtype=np.float64)
     if Q.ndim not in (1, 2) or len(Q) != len(V) or Q.size == 0:
         raise ValueError(
             f"values have shape {Q.shape}: pass {len(V)} numbers, one for each vertex, or a matrix "
             f"with {len(V)} rows"
         )
+
+    def filtered(column: NDArray[np.float64]) -> Run:
+        return _run(_SCALARS, V, F, parameters, column[:, None], gain, progress, threads)
+
     if Q.ndim == 2:
-        columns = [filter_scalars(V, F, column, parameters) for column in Q.T]
-        reports = [report for _, report in columns]
+        runs = [filtered(column) for column in Q.T]
+        reports = [one.plain_report for one in runs]
         warnings = [f"column {j}: {w}" for j, r in enumerate(reports) for w in r["warnings"]]
-        filtered = np.column_stack([values for values, _ in columns])
-        return filtered, {"columns": reports, "warnings": warnings}
-    mesh_set, report = _filtered(_SCALARS, V, F, parameters, {"v_scalar_array": Q})
-    return mesh_set.current_mesh().vertex_scalar_array().copy(), report
+        return np.hstack([_values(one) for one in runs]), {"columns": reports, "warnings": warnings}
+    done = filtered(Q)
+    return _values(done)[:, 0], done.plain_report
 
 
 @takes_options(FilterOptions, names=TransferKeywords.__annotations__)
@@ -110,14 +111,16 @@ def filter_colors(
     colors: ArrayLike | None = None,
     options: FilterOptions | None = None,
     *,
-    gain: Callable[[float], float] | None = None,
+    gain: Gain | None = None,
+    progress: Progress | None = None,
+    threads: int | None = None,
     **named: Unpack[TransferKeywords],
 ) -> tuple[NDArray[Any], dict[str, Any]]:
     """Filter colours at the vertices: red, green and blue as by `filter_scalars`.
 
     Parameters
     ----------
-    mesh_or_vertices, faces, options, gain
+    mesh_or_vertices, faces, options, gain, progress, threads
         As for `filter_scalars`.
     colors
         n x 3 or n x 4 integers from 0 to 255, or floating-point numbers from 0 to 1; the fourth
@@ -135,7 +138,7 @@ def filter_colors(
     V, F = mesh_arrays(mesh_or_vertices, faces)
     if colors is None:
         raise TypeError("colors: pass red, green and blue of each vertex")
-    parameters = _options_for(V, F, options, named, gain)
+    parameters = _options_for(options, named, gain)
     C = np.asarray(colors)
     most = 1 if np.issubdtype(C.dtype, np.floating) else 255
     if C.shape not in ((len(V), 3), (len(V), 4)) or not ((C >= 0) & (most >= C)).all():
@@ -143,15 +146,14 @@ def filter_colors(
             f"colors: pass {len(V)} x 3 or {len(V)} x 4 integers from 0 to 255, or floating-point "
             "numbers from 0 to 1"
         )
-    levels = np.column_stack([C / most, np.ones((len(V), 4 - C.shape[1]))])
-    mesh_set, report = _filtered(_COLORS, V, F, parameters, {"v_color_matrix": levels})
-    filtered = mesh_set.current_mesh().vertex_color_matrix()[:, : C.shape[1]].copy()
-    return filtered if most == 1 else np.round(255 * filtered).astype(np.uint8), report
+    levels = np.round(C[:, :3] * (255 / most)).astype(np.float64)
+    done = _run(_COLORS, V, F, parameters, levels, gain, progress, threads)
+    filtered = C.astype(np.float64 if most == 1 else np.uint8)
+    filtered[:, :3] = _values(done) / (255 / most)
+    return filtered, done.plain_report
 
 
-def _options_for(
-    V: Any, F: Any, options: FilterOptions | None, named: Any, gain: Callable[[float], float] | None
-) -> FilterOptions:
+def _options_for(options: FilterOptions | None, named: Any, gain: Gain | None) -> FilterOptions:
     """Return the options of a call; raise OptionError for those that apply only to shapes."""
     for name in named:
         if name not in TransferKeywords.__annotations__:
@@ -161,15 +163,30 @@ def _options_for(
                 f"{', '.join(TransferKeywords.__annotations__)}"
             )
     parameters = FilterOptions.given(options, named)
-    return parameters if gain is None else with_gain(parameters, gain, V, F)
+    if gain is not None:
+        require_no_type(parameters.filter_type)
+    return parameters
 
 
-def _filtered(
-    name: str, V: Any, F: Any, options: FilterOptions, signal: dict[str, NDArray[Any]]
-) -> tuple[Any, dict[str, Any]]:
-    """Apply a filter to a signal on a mesh; return a MeshSet with the result, and the report."""
-    mesh_set = mesh_set_of(V, F, signal)
-    known = mesh_set.filter_parameter_values(name)
-    all_given = options.pymeshlab_parameters(mesh_set.current_mesh())
-    given = {option: value for option, value in all_given.items() if option in known}
-    return mesh_set, plain_report(call_filter(mesh_set, name, given))
+def _run(
+    name: str,
+    V: NDArray[np.float64],
+    F: NDArray[np.integer],
+    options: FilterOptions,
+    values: NDArray[np.float64],
+    gain: Gain | None,
+    progress: Progress | None,
+    threads: int | None,
+) -> Run:
+    """Filter values, n x c, with the options that a signal has."""
+    given = {
+        name: value
+        for name, value in options.core_parameters().items()
+        if name in TransferKeywords.__annotations__
+    }
+    return run(name, V, F, given, values=values, gain=gain, progress=progress, threads=threads)
+
+
+def _values(done: Run) -> NDArray[np.float64]:
+    assert done.values is not None
+    return done.values

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from meshlab_spectral.filters.arrays import mesh_arrays
-from meshlab_spectral.filters.calling import call_filter, mesh_set_of
 from meshlab_spectral.filters.options import Boundary, LaplacianKind, SpectrumOptions
+from meshlab_spectral.filters.running import Progress, run
 
 Array = NDArray[np.float64]
 
@@ -121,6 +121,9 @@ def geometry_spectrum(
     basis_size: int = SpectrumOptions.basis_size,
     laplacian: LaplacianKind = "intrinsic delaunay",
     boundary: Boundary = "free",
+    *,
+    progress: Progress | None = None,
+    threads: int | None = None,
 ) -> GeometrySpectrum:
     """Measure the geometry spectrum of a mesh.
 
@@ -144,6 +147,8 @@ def geometry_spectrum(
     boundary
         Boundary of an open surface. "free": part of the shape, it contributes at every size;
         "fixed": measures the shape relative to the harmonic extension of the boundary.
+    progress, threads
+        As for `filter_mesh`.
 
     Returns
     -------
@@ -159,8 +164,6 @@ def geometry_spectrum(
     FilterError
         When the mesh has no faces, no area or non-finite coordinates, `basis_size` is too large, or
         a fixed boundary leaves nothing to measure, as in a flat mesh.
-    PluginError
-        When the plugin cannot be loaded.
 
     Examples
     --------
@@ -170,11 +173,16 @@ def geometry_spectrum(
     """
     options = SpectrumOptions(basis_size=basis_size, laplacian=laplacian, boundary=boundary)
     V, F = mesh_arrays(mesh_or_vertices, faces)
-    return GeometrySpectrum.from_report(measure(V, F, options))
+    return GeometrySpectrum.from_report(measure(V, F, options, progress, threads))
 
 
 def measure(
-    V: Array, F: NDArray[Any], options: SpectrumOptions, verbose: bool = False
+    V: Array,
+    F: NDArray[Any],
+    options: SpectrumOptions,
+    progress: Progress | None = None,
+    threads: int | None = None,
 ) -> dict[str, Any]:
-    """Run the filter on a mesh and return its report. With `verbose`, MeshLab writes its log."""
-    return call_filter(mesh_set_of(V, F, verbose=verbose), options.FILTER, options.as_dict())
+    """Run the filter on validated arrays and return its report."""
+    given = options.core_parameters()
+    return run(options.FILTER, V, F, given, progress=progress, threads=threads).report

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from meshlab_spectral.filters.denoise import DenoiseOptions
 from meshlab_spectral.filters.option_types import Options
-from meshlab_spectral.filters.options import FilterOptions
+from meshlab_spectral.filters.options import DenoiseOptions, FilterOptions
 
 TABLES: dict[str, type[Options]] = {table.TABLE: table for table in (FilterOptions, DenoiseOptions)}

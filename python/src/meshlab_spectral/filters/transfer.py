@@ -1,22 +1,28 @@
-"""The filter's gain as a function of frequency, for plots; the plugin computes it."""
+"""The filter's gain as a function of frequency, for plots; the core computes it."""
 
 from __future__ import annotations
 
-import ctypes
-from dataclasses import astuple, dataclass
-from typing import get_args
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from meshlab_spectral import _core
 from meshlab_spectral.errors import OptionError
-from meshlab_spectral.filters.options import FilterOptions, FilterType, Response
-from meshlab_spectral.plugin.library import function_of
-from meshlab_spectral.plugin.loading import load, loaded_plugin
+from meshlab_spectral.filters.options import FilterOptions
 
 Array = NDArray[np.float64]
 
-_INTEGER, _NUMBERS = ctypes.c_int, ctypes.POINTER(ctypes.c_double)
+TRANSFER_NAMES = (
+    "filter_type",
+    "pass_gain",
+    "stop_gain",
+    "transfer_function",
+    "band_width",
+    "response",
+    "order",
+    "power",
+)
 
 
 @dataclass(frozen=True)
@@ -52,8 +58,6 @@ def gain(options: FilterOptions, x: Array, lengths: MeshLengths | None = None) -
     ------
     OptionError
         When a custom transfer function is invalid; the message says where.
-    PluginError
-        When the plugin cannot be loaded.
     """
     if lengths is None:
         if options.filter_type == "custom":
@@ -61,22 +65,9 @@ def gain(options: FilterOptions, x: Array, lengths: MeshLengths | None = None) -
                 "a custom transfer function needs the lengths of a mesh for its sizes"
             )
         lengths = MeshLengths(1.0, 1.0, 1.0)
-    load()
-    types = (_INTEGER, _INTEGER, _NUMBERS, ctypes.c_char_p, _NUMBERS, _NUMBERS, _INTEGER, _NUMBERS)
-    function = function_of(loaded_plugin(), "meshlab_spectral_gains", types)
-    shape = [options.order, options.band_width, options.pass_gain, options.stop_gain, options.power]
-    gains = np.empty(np.shape(x))
-    given = [np.ascontiguousarray(one, dtype=np.float64) for one in (shape, astuple(lengths), x)]
-    numbers = [array.ctypes.data_as(_NUMBERS) for array in (*given, gains)]
-    mistake: bytes | None = function(
-        get_args(FilterType).index(options.filter_type),
-        get_args(Response).index(options.response),
-        numbers[0],
-        options.transfer_function.encode(),
-        *numbers[1:3],
-        gains.size,
-        numbers[3],
-    )
-    if mistake is not None:
-        raise OptionError(mistake.decode())
-    return gains
+    given = {
+        name: value for name, value in options.core_parameters().items() if name in TRANSFER_NAMES
+    }
+    w = np.ascontiguousarray(x, dtype=np.float64)
+    gains = _core.gains(given, lengths.feature_size, lengths.diagonal, lengths.mean_edge, w.ravel())
+    return gains.reshape(w.shape)

@@ -36,6 +36,18 @@ def last_summary() -> str:
     return text.decode()
 
 
+def last_error() -> tuple[str, str, int] | None:
+    """Return class, code and limit of the error of the latest run in this thread, if it had one.
+
+    A second call returns None. Errors are those of `last_warnings`.
+    """
+    text: bytes = function_of(loaded_plugin(), "meshlab_spectral_error", ())()
+    if not text:
+        return None
+    kind, code, limit = text.decode().split()
+    return kind, code, int(limit)
+
+
 @functools.cache
 def function_of(plugin: Path, name: str, arguments: Sequence[Any]) -> Any:
     """Return a text-valued function of the loaded plugin; errors are those of `last_warnings`."""

@@ -66,7 +66,10 @@ def threads() -> int | None:
     if text is None:
         return None
     if not text.isdecimal() or int(text) < 1:
-        raise OptionError(f"the environment variable {THREADS} = {text}: must be above zero")
+        raise OptionError(
+            f"the environment variable {THREADS} = {text}: give a number of threads above zero, or "
+            "unset it"
+        )
     return int(text)
 
 

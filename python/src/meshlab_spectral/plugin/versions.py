@@ -5,25 +5,25 @@ from __future__ import annotations
 import functools
 import hashlib
 import platform
-from importlib.metadata import version
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 
-from meshlab_spectral.errors import PluginError
-from meshlab_spectral.plugin.loading import plugin_path
+from meshlab_spectral import _core
 
 
 @functools.cache
 def versions() -> dict[str, str]:
-    """Return the versions of this package, pymeshlab and Python, and the plugin's SHA-256.
+    """Return the versions of this package, pymeshlab and Python, and the core's SHA-256.
 
-    The latter is empty when there is no plugin; `load` then explains why.
+    pymeshlab's is empty if it is not installed.
     """
     try:
-        plugin = hashlib.sha256(plugin_path().read_bytes()).hexdigest()
-    except (PluginError, OSError):
-        plugin = ""
+        pymeshlab = version("pymeshlab")
+    except PackageNotFoundError:
+        pymeshlab = ""
     return {
         "meshlab_spectral": version("meshlab-spectral"),
-        "plugin": plugin,
-        "pymeshlab": version("pymeshlab"),
+        "core": hashlib.sha256(Path(_core.__file__).read_bytes()).hexdigest(),
+        "pymeshlab": pymeshlab,
         "python": platform.python_version(),
     }

@@ -13,7 +13,6 @@ from __future__ import annotations
 import json
 import os
 import queue
-import re
 import signal
 import sys
 import threading
@@ -30,26 +29,23 @@ from meshlab_spectral.files.meshes import (
     load_arrays,
     script_to_scratch,
 )
-from meshlab_spectral.filters.calling import plain_report
 from meshlab_spectral.filters.options import BasisOptions, SpectrumOptions
+from meshlab_spectral.filters.running import plain
 from meshlab_spectral.filters.spectrum import measure
 from meshlab_spectral.filters.tables import TABLES
 from meshlab_spectral.plugin.limits import set_memory_limit
-
-# Matches every error of the plugin about memory.
-_TOO_MUCH_MEMORY = re.compile(r"memory, (of which )?\S+ \w+ are free")
 
 
 def _report_of(job: dict[str, Any], on_stage: StageCallback) -> dict[str, Any]:
     """Do a job, and return its report."""
     source, task = Path(job["source"]), job["task"]
-    verbose = job.get("verbose", True)  # progress within a mesh is read from the log
+    verbose = job.get("verbose", True)
     if task == "spectrum":
-        on_stage("reading")
+        on_stage("reading", None)
         V, F = load_arrays(source, job.get("mesh"))
-        on_stage("measuring")
+        on_stage("measuring", None)
         spectrum_options = SpectrumOptions.from_dict(job["options"])
-        return plain_report(measure(V, F, spectrum_options, verbose=verbose))
+        return plain(measure(V, F, spectrum_options, on_stage))
     if task == "info":
         return mesh_info(source, on_stage, job.get("mesh"))
     scratch = Path(job["scratch"])
@@ -73,12 +69,13 @@ def _read(jobs: queue.SimpleQueue[str]) -> None:
     os._exit(0)
 
 
-def _described(error: Exception) -> dict[str, str]:
-    """Describe an error by its class and message."""
+def _described(error: Exception) -> dict[str, Any]:
+    """Describe an error by its class, message and code."""
     if isinstance(error, errors.SpectralError):
-        if _TOO_MUCH_MEMORY.search(str(error)):
-            return {"error": "MemoryLimitError", "message": str(error)}
-        return {"error": type(error).__name__, "message": str(error)}
+        described: dict[str, Any] = {"error": type(error).__name__, "message": str(error)}
+        if isinstance(error, errors.FilterError):
+            described |= {"code": error.code, "limit": error.limit}
+        return described
     message = f"unexpected error: {error}; please report it"
     if isinstance(error, MemoryError):
         message = (
@@ -98,6 +95,9 @@ def _main() -> None:
     def answer(**content: Any) -> None:
         answers.write(json.dumps(content) + "\n")
 
+    def on_stage(stage: str, fraction: float | None) -> None:
+        answer(stage=stage, fraction=fraction)
+
     answer(ready=True)
     jobs: queue.SimpleQueue[str] = queue.SimpleQueue()
     threading.Thread(target=_read, args=[jobs], daemon=True).start()
@@ -105,7 +105,7 @@ def _main() -> None:
         try:
             job = json.loads(jobs.get())
             set_memory_limit(job.get("memory"))
-            answer(report=_report_of(job, lambda stage: answer(stage=stage)))
+            answer(report=_report_of(job, on_stage))
         except Exception as error:
             answer(**_described(error), traceback=traceback.format_exc().strip())
 

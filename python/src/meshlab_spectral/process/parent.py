@@ -283,6 +283,8 @@ def _not_started(how: str) -> errors.ProcessStartError:
 def _error_of(answer: dict[str, Any]) -> errors.SpectralError:
     kind = getattr(errors, answer["error"], errors.FilterError)
     error: errors.SpectralError = kind(answer["message"])
+    if isinstance(error, errors.FilterError):
+        error.code, error.limit = answer.get("code", ""), answer.get("limit", 0)
     # For --debug: where it happened in the child.
     error.__cause__ = RuntimeError(answer["traceback"])
     return error

@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from meshlab_spectral.files.meshes import check_source
+from meshlab_spectral.files.sources import check_source
 from meshlab_spectral.files.whole_files import remove_leftovers, resolved, writing_whole
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.process.parent import MeshLabProcess, ProgressCallback

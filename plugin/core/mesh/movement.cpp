@@ -1,0 +1,22 @@
+#include "core/mesh/movement.h"
+
+#include <cmath>
+
+#include "core/mesh/measures.h"
+
+namespace spectral {
+
+Movement movementOf(const Vertices& X, const Faces& F, const Vertices& displacement,
+                    const Eigen::VectorXd& weight, const PreservedVolumes& volumes) {
+    const Eigen::VectorXd squares = displacement.rowwise().squaredNorm();
+    Movement movement;
+    movement.maxDisplacement = std::sqrt(squares.maxCoeff());
+    movement.rmsDisplacement = std::sqrt(squares.dot(weight / weight.sum()));
+    movement.volumeBefore = signedVolume(X, F);
+    movement.volumeAfter = signedVolume(X + displacement, F);
+    movement.hasVolume = enclosesVolume(X, F);
+    movement.volumes = volumes;
+    return movement;
+}
+
+}  // namespace spectral

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "core/mesh/mesh.h"
+#include "core/mesh/volume.h"
+
+namespace spectral {
+
+/// How far a filter has moved a surface, and what that did to its volume.
+struct Movement {
+    double maxDisplacement = 0.0;                  ///< Largest vertex displacement, length units.
+    double rmsDisplacement = 0.0;                  ///< Root mean square, length units.
+    double volumeBefore = 0.0, volumeAfter = 0.0;  ///< Signed; meaningful only if hasVolume.
+    bool hasVolume = false;                        ///< Whether the surface encloses a volume.
+    PreservedVolumes volumes;                      ///< Volumes of the closed components.
+};
+
+/// @param X, F          n x 3 positions before, and the triangles.
+/// @param displacement  n x 3.
+/// @param weight        n, of the vertices in the mean square; not all 0.
+/// @param volumes       what was done to them.
+Movement movementOf(const Vertices& X, const Faces& F, const Vertices& displacement,
+                    const Eigen::VectorXd& weight, const PreservedVolumes& volumes);
+
+}  // namespace spectral

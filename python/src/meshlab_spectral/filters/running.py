@@ -1,0 +1,159 @@
+"""Runs of the core's filters on arrays."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from meshlab_spectral import _core
+from meshlab_spectral.errors import OptionError
+from meshlab_spectral.plugin import limits
+
+Array = NDArray[np.float64]
+Progress = Callable[[str, float], object]
+Gain = Callable[[Array], ArrayLike]
+
+# The core interpolates a gain's logarithm between samples, here to about 1e-5 of a smooth gain;
+# beyond them, where no mesh has details, the gain is constant.
+_OCTAVES, _PER_OCTAVE = 16, 128
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """What a filter of the core has returned; None where it has no such result.
+
+    Attributes
+    ----------
+    vertices
+        n x 3 new coordinates.
+    details
+        n x 3 differences, input minus result.
+    values
+        n x c new values at the vertices.
+    basis
+        n x k harmonics.
+    report
+        Numbers, flags and arrays; "warnings", a list of problems that were not errors; "summary",
+        what a filter that chooses by itself found and did.
+    text
+        The report as lines for a log.
+    """
+
+    report: dict[str, Any]
+    text: str
+    vertices: Array | None = None
+    details: Array | None = None
+    values: Array | None = None
+    basis: Array | None = None
+
+    @property
+    def plain_report(self) -> dict[str, Any]:
+        """The report with lists instead of arrays, for JSON."""
+        return plain(self.report)
+
+
+def run(
+    name: str,
+    V: Array,
+    F: NDArray[np.integer],
+    options: Mapping[str, bool | int | float | str],
+    *,
+    selected: NDArray[np.bool_] | None = None,
+    values: Array | None = None,
+    gain: Gain | None = None,
+    progress: Progress | None = None,
+    threads: int | None = None,
+) -> Run:
+    """Apply a filter of the core.
+
+    Parameters
+    ----------
+    name
+        The filter's Python name in pymeshlab.
+    V, F
+        As from `mesh_arrays`.
+    options
+        Values of the filter's parameters; the others keep their defaults.
+    selected
+        n booleans, for the option `selected`.
+    values
+        n x 1 numbers, or n x 3 levels of 0 to 255, to filter or as weights.
+    gain
+        In place of a transfer function.
+    progress
+        Called about twenty times a second in this thread with the current stage and the fraction
+        done, 0 to 1; cancels by returning False.
+    threads
+        Number of threads; by default that of `set_threads`.
+
+    Raises
+    ------
+    OptionError, MeshError, SolverError, MemoryLimitError
+        With the reason and what to do.
+    Cancelled
+        When `progress` has returned False.
+    KeyboardInterrupt
+        On Ctrl-C, within 0.5 s.
+    """
+    _core.set_memory_limit(limits.given_memory_limit() or 0)
+    result = _core.apply(
+        name,
+        V,
+        F.astype(np.int32, copy=False),
+        options,
+        selected=selected,
+        values=values,
+        gain=None if gain is None else _samples(gain),
+        progress=progress,
+        threads=thread_count(threads),
+    )
+    report = {**result.pop("report"), "warnings": result.pop("warnings")}
+    if summary := result.pop("summary"):
+        report["summary"] = summary
+    return Run(report, **result)
+
+
+def thread_count(threads: int | None) -> int:
+    """Return a number of threads for the core; raise OptionError if it is below 1."""
+    if threads is not None and threads < 1:
+        raise OptionError(f"threads = {threads}: give a number of threads above zero, or None")
+    return threads or limits.threads() or 0
+
+
+def require_no_type(filter_type: str) -> None:
+    """Raise OptionError when a filter type is chosen, which a gain replaces."""
+    if filter_type != "low-pass":
+        raise OptionError(f"filter_type = {filter_type}: gain replaces it; give one of them")
+
+
+def plain(report: dict[str, Any]) -> dict[str, Any]:
+    """Convert the arrays in a report to lists, for JSON."""
+    return {
+        name: value.tolist() if hasattr(value, "tolist") else value
+        for name, value in report.items()
+    }
+
+
+def _samples(gain: Gain) -> Array:
+    """Sample a gain; raise OptionError, which names w, when one is negative or not finite."""
+    w = np.exp2(np.arange(-_OCTAVES * _PER_OCTAVE, _OCTAVES * _PER_OCTAVE + 1) / _PER_OCTAVE)
+    try:
+        gains = np.asarray(gain(w), dtype=np.float64)
+    except (TypeError, ValueError):  # a function of one number, such as one with an if
+        gains = np.array([gain(one) for one in w], dtype=np.float64)
+    if gains.shape not in ((), w.shape):
+        raise OptionError(
+            f"gain returns shape {gains.shape} for {len(w)} frequencies: return a gain for each"
+        )
+    gains = np.broadcast_to(gains, w.shape)
+    wrong = np.flatnonzero(~(np.isfinite(gains) & (gains >= 0)))
+    if wrong.size:
+        raise OptionError(
+            f"gain({w[wrong[0]]:.3g}) = {gains[wrong[0]]}: must be finite and not negative for "
+            "every w > 0, the feature size over the wavelength"
+        )
+    return np.column_stack([w, gains])

@@ -1,0 +1,149 @@
+#include "core/contract/filter.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "core/contract/length.h"
+#include "core/contract/parameter.h"
+#include "core/filter/fractional_filter.h"
+#include "core/support/errors.h"
+#include "support/shapes.h"
+
+namespace spectral {
+namespace {
+
+const char* const kFractional = "apply_coord_spectral_filter_fractional";
+
+FilterInput sphere() {
+    const testing::Mesh mesh = testing::icosphere(3);
+    FilterInput input{mesh.V, mesh.F};
+    input.values = Eigen::VectorXd::LinSpaced(mesh.V.rows(), 0.0, 1.0);
+    return input;
+}
+
+FilterInput inputFor(const Filter& filter) {
+    FilterInput input = sphere();
+    if (filter.pythonName.find("color") != std::string::npos)
+        input.values = (100.0 * input.V.array() + 120.0).matrix();
+    return input;
+}
+
+TEST(Filters, HaveUniqueNamesAndCompleteDescriptions) {
+    std::set<std::string> names, pythonNames;
+    for (const Filter& filter : allFilters()) {
+        EXPECT_TRUE(names.insert(filter.name).second);
+        EXPECT_TRUE(pythonNames.insert(filter.pythonName).second);
+        EXPECT_FALSE(filter.help.empty());
+        std::set<std::string> parameters;
+        for (const Parameter& one : filter.parameters) {
+            EXPECT_TRUE(parameters.insert(one.name).second) << one.name;
+            EXPECT_FALSE(one.label.empty() || one.help.empty()) << one.name;
+            EXPECT_EQ(one.kind == Parameter::Kind::Choice, !one.choices.empty()) << one.name;
+            const bool isNumber = one.kind == Parameter::Kind::Integer ||
+                                  one.kind == Parameter::Kind::Number ||
+                                  one.kind == Parameter::Kind::Length;
+            EXPECT_EQ(isNumber, !one.unit.empty()) << one.name;
+        }
+        EXPECT_EQ(&filterNamed(filter.pythonName), &filter);
+    }
+    EXPECT_THROW(filterNamed("apply_nothing"), std::out_of_range);
+}
+
+TEST(Filters, ReportOnlyWhatTheyDescribe) {
+    for (const Filter& filter : allFilters()) {
+        std::set<std::string> described;
+        for (const ReportEntry& entry : filter.report)
+            EXPECT_TRUE(described.insert(entry.name).second) << entry.name;
+        const FilterOutput output = apply(filter, inputFor(filter), {});
+        EXPECT_FALSE(output.report.empty());
+        for (const auto& [name, value] : output.report)
+            EXPECT_EQ(described.count(name), 1U) << name;
+        EXPECT_FALSE(output.text.empty()) << filter.name;
+    }
+}
+
+TEST(Filters, TakeEveryParameterAtItsDefault) {
+    for (const Filter& filter : allFilters()) {
+        Values given;
+        for (const Parameter& one : filter.parameters) given[one.name] = one.usual;
+        const FilterInput input = inputFor(filter);
+        const FilterOutput one = apply(filter, input, {}), other = apply(filter, input, given);
+        EXPECT_EQ(one.V, other.V);
+        EXPECT_EQ(one.values, other.values);
+        EXPECT_TRUE(other.warnings == one.warnings) << filter.name;
+    }
+}
+
+TEST(Filters, AreThoseOfTheCore) {
+    const FilterInput input = sphere();
+    const MeshLengths mesh = lengthsOf(input.V, input.F);
+    FilterOptions options;
+    options.featureSize = inSinglePrecision(0.3);
+    options.steps = 2;
+    const FilterOutput output =
+        apply(filterNamed(kFractional), input, {{"feature_size", 0.3}, {"steps", 2}});
+    EXPECT_EQ(output.V, fractionalFilter(input.V, input.F, options).V);
+    EXPECT_GT(mesh.diagonal, 0.0);
+}
+
+TEST(Filters, RefuseUnknownAndWrongValuesByName) {
+    const Filter& filter = filterNamed(kFractional);
+    const auto reason = [&](const Values& given) -> std::string {
+        try {
+            apply(filter, sphere(), given);
+        } catch (const InvalidOption& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_NE(reason({{"stepz", 1}}).find("there is no option stepz"), std::string::npos);
+    EXPECT_EQ(reason({{"steps", 1.5}}), "steps = 1.5: must be an integer");
+    EXPECT_EQ(reason({{"boundary", std::string("open")}}), "boundary = open: choose free, fixed");
+    EXPECT_EQ(reason({{"boundary", 2}}), "boundary = 2: choose 0 (free), 1 (fixed)");
+    EXPECT_NE(reason({{"feature_size", std::string("5 m")}}).find("feature_size = '5 m'"),
+              std::string::npos);
+    EXPECT_NE(reason({{"weight", 1}, {"steps", true}}).find("steps = true"), std::string::npos);
+}
+
+TEST(Filters, AdviseWithoutChangingTheClassOfAnError) {
+    const Filter& filter = filterNamed(kFractional);
+    FilterInput points = sphere();
+    points.F.resize(0, 3);
+    try {
+        apply(filter, points, {});
+        FAIL();
+    } catch (const InvalidMesh& error) {
+        EXPECT_EQ(error.code(), ErrorCode::NoFaces);
+        EXPECT_NE(std::string(error.what()).find("reconstruct one first"), std::string::npos);
+    }
+}
+
+TEST(Filters, WarnOfParametersWithoutEffect) {
+    const FilterOutput output =
+        apply(filterNamed(kFractional), sphere(), {{"order", 3}, {"steps", 1}, {"passes", 2}});
+    const std::vector<std::string> expected{"order has no effect without response = butterworth",
+                                            "passes has no effect without steps = 0"};
+    EXPECT_EQ(output.warnings, expected);
+}
+
+TEST(Length, IsReadInAllUnits) {
+    const MeshLengths mesh{200.0, 0.5, 100.0};
+    EXPECT_EQ(Length::parse(" 5% ").in(mesh, 1.0), 10.0);
+    EXPECT_EQ(Length::parse("6e").in(mesh, 1.0), 3.0);
+    EXPECT_EQ(Length::parse("0.25").in(mesh, 1.0), 0.25);
+    EXPECT_EQ(Length::parse("1e-3").in(mesh, 1.0), inSinglePrecision(1e-3));
+    EXPECT_EQ(Length::parse("auto").in(mesh, 1.0), 1.0);
+    for (const char* const wrong : {"", "%", "e", "5 m", "5%%", "101%", "five", "1 2"})
+        EXPECT_THROW(Length::parse(wrong), InvalidOption) << wrong;
+}
+
+TEST(Length, StaysInRangeWhereSinglePrecisionDoesNot) {
+    EXPECT_EQ(inSinglePrecision(1e-60), 1e-60);
+    EXPECT_EQ(inSinglePrecision(1e60), 1e60);
+    EXPECT_EQ(Length::parse("50%").in({1e60, 0.0, 1e60}, 0.0), 5e59);
+}
+
+}  // namespace
+}  // namespace spectral
