@@ -13,7 +13,7 @@ Records = dict[str, list[dict[str, Any]]]
 
 _DONE = ("filtered", "unchanged", "measured")
 # Versions a result depends on.
-_DECIDING_VERSIONS = ("meshlab_spectral", "plugin", "pymeshlab")
+_DECIDING_VERSIONS = ("meshlab_spectral", "core", "pymeshlab")
 
 
 def done_records(report: Iterable[Mapping[str, Any]]) -> Records:
