@@ -17,6 +17,7 @@ namespace nb = nanobind;
 using Positions = nb::ndarray<const double, nb::numpy, nb::shape<-1, 3>, nb::c_contig>;
 using Indices = nb::ndarray<const int, nb::numpy, nb::shape<-1, 3>, nb::c_contig>;
 using Table = nb::ndarray<const double, nb::numpy, nb::shape<-1, -1>, nb::c_contig>;
+using Pairs = nb::ndarray<const double, nb::numpy, nb::shape<-1, 2>, nb::c_contig>;
 using Numbers = nb::ndarray<const double, nb::numpy, nb::shape<-1>, nb::c_contig>;
 using Flags = nb::ndarray<const bool, nb::numpy, nb::shape<-1>, nb::c_contig>;
 

@@ -28,13 +28,26 @@ namespace spectral::python {
 
 namespace {
 
+/// The core reads a row for each vertex.
+/// @throws nb::value_error  unless there are so many.
+template <class Array>
+void requireRows(const Array& array, const Positions& vertices) {
+    if (array.shape(0) != vertices.shape(0)) throw nb::value_error("one row for each vertex");
+}
+
 nb::dict applyFilter(const std::string& name, const Positions& vertices, const Indices& faces,
                      const nb::dict& options, const std::optional<Flags>& selected,
-                     const std::optional<Table>& values, const std::optional<Table>& gain,
+                     const std::optional<Table>& values, const std::optional<Pairs>& gain,
                      nb::handle progress, int threads) {
     FilterInput input{mapOf(vertices, 3), mapOf(faces, 3)};
-    if (selected) input.selected.assign(selected->data(), selected->data() + selected->shape(0));
-    if (values) input.values = mapOf(*values, static_cast<Eigen::Index>(values->shape(1)));
+    if (selected) {
+        requireRows(*selected, vertices);
+        input.selected.assign(selected->data(), selected->data() + selected->shape(0));
+    }
+    if (values) {
+        requireRows(*values, vertices);
+        input.values = mapOf(*values, static_cast<Eigen::Index>(values->shape(1)));
+    }
     if (gain) input.gain = mapOf(*gain, 2);
     const Values given = valuesOf(options);
     FilterOutput output = [&] {
@@ -63,6 +76,8 @@ nb::object gains(const nb::dict& options, double featureSize, double diagonal, d
 /// (data, column indices, row offsets) of W, D, and the vertex of each row.
 nb::tuple laplacian(const Positions& vertices, const Indices& faces, int kind, nb::handle progress,
                     int threads) {
+    if (kind < 0 || kind > static_cast<int>(LaplacianKind::Uniform))
+        throw nb::value_error("no such kind of Laplacian");
     const Vertices V = mapOf(vertices, 3);
     const Faces F = mapOf(faces, 3);
     MeshLaplacian mesh = [&] {

@@ -14,7 +14,8 @@ namespace nb = nanobind;
 /// @param callback  referred to; it must outlive the result.
 Progress progressOf(nb::handle callback);
 
-/// A run of the core, without the GIL. The interpreter does not end while there is one.
+/// A run without the GIL. The interpreter does not end while there is one; once it
+/// ends, runs of other threads do not return to it.
 class Running {
   public:
     Running();
@@ -23,7 +24,7 @@ class Running {
     Running& operator=(const Running&) = delete;
 
   private:
-    nb::gil_scoped_release released_;
+    PyThreadState* state_;
 };
 
 /// Cancels all runs of other threads when the interpreter ends, which would end the process within

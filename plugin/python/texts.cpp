@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "arrays.h"
+#include "running.h"
 #include "shapes.h"
 #include "text_numbers.h"
 #include "xml_elements.h"
@@ -30,7 +31,7 @@ std::string_view viewOf(const nb::bytes& text) { return {text.c_str(), text.size
 /// Runs something without the GIL.
 template <class Run>
 auto released(const Run& run) {
-    const nb::gil_scoped_release lock;
+    const Running running;
     return run();
 }
 
@@ -103,7 +104,7 @@ void writePatched(const nb::bytes& text, std::size_t begin,
         changes.push_back({places.data(), n, k, first, before.data(), after.data(), digits});
     }
     if (begin > view.size()) throw nb::value_error("a text is written from within it");
-    const nb::gil_scoped_release released;
+    const Running running;
     replaceNumbers(view, begin, changes, [&write](std::string_view piece) {
         const nb::gil_scoped_acquire gil;
         const auto size = static_cast<Py_ssize_t>(piece.size());

@@ -104,6 +104,19 @@ def test_arrays_of_other_shapes_are_refused(mesh: Any) -> None:
             _core.apply(FILTER, *wrong, {})
 
 
+def test_other_numbers_of_rows_than_vertices_are_refused(mesh: Any) -> None:
+    V, F = mesh
+    for n in (len(V) - 1, len(V) + 1):
+        with pytest.raises(ValueError, match="vertex"):
+            _core.apply(FILTER, V, F, {"selected": True}, selected=np.ones(n, bool))
+        with pytest.raises(ValueError, match="vertex"):
+            _core.apply(FILTER, V, F, {"weight": "vertex quality"}, values=np.ones((n, 1)))
+    with pytest.raises(TypeError):
+        _core.apply(FILTER, V, F, {}, gain=np.ones((5, 1)))
+    with pytest.raises(ValueError, match="Laplacian"):
+        _core.laplacian(V, F, 3)
+
+
 PROGRAM = """
 import os, signal, threading, time
 import numpy as np
@@ -115,8 +128,8 @@ i, j = map(np.ravel, np.meshgrid(np.arange(120), np.arange(120)))
 at = lambda i, j: (j % 120) * 120 + i % 120
 F = np.vstack([np.column_stack([at(i, j), at(i + 1, j), at(i + 1, j + 1)]),
                np.column_stack([at(i, j), at(i + 1, j + 1), at(i, j + 1)])]).astype(np.int32)
-def run():
-    _core.apply("apply_coord_spectral_filter_fractional", V, F, {"steps": 1000})
+def run(steps=1000):
+    _core.apply("apply_coord_spectral_filter_fractional", V, F, {"steps": steps})
 """
 INTERRUPTED = """
 def interrupt():
@@ -133,9 +146,35 @@ threading.Thread(target=run, daemon=True).start()
 time.sleep(0.5)
 print("stopped")
 """
+# Threads that call again once they are cancelled, or write a file.
+CALLING_AGAIN = """
+text = b"1.5 2.5 3.5\\n" * 1000
+places = np.arange(1000) * 12
+before, after = np.tile([1.5, 2.5, 3.5], (1000, 1)), np.ones((1000, 3))
+def write():
+    _core.write_patched(text, 0, [(places, 0, before, after, 9)], lambda piece: None)
+def repeat(task):
+    while True:
+        try:
+            task()
+        except Exception:
+            pass
+for task in [lambda: run(1), run, write] * 2:
+    threading.Thread(target=repeat, args=[task], daemon=True).start()
+time.sleep(0.5)
+print("stopped")
+"""
+FORKED = """
+threading.Thread(target=run, daemon=True).start()
+time.sleep(0.2)
+if child := os.fork():
+    print("stopped" if os.waitpid(child, 0)[1] == 0 else "failed")
+else:
+    signal.alarm(60)
+"""
 
 
-@pytest.mark.parametrize("ending", [INTERRUPTED, ENDING])
+@pytest.mark.parametrize("ending", [INTERRUPTED, ENDING, CALLING_AGAIN, FORKED])
 @pytest.mark.skipif(os.name == "nt", reason="Windows has no signals to send")
 def test_an_interrupt_and_the_interpreters_end_stop_a_run(ending: str) -> None:
     done = subprocess.run(
