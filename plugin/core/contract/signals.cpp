@@ -13,6 +13,7 @@
 #include "core/contract/surface_report.h"
 #include "core/contract/transfer_fields.h"
 #include "core/filter/signal_filter.h"
+#include "core/support/errors.h"
 
 // The two filters of signals on a fixed shape: vertex quality and vertex colours.
 
@@ -98,6 +99,8 @@ std::vector<std::string> warningsOf(const std::vector<bool>& selected,
 FilterOutput filterValues(const char* name, const char* signal, const FilterInput& input,
                           const MeshLengths& mesh, const Values& given, const Progress& progress) {
     static const Fields<SignalCall> fields = signalFields();
+    if (input.values.size() == 0)
+        throw InvalidMesh(ErrorCode::NoData, "there are no values to filter");
     SignalCall call = callOf(fields, given, mesh);
     resolveCustomGain(call, mesh, input.gain);
     SignalFilterOptions& options = call.options;

@@ -120,6 +120,14 @@ TEST(Filters, AdviseWithoutChangingTheClassOfAnError) {
     }
 }
 
+TEST(Filters, OfValuesRefuseAMeshWithoutAny) {
+    FilterInput input = sphere();
+    input.values.resize(0, 0);
+    for (const char* const name :
+         {"apply_scalar_spectral_filter_per_vertex", "apply_color_spectral_filter_per_vertex"})
+        EXPECT_THROW(apply(filterNamed(name), input, {}), InvalidMesh);
+}
+
 TEST(Filters, WarnOfParametersWithoutEffect) {
     const FilterOutput output =
         apply(filterNamed(kFractional), sphere(), {{"order", 3}, {"steps", 1}, {"passes", 2}});

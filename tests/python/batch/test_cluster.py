@@ -133,7 +133,7 @@ def test_a_cluster_without_workers_is_reported(
 def test_a_cluster_with_other_versions_is_refused(
     cluster: str, meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(cluster_module, "versions", lambda: {"plugin": str(os.getpid())})
+    monkeypatch.setattr(cluster_module, "versions", lambda: {"core": str(os.getpid())})
     with pytest.raises(BatchError, match="has different software from this machine: plugin"):
         list(filter_files(meshes, tmp_path / "out", scheduler=cluster))
 

@@ -18,7 +18,7 @@ from meshlab_spectral.batch.report import Report, check_report, read_report
 from meshlab_spectral.batch.resume import done_records, proved_done
 from meshlab_spectral.batch.storage import digest
 
-VERSIONS = {"meshlab_spectral": "1", "plugin": "2", "pymeshlab": "3", "python": "4"}
+VERSIONS = {"meshlab_spectral": "1", "core": "2", "pymeshlab": "3", "python": "4"}
 AWKWARD = 'a "\\\n\r\té\u2028\udcff{}'
 RECORDS = st.lists(
     st.dictionaries(st.sampled_from(["a", "b", "c"]), st.integers() | st.text(AWKWARD)),
@@ -188,7 +188,7 @@ def test_other_options_prove_nothing(done: tuple[Job, Any]) -> None:
     assert not proved(dataclasses.replace(job, options={"feature_size": "3%"}), record)
 
 
-@pytest.mark.parametrize("name", ["meshlab_spectral", "plugin", "pymeshlab"])
+@pytest.mark.parametrize("name", ["meshlab_spectral", "core", "pymeshlab"])
 def test_other_software_proves_nothing(name: str, done: tuple[Job, Any]) -> None:
     assert not proved(*done, **{name: "other"})
 

@@ -106,7 +106,7 @@ def test_json_holds_the_spectrum_the_options_and_the_gains(cow: Path, tmp_path: 
     assert record["output"] is None
     assert set(record["options"]) == set(SHOWN_OPTIONS)
     assert record["options"]["stop_gain"] == 0.5
-    assert record["versions"].keys() == {"meshlab_spectral", "plugin", "pymeshlab", "python"}
+    assert record["versions"].keys() == {"meshlab_spectral", "core", "pymeshlab", "python"}
     expected = geometry_spectrum(*load_arrays(cow), basis_size=20)
     found = record["spectrum"]
     np.testing.assert_allclose(found["octave_energies"], expected.octave_energies, rtol=1e-9)
