@@ -134,7 +134,7 @@ def test_a_cluster_with_other_versions_is_refused(
     cluster: str, meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(cluster_module, "versions", lambda: {"core": str(os.getpid())})
-    with pytest.raises(BatchError, match="has different software from this machine: plugin"):
+    with pytest.raises(BatchError, match="has different software from this machine: core"):
         list(filter_files(meshes, tmp_path / "out", scheduler=cluster))
 
 

@@ -77,7 +77,7 @@ class Interrupt:
 sys.meta_path.insert(0, Interrupt)
 """
 IMPORTS = {
-    "numpy": ["filter", "COW", "out/cow.ply"],
+    "numpy": ["spectrum", "COW", "--output", "out/cow.png"],
     "typer": ["batch", "COW", "--output", "out"],
     "rich.progress": ["basis", "COW", "--output", "out/cow.npz"],
     "meshlab_spectral.cli.app": ["--help"],
