@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import functools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from numbers import Integral, Real
@@ -148,6 +149,11 @@ def _is_text_or_number(value: Any) -> bool:
     return isinstance(value, str | Real) and not isinstance(value, bool)
 
 
+@functools.cache  # evaluating the annotations takes as long as filtering a small mesh
+def _types_of(table: type[Any]) -> dict[str, Any]:
+    return get_type_hints(table)
+
+
 @dataclass(frozen=True, kw_only=True)
 class Options:
     """Base of the tables of options, frozen dataclasses whose fields are made by `option`.
@@ -172,7 +178,7 @@ class Options:
     TABLE = ""
 
     def __post_init__(self) -> None:
-        types = get_type_hints(type(self))
+        types = _types_of(type(self))
         for one in fields(self):
             value = getattr(self, one.name)
             if types[one.name] is Length and _is_text_or_number(value):

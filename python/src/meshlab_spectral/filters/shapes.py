@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 from numpy.typing import ArrayLike
@@ -67,7 +66,7 @@ def filtered(
         options.FILTER,
         V,
         F,
-        replace(options, **part).core_parameters(),
+        {**options.core_parameters(), **part},
         selected=selected,
         values=values,
         gain=gain,
