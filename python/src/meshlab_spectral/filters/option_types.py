@@ -178,7 +178,8 @@ class Options:
     TABLE = ""
 
     def __post_init__(self) -> None:
-        types = _types_of(type(self))
+        table: Any = type(self)  # hashable, which mypy denies
+        types = _types_of(table)
         for one in fields(self):
             value = getattr(self, one.name)
             if types[one.name] is Length and _is_text_or_number(value):
