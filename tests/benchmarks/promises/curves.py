@@ -94,6 +94,7 @@ def off_points() -> float:
     smallest = 0.01 * diagonal(V)
     points = [f"{64 * smallest:.17g}:1"]
     points += [f"{times * smallest:.17g}:{SLIDERS.get(f'gain_{times}x', 1)}" for times in TIMES]
+    meshlab_spectral.load()
     meshes = pymeshlab.MeshSet()
     meshes.add_mesh(pymeshlab.Mesh(V, F))
     meshes.apply_coord_spectral_equalizer(
