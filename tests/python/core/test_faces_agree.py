@@ -1,13 +1,17 @@
-"""Every filter gives the same bits through pymeshlab and through the package's own module."""
+"""Every filter gives the same bits through pymeshlab, the package's own module, and the command."""
 
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+import plyfile
 import pymeshlab
 import pytest
+from commands import command
+from fuzz.meshes import shape_of
 from helpers import mesh_set_of
 from meshlab_spectral import _core
 from numpy.typing import NDArray
@@ -36,6 +40,20 @@ CALLS = [
     Call("compute_scalar_manifold_harmonic_per_vertex", {"basis_size": 20, "mode": 3}),
     Call("get_geometry_spectrum", {"basis_size": 10}),
 ]
+# Shape and changes as in tests/python/fuzz/meshes.py; the bunny is one of pymeshlab's.
+SHAPES: dict[str, Any] = {
+    "bunny": None,
+    "closed": ("torus", 24, 16, 0.4),
+    "open": ("grid", 20, 22, 0.3),
+    "fins": ("torus", 22, 14, 0.3, ("fins", 3, 1.0), ("fins", 201, 1.0)),
+    "hole": ("torus", 24, 14, 0.3, ("hole", 40, 1.0), ("hole", 41, 1.0)),
+    "two components": ("torus", 26, 14, 0.4, ("second component", 0, 1.0)),
+    "duplicate faces": ("grid", 18, 18, 0.1, ("duplicate face", 5, 1.0), ("flipped face", 9, 1.0)),
+    "unused vertex": ("torus", 20, 20, 0.5, ("isolated vertex", 0, 1.0)),
+    "needles": ("torus", 20, 18, 0.4, ("short edge", 33, 0.5), ("flat triangle", 77, 1.0)),
+    "soup": ("soup", 200, 390, 7),
+    "high valence": ("wheel", 250, True, 0.5),
+}
 Result = dict[str, Any]
 
 
@@ -53,9 +71,7 @@ class Inputs(NamedTuple):
     selected: NDArray[np.bool_]
 
 
-@pytest.fixture(scope="module")
-def inputs(decimated: Any) -> Inputs:
-    V, F = decimated("bunny.obj")
+def inputs_of(V: NDArray[np.float64], F: NDArray[np.int32]) -> Inputs:
     rng = np.random.default_rng(1)
     V = V + 1e-3 * rng.standard_normal(V.shape)
     return Inputs(
@@ -65,6 +81,22 @@ def inputs(decimated: Any) -> Inputs:
         rng.integers(0, 256, (len(V), 3), dtype=np.uint8),
         V[:, 0] > V[:, 0].mean(),
     )
+
+
+@pytest.fixture(scope="module")
+def inputs(decimated: Any) -> Inputs:
+    return inputs_of(*decimated("bunny.obj"))
+
+
+@pytest.fixture(scope="module", params=SHAPES)
+def every_inputs(request: pytest.FixtureRequest, decimated: Any) -> Inputs:
+    if SHAPES[request.param] is None:
+        return inputs_of(*decimated("bunny.obj"))
+    shape = [each for each in SHAPES[request.param] if not isinstance(each, tuple)]
+    changes = [each for each in SHAPES[request.param] if isinstance(each, tuple)]
+    description = {"shape": shape, "changes": changes, "exponent": 0, "offset": 0, "spoiled": ""}
+    made = shape_of(description)
+    return inputs_of(made.V, made.triangles())
 
 
 def made_for_pymeshlab(inputs: Inputs) -> pymeshlab.MeshSet:
@@ -119,9 +151,48 @@ def test_every_filter_is_among_the_calls() -> None:
     assert {call.name for call in CALLS} == {one["python_name"] for one in _core.filters()}
 
 
+def refused_by_the_core(call: Call, inputs: Inputs) -> str:
+    try:
+        through_core(call, inputs)
+    except Exception as error:
+        return str(error)
+    return ""
+
+
 @pytest.mark.parametrize("call", CALLS)
-def test_pymeshlab_and_the_module_give_the_same_bits(call: Call, inputs: Inputs) -> None:
-    assert_same(through_core(call, inputs), through_pymeshlab(call, made_for_pymeshlab(inputs)))
+def test_pymeshlab_and_the_module_give_the_same_bits(call: Call, every_inputs: Inputs) -> None:
+    mesh_set = made_for_pymeshlab(every_inputs)
+    if refused_by_the_core(call, every_inputs):
+        with pytest.raises(pymeshlab.PyMeshLabException):
+            through_pymeshlab(call, mesh_set)
+    else:
+        assert_same(through_core(call, every_inputs), through_pymeshlab(call, mesh_set))
+
+
+@pytest.mark.parametrize(
+    ("name", "call"),
+    [("filter", CALLS[0]), ("filter", CALLS[3]), ("denoise", CALLS[5]), ("denoise", CALLS[6])],
+)
+def test_the_command_gives_the_same_bits(
+    name: str, call: Call, every_inputs: Inputs, tmp_path: Path
+) -> None:
+    V, F = every_inputs.V, every_inputs.F
+    columns = [("x", "f8"), ("y", "f8"), ("z", "f8")]
+    rows = np.array([tuple(v) for v in V], columns)
+    faces = np.array([(face,) for face in F], [("vertex_indices", "i4", (3,))])
+    elements = [plyfile.PlyElement.describe(r, n) for r, n in ((rows, "vertex"), (faces, "face"))]
+    source, target = tmp_path / "in.ply", tmp_path / "out.ply"
+    plyfile.PlyData(elements).write(source)
+    options = [f"--{key.replace('_', '-')}={value}" for key, value in call.options.items()]
+    options = ["--no-keep-creases" if "keep-creases" in each else each for each in options]
+    done = command(name, source, target, *options)
+    if refused_by_the_core(call, every_inputs):
+        assert done.returncode != 0
+        return
+    assert done.returncode == 0, done.stderr
+    read = plyfile.PlyData.read(target)["vertex"]
+    result = np.column_stack([read[axis] for axis in "xyz"])
+    np.testing.assert_array_equal(result, through_core(call, every_inputs)["vertices"])
 
 
 # MeshLab's own filters crash in threads, so that the meshes are made in one.
