@@ -2,8 +2,6 @@
 
 #include <common/parameters/rich_parameters.h>
 
-#include <QStringList>
-
 #include "core/contract/equalizer.h"
 #include "core/mesh/measures.h"
 #include "meshlab/mesh_conversion.h"
@@ -36,7 +34,7 @@ QString tooltipOf(const Parameter& parameter, const spectral::MeshLengths& mesh)
 
 /// @param isAnySelected  whether any face is.
 void add(const spectral::Filter& filter, const Parameter& one, const spectral::MeshLengths& mesh,
-         Scalarm diagonal, bool isAnySelected, RichParameterList& list) {
+         bool isAnySelected, RichParameterList& list) {
     const QString name = QString::fromStdString(one.name), help = tooltipOf(one, mesh);
     QString label = QString::fromStdString(one.label);
     const std::size_t slider = sliderOf(filter, one);
@@ -67,7 +65,8 @@ void add(const spectral::Filter& filter, const Parameter& one, const spectral::M
         }
         case Kind::Length: {
             const auto usual = static_cast<Scalarm>(spectral::automaticLength(one, mesh));
-            list.addParam(RichPercentage(name, usual, 0, diagonal, label, help, one.isAdvanced));
+            list.addParam(RichPercentage(name, usual, 0, static_cast<Scalarm>(mesh.diagonal), label,
+                                         help, one.isAdvanced));
             break;
         }
         case Kind::Choice: {
@@ -111,9 +110,21 @@ RichParameterList parametersOf(const spectral::Filter& filter, const MeshModel& 
     const MeshMatrices matrices = toMatrices(mesh.cm);
     const spectral::MeshLengths lengths = spectral::lengthsOf(matrices.V, matrices.F);
     RichParameterList list;
+    // Not MeshLab's own bounding box, which stays that of a preview that was switched off.
     for (const Parameter& one : filter.parameters)
-        add(filter, one, lengths, mesh.cm.bbox.Diag(), hasSelectedFaces(mesh.cm), list);
+        add(filter, one, lengths, hasSelectedFaces(mesh.cm), list);
     return list;
+}
+
+NumberLabels numberLabels(const spectral::Filter& filter) {
+    NumberLabels labels;
+    for (const Parameter& one : filter.parameters) {
+        const QString label = QString::fromStdString(one.label);
+        if (one.kind == Kind::Integer) labels.integers.push_back(label);
+        if (one.kind == Kind::Integer || (one.kind == Kind::Number && !isSlider(filter, one)))
+            labels.all.push_back(label);
+    }
+    return labels;
 }
 
 spectral::Values valuesOf(const spectral::Filter& filter, const RichParameterList& parameters) {

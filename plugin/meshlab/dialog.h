@@ -3,6 +3,8 @@
 #include <common/ml_document/mesh_model.h>
 #include <common/parameters/rich_parameter_list.h>
 
+#include <QStringList>
+
 #include "core/contract/filter.h"
 
 // Filters as MeshLab's dialogs show them, and what was chosen in one.
@@ -18,3 +20,9 @@ RichParameterList parametersOf(const spectral::Filter& filter, const MeshModel& 
 
 /// The values chosen in a dialog or script.
 spectral::Values valuesOf(const spectral::Filter& filter, const RichParameterList& parameters);
+
+/// Labels of the fields for numbers, without those that are sliders or percentages.
+struct NumberLabels {
+    QStringList all, integers;
+};
+NumberLabels numberLabels(const spectral::Filter& filter);

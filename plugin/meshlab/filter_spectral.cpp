@@ -2,6 +2,7 @@
 
 #include <common/ml_shared_data_context/ml_plugin_gl_context.h>
 
+#include <QDockWidget>
 #include <chrono>
 #include <functional>
 #include <limits>
@@ -18,6 +19,7 @@
 #include "meshlab/host_workarounds/last_messages.h"
 #include "meshlab/host_workarounds/late_close.h"
 #include "meshlab/host_workarounds/late_preview.h"
+#include "meshlab/host_workarounds/number_fields.h"
 #include "meshlab/host_workarounds/signals.h"
 
 namespace {
@@ -32,6 +34,14 @@ spectral::Progress meshlabProgress(vcg::CallBackPos* callback, std::function<boo
                !isInterruptedBySignal();
     };
     return spectral::Progress(report, std::move(isOvertaken));
+}
+
+/// @throws MLException  when a field of the open dialog holds no number; MeshLab would take it for
+/// 0.
+void checkFields(const spectral::Filter& filter) {
+    const NumberLabels labels = numberLabels(filter);
+    const QString field = fieldWithoutNumber(labels.all, labels.integers);
+    if (!field.isEmpty()) throw MLException(field + " is not a number that can be used here");
 }
 
 /// The number in an environment variable; 0 if unset.
@@ -87,14 +97,30 @@ std::unique_lock<std::recursive_timed_mutex> FilterSpectralPlugin::waitForOtherT
     return lock;
 }
 
+// Kept until the dialog is hidden: MeshLab does not delete it before the next one opens.
+KeptRun* FilterSpectralPlugin::runKeptFor(QWidget* dialog) {
+    auto* dock = qobject_cast<QDockWidget*>(dialog);
+    if (dock == nullptr) return nullptr;
+    const auto release = [this](bool isVisible) {
+        if (!isVisible) kept_ = {};
+    };
+    if (kept_.filter == nullptr) connect(dock, &QDockWidget::visibilityChanged, this, release);
+    return &kept_;
+}
+
 const MeshFilter& FilterSpectralPlugin::filterOf(const QAction* action) const {
     return filters_.at(static_cast<std::size_t>(ID(action)));
 }
 
-// Logs line by line, as MeshLab's log joins the lines of an entry.
-void FilterSpectralPlugin::logLines(const std::string& text) const {
-    std::istringstream lines(text);
-    for (std::string line; std::getline(lines, line);) log(line);
+// What happened, then what to look at, then numbers; line by line, as MeshLab's log joins the lines
+// of an entry.
+void FilterSpectralPlugin::logOutput(const spectral::FilterOutput& output) const {
+    std::istringstream lines(output.text);
+    std::string line;
+    if (std::getline(lines, line)) log(line);
+    for (const std::string& warning : output.warnings)
+        if (output.text.find(warning) == std::string::npos) log("  WARNING: " + warning);
+    while (std::getline(lines, line)) log(line);
 }
 
 QString FilterSpectralPlugin::pluginName() const { return "FilterSpectral"; }
@@ -143,13 +169,17 @@ FilterPlugin::FilterArity FilterSpectralPlugin::filterArity(const QAction*) cons
 
 RichParameterList FilterSpectralPlugin::initParameterList(const QAction* action,
                                                           const MeshModel& mesh) {
-    return parametersOf(filterOf(action).contract, mesh);
+    const spectral::Filter& filter = filterOf(action).contract;
+    checkNumberFields(numberLabels(filter).all);
+    return parametersOf(filter, mesh);
 }
 
 std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
     const QAction* action, const RichParameterList& parameters, MeshDocument& document,
-    unsigned int&, vcg::CallBackPos* callback) {
+    unsigned int& postConditionMask, vcg::CallBackPos* callback) {
     keepLastMessages({}, {});
+    const MeshFilter& filter = filterOf(action);
+    checkFields(filter.contract);
     const auto lock = waitForOtherThreads();
     releaseGLContext();
     // MeshLab handles user input in its callback, during this run: the user may switch the preview
@@ -159,7 +189,8 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
     const ApplyLock applyLock;
     const LateClose lateClose;
     // Only a dialog restarts a run; runs in other threads wait.
-    const bool hasDialog = openFilterDialog() != nullptr;
+    QWidget* const dialog = openFilterDialog();
+    const bool hasDialog = dialog != nullptr;
     std::atomic<int>& latest = runs_.at(static_cast<std::size_t>(ID(action)));
     const auto isOvertaken = [&latest, hasDialog, run = hasDialog ? ++latest : latest.load()] {
         return hasDialog && run != latest;
@@ -173,21 +204,22 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
         const spectral::Progress progress = meshlabProgress(callback, isWanted, isOvertaken);
         spectral::setThreadCount(environmentNumber<int>("MESHLAB_SPECTRAL_THREADS", "threads"));
         spectral::setMemoryLimit(environmentNumber<double>("MESHLAB_SPECTRAL_MEMORY", "bytes"));
-        const MeshFilter& filter = filterOf(action);
         const spectral::FilterOutput output =
-            applyTo(*document.mm(), filter, valuesOf(filter.contract, parameters), progress);
-        logLines(output.text);
-        for (const std::string& warning : output.warnings) logLines("  WARNING: " + warning);
+            applyTo(*document.mm(), filter, valuesOf(filter.contract, parameters),
+                    runKeptFor(dialog), progress);
+        postConditionMask = static_cast<unsigned>(changedBy(filter, output));
+        logOutput(output);
         keepLastMessages(output.summary, output.warnings);
         return dictionaryOf(output.report);
     } catch (const spectral::Cancelled& cancelled) {
-        // No error message: the result of the newer run stays, or the project is closed.
+        // No message box: the result of the newer run stays, or the user knows why.
         if (isOvertaken())
             log("stopped: the filter was restarted meanwhile");
-        else if (lateClose.isRequested())
-            log("stopped: its window is being closed");
+        else if (latePreview.isOn() || lateClose.isMeshLeaving())
+            log("stopped: the mesh is as it was");
         else
-            throw MLException(cancelled.what());
+            throw MLException(lateClose.isRequested() ? "stopped: the mesh is as it was"
+                                                      : cancelled.what());
         return {};
     } catch (const spectral::Error& error) {
         keepLastError(error);

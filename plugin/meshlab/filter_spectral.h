@@ -40,12 +40,14 @@ class FilterSpectralPlugin : public QObject, public FilterPlugin {
                                                 vcg::CallBackPos* callback) override;
 
   private:
+    KeptRun* runKeptFor(QWidget* dialog);
     const MeshFilter& filterOf(const QAction* action) const;
     std::unique_lock<std::recursive_timed_mutex> waitForOtherThreads();
     void releaseGLContext();
-    void logLines(const std::string& text) const;
+    void logOutput(const spectral::FilterOutput& output) const;
 
     const std::vector<MeshFilter> filters_;  // indexed by ActionIDType
     std::vector<std::atomic<int>> runs_;     // number of runs of each filter so far
+    KeptRun kept_;                           // while the dialog of its filter is open
     std::recursive_timed_mutex running_;     // recursive: MeshLab's dialog restarts a run within it
 };

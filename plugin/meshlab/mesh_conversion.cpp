@@ -159,41 +159,46 @@ void setQuality(const std::vector<std::size_t>& vertexIndex, const Eigen::Vector
             static_cast<Scalarm>(values[static_cast<Eigen::Index>(i)]);
 }
 
-void setDetails(const std::vector<std::size_t>& vertexIndex, const std::string& name,
-                const spectral::Vertices& details, MeshModel& mesh) {
+Eigen::VectorXd alongNormals(const MeshMatrices& matrices, const spectral::Vertices& vectors,
+                             const CMeshO& mesh) {
+    Eigen::VectorXd outward = Eigen::VectorXd::Zero(vectors.rows());
+    for (Eigen::Index i = 0; i < vectors.rows(); ++i) {
+        const Point3m& n = mesh.vert[matrices.vertexIndex[i]].cN();
+        const Eigen::RowVector3d normal(n[0], n[1], n[2]);
+        // MeshLab's normals need not have unit length, and are zero where there are no faces.
+        if (normal.norm() > 0.0) outward[i] = vectors.row(i).dot(normal.normalized());
+    }
+    return outward;
+}
+
+void setVectors(const std::vector<std::size_t>& vertexIndex, const std::string& name,
+                const spectral::Vertices& vectors, MeshModel& mesh) {
     using Attributes = vcg::tri::Allocator<CMeshO>;
     Attributes::DeletePerVertexAttribute(mesh.cm, name);
     auto attribute = Attributes::AddPerVertexAttribute<Point3m>(mesh.cm, name);
     for (std::size_t i = 0; i < mesh.cm.vert.size(); ++i) attribute[i] = Point3m(0, 0, 0);
-    Eigen::VectorXd outward = Eigen::VectorXd::Zero(details.rows());
-    for (Eigen::Index i = 0; i < details.rows(); ++i) {
-        const Eigen::RowVector3d detail = details.row(i);
+    for (Eigen::Index i = 0; i < vectors.rows(); ++i)
         attribute[vertexIndex[i]] =
-            Point3m(static_cast<Scalarm>(detail[0]), static_cast<Scalarm>(detail[1]),
-                    static_cast<Scalarm>(detail[2]));
-        const Point3m& n = mesh.cm.vert[vertexIndex[i]].cN();
-        const Eigen::RowVector3d normal(n[0], n[1], n[2]);
-        // MeshLab's normals need not have unit length, and are zero where there are no faces.
-        if (normal.norm() > 0.0) outward[i] = detail.dot(normal.normalized());
-    }
-    setQuality(vertexIndex, outward, mesh);
+            Point3m(static_cast<Scalarm>(vectors(i, 0)), static_cast<Scalarm>(vectors(i, 1)),
+                    static_cast<Scalarm>(vectors(i, 2)));
+}
+
+void setAttribute(const std::vector<std::size_t>& vertexIndex, const std::string& name,
+                  const Eigen::VectorXd& values, MeshModel& mesh) {
+    using Attributes = vcg::tri::Allocator<CMeshO>;
+    Attributes::DeletePerVertexAttribute(mesh.cm, name);  // names are unique across types
+    auto attribute = Attributes::AddPerVertexAttribute<Scalarm>(mesh.cm, name);
+    for (std::size_t i = 0; i < mesh.cm.vert.size(); ++i) attribute[i] = 0;
+    for (std::size_t i = 0; i < vertexIndex.size(); ++i)
+        attribute[vertexIndex[i]] = static_cast<Scalarm>(values[static_cast<Eigen::Index>(i)]);
 }
 
 void setAttributes(const std::vector<std::size_t>& vertexIndex, const std::string& name,
                    const Eigen::MatrixXd& values, MeshModel& mesh) {
-    using Attributes = vcg::tri::Allocator<CMeshO>;
-    const auto remove = [&](Eigen::Index j) {
-        return Attributes::DeletePerVertexAttribute(mesh.cm, name + std::to_string(j));
-    };
     Eigen::Index older = values.cols();
-    while (remove(older)) ++older;  // left by a larger basis
-    for (Eigen::Index j = 0; j < values.cols(); ++j) {
-        remove(j);  // names of VCG attributes must be unique across types
-        auto attribute =
-            Attributes::AddPerVertexAttribute<Scalarm>(mesh.cm, name + std::to_string(j));
-        for (std::size_t i = 0; i < mesh.cm.vert.size(); ++i) attribute[i] = 0;
-        for (std::size_t i = 0; i < vertexIndex.size(); ++i)
-            attribute[vertexIndex[i]] =
-                static_cast<Scalarm>(values(static_cast<Eigen::Index>(i), j));
-    }
+    while (vcg::tri::Allocator<CMeshO>::DeletePerVertexAttribute(mesh.cm,
+                                                                 name + std::to_string(older)))
+        ++older;  // left by a larger basis
+    for (Eigen::Index j = 0; j < values.cols(); ++j)
+        setAttribute(vertexIndex, name + std::to_string(j), values.col(j), mesh);
 }

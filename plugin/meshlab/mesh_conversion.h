@@ -46,10 +46,17 @@ void setPositions(const MeshMatrices& input, const spectral::Vertices& V, MeshMo
 void setQuality(const std::vector<std::size_t>& vertexIndex, const Eigen::VectorXd& values,
                 MeshModel& mesh);
 
-/// Stores the rows of `details` as the vector vertex attribute `name`, zero at deleted vertices,
-/// and their components along the vertex normals as the vertex quality.
-void setDetails(const std::vector<std::size_t>& vertexIndex, const std::string& name,
-                const spectral::Vertices& details, MeshModel& mesh);
+/// The components of vectors along the vertex normals.
+Eigen::VectorXd alongNormals(const MeshMatrices& matrices, const spectral::Vertices& vectors,
+                             const CMeshO& mesh);
+
+/// Stores the rows of `vectors` as the vector vertex attribute `name`, zero at deleted vertices.
+void setVectors(const std::vector<std::size_t>& vertexIndex, const std::string& name,
+                const spectral::Vertices& vectors, MeshModel& mesh);
+
+/// Stores `values` as the scalar vertex attribute `name`, 0 at deleted vertices.
+void setAttribute(const std::vector<std::size_t>& vertexIndex, const std::string& name,
+                  const Eigen::VectorXd& values, MeshModel& mesh);
 
 /// Stores the columns of `values` as scalar vertex attributes `name`0, `name`1, ..., replacing any
 /// with such names; 0 at deleted vertices.

@@ -1,13 +1,13 @@
 #include "meshlab/mesh_filter.h"
 
 #include <common/mlexception.h>
-#include <vcg/complex/algorithms/update/color.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
+#include <sstream>
 
 #include "core/mesh/measures.h"
+#include "meshlab/vertex_colors.h"
 
 namespace {
 
@@ -23,16 +23,68 @@ const char* const kDetails = "spectral_details";
 /// Prefix of the names of the vertex attributes that hold harmonics, followed by the mode.
 const char* const kHarmonic = "harmonic_";
 
+/// Vertex attributes that hold quality and colours from before a filter wrote its own.
+const char* const kQualityBefore = "quality_before";
+const char* const kColorBefore = "color_before";
+
+/// What was there before the first such filter is kept, and the text says so: runs after that
+/// replace what they have written themselves.
+template <class Keep>
+void keepBefore(const char* what, const std::string& name, FilterOutput& output, MeshModel& mesh,
+                Keep keep) {
+    if (vcg::tri::HasPerVertexAttribute(mesh.cm, name)) return;
+    keep();
+    output.text += "\n  the vertex " + std::string(what) + " from before: attribute " + name;
+}
+
+void replaceQuality(const MeshMatrices& input, const Eigen::VectorXd& values, FilterOutput& output,
+                    MeshModel& mesh) {
+    if (mesh.hasPerVertexQuality())
+        keepBefore("quality", kQualityBefore, output, mesh, [&] {
+            setAttribute(input.vertexIndex, kQualityBefore, vertexQuality(mesh.cm, input), mesh);
+        });
+    setQuality(input.vertexIndex, values, mesh);
+}
+
+void keepColors(const MeshMatrices& input, FilterOutput& output, MeshModel& mesh) {
+    if (mesh.hasPerVertexColor())
+        keepBefore("colours", kColorBefore, output, mesh, [&] {
+            setVectors(input.vertexIndex, kColorBefore, vertexColors(mesh.cm, input), mesh);
+        });
+}
+
+/// The size that all but a hundredth of the values do not exceed, or if that is 0 the largest.
+double usualExtent(const Eigen::VectorXd& values) {
+    std::vector<double> sizes(values.size());
+    Eigen::VectorXd::Map(sizes.data(), values.size()) = values.cwiseAbs();
+    const auto at = sizes.begin() + static_cast<std::ptrdiff_t>(0.99 * (sizes.size() - 1));
+    std::nth_element(sizes.begin(), at, sizes.end());
+    return *at > 0.0 ? *at : values.cwiseAbs().maxCoeff();
+}
+
+/// Colours for values with a sign, and a line on what they mean.
+void showSigned(const MeshMatrices& input, const Eigen::VectorXd& values, double extent,
+                FilterOutput& output, MeshModel& mesh) {
+    keepColors(input, output, mesh);
+    setSignedColors(input.vertexIndex, values, extent > 0.0 ? extent : 1.0, mesh);
+    std::ostringstream text;
+    text.precision(3);
+    text << "\n  colours: blue " << -extent << ", white 0, red " << extent
+         << "; the values are the vertex quality, from " << values.minCoeff() << " to "
+         << values.maxCoeff();
+    output.text += text.str();
+}
+
 void writePositions(const MeshMatrices& input, const Values&, FilterOutput& output,
                     MeshModel& mesh) {
     if (output.V.rows() > 0) setPositions(input, output.V, mesh);
     if (output.details.rows() == 0) return;
-    setDetails(input.vertexIndex, kDetails, output.details, mesh);
+    const Eigen::VectorXd outward = alongNormals(input, output.details, mesh.cm);
+    setVectors(input.vertexIndex, kDetails, output.details, mesh);
     output.text +=
-        std::string(
-            "\n  no vertex has moved: the details are stored as the vertex quality and the "
-            "attribute ") +
-        kDetails;
+        std::string("\n  no vertex has moved: the details are the attribute ") + kDetails;
+    replaceQuality(input, outward, output, mesh);
+    showSigned(input, outward, usualExtent(outward), output, mesh);
 }
 
 void writeQuality(const MeshMatrices& input, const Values&, FilterOutput& output, MeshModel& mesh) {
@@ -47,35 +99,29 @@ void writeColors(const MeshMatrices& input, const Values&, FilterOutput& output,
                 static_cast<unsigned char>(output.values(i, c));
 }
 
-/// The length of the artefacts as quality, in colours from 0 to the largest.
+/// The length of the artefacts as quality, and in colours whose scale is that of the feature size:
+/// meshes can be compared, and a good one stays white.
 void writeArtefacts(const MeshMatrices& input, const Values&, FilterOutput& output,
                     MeshModel& mesh) {
-    setQuality(input.vertexIndex, output.values, mesh);
-    mesh.updateDataMask(MeshModel::MM_VERTCOLOR);
-    vcg::tri::UpdateColor<CMeshO>::PerVertexQualityRamp(
-        mesh.cm, 0, static_cast<Scalarm>(output.values.maxCoeff()));
+    constexpr double kFullColor = 0.1;
+    const double extent = kFullColor * std::get<double>(output.report.at("feature_size"));
+    replaceQuality(input, output.values, output, mesh);
+    keepColors(input, output, mesh);
+    setSizeColors(input.vertexIndex, output.values, extent, mesh);
+    std::ostringstream text;
+    text.precision(3);
+    text << "\n  colours: white 0, dark red " << extent
+         << " and more, a tenth of the feature size; the values are the vertex quality";
+    output.text += text.str();
 }
 
-/// @param t  in [-1, 1].
-vcg::Color4b blueWhiteRed(double t) {
-    const auto faded =
-        static_cast<unsigned char>(std::lround(255.0 * (1.0 - std::min(std::abs(t), 1.0))));
-    return t < 0.0 ? vcg::Color4b(faded, faded, 255, 255) : vcg::Color4b(255, faded, faded, 255);
-}
-
-/// One harmonic as quality, in colours: blue below 0, white at 0, red above; full colour at the
-/// extreme.
+/// One harmonic as quality, and in colours.
 void writeHarmonics(const MeshMatrices& input, const Values& given, FilterOutput& output,
                     MeshModel& mesh) {
     if (std::get<bool>(given.at("store_basis")))
         setAttributes(input.vertexIndex, kHarmonic, output.basis, mesh);
-    setQuality(input.vertexIndex, output.values, mesh);
-    mesh.updateDataMask(MeshModel::MM_VERTCOLOR);
-    const double extreme = output.values.cwiseAbs().maxCoeff();
-    const double scale = extreme > 0.0 ? 1.0 / extreme : 0.0;
-    for (std::size_t i = 0; i < input.vertexIndex.size(); ++i)
-        mesh.cm.vert[input.vertexIndex[i]].C() =
-            blueWhiteRed(scale * output.values(static_cast<Eigen::Index>(i), 0));
+    replaceQuality(input, output.values, output, mesh);
+    showSigned(input, output.values, output.values.cwiseAbs().maxCoeff(), output, mesh);
 }
 
 void writeNothing(const MeshMatrices&, const Values&, FilterOutput&, MeshModel&) {}
@@ -98,6 +144,18 @@ Eigen::MatrixXd valuesOf(const MeshModel& mesh, const MeshMatrices& input, MeshV
     return {};
 }
 
+Values withoutChoice(const spectral::Filter& filter, Values given) {
+    given.erase(filter.choice);
+    return given;
+}
+
+bool isSameRun(const KeptRun& kept, const spectral::Filter& filter, const MeshMatrices& input,
+               const Values& given) {
+    return kept.filter == &filter && kept.V.rows() == input.V.rows() &&
+           kept.F.rows() == input.F.rows() && kept.V == input.V && kept.F == input.F &&
+           kept.given == withoutChoice(filter, given);
+}
+
 bool isStorable(const Eigen::MatrixXd& values) {
     return values.size() == 0 || values.cwiseAbs().maxCoeff<Eigen::PropagateNumbers>() <=
                                      std::numeric_limits<Scalarm>::max();
@@ -112,7 +170,7 @@ std::vector<MeshFilter> allMeshFilters() {
                measure = FilterPlugin::Measure;
     const std::vector<spectral::Filter>& all = spectral::allFilters();
     return {
-        {all[0], smoothing, kMovesVertices | kQuality, MeshValues::None, writePositions},
+        {all[0], smoothing, kMovesVertices | kQuality | kColor, MeshValues::None, writePositions},
         {all[1], smoothing, kMovesVertices, MeshValues::None, writePositions},
         {all[2], smoothing, kMovesVertices, MeshValues::None, writePositions},
         {all[3], Class(smoothing | quality), kQuality, MeshValues::Quality, writeQuality},
@@ -124,15 +182,29 @@ std::vector<MeshFilter> allMeshFilters() {
     };
 }
 
-FilterOutput applyTo(MeshModel& mesh, const MeshFilter& filter, const Values& given,
+int changedBy(const MeshFilter& filter, const FilterOutput& output) {
+    return output.V.rows() > 0 ? kMovesVertices : filter.changes & ~kMovesVertices;
+}
+
+FilterOutput applyTo(MeshModel& mesh, const MeshFilter& filter, const Values& given, KeptRun* kept,
                      const spectral::Progress& progress) {
     progress.report(0.0, "reading the mesh");
     checkExtent(mesh.cm);
     const MeshMatrices input = toMatrices(mesh.cm);
-    FilterOutput output = spectral::apply(
-        filter.contract,
-        {input.V, input.F, selectedVertices(mesh.cm, input), valuesOf(mesh, input, filter.values)},
-        given, progress);
+    if (filter.contract.choose == nullptr) kept = nullptr;
+    FilterOutput output;
+    if (kept != nullptr && isSameRun(*kept, filter.contract, input, given)) {
+        output = kept->output;
+        filter.contract.choose(output, given);
+    } else {
+        output = spectral::apply(filter.contract,
+                                 {input.V, input.F, selectedVertices(mesh.cm, input),
+                                  valuesOf(mesh, input, filter.values)},
+                                 given, progress);
+        if (kept != nullptr)
+            *kept = {&filter.contract, input.V, input.F, withoutChoice(filter.contract, given),
+                     output};
+    }
     if (!isStorable(output.values))
         throw MLException(
             "the filtered quality exceeds the largest number: choose smaller gains, or apply 'Per "

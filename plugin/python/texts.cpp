@@ -108,8 +108,8 @@ void writePatched(const nb::bytes& text, std::size_t begin,
     replaceNumbers(view, begin, changes, [&write](std::string_view piece) {
         const nb::gil_scoped_acquire gil;
         const auto size = static_cast<Py_ssize_t>(piece.size());
-        write(
-            nb::steal(PyMemoryView_FromMemory(const_cast<char*>(piece.data()), size, PyBUF_READ)));
+        constexpr int kReadable = 0x100;  // PyBUF_READ, not declared in 3.10's stable ABI
+        write(nb::steal(PyMemoryView_FromMemory(const_cast<char*>(piece.data()), size, kReadable)));
     });
 }
 

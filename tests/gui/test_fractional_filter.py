@@ -6,6 +6,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
+import plyfile
 import pymeshlab
 import pytest
 from desktop import Desktop
@@ -31,13 +32,13 @@ from waiting import wait_for
 OTHER_VALUES = {
     "filter_type": "band-pass",
     "feature_size": "8",
+    "power": "0.5",
     "pass_gain": "0.5",
     "stop_gain": "0.25",
     "transfer_function": "10%:1, 5%:0.5",
     "band_width": "2",
     "response": "butterworth",
     "order": "3",
-    "power": "0.5",
     "selected": "false",
     "steps": "2",
     "tolerance": "0.25",
@@ -63,8 +64,8 @@ def test_the_dialog_shows_every_parameter_with_its_default(
     defaults = FilterOptions().as_dict()
     assert len(rows) == len(PARAMETERS)
     assert len({row.label for row in rows}) == len(PARAMETERS)
-    # The parameters of a custom filter are not among the advanced ones.
-    assert dict(zip(PARAMETERS, rows, strict=True))["transfer_function"].showing
+    shown = [name for name, row in zip(PARAMETERS, rows, strict=True) if row.showing]
+    assert shown == ["filter_type", "feature_size", "power", "pass_gain", "stop_gain"]
     dialog.show_advanced()
     for name, row in zip(PARAMETERS, rows, strict=True):
         assert row.showing, name
@@ -253,3 +254,54 @@ def test_a_refused_parameter_is_explained_and_the_mesh_is_unchanged(
     assert MENU[-1] in message
     dialog.close()
     np.testing.assert_array_equal(saved_vertices(meshlab), vertices(load(bunny)))
+
+
+@pytest.mark.parametrize(
+    ("name", "typed", "read"), [("stop_gain", "0,25", 0.25), ("feature_size", "7,5", 7.5)]
+)
+def test_a_decimal_comma_is_a_point(
+    dialog: FilterDialog, desktop: Desktop, name: str, typed: str, read: float
+) -> None:
+    editor = dialog.rows()[PARAMETERS.index(name)].editors[-1]
+    wait_for(f"{name} to have the keys", lambda: dialog.focus(editor))
+    desktop.press_keys("ctrl+a")
+    desktop.type(typed)
+    desktop.press_keys("Tab")
+    wait_for("the number", lambda: float(editor.text) == read)
+
+
+def test_a_field_without_a_number_is_named_and_the_mesh_is_unchanged(
+    dialog: FilterDialog, meshlab: MeshLab, bunny: Path
+) -> None:
+    dialog.show_advanced()
+    dialog.set_value(dialog.rows()[PARAMETERS.index("steps")], "2.5")
+    assert '"2.5" is not a number that can be used here' in dialog.fail()
+    dialog.close()
+    np.testing.assert_array_equal(saved_vertices(meshlab), vertices(load(bunny)))
+
+
+def test_percentages_are_those_of_the_mesh_after_a_preview_that_was_switched_off(
+    dialog: FilterDialog, meshlab: MeshLab, bunny: Path
+) -> None:
+    size = PARAMETERS.index("feature_size")
+    dialog.set_value(dialog.rows()[size], "60")
+    dialog.preview(True)
+    dialog.preview(False)
+    dialog.close()
+    length, percent = meshlab.open_filter(*MENU).rows()[size].editors
+    share = float(length.text) / diagonal(vertices(load(bunny)))
+    assert float(percent.text) == pytest.approx(100 * share, rel=1e-3)
+
+
+def test_details_are_shown_in_colours_whose_range_is_logged(
+    dialog: FilterDialog, meshlab: MeshLab, bunny: Path
+) -> None:
+    dialog.show_advanced()
+    dialog.set_value(dialog.rows()[PARAMETERS.index("result")], "details")
+    log = dialog.apply()
+    dialog.close()
+    assert "colours: blue -" in log
+    saved = meshlab.home / "details.ply"
+    meshlab.save_mesh(saved)
+    vertex = plyfile.PlyData.read(saved)["vertex"]
+    assert len(np.unique([vertex["red"], vertex["blue"]], axis=1).T) > 100

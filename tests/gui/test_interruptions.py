@@ -127,15 +127,41 @@ def test_apply_clicked_from_a_field_with_a_new_value_waits_for_the_preview_of_th
     assert_filtered_once(meshlab, bunny)
 
 
-def test_a_dialog_closed_during_a_preview_leaves_the_same_mesh_as_one_closed_later(
+def assert_unchanged(meshlab: MeshLab, bunny: Path) -> None:
+    np.testing.assert_array_equal(saved_vertices(meshlab), vertices(load(bunny)))
+
+
+def test_a_dialog_closed_during_a_preview_stops_it(
     dialog: FilterDialog, meshlab: MeshLab, bunny: Path, begin: Begin
 ) -> None:
     close = part(dialog, "push button", "Close")
     before = begin(part(dialog, "check box", "Preview"))
     close.press()
     dialog.wait_for_result(before)
-    assert not dialog.window.showing
-    assert_same_in_floats(saved_vertices(meshlab), filtered(bunny))
+    wait_for("the dialog to close", lambda: not dialog.window.showing)
+    assert "stopped: the mesh is as it was" in meshlab.log()[before:]
+    assert_unchanged(meshlab, bunny)
+
+
+def test_a_dialog_closed_after_apply_stops_the_run(
+    dialog: FilterDialog, meshlab: MeshLab, bunny: Path, begin: Begin
+) -> None:
+    close = part(dialog, "push button", "Close")
+    begin(part(dialog, "push button", "Apply"))
+    close.press()
+    assert "stopped: the mesh is as it was" in meshlab.message("Filter Failure")
+    wait_for("the dialog to close", lambda: not dialog.window.showing)
+    assert_unchanged(meshlab, bunny)
+
+
+def test_escape_stops_a_run(
+    dialog: FilterDialog, meshlab: MeshLab, desktop: Desktop, bunny: Path, begin: Begin
+) -> None:
+    begin(part(dialog, "push button", "Apply"))
+    desktop.press_keys("Escape")
+    assert "stopped: the mesh is as it was" in meshlab.message("Filter Failure")
+    assert dialog.window.showing
+    assert_unchanged(meshlab, bunny)
 
 
 def test_a_project_closed_while_the_filter_is_at_work_is_closed_after_it_has_stopped(
@@ -148,7 +174,7 @@ def test_a_project_closed_while_the_filter_is_at_work_is_closed_after_it_has_sto
     close.press()
     meshlab.answer("MeshLab", "Yes")  # to closing without saving
     wait_for("the project to be closed", lambda: PROJECT not in meshlab.main_window().name)
-    assert "stopped: its window is being closed" in meshlab.log()[before:]
+    assert "stopped: the mesh is as it was" in meshlab.log()[before:]
 
 
 def test_meshlab_closed_while_the_filter_is_at_work_ends_after_it_has_stopped(
@@ -159,4 +185,4 @@ def test_meshlab_closed_while_the_filter_is_at_work_ends_after_it_has_stopped(
     before = begin(part(dialog, "check box", "Preview"))
     leave.press()
     assert meshlab.wait_for_end() == 0
-    assert "stopped: its window is being closed" in meshlab.log()[before:]
+    assert "stopped: the mesh is as it was" in meshlab.log()[before:]

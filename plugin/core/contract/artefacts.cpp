@@ -68,16 +68,17 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
 }  // namespace
 
 Filter artefactsContract() {
-    return {"Spectral Artefacts",
-            "compute_scalar_spectral_artefacts_per_vertex",
-            "Measures the *artefacts* that a filter has left in a shape: spikes, creases and "
-            "ripples much finer than the details it should keep. Apply it to the filtered mesh, "
-            "with the filter's feature size. Their length becomes the vertex quality; no vertex "
-            "moves.",
-            "",
-            parametersOf(artefactFields()),
-            describedBy(artefactEntries()),
-            run};
+    return {
+        "Spectral Artefacts",
+        "compute_scalar_spectral_artefacts_per_vertex",
+        "Measures the *artefacts* (artifacts) that a filter has left in a shape: spikes, creases "
+        "and ripples much finer than the details it should keep. Apply it to the filtered mesh, "
+        "with the filter's feature size. Their length becomes the vertex quality; no vertex "
+        "moves.",
+        "",
+        parametersOf(artefactFields()),
+        describedBy(artefactEntries()),
+        run};
 }
 
 }  // namespace spectral

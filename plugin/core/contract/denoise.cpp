@@ -210,8 +210,9 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
 Filter denoiseContract() {
     return {"Spectral Denoise",
             "apply_coord_spectral_denoise",
-            "Detects which noise a mesh has (scanner noise, spikes or voxel steps) and removes it, "
-            "with *nothing to choose*. Creases become sharp; a mesh without noise keeps every bit. "
+            "Detects which noise a mesh has (scanner noise, spikes or voxel steps) and smooths it "
+            "away, with *no parameters to set*. Creases become sharp; a mesh without noise keeps "
+            "every bit. "
             "The log says what was found.",
             "",
             parametersOf(denoiseFields()),

@@ -53,6 +53,11 @@ struct Filter {
     /// @param mesh  measured already: what sizes in `given` refer to.
     FilterOutput (*run)(const FilterInput& input, const MeshLengths& mesh, const Values& given,
                         const Progress& progress) = nullptr;
+
+    /// A parameter that only chooses from what a run has computed; empty: none.
+    std::string choice{};
+    /// Makes the output of a run into that of one with another choice; null without.
+    void (*choose)(FilterOutput& output, const Values& given) = nullptr;
 };
 
 /// All filters; their positions never change.

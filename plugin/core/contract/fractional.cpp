@@ -201,8 +201,8 @@ Filter fractionalFilterContract() {
     // Three lines: MeshLab shows all of the help above the parameters.
     return {"Spectral Filter (Fractional)",
             "apply_coord_spectral_filter_fractional",
-            "Smooths, sharpens or enhances details *by their size*, as an equalizer filters sound. "
-            "Low-pass: details larger than the feature size stay, smaller ones go.",
+            "Smooths, sharpens or enhances details *by their size*, as an equalizer filters sound "
+            "by frequency. Low-pass: details larger than the feature size stay, smaller ones go.",
             "Kovnatsky, Bronstein, Bronstein: Stable Spectral Mesh Filtering, 2012",
             parametersOf(fractionalFields()),
             describedBy(fractionalEntries()),

@@ -1,6 +1,7 @@
 #include "core/analysis/geometry_spectrum.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iomanip>
 #include <sstream>
 #include <string>
@@ -88,31 +89,36 @@ std::string withPercent(double length, double diagonal) {
     return text.str();
 }
 
+/// A bar for an amplitude, 12 cells at `largest`, three less for each factor of ten: bars begin at
+/// the left edge, so that they are a chart in MeshLab's log, too, whose letters differ in width.
+std::string barOf(double amplitude, double largest) {
+    constexpr double kCells = 12.0, kDecades = 4.0;
+    if (amplitude <= 0.0) return {};
+    const double length = kCells * (1.0 + std::log10(amplitude / largest) / kDecades);
+    std::string bar;
+    for (long cell = std::max(1L, std::lround(length)); cell > 0; --cell) bar += "\u2588";
+    return bar;
+}
+
 std::string textOf(const GeometrySpectrum& spectrum) {
+    const auto size = [&](double length) { return withPercent(length, spectrum.diagonal); };
     std::ostringstream text;
-    text << std::setprecision(4) << "Geometry Spectrum: octaves of all details";
-    if (spectrum.frequencies.size() > 0)
-        text << ", and " << spectrum.frequencies.size() << " harmonics";
-    text << "; in brackets: percent of the diagonal, " << spectrum.diagonal << "; energy: of this "
-         << "size and all larger ones\n"
-         << std::left << "  " << std::setw(20) << "feature size" << std::setw(11) << "amplitude"
-         << "energy";
-    // Narrow enough for MeshLab's log, which would wrap the lines.
-    for (Eigen::Index j = 0; j < spectrum.octaveEnergies.size(); ++j)
-        text << "\n  " << std::setw(20)
-             << withPercent(spectrum.octaveFeatureSizes[j], spectrum.diagonal) << std::setw(11)
-             << std::setprecision(3) << spectrum.octaveAmplitudes[j] << std::fixed
-             << std::setprecision(5) << 100.0 * spectrum.cumulativeEnergy[j] << " %"
-             << std::defaultfloat;
+    text << "Geometry Spectrum: half of the shape's energy is in details of at least "
+         << size(spectrum.featureSize50) << ", 90 % in those of at least "
+         << size(spectrum.featureSize90) << ", 99 % " << size(spectrum.featureSize99)
+         << "; percent are of the diagonal";
     if (spectrum.noiseHeight > 0.0)
-        text << "\n  details smaller than "
-             << withPercent(spectrum.noiseFeatureSize, spectrum.diagonal)
+        text << "\n  details smaller than " << size(spectrum.noiseFeatureSize)
              << " look like vertex noise, with a root mean square height of "
-             << withPercent(spectrum.noiseHeight, spectrum.diagonal);
-    text << "\n  50 % of the energy at feature sizes of at least "
-         << withPercent(spectrum.featureSize50, spectrum.diagonal) << ", 90 % "
-         << withPercent(spectrum.featureSize90, spectrum.diagonal) << ", 99 % "
-         << withPercent(spectrum.featureSize99, spectrum.diagonal);
+             << size(spectrum.noiseHeight) << ": to remove them, try feature size "
+             << std::setprecision(3) << spectrum.noiseFeatureSize;
+    text << "\n  root mean square height of the details of each size, bars in logarithmic scale:";
+    const double largest =
+        spectrum.octaveAmplitudes.size() > 0 ? spectrum.octaveAmplitudes.maxCoeff() : 0.0;
+    for (Eigen::Index j = 0; j < spectrum.octaveEnergies.size(); ++j)
+        text << "\n  " << barOf(spectrum.octaveAmplitudes[j], largest) << ' '
+             << std::setprecision(3) << spectrum.octaveAmplitudes[j] << " at "
+             << size(spectrum.octaveFeatureSizes[j]);
     return text.str();
 }
 
@@ -145,8 +151,8 @@ Filter geometrySpectrumContract() {
         "Geometry Spectrum",
         "get_geometry_spectrum",
         "Measures how much of a shape lies in details of each size, and where noise begins: use "
-        "it to *choose a feature size*. The log lists the root mean square height of the "
-        "details in each octave of sizes; no vertex moves.",
+        "it to *choose a feature size* for the spectral filters. The log charts the root mean "
+        "square height of the details in each octave of sizes; no vertex moves.",
         "",
         parametersOf(spectrumFields()),
         describedBy(spectrumEntries()),

@@ -71,20 +71,29 @@ void checkMode(int mode, int basisSize) {
                         " has the modes 0 to " + std::to_string(basisSize - 1));
 }
 
-std::string textOf(const ManifoldHarmonics& harmonics, int mode) {
-    const double lambda = harmonics.lambda[mode];
-    const auto size = static_cast<int>(harmonics.lambda.size());
+std::string textOf(const Values& report, int mode) {
+    const auto& eigenvalues = std::get<Eigen::VectorXd>(report.at("eigenvalues"));
+    const double lambda = eigenvalues[mode];
+    const auto size = static_cast<int>(eigenvalues.size());
+    const int wholeSize = std::get<int>(report.at("whole_size"));
     std::ostringstream text;
     text << std::setprecision(4) << "Manifold Harmonics: mode " << mode << " of " << size
          << ", eigenvalue " << lambda;
     if (lambda > 0.0) text << ", wavelength " << 2.0 * kPi / std::sqrt(lambda);
-    if (harmonics.wholeSize > size)
-        text << "\n  the basis splits a multiple eigenvalue; basis_size = " << harmonics.wholeSize
+    if (wholeSize > size)
+        text << "\n  the basis splits a multiple eigenvalue; basis_size = " << wholeSize
              << " would not";
     text << "\n  none of the lowest is missing: the inertia of W - sigma D counts "
-         << harmonics.inertiaCount << "; largest relative residual "
-         << harmonics.residuals.maxCoeff();
+         << std::get<int>(report.at("inertia_count")) << "; largest relative residual "
+         << std::get<Eigen::VectorXd>(report.at("residuals")).maxCoeff();
     return text.str();
+}
+
+void choose(FilterOutput& output, const Values& given) {
+    const HarmonicsCall call = callOf(harmonicsFields(), given, {});
+    checkMode(call.mode, call.options.basisSize);
+    output.text = textOf(output.report, call.mode);
+    output.values = output.basis.col(call.mode);
 }
 
 FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values& given,
@@ -94,25 +103,27 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
     ManifoldHarmonics harmonics = manifoldHarmonics(input.V, input.F, call.options, progress);
     FilterOutput output;
     output.report = reportOf(harmonicsEntries(), harmonics);
-    output.text = textOf(harmonics, call.mode);
     output.warnings = residualWarnings(harmonics.residuals);
-    output.values = harmonics.Phi.col(call.mode);
     output.basis = std::move(harmonics.Phi);
+    choose(output, given);
     return output;
 }
 
 }  // namespace
 
 Filter harmonicsContract() {
-    return {"Manifold Harmonics",
-            "compute_scalar_manifold_harmonic_per_vertex",
-            "Computes the *manifold harmonics* of a surface, its standing waves from low to high "
-            "frequencies, like those of a drum of this shape. One of them becomes the vertex "
-            "quality, in colours: red where it is positive, blue where it is negative.",
-            "",
-            parametersOf(harmonicsFields()),
-            describedBy(harmonicsEntries()),
-            run};
+    return {
+        "Manifold Harmonics",
+        "compute_scalar_manifold_harmonic_per_vertex",
+        "Computes the *manifold harmonics* of a surface, its spectral basis: standing waves from "
+        "low to high frequency, like those of a drum of this shape. One of them becomes the vertex "
+        "quality, in colours: red where it is positive, blue where it is negative.",
+        "",
+        parametersOf(harmonicsFields()),
+        describedBy(harmonicsEntries()),
+        run,
+        "mode",
+        choose};
 }
 
 }  // namespace spectral

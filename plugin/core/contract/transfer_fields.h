@@ -66,6 +66,13 @@ void addTransferFields(Fields<Call>& fields) {
         "nine tenths of that of waves twice as long. To remove bumps, try four times their width. "
         "A low-pass of the default size, which removes the noise of a scan, keeps parts that are "
         "thinner; one of another size draws them in."));
+    fields.push_back(field<Call>([](auto& call) -> auto& { return call.transfer.power; }, "power",
+                                 "Strength (0 to 1)",
+                                 "Fraction of the filter to apply, as a power of its gains: 0.5 is "
+                                 "half of the filter (a gain of 4 becomes 2).")
+                         .in("exponent, above 0, at most 1")
+                         .above(0.0)
+                         .to(1.0));
     fields.push_back(field<Call>([](auto& call) -> auto& { return call.transfer.passGain; },
                                  "pass_gain", "Pass gain",
                                  "Factor for the details that the filter passes: 1 keeps them, 2 "
@@ -85,6 +92,7 @@ void addTransferFields(Fields<Call>& fields) {
                     "with sizes in percent of the diagonal (5%), mean edges (6e) or as lengths; or "
                     "an expression of w, the feature size over the wavelength, such as 1/(1 + w^4) "
                     "(f is the frequency, l = f^2).")
+            .advanced()
             .unusedIf([](const Call& call) -> const char* {
                 return call.transfer.type == FilterType::Custom ? nullptr
                                                                 : "without filter_type = custom";
@@ -124,14 +132,6 @@ void addTransferFields(Fields<Call>& fields) {
                                         ? nullptr
                                         : "without response = butterworth";
                          }));
-    fields.push_back(field<Call>([](auto& call) -> auto& { return call.transfer.power; }, "power",
-                                 "Power",
-                                 "Fraction of the filter to apply, as a power of its gains: 0.5 is "
-                                 "half of the filter (a gain of 4 becomes 2).")
-                         .in("exponent, above 0, at most 1")
-                         .above(0.0)
-                         .to(1.0)
-                         .advanced());
 }
 
 }  // namespace spectral

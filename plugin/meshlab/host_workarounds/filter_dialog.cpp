@@ -8,6 +8,6 @@ QWidget* openFilterDialog() {
     if (program == nullptr || program->thread() != QThread::currentThread()) return nullptr;
     // MeshLab hides closed dialogs instead of deleting them.
     for (QWidget* widget : QApplication::allWidgets())
-        if (widget->inherits("FilterDockDialog") && widget->isVisible()) return widget;
+        if (widget->inherits(kFilterDialog) && widget->isVisible()) return widget;
     return nullptr;
 }

@@ -1,7 +1,7 @@
 #include "meshlab/host_workarounds/late_close.h"
 
 #include <QApplication>
-#include <QEvent>
+#include <QKeyEvent>
 #include <QMainWindow>
 #include <QMdiSubWindow>
 #include <QMetaObject>
@@ -15,13 +15,16 @@ LateClose::LateClose() {
 
 LateClose::~LateClose() {
     // Queued: MeshLab has not finished the run yet.
-    if (isRequested()) QMetaObject::invokeMethod(window_, "close", Qt::QueuedConnection);
+    if (!window_.isNull()) QMetaObject::invokeMethod(window_, "close", Qt::QueuedConnection);
 }
 
 bool LateClose::eventFilter(QObject* object, QEvent* event) {
+    if (event->type() == QEvent::KeyPress &&
+        static_cast<QKeyEvent*>(event)->key() == Qt::Key_Escape)
+        isEscaped_ = true;
     if (event->type() != QEvent::Close) return false;
     if (qobject_cast<QMdiSubWindow*>(object) == nullptr &&
-        qobject_cast<QMainWindow*>(object) == nullptr)
+        qobject_cast<QMainWindow*>(object) == nullptr && !object->inherits(kFilterDialog))
         return false;
     window_ = static_cast<QWidget*>(object);
     event->ignore();

@@ -19,6 +19,9 @@ class LatePreview {
     LatePreview(const LatePreview&) = delete;
     LatePreview& operator=(const LatePreview&) = delete;
 
+    /// Whether Preview was on at the start of the run.
+    bool isOn() const { return !box_.isNull(); }
+
   private:
     QPointer<QWidget> dialog_;
     QPointer<QAbstractButton> box_;  // null unless checked at the start of the run

@@ -226,7 +226,12 @@ def test_details_are_what_the_filter_takes_away_and_the_shape_stays(
     outward = after.pop("vertex_scalar_array")
     np.testing.assert_allclose(outward, np.sum(details * N, axis=1), atol=1e-15 * diagonal(V))
     assert outward.min() < 0 < outward.max()
-    del before["vertex_scalar_array"]
+    kept = mesh.vertex_custom_scalar_attribute_array("quality_before")
+    np.testing.assert_array_equal(kept, before.pop("vertex_scalar_array"))
+    kept = mesh.vertex_custom_point_attribute_matrix("color_before")
+    levels = np.round(255 * before.pop("vertex_color_matrix")[:, :3])
+    np.testing.assert_array_equal(kept, levels)
+    assert len(np.unique(after.pop("vertex_color_matrix"), axis=0)) > 100
     assert_same(before, after)
     assert_same(custom, custom_attributes(mesh))
     taken, _ = filter_mesh(V, F, result="details", feature_size="6%", steps=2)

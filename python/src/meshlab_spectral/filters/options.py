@@ -26,13 +26,13 @@ class TransferKeywords(TypedDict, total=False):
 
     filter_type: FilterType
     feature_size: Size
+    power: float
     pass_gain: float
     stop_gain: float
     transfer_function: str
     band_width: float
     response: Response
     order: int
-    power: float
     laplacian: LaplacianKind
     boundary: Boundary
 
@@ -96,6 +96,12 @@ class FilterOptions(Options):
         "scan, keeps parts that are thinner; one of another size draws them in. Default: "
         "six mean edges, at most 5 % of the diagonal.",
     )
+    power: float = option(
+        1.0,
+        "Fraction of the filter to apply, as a power of its gains: 0.5 is half of the "
+        "filter (a gain of 4 becomes 2).",
+        Limits(0, 1, low_open=True),
+    )
     pass_gain: float = option(
         1.0,
         "Factor for the details that the filter passes: 1 keeps them, 2 doubles their "
@@ -130,12 +136,6 @@ class FilterOptions(Options):
         2,
         "Steepness of the butterworth response, from 1 (gentle) to 64 (nearly ideal).",
         Limits(1, 64),
-    )
-    power: float = option(
-        1.0,
-        "Fraction of the filter to apply, as a power of its gains: 0.5 is half of the "
-        "filter (a gain of 4 becomes 2).",
-        Limits(0, 1, low_open=True),
     )
     selected: bool = option(
         False,
