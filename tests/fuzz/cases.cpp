@@ -395,7 +395,6 @@ const char* nameOf(ErrorCode code) {
         case ErrorCode::DegenerateTriangles: return "DegenerateTriangles";
         case ErrorCode::ShapeCollapsed: return "ShapeCollapsed";
         case ErrorCode::ShrinksToNothing: return "ShrinksToNothing";
-        case ErrorCode::NoDelaunay: return "NoDelaunay";
         case ErrorCode::SingularMatrix: return "SingularMatrix";
         case ErrorCode::TooManyVertices: return "TooManyVertices";
         case ErrorCode::OutOfMemory: return "OutOfMemory";

@@ -8,6 +8,7 @@
 
 #include "core/analysis/bands.h"
 #include "core/laplacian/interior.h"
+#include "core/laplacian/intrinsic_delaunay.h"
 #include "core/mesh/creases.h"
 #include "core/mesh/measures.h"
 #include "fuzz/accuracy.h"
@@ -56,6 +57,18 @@ void checkOutcome(const Case& of, Verdict& verdict) {
             failures.push_back(failure("not finite", "a number of the result is ", number));
             return;
         }
+}
+
+/// The weights of the intrinsic Delaunay Laplacian of any surface.
+void checkWeights(const testing::Mesh& mesh, std::vector<Failure>& failures) {
+    const Surface surface = joinedSurface(mesh.V, mesh.F);
+    const SparseMatrix W = IntrinsicDelaunay(surface.X, surface.F).stiffness(surface.X);
+    for (Index j = 0; j < W.outerSize(); ++j)
+        for (SparseMatrix::InnerIterator it(W, j); it; ++it)
+            if (it.row() != j && !(it.value() <= 0.0)) {
+                failures.push_back(failure("weights", "W_ij = ", it.value()));
+                return;
+            }
 }
 
 void checkRepeated(const Case& of, Verdict& verdict) {
@@ -285,6 +298,7 @@ Verdict check(const Case& of, bool compares) {
     if (of.repeats) checkRepeated(of, verdict);
     if (verdict.outcome.result && verdict.failures.empty())
         std::visit(CheckResult{of, verdict, compares}, of.options);
+    if (verdict.outcome.result) checkWeights(of.mesh.mesh, verdict.failures);
     return verdict;
 }
 

@@ -25,6 +25,7 @@ struct Verdict {
 ///  - the input is unchanged, and all numbers of a result are finite and consistent;
 ///  - unreferenced and fixed vertices keep their coordinates to the bit, components their
 ///  centroids;
+///  - intrinsic Delaunay weights are non-negative;
 ///  - repeated, and with two threads, the result is the same to the bit;
 ///  - a filter of one step is as accurate as it claims, harmonics and energies are those of a dense
 ///    solver.

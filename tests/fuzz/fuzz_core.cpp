@@ -7,7 +7,8 @@
 //
 // Cases have seeds S, S + 64, ...: closer ones share bytes. Seeds below 1e12 make meshes of any
 // size, larger ones mostly small meshes, which allow more cases per hour; those from 1e15 on
-// also give filters custom gains, parts of the mesh, creases and volumes; those from 2e15 denoise.
+// also give filters custom gains, parts of the mesh, creases and volumes; those from 2e15 denoise,
+// those from 3e15 have meshes of needles.
 // --limit is for one case; --errors prints the errors that are allowed, too; --compare no leaves
 // out the dense solver, for sanitizers; --solver makes filters use it whatever it costs, and with
 // products spectra have no harmonics.
@@ -44,6 +45,9 @@ constexpr std::uint64_t kStreamOfParts = 1ULL << 62;
 
 /// Seeds from here on denoise.
 constexpr std::uint64_t kFirstOfDenoise = 2000000000000000;
+
+/// Seeds from here on make meshes of needles.
+constexpr std::uint64_t kFirstOfNeedles = 3000000000000000;
 
 struct Arguments {
     std::uint64_t cases = 1000, firstSeed = kFirstOfSmall;
@@ -102,6 +106,7 @@ Arguments argumentsOf(int count, char** values) {
 Case caseOf(std::uint64_t seed, spectral::Solver solver) {
     const std::vector<std::uint8_t> bytes = bytesOf(seed);
     Choices choices(bytes.data(), bytes.size());
+    if (seed >= kFirstOfNeedles) return makeCase(choices, Sizes::Needles);
     if (seed >= kFirstOfDenoise) return makeDenoiseCase(choices);
     Case made = makeCase(choices, seed < kFirstOfSmall ? Sizes::Any : Sizes::MostlySmall);
     if (seed >= kFirstOfParts) {

@@ -1,5 +1,6 @@
 #include "fuzz/meshes.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -242,9 +243,46 @@ std::string spoil(Choices& choices, Mesh& mesh) {
     }
 }
 
+/// A strip, tube or arc of long cells, turned at random, in most cases rounded as files are: the
+/// corners of every cell are nearly cocircular, and round-off decides which diagonal is Delaunay.
+NamedMesh needles(Choices& choices) {
+    const int nx = choices.between(1, 12), ny = choices.between(1, 3);
+    const double aspect = choices.logUniform(1e2, 1e9);  // of a cell
+    Mesh mesh = testing::rectangle(nx, ny * aspect, nx, ny);
+    Vertices& V = mesh.V;
+    std::string name = "needles";
+    if (choices.oneIn(4)) {
+        V.col(0) += choices.uniform(-1.0, 1.0) * V.col(1);
+        name += ", sheared";
+    }
+    if (choices.oneIn(3)) {
+        V.col(0) = V.col(0).array().square().eval();
+        name += ", of several widths";
+    }
+    if (choices.oneIn(3)) {
+        const double radius = V.col(0).maxCoeff() / choices.uniform(0.1, 2.0 * kPi);
+        V.col(2) = radius * (V.col(0) / radius).array().cos();
+        V.col(0) = radius * (V.col(0) / radius).array().sin();
+        name += ", bent";
+    }
+    if (choices.oneIn(3)) {
+        V = testing::withNoise(mesh, choices.logUniform(1e-9, 1.0), choices.bits(4)).V;
+        name += ", with noise";
+    }
+    Eigen::Vector4d turn;
+    for (double& x : turn) x = choices.uniform(-1.0, 1.0);
+    V = (V * Eigen::Quaterniond(turn.normalized()).toRotationMatrix()).eval();
+    if (!choices.oneIn(3)) {
+        V = V.cast<float>().cast<double>().eval();
+        name += ", rounded";
+    }
+    return {mesh, name};
+}
+
 }  // namespace
 
 NamedMesh makeMesh(Choices& choices, Sizes sizes) {
+    if (sizes == Sizes::Needles) return needles(choices);
     int most = 1000;
     if (sizes == Sizes::MostlySmall)
         most = choices.oneIn(30) ? 300 : static_cast<int>(choices.logUniform(4.0, 60.0));

@@ -111,7 +111,6 @@ std::string remedy(const Error& error, const Given& given) {
             return "apply a filter that computes qualities first, e.g. 'Per Vertex Quality "
                    "Function'";
         case ErrorCode::DegenerateTriangles: return largerTriangles(given);
-        case ErrorCode::NoDelaunay:
         case ErrorCode::SolverFailed:
         case ErrorCode::SingularMatrix: return kRemesh;
         case ErrorCode::ShapeCollapsed: return stablerFilter(given);

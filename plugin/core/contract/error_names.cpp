@@ -14,7 +14,6 @@ const char* nameOf(ErrorCode code) {
         case ErrorCode::NoArea: return "no_area";
         case ErrorCode::DegenerateTriangles: return "degenerate_triangles";
         case ErrorCode::ShapeCollapsed: return "shape_collapsed";
-        case ErrorCode::NoDelaunay: return "no_delaunay";
         case ErrorCode::SingularMatrix: return "singular_matrix";
         case ErrorCode::ShrinksToNothing: return "shrinks_to_nothing";
         case ErrorCode::TooManyVertices: return "too_many_vertices";

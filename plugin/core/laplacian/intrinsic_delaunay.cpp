@@ -15,8 +15,11 @@ namespace spectral {
 namespace {
 
 /// Mollification: two sides of a triangle exceed the third by at least this many mean edge lengths,
-/// as in Sharp and Crane.
-constexpr double kMollification = 1e-5;
+/// as in Sharp and Crane, or, in a needle, by at least this share of its shortest side: a needle
+/// with a wide angle is not degenerate, and longer sides would make it another surface. Below
+/// kPoint mean edges a side is taken for a point: the weights along and across such needles differ
+/// by the square of that, and a row of W could not hold both.
+constexpr double kMollification = 1e-5, kShareOfNeedle = 0.1, kPoint = 1e-7;
 
 /// Sorts the sides of one edge by the angles of their triangles around it.
 void sortByAngle(const Vertices& V, const Faces& F, Side* first, Side* last) {
@@ -150,13 +153,17 @@ IntrinsicTriangulation IntrinsicDelaunay::triangulation(const Vertices& V) const
     // The smallest mollification that makes every triangle inequality hold by the margin.
     const double meanLength =
         std::accumulate(length.begin(), length.end(), 0.0) / static_cast<double>(length.size());
+    const auto margin = [&](double shortest) {
+        const double usual = kMollification * meanLength;
+        return shortest > kPoint * meanLength ? std::min(usual, kShareOfNeedle * shortest) : usual;
+    };
     const double epsilon =
         parallelMax(static_cast<Index>(length.size()), [&](Index begin, Index end) {
             double largest = 0.0;
-            for (int s = static_cast<int>(begin); s < end; ++s)
-                largest =
-                    std::max(largest, length[s] - length[nextSide(s)] - length[previousSide(s)] +
-                                          kMollification * meanLength);
+            for (int s = static_cast<int>(begin); s < end; ++s) {
+                const double a = length[s], b = length[nextSide(s)], c = length[previousSide(s)];
+                largest = std::max(largest, a - b - c + margin(std::min({a, b, c})));
+            }
             return largest;
         });
     if (epsilon > 0.0)

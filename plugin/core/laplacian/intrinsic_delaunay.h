@@ -26,10 +26,9 @@ class IntrinsicDelaunay {
     /// Delaunay triangulation of the tufted cover, which has one copy of every triangle if the
     /// surface is closed and oriented, else a front and a back.
     /// @param V  n x 3, finite, not all at one point.
-    /// @throws SolverFailure  when the flips do not terminate.
     IntrinsicTriangulation triangulation(const Vertices& V) const;
 
-    /// W of the embedding V: n x n, symmetric, rows sum to 0; same requirements and errors.
+    /// W of the embedding V: n x n, symmetric, rows sum to 0; same requirements.
     SparseMatrix stiffness(const Vertices& V) const;
 
   private:

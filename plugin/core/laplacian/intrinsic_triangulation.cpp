@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <string>
 #include <utility>
 
-#include "core/support/errors.h"
 #include "core/support/threads.h"
 #include "core/support/types.h"
 
@@ -20,8 +18,9 @@ namespace {
 /// larger errors. Both are far above round-off and bound the resulting error of W.
 double flipTolerance(double a, double b) { return 1e-10 + 1e-11 * (std::abs(a) + std::abs(b)); }
 
-/// Flips per edge before giving up; one or two are usual.
-constexpr Index kMaxFlipsPerEdge = 100;
+/// Flips per edge after which a flip must also decrease the sum of all cotangents; one or two are
+/// usual.
+constexpr Index kFreeFlipsPerEdge = 10;
 
 /// Area of a triangle from its sides, by Kahan's form of Heron's formula, stable for needles.
 double triangleArea(double a, double b, double c) {
@@ -30,6 +29,19 @@ double triangleArea(double a, double b, double c) {
     if (b < c) std::swap(b, c);
     const double product = (a + (b + c)) * (c - (a - b)) * (c + (a - b)) * (a + (b - c));
     return 0.25 * std::sqrt(std::max(0.0, product));
+}
+
+/// The cotangents of the angles opposite the sides of a triangle.
+std::array<double, 3> cotangentsOf(const std::array<double, 3>& sides) {
+    const auto [a, b, c] = sides;
+    const double fourAreas = 4.0 * triangleArea(a, b, c);
+    // b^2 + c^2 - a^2 without cancellation for the short side of a needle
+    return {(b * b + (c - a) * (c + a)) / fourAreas, (c * c + (a - b) * (a + b)) / fourAreas,
+            (a * a + (b - c) * (b + c)) / fourAreas};
+}
+
+double sum(const std::array<double, 3>& cotangents) {
+    return cotangents[0] + cotangents[1] + cotangents[2];
 }
 
 }  // namespace
@@ -41,10 +53,21 @@ IntrinsicTriangulation::IntrinsicTriangulation(std::vector<int> tail, std::vecto
       length_(std::move(length)),
       cotangent_(length_.size()) {
     parallelRows(sideCount() / 3, [&](Index begin, Index end) {
-        for (Index t = begin; t < end; ++t) setCotangents(static_cast<int>(3 * t));
+        for (Index s = 3 * begin; s < 3 * end; s += 3)
+            setCotangents(static_cast<int>(s),
+                          cotangentsOf({length_[s], length_[s + 1], length_[s + 2]}));
     });
 }
 
+/// Ends for any lengths. For an edge that is not Delaunay, a flip decreases the sum of all
+/// cotangents (Rivin 1994), but with rounded lengths not always: flips of needles, whose corners
+/// are nearly cocircular, can then repeat for ever. So after kFreeFlipsPerEdge every flip must
+/// decrease the sum as computed for the two triangles. Rounding is monotone: if x + y < z + w in
+/// floating-point numbers, so it is without rounding. The exact sum S of the numbers
+/// `sumOfCotangents` over all triangles then decreases strictly with every flip. It takes finitely
+/// many values, because there are finitely many triangulations of these vertices whose lengths are
+/// floating-point numbers. An edge that is left as it is falls short of Delaunay by no more than
+/// the error of its cotangents.
 void IntrinsicTriangulation::makeDelaunay() {
     std::vector<int> stack;
     std::vector<char> waiting(tail_.size(), 0);
@@ -61,37 +84,21 @@ void IntrinsicTriangulation::makeDelaunay() {
     });
     for (int s = sideCount() - 1; s >= 0; --s)
         if (waiting[s]) stack.push_back(s);
-    const Index edges = sideCount() / 2;
-    Index flips = 0;
+    Index freeFlips = kFreeFlipsPerEdge * (sideCount() / 2);
     while (!stack.empty()) {
         ThreadTeam::stopPoint();
         const int s = stack.back();
         stack.pop_back();
         waiting[s] = 0;
         if (isDelaunay(s)) continue;
-        if (flips++ == kMaxFlipsPerEdge * edges)
-            throw SolverFailure(ErrorCode::NoDelaunay,
-                                "no intrinsic Delaunay triangulation after " +
-                                    std::to_string(flips) + " flips of " + std::to_string(edges) +
-                                    " edges: triangles are degenerate");
         // A flip renumbers sides: the waiting edges around it are pushed again.
         const int t = twin_[s];
-        flip(s);
+        if (!flip(s, freeFlips > 0)) continue;
+        --freeFlips;
         push(s);
         for (const int outer : {nextSide(s), previousSide(s), nextSide(t), previousSide(t)})
             push(outer);
     }
-}
-
-/// The cotangents of the three angles of a side's triangle.
-void IntrinsicTriangulation::setCotangents(int side) {
-    const int s = side - side % 3;
-    const double a = length_[s], b = length_[s + 1], c = length_[s + 2];
-    const double fourAreas = 4.0 * triangleArea(a, b, c);
-    // b^2 + c^2 - a^2 without cancellation for the short side of a needle
-    cotangent_[s] = (b * b + (c - a) * (c + a)) / fourAreas;
-    cotangent_[s + 1] = (c * c + (a - b) * (a + b)) / fourAreas;
-    cotangent_[s + 2] = (a * a + (b - c) * (b + c)) / fourAreas;
 }
 
 bool IntrinsicTriangulation::isDelaunay(int side) const {
@@ -100,8 +107,18 @@ bool IntrinsicTriangulation::isDelaunay(int side) const {
     return !(a + b < -flipTolerance(a, b));  // false for NaN, which no flip repairs
 }
 
-/// Turns the edge of side s = (i, j), with triangles (i, j, k) and (j, i, l), into (k, l).
-void IntrinsicTriangulation::flip(int s) {
+void IntrinsicTriangulation::setCotangents(int side, const std::array<double, 3>& cotangents) {
+    std::copy(cotangents.begin(), cotangents.end(), cotangent_.begin() + (side - side % 3));
+}
+
+double IntrinsicTriangulation::sumOfCotangents(int side) const {
+    const int s = side - side % 3;
+    return sum({cotangent_[s], cotangent_[s + 1], cotangent_[s + 2]});
+}
+
+/// Turns the edge of side s = (i, j), with triangles (i, j, k) and (j, i, l), into (k, l); returns
+/// false, and leaves it, when this would not decrease the sum of their cotangents and is not free.
+bool IntrinsicTriangulation::flip(int s, bool isFree) {
     const int t = twin_[s];
     const std::array<int, 4> old{previousSide(t), nextSide(s), previousSide(s), nextSide(t)};
     const std::array<int, 4> slot{nextSide(s), previousSide(s), nextSide(t), previousSide(t)};
@@ -116,6 +133,19 @@ void IntrinsicTriangulation::flip(int s) {
     const double ly = -2.0 * triangleArea(lij, lil, llj) / lij;
     const double lkl =
         std::hypot(kx - lx, ky - ly);  // accurate to the last bit, as needles require
+
+    std::array<double, 3> sidesOfS, sidesOfT;
+    const auto put = [](std::array<double, 3>& sides, int side, double length) {
+        sides[side % 3] = length;
+    };
+    put(sidesOfS, s, lkl);
+    put(sidesOfS, slot[0], length_[old[0]]);
+    put(sidesOfS, slot[1], length_[old[1]]);
+    put(sidesOfT, t, lkl);
+    put(sidesOfT, slot[2], length_[old[2]]);
+    put(sidesOfT, slot[3], length_[old[3]]);
+    const std::array<double, 3> ofS = cotangentsOf(sidesOfS), ofT = cotangentsOf(sidesOfT);
+    if (!isFree && !(sum(ofS) + sum(ofT) < sumOfCotangents(s) + sumOfCotangents(t))) return false;
 
     const int k = tail_[previousSide(s)], l = tail_[previousSide(t)];
     std::array<int, 4> tails, twins;
@@ -140,8 +170,9 @@ void IntrinsicTriangulation::flip(int s) {
     tail_[s] = k;
     tail_[t] = l;
     length_[s] = length_[t] = lkl;
-    setCotangents(s);
-    setCotangents(t);
+    setCotangents(s, ofS);
+    setCotangents(t, ofT);
+    return true;
 }
 
 }  // namespace spectral

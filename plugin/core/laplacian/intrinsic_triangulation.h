@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 namespace spectral {
@@ -20,8 +21,8 @@ class IntrinsicTriangulation {
     IntrinsicTriangulation(std::vector<int> tail, std::vector<int> twin,
                            std::vector<double> length);
 
-    /// Flips edges until the two cotangents opposite each sum to at least 0, up to round-off.
-    /// @throws SolverFailure  when the flips do not terminate.
+    /// Flips edges until the two cotangents opposite each sum to at least 0, up to round-off. Ends
+    /// for any lengths.
     void makeDelaunay();
 
     int sideCount() const { return static_cast<int>(tail_.size()); }
@@ -32,9 +33,10 @@ class IntrinsicTriangulation {
     double edgeCotangents(int side) const { return cotangent_[side] + cotangent_[twin_[side]]; }
 
   private:
-    void setCotangents(int side);
+    void setCotangents(int side, const std::array<double, 3>& cotangents);
+    double sumOfCotangents(int side) const;  // of the side's triangle
     bool isDelaunay(int side) const;
-    void flip(int side);
+    bool flip(int side, bool isFree);
 
     std::vector<int> tail_, twin_;
     std::vector<double> length_;

@@ -19,7 +19,6 @@ enum class ErrorCode {
     NoArea,               ///< All triangles have zero area.
     DegenerateTriangles,  ///< Some triangles have zero area, or too little for their cotangents.
     ShapeCollapsed,       ///< Triangles became degenerate during the filter.
-    NoDelaunay,           ///< The intrinsic Delaunay flips did not terminate.
     SingularMatrix,       ///< W - sigma D is singular, not definite where it must be, or so
                           ///< ill-conditioned that a result would be useless.
     ShrinksToNothing,     ///< The filter leaves nothing of the surface.

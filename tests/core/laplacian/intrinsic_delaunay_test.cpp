@@ -140,6 +140,98 @@ TEST(IntrinsicDelaunay, LeavesNoEdgeWithANegativeWeight) {
     for (const Mesh& mesh : brokenMeshes()) EXPECT_GT(leastEdgeCotangents(mesh), -1e-6);
 }
 
+/// A rectangle of needles.
+struct NeedleRectangle {
+    double width, height;
+    int nx, ny;
+};
+
+/// 31 x 3 or 11 x 11 vertices; cells are up to 1.5 million times as long as they are wide.
+constexpr NeedleRectangle kNeedleRectangles[] = {{0.1, 100, 30, 2},
+                                                 {0.01, 100, 30, 2},
+                                                 {1e-3, 100, 30, 2},
+                                                 {1, 1000, 10, 10},
+                                                 {0.1, 1000, 10, 10}};
+
+Mesh turnedAtRandom(Mesh mesh) {
+    const Eigen::Quaterniond q(Eigen::Vector4d(Eigen::Vector4d::Random()).normalized());
+    mesh.V = (mesh.V * q.toRotationMatrix()).eval();
+    return mesh;
+}
+
+Mesh roundedToFloat(Mesh mesh) {
+    mesh.V = mesh.V.cast<float>().cast<double>().eval();
+    return mesh;
+}
+
+/// Eigenvalues of a flat rectangle: the weights of its grid and the areas of its triangles, without
+/// any cotangent.
+Eigen::VectorXd gridEigenvalues(const NeedleRectangle& of, const Mesh& mesh) {
+    const double dx = of.width / of.nx, dy = of.height / of.ny;
+    const Index n = mesh.V.rows();
+    Eigen::MatrixXd W = Eigen::MatrixXd::Zero(n, n);
+    for (Index i = 0; i < n; ++i)
+        for (Index j = 0; j < i; ++j) {
+            const auto x = static_cast<int>(std::round(mesh.V(i, 0) / dx)),
+                       y = static_cast<int>(std::round(mesh.V(i, 1) / dy));
+            const auto p = static_cast<int>(std::round(mesh.V(j, 0) / dx)),
+                       q = static_cast<int>(std::round(mesh.V(j, 1) / dy));
+            double weight = 0.0;
+            if (y == q && std::abs(x - p) == 1) weight = (y % of.ny == 0 ? 0.5 : 1.0) * dy / dx;
+            if (x == p && std::abs(y - q) == 1) weight = (x % of.nx == 0 ? 0.5 : 1.0) * dx / dy;
+            W(i, j) = W(j, i) = -weight;
+            W(i, i) += weight;
+            W(j, j) += weight;
+        }
+    return testing::denseEigenpairs(W, lumpedMass(mesh.V, mesh.F)).values;
+}
+
+double largestOffDiagonal(const SparseMatrix& W) {
+    double largest = 0.0;
+    for (int j = 0; j < W.outerSize(); ++j)
+        for (SparseMatrix::InnerIterator it(W, j); it; ++it)
+            if (it.row() != it.col()) largest = std::max(largest, it.value());
+    return largest;
+}
+
+TEST(IntrinsicDelaunay, EndsOnEveryRotationOfARectangleOfNeedles) {
+    std::srand(1);
+    for (const NeedleRectangle& of : kNeedleRectangles) {
+        const Mesh flat = testing::rectangle(of.width, of.height, of.nx, of.ny);
+        for (int turn = 0; turn < 200; ++turn) {
+            const Mesh mesh = turnedAtRandom(flat);
+            EXPECT_LE(largestOffDiagonal(intrinsicStiffness(mesh)), 0.0);
+            EXPECT_LE(largestOffDiagonal(intrinsicStiffness(roundedToFloat(mesh))), 0.0);
+        }
+    }
+}
+
+TEST(IntrinsicDelaunay, OfNeedlesHasTheEigenvaluesOfTheFlatRectangle) {
+    std::srand(2);
+    for (const NeedleRectangle& of : kNeedleRectangles) {
+        const Mesh flat = testing::rectangle(of.width, of.height, of.nx, of.ny);
+        const Eigen::VectorXd expected = gridEigenvalues(of, flat);
+        // The error of a dense solver, and of W, relative to the largest eigenvalue; the weights
+        // along and across share a diagonal entry of W.
+        const Eigen::VectorXd tolerance = 10.0 * expected.tail(1)[0] *
+                                          std::numeric_limits<double>::epsilon() *
+                                          expected.cwiseMax(expected[1]).cwiseInverse();
+        for (int turn = 0; turn < 20; ++turn) {
+            const Mesh mesh = turnedAtRandom(flat);
+            const auto eigenvalues = [](const Mesh& m) {
+                return testing::denseEigenpairs(intrinsicStiffness(m), lumpedMass(m.V, m.F)).values;
+            };
+            const Eigen::VectorXd exact = eigenvalues(mesh);
+            for (Index k = 1; k < expected.size(); ++k)
+                EXPECT_NEAR(exact[k] / expected[k], 1.0, 1e-9 + tolerance[k]) << k;
+            // Rounding moves the vertices across by up to a quarter of a cell, along by nothing.
+            const Eigen::VectorXd rounded = eigenvalues(roundedToFloat(mesh));
+            for (Index k = 1; k <= of.ny; ++k)
+                EXPECT_NEAR(rounded[k] / expected[k], 1.0, 1e-3 + tolerance[k]) << k;
+        }
+    }
+}
+
 TEST(IntrinsicDelaunay, OfARectangleIsThatOfItsGrid) {
     // Diagonals have weight 0, whichever way they run: W is that of a grid of squares, with half
     // the weight along the boundary.
