@@ -3,6 +3,7 @@
 #include <muParserDLL.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <locale>
 #include <memory>
@@ -27,12 +28,53 @@ constexpr const char* kExamples =
                         ", " + why + kExamples);
 }
 
+bool isComparison(const std::string& text, std::size_t at) {
+    return text[at] == '<' || text[at] == '>' ||
+           (text[at + 1] == '=' && (text[at] == '=' || text[at] == '!'));
+}
+
+/// Rejects what muParser accepts but does not read as mathematics: assignments, comparisons that
+/// seem to chain, and several results, of which it takes the last.
+void rejectMisreadings(const std::string& text) {
+    struct Group {
+        bool isCall;      ///< Its commas separate the arguments of a function.
+        bool isCompared;  ///< Its current operand of &&, ||, ? or : contains a comparison.
+    };
+    std::vector<Group> groups{{false, false}};
+    char previous = ' ';  // the last character that is not blank
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        Group& group = groups.back();
+        if (c == '(') {
+            const bool followsName = std::isalnum(static_cast<unsigned char>(previous)) != 0;
+            groups.push_back({followsName || previous == '_', false});
+        } else if (c == ')') {
+            if (groups.size() > 1) groups.pop_back();  // muParser reports one too many
+        } else if (c == ',') {
+            if (!group.isCall)
+                reject(text, i, "a comma; write decimals with a point, 0.5, and one expression");
+            group.isCompared = false;
+        } else if (c == '&' || c == '|' || c == '?' || c == ':') {
+            group.isCompared = false;
+        } else if (isComparison(text, i)) {
+            if (group.isCompared)
+                reject(text, i, "a second comparison; join two by &&, as in 0.5 < w && w < 1.5");
+            group.isCompared = true;
+            if (text[i + 1] == '=') ++i;
+        } else if (c == '=') {
+            reject(text, i, "= assigns; compare with ==");
+        }
+        if (text[i] != ' ') previous = text[i];
+    }
+}
+
 /// A muParser expression with its variables. Uses muParser's C interface, as the C++ one differs
 /// between versions.
 class Expression {
   public:
     Expression(const std::string& text, double cutoff)
         : parser_(mupCreate(muBASETYPE_FLOAT)), cutoff_(cutoff) {
+        rejectMisreadings(text);
         mupDefineVar(parser_.get(), "w", &w_);
         mupDefineVar(parser_.get(), "f", &f_);
         mupDefineVar(parser_.get(), "l", &l_);

@@ -104,6 +104,23 @@ TEST(CustomGain, ErrorsNameThePositionOfTheMistake) {
         EXPECT_TRUE(mentions(messageOf(text), words)) << text << ": " << messageOf(text);
 }
 
+TEST(CustomGain, WhatIsNotReadAsMathematicsIsRejectedAtItsPosition) {
+    for (const auto& [text, words] : std::vector<std::pair<std::string, std::string>>{
+             {"0.5<w<1.5", "at character 6, a second comparison"},
+             {"w < 1 == 1 ? 2 : 3", "at character 7, a second comparison"},
+             {"1 + (2 >= w > 0.5)", "at character 13, a second comparison"},
+             {"max(1, 0<w<2)", "at character 11, a second comparison"},
+             {"w=1 ? 3 : 4", "at character 2, = assigns"},
+             {"1/(w = 2)", "at character 6, = assigns"},
+             {"0,5", "at character 2, a comma"},
+             {"1/(1+w^2), 0.5", "at character 10, a comma"},
+             {"exp(-(0,5*w))", "at character 8, a comma"}})
+        EXPECT_TRUE(mentions(messageOf(text), words)) << text << ": " << messageOf(text);
+    for (const char* text : {"0.5 < w && w < 1.5", "w<1 ? (w<0.5) : w>2", "(w<1) == (w>2)",
+                             "max(w<1, w>2, 3)", "(0.5<w)<1.5", "w != 1 || w == 1"})
+        EXPECT_NO_THROW(parsed(text)) << text;
+}
+
 TEST(CustomGain, ErrorsNameTheFrequencyOfAnInvalidGain) {
     EXPECT_TRUE(mentions(messageOf("2 - w/4"), "at w = 8.")) << messageOf("2 - w/4");
     EXPECT_TRUE(mentions(messageOf("1/(w - 1)"), "transfer_function is ")) << messageOf("1/(w-1)");

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import itertools
+import math
 from typing import Any
 
 import numpy as np
 import pytest
 import spectral_reference as reference
+from hypothesis import assume, event, given, settings
+from hypothesis import strategies as st
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.filters.option_types import Length
 from meshlab_spectral.filters.options import FilterOptions
@@ -75,11 +78,118 @@ def test_custom_points_are_interpolated_between_their_gains() -> None:
         ("5%:1, 2%", "character 6"),
         ("1 - w", "transfer_function is -"),
         ("", "character 1"),
+        ("0.5<w<1.5", "character 6, a second comparison"),
+        ("w=1 ? 3 : 4", "character 2, = assigns"),
+        ("0,5", "character 2, a comma"),
+        ("1/(1+w^2), 0.5", "character 10, a comma"),
     ],
 )
 def test_an_invalid_custom_function_is_refused(text: str, words: str) -> None:
     options = FilterOptions(filter_type="custom", transfer_function=text)
     with pytest.raises(OptionError, match=words):
+        gain(options, np.ones(1), LENGTHS)
+
+
+# Texts in the languages of muParser and of Python, without parentheses but where these differ: who
+# binds tighter is left to the two languages.
+Texts = tuple[str, str]
+
+
+def _joined(parts: tuple[Texts, tuple[str, str], Texts]) -> Texts:
+    left, operator, right = parts
+    return left[0] + operator[0] + right[0], left[1] + operator[1] + right[1]
+
+
+def _same(*operators: str) -> list[tuple[str, str]]:
+    return [(operator, operator) for operator in operators]
+
+
+def _longer(texts: st.SearchStrategy[Texts]) -> st.SearchStrategy[Texts]:
+    arithmetic = st.sampled_from([*_same("+", " - ", "*", "/"), ("^", "**"), ("^-", "**-")])
+    comparison = st.sampled_from(_same("<", " <= ", ">", ">=", "==", " != "))
+    logic = st.sampled_from([("&&", " and "), (" || ", " or ")])
+    compared = st.tuples(texts, comparison, texts).map(_joined)
+    condition = compared | st.tuples(compared, logic, compared).map(_joined)
+    choice = st.tuples(condition, texts, texts).map(
+        lambda t: (
+            f"({t[0][0]} ? {t[1][0]}:{t[2][0]})",
+            f"(({t[1][1]}) if {t[0][1]} else ({t[2][1]}))",
+        )
+    )
+    call = st.tuples(st.sampled_from(["abs", "exp", "cos", "min", "max"]), texts, texts).map(
+        lambda t: (
+            f"{t[0]}({t[1][0]}, {t[2][0]})" if t[0].startswith("m") else f"{t[0]}({t[1][0]})",
+            f"{t[0]}({t[1][1]}, {t[2][1]})" if t[0].startswith("m") else f"{t[0]}({t[1][1]})",
+        )
+    )
+    group = (texts | condition).map(lambda t: (f"({t[0]})", f"({t[1]})"))
+    return st.one_of(
+        st.tuples(texts, arithmetic, texts).map(_joined),
+        st.tuples(texts, arithmetic, texts).map(_joined),
+        group,
+        call,
+        choice,
+        condition,
+    )
+
+
+_EXPRESSIONS = st.recursive(
+    st.sampled_from([*_same("w", "w", "1", "2", "0.5", "-w", "1e-1", ".25", "3.")]), _longer
+)
+
+
+def _by_python(text: str, w: float) -> Any:
+    """Evaluate a gain; NaN where it has none, be it by a pole or a root of a negative number."""
+    names = {"w": w, "abs": abs, "exp": math.exp, "cos": math.cos, "min": min, "max": max}
+    try:
+        value = eval(text, {"__builtins__": {}}, names)  # noqa: S307
+    except (ArithmeticError, TypeError):  # TypeError: comparison of complex numbers
+        return math.nan
+    return math.nan if isinstance(value, complex) else float(value)
+
+
+@settings(max_examples=500)
+@given(_EXPRESSIONS)
+def test_an_expression_means_what_it_means_in_python_or_is_refused(texts: Texts) -> None:
+    w = np.array([0.37, 1.0, 2.9])
+    expected = np.array([_by_python(f"abs({texts[1]})", x) for x in w])
+    assume(np.isfinite(expected).all() and np.all(expected < 1e9))
+    options = FilterOptions(filter_type="custom", transfer_function=f"abs({texts[0]})")
+    try:
+        actual = gain(options, w, LENGTHS)
+    except OptionError as error:
+        event("refused")
+        assert "a second comparison" in str(error), texts
+        return
+    event("agrees")
+    np.testing.assert_allclose(actual, expected, rtol=1e-9, atol=1e-9)
+
+
+@given(
+    st.lists(
+        st.tuples(st.integers(1, 100), st.integers(1, 40)),
+        min_size=1,
+        max_size=6,
+        unique_by=lambda p: p[0],
+    ),
+    st.sampled_from([":", " : ", ": "]),
+    st.sampled_from([",", ", ", " , "]),
+)
+def test_points_have_their_gains(points: list[tuple[int, int]], colon: str, comma: str) -> None:
+    text = comma.join(f"{size}%{colon}{level / 8}" for size, level in points)
+    options = FilterOptions(filter_type="custom", transfer_function=text)
+    w = np.array([0.4 / (0.08 * size) for size, _ in points])
+    np.testing.assert_allclose(gain(options, w, LENGTHS), [level / 8 for _, level in points])
+
+
+@given(
+    st.lists(st.integers(1, 9), min_size=2, max_size=4, unique=True),
+    st.sampled_from(["{};", "{} ", "{}:", "{}=", "{},5,", "{}"]),
+)
+def test_points_that_are_joined_otherwise_are_refused(sizes: list[int], joint: str) -> None:
+    text = "".join(joint.format(f"{size}%:1") for size in sizes)
+    options = FilterOptions(filter_type="custom", transfer_function=text)
+    with pytest.raises(OptionError, match="at character"):
         gain(options, np.ones(1), LENGTHS)
 
 
