@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-import copy
 import sys
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
+import meshio
 import meshlab_spectral
 import numpy as np
 import pymeshlab
 import pytest
 import pyvista
+import trimesh
 from meshlab_spectral import (
     FilterOptions,
     OptionError,
@@ -22,60 +24,13 @@ from meshlab_spectral import (
     filter_scalars,
     geometry_spectrum,
     manifold_harmonics,
+    measure_artefacts,
+    shape_dna,
 )
 
 _SPHERE = pyvista.Icosphere(nsub=3)
 V, F = np.array(_SPHERE.points, dtype=float), np.array(_SPHERE.regular_faces)
 EXPECTED, _ = filter_mesh(V, F, feature_size="30%")
-
-
-class Trimesh:
-    """What trimesh.Trimesh offers."""
-
-    def __init__(self, vertices: np.ndarray, faces: np.ndarray) -> None:
-        self.vertices, self._faces = vertices, faces
-        self.metadata = {"name": "sphere"}
-
-    @property
-    def faces(self) -> np.ndarray:
-        return self._faces
-
-    def copy(self) -> Trimesh:
-        return copy.deepcopy(self)
-
-
-class MeshioMesh:
-    """What meshio.Mesh offers."""
-
-    def __init__(self, points: np.ndarray, cells: dict[str, np.ndarray]) -> None:
-        self.points, self._cells = points, cells
-        self.point_data = {"height": points[:, 2]}
-
-    @property
-    def cells_dict(self) -> dict[str, np.ndarray]:
-        return self._cells
-
-
-class Open3dMesh:
-    """What open3d.geometry.TriangleMesh offers."""
-
-    def __init__(self, other: Open3dMesh | None = None) -> None:
-        if other is not None:
-            self.__dict__.update(other.__dict__)
-            self.computed = []
-
-    @property
-    def triangle_normals(self) -> list[Any]:
-        return []
-
-    def has_triangle_normals(self) -> bool:
-        return False
-
-    def has_vertex_normals(self) -> bool:
-        return True
-
-    def compute_vertex_normals(self) -> None:
-        self.computed.append("vertex normals")
 
 
 def test_a_mesh_of_pyvista_keeps_its_type_and_data() -> None:
@@ -98,37 +53,31 @@ def test_a_mesh_of_pyvista_with_quadrangles_is_refused_with_the_advice_to_triang
 
 
 def test_a_mesh_of_trimesh_keeps_its_type_and_metadata() -> None:
-    mesh = Trimesh(V, F)
+    mesh = trimesh.Trimesh(V, F, process=False, metadata={"name": "sphere"})
     moved, _ = filter_mesh(mesh, feature_size="30%")
-    assert isinstance(moved, Trimesh)
-    assert moved.metadata == {"name": "sphere"}
+    assert isinstance(moved, trimesh.Trimesh)
+    assert moved.metadata["name"] == "sphere"
     np.testing.assert_array_equal(moved.vertices, EXPECTED)
     np.testing.assert_array_equal(mesh.vertices, V)
 
 
 def test_a_mesh_of_meshio_keeps_its_precision() -> None:
-    mesh = MeshioMesh(V.astype(np.float32), {"triangle": F, "line": F[:2, :2]})
+    mesh = meshio.Mesh(
+        V.astype(np.float32),
+        {"triangle": F, "line": F[:2, :2]},
+        point_data={"height": V[:, 2]},
+    )
     moved, _ = filter_mesh(mesh, feature_size="30%")
-    assert isinstance(moved, MeshioMesh)
+    assert isinstance(moved, meshio.Mesh)
     assert moved.points.dtype == np.float32
     np.testing.assert_allclose(moved.points, EXPECTED, atol=1e-6)
     np.testing.assert_array_equal(moved.point_data["height"], mesh.point_data["height"])
 
 
 def test_a_mesh_of_meshio_with_other_cells_is_refused() -> None:
-    mesh = MeshioMesh(V, {"triangle": F, "tetra": F})
+    mesh = meshio.Mesh(V, {"triangle": F, "tetra": F[:, [0, 1, 2, 0]]})
     with pytest.raises(ValueError, match="cells tetra, triangle: pass a mesh of triangles only"):
         filter_mesh(mesh)
-
-
-def test_a_mesh_of_open3d_keeps_its_type_and_normals_are_recomputed() -> None:
-    mesh = Open3dMesh()
-    mesh.vertices, mesh.triangles = V.tolist(), F.tolist()
-    moved, _ = filter_mesh(mesh, feature_size="30%")
-    assert isinstance(moved, Open3dMesh)
-    np.testing.assert_array_equal(moved.vertices, EXPECTED)
-    assert moved.computed == ["vertex normals"]
-    assert mesh.vertices == V.tolist()
 
 
 def test_a_mesh_of_pymeshlab_keeps_quality_and_selection() -> None:
@@ -162,6 +111,99 @@ def test_every_function_accepts_a_mesh() -> None:
     assert filter_colors(mesh, colors=np.abs(V))[0].shape == V.shape
     assert manifold_harmonics(mesh, basis_size=5).harmonics.shape == (len(V), 5)
     assert geometry_spectrum(mesh).area > 3
+
+
+def test_after_a_mesh_the_arguments_by_position_are_those_after_the_faces() -> None:
+    mesh = pyvista.PolyData.from_regular_faces(V, F)
+    q, rgb = V[:, 0] ** 3, np.abs(V)
+    mesh["q"], mesh["rgb"] = q, rgb
+    options = FilterOptions(feature_size="20%")
+    for of in (mesh, (V, F), trimesh.Trimesh(V, F, process=False), meshio.Mesh(V, {"triangle": F})):
+        scalars = filter_scalars(of, q, options)[0]
+        np.testing.assert_array_equal(scalars, filter_scalars(V, F, q, options)[0])
+        np.testing.assert_array_equal(
+            filter_colors(of, rgb, options)[0], filter_colors(V, F, rgb, options)[0]
+        )
+        basis = manifold_harmonics(of, 5)
+        np.testing.assert_array_equal(basis.harmonics, manifold_harmonics(V, F, 5).harmonics)
+        np.testing.assert_array_equal(shape_dna(of, 5), shape_dna(V, F, 5))
+        assert geometry_spectrum(of, 5).area == geometry_spectrum(V, F, 5).area
+        assert measure_artefacts(of, 0.5).rms == measure_artefacts(V, F, 0.5).rms
+        moved = filter_mesh(of, options)[0]
+        points = moved[0] if of == (V, F) else getattr(moved, "vertices", None)
+        points = moved.points if points is None else points
+        np.testing.assert_array_equal(points, filter_mesh(V, F, options)[0])
+
+
+def test_arrays_of_a_mesh_may_be_named() -> None:
+    q, rgb = np.abs(V[:, 0]) ** 3, np.abs(V)
+    polydata = pyvista.PolyData.from_regular_faces(V, F)
+    polydata["q"], polydata["rgb"], polydata["mask"] = q, rgb, V[:, 2] > 0
+    of_trimesh = trimesh.Trimesh(V, F, process=False, vertex_attributes={"q": q, "rgb": rgb})
+    of_meshio = meshio.Mesh(V, {"triangle": F}, point_data={"q": q, "rgb": rgb})
+    for mesh in (polydata, polydata.cast_to_unstructured_grid(), of_trimesh, of_meshio):
+        np.testing.assert_array_equal(filter_scalars(mesh, "q")[0], filter_scalars(V, F, q)[0])
+        np.testing.assert_array_equal(filter_colors(mesh, "rgb")[0], filter_colors(V, F, rgb)[0])
+        with pytest.raises(
+            ValueError, match=r"values = 'p': the mesh has no such array.*'q', 'rgb"
+        ):
+            filter_scalars(mesh, "p")
+    part, _ = filter_mesh(polydata, weights="q", selection="mask")
+    by_arrays, _ = filter_mesh(V, F, weights=q, selection=V[:, 2] > 0)
+    np.testing.assert_array_equal(part.points, by_arrays.astype(part.points.dtype))
+    with pytest.raises(ValueError, match="have no named arrays"):
+        filter_scalars(V, F, "q")
+
+
+GRID = pyvista.ImageData(dimensions=(3, 3, 3))
+QUADS = pyvista.Plane(i_resolution=2, j_resolution=2)
+
+
+@pytest.mark.parametrize(
+    ("mesh", "words"),
+    [
+        (pyvista.MultiBlock([_SPHERE]), r"combine\(\)\.extract_surface\(\)\.triangulate\(\)"),
+        (trimesh.Scene([trimesh.Trimesh(V, F)]), r"to_mesh\(\)"),
+        (GRID, r"pass its surface: extract_surface\(\)\.triangulate\(\)"),
+        (GRID.cast_to_unstructured_grid(), r"surface, extract_surface\(\)\.triangulate\(\)"),
+        (QUADS, r"call its triangulate\(\) first"),
+        (_SPHERE.strip(), r"call its triangulate\(\) first"),
+        (pyvista.PolyData(V), "no faces: reconstruct a surface first"),
+        (pyvista.Line(), "no faces: reconstruct a surface first"),
+        (trimesh.PointCloud(V), "no faces: reconstruct a surface first"),
+        (meshio.Mesh(V, {"quad": F[:, [0, 1, 2, 0]]}), r"extract_surface\(\)\.triangulate\(\)"),
+        ("scan.ply", r"pyvista\.read; or filter it with filter_files"),
+        (Path("scan.ply"), r"pyvista\.read; or filter it with filter_files"),
+        ((V, F[:, [0, 1, 2, 0]]), r"faces\[:, \[0, 2, 3\]\]"),
+        ((V, [[0, 1, 2], [0, 1, 2, 3]]), "several numbers of corners: split them"),
+        ([V], "pass vertices and faces, or a mesh: .*a tuple"),
+        (None, "pass vertices and faces, or a mesh"),
+    ],
+)
+def test_what_is_no_mesh_of_triangles_is_refused_with_the_remedy(mesh: Any, words: str) -> None:
+    for call in (filter_mesh, denoise_mesh, manifold_harmonics, geometry_spectrum):
+        with pytest.raises((TypeError, ValueError), match=words):
+            call(mesh)
+
+
+@pytest.mark.filterwarnings("ignore:The default value of `algorithm`")
+def test_the_remedies_give_meshes_that_are_filtered() -> None:
+    for remedied in (
+        pyvista.MultiBlock([_SPHERE, QUADS]).combine().extract_surface().triangulate(),
+        GRID.extract_surface().triangulate(),
+        QUADS.triangulate(),
+        _SPHERE.strip().triangulate(),
+        trimesh.Scene([trimesh.Trimesh(V, F)]).to_mesh(),
+        pyvista.from_meshio(meshio.Mesh(QUADS.points, {"quad": QUADS.regular_faces}))
+        .extract_surface()
+        .triangulate(),
+    ):
+        assert type(filter_mesh(remedied)[0]) is type(remedied)
+    quads = QUADS.regular_faces
+    assert filter_mesh(QUADS.points, np.vstack([quads[:, :3], quads[:, [0, 2, 3]]]))[0].shape == (
+        9,
+        3,
+    )
 
 
 def test_weights_scale_the_displacement_of_each_vertex() -> None:

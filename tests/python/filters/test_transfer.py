@@ -105,7 +105,7 @@ def _same(*operators: str) -> list[tuple[str, str]]:
 
 
 def _longer(texts: st.SearchStrategy[Texts]) -> st.SearchStrategy[Texts]:
-    arithmetic = st.sampled_from([*_same("+", " - ", "*", "/"), ("^", "**"), ("^-", "**-")])
+    arithmetic = st.sampled_from([*_same("+", " - ", "*", "/"), ("^", "**")])
     comparison = st.sampled_from(_same("<", " <= ", ">", ">=", "==", " != "))
     logic = st.sampled_from([("&&", " and "), (" || ", " or ")])
     compared = st.tuples(texts, comparison, texts).map(_joined)
@@ -142,7 +142,7 @@ def _by_python(text: str, w: float) -> Any:
     """Evaluate a gain; NaN where it has none, be it by a pole or a root of a negative number."""
     names = {"w": w, "abs": abs, "exp": math.exp, "cos": math.cos, "min": min, "max": max}
     try:
-        value = eval(text, {"__builtins__": {}}, names)  # noqa: S307
+        value = eval(text, {"__builtins__": {}}, names)
     except (ArithmeticError, TypeError):  # TypeError: comparison of complex numbers
         return math.nan
     return math.nan if isinstance(value, complex) else float(value)
@@ -152,14 +152,17 @@ def _by_python(text: str, w: float) -> Any:
 @given(_EXPRESSIONS)
 def test_an_expression_means_what_it_means_in_python_or_is_refused(texts: Texts) -> None:
     w = np.array([0.37, 1.0, 2.9])
-    expected = np.array([_by_python(f"abs({texts[1]})", x) for x in w])
-    assume(np.isfinite(expected).all() and np.all(expected < 1e9))
-    options = FilterOptions(filter_type="custom", transfer_function=f"abs({texts[0]})")
+    bounded = "min(abs({}), 1e3)"  # a gain must be finite and not negative at every w
+    expected = np.array([_by_python(bounded.format(texts[1]), x) for x in w.tolist()])
+    assume(np.isfinite(expected).all())
+    options = FilterOptions(filter_type="custom", transfer_function=bounded.format(texts[0]))
     try:
         actual = gain(options, w, LENGTHS)
     except OptionError as error:
-        event("refused")
-        assert "a second comparison" in str(error), texts
+        chains, has_no_value = "a second comparison" in str(error), "is nan" in str(error)
+        event("refused" if chains else "no value somewhere")
+        if not chains and not has_no_value:
+            raise
         return
     event("agrees")
     np.testing.assert_allclose(actual, expected, rtol=1e-9, atol=1e-9)

@@ -25,6 +25,7 @@ from meshlab_spectral.figures.pictures import (
 from meshlab_spectral.figures.sheet import Sheet
 from meshlab_spectral.filters.arrays import mesh_arrays
 from meshlab_spectral.filters.harmonics import Harmonics
+from meshlab_spectral.filters.mesh_objects import takes_mesh_alone
 
 if TYPE_CHECKING:
     from pyvista import Plotter
@@ -81,6 +82,7 @@ def draw_basis_file(
     sheet.save(path)
 
 
+@takes_mesh_alone
 def plot_harmonics(
     mesh_or_vertices: Any,
     faces: ArrayLike | None,
@@ -97,7 +99,7 @@ def plot_harmonics(
     Parameters
     ----------
     mesh_or_vertices, faces
-        As for `manifold_harmonics`; `faces` is None for a mesh object.
+        As for `manifold_harmonics`.
     harmonics
         Harmonics of this mesh, as from `manifold_harmonics`.
     indices

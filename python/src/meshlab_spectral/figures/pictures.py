@@ -179,14 +179,22 @@ def render(panel: Panel, frame: Frame, pixels: int) -> Image:
 def to_full_colours(values: NDArray[np.float64], areas: NDArray[np.float64]) -> NDArray[np.float64]:
     """Scale values to -1 .. 1, clipping the extreme hundredth of the area, mostly spikes.
 
+    Only the area where there are values counts: most harmonics of several components are zero, up
+    to round-off, on all but one.
+
     Parameters
     ----------
     values, areas
         Values and areas of the n vertices.
     """
-    order = np.argsort(np.abs(values))
-    reached = np.searchsorted(np.cumsum(areas[order]), 0.99 * areas.sum())
-    largest = np.abs(values)[order[min(reached, len(order) - 1)]]
+    height = np.abs(values)
+    order = np.argsort(height)
+    order = order[height[order] > 1e-6 * height.max()]
+    if len(order) == 0:
+        return np.zeros_like(values)
+    areas = areas[order]
+    reached = np.searchsorted(np.cumsum(areas), 0.99 * areas.sum())
+    largest = height[order[min(reached, len(order) - 1)]]
     scaled: NDArray[np.float64] = np.clip(values / largest, -1, 1)
     return scaled
 

@@ -100,9 +100,8 @@ def plot_spectrum(
     Returns
     -------
     matplotlib.figure.Figure
-        Not registered with pyplot: a notebook shows it as the value of a cell, after
-        ``%matplotlib inline``; ``savefig(path)`` saves it. Its axes are the amplitudes, the noise,
-        and the gains if any.
+        Not registered with pyplot: a notebook shows it as the value of a cell; ``savefig(path)``
+        saves it. Its axes are the amplitudes, the noise, and the gains if any.
 
     Raises
     ------
@@ -116,9 +115,10 @@ def plot_spectrum(
     """
     check_extras("plots")
     from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
 
-    figure = Figure(_SIZE, dpi=_DOTS_PER_INCH, facecolor="white", layout="constrained")
+    from meshlab_spectral.figures.notebook import NotebookFigure
+
+    figure = NotebookFigure(_SIZE, dpi=_DOTS_PER_INCH, facecolor="white", layout="constrained")
     FigureCanvasAgg(figure)
     axes, noise = figure.subplots(2, 1, sharex=True, height_ratios=_HEIGHTS)
     _plot_amplitudes(axes, spectrum)

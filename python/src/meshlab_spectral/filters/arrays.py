@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshlab_spectral.filters.mesh_objects import kind_of, known_kinds
+from meshlab_spectral.filters.mesh_objects import kind_of, known_kinds, remedy_for
 
 
 def mesh_arrays(
@@ -34,17 +34,24 @@ def mesh_arrays(
     if kind is not None and faces is None:
         vertices, faces = kind.arrays(mesh_or_vertices)
     elif faces is None:
+        if (remedy := remedy_for(mesh_or_vertices)) is not None:
+            raise TypeError(f"{_class_of(mesh_or_vertices)} is no mesh: {remedy}")
         raise TypeError(
             f"there are no faces with {_class_of(mesh_or_vertices)}: pass vertices and faces, or a "
             f"mesh: {known_kinds()}"
         )
     elif kind is not None:
         raise TypeError(f"faces: {kind.name} has its own; pass the mesh alone, or two arrays")
-    V, F = np.asarray(vertices, dtype=np.float64), np.asarray(faces)
+    V, F = np.asarray(vertices, dtype=np.float64), _faces_array(faces)
     if V.ndim != 2 or V.shape[1] != 3:
         raise ValueError(f"vertices have shape {V.shape}: pass n x 3 coordinates")
     if len(V) == 0:
         raise ValueError("there are no vertices: pass a mesh")
+    if F.ndim == 2 and F.shape[1] == 4 and np.issubdtype(F.dtype, np.integer):
+        raise ValueError(
+            f"faces have shape {F.shape}: pass triangles; quadrangles are split by "
+            "numpy.vstack([faces[:, :3], faces[:, [0, 2, 3]]])"
+        )
     if F.ndim != 2 or F.shape[1] != 3 or not np.issubdtype(F.dtype, np.integer):
         raise ValueError(
             f"faces have shape {F.shape} and type {F.dtype}: pass m x 3 integers, the corners of "
@@ -56,8 +63,19 @@ def mesh_arrays(
     return V, F.astype(np.int32)
 
 
+def _faces_array(faces: Any) -> NDArray[Any]:
+    try:
+        return np.asarray(faces)
+    except ValueError as error:  # rows of several lengths
+        raise ValueError(
+            "faces have several numbers of corners: split them into triangles first"
+        ) from error
+
+
 def _class_of(mesh: Any) -> str:
-    return f"{type(mesh).__module__.partition('.')[0]}'s {type(mesh).__name__}"
+    library = type(mesh).__module__.partition(".")[0]
+    name = type(mesh).__name__
+    return name if library == "builtins" else f"{library}'s {name}"
 
 
 def vertex_numbers(values: ArrayLike, count: int, name: str) -> NDArray[np.float64]:

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import get_args
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.filters.arrays import mesh_arrays
+from meshlab_spectral.filters.mesh_objects import takes_mesh_alone
 from meshlab_spectral.filters.option_types import Length
 from meshlab_spectral.filters.options import LaplacianKind
+from meshlab_spectral.filters.representations import line
 from meshlab_spectral.filters.running import run
 
 _FILTER_NAME = "compute_scalar_spectral_artefacts_per_vertex"
@@ -40,10 +42,14 @@ class Artefacts:
     length: NDArray[np.float64]
     diagonal: float
 
+    def __repr__(self) -> str:
+        return line(self)
 
+
+@takes_mesh_alone
 def measure_artefacts(
-    vertices: ArrayLike,
-    faces: ArrayLike,
+    vertices: Any,
+    faces: ArrayLike | None,
     feature_size: float,
     laplacian: LaplacianKind = "intrinsic delaunay",
 ) -> Artefacts:
@@ -57,9 +63,9 @@ def measure_artefacts(
     Parameters
     ----------
     vertices
-        Finite n x 3 coordinates.
+        Finite n x 3 coordinates, or a mesh as for `filter_mesh`, alone.
     faces
-        m x 3 vertex indices of triangles, from 0 to n - 1; any topology.
+        With coordinates: m x 3 vertex indices of triangles, from 0 to n - 1; any topology.
     feature_size
         Feature size of the applied low-pass or band, length units, > 0.
     laplacian

@@ -13,6 +13,7 @@ from meshlab_spectral import errors
 from meshlab_spectral.errors import FilterError
 from meshlab_spectral.filters.mesh_objects import owned_mesh
 from meshlab_spectral.filters.option_types import Options
+from meshlab_spectral.filters.representations import Report
 from meshlab_spectral.filters.running import plain
 from meshlab_spectral.plugin.failed_calls import is_interrupt, keep_failed
 from meshlab_spectral.plugin.library import last_error, last_summary, last_warnings
@@ -111,7 +112,7 @@ def filtered_by_plugin(mesh: Any, options: Options) -> tuple[Any, dict[str, Any]
     load()
     mesh_set = _set_of(mesh)
     parameters = options.pymeshlab_parameters(mesh_set.current_mesh())
-    report = plain(call_filter(mesh_set, options.FILTER, parameters))
+    report = Report(plain(call_filter(mesh_set, options.FILTER, parameters)))
     if getattr(options, "result", "") == "details":
         details = mesh_set.current_mesh().vertex_custom_point_attribute_matrix(DETAILS)
         return details.copy(), report

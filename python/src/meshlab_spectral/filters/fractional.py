@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 from numpy.typing import ArrayLike
 
 from meshlab_spectral.filters.keywords import takes_options
+from meshlab_spectral.filters.mesh_objects import takes_mesh_alone
 from meshlab_spectral.filters.options import FilterKeywords, FilterOptions
 from meshlab_spectral.filters.running import Gain, Progress, require_no_type
 from meshlab_spectral.filters.shapes import filtered
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 
 
 @takes_options(FilterOptions)
+@takes_mesh_alone
 def filter_mesh(
     mesh_or_vertices: Any,
     faces: ArrayLike | None = None,

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from meshlab_spectral.errors import FilterError
 from meshlab_spectral.filters.arrays import lumped_areas, mesh_arrays
+from meshlab_spectral.filters.mesh_objects import takes_mesh_alone
 from meshlab_spectral.filters.option_types import checked_count
 from meshlab_spectral.filters.options import BasisOptions, Boundary, LaplacianKind
 from meshlab_spectral.filters.running import Progress, run
@@ -47,6 +48,14 @@ class Harmonics:
     eigenvalues: Array
     harmonics: Array
     masses: Array
+
+    def __repr__(self) -> str:
+        waves = self.frequencies[self.eigenvalues > 0]
+        longest, shortest = (2 * np.pi / waves[[0, -1]]) if len(waves) else (np.inf, np.inf)
+        return (
+            f"Harmonics({len(self.eigenvalues)} of a mesh of {len(self.masses)} vertices, "
+            f"wavelengths {longest:.4g} to {shortest:.4g})"
+        )
 
     @property
     def frequencies(self) -> Array:
@@ -277,6 +286,7 @@ def wave_energies(lam: Array, count: int) -> tuple[Array, float]:
     return first + _MARGIN * sigma + delta * np.arange(count), float(sigma)
 
 
+@takes_mesh_alone
 def manifold_harmonics(
     mesh_or_vertices: Any,
     faces: ArrayLike | None = None,
@@ -329,6 +339,7 @@ def manifold_harmonics(
     return compute(*mesh_arrays(mesh_or_vertices, faces), options, progress, threads)
 
 
+@takes_mesh_alone
 def shape_dna(
     mesh_or_vertices: Any,
     faces: ArrayLike | None = None,

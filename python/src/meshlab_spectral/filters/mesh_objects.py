@@ -6,14 +6,19 @@ None of these libraries is imported: whoever passes such a mesh has done so.
 from __future__ import annotations
 
 import copy
+import functools
+import inspect
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
+from meshlab_spectral.filters.mesh_normals import followed
+
+Function = TypeVar("Function", bound=Callable[..., Any])
 Array = NDArray[np.float64]
 
 
@@ -30,23 +35,73 @@ class MeshKind:
     arrays
         Returns the n x 3 coordinates and m x 3 vertex indices of a mesh.
     moved
-        Returns a copy of a mesh with new coordinates, n x 3.
+        Returns a copy of a mesh with new coordinates, n x 3; what it stores of the old ones, such
+        as normals, follows.
+    data
+        Returns the arrays at the vertices of a mesh, by name.
     """
 
     name: str
     mark: str
     arrays: Callable[[Any], tuple[Any, Any]]
     moved: Callable[[Any, Array], Any]
+    data: Callable[[Any], Mapping[str, Any]]
 
 
 def kind_of(mesh: Any) -> MeshKind | None:
     """Return the kind of a mesh; None if it is of none of these libraries."""
+    if _is_pair(mesh):
+        return _PAIR
     return next((kind for kind in _KINDS if hasattr(type(mesh), kind.mark)), None)
 
 
 def known_kinds() -> str:
     """Return the names of the classes that `kind_of` knows."""
-    return ", ".join(kind.name for kind in _KINDS)
+    return ", ".join(kind.name for kind in (*_KINDS, _PAIR))
+
+
+def remedy_for(mesh: Any) -> str | None:
+    """Return what to do with an object that is no mesh but holds some, or None."""
+    classes = [one.__name__ for one in type(mesh).__mro__]
+    return next((remedy for name, remedy in _REMEDIES.items() if name in classes), None)
+
+
+def array_of(mesh: Any, values: Any, name: str) -> Any:
+    """Return `values`, or where this is a text, the array at the vertices that it names.
+
+    `name` is that of the argument, for the ValueError when the mesh has no such array.
+    """
+    if not isinstance(values, str):
+        return values
+    kind = kind_of(mesh)
+    if kind is None:
+        raise ValueError(f"{name} = {values!r}: vertices and faces have no named arrays; pass one")
+    data = kind.data(mesh)
+    if values not in data:
+        raise ValueError(
+            f"{name} = {values!r}: the mesh has no such array at its vertices; "
+            f"it has {', '.join(map(repr, data)) or 'none'}"
+        )
+    return data[values]
+
+
+def takes_mesh_alone(function: Function) -> Function:
+    """Let a mesh stand for vertices and faces where arguments are given by position.
+
+    The function's first two arguments are vertices and faces. With a mesh, ``f(mesh, x)`` means
+    ``f(mesh, None, x)``.
+    """
+    third = list(inspect.signature(function).parameters)[2]
+
+    @functools.wraps(function)
+    def shifted(*args: Any, **kwargs: Any) -> Any:
+        has_more = len(args) > 1 and args[1] is not None and kind_of(args[0]) is not None
+        # A matrix that cannot be the third argument is meant as faces, an error.
+        if has_more and (third in ("values", "colors") or np.ndim(args[1]) < 2):
+            args = (args[0], None, *args[1:])
+        return function(*args, **kwargs)
+
+    return cast(Function, shifted)
 
 
 def owned_mesh(mesh_set: Any) -> Any:
@@ -66,65 +121,195 @@ def _not_moved(mesh: Any, V: Array) -> Any:
     raise NotImplementedError("pymeshlab sets no coordinates: filter a copy, see owned_mesh")
 
 
+def _pymeshlab_data(mesh: Any) -> dict[str, Any]:
+    data: dict[str, Any] = {}
+    if mesh.has_vertex_scalar():
+        data["quality"] = mesh.vertex_scalar_array()
+    if mesh.has_vertex_color():
+        data["color"] = mesh.vertex_color_matrix()
+    return data
+
+
+def _pair_arrays(pair: Any) -> tuple[Any, Any]:
+    return pair[0], pair[1]
+
+
+def _is_pair(mesh: Any) -> bool:
+    return isinstance(mesh, tuple) and len(mesh) == 2 and np.ndim(mesh[0]) == 2
+
+
+def _as_before(X: Array, points: Any) -> NDArray[Any]:
+    """Return coordinates in the floating-point type of `points`."""
+    dtype = np.asarray(points).dtype
+    return X.astype(dtype) if np.issubdtype(dtype, np.floating) else X
+
+
 def _pyvista_arrays(mesh: Any) -> tuple[Any, Any]:
     if not mesh.is_all_triangles:
+        if mesh.n_cells == mesh.n_verts + mesh.n_lines:
+            raise ValueError("the mesh has no faces: reconstruct a surface first")
         raise ValueError("the mesh has faces that are not triangles: call its triangulate() first")
     return mesh.points, mesh.regular_faces
 
 
-def _pyvista_moved(mesh: Any, V: Array) -> Any:
-    moved = mesh.copy()
-    moved.points = V.astype(mesh.points.dtype)
-    if "Normals" in moved.point_data:
-        moved.compute_normals(
-            cell_normals=False,
-            split_vertices=False,
-            consistent_normals=False,
-            auto_orient_normals=False,
-            inplace=True,
+_VTK_TRIANGLE = 5
+
+
+def _grid_arrays(mesh: Any) -> tuple[Any, Any]:
+    if set(np.unique(mesh.celltypes).tolist()) != {_VTK_TRIANGLE}:
+        raise ValueError(
+            "the grid has cells that are not triangles: pass its surface, "
+            "extract_surface().triangulate()"
         )
+    return mesh.points, mesh.cells_dict[_VTK_TRIANGLE]
+
+
+def _vtk_moved(mesh: Any, X: Array) -> Any:
+    V, F = (_pyvista_arrays if hasattr(mesh, "regular_faces") else _grid_arrays)(mesh)
+    moved = mesh.copy()
+    moved.points = _as_before(X, V)
+    for data, at in ((moved.point_data, "vertices"), (moved.cell_data, "faces")):
+        known = [data.active_normals_name] if data.active_normals_name else []
+        arrays = {name: data[name] for name in data.keys()}  # noqa: SIM118  it is no dict
+        for name, values in followed(arrays, F, np.asarray(V), X, at=at, normals=known).items():
+            data[name][:] = values
     return moved
 
 
 def _meshio_arrays(mesh: Any) -> tuple[Any, Any]:
     surfaces = sorted(set(mesh.cells_dict) - {"vertex", "line"})
     if surfaces != ["triangle"]:
-        raise ValueError(f"the mesh has cells {', '.join(surfaces)}: pass a mesh of triangles only")
+        raise ValueError(
+            f"the mesh has cells {', '.join(surfaces) or 'of no surface'}: pass a mesh of "
+            "triangles only, such as "
+            "pyvista.from_meshio(mesh).extract_surface().triangulate()"
+        )
     return mesh.points, mesh.cells_dict["triangle"]
 
 
-def _meshio_moved(mesh: Any, V: Array) -> Any:
+def _meshio_moved(mesh: Any, X: Array) -> Any:
+    V, F = _meshio_arrays(mesh)
     moved = copy.deepcopy(mesh)
-    moved.points = V.astype(mesh.points.dtype)
+    moved.points = _as_before(X, V)
+    moved.point_data.update(followed(mesh.point_data, F, np.asarray(V), X, at="vertices"))
+    for number, block in enumerate(mesh.cells):
+        if block.type != "triangle":
+            continue
+        arrays = {name: blocks[number] for name, blocks in mesh.cell_data.items()}
+        for name, values in followed(arrays, block.data, np.asarray(V), X, at="faces").items():
+            moved.cell_data[name][number] = values
     return moved
 
 
-def _open3d_moved(mesh: Any, V: Array) -> Any:
+def _open3d_arrays(mesh: Any) -> tuple[Any, Any]:
+    return np.asarray(mesh.vertices), np.asarray(mesh.triangles)
+
+
+def _open3d_moved(mesh: Any, X: Array) -> Any:
+    V, F = _open3d_arrays(mesh)
     moved = type(mesh)(mesh)
-    moved.vertices = type(mesh.vertices)(V)
-    if moved.has_triangle_normals():
-        moved.compute_triangle_normals()
-    if moved.has_vertex_normals():
-        moved.compute_vertex_normals()
+    vectors = type(mesh.vertices)
+    moved.vertices = vectors(X)
+    for name, at in (("vertex_normals", "vertices"), ("triangle_normals", "faces")):
+        given = {name: np.asarray(getattr(mesh, name))}
+        for of, values in followed(given, F, V, X, at=at).items():
+            setattr(moved, of, vectors(values))
     return moved
 
 
-def _trimesh_moved(mesh: Any, V: Array) -> Any:
+def _tensor_arrays(mesh: Any) -> tuple[Any, Any]:
+    return mesh.vertex.positions.cpu().numpy(), mesh.triangle.indices.cpu().numpy()
+
+
+def _tensor_data(attributes: Any) -> dict[str, Any]:
+    return {name: values.cpu().numpy() for name, values in attributes.items()}
+
+
+def _tensor_moved(mesh: Any, X: Array) -> Any:
+    V, F = _tensor_arrays(mesh)
+    moved = mesh.clone()
+    given = mesh.vertex.positions
+
+    def tensor(values: NDArray[Any]) -> Any:
+        return type(given)(values).to(given.device)
+
+    moved.vertex.positions = tensor(_as_before(X, V))
+    for attributes, at in ((moved.vertex, "vertices"), (moved.triangle, "faces")):
+        for name, values in followed(_tensor_data(attributes), F, V, X, at=at).items():
+            setattr(attributes, name, tensor(values))
+    return moved
+
+
+def _trimesh_arrays(mesh: Any) -> tuple[Any, Any]:
+    return mesh.vertices, mesh.faces
+
+
+def _trimesh_moved(mesh: Any, X: Array) -> Any:
+    V, F = (np.asarray(array) for array in _trimesh_arrays(mesh))
     moved = mesh.copy()
-    moved.vertices = V
+    moved.vertices = X  # which clears trimesh's cache
+    for data, at in ((moved.vertex_attributes, "vertices"), (moved.face_attributes, "faces")):
+        data.update(followed(data, F, V, X, at=at))
     return moved
 
 
-PYMESHLAB = MeshKind("pymeshlab.Mesh", "face_matrix", _pymeshlab_arrays, _not_moved)
+PYMESHLAB = MeshKind(
+    "pymeshlab.Mesh", "face_matrix", _pymeshlab_arrays, _not_moved, _pymeshlab_data
+)
+_PAIR = MeshKind(
+    "a tuple (vertices, faces)",
+    "",  # recognized by `_is_pair`
+    _pair_arrays,
+    lambda pair, X: (X, pair[1]),
+    lambda pair: {},
+)
 _KINDS = (
     PYMESHLAB,
-    MeshKind("pyvista.PolyData", "regular_faces", _pyvista_arrays, _pyvista_moved),
-    MeshKind("meshio.Mesh", "cells_dict", _meshio_arrays, _meshio_moved),
+    MeshKind(
+        "pyvista.PolyData",
+        "regular_faces",
+        _pyvista_arrays,
+        _vtk_moved,
+        lambda mesh: mesh.point_data,
+    ),
+    MeshKind(
+        "pyvista.UnstructuredGrid",
+        "celltypes",
+        _grid_arrays,
+        _vtk_moved,
+        lambda mesh: mesh.point_data,
+    ),
+    MeshKind(
+        "meshio.Mesh", "cells_dict", _meshio_arrays, _meshio_moved, lambda mesh: mesh.point_data
+    ),
     MeshKind(
         "open3d.geometry.TriangleMesh",
         "triangle_normals",
-        lambda mesh: (np.asarray(mesh.vertices), np.asarray(mesh.triangles)),
+        _open3d_arrays,
         _open3d_moved,
+        lambda mesh: {"vertex_colors": np.asarray(mesh.vertex_colors)},
     ),
-    MeshKind("trimesh.Trimesh", "faces", lambda mesh: (mesh.vertices, mesh.faces), _trimesh_moved),
+    MeshKind(
+        "open3d.t.geometry.TriangleMesh",
+        "triangle",
+        _tensor_arrays,
+        _tensor_moved,
+        lambda mesh: _tensor_data(mesh.vertex),
+    ),
+    MeshKind(
+        "trimesh.Trimesh",
+        "faces",
+        _trimesh_arrays,
+        _trimesh_moved,
+        lambda mesh: mesh.vertex_attributes,
+    ),
 )
+# By the name of a class or of one that it inherits from.
+_REMEDIES = {
+    "MultiBlock": "pass one block, or all as one: combine().extract_surface().triangulate()",
+    "Scene": "pass one of its geometries, or all as one: to_mesh()",
+    "PointCloud": "it has no faces: reconstruct a surface first",
+    "DataSet": "pass its surface: extract_surface().triangulate()",  # of pyvista
+    "str": "read the file first, e.g. with pyvista.read; or filter it with filter_files",
+    "PurePath": "read the file first, e.g. with pyvista.read; or filter it with filter_files",
+}

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from meshlab_spectral import _core
 from meshlab_spectral.errors import OptionError
+from meshlab_spectral.filters.representations import Report
 from meshlab_spectral.plugin import limits
 
 Array = NDArray[np.float64]
@@ -52,8 +53,8 @@ class Run:
 
     @property
     def plain_report(self) -> dict[str, Any]:
-        """The report with lists instead of arrays, for JSON."""
-        return plain(self.report)
+        """The report with lists instead of arrays, for JSON; prints in few lines."""
+        return Report(plain(self.report))
 
 
 def run(

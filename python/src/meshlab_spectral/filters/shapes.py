@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.filters.arrays import chosen_vertices, mesh_arrays, vertex_numbers
 from meshlab_spectral.filters.calling import filtered_by_plugin
-from meshlab_spectral.filters.mesh_objects import PYMESHLAB, kind_of
+from meshlab_spectral.filters.mesh_objects import PYMESHLAB, array_of, kind_of
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.running import Gain, Progress, run
 
@@ -53,12 +53,13 @@ def filtered(
     values = selected = None
     part: dict[str, Any] = {}
     if weights is not None:
-        values = vertex_numbers(weights, len(V), "weights")[:, None]
+        given = array_of(mesh_or_vertices, weights, "weights")
+        values = vertex_numbers(given, len(V), "weights")[:, None]
         part["weight"] = "vertex quality"
     elif getattr(options, "weight", "none") != "none":
         raise OptionError("weight = vertex quality: pass the quality as weights")
     if selection is not None:
-        selected = chosen_vertices(selection, len(V), F)
+        selected = chosen_vertices(array_of(mesh_or_vertices, selection, "selection"), len(V), F)
         part["selected"] = True
     elif getattr(options, "selected", False):
         raise OptionError("selected = True: pass the selected vertices or faces as selection")

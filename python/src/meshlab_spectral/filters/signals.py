@@ -10,17 +10,22 @@ from numpy.typing import ArrayLike, NDArray
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.filters.arrays import mesh_arrays
 from meshlab_spectral.filters.keywords import takes_options
+from meshlab_spectral.filters.mesh_objects import array_of, takes_mesh_alone
 from meshlab_spectral.filters.options import FilterOptions, TransferKeywords
+from meshlab_spectral.filters.representations import Report
 from meshlab_spectral.filters.running import Gain, Progress, Run, require_no_type, run
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
 _SCALARS = "apply_scalar_spectral_filter_per_vertex"
+# More than any atlas of brain regions has.
+_MOST_LABELS = 1000
 _COLORS = "apply_color_spectral_filter_per_vertex"
 
 
 @takes_options(FilterOptions, names=TransferKeywords.__annotations__)
+@takes_mesh_alone
 def filter_scalars(
     mesh_or_vertices: Any,
     faces: ArrayLike | None = None,
@@ -48,8 +53,10 @@ def filter_scalars(
     faces
         With coordinates: m x 3 vertex indices of triangles, from 0 to n - 1; any topology.
     values
-        n numbers, or n x k for k fields, each filtered on its own. NaN means no data: it stays, and
-        the surface ends there for the others. Values at unreferenced vertices are kept exactly.
+        n numbers, or n x k for k fields, each filtered on its own, or the name of such an array in
+        the mesh. NaN means no data: it stays, and the surface ends there for the others. Values at
+        unreferenced vertices are kept exactly. Labels would be averaged: filter where each of them
+        is, and take the label with most weight (see the example).
     options
         All options below in one object, instead of by name; others must have their defaults.
     gain, progress, threads
@@ -80,17 +87,26 @@ def filter_scalars(
     --------
     >>> smooth, report = filter_scalars(vertices, faces, curvature, feature_size="2%")
     >>> report["rms_change"], report["max_change"]
+
+    Labels, of which a low-pass takes small islands:
+
+    >>> names, indices = np.unique(labels, return_inverse=True)
+    >>> weights, _ = filter_scalars(vertices, faces, np.eye(len(names))[indices])
+    >>> smooth = names[weights.argmax(axis=1)]
     """
     V, F = mesh_arrays(mesh_or_vertices, faces)
     if values is None:
         raise TypeError("values: pass numbers to filter, one for each vertex")
     parameters = _options_for(options, named, gain)
-    Q = np.asarray(values, dtype=np.float64)
+    given_values = np.asarray(array_of(mesh_or_vertices, values, "values"))
+    Q = given_values.astype(np.float64)
     if Q.ndim not in (1, 2) or len(Q) != len(V) or Q.size == 0:
         raise ValueError(
             f"values have shape {Q.shape}: pass {len(V)} numbers, one for each vertex, or a matrix "
             f"with {len(V)} rows"
         )
+
+    labels = _warning_of_labels(given_values)
 
     def filtered(column: NDArray[np.float64]) -> Run:
         return _run(_SCALARS, V, F, parameters, column[:, None], gain, progress, threads)
@@ -99,12 +115,17 @@ def filter_scalars(
         runs = [filtered(column) for column in Q.T]
         reports = [one.plain_report for one in runs]
         warnings = [f"column {j}: {w}" for j, r in enumerate(reports) for w in r["warnings"]]
-        return np.hstack([_values(one) for one in runs]), {"columns": reports, "warnings": warnings}
+        warnings += labels
+        values = np.hstack([_values(one) for one in runs])
+        return values, Report(columns=reports, warnings=warnings)
     done = filtered(Q)
-    return _values(done)[:, 0], done.plain_report
+    report = done.plain_report
+    report["warnings"] += labels
+    return _values(done)[:, 0], report
 
 
 @takes_options(FilterOptions, names=TransferKeywords.__annotations__)
+@takes_mesh_alone
 def filter_colors(
     mesh_or_vertices: Any,
     faces: ArrayLike | None = None,
@@ -123,8 +144,8 @@ def filter_colors(
     mesh_or_vertices, faces, options, gain, progress, threads
         As for `filter_scalars`.
     colors
-        n x 3 or n x 4 integers from 0 to 255, or floating-point numbers from 0 to 1; the fourth
-        channel, alpha, is kept.
+        n x 3 or n x 4 integers from 0 to 255, or floating-point numbers from 0 to 1, or the name of
+        such an array in the mesh; the fourth channel, alpha, is kept.
     **named
 
     Returns
@@ -139,7 +160,7 @@ def filter_colors(
     if colors is None:
         raise TypeError("colors: pass red, green and blue of each vertex")
     parameters = _options_for(options, named, gain)
-    C = np.asarray(colors)
+    C = np.asarray(array_of(mesh_or_vertices, colors, "colors"))
     most = 1 if np.issubdtype(C.dtype, np.floating) else 255
     if C.shape not in ((len(V), 3), (len(V), 4)) or not ((C >= 0) & (most >= C)).all():
         raise ValueError(
@@ -151,6 +172,19 @@ def filter_colors(
     filtered = C.astype(np.float64 if most == 1 else np.uint8)
     filtered[:, :3] = _values(done) / (255 / most)
     return filtered, done.plain_report
+
+
+def _warning_of_labels(values: NDArray[Any]) -> list[str]:
+    """Warn of integers that may be labels: few different ones, and each often."""
+    if not (np.issubdtype(values.dtype, np.integer) or values.dtype == bool):
+        return []
+    count = len(np.unique(values))
+    if not 1 < count <= min(_MOST_LABELS, values.size // 4):
+        return []
+    return [
+        f"values: {count} different integers are averaged to fractions; if they are labels, filter "
+        "where each of them is, and take the label with most weight: see help(filter_scalars)"
+    ]
 
 
 def _options_for(options: FilterOptions | None, named: Any, gain: Gain | None) -> FilterOptions:

@@ -9,7 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from meshlab_spectral.filters.arrays import mesh_arrays
+from meshlab_spectral.filters.mesh_objects import takes_mesh_alone
 from meshlab_spectral.filters.options import Boundary, LaplacianKind, SpectrumOptions
+from meshlab_spectral.filters.representations import table
 from meshlab_spectral.filters.running import Progress, run
 
 Array = NDArray[np.float64]
@@ -96,6 +98,23 @@ class GeometrySpectrum:
     feature_size_99: float
     mismatch: float
 
+    def __repr__(self) -> str:
+        shown = ", ".join(
+            f"{name}={getattr(self, name):.4g}"
+            for name in ("area", "diagonal", "mean_edge", "noise_height", "feature_size_99")
+        )
+        return f"GeometrySpectrum({len(self.octave_feature_sizes)} octaves, {shown})"
+
+    def _repr_html_(self) -> str:
+        octaves = zip(self.octave_feature_sizes, self.octave_amplitudes, strict=True)
+        return table(
+            [
+                (f"{size:.3g}", f"{100 * size / self.diagonal:.3g} %", f"{height:.3g}")
+                for size, height in octaves
+            ],
+            ("feature size", "of the diagonal", "height of its details"),
+        )
+
     @property
     def noise_heights(self) -> Array:
         """Heights of the vertex noise that would explain each band on its own.
@@ -115,6 +134,7 @@ class GeometrySpectrum:
         return cls(**values)
 
 
+@takes_mesh_alone
 def geometry_spectrum(
     mesh_or_vertices: Any,
     faces: ArrayLike | None = None,
