@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import subprocess
 import sys
 from collections.abc import Callable
@@ -11,6 +12,7 @@ from typing import Any
 import matplotlib.image
 import numpy as np
 import pytest
+import pyvista
 from meshlab_spectral import (
     FilterOptions,
     GeometrySpectrum,
@@ -22,6 +24,7 @@ from meshlab_spectral import (
     plot_harmonics,
     plot_spectrum,
 )
+from meshlab_spectral.figures.pictures import to_full_colours
 from meshlab_spectral.figures.spectrum import draw_spectrum
 from numpy.typing import NDArray
 
@@ -75,6 +78,30 @@ def test_the_plot_is_the_picture_of_the_command(spectrum: GeometrySpectrum, tmp_
     draw_spectrum(spectrum, FilterOptions(), "cow", tmp_path / "command.png")
     plot, command = (matplotlib.image.imread(tmp_path / f"{n}.png") for n in ("plot", "command"))
     np.testing.assert_array_equal(plot, command)
+
+
+def test_a_notebook_shows_the_plot_as_the_value_of_a_cell(spectrum: GeometrySpectrum) -> None:
+    figure = plot_spectrum(spectrum)
+    picture = matplotlib.image.imread(io.BytesIO(figure._repr_png_()))
+    width, height = figure.get_size_inches() * figure.dpi
+    assert picture.shape[:2] == (round(height), round(width))
+
+
+@pytest.mark.parametrize("share", [0.3, 0.05, 1e-3])
+def test_harmonics_of_one_of_several_components_have_full_colours(share: float) -> None:
+    sphere = pyvista.Icosphere(nsub=2)
+    V, F = np.array(sphere.points, dtype=float), np.array(sphere.regular_faces)
+    both = np.vstack([V, share * V + 3])
+    faces = np.vstack([F, F + len(V)])
+    basis = manifold_harmonics(both, faces, 12)
+    for f in basis.harmonics.T:
+        colours = to_full_colours(f, basis.masses)
+        assert np.isfinite(colours).all()
+        assert np.abs(colours).max() == 1
+    colours = to_full_colours(np.zeros(len(both)), basis.masses)
+    np.testing.assert_array_equal(colours, 0)
+    with np.errstate(all="raise"):
+        plot_harmonics((both, faces), basis, [0, 1, 2, 11]).close()
 
 
 def test_harmonics_are_shown_in_rows_red_where_positive(mesh: Mesh, basis: Harmonics) -> None:

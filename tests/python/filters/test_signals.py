@@ -123,6 +123,51 @@ def test_colours_in_arrays_are_those_of_the_filter(decimated: Decimated) -> None
         filter_colors(V, F, C.astype(float))
 
 
+def test_colours_that_nothing_filters_stay(decimated: Decimated) -> None:
+    V, F = decimated("cow.obj", 1000)
+    rng = np.random.default_rng(4)
+    floats = rng.uniform(size=(len(V), 4))
+    for C in (floats, floats.astype(np.float32)):
+        same, _ = filter_colors(V, F, C, gain=lambda w: np.ones_like(w))
+        change = same[:, :3] - C[:, :3]
+        assert np.abs(change).max() < 0.5 / 255 + 1e-6
+        assert abs(change.mean()) < 0.02 / 255 * 3  # rounded, not floored
+        np.testing.assert_array_equal(same[:, 3], C[:, 3])
+    levels = rng.integers(0, 256, (len(V), 3))
+    for kind in (np.uint8, np.int64):
+        same, _ = filter_colors(V, F, levels.astype(kind), gain=lambda w: np.ones_like(w))
+        np.testing.assert_array_equal(same, levels)
+
+
+@pytest.mark.parametrize("kind", [np.uint8, np.int32, np.int64, bool])
+def test_labels_earn_a_warning_whose_remedy_keeps_them(decimated: Decimated, kind: Any) -> None:
+    V, F = decimated("cow.obj", 1000)
+    labels = (V[:, 0] > np.median(V[:, 0])).astype(kind)
+    _, report = filter_scalars(V, F, labels, feature_size="10%")
+    assert any("if they are labels" in one for one in report["warnings"])
+    names, indices = np.unique(labels, return_inverse=True)
+    weights, report = filter_scalars(V, F, np.eye(len(names))[indices], feature_size="10%")
+    assert not any("labels" in one for one in report["warnings"])
+    smooth = names[weights.argmax(axis=1)]
+    assert smooth.dtype == labels.dtype
+    assert np.mean(smooth == labels) > 0.9
+    inside = np.abs(V[:, 0] - np.median(V[:, 0])) > 0.1 * np.ptp(V[:, 0])
+    np.testing.assert_array_equal(smooth[inside], labels[inside])
+
+
+def test_numbers_that_are_no_labels_earn_no_warning(decimated: Decimated) -> None:
+    V, F = decimated("cow.obj", 1000)
+    height = V[:, 1] / np.ptp(V[:, 1])
+    for values in (
+        height,
+        (height > 0).astype(float),
+        (1e6 * height).astype(int),
+        np.ones(len(V), int),
+    ):
+        _, report = filter_scalars(V, F, values)
+        assert not any("labels" in one for one in report["warnings"])
+
+
 def test_ideal_responses_are_exact(decimated: Decimated) -> None:
     V, F = decimated("cow.obj")
     Q = noisy_field(V)
