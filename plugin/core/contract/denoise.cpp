@@ -54,6 +54,12 @@ Fields<DenoiseCall> denoiseFields() {
     };
 }
 
+/// Whether the estimate of noise was made.
+bool isSearched(NoiseKind kind) {
+    return kind != NoiseKind::Tessellation && kind != NoiseKind::TooFew &&
+           kind != NoiseKind::Voxels;
+}
+
 Entries<DenoiseResult> denoiseEntries() {
     using R = DenoiseResult;
     return joined<R>(
@@ -74,6 +80,11 @@ Entries<DenoiseResult> denoiseEntries() {
              {"noise_correlation",
               "of the noise of neighbouring vertices, as measured; above 0.2 it is shape",
               [](const R& r) -> Value { return r.diagnosis.noise.correlation; }},
+             {"noise_searched",
+              "whether the mesh was searched for noise; not with needle triangles, too few "
+              "vertices "
+              "or voxels",
+              [](const R& r) -> Value { return isSearched(r.diagnosis.kind); }},
              {"spikes", "number of vertices off the surface that were put back",
               [](const R& r) -> Value { return static_cast<int>(r.diagnosis.spikes); }},
              {"voxel_size",

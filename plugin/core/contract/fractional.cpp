@@ -1,4 +1,3 @@
-#include <cmath>
 #include <string>
 #include <utility>
 
@@ -157,13 +156,6 @@ Fields<FractionalCall> fractionalFields() {
     return fields;
 }
 
-/// Whether a size is the default of the mesh: one that nobody chose. A dialog rounds its number.
-bool isDefaultFeatureSize(double size, const MeshLengths& mesh) {
-    constexpr double kRounding = 1e-4;
-    const double usual = featureSizeOf(mesh);
-    return std::abs(size - usual) <= kRounding * usual;
-}
-
 FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values& given,
                  const Progress& progress) {
     static const Fields<FractionalCall> fields = fractionalFields();
@@ -186,7 +178,7 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
     output.report = reportOf(fractionalEntries(), result);
     output.text = fractionalText(options, result, mesh.diagonal);
     output.warnings = fractionalWarnings(options, result, mesh.diagonal);
-    append(percentageWarnings(mesh), output.warnings);
+    if (!options.keepThinParts) append(percentageWarnings(mesh), output.warnings);
     append(unusedWarnings(fields, call), output.warnings);
     if (call.result == Wanted::Details)
         output.details = input.V - result.V;

@@ -214,13 +214,14 @@ std::vector<std::string> fractionalWarnings(const FilterOptions& options,
                                ? "nothing can move: every vertex lies on a crease or a fixed "
                                  "boundary. Choose a larger crease_angle"
                                : allFixedWarning("move"));
-    if (options.transferFunction.type != FilterType::Custom &&
+    const bool isDefault = options.keepThinParts;
+    if (!isDefault && options.transferFunction.type != FilterType::Custom &&
         result.featureSize < result.meanEdge && !isAtRest)
         warnings.push_back(edgeWarning(result));
     const TransferFunctionOptions& transfer = options.transferFunction;
     const bool keepsTheRest = transfer.type == FilterType::LowPass && transfer.passGain >= 1.0;
-    if (keepsTheRest && result.shrunkenPart > kNoticeable && result.toleranceReached &&
-        result.cutoffReached)
+    if (!isDefault && keepsTheRest && result.shrunkenPart > kNoticeable &&
+        result.toleranceReached && result.cutoffReached)
         warnings.push_back(shrinkingWarning(result, diagonal));
     if (options.preserveVolume && result.volumes.preserved < result.components)
         warnings.push_back(volumeWarning(result));

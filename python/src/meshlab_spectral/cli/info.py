@@ -42,9 +42,11 @@ def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
     def length(name: str) -> str:
         """Format a length, also in mean edges and in percent of the diagonal."""
         x = report[name]
-        return f"{x:.4g} ({x / report['mean_edge']:.2g}e, {x * percent:.2g} %)" if x else "none"
+        return f"{x:.4g} ({x / report['mean_edge']:.3g}e, {x * percent:.3g} %)" if x else "none"
 
     selected = [report.get(f"selected_{what}", 0) for what in ("faces", "vertices")]
+    # What was found nevertheless is none that was searched for: voxel steps.
+    searched = report["noise_searched"] or report["noise_height"] > 0
     voxel = " x ".join(f"{x:.4g}" for x in report["voxel_size"] if x)
     rows = [
         ("Meshes", ", ".join(report["meshes"]) if len(report["meshes"]) > 1 else ""),
@@ -58,7 +60,7 @@ def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
         ("Extent", " x ".join(f"{x:.4g}" for x in report["extent"])),
         ("Diagonal", f"{report['diagonal']:.4g}"),
         ("Mean edge", f"{report['mean_edge']:.4g} ({report['mean_edge'] * percent:.2g} %)"),
-        ("Noise height", length("noise_height")),
+        ("Noise height", length("noise_height") if searched else "not searched for, see below"),
         ("Noise size", length("noise_size") if report["noise_size"] else ""),
         ("Spikes", f"{report['spikes'] or ''}"),
         ("Voxels", voxel),

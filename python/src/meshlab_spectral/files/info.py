@@ -35,7 +35,7 @@ def mesh_info(source: Path, on_stage: StageCallback, mesh: str | None = None) ->
         "selected_vertices" and "selected_faces"; in the units of the file, "extent" along each
         axis, "diagonal", "mean_edge", "area" (squared) and "default_feature_size"; what Spectral
         Denoise would remove: "noise_summary", "noise_height" and "noise_size", the number of
-        "spikes", "voxel_size"; "warnings".
+        "spikes", "voxel_size", and whether it could search, "noise_searched"; "warnings".
     """
     on_stage("reading", None)
     parts = load_parts(source, mesh)
@@ -55,6 +55,7 @@ def mesh_info(source: Path, on_stage: StageCallback, mesh: str | None = None) ->
         "extent": np.ptp(V, axis=0),
         **{name: spectrum[name] for name in _LENGTHS},
         "noise_summary": denoised["summary"],
+        "noise_searched": denoised["noise_searched"],
         "noise_height": denoised["noise_height"],
         "noise_size": denoised["noise_size"],
         "spikes": denoised["spikes"],

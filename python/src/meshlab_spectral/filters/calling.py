@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -18,13 +17,10 @@ from meshlab_spectral.filters.running import plain
 from meshlab_spectral.plugin.failed_calls import is_interrupt, keep_failed
 from meshlab_spectral.plugin.library import last_error, last_summary, last_warnings
 from meshlab_spectral.plugin.loading import load
+from meshlab_spectral.plugin.pymeshlab_texts import corrected
 
 # The vertex attribute in which the plugin stores the details.
 DETAILS = "spectral_details"
-
-_PLAIN_SIZE = re.compile(r"Parameter (\w+): must be a pymeshlab\.Percentage")
-_RANGE = re.compile(r"Must be a value between 0 and (\d+)")
-_TOO_LARGE = 2**31
 
 
 def call_filter(mesh_set: Any, name: str, parameters: dict[str, Any]) -> dict[str, Any]:
@@ -63,14 +59,10 @@ def call_filter(mesh_set: Any, name: str, parameters: dict[str, Any]) -> dict[st
         keep_failed(mesh_set)
         if is_interrupt(error):
             raise KeyboardInterrupt from None
-        raise _error_of(reason_of(error)) from error
-    except pymeshlab.InvalidEnumException as error:
+        raise _error_of(reason_of(corrected(mesh_set, name, parameters, error))) from error
+    except (pymeshlab.InvalidEnumException, RuntimeError, TypeError) as error:
         keep_failed(mesh_set)
-        raise FilterError(_no_such_choice(parameters, str(error))) from error
-    except (RuntimeError, TypeError) as error:  # a type that pymeshlab cannot convert
-        keep_failed(mesh_set)
-        defaults = mesh_set.filter_parameter_values(name)
-        raise FilterError(_wrong_types(parameters, defaults) or reason_of(error)) from error
+        raise FilterError(reason_of(corrected(mesh_set, name, parameters, error))) from error
     report["warnings"] = last_warnings()
     if summary := last_summary():
         report["summary"] = summary
@@ -129,53 +121,14 @@ def _error_of(reason: str) -> FilterError:
     """Return the error that the plugin has thrown, or pymeshlab's."""
     found = last_error()
     if found is None:
-        return FilterError(_size_wanted(reason))
+        return FilterError(reason)
     kind, code, limit = found
     error: FilterError = getattr(errors, kind)(reason)
     error.code, error.limit = code, limit
     return error
 
 
-def _size_wanted(reason: str) -> str:
-    """Replace pymeshlab's message for a size given as a plain number."""
-    found = _PLAIN_SIZE.match(reason)
-    if found is None:
-        return reason
-    return f"{found[1]}: must be a percentage or a length (RichPercentage in a script)"
-
-
-def _no_such_choice(parameters: dict[str, Any], reason: str) -> str:
-    """Add the parameter to pymeshlab's message, and correct its range."""
-    named = [
-        name
-        for name, value in parameters.items()
-        if reason.startswith((f"Enum {value} not valid", f"Enum '{value}' not found"))
-    ]
-    found = _RANGE.search(reason)
-    choices = f"choose 0 to {int(found[1]) - 1}" if found else reason
-    return f"{' or '.join(named)} = {parameters[named[0]]}: {choices}" if named else reason
-
-
-def _wrong_types(parameters: dict[str, Any], defaults: dict[str, Any]) -> str:
-    """Name the parameters whose types are not those of their defaults; pymeshlab does not."""
-    kinds = {bool: "true or false", int: "an integer of 32 bits", float: "a number"}
-    wrong = [
-        f"{name} = {value}: must be {kinds.get(type(defaults[name]), 'of another type')}"
-        for name, value in parameters.items()
-        if name in defaults and not _fits(value, type(defaults[name]))
-    ]
-    return "; ".join(wrong)
-
-
-def _fits(value: Any, wanted: type) -> bool:
-    if wanted is int:
-        return isinstance(value, int) and abs(value) < _TOO_LARGE
-    if wanted is float:
-        return value is not None and not isinstance(value, str)
-    return isinstance(value, wanted)
-
-
-def reason_of(error: Exception) -> str:
+def reason_of(error: Exception | str) -> str:
     """Extract the relevant part of pymeshlab's message, as one line."""
     lines = [line.strip() for line in str(error).splitlines() if line.strip()]
     for start in ("Details: ", "Error details: "):

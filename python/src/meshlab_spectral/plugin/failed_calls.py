@@ -12,6 +12,8 @@ import functools
 from collections.abc import Callable
 from typing import Any
 
+from meshlab_spectral.plugin.pymeshlab_texts import corrected
+
 _STOPPED = "Details: cancelled"
 _last_failed: Any = None
 
@@ -27,8 +29,11 @@ def is_interrupt(error: Exception) -> bool:
     return str(error).rstrip().endswith(_STOPPED)
 
 
-def kept_when_failed(method: Callable[..., Any]) -> Callable[..., Any]:
-    """Wrap a filter, a method of MeshSet, so that its MeshSet is kept alive when it throws."""
+def kept_when_failed(name: str, method: Callable[..., Any]) -> Callable[..., Any]:
+    """Wrap a filter, a method of MeshSet, so that its MeshSet is kept alive when it throws.
+
+    What pymeshlab says of wrong arguments is put right, in an exception of the same type.
+    """
 
     @functools.wraps(method)
     def keeping(mesh_set: Any, *arguments: Any, **parameters: Any) -> Any:
@@ -38,6 +43,9 @@ def kept_when_failed(method: Callable[..., Any]) -> Callable[..., Any]:
             keep_failed(mesh_set)
             if is_interrupt(error):
                 raise KeyboardInterrupt from None
+            text = corrected(mesh_set, name, parameters, error)
+            if text != str(error):
+                raise type(error)(text) from None
             raise
 
     return keeping

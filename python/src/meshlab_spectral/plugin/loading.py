@@ -66,7 +66,7 @@ def load() -> None:
     # pymeshlab only creates methods on import, for the filters it knows by then.
     for name in pymeshlab.filter_list():
         if not hasattr(pymeshlab.MeshSet, name):
-            method = kept_when_failed(pymeshlab.bind_function(name))
+            method = kept_when_failed(name, pymeshlab.bind_function(name))
             setattr(pymeshlab.MeshSet, name, method)
 
 

@@ -1,0 +1,61 @@
+"""Texts of pymeshlab's errors about arguments, put right.
+
+pymeshlab 2025.7 names classes that it does not have (Percentage, AbsoluteValue), counts one choice
+too many, and names no parameter whose value it cannot convert.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+_PLAIN_SIZE = re.compile(r"Parameter (\w+): must be a pymeshlab\.Percentage")
+_RANGE = re.compile(r"Must be a value between 0 and (\d+)")
+_NOT_CONVERTED = re.compile("Unable to cast Python instance|incompatible function arguments")
+_TOO_LARGE = 2**31
+
+
+def corrected(mesh_set: Any, name: str, parameters: dict[str, Any], error: Exception) -> str:
+    """Return the text of an error that the filter `name` has thrown for these arguments."""
+    text = str(error)
+    if found := _PLAIN_SIZE.match(text):
+        return (
+            f"{found[1]}: must be a percentage or a length, pymeshlab.PercentageValue or "
+            "pymeshlab.PureValue (RichPercentage in a script)"
+        )
+    if text.startswith("Enum "):
+        return _no_such_choice(parameters, text)
+    if _NOT_CONVERTED.search(text):
+        return _wrong_types(parameters, mesh_set.filter_parameter_values(name)) or text
+    return text
+
+
+def _no_such_choice(parameters: dict[str, Any], reason: str) -> str:
+    """Add the parameter to pymeshlab's message, and correct its range."""
+    named = [
+        name
+        for name, value in parameters.items()
+        if reason.startswith((f"Enum {value} not valid", f"Enum '{value}' not found"))
+    ]
+    found = _RANGE.search(reason)
+    choices = f"choose 0 to {int(found[1]) - 1}" if found else reason
+    return f"{' or '.join(named)} = {parameters[named[0]]}: {choices}" if named else reason
+
+
+def _wrong_types(parameters: dict[str, Any], defaults: dict[str, Any]) -> str:
+    """Name the parameters whose types are not those of their defaults; pymeshlab does not."""
+    kinds = {bool: "true or false", int: "an integer of 32 bits", float: "a number", str: "a text"}
+    wrong = [
+        f"{name} = {value}: must be {kinds.get(type(defaults[name]), 'of another type')}"
+        for name, value in parameters.items()
+        if name in defaults and not _fits(value, type(defaults[name]))
+    ]
+    return "; ".join(wrong)
+
+
+def _fits(value: Any, wanted: type) -> bool:
+    if wanted is int:
+        return isinstance(value, int) and abs(value) < _TOO_LARGE
+    if wanted is float:
+        return value is not None and not isinstance(value, str)
+    return isinstance(value, wanted)
