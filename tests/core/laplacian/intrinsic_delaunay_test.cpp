@@ -146,12 +146,10 @@ struct NeedleRectangle {
     int nx, ny;
 };
 
-/// 31 x 3 or 11 x 11 vertices; cells are up to 1.5 million times as long as they are wide.
-constexpr NeedleRectangle kNeedleRectangles[] = {{0.1, 100, 30, 2},
-                                                 {0.01, 100, 30, 2},
-                                                 {1e-3, 100, 30, 2},
-                                                 {1, 1000, 10, 10},
-                                                 {0.1, 1000, 10, 10}};
+/// 31 x 3 or 11 x 11 vertices; the last one's cells are 150 million times as long as they are wide.
+constexpr NeedleRectangle kNeedleRectangles[] = {{0.1, 100, 30, 2},   {0.01, 100, 30, 2},
+                                                 {1e-3, 100, 30, 2},  {1, 1000, 10, 10},
+                                                 {0.1, 1000, 10, 10}, {1e-3, 1e4, 30, 2}};
 
 Mesh turnedAtRandom(Mesh mesh) {
     const Eigen::Quaterniond q(Eigen::Vector4d(Eigen::Vector4d::Random()).normalized());
@@ -209,6 +207,7 @@ TEST(IntrinsicDelaunay, EndsOnEveryRotationOfARectangleOfNeedles) {
 TEST(IntrinsicDelaunay, OfNeedlesHasTheEigenvaluesOfTheFlatRectangle) {
     std::srand(2);
     for (const NeedleRectangle& of : kNeedleRectangles) {
+        if (of.height > 1e6 * of.width) continue;  // no row of W can hold both kinds of weights
         const Mesh flat = testing::rectangle(of.width, of.height, of.nx, of.ny);
         const Eigen::VectorXd expected = gridEigenvalues(of, flat);
         // The error of a dense solver, and of W, relative to the largest eigenvalue; the weights
