@@ -1,3 +1,4 @@
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -156,6 +157,14 @@ Fields<FractionalCall> fractionalFields() {
     return fields;
 }
 
+/// Whether a size is the default of the mesh: one that nobody chose. Dialogs and `info` round its
+/// number.
+bool isDefaultFeatureSize(double size, const MeshLengths& mesh) {
+    constexpr double kRounding = 0.01;
+    const double usual = featureSizeOf(mesh);
+    return std::abs(size - usual) <= kRounding * usual;
+}
+
 FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values& given,
                  const Progress& progress) {
     static const Fields<FractionalCall> fields = fractionalFields();
@@ -178,7 +187,7 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
     output.report = reportOf(fractionalEntries(), result);
     output.text = fractionalText(options, result, mesh.diagonal);
     output.warnings = fractionalWarnings(options, result, mesh.diagonal);
-    if (!options.keepThinParts) append(percentageWarnings(mesh), output.warnings);
+    append(percentageWarnings(mesh), output.warnings);
     append(unusedWarnings(fields, call), output.warnings);
     if (call.result == Wanted::Details)
         output.details = input.V - result.V;

@@ -124,8 +124,7 @@ FilterOutput filterValues(const char* name, const char* signal, const FilterInpu
     output.report = reportOf(signalEntries(), result);
     output.text = text.str();
     output.warnings = warningsOf(options.part.selected, result);
-    if (!isDefaultFeatureSize(call.featureSize, mesh))
-        append(percentageWarnings(mesh), output.warnings);
+    append(percentageWarnings(mesh), output.warnings);
     append(unusedWarnings(fields, call), output.warnings);
     output.values = std::move(result.Y);
     return output;

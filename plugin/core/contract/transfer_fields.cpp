@@ -1,7 +1,6 @@
 #include "core/contract/transfer_fields.h"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "core/support/frequency.h"
@@ -48,12 +47,6 @@ std::string nameOf(FilterType type) {
 
 double featureSizeOf(const MeshLengths& mesh) {
     return defaultFeatureSize(mesh.meanEdge, mesh.surfaceDiagonal);
-}
-
-bool isDefaultFeatureSize(double size, const MeshLengths& mesh) {
-    constexpr double kRounding = 0.01;
-    const double usual = featureSizeOf(mesh);
-    return std::abs(size - usual) <= kRounding * usual;
 }
 
 }  // namespace spectral

@@ -32,10 +32,6 @@ std::string nameOf(FilterType type);
 /// The default feature size of a mesh.
 double featureSizeOf(const MeshLengths& mesh);
 
-/// Whether a size is the default of the mesh, one that nobody chose: dialogs and `info` round it to
-/// a few digits. It earns no warning that advises another.
-bool isDefaultFeatureSize(double size, const MeshLengths& mesh);
-
 /// Field `feature_size`.
 template <class Call, class At>
 Field<Call> featureSizeField(At at, const char* help) {
