@@ -60,6 +60,7 @@ def text_numbers(
     first: int,
     are_lists: Sequence[bool],
     comments: bool,
+    continued: int,
     is_whole: bool,
 ) -> _Numbers: ...
 def binary_numbers(

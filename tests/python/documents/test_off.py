@@ -89,10 +89,10 @@ def test_a_cow_is_read_as_meshlab_reads_it(samples: Path, tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (b"", "first word is not OFF"),
+        (b"Dear all,\n", "is not OFF .its first word is not OFF"),
         (b"OFF BINARY\n\0\0\0\4", "is binary.*save it as PLY"),
         (b"4OFF\n1 0 0\n0 0 0 1\n", "vertices other than x y z"),
-        (PLAIN.replace(b"0\n1 1", b"0 1 1"), "does not have one line per vertex"),
+        (PLAIN.replace(b"0\n1 1", b"0 1 1")[:-2], "cannot be read as OFF"),
         (PLAIN.replace(b"4 2", b"4000000000 2"), "claims 4000000000 vertices"),
         (PLAIN.replace(b"4 2", b"-4 2"), "claims -4 vertices"),
         (PLAIN[:-16], "claims 4 vertices and 2 faces, in 4 lines"),
@@ -100,7 +100,7 @@ def test_a_cow_is_read_as_meshlab_reads_it(samples: Path, tmp_path: Path) -> Non
         (PLAIN.replace(b"1 1 0", b"1 1 O"), "row 2 is '1 1 O'"),
         (PLAIN.replace(b"3 0 2", b"9 0 2"), "fewer corners than it claims"),
         (PLAIN.replace(b"0 2 3", b"0 2 4"), r"face 1 has the corners \[0, 2, 4\]"),
-        (PLAIN.replace(b"3 0 2 3", b"4 0 2 3 9"), "index 9 is out of bounds"),
+        (PLAIN.replace(b"3 0 2 3", b"4 0 2 3 9"), r"face 2 has the corners \[0, 3, 9\]"),
     ],
 )
 def test_a_damaged_or_unknown_file_is_refused(content: bytes, message: str, tmp_path: Path) -> None:

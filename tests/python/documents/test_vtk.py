@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -80,6 +81,9 @@ def test_only_points_and_normals_change(name: str, binary: bool, tmp_path: Path)
     assert (cosines > 0.8).all()
     data = (tmp_path / f"saved{path.suffix}").read_bytes()
     assert (b'format="ascii"' in data) == (path.suffix != ".vtk" and not binary)
+    if path.suffix == ".vtk" and not binary:  # of the text only numbers differ
+        words = re.compile(rb"-?\d[\d.e+-]*")
+        assert words.sub(b"0", data) == words.sub(b"0", path.read_bytes())
     saved(path, part.vertices)
     assert (tmp_path / f"saved{path.suffix}").read_bytes() == path.read_bytes()
 

@@ -1,4 +1,4 @@
-"""Opening a mesh file as a document, by its extension."""
+"""Opening a mesh file as a document, by its extension or its first bytes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,6 @@ if TYPE_CHECKING:
     from meshlab_spectral.documents.document import Document
 
 # Extension -> module with `read(path) -> Document`. Imported late: some need packages of an extra.
-# FreeSurfer names a surface by what it is, such as lh.pial.
 _MODULES = {
     "ply": "ply",
     "obj": "obj",
@@ -23,26 +22,50 @@ _MODULES = {
     "vtp": "vtk",
     "vtu": "vtk",
     "gii": "brain",
-    "inflated": "brain",
-    "pial": "brain",
-    "smoothwm": "brain",
-    "sphere": "brain",
-    "white": "brain",
+    "gii.gz": "brain",
 }
-PATCHED = frozenset(_MODULES)
+# FreeSurfer names a surface by what it is, such as lh.pial or lh.pial.T1: it is known by its first
+# bytes. These endings are searched for in folders by name, too.
+FREE_SURFER = "freesurfer"
+TRIANGLES = b"\xff\xff\xfe"
+FREE_SURFER_ENDINGS = frozenset({"inflated", "pial", "smoothwm", "sphere", "white"})
+PATCHED = frozenset(_MODULES) | FREE_SURFER_ENDINGS
 
 
-def is_patched(path: Path) -> bool:
-    """Whether `open_document` knows the extension of a file."""
-    return path.suffix[1:].lower() in PATCHED
+def ending_of(name: str) -> str:
+    """Return the extension of a file name, in its original case and without the dot."""
+    stem, dot, ending = name.rpartition(".")
+    if ending.lower() == "gz" and stem.lower().endswith(".gii"):
+        return name[-len("gii.gz") :]
+    return ending if stem and dot else ""
+
+
+def format_of(path: Path) -> str | None:
+    """Return the format as which `open_document` reads a file: an extension, or FREE_SURFER.
+
+    None if it does not know it.
+    """
+    ending = ending_of(path.name).lower()
+    if ending in _MODULES:
+        return ending
+    return FREE_SURFER if ending in FREE_SURFER_ENDINGS or is_free_surfer(path) else None
+
+
+def is_free_surfer(path: Path) -> bool:
+    """Whether a file begins as a surface of FreeSurfer; false if it cannot be read."""
+    try:
+        with path.open("rb") as file:
+            return file.read(len(TRIANGLES)) == TRIANGLES
+    except OSError:
+        return False
 
 
 def open_document(path: Path) -> Document:
-    """Read a mesh file of one of the formats in `PATCHED`.
+    """Read a mesh file of one of the formats that `format_of` tells.
 
     Raises MeshFileError when it is damaged, or holds something that cannot be read, and
     MissingPackageError when its format needs the extra "formats", which is not installed.
     """
-    module = import_module(f"meshlab_spectral.documents.{_MODULES[path.suffix[1:].lower()]}")
-    document: Document = module.read(path)
+    module = _MODULES.get(ending_of(path.name).lower(), "brain")
+    document: Document = import_module(f"meshlab_spectral.documents.{module}").read(path)
     return document

@@ -1,7 +1,8 @@
 """VTK files, read and written with PyVista: legacy .vtk, and XML .vtp and .vtu.
 
 All arrays are kept, but VTK writes its own version of the format, without comments and with no
-compression but zlib. Legacy text becomes binary: VTK would write only six digits.
+compression but zlib. In legacy text, of which VTK would write only six digits, coordinates and
+normals are replaced in place.
 """
 
 from __future__ import annotations
@@ -14,23 +15,27 @@ from typing import Any
 
 import numpy as np
 
-from meshlab_spectral.documents.digits import rounding_told, widening_warnings
-from meshlab_spectral.documents.document import (
-    Array,
-    Document,
-    Indices,
-    Part,
-    check_vertices,
-    unreadable,
-    unsupported,
+from meshlab_spectral.documents.causes import unreadable, unsupported
+from meshlab_spectral.documents.digits import (
+    DOUBLE,
+    SINGLE,
+    digits_for,
+    rounding_told,
+    widening_warnings,
 )
+from meshlab_spectral.documents.document import Array, Document, Indices, Part, check_vertices
 from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.documents.polygons import strip_triangles, triangles
+from meshlab_spectral.documents.text import Change, write_patched
 from meshlab_spectral.extras import check_extras
 
 _LARGEST_RATIO = 100  # of counts to bytes; zlib packs fewer than 86 points into a byte
 _COUNTS = re.compile(rb'(?:NumberOf\w+="|\n(?:POINTS|CELLS|POLYGONS|LINES|VERTICES)\s+)(-?\d+)')
 _TEXT = re.compile(rb'<Points>\s*<DataArray[^>]*format="ascii"')
+# Legacy text, after two lines of head and title; then its points, and arrays.
+_LEGACY = re.compile(rb"#[^\n]*\n[^\n]*\n\s*ASCII\s", re.IGNORECASE)
+_POINTS = re.compile(rb"(?mi)^[ \t]*POINTS[ \t]+\d+[ \t]+(\w+)[ \t]*[\r\n]\s*")
+_SECTION = re.compile(rb"(?mi)^[ \t]*(POINT_DATA|CELL_DATA)\b")
 _OTHERS, _STRIP, _POLYGONS = (0, 1, 2, 3, 4), 6, (5, 7, 9)  # VTK cell types
 _EXTRACT = "extract its surface first (in ParaView: Filters > Extract Surface), and save it as .vtp"
 
@@ -67,6 +72,8 @@ class _VtkDocument(Document):
             return []
         mesh = self.mesh.copy()
         told = None if mesh.points.dtype == np.float64 else rounding_told(before, after)
+        if mesh.points.dtype.kind != "f":
+            told = "the file has integers"
         mesh.points = after.astype(np.result_type(mesh.points, "f8" if told else "f4"))
         for normals in _normals(mesh.point_data):
             normals[:] = following_normals(before, after, faces, np.array(normals))
@@ -76,8 +83,61 @@ class _VtkDocument(Document):
             length = np.linalg.norm(new, axis=1, keepdims=True) * side
             turned = (old != new).any(axis=1) & (length[:, 0] != 0)
             normals[turned] = new[turned] / length[turned]
-        mesh.save(target, binary=not _TEXT.search(self.path.read_bytes()))
+        content = self.path.read_bytes()
+        changes, text = _changes_of_text(content, self.mesh, mesh, bool(told))
+        if changes:
+            is_double = mesh.points.dtype == np.float64
+            changes[0] = (*changes[0][:-1], DOUBLE if is_double else digits_for(before, after))
+            with target.open("wb") as file:
+                write_patched(file, text, changes)
+        else:
+            mesh.save(target, binary=not _TEXT.search(content))
         return widening_warnings(told)
+
+
+def _changes_of_text(
+    content: bytes, before: Any, after: Any, is_wide: bool
+) -> tuple[list[Change], bytes]:
+    """Return the changes of a legacy text, first those of its points, and the text to change.
+
+    In that, points are declared as double if `is_wide`. There are no changes if it is no such text.
+    """
+    head = _LEGACY.match(content)
+    points = _POINTS.search(content, head.end()) if head else None
+    if not points:
+        return [], content
+    if is_wide:
+        content = content[: points.start(1)] + b"double" + content[points.end(1) :]
+        points = _POINTS.search(content, points.start())
+        assert points is not None
+    changes = [_change(points.end(), before.points, after.points, SINGLE)]
+    for association, keyword in (("point_data", b"POINT_DATA"), ("cell_data", b"CELL_DATA")):
+        old, new = (getattr(mesh, association) for mesh in (before, after))
+        for name in _names_of_normals(old):
+            place = _place_of_array(content, points.end(), keyword, name)
+            if place is not None:
+                changes.append(_change(place, old[name], new[name], SINGLE))
+    return changes, content
+
+
+def _change(place: int, before: Any, after: Any, digits: int) -> Change:
+    """Return the change of all numbers of an array, which follow each other from a place on."""
+    numbers = (np.asarray(one, np.float64).reshape(1, -1) for one in (before, after))
+    return np.array([place]), 0, *numbers, digits
+
+
+def _place_of_array(content: bytes, begin: int, section: bytes, name: str) -> int | None:
+    """Return where the numbers of a vector array begin in legacy text; None if it is not found."""
+    encoded = re.escape(name.replace("%", "%25").replace(" ", "%20").encode())
+    found = re.compile(
+        rb"(?mi)^[ \t]*(?:(?:NORMALS|VECTORS)[ \t]+" + encoded + rb"[ \t]+\w+"
+        rb"|" + encoded + rb"[ \t]+3[ \t]+\d+[ \t]+\w+)[ \t]*[\r\n]\s*"
+    )
+    for match in found.finditer(content, begin):
+        sections = _SECTION.findall(content, begin, match.start())
+        if sections and sections[-1].upper() == section:
+            return match.end()
+    return None
 
 
 def _areas(P: Array, owners: Indices, shape: tuple[int, ...]) -> Array:
@@ -88,8 +148,12 @@ def _areas(P: Array, owners: Indices, shape: tuple[int, ...]) -> Array:
 
 
 def _normals(data: Any) -> list[Any]:
+    return [data[name] for name in _names_of_normals(data)]
+
+
+def _names_of_normals(data: Any) -> list[str]:
     names = {data.active_normals_name, "Normals"} & set(data.keys())
-    return [data[name] for name in names if data[name].shape[1:] == (3,)]
+    return [name for name in sorted(names) if data[name].shape[1:] == (3,)]
 
 
 def _document(path: Path, mesh: Any) -> Document:

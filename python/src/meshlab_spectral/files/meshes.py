@@ -15,8 +15,9 @@ import numpy as np
 
 from meshlab_spectral.documents.digits import precision_warnings
 from meshlab_spectral.documents.document import Array, Document, Indices, Part
-from meshlab_spectral.documents.opening import is_patched, open_document
+from meshlab_spectral.documents.opening import format_of, open_document
 from meshlab_spectral.errors import FilterError, FormatError, MeshFileError, OptionError
+from meshlab_spectral.files.formats import is_same_format
 from meshlab_spectral.files.meshlab_files import (
     check_writable,
     left_behind,
@@ -98,8 +99,8 @@ def filter_to_scratch(
             raise FormatError(f"{scratch.name} cannot hold details: choose .ply")
         settings = {f"__ca_vp__{DETAILS}": True}
         return _through_meshlab(source, scratch, apply, on_stage, verbose, settings)
-    if is_patched(source) and (
-        source.suffix.lower() not in _READ_BY_MESHLAB or _is_same_format(source, scratch)
+    if format_of(source) and (
+        source.suffix.lower() not in _READ_BY_MESHLAB or is_same_format(source, scratch)
     ):
         return _filter_document(source, scratch, options, on_stage, verbose, mesh)
     if mesh is not None:
@@ -135,7 +136,7 @@ def load_parts(source: Path, mesh: str | None = None) -> list[Part]:
     Raises MeshFileError when `source` cannot be read, OptionError when no mesh has the name.
     """
     check_source(source)
-    if is_patched(source):
+    if format_of(source):
         return _chosen(open_document(source), mesh)
     load()
     import pymeshlab
@@ -144,10 +145,6 @@ def load_parts(source: Path, mesh: str | None = None) -> list[Part]:
     read_with_meshlab(mesh_set, source)
     current = mesh_set.current_mesh()
     return [Part("", current.vertex_matrix().copy(), current.face_matrix().astype(np.int64))]
-
-
-def _is_same_format(source: Path, target: Path) -> bool:
-    return source.suffix.lower() == target.suffix.lower()
 
 
 def _filter_document(
@@ -159,12 +156,12 @@ def _filter_document(
     name: str | None,
 ) -> dict[str, Any]:
     """Filter the meshes of a document, each on its own."""
-    is_same_format = _is_same_format(source, scratch)
-    if not is_same_format:
-        load()
-        check_writable(scratch)
     on_stage("reading", None)
     check_source(source)
+    stays = is_same_format(source, scratch)
+    if not stays:
+        load()
+        check_writable(scratch)
     document = open_document(source)
     chosen = _chosen(document, name)
     on_stage("filtering", None)
@@ -175,7 +172,7 @@ def _filter_document(
         reports.append(report)
     on_stage("writing", None)
     shapes = list(moved.values())
-    if is_same_format:
+    if stays:
         warnings = document.save(scratch, shapes)
     else:
         bare = _BARE.get(scratch.suffix.lower())
@@ -274,7 +271,7 @@ def _through_meshlab(
     check_source(source)
     check_name(scratch, scratch.parent.parent / scratch.name)
     check_writable(scratch)
-    document = open_document(source) if is_patched(source) else None
+    document = open_document(source) if format_of(source) else None
     mesh_set, is_whole = _loaded(source, document, verbose)
     on_stage("filtering", None)
     before = mesh_set.current_mesh().vertex_matrix()
