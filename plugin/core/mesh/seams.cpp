@@ -48,7 +48,7 @@ std::vector<int> firstAtPoint(const Vertices& X, const std::vector<Edge>& edges)
 /// The edges between sets of vertices, sorted, ends and all.
 std::vector<Edge> rooted(std::vector<Edge> edges, UnionFind& vertices) {
     for (Edge& edge : edges) {
-        const auto [low, high] = std::minmax(vertices.root(edge[0]), vertices.root(edge[1]));
+        const auto [low, high] = std::minmax({vertices.root(edge[0]), vertices.root(edge[1])});
         edge = {low, high};
     }
     std::sort(edges.begin(), edges.end());

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
@@ -22,8 +24,20 @@ _WRITTEN = {
     ".obj": {"normals", "colours", "texture coordinates", "materials", "texture names"},
     ".off": {"normals", "colours", "texture coordinates"},
 }
+# What scenes as text hold besides a shape, such as COLLADA, X3D and VRML.
+_SCENES = {
+    "units": re.compile(rb"<unit\b|<UNIT\b"),
+    "transforms": re.compile(rb"<(?:matrix|rotate|translate|scale|skew|Transform)\b|\bTransform\s*\{"),
+    "lights": re.compile(rb"<light\b|(?:Point|Spot|Directional)Light\b"),
+    "cameras": re.compile(rb"<camera\b|\bViewpoint\b"),
+    "materials": re.compile(rb"<material\b|<Material\b|\bMaterial\s*\{"),
+    "animations": re.compile(rb"<animation\b|Interpolator\b"),
+    "skeletons": re.compile(rb"<controller\b|HAnim"),
+    "names": re.compile(rb"<(?:geometry|node)\b[^>]*\bname=|\bDEF\b"),
+}
+_QUALITY = "spectral_quality"  # a passing attribute
 # MeshLab's substitute for textures not found, such as those with blanks in their names.
-_DUMMY = "dummy.png"
+DUMMY = "dummy.png"
 
 
 def check_writable(path: Path) -> None:
@@ -91,19 +105,48 @@ def write_with_meshlab(
         ) from error
 
 
-def left_behind(document: Document, target: Path, mesh_set: Any = None) -> list[str]:
+def pymeshlab_mesh(V: Any, F: Any, data: dict[str, Any]) -> Any:
+    """Return a `pymeshlab.Mesh` of arrays; `data` are further arguments of it."""
+    import pymeshlab
+
+    return pymeshlab.Mesh(V, F, **data)
+
+
+def set_quality(mesh_set: Any, quality: Any) -> None:
+    """Give the vertices of the current mesh a quality, unless they have it."""
+    mesh = mesh_set.current_mesh()
+    if np.array_equal(mesh.vertex_scalar_array(), quality, equal_nan=True):
+        return
+    mesh.add_vertex_custom_scalar_attribute(quality, _QUALITY)
+    mesh_set.compute_scalar_by_function_per_vertex(q=_QUALITY)
+
+
+def left_by_meshlab(source: Path, target: Path, mesh_set: Any) -> list[str]:
+    """Return the warning about what a file that only MeshLab reads loses, being written anew."""
+    content = source.read_bytes()
+    lost = [told for told, pattern in _SCENES.items() if pattern.search(content)]
+    if DUMMY in mesh_set.current_mesh().textures():
+        lost.append("textures that MeshLab does not find")
+    what = ", ".join(lost or ["what MeshLab does not keep of it, such as units, transforms, names"])
+    return [f"{target.name} is written anew by MeshLab, and loses {what}"]
+
+
+def left_behind(
+    document: Document, target: Path, mesh_set: Any = None, lacking: Collection[str] = ()
+) -> list[str]:
     """Return the warning, if any, about what `target`, in another format than `document`, loses.
 
     Placements are in the coordinates of `target`. `mesh_set` is what MeshLab has read of the
-    document; None if it got only coordinates and triangles.
+    document; None if it got only coordinates and triangles. It lacks `lacking` nevertheless.
     """
     written = {"placement"}
     if mesh_set is not None:
         written |= _WRITTEN.get(target.suffix.lower(), set())
         if (document.path.suffix.lower(), target.suffix.lower()) == (".obj", ".ply"):
             written.remove("normals")  # an OBJ file has them at corners
+        written.difference_update(lacking)
     lost = [content for content in document.contents if content not in written]
-    if mesh_set is not None and _DUMMY in mesh_set.current_mesh().textures():
+    if mesh_set is not None and DUMMY in mesh_set.current_mesh().textures():
         lost.append("textures that MeshLab does not find")
     return [f"{target.name} loses {', '.join(lost)}"] if lost else []
 
@@ -123,7 +166,7 @@ def _textures_to_be_saved(mesh_set: Any, scratch: Path, source: Path) -> bool:
     folder, which would overwrite a file outside the scratch folder; and not MeshLab's substitute.
     """
     names = [Path(name) for name in mesh_set.current_mesh().textures()]
-    if Path(_DUMMY) in names:
+    if Path(DUMMY) in names:
         return False
     beside_input = scratch.parent.parent.samefile(resolved(source).parent)
     within = all(not name.is_absolute() and ".." not in name.parts for name in names)
