@@ -188,9 +188,7 @@ def test_coordinates_become_double_where_single_precision_loses_the_movement(
     np.testing.assert_array_equal(read(tmp_path / "b.ply").parts[0].vertices, after)
 
 
-@pytest.mark.parametrize(
-    "names", ["float y|float x|float z", "float x|float y|list uchar float z"]
-)
+@pytest.mark.parametrize("names", ["float y|float x|float z", "float x|float y|list uchar float z"])
 def test_unusual_coordinates_are_refused_with_a_remedy(names: str, tmp_path: Path) -> None:
     row: list[object] = [[0] if "list" in name else 0 for name in names.split("|")]
     path = write(tmp_path / "a.ply", encoded("ascii", [("vertex", names.split("|"), [row])]))

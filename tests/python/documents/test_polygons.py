@@ -85,11 +85,9 @@ def test_a_plane_polygon_without_crossings_is_covered_once(
 
 
 @pytest.mark.parametrize("format_", ["ply", "obj"])
-def test_bent_quadrilaterals_are_split_as_meshlab_splits_them(
-    format_: str, tmp_path: Path
-) -> None:
+def test_bent_quadrilaterals_are_split_as_meshlab_splits_them(format_: str, tmp_path: Path) -> None:
     square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], float)
-    vertices = np.vstack([square + [2 * k, 0, 0] for k in range(100)])
+    vertices = np.vstack([np.add(square, [2 * k, 0, 0]) for k in range(100)])
     vertices += np.random.default_rng(5).normal(0, 0.12, vertices.shape)
     path = write(tmp_path / f"in.{format_}", vertices, np.arange(400).reshape(-1, 4).tolist())
     mesh_set = pymeshlab.MeshSet()

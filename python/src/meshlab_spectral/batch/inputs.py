@@ -11,8 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from meshlab_spectral.batch.storage import file_system, is_url, located
+from meshlab_spectral.documents.names import TRIANGLES, ending_of, is_free_surfer
 from meshlab_spectral.errors import InputError
-from meshlab_spectral.documents.opening import TRIANGLES, ending_of, is_free_surfer
 from meshlab_spectral.files.formats import SEARCHED
 from meshlab_spectral.files.whole_files import resolved
 
@@ -37,10 +37,10 @@ def find_inputs(
     """Find the files given by names, folders, patterns such as scans/*.ply, and URLs.
 
     A named file is accepted whatever its extension; in folders, only visible files with that of a
-    mesh are, and surfaces of FreeSurfer. If `recursive`, subfolders are searched, too, and ** in a pattern matches any folders;
-    outputs, the files and folders to `leave_out`, are skipped. Inputs are in the order of the
-    arguments, sorted within each, without duplicates. Raises InputError when an argument matches no
-    file.
+    mesh are, and surfaces of FreeSurfer. If `recursive`, subfolders are searched, too, and ** in a
+    pattern matches any folders; outputs, the files and folders to `leave_out`, are skipped. Inputs
+    are in the order of the arguments, sorted within each, without duplicates. Raises InputError
+    when an argument matches no file.
     """
     outputs = {resolved(path) for path in leave_out}
     found: dict[str, Input] = {}

@@ -12,7 +12,8 @@ from pathlib import Path
 
 from meshlab_spectral.batch.inputs import Input
 from meshlab_spectral.batch.storage import is_url, joined
-from meshlab_spectral.documents.opening import PATCHED, ending_of
+from meshlab_spectral.documents.names import ending_of
+from meshlab_spectral.documents.opening import PATCHED
 from meshlab_spectral.errors import FormatError, InputError
 from meshlab_spectral.files.formats import FALLBACK, POINTS_ONLY, WRITABLE
 

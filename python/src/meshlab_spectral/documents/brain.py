@@ -2,7 +2,8 @@
 
 nibabel reads and writes GIFTI. It drops XML comments, keeps one coordinate system per array, and
 writes matrices with six decimals. Arrays of numbers as text would also lose digits: they become
-binary, and so do those in files of their own, which nibabel cannot write. FreeSurfer's coordinates are replaced in place.
+binary, and so do those in files of their own, which nibabel cannot write. FreeSurfer's coordinates
+are replaced in place.
 """
 
 from __future__ import annotations
@@ -19,14 +20,13 @@ import numpy as np
 from meshlab_spectral.documents.causes import EndsEarlyError, ForeignError, unreadable, unsupported
 from meshlab_spectral.documents.digits import precision_warnings
 from meshlab_spectral.documents.document import Array, Document, checked_part
+from meshlab_spectral.documents.names import FREE_SURFER, OTHERS, TRIANGLES
 from meshlab_spectral.documents.normals import following_normals
-from meshlab_spectral.documents.opening import FREE_SURFER, TRIANGLES
 from meshlab_spectral.documents.side_files import copy_side_files
 from meshlab_spectral.errors import MeshFileError, SpectralError
 from meshlab_spectral.extras import check_extras
 
 _TEXT, _BINARY, _EXTERNAL = 1, 2, 4  # encodings of GIFTI
-_OTHERS = (b"\xff\xff\xff", b"\xff\xff\xfd")  # quadrilaterals, or values such as curvature
 
 
 def read(path: Path) -> Document:
@@ -37,7 +37,7 @@ def read(path: Path) -> Document:
     """
     with path.open("rb") as file:
         magic = file.read(3)
-    if magic in _OTHERS:
+    if magic in OTHERS:
         remedy = "name the surface, such as lh.pial, or convert it with FreeSurfer's mris_convert"
         raise unsupported(path, "holds values or quadrilaterals of FreeSurfer", remedy)
     is_gifti = path.name.lower().endswith((".gii", ".gii.gz"))
@@ -111,7 +111,9 @@ class _Gifti(Document):
         content = self.image.to_bytes(mode="force")  # force: doubles are allowed, too
         is_packed = target.suffix.lower() == ".gz"
         target.write_bytes(gzip.compress(content, mtime=0) if is_packed else content)
-        told = [f"the numbers of {name} are written into {target.name}" for name in sorted(external)]
+        told = [
+            f"the numbers of {name} are written into {target.name}" for name in sorted(external)
+        ]
         return told + precision_warnings(part.vertices, after, target.name)
 
 

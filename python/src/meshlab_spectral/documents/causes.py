@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
+from meshlab_spectral.documents.names import FREE_SURFER, ending_of
 from meshlab_spectral.errors import MeshFileError
 
 _LOOKED_AT = 4096  # bytes
@@ -15,6 +16,10 @@ _AGAIN = "copy it again, or export it again from the program that made it"
 
 class EndsEarlyError(ValueError):
     """A reader has met the end of a file that announces more."""
+
+
+class MayEndEarlyError(EndsEarlyError):
+    """The same, unless the file is damaged, for instance in the size of a list."""
 
 
 class ForeignError(ValueError):
@@ -40,7 +45,16 @@ _KINDS = [
     _kind("binary glTF", "glb", rb"glTF"),
     _kind("3MF", "3mf", rb"PK\x03\x04.*(?:\[Content_Types\]|3D/|_rels/)"),
     _kind("legacy VTK", "vtk", rb"# vtk DataFile"),
-    _kind("XML of VTK", "vtp vtu vtk", rb"\s*(?:<[?!][^>]*>\s*)*<VTKFile"),
+    _kind("VTK PolyData", "vtp", rb"\s*(?:<[?!][^>]*>\s*)*<VTKFile[^>]*type=.PolyData"),
+    _kind(
+        "VTK UnstructuredGrid", "vtu", rb"\s*(?:<[?!][^>]*>\s*)*<VTKFile[^>]*type=.UnstructuredGrid"
+    ),
+    _kind(
+        "a data set of VTK without a surface",
+        "vti vts vtr vtm",
+        rb"\s*(?:<[?!][^>]*>\s*)*<VTKFile",
+        "extract its surface first (in ParaView: Filters > Extract Surface), and save it as .vtp",
+    ),
     _kind("GIFTI", "gii", rb"\s*(?:<[?!][^>]*>\s*)*<GIFTI"),
     _kind("COLLADA", "dae", rb"\s*(?:<[?!][^>]*>\s*)*<COLLADA"),
     _kind("X3D", "x3d", rb"\s*(?:<[?!][^>]*>\s*)*<X3D"),
@@ -99,7 +113,7 @@ _NAMES = {
     "vtu": "VTK",
     "gii": "GIFTI",
     "gii.gz": "GIFTI",
-    "freesurfer": "a surface of FreeSurfer",
+    FREE_SURFER: "a surface of FreeSurfer",
 }
 _TEXTS = ("ply", "obj", "off", "stl", "gltf", "vtk", "vtp", "vtu", "gii")
 _COMMAS = re.compile(rb"(?m)^[ \t]*(?:v[nt]?[ \t]+|vertex[ \t]+)?-?\d+,\d+[ \t]+-?\d+,\d+[ \t]")
@@ -126,7 +140,8 @@ def unreadable(path: Path, reason: object, ending: str = "") -> MeshFileError:
     ending
         The format in which it has been read, as an extension; by default that of its name.
     """
-    ending = ending or path.suffix[1:].lower()
+    ending = ending or ending_of(path.name).lower()
+    ending = ending if ending in _NAMES else FREE_SURFER
     content = path.read_bytes() if path.is_file() else b"?"
     told = " ".join(str(reason).split())
     code, text = _cause(content, ending, told, reason)
@@ -142,19 +157,34 @@ def _cause(content: bytes, ending: str, told: str, reason: object) -> tuple[str,
         return "encoding", "is text in UTF-16: save it in UTF-8 or ASCII"
     kind = _kind_of(content[:_LOOKED_AT])
     if kind and ending not in kind.endings:
-        remedy = kind.remedy or f"rename it to .{kind.endings[0]}"
-        return "foreign", f"is {kind.name}, not {name}: {remedy}"
+        return "foreign", _foreign(kind, name)
     if ending in _TEXTS and _COMMAS.search(content):
         return "decimal_commas", "has decimal commas, as in 1,5: write decimal points"
     is_cut = kind is not None and ending in _ENDS and not _ENDS[ending](content)
     if is_cut or isinstance(reason, EndsEarlyError):
-        return "cut_off", f"ends too early ({told}): it was cut off; {_AGAIN}"
+        damaged = " or is damaged" if isinstance(reason, MayEndEarlyError) else ""
+        return "cut_off", f"ends too early ({told}): it was cut off{damaged}; {_AGAIN}"
     if isinstance(reason, ForeignError) or (kind is None and ending in _BEGINS):
         return "foreign", f"is not {name} ({told}): {_NO_MESH}, with its extension"
     return "damaged", (
         f"cannot be read as {name} ({told}): it is damaged, or was written with a mistake; correct "
         "it there, or export it again from the program that made it"
     )
+
+
+def _foreign(kind: _Kind, name: str) -> str:
+    remedy = kind.remedy or f"rename it to .{kind.endings[0]}"
+    return f"is {kind.name}, not {name}: {remedy}"
+
+
+def other_kind(path: Path) -> MeshFileError | None:
+    """Return the error for a file that begins as another format than its name says, if it does."""
+    ending = path.suffix[1:].lower()
+    with path.open("rb") as file:
+        kind = _kind_of(file.read(_LOOKED_AT))
+    if kind is None or ending in kind.endings:
+        return None
+    return MeshFileError(f"{path} {_foreign(kind, f'.{ending}')}", "foreign")
 
 
 # Formats whose files can all be told by how they begin.
@@ -164,7 +194,9 @@ _BEGINS = {ending for kind in _KINDS for ending in kind.endings} - {"stl", "obj"
 def _is_utf16(content: bytes) -> bool:
     """Whether there is a byte order mark, or every other byte of ASCII text is zero."""
     has_mark = content[:2] in (b"\xff\xfe", b"\xfe\xff")
-    return has_mark or any(set(content[k:32:2]) == {0} != set(content[1 - k : 32 : 2]) for k in (0, 1))
+    return has_mark or any(
+        set(content[k:32:2]) == {0} != set(content[1 - k : 32 : 2]) for k in (0, 1)
+    )
 
 
 def _kind_of(head: bytes) -> _Kind | None:

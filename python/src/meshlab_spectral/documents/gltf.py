@@ -12,7 +12,14 @@ import numpy as np
 
 from meshlab_spectral.documents.causes import unsupported
 from meshlab_spectral.documents.digits import precision_warnings
-from meshlab_spectral.documents.document import Array, Document, Indices, Part, check_indices, check_vertices
+from meshlab_spectral.documents.document import (
+    Array,
+    Document,
+    Indices,
+    Part,
+    check_indices,
+    check_vertices,
+)
 from meshlab_spectral.documents.gltf_accessors import Asset, Json, parsed, reporting_faults
 from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.documents.placement import IDENTITY, Placement, placement_of

@@ -9,9 +9,22 @@ from pathlib import Path
 
 import numpy as np
 
-from meshlab_spectral.documents.causes import EndsEarlyError, ForeignError, unreadable, unsupported
+from meshlab_spectral.documents.causes import (
+    EndsEarlyError,
+    ForeignError,
+    MayEndEarlyError,
+    unreadable,
+    unsupported,
+)
 from meshlab_spectral.documents.digits import SINGLE, digits_for
-from meshlab_spectral.documents.document import Array, Document, Indices, Part, check_indices, check_vertices
+from meshlab_spectral.documents.document import (
+    Array,
+    Document,
+    Indices,
+    Part,
+    check_indices,
+    check_vertices,
+)
 from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.documents.polygons import triangles
 from meshlab_spectral.documents.text import Change, Lines, lines_of, whole, write_patched
@@ -85,7 +98,9 @@ def _document(path: Path, content: bytes) -> Document:
         left = len(lines) - begin
         raise EndsEarlyError(f"it claims {n} vertices and {m} faces, in {left} lines")
     try:
-        rows, faces = _by_lines(path, line, lines[begin + n : begin + n + m], counts, b"N" in letters)
+        rows, faces = _by_lines(
+            path, line, lines[begin + n : begin + n + m], counts, b"N" in letters
+        )
     except (ValueError, MeshFileError):
         found = _by_words(lines[begin:], counts, words)
         if found is None:
@@ -142,7 +157,10 @@ def _by_lines(
 ) -> tuple[_Rows, _Faces]:
     """Read one vertex and one face from each line."""
     if (len(vertices), len(faces)) != counts:
-        raise ValueError("it does not have one line per vertex and face")
+        left = len(vertices) + len(faces)
+        raise MayEndEarlyError(
+            f"it claims {counts[0]} vertices and {counts[1]} faces, in {left} lines"
+        )
     if not counts[0]:
         raise ValueError("it has no vertices")
     width = max(6, int(vertices.words.min())) if has_normals else 3
@@ -169,7 +187,7 @@ def _by_words(
     if bad >= 0:
         return None
     numbers = values[0]
-    ends = np.cumsum(lines.words)
+    ends = np.cumsum(lines.words, dtype=np.int64)
     for width in widths:
         for has_colours in (False, True):
             faces = _faces_in(numbers, counts[0] * width, counts[1], ends if has_colours else None)
@@ -208,7 +226,8 @@ def _normals(letters: bytes, table: Array, part: Part) -> int | None:
     last = table.shape[1] - 2 * (b"ST" in letters) - 3
     if b"C" not in letters or last <= 3:
         return 3
-    return max((3, last), key=lambda column: _agreement(table[:, column : column + 3], part))
+    first, second = (_agreement(table[:, k : k + 3], part) for k in (3, last))
+    return 3 if first >= second else int(last)
 
 
 def _agreement(normals: Array, part: Part) -> float:

@@ -6,6 +6,15 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from meshlab_spectral.documents.names import (
+    FREE_SURFER,
+    FREE_SURFER_ENDINGS,
+    OTHERS,
+    TRIANGLES,
+    begin_of,
+    ending_of,
+)
+
 if TYPE_CHECKING:
     from meshlab_spectral.documents.document import Document
 
@@ -24,20 +33,7 @@ _MODULES = {
     "gii": "brain",
     "gii.gz": "brain",
 }
-# FreeSurfer names a surface by what it is, such as lh.pial or lh.pial.T1: it is known by its first
-# bytes. These endings are searched for in folders by name, too.
-FREE_SURFER = "freesurfer"
-TRIANGLES = b"\xff\xff\xfe"
-FREE_SURFER_ENDINGS = frozenset({"inflated", "pial", "smoothwm", "sphere", "white"})
 PATCHED = frozenset(_MODULES) | FREE_SURFER_ENDINGS
-
-
-def ending_of(name: str) -> str:
-    """Return the extension of a file name, in its original case and without the dot."""
-    stem, dot, ending = name.rpartition(".")
-    if ending.lower() == "gz" and stem.lower().endswith(".gii"):
-        return name[-len("gii.gz") :]
-    return ending if stem and dot else ""
 
 
 def format_of(path: Path) -> str | None:
@@ -48,16 +44,8 @@ def format_of(path: Path) -> str | None:
     ending = ending_of(path.name).lower()
     if ending in _MODULES:
         return ending
-    return FREE_SURFER if ending in FREE_SURFER_ENDINGS or is_free_surfer(path) else None
-
-
-def is_free_surfer(path: Path) -> bool:
-    """Whether a file begins as a surface of FreeSurfer; false if it cannot be read."""
-    try:
-        with path.open("rb") as file:
-            return file.read(len(TRIANGLES)) == TRIANGLES
-    except OSError:
-        return False
+    is_one = ending in FREE_SURFER_ENDINGS or begin_of(path) in (TRIANGLES, *OTHERS)
+    return FREE_SURFER if is_one else None
 
 
 def open_document(path: Path) -> Document:

@@ -16,9 +16,22 @@ from numpy.typing import NDArray
 from plyfile import PlyData, PlyElement, PlyListProperty, PlyParseError
 
 from meshlab_spectral._core import binary_numbers
-from meshlab_spectral.documents.causes import EndsEarlyError, ForeignError, unreadable, unsupported
+from meshlab_spectral.documents.causes import (
+    EndsEarlyError,
+    ForeignError,
+    MayEndEarlyError,
+    unreadable,
+    unsupported,
+)
 from meshlab_spectral.documents.digits import digits_for, rounding_told, widening_warnings
-from meshlab_spectral.documents.document import Array, Document, Indices, Part, check_indices, check_vertices
+from meshlab_spectral.documents.document import (
+    Array,
+    Document,
+    Indices,
+    Part,
+    check_indices,
+    check_vertices,
+)
 from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.documents.polygons import strip_triangles, triangles
 from meshlab_spectral.documents.side_files import copy_side_files
@@ -182,7 +195,10 @@ def _read_rows(
             told = b" ".join(own.words_of(bad)).decode(errors="replace")[:80]
             raise own.fault(bad, f"element {element.name!r}: row {bad}: {reason}, in {told!r}")
         if bad >= 0 or (ply.text and len(own) < count):
-            raise EndsEarlyError(f"it ends in element {element.name!r}, which has {count} rows")
+            has_lists = not ply.text and any(types_[0] for types_ in types)
+            raise (MayEndEarlyError if has_lists else EndsEarlyError)(
+                f"it ends in element {element.name!r}, which has {count} rows"
+            )
         single, several = iter(numbers.T), iter(lists)
         tables[element.name] = {
             one.name: next(several if isinstance(one, PlyListProperty) else single)

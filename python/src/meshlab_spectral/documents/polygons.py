@@ -58,16 +58,12 @@ def corners_of_triangles(corners: Indices, sizes: NDArray[np.integer], vertices:
         for size in np.unique(sizes[sizes > 3]).tolist():
             which = np.flatnonzero(sizes == size)
             held = corners[begins[which, None] + np.arange(size)]
-            which, held = (one[_are_within(held, len(vertices))] for one in (which, held))
+            within = ((held >= 0) & (held < len(vertices))).all(axis=1)
+            which, held = which[within], held[within]
             for chosen, places in _unfolded(vertices[held]):
                 row = rows[which[chosen], None] + np.arange(size - 2)
                 split[row] = begins[which[chosen], None, None] + places
     return split
-
-
-def _are_within(corners: Indices, count: int) -> NDArray[np.bool_]:
-    within: NDArray[np.bool_] = ((corners >= 0) & (corners < count)).all(axis=1)
-    return within
 
 
 def _unfolded(P: Array) -> Iterator[tuple[Indices, Indices]]:

@@ -93,7 +93,9 @@ def _read_binary(path: Path, content: bytes) -> Document:
     count, size = _count(content), len(content)
     if not _size(content) <= size <= _size(content) * (1 + _EXCESS):
         is_cut = size < _size(content) <= _LARGEST_CUT * size
-        raise (EndsEarlyError if is_cut else ValueError)(f"it claims {count} triangles, which does not match its {size} bytes")
+        raise (EndsEarlyError if is_cut else ValueError)(
+            f"it claims {count} triangles, which does not match its {size} bytes"
+        )
     rows = np.frombuffer(content, _TRIANGLE, count, _HEADER)
     with np.errstate(invalid="ignore"):  # check_vertices reports non-finite values
         points = rows["corners"].reshape(-1, 3).astype(np.float64)
@@ -114,9 +116,7 @@ def _read_text(path: Path, content: bytes) -> Document:
     if wrong.any():
         first = int(np.argmax(wrong))
         keyword = _KEYWORDS[expected[first]]
-        raise chosen.fault(
-            first, f"line {chosen.place(first)} does not begin with {keyword!r}"
-        )
+        raise chosen.fault(first, f"line {chosen.place(first)} does not begin with {keyword!r}")
     if len(chosen) % len(_FACET):
         raise EndsEarlyError("it ends within a facet")
     facets, corners = chosen[:: len(_FACET)], chosen[chosen.kinds == _KEYWORDS.index("vertex")]

@@ -8,6 +8,7 @@ normals are replaced in place.
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from meshlab_spectral.documents.causes import unreadable, unsupported
+from meshlab_spectral.documents.causes import EndsEarlyError, unreadable, unsupported
 from meshlab_spectral.documents.digits import (
     DOUBLE,
     SINGLE,
@@ -34,8 +35,10 @@ _COUNTS = re.compile(rb'(?:NumberOf\w+="|\n(?:POINTS|CELLS|POLYGONS|LINES|VERTIC
 _TEXT = re.compile(rb'<Points>\s*<DataArray[^>]*format="ascii"')
 # Legacy text, after two lines of head and title; then its points, and arrays.
 _LEGACY = re.compile(rb"#[^\n]*\n[^\n]*\n\s*ASCII\s", re.IGNORECASE)
-_POINTS = re.compile(rb"(?mi)^[ \t]*POINTS[ \t]+\d+[ \t]+(\w+)[ \t]*[\r\n]\s*")
+_POINTS = re.compile(rb"(?mi)^[ \t]*POINTS[ \t]+(\d+)[ \t]+(\w+)[ \t]*[\r\n]\s*")
+_CELLS = re.compile(rb"(?mi)^[ \t]*(?:CELLS|POLYGONS|TRIANGLE_STRIPS|LINES|VERTICES)[ \t]")
 _SECTION = re.compile(rb"(?mi)^[ \t]*(POINT_DATA|CELL_DATA)\b")
+_SHORT = re.compile("error reading (?:binary|ascii)|premature|end of file|EOF", re.IGNORECASE)
 _OTHERS, _STRIP, _POLYGONS = (0, 1, 2, 3, 4), 6, (5, 7, 9)  # VTK cell types
 _EXTRACT = "extract its surface first (in ParaView: Filters > Extract Surface), and save it as .vtp"
 
@@ -54,10 +57,36 @@ def read(path: Path) -> Document:
             reader.Update()
             (reader.GetOutputDataObject(0) or pyvista.PolyData()).CheckAttributes()
         for event in caught.events:
-            raise ValueError(event.alert)
+            raise _fault(event.alert, path)
+        _check_text(path.read_bytes())
         return _document(path, pyvista.wrap(reader.GetOutputDataObject(0)))
     except (ValueError, TypeError, LookupError, RuntimeError, MemoryError, AttributeError) as error:
-        raise unreadable(path, f"{error!s:.300}") from error
+        raise unreadable(path, type(error)(f"{error!s:.300}")) from error
+
+
+def _fault(alert: str, path: Path) -> ValueError:
+    """Return the error for what VTK tells: binary data, or the last line of a text, may be cut."""
+    is_text = "ascii" in alert and path.read_bytes().endswith((b"\n", b"\r"))
+    is_cut = _SHORT.search(alert) and not is_text
+    return EndsEarlyError(alert) if is_cut else ValueError(alert)
+
+
+def _check_text(content: bytes) -> None:
+    """Raise ValueError if a legacy text lacks coordinates: VTK would make some up."""
+    head = _LEGACY.match(content)
+    points = _POINTS.search(content, head.end()) if head else None
+    if not points:
+        return
+    count = 3 * int(points[1])
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # about what follows the numbers
+        found = np.fromstring(content[points.end() :], sep=" ", count=count)
+    if len(found) < count:
+        reason = f"it claims {points[1].decode()} points, and has {len(found) // 3}"
+        at_end = not content[points.end() :].strip(b"0123456789.+-eE \t\r\n")
+        raise EndsEarlyError(reason) if at_end else ValueError(reason)
+    if not _CELLS.search(content, points.end()) and not content.endswith((b"\n", b"\r")):
+        raise EndsEarlyError("it ends after its points")
 
 
 @dataclass(kw_only=True)
@@ -107,7 +136,7 @@ def _changes_of_text(
     if not points:
         return [], content
     if is_wide:
-        content = content[: points.start(1)] + b"double" + content[points.end(1) :]
+        content = content[: points.start(2)] + b"double" + content[points.end(2) :]
         points = _POINTS.search(content, points.start())
         assert points is not None
     changes = [_change(points.end(), before.points, after.points, SINGLE)]
@@ -122,8 +151,8 @@ def _changes_of_text(
 
 def _change(place: int, before: Any, after: Any, digits: int) -> Change:
     """Return the change of all numbers of an array, which follow each other from a place on."""
-    numbers = (np.asarray(one, np.float64).reshape(1, -1) for one in (before, after))
-    return np.array([place]), 0, *numbers, digits
+    old, new = (np.asarray(one, np.float64).reshape(1, -1) for one in (before, after))
+    return np.array([place]), 0, old, new, digits
 
 
 def _place_of_array(content: bytes, begin: int, section: bytes, name: str) -> int | None:
@@ -168,7 +197,7 @@ def _document(path: Path, mesh: Any) -> Document:
     scalars = mesh.point_data.active_scalars
     quality = scalars.astype(np.float64) if np.ndim(scalars) == 1 else None
     contents = [f"array {name}" for name in mesh.array_names]
-    contents += ["points and lines"] * bool(np.isin(grid.celltypes, _OTHERS).any())
+    contents += ["points and lines"] * bool(np.isin(np.asarray(grid.celltypes), _OTHERS).any())
     return _VtkDocument(
         path, [Part("", vertices, faces, quality)], contents, mesh=mesh, owners=owners
     )
@@ -178,10 +207,15 @@ def _surface(path: Path, grid: Any, vertices: Array) -> tuple[Indices, Indices]:
     """Return the triangles of polygons and strips, m x 3, and the cell of each."""
     from pyvista import convert_array
 
+    if not grid.GetNumberOfCells():
+        return np.zeros((0, 3), np.int64), np.zeros(0, np.int64)
     corners = convert_array(grid.GetCells().GetConnectivityArray()).astype(np.int64)
-    sizes, types = np.diff(convert_array(grid.GetCells().GetOffsetsArray())), grid.celltypes
-    if not np.isin(types, [*_OTHERS, _STRIP, *_POLYGONS]).all():
-        raise unsupported(path, f"has volume or curved cells (VTK's type {types.max()})", _EXTRACT)
+    sizes = np.diff(convert_array(grid.GetCells().GetOffsetsArray()))
+    types = np.asarray(grid.celltypes, dtype=np.int64)
+    others = set(np.unique(types).tolist()) - {*_OTHERS, _STRIP, *_POLYGONS}
+    if others:
+        told = ", ".join(map(str, sorted(others)))
+        raise unsupported(path, f"has volume or curved cells (VTK's type {told})", _EXTRACT)
     if ((corners < 0) | (corners >= len(vertices))).any():
         raise ValueError(f"its cells have corners that are not among its {len(vertices)} points")
     polygons, strips = np.isin(types, _POLYGONS), np.flatnonzero(types == _STRIP)

@@ -4,13 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from meshlab_spectral.documents.opening import (
-    FREE_SURFER,
-    FREE_SURFER_ENDINGS,
-    PATCHED,
-    ending_of,
-    format_of,
-)
+from meshlab_spectral.documents.names import FREE_SURFER, FREE_SURFER_ENDINGS, ending_of
+from meshlab_spectral.documents.opening import PATCHED, format_of
 from meshlab_spectral.errors import FormatError
 
 _BOTH = {"3ds", "3mf", "ctm", "dae", "e57", "obj", "off", "ply", "stl", "wrl", "x3d", "xyz"}

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+import shutil
 from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from meshlab_spectral.documents.causes import other_kind
 from meshlab_spectral.documents.document import Document
 from meshlab_spectral.documents.opening import PATCHED
 from meshlab_spectral.errors import FormatError, MeshFileError
@@ -27,7 +29,9 @@ _WRITTEN = {
 # What scenes as text hold besides a shape, such as COLLADA, X3D and VRML.
 _SCENES = {
     "units": re.compile(rb"<unit\b|<UNIT\b"),
-    "transforms": re.compile(rb"<(?:matrix|rotate|translate|scale|skew|Transform)\b|\bTransform\s*\{"),
+    "transforms": re.compile(
+        rb"<(?:matrix|rotate|translate|scale|skew|Transform)\b|\bTransform\s*\{"
+    ),
     "lights": re.compile(rb"<light\b|(?:Point|Spot|Directional)Light\b"),
     "cameras": re.compile(rb"<camera\b|\bViewpoint\b"),
     "materials": re.compile(rb"<material\b|<Material\b|\bMaterial\s*\{"),
@@ -36,6 +40,7 @@ _SCENES = {
     "names": re.compile(rb"<(?:geometry|node)\b[^>]*\bname=|\bDEF\b"),
 }
 _QUALITY = "spectral_quality"  # a passing attribute
+_LEAST_ROOM = 1 << 14  # bytes, a few blocks
 # MeshLab's substitute for textures not found, such as those with blanks in their names.
 DUMMY = "dummy.png"
 
@@ -60,21 +65,27 @@ def read_with_meshlab(mesh_set: Any, source: Path) -> None:
 
     try:
         mesh_set.load_new_mesh(str(source))
-    except pymeshlab.PyMeshLabException as error:
+    except (pymeshlab.PyMeshLabException, RuntimeError) as error:  # some plugins raise their own
+        foreign = other_kind(source)
+        if foreign is not None:
+            raise foreign from error
         reason = reason_of(error)
         if reason.startswith("Unknown format"):
             raise MeshFileError(
                 f"{source} ends in {source.suffix or 'nothing'}, which MeshLab cannot read as a "
-                f"mesh: convert it to {USUAL_FORMATS}"
+                f"mesh: convert it to {USUAL_FORMATS}",
+                "unknown_format",
             ) from error
         raise MeshFileError(
             f"{source} cannot be read by MeshLab ({reason}): convert it to {USUAL_FORMATS} with "
-            "the program that made it"
+            "the program that made it",
+            "damaged",
         ) from error
     if mesh_set.mesh_number() > 1:
         raise MeshFileError(
             f"{source} holds {mesh_set.mesh_number()} meshes: merge them in MeshLab with 'Flatten "
-            "Visible Layers', or save them separately"
+            "Visible Layers', or save them separately",
+            "unsupported",
         )
 
 
@@ -97,12 +108,25 @@ def write_with_meshlab(
         settings["save_polygonal"] = False
     try:
         mesh_set.save_current_mesh(str(scratch), **settings)
-    except pymeshlab.PyMeshLabException as error:
+        _check_room(scratch)
+    except (pymeshlab.PyMeshLabException, RuntimeError) as error:
+        _check_room(scratch)
         reason = reason_of(error).rsplit(": ", 1)[-1]  # without the scratch file's name
         raise MeshFileError(
-            f"MeshLab cannot write {scratch.name} ({reason}): is the disk full, or does the mesh "
-            f"name textures that are missing? Choose another format, {USUAL_FORMATS}"
+            f"MeshLab cannot write {scratch.name} ({reason}): choose another format, "
+            f"{USUAL_FORMATS}",
+            "not_written",
         ) from error
+
+
+def _check_room(scratch: Path) -> None:
+    """Raise MeshFileError if the disk has filled up: MeshLab does not notice."""
+    if shutil.disk_usage(scratch.parent).free < _LEAST_ROOM:
+        raise MeshFileError(
+            f"{scratch.name} cannot be written (no space left on the disk): make room, or choose "
+            "another folder",
+            "disk_full",
+        )
 
 
 def pymeshlab_mesh(V: Any, F: Any, data: dict[str, Any]) -> Any:

@@ -70,9 +70,7 @@ def moved_alike(
     """
     if len(parts) == 1:
         return list(moved), []
-    points, after = (
-        np.vstack(rows) for rows in ([part.vertices for part in parts], [*moved])
-    )
+    points, after = (np.vstack(rows) for rows in ([part.vertices for part in parts], [*moved]))
     owner = np.repeat(np.arange(len(parts)), [len(part.vertices) for part in parts])
     place = first_equal_rows(points)
     is_shared = np.zeros(len(points), bool)

@@ -29,6 +29,7 @@ from meshlab_spectral.files.meshes import (
     load_arrays,
     script_to_scratch,
 )
+from meshlab_spectral.files.whole_files import file_trouble, is_disk_full
 from meshlab_spectral.filters.options import BasisOptions, SpectrumOptions
 from meshlab_spectral.filters.running import plain
 from meshlab_spectral.filters.spectrum import measure
@@ -75,7 +76,12 @@ def _described(error: Exception) -> dict[str, Any]:
         described: dict[str, Any] = {"error": type(error).__name__, "message": str(error)}
         if isinstance(error, errors.FilterError):
             described |= {"code": error.code, "limit": error.limit}
+        elif isinstance(error, errors.MeshFileError):
+            described["code"] = error.code
         return described
+    if isinstance(error, OSError) and error.strerror:
+        code = "disk_full" if is_disk_full(error) else "not_written"
+        return {"error": "MeshFileError", "message": file_trouble(error), "code": code}
     message = f"unexpected error: {error}; please report it"
     if isinstance(error, MemoryError):
         message = (
