@@ -41,7 +41,7 @@ OUTSIDERS = {
     "gzip": gzip.compress(b"ply\n" * 100),
     "a PNG image": b"\x89PNG\r\n\x1a\n" + bytes(200),
     "a PDF document": b"%PDF-1.7\n" + b"1 0 obj\n" * 50,
-    "filled with zeros": bytes(4000),
+    "a file of zeros": bytes(4000),
     "MNI": b"P 0.3 0.3 0.4 10 1 4\n 0 0 0\n 1 0 0\n 0 1 0\n 0 0 1\n\n"
     b" 0 0 1\n 0 0 1\n 0 0 1\n 0 0 1\n\n 2\n 0 1 1 1 1\n\n 3 6\n\n 0 1 2 0 2 3\n",
     "COLLADA": b'<?xml version="1.0"?>\n<COLLADA version="1.4.1"></COLLADA>\n',

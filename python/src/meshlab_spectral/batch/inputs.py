@@ -97,7 +97,7 @@ def _search(folder: Path, relative: str, recursive: bool, outputs: set[Path]) ->
             yield from within
             if within:
                 continue
-        is_surface = entry.is_file() and is_free_surfer(path)
+        is_surface = is_free_surfer(path)
         if is_surface or _looks_like_mesh(entry.name):
             yield Input(path.as_posix(), relative, is_surface)
 

@@ -51,7 +51,7 @@ _KINDS = [
     ),
     _kind(
         "a data set of VTK without a surface",
-        "vti vts vtr vtm",
+        "",
         rb"\s*(?:<[?!][^>]*>\s*)*<VTKFile",
         "extract its surface first (in ParaView: Filters > Extract Surface), and save it as .vtp",
     ),
@@ -96,7 +96,7 @@ _KINDS = [
     _kind("a JPEG image", "", rb"\xff\xd8\xff", _NO_MESH),
     _kind("a PDF document", "", rb"%PDF", _NO_MESH),
     _kind("an HDF5 file", "", rb"\x89HDF", "export a mesh from it first"),
-    _kind("filled with zeros", "", rb"\0{512}", "copy it again: nothing of it has arrived"),
+    _kind("a file of zeros", "", rb"\0{512}", "copy it again: nothing of it has arrived"),
     _kind("XML of another kind", "", rb"\s*<\?xml", _NO_MESH),
     _kind("Wavefront OBJ", "obj", rb"(?:.*[\r\n])?[ \t]*v(?:[ \t]+-?\d[-+\d.e]*){3,}\s"),
 ]
@@ -173,6 +173,8 @@ def _cause(content: bytes, ending: str, told: str, reason: object) -> tuple[str,
 
 
 def _foreign(kind: _Kind, name: str) -> str:
+    if not kind.endings:
+        return f"is {kind.name}: {kind.remedy}"
     remedy = kind.remedy or f"rename it to .{kind.endings[0]}"
     return f"is {kind.name}, not {name}: {remedy}"
 

@@ -28,6 +28,8 @@ def is_free_surfer(path: Path) -> bool:
 def begin_of(path: Path) -> bytes:
     """Return the first three bytes of a file; none if it cannot be read."""
     try:
+        if not path.is_file():  # reading a pipe might never end
+            return b""
         with path.open("rb") as file:
             return file.read(len(TRIANGLES))
     except OSError:

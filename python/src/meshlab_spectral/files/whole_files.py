@@ -68,9 +68,9 @@ def is_disk_full(error: OSError) -> bool:
     return error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
-def file_trouble(error: OSError) -> str:
-    """Describe why a file cannot be read or written, without the scratch folder's name."""
-    name = Path(os.fsdecode(error.filename)).name if error.filename else "a file"
+def file_trouble(error: OSError, written: str = "a file") -> str:
+    """Describe why a file cannot be read or written: `written`, unless the error names it."""
+    name = Path(os.fsdecode(error.filename)).name if error.filename else written
     remedy = ": make room on the disk, or choose another folder" if is_disk_full(error) else ""
     return f"{name} cannot be read or written ({error.strerror}){remedy}"
 

@@ -70,8 +70,8 @@ def _read(jobs: queue.SimpleQueue[str]) -> None:
     os._exit(0)
 
 
-def _described(error: Exception) -> dict[str, Any]:
-    """Describe an error by its class, message and code."""
+def _described(error: Exception, job: dict[str, Any]) -> dict[str, Any]:
+    """Describe an error of a job by its class, message and code."""
     if isinstance(error, errors.SpectralError):
         described: dict[str, Any] = {"error": type(error).__name__, "message": str(error)}
         if isinstance(error, errors.FilterError):
@@ -81,7 +81,8 @@ def _described(error: Exception) -> dict[str, Any]:
         return described
     if isinstance(error, OSError) and error.strerror:
         code = "disk_full" if is_disk_full(error) else "not_written"
-        return {"error": "MeshFileError", "message": file_trouble(error), "code": code}
+        name = Path(job.get("scratch") or job.get("source", "a file")).name
+        return {"error": "MeshFileError", "message": file_trouble(error, name), "code": code}
     message = f"unexpected error: {error}; please report it"
     if isinstance(error, MemoryError):
         message = (
@@ -107,13 +108,14 @@ def _main() -> None:
     answer(ready=True)
     jobs: queue.SimpleQueue[str] = queue.SimpleQueue()
     threading.Thread(target=_read, args=[jobs], daemon=True).start()
+    job: dict[str, Any] = {}
     while True:
         try:
             job = json.loads(jobs.get())
             set_memory_limit(job.get("memory"))
             answer(report=_report_of(job, on_stage))
         except Exception as error:
-            answer(**_described(error), traceback=traceback.format_exc().strip())
+            answer(**_described(error, job), traceback=traceback.format_exc().strip())
 
 
 if __name__ == "__main__":
