@@ -25,7 +25,7 @@ Length Length::parse(const std::string& text) {
                             "edges such as 6e, or a length such as 0.02");
     if (length.unit == Unit::Percent && length.value > 100.0)
         throw InvalidOption(
-            text + ": a percentage goes up to 100% of the diagonal; for more, give a length");
+            text + ": a percentage goes up to 100% of the diagonal");
     return length;
 }
 

@@ -51,7 +51,8 @@ def read(path: Path) -> Document:
         raise
     except Exception as error:  # nibabel raises whatever its parsers do
         ending = "gii.gz" if path.suffix.lower() == ".gz" else "gii" if is_gifti else FREE_SURFER
-        raise unreadable(path, error, ending) from error
+        reason = EndsEarlyError(error) if isinstance(error, EOFError) else error
+        raise unreadable(path, reason, ending) from error
 
 
 @dataclass(kw_only=True)

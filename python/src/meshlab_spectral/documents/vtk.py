@@ -8,7 +8,6 @@ normals are replaced in place.
 from __future__ import annotations
 
 import re
-import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -27,7 +26,7 @@ from meshlab_spectral.documents.digits import (
 from meshlab_spectral.documents.document import Array, Document, Indices, Part, check_vertices
 from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.documents.polygons import strip_triangles, triangles
-from meshlab_spectral.documents.text import Change, write_patched
+from meshlab_spectral.documents.text import Change, Lines, write_patched
 from meshlab_spectral.extras import check_extras
 
 _LARGEST_RATIO = 100  # of counts to bytes; zlib packs fewer than 86 points into a byte
@@ -37,7 +36,14 @@ _TEXT = re.compile(rb'<Points>\s*<DataArray[^>]*format="ascii"')
 _LEGACY = re.compile(rb"#[^\n]*\n[^\n]*\n\s*ASCII\s", re.IGNORECASE)
 _POINTS = re.compile(rb"(?mi)^[ \t]*POINTS[ \t]+(\d+)[ \t]+(\w+)[ \t]*[\r\n]\s*")
 _CELLS = re.compile(rb"(?mi)^[ \t]*(?:CELLS|POLYGONS|TRIANGLE_STRIPS|LINES|VERTICES)[ \t]")
-_SECTION = re.compile(rb"(?mi)^[ \t]*(POINT_DATA|CELL_DATA)\b")
+_SECTION = re.compile(rb"(?mi)^[ \t]*(POINT_DATA|CELL_DATA)[ \t]+(\d+)")
+_ARRAY = re.compile(
+    rb"(?mi)^[ \t]*(?:SCALARS[ \t]+\S+[ \t]+\w+(?:[ \t]+(?P<width>\d+))?\s+LOOKUP_TABLE[ \t]+\S+"
+    rb"|(?:TEXTURE_COORDINATES[ \t]+\S+[ \t]+(?P<texture>\d+)[ \t]+\w+)"
+    rb"|COLOR_SCALARS[ \t]+\S+[ \t]+(?P<colours>\d+)"
+    rb"|(?P<three>NORMALS|VECTORS)[ \t]+\S+[ \t]+\w+"
+    rb"|\S+[ \t]+(?P<columns>\d+)[ \t]+(?P<rows>\d+)[ \t]+[a-z]\w*)[ \t]*[\r\n]"
+)
 _SHORT = re.compile("error reading (?:binary|ascii)|premature|end of file|EOF", re.IGNORECASE)
 _OTHERS, _STRIP, _POLYGONS = (0, 1, 2, 3, 4), 6, (5, 7, 9)  # VTK cell types
 _EXTRACT = "extract its surface first (in ParaView: Filters > Extract Surface), and save it as .vtp"
@@ -52,13 +58,13 @@ def read(path: Path) -> Document:
         counts = [int(count) for count in _COUNTS.findall(path.read_bytes())]
         if counts and not 0 <= min(counts) <= max(counts) <= _LARGEST_RATIO * path.stat().st_size:
             raise ValueError(f"it claims {counts} points and cells")
+        _check_text(path.read_bytes())
         with pyvista.vtk_verbosity("off"), pyvista.VtkErrorCatcher(send_to_logging=False) as caught:
             reader = pyvista.get_reader(path).reader
             reader.Update()
             (reader.GetOutputDataObject(0) or pyvista.PolyData()).CheckAttributes()
         for event in caught.events:
             raise _fault(event.alert, path)
-        _check_text(path.read_bytes())
         return _document(path, pyvista.wrap(reader.GetOutputDataObject(0)))
     except (ValueError, TypeError, LookupError, RuntimeError, MemoryError, AttributeError) as error:
         raise unreadable(path, type(error)(f"{error!s:.300}")) from error
@@ -72,21 +78,34 @@ def _fault(alert: str, path: Path) -> ValueError:
 
 
 def _check_text(content: bytes) -> None:
-    """Raise ValueError if a legacy text lacks coordinates: VTK would make some up."""
+    """Raise ValueError if a legacy text lacks numbers: VTK would make some up."""
     head = _LEGACY.match(content)
     points = _POINTS.search(content, head.end()) if head else None
     if not points:
         return
-    count = 3 * int(points[1])
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # about what follows the numbers
-        found = np.fromstring(content[points.end() :], sep=" ", count=count)
-    if len(found) < count:
-        reason = f"it claims {points[1].decode()} points, and has {len(found) // 3}"
-        at_end = not content[points.end() :].strip(b"0123456789.+-eE \t\r\n")
-        raise EndsEarlyError(reason) if at_end else ValueError(reason)
-    if not _CELLS.search(content, points.end()) and not content.endswith((b"\n", b"\r")):
+    _check_numbers(content, points.end(), 3 * int(points[1]), "its points")
+    if content.endswith((b"\n", b"\r")):
+        return
+    if not _CELLS.search(content, points.end()):
         raise EndsEarlyError("it ends after its points")
+    arrays = list(_ARRAY.finditer(content, points.end()))
+    sections = _SECTION.findall(content, points.end(), arrays[-1].start()) if arrays else []
+    if sections:
+        last = arrays[-1]
+        widths = (last[name] for name in ("width", "texture", "colours", "columns"))
+        width = 3 if last["three"] else int(next(filter(None, widths), 1))
+        count = int(last["rows"] or sections[-1][1])
+        _check_numbers(content, last.end(), count * width, "its last array")
+
+
+def _check_numbers(content: bytes, begin: int, count: int, what: str) -> None:
+    words = np.array([count], np.int32)
+    all_ = Lines(content, np.array([begin]), words, np.zeros(1, np.uint8), comments=False)
+    _, _, bad, found = all_.table([False] * count)
+    if bad >= 0:
+        reason = f"it has {found} numbers of {count} in {what}"
+        at_end = not content[begin:].strip(b"0123456789.+-eE \t\r\n")
+        raise EndsEarlyError(reason) if at_end else ValueError(reason)
 
 
 @dataclass(kw_only=True)
@@ -164,7 +183,7 @@ def _place_of_array(content: bytes, begin: int, section: bytes, name: str) -> in
     )
     for match in found.finditer(content, begin):
         sections = _SECTION.findall(content, begin, match.start())
-        if sections and sections[-1].upper() == section:
+        if sections and sections[-1][0].upper() == section:
             return match.end()
     return None
 

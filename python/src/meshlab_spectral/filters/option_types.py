@@ -72,7 +72,7 @@ class Length:
             raise OptionError(f"{self}: must be {_LENGTHS}, {_SIZES}")
         if self.unit == "%" and self.value > 100:
             raise OptionError(
-                f"{self}: a percentage goes up to 100% of the diagonal; for more, give a length"
+                f"{self}: a percentage goes up to 100% of the diagonal"
             )
 
     @classmethod
