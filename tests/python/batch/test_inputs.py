@@ -145,7 +145,7 @@ SURFACES = ["lh.inflated", "lh.orig", "lh.pial", "lh.pial.T1", "lh.white.preapar
 
 @pytest.mark.parametrize("remote", [False, True])
 def test_a_folder_of_free_surfer_gives_all_its_surfaces(remote: bool, tmp_path: Path) -> None:
-    """They are known by their first bytes; curvature and labels are none. Outputs keep the names."""
+    """They are known by their first bytes; curvature and labels are none. Outputs keep names."""
     for name in SURFACES:
         (tmp_path / name).write_bytes(b"\xff\xff\xfe and more")
     for name in ("lh.curv", "lh.cortex.label", "lh.thickness"):

@@ -60,7 +60,8 @@ def test_the_weight_is_the_quality_of_the_file_whatever_the_output(
 
 
 SCRIPT = """<!DOCTYPE FilterScript><FilterScript><filter name="Per Vertex Quality Function">
-<Param name="q" type="RichString" value="q * 2"/><Param name="normalize" type="RichBool" value="false"/>
+<Param name="q" type="RichString" value="q * 2"/>
+<Param name="normalize" type="RichBool" value="false"/>
 <Param name="onselected" type="RichBool" value="false"/></filter></FilterScript>"""
 
 
@@ -73,7 +74,8 @@ def test_a_script_gets_the_quality_of_the_file(tmp_path: Path) -> None:
     np.testing.assert_allclose(PlyData.read(target)["vertex"]["quality"], expected, rtol=1e-6)
 
 
-CAP = "v 0 0 0\nv 4 0 0\nv 4 1 0\nv 1 1 0\nv 1 4 0\nv 0 4 0\nv 0 0 2\nv 4 0 2\nv 4 1 2\nv 1 1 2\nv 1 4 2\nv 0 4 2\n"
+OUTLINE = ("0 0", "4 0", "4 1", "1 1", "1 4", "0 4")
+CAP = "".join(f"v {at} {z}\n" for z in (0, 2) for at in OUTLINE)
 SIDES = "".join(f"f {k + 1} {(k + 1) % 6 + 1} {(k + 1) % 6 + 7} {k + 7}\n" for k in range(6))
 
 
