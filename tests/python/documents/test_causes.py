@@ -125,6 +125,20 @@ def test_text_in_utf_16_is_called_so(
     assert "UTF-16: save it in UTF-8" in str(error)
 
 
+@pytest.mark.parametrize("name", ["in.ply", "in.obj", "in.off", "in.stl", "in.gltf"])
+def test_a_byte_order_mark_of_utf_8_does_not_count(
+    name: str, whole: dict[str, Path], tmp_path: Path
+) -> None:
+    path = whole[name].with_name(f"marked.{name}")
+    path.write_bytes(b"\xef\xbb\xbf" + whole[name].read_bytes())
+    (part,), (expected,) = load_parts(path), load_parts(whole[name])
+    np.testing.assert_array_equal(part.vertices, expected.vertices)
+    np.testing.assert_array_equal(part.faces, expected.faces)
+    document = open_document(path)
+    document.save(tmp_path / name, [part.vertices])
+    assert (tmp_path / name).read_bytes() == path.read_bytes()
+
+
 @pytest.mark.parametrize("name", ["in.ply", "in.obj", "in.off", "in.stl"])
 def test_decimal_commas_are_called_so(name: str, whole: dict[str, Path], tmp_path: Path) -> None:
     path = tmp_path / name

@@ -35,7 +35,7 @@ from meshlab_spectral.documents.document import (
 from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.documents.polygons import strip_triangles, triangles
 from meshlab_spectral.documents.side_files import copy_side_files
-from meshlab_spectral.documents.text import lines_of, whole, write_patched
+from meshlab_spectral.documents.text import BYTE_ORDER_MARK, lines_of, whole, write_patched
 
 _AXES, _NORMALS = ("x", "y", "z"), ("nx", "ny", "nz")
 _TEXTURE = re.compile(rb"(?m)^[ \t]*comment[ \t]+TextureFile[ \t]+(.*\S)")
@@ -153,13 +153,13 @@ def _read_header(content: bytes) -> tuple[PlyData, dict[str, int], bytes]:
     """Read the header with plyfile, without comments (it accepts only ASCII), with counts of 0."""
     end = re.search(rb"(?s)\n[ \t]*element\s+vertex\s.*?\n[ \t]*end_header[ \t]*\r?\n", content)
     if not end:
-        if not content.startswith(b"ply"):
+        if not content.removeprefix(BYTE_ORDER_MARK).startswith(b"ply"):
             raise ForeignError("it does not begin with the word ply")
         if not re.search(rb"(?m)^[ \t]*end_header[ \t]*\r?\n", content):
             raise EndsEarlyError("it ends before the end of its header")
         raise ValueError("it has no PLY header with vertices")
     header = content[: end.end()]
-    lines = b"".join(line.strip() + b"\n" for line in header.splitlines())
+    lines = b"".join(line.strip() + b"\n" for line in header.removeprefix(BYTE_ORDER_MARK).splitlines())
     lines = re.sub(rb"(?m)^(comment|obj_info)\b.*", b"comment", lines)
     counts = [int(word) for word in re.findall(rb"(?m)^element\s+\S+\s+(\S+)", lines)]
     empty = re.sub(rb"(?m)^(element\s+\S+)\s+\S+", rb"\1 0", lines)

@@ -13,7 +13,7 @@ from meshlab_spectral._core import first_equal_rows, following_facet_normals
 from meshlab_spectral.documents.causes import EndsEarlyError, ForeignError, unreadable
 from meshlab_spectral.documents.digits import SINGLE, digits_for, precision_warnings
 from meshlab_spectral.documents.document import Array, Document, Indices, Part, check_vertices
-from meshlab_spectral.documents.text import lines_of, write_patched
+from meshlab_spectral.documents.text import BYTE_ORDER_MARK, lines_of, write_patched
 
 _HEADER, _LOOKED_AT = 84, 1000  # bytes
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
@@ -71,7 +71,7 @@ def read(path: Path) -> Document:
 
 
 def _is_text(content: bytes) -> bool:
-    head = content[: _HEADER + _LOOKED_AT]
+    head = content[: _HEADER + _LOOKED_AT].removeprefix(BYTE_ORDER_MARK)
     if len(head) < _HEADER:
         return True
     # A binary file may begin with the word solid, like a text file.

@@ -19,6 +19,7 @@ from meshlab_spectral.documents.document import Array, Indices
 # Ascending byte offsets of n places, words from there to k numbers, the numbers in the text and the
 # new ones (n x k), and significant digits.
 Change = tuple[Indices, int, Array, Array, int]
+BYTE_ORDER_MARK = b"\xef\xbb\xbf"  # of UTF-8; some editors put it before a text
 _END = re.compile(rb"[\r\n]")
 NumberList = tuple[Indices, Array]  # the sizes of a list in each line, and all items
 
@@ -116,6 +117,8 @@ def lines_of(
     `keywords` are first words to tell apart, in small letters with `any_case`. Lines of the first
     `continued` of them go on after a backslash at their end.
     """
+    if not begin and text.startswith(BYTE_ORDER_MARK):
+        begin = len(BYTE_ORDER_MARK)
     found = _core.text_lines(text, begin, limit, keywords, comments, any_case, continued)
     return Lines(text, *found, comments, continued)
 
