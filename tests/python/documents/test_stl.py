@@ -168,3 +168,11 @@ def test_a_damaged_file_is_refused(content: bytes, message: str, tmp_path: Path)
     with pytest.raises(MeshFileError, match=message) as error:
         read(path)
     assert str(path) in str(error.value)
+
+
+def test_text_that_ends_between_facets_may_have_been_cut_off(tmp_path: Path) -> None:
+    whole = ascii_()
+    assert read(write(tmp_path, whole)).warnings == []
+    cut = whole[: whole.index(b"endfacet") + len(b"endfacet\n")]
+    (warning,) = read(write(tmp_path, cut)).warnings
+    assert "ends without endsolid" in warning

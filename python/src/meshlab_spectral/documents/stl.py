@@ -19,7 +19,7 @@ _HEADER, _LOOKED_AT = 84, 1000  # bytes
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _LARGEST_CUT = 1000  # of what a file claims to hold to what has arrived
 _EXCESS = 1 / 20  # trailing bytes that a binary file may have, relative to its size
-_KEYWORDS = ["facet", "vertex", "endfacet", "solid"]
+_KEYWORDS = ["facet", "vertex", "endfacet", "solid", "endsolid"]
 _FACET = [0, 1, 1, 1, 2]  # loops left out
 
 
@@ -107,6 +107,7 @@ def _read_binary(path: Path, content: bytes) -> Document:
 def _read_text(path: Path, content: bytes) -> Document:
     lines = lines_of(content, _KEYWORDS, any_case=True)
     has_names = (lines.words[lines.kinds == _KEYWORDS.index("solid")] > 1).any()
+    is_ended = (lines.kinds == _KEYWORDS.index("endsolid")).any()
     chosen = lines[lines.kinds <= max(_FACET)]
     del lines
     if not len(chosen):
@@ -124,6 +125,7 @@ def _read_text(path: Path, content: bytes) -> Document:
         path,
         [_connected(path, corners.numbers(path, 1))],
         ["names of solids"] if has_names else [],
+        [] if is_ended else [f"{path.name} ends without endsolid: it may have been cut off"],
         content=content,
         facets=facets.starts,
         corners=corners.starts,
