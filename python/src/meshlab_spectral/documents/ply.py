@@ -159,7 +159,9 @@ def _read_header(content: bytes) -> tuple[PlyData, dict[str, int], bytes]:
             raise EndsEarlyError("it ends before the end of its header")
         raise ValueError("it has no PLY header with vertices")
     header = content[: end.end()]
-    lines = b"".join(line.strip() + b"\n" for line in header.removeprefix(BYTE_ORDER_MARK).splitlines())
+    lines = b"".join(
+        line.strip() + b"\n" for line in header.removeprefix(BYTE_ORDER_MARK).splitlines()
+    )
     lines = re.sub(rb"(?m)^(comment|obj_info)\b.*", b"comment", lines)
     counts = [int(word) for word in re.findall(rb"(?m)^element\s+\S+\s+(\S+)", lines)]
     empty = re.sub(rb"(?m)^(element\s+\S+)\s+\S+", rb"\1 0", lines)
