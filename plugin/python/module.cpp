@@ -6,13 +6,17 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <cstdint>
+#include <numeric>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "arrays.h"
 #include "core/contract/filter.h"
 #include "core/contract/gains.h"
 #include "core/laplacian/laplacian_builder.h"
+#include "core/mesh/surface.h"
 #include "core/support/memory.h"
 #include "core/support/steady_progress.h"
 #include "core/support/threads.h"
@@ -102,6 +106,20 @@ nb::tuple laplacian(const Positions& vertices, const Indices& faces, int kind, n
                 rows.data(), static_cast<Index>(rows.size())))));
 }
 
+/// For each vertex the first one it is joined to at a seam, often itself.
+nb::object joinedVertices(const Positions& vertices, const Indices& faces) {
+    const Vertices V = mapOf(vertices, 3);
+    const Faces F = mapOf(faces, 3);
+    std::vector<std::int64_t> first(static_cast<std::size_t>(V.rows()));
+    {
+        const Running running;
+        std::iota(first.begin(), first.end(), 0);
+        const Surface surface = joinedSurface(V, F);
+        for (const auto& [vertex, row] : surface.copies) first[vertex] = surface.vertex[row];
+    }
+    return givenRows(std::move(first));
+}
+
 }  // namespace
 
 }  // namespace spectral::python
@@ -118,6 +136,7 @@ NB_MODULE(_core, m) {
           "frequencies"_a);
     m.def("laplacian", python::laplacian, "vertices"_a, "faces"_a, "kind"_a, nb::kw_only(),
           "progress"_a = nb::none(), "threads"_a = 0);
+    m.def("joined_vertices", python::joinedVertices, "vertices"_a, "faces"_a);
     python::addTexts(m);
     m.def("set_memory_limit", setMemoryLimit, "limit"_a);
 }

@@ -21,9 +21,19 @@ struct Cursor {
     const char* at;
     const char* end;
     bool hasComments;
+    bool isContinued = false;  // whether lines go on after a final backslash
 
     bool isWithin() const { return at != end; }
-    bool isAtWord() const { return isWithin() && !isBlank(*at) && !(hasComments && *at == '#'); }
+    bool isAtWord() const {
+        return isWithin() && !isBlank(*at) && !(hasComments && *at == '#') && !isAtBackslash();
+    }
+    /// Whether here is a backslash that ends a line which goes on.
+    bool isAtBackslash() const {
+        if (!isContinued || !isWithin() || *at != '\\') return false;
+        const char* next = at + 1;
+        while (next != end && isBlank(*next) && !isEnd(*next)) ++next;
+        return next == end || isEnd(*next) || (hasComments && *next == '#');
+    }
     void skipWord() {
         while (isAtWord()) ++at;
     }
@@ -61,18 +71,16 @@ std::size_t kindOf(std::string_view word, const std::vector<std::string>& keywor
 }
 
 /// Goes to the end of a line, and counts its words.
-std::int32_t countWords(Cursor& line, bool isContinued) {
+std::int32_t countWords(Cursor& line) {
     std::int32_t words = 0;
     while (line.isAtWord()) {
-        const char* const begin = line.at;
         line.skipWord();
-        const char* const end = line.at;
         ++words;
         line.skipBlanksOfLine();
-        if (!isContinued || end[-1] != '\\' || line.isAtWord()) continue;
-        if (end - begin == 1) --words;
-        line.skipEnd();
-        line.skipBlanksOfLine();
+        while (line.isAtBackslash()) {
+            line.skipEnd();
+            line.skipBlanksOfLine();
+        }
     }
     return words;
 }
@@ -206,16 +214,16 @@ struct Replacing {
         while (row < change->n && !changed(row)) ++row;
         if (row == change->n) return;
         const char* const begin = text.data();
-        cursor = {begin + change->places[row], begin + text.size(), true};
+        cursor = {begin + change->places[row], begin + text.size(), true, true};
         isQuoted = change->places[row] > 0 && (cursor.at[-1] == '"' || cursor.at[-1] == '\'');
         for (int word = 0; word < change->first; ++word) {
             cursor.skipWord();
-            cursor.skipBlanks();
+            cursor.findWord();
         }
     }
     void next(std::string_view text) {
         if (++column < change->k) {
-            cursor.skipBlanks();
+            cursor.findWord();
         } else {
             ++row, column = 0;
             enterRow(text);
@@ -264,7 +272,9 @@ Lines findLines(std::string_view text, std::size_t begin, std::size_t limit,
         const std::size_t kind = kindOf({cursor.at, size}, keywords, syntax.isAnyCase);
         lines.starts.push_back(cursor.at - text.data());
         lines.kinds.push_back(static_cast<std::uint8_t>(kind));
-        lines.words.push_back(countWords(cursor, static_cast<int>(kind) == syntax.continued));
+        cursor.isContinued = static_cast<int>(kind) < syntax.continued;
+        lines.words.push_back(countWords(cursor));
+        cursor.isContinued = false;
         cursor.skipLine();
     }
     return lines;
@@ -282,10 +292,11 @@ NumberTable readNumbers(std::string_view text, const ChosenLines& lines, const L
         list.items.reserve(3 * lines.n);
     }
     for (std::size_t i = 0; i < lines.n; ++i) {
-        Cursor line{text.data() + lines.starts[i], text.data() + text.size(), syntax.hasComments};
+        Cursor line{text.data() + lines.starts[i], text.data() + text.size(), syntax.hasComments,
+                    syntax.continued > 0};
         for (int word = 0; word < std::min(layout.first, lines.words[i]); ++word) {
             line.skipWord();
-            line.skipBlanks();
+            line.findWord();
         }
         if (!readLine(line, lines.words[i] - layout.first, layout, numbers)) {
             numbers.bad = static_cast<std::int64_t>(i);
@@ -342,17 +353,14 @@ Corners readCorners(std::string_view text, const ChosenLines& lines) {
     Corners corners;
     corners.numbers.reserve(6 * lines.n);
     for (std::size_t i = 0; i < lines.n; ++i) {
-        Cursor cursor{text.data() + lines.starts[i], text.data() + text.size(), true};
+        Cursor cursor{text.data() + lines.starts[i], text.data() + text.size(), true, true};
         cursor.skipWord();
-        for (std::int32_t left = lines.words[i] - 1; left > 0;) {
+        for (std::int32_t left = lines.words[i] - 1; left > 0; --left) {
             cursor.findWord();
             if (!cursor.isWithin()) break;
             const char* const begin = cursor.at;
             cursor.skipWord();
-            std::string_view word(begin, static_cast<std::size_t>(cursor.at - begin));
-            cursor.skipBlanksOfLine();
-            if (word.back() == '\\' && !cursor.isAtWord()) word.remove_suffix(1);
-            if (word.empty()) continue;
+            const std::string_view word(begin, static_cast<std::size_t>(cursor.at - begin));
             std::int64_t vertex = 0, normal = 0;
             if (!readCorner(word, vertex, normal)) {
                 corners.bad = begin - text.data();
@@ -360,7 +368,6 @@ Corners readCorners(std::string_view text, const ChosenLines& lines) {
             }
             corners.numbers.push_back(vertex);
             corners.numbers.push_back(normal);
-            --left;
         }
     }
     return corners;

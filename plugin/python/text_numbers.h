@@ -13,7 +13,7 @@ namespace spectral::python {
 struct Syntax {
     bool hasComments = false;  ///< The rest of a line from # on is no word.
     bool isAnyCase = false;    ///< Keywords may be in capitals.
-    int continued = -1;        ///< The keyword whose lines go on after a final backslash.
+    int continued = 0;         ///< Lines of so many of the keywords go on after a final backslash.
 };
 
 /// The lines of a text that have words, in order.

@@ -58,11 +58,12 @@ nb::tuple tupleOf(NumberTable&& table, std::size_t properties) {
 }
 
 nb::tuple numbers(const nb::bytes& text, const Places& starts, const Counts& words, int first,
-                  const std::vector<bool>& areLists, bool hasComments, bool isWhole) {
+                  const std::vector<bool>& areLists, bool hasComments, int continued,
+                  bool isWhole) {
     const std::string_view view = viewOf(text);
     NumberTable found = released([&] {
         return readNumbers(view, {starts.data(), words.data(), starts.shape(0)},
-                           {first, areLists, isWhole}, {hasComments});
+                           {first, areLists, isWhole}, {hasComments, false, continued});
     });
     return tupleOf(std::move(found), areLists.size());
 }
@@ -163,7 +164,7 @@ void addTexts(nb::module_& m) {
     m.def("text_lines", lines, "text"_a, "begin"_a, "limit"_a, "keywords"_a, "comments"_a,
           "any_case"_a, "continued"_a);
     m.def("text_numbers", numbers, "text"_a, "starts"_a, "words"_a, "first"_a, "are_lists"_a,
-          "comments"_a, "is_whole"_a);
+          "comments"_a, "continued"_a, "is_whole"_a);
     m.def("binary_numbers", binaryNumbers, "data"_a, "begin"_a, "count"_a, "types"_a,
           "big_endian"_a);
     m.def("text_corners", corners, "text"_a, "starts"_a, "words"_a);

@@ -37,9 +37,9 @@ def make_broken_meshes(folder: Path, whole: Path) -> dict[str, str]:
     huge = write_ply(folder / "huge_counts.ply", *TRIANGLE)
     huge.write_text(huge.read_text().replace("element vertex 3", "element vertex 2000000000"))
     return {
-        "cut_off.ply": "damaged",
-        "empty.ply": "damaged",
-        "text.ply": "damaged",
+        "cut_off.ply": "was cut off",
+        "empty.ply": "is empty",
+        "text.ply": "is not PLY",
         "nan.ply": "not finite",
         "points.ply": "point cloud",
         "zero_area.ply": "area",

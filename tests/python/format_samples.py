@@ -346,7 +346,7 @@ def read_3mf(path: Path) -> Seen:
     }
 
 
-def write_vtk(path: Path) -> None:
+def write_vtk(path: Path, text: bool = False) -> None:
     faces = [number for polygon in POLYGONS for number in (len(polygon), *polygon)]
     mesh = pyvista.PolyData(CUT, faces=faces, lines=[len(LINE), *LINE], verts=[1, 7])
     mesh.point_data["age"], mesh.point_data["rgb"] = AGE, RGB
@@ -354,7 +354,7 @@ def write_vtk(path: Path) -> None:
     mesh.point_data.active_texture_coordinates = UV
     mesh.cell_data["part"] = np.arange(mesh.n_cells, dtype="i2")
     mesh.field_data["maker"] = ["by hand"]
-    mesh.save(path)
+    mesh.save(path, binary=not text)
 
 
 def read_vtk(path: Path) -> Seen:
@@ -432,7 +432,9 @@ SAMPLES = [
     Sample("glTF, GLB", "in.gltf", write_gltf, read_gltf),
     Sample("3MF", "in.3mf", write_3mf, read_3mf),
     Sample("VTK, VTP", "in.vtk", write_vtk, read_vtk),
+    Sample("VTK, VTP", "text.vtk", partial(write_vtk, text=True), read_vtk),
     Sample("VTK, VTP", "in.vtp", write_vtk, read_vtk),
     Sample("GIFTI", "in.surf.gii", write_gifti, read_gifti),
+    Sample("GIFTI", "in.surf.gii.gz", write_gifti, read_gifti),
     Sample("FreeSurfer", "lh.pial", write_freesurfer, read_freesurfer),
 ]

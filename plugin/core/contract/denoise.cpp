@@ -34,7 +34,8 @@ Fields<DenoiseCall> denoiseFields() {
                     "details were mistaken for noise, or noise for details. The default: as "
                     "measured; the report then says how high it is.")
             .in("length, at least 0")
-            .length("auto", nullptr, "0: as measured"),
+            .length("auto", nullptr, "0: as measured")
+            .upToShare(0.2),
         field<Call>(
             [](auto& call) -> auto& { return call.options.noiseSize; }, "noise_size", "Noise size",
             "Distance over which the noise is correlated: half the width of its bumps, such "

@@ -24,8 +24,7 @@ Length Length::parse(const std::string& text) {
                             "': give a percentage of the bounding box diagonal such as 5%, mean "
                             "edges such as 6e, or a length such as 0.02");
     if (length.unit == Unit::Percent && length.value > 100.0)
-        throw InvalidOption(
-            text + ": a percentage goes up to 100% of the diagonal; for more, give a length");
+        throw InvalidOption(text + ": a percentage goes up to 100% of the diagonal");
     return length;
 }
 

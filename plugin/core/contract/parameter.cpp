@@ -1,5 +1,9 @@
 #include "core/contract/parameter.h"
 
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
 #include "core/contract/length.h"
 #include "core/support/errors.h"
 
@@ -47,16 +51,39 @@ double numberOf(const Parameter& parameter, const Value& value) {
     reject(parameter, value, "must be a number");
 }
 
+/// Rejects a length that no filter can have been meant to take.
+double inProportion(double length, const Parameter& parameter, const Value& value,
+                    const MeshLengths& mesh) {
+    constexpr double kRoundOff = 1.001;
+    const double share = length / mesh.diagonal;  // not finite without a mesh
+    if (!std::isfinite(share) || share <= kRoundOff * parameter.largestShare) return length;
+    std::ostringstream wanted;
+    wanted << std::setprecision(3) << "is " << 100.0 * share << " % of the diagonal of the mesh, "
+           << mesh.diagonal << ": ";
+    const double* const number = std::get_if<double>(&value);
+    const double percent = number != nullptr ? *number : length;
+    if (!std::holds_alternative<std::string>(value) && percent <= 100.0 * parameter.largestShare)
+        wanted << "did you mean " << percent << "%?";
+    else
+        wanted << "give at most " << 100.0 * parameter.largestShare << "%";
+    reject(parameter, value, wanted.str());
+}
+
 double lengthOf(const Parameter& parameter, const Value& value, const MeshLengths& mesh) {
     const double automatic = inSinglePrecision(automaticLength(parameter, mesh));
     const auto* const text = std::get_if<std::string>(&value);
-    if (text == nullptr) return inSinglePrecision(numberOf(parameter, value));
+    if (text == nullptr)
+        return inProportion(inSinglePrecision(numberOf(parameter, value)), parameter, value, mesh);
     if (value == parameter.usual) return automatic;
-    try {
-        return Length::parse(*text).in(mesh, automatic);
-    } catch (const InvalidOption& error) {
-        throw InvalidOption(parameter.name + " = " + error.what());
-    }
+    const Length length = [&] {
+        try {
+            return Length::parse(*text);
+        } catch (const InvalidOption& error) {
+            throw InvalidOption(parameter.name + " = " + error.what());
+        }
+    }();
+    const Value given = length.unit == Length::Unit::Absolute ? Value(length.value) : value;
+    return inProportion(length.in(mesh, automatic), parameter, given, mesh);
 }
 
 }  // namespace

@@ -26,11 +26,13 @@ struct Parameter {
     /// Of a length: the default for a mesh, and in words. Null: the default is 0.
     double (*automatic)(const MeshLengths& mesh) = nullptr;
     std::string automaticText{};
+    double largestShare = 1.0;  ///< Of a length: how much of the diagonal it may be.
 };
 
 /// Checks a value and converts it to the type of a parameter: a choice to its number, a length to
 /// length units.
-/// @throws InvalidOption  when the type is wrong, or there is no such choice; names the parameter.
+/// @throws InvalidOption  when the type is wrong, there is no such choice, or a length is out of
+/// all proportion to the mesh, such as 2 where 2% was meant; names the parameter.
 Value converted(const Parameter& parameter, const Value& value, const MeshLengths& mesh);
 
 /// @throws InvalidOption  that names a value of `given` for which there is no parameter.

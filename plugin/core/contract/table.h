@@ -57,6 +57,11 @@ struct Field : Parameter {
         automaticText = std::move(inWords);
         return std::move(*this);
     }
+    /// Bounds a length by a share of the diagonal.
+    Field&& upToShare(double most) && {
+        largestShare = most;
+        return std::move(*this);
+    }
 };
 
 template <class Call>

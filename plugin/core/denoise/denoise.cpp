@@ -9,6 +9,7 @@
 #include "core/denoise/removal.h"
 #include "core/laplacian/laplacian.h"
 #include "core/laplacian/vertex_weight.h"
+#include "core/mesh/contacts.h"
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/surface.h"
 #include "core/support/errors.h"
@@ -185,8 +186,9 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
         if (result.diagnosis.kind == NoiseKind::Voxels)
             keepWithin(0.5 * result.diagnosis.voxel, whole.X, moved);
     }
-    const Vertices displacement = moved - whole.X;
+    Vertices displacement = moved - whole.X;
     if (!displacement.allFinite()) throw SolverFailure("the denoised coordinates are not finite");
+    moveContactsAlike(whole, components, displacement);
     result.V = changed(V, whole, displacement);
     static_cast<Movement&>(result) = movementOf(
         whole.X, whole.F, displacement, Eigen::VectorXd::Ones(displacement.rows()), volumes);

@@ -9,6 +9,7 @@
 #include "core/filter/fractional_steps.h"
 #include "core/filter/thin_parts.h"
 #include "core/laplacian/interior.h"
+#include "core/mesh/contacts.h"
 #include "core/mesh/creases.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/mesh.h"
@@ -169,6 +170,8 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
                                   kMaxOffset, X);
         displacement = X - surface.X;
     }
+    moveContactsAlike(surface, interior.surfaceComponents(), displacement);
+    X = surface.X + displacement;
 
     const Eigen::VectorXd before = lumpedMass(surface.X, surface.F);
     FilterResult result;

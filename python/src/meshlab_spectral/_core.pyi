@@ -44,6 +44,9 @@ def laplacian(
     NDArray[np.int64],
 ]: ...
 def set_memory_limit(limit: float) -> None: ...
+def joined_vertices(
+    vertices: NDArray[np.float64], faces: NDArray[np.int32]
+) -> NDArray[np.int64]: ...
 def text_lines(
     text: bytes,
     begin: int,
@@ -60,6 +63,7 @@ def text_numbers(
     first: int,
     are_lists: Sequence[bool],
     comments: bool,
+    continued: int,
     is_whole: bool,
 ) -> _Numbers: ...
 def binary_numbers(

@@ -18,7 +18,21 @@ class FormatError(SpectralError, ValueError):
 
 
 class MeshFileError(SpectralError):
-    """A mesh file cannot be read, or an output file cannot be written."""
+    """A mesh file cannot be read, or an output file cannot be written.
+
+    Attributes
+    ----------
+    code
+        The cause. Of a file to read: "missing", "no_file" (a folder, a device), "no_access",
+        "bad_name", "empty", "foreign" (of another format than its name says), "encoding" (UTF-16),
+        "decimal_commas", "cut_off", "damaged", "bad_values" (coordinates that are not finite),
+        "unsupported" (valid, with something that is not read), "unknown_format". Of one to write:
+        "not_written", "disk_full".
+    """
+
+    def __init__(self, message: str, code: str = "") -> None:
+        super().__init__(message)
+        self.code = code
 
 
 class FilterError(SpectralError):

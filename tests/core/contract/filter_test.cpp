@@ -147,6 +147,36 @@ TEST(Length, IsReadInAllUnits) {
         EXPECT_THROW(Length::parse(wrong), InvalidOption) << wrong;
 }
 
+std::string messageOf(const Parameter& parameter, const Value& value, const MeshLengths& mesh) {
+    try {
+        converted(parameter, value, mesh);
+        return "";
+    } catch (const InvalidOption& error) {
+        return error.what();
+    }
+}
+
+TEST(Length, OutOfProportionToTheMeshIsRefusedForEveryLengthOfEveryFilter) {
+    const MeshLengths mesh{1.25, 0.01, 1.25};
+    for (const Filter& filter : allFilters())
+        for (const Parameter& one : filter.parameters) {
+            if (one.kind != Parameter::Kind::Length) continue;
+            const double largest = one.largestShare * mesh.diagonal;
+            EXPECT_EQ(messageOf(one, largest, mesh), "") << one.name;
+            EXPECT_EQ(messageOf(one, std::string("auto"), mesh), "") << one.name;
+            EXPECT_EQ(messageOf(one, 100.0, MeshLengths{}), "") << one.name;  // of no mesh
+            for (const Value& meant : {Value(2.0), Value(2), Value(std::string("2"))}) {
+                const std::string text = messageOf(one, meant, mesh);
+                EXPECT_NE(text.find("160 % of the diagonal"), std::string::npos) << text;
+                EXPECT_NE(text.find("did you mean 2%?"), std::string::npos) << text;
+            }
+            for (const Value& large : {Value(2000.0), Value(std::string("500e"))}) {
+                const std::string text = messageOf(one, large, mesh);
+                EXPECT_NE(text.find("give at most"), std::string::npos) << text;
+            }
+        }
+}
+
 TEST(Length, StaysInRangeWhereSinglePrecisionDoesNot) {
     EXPECT_EQ(inSinglePrecision(1e-60), 1e-60);
     EXPECT_EQ(inSinglePrecision(1e60), 1e60);

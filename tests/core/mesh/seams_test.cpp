@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <random>
 #include <utility>
 
 #include "core/analysis/artefacts.h"
@@ -210,15 +211,54 @@ TEST(Seams, OpenSheetsJoinAlongACommonBoundary) {
     EXPECT_EQ(connectedComponents(surface.F, surface.X.rows()).count, 1);
 }
 
-TEST(Seams, NearbyVerticesAreCountedButNotJoined) {
+/// Sheets side by side; the corners of the second are off by up to `roundOff`.
+Mesh nearlyJoinedSheets(double roundOff) {
     const Mesh left = testing::rectangle(1.0, 1.0, 4, 4);
     Mesh right = left;
+    right.V.col(0).array() += 1.0;
+    std::mt19937 generator(3);
+    std::uniform_real_distribution<double> off(-roundOff, roundOff);
+    right.V = right.V.unaryExpr([&](double x) { return x + off(generator); }).eval();
+    return joined(left, right);
+}
+
+TEST(Seams, EdgesThatPairWithinRoundOffAreOne) {
+    for (const double roundOff : {1e-12, 1e-8, 1e-6, 1e-5, 1e-3}) {
+        const Mesh both = nearlyJoinedSheets(roundOff);
+        const Surface surface = joinedSurface(both.V, both.F);
+        EXPECT_EQ(surface.copies.size(), 5u) << roundOff;
+        EXPECT_EQ(surface.nearlyCopies, 0) << roundOff;
+    }
+    const Mesh apart = nearlyJoinedSheets(0.1);
+    EXPECT_TRUE(joinedSurface(apart.V, apart.F).copies.empty());
+}
+
+TEST(Seams, TrianglesWithLooseCornersAreOneSurface) {
+    const Mesh whole = testing::icosphere(3);
+    const double diagonal = boundingBoxDiagonal(whole.V);
+    for (const double roundOff : {1e-8, 1e-6, 1e-5, 1e-4}) {
+        Mesh loose = soupOf(whole).mesh;
+        std::mt19937 generator(3);
+        std::uniform_real_distribution<double> off(-roundOff * diagonal, roundOff * diagonal);
+        loose.V = loose.V.unaryExpr([&](double x) { return x + off(generator); }).eval();
+        const Surface surface = joinedSurface(loose.V, loose.F);
+        EXPECT_EQ(surface.X.rows(), whole.V.rows()) << roundOff;
+        EXPECT_EQ(surface.copies.size(), static_cast<std::size_t>(loose.V.rows() - whole.V.rows()));
+        EXPECT_EQ(surface.F.rows(), whole.F.rows());
+    }
+}
+
+TEST(Seams, WhereSeveralEdgesAreNearEachOtherTheyAreCountedButNotJoined) {
+    const Mesh sheet = testing::rectangle(1.0, 1.0, 4, 4);
+    Mesh right = sheet, upright = sheet;
     right.V.col(0).array() += 1.0 + 1e-8;
-    const Mesh both = joined(left, right);
-    const Surface surface = joinedSurface(both.V, both.F);
+    upright.V.col(2) = sheet.V.col(0);
+    upright.V.col(0).setConstant(1.0 - 1e-8);
+    const Mesh three = joined(joined(sheet, right), upright);
+    const Surface surface = joinedSurface(three.V, three.F);
     EXPECT_TRUE(surface.copies.empty());
-    EXPECT_EQ(surface.nearlyCopies, 5);
-    EXPECT_EQ(joinedSurface(left.V, left.F).nearlyCopies, 0);
+    EXPECT_EQ(surface.nearlyCopies, 10);
+    EXPECT_EQ(joinedSurface(sheet.V, sheet.F).nearlyCopies, 0);
 }
 
 TEST(Seams, ThreeSheetsJoinAtACommonEdge) {

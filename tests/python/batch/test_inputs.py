@@ -9,6 +9,7 @@ import fsspec
 import pytest
 from meshlab_spectral import InputError
 from meshlab_spectral.batch.inputs import Input, find_inputs
+from meshlab_spectral.batch.outputs import plan_outputs
 from meshlab_spectral.batch.storage import is_url
 
 
@@ -137,3 +138,31 @@ def test_a_file_with_colons_in_its_name_is_not_a_url(
 def test_a_file_url_is_a_path(tmp_path: Path) -> None:
     files(tmp_path, "a b.ply")
     assert find_inputs([(tmp_path / "a b.ply").as_uri()]) == [Input(str(tmp_path / "a b.ply"))]
+
+
+SURFACES = ["lh.inflated", "lh.orig", "lh.pial", "lh.pial.T1", "lh.white.preaparc", "rh.sphere.reg"]
+
+
+@pytest.mark.parametrize("remote", [False, True])
+def test_a_folder_of_free_surfer_gives_all_its_surfaces(remote: bool, tmp_path: Path) -> None:
+    """They are known by their first bytes; curvature and labels are none. Outputs keep names."""
+    for name in SURFACES:
+        (tmp_path / name).write_bytes(b"\xff\xff\xfe and more")
+    for name in ("lh.curv", "lh.cortex.label", "lh.thickness"):
+        (tmp_path / name).write_bytes(b"\xff\xff\xff and more")
+    (tmp_path / "z.surf.gii.gz").write_bytes(b"")
+    folder = str(tmp_path)
+    if remote:
+        folder = "memory://surf"
+        fsspec.filesystem("memory").put(str(tmp_path), "/surf", recursive=True)
+    found = find_inputs([folder])
+    assert [file.name for file in found] == [*SURFACES, "z.surf.gii.gz"]
+    outputs = plan_outputs(found, str(tmp_path / "out"))
+    assert [output.name for output in outputs] == [*SURFACES, "z.surf.gii.gz"]
+    outputs = plan_outputs(found, str(tmp_path / "out"), "{stem}_smooth")
+    assert [output.name for output in outputs][3:] == [
+        "lh.pial_smooth.T1",
+        "lh.white_smooth.preaparc",
+        "rh.sphere_smooth.reg",
+        "z.surf_smooth.gii.gz",
+    ]

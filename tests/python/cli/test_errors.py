@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 import shutil
+import subprocess
 from pathlib import Path
 
 import pytest
-from commands import assert_fails, command, write_ply
+from commands import COMMAND, assert_fails, command, write_ply
 
 
 def test_a_missing_input_is_named(existing: Path, tmp_path: Path) -> None:
@@ -14,25 +16,78 @@ def test_a_missing_input_is_named(existing: Path, tmp_path: Path) -> None:
     assert_fails(command("filter", missing, existing), 1, str(missing), "does not exist")
 
 
-def test_a_folder_as_input_is_refused(existing: Path, tmp_path: Path) -> None:
-    assert_fails(command("filter", tmp_path, existing), 1, "is a folder")
+NO_FILES = {
+    "-": "not read from standard input; save it",
+    "http://example.org/scan.ply": "`meshlab-spectral batch http://example.org/scan.ply --output",
+    "s3://scans/a.ply": "`meshlab-spectral batch s3://scans/a.ply --output",
+    "folder": "`meshlab-spectral batch folder --output FOLDER`",
+    "notes.txt": "name it after its format",
+    "scan.e57": "is PLY, not .e57: rename it to .ply",
+    "scan.vtm": "extract its surface first",
+    "pipe": "is a device or a pipe",
+}
+
+
+@pytest.mark.parametrize("name", NO_FILES)
+@pytest.mark.parametrize("verb", ["denoise", "filter", "info"])
+def test_what_is_no_mesh_file_is_refused_with_a_remedy(
+    verb: str, name: str, existing: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("folder").mkdir()
+    Path("notes.txt").write_text("1 2 3\n")
+    write_ply(Path("scan.e57"), "0 0 0\n1 0 0\n0 1 0", "3 0 1 2")
+    Path("scan.vtm").write_text('<VTKFile type="vtkMultiBlockDataSet" version="1.0"></VTKFile>')
+    os.mkfifo("pipe")
+    done = command(verb, name, *([existing] if verb != "info" else []))
+    assert_fails(done, 1, name, NO_FILES[name])
+    assert "please report it" not in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("name", "remedy"),
+    [
+        ("-", "not written to standard output; name a file"),
+        ("http://example.org/out.ply", "to which only `meshlab-spectral batch` writes"),
+    ],
+)
+def test_what_is_no_place_for_a_file_is_refused(name: str, remedy: str, cow: Path) -> None:
+    assert_fails(command("filter", cow, name), 1, name, remedy)
+
+
+def test_a_full_disk_is_called_so(cow: Path, tmp_path: Path) -> None:
+    """The limit on the size of a file stands for the disk."""
+    target = tmp_path / "out.obj"
+    limited = f"ulimit -f 20; exec {' '.join(COMMAND)} filter {cow} {target}"
+    done = subprocess.run(["bash", "-c", limited], capture_output=True, text=True, check=False)
+    assert_fails(done, 1, "out.obj cannot be", "make room on the disk")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_length_beyond_the_mesh_is_refused(cow: Path, existing: Path) -> None:
+    done = command("filter", cow, existing, "--feature-size", 50)
+    assert_fails(done, 1, "feature_size = 50: is", "did you mean 50%?")
+    done = command("denoise", cow, existing, "--noise-height", 15)
+    assert_fails(done, 1, "noise_height = 15: is", "did you mean 15%?")
+    done = command("filter", cow, existing, "--feature-size", 5000)
+    assert_fails(done, 1, "give at most 100%")
 
 
 @pytest.mark.parametrize("ending", [".ply", ".obj", ".stl", ".off"])
-@pytest.mark.parametrize("content", ["", "this is no mesh\n"], ids=["empty", "text"])
-def test_a_broken_input_is_refused_with_advice(
-    content: str, ending: str, existing: Path, tmp_path: Path
+@pytest.mark.parametrize(("content", "cause"), [("", "is empty"), ("this is no mesh\n", "is not")])
+def test_a_broken_input_is_refused_with_the_cause(
+    content: str, cause: str, ending: str, existing: Path, tmp_path: Path
 ) -> None:
     broken = tmp_path / f"broken{ending}"
     broken.write_text(content)
-    assert_fails(command("filter", broken, existing), 1, str(broken), "damaged")
+    assert_fails(command("filter", broken, existing), 1, str(broken), cause)
 
 
 def test_a_cut_off_input_is_refused(cow: Path, existing: Path, tmp_path: Path) -> None:
     whole, cut = tmp_path / "whole.ply", tmp_path / "cut.ply"
     command("filter", cow, whole, "--steps", 1)
     cut.write_bytes(whole.read_bytes()[:20_000])
-    assert_fails(command("filter", cut, existing), 1, str(cut), "damaged")
+    assert_fails(command("filter", cut, existing), 1, str(cut), "was cut off")
 
 
 def test_an_input_of_an_unknown_format_is_refused_with_the_known_ones(

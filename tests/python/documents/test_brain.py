@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +10,11 @@ import nibabel
 import numpy as np
 import pytest
 from meshlab_spectral.documents.brain import read
+from meshlab_spectral.documents.names import FREE_SURFER
+from meshlab_spectral.documents.opening import format_of, open_document
 from meshlab_spectral.errors import MeshFileError
+from meshlab_spectral.files.formats import is_same_format
+from meshlab_spectral.files.meshes import load_parts
 from nibabel import gifti
 from nibabel.freesurfer import read_geometry, write_geometry
 from numpy.typing import NDArray
@@ -151,8 +156,9 @@ def test_a_damaged_free_surfer_file_is_refused(old: bytes, new: bytes, pial: Pat
 def test_a_cut_gifti_file_is_refused(part: float, surface: Path) -> None:
     data = surface.read_bytes()
     surface.write_bytes(data[: int(part * len(data))])
-    with pytest.raises(MeshFileError, match="damaged or cut off"):
+    with pytest.raises(MeshFileError) as error:
         read(surface)
+    assert error.value.code == ("cut_off" if part else "empty")
 
 
 def test_xml_that_is_not_gifti_is_refused(tmp_path: Path) -> None:
@@ -160,3 +166,78 @@ def test_xml_that_is_not_gifti_is_refused(tmp_path: Path) -> None:
     path.write_text("<svg><g/></svg>")
     with pytest.raises(MeshFileError, match="not GIFTI"):
         read(path)
+
+
+@pytest.mark.parametrize(
+    "name", ["lh.pial.T1", "lh.orig", "rh.white.preaparc", "lh.smoothwm", "lh"]
+)
+def test_a_surface_of_free_surfer_may_have_any_name(name: str, pial: Path) -> None:
+    path = pial.rename(pial.with_name(name))
+    assert format_of(path) == FREE_SURFER
+    (part,) = open_document(path).parts
+    np.testing.assert_array_equal(part.vertices, V)
+    assert is_same_format(path, path.with_name("lh.anything"))
+    assert not is_same_format(path, path.with_name("lh.ply"))
+
+
+@pytest.mark.parametrize("magic", [b"\xff\xff\xff", b"\xff\xff\xfd"])
+def test_values_of_free_surfer_are_named(magic: bytes, tmp_path: Path) -> None:
+    path = tmp_path / "lh.curv"
+    path.write_bytes(magic + bytes(100))
+    with pytest.raises(MeshFileError, match="holds values or quadrilaterals") as error:
+        load_parts(path)
+    assert error.value.code == "unsupported"
+
+
+@pytest.mark.parametrize(
+    "endings", [(".gii.gz", ".gii.gz"), (".gii.gz", ".gii"), (".gii", ".gii.gz")]
+)
+def test_a_compressed_gifti_file_is_one(endings: tuple[str, str], surface: Path) -> None:
+    before = read(surface).parts[0].vertices
+    source, target = (surface.with_name(f"{k}.surf{e}") for k, e in enumerate(endings))
+    content = surface.read_bytes()
+    source.write_bytes(gzip.compress(content) if endings[0] == ".gii.gz" else content)
+    assert is_same_format(source, target)
+    document = open_document(source)
+    np.testing.assert_array_equal(document.parts[0].vertices, before)
+    document.save(target, [before + 1])
+    np.testing.assert_allclose(open_document(target).parts[0].vertices, before + 1, atol=1e-6)
+    assert (target.read_bytes()[:2] == b"\x1f\x8b") == (endings[1] == ".gii.gz")
+
+
+def test_numbers_in_a_file_of_their_own_are_read_and_copied_or_written_into_the_file(
+    surface: Path, tmp_path: Path
+) -> None:
+    """As CAT12 writes them; nibabel reads them, and cannot write them."""
+    image = nibabel.gifti.GiftiImage.from_filename(surface)
+    blob, text = b"", ""
+    for array in image.darrays[:2]:
+        intent = nibabel.nifti1.intent_codes.niistring[array.intent]
+        type_ = nibabel.nifti1.data_type_codes.niistring[array.datatype]
+        data = array.data.astype(array.data.dtype.newbyteorder("<"))
+        text += (
+            f'<DataArray Intent="{intent}" DataType="{type_}" ArrayIndexingOrder="RowMajorOrder" '
+            f'Dimensionality="2" Dim0="{data.shape[0]}" Dim1="3" Encoding="ExternalFileBinary" '
+            f'Endian="LittleEndian" ExternalFileName="s.dat" ExternalFileOffset="{len(blob)}">'
+            "<Data/></DataArray>"
+        )
+        blob += data.tobytes()
+    folder = tmp_path / "external"
+    (folder / "out").mkdir(parents=True)
+    (folder / "out/scratch").mkdir()
+    source, target = folder / "s.gii", tmp_path / "out/s.gii"
+    target.parent.mkdir()
+    source.write_text(f'<?xml version="1.0"?><GIFTI Version="1.0">{text}</GIFTI>')
+    (folder / "s.dat").write_bytes(blob)
+    (part,) = read(source).parts
+    np.testing.assert_array_equal(part.vertices, read(surface).parts[0].vertices)
+    assert read(source).save(target, [part.vertices]) == []
+    assert target.read_bytes() == source.read_bytes()
+    assert target.with_name("s.dat").read_bytes() == blob
+    told = read(source).save(target, [part.vertices + 1])
+    assert told == ["the numbers of s.dat are written into s.gii"]
+    target.with_name("s.dat").unlink()
+    np.testing.assert_allclose(read(target).parts[0].vertices, part.vertices + 1, atol=1e-6)
+    (folder / "s.dat").unlink()
+    with pytest.raises(MeshFileError, match=r"s\.dat"):
+        read(source)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 from pathlib import Path
 
 import numpy as np
 import pymeshlab
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from meshlab_spectral.documents.document import Array
 from meshlab_spectral.documents.obj import read
 from meshlab_spectral.errors import MeshFileError
@@ -158,12 +161,11 @@ def test_materials_and_textures_are_copied(textured: Path, tmp_path: Path) -> No
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (b"", "no vertices"),
         (b"Dear all,\nplease find the scan attached.\n", "no vertices"),
         (SQUARE + b"v 1 2\n", "row 4 is 'v 1 2', which lacks"),
         (SQUARE + b"v 1,0 2 3\n", "row 4 is 'v 1,0 2 3'"),
         (SQUARE + b"v 1 nan 3\n", "vertex 4 is at 1 nan 3"),
-        (SQUARE + b"v 1 2 \\\n 3\n", "several lines.*: write each on one line"),
+        (SQUARE + b"v 1 2 \\\n x\n", "row 4 is 'v 1 2"),
         (SQUARE + b"vn 0 1\n", "row 0 is 'vn 0 1'"),
         (SQUARE + b"f 1 2 3\nf 1 2 5\n", "face in line 6"),
         (SQUARE + b"f 1 2 0\n", "face in line 5"),
@@ -196,3 +198,49 @@ def test_a_bunny_is_read_as_meshlab_reads_it_and_only_its_vertices_change(
         assert before == after or (before[:2] == after[:2] and before[:2] in (b"v ", b"vn"))
     written = np.array([line.split()[1:] for line in lines if line.startswith(b"v ")], dtype=float)
     np.testing.assert_allclose(written[:, :3], moved, rtol=1e-8, atol=1e-12)
+
+
+continued = st.sampled_from([" ", "  ", "\t", " \\\n ", "\\\r\n", " \\ \n\t", "\\ # why not\n"])
+
+
+@settings(max_examples=150, deadline=None)
+@given(data=st.data())
+def test_vertices_faces_and_normals_may_go_on_in_the_next_line(
+    data: st.DataObject, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    rows = SHADED.decode().split("\n")
+    lines = [
+        words[0] + " " + "".join(word + data.draw(continued) for word in words[1:-1]) + words[-1]
+        for words in (row.split() for row in rows if row)
+    ]
+    text = "\n".join([*lines, ""]).encode()
+    folder = tmp_path_factory.mktemp("obj")
+    path, plain = write(folder / "in.obj", text), write(folder / "plain.obj", SHADED)
+    (part,), (expected,) = read(path).parts, read(plain).parts
+    np.testing.assert_array_equal(part.vertices, expected.vertices)
+    np.testing.assert_array_equal(part.faces, expected.faces)
+    assert saved(path) == text
+    after = raised(part.vertices, 2)
+    split = re.compile(rb"((?:\\ # why not\n|\\?\s)+)")
+    new, given_ = split.split(saved(path, after)), split.split(text)
+    assert new[1::2] == given_[1::2]  # what is between the words
+    assert split.sub(b" ", saved(path, after)).split() == saved(plain, after).split()
+
+
+@pytest.mark.parametrize("line", [r"mtllib .\a.mtl", r"mtllib maps\a.mtl", 'mtllib "maps/a.mtl"'])
+@pytest.mark.parametrize("texture", [r"textures\t.png", '"textures/t.png"', r".\textures\t.png"])
+def test_names_with_the_slashes_of_windows_are_found(
+    line: str, texture: str, tmp_path: Path
+) -> None:
+    folder = tmp_path / ("maps" if "maps" in line else ".")
+    (folder / "textures").mkdir(parents=True)
+    (folder / "textures" / "t.png").write_bytes(b"an image")
+    (folder / "a.mtl").write_text(f"newmtl m\nmap_Kd {texture}\n")
+    path = write(tmp_path / "in.obj", f"{line}\n".encode() + SQUARE + b"f 1 2 3\n")
+    document = read(path)
+    target = tmp_path / "elsewhere" / "out" / "in.obj"
+    target.parent.mkdir(parents=True)
+    assert document.save(target, [document.parts[0].vertices]) == []
+    copied = target.parent / folder.relative_to(tmp_path)
+    assert (copied / "a.mtl").is_file()
+    assert (copied / "textures" / "t.png").read_bytes() == b"an image"

@@ -153,7 +153,7 @@ def test_a_bone_is_read_as_meshlab_reads_it(is_binary: bool, samples: Path, tmp_
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        (b"", "no triangles"),
+        (b"solid none\nendsolid none\n", "no facets"),
         (bytes(80) + struct.pack("<I", 4_000_000_000) + bytes(50), "4000000000 triangles"),
         (binary()[:-1], "5 triangles, which does not match its 333 bytes"),
         (binary().replace(struct.pack("<f", 0.5), struct.pack("<f", np.inf), 1), "at inf 0.5 1"),
@@ -168,3 +168,11 @@ def test_a_damaged_file_is_refused(content: bytes, message: str, tmp_path: Path)
     with pytest.raises(MeshFileError, match=message) as error:
         read(path)
     assert str(path) in str(error.value)
+
+
+def test_text_that_ends_between_facets_may_have_been_cut_off(tmp_path: Path) -> None:
+    whole = ascii_()
+    assert read(write(tmp_path, whole)).warnings == []
+    cut = whole[: whole.index(b"endfacet") + len(b"endfacet\n")]
+    (warning,) = read(write(tmp_path, cut)).warnings
+    assert "ends without endsolid" in warning

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -80,6 +81,9 @@ def test_only_points_and_normals_change(name: str, binary: bool, tmp_path: Path)
     assert (cosines > 0.8).all()
     data = (tmp_path / f"saved{path.suffix}").read_bytes()
     assert (b'format="ascii"' in data) == (path.suffix != ".vtk" and not binary)
+    if path.suffix == ".vtk" and not binary:  # of the text only numbers differ
+        words = re.compile(rb"-?\d[\d.e+-]*")
+        assert words.sub(b"0", data) == words.sub(b"0", path.read_bytes())
     saved(path, part.vertices)
     assert (tmp_path / f"saved{path.suffix}").read_bytes() == path.read_bytes()
 
@@ -112,7 +116,7 @@ DAMAGE = {
     ("0 0 0 1", "0 nan 0 1"): "vertex 0 is at 0 nan 0",
     ("4 0 1 2 3", "4 0 1 2 6"): "not among its 6 points",
     ("POINT_DATA 6", "POINT_DATA 5"): "attribute",
-    (LEGACY[-8:], ""): "mismatch",
+    (LEGACY[-8:], ""): "has 2 numbers of 6 in its last array",
 }
 
 

@@ -19,7 +19,7 @@ import pytest
 from helpers import filter_file
 from meshlab_spectral import DenoiseOptions, FilterOptions
 from meshlab_spectral.documents.opening import open_document
-from meshlab_spectral.errors import OptionError
+from meshlab_spectral.errors import MeshFileError, OptionError
 from meshlab_spectral.files.meshes import load_arrays
 from numpy.typing import NDArray
 from plyfile import PlyData
@@ -40,7 +40,7 @@ def field(tmp_path: Path) -> Field:
         folder = tmp_path / "in"
         folder.mkdir(exist_ok=True)
         beside = source.parent.iterdir() if source.parent != FIELD else [source]
-        for file in beside:
+        for file in filter(Path.is_file, beside):
             shutil.copyfile(file, folder / file.name)
         return folder / source.name
 
@@ -227,3 +227,64 @@ def test_scanner_noise_is_removed_and_the_types_stay(
     before, after = (PlyData.read(path) for path in (source, out))
     assert before["vertex"].dtype() == after["vertex"].dtype()
     assert before.header.splitlines() == after.header.splitlines()
+
+
+def test_an_stl_whose_corners_differ_in_the_last_bits_is_one_surface(
+    field: Field, target: Target
+) -> None:
+    source, out = field("stl_loose1e-08.stl"), target("out.stl")
+    report = filter_file(source, out, SMOOTH)
+    before, _ = load_arrays(source)
+    after, faces = load_arrays(out)
+    assert report["components"] == 1
+    assert report["joined_vertices"] == len(before) - 2562
+    assert (len(after), len(faces)) == (2562, 5120)
+    assert report["area_after"] > 0.8 * report["area_before"]
+
+
+@pytest.mark.parametrize("options", [SMOOTH, DenoiseOptions()], ids=["filter", "denoise"])
+def test_meshes_and_primitives_of_one_shape_are_filtered_alike(
+    options: FilterOptions | DenoiseOptions, field: Field, target: Target
+) -> None:
+    shapes = []
+    for name in ("g_cut_meshes.glb", "g_cut_prims.glb"):
+        report = filter_file(field(name), target(name), options)
+        assert report["components"] == 1
+        shapes.append(load_arrays(target(name))[0])
+    first, second = (one[np.lexsort(np.round(one, 5).T)] for one in shapes)
+    np.testing.assert_allclose(first, second, atol=1e-4)
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["off_modelnet.off", "obj_continuation.obj", "lh.white", "lh.pial.T1", "gii_ext.surf.gii"],
+)
+def test_valid_files_that_few_programs_read_are_filtered(
+    name: str, field: Field, target: Target
+) -> None:
+    source, out = field(name), target(name)
+    if name == "gii_ext.surf.gii":
+        field("gii_ext.dat")
+    report = filter_file(source, out, SMOOTH)
+    (V, F), (W, G) = load_arrays(source), load_arrays(out)
+    assert report["components"] == 1
+    assert report["max_displacement"] == pytest.approx(
+        np.linalg.norm(W - V, axis=1).max(), rel=1e-3
+    )
+    np.testing.assert_array_equal(F, G)
+
+
+def test_decimal_commas_are_called_so(field: Field) -> None:
+    with pytest.raises(MeshFileError, match="has decimal commas") as error:
+        load_arrays(field("obj_comma.obj"))
+    assert error.value.code == "decimal_commas"
+
+
+def test_materials_with_backslashes_are_found(field: Field, target: Target) -> None:
+    source = field("windows_paths/scan.obj")
+    shutil.copytree(FIELD / "windows_paths" / "textures", source.parent / "textures")
+    out = target("scan.obj")
+    (warning,) = filter_file(source, out, SMOOTH)["warnings"]
+    assert warning.startswith("C:/Users")
+    assert (out.parent / "a.mtl").is_file()
+    assert (out.parent / "textures" / "t.png").is_file()

@@ -8,10 +8,12 @@ import posixpath
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from meshlab_spectral.batch.storage import file_system, is_url, located
+from meshlab_spectral.documents.names import TRIANGLES, ending_of, is_free_surfer
 from meshlab_spectral.errors import InputError
-from meshlab_spectral.files.formats import SEARCHED, ending_of
+from meshlab_spectral.files.formats import SEARCHED
 from meshlab_spectral.files.whole_files import resolved
 
 
@@ -21,6 +23,7 @@ class Input:
 
     place: str  # absolute path with "/", or URL
     folder: str = ""  # relative to the one given by the user; "" for that one itself
+    is_free_surfer: bool = False  # a surface of FreeSurfer, whatever its extension
 
     @property
     def name(self) -> str:
@@ -33,11 +36,11 @@ def find_inputs(
 ) -> list[Input]:
     """Find the files given by names, folders, patterns such as scans/*.ply, and URLs.
 
-    A named file is accepted whatever its extension; in folders, only visible files that MeshLab can
-    read are. If `recursive`, subfolders are searched, too, and ** in a pattern matches any folders;
-    outputs, the files and folders to `leave_out`, are skipped. Inputs are in the order of the
-    arguments, sorted within each, without duplicates. Raises InputError when an argument matches no
-    file.
+    A named file is accepted whatever its extension; in folders, only visible files with that of a
+    mesh are, and surfaces of FreeSurfer. If `recursive`, subfolders are searched, too, and ** in a
+    pattern matches any folders; outputs, the files and folders to `leave_out`, are skipped. Inputs
+    are in the order of the arguments, sorted within each, without duplicates. Raises InputError
+    when an argument matches no file.
     """
     outputs = {resolved(path) for path in leave_out}
     found: dict[str, Input] = {}
@@ -45,7 +48,7 @@ def find_inputs(
         of_this = list(_from_argument(argument, recursive, outputs))
         if not of_this:
             hint = "" if recursive else "; --recursive searches its subfolders, too"
-            raise InputError(f"{argument} holds no mesh that MeshLab can read{hint}")
+            raise InputError(f"{argument} holds no mesh that can be read{hint}")
         for file in of_this:
             key = file.place if is_url(file.place) else os.path.realpath(file.place)
             found.setdefault(key, file)
@@ -72,7 +75,7 @@ def _from_argument(argument: str, recursive: bool, outputs: set[Path]) -> Iterat
 
 def _from_path(path: Path, recursive: bool, outputs: set[Path]) -> Iterator[Input]:
     if not path.is_dir():
-        yield Input(path.as_posix())
+        yield Input(path.as_posix(), is_free_surfer=is_free_surfer(path))
         return
     within = list(_search(path, "", recursive, outputs))
     yield from within
@@ -94,8 +97,9 @@ def _search(folder: Path, relative: str, recursive: bool, outputs: set[Path]) ->
             yield from within
             if within:
                 continue
-        if _looks_like_mesh(entry.name):
-            yield Input(path.as_posix(), relative)
+        is_surface = is_free_surfer(path)
+        if is_surface or _looks_like_mesh(entry.name):
+            yield Input(path.as_posix(), relative, is_surface)
 
 
 def _from_url(url: str, recursive: bool) -> Iterator[Input]:
@@ -110,14 +114,26 @@ def _from_url(url: str, recursive: bool) -> Iterator[Input]:
         elif fs.isdir(path):
             for file in sorted(fs.find(path, maxdepth=None if recursive else 1)):
                 relative = posixpath.relpath(file, path)
-                if _looks_like_mesh(file) and not _hidden(relative):
-                    yield Input(fs.unstrip_protocol(file), posixpath.dirname(relative))
+                if _hidden(relative):
+                    continue
+                is_surface = _begins_as_surface(fs, file)
+                if is_surface or _looks_like_mesh(file):
+                    folder = posixpath.dirname(relative)
+                    yield Input(fs.unstrip_protocol(file), folder, is_surface)
         elif fs.exists(path):
-            yield Input(fs.unstrip_protocol(path))
+            yield Input(fs.unstrip_protocol(path), is_free_surfer=_begins_as_surface(fs, path))
         else:
             raise InputError(f"{url} does not exist: check the URL")
     except OSError as error:
         raise InputError(f"{url} cannot be read ({error})") from error
+
+
+def _begins_as_surface(fs: Any, path: str) -> bool:
+    """Whether a file with a name as FreeSurfer gives begins as a surface of it."""
+    if not posixpath.basename(path).startswith(("lh.", "rh.")) or _looks_like_mesh(path):
+        return False
+    with fs.open(path, "rb") as file:
+        return bool(file.read(len(TRIANGLES)) == TRIANGLES)
 
 
 def _hidden(relative: str) -> bool:

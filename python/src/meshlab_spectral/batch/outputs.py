@@ -12,9 +12,10 @@ from pathlib import Path
 
 from meshlab_spectral.batch.inputs import Input
 from meshlab_spectral.batch.storage import is_url, joined
+from meshlab_spectral.documents.names import ending_of
 from meshlab_spectral.documents.opening import PATCHED
 from meshlab_spectral.errors import FormatError, InputError
-from meshlab_spectral.files.formats import FALLBACK, POINTS_ONLY, WRITABLE, ending_of
+from meshlab_spectral.files.formats import FALLBACK, POINTS_ONLY, WRITABLE
 
 DEFAULT_PATTERN = "{stem}"
 _FIELDS = ("stem", "ending", "folder")
@@ -83,11 +84,12 @@ def _output(file: Input, folder: str, pattern: str, ending: str | None) -> Outpu
     own = ending_of(file.name)
     stem = file.name.removesuffix(f".{own}") if own else file.name
     if ending is None:
-        ending = own if own.lower() in (WRITABLE - POINTS_ONLY) | PATCHED else FALLBACK
+        kept = own.lower() in (WRITABLE - POINTS_ONLY) | PATCHED or file.is_free_surfer
+        ending = own if kept else FALLBACK
     parent = posixpath.basename(posixpath.dirname(file.place))
     made = pattern.format(stem=stem, ending=own, folder=parent)
     _check_name(made, pattern)  # a field may be empty: no extension, or the root folder
-    name = posixpath.join(file.folder, f"{made}.{ending}")
+    name = posixpath.join(file.folder, f"{made}.{ending}" if ending else made)
     return Output(file.place, name, joined(folder, name))
 
 

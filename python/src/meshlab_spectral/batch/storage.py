@@ -26,6 +26,8 @@ from meshlab_spectral.files.whole_files import (
 
 # Schemes may be chained, as in filecache::s3://; a::b.ply, however, is a file name.
 _SCHEME = re.compile(r"([a-z][a-z0-9+.-]*::)*[a-z][a-z0-9+.-]*://", re.IGNORECASE)
+# Extras of fsspec that are not called like the scheme.
+_EXTRAS = {"https": "http", "gs": "gcs", "gcs": "gcs", "az": "abfs", "abfss": "abfs", "sftp": "ssh"}
 _PART = 2**20  # bytes per read
 _PARTIAL = re.compile(r"\..+\.[a-z0-9]{8}\.partial")
 
@@ -59,7 +61,12 @@ def file_system(url: str) -> tuple[Any, str]:
     try:
         found: tuple[Any, str] = fsspec.core.url_to_fs(url)
     except (ImportError, ValueError) as error:
-        raise InputError(f"{url} cannot be used ({error})") from error
+        scheme = url.partition("://")[0].rpartition("::")[2].lower()
+        extra = _EXTRAS.get(scheme, scheme)
+        raise InputError(
+            f"{url} cannot be used ({error}): if fsspec knows {scheme}://, `pip install "
+            f"'fsspec[{extra}]'` installs what it needs for that"
+        ) from error
     return found
 
 
@@ -109,9 +116,9 @@ def reading(place: str, folder: Path) -> Iterator[Path]:
         try:
             fs.get_file(path, str(copy))
         except FileNotFoundError:
-            raise MeshFileError(f"{place} does not exist: check the URL") from None
+            raise MeshFileError(f"{place} does not exist: check the URL", "missing") from None
         except OSError as error:
-            raise MeshFileError(f"{place} cannot be read ({error})") from error
+            raise MeshFileError(f"{place} cannot be read ({error})", "no_access") from error
         yield copy
 
 

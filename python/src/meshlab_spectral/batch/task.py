@@ -17,7 +17,7 @@ from meshlab_spectral.errors import (
     ProcessStartError,
     SpectralError,
 )
-from meshlab_spectral.files.whole_files import side_files
+from meshlab_spectral.files.whole_files import file_trouble, side_files
 from meshlab_spectral.plugin.versions import versions
 from meshlab_spectral.process.parent import Answer
 
@@ -56,7 +56,7 @@ def run_job(processes: Processes, job: Job) -> FileResult:
     except SpectralError as error:
         result["reason"] = str(error)
     except OSError as error:
-        result["reason"] = f"a file cannot be read or written ({error})"
+        result["reason"] = file_trouble(error) if error.strerror else f"a file's trouble: {error}"
     except Exception as error:
         result["reason"] = f"unexpected error: {error!r}; please report it"
     return job.result(

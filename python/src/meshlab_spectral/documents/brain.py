@@ -1,12 +1,14 @@
-"""Brain surfaces: GIFTI (.gii) and FreeSurfer geometry (lh.pial, lh.white).
+"""Brain surfaces: GIFTI (.gii, .gii.gz) and FreeSurfer geometry (lh.pial, lh.white, ...).
 
 nibabel reads and writes GIFTI. It drops XML comments, keeps one coordinate system per array, and
 writes matrices with six decimals. Arrays of numbers as text would also lose digits: they become
-binary. FreeSurfer's coordinates are replaced in place.
+binary, and so do those in files of their own, which nibabel cannot write. FreeSurfer's coordinates
+are replaced in place.
 """
 
 from __future__ import annotations
 
+import gzip
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,21 +17,16 @@ from typing import Any
 
 import numpy as np
 
+from meshlab_spectral.documents.causes import EndsEarlyError, ForeignError, unreadable, unsupported
 from meshlab_spectral.documents.digits import precision_warnings
-from meshlab_spectral.documents.document import (
-    Array,
-    Document,
-    checked_part,
-    unreadable,
-    unsupported,
-)
+from meshlab_spectral.documents.document import Array, Document, checked_part
+from meshlab_spectral.documents.names import FREE_SURFER, OTHERS, TRIANGLES
 from meshlab_spectral.documents.normals import following_normals
+from meshlab_spectral.documents.side_files import copy_side_files
 from meshlab_spectral.errors import MeshFileError, SpectralError
 from meshlab_spectral.extras import check_extras
 
-_TRIANGLES = b"\xff\xff\xfe"  # first bytes of a FreeSurfer surface
-_TEXT, _BINARY = 1, 2  # encodings of GIFTI
-_OTHERS = (b"\xff\xff\xff", b"\xff\xff\xfd")  # quadrilaterals, or values such as curvature
+_TEXT, _BINARY, _EXTERNAL = 1, 2, 4  # encodings of GIFTI
 
 
 def read(path: Path) -> Document:
@@ -40,19 +37,22 @@ def read(path: Path) -> Document:
     """
     with path.open("rb") as file:
         magic = file.read(3)
-    if magic in _OTHERS:
+    if magic in OTHERS:
         remedy = "name the surface, such as lh.pial, or convert it with FreeSurfer's mris_convert"
         raise unsupported(path, "holds values or quadrilaterals of FreeSurfer", remedy)
+    is_gifti = path.name.lower().endswith((".gii", ".gii.gz"))
     try:
-        if magic == _TRIANGLES:
+        if magic == TRIANGLES:
             return _read_free_surfer(path)
-        if path.suffix.lower() != ".gii":
-            raise ValueError("it begins neither as GIFTI nor as a surface of FreeSurfer")
+        if not is_gifti:
+            raise ForeignError("it does not begin as one")
         return _read_gifti(path)
     except SpectralError:
         raise
     except Exception as error:  # nibabel raises whatever its parsers do
-        raise unreadable(path, error) from error
+        ending = "gii.gz" if path.suffix.lower() == ".gz" else "gii" if is_gifti else FREE_SURFER
+        reason = EndsEarlyError(error) if isinstance(error, EOFError) else error
+        raise unreadable(path, reason, ending) from error
 
 
 @dataclass(kw_only=True)
@@ -70,11 +70,14 @@ class _FreeSurfer(Document):
 
 def _read_free_surfer(path: Path) -> Document:
     data = path.read_bytes()
-    begin = data.index(b"\n", data.index(b"\n") + 1) + 9  # after two lines and two counts
+    begin = data.find(b"\n", data.find(b"\n") + 1) + 9  # after two lines and two counts
+    if not 9 < begin <= len(data):
+        raise EndsEarlyError("it ends before its counts")
     n, m = np.frombuffer(data, ">i4", 2, begin - 8).tolist()
     tail = begin + 12 * (n + m)
     if n < 0 or m < 0 or tail > len(data):
-        raise ValueError(f"it claims {n} vertices and {m} triangles, in {len(data)} bytes")
+        reason = f"it claims {n} vertices and {m} triangles, in {len(data)} bytes"
+        raise EndsEarlyError(reason) if min(n, m) >= 0 else ValueError(reason)
     with np.errstate(invalid="ignore"):  # checked_part reports non-finite values
         vertices = np.frombuffer(data, ">f4", 3 * n, begin).reshape(-1, 3).astype(np.float64)
     faces = np.frombuffer(data, ">i4", 3 * m, begin + 12 * n).reshape(-1, 3).astype(np.int64)
@@ -92,26 +95,34 @@ class _Gifti(Document):
 
     def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
         (part,), (after,) = self.parts, moved
+        external = {array.ext_fname for array in self.image.darrays if array.encoding == _EXTERNAL}
         if (after == part.vertices).all():
             copyfile(self.path, target)
-            return []
+            return copy_side_files(self.path, target, sorted(external))
         for array in self.vectors:
             normals = array.data.astype(np.float64)
             new = following_normals(part.vertices, after, part.faces, normals)
             array.data = new.astype(array.data.dtype)
         self.points.data = after.astype(self.points.data.dtype)
         for array in self.image.darrays:
-            if array.encoding == _TEXT and array.data.dtype.kind == "f":
-                array.encoding = _BINARY
-        target.write_bytes(self.image.to_bytes(mode="force"))  # force: doubles are allowed, too
-        return precision_warnings(part.vertices, after, target.name)
+            if array.encoding == _EXTERNAL or (
+                array.encoding == _TEXT and array.data.dtype.kind == "f"
+            ):
+                array.encoding, array.ext_fname, array.ext_offset = _BINARY, "", 0
+        content = self.image.to_bytes(mode="force")  # force: doubles are allowed, too
+        is_packed = target.suffix.lower() == ".gz"
+        target.write_bytes(gzip.compress(content, mtime=0) if is_packed else content)
+        told = [
+            f"the numbers of {name} are written into {target.name}" for name in sorted(external)
+        ]
+        return told + precision_warnings(part.vertices, after, target.name)
 
 
 def _read_gifti(path: Path) -> Document:
     check_extras("formats")
     import nibabel
 
-    image: Any = nibabel.gifti.GiftiImage.from_filename(path)
+    image: Any = nibabel.gifti.GiftiImage.from_filename(path, mmap=False)
     if image is None:
         raise ValueError("it is XML, but not GIFTI")
     points = image.get_arrays_from_intent("NIFTI_INTENT_POINTSET")
@@ -119,7 +130,8 @@ def _read_gifti(path: Path) -> Document:
     if len(points) != 1 or len(triangles) != 1:
         raise MeshFileError(
             f"{path} holds {len(points)} sets of points and {len(triangles)} of triangles, not one "
-            "surface: name the file with the surface, such as lh.pial.surf.gii"
+            "surface: name the file with the surface, such as lh.pial.surf.gii",
+            "unsupported",
         )
     with np.errstate(invalid="ignore"):
         vertices = points[0].data.astype(np.float64).reshape(-1, 3)

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from meshlab_spectral.documents.causes import unreadable
 from meshlab_spectral.errors import MeshFileError
 
 Array = NDArray[np.float64]
@@ -90,20 +91,6 @@ class Document(ABC):
         """
 
 
-def unreadable(path: Path, reason: object) -> MeshFileError:
-    """Return the error for a damaged file, with what is wrong in it and where."""
-    told = " ".join(str(reason).split())
-    return MeshFileError(
-        f"{path} cannot be read as a mesh ({told}): it is damaged or cut off; copy it again, or "
-        "export it again from the program that made it"
-    )
-
-
-def unsupported(path: Path, what: str, remedy: str) -> MeshFileError:
-    """Return the error for a valid file with something that this package does not support."""
-    return MeshFileError(f"{path} {what}, which meshlab-spectral does not read: {remedy}")
-
-
 # The largest coordinate that the filters accept: MeshLab keeps lengths in single precision.
 _LARGEST = 1e37
 
@@ -125,8 +112,8 @@ def check_vertices(path: Path, vertices: Array) -> None:
         x, y, z = vertices[first]
         raise MeshFileError(
             f"{path}: vertex {first} is at {x:g} {y:g} {z:g}, which is not finite or too large: "
-            "correct it, or open and save the file in MeshLab, which deletes such vertices with "
-            "their faces"
+            "correct it, or delete that vertex with its faces",
+            "bad_values",
         )
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from meshlab_spectral.documents.causes import unsupported
 from meshlab_spectral.documents.digits import precision_warnings
 from meshlab_spectral.documents.document import (
     Array,
@@ -18,7 +19,6 @@ from meshlab_spectral.documents.document import (
     Part,
     check_indices,
     check_vertices,
-    unsupported,
 )
 from meshlab_spectral.documents.gltf_accessors import Asset, Json, parsed, reporting_faults
 from meshlab_spectral.documents.normals import following_normals

@@ -17,7 +17,8 @@ from urllib.parse import quote, unquote
 import numpy as np
 from numpy.typing import NDArray
 
-from meshlab_spectral.documents.document import Array, unreadable, unsupported
+from meshlab_spectral.documents.causes import unreadable, unsupported
+from meshlab_spectral.documents.document import Array
 
 _FLOAT = 5126
 _COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", _FLOAT: "<f4"}

@@ -11,16 +11,9 @@ from pathlib import Path, PurePosixPath
 import numpy as np
 
 from meshlab_spectral._core import text_corners
+from meshlab_spectral.documents.causes import ForeignError, unreadable
 from meshlab_spectral.documents.digits import SINGLE, digits_for
-from meshlab_spectral.documents.document import (
-    Array,
-    Document,
-    Indices,
-    Part,
-    check_vertices,
-    unreadable,
-    unsupported,
-)
+from meshlab_spectral.documents.document import Array, Document, Indices, Part, check_vertices
 from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.documents.polygons import corners_of_triangles
 from meshlab_spectral.documents.side_files import copy_side_files
@@ -44,9 +37,9 @@ _TEXTURE = re.compile(
     re.MULTILINE | re.IGNORECASE,
 )
 _KEYWORDS = ["v", "f", *_CONTENTS]
+_CONTINUED = 3  # vertices, faces and normals, which may go on after a backslash
 _VERTEX, _FACE, _NORMAL, _LIBRARY = map(_KEYWORDS.index, ("v", "f", "vn", "mtllib"))
 _COMMENT = re.compile(rb"(?:\A|[\r\n])\s*#")
-_CONTINUED = re.compile(rb"(?:\A|[\r\n])\s*vn?\s[^\r\n#]*\\[ \t]*(?:[\r\n#]|\Z)")
 
 
 @dataclass(kw_only=True)
@@ -76,8 +69,9 @@ class _Obj(Document):
         """Yield the names of material libraries and their textures, relative to the file."""
         folder = self.path.parent
         for line in map(_name, self.libraries):
-            is_one = os.path.isfile(folder / line)  # noqa: PTH113 - false for impossible names
-            for library in [line] if is_one else line.split():
+            whole = _slashed(folder, line)
+            is_one = os.path.isfile(folder / whole)  # noqa: PTH113 - false for impossible names
+            for library in [whole] if is_one else [_slashed(folder, w) for w in line.split()]:
                 yield library
                 if os.path.isfile(folder / library):  # noqa: PTH113
                     for texture in _TEXTURE.findall((folder / library).read_bytes()):
@@ -86,7 +80,13 @@ class _Obj(Document):
 
 
 def _name(name: bytes) -> str:
-    return name.strip().decode("utf-8", "surrogateescape")
+    return re.sub(r'^"(.*)"$', r"\1", name.strip().decode("utf-8", "surrogateescape"))
+
+
+def _slashed(folder: Path, name: str) -> str:
+    """Return a name with the slashes of this system, unless there is such a file in `folder`."""
+    is_file = os.path.isfile(folder / name)  # noqa: PTH113
+    return name if is_file else str(PurePosixPath(name.replace("\\", "/")))
 
 
 def read(path: Path) -> Document:
@@ -98,16 +98,14 @@ def read(path: Path) -> Document:
 
 
 def _document(path: Path, content: bytes) -> Document:
-    lines = lines_of(content, _KEYWORDS, comments=True, continued=_FACE)
+    lines = lines_of(content, _KEYWORDS, comments=True, continued=_CONTINUED)
     vertices, normals, faces, libraries = (
         lines[lines.kinds == kind] for kind in (_VERTEX, _NORMAL, _FACE, _LIBRARY)
     )
     held = {_CONTENTS[_KEYWORDS[k]] for k in np.unique(lines.kinds) if 2 <= k < len(_KEYWORDS)}
     del lines
     if not len(vertices):
-        raise ValueError("it has no vertices, which are lines that begin with v")
-    if b"\\" in content and _CONTINUED.search(content):
-        raise unsupported(path, "has vertices that span several lines", "write each on one line")
+        raise ForeignError("it has no vertices, which are lines that begin with v")
     V = vertices.numbers(path, 1)
     check_vertices(path, V)
     corners, which = _corners(faces, vertices, normals)

@@ -1,4 +1,4 @@
-"""Opening a mesh file as a document, by its extension."""
+"""Opening a mesh file as a document, by its extension or its first bytes."""
 
 from __future__ import annotations
 
@@ -6,11 +6,19 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from meshlab_spectral.documents.names import (
+    FREE_SURFER,
+    FREE_SURFER_ENDINGS,
+    OTHERS,
+    TRIANGLES,
+    begin_of,
+    ending_of,
+)
+
 if TYPE_CHECKING:
     from meshlab_spectral.documents.document import Document
 
 # Extension -> module with `read(path) -> Document`. Imported late: some need packages of an extra.
-# FreeSurfer names a surface by what it is, such as lh.pial.
 _MODULES = {
     "ply": "ply",
     "obj": "obj",
@@ -23,26 +31,29 @@ _MODULES = {
     "vtp": "vtk",
     "vtu": "vtk",
     "gii": "brain",
-    "inflated": "brain",
-    "pial": "brain",
-    "smoothwm": "brain",
-    "sphere": "brain",
-    "white": "brain",
+    "gii.gz": "brain",
 }
-PATCHED = frozenset(_MODULES)
+PATCHED = frozenset(_MODULES) | FREE_SURFER_ENDINGS
 
 
-def is_patched(path: Path) -> bool:
-    """Whether `open_document` knows the extension of a file."""
-    return path.suffix[1:].lower() in PATCHED
+def format_of(path: Path) -> str | None:
+    """Return the format as which `open_document` reads a file: an extension, or FREE_SURFER.
+
+    None if it does not know it.
+    """
+    ending = ending_of(path.name).lower()
+    if ending in _MODULES:
+        return ending
+    is_one = ending in FREE_SURFER_ENDINGS or begin_of(path) in (TRIANGLES, *OTHERS)
+    return FREE_SURFER if is_one else None
 
 
 def open_document(path: Path) -> Document:
-    """Read a mesh file of one of the formats in `PATCHED`.
+    """Read a mesh file of one of the formats that `format_of` tells.
 
     Raises MeshFileError when it is damaged, or holds something that cannot be read, and
     MissingPackageError when its format needs the extra "formats", which is not installed.
     """
-    module = import_module(f"meshlab_spectral.documents.{_MODULES[path.suffix[1:].lower()]}")
-    document: Document = module.read(path)
+    module = _MODULES.get(ending_of(path.name).lower(), "brain")
+    document: Document = import_module(f"meshlab_spectral.documents.{module}").read(path)
     return document

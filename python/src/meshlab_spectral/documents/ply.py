@@ -16,6 +16,13 @@ from numpy.typing import NDArray
 from plyfile import PlyData, PlyElement, PlyListProperty, PlyParseError
 
 from meshlab_spectral._core import binary_numbers
+from meshlab_spectral.documents.causes import (
+    EndsEarlyError,
+    ForeignError,
+    MayEndEarlyError,
+    unreadable,
+    unsupported,
+)
 from meshlab_spectral.documents.digits import digits_for, rounding_told, widening_warnings
 from meshlab_spectral.documents.document import (
     Array,
@@ -24,13 +31,11 @@ from meshlab_spectral.documents.document import (
     Part,
     check_indices,
     check_vertices,
-    unreadable,
-    unsupported,
 )
 from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.documents.polygons import strip_triangles, triangles
 from meshlab_spectral.documents.side_files import copy_side_files
-from meshlab_spectral.documents.text import lines_of, whole, write_patched
+from meshlab_spectral.documents.text import BYTE_ORDER_MARK, lines_of, whole, write_patched
 
 _AXES, _NORMALS = ("x", "y", "z"), ("nx", "ny", "nz")
 _TEXTURE = re.compile(rb"(?m)^[ \t]*comment[ \t]+TextureFile[ \t]+(.*\S)")
@@ -64,6 +69,8 @@ class PlyDocument(Document):
         before, (after,) = self.parts[0].vertices, moved
         types = {self.ply["vertex"].ply_property(name).val_dtype for name in _AXES}
         told = rounding_told(before, after) if "f4" in types else None
+        if (after != before).any() and any(type_[0] != "f" for type_ in types):
+            told = "the file has integers"
         with target.open("wb") as file:
             if (after != before).any():
                 self._write(file, after, bool(told))
@@ -146,9 +153,15 @@ def _read_header(content: bytes) -> tuple[PlyData, dict[str, int], bytes]:
     """Read the header with plyfile, without comments (it accepts only ASCII), with counts of 0."""
     end = re.search(rb"(?s)\n[ \t]*element\s+vertex\s.*?\n[ \t]*end_header[ \t]*\r?\n", content)
     if not end:
+        if not content.removeprefix(BYTE_ORDER_MARK).startswith(b"ply"):
+            raise ForeignError("it does not begin with the word ply")
+        if not re.search(rb"(?m)^[ \t]*end_header[ \t]*\r?\n", content):
+            raise EndsEarlyError("it ends before the end of its header")
         raise ValueError("it has no PLY header with vertices")
     header = content[: end.end()]
-    lines = b"".join(line.strip() + b"\n" for line in header.splitlines())
+    lines = b"".join(
+        line.strip() + b"\n" for line in header.removeprefix(BYTE_ORDER_MARK).splitlines()
+    )
     lines = re.sub(rb"(?m)^(comment|obj_info)\b.*", b"comment", lines)
     counts = [int(word) for word in re.findall(rb"(?m)^element\s+\S+\s+(\S+)", lines)]
     empty = re.sub(rb"(?m)^(element\s+\S+)\s+\S+", rb"\1 0", lines)
@@ -182,9 +195,12 @@ def _read_rows(
             reasons = [f"property {one.name!r}: missing or malformed" for one in properties]
             reason = [*reasons, "expected end-of-line"][column]
             told = b" ".join(own.words_of(bad)).decode(errors="replace")[:80]
-            raise ValueError(f"element {element.name!r}: row {bad}: {reason}, in {told!r}")
+            raise own.fault(bad, f"element {element.name!r}: row {bad}: {reason}, in {told!r}")
         if bad >= 0 or (ply.text and len(own) < count):
-            raise ValueError(f"it ends in element {element.name!r}, which has {count} rows")
+            has_lists = not ply.text and any(types_[0] for types_ in types)
+            raise (MayEndEarlyError if has_lists else EndsEarlyError)(
+                f"it ends in element {element.name!r}, which has {count} rows"
+            )
         single, several = iter(numbers.T), iter(lists)
         tables[element.name] = {
             one.name: next(several if isinstance(one, PlyListProperty) else single)
@@ -221,13 +237,18 @@ def _check_vertices(path: Path, ply: PlyData, table: _Table) -> None:
     is_apart = " x y z " not in names or (" nx " in names and " nx ny nz " not in names)
     sizes = _sizes(table)
     is_uneven = any((table[name][0] != size).any() for name, size in sizes.items())
-    if is_uneven or (ply.text and is_apart) or not _has_floats(ply["vertex"], *_AXES):
-        what = "has vertices with lists of several lengths, or without floats x, y, z side by side"
-        raise unsupported(path, what, "open it in MeshLab and export it as .ply")
+    if is_uneven or (ply.text and is_apart) or not _has_numbers(ply["vertex"]):
+        what = "has vertices with lists of several lengths, or without x, y, z side by side"
+        raise unsupported(path, what, "export it again with x, y and z as the first properties")
 
 
 def _has_floats(element: PlyElement, *names: str) -> bool:
     return all(name in element and element.ply_property(name).dtype()[1] == "f" for name in names)
+
+
+def _has_numbers(element: PlyElement) -> bool:
+    axes = [element.ply_property(name) for name in _AXES if name in element]
+    return len(axes) == 3 and not any(isinstance(one, PlyListProperty) for one in axes)
 
 
 def _columns(table: _Table, *names: str) -> Array:

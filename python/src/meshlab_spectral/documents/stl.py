@@ -10,21 +10,16 @@ from pathlib import Path
 import numpy as np
 
 from meshlab_spectral._core import first_equal_rows, following_facet_normals
+from meshlab_spectral.documents.causes import EndsEarlyError, ForeignError, unreadable
 from meshlab_spectral.documents.digits import SINGLE, digits_for, precision_warnings
-from meshlab_spectral.documents.document import (
-    Array,
-    Document,
-    Indices,
-    Part,
-    check_vertices,
-    unreadable,
-)
-from meshlab_spectral.documents.text import lines_of, write_patched
+from meshlab_spectral.documents.document import Array, Document, Indices, Part, check_vertices
+from meshlab_spectral.documents.text import BYTE_ORDER_MARK, lines_of, write_patched
 
 _HEADER, _LOOKED_AT = 84, 1000  # bytes
 _TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+_LARGEST_CUT = 1000  # of what a file claims to hold to what has arrived
 _EXCESS = 1 / 20  # trailing bytes that a binary file may have, relative to its size
-_KEYWORDS = ["facet", "vertex", "endfacet", "solid"]
+_KEYWORDS = ["facet", "vertex", "endfacet", "solid", "endsolid"]
 _FACET = [0, 1, 1, 1, 2]  # loops left out
 
 
@@ -76,7 +71,7 @@ def read(path: Path) -> Document:
 
 
 def _is_text(content: bytes) -> bool:
-    head = content[: _HEADER + _LOOKED_AT]
+    head = content[: _HEADER + _LOOKED_AT].removeprefix(BYTE_ORDER_MARK)
     if len(head) < _HEADER:
         return True
     # A binary file may begin with the word solid, like a text file.
@@ -97,7 +92,10 @@ def _size(content: bytes) -> int:
 def _read_binary(path: Path, content: bytes) -> Document:
     count, size = _count(content), len(content)
     if not _size(content) <= size <= _size(content) * (1 + _EXCESS):
-        raise ValueError(f"it claims {count} triangles, which does not match its {size} bytes")
+        is_cut = size < _size(content) <= _LARGEST_CUT * size
+        raise (EndsEarlyError if is_cut else ValueError)(
+            f"it claims {count} triangles, which does not match its {size} bytes"
+        )
     rows = np.frombuffer(content, _TRIANGLE, count, _HEADER)
     with np.errstate(invalid="ignore"):  # check_vertices reports non-finite values
         points = rows["corners"].reshape(-1, 3).astype(np.float64)
@@ -109,21 +107,25 @@ def _read_binary(path: Path, content: bytes) -> Document:
 def _read_text(path: Path, content: bytes) -> Document:
     lines = lines_of(content, _KEYWORDS, any_case=True)
     has_names = (lines.words[lines.kinds == _KEYWORDS.index("solid")] > 1).any()
+    is_ended = (lines.kinds == _KEYWORDS.index("endsolid")).any()
     chosen = lines[lines.kinds <= max(_FACET)]
     del lines
+    if not len(chosen):
+        raise ForeignError("it has no facets, and is not binary")
     expected = np.resize(np.array(_FACET), len(chosen))
     wrong = chosen.kinds != expected
     if wrong.any():
         first = int(np.argmax(wrong))
         keyword = _KEYWORDS[expected[first]]
-        raise ValueError(f"line {chosen.place(first)} does not begin with {keyword!r}")
+        raise chosen.fault(first, f"line {chosen.place(first)} does not begin with {keyword!r}")
     if len(chosen) % len(_FACET):
-        raise ValueError("it ends within a facet")
+        raise EndsEarlyError("it ends within a facet")
     facets, corners = chosen[:: len(_FACET)], chosen[chosen.kinds == _KEYWORDS.index("vertex")]
     return _TextStl(
         path,
         [_connected(path, corners.numbers(path, 1))],
         ["names of solids"] if has_names else [],
+        [] if is_ended else [f"{path.name} ends without endsolid: it may have been cut off"],
         content=content,
         facets=facets.starts,
         corners=corners.starts,

@@ -13,11 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshlab_spectral import _core
-from meshlab_spectral.documents.document import Array, Indices, unreadable
+from meshlab_spectral.documents.causes import EndsEarlyError, unreadable
+from meshlab_spectral.documents.document import Array, Indices
 
 # Ascending byte offsets of n places, words from there to k numbers, the numbers in the text and the
 # new ones (n x k), and significant digits.
 Change = tuple[Indices, int, Array, Array, int]
+BYTE_ORDER_MARK = b"\xef\xbb\xbf"  # of UTF-8; some editors put it before a text
 _END = re.compile(rb"[\r\n]")
 NumberList = tuple[Indices, Array]  # the sizes of a list in each line, and all items
 
@@ -35,6 +37,7 @@ class Lines:
     words: NDArray[np.int32]
     kinds: NDArray[np.uint8]
     comments: bool  # whether # begins a comment
+    continued: int = 0  # lines of so many keywords go on after a final backslash
 
     def __len__(self) -> int:
         return len(self.starts)
@@ -71,7 +74,14 @@ class Lines:
         `is_whole`, has other words behind them, or -1, with the number or list that it lacks.
         """
         return _core.text_numbers(
-            self.text, self.starts, self.words, first, are_lists, self.comments, is_whole
+            self.text,
+            self.starts,
+            self.words,
+            first,
+            are_lists,
+            self.comments,
+            self.continued,
+            is_whole,
         )
 
     def numbers(self, path: Path, first: int = 0, count: int = 3) -> Array:
@@ -83,8 +93,13 @@ class Lines:
         if bad >= 0:
             told = b" ".join(self.words_of(bad)).decode(errors="replace")[:80]
             reason = f"row {bad} is {told!r}, which lacks the {count} numbers required"
-            raise unreadable(path, reason)
+            raise unreadable(path, self.fault(bad, reason))
         return values
+
+    def fault(self, number: int, reason: str) -> ValueError:
+        """Return the error for one of the lines: the text may end within it."""
+        ends = _END.search(self.text, int(self.starts[number])) is None
+        return EndsEarlyError(reason) if ends else ValueError(reason)
 
 
 def lines_of(
@@ -95,15 +110,17 @@ def lines_of(
     limit: int = sys.maxsize,
     comments: bool = False,
     any_case: bool = False,
-    continued: int = -1,
+    continued: int = 0,
 ) -> Lines:
     """Return the lines that have words, at most `limit` of them, from byte offset `begin` on.
 
-    `keywords` are first words to tell apart, in small letters with `any_case`. Lines of the keyword
-    with the index `continued` go on after a backslash at their end.
+    `keywords` are first words to tell apart, in small letters with `any_case`. Lines of the first
+    `continued` of them go on after a backslash at their end.
     """
+    if not begin and text.startswith(BYTE_ORDER_MARK):
+        begin = len(BYTE_ORDER_MARK)
     found = _core.text_lines(text, begin, limit, keywords, comments, any_case, continued)
-    return Lines(text, *found, comments)
+    return Lines(text, *found, comments, continued)
 
 
 def write_patched(file: IO[bytes], text: bytes, changes: Sequence[Change], begin: int = 0) -> None:

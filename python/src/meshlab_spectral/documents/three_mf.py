@@ -20,15 +20,9 @@ from xml.etree import ElementTree
 import numpy as np
 
 from meshlab_spectral._core import xml_elements
+from meshlab_spectral.documents.causes import unreadable, unsupported
 from meshlab_spectral.documents.digits import digits_for
-from meshlab_spectral.documents.document import (
-    Array,
-    Document,
-    Indices,
-    checked_part,
-    unreadable,
-    unsupported,
-)
+from meshlab_spectral.documents.document import Array, Document, Indices, checked_part
 from meshlab_spectral.documents.placement import IDENTITY, Placement, placement_of, same_scale
 from meshlab_spectral.documents.text import Change, whole, write_patched
 

@@ -1,7 +1,8 @@
 """VTK files, read and written with PyVista: legacy .vtk, and XML .vtp and .vtu.
 
 All arrays are kept, but VTK writes its own version of the format, without comments and with no
-compression but zlib. Legacy text becomes binary: VTK would write only six digits.
+compression but zlib. In legacy text, of which VTK would write only six digits, coordinates and
+normals are replaced in place.
 """
 
 from __future__ import annotations
@@ -14,23 +15,36 @@ from typing import Any
 
 import numpy as np
 
-from meshlab_spectral.documents.digits import rounding_told, widening_warnings
-from meshlab_spectral.documents.document import (
-    Array,
-    Document,
-    Indices,
-    Part,
-    check_vertices,
-    unreadable,
-    unsupported,
+from meshlab_spectral.documents.causes import EndsEarlyError, unreadable, unsupported
+from meshlab_spectral.documents.digits import (
+    DOUBLE,
+    SINGLE,
+    digits_for,
+    rounding_told,
+    widening_warnings,
 )
+from meshlab_spectral.documents.document import Array, Document, Indices, Part, check_vertices
 from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.documents.polygons import strip_triangles, triangles
+from meshlab_spectral.documents.text import Change, Lines, write_patched
 from meshlab_spectral.extras import check_extras
 
 _LARGEST_RATIO = 100  # of counts to bytes; zlib packs fewer than 86 points into a byte
 _COUNTS = re.compile(rb'(?:NumberOf\w+="|\n(?:POINTS|CELLS|POLYGONS|LINES|VERTICES)\s+)(-?\d+)')
 _TEXT = re.compile(rb'<Points>\s*<DataArray[^>]*format="ascii"')
+# Legacy text, after two lines of head and title; then its points, and arrays.
+_LEGACY = re.compile(rb"#[^\n]*\n[^\n]*\n\s*ASCII\s", re.IGNORECASE)
+_POINTS = re.compile(rb"(?mi)^[ \t]*POINTS[ \t]+(\d+)[ \t]+(\w+)[ \t]*[\r\n]\s*")
+_CELLS = re.compile(rb"(?mi)^[ \t]*(?:CELLS|POLYGONS|TRIANGLE_STRIPS|LINES|VERTICES)[ \t]")
+_SECTION = re.compile(rb"(?mi)^[ \t]*(POINT_DATA|CELL_DATA)[ \t]+(\d+)")
+_ARRAY = re.compile(
+    rb"(?mi)^[ \t]*(?:SCALARS[ \t]+\S+[ \t]+\w+(?:[ \t]+(?P<width>\d+))?\s+LOOKUP_TABLE[ \t]+\S+"
+    rb"|(?:TEXTURE_COORDINATES[ \t]+\S+[ \t]+(?P<texture>\d+)[ \t]+\w+)"
+    rb"|COLOR_SCALARS[ \t]+\S+[ \t]+(?P<colours>\d+)"
+    rb"|(?P<three>NORMALS|VECTORS)[ \t]+\S+[ \t]+\w+"
+    rb"|\S+[ \t]+(?P<columns>\d+)[ \t]+(?P<rows>\d+)[ \t]+[a-z]\w*)[ \t]*[\r\n]"
+)
+_SHORT = re.compile("error reading (?:binary|ascii)|premature|end of file|EOF", re.IGNORECASE)
 _OTHERS, _STRIP, _POLYGONS = (0, 1, 2, 3, 4), 6, (5, 7, 9)  # VTK cell types
 _EXTRACT = "extract its surface first (in ParaView: Filters > Extract Surface), and save it as .vtp"
 
@@ -44,15 +58,54 @@ def read(path: Path) -> Document:
         counts = [int(count) for count in _COUNTS.findall(path.read_bytes())]
         if counts and not 0 <= min(counts) <= max(counts) <= _LARGEST_RATIO * path.stat().st_size:
             raise ValueError(f"it claims {counts} points and cells")
+        _check_text(path.read_bytes())
         with pyvista.vtk_verbosity("off"), pyvista.VtkErrorCatcher(send_to_logging=False) as caught:
             reader = pyvista.get_reader(path).reader
             reader.Update()
             (reader.GetOutputDataObject(0) or pyvista.PolyData()).CheckAttributes()
         for event in caught.events:
-            raise ValueError(event.alert)
+            raise _fault(event.alert, path)
         return _document(path, pyvista.wrap(reader.GetOutputDataObject(0)))
     except (ValueError, TypeError, LookupError, RuntimeError, MemoryError, AttributeError) as error:
-        raise unreadable(path, f"{error!s:.300}") from error
+        raise unreadable(path, type(error)(f"{error!s:.300}")) from error
+
+
+def _fault(alert: str, path: Path) -> ValueError:
+    """Return the error for what VTK tells: binary data, or the last line of a text, may be cut."""
+    is_text = "ascii" in alert and path.read_bytes().endswith((b"\n", b"\r"))
+    is_cut = _SHORT.search(alert) and not is_text
+    return EndsEarlyError(alert) if is_cut else ValueError(alert)
+
+
+def _check_text(content: bytes) -> None:
+    """Raise ValueError if a legacy text lacks numbers: VTK would make some up."""
+    head = _LEGACY.match(content)
+    points = _POINTS.search(content, head.end()) if head else None
+    if not points:
+        return
+    _check_numbers(content, points.end(), 3 * int(points[1]), "its points")
+    if content.endswith((b"\n", b"\r")):
+        return
+    if not _CELLS.search(content, points.end()):
+        raise EndsEarlyError("it ends after its points")
+    arrays = list(_ARRAY.finditer(content, points.end()))
+    sections = _SECTION.findall(content, points.end(), arrays[-1].start()) if arrays else []
+    if sections:
+        last = arrays[-1]
+        widths = (last[name] for name in ("width", "texture", "colours", "columns"))
+        width = 3 if last["three"] else int(next(filter(None, widths), 1))
+        count = int(last["rows"] or sections[-1][1])
+        _check_numbers(content, last.end(), count * width, "its last array")
+
+
+def _check_numbers(content: bytes, begin: int, count: int, what: str) -> None:
+    words = np.array([count], np.int32)
+    all_ = Lines(content, np.array([begin]), words, np.zeros(1, np.uint8), comments=False)
+    _, _, bad, found = all_.table([False] * count)
+    if bad >= 0:
+        reason = f"it has {found} numbers of {count} in {what}"
+        at_end = not content[begin:].strip(b"0123456789.+-eE \t\r\n")
+        raise EndsEarlyError(reason) if at_end else ValueError(reason)
 
 
 @dataclass(kw_only=True)
@@ -67,6 +120,8 @@ class _VtkDocument(Document):
             return []
         mesh = self.mesh.copy()
         told = None if mesh.points.dtype == np.float64 else rounding_told(before, after)
+        if mesh.points.dtype.kind != "f":
+            told = "the file has integers"
         mesh.points = after.astype(np.result_type(mesh.points, "f8" if told else "f4"))
         for normals in _normals(mesh.point_data):
             normals[:] = following_normals(before, after, faces, np.array(normals))
@@ -76,8 +131,61 @@ class _VtkDocument(Document):
             length = np.linalg.norm(new, axis=1, keepdims=True) * side
             turned = (old != new).any(axis=1) & (length[:, 0] != 0)
             normals[turned] = new[turned] / length[turned]
-        mesh.save(target, binary=not _TEXT.search(self.path.read_bytes()))
+        content = self.path.read_bytes()
+        changes, text = _changes_of_text(content, self.mesh, mesh, bool(told))
+        if changes:
+            is_double = mesh.points.dtype == np.float64
+            changes[0] = (*changes[0][:-1], DOUBLE if is_double else digits_for(before, after))
+            with target.open("wb") as file:
+                write_patched(file, text, changes)
+        else:
+            mesh.save(target, binary=not _TEXT.search(content))
         return widening_warnings(told)
+
+
+def _changes_of_text(
+    content: bytes, before: Any, after: Any, is_wide: bool
+) -> tuple[list[Change], bytes]:
+    """Return the changes of a legacy text, first those of its points, and the text to change.
+
+    In that, points are declared as double if `is_wide`. There are no changes if it is no such text.
+    """
+    head = _LEGACY.match(content)
+    points = _POINTS.search(content, head.end()) if head else None
+    if not points:
+        return [], content
+    if is_wide:
+        content = content[: points.start(2)] + b"double" + content[points.end(2) :]
+        points = _POINTS.search(content, points.start())
+        assert points is not None
+    changes = [_change(points.end(), before.points, after.points, SINGLE)]
+    for association, keyword in (("point_data", b"POINT_DATA"), ("cell_data", b"CELL_DATA")):
+        old, new = (getattr(mesh, association) for mesh in (before, after))
+        for name in _names_of_normals(old):
+            place = _place_of_array(content, points.end(), keyword, name)
+            if place is not None:
+                changes.append(_change(place, old[name], new[name], SINGLE))
+    return changes, content
+
+
+def _change(place: int, before: Any, after: Any, digits: int) -> Change:
+    """Return the change of all numbers of an array, which follow each other from a place on."""
+    old, new = (np.asarray(one, np.float64).reshape(1, -1) for one in (before, after))
+    return np.array([place]), 0, old, new, digits
+
+
+def _place_of_array(content: bytes, begin: int, section: bytes, name: str) -> int | None:
+    """Return where the numbers of a vector array begin in legacy text; None if it is not found."""
+    encoded = re.escape(name.replace("%", "%25").replace(" ", "%20").encode())
+    found = re.compile(
+        rb"(?mi)^[ \t]*(?:(?:NORMALS|VECTORS)[ \t]+" + encoded + rb"[ \t]+\w+"
+        rb"|" + encoded + rb"[ \t]+3[ \t]+\d+[ \t]+\w+)[ \t]*[\r\n]\s*"
+    )
+    for match in found.finditer(content, begin):
+        sections = _SECTION.findall(content, begin, match.start())
+        if sections and sections[-1][0].upper() == section:
+            return match.end()
+    return None
 
 
 def _areas(P: Array, owners: Indices, shape: tuple[int, ...]) -> Array:
@@ -88,8 +196,12 @@ def _areas(P: Array, owners: Indices, shape: tuple[int, ...]) -> Array:
 
 
 def _normals(data: Any) -> list[Any]:
+    return [data[name] for name in _names_of_normals(data)]
+
+
+def _names_of_normals(data: Any) -> list[str]:
     names = {data.active_normals_name, "Normals"} & set(data.keys())
-    return [data[name] for name in names if data[name].shape[1:] == (3,)]
+    return [name for name in sorted(names) if data[name].shape[1:] == (3,)]
 
 
 def _document(path: Path, mesh: Any) -> Document:
@@ -104,7 +216,7 @@ def _document(path: Path, mesh: Any) -> Document:
     scalars = mesh.point_data.active_scalars
     quality = scalars.astype(np.float64) if np.ndim(scalars) == 1 else None
     contents = [f"array {name}" for name in mesh.array_names]
-    contents += ["points and lines"] * bool(np.isin(grid.celltypes, _OTHERS).any())
+    contents += ["points and lines"] * bool(np.isin(np.asarray(grid.celltypes), _OTHERS).any())
     return _VtkDocument(
         path, [Part("", vertices, faces, quality)], contents, mesh=mesh, owners=owners
     )
@@ -114,10 +226,15 @@ def _surface(path: Path, grid: Any, vertices: Array) -> tuple[Indices, Indices]:
     """Return the triangles of polygons and strips, m x 3, and the cell of each."""
     from pyvista import convert_array
 
+    if not grid.GetNumberOfCells():
+        return np.zeros((0, 3), np.int64), np.zeros(0, np.int64)
     corners = convert_array(grid.GetCells().GetConnectivityArray()).astype(np.int64)
-    sizes, types = np.diff(convert_array(grid.GetCells().GetOffsetsArray())), grid.celltypes
-    if not np.isin(types, [*_OTHERS, _STRIP, *_POLYGONS]).all():
-        raise unsupported(path, f"has volume or curved cells (VTK's type {types.max()})", _EXTRACT)
+    sizes = np.diff(convert_array(grid.GetCells().GetOffsetsArray()))
+    types = np.asarray(grid.celltypes, dtype=np.int64)
+    others = set(np.unique(types).tolist()) - {*_OTHERS, _STRIP, *_POLYGONS}
+    if others:
+        told = ", ".join(map(str, sorted(others)))
+        raise unsupported(path, f"has volume or curved cells (VTK's type {told})", _EXTRACT)
     if ((corners < 0) | (corners >= len(vertices))).any():
         raise ValueError(f"its cells have corners that are not among its {len(vertices)} points")
     polygons, strips = np.isin(types, _POLYGONS), np.flatnonzero(types == _STRIP)

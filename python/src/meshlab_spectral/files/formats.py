@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from meshlab_spectral.documents.opening import PATCHED
+from meshlab_spectral.documents.names import FREE_SURFER, FREE_SURFER_ENDINGS, ending_of
+from meshlab_spectral.documents.opening import PATCHED, format_of
 from meshlab_spectral.errors import FormatError
 
 _BOTH = {"3ds", "3mf", "ctm", "dae", "e57", "obj", "off", "ply", "stl", "wrl", "x3d", "xyz"}
@@ -17,12 +18,20 @@ POINTS_ONLY = frozenset({"e57", "xyz"})
 SEARCHED = READABLE - {"txt"}
 
 FALLBACK = "ply"
+_GIFTI = ("gii", "gii.gz")
 
 
-def ending_of(name: str) -> str:
-    """Return the extension of a file name, in its original case and without the dot."""
-    stem, dot, ending = name.rpartition(".")
-    return ending if stem and dot else ""
+def is_same_format(source: Path, target: Path) -> bool:
+    """Whether a file can be written in the format of another by replacing coordinates.
+
+    `source` exists. A surface of FreeSurfer may have any name that is no other format's.
+    """
+    ending, given = format_of(source), ending_of(target.name).lower()
+    if ending == FREE_SURFER:
+        return given not in (READABLE | WRITABLE) - FREE_SURFER_ENDINGS
+    if ending in _GIFTI:
+        return given in _GIFTI
+    return (ending or ending_of(source.name).lower()) == given
 
 
 def check_ending(path: Path, what: str, *endings: str) -> None:

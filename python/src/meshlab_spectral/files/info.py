@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from meshlab_spectral import _core
 from meshlab_spectral.documents.document import Part
 from meshlab_spectral.errors import MeshFileError
 from meshlab_spectral.files.meshes import StageCallback, joined, load_parts
@@ -66,9 +67,9 @@ def mesh_info(source: Path, on_stage: StageCallback, mesh: str | None = None) ->
 
 
 def _boundary_loops(V: NDArray[np.float64], F: NDArray[np.int64]) -> int:
-    """Count the connected sets of boundary edges; vertices at the same position are one."""
-    _, place = np.unique(V, axis=0, return_inverse=True)
-    corners = place.ravel()[F]
+    """Count the connected sets of boundary edges, where the surface is not joined at a seam."""
+    place = _core.joined_vertices(np.ascontiguousarray(V), np.ascontiguousarray(F, dtype=np.int32))
+    corners = place[F]
     sides = np.vstack([corners[:, [k, (k + 1) % 3]] for k in range(3)])
     edges, faces = np.unique(np.sort(sides, axis=1), axis=0, return_counts=True)
     parent: dict[int, int] = {}

@@ -7,24 +7,32 @@ change. Conversions, scripts, and formats that only MeshLab knows go through Mes
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from pathlib import Path
+from shutil import copyfile
 from typing import Any
 
 import numpy as np
 
 from meshlab_spectral.documents.digits import precision_warnings
 from meshlab_spectral.documents.document import Array, Document, Indices, Part
-from meshlab_spectral.documents.opening import is_patched, open_document
+from meshlab_spectral.documents.opening import format_of, open_document
+from meshlab_spectral.documents.side_files import copy_side_files
 from meshlab_spectral.errors import FilterError, FormatError, MeshFileError, OptionError
+from meshlab_spectral.files.formats import is_same_format
 from meshlab_spectral.files.meshlab_files import (
+    DUMMY,
     check_writable,
     left_behind,
+    left_by_meshlab,
+    pymeshlab_mesh,
     read_with_meshlab,
+    set_quality,
     write_with_meshlab,
 )
 from meshlab_spectral.files.script import apply_script
 from meshlab_spectral.files.sources import check_name, check_source
+from meshlab_spectral.files.touching import moved_alike, pieces
 from meshlab_spectral.filters.calling import DETAILS, call_filter, mesh_set_of
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import FilterOptions
@@ -55,7 +63,8 @@ def filter_to_scratch(
     Parameters
     ----------
     source
-        A mesh file. All its meshes are filtered, each on its own, as placed in the scene.
+        A mesh file. All its meshes are filtered, each on its own, as placed in the scene, but those
+        whose borders coincide together; coinciding vertices move alike.
     scratch
         The file to write, from `writing_whole`; after an error it may be incomplete. In the format
         of `source` only coordinates and normals change; another format is written by MeshLab, with
@@ -74,7 +83,7 @@ def filter_to_scratch(
     -------
     dict
         The filter's report, as from `filter_mesh`, with the mesh's name, if any, as "mesh". For
-        several meshes, a list of their reports as "meshes", and "warnings" and "max_displacement"
+        several surfaces, a list of their reports as "meshes", and "warnings" and "max_displacement"
         of all of them.
 
     Raises
@@ -98,8 +107,8 @@ def filter_to_scratch(
             raise FormatError(f"{scratch.name} cannot hold details: choose .ply")
         settings = {f"__ca_vp__{DETAILS}": True}
         return _through_meshlab(source, scratch, apply, on_stage, verbose, settings)
-    if is_patched(source) and (
-        source.suffix.lower() not in _READ_BY_MESHLAB or _is_same_format(source, scratch)
+    if format_of(source) and (
+        source.suffix.lower() not in _READ_BY_MESHLAB or is_same_format(source, scratch)
     ):
         return _filter_document(source, scratch, options, on_stage, verbose, mesh)
     if mesh is not None:
@@ -135,7 +144,7 @@ def load_parts(source: Path, mesh: str | None = None) -> list[Part]:
     Raises MeshFileError when `source` cannot be read, OptionError when no mesh has the name.
     """
     check_source(source)
-    if is_patched(source):
+    if format_of(source):
         return _chosen(open_document(source), mesh)
     load()
     import pymeshlab
@@ -146,10 +155,6 @@ def load_parts(source: Path, mesh: str | None = None) -> list[Part]:
     return [Part("", current.vertex_matrix().copy(), current.face_matrix().astype(np.int64))]
 
 
-def _is_same_format(source: Path, target: Path) -> bool:
-    return source.suffix.lower() == target.suffix.lower()
-
-
 def _filter_document(
     source: Path,
     scratch: Path,
@@ -158,31 +163,43 @@ def _filter_document(
     verbose: bool,
     name: str | None,
 ) -> dict[str, Any]:
-    """Filter the meshes of a document, each on its own."""
-    is_same_format = _is_same_format(source, scratch)
-    if not is_same_format:
-        load()
-        check_writable(scratch)
+    """Filter the meshes of a document: each surface on its own, of one mesh or several pieces."""
     on_stage("reading", None)
     check_source(source)
+    stays = is_same_format(source, scratch)
+    if not stays:
+        load()
+        check_writable(scratch)
     document = open_document(source)
     chosen = _chosen(document, name)
     on_stage("filtering", None)
     moved = {part: part.vertices for part in document.parts}
-    reports = []
-    for part in chosen:
-        moved[part], report = _filtered(part, options, on_stage, verbose, len(chosen) == 1)
+    names, reports = [], []
+    surfaces = pieces(chosen)
+    for group in surfaces:
+        whole = _whole(group)
+        after, report = _filtered(whole, options, on_stage, verbose, len(surfaces) == 1)
+        ends = np.cumsum([len(part.vertices) for part in group])[:-1]
+        moved.update(zip(group, np.split(after, ends), strict=True))
+        names.append(whole.name)
         reports.append(report)
     on_stage("writing", None)
-    shapes = list(moved.values())
-    if is_same_format:
+    shapes, parted = moved_alike(document.parts, list(moved.values()), chosen)
+    if stays:
         warnings = document.save(scratch, shapes)
     else:
         bare = _BARE.get(scratch.suffix.lower())
         write_with_meshlab(_merged(document, verbose, shapes), scratch, source, bare)
         warnings = left_behind(document, scratch)
         warnings += _rounded(joined(document.parts)[0], np.vstack(shapes), scratch)
-    return _report([part.name for part in chosen], reports, document.warnings + warnings)
+    return _report(names, reports, document.warnings + parted + warnings)
+
+
+def _whole(group: Sequence[Part]) -> Part:
+    """Return the pieces of a surface as one part."""
+    if len(group) == 1:
+        return group[0]
+    return Part(", ".join(part.name for part in group), *joined(group))
 
 
 def _chosen(document: Document, name: str | None) -> list[Part]:
@@ -274,20 +291,34 @@ def _through_meshlab(
     check_source(source)
     check_name(scratch, scratch.parent.parent / scratch.name)
     check_writable(scratch)
-    document = open_document(source) if is_patched(source) else None
-    mesh_set, is_whole = _loaded(source, document, verbose)
+    document = open_document(source) if format_of(source) else None
+    mesh_set, lacking = _loaded(source, document, verbose)
     on_stage("filtering", None)
     before = mesh_set.current_mesh().vertex_matrix()
     report = apply(mesh_set)
     on_stage("writing", None)
+    if is_same_format(source, scratch) and report.get("max_displacement") == 0 and not settings:
+        copyfile(source, scratch)
+        textures = mesh_set.current_mesh().textures()
+        warnings = copy_side_files(source, scratch, [one for one in textures if one != DUMMY])
+        return {**report, "warnings": report.get("warnings", []) + warnings}
     write_with_meshlab(mesh_set, scratch, source, settings)
-    warnings = left_behind(document, scratch, mesh_set if is_whole else None) if document else []
+    if document is None:
+        warnings = left_by_meshlab(source, scratch, mesh_set)
+    else:
+        read = None if lacking is None else mesh_set
+        warnings = left_behind(document, scratch, read, lacking or ())
     warnings += _rounded(before, mesh_set.current_mesh().vertex_matrix(), scratch)
     return {**report, "warnings": report.get("warnings", []) + warnings}
 
 
-def _loaded(source: Path, document: Document | None, verbose: bool) -> tuple[Any, bool]:
-    """Return a MeshSet, and whether MeshLab has read the file itself or only got its arrays."""
+def _loaded(
+    source: Path, document: Document | None, verbose: bool
+) -> tuple[Any, Collection[str] | None]:
+    """Return a MeshSet, and which contents of the file it lacks that MeshLab could hold.
+
+    These are None if MeshLab has not read the file itself, but only got its arrays.
+    """
     import pymeshlab
 
     if document is None or source.suffix.lower() in _READ_BY_MESHLAB:
@@ -298,5 +329,31 @@ def _loaded(source: Path, document: Document | None, verbose: bool) -> tuple[Any
             if document is None:
                 raise
         else:
-            return mesh_set, True
-    return _merged(document, verbose), False
+            return mesh_set, _agreed(mesh_set, document) if document else ()
+    return _merged(document, verbose), None
+
+
+def _agreed(mesh_set: Any, document: Document) -> Collection[str]:
+    """Let MeshLab's mesh have the triangles and the quality of the document.
+
+    MeshLab folds concave polygons of PLY files, splits others of OFF files by rules of its own, and
+    reads no quality that is called confidence. Returns the contents that are lost by that.
+    """
+    (part,) = document.parts
+    mesh, lacking = mesh_set.current_mesh(), list[str]()
+    if "polygons" in document.contents and _differ(mesh, part):
+        data = {"v_normals_matrix": mesh.vertex_normal_matrix(), **_signal(part)}
+        if mesh.has_vertex_color():
+            data["v_color_matrix"] = mesh.vertex_color_matrix()
+        mesh_set.add_mesh(pymeshlab_mesh(part.vertices, part.faces, data))
+        lacking = ["texture coordinates", "texture names", "materials", "face colours"]
+    elif part.quality is not None:
+        set_quality(mesh_set, part.quality)
+    return lacking
+
+
+def _differ(mesh: Any, part: Part) -> bool:
+    faces = mesh.face_matrix()
+    if faces.shape != part.faces.shape or mesh.vertex_number() != len(part.vertices):
+        return True
+    return bool((faces != part.faces).any())

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import re
+import shutil
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from meshlab_spectral.documents.causes import other_kind
 from meshlab_spectral.documents.document import Document
 from meshlab_spectral.documents.opening import PATCHED
 from meshlab_spectral.errors import FormatError, MeshFileError
@@ -22,8 +26,23 @@ _WRITTEN = {
     ".obj": {"normals", "colours", "texture coordinates", "materials", "texture names"},
     ".off": {"normals", "colours", "texture coordinates"},
 }
+# What scenes as text hold besides a shape, such as COLLADA, X3D and VRML.
+_SCENES = {
+    "units": re.compile(rb"<unit\b|<UNIT\b"),
+    "transforms": re.compile(
+        rb"<(?:matrix|rotate|translate|scale|skew|Transform)\b|\bTransform\s*\{"
+    ),
+    "lights": re.compile(rb"<light\b|(?:Point|Spot|Directional)Light\b"),
+    "cameras": re.compile(rb"<camera\b|\bViewpoint\b"),
+    "materials": re.compile(rb"<material\b|<Material\b|\bMaterial\s*\{"),
+    "animations": re.compile(rb"<animation\b|Interpolator\b"),
+    "skeletons": re.compile(rb"<controller\b|HAnim"),
+    "names": re.compile(rb"<(?:geometry|node)\b[^>]*\bname=|\bDEF\b"),
+}
+_QUALITY = "spectral_quality"  # a passing attribute
+_LEAST_ROOM = 1 << 14  # bytes, a few blocks
 # MeshLab's substitute for textures not found, such as those with blanks in their names.
-_DUMMY = "dummy.png"
+DUMMY = "dummy.png"
 
 
 def check_writable(path: Path) -> None:
@@ -46,21 +65,27 @@ def read_with_meshlab(mesh_set: Any, source: Path) -> None:
 
     try:
         mesh_set.load_new_mesh(str(source))
-    except pymeshlab.PyMeshLabException as error:
+    except (pymeshlab.PyMeshLabException, RuntimeError) as error:  # some plugins raise their own
+        foreign = other_kind(source)
+        if foreign is not None:
+            raise foreign from error
         reason = reason_of(error)
         if reason.startswith("Unknown format"):
             raise MeshFileError(
                 f"{source} ends in {source.suffix or 'nothing'}, which MeshLab cannot read as a "
-                f"mesh: convert it to {USUAL_FORMATS}"
+                f"mesh: convert it to {USUAL_FORMATS}",
+                "unknown_format",
             ) from error
         raise MeshFileError(
             f"{source} cannot be read by MeshLab ({reason}): convert it to {USUAL_FORMATS} with "
-            "the program that made it"
+            "the program that made it",
+            "damaged",
         ) from error
     if mesh_set.mesh_number() > 1:
         raise MeshFileError(
             f"{source} holds {mesh_set.mesh_number()} meshes: merge them in MeshLab with 'Flatten "
-            "Visible Layers', or save them separately"
+            "Visible Layers', or save them separately",
+            "unsupported",
         )
 
 
@@ -83,27 +108,69 @@ def write_with_meshlab(
         settings["save_polygonal"] = False
     try:
         mesh_set.save_current_mesh(str(scratch), **settings)
-    except pymeshlab.PyMeshLabException as error:
+        _check_room(scratch)
+    except (pymeshlab.PyMeshLabException, RuntimeError) as error:
+        _check_room(scratch)
         reason = reason_of(error).rsplit(": ", 1)[-1]  # without the scratch file's name
         raise MeshFileError(
-            f"MeshLab cannot write {scratch.name} ({reason}): is the disk full, or does the mesh "
-            f"name textures that are missing? Choose another format, {USUAL_FORMATS}"
+            f"MeshLab cannot write {scratch.name} ({reason}): choose another format, "
+            f"{USUAL_FORMATS}",
+            "not_written",
         ) from error
 
 
-def left_behind(document: Document, target: Path, mesh_set: Any = None) -> list[str]:
+def _check_room(scratch: Path) -> None:
+    """Raise MeshFileError if the disk has filled up: MeshLab does not notice."""
+    if shutil.disk_usage(scratch.parent).free < _LEAST_ROOM:
+        raise MeshFileError(
+            f"{scratch.name} cannot be written (no space left on the disk): make room, or choose "
+            "another folder",
+            "disk_full",
+        )
+
+
+def pymeshlab_mesh(V: Any, F: Any, data: dict[str, Any]) -> Any:
+    """Return a `pymeshlab.Mesh` of arrays; `data` are further arguments of it."""
+    import pymeshlab
+
+    return pymeshlab.Mesh(V, F, **data)
+
+
+def set_quality(mesh_set: Any, quality: Any) -> None:
+    """Give the vertices of the current mesh a quality, unless they have it."""
+    mesh = mesh_set.current_mesh()
+    if np.array_equal(mesh.vertex_scalar_array(), quality, equal_nan=True):
+        return
+    mesh.add_vertex_custom_scalar_attribute(quality, _QUALITY)
+    mesh_set.compute_scalar_by_function_per_vertex(q=_QUALITY)
+
+
+def left_by_meshlab(source: Path, target: Path, mesh_set: Any) -> list[str]:
+    """Return the warning about what a file that only MeshLab reads loses, being written anew."""
+    content = source.read_bytes()
+    lost = [told for told, pattern in _SCENES.items() if pattern.search(content)]
+    if DUMMY in mesh_set.current_mesh().textures():
+        lost.append("textures that MeshLab does not find")
+    what = ", ".join(lost or ["what MeshLab does not keep of it, such as units, transforms, names"])
+    return [f"{target.name} is written anew by MeshLab, and loses {what}"]
+
+
+def left_behind(
+    document: Document, target: Path, mesh_set: Any = None, lacking: Collection[str] = ()
+) -> list[str]:
     """Return the warning, if any, about what `target`, in another format than `document`, loses.
 
     Placements are in the coordinates of `target`. `mesh_set` is what MeshLab has read of the
-    document; None if it got only coordinates and triangles.
+    document; None if it got only coordinates and triangles. It lacks `lacking` nevertheless.
     """
     written = {"placement"}
     if mesh_set is not None:
         written |= _WRITTEN.get(target.suffix.lower(), set())
         if (document.path.suffix.lower(), target.suffix.lower()) == (".obj", ".ply"):
             written.remove("normals")  # an OBJ file has them at corners
+        written.difference_update(lacking)
     lost = [content for content in document.contents if content not in written]
-    if mesh_set is not None and _DUMMY in mesh_set.current_mesh().textures():
+    if mesh_set is not None and DUMMY in mesh_set.current_mesh().textures():
         lost.append("textures that MeshLab does not find")
     return [f"{target.name} loses {', '.join(lost)}"] if lost else []
 
@@ -123,7 +190,7 @@ def _textures_to_be_saved(mesh_set: Any, scratch: Path, source: Path) -> bool:
     folder, which would overwrite a file outside the scratch folder; and not MeshLab's substitute.
     """
     names = [Path(name) for name in mesh_set.current_mesh().textures()]
-    if Path(_DUMMY) in names:
+    if Path(DUMMY) in names:
         return False
     beside_input = scratch.parent.parent.samefile(resolved(source).parent)
     within = all(not name.is_absolute() and ".." not in name.parts for name in names)

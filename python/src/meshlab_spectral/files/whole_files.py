@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import filecmp
 import os
 import re
@@ -58,7 +59,20 @@ def writing_whole(target: Path, overwrite: bool = True) -> Iterator[Path]:
         try:
             _put_in_place(scratch, place, overwrite)
         except OSError as error:
-            raise MeshFileError(f"{target} cannot be written ({error.strerror})") from error
+            code = "disk_full" if is_disk_full(error) else "not_written"
+            raise MeshFileError(f"{target} cannot be written ({error.strerror})", code) from error
+
+
+def is_disk_full(error: OSError) -> bool:
+    """Whether a file cannot be written for lack of room, or a quota."""
+    return error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+
+
+def file_trouble(error: OSError, written: str = "a file") -> str:
+    """Describe why a file cannot be read or written: `written`, unless the error names it."""
+    name = Path(os.fsdecode(error.filename)).name if error.filename else written
+    remedy = ": make room on the disk, or choose another folder" if is_disk_full(error) else ""
+    return f"{name} cannot be read or written ({error.strerror}){remedy}"
 
 
 def resolved(path: Path) -> Path:

@@ -71,9 +71,7 @@ class Length:
         if not isinstance(self.value, Real) or not _LENGTHS.contain(self.value):
             raise OptionError(f"{self}: must be {_LENGTHS}, {_SIZES}")
         if self.unit == "%" and self.value > 100:
-            raise OptionError(
-                f"{self}: a percentage goes up to 100% of the diagonal; for more, give a length"
-            )
+            raise OptionError(f"{self}: a percentage goes up to 100% of the diagonal")
 
     @classmethod
     def parse(cls, text: str) -> Length:

@@ -29,6 +29,7 @@ from meshlab_spectral.files.meshes import (
     load_arrays,
     script_to_scratch,
 )
+from meshlab_spectral.files.whole_files import file_trouble, is_disk_full
 from meshlab_spectral.filters.options import BasisOptions, SpectrumOptions
 from meshlab_spectral.filters.running import plain
 from meshlab_spectral.filters.spectrum import measure
@@ -69,13 +70,19 @@ def _read(jobs: queue.SimpleQueue[str]) -> None:
     os._exit(0)
 
 
-def _described(error: Exception) -> dict[str, Any]:
-    """Describe an error by its class, message and code."""
+def _described(error: Exception, job: dict[str, Any]) -> dict[str, Any]:
+    """Describe an error of a job by its class, message and code."""
     if isinstance(error, errors.SpectralError):
         described: dict[str, Any] = {"error": type(error).__name__, "message": str(error)}
         if isinstance(error, errors.FilterError):
             described |= {"code": error.code, "limit": error.limit}
+        elif isinstance(error, errors.MeshFileError):
+            described["code"] = error.code
         return described
+    if isinstance(error, OSError) and error.strerror:
+        code = "disk_full" if is_disk_full(error) else "not_written"
+        name = Path(job.get("scratch") or job.get("source", "a file")).name
+        return {"error": "MeshFileError", "message": file_trouble(error, name), "code": code}
     message = f"unexpected error: {error}; please report it"
     if isinstance(error, MemoryError):
         message = (
@@ -101,13 +108,14 @@ def _main() -> None:
     answer(ready=True)
     jobs: queue.SimpleQueue[str] = queue.SimpleQueue()
     threading.Thread(target=_read, args=[jobs], daemon=True).start()
+    job: dict[str, Any] = {}
     while True:
         try:
             job = json.loads(jobs.get())
             set_memory_limit(job.get("memory"))
             answer(report=_report_of(job, on_stage))
         except Exception as error:
-            answer(**_described(error), traceback=traceback.format_exc().strip())
+            answer(**_described(error, job), traceback=traceback.format_exc().strip())
 
 
 if __name__ == "__main__":

@@ -212,7 +212,7 @@ class MeshLabProcess:
                 )
             if self.memory_limit is not None and memory > self.memory_limit:
                 self._child.kill()
-                raise self._too_much_memory("the file may be damaged")
+                raise self._too_much_memory(f"it had {memory / 2**20:.0f} MiB")
 
     def _too_much_memory(self, detail: str) -> errors.MemoryLimitError:
         limit = f"more than {(self.memory_limit or 0) / 2**20:.0f} MiB of memory"
@@ -285,6 +285,8 @@ def _error_of(answer: dict[str, Any]) -> errors.SpectralError:
     error: errors.SpectralError = kind(answer["message"])
     if isinstance(error, errors.FilterError):
         error.code, error.limit = answer.get("code", ""), answer.get("limit", 0)
+    elif isinstance(error, errors.MeshFileError):
+        error.code = answer.get("code", "")
     # For --debug: where it happened in the child.
     error.__cause__ = RuntimeError(answer["traceback"])
     return error

@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from meshlab_spectral.files.sources import check_source
+from meshlab_spectral.files.sources import check_is_place, check_source
 from meshlab_spectral.files.whole_files import remove_leftovers, resolved, writing_whole
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.process.parent import MeshLabProcess, ProgressCallback
@@ -33,6 +33,7 @@ def write_in_child(
     after the child has been ended and the scratch files removed.
     """
     check_source(source)
+    check_is_place(target)
     remove_leftovers(resolved(target).parent, target.name)
     with writing_whole(target) as scratch:
         place = {"scratch": str(scratch.absolute())}

@@ -1,0 +1,89 @@
+#include "core/mesh/contacts.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "core/denoise/denoise.h"
+#include "core/filter/fractional_filter.h"
+#include "core/mesh/measures.h"
+#include "support/noisy_shapes.h"
+
+namespace spectral {
+namespace {
+
+using testing::Mesh;
+
+/// Two cubes side by side, with noise that depends on the position alone.
+Mesh touchingCubes() {
+    Mesh right = testing::cube(8);
+    right.V.col(0).array() += right.V.col(0).maxCoeff() - right.V.col(0).minCoeff();
+    Mesh both = testing::joined(testing::cube(8), right);
+    for (Index i = 0; i < both.V.rows(); ++i) {
+        const Eigen::RowVector3d at = both.V.row(i);
+        for (int c = 0; c < 3; ++c) both.V(i, c) += 0.02 * std::sin(41.0 * at.sum() + 7.0 * c);
+    }
+    return both;
+}
+
+/// Pairs of vertices at the same point.
+std::vector<std::pair<Index, Index>> contactsOf(const Vertices& V) {
+    std::vector<std::pair<Index, Index>> pairs;
+    for (Index i = 0; i < V.rows(); ++i)
+        for (Index j = i + 1; j < V.rows(); ++j)
+            if (V.row(i) == V.row(j)) pairs.emplace_back(i, j);
+    return pairs;
+}
+
+void expectAlike(const Mesh& mesh, const Vertices& moved) {
+    const auto pairs = contactsOf(mesh.V);
+    ASSERT_GE(pairs.size(), 49u);
+    for (const auto& [i, j] : pairs) EXPECT_EQ(moved.row(i), moved.row(j));
+    EXPECT_NE(moved, mesh.V);
+}
+
+TEST(Contacts, MoveAlikeWhenFiltered) {
+    const Mesh mesh = touchingCubes();
+    for (const bool preserveVolume : {false, true}) {
+        FilterOptions options;
+        options.featureSize = 0.15 * boundingBoxDiagonal(mesh.V);
+        options.tolerance = 1e-3;
+        options.preserveVolume = preserveVolume;
+        const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
+        EXPECT_EQ(result.components, 2);
+        expectAlike(mesh, result.V);
+    }
+}
+
+TEST(Contacts, MoveAlikeWhenDenoised) {
+    const Mesh mesh = touchingCubes();
+    DenoiseOptions options;
+    options.noiseHeight = 0.02;
+    expectAlike(mesh, denoise(mesh.V, mesh.F, options).V);
+}
+
+TEST(Contacts, StayWhereOneOfThemDoes) {
+    const Mesh mesh = touchingCubes();
+    const Surface surface = joinedSurface(mesh.V, mesh.F);
+    const Components components = connectedComponents(surface.F, surface.X.rows());
+    Vertices displacement = Vertices::Random(surface.X.rows(), 3);
+    for (Index i = 0; i < displacement.rows(); ++i)
+        if (components.label[i] == 0) displacement.row(i).setZero();
+    const Vertices before = displacement;
+    moveContactsAlike(surface, components, displacement);
+    EXPECT_EQ(displacement, before);
+}
+
+TEST(Contacts, OfOneComponentAreLeftAlone) {
+    const Mesh mesh = testing::cube(4);
+    const Surface surface = joinedSurface(mesh.V, mesh.F);
+    Vertices displacement = Vertices::Random(surface.X.rows(), 3);
+    const Vertices before = displacement;
+    moveContactsAlike(surface, connectedComponents(surface.F, surface.X.rows()), displacement);
+    EXPECT_EQ(displacement, before);
+}
+
+}  // namespace
+}  // namespace spectral

@@ -1,0 +1,162 @@
+"""What MeshLab reads or writes for us: the quality and triangles are those of the file."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pymeshlab
+import pytest
+import pyvista
+from helpers import filter_file
+from meshlab_spectral import DenoiseOptions, FilterOptions
+from meshlab_spectral.files.meshes import load_arrays, script_to_scratch
+from meshlab_spectral.files.whole_files import writing_whole
+from numpy.typing import NDArray
+from plyfile import PlyData, PlyElement
+
+Array = NDArray[Any]
+OPTIONS = {"feature_size": "20%", "weight": "vertex quality"}
+
+
+def noisy_sphere() -> tuple[Array, Array]:
+    sphere = pyvista.Icosphere(nsub=3)
+    V = np.asarray(sphere.points, float)
+    V *= 1 + np.random.default_rng(2).normal(0, 0.01, (len(V), 1))
+    return V.astype("f4").astype(float), np.asarray(sphere.faces).reshape(-1, 4)[:, 1:]
+
+
+def write_with_quality(path: Path, name: str, type_: str, text: bool) -> None:
+    """Write a PLY file with a quality that rises with z; other properties come between."""
+    V, F = noisy_sphere()
+    columns = {"label": "u1", "x": "f4", "y": "f4", "z": "f4", name: type_, "time": "f8"}
+    vertex = np.zeros(len(V), list(columns.items()))
+    vertex["x"], vertex["y"], vertex["z"] = V.T
+    vertex[name], vertex["time"] = (V[:, 2] + 1.1) / 2.2, 7.0
+    face = np.array([(row,) for row in F], [("vertex_indices", "i4", 3)])
+    elements = [PlyElement.describe(vertex, "vertex"), PlyElement.describe(face, "face")]
+    PlyData(elements, text=text).write(path)
+
+
+@pytest.mark.parametrize("text", [False, True])
+@pytest.mark.parametrize("type_", ["f4", "f8"])
+@pytest.mark.parametrize("name", ["confidence", "quality"])
+@pytest.mark.parametrize("ending", [".ply", ".obj", ".off", ".stl"])
+def test_the_weight_is_the_quality_of_the_file_whatever_the_output(
+    ending: str, name: str, type_: str, text: bool, tmp_path: Path
+) -> None:
+    source, target = tmp_path / "in.ply", tmp_path / f"out{ending}"
+    write_with_quality(source, name, type_, text)
+    report = filter_file(source, target, FilterOptions.from_dict(OPTIONS))
+    expected = filter_file(source, tmp_path / "expected.ply", FilterOptions.from_dict(OPTIONS))
+    assert report["max_displacement"] == pytest.approx(expected["max_displacement"], rel=1e-4)
+    assert report["max_displacement"] > 0
+    V, _ = load_arrays(tmp_path / "expected.ply")
+    W, _ = load_arrays(target)
+    order, other = (np.lexsort(np.round(one, 4).T) for one in (V, W))
+    np.testing.assert_allclose(V[order], W[other], atol=2e-4)
+
+
+SCRIPT = """<!DOCTYPE FilterScript><FilterScript><filter name="Per Vertex Quality Function">
+<Param name="q" type="RichString" value="q * 2"/>
+<Param name="normalize" type="RichBool" value="false"/>
+<Param name="onselected" type="RichBool" value="false"/></filter></FilterScript>"""
+
+
+def test_a_script_gets_the_quality_of_the_file(tmp_path: Path) -> None:
+    source, target = tmp_path / "in.ply", tmp_path / "out.ply"
+    write_with_quality(source, "confidence", "f4", text=False)
+    with writing_whole(target) as scratch:
+        script_to_scratch(source, scratch, SCRIPT, lambda *stage: None)
+    expected = 2 * PlyData.read(source)["vertex"]["confidence"]
+    np.testing.assert_allclose(PlyData.read(target)["vertex"]["quality"], expected, rtol=1e-6)
+
+
+OUTLINE = ("0 0", "4 0", "4 1", "1 1", "1 4", "0 4")
+CAP = "".join(f"v {at} {z}\n" for z in (0, 2) for at in OUTLINE)
+SIDES = "".join(f"f {k + 1} {(k + 1) % 6 + 1} {(k + 1) % 6 + 7} {k + 7}\n" for k in range(6))
+
+
+@pytest.mark.parametrize("ends", [".ply .obj", ".ply .stl", ".off .ply", ".obj .ply", ".obj .off"])
+def test_a_conversion_does_not_fold_concave_polygons(ends: str, tmp_path: Path) -> None:
+    """MeshLab fans those of PLY and OFF files into triangles that overlap."""
+    before, after = ends.split()
+    rows = [line.split()[1:] for line in CAP.splitlines()]
+    corners = [[4, 3, 2, 1, 0, 5], [10, 11, 6, 7, 8, 9]]
+    corners += [[int(word) - 1 for word in line.split()[1:]] for line in SIDES.splitlines()]
+    source, target = tmp_path / f"in{before}", tmp_path / f"out{after}"
+    vertices = [" ".join(row) for row in rows]
+    faces = [f"{len(one)} {' '.join(map(str, one))}" for one in corners]
+    if before == ".ply":
+        axes = "".join(f"property double {axis}\n" for axis in "xyz")
+        head = f"ply\nformat ascii 1.0\nelement vertex 12\n{axes}element face 8\n"
+        head += "property list int int vertex_indices\nend_header"
+    else:
+        head = "OFF\n12 8 0"
+    if before == ".obj":
+        faces = ["f " + " ".join(str(k + 1) for k in one) for one in corners]
+        source.write_text("\n".join([*CAP.splitlines(), *faces, ""]))
+    else:
+        source.write_text("\n".join([head, *vertices, *faces, ""]))
+    filter_file(source, target, FilterOptions.from_dict({"feature_size": "0.01%"}))
+    V, F = load_arrays(target)
+    areas = np.linalg.norm(np.cross(V[F[:, 1]] - V[F[:, 0]], V[F[:, 2]] - V[F[:, 0]]), axis=1) / 2
+    assert areas.sum() == pytest.approx(2 * 7 + 2 * 16, rel=1e-3)
+
+
+COLLADA = """<?xml version="1.0" encoding="utf-8"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit name="inch" meter="0.0254"/><up_axis>Z_UP</up_axis></asset>
+<library_lights><light id="sun" name="sun"><technique_common><directional><color>1 1 1</color>
+</directional></technique_common></light></library_lights>
+<library_geometries><geometry id="g" name="my part"><mesh>
+<source id="p"><float_array id="pa" count="{count}">{points}</float_array><technique_common>
+<accessor source="#pa" count="{vertices}" stride="3"><param name="X" type="float"/>
+<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="{faces}"><input semantic="VERTEX" source="#v" offset="0"/><p>{corners}</p>
+</triangles></mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="n"><translate>5 0 0</translate>
+<instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>
+"""
+
+
+def write_collada(path: Path, V: Array, F: Array) -> None:
+    words = {"points": V.ravel(), "corners": F.ravel()}
+    text = {key: " ".join(f"{x:.9g}" for x in row.tolist()) for key, row in words.items()}
+    path.write_text(COLLADA.format(count=V.size, vertices=len(V), faces=len(F), **text))
+
+
+def test_a_scene_in_which_nothing_moves_is_copied(tmp_path: Path) -> None:
+    sphere = pyvista.Icosphere(nsub=3)
+    source, target = tmp_path / "in.dae", tmp_path / "out.dae"
+    write_collada(source, np.asarray(sphere.points, float), sphere.faces.reshape(-1, 4)[:, 1:])
+    report = filter_file(source, target, DenoiseOptions())
+    assert report["max_displacement"] == 0
+    assert target.read_bytes() == source.read_bytes()
+    assert not any("written anew" in warning for warning in report["warnings"])
+
+
+@pytest.mark.parametrize("ending", [".dae", ".ply"])
+def test_what_a_scene_loses_is_told(ending: str, tmp_path: Path) -> None:
+    source, target = tmp_path / "in.dae", tmp_path / f"out{ending}"
+    write_collada(source, *noisy_sphere())
+    report = filter_file(source, target, FilterOptions.from_dict({"feature_size": "20%"}))
+    (told,) = (warning for warning in report["warnings"] if "written anew by MeshLab" in warning)
+    assert told.endswith("loses units, transforms, lights, names")
+
+
+@pytest.mark.parametrize("ending", [".dae", ".3ds", ".x3d", ".wrl", ".ctm"])
+def test_every_format_that_only_meshlab_reads_tells_that_it_is_written_anew(
+    ending: str, tmp_path: Path
+) -> None:
+    mesh_set = pymeshlab.MeshSet()
+    mesh_set.add_mesh(pymeshlab.Mesh(*noisy_sphere()))
+    source, target = tmp_path / f"in{ending}", tmp_path / f"out{ending}"
+    mesh_set.save_current_mesh(str(source))
+    shutil.copyfile(source, tmp_path / "copy")
+    report = filter_file(source, target, FilterOptions.from_dict({"feature_size": "20%"}))
+    assert any("written anew by MeshLab" in warning for warning in report["warnings"])
