@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+import plyfile
 from fractional import load
 from meshlab import MeshLab
 
@@ -27,7 +28,7 @@ def test_modes_shown_one_after_the_other_are_those_of_runs_of_their_own(
     dialog.close()
     saved = meshlab.home / "harmonic.ply"
     meshlab.save_mesh(saved)
-    shown = load(saved).current_mesh().vertex_scalar_array()
+    shown = plyfile.PlyData.read(saved)["vertex"]["quality"]
     mesh_set = load(bunny)
     mesh_set.apply_filter(FILTER, mode=7)
     expected = mesh_set.current_mesh().vertex_scalar_array()
