@@ -57,7 +57,7 @@ void keepColors(const MeshMatrices& input, FilterOutput& output, MeshModel& mesh
 double usualExtent(const Eigen::VectorXd& values) {
     std::vector<double> sizes(values.size());
     Eigen::VectorXd::Map(sizes.data(), values.size()) = values.cwiseAbs();
-    const auto at = sizes.begin() + static_cast<std::ptrdiff_t>(0.99 * (sizes.size() - 1));
+    const auto at = sizes.begin() + (99 * (values.size() - 1)) / 100;
     std::nth_element(sizes.begin(), at, sizes.end());
     return *at > 0.0 ? *at : values.cwiseAbs().maxCoeff();
 }
