@@ -30,7 +30,7 @@ BENCHMARKS := OFF
 BIN := .venv/bin
 CMAKE_OPTIONS := $(if $(MESHLAB_SOURCE_DIR),-DMESHLAB_SOURCE_DIR=$(abspath $(MESHLAB_SOURCE_DIR)))
 
-# A stamp lies in the folder whose state it tells, so that deleting .venv or build/ is enough to
+# Stamp files live in the folder they describe, so that deleting .venv or build/ is enough to
 # have it set up again.
 PACKAGES := build/.packages
 VENV := .venv/.requirements

@@ -57,7 +57,7 @@ def test_without_json_a_labelled_table_is_printed(tmp_path: Path) -> None:
     for label in ("Vertices", "Rims", "Mean edge", "Noise height", "Suggested feature size"):
         assert label in done.stdout
     assert "Selected" not in done.stdout
-    assert done.stdout.splitlines()[-1].startswith("denoise would say: ")
+    assert done.stdout.splitlines()[-1].startswith("Noise: ")
 
 
 def test_a_selection_in_the_file_is_counted(tmp_path: Path) -> None:
