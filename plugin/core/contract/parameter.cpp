@@ -82,6 +82,8 @@ double lengthOf(const Parameter& parameter, const Value& value, const MeshLength
             throw InvalidOption(parameter.name + " = " + error.what());
         }
     }();
+    // A batch of coarse and fine meshes may have one size in edges.
+    if (length.unit == Length::Unit::Edges) return length.in(mesh, automatic);
     const Value given = length.unit == Length::Unit::Absolute ? Value(length.value) : value;
     return inProportion(length.in(mesh, automatic), parameter, given, mesh);
 }
