@@ -19,6 +19,14 @@ inline Mesh withGaussianNoise(Mesh mesh, double edges, unsigned seed) {
     return mesh;
 }
 
+/// The same, only where z is above a limit.
+inline Mesh noisyAbove(Mesh mesh, double z, double edges, unsigned seed) {
+    const Mesh noisy = withGaussianNoise(mesh, edges, seed);
+    for (Index i = 0; i < mesh.V.rows(); ++i)
+        if (mesh.V(i, 2) > z) mesh.V.row(i) = noisy.V.row(i);
+    return mesh;
+}
+
 /// Displaces vertices of a sphere or another star-shaped surface outwards or inwards, each with a
 /// probability, by `edges` mean edges.
 inline Mesh withSpikes(Mesh mesh, double probability, double edges, unsigned seed) {

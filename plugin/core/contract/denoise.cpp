@@ -1,5 +1,6 @@
 #include "core/denoise/denoise.h"
 
+#include <cmath>
 #include <iomanip>
 #include <sstream>
 #include <string>
@@ -115,9 +116,18 @@ std::string voxelsText(const Eigen::RowVector3d& voxel) {
     return text.str();
 }
 
+std::string localText(const NoiseField& field) {
+    std::ostringstream text;
+    text << std::setprecision(1) << "noise of " << field.lowest << " to " << field.highest
+         << " edges on " << std::lround(100.0 * field.share)
+         << " % of the surface: removed; the rest is clean";
+    return text.str();
+}
+
 std::string removedText(const DenoiseOptions& options, const DenoiseResult& result) {
     const double edge = result.diagnosis.noise.meanEdge;
     const bool isGiven = options.noiseHeight > 0.0;
+    if (result.diagnosis.kind == NoiseKind::Local) return localText(result.diagnosis.field);
     std::string text = isGiven                                          ? "noise"
                        : result.diagnosis.kind == NoiseKind::Correlated ? "scanner noise"
                        : result.diagnosis.kind == NoiseKind::Impulses   ? "impulse noise"

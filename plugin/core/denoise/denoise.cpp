@@ -90,7 +90,7 @@ constexpr double kMaxWhiteSize = 1.25;
 
 bool isNoise(const Diagnosis& diagnosis) {
     return diagnosis.kind == NoiseKind::White || diagnosis.kind == NoiseKind::Impulses ||
-           diagnosis.kind == NoiseKind::Correlated;
+           diagnosis.kind == NoiseKind::Local || diagnosis.kind == NoiseKind::Correlated;
 }
 
 Removal removeNoise(const FaceGraph& graph, const Points& X, const Diagnosis& diagnosis,
@@ -125,6 +125,11 @@ Points denoisePart(const MovingPart& part, const FaceGraph& graph, const Denoise
     diagnosis = diagnose(graph, X0, isMeasured, isKnown, progress.part(0.0, kMeasuring));
     RemovalOptions removal = removalOptions(options, diagnosis);
     removal.mayMove = std::move(mayMove);
+    if (diagnosis.kind == NoiseKind::Local) {
+        removal.place = diagnosis.field;
+        for (Index i = 0; i < X0.rows(); ++i)
+            removal.mayMove[i] = removal.mayMove[i] && diagnosis.field.height[i] > 0.0;
+    }
     Removal done =
         removeNoise(graph, X0, diagnosis, isKnown, removal, progress.part(kMeasuring, 1.0));
     if (done.rounds > 0 && isCrumpled(graph, X0, done.X)) {
@@ -138,6 +143,17 @@ Points denoisePart(const MovingPart& part, const FaceGraph& graph, const Denoise
         if (removal.size > kMaxWhiteSize) result.noiseSize = removal.size * removal.meanEdge;
     }
     return strength * part.weight.asDiagonal() * (done.X - X0);
+}
+
+/// The weights of the offset that restores the volume: clean places stay.
+Eigen::VectorXd offsetWeight(Eigen::VectorXd weight, const MovingPart& part,
+                             const Diagnosis& diagnosis) {
+    if (diagnosis.kind != NoiseKind::Local) return weight;
+    const NoiseField& field = diagnosis.field;
+    for (Index i = 0; i < field.height.size(); ++i)
+        weight[part.surface.vertex[i]] *=
+            std::min(1.0, field.height[i] / (field.median * field.edge[i]));
+    return weight;
 }
 
 /// Clamps coordinates that the volume correction has moved farther than `limit` from X0.
@@ -181,8 +197,9 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
         // Prefer the oriented faces of the graph; their indices are valid only if the part is all.
         const bool isWhole = part.surface.F.rows() == whole.F.rows();
         if (result.rounds > 0)
-            volumes = preserveVolumes(whole.X, isWhole ? graph.F : whole.F, components, weight,
-                                      kMaxOffset, moved);
+            volumes =
+                preserveVolumes(whole.X, isWhole ? graph.F : whole.F, components,
+                                offsetWeight(weight, part, result.diagnosis), kMaxOffset, moved);
         if (result.diagnosis.kind == NoiseKind::Voxels)
             keepWithin(0.5 * result.diagnosis.voxel, whole.X, moved);
     }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "core/mesh/measures.h"
 #include "core/noise/robust_statistics.h"
@@ -14,21 +16,6 @@ namespace spectral {
 namespace {
 
 const char* const kStage = "measuring the noise";
-
-/// Median of 4 sqrt(3) area / (sum of squared sides) over the faces: 1 for equilateral triangles.
-double medianQuality(const FaceGraph& graph, const Points& X) {
-    std::vector<double> quality(static_cast<std::size_t>(graph.faceCount()));
-    const Points N = areaNormals(X, graph.F);
-    parallelRows(graph.faceCount(), [&](Index begin, Index end) {
-        for (Index f = begin; f < end; ++f) {
-            double squares = 0.0;
-            for (int c = 0; c < 3; ++c)
-                squares += (X.row(graph.F(f, c)) - X.row(graph.F(f, (c + 1) % 3))).squaredNorm();
-            quality[f] = squares > 0.0 ? 2.0 * std::sqrt(3.0) * N.row(f).norm() / squares : 0.0;
-        }
-    });
-    return quantile(std::move(quality), 0.5);
-}
 
 struct FoundSpikes {
     Spikes spikes;
@@ -53,6 +40,9 @@ FoundSpikes sparseSpikes(const FaceGraph& graph, const Points& X, const std::vec
     return {certainSpikes(graph, X, std::move(spikes), meanEdge), areTail};
 }
 
+/// Fraction of the progress for the mesh as one, before its places.
+constexpr double kWholeMesh = 0.7;
+
 /// Share of the height that is noise. It decreases above a correlation of residuals that may come
 /// from a scanner's noise, but also from a coarse shape with a little noise.
 double noiseShare(double correlation) {
@@ -60,10 +50,10 @@ double noiseShare(double correlation) {
     return std::clamp(1.0 - kSlope * (correlation - kMaxPureNoise), kMinShare, 1.0);
 }
 
-}  // namespace
-
-Diagnosis diagnose(const FaceGraph& graph, const Points& X, const std::vector<bool>& isMeasured,
-                   bool isKnown, const Progress& progress) {
+/// The noise of the mesh as one.
+Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
+                        const std::vector<bool>& isMeasured, bool isKnown,
+                        const Progress& progress) {
     constexpr Index kMinMeasured = 100, kMinMeasuredCorrelated = 1000;  // vertices
     constexpr double kMinQuality = 0.6;
     constexpr double kMinHeight = 0.02, kMinHeightCorrelated = 0.045;  // mean edges
@@ -77,7 +67,7 @@ Diagnosis diagnose(const FaceGraph& graph, const Points& X, const std::vector<bo
             diagnosis.voxel = *voxel;
             return diagnosis;
         }
-        if (medianQuality(graph, X) < kMinQuality) {
+        if (quantile(triangleQuality(graph, X), 0.5) < kMinQuality) {
             diagnosis.kind = NoiseKind::Tessellation;
             return diagnosis;
         }
@@ -112,6 +102,38 @@ Diagnosis diagnose(const FaceGraph& graph, const Points& X, const std::vector<bo
         diagnosis.kind = found.areTail ? NoiseKind::Impulses : NoiseKind::White;
     else if (share == 1.0)
         diagnosis.kind = NoiseKind::None;
+    return diagnosis;
+}
+
+/// The noise by place, where that explains more than the diagnosis of the whole mesh.
+std::optional<NoiseField> localNoise(const FaceGraph& graph, const Points& X,
+                                     const std::vector<bool>& isMeasured, const Diagnosis& whole) {
+    constexpr double kMaxTail = 3.0;  // of noise; spikes are larger in units of their place, too
+    const bool isWhite = whole.kind == NoiseKind::White || whole.kind == NoiseKind::Impulses;
+    if (!isWhite && whole.kind != NoiseKind::None && whole.kind != NoiseKind::Shape)
+        return std::nullopt;
+    LocalResiduals residuals = localResiduals(graph, X, isMeasured);
+    if (isWhite && areAlike(residuals, isMeasured)) return std::nullopt;
+    NoiseField field = measureNoiseField(graph, X, isMeasured, std::move(residuals));
+    if (!field.isAny() || (whole.spikes > 0 && field.tail > kMaxTail)) return std::nullopt;
+    return field;
+}
+
+}  // namespace
+
+Diagnosis diagnose(const FaceGraph& graph, const Points& X, const std::vector<bool>& isMeasured,
+                   bool isKnown, const Progress& progress) {
+    Diagnosis diagnosis =
+        diagnoseWhole(graph, X, isMeasured, isKnown, progress.part(0.0, kWholeMesh));
+    if (isKnown) return diagnosis;
+    if (auto field = localNoise(graph, X, isMeasured, diagnosis)) {
+        diagnosis.kind = NoiseKind::Local;
+        diagnosis.X = X;
+        diagnosis.spikes = 0;
+        diagnosis.noise.size = 1.0;
+        diagnosis.noise.height = field->median * diagnosis.noise.meanEdge;
+        diagnosis.field = *std::move(field);
+    }
     return diagnosis;
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/noise/face_graph.h"
 #include "core/noise/noise_estimate.h"
+#include "core/noise/noise_field.h"
 #include "core/support/progress.h"
 
 namespace spectral {
@@ -17,12 +18,14 @@ enum class NoiseKind {
     Voxels,        ///< Staircase of the surface of a binary volume.
     White,         ///< Independent at every vertex.
     Impulses,      ///< Independent, with large values at many vertices.
+    Local,         ///< Independent, of a height that differs from place to place.
     Correlated     ///< Correlated over a few edges, as from scanners.
 };
 
 struct Diagnosis {
     NoiseKind kind = NoiseKind::None;
     NoiseEstimate noise;  ///< Estimate after the removal of spikes.
+    NoiseField field;     ///< Where the noise is, if it is white.
     Points X;             ///< n x 3 positions without spikes.
     Index spikes = 0;     ///< Number of vertices that are spikes.
     Eigen::RowVector3d voxel = Eigen::RowVector3d::Zero();  ///< Voxel size along each axis.

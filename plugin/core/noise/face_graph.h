@@ -46,6 +46,9 @@ Points blurredNormals(const FaceGraph& graph, Points N, int times);
 /// Unit vertex normals, n x 3: the normalized sums of the normals N (m x 3) of their faces.
 Points vertexNormals(const FaceGraph& graph, const Points& N);
 
+/// 4 sqrt(3) area / (sum of squared sides) of each face: 1 for equilateral triangles.
+std::vector<double> triangleQuality(const FaceGraph& graph, const Points& X);
+
 /// Scales each row to length 1; zero rows stay zero.
 void normalizeRows(Points& N);
 

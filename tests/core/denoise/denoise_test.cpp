@@ -50,6 +50,36 @@ TEST(Denoise, LeavesACleanShapeBitIdentical) {
     }
 }
 
+TEST(Denoise, RemovesNoiseWhereItIsAndLeavesTheRestBitIdentical) {
+    for (const Mesh& mesh : {testing::icosphere(5), testing::cube(30)}) {
+        const double middle = mesh.V.col(2).mean(), edge = meanEdgeLength(mesh.V, mesh.F);
+        const Mesh noisy = testing::noisyAbove(mesh, middle, 0.2, 3);
+        const DenoiseResult result = denoise(noisy.V, noisy.F, {});
+        EXPECT_EQ(result.diagnosis.kind, NoiseKind::Local);
+        EXPECT_LT(meanAngle(result.V, mesh.V, mesh.F), 0.25 * meanAngle(noisy.V, mesh.V, mesh.F));
+        EXPECT_LT(meanDistance(result.V, mesh.V), meanDistance(noisy.V, mesh.V));
+        EXPECT_EQ(result.volumes.preserved, 1);
+        Index moved = 0;
+        for (Index i = 0; i < mesh.V.rows(); ++i)
+            if (mesh.V(i, 2) < middle - 8.0 * edge) moved += result.V.row(i) != noisy.V.row(i);
+        EXPECT_EQ(moved, 0);
+        setThreadCount(1);
+        const Vertices alone = denoise(noisy.V, noisy.F, {}).V;
+        setThreadCount(0);
+        EXPECT_EQ(alone, result.V);
+    }
+}
+
+TEST(Denoise, RemovesNoiseThatGrowsOverTheShape) {
+    Mesh mesh = testing::icosphere(5);
+    const Mesh clean = mesh, noisy = withGaussianNoise(mesh, 0.4, 3);
+    for (Index i = 0; i < mesh.V.rows(); ++i)
+        mesh.V.row(i) += 0.5 * (1.0 + clean.V(i, 2)) * (noisy.V.row(i) - clean.V.row(i));
+    const DenoiseResult result = denoise(mesh.V, mesh.F, {});
+    EXPECT_EQ(result.diagnosis.kind, NoiseKind::Local);
+    EXPECT_LT(meanAngle(result.V, clean.V, mesh.F), 0.15 * meanAngle(mesh.V, clean.V, mesh.F));
+}
+
 TEST(Denoise, LeavesATinyMeshAlone) {
     const Mesh box = testing::cube(1);
     EXPECT_EQ(denoise(box.V, box.F, {}).V, box.V);
