@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 #include "core/mesh/measures.h"
@@ -22,22 +21,35 @@ struct FoundSpikes {
     bool areTail = false;  ///< Not isolated spikes but the heavy tail of the noise itself.
 };
 
+/// Least share of the vertices that statistics can tell to be spikes.
+constexpr double kMinShareOfSpikes = 0.01;
+
+/// Least tail of the residuals (localTail) with spikes: 4 on pierrot_i3, 2.5 for noise of any
+/// distribution over the surface.
+constexpr double kMinTailOfSpikes = 3.0;
+
 FoundSpikes sparseSpikes(const FaceGraph& graph, const Points& X, const std::vector<bool>& mayMove,
                          double meanEdge) {
     constexpr double kDetectionLimit = 4.0, kRemovalLimit = 3.0;  // deviations
     constexpr Index kMinCount = 50;
-    constexpr double kMinShare = 0.01, kMinShareOfTail = 0.004;
+    constexpr double kMinShareOfTail = 0.004;
     constexpr double kMaxClustering = 2.0;
     constexpr Index kMaxRatio = 3;  // of the counts with the lower and the higher limit
     Spikes spikes = findSpikes(graph, X, mayMove, kDetectionLimit, meanEdge);
     const bool areUnrelated = spikes.count >= kMinCount && spikes.clustering < kMaxClustering;
     bool areTail = areUnrelated && spikes.share() >= kMinShareOfTail;
-    if (areUnrelated && spikes.share() >= kMinShare) {
+    if (areUnrelated && spikes.share() >= kMinShareOfSpikes &&
+        localTail(localResiduals(graph, X, mayMove), mayMove) > kMinTailOfSpikes) {
         Spikes all = findSpikes(graph, X, mayMove, kRemovalLimit, meanEdge);
         areTail = all.count > kMaxRatio * spikes.count;
         if (!areTail) return {std::move(all)};
     }
     return {certainSpikes(graph, X, std::move(spikes), meanEdge), areTail};
+}
+
+bool hasManySpikes(const Diagnosis& diagnosis) {
+    return static_cast<double>(diagnosis.spikes) >=
+           kMinShareOfSpikes * static_cast<double>(diagnosis.X.rows());
 }
 
 /// Fraction of the progress for the mesh as one, before its places.
@@ -58,6 +70,8 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
     constexpr double kMinQuality = 0.6;
     constexpr double kMinHeight = 0.02, kMinHeightCorrelated = 0.045;  // mean edges
     constexpr double kMaxCorrelation = 0.2;  // above it, the residuals are those of a shape
+    // Detail of a coarse shape looks like weak noise, but seldom alternates: decimated igea.
+    constexpr double kWeak = 0.09, kMaxCorrelationWeak = 0.0;  // height in mean edges
     Diagnosis diagnosis;
     diagnosis.X = X;
     const double edge = diagnosis.noise.meanEdge = meanEdgeLength(X, graph.F);
@@ -98,6 +112,9 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
         return diagnosis;
     }
     noise.height *= share;
+    if (!hasManySpikes(diagnosis) && correlation > kMaxCorrelationWeak &&
+        noise.height < kWeak * edge)
+        return diagnosis;
     if (noise.height >= kMinHeight * edge)
         diagnosis.kind = found.areTail ? NoiseKind::Impulses : NoiseKind::White;
     else if (share == 1.0)
@@ -106,16 +123,19 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
 }
 
 /// The noise by place, where that explains more than the diagnosis of the whole mesh.
-std::optional<NoiseField> localNoise(const FaceGraph& graph, const Points& X,
-                                     const std::vector<bool>& isMeasured, const Diagnosis& whole) {
-    constexpr double kMaxTail = 3.0;  // of noise; spikes are larger in units of their place, too
+NoiseField localNoise(const FaceGraph& graph, const std::vector<bool>& isMeasured,
+                      const Diagnosis& whole) {
     const bool isWhite = whole.kind == NoiseKind::White || whole.kind == NoiseKind::Impulses;
-    if (!isWhite && whole.kind != NoiseKind::None && whole.kind != NoiseKind::Shape)
-        return std::nullopt;
-    LocalResiduals residuals = localResiduals(graph, X, isMeasured);
-    if (isWhite && areAlike(residuals, isMeasured)) return std::nullopt;
-    NoiseField field = measureNoiseField(graph, X, isMeasured, std::move(residuals));
-    if (!field.isAny() || (whole.spikes > 0 && field.tail > kMaxTail)) return std::nullopt;
+    if (!isWhite && whole.kind != NoiseKind::None && whole.kind != NoiseKind::Shape) return {};
+    if (hasManySpikes(whole)) return {};
+    const LocalResiduals residuals = localResiduals(graph, whole.X, isMeasured);
+    if (isWhite && areAlike(residuals, isMeasured)) return {};
+    NoiseField field = measureNoiseField(graph, whole.X, isMeasured, residuals);
+    if (!field.isAny()) return {};
+    std::vector<bool> isNoisy(isMeasured);
+    for (Index i = 0; i < field.height.size(); ++i)
+        isNoisy[i] = isNoisy[i] && field.height[i] > 0.0;
+    if (localTail(residuals, isNoisy) > kMinTailOfSpikes) return {};
     return field;
 }
 
@@ -126,13 +146,11 @@ Diagnosis diagnose(const FaceGraph& graph, const Points& X, const std::vector<bo
     Diagnosis diagnosis =
         diagnoseWhole(graph, X, isMeasured, isKnown, progress.part(0.0, kWholeMesh));
     if (isKnown) return diagnosis;
-    if (auto field = localNoise(graph, X, isMeasured, diagnosis)) {
+    diagnosis.field = localNoise(graph, isMeasured, diagnosis);
+    if (diagnosis.field.isAny()) {
         diagnosis.kind = NoiseKind::Local;
-        diagnosis.X = X;
-        diagnosis.spikes = 0;
         diagnosis.noise.size = 1.0;
-        diagnosis.noise.height = field->median * diagnosis.noise.meanEdge;
-        diagnosis.field = *std::move(field);
+        diagnosis.noise.height = diagnosis.field.median * diagnosis.noise.meanEdge;
     }
     return diagnosis;
 }

@@ -21,6 +21,10 @@ LocalResiduals localResiduals(const FaceGraph& graph, const Points& X,
 /// Whether the residuals are of like height everywhere, relative to the edges of the place.
 bool areAlike(const LocalResiduals& residuals, const std::vector<bool>& isMeasured);
 
+/// 99 % quantile of the residuals of some vertices, in deviations of their places: 2.3 to 2.5 for
+/// noise, whatever its distribution over the surface, more for spikes; 0 if there are none.
+double localTail(const LocalResiduals& residuals, const std::vector<bool>& isIncluded);
+
 /// The height of white noise at every vertex of a surface that is noisy in places.
 struct NoiseField {
     Eigen::VectorXd height;  ///< n: standard deviation along the normals, length units; 0: none.
@@ -29,8 +33,6 @@ struct NoiseField {
     double share = 0.0;      ///< Share of the measured vertices with noise.
     double lowest = 0.0, median = 0.0, highest = 0.0;  ///< 10, 50 and 98 % quantiles of height
                                                        ///< over edge, where there is noise.
-    double tail = 0.0;  ///< 99 % quantile of the residuals there, in deviations of their place: 2.3
-                        ///< to 2.5 for noise, more for spikes.
 
     bool isAny() const { return height.size() > 0; }
 };
@@ -48,6 +50,6 @@ struct NoiseField {
 /// @param X           n x 3 positions.
 /// @param isMeasured  n: whether a vertex counts; not those on rims.
 NoiseField measureNoiseField(const FaceGraph& graph, const Points& X,
-                             const std::vector<bool>& isMeasured, LocalResiduals residuals);
+                             const std::vector<bool>& isMeasured, const LocalResiduals& residuals);
 
 }  // namespace spectral

