@@ -131,6 +131,7 @@ std::string removedText(const DenoiseOptions& options, const DenoiseResult& resu
     std::string text = isGiven                                          ? "noise"
                        : result.diagnosis.kind == NoiseKind::Correlated ? "scanner noise"
                        : result.diagnosis.kind == NoiseKind::Impulses   ? "impulse noise"
+                       : result.diagnosis.kind == NoiseKind::ScanLines  ? "noise on scan lines"
                                                                         : "white noise";
     text += ": height " +
             lengthText(isGiven ? options.noiseHeight : result.diagnosis.noise.height, edge);

@@ -82,6 +82,7 @@ RemovalOptions removalOptions(const DenoiseOptions& options, const Diagnosis& di
                                            : 0.0;
     removal.keepCreases = options.keepCreases;
     removal.areImpulses = diagnosis.kind == NoiseKind::Impulses;
+    removal.areScanLines = diagnosis.kind == NoiseKind::ScanLines;
     return removal;
 }
 
@@ -90,7 +91,8 @@ constexpr double kMaxWhiteSize = 1.25;
 
 bool isNoise(const Diagnosis& diagnosis) {
     return diagnosis.kind == NoiseKind::White || diagnosis.kind == NoiseKind::Impulses ||
-           diagnosis.kind == NoiseKind::Local || diagnosis.kind == NoiseKind::Correlated;
+           diagnosis.kind == NoiseKind::Local || diagnosis.kind == NoiseKind::ScanLines ||
+           diagnosis.kind == NoiseKind::Correlated;
 }
 
 Removal removeNoise(const FaceGraph& graph, const Points& X, const Diagnosis& diagnosis,
@@ -125,7 +127,7 @@ Points denoisePart(const MovingPart& part, const FaceGraph& graph, const Denoise
     diagnosis = diagnose(graph, X0, isMeasured, isKnown, progress.part(0.0, kMeasuring));
     RemovalOptions removal = removalOptions(options, diagnosis);
     removal.mayMove = std::move(mayMove);
-    if (diagnosis.kind == NoiseKind::Local) {
+    if (diagnosis.field.isAny()) {
         removal.place = diagnosis.field;
         for (Index i = 0; i < X0.rows(); ++i)
             removal.mayMove[i] = removal.mayMove[i] && diagnosis.field.height[i] > 0.0;
@@ -148,7 +150,6 @@ Points denoisePart(const MovingPart& part, const FaceGraph& graph, const Denoise
 /// The weights of the offset that restores the volume: clean places stay.
 Eigen::VectorXd offsetWeight(Eigen::VectorXd weight, const MovingPart& part,
                              const Diagnosis& diagnosis) {
-    if (diagnosis.kind != NoiseKind::Local) return weight;
     const NoiseField& field = diagnosis.field;
     for (Index i = 0; i < field.height.size(); ++i)
         weight[part.surface.vertex[i]] *=

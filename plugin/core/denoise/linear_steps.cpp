@@ -22,9 +22,16 @@ VertexGraph averagedNeighbours(const FaceGraph& graph, const std::vector<bool>& 
     averaged.first.push_back(0);
     const VertexGraph& all = graph.vertices;
     for (Index i = 0; i < all.size(); ++i) {
-        for (Index k = all.first[i]; k < all.first[i + 1]; ++k)
-            if (mayMove[i] && (!graph.onRim[i] || graph.onRim[all.at[k]]))
-                averaged.at.push_back(all.at[k]);
+        double sum = 0.0;
+        for (Index k = all.first[i]; k < all.first[i + 1]; ++k) {
+            if (!mayMove[i] || (graph.onRim[i] && !graph.onRim[all.at[k]])) continue;
+            averaged.at.push_back(all.at[k]);
+            if (all.weight.empty()) continue;
+            averaged.weight.push_back(all.weight[k]);
+            sum += all.weight[k];
+        }
+        for (std::size_t k = averaged.first.back(); k < averaged.weight.size(); ++k)
+            averaged.weight[k] /= sum;
         averaged.first.push_back(static_cast<Index>(averaged.at.size()));
     }
     return averaged;
@@ -128,7 +135,7 @@ std::optional<LinearSteps> linearSteps(const FaceGraph& graph, const Points& X,
 
 LinearStepsByPlace linearStepsByPlace(const FaceGraph& graph, const Points& X,
                                       const std::vector<bool>& mayMove, const NoiseField& place) {
-    constexpr std::array<int, 10> kSteps{5, 10, 14, 20, 28, 40, 56, 80, 113, 160};
+    constexpr std::array<int, 12> kSteps{5, 10, 14, 20, 28, 40, 56, 80, 113, 160, 226, 320};
     constexpr int kStepsToNormals = 20;
     constexpr int kErrors = 32, kCounts = 16, kShares = 8;  // steps of averages
     constexpr double kMaxError = 0.17, kOfHeight = 0.2, kMargin = 1.15, kFading = 0.03;

@@ -163,6 +163,18 @@ FilteredInRounds filterInRounds(const FaceGraph& graph, const Points& X0,
     return result;
 }
 
+/// Linear steps in which neighbours along a scan line weigh more than those across.
+Removal removeFromScanLines(const FaceGraph& graph, const Points& X0,
+                            const RemovalOptions& options) {
+    FaceGraph weighted = graph;
+    weighted.vertices = weightedByLength(graph.vertices, X0, 1.0);
+    const LinearStepsByPlace linear =
+        linearStepsByPlace(weighted, X0, options.mayMove, options.place);
+    Removal removal{linear.X, linear.steps};
+    limitDisplacement(X0, options, kMaxDeviations, removal.X);
+    return removal;
+}
+
 /// Linear steps in the places where they do better, rounds elsewhere.
 Removal removeByPlace(const FaceGraph& graph, const Points& X0, const RemovalOptions& options,
                       const Progress& progress) {
@@ -186,6 +198,7 @@ Removal removeByPlace(const FaceGraph& graph, const Points& X0, const RemovalOpt
 Removal removeWhiteNoise(const FaceGraph& graph, const Points& X0, const RemovalOptions& options,
                          const Progress& progress) {
     progress.report(0.0, kStage);
+    if (options.areScanLines) return removeFromScanLines(graph, X0, options);
     if (options.place.isAny()) return removeByPlace(graph, X0, options, progress);
     if (std::optional<LinearSteps> linear = linearSteps(
             graph, X0, options.mayMove, options.height / options.meanEdge, options.areImpulses)) {

@@ -23,6 +23,7 @@ struct RemovalOptions {
     double meanEdge = 0.0;      ///< Mean edge length, length units.
     bool keepCreases = true;    ///< If false, smooths across creases, too.
     bool areImpulses = false;   ///< White noise with many large values.
+    bool areScanLines = false;  ///< White noise on long triangles between lines.
     std::vector<bool> mayMove;  ///< n: whether a vertex may move.
 };
 

@@ -6,6 +6,7 @@
 
 #include "core/mesh/measures.h"
 #include "core/noise/robust_statistics.h"
+#include "core/noise/scan_lines.h"
 #include "core/noise/spikes.h"
 #include "core/noise/voxel_lattice.h"
 #include "core/support/threads.h"
@@ -83,6 +84,11 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
         }
         if (quantile(triangleQuality(graph, X), 0.5) < kMinQuality) {
             diagnosis.kind = NoiseKind::Tessellation;
+            if (const auto lines = scanLineNoise(graph, X, isMeasured)) {
+                diagnosis.kind = NoiseKind::ScanLines;
+                diagnosis.noise.height = lines->height;
+                diagnosis.field = NoiseField::ofHeight(lines->height, lines->edge, X.rows());
+            }
             return diagnosis;
         }
     }
@@ -146,8 +152,9 @@ Diagnosis diagnose(const FaceGraph& graph, const Points& X, const std::vector<bo
     Diagnosis diagnosis =
         diagnoseWhole(graph, X, isMeasured, isKnown, progress.part(0.0, kWholeMesh));
     if (isKnown) return diagnosis;
-    diagnosis.field = localNoise(graph, isMeasured, diagnosis);
-    if (diagnosis.field.isAny()) {
+    NoiseField field = localNoise(graph, isMeasured, diagnosis);
+    if (field.isAny()) {
+        diagnosis.field = std::move(field);
         diagnosis.kind = NoiseKind::Local;
         diagnosis.noise.size = 1.0;
         diagnosis.noise.height = diagnosis.field.median * diagnosis.noise.meanEdge;

@@ -19,13 +19,14 @@ enum class NoiseKind {
     White,         ///< Independent at every vertex.
     Impulses,      ///< Independent, with large values at many vertices.
     Local,         ///< Independent, of a height that differs from place to place.
+    ScanLines,     ///< Independent, on the lines of a scanner: long triangles between them.
     Correlated     ///< Correlated over a few edges, as from scanners.
 };
 
 struct Diagnosis {
     NoiseKind kind = NoiseKind::None;
     NoiseEstimate noise;  ///< Estimate after the removal of spikes.
-    NoiseField field;     ///< Where the noise is, if it is white.
+    NoiseField field;     ///< Where it is, if it is Local or on ScanLines.
     Points X;             ///< n x 3 positions without spikes.
     Index spikes = 0;     ///< Number of vertices that are spikes.
     Eigen::RowVector3d voxel = Eigen::RowVector3d::Zero();  ///< Voxel size along each axis.

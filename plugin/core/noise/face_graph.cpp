@@ -1,6 +1,7 @@
 #include "core/noise/face_graph.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -106,6 +107,26 @@ FaceGraph faceGraph(const Faces& F, Index vertexCount) {
     orient(isOpposite, graph);
     graph.faces = facesOfVertices(F, vertexCount);
     graph.vertices = neighboursOfVertices(sides, vertexCount);
+    return graph;
+}
+
+VertexGraph weightedByLength(VertexGraph graph, const Points& X, double power) {
+    constexpr double kShortest = 1e-9;  // of the lengths at a vertex, over their mean
+    graph.weight.resize(graph.at.size());
+    parallelRows(graph.size(), [&](Index begin, Index end) {
+        for (Index i = begin; i < end; ++i) {
+            const Index first = graph.first[i], last = graph.first[i + 1];
+            double lengths = 0.0, sum = 0.0;
+            for (Index k = first; k < last; ++k)
+                lengths += graph.weight[k] = (X.row(graph.at[k]) - X.row(i)).norm();
+            const double mean = lengths / static_cast<double>(std::max<Index>(last - first, 1));
+            for (Index k = first; k < last; ++k) {
+                const double relative = mean > 0.0 ? graph.weight[k] / mean : 1.0;
+                sum += graph.weight[k] = std::pow(std::max(relative, kShortest), -power);
+            }
+            for (Index k = first; k < last; ++k) graph.weight[k] /= sum;
+        }
+    });
     return graph;
 }
 

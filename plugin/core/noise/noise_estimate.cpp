@@ -108,8 +108,13 @@ Points smoothVertexNormals(const FaceGraph& graph, const Points& X) {
 Eigen::VectorXd scaledResiduals(const VertexGraph& graph, const Points& X, const Points& N) {
     Eigen::VectorXd residual = Eigen::VectorXd::Zero(X.rows());
     forEachMean(graph, X, [&](Index i, const Eigen::RowVector3d& mean) {
-        residual[i] = (X.row(i) - mean).dot(N.row(i)) /
-                      std::sqrt(1.0 + 1.0 / static_cast<double>(graph.degree(i)));
+        double squares = 0.0;  // of the weights
+        if (graph.weight.empty())
+            squares = 1.0 / static_cast<double>(graph.degree(i));
+        else
+            for (Index k = graph.first[i]; k < graph.first[i + 1]; ++k)
+                squares += graph.weight[k] * graph.weight[k];
+        residual[i] = (X.row(i) - mean).dot(N.row(i)) / std::sqrt(1.0 + squares);
     });
     return residual;
 }

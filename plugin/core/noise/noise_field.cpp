@@ -199,6 +199,15 @@ double localTail(const LocalResiduals& residuals, const Flags& isIncluded) {
     return quantile(std::move(units), kShare);
 }
 
+NoiseField NoiseField::ofHeight(double height, double edge, Index n) {
+    NoiseField field;
+    field.height.setConstant(n, height);
+    field.edge.setConstant(n, edge);
+    field.share = 1.0;
+    field.lowest = field.median = field.highest = height / edge;
+    return field;
+}
+
 NoiseField measureNoiseField(const FaceGraph& graph, const Points& X, const Flags& isMeasured,
                              const LocalResiduals& local) {
     const VertexGraph& vertices = graph.vertices;

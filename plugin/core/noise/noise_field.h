@@ -34,6 +34,9 @@ struct NoiseField {
     double lowest = 0.0, median = 0.0, highest = 0.0;  ///< 10, 50 and 98 % quantiles of height
                                                        ///< over edge, where there is noise.
 
+    /// The same height at all n vertices, length units.
+    static NoiseField ofHeight(double height, double edge, Index n);
+
     bool isAny() const { return height.size() > 0; }
 };
 

@@ -9,6 +9,7 @@
 #include "core/denoise/linear_steps.h"
 #include "core/denoise/removal.h"
 #include "core/denoise/whiteness.h"
+#include "core/noise/diffusion.h"
 #include "core/support/errors.h"
 #include "core/support/threads.h"
 #include "support/noisy_shapes.h"
@@ -78,6 +79,17 @@ TEST(Denoise, RemovesNoiseThatGrowsOverTheShape) {
     const DenoiseResult result = denoise(mesh.V, mesh.F, {});
     EXPECT_EQ(result.diagnosis.kind, NoiseKind::Local);
     EXPECT_LT(meanAngle(result.V, clean.V, mesh.F), 0.15 * meanAngle(mesh.V, clean.V, mesh.F));
+}
+
+TEST(Denoise, RemovesNoiseFromScanLines) {
+    Mesh lines = testing::rectangle(60.0, 300.0, 60, 60);
+    lines.V.col(2) = 3.0 * (lines.V.col(0) / 15.0).array().sin();
+    const Mesh clean = lines;
+    EXPECT_EQ(denoise(lines.V, lines.F, {}).V, lines.V);
+    lines.V.col(2) += 0.15 * whiteNoise(lines.V.rows());
+    const DenoiseResult result = denoise(lines.V, lines.F, {});
+    EXPECT_LT(meanAngle(result.V, clean.V, lines.F), 0.15 * meanAngle(lines.V, clean.V, lines.F));
+    EXPECT_LT(meanDistance(result.V, clean.V), 0.7 * meanDistance(lines.V, clean.V));
 }
 
 TEST(Denoise, LeavesATinyMeshAlone) {

@@ -88,6 +88,19 @@ TEST(Diagnosis, MeasuresNothingOnATessellationOrFewVertices) {
     EXPECT_EQ(diagnosed(testing::cube(2)).kind, NoiseKind::TooFew);
 }
 
+TEST(Diagnosis, TellsScanLinesFromNeedlesOfCad) {
+    for (const double spacing : {3.0, 5.0, 8.0}) {
+        Mesh lines = testing::rectangle(60.0, 60.0 * spacing, 60, 60);
+        lines.V.col(2) = 3.0 * (lines.V.col(0) / 15.0).array().sin();
+        EXPECT_EQ(diagnosed(lines).kind, NoiseKind::Tessellation);
+        const Eigen::VectorXd noise = whiteNoise(lines.V.rows());
+        lines.V.col(2) += 0.15 * noise;
+        const Diagnosis found = diagnosed(lines);
+        EXPECT_EQ(found.kind, NoiseKind::ScanLines) << spacing;
+        EXPECT_NEAR(found.noise.height, 0.15, 0.03) << spacing;
+    }
+}
+
 TEST(VoxelLattice, IsNotFoundInOtherMeshes) {
     const Mesh ball = testing::segmentedBall(10);
     EXPECT_FALSE(voxelLattice(testing::withGaussianNoise(ball, 0.2, 1).V));
