@@ -116,6 +116,16 @@ std::string voxelsText(const Eigen::RowVector3d& voxel) {
     return text.str();
 }
 
+std::string noiseName(NoiseKind kind) {
+    switch (kind) {
+        case NoiseKind::Correlated: return "scanner noise";
+        case NoiseKind::Impulses: return "impulse noise";
+        case NoiseKind::ScanLines: return "noise on scan lines";
+        case NoiseKind::Rounded: return "coordinates rounded to a grid";
+        default: return "white noise";
+    }
+}
+
 std::string localText(const NoiseField& field) {
     std::ostringstream text;
     text << std::setprecision(1) << "noise of " << field.lowest << " to " << field.highest
@@ -128,11 +138,7 @@ std::string removedText(const DenoiseOptions& options, const DenoiseResult& resu
     const double edge = result.diagnosis.noise.meanEdge;
     const bool isGiven = options.noiseHeight > 0.0;
     if (result.diagnosis.kind == NoiseKind::Local) return localText(result.diagnosis.field);
-    std::string text = isGiven                                          ? "noise"
-                       : result.diagnosis.kind == NoiseKind::Correlated ? "scanner noise"
-                       : result.diagnosis.kind == NoiseKind::Impulses   ? "impulse noise"
-                       : result.diagnosis.kind == NoiseKind::ScanLines  ? "noise on scan lines"
-                                                                        : "white noise";
+    std::string text = isGiven ? "noise" : noiseName(result.diagnosis.kind);
     text += ": height " +
             lengthText(isGiven ? options.noiseHeight : result.diagnosis.noise.height, edge);
     if (result.noiseSize > 0.0)

@@ -82,6 +82,7 @@ RemovalOptions removalOptions(const DenoiseOptions& options, const Diagnosis& di
                                            : 0.0;
     removal.keepCreases = options.keepCreases;
     removal.areImpulses = diagnosis.kind == NoiseKind::Impulses;
+    removal.areVoxelFaces = diagnosis.kind == NoiseKind::VoxelFaces;
     removal.areScanLines = diagnosis.kind == NoiseKind::ScanLines;
     return removal;
 }
@@ -89,16 +90,23 @@ RemovalOptions removalOptions(const DenoiseOptions& options, const Diagnosis& di
 /// Correlation length, in mean edges, up to which noise is filtered as white noise.
 constexpr double kMaxWhiteSize = 1.25;
 
+bool hasVoxels(const Diagnosis& diagnosis) {
+    return diagnosis.kind == NoiseKind::Voxels || diagnosis.kind == NoiseKind::VoxelFaces;
+}
+
 bool isNoise(const Diagnosis& diagnosis) {
-    return diagnosis.kind == NoiseKind::White || diagnosis.kind == NoiseKind::Impulses ||
-           diagnosis.kind == NoiseKind::Local || diagnosis.kind == NoiseKind::ScanLines ||
-           diagnosis.kind == NoiseKind::Correlated;
+    switch (diagnosis.kind) {
+        case NoiseKind::None:
+        case NoiseKind::Shape:
+        case NoiseKind::Tessellation:
+        case NoiseKind::TooFew: return false;
+        default: return true;
+    }
 }
 
 Removal removeNoise(const FaceGraph& graph, const Points& X, const Diagnosis& diagnosis,
                     bool isKnown, const RemovalOptions& removal, const Progress& progress) {
-    if (diagnosis.kind == NoiseKind::Voxels)
-        return removeVoxelSteps(graph, X, diagnosis.voxel, removal, progress);
+    if (hasVoxels(diagnosis)) return removeVoxelSteps(graph, X, diagnosis.voxel, removal, progress);
     if (!(removal.height > 0.0) || !(isKnown || isNoise(diagnosis))) return {diagnosis.X, 0};
     return removal.size > kMaxWhiteSize
                ? removeCorrelatedNoise(graph, diagnosis.X, removal, progress)
@@ -134,13 +142,13 @@ Points denoisePart(const MovingPart& part, const FaceGraph& graph, const Denoise
     }
     Removal done =
         removeNoise(graph, X0, diagnosis, isKnown, removal, progress.part(kMeasuring, 1.0));
-    if (done.rounds > 0 && isCrumpled(graph, X0, done.X)) {
+    if (done.rounds > 0 && !hasVoxels(diagnosis) && isCrumpled(graph, X0, done.X)) {
         result.isCrumpled = true;
         done = {diagnosis.X, 0};
     }
     result.rounds = done.rounds;
     const double strength = std::min(options.strength, 1.0);
-    if (done.rounds > 0 && diagnosis.kind != NoiseKind::Voxels) {
+    if (done.rounds > 0 && !hasVoxels(diagnosis)) {
         result.noiseHeight = strength * removal.height;
         if (removal.size > kMaxWhiteSize) result.noiseSize = removal.size * removal.meanEdge;
     }
@@ -201,8 +209,7 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
             volumes =
                 preserveVolumes(whole.X, isWhole ? graph.F : whole.F, components,
                                 offsetWeight(weight, part, result.diagnosis), kMaxOffset, moved);
-        if (result.diagnosis.kind == NoiseKind::Voxels)
-            keepWithin(0.5 * result.diagnosis.voxel, whole.X, moved);
+        if (hasVoxels(result.diagnosis)) keepWithin(0.5 * result.diagnosis.voxel, whole.X, moved);
     }
     Vertices displacement = moved - whole.X;
     if (!displacement.allFinite()) throw SolverFailure("the denoised coordinates are not finite");

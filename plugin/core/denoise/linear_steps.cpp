@@ -135,10 +135,11 @@ std::optional<LinearSteps> linearSteps(const FaceGraph& graph, const Points& X,
 
 LinearStepsByPlace linearStepsByPlace(const FaceGraph& graph, const Points& X,
                                       const std::vector<bool>& mayMove, const NoiseField& place) {
-    constexpr std::array<int, 12> kSteps{5, 10, 14, 20, 28, 40, 56, 80, 113, 160, 226, 320};
+    constexpr std::array<int, 11> kSteps{5, 10, 14, 20, 28, 40, 56, 80, 113, 160, 226};
     constexpr int kStepsToNormals = 20;
     constexpr int kErrors = 32, kCounts = 16, kShares = 8;  // steps of averages
     constexpr double kMaxError = 0.17, kOfHeight = 0.2, kMargin = 1.15, kFading = 0.03;
+    constexpr double kWeak = 0.1, kExponent = 1.5;  // rounds hardly remove weaker noise
     using Slopes = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
     const Index n = X.rows();
     const VertexGraph averaged = averagedNeighbours(graph, mayMove);
@@ -193,7 +194,9 @@ LinearStepsByPlace linearStepsByPlace(const FaceGraph& graph, const Points& X,
         const auto low = static_cast<std::size_t>(at), high = std::min(low + 1, stages.size() - 1);
         const double fraction = at - static_cast<double>(low);
         result.X.row(i) = (1.0 - fraction) * stages[low].row(i) + fraction * stages[high].row(i);
-        const double limit = kMargin * (kMaxError - kOfHeight * place.height[i] / place.edge[i]);
+        const double height = place.height[i] / place.edge[i];
+        const double weakness = std::max(1.0, std::pow(kWeak / height, kExponent));
+        const double limit = kMargin * weakness * (kMaxError - kOfHeight * height);
         result.share[i] = std::clamp((limit - std::sqrt(least[i])) / kFading, 0.0, 1.0);
     }
     result.share = LocalAverage(graph.vertices, mayMove, kShares).of(result.share);

@@ -233,8 +233,9 @@ Removal removeCorrelatedNoise(const FaceGraph& graph, const Points& X0,
 
 Removal removeVoxelSteps(const FaceGraph& graph, const Points& X0, const Eigen::RowVector3d& voxel,
                          const RemovalOptions& options, const Progress& progress) {
-    constexpr double kLength = 1.5, kThickness = 0.5;
+    constexpr double kLength = 1.5, kLengthOfFaces = 2.0, kThickness = 0.5;
     constexpr int kRounds = 3;
+    const double length = options.areVoxelFaces ? kLengthOfFaces : kLength;
     // For thick slices, the filter works in units between lengths and voxels.
     const Eigen::RowVector3d scale =
         (voxel.minCoeff() * voxel.cwiseInverse()).array().pow(kThickness);
@@ -243,8 +244,8 @@ Removal removeVoxelSteps(const FaceGraph& graph, const Points& X0, const Eigen::
     Removal removal{start, 0};
     while (removal.rounds < kRounds) {
         progress.report(double(removal.rounds) / kRounds, kStage);
-        const Points N = filterNormals(graph, removal.X, filterOfLength(kLength, options));
-        removal.X = followNormals(graph, start, N, options.mayMove, sweepsOfLength(kLength));
+        const Points N = filterNormals(graph, removal.X, filterOfLength(length, options));
+        removal.X = followNormals(graph, start, N, options.mayMove, sweepsOfLength(length));
         for (Index i = 0; i < start.rows(); ++i)
             removal.X.row(i) =
                 removal.X.row(i).cwiseMax(start.row(i) - half).cwiseMin(start.row(i) + half);

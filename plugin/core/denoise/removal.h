@@ -17,14 +17,15 @@ struct Removal {
 };
 
 struct RemovalOptions {
-    double height = 0.0;        ///< Standard deviation of the noise, length units.
-    NoiseField place;           ///< If there is any: height and edge length of every place.
-    double size = 0.0;          ///< Correlation length of the noise, mean edges.
-    double meanEdge = 0.0;      ///< Mean edge length, length units.
-    bool keepCreases = true;    ///< If false, smooths across creases, too.
-    bool areImpulses = false;   ///< White noise with many large values.
-    bool areScanLines = false;  ///< White noise on long triangles between lines.
-    std::vector<bool> mayMove;  ///< n: whether a vertex may move.
+    double height = 0.0;         ///< Standard deviation of the noise, length units.
+    NoiseField place;            ///< If there is any: height and edge length of every place.
+    double size = 0.0;           ///< Correlation length of the noise, mean edges.
+    double meanEdge = 0.0;       ///< Mean edge length, length units.
+    bool keepCreases = true;     ///< If false, smooths across creases, too.
+    bool areImpulses = false;    ///< White noise with many large values.
+    bool areScanLines = false;   ///< White noise on long triangles between lines.
+    bool areVoxelFaces = false;  ///< Vertices at the corners of voxels, not between their centres.
+    std::vector<bool> mayMove;   ///< n: whether a vertex may move.
 };
 
 /// Removes noise that is independent at every vertex.

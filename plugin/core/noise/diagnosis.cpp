@@ -63,6 +63,40 @@ double noiseShare(double correlation) {
     return std::clamp(1.0 - kSlope * (correlation - kMaxPureNoise), kMinShare, 1.0);
 }
 
+/// Whether all coordinates lie on a grid: that of voxels, or one they were rounded to.
+void diagnoseGrid(const FaceGraph& graph, const std::vector<bool>& isMeasured,
+                  Diagnosis& diagnosis) {
+    // blocks1, blocks3, grid05 to grid11 of ../shared/denoise_local. Lengths in mean edges.
+    constexpr double kMinVoxel = 0.3, kMinGrid = 0.04;
+    constexpr double kMaxCorrelation = 0.5;  // of weighted residuals; designed shapes have more
+    constexpr double kMinDeviation = 0.01;   // of their residuals: a cube is flat, not of voxels
+    constexpr double kMinResidual = 0.5;     // over the height that rounding explains
+    const auto grid = coordinateGrid(diagnosis.X);
+    if (!grid) return;
+    const double edge = diagnosis.noise.meanEdge;
+    const auto voxel = voxelLattice(*grid);
+    if (voxel || grid->step.minCoeff() > kMinVoxel * edge) {
+        const auto residuals = weightedResiduals(graph, diagnosis.X, isMeasured);
+        if (!voxel && !(residuals.correlation < kMaxCorrelation &&
+                        residuals.deviation > kMinDeviation * edge))
+            return;
+        diagnosis.kind = voxel ? NoiseKind::Voxels : NoiseKind::VoxelFaces;
+        diagnosis.voxel = voxel ? *voxel : grid->step;
+        return;
+    }
+    if (!(grid->step.minCoeff() > kMinGrid * edge && grid->step.maxCoeff() < kMinVoxel * edge))
+        return;
+    const double height = std::sqrt(grid->step.squaredNorm() / 3.0 / 12.0);  // of uniform noise
+    const LocalResiduals residuals = localResiduals(graph, diagnosis.X, isMeasured);
+    std::vector<double> deviation;
+    for (Index i = 0; i < residuals.deviation.size(); ++i)
+        if (isMeasured[i]) deviation.push_back(residuals.deviation[i]);
+    if (quantile(std::move(deviation), 0.5) < kMinResidual * height) return;
+    diagnosis.kind = NoiseKind::Rounded;
+    diagnosis.noise.height = height;
+    diagnosis.field = NoiseField::ofHeight(height, edge, diagnosis.X.rows());
+}
+
 /// The noise of the mesh as one.
 Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
                         const std::vector<bool>& isMeasured, bool isKnown,
@@ -77,11 +111,8 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
     diagnosis.X = X;
     const double edge = diagnosis.noise.meanEdge = meanEdgeLength(X, graph.F);
     if (!isKnown) {
-        if (const auto voxel = voxelLattice(X)) {
-            diagnosis.kind = NoiseKind::Voxels;
-            diagnosis.voxel = *voxel;
-            return diagnosis;
-        }
+        diagnoseGrid(graph, isMeasured, diagnosis);
+        if (diagnosis.kind != NoiseKind::None) return diagnosis;
         if (quantile(triangleQuality(graph, X), 0.5) < kMinQuality) {
             diagnosis.kind = NoiseKind::Tessellation;
             if (const auto lines = scanLineNoise(graph, X, isMeasured)) {

@@ -23,10 +23,8 @@ double shortEdge(const VertexGraph& graph, const Points& X) {
 
 }  // namespace
 
-std::optional<ScanLineNoise> scanLineNoise(const FaceGraph& graph, const Points& X,
-                                           const std::vector<bool>& isMeasured) {
-    // lines3, lines5, lines8 of ../shared/denoise_local against ../shared/cad and ../shared/data.
-    constexpr double kMaxCorrelation = -0.2, kMinHeight = 0.02;  // short edges
+WeightedResiduals weightedResiduals(const FaceGraph& graph, const Points& X,
+                                    const std::vector<bool>& isMeasured) {
     constexpr double kPower = 2.0, kClip = 2.0;
     const VertexGraph weighted = weightedByLength(graph.vertices, X, kPower);
     Eigen::VectorXd residual = scaledResiduals(weighted, X, smoothVertexNormals(graph, X));
@@ -35,12 +33,24 @@ std::optional<ScanLineNoise> scanLineNoise(const FaceGraph& graph, const Points&
         if (!isMeasured[i]) residual[i] = 0.0;
         if (isMeasured[i]) moduli.push_back(std::abs(residual[i]));
     }
-    const ScanLineNoise noise{medianDeviation(std::move(moduli)), shortEdge(graph.vertices, X)};
-    if (!(noise.height > kMinHeight * noise.edge)) return std::nullopt;
-    residual = residual.cwiseMax(-kClip * noise.height).cwiseMin(kClip * noise.height);
+    WeightedResiduals result;
+    result.deviation = medianDeviation(std::move(moduli));
+    const double limit = kClip * result.deviation;
+    residual = residual.cwiseMax(-limit).cwiseMin(limit);
     Eigen::VectorXd means = Eigen::VectorXd::Zero(X.rows());
     forEachMean(weighted, residual, [&](Index i, const auto& mean) { means[i] = mean[0]; });
-    if (!(residual.dot(means) < kMaxCorrelation * residual.squaredNorm())) return std::nullopt;
+    if (limit > 0.0) result.correlation = residual.dot(means) / residual.squaredNorm();
+    return result;
+}
+
+std::optional<ScanLineNoise> scanLineNoise(const FaceGraph& graph, const Points& X,
+                                           const std::vector<bool>& isMeasured) {
+    // lines3, lines5, lines8 of ../shared/denoise_local against ../shared/cad and ../shared/data.
+    constexpr double kMaxCorrelation = -0.2, kMinHeight = 0.02;  // short edges
+    const WeightedResiduals residuals = weightedResiduals(graph, X, isMeasured);
+    const ScanLineNoise noise{residuals.deviation, shortEdge(graph.vertices, X)};
+    if (!(noise.height > kMinHeight * noise.edge && residuals.correlation < kMaxCorrelation))
+        return std::nullopt;
     return noise;
 }
 

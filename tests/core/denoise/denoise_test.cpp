@@ -92,6 +92,37 @@ TEST(Denoise, RemovesNoiseFromScanLines) {
     EXPECT_LT(meanDistance(result.V, clean.V), 0.7 * meanDistance(lines.V, clean.V));
 }
 
+TEST(Denoise, SmoothsFacesOfVoxelsWithinHalfAVoxel) {
+    const Eigen::RowVector3d voxel(1.0, 1.0, 3.0);
+    const Mesh blocks = testing::voxelFaces(12, voxel);
+    const DenoiseResult result = denoise(blocks.V, blocks.F, {});
+    EXPECT_EQ(result.diagnosis.kind, NoiseKind::VoxelFaces);
+    for (int c = 0; c < 3; ++c)
+        EXPECT_LE((result.V - blocks.V).col(c).cwiseAbs().maxCoeff(), 0.5 * voxel[c] + 1e-9);
+    Points before = areaNormals(blocks.V, blocks.F), after = areaNormals(result.V, blocks.F);
+    double wrongBefore = 0.0, wrongAfter = 0.0;  // angles to the normals of the ball
+    for (Index t = 0; t < blocks.F.rows(); ++t) {
+        // Normals of an ellipsoid are those of a ball over the squared scale.
+        const Eigen::RowVector3d at =
+            (blocks.V.row(blocks.F(t, 0)) + blocks.V.row(blocks.F(t, 2))) / 2.0;
+        const Eigen::RowVector3d normal =
+            (at - 0.5 * voxel).cwiseQuotient(voxel.cwiseAbs2()).normalized();
+        wrongBefore += std::acos(std::min(1.0, std::abs(before.row(t).normalized().dot(normal))));
+        wrongAfter += std::acos(std::min(1.0, std::abs(after.row(t).normalized().dot(normal))));
+    }
+    EXPECT_LT(wrongAfter, 0.3 * wrongBefore);
+}
+
+TEST(Denoise, RemovesTheStepsOfRoundedCoordinates) {
+    const Mesh clean = testing::icosphere(5);
+    const double step = 0.1 * meanEdgeLength(clean.V, clean.F);
+    Mesh mesh = clean;
+    mesh.V = (mesh.V / step).array().round() * step;
+    const DenoiseResult result = denoise(mesh.V, mesh.F, {});
+    EXPECT_LT(meanAngle(result.V, clean.V, clean.F), 0.3 * meanAngle(mesh.V, clean.V, clean.F));
+    EXPECT_LT(meanDistance(result.V, clean.V), meanDistance(mesh.V, clean.V));
+}
+
 TEST(Denoise, LeavesATinyMeshAlone) {
     const Mesh box = testing::cube(1);
     EXPECT_EQ(denoise(box.V, box.F, {}).V, box.V);
