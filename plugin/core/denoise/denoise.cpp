@@ -137,6 +137,7 @@ Points denoisePart(const MovingPart& part, const FaceGraph& graph, const Denoise
     removal.mayMove = std::move(mayMove);
     if (diagnosis.field.isAny()) {
         removal.place = diagnosis.field;
+        removal.place.height *= std::max(options.strength, 1.0);
         for (Index i = 0; i < X0.rows(); ++i)
             removal.mayMove[i] = removal.mayMove[i] && diagnosis.field.height[i] > 0.0;
     }
@@ -183,7 +184,8 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
     checkMesh(V, F);
     checkOptions(options);
     progress.report(0.0, "measuring the noise");
-    const Surface whole = joinedSurface(V, F);
+    Surface whole = joinedSurface(V, F);
+    whole.F = distinctFaces(whole.F, whole.X.rows());
     const Interior interior(whole.F, connectedComponents(whole.F, whole.X.rows()),
                             options.boundary);
     const Components& components = interior.surfaceComponents();

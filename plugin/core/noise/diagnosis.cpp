@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "core/mesh/measures.h"
@@ -63,35 +64,41 @@ double noiseShare(double correlation) {
     return std::clamp(1.0 - kSlope * (correlation - kMaxPureNoise), kMinShare, 1.0);
 }
 
-/// Whether all coordinates lie on a grid: that of voxels, or one they were rounded to.
-void diagnoseGrid(const FaceGraph& graph, const std::vector<bool>& isMeasured,
-                  Diagnosis& diagnosis) {
-    // blocks1, blocks3, grid05 to grid11 of ../shared/denoise_local. Lengths in mean edges.
-    constexpr double kMinVoxel = 0.3, kMinGrid = 0.04;
+// Chosen on blocks1, blocks3, grid05 to grid11 of ../shared/denoise_local. In mean edges:
+constexpr double kMinVoxel = 0.3, kMinRounding = 0.04;
+
+/// Whether the vertices on a grid are those of the surface of a binary volume.
+void findVoxels(const FaceGraph& graph, const CoordinateGrid& grid,
+                const std::vector<bool>& isMeasured, Diagnosis& diagnosis) {
     constexpr double kMaxCorrelation = 0.5;  // of weighted residuals; designed shapes have more
-    constexpr double kMinDeviation = 0.01;   // of their residuals: a cube is flat, not of voxels
-    constexpr double kMinResidual = 0.5;     // over the height that rounding explains
-    const auto grid = coordinateGrid(diagnosis.X);
-    if (!grid) return;
-    const double edge = diagnosis.noise.meanEdge;
-    const auto voxel = voxelLattice(*grid);
-    if (voxel || grid->step.minCoeff() > kMinVoxel * edge) {
-        const auto residuals = weightedResiduals(graph, diagnosis.X, isMeasured);
-        if (!voxel && !(residuals.correlation < kMaxCorrelation &&
-                        residuals.deviation > kMinDeviation * edge))
-            return;
-        diagnosis.kind = voxel ? NoiseKind::Voxels : NoiseKind::VoxelFaces;
-        diagnosis.voxel = voxel ? *voxel : grid->step;
+    constexpr double kMinDeviation = 0.01;   // of these, mean edges: designed shapes are flat
+    if (const auto voxel = voxelLattice(grid)) {
+        diagnosis.kind = NoiseKind::Voxels;
+        diagnosis.voxel = *voxel;
         return;
     }
-    if (!(grid->step.minCoeff() > kMinGrid * edge && grid->step.maxCoeff() < kMinVoxel * edge))
+    const double edge = diagnosis.noise.meanEdge;
+    if (grid.step.minCoeff() < kMinVoxel * edge) return;
+    const auto [deviation, correlation] = weightedResiduals(graph, diagnosis.X, isMeasured);
+    if (!(correlation < kMaxCorrelation && deviation > kMinDeviation * edge)) return;
+    diagnosis.kind = NoiseKind::VoxelFaces;
+    diagnosis.voxel = grid.step;
+}
+
+/// Whether the coordinates were rounded to the grid, which explains most of the residuals.
+void findRounding(const FaceGraph& graph, const CoordinateGrid& grid,
+                  const std::vector<bool>& isMeasured, Diagnosis& diagnosis) {
+    constexpr double kMinResidual = 0.5, kMaxResidual = 3.0;  // median, over the height of rounding
+    const double edge = diagnosis.noise.meanEdge;
+    if (!(grid.step.minCoeff() > kMinRounding * edge && grid.step.maxCoeff() < kMinVoxel * edge))
         return;
-    const double height = std::sqrt(grid->step.squaredNorm() / 3.0 / 12.0);  // of uniform noise
+    const double height = std::sqrt(grid.step.squaredNorm() / 3.0 / 12.0);  // of uniform noise
     const LocalResiduals residuals = localResiduals(graph, diagnosis.X, isMeasured);
     std::vector<double> deviation;
     for (Index i = 0; i < residuals.deviation.size(); ++i)
         if (isMeasured[i]) deviation.push_back(residuals.deviation[i]);
-    if (quantile(std::move(deviation), 0.5) < kMinResidual * height) return;
+    const double median = quantile(std::move(deviation), 0.5);
+    if (!(median > kMinResidual * height && median < kMaxResidual * height)) return;
     diagnosis.kind = NoiseKind::Rounded;
     diagnosis.noise.height = height;
     diagnosis.field = NoiseField::ofHeight(height, edge, diagnosis.X.rows());
@@ -101,7 +108,7 @@ void diagnoseGrid(const FaceGraph& graph, const std::vector<bool>& isMeasured,
 Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
                         const std::vector<bool>& isMeasured, bool isKnown,
                         const Progress& progress) {
-    constexpr Index kMinMeasured = 100, kMinMeasuredCorrelated = 1000;  // vertices
+    constexpr Index kMinMeasured = 100, kMinMeasuredFine = 1000;  // vertices
     constexpr double kMinQuality = 0.6;
     constexpr double kMinHeight = 0.02, kMinHeightCorrelated = 0.045;  // mean edges
     constexpr double kMaxCorrelation = 0.2;  // above it, the residuals are those of a shape
@@ -110,12 +117,16 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
     Diagnosis diagnosis;
     diagnosis.X = X;
     const double edge = diagnosis.noise.meanEdge = meanEdgeLength(X, graph.F);
+    const Index measured = std::count(isMeasured.begin(), isMeasured.end(), true);
+    std::optional<CoordinateGrid> grid;
     if (!isKnown) {
-        diagnoseGrid(graph, isMeasured, diagnosis);
+        grid = coordinateGrid(X);
+        if (grid) findVoxels(graph, *grid, isMeasured, diagnosis);
         if (diagnosis.kind != NoiseKind::None) return diagnosis;
         if (quantile(triangleQuality(graph, X), 0.5) < kMinQuality) {
             diagnosis.kind = NoiseKind::Tessellation;
-            if (const auto lines = scanLineNoise(graph, X, isMeasured)) {
+            const auto lines = scanLineNoise(graph, X, isMeasured);
+            if (lines && measured >= kMinMeasuredFine) {
                 diagnosis.kind = NoiseKind::ScanLines;
                 diagnosis.noise.height = lines->height;
                 diagnosis.field = NoiseField::ofHeight(lines->height, lines->edge, X.rows());
@@ -123,11 +134,12 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
             return diagnosis;
         }
     }
-    const Index measured = std::count(isMeasured.begin(), isMeasured.end(), true);
     if (measured < kMinMeasured) {
         diagnosis.kind = NoiseKind::TooFew;
         return diagnosis;
     }
+    if (grid && measured >= kMinMeasuredFine) findRounding(graph, *grid, isMeasured, diagnosis);
+    if (diagnosis.kind != NoiseKind::None) return diagnosis;
     progress.report(0.2, kStage);
     const FoundSpikes found = sparseSpikes(graph, X, isMeasured, edge);
     diagnosis.spikes = found.spikes.count;
@@ -143,8 +155,7 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
     NoiseEstimate& noise = diagnosis.noise;
     const double share = noiseShare(correlation);
     if (noise.size > 1.0) {
-        if (measured >= kMinMeasuredCorrelated &&
-            share * noise.height >= kMinHeightCorrelated * edge)
+        if (measured >= kMinMeasuredFine && share * noise.height >= kMinHeightCorrelated * edge)
             diagnosis.kind = NoiseKind::Correlated;
         return diagnosis;
     }

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "core/mesh/sides.h"
@@ -81,6 +82,32 @@ Eigen::RowVector3d unit(const Eigen::RowVector3d& v) {
 }
 
 }  // namespace
+
+Faces distinctFaces(const Faces& F, Index vertexCount) {
+    Faces sorted = F;
+    for (auto face : sorted.rowwise()) std::sort(face.begin(), face.end());
+    std::vector<Index> first(static_cast<std::size_t>(vertexCount) + 1, 0);
+    for (Index t = 0; t < F.rows(); ++t) ++first[sorted(t, 0) + 1];
+    for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+    std::vector<Index> next(first), at(static_cast<std::size_t>(F.rows()));
+    for (Index t = 0; t < F.rows(); ++t) at[next[sorted(t, 0)]++] = t;
+    std::vector<bool> isRepeated(at.size(), false);
+    Index count = F.rows();
+    for (Index i = 0; i < vertexCount; ++i) {
+        const auto begin = at.begin() + first[i], end = at.begin() + first[i + 1];
+        const auto key = [&](Index t) { return std::tuple(sorted(t, 1), sorted(t, 2), t); };
+        std::sort(begin, end, [&](Index s, Index t) { return key(s) < key(t); });
+        for (auto k = begin; k != end; ++k) {
+            if (k == begin || sorted.row(*k) != sorted.row(*(k - 1))) continue;
+            isRepeated[*k] = true;
+            --count;
+        }
+    }
+    Faces distinct(count, 3);
+    for (Index t = F.rows() - 1; t >= 0; --t)
+        if (!isRepeated[t]) distinct.row(--count) = F.row(t);
+    return distinct;
+}
 
 FaceGraph faceGraph(const Faces& F, Index vertexCount) {
     FaceGraph graph;

@@ -34,6 +34,10 @@ struct FaceGraph {
     Index faceCount() const { return F.rows(); }
 };
 
+/// The faces without those that have the same corners as an earlier one, whatever their order: a
+/// surface whose faces have two sides each is one surface.
+Faces distinctFaces(const Faces& F, Index vertexCount);
+
 /// @param F  m x 3 indices in [0, vertexCount), as in Surface.
 FaceGraph faceGraph(const Faces& F, Index vertexCount);
 

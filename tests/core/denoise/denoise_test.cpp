@@ -123,6 +123,17 @@ TEST(Denoise, RemovesTheStepsOfRoundedCoordinates) {
     EXPECT_LT(meanDistance(result.V, clean.V), meanDistance(mesh.V, clean.V));
 }
 
+TEST(Denoise, TreatsFacesWithTwoSidesAsOneSurface) {
+    const Mesh mesh = withGaussianNoise(testing::icosphere(4), 0.2, 1);
+    Faces twice(2 * mesh.F.rows(), 3);
+    twice << mesh.F, mesh.F.rowwise().reverse();
+    for (const Boundary boundary : {Boundary::Free, Boundary::Fixed}) {
+        DenoiseOptions options;
+        options.boundary = boundary;
+        EXPECT_EQ(denoise(mesh.V, twice, options).V, denoise(mesh.V, mesh.F, options).V);
+    }
+}
+
 TEST(Denoise, LeavesATinyMeshAlone) {
     const Mesh box = testing::cube(1);
     EXPECT_EQ(denoise(box.V, box.F, {}).V, box.V);
