@@ -159,10 +159,10 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
             diagnosis.kind = NoiseKind::Correlated;
         return diagnosis;
     }
-    noise.height *= share;
     if (!hasManySpikes(diagnosis) && correlation > kMaxCorrelationWeak &&
         noise.height < kWeak * edge)
         return diagnosis;
+    noise.height *= share;
     if (noise.height >= kMinHeight * edge)
         diagnosis.kind = found.areTail ? NoiseKind::Impulses : NoiseKind::White;
     else if (share == 1.0)
