@@ -134,12 +134,13 @@ std::optional<LinearSteps> linearSteps(const FaceGraph& graph, const Points& X,
 }
 
 LinearStepsByPlace linearStepsByPlace(const FaceGraph& graph, const Points& X,
-                                      const std::vector<bool>& mayMove, const NoiseField& place) {
+                                      const std::vector<bool>& mayMove, const NoiseField& place,
+                                      int maxSteps) {
     constexpr std::array<int, 11> kSteps{5, 10, 14, 20, 28, 40, 56, 80, 113, 160, 226};
     constexpr int kStepsToNormals = 20;
     constexpr int kErrors = 32, kCounts = 16, kShares = 8;  // steps of averages
     constexpr double kMaxError = 0.17, kOfHeight = 0.2, kMargin = 1.15, kFading = 0.03;
-    constexpr double kWeak = 0.1, kExponent = 1.5;  // rounds hardly remove weaker noise
+    constexpr double kWeak = 0.07;  // rounds hardly remove weaker noise
     using Slopes = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
     const Index n = X.rows();
     const VertexGraph averaged = averagedNeighbours(graph, mayMove);
@@ -158,6 +159,7 @@ LinearStepsByPlace linearStepsByPlace(const FaceGraph& graph, const Points& X,
     Eigen::VectorXd least, first, best = Eigen::VectorXd::Zero(n);
     int taken = 0;
     for (const int steps : kSteps) {
+        if (steps > maxSteps) break;
         takeSteps(averaged, steps - taken, Y);
         taken = steps;
         Slopes slopes(n, 3);  // of the displacement, of what is taken from noise, and left of it
@@ -195,7 +197,7 @@ LinearStepsByPlace linearStepsByPlace(const FaceGraph& graph, const Points& X,
         const double fraction = at - static_cast<double>(low);
         result.X.row(i) = (1.0 - fraction) * stages[low].row(i) + fraction * stages[high].row(i);
         const double height = place.height[i] / place.edge[i];
-        const double weakness = std::max(1.0, std::pow(kWeak / height, kExponent));
+        const double weakness = std::max(1.0, kWeak / height);
         const double limit = kMargin * weakness * (kMaxError - kOfHeight * height);
         result.share[i] = std::clamp((limit - std::sqrt(least[i])) / kFading, 0.0, 1.0);
     }

@@ -41,8 +41,10 @@ struct LinearStepsByPlace {
     double rejected = 0.0;  ///< Share of the moving vertices where it is below 1.
 };
 
-/// @param place  heights and edges at every vertex.
+/// @param place     heights and edges at every vertex.
+/// @param maxSteps  roughness as fine as the edges would take more.
 LinearStepsByPlace linearStepsByPlace(const FaceGraph& graph, const Points& X,
-                                      const std::vector<bool>& mayMove, const NoiseField& place);
+                                      const std::vector<bool>& mayMove, const NoiseField& place,
+                                      int maxSteps);
 
 }  // namespace spectral

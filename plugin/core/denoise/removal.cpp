@@ -166,10 +166,11 @@ FilteredInRounds filterInRounds(const FaceGraph& graph, const Points& X0,
 /// Linear steps in which neighbours along a scan line weigh more than those across.
 Removal removeFromScanLines(const FaceGraph& graph, const Points& X0,
                             const RemovalOptions& options) {
+    constexpr int kMaxSteps = 226;
     FaceGraph weighted = graph;
     weighted.vertices = weightedByLength(graph.vertices, X0, 1.0);
     const LinearStepsByPlace linear =
-        linearStepsByPlace(weighted, X0, options.mayMove, options.place);
+        linearStepsByPlace(weighted, X0, options.mayMove, options.place, kMaxSteps);
     Removal removal{linear.X, linear.steps};
     limitDisplacement(X0, options, kMaxDeviations, removal.X);
     return removal;
@@ -179,8 +180,9 @@ Removal removeFromScanLines(const FaceGraph& graph, const Points& X0,
 Removal removeByPlace(const FaceGraph& graph, const Points& X0, const RemovalOptions& options,
                       const Progress& progress) {
     constexpr double kFew = 0.02;  // share of the vertices that rounds are not worthwhile for
-    constexpr int kBlurs = 2;
-    const LinearStepsByPlace linear = linearStepsByPlace(graph, X0, options.mayMove, options.place);
+    constexpr int kBlurs = 2, kMaxSteps = 160;
+    const LinearStepsByPlace linear =
+        linearStepsByPlace(graph, X0, options.mayMove, options.place, kMaxSteps);
     Removal removal{linear.X, linear.steps};
     if (linear.rejected > kFew) {
         const Removal rounds = filterInRounds(graph, X0, options, progress).removal;
