@@ -177,7 +177,7 @@ NoiseField localNoise(const FaceGraph& graph, const std::vector<bool>& isMeasure
     if (!isWhite && whole.kind != NoiseKind::None && whole.kind != NoiseKind::Shape) return {};
     if (hasManySpikes(whole)) return {};
     const LocalResiduals residuals = localResiduals(graph, whole.X, isMeasured);
-    if (isWhite && areAlike(residuals, isMeasured)) return {};
+    if (isWhite && areAlike(graph, whole.X, residuals, isMeasured)) return {};
     NoiseField field = measureNoiseField(graph, whole.X, isMeasured, residuals);
     if (!field.isAny()) return {};
     std::vector<bool> isNoisy(isMeasured);

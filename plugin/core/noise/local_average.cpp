@@ -23,7 +23,7 @@ LocalAverage::LocalAverage(const VertexGraph& graph, const std::vector<bool>& co
     : graph_(graph), counts_(counts), steps_(steps), weight_(graph.size()) {
     constexpr double kMinWeight = 1e-3;
     for (Index i = 0; i < graph.size(); ++i) weight_[i] = counts[i] ? 1.0 : 0.0;
-    diffuseFast(graph, steps, weight_);
+    if (weight_.minCoeff() < 1.0) diffuseFast(graph, steps, weight_);
     weight_ = weight_.cwiseMax(kMinWeight);
 }
 

@@ -162,7 +162,13 @@ Eigen::VectorXd heightWhereNoise(const VertexGraph& graph, const Heights& height
     const Eigen::VectorXd around = largestWithin(graph, kRingsOfNoise, height);
     const Eigen::ArrayXd least =
         (kMinRatioNear * around.array()).max(kMinRatio * wide.array()).max(kMinHeight);
-    return (height.array() < least).select(0.0, height);
+    height = (height.array() < least).select(0.0, height);
+    Flags isHigh(isNoise);
+    for (Index i = 0; i < height.size(); ++i) isHigh[i] = height[i] > 0.0;
+    const Flags isConnected = connectedTo(isNoise, isHigh, graph);  // single specks are not
+    for (Index i = 0; i < height.size(); ++i)
+        if (!isConnected[i]) height[i] = 0.0;
+    return height;
 }
 
 }  // namespace
@@ -174,17 +180,18 @@ LocalResiduals localResiduals(const FaceGraph& graph, const Points& X, const Fla
     for (Index i = 0; i < X.rows(); ++i)
         if (!isMeasured[i]) local.residual[i] = 0.0;
     local.deviation = LocalAverage(graph.vertices, isMeasured, kNarrow).deviation(local.residual);
-    local.edge = localEdges(graph.vertices, X);
     return local;
 }
 
-bool areAlike(const LocalResiduals& residuals, const Flags& isMeasured) {
+bool areAlike(const FaceGraph& graph, const Points& X, const LocalResiduals& residuals,
+              const Flags& isMeasured) {
     // At most 1.9 on the pairs of ../shared/denoise with white noise, the same everywhere; 2.2
     // and more on those of ../shared/denoise_local (real15-igea).
     constexpr double kMaxRatio = 2.1, kLow = 0.1, kHigh = 0.98;
+    const Eigen::VectorXd edge = localEdges(graph.vertices, X);
     std::vector<double> relative;
-    for (Index i = 0; i < residuals.edge.size(); ++i)
-        if (isMeasured[i]) relative.push_back(residuals.deviation[i] / residuals.edge[i]);
+    for (Index i = 0; i < edge.size(); ++i)
+        if (isMeasured[i]) relative.push_back(residuals.deviation[i] / edge[i]);
     const double median = quantile(relative, 0.5);
     return quantile(relative, kHigh) < kMaxRatio * median &&
            median < kMaxRatio * quantile(relative, kLow);
@@ -221,8 +228,9 @@ NoiseField measureNoiseField(const FaceGraph& graph, const Points& X, const Flag
     NoiseField field;
     if (!(correlation.array() < kCertain.correlation).any()) return field;
 
+    field.edge = localEdges(vertices, X);
     const Eigen::VectorXd quality = localQuality(graph, X);
-    const Heights heights = heightsOf(graph, X, local.N, isMeasured, wide, local.edge);
+    const Heights heights = heightsOf(graph, X, local.N, isMeasured, wide, field.edge);
     Flags isCertain(static_cast<std::size_t>(n)), isPossible(isCertain);
     for (Index i = 0; i < n; ++i) {
         const auto isWithin = [&](const Limits& limits) {
@@ -235,7 +243,7 @@ NoiseField measureNoiseField(const FaceGraph& graph, const Points& X, const Flag
     const Flags isNoise = connectedTo(isCertain, isPossible, vertices);
 
     // Each residual in units of its own place: loud neighbours do not decide.
-    const Eigen::VectorXd unit = local.deviation.cwiseMax(1e-9 * local.edge.mean());
+    const Eigen::VectorXd unit = local.deviation.cwiseMax(1e-9 * field.edge.mean());
     const Eigen::VectorXd near = localCorrelation(
         vertices, LocalAverage(vertices, isMeasured, kNear), clipped.cwiseQuotient(unit));
     field.height = heightWhereNoise(vertices, heights, near, isNoise);
@@ -253,8 +261,7 @@ NoiseField measureNoiseField(const FaceGraph& graph, const Points& X, const Flag
     field.lowest = quantile(relative, 0.1);
     field.median = quantile(relative, 0.5);
     field.highest = quantile(std::move(relative), 0.98);
-    field.height = field.height.cwiseProduct(local.edge);
-    field.edge = local.edge;
+    field.height = field.height.cwiseProduct(field.edge);
     return field;
 }
 

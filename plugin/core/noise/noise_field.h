@@ -12,14 +12,14 @@ struct LocalResiduals {
     Points N;                   ///< n x 3 smooth unit normals.
     Eigen::VectorXd residual;   ///< n: scaledResiduals, 0 where not measured.
     Eigen::VectorXd deviation;  ///< n: over some 30 vertices, length units.
-    Eigen::VectorXd edge;       ///< n: mean edge length of the place, length units.
 };
 
 LocalResiduals localResiduals(const FaceGraph& graph, const Points& X,
                               const std::vector<bool>& isMeasured);
 
 /// Whether the residuals are of like height everywhere, relative to the edges of the place.
-bool areAlike(const LocalResiduals& residuals, const std::vector<bool>& isMeasured);
+bool areAlike(const FaceGraph& graph, const Points& X, const LocalResiduals& residuals,
+              const std::vector<bool>& isMeasured);
 
 /// 99 % quantile of the residuals of some vertices, in deviations of their places: 2.3 to 2.5 for
 /// noise, whatever its distribution over the surface, more for spikes; 0 if there are none.
