@@ -199,7 +199,10 @@ Diagnosis diagnose(const FaceGraph& graph, const Points& X, const std::vector<bo
         diagnosis.field = std::move(field);
         diagnosis.kind = NoiseKind::Local;
         diagnosis.noise.size = 1.0;
-        diagnosis.noise.height = diagnosis.field.median * diagnosis.noise.meanEdge;
+        std::vector<double> heights;
+        for (const double height : diagnosis.field.height)
+            if (height > 0.0) heights.push_back(height);
+        diagnosis.noise.height = quantile(std::move(heights), 0.5);
     }
     return diagnosis;
 }

@@ -188,13 +188,16 @@ bool areAlike(const FaceGraph& graph, const Points& X, const LocalResiduals& res
     // At most 1.9 on the pairs of ../shared/denoise with white noise, the same everywhere; 2.2
     // and more on those of ../shared/denoise_local (real15-igea).
     constexpr double kMaxRatio = 2.1, kLow = 0.1, kHigh = 0.98;
-    const Eigen::VectorXd edge = localEdges(graph.vertices, X);
-    std::vector<double> relative;
-    for (Index i = 0; i < edge.size(); ++i)
-        if (isMeasured[i]) relative.push_back(residuals.deviation[i] / edge[i]);
-    const double median = quantile(relative, 0.5);
-    return quantile(relative, kHigh) < kMaxRatio * median &&
-           median < kMaxRatio * quantile(relative, kLow);
+    const auto isEven = [&](const Eigen::VectorXd& height) {
+        std::vector<double> heights;
+        for (Index i = 0; i < height.size(); ++i)
+            if (isMeasured[i]) heights.push_back(height[i]);
+        const double median = quantile(heights, 0.5);
+        return quantile(heights, kHigh) < kMaxRatio * median &&
+               median < kMaxRatio * quantile(heights, kLow);
+    };
+    return isEven(residuals.deviation) ||
+           isEven(residuals.deviation.cwiseQuotient(localEdges(graph.vertices, X)));
 }
 
 double localTail(const LocalResiduals& residuals, const Flags& isIncluded) {

@@ -17,7 +17,7 @@ struct LocalResiduals {
 LocalResiduals localResiduals(const FaceGraph& graph, const Points& X,
                               const std::vector<bool>& isMeasured);
 
-/// Whether the residuals are of like height everywhere, relative to the edges of the place.
+/// Whether the residuals are of like height everywhere, in length units or in edges of the place.
 bool areAlike(const FaceGraph& graph, const Points& X, const LocalResiduals& residuals,
               const std::vector<bool>& isMeasured);
 
