@@ -1,8 +1,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <random>
+#include <vector>
 
 #include "core/mesh/measures.h"
 #include "core/noise/face_graph.h"
@@ -19,6 +22,14 @@ inline Mesh withGaussianNoise(Mesh mesh, double edges, unsigned seed) {
     return mesh;
 }
 
+/// The same, only where z is above a limit.
+inline Mesh noisyAbove(Mesh mesh, double z, double edges, unsigned seed) {
+    const Mesh noisy = withGaussianNoise(mesh, edges, seed);
+    for (Index i = 0; i < mesh.V.rows(); ++i)
+        if (mesh.V(i, 2) > z) mesh.V.row(i) = noisy.V.row(i);
+    return mesh;
+}
+
 /// Displaces vertices of a sphere or another star-shaped surface outwards or inwards, each with a
 /// probability, by `edges` mean edges.
 inline Mesh withSpikes(Mesh mesh, double probability, double edges, unsigned seed) {
@@ -29,6 +40,41 @@ inline Mesh withSpikes(Mesh mesh, double probability, double edges, unsigned see
         const double chance = uniform(random), sign = uniform(random) < 0.5 ? -1.0 : 1.0;
         if (chance < probability) mesh.V.row(i) += sign * height * mesh.V.row(i).normalized();
     }
+    return mesh;
+}
+
+/// The faces between voxels inside and outside of a ball of a radius in voxels.
+inline Mesh voxelFaces(int radius, const Eigen::RowVector3d& size) {
+    std::map<std::array<int, 3>, int> corners;
+    std::vector<Eigen::RowVector3i> triangles;
+    const auto isInside = [&](const std::array<int, 3>& v) {
+        return v[0] * v[0] + v[1] * v[1] + v[2] * v[2] < radius * radius;
+    };
+    const auto corner = [&](std::array<int, 3> at, int axis, int i, int j) {
+        ++at[axis];  // on the far side of the voxel
+        at[(axis + 1) % 3] += i;
+        at[(axis + 2) % 3] += j;
+        return corners.emplace(at, static_cast<int>(corners.size())).first->second;
+    };
+    for (int x = -radius - 1; x <= radius; ++x)
+        for (int y = -radius - 1; y <= radius; ++y)
+            for (int z = -radius - 1; z <= radius; ++z)
+                for (int axis = 0; axis < 3; ++axis) {
+                    const std::array<int, 3> here{x, y, z};
+                    std::array<int, 3> next = here;
+                    ++next[axis];
+                    if (isInside(here) == isInside(next)) continue;
+                    const int a = corner(here, axis, 0, 0), b = corner(here, axis, 1, 0),
+                              c = corner(here, axis, 1, 1), d = corner(here, axis, 0, 1);
+                    triangles.emplace_back(a, b, c);
+                    triangles.emplace_back(a, c, d);
+                }
+    Mesh mesh{Vertices(static_cast<Index>(corners.size()), 3),
+              Faces(static_cast<Index>(triangles.size()), 3)};
+    for (const auto& [at, i] : corners)
+        for (int c = 0; c < 3; ++c) mesh.V(i, c) = at[c] * size[c];
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+        mesh.F.row(static_cast<Index>(t)) = triangles[t];
     return mesh;
 }
 

@@ -1,5 +1,7 @@
 #include "core/denoise/denoise.h"
 
+#include <algorithm>
+#include <cmath>
 #include <iomanip>
 #include <sstream>
 #include <string>
@@ -100,6 +102,12 @@ Entries<DenoiseResult> denoiseEntries() {
          movementEntries<R>()});
 }
 
+std::string numberText(double value) {
+    std::ostringstream text;
+    text << std::setprecision(2) << value;
+    return text.str();
+}
+
 /// A length, in mean edges and in length units.
 std::string lengthText(double length, double edge) {
     std::ostringstream text;
@@ -115,25 +123,52 @@ std::string voxelsText(const Eigen::RowVector3d& voxel) {
     return text.str();
 }
 
+std::string noiseName(NoiseKind kind) {
+    switch (kind) {
+        case NoiseKind::Correlated: return "scanner noise";
+        case NoiseKind::Impulses: return "impulse noise";
+        case NoiseKind::ScanLines: return "noise on scan lines";
+        case NoiseKind::Rounded: return "coordinates rounded to a grid";
+        default: return "white noise";
+    }
+}
+
+/// What was chosen instead of the whole displacement.
+std::string strengthText(double strength) {
+    if (strength == 1.0) return "";
+    std::ostringstream text;
+    text << ", times " << strength;
+    return text.str();
+}
+
+std::string localText(const NoiseField& field, double strength) {
+    constexpr double kEverywhere = 0.97;
+    std::ostringstream text, lowest, highest;
+    lowest << std::setprecision(1) << field.lowest;
+    highest << std::setprecision(1) << field.highest;
+    text << "noise of " << lowest.str();
+    if (lowest.str() != highest.str()) text << " to " << highest.str();
+    text << " edges on ";
+    if (field.share > kEverywhere)
+        text << "the surface: removed" << strengthText(strength);
+    else
+        text << std::max(1L, std::lround(100.0 * field.share)) << " % of the surface: removed"
+             << strengthText(strength) << "; the rest is clean";
+    return text.str();
+}
+
 std::string removedText(const DenoiseOptions& options, const DenoiseResult& result) {
     const double edge = result.diagnosis.noise.meanEdge;
     const bool isGiven = options.noiseHeight > 0.0;
-    std::string text = isGiven                                          ? "noise"
-                       : result.diagnosis.kind == NoiseKind::Correlated ? "scanner noise"
-                       : result.diagnosis.kind == NoiseKind::Impulses   ? "impulse noise"
-                                                                        : "white noise";
+    if (result.diagnosis.kind == NoiseKind::Local)
+        return localText(result.diagnosis.field, options.strength);
+    std::string text = isGiven ? "noise" : noiseName(result.diagnosis.kind);
     text += ": height " +
             lengthText(isGiven ? options.noiseHeight : result.diagnosis.noise.height, edge);
     if (result.noiseSize > 0.0)
         text += ", size " +
                 lengthText(isGiven ? result.noiseSize : result.diagnosis.noise.size * edge, edge);
-    text += isGiven ? ", as given: removed" : ": removed";
-    if (options.strength != 1.0) {
-        std::ostringstream strength;
-        strength << options.strength;
-        text += ", times " + strength.str();
-    }
-    return text;
+    return text + (isGiven ? ", as given: removed" : ": removed") + strengthText(options.strength);
 }
 
 /// Why there is nothing to remove, and how to override that.
@@ -142,18 +177,24 @@ std::string nothingText(const DenoiseResult& result) {
         return "the noise was not removed: that would have folded the surface over, which happens "
                "at needle triangles, e.g. of CAD models. Remesh first, or give a smaller noise "
                "height or size";
+    constexpr double kHeight = 0.1, kSize = 2.0;  // edges
+    const double edge = result.diagnosis.noise.meanEdge;
     switch (result.diagnosis.kind) {
         case NoiseKind::Tessellation:
             return "needle triangles as in a CAD model, not a scan: the mesh was not searched for "
-                   "noise. If it has noise, give the noise height, or remesh first";
+                   "noise. If it has noise, give the noise height, such as " +
+                   numberText(kHeight * edge) + " (0.1 edges), or remesh first";
         case NoiseKind::TooFew:
             return "too few vertices to tell noise from shape. If the mesh has noise, give the "
-                   "noise "
-                   "height";
+                   "noise height, such as " +
+                   numberText(kHeight * edge) + " (0.1 edges)";
         default:
-            return "no noise found that could not be part of the shape. For ripples several edges "
-                   "wide, give noise height and noise size, e.g. a tenth of an edge and two edges, "
-                   "or use Spectral Filter (Fractional)";
+            return "no noise found that could not be part of the shape, neither at every vertex "
+                   "nor "
+                   "in places, as spikes, or as steps of voxels or of rounded coordinates. For "
+                   "ripples several edges wide, try noise height " +
+                   numberText(kHeight * edge) + " and noise size " + numberText(kSize * edge) +
+                   " (0.1 and 2 edges), or Spectral Filter (Fractional)";
     }
 }
 

@@ -82,21 +82,31 @@ RemovalOptions removalOptions(const DenoiseOptions& options, const Diagnosis& di
                                            : 0.0;
     removal.keepCreases = options.keepCreases;
     removal.areImpulses = diagnosis.kind == NoiseKind::Impulses;
+    removal.areVoxelFaces = diagnosis.kind == NoiseKind::VoxelFaces;
+    removal.areScanLines = diagnosis.kind == NoiseKind::ScanLines;
     return removal;
 }
 
 /// Correlation length, in mean edges, up to which noise is filtered as white noise.
 constexpr double kMaxWhiteSize = 1.25;
 
+bool hasVoxels(const Diagnosis& diagnosis) {
+    return diagnosis.kind == NoiseKind::Voxels || diagnosis.kind == NoiseKind::VoxelFaces;
+}
+
 bool isNoise(const Diagnosis& diagnosis) {
-    return diagnosis.kind == NoiseKind::White || diagnosis.kind == NoiseKind::Impulses ||
-           diagnosis.kind == NoiseKind::Correlated;
+    switch (diagnosis.kind) {
+        case NoiseKind::None:
+        case NoiseKind::Shape:
+        case NoiseKind::Tessellation:
+        case NoiseKind::TooFew: return false;
+        default: return true;
+    }
 }
 
 Removal removeNoise(const FaceGraph& graph, const Points& X, const Diagnosis& diagnosis,
                     bool isKnown, const RemovalOptions& removal, const Progress& progress) {
-    if (diagnosis.kind == NoiseKind::Voxels)
-        return removeVoxelSteps(graph, X, diagnosis.voxel, removal, progress);
+    if (hasVoxels(diagnosis)) return removeVoxelSteps(graph, X, diagnosis.voxel, removal, progress);
     if (!(removal.height > 0.0) || !(isKnown || isNoise(diagnosis))) return {diagnosis.X, 0};
     return removal.size > kMaxWhiteSize
                ? removeCorrelatedNoise(graph, diagnosis.X, removal, progress)
@@ -125,19 +135,35 @@ Points denoisePart(const MovingPart& part, const FaceGraph& graph, const Denoise
     diagnosis = diagnose(graph, X0, isMeasured, isKnown, progress.part(0.0, kMeasuring));
     RemovalOptions removal = removalOptions(options, diagnosis);
     removal.mayMove = std::move(mayMove);
+    if (diagnosis.field.isAny()) {
+        removal.place = diagnosis.field;
+        removal.place.height *= std::max(options.strength, 1.0);
+        for (Index i = 0; i < X0.rows(); ++i)
+            removal.mayMove[i] = removal.mayMove[i] && diagnosis.field.height[i] > 0.0;
+    }
     Removal done =
         removeNoise(graph, X0, diagnosis, isKnown, removal, progress.part(kMeasuring, 1.0));
-    if (done.rounds > 0 && isCrumpled(graph, X0, done.X)) {
+    if (done.rounds > 0 && !hasVoxels(diagnosis) && isCrumpled(graph, X0, done.X)) {
         result.isCrumpled = true;
         done = {diagnosis.X, 0};
     }
     result.rounds = done.rounds;
     const double strength = std::min(options.strength, 1.0);
-    if (done.rounds > 0 && diagnosis.kind != NoiseKind::Voxels) {
+    if (done.rounds > 0 && !hasVoxels(diagnosis)) {
         result.noiseHeight = strength * removal.height;
         if (removal.size > kMaxWhiteSize) result.noiseSize = removal.size * removal.meanEdge;
     }
     return strength * part.weight.asDiagonal() * (done.X - X0);
+}
+
+/// The weights of the offset that restores the volume: clean places stay.
+Eigen::VectorXd offsetWeight(Eigen::VectorXd weight, const MovingPart& part,
+                             const Diagnosis& diagnosis) {
+    const NoiseField& field = diagnosis.field;
+    for (Index i = 0; i < field.height.size(); ++i)
+        weight[part.surface.vertex[i]] *=
+            std::min(1.0, field.height[i] / (field.median * field.edge[i]));
+    return weight;
 }
 
 /// Clamps coordinates that the volume correction has moved farther than `limit` from X0.
@@ -158,7 +184,8 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
     checkMesh(V, F);
     checkOptions(options);
     progress.report(0.0, "measuring the noise");
-    const Surface whole = joinedSurface(V, F);
+    Surface whole = joinedSurface(V, F);
+    whole.F = distinctFaces(whole.F, whole.X.rows());
     const Interior interior(whole.F, connectedComponents(whole.F, whole.X.rows()),
                             options.boundary);
     const Components& components = interior.surfaceComponents();
@@ -181,10 +208,10 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
         // Prefer the oriented faces of the graph; their indices are valid only if the part is all.
         const bool isWhole = part.surface.F.rows() == whole.F.rows();
         if (result.rounds > 0)
-            volumes = preserveVolumes(whole.X, isWhole ? graph.F : whole.F, components, weight,
-                                      kMaxOffset, moved);
-        if (result.diagnosis.kind == NoiseKind::Voxels)
-            keepWithin(0.5 * result.diagnosis.voxel, whole.X, moved);
+            volumes =
+                preserveVolumes(whole.X, isWhole ? graph.F : whole.F, components,
+                                offsetWeight(weight, part, result.diagnosis), kMaxOffset, moved);
+        if (hasVoxels(result.diagnosis)) keepWithin(0.5 * result.diagnosis.voxel, whole.X, moved);
     }
     Vertices displacement = moved - whole.X;
     if (!displacement.allFinite()) throw SolverFailure("the denoised coordinates are not finite");

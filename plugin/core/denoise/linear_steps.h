@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/noise/face_graph.h"
+#include "core/noise/noise_field.h"
 
 namespace spectral {
 
@@ -30,5 +31,20 @@ struct LinearSteps {
 std::optional<LinearSteps> linearSteps(const FaceGraph& graph, const Points& X,
                                        const std::vector<bool>& mayMove, double height,
                                        bool isTailed);
+
+/// The same, with as many steps in each place as leave least error there.
+struct LinearStepsByPlace {
+    Points X;               ///< n x 3 smoothed positions; X where nothing may move.
+    int steps = 0;          ///< Largest number of steps taken.
+    Eigen::VectorXd share;  ///< n: 1 where the error is small, 0 where a filter that preserves
+                            ///< creases and details does better.
+    double rejected = 0.0;  ///< Share of the moving vertices where it is below 1.
+};
+
+/// @param place     heights and edges at every vertex.
+/// @param maxSteps  roughness as fine as the edges would take more.
+LinearStepsByPlace linearStepsByPlace(const FaceGraph& graph, const Points& X,
+                                      const std::vector<bool>& mayMove, const NoiseField& place,
+                                      int maxSteps);
 
 }  // namespace spectral

@@ -79,6 +79,8 @@ class System {
                     weight_(f, c) =
                         side.norm() *
                         std::exp(-0.5 * distance / (squaredScale + squaredTilt * shortness));
+                    if (const Eigen::VectorXd* time = options.timeOfFace)
+                        weight_(f, c) *= std::sqrt((*time)[f] * (*time)[other]);
                 }
             }
             return sum;

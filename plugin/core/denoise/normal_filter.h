@@ -11,6 +11,7 @@ struct NormalFilterOptions {
     double height = 0.0;      ///< Standard deviation of the noise, mean edges.
     int blurs = 2;            ///< Number of blurs of the normals that define the weights, >= 0.
     bool useTwicing = false;  ///< F + F (1 - F) instead of F: flatter at the shape's frequencies.
+    const Eigen::VectorXd* timeOfFace = nullptr;  ///< m factors on the time; null: all 1.
 };
 
 /// The face normals of the shape X (n x 3), smoothed over the faces but not across creases:

@@ -19,35 +19,49 @@ namespace {
 constexpr double kMaxDeviations = 6.0;
 const char* const kStage = "removing the noise";
 
-/// The height of the noise removed by moving the vertices from X0 to X, from the median.
-double removedHeight(const Points& X0, const Points& X, const std::vector<bool>& mayMove) {
+/// Height of the noise and length of the edges at a vertex.
+struct Place {
+    double height, edge;
+};
+
+Place placeOf(const RemovalOptions& options, Index i) {
+    if (!options.place.isAny()) return {options.height, options.meanEdge};
+    return {options.place.height[i], options.place.edge[i]};
+}
+
+/// The height of the noise removed by moving the vertices from X0 to X, over that of the noise,
+/// from the median.
+double removedShare(const Points& X0, const Points& X, const RemovalOptions& options) {
     std::vector<double> displacements;
     for (Index i = 0; i < X.rows(); ++i)
-        if (mayMove[i]) displacements.push_back((X.row(i) - X0.row(i)).norm());
+        if (options.mayMove[i])
+            displacements.push_back((X.row(i) - X0.row(i)).norm() / placeOf(options, i).height);
     return medianDeviation(std::move(displacements));
 }
 
-/// Limits displacements to `limit`: where triangles are narrower than the height of the noise,
-/// normals are unreliable.
-void limitDisplacement(const Points& X0, double limit, Points& X) {
+/// Limits displacements: where triangles are narrower than the height of the noise, normals are
+/// unreliable.
+/// @param deviations  largest displacement in standard deviations of the noise.
+void limitDisplacement(const Points& X0, const RemovalOptions& options, double deviations,
+                       Points& X) {
+    const double edges = options.areImpulses ? 3.0 : 0.3;
     for (Index i = 0; i < X.rows(); ++i) {
+        const Place place = placeOf(options, i);
+        const double limit = std::max(deviations * place.height, edges * place.edge);
         const Eigen::RowVector3d displacement = X.row(i) - X0.row(i);
         const double length = displacement.norm();
         if (length > limit) X.row(i) = X0.row(i) + limit / length * displacement;
     }
 }
 
-double maxDisplacement(const RemovalOptions& options, double deviations) {
-    const double edges = options.areImpulses ? 3.0 : 0.3;
-    return std::max(deviations * options.height, edges * options.meanEdge);
-}
-
 /// Unfolds faces, within the limit of all displacements.
 void finish(const FaceGraph& graph, const Points& X0, const Points& N,
             const RemovalOptions& options, Points& X) {
     constexpr double kMaxAlongSurface = 5.0;  // heights of the noise
-    unfoldFaces(graph, N, kMaxAlongSurface * options.height, options.mayMove, X);
-    limitDisplacement(X0, maxDisplacement(options, kMaxDeviations), X);
+    Eigen::VectorXd limit(X.rows());
+    for (Index i = 0; i < X.rows(); ++i) limit[i] = kMaxAlongSurface * placeOf(options, i).height;
+    unfoldFaces(graph, N, limit, options.mayMove, X);
+    limitDisplacement(X0, options, kMaxDeviations, X);
 }
 
 double edgeScale(const RemovalOptions& options, double scale) {
@@ -57,7 +71,7 @@ double edgeScale(const RemovalOptions& options, double scale) {
 NormalFilterOptions filterOfLength(double length, const RemovalOptions& options) {
     constexpr double kTime = 1.5, kEdgeScale = 0.22, kBlurs = 2.0;
     return {kTime * length * length, edgeScale(options, kEdgeScale), 0.0,
-            static_cast<int>(kBlurs * length * length), false};
+            static_cast<int>(kBlurs * length * length)};
 }
 
 int sweepsOfLength(double length) {
@@ -65,10 +79,43 @@ int sweepsOfLength(double length) {
     return static_cast<int>(std::lround(kSweeps * length));
 }
 
-}  // namespace
+/// How much weaker the rounds for weak noise are: the divisor of their time.
+double weakening(const Place& place) {
+    constexpr double kHalfTimeAt = 0.13;  // height in edges
+    return 1.0 + std::pow(kHalfTimeAt * place.edge / place.height, 3);
+}
 
-Removal removeWhiteNoise(const FaceGraph& graph, const Points& X0, const RemovalOptions& options,
-                         const Progress& progress) {
+/// Factors on the time of every face where noise differs; hardly any where there is none.
+Eigen::VectorXd timesOfFaces(const FaceGraph& graph, const RemovalOptions& options) {
+    constexpr double kLeast = 1e-6;
+    Eigen::VectorXd time(graph.faceCount());
+    for (Index f = 0; f < graph.faceCount(); ++f) {
+        time[f] = kLeast;
+        for (int c = 0; c < 3; ++c)
+            if (const int i = graph.F(f, c); options.mayMove[i])
+                time[f] = std::max(time[f], 1.0 / weakening(placeOf(options, i)));
+    }
+    return time;
+}
+
+/// What a displacement removes along the normals, in heights of the noise of each place.
+Eigen::VectorXd removedAlongNormals(const FaceGraph& graph, const Points& X0, const Points& X,
+                                    const RemovalOptions& options) {
+    Eigen::VectorXd along = displacementAlongNormals(graph, X0, X);
+    if (options.place.isAny())
+        along = (options.place.height.array() > 0.0)
+                    .select(along.cwiseQuotient(options.place.height), 0.0);
+    return along;
+}
+
+struct FilteredInRounds {
+    Removal removal;
+    Points N;  ///< m x 3: the filtered normals of the last round.
+};
+
+/// Weak, then stronger rounds of the filter of the normals.
+FilteredInRounds filterInRounds(const FaceGraph& graph, const Points& X0,
+                                const RemovalOptions& options, const Progress& progress) {
     struct Round {
         double time;
         int sweeps;
@@ -76,33 +123,33 @@ Removal removeWhiteNoise(const FaceGraph& graph, const Points& X0, const Removal
     };
     constexpr Round kWeak{4.0, 16, 0.25}, kStrong{8.0, 32, 0.22};
     constexpr int kWeakRounds = 6, kMaxRounds = 10;
-    constexpr double kHalfTimeAt = 0.13;  // height in mean edges; weaker noise gets weaker rounds
     constexpr double kMaxRemoved = 1.03;  // multiple of the height
     constexpr double kMaxSmoothness = 0.957, kFirstSmoothness = 0.76, kColour = 0.75;
     constexpr double kMaxDeviationsPerRound = 3.0;
 
-    progress.report(0.0, kStage);
-    if (std::optional<LinearSteps> linear = linearSteps(
-            graph, X0, options.mayMove, options.height / options.meanEdge, options.areImpulses)) {
-        finish(graph, X0, linear->N, options, linear->X);
-        return {std::move(linear->X), linear->steps};
-    }
-
-    const double limit = maxDisplacement(options, kMaxDeviationsPerRound);
-    const double weaker = 1.0 + std::pow(kHalfTimeAt * options.meanEdge / options.height, 3);
-    Removal removal{X0, 0};
-    Points N;
+    const bool isByPlace = options.place.isAny();
+    const Eigen::VectorXd times = isByPlace ? timesOfFaces(graph, options) : Eigen::VectorXd();
+    FilteredInRounds result{{X0, 0}, {}};
+    auto& [removal, N] = result;
     double maxSmoothness = 0.0;
     while (removal.rounds < kMaxRounds) {
         progress.report(double(removal.rounds) / kMaxRounds, kStage);
         const Round& round = removal.rounds < kWeakRounds ? kWeak : kStrong;
-        const Points next = filterNormals(graph, removal.X,
-                                          {round.time / weaker, edgeScale(options, round.edgeScale),
-                                           options.height / options.meanEdge, 2, true},
-                                          N);
+        NormalFilterOptions filter;
+        filter.time = round.time;
+        filter.edgeScale = edgeScale(options, round.edgeScale);
+        filter.useTwicing = true;
+        if (isByPlace) {
+            filter.timeOfFace = &times;
+        } else {
+            filter.time /= weakening({options.height, options.meanEdge});
+            filter.height = options.height / options.meanEdge;
+        }
+        const Points next = filterNormals(graph, removal.X, filter, N);
         Points X = followNormals(graph, X0, next, options.mayMove, round.sweeps);
-        limitDisplacement(X0, limit, X);
-        const double smooth = smoothness(graph.vertices, displacementAlongNormals(graph, X0, X));
+        limitDisplacement(X0, options, kMaxDeviationsPerRound, X);
+        const double smooth =
+            smoothness(graph.vertices, removedAlongNormals(graph, X0, X, options));
         if (removal.rounds == 0)
             maxSmoothness =
                 kMaxSmoothness * std::pow(std::max(1.0, smooth / kFirstSmoothness), kColour);
@@ -111,10 +158,58 @@ Removal removeWhiteNoise(const FaceGraph& graph, const Points& X0, const Removal
         N = next;
         removal.X = X;
         ++removal.rounds;
-        if (removedHeight(X0, X, options.mayMove) > kMaxRemoved * options.height) break;
+        if (removedShare(X0, X, options) > kMaxRemoved) break;
     }
+    return result;
+}
+
+/// Linear steps in which neighbours along a scan line weigh more than those across.
+Removal removeFromScanLines(const FaceGraph& graph, const Points& X0,
+                            const RemovalOptions& options) {
+    constexpr int kMaxSteps = 226;
+    FaceGraph weighted = graph;
+    weighted.vertices = weightedByLength(graph.vertices, X0, 1.0);
+    const LinearStepsByPlace linear =
+        linearStepsByPlace(weighted, X0, options.mayMove, options.place, kMaxSteps);
+    Removal removal{linear.X, linear.steps};
+    limitDisplacement(X0, options, kMaxDeviations, removal.X);
+    return removal;
+}
+
+/// Linear steps in the places where they do better, rounds elsewhere.
+Removal removeByPlace(const FaceGraph& graph, const Points& X0, const RemovalOptions& options,
+                      const Progress& progress) {
+    constexpr double kFew = 0.02;  // share of the vertices that rounds are not worthwhile for
+    constexpr int kBlurs = 2, kMaxSteps = 160;
+    const LinearStepsByPlace linear =
+        linearStepsByPlace(graph, X0, options.mayMove, options.place, kMaxSteps);
+    Removal removal{linear.X, linear.steps};
+    if (linear.rejected > kFew) {
+        const Removal rounds = filterInRounds(graph, X0, options, progress).removal;
+        removal.X = rounds.X + linear.share.asDiagonal() * (linear.X - rounds.X);
+        removal.rounds = rounds.rounds;
+    }
+    Points N = blurredNormals(graph, areaNormals(removal.X, graph.F), kBlurs);
+    normalizeRows(N);
     finish(graph, X0, N, options, removal.X);
     return removal;
+}
+
+}  // namespace
+
+Removal removeWhiteNoise(const FaceGraph& graph, const Points& X0, const RemovalOptions& options,
+                         const Progress& progress) {
+    progress.report(0.0, kStage);
+    if (options.areScanLines) return removeFromScanLines(graph, X0, options);
+    if (options.place.isAny()) return removeByPlace(graph, X0, options, progress);
+    if (std::optional<LinearSteps> linear = linearSteps(
+            graph, X0, options.mayMove, options.height / options.meanEdge, options.areImpulses)) {
+        finish(graph, X0, linear->N, options, linear->X);
+        return {std::move(linear->X), linear->steps};
+    }
+    auto [removal, N] = filterInRounds(graph, X0, options, progress);
+    finish(graph, X0, N, options, removal.X);
+    return std::move(removal);
 }
 
 Removal removeCorrelatedNoise(const FaceGraph& graph, const Points& X0,
@@ -123,17 +218,15 @@ Removal removeCorrelatedNoise(const FaceGraph& graph, const Points& X0,
     constexpr double kMinRemoved = 0.8;  // part of the height; the rest is as long as details
     constexpr int kMinRounds = 2, kMaxRounds = 6;
     const double length = std::min(kLength * options.size, kMaxLength);
-    const double limit = maxDisplacement(options, kMaxDeviations);
     Removal removal{X0, 0};
     Points N;
-    double removed = 0.0;
-    while (removal.rounds < kMinRounds ||
-           (removed < kMinRemoved * options.height && removal.rounds < kMaxRounds)) {
+    double removed = 0.0;  // part of the height
+    while (removal.rounds < kMinRounds || (removed < kMinRemoved && removal.rounds < kMaxRounds)) {
         progress.report(double(removal.rounds) / kMaxRounds, kStage);
         N = filterNormals(graph, removal.X, filterOfLength(length, options), N);
         removal.X = followNormals(graph, X0, N, options.mayMove, sweepsOfLength(length));
-        removed = removedHeight(X0, removal.X, options.mayMove);
-        limitDisplacement(X0, limit, removal.X);
+        removed = removedShare(X0, removal.X, options);
+        limitDisplacement(X0, options, kMaxDeviations, removal.X);
         ++removal.rounds;
     }
     finish(graph, X0, N, options, removal.X);
@@ -142,8 +235,9 @@ Removal removeCorrelatedNoise(const FaceGraph& graph, const Points& X0,
 
 Removal removeVoxelSteps(const FaceGraph& graph, const Points& X0, const Eigen::RowVector3d& voxel,
                          const RemovalOptions& options, const Progress& progress) {
-    constexpr double kLength = 1.5, kThickness = 0.5;
+    constexpr double kLength = 1.5, kLengthOfFaces = 2.0, kThickness = 0.5;
     constexpr int kRounds = 3;
+    const double length = options.areVoxelFaces ? kLengthOfFaces : kLength;
     // For thick slices, the filter works in units between lengths and voxels.
     const Eigen::RowVector3d scale =
         (voxel.minCoeff() * voxel.cwiseInverse()).array().pow(kThickness);
@@ -152,8 +246,8 @@ Removal removeVoxelSteps(const FaceGraph& graph, const Points& X0, const Eigen::
     Removal removal{start, 0};
     while (removal.rounds < kRounds) {
         progress.report(double(removal.rounds) / kRounds, kStage);
-        const Points N = filterNormals(graph, removal.X, filterOfLength(kLength, options));
-        removal.X = followNormals(graph, start, N, options.mayMove, sweepsOfLength(kLength));
+        const Points N = filterNormals(graph, removal.X, filterOfLength(length, options));
+        removal.X = followNormals(graph, start, N, options.mayMove, sweepsOfLength(length));
         for (Index i = 0; i < start.rows(); ++i)
             removal.X.row(i) =
                 removal.X.row(i).cwiseMax(start.row(i) - half).cwiseMin(start.row(i) + half);

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/noise/face_graph.h"
+#include "core/noise/noise_field.h"
 #include "core/support/progress.h"
 
 namespace spectral {
@@ -16,12 +17,15 @@ struct Removal {
 };
 
 struct RemovalOptions {
-    double height = 0.0;        ///< Standard deviation of the noise, length units.
-    double size = 0.0;          ///< Correlation length of the noise, mean edges.
-    double meanEdge = 0.0;      ///< Mean edge length, length units.
-    bool keepCreases = true;    ///< If false, smooths across creases, too.
-    bool areImpulses = false;   ///< White noise with many large values.
-    std::vector<bool> mayMove;  ///< n: whether a vertex may move.
+    double height = 0.0;         ///< Standard deviation of the noise, length units.
+    NoiseField place;            ///< If there is any: height and edge length of every place.
+    double size = 0.0;           ///< Correlation length of the noise, mean edges.
+    double meanEdge = 0.0;       ///< Mean edge length, length units.
+    bool keepCreases = true;     ///< If false, smooths across creases, too.
+    bool areImpulses = false;    ///< White noise with many large values.
+    bool areScanLines = false;   ///< White noise on long triangles between lines.
+    bool areVoxelFaces = false;  ///< Vertices at the corners of voxels, not between their centres.
+    std::vector<bool> mayMove;   ///< n: whether a vertex may move.
 };
 
 /// Removes noise that is independent at every vertex.
@@ -29,6 +33,9 @@ struct RemovalOptions {
 /// Takes linear steps where they do better (linear_steps.h). Otherwise weak, then stronger rounds,
 /// until the displacement is smoother than noise (whiteness.h) or its median exceeds that of the
 /// noise: the discrepancy principle (Morozov 1966). Unfolds faces that the noise has folded.
+///
+/// Where the noise is not alike everywhere (`place`), the limits of displacements, the times of the
+/// filter and the number of linear steps are those of each place; only noisy places move.
 ///
 /// All constants of this folder and the meshes they were chosen on are in
 /// tests/benchmarks/README.md.

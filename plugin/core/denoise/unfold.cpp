@@ -21,7 +21,7 @@ Eigen::RowVector3d displacementToMean(const FaceGraph& graph, const Points& N, c
 
 }  // namespace
 
-void unfoldFaces(const FaceGraph& graph, const Points& N, double maxDisplacement,
+void unfoldFaces(const FaceGraph& graph, const Points& N, const Eigen::VectorXd& maxDisplacement,
                  const std::vector<bool>& mayMove, Points& X) {
     constexpr int kMaxRepetitions = 20;
     constexpr double kMinCosine = 0.5;  // between a face's normal and its filtered normal
@@ -39,7 +39,7 @@ void unfoldFaces(const FaceGraph& graph, const Points& N, double maxDisplacement
         for (Index i = 0; i < graph.vertexCount(); ++i) {
             if (!isFolded[i]) continue;
             const Eigen::RowVector3d displacement = displacementToMean(graph, N, X, i);
-            if (displacement.norm() <= maxDisplacement) moved.row(i) += displacement;
+            if (displacement.norm() <= maxDisplacement[i]) moved.row(i) += displacement;
         }
         X = moved;
     }

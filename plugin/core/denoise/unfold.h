@@ -12,10 +12,10 @@ namespace spectral {
 /// triangles.
 ///
 /// @param N                m x 3 filtered normals.
-/// @param maxDisplacement  largest displacement, length units.
+/// @param maxDisplacement  n: largest displacement, length units.
 /// @param mayMove          n: whether a vertex may move.
 /// @param X                n x 3 positions, updated.
-void unfoldFaces(const FaceGraph& graph, const Points& N, double maxDisplacement,
+void unfoldFaces(const FaceGraph& graph, const Points& N, const Eigen::VectorXd& maxDisplacement,
                  const std::vector<bool>& mayMove, Points& X);
 
 }  // namespace spectral

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "core/mesh/measures.h"
 #include "core/noise/robust_statistics.h"
+#include "core/noise/scan_lines.h"
 #include "core/noise/spikes.h"
 #include "core/noise/voxel_lattice.h"
 #include "core/support/threads.h"
@@ -15,43 +18,44 @@ namespace {
 
 const char* const kStage = "measuring the noise";
 
-/// Median of 4 sqrt(3) area / (sum of squared sides) over the faces: 1 for equilateral triangles.
-double medianQuality(const FaceGraph& graph, const Points& X) {
-    std::vector<double> quality(static_cast<std::size_t>(graph.faceCount()));
-    const Points N = areaNormals(X, graph.F);
-    parallelRows(graph.faceCount(), [&](Index begin, Index end) {
-        for (Index f = begin; f < end; ++f) {
-            double squares = 0.0;
-            for (int c = 0; c < 3; ++c)
-                squares += (X.row(graph.F(f, c)) - X.row(graph.F(f, (c + 1) % 3))).squaredNorm();
-            quality[f] = squares > 0.0 ? 2.0 * std::sqrt(3.0) * N.row(f).norm() / squares : 0.0;
-        }
-    });
-    return quantile(std::move(quality), 0.5);
-}
-
 struct FoundSpikes {
     Spikes spikes;
     bool areTail = false;  ///< Not isolated spikes but the heavy tail of the noise itself.
 };
 
+/// Least share of the vertices that statistics can tell to be spikes.
+constexpr double kMinShareOfSpikes = 0.01;
+
+/// Least tail of the residuals (localTail) with spikes: 4 on pierrot_i3, 2.5 for noise of any
+/// distribution over the surface.
+constexpr double kMinTailOfSpikes = 3.0;
+
 FoundSpikes sparseSpikes(const FaceGraph& graph, const Points& X, const std::vector<bool>& mayMove,
                          double meanEdge) {
     constexpr double kDetectionLimit = 4.0, kRemovalLimit = 3.0;  // deviations
     constexpr Index kMinCount = 50;
-    constexpr double kMinShare = 0.01, kMinShareOfTail = 0.004;
+    constexpr double kMinShareOfTail = 0.004;
     constexpr double kMaxClustering = 2.0;
     constexpr Index kMaxRatio = 3;  // of the counts with the lower and the higher limit
     Spikes spikes = findSpikes(graph, X, mayMove, kDetectionLimit, meanEdge);
     const bool areUnrelated = spikes.count >= kMinCount && spikes.clustering < kMaxClustering;
     bool areTail = areUnrelated && spikes.share() >= kMinShareOfTail;
-    if (areUnrelated && spikes.share() >= kMinShare) {
+    if (areUnrelated && spikes.share() >= kMinShareOfSpikes &&
+        localTail(localResiduals(graph, X, mayMove), mayMove) > kMinTailOfSpikes) {
         Spikes all = findSpikes(graph, X, mayMove, kRemovalLimit, meanEdge);
         areTail = all.count > kMaxRatio * spikes.count;
         if (!areTail) return {std::move(all)};
     }
     return {certainSpikes(graph, X, std::move(spikes), meanEdge), areTail};
 }
+
+bool hasManySpikes(const Diagnosis& diagnosis) {
+    return static_cast<double>(diagnosis.spikes) >=
+           kMinShareOfSpikes * static_cast<double>(diagnosis.X.rows());
+}
+
+/// Fraction of the progress for the mesh as one, before its places.
+constexpr double kWholeMesh = 0.7;
 
 /// Share of the height that is noise. It decreases above a correlation of residuals that may come
 /// from a scanner's noise, but also from a coarse shape with a little noise.
@@ -60,33 +64,82 @@ double noiseShare(double correlation) {
     return std::clamp(1.0 - kSlope * (correlation - kMaxPureNoise), kMinShare, 1.0);
 }
 
-}  // namespace
+// Chosen on blocks1, blocks3, grid05 to grid11 of ../shared/denoise_local. In mean edges:
+constexpr double kMinVoxel = 0.3, kMinRounding = 0.04;
 
-Diagnosis diagnose(const FaceGraph& graph, const Points& X, const std::vector<bool>& isMeasured,
-                   bool isKnown, const Progress& progress) {
-    constexpr Index kMinMeasured = 100, kMinMeasuredCorrelated = 1000;  // vertices
+/// Whether the vertices on a grid are those of the surface of a binary volume.
+void findVoxels(const FaceGraph& graph, const CoordinateGrid& grid,
+                const std::vector<bool>& isMeasured, Diagnosis& diagnosis) {
+    constexpr double kMaxCorrelation = 0.5;  // of weighted residuals; designed shapes have more
+    constexpr double kMinDeviation = 0.01;   // of these, mean edges: designed shapes are flat
+    if (const auto voxel = voxelLattice(grid)) {
+        diagnosis.kind = NoiseKind::Voxels;
+        diagnosis.voxel = *voxel;
+        return;
+    }
+    const double edge = diagnosis.noise.meanEdge;
+    if (grid.step.minCoeff() < kMinVoxel * edge) return;
+    const auto [deviation, correlation] = weightedResiduals(graph, diagnosis.X, isMeasured);
+    if (!(correlation < kMaxCorrelation && deviation > kMinDeviation * edge)) return;
+    diagnosis.kind = NoiseKind::VoxelFaces;
+    diagnosis.voxel = grid.step;
+}
+
+/// Whether the coordinates were rounded to the grid, which explains most of the residuals.
+void findRounding(const FaceGraph& graph, const CoordinateGrid& grid,
+                  const std::vector<bool>& isMeasured, Diagnosis& diagnosis) {
+    constexpr double kMinResidual = 0.5, kMaxResidual = 3.0;  // median, over the height of rounding
+    const double edge = diagnosis.noise.meanEdge;
+    if (!(grid.step.minCoeff() > kMinRounding * edge && grid.step.maxCoeff() < kMinVoxel * edge))
+        return;
+    const double height = std::sqrt(grid.step.squaredNorm() / 3.0 / 12.0);  // of uniform noise
+    const LocalResiduals residuals = localResiduals(graph, diagnosis.X, isMeasured);
+    std::vector<double> deviation;
+    for (Index i = 0; i < residuals.deviation.size(); ++i)
+        if (isMeasured[i]) deviation.push_back(residuals.deviation[i]);
+    const double median = quantile(std::move(deviation), 0.5);
+    if (!(median > kMinResidual * height && median < kMaxResidual * height)) return;
+    diagnosis.kind = NoiseKind::Rounded;
+    diagnosis.noise.height = height;
+    diagnosis.field = NoiseField::ofHeight(height, edge, diagnosis.X.rows());
+}
+
+/// The noise of the mesh as one.
+Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
+                        const std::vector<bool>& isMeasured, bool isKnown,
+                        const Progress& progress) {
+    constexpr Index kMinMeasured = 100, kMinMeasuredFine = 1000;  // vertices
     constexpr double kMinQuality = 0.6;
     constexpr double kMinHeight = 0.02, kMinHeightCorrelated = 0.045;  // mean edges
     constexpr double kMaxCorrelation = 0.2;  // above it, the residuals are those of a shape
+    // Detail of a coarse shape looks like weak noise, but seldom alternates: decimated igea.
+    constexpr double kWeak = 0.09, kMaxCorrelationWeak = 0.0;  // height in mean edges
     Diagnosis diagnosis;
     diagnosis.X = X;
     const double edge = diagnosis.noise.meanEdge = meanEdgeLength(X, graph.F);
+    const Index measured = std::count(isMeasured.begin(), isMeasured.end(), true);
+    std::optional<CoordinateGrid> grid;
     if (!isKnown) {
-        if (const auto voxel = voxelLattice(X)) {
-            diagnosis.kind = NoiseKind::Voxels;
-            diagnosis.voxel = *voxel;
-            return diagnosis;
-        }
-        if (medianQuality(graph, X) < kMinQuality) {
+        grid = coordinateGrid(X);
+        if (grid) findVoxels(graph, *grid, isMeasured, diagnosis);
+        if (diagnosis.kind != NoiseKind::None) return diagnosis;
+        if (quantile(triangleQuality(graph, X), 0.5) < kMinQuality) {
             diagnosis.kind = NoiseKind::Tessellation;
+            const auto lines = scanLineNoise(graph, X, isMeasured);
+            if (lines && measured >= kMinMeasuredFine) {
+                diagnosis.kind = NoiseKind::ScanLines;
+                diagnosis.noise.height = lines->height;
+                diagnosis.field = NoiseField::ofHeight(lines->height, lines->edge, X.rows());
+            }
             return diagnosis;
         }
     }
-    const Index measured = std::count(isMeasured.begin(), isMeasured.end(), true);
     if (measured < kMinMeasured) {
         diagnosis.kind = NoiseKind::TooFew;
         return diagnosis;
     }
+    if (grid && measured >= kMinMeasuredFine) findRounding(graph, *grid, isMeasured, diagnosis);
+    if (diagnosis.kind != NoiseKind::None) return diagnosis;
     progress.report(0.2, kStage);
     const FoundSpikes found = sparseSpikes(graph, X, isMeasured, edge);
     diagnosis.spikes = found.spikes.count;
@@ -102,16 +155,55 @@ Diagnosis diagnose(const FaceGraph& graph, const Points& X, const std::vector<bo
     NoiseEstimate& noise = diagnosis.noise;
     const double share = noiseShare(correlation);
     if (noise.size > 1.0) {
-        if (measured >= kMinMeasuredCorrelated &&
-            share * noise.height >= kMinHeightCorrelated * edge)
+        if (measured >= kMinMeasuredFine && share * noise.height >= kMinHeightCorrelated * edge)
             diagnosis.kind = NoiseKind::Correlated;
         return diagnosis;
     }
+    if (!hasManySpikes(diagnosis) && correlation > kMaxCorrelationWeak &&
+        noise.height < kWeak * edge)
+        return diagnosis;
     noise.height *= share;
     if (noise.height >= kMinHeight * edge)
         diagnosis.kind = found.areTail ? NoiseKind::Impulses : NoiseKind::White;
     else if (share == 1.0)
         diagnosis.kind = NoiseKind::None;
+    return diagnosis;
+}
+
+/// The noise by place, where that explains more than the diagnosis of the whole mesh.
+NoiseField localNoise(const FaceGraph& graph, const std::vector<bool>& isMeasured,
+                      const Diagnosis& whole) {
+    const bool isWhite = whole.kind == NoiseKind::White || whole.kind == NoiseKind::Impulses;
+    if (!isWhite && whole.kind != NoiseKind::None && whole.kind != NoiseKind::Shape) return {};
+    if (hasManySpikes(whole)) return {};
+    const LocalResiduals residuals = localResiduals(graph, whole.X, isMeasured);
+    if (isWhite && areAlike(graph, whole.X, residuals, isMeasured)) return {};
+    NoiseField field = measureNoiseField(graph, whole.X, isMeasured, residuals);
+    if (!field.isAny()) return {};
+    std::vector<bool> isNoisy(isMeasured);
+    for (Index i = 0; i < field.height.size(); ++i)
+        isNoisy[i] = isNoisy[i] && field.height[i] > 0.0;
+    if (localTail(residuals, isNoisy) > kMinTailOfSpikes) return {};
+    return field;
+}
+
+}  // namespace
+
+Diagnosis diagnose(const FaceGraph& graph, const Points& X, const std::vector<bool>& isMeasured,
+                   bool isKnown, const Progress& progress) {
+    Diagnosis diagnosis =
+        diagnoseWhole(graph, X, isMeasured, isKnown, progress.part(0.0, kWholeMesh));
+    if (isKnown) return diagnosis;
+    NoiseField field = localNoise(graph, isMeasured, diagnosis);
+    if (field.isAny()) {
+        diagnosis.field = std::move(field);
+        diagnosis.kind = NoiseKind::Local;
+        diagnosis.noise.size = 1.0;
+        std::vector<double> heights;
+        for (const double height : diagnosis.field.height)
+            if (height > 0.0) heights.push_back(height);
+        diagnosis.noise.height = quantile(std::move(heights), 0.5);
+    }
     return diagnosis;
 }
 

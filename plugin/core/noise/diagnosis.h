@@ -4,6 +4,7 @@
 
 #include "core/noise/face_graph.h"
 #include "core/noise/noise_estimate.h"
+#include "core/noise/noise_field.h"
 #include "core/support/progress.h"
 
 namespace spectral {
@@ -15,14 +16,19 @@ enum class NoiseKind {
     Tessellation,  ///< Needle triangles between the edges of a CAD part: nothing can be measured.
     TooFew,        ///< Too few vertices to tell noise from corners.
     Voxels,        ///< Staircase of the surface of a binary volume.
+    VoxelFaces,    ///< Surface of voxels that consists of their faces.
+    Rounded,       ///< Coordinates were rounded to a grid.
     White,         ///< Independent at every vertex.
     Impulses,      ///< Independent, with large values at many vertices.
+    Local,         ///< Independent, of a height that differs from place to place.
+    ScanLines,     ///< Independent, on the lines of a scanner: long triangles between them.
     Correlated     ///< Correlated over a few edges, as from scanners.
 };
 
 struct Diagnosis {
     NoiseKind kind = NoiseKind::None;
     NoiseEstimate noise;  ///< Estimate after the removal of spikes.
+    NoiseField field;     ///< Where it is, if it is Local, Rounded or on ScanLines.
     Points X;             ///< n x 3 positions without spikes.
     Index spikes = 0;     ///< Number of vertices that are spikes.
     Eigen::RowVector3d voxel = Eigen::RowVector3d::Zero();  ///< Voxel size along each axis.

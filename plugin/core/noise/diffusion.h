@@ -9,7 +9,8 @@
 namespace spectral {
 
 /// Calls visit(i, mean of the rows of X at the neighbours of vertex i), in parallel, for every
-/// vertex that has neighbours: the rows of P X, where L = I - P is the uniform Laplacian.
+/// vertex that has neighbours: the rows of P X, where L = I - P is the uniform Laplacian,
+/// or one with the weights of the graph.
 template <class Rows, class Visit>
 void forEachMean(const VertexGraph& graph, const Rows& X, const Visit& visit) {
     parallelRows(graph.size(), [&](Index begin, Index end) {
@@ -17,8 +18,15 @@ void forEachMean(const VertexGraph& graph, const Rows& X, const Visit& visit) {
             const Index first = graph.first[i], last = graph.first[i + 1];
             if (first == last) continue;
             Eigen::Matrix<double, 1, Rows::ColsAtCompileTime> sum = X.row(graph.at[first]);
-            for (Index k = first + 1; k < last; ++k) sum += X.row(graph.at[k]);
-            visit(i, sum / static_cast<double>(last - first));
+            if (graph.weight.empty()) {
+                for (Index k = first + 1; k < last; ++k) sum += X.row(graph.at[k]);
+                sum /= static_cast<double>(last - first);
+            } else {
+                sum *= graph.weight[first];
+                for (Index k = first + 1; k < last; ++k)
+                    sum += graph.weight[k] * X.row(graph.at[k]);
+            }
+            visit(i, sum);
         }
     });
 }

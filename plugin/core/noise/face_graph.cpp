@@ -1,7 +1,9 @@
 #include "core/noise/face_graph.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "core/mesh/sides.h"
@@ -81,6 +83,32 @@ Eigen::RowVector3d unit(const Eigen::RowVector3d& v) {
 
 }  // namespace
 
+Faces distinctFaces(const Faces& F, Index vertexCount) {
+    Faces sorted = F;
+    for (auto face : sorted.rowwise()) std::sort(face.begin(), face.end());
+    std::vector<Index> first(static_cast<std::size_t>(vertexCount) + 1, 0);
+    for (Index t = 0; t < F.rows(); ++t) ++first[sorted(t, 0) + 1];
+    for (std::size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
+    std::vector<Index> next(first), at(static_cast<std::size_t>(F.rows()));
+    for (Index t = 0; t < F.rows(); ++t) at[next[sorted(t, 0)]++] = t;
+    std::vector<bool> isRepeated(at.size(), false);
+    Index count = F.rows();
+    for (Index i = 0; i < vertexCount; ++i) {
+        const auto begin = at.begin() + first[i], end = at.begin() + first[i + 1];
+        const auto key = [&](Index t) { return std::tuple(sorted(t, 1), sorted(t, 2), t); };
+        std::sort(begin, end, [&](Index s, Index t) { return key(s) < key(t); });
+        for (auto k = begin; k != end; ++k) {
+            if (k == begin || sorted.row(*k) != sorted.row(*(k - 1))) continue;
+            isRepeated[*k] = true;
+            --count;
+        }
+    }
+    Faces distinct(count, 3);
+    for (Index t = F.rows() - 1; t >= 0; --t)
+        if (!isRepeated[t]) distinct.row(--count) = F.row(t);
+    return distinct;
+}
+
 FaceGraph faceGraph(const Faces& F, Index vertexCount) {
     FaceGraph graph;
     graph.F = F;
@@ -106,6 +134,26 @@ FaceGraph faceGraph(const Faces& F, Index vertexCount) {
     orient(isOpposite, graph);
     graph.faces = facesOfVertices(F, vertexCount);
     graph.vertices = neighboursOfVertices(sides, vertexCount);
+    return graph;
+}
+
+VertexGraph weightedByLength(VertexGraph graph, const Points& X, double power) {
+    constexpr double kShortest = 1e-9;  // of the lengths at a vertex, over their mean
+    graph.weight.resize(graph.at.size());
+    parallelRows(graph.size(), [&](Index begin, Index end) {
+        for (Index i = begin; i < end; ++i) {
+            const Index first = graph.first[i], last = graph.first[i + 1];
+            double lengths = 0.0, sum = 0.0;
+            for (Index k = first; k < last; ++k)
+                lengths += graph.weight[k] = (X.row(graph.at[k]) - X.row(i)).norm();
+            const double mean = lengths / static_cast<double>(std::max<Index>(last - first, 1));
+            for (Index k = first; k < last; ++k) {
+                const double relative = mean > 0.0 ? graph.weight[k] / mean : 1.0;
+                sum += graph.weight[k] = std::pow(std::max(relative, kShortest), -power);
+            }
+            for (Index k = first; k < last; ++k) graph.weight[k] /= sum;
+        }
+    });
     return graph;
 }
 
@@ -147,6 +195,20 @@ Points vertexNormals(const FaceGraph& graph, const Points& N) {
         }
     });
     return normals;
+}
+
+std::vector<double> triangleQuality(const FaceGraph& graph, const Points& X) {
+    std::vector<double> quality(static_cast<std::size_t>(graph.faceCount()));
+    const Points N = areaNormals(X, graph.F);
+    parallelRows(graph.faceCount(), [&](Index begin, Index end) {
+        for (Index f = begin; f < end; ++f) {
+            double squares = 0.0;
+            for (int c = 0; c < 3; ++c)
+                squares += (X.row(graph.F(f, c)) - X.row(graph.F(f, (c + 1) % 3))).squaredNorm();
+            quality[f] = squares > 0.0 ? 2.0 * std::sqrt(3.0) * N.row(f).norm() / squares : 0.0;
+        }
+    });
+    return quality;
 }
 
 void normalizeRows(Points& N) {

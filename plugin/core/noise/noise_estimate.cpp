@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/noise/diffusion.h"
 #include "core/noise/robust_statistics.h"
@@ -13,9 +14,6 @@ namespace {
 
 constexpr int kOctaves = 7;
 using Octaves = Eigen::Array<double, kOctaves, 1>;
-
-/// Number of times normals are blurred, so that they vary less than the noise.
-constexpr int kBlurs = 3;
 
 /// The standard deviation of the measured values.
 double deviationOf(const Eigen::VectorXd& values, const std::vector<bool>& isMeasured) {
@@ -56,20 +54,14 @@ struct OctaveDeviations {
 
 OctaveDeviations octaveDeviations(const FaceGraph& graph, const Points& X, const Points& N,
                                   const std::vector<bool>& isMeasured) {
-    using Rows = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
     constexpr int kShapeOctave = 3;
-    Rows Y(X.rows(), 4);  // positions and white noise
-    Y << X, whiteNoise(X.rows());
     OctaveDeviations deviations;
     std::array<Eigen::VectorXd, kOctaves> along;
-    int power = 0;
-    for (int k = 0; k < kOctaves; ++k) {
-        const Rows before = Y;
-        for (const int end = 1 << k; power < end; ++power) diffuse(graph.vertices, Y);
-        const Rows octave = before - Y;
-        along[k] = octave.leftCols<3>().cwiseProduct(N).rowwise().sum();
-        deviations.white[k] = deviationOf(octave.col(3), isMeasured);
-    }
+    forEachOctave(graph.vertices, X, N, isMeasured, kOctaves,
+                  [&](int k, Eigen::VectorXd values, double white) {
+                      along[k] = std::move(values);
+                      deviations.white[k] = white;
+                  });
     const std::vector<bool> isQuiet = quietest(graph.vertices, along[kShapeOctave], isMeasured);
     parallelFor(kOctaves, [&](Index k) {
         deviations.shape[k] = trimmedDeviation(moduliOf(along[k], isQuiet));
@@ -108,15 +100,44 @@ double meanLength(const Octaves& energy, int octaves) {
 
 }  // namespace
 
+Points smoothVertexNormals(const FaceGraph& graph, const Points& X) {
+    constexpr int kBlurs = 3;
+    return vertexNormals(graph, blurredNormals(graph, areaNormals(X, graph.F), kBlurs));
+}
+
+Eigen::VectorXd scaledResiduals(const VertexGraph& graph, const Points& X, const Points& N) {
+    Eigen::VectorXd residual = Eigen::VectorXd::Zero(X.rows());
+    forEachMean(graph, X, [&](Index i, const Eigen::RowVector3d& mean) {
+        double squares = 0.0;  // of the weights
+        if (graph.weight.empty())
+            squares = 1.0 / static_cast<double>(graph.degree(i));
+        else
+            for (Index k = graph.first[i]; k < graph.first[i + 1]; ++k)
+                squares += graph.weight[k] * graph.weight[k];
+        residual[i] = (X.row(i) - mean).dot(N.row(i)) / std::sqrt(1.0 + squares);
+    });
+    return residual;
+}
+
+void forEachOctave(const VertexGraph& graph, const Points& X, const Points& N,
+                   const std::vector<bool>& isMeasured, int count, const OctaveVisitor& visit) {
+    using Rows = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
+    Rows Y(X.rows(), 4);  // positions and white noise
+    Y << X, whiteNoise(X.rows());
+    int power = 0;
+    for (int k = 0; k < count; ++k) {
+        const Rows before = Y;
+        for (const int end = 1 << k; power < end; ++power) diffuse(graph, Y);
+        const Rows octave = before - Y;
+        visit(k, octave.leftCols<3>().cwiseProduct(N).rowwise().sum(),
+              deviationOf(octave.col(3), isMeasured));
+    }
+}
+
 double residualCorrelation(const FaceGraph& graph, const Points& X,
                            const std::vector<bool>& isMeasured) {
-    const Points N = vertexNormals(graph, blurredNormals(graph, areaNormals(X, graph.F), kBlurs));
     const VertexGraph& vertices = graph.vertices;
-    Eigen::VectorXd residual(X.rows());
-    forEachMean(vertices, X, [&](Index i, const Eigen::RowVector3d& mean) {
-        residual[i] = (X.row(i) - mean).dot(N.row(i)) /
-                      std::sqrt(1.0 + 1.0 / static_cast<double>(vertices.degree(i)));
-    });
+    Eigen::VectorXd residual = scaledResiduals(vertices, X, smoothVertexNormals(graph, X));
     std::vector<double> moduli;
     for (Index i = 0; i < X.rows(); ++i)
         if (isMeasured[i]) moduli.push_back(std::abs(residual[i]));
@@ -141,7 +162,7 @@ NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X,
     constexpr double kMaxRise = 2.03;        // of noise, from an octave to the next coarser one
     // Height over the part of it that the shape does not hide, for noise of 1.5 edges.
     constexpr double kHidden = 1.3;
-    const Points N = vertexNormals(graph, blurredNormals(graph, areaNormals(X, graph.F), kBlurs));
+    const Points N = smoothVertexNormals(graph, X);
     const auto [deviation, white] = octaveDeviations(graph, X, N, isMeasured);
     const Octaves height = (white > 0.0).select(deviation / white, 0.0);
     const Octaves noise = (height.square() - shapePart(height).square()).max(0.0).sqrt();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "core/noise/face_graph.h"
@@ -13,6 +14,20 @@ struct NoiseEstimate {
     double correlation = 1.0;  ///< Correlation of neighbouring residuals: residualCorrelation.
     double meanEdge = 0.0;     ///< Mean edge length, length units.
 };
+
+/// Unit vertex normals that vary less than the noise, n x 3.
+Points smoothVertexNormals(const FaceGraph& graph, const Points& X);
+
+/// Residuals L X along the normals N, scaled so that those of white noise have its deviation.
+Eigen::VectorXd scaledResiduals(const VertexGraph& graph, const Points& X, const Points& N);
+
+/// Called for octave k with the difference that lazy diffusion makes in it along the normals, n
+/// values, and the standard deviation of the difference that it makes in white noise of height 1.
+using OctaveVisitor = std::function<void(int k, Eigen::VectorXd along, double white)>;
+
+/// Visits the first `count` octaves: differences between (I + P) / 2 to the powers 0, 1, 2, 4, ...
+void forEachOctave(const VertexGraph& graph, const Points& X, const Points& N,
+                   const std::vector<bool>& isMeasured, int count, const OctaveVisitor& visit);
 
 /// Correlation between neighbours of the residuals L X along the normals, clipped at two
 /// deviations.

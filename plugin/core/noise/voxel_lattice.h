@@ -7,11 +7,21 @@
 
 namespace spectral {
 
-/// Voxel size along each axis if X (n x 3) are the vertices of the surface of a binary volume, from
-/// marching cubes or the like; none otherwise.
+/// A grid that all coordinates lie on.
+struct CoordinateGrid {
+    Eigen::RowVector3d step;  ///< Distance of its planes along each axis, length units.
+    Eigen::Matrix<int, Eigen::Dynamic, 3> multiples;  ///< n x 3: each coordinate in steps.
+    Index levels = 0;  ///< Largest number of planes with vertices along an axis.
+};
+
+/// The grid of the vertices X (n x 3); none if along some axis there is no grid.
+std::optional<CoordinateGrid> coordinateGrid(const Points& X);
+
+/// Voxel size along each axis if the vertices on a grid are those of the surface of a binary
+/// volume, from marching cubes or the like; none otherwise.
 ///
 /// The vertices of such a surface are midpoints of grid edges: in units of voxels, one coordinate
 /// is a half-integer and two are integers.
-std::optional<Eigen::RowVector3d> voxelLattice(const Points& X);
+std::optional<Eigen::RowVector3d> voxelLattice(const CoordinateGrid& grid);
 
 }  // namespace spectral

@@ -9,6 +9,7 @@
 #include "core/denoise/linear_steps.h"
 #include "core/denoise/removal.h"
 #include "core/denoise/whiteness.h"
+#include "core/noise/diffusion.h"
 #include "core/support/errors.h"
 #include "core/support/threads.h"
 #include "support/noisy_shapes.h"
@@ -47,6 +48,89 @@ TEST(Denoise, LeavesACleanShapeBitIdentical) {
         const DenoiseResult result = denoise(mesh.V, mesh.F, {});
         EXPECT_EQ(result.rounds, 0);
         EXPECT_EQ(result.V, mesh.V);
+    }
+}
+
+TEST(Denoise, RemovesNoiseWhereItIsAndLeavesTheRestBitIdentical) {
+    for (const Mesh& mesh : {testing::icosphere(5), testing::cube(30)}) {
+        const double middle = mesh.V.col(2).mean(), edge = meanEdgeLength(mesh.V, mesh.F);
+        const Mesh noisy = testing::noisyAbove(mesh, middle, 0.2, 3);
+        const DenoiseResult result = denoise(noisy.V, noisy.F, {});
+        EXPECT_EQ(result.diagnosis.kind, NoiseKind::Local);
+        EXPECT_LT(meanAngle(result.V, mesh.V, mesh.F), 0.25 * meanAngle(noisy.V, mesh.V, mesh.F));
+        EXPECT_LT(meanDistance(result.V, mesh.V), meanDistance(noisy.V, mesh.V));
+        EXPECT_EQ(result.volumes.preserved, 1);
+        Index moved = 0;
+        for (Index i = 0; i < mesh.V.rows(); ++i)
+            if (mesh.V(i, 2) < middle - 8.0 * edge) moved += result.V.row(i) != noisy.V.row(i);
+        EXPECT_EQ(moved, 0);
+        setThreadCount(1);
+        const Vertices alone = denoise(noisy.V, noisy.F, {}).V;
+        setThreadCount(0);
+        EXPECT_EQ(alone, result.V);
+    }
+}
+
+TEST(Denoise, RemovesNoiseThatGrowsOverTheShape) {
+    Mesh mesh = testing::icosphere(5);
+    const Mesh clean = mesh, noisy = withGaussianNoise(mesh, 0.4, 3);
+    for (Index i = 0; i < mesh.V.rows(); ++i)
+        mesh.V.row(i) += 0.5 * (1.0 + clean.V(i, 2)) * (noisy.V.row(i) - clean.V.row(i));
+    const DenoiseResult result = denoise(mesh.V, mesh.F, {});
+    EXPECT_EQ(result.diagnosis.kind, NoiseKind::Local);
+    EXPECT_LT(meanAngle(result.V, clean.V, mesh.F), 0.15 * meanAngle(mesh.V, clean.V, mesh.F));
+}
+
+TEST(Denoise, RemovesNoiseFromScanLines) {
+    Mesh lines = testing::rectangle(60.0, 300.0, 60, 60);
+    lines.V.col(2) = 3.0 * (lines.V.col(0) / 15.0).array().sin();
+    const Mesh clean = lines;
+    EXPECT_EQ(denoise(lines.V, lines.F, {}).V, lines.V);
+    lines.V.col(2) += 0.15 * whiteNoise(lines.V.rows());
+    const DenoiseResult result = denoise(lines.V, lines.F, {});
+    EXPECT_LT(meanAngle(result.V, clean.V, lines.F), 0.15 * meanAngle(lines.V, clean.V, lines.F));
+    EXPECT_LT(meanDistance(result.V, clean.V), 0.7 * meanDistance(lines.V, clean.V));
+}
+
+TEST(Denoise, SmoothsFacesOfVoxelsWithinHalfAVoxel) {
+    const Eigen::RowVector3d voxel(1.0, 1.0, 3.0);
+    const Mesh blocks = testing::voxelFaces(12, voxel);
+    const DenoiseResult result = denoise(blocks.V, blocks.F, {});
+    EXPECT_EQ(result.diagnosis.kind, NoiseKind::VoxelFaces);
+    for (int c = 0; c < 3; ++c)
+        EXPECT_LE((result.V - blocks.V).col(c).cwiseAbs().maxCoeff(), 0.5 * voxel[c] + 1e-9);
+    Points before = areaNormals(blocks.V, blocks.F), after = areaNormals(result.V, blocks.F);
+    double wrongBefore = 0.0, wrongAfter = 0.0;  // angles to the normals of the ball
+    for (Index t = 0; t < blocks.F.rows(); ++t) {
+        // Normals of an ellipsoid are those of a ball over the squared scale.
+        const Eigen::RowVector3d at =
+            (blocks.V.row(blocks.F(t, 0)) + blocks.V.row(blocks.F(t, 2))) / 2.0;
+        const Eigen::RowVector3d normal =
+            (at - 0.5 * voxel).cwiseQuotient(voxel.cwiseAbs2()).normalized();
+        wrongBefore += std::acos(std::min(1.0, std::abs(before.row(t).normalized().dot(normal))));
+        wrongAfter += std::acos(std::min(1.0, std::abs(after.row(t).normalized().dot(normal))));
+    }
+    EXPECT_LT(wrongAfter, 0.3 * wrongBefore);
+}
+
+TEST(Denoise, RemovesTheStepsOfRoundedCoordinates) {
+    const Mesh clean = testing::icosphere(5);
+    const double step = 0.1 * meanEdgeLength(clean.V, clean.F);
+    Mesh mesh = clean;
+    mesh.V = (mesh.V / step).array().round() * step;
+    const DenoiseResult result = denoise(mesh.V, mesh.F, {});
+    EXPECT_LT(meanAngle(result.V, clean.V, clean.F), 0.3 * meanAngle(mesh.V, clean.V, clean.F));
+    EXPECT_LT(meanDistance(result.V, clean.V), meanDistance(mesh.V, clean.V));
+}
+
+TEST(Denoise, TreatsFacesWithTwoSidesAsOneSurface) {
+    const Mesh mesh = withGaussianNoise(testing::icosphere(4), 0.2, 1);
+    Faces twice(2 * mesh.F.rows(), 3);
+    twice << mesh.F, mesh.F.rowwise().reverse();
+    for (const Boundary boundary : {Boundary::Free, Boundary::Fixed}) {
+        DenoiseOptions options;
+        options.boundary = boundary;
+        EXPECT_EQ(denoise(mesh.V, twice, options).V, denoise(mesh.V, mesh.F, options).V);
     }
 }
 

@@ -88,11 +88,24 @@ TEST(Diagnosis, MeasuresNothingOnATessellationOrFewVertices) {
     EXPECT_EQ(diagnosed(testing::cube(2)).kind, NoiseKind::TooFew);
 }
 
+TEST(Diagnosis, TellsScanLinesFromNeedlesOfCad) {
+    for (const double spacing : {3.0, 5.0, 8.0}) {
+        Mesh lines = testing::rectangle(60.0, 60.0 * spacing, 60, 60);
+        lines.V.col(2) = 3.0 * (lines.V.col(0) / 15.0).array().sin();
+        EXPECT_EQ(diagnosed(lines).kind, NoiseKind::Tessellation);
+        const Eigen::VectorXd noise = whiteNoise(lines.V.rows());
+        lines.V.col(2) += 0.15 * noise;
+        const Diagnosis found = diagnosed(lines);
+        EXPECT_EQ(found.kind, NoiseKind::ScanLines) << spacing;
+        EXPECT_NEAR(found.noise.height, 0.15, 0.03) << spacing;
+    }
+}
+
 TEST(VoxelLattice, IsNotFoundInOtherMeshes) {
     const Mesh ball = testing::segmentedBall(10);
-    EXPECT_FALSE(voxelLattice(testing::withGaussianNoise(ball, 0.2, 1).V));
-    EXPECT_FALSE(voxelLattice(testing::icosphere(4).V));
-    EXPECT_FALSE(voxelLattice(testing::cube(20).V));
+    EXPECT_FALSE(coordinateGrid(testing::withGaussianNoise(ball, 0.2, 1).V));
+    EXPECT_FALSE(coordinateGrid(testing::icosphere(4).V));
+    EXPECT_FALSE(voxelLattice(*coordinateGrid(testing::cube(20).V)));
     const auto found = diagnosed(ball);
     // Marching tetrahedra also put vertices on diagonals, which are not grid edges.
     EXPECT_NE(found.kind, NoiseKind::White);
@@ -114,9 +127,39 @@ TEST(VoxelLattice, ReturnsTheVoxelSizeAlongEachAxis) {
     Points X(static_cast<Index>(middles.size()), 3);
     const Eigen::RowVector3d size(0.7, 0.7, 2.1), place(1e3, -5.0, 0.1);
     for (Index i = 0; i < X.rows(); ++i) X.row(i) = middles[i].cwiseProduct(size) + place;
-    const auto voxel = voxelLattice(X);
+    const auto grid = coordinateGrid(X);
+    ASSERT_TRUE(grid);
+    const auto voxel = voxelLattice(*grid);
     ASSERT_TRUE(voxel);
     EXPECT_LT((*voxel - size).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(CoordinateGrid, CoordinatesRoundedToAGridAreNoiseOfKnownHeight) {
+    for (const double step : {0.05, 0.1, 0.2}) {
+        Mesh mesh = testing::icosphere(5);
+        const double edge = meanEdgeLength(mesh.V, mesh.F);
+        mesh.V = (mesh.V / (step * edge)).array().round() * step * edge;
+        const auto grid = coordinateGrid(mesh.V);
+        ASSERT_TRUE(grid);
+        EXPECT_LT((grid->step.array() / (step * edge) - 1.0).abs().maxCoeff(), 1e-9);
+        const Diagnosis found = diagnosed(mesh);
+        EXPECT_EQ(found.kind, NoiseKind::Rounded) << step;
+        EXPECT_NEAR(found.noise.height, step * edge / std::sqrt(12.0), 1e-6 * edge);
+        // Rounded on one axis only: not by whoever wrote the file.
+        mesh.V.col(1) = testing::icosphere(5).V.col(1);
+        EXPECT_NE(diagnosed(mesh).kind, NoiseKind::Rounded) << step;
+    }
+}
+
+TEST(CoordinateGrid, FacesOfVoxelsAreToldFromDesignedShapes) {
+    const Mesh blocks = testing::voxelFaces(10, {1.0, 1.0, 3.0});
+    const Diagnosis found = diagnosed(blocks);
+    EXPECT_EQ(found.kind, NoiseKind::VoxelFaces);
+    EXPECT_LT((found.voxel - Eigen::RowVector3d(1.0, 1.0, 3.0)).norm(), 1e-9);
+    for (const int cells : {8, 13, 20}) {
+        const NoiseKind kind = diagnosed(testing::cube(cells)).kind;
+        EXPECT_TRUE(kind == NoiseKind::None || kind == NoiseKind::Shape);
+    }
 }
 
 TEST(Spikes, AreFoundWithTheirHeights) {

@@ -69,5 +69,13 @@ TEST(FaceGraph, HasARimAtABoundaryAndWhereThreeFacesMeet) {
         << "three faces at one edge are not neighbours";
 }
 
+TEST(FaceGraph, CountsFacesWithTheSameCornersOnce) {
+    const Mesh torus = testing::torus(2.0, 0.5, 12, 8);
+    EXPECT_EQ(distinctFaces(torus.F, torus.V.rows()), torus.F);
+    Faces twice(2 * torus.F.rows(), 3);
+    twice << torus.F, torus.F.rowwise().reverse();
+    EXPECT_EQ(distinctFaces(twice, torus.V.rows()), torus.F);
+}
+
 }  // namespace
 }  // namespace spectral

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from typing import Any, get_args, get_type_hints
 
@@ -145,6 +146,44 @@ def test_spikes_are_removed_and_nothing_else_moves(decimated: Decimated) -> None
     assert report["spikes"] == pytest.approx(spiked.sum(), rel=0.15)
     assert report["summary"].startswith("spikes at ")
     assert angles(Y, V, F).mean() < 0.3 * angles(X, V, F).mean()
+
+
+def test_noise_on_a_part_is_removed_there_and_the_rest_stays_to_the_bit(
+    decimated: Decimated,
+) -> None:
+    V, F = decimated("bunny.obj", 20000)
+    middle, edge = np.median(V[:, 1]), mean_edge(V, F)
+    X = np.where(V[:, 1:2] > middle, noisy(V, F, 0.2), V)
+    Y, report = denoise_mesh(X, F)
+    found = re.fullmatch(
+        r"noise of ([\d.]+) to ([\d.]+) edges on (\d+) % of the surface: "
+        r"removed; the rest is clean",
+        report["summary"],
+    )
+    assert found
+    lowest, highest, share = map(float, found.groups())
+    assert 0.1 <= lowest < highest <= 0.5
+    assert share == pytest.approx(100 * (V[:, 1] > middle).mean(), abs=8)
+    assert report["warnings"] == []
+    assert angles(Y, V, F).mean() < 0.35 * angles(X, V, F).mean()
+    away = V[:, 1] < middle - 8 * edge
+    assert away.sum() > 1000
+    np.testing.assert_array_equal(Y[away], X[away])
+    half, report = denoise_mesh(X, F, strength=0.5)
+    np.testing.assert_allclose(half[~away], ((X + Y) / 2)[~away], atol=0.1 * edge)
+    assert ", times 0.5; the rest is clean" in report["summary"]
+
+
+def test_nothing_found_says_what_to_try_in_lengths_of_the_mesh(decimated: Decimated) -> None:
+    V, F = decimated("bunny.obj", 20000)
+    edge = mean_edge(V, F)
+    summary = denoise_mesh(V, F)[1]["summary"]
+    found = re.search(r"try noise height ([\d.e-]+) and noise size ([\d.e-]+) ", summary)
+    assert found
+    height, size = map(float, found.groups())
+    assert height == pytest.approx(0.1 * edge, rel=0.06)
+    assert size == pytest.approx(2 * edge, rel=0.06)
+    assert np.any(denoise_mesh(V, F, noise_height=height, noise_size=size)[0] != V)
 
 
 def test_a_cad_part_is_left_alone_and_never_crumpled() -> None:
