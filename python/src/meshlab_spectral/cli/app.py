@@ -54,6 +54,7 @@ _COMMANDS = {
     "spectrum": "spectrum",
     "spectra": "spectra",
     "basis": "basis",
+    "compare": "compare",
     "install": "install",
 }
 # Importing all of them would take longer than filtering a mesh.

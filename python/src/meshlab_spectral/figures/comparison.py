@@ -1,0 +1,80 @@
+"""A comparison of two meshes as a picture, and as a coloured mesh file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshlab_spectral.figures.pictures import SIGNED_COLOURS, Frame, Panel, View, render
+from meshlab_spectral.figures.sheet import Sheet
+from meshlab_spectral.files.comparison import Comparison
+
+
+def colour_extent(comparison: Comparison) -> float:
+    """Return the deviation at full colour: all but a hundredth of the surface has less.
+
+    If that is 0 it is the largest one, and 1 between equal meshes.
+    """
+    deviation = comparison.deviations["normal" if comparison.same_faces else "b_to_a"]
+    return deviation.percentiles[99] or abs(deviation.largest) or 1.0
+
+
+def draw_comparison(
+    comparison: Comparison, path: Path, names: tuple[str, str], scale: float = 1.0
+) -> None:
+    """Draw both meshes and the deviation of b to a .png file: red is outside a, blue inside.
+
+    All three have the same light and camera. `names` are those of the meshes. Raises MeshFileError
+    when `path` cannot be written.
+    """
+    (V, F), (W, G) = comparison.a, comparison.b
+    extent = colour_extent(comparison)
+    share = np.clip(comparison.signed / extent, -1, 1)
+    panels = [
+        Panel(names[0], V, F.astype(np.int64)),
+        Panel(names[1], W, G.astype(np.int64)),
+        Panel("deviation", W, G.astype(np.int64), share),
+    ]
+    frame = Frame.around([V, W], View.of_widest_side(V))
+    sheet = Sheet([frame.width / frame.height], len(panels), 1, scale, footer=0.56)
+    for column, panel in enumerate(panels):
+        sheet.picture(0, column, render(panel, frame, sheet.pixels), panel.label)
+    labels = (f"\N{MINUS SIGN}{extent:.3g}", "0", f"{extent:.3g}")
+    sheet.colour_bar(SIGNED_COLOURS, labels, "red: outside, in the units of the file")
+    sheet.save(path)
+
+
+def write_comparison(comparison: Comparison, scratch: Path) -> None:
+    """Write mesh b as .ply with the deviation as quality and in colours, for MeshLab.
+
+    Colours are blue, white and red, for -extent, 0 and extent (`colour_extent`).
+    """
+    import plyfile
+
+    W, G = comparison.b
+    columns = [(name, "f8") for name in ("x", "y", "z", "quality")]
+    columns += [(name, "u1") for name in ("red", "green", "blue")]
+    vertices = np.empty(len(W), columns)
+    for name, values in zip("xyz", W.T, strict=True):
+        vertices[name] = values
+    vertices["quality"] = comparison.signed
+    colours = _diverging(comparison.signed / colour_extent(comparison))
+    for name, levels in zip(("red", "green", "blue"), colours.T, strict=True):
+        vertices[name] = levels
+    faces = np.empty(len(G), [("vertex_indices", "i4", (3,))])
+    faces["vertex_indices"] = G
+    elements = [
+        plyfile.PlyElement.describe(vertices, "vertex"),
+        plyfile.PlyElement.describe(faces, "face"),
+    ]
+    plyfile.PlyData(elements).write(scratch)
+
+
+def _diverging(share: NDArray[np.float64]) -> NDArray[np.uint8]:
+    """Return red, green and blue of -1 (blue), 0 (white) and 1 (red)."""
+    fade = 1 - np.minimum(np.abs(share), 1)
+    rgb = np.column_stack([np.where(share > 0, 1, fade), fade, np.where(share < 0, 1, fade)])
+    levels: NDArray[np.uint8] = np.round(255 * rgb).astype(np.uint8)
+    return levels
