@@ -34,6 +34,8 @@ from meshlab_spectral.filters.signals import filter_colors as filter_colors
 from meshlab_spectral.filters.signals import filter_scalars as filter_scalars
 from meshlab_spectral.filters.spectrum import GeometrySpectrum as GeometrySpectrum
 from meshlab_spectral.filters.spectrum import geometry_spectrum as geometry_spectrum
+from meshlab_spectral.filters.texture import SurfaceTexture as SurfaceTexture
+from meshlab_spectral.filters.texture import surface_texture as surface_texture
 from meshlab_spectral.plugin.limits import set_memory_limit as set_memory_limit
 from meshlab_spectral.plugin.limits import set_threads as set_threads
 from meshlab_spectral.plugin.limits import threads as threads

@@ -55,6 +55,7 @@ _COMMANDS = {
     "spectra": "spectra",
     "basis": "basis",
     "compare": "compare",
+    "texture": "texture",
     "install": "install",
 }
 # Importing all of them would take longer than filtering a mesh.

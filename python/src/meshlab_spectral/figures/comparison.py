@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from meshlab_spectral.figures.pictures import SIGNED_COLOURS, Frame, Panel, View, render
 from meshlab_spectral.figures.sheet import Sheet
+from meshlab_spectral.figures.signed_mesh import write_signed
 from meshlab_spectral.files.comparison import Comparison
 
 
@@ -47,34 +47,5 @@ def draw_comparison(
 
 
 def write_comparison(comparison: Comparison, scratch: Path) -> None:
-    """Write mesh b as .ply with the deviation as quality and in colours, for MeshLab.
-
-    Colours are blue, white and red, for -extent, 0 and extent (`colour_extent`).
-    """
-    import plyfile
-
-    W, G = comparison.b
-    columns = [(name, "f8") for name in ("x", "y", "z", "quality")]
-    columns += [(name, "u1") for name in ("red", "green", "blue")]
-    vertices = np.empty(len(W), columns)
-    for name, values in zip("xyz", W.T, strict=True):
-        vertices[name] = values
-    vertices["quality"] = comparison.signed
-    colours = _diverging(comparison.signed / colour_extent(comparison))
-    for name, levels in zip(("red", "green", "blue"), colours.T, strict=True):
-        vertices[name] = levels
-    faces = np.empty(len(G), [("vertex_indices", "i4", (3,))])
-    faces["vertex_indices"] = G
-    elements = [
-        plyfile.PlyElement.describe(vertices, "vertex"),
-        plyfile.PlyElement.describe(faces, "face"),
-    ]
-    plyfile.PlyData(elements).write(scratch)
-
-
-def _diverging(share: NDArray[np.float64]) -> NDArray[np.uint8]:
-    """Return red, green and blue of -1 (blue), 0 (white) and 1 (red)."""
-    fade = 1 - np.minimum(np.abs(share), 1)
-    rgb = np.column_stack([np.where(share > 0, 1, fade), fade, np.where(share < 0, 1, fade)])
-    levels: NDArray[np.uint8] = np.round(255 * rgb).astype(np.uint8)
-    return levels
+    """Write mesh b as .ply with the deviation as quality and in colours, for MeshLab."""
+    write_signed(*comparison.b, comparison.signed, colour_extent(comparison), scratch)
