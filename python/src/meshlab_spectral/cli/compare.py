@@ -12,7 +12,7 @@ import typer
 from meshlab_spectral.cli.filter_options import AsJson
 from meshlab_spectral.cli.messages import errors_reported, print_result
 from meshlab_spectral.cli.report_table import change, table_of
-from meshlab_spectral.errors import MeshError
+from meshlab_spectral.errors import MeshError, SpectralError
 from meshlab_spectral.extras import check_extras
 from meshlab_spectral.figures.comparison import (
     colour_extent,
@@ -72,6 +72,8 @@ def compare_command(
             scratch = stack.enter_context(writing_whole(output))
         try:
             result = compare(a, b)
+        except SpectralError:
+            raise
         except ValueError as error:  # of the contents of a file
             raise MeshError(f"A = {a}, B = {b}: {error}") from None
         if scratch is not None:

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from meshlab_spectral.filters.arrays import mesh_arrays
 from meshlab_spectral.filters.keywords import takes_options
+from meshlab_spectral.filters.mesh_objects import takes_mesh_alone
 from meshlab_spectral.filters.options import TextureKeywords, TextureOptions
 from meshlab_spectral.filters.running import Progress, run
 
@@ -74,6 +75,7 @@ class SurfaceTexture:
 
 
 @takes_options(TextureOptions)
+@takes_mesh_alone
 def surface_texture(
     mesh_or_vertices: Any,
     faces: ArrayLike | None = None,
