@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import matplotlib.image
 import numpy as np
 import plyfile
 import pymeshlab
@@ -41,6 +42,17 @@ def test_numbers_and_mesh_are_those_of_the_function(rough: Path, tmp_path: Path)
     np.testing.assert_array_equal(written["quality"], texture.height)
     assert (written["red"][texture.height > 0] == 255).all()
     assert (written["blue"][texture.height < 0] == 255).all()
+
+
+def test_the_picture_shows_the_heights_in_colours(rough: Path, tmp_path: Path) -> None:
+    path = tmp_path / "heights.png"
+    done = command("texture", rough, "--waviness", "0.3", "--picture", path)
+    assert done.returncode == 0, done.stderr
+    pixels = matplotlib.image.imread(path)
+    saturated = np.ptp(pixels[: -pixels.shape[0] // 3, :, :3], axis=2) > 0.3
+    half = pixels.shape[1] // 2
+    assert not saturated[:, :half].any()
+    assert saturated[:, half:].mean() > 0.1
 
 
 def test_the_table_has_the_parameters_of_the_standard(rough: Path) -> None:

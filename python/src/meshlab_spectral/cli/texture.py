@@ -19,10 +19,11 @@ from meshlab_spectral.cli.filter_options import (
 from meshlab_spectral.cli.messages import errors_reported, print_result, print_warning
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.cli.report_table import table_of
-from meshlab_spectral.figures.signed_mesh import write_signed
+from meshlab_spectral.extras import check_extras
+from meshlab_spectral.figures.signed_mesh import draw_signed, write_signed
 from meshlab_spectral.files.formats import check_ending
 from meshlab_spectral.files.meshes import load_arrays
-from meshlab_spectral.files.whole_files import writing_whole
+from meshlab_spectral.files.whole_files import check_target, writing_whole
 from meshlab_spectral.filters.options import TextureOptions
 from meshlab_spectral.filters.texture import SurfaceTexture, surface_texture
 from meshlab_spectral.plugin.versions import versions
@@ -42,6 +43,10 @@ def texture_command(
             "blue valleys, full at three Sq.",
         ),
     ] = None,
+    picture: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Draw the mesh and its heights, a .png file."),
+    ] = None,
     mesh: OneMesh = None,
     as_json: AsJson = False,
 ) -> None:
@@ -55,9 +60,13 @@ def texture_command(
       meshlab-spectral texture part.stl --waviness 0.8 --output heights.ply
       meshlab-spectral texture part.stl --json
     """
-    with errors_reported(), contextlib.ExitStack() as stack:
+    with errors_reported("finished files are complete"), contextlib.ExitStack() as stack:
         options = chosen_options(TextureOptions, given)
         scratch = None
+        if picture is not None:
+            check_extras("plots", "render")
+            check_ending(picture, "the picture is a PNG file", ".png")
+            check_target(picture)
         if output is not None:
             check_ending(output, "a mesh with colours and quality is a PLY file", ".ply")
             scratch = stack.enter_context(writing_whole(output))
@@ -65,8 +74,12 @@ def texture_command(
             on_progress("reading", None)
             V, F = load_arrays(source, mesh)
             texture = surface_texture(V, F, options, progress=on_progress)
+        extent = 3 * texture.Sq or 1.0
         if scratch is not None:
-            write_signed(V, F, texture.height, 3 * texture.Sq or 1.0, scratch)
+            write_signed(V, F, texture.height, extent, scratch)
+        if picture is not None:
+            meshes = [(source.name, V, F)]
+            draw_signed(meshes, "roughness", texture.height, extent, "red: peaks", picture)
     for warning in texture.warnings:
         print_warning(warning)
     if as_json:
@@ -74,8 +87,9 @@ def texture_command(
         typer.echo(json.dumps({**record, **texture.report, "versions": versions()}))
         return
     print_result(table_of(_rows(texture), source.name))
-    if output is not None:
-        print_result(output)
+    for path in (output, picture):
+        if path is not None:
+            print_result(path)
 
 
 def _rows(texture: SurfaceTexture) -> list[tuple[str, str]]:

@@ -4,11 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
-
-from meshlab_spectral.figures.pictures import SIGNED_COLOURS, Frame, Panel, View, render
-from meshlab_spectral.figures.sheet import Sheet
-from meshlab_spectral.figures.signed_mesh import write_signed
+from meshlab_spectral.figures.signed_mesh import draw_signed, write_signed
 from meshlab_spectral.files.comparison import Comparison
 
 
@@ -21,29 +17,14 @@ def colour_extent(comparison: Comparison) -> float:
     return deviation.percentiles[99] or abs(deviation.largest) or 1.0
 
 
-def draw_comparison(
-    comparison: Comparison, path: Path, names: tuple[str, str], scale: float = 1.0
-) -> None:
-    """Draw both meshes and the deviation of b to a .png file: red is outside a, blue inside.
+def draw_comparison(comparison: Comparison, path: Path, names: tuple[str, str]) -> None:
+    """Draw both meshes, with their names, and the deviation of b to a .png file.
 
-    All three have the same light and camera. `names` are those of the meshes. Raises MeshFileError
-    when `path` cannot be written.
+    Raises MeshFileError when `path` cannot be written.
     """
-    (V, F), (W, G) = comparison.a, comparison.b
-    extent = colour_extent(comparison)
-    share = np.clip(comparison.signed / extent, -1, 1)
-    panels = [
-        Panel(names[0], V, F.astype(np.int64)),
-        Panel(names[1], W, G.astype(np.int64)),
-        Panel("deviation", W, G.astype(np.int64), share),
-    ]
-    frame = Frame.around([V, W], View.of_widest_side(V))
-    sheet = Sheet([frame.width / frame.height], len(panels), 1, scale, footer=0.56)
-    for column, panel in enumerate(panels):
-        sheet.picture(0, column, render(panel, frame, sheet.pixels), panel.label)
-    labels = (f"\N{MINUS SIGN}{extent:.3g}", "0", f"{extent:.3g}")
-    sheet.colour_bar(SIGNED_COLOURS, labels, "red: outside, in the units of the file")
-    sheet.save(path)
+    meshes = [(name, *mesh) for name, mesh in zip(names, (comparison.a, comparison.b), strict=True)]
+    caption = "red: outside"
+    draw_signed(meshes, "deviation", comparison.signed, colour_extent(comparison), caption, path)
 
 
 def write_comparison(comparison: Comparison, scratch: Path) -> None:
