@@ -24,6 +24,7 @@ TABLES = {
     "FilterOptions": ("apply_coord_spectral_filter_fractional", "filter", ()),
     "DenoiseOptions": ("apply_coord_spectral_denoise", "denoise", ()),
     "SpectrumOptions": ("get_geometry_spectrum", "spectrum", ()),
+    "TextureOptions": ("compute_scalar_surface_texture_per_vertex", "texture", ()),
     "BasisOptions": (
         "compute_scalar_manifold_harmonic_per_vertex",
         "basis",
@@ -176,6 +177,7 @@ def _written() -> str:
             _keywords_of("FilterOptions", "TransferKeywords", every - of_signals, "TypedDict"),
             _keywords_of("FilterOptions", "FilterKeywords", of_signals, "TransferKeywords"),
             _keywords_of("DenoiseOptions", "DenoiseKeywords", set(), "TypedDict"),
+            _keywords_of("TextureOptions", "TextureKeywords", set(), "TypedDict"),
             *map(_table_of, TABLES),
         ]
     )

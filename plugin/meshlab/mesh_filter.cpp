@@ -115,6 +115,12 @@ void writeArtefacts(const MeshMatrices& input, const Values&, FilterOutput& outp
     output.text += text.str();
 }
 
+/// Heights as quality, and in colours.
+void writeHeights(const MeshMatrices& input, const Values&, FilterOutput& output, MeshModel& mesh) {
+    replaceQuality(input, output.values, output, mesh);
+    showSigned(input, output.values, usualExtent(output.values), output, mesh);
+}
+
 /// One harmonic as quality, and in colours.
 void writeHarmonics(const MeshMatrices& input, const Values& given, FilterOutput& output,
                     MeshModel& mesh) {
@@ -179,6 +185,7 @@ std::vector<MeshFilter> allMeshFilters() {
         {all[5], Class(quality | measure), kQuality | kColor, MeshValues::None, writeArtefacts},
         {all[6], quality, kQuality | kColor, MeshValues::None, writeHarmonics},
         {all[7], measure, MeshModel::MM_NONE, MeshValues::None, writeNothing},
+        {all[8], Class(quality | measure), kQuality | kColor, MeshValues::None, writeHeights},
     };
 }
 

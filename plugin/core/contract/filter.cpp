@@ -30,10 +30,15 @@ namespace {
 }  // namespace
 
 const std::vector<Filter>& allFilters() {
-    static const std::vector<Filter> filters{
-        fractionalFilterContract(), denoiseContract(),         equalizerContract(),
-        qualityContract(),          colorContract(),           artefactsContract(),
-        harmonicsContract(),        geometrySpectrumContract()};
+    static const std::vector<Filter> filters{fractionalFilterContract(),
+                                             denoiseContract(),
+                                             equalizerContract(),
+                                             qualityContract(),
+                                             colorContract(),
+                                             artefactsContract(),
+                                             harmonicsContract(),
+                                             geometrySpectrumContract(),
+                                             surfaceTextureContract()};
     return filters;
 }
 

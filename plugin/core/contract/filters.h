@@ -13,5 +13,6 @@ Filter colorContract();             ///< signals.cpp
 Filter artefactsContract();         ///< artefacts.cpp
 Filter harmonicsContract();         ///< harmonics.cpp
 Filter geometrySpectrumContract();  ///< geometry_spectrum.cpp
+Filter surfaceTextureContract();    ///< surface_texture.cpp
 
 }  // namespace spectral

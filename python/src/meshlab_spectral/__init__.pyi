@@ -16,6 +16,9 @@ from meshlab_spectral.errors import SolverError as SolverError
 from meshlab_spectral.errors import SpectralError as SpectralError
 from meshlab_spectral.figures.harmonics import plot_harmonics as plot_harmonics
 from meshlab_spectral.figures.spectrum import plot_spectrum as plot_spectrum
+from meshlab_spectral.files.comparison import Comparison as Comparison
+from meshlab_spectral.files.comparison import Deviation as Deviation
+from meshlab_spectral.files.comparison import compare as compare
 from meshlab_spectral.filters.artefacts import Artefacts as Artefacts
 from meshlab_spectral.filters.artefacts import measure_artefacts as measure_artefacts
 from meshlab_spectral.filters.denoise import denoise_mesh as denoise_mesh
@@ -31,6 +34,8 @@ from meshlab_spectral.filters.signals import filter_colors as filter_colors
 from meshlab_spectral.filters.signals import filter_scalars as filter_scalars
 from meshlab_spectral.filters.spectrum import GeometrySpectrum as GeometrySpectrum
 from meshlab_spectral.filters.spectrum import geometry_spectrum as geometry_spectrum
+from meshlab_spectral.filters.texture import SurfaceTexture as SurfaceTexture
+from meshlab_spectral.filters.texture import surface_texture as surface_texture
 from meshlab_spectral.plugin.limits import set_memory_limit as set_memory_limit
 from meshlab_spectral.plugin.limits import set_threads as set_threads
 from meshlab_spectral.plugin.limits import threads as threads

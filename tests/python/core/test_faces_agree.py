@@ -39,6 +39,7 @@ CALLS = [
     Call("compute_scalar_spectral_artefacts_per_vertex", {"feature_size": "10%"}),
     Call("compute_scalar_manifold_harmonic_per_vertex", {"basis_size": 20, "mode": 3}),
     Call("get_geometry_spectrum", {"basis_size": 10}),
+    Call("compute_scalar_surface_texture_per_vertex", {"waviness": "5%", "noise": "1%"}),
 ]
 # Shape and changes as in tests/python/fuzz/meshes.py; the bunny is one of pymeshlab's.
 SHAPES: dict[str, Any] = {

@@ -24,7 +24,13 @@ from helpers import (
     refusal,
     snapshot,
 )
-from meshlab_spectral import FilterError, OptionError, filter_colors, filter_scalars
+from meshlab_spectral import (
+    FilterError,
+    FilterOptions,
+    OptionError,
+    filter_colors,
+    filter_scalars,
+)
 from numpy.typing import NDArray
 from transfer_functions import RESPONSES, TYPES, gain_of
 
@@ -457,3 +463,35 @@ def test_a_bump_is_reduced_as_the_readme_says() -> None:
     assert left(lone, 4) == pytest.approx(1 / 8, abs=0.01)
     for widths, height in ((1, 0.92), (2, 0.71), (4, 0.25), (6, 0.04)):
         assert left(waves, widths) == pytest.approx(height, abs=0.01)
+
+
+def test_fwhm_is_the_width_at_half_height_of_what_becomes_of_a_point() -> None:
+    cells, fwhm = 100, 12.0
+    grid = pyvista.Plane(i_size=cells, j_size=cells, i_resolution=cells, j_resolution=cells)
+    grid = grid.triangulate()
+    V, F = np.asarray(grid.points, dtype=np.float64), grid.regular_faces
+    r = np.linalg.norm(V, axis=1)
+    smooth, _ = filter_scalars(V, F, (r == 0).astype(float), fwhm=fwhm)
+    top = smooth.max()
+    np.testing.assert_allclose(smooth / top, 2 ** -((2 * r / fwhm) ** 2), atol=0.01)
+    by_size, _ = filter_scalars(V, F, (r == 0).astype(float), feature_size=3.2049 * fwhm)
+    np.testing.assert_allclose(by_size, smooth, atol=1e-4 * top)
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"fwhm": 0.0},
+        {"fwhm": -1.0},
+        {"fwhm": np.nan},
+        {"fwhm": np.inf},
+        {"fwhm": 1.0, "feature_size": 2.0},
+        {"fwhm": 1.0, "filter_type": "high-pass"},
+        {"fwhm": 1.0, "response": "ideal"},
+        {"fwhm": 1.0, "gain": np.ones_like},
+        {"fwhm": 1.0, "options": FilterOptions()},
+    ],
+)
+def test_a_fwhm_that_is_no_width_or_contradicts_is_refused(wrong: dict[str, Any]) -> None:
+    with pytest.raises(OptionError, match="fwhm"):
+        filter_scalars(*TRIANGLE, np.arange(3.0), **wrong)

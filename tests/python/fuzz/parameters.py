@@ -98,6 +98,13 @@ PARAMETERS: dict[str, dict[str, st.SearchStrategy[Any]]] = {
         "laplacian": _LAPLACIAN,
         "boundary": _BOUNDARY,
     },
+    "compute_scalar_surface_texture_per_vertex": {
+        "waviness": _SIZES,
+        "noise": _SIZES,
+        "form": _SIZES,
+        "crease_angle": _of((60.0, 0.0, 30.0, 180.0), (-1.0, 181.0, NAN, INFINITY)),
+        "laplacian": _LAPLACIAN,
+    },
     "get_geometry_spectrum": {
         "basis_size": _BASIS_SIZES,
         "laplacian": _LAPLACIAN,

@@ -49,6 +49,7 @@ TARGETS = {
     "compute_scalar_spectral_artefacts_per_vertex": {"vertex_scalar_array", "vertex_color_matrix"},
     "compute_scalar_manifold_harmonic_per_vertex": {"vertex_scalar_array", "vertex_color_matrix"},
     "get_geometry_spectrum": set(),
+    "compute_scalar_surface_texture_per_vertex": {"vertex_scalar_array", "vertex_color_matrix"},
 }
 # An error ends with what to do, or names an option with its range.
 REMEDY = re.compile(

@@ -54,6 +54,8 @@ _COMMANDS = {
     "spectrum": "spectrum",
     "spectra": "spectra",
     "basis": "basis",
+    "compare": "compare",
+    "texture": "texture",
     "install": "install",
 }
 # Importing all of them would take longer than filtering a mesh.

@@ -52,7 +52,7 @@ def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
         ]
         if report["step_error"]:
             rows.append(("Estimated error of the steps", f"{report['step_error']:.2g}"))
-        rows.append(("Area", _change(report["area_before"], report["area_after"])))
+        rows.append(("Area", change(report["area_before"], report["area_after"])))
     else:
         rows.append(("Mean edge", f"{report['mean_edge']:.4g}"))
     rows += [
@@ -60,7 +60,7 @@ def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
         ("RMS displacement", f"{report['rms_displacement']:.4g}"),
     ]
     if report["has_volume"]:
-        rows.append(("Volume", _change(report["volume_before"], report["volume_after"])))
+        rows.append(("Volume", change(report["volume_before"], report["volume_after"])))
     rows.append(("Components", f"{report['components']}"))
     for name, label, more in (
         ("joined_vertices", "Vertices joined at seams", ""),
@@ -90,6 +90,7 @@ def _work(report: dict[str, Any]) -> list[tuple[str, str]]:
     return [*rows, ("Work", ", ".join(work))]
 
 
-def _change(before: float, after: float) -> str:
+def change(before: float, after: float) -> str:
+    """Format two numbers and their relative difference."""
     text = f"{before:.6g} -> {after:.6g}"
     return f"{text} ({(after - before) / before:+.1%})" if before else text

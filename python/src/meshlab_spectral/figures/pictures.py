@@ -35,6 +35,8 @@ class Panel:
         n values to colour the mesh by, from -1 (blue) to 1 (red); a line marks 0 (grey).
     colors
         n x 3 levels of red, green and blue, 0 to 255, in place of `signed`.
+    zero_line
+        Whether the line is drawn; where values are rough it would cover them.
     """
 
     label: str
@@ -42,6 +44,7 @@ class Panel:
     F: NDArray[np.int64]
     signed: NDArray[np.float64] | None = None
     colors: NDArray[np.uint8] | None = None
+    zero_line: bool = True
 
 
 @dataclass(frozen=True)
@@ -239,7 +242,7 @@ def _add(plotter: Any, panel: Panel, frame: Frame) -> None:
             show_scalar_bar=False,
         )
         zero = surface.contour([0.0], scalars="signed")
-        if zero.n_points:
+        if panel.zero_line and zero.n_points:
             # Slightly in front of the surface, which would otherwise hide half the line.
             zero.translate(2e-3 * frame.height * frame.view.axes()[2], inplace=True)
             plotter.add_mesh(zero, color="#404040", line_width=5, lighting=False)

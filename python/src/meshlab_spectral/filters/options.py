@@ -66,6 +66,16 @@ class DenoiseKeywords(TypedDict, total=False):
     boundary: Boundary
 
 
+class TextureKeywords(TypedDict, total=False):
+    """Fields of `TextureOptions`, by name."""
+
+    waviness: Size
+    noise: Size
+    form: Size
+    crease_angle: float
+    laplacian: LaplacianKind
+
+
 @dataclass(frozen=True, kw_only=True)
 class FilterOptions(Options):
     """Options of Spectral Filter (Fractional), named as in MeshLab.
@@ -313,6 +323,52 @@ class SpectrumOptions(Options):
         "free",
         "The boundary of an open surface, holes included. free: it is part of the shape. "
         "fixed: only the details that it does not determine are measured.",
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class TextureOptions(Options):
+    """Options of Surface Texture, named as in MeshLab.
+
+    Raises
+    ------
+    OptionError
+        When a value is invalid; names the option, the value and what is allowed.
+    """
+
+    FILTER = "compute_scalar_surface_texture_per_vertex"
+    TABLE = "texture"
+
+    waviness: Length = option(
+        Length(automatic=True),
+        "Nesting index of the L-filter: what is larger is waviness or form, and no "
+        "roughness. Waves of this length keep half of their height, as in ISO 16610-61. "
+        "Default: twelve mean edges, at most 10 % of the diagonal.",
+    )
+    noise: Length = option(
+        Length(automatic=True),
+        "Nesting index of the S-filter: what is smaller is noise, and no roughness. The "
+        "default: none is removed. Default: 0: no S-filter.",
+    )
+    form: Length = option(
+        Length(automatic=True),
+        "Size of the F-operator: heights that vary more slowly are form. The default: eight "
+        "times --waviness. Default: 0: eight waviness cutoffs.",
+    )
+    crease_angle: float = option(
+        60.0,
+        "Edges between faces whose planes differ by more are creases. The surface within a "
+        "waviness cutoff of them, and of boundaries, is left out: it has the height 0. 180 "
+        "keeps creases.",
+        Limits(0, 180),
+    )
+    laplacian: LaplacianKind = option(
+        "intrinsic delaunay",
+        "How the frequencies of the surface are measured. intrinsic delaunay works on any "
+        "triangles, including slivers, holes, duplicate or intersecting sheets, and is "
+        "stable for strong filters. cotangent is the formula of the paper; no triangle may "
+        "have zero area. uniform uses the connectivity only, as if the vertices were evenly "
+        "spaced: for noise that differs from vertex to vertex.",
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import isfinite, log, pi, sqrt
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -23,6 +24,11 @@ _SCALARS = "apply_scalar_spectral_filter_per_vertex"
 _MOST_LABELS = 1000
 _COLORS = "apply_color_spectral_filter_per_vertex"
 
+# A Gaussian of standard deviation s is half as high at s sqrt(2 ln 2): fwhm = 2 sqrt(2 ln 2) s. It
+# multiplies waves by exp(-s^2 omega^2 / 2). The low-pass, 2^(-w^2 / 2) with w = feature size omega
+# / 2 pi, is the same if s = sqrt(ln 2) feature size / 2 pi: the feature size is 3.20 fwhm.
+_SIZE_PER_FWHM = pi / (sqrt(2) * log(2))
+
 
 @takes_options(FilterOptions, names=TransferKeywords.__annotations__)
 @takes_mesh_alone
@@ -32,6 +38,7 @@ def filter_scalars(
     values: ArrayLike | None = None,
     options: FilterOptions | None = None,
     *,
+    fwhm: float | None = None,
     gain: Gain | None = None,
     progress: Progress | None = None,
     threads: int | None = None,
@@ -60,6 +67,9 @@ def filter_scalars(
         is, and take the label with most weight (see the example).
     options
         All options below in one object, instead of by name; others must have their defaults.
+    fwhm
+        Instead of `feature_size`: the width at half height of the Gaussian that the values are
+        smoothed with, as in brain imaging; length units, > 0.
     gain, progress, threads
         As for `filter_mesh`.
     **named
@@ -98,6 +108,8 @@ def filter_scalars(
     V, F = mesh_arrays(mesh_or_vertices, faces)
     if values is None:
         raise TypeError("values: pass numbers to filter, one for each vertex")
+    if fwhm is not None:
+        options, named = _smoothing(fwhm, options, named, gain)
     parameters = _options_for(options, named, gain)
     given_values = np.asarray(array_of(mesh_or_vertices, values, "values"))
     Q = given_values.astype(np.float64)
@@ -186,6 +198,21 @@ def _warning_of_labels(values: NDArray[Any]) -> list[str]:
         f"values: {count} different integers are averaged to fractions; if they are labels, filter "
         "where each of them is, and take the label with most weight: see help(filter_scalars)"
     ]
+
+
+def _smoothing(
+    fwhm: float, options: FilterOptions | None, named: Any, gain: Gain | None
+) -> tuple[None, Any]:
+    """Return the options of a call with `fwhm`; raise OptionError with others that contradict."""
+    if gain is not None or options is not None or "feature_size" in named:
+        raise OptionError("fwhm: replaces feature_size, options and gain; give one of them")
+    if named.get("filter_type", "low-pass") != "low-pass":
+        raise OptionError(f"fwhm: is of a low-pass, not of filter_type = {named['filter_type']}")
+    if named.get("response", "gaussian") != "gaussian":
+        raise OptionError(f"fwhm: is of a Gaussian, not of response = {named['response']}")
+    if not (fwhm > 0 and isfinite(fwhm)):
+        raise OptionError(f"fwhm = {fwhm}: must be a length above zero")
+    return None, {**named, "feature_size": _SIZE_PER_FWHM * fwhm}
 
 
 def _options_for(options: FilterOptions | None, named: Any, gain: Gain | None) -> FilterOptions:

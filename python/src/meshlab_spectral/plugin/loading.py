@@ -21,6 +21,7 @@ FILTERS = {
     "Spectral Artefacts": "compute_scalar_spectral_artefacts_per_vertex",
     "Manifold Harmonics": "compute_scalar_manifold_harmonic_per_vertex",
     "Geometry Spectrum": "get_geometry_spectrum",
+    "Surface Texture": "compute_scalar_surface_texture_per_vertex",
 }
 PLUGIN_VARIABLE = "MESHLAB_SPECTRAL_PLUGIN"
 PYMESHLAB_VERSION = "2025.7.post1"

@@ -1,0 +1,109 @@
+"""The command `meshlab-spectral compare`."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from meshlab_spectral.cli.filter_options import AsJson
+from meshlab_spectral.cli.messages import errors_reported, print_result
+from meshlab_spectral.cli.report_table import change, table_of
+from meshlab_spectral.errors import MeshError, SpectralError
+from meshlab_spectral.extras import check_extras
+from meshlab_spectral.figures.comparison import (
+    colour_extent,
+    draw_comparison,
+    write_comparison,
+)
+from meshlab_spectral.files.comparison import PERCENTILES, Comparison, compare
+from meshlab_spectral.files.formats import check_ending
+from meshlab_spectral.files.whole_files import check_target, writing_whole
+
+_LABELS = {
+    "displacement": "Displacement",
+    "normal": "Along the normal",
+    "tangential": "Along the surface",
+    "a_to_b": "From A to B",
+    "b_to_a": "From B to A",
+}
+
+
+def compare_command(
+    a: Annotated[Path, typer.Argument(metavar="A", help="Mesh to compare with.")],
+    b: Annotated[Path, typer.Argument(metavar="B", help="Mesh that is compared.")],
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="FILE",
+            help="Write B as .ply with the deviation as quality, and in colours: red outside A, "
+            "blue inside.",
+        ),
+    ] = None,
+    picture: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Draw A, B and the deviation, a .png file."),
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Compare two meshes: how far B is from A, where, and on which side.
+
+    If both have the same faces, as before and after a filter, each vertex is compared with itself.
+    Otherwise each vertex is compared with the nearest point of the other mesh. Lengths are in the
+    units of the files, means and percentiles are over the surface.
+
+      meshlab-spectral compare scan.ply smooth.ply
+      meshlab-spectral compare scan.ply smooth.ply --picture change.png --output change.ply
+      meshlab-spectral compare scan.ply smooth.ply --json
+    """
+    with errors_reported("finished files are complete"), contextlib.ExitStack() as stack:
+        scratch = None
+        if picture is not None:
+            check_extras("plots", "render")
+            check_ending(picture, "the picture is a PNG file", ".png")
+            check_target(picture)
+        if output is not None:
+            check_ending(output, "a mesh with colours and quality is a PLY file", ".ply")
+            scratch = stack.enter_context(writing_whole(output))
+        try:
+            result = compare(a, b)
+        except SpectralError:
+            raise
+        except ValueError as error:  # of the contents of a file
+            raise MeshError(f"A = {a}, B = {b}: {error}") from None
+        if scratch is not None:
+            write_comparison(result, scratch)
+        if picture is not None:
+            draw_comparison(result, picture, (a.name, b.name))
+    if as_json:
+        record = {"a": str(a), "b": str(b), **result.report}
+        if output is not None or picture is not None:
+            record["colour_extent"] = colour_extent(result)
+        typer.echo(json.dumps(record))
+        return
+    print_result(table_of(_rows(result), f"{a.name} -> {b.name}"))
+    for path in (output, picture):
+        if path is not None:
+            print_result(path)
+
+
+def _rows(result: Comparison) -> list[tuple[str, str]]:
+    rows = []
+    for name, one in result.deviations.items():
+        label = _LABELS[name]
+        shares = " / ".join(f"{one.percentiles[p]:.4g}" for p in PERCENTILES)
+        position = ", ".join(f"{x:.4g}" for x in one.position)
+        rows += [
+            (f"{label}: mean, rms", f"{one.mean:.4g}, {one.rms:.4g}"),
+            (f"  {' / '.join(map(str, PERCENTILES))} % of the surface within", shares),
+            ("  largest", f"{one.largest:.4g} at vertex {one.vertex} ({position})"),
+        ]
+    rows.append(("Area", change(*result.areas)))
+    if result.volumes is not None:
+        rows.append(("Volume", change(*result.volumes)))
+    return rows

@@ -1,0 +1,111 @@
+"""The command `meshlab-spectral texture`."""
+
+from __future__ import annotations
+
+import contextlib
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from meshlab_spectral.cli.filter_options import (
+    AsJson,
+    OneMesh,
+    Source,
+    chosen_options,
+    with_options,
+)
+from meshlab_spectral.cli.messages import errors_reported, print_result, print_warning
+from meshlab_spectral.cli.progress import progress_shown
+from meshlab_spectral.cli.report_table import table_of
+from meshlab_spectral.extras import check_extras
+from meshlab_spectral.figures.signed_mesh import draw_signed, write_signed
+from meshlab_spectral.files.formats import check_ending
+from meshlab_spectral.files.meshes import load_arrays
+from meshlab_spectral.files.whole_files import check_target, writing_whole
+from meshlab_spectral.filters.options import TextureOptions
+from meshlab_spectral.filters.texture import SurfaceTexture, surface_texture
+from meshlab_spectral.plugin.versions import versions
+
+
+@with_options(TextureOptions)
+def texture_command(
+    given: dict[str, Any],
+    source: Source,
+    output: Annotated[
+        Path | None,
+        typer.Option(
+            "--output",
+            "-o",
+            metavar="FILE",
+            help="Write the mesh as .ply with the height as quality, and in colours: red peaks, "
+            "blue valleys, full at three Sq.",
+        ),
+    ] = None,
+    picture: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="Draw the mesh and its heights, a .png file."),
+    ] = None,
+    mesh: OneMesh = None,
+    as_json: AsJson = False,
+) -> None:
+    """Measure how rough a surface is: Sa, Sq, Sz and others of ISO 25178-2.
+
+    Roughness is separated from waviness, form and noise by cutoff wavelengths, with the Gaussian
+    filter of ISO 16610-61 on the surface itself, whatever its shape. Lengths are in the units of
+    the file.
+
+      meshlab-spectral texture part.stl --waviness 0.8 --noise 0.0025
+      meshlab-spectral texture part.stl --waviness 0.8 --output heights.ply
+      meshlab-spectral texture part.stl --json
+    """
+    with errors_reported("finished files are complete"), contextlib.ExitStack() as stack:
+        options = chosen_options(TextureOptions, given)
+        scratch = None
+        if picture is not None:
+            check_extras("plots", "render")
+            check_ending(picture, "the picture is a PNG file", ".png")
+            check_target(picture)
+        if output is not None:
+            check_ending(output, "a mesh with colours and quality is a PLY file", ".ply")
+            scratch = stack.enter_context(writing_whole(output))
+        with progress_shown() as on_progress:
+            on_progress("reading", None)
+            V, F = load_arrays(source, mesh)
+            texture = surface_texture(V, F, options, progress=on_progress)
+        extent = 3 * texture.Sq or 1.0
+        if scratch is not None:
+            write_signed(V, F, texture.height, extent, scratch)
+        if picture is not None:
+            meshes = [(source.name, V, F)]
+            draw_signed(meshes, "roughness", texture.height, extent, "red: peaks", picture)
+    for warning in texture.warnings:
+        print_warning(warning)
+    if as_json:
+        record = {"input": str(source), "output": None if output is None else str(output)}
+        typer.echo(json.dumps({**record, **texture.report, "versions": versions()}))
+        return
+    print_result(table_of(_rows(texture), source.name))
+    for path in (output, picture):
+        if path is not None:
+            print_result(path)
+
+
+def _rows(texture: SurfaceTexture) -> list[tuple[str, str]]:
+    noise = f"{texture.noise:.4g}" if texture.noise else "none"
+    counts = texture.vertices_evaluated, texture.vertices_left_out
+    return [
+        ("Waviness cutoff (L-filter)", f"{texture.waviness:.4g}"),
+        ("Noise cutoff (S-filter)", noise),
+        ("Sa, mean height", f"{texture.Sa:.4g}"),
+        ("Sq, rms height", f"{texture.Sq:.4g}"),
+        ("Ssk, skewness", f"{texture.Ssk:.4g}"),
+        ("Sku, kurtosis", f"{texture.Sku:.4g}"),
+        ("Sp, highest peak", f"{texture.Sp:.4g}"),
+        ("Sv, deepest valley", f"{texture.Sv:.4g}"),
+        ("Sz, both", f"{texture.Sz:.4g}"),
+        ("Sdq, rms slope", f"{texture.Sdq:.4g}"),
+        ("Sdr, additional area", f"{100 * texture.Sdr:.4g} %"),
+        ("Vertices evaluated, left out", "{}, {}".format(*counts)),
+    ]

@@ -1,0 +1,238 @@
+#include "core/analysis/surface_texture.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <functional>
+
+#include "core/mesh/mesh.h"
+#include "core/support/errors.h"
+#include "core/support/types.h"
+#include "support/shapes.h"
+
+namespace spectral {
+namespace {
+
+using testing::cube;
+using testing::icosphere;
+using testing::Mesh;
+using testing::rectangle;
+using testing::torus;
+
+TextureOptions withWaviness(double waviness) {
+    TextureOptions options;
+    options.waviness = waviness;
+    return options;
+}
+
+SurfaceTexture measured(const Mesh& mesh, const TextureOptions& options) {
+    return surfaceTexture(mesh.V, mesh.F, options);
+}
+
+/// A plane with the height z(x, y).
+Mesh plane(double size, int cells, const std::function<double(double, double)>& z) {
+    Mesh mesh = rectangle(size, size, cells, cells);
+    for (Index i = 0; i < mesh.V.rows(); ++i) mesh.V(i, 2) = z(mesh.V(i, 0), mesh.V(i, 1));
+    return mesh;
+}
+
+/// An open cylinder along z, of the radius r(u, z) at u = radius * angle.
+Mesh cylinder(double radius, double height, int around, int along,
+              const std::function<double(double, double)>& r) {
+    Mesh mesh;
+    mesh.V.resize(Index{around} * (along + 1), 3);
+    mesh.F.resize(2 * Index{around} * along, 3);
+    for (int i = 0; i < around; ++i)
+        for (int j = 0; j <= along; ++j) {
+            const double angle = 2.0 * kPi * i / around, z = height * j / along;
+            const double distance = r(radius * angle, z);
+            mesh.V.row(Index{i} * (along + 1) + j) << distance * std::cos(angle),
+                distance * std::sin(angle), z;
+        }
+    Index t = 0;
+    for (int i = 0; i < around; ++i)
+        for (int j = 0; j < along; ++j) {
+            const int a = i * (along + 1) + j, b = (i + 1) % around * (along + 1) + j;
+            mesh.F.row(t++) << a, b, b + 1;
+            mesh.F.row(t++) << a, b + 1, a + 1;
+        }
+    return mesh;
+}
+
+/// Oblique waves: their crests meet the vertices at all phases.
+std::function<double(double)> waveOf(double amplitude, double length) {
+    return [=](double along) { return amplitude * std::cos(2.0 * kPi * along / length); };
+}
+
+/// The parameters of a sinusoid of this amplitude.
+void expectSinusoid(const SurfaceTexture& texture, double amplitude) {
+    EXPECT_NEAR(texture.Sa, 2.0 / kPi * amplitude, 0.01 * 2.0 / kPi * amplitude);
+    EXPECT_NEAR(texture.Sq, amplitude / std::sqrt(2.0), 0.01 * amplitude / std::sqrt(2.0));
+    EXPECT_NEAR(texture.Ssk, 0.0, 0.01);
+    EXPECT_NEAR(texture.Sku, 1.5, 0.015);
+    EXPECT_NEAR(texture.Sp, amplitude, 0.01 * amplitude);
+    EXPECT_NEAR(texture.Sv, amplitude, 0.01 * amplitude);
+    EXPECT_NEAR(texture.Sz, 2.0 * amplitude, 0.01 * 2.0 * amplitude);
+    EXPECT_TRUE(texture.accuracyReached);
+}
+
+TEST(SurfaceTexture, OfASinusoidOnAPlaneIsTheClosedForm) {
+    const auto wave = waveOf(0.01, 1.0);
+    const SurfaceTexture texture =
+        measured(plane(20.0, 240, [&](double x, double y) { return wave(0.8 * x + 0.6 * y); }),
+                 withWaviness(4.0));
+    expectSinusoid(texture, 0.01);
+    // The slope of waves that are linear between twelve vertices is 1 % too small.
+    EXPECT_NEAR(texture.Sdq, 2.0 * kPi * 0.01 / std::sqrt(2.0), 0.02 * 0.0444);
+    EXPECT_NEAR(texture.Sdr, 0.5 * std::pow(2.0 * kPi * 0.01, 2) / 2.0, 0.03 * 0.000987);
+    EXPECT_NEAR(texture.area, 12.0 * 12.0, 0.1 * 144.0);
+    EXPECT_GT(texture.leftOut, 0);
+    EXPECT_EQ(texture.evaluated + texture.leftOut, 241 * 241);
+}
+
+TEST(SurfaceTexture, OfASinusoidOnACylinderIsTheClosedForm) {
+    const double radius = 60.0 / (2.0 * kPi);
+    for (const double a : {0.01, 0.02}) {
+        const auto wave = waveOf(a, 1.0);
+        // 48 waves around, so that they meet.
+        const Mesh mesh = cylinder(radius, 16.0, 720, 192, [&](double u, double z) {
+            return radius + wave(0.8 * u + 0.6 * z);
+        });
+        expectSinusoid(measured(mesh, withWaviness(4.0)), a);
+    }
+}
+
+/// Mean of sin^p over a sphere, of the polar angle.
+double meanPowerOfSine(double p) {
+    constexpr int kPoints = 20000;
+    double sum = 0.0;
+    for (int k = 0; k < kPoints; ++k)
+        sum += std::pow(1.0 - std::pow((2.0 * k + 1.0) / kPoints - 1.0, 2), 0.5 * p) / kPoints;
+    return sum;
+}
+
+TEST(SurfaceTexture, OfASectoralHarmonicOnASphereIsTheClosedForm) {
+    constexpr int l = 29;  // twelve edges a wave
+    constexpr double a = 0.0005;
+    Mesh mesh = icosphere(6);
+    const Eigen::Matrix3d axes =
+        Eigen::AngleAxisd(1.0, Eigen::Vector3d(1.0, 2.0, 3.0).normalized()).toRotationMatrix();
+    for (Index i = 0; i < mesh.V.rows(); ++i) {
+        const Eigen::Vector3d p = axes * mesh.V.row(i).transpose();
+        mesh.V.row(i) *= 1.0 + a * std::pow(std::hypot(p.x(), p.y()), l) *
+                                   std::cos(l * std::atan2(p.y(), p.x()));
+    }
+    const double wave = 2.0 * kPi / std::sqrt(l * (l + 1.0));
+    const SurfaceTexture texture = measured(mesh, withWaviness(4.0 * wave));
+    // Waves a sin^l(theta) cos(l phi): the parameters of a cosine times moments of the sine.
+    const double Sa = a * 2.0 / kPi * meanPowerOfSine(l);
+    const double Sq = a * std::sqrt(0.5 * meanPowerOfSine(2 * l));
+    const double Sku = std::pow(a, 4) * 0.375 * meanPowerOfSine(4 * l) / std::pow(Sq, 4);
+    EXPECT_NEAR(texture.Sa, Sa, 0.01 * Sa);
+    EXPECT_NEAR(texture.Sq, Sq, 0.01 * Sq);
+    // Waves shrink the surface under them, by the square of their slope.
+    EXPECT_NEAR(texture.Ssk, 0.0, 0.02);
+    EXPECT_NEAR(texture.Sku, Sku, 0.01 * Sku);
+    EXPECT_NEAR(texture.Sz, 2.0 * a, 0.01 * 2.0 * a);
+    EXPECT_EQ(texture.leftOut, 0);
+}
+
+/// Amplitude of a wave in the evaluated heights: its least-squares fit.
+double amplitudeOf(const Eigen::VectorXd& height, const Eigen::VectorXd& phase) {
+    Eigen::Matrix2d A = Eigen::Matrix2d::Zero();
+    Eigen::Vector2d b = Eigen::Vector2d::Zero();
+    for (Index i = 0; i < height.size(); ++i) {
+        if (height[i] == 0.0) continue;
+        const Eigen::Vector2d basis(std::cos(phase[i]), std::sin(phase[i]));
+        A += basis * basis.transpose();
+        b += height[i] * basis;
+    }
+    return A.ldlt().solve(b).norm();
+}
+
+TEST(SurfaceTexture, TransmitsWavesOnAPlaneAsTheStandardsGaussian) {
+    constexpr double a = 0.002;
+    for (const double length : {0.25, 0.5, 1.0, 2.0, 4.0}) {
+        const auto wave = waveOf(a, length);
+        const Mesh mesh =
+            plane(8.0, 192, [&](double x, double y) { return wave(0.8 * x + 0.6 * y); });
+        const Eigen::VectorXd phase =
+            2.0 * kPi / length * (0.8 * mesh.V.col(0) + 0.6 * mesh.V.col(1));
+        const double rough = amplitudeOf(measured(mesh, withWaviness(1.0)).height, phase) / a;
+        EXPECT_NEAR(rough, 1.0 - std::exp2(-std::pow(1.0 / length, 2)), 0.01) << length;
+        if (length > 2.0) continue;
+        TextureOptions options = withWaviness(2.0);
+        options.noise = 1.0;
+        const double kept = amplitudeOf(measured(mesh, options).height, phase) / a;
+        EXPECT_NEAR(kept,
+                    std::exp2(-std::pow(1.0 / length, 2)) - std::exp2(-std::pow(2.0 / length, 2)),
+                    0.01)
+            << length;
+    }
+}
+
+TEST(SurfaceTexture, TransmitsWavesOnACylinderAsTheStandardsGaussian) {
+    constexpr double a = 0.01;
+    const double radius = 64.0 / (2.0 * kPi);
+    for (const double length : {1.0, 2.0, 4.0, 8.0, 16.0}) {
+        const auto wave = waveOf(a, length);
+        const Mesh mesh =
+            cylinder(radius, 24.0, 384, 144, [&](double u, double) { return radius + wave(u); });
+        Eigen::VectorXd phase(mesh.V.rows());
+        for (Index i = 0; i < phase.size(); ++i)
+            phase[i] = std::atan2(mesh.V(i, 1), mesh.V(i, 0)) * radius * 2.0 * kPi / length;
+        const double rough = amplitudeOf(measured(mesh, withWaviness(4.0)).height, phase) / a;
+        EXPECT_NEAR(rough, 1.0 - std::exp2(-std::pow(4.0 / length, 2)), 0.01) << length;
+    }
+}
+
+TEST(SurfaceTexture, ScalesWithTheMeshAndTurnsWithIt) {
+    Mesh mesh = testing::withNoise(torus(1.0, 0.4, 90, 50), 0.003, 5);
+    const SurfaceTexture one = measured(mesh, withWaviness(0.4));
+    const Eigen::Matrix3d R =
+        Eigen::AngleAxisd(1.1, Eigen::Vector3d(1.0, 2.0, -1.0).normalized()).toRotationMatrix();
+    mesh.V = (1000.0 * mesh.V * R.transpose()).eval();
+    mesh.V.rowwise() += Eigen::RowVector3d(5.0, -900.0, 3000.0);
+    const SurfaceTexture other = measured(mesh, withWaviness(400.0));
+    EXPECT_LT((other.height - 1000.0 * one.height).cwiseAbs().maxCoeff(), 1e-3 * one.Sq * 1000.0);
+    EXPECT_NEAR(other.Sq, 1000.0 * one.Sq, 1e-3 * other.Sq);
+    EXPECT_NEAR(other.Sdr, one.Sdr, 1e-3 * one.Sdr);
+    EXPECT_NEAR(other.Sku, one.Sku, 1e-3 * one.Sku);
+}
+
+TEST(SurfaceTexture, OfASmoothSphereIsNextToNothing) {
+    const SurfaceTexture texture = measured(icosphere(4), withWaviness(0.5));
+    EXPECT_LT(texture.Sq, 1e-3);
+}
+
+TEST(SurfaceTexture, LeavesOutCreasesUnlessTheyAreKept) {
+    const Mesh mesh = cube(24);
+    TextureOptions options = withWaviness(0.4);
+    const SurfaceTexture flat = measured(mesh, options);
+    EXPECT_GT(flat.leftOut, 0);
+    EXPECT_GT(flat.evaluated, 0);
+    options.creaseAngle = 180.0;
+    const SurfaceTexture all = measured(mesh, options);
+    EXPECT_EQ(all.leftOut, 0);
+    EXPECT_LT(flat.Sz, 0.1 * all.Sz);
+}
+
+TEST(SurfaceTexture, RefusesSizesThatDoNotFit) {
+    const Mesh mesh = rectangle(1.0, 1.0, 10, 10);
+    EXPECT_THROW(measured(mesh, withWaviness(0.0)), InvalidOption);
+    EXPECT_THROW(measured(mesh, withWaviness(std::nan(""))), InvalidOption);
+    EXPECT_THROW(measured(mesh, withWaviness(3.0)), InvalidOption);  // all is near the boundary
+    TextureOptions options = withWaviness(0.2);
+    options.noise = 0.3;
+    EXPECT_THROW(measured(mesh, options), InvalidOption);
+    options.noise = 0.0;
+    options.form = 0.1;
+    EXPECT_THROW(measured(mesh, options), InvalidOption);
+    options.form = 0.0;
+    options.creaseAngle = 181.0;
+    EXPECT_THROW(measured(mesh, options), InvalidOption);
+}
+
+}  // namespace
+}  // namespace spectral

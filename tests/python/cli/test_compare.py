@@ -1,0 +1,103 @@
+"""The command `meshlab-spectral compare`: numbers, the coloured mesh, the picture, messages."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import matplotlib.image
+import numpy as np
+import plyfile
+import pymeshlab
+import pytest
+from commands import command
+from helpers import mesh_set_of
+from meshlab_spectral import compare
+
+
+@pytest.fixture
+def pair(tmp_path: Path) -> tuple[Path, Path]:
+    """A sphere, and the same faces on a larger one with a dent."""
+    made = pymeshlab.MeshSet()
+    made.create_sphere(subdiv=4)
+    V, F = made.current_mesh().vertex_matrix(), made.current_mesh().face_matrix()
+    a, b = tmp_path / "a.ply", tmp_path / "b.ply"
+    mesh_set_of(V, F).save_current_mesh(str(a))
+    W = 1.02 * V - np.outer(0.1 * np.exp(-20 * ((V - [1, 0, 0]) ** 2).sum(1)), [1, 0, 0])
+    mesh_set_of(W, F).save_current_mesh(str(b))
+    return a, b
+
+
+def test_the_numbers_are_those_of_the_function(pair: tuple[Path, Path]) -> None:
+    done = command("compare", *pair, "--json")
+    assert done.returncode == 0, done.stderr
+    record = json.loads(done.stdout)
+    assert record.pop("a") == str(pair[0])
+    assert record.pop("b") == str(pair[1])
+    assert record == compare(*pair).report
+    shown = command("compare", *pair)
+    assert shown.returncode == 0, shown.stderr
+    assert "Along the normal" in shown.stdout
+    assert "Volume" in shown.stdout
+
+
+def test_the_coloured_mesh_is_b_with_the_deviation(pair: tuple[Path, Path], tmp_path: Path) -> None:
+    output = tmp_path / "change.ply"
+    done = command("compare", *pair, "--output", output)
+    assert done.returncode == 0, done.stderr
+    read, b = plyfile.PlyData.read(output)["vertex"], plyfile.PlyData.read(pair[1])["vertex"]
+    for axis in "xyz":
+        np.testing.assert_array_equal(read[axis], b[axis])
+    signed = compare(*pair).signed
+    np.testing.assert_array_equal(read["quality"], signed)
+    outside, inside = signed > 0.01, signed < -0.01
+    assert outside.any()
+    assert inside.any()
+    assert (read["red"][outside] == 255).all()
+    assert (read["blue"][outside] < 255).all()
+    assert (read["blue"][inside] == 255).all()
+    assert (read["red"][inside] < 255).all()
+    opened = pymeshlab.MeshSet()
+    opened.load_new_mesh(str(output))
+    assert opened.current_mesh().has_vertex_scalar()
+    assert opened.current_mesh().has_vertex_color()
+
+
+def test_the_picture_shows_both_meshes_and_the_deviation_in_colours(
+    pair: tuple[Path, Path], tmp_path: Path
+) -> None:
+    path = tmp_path / "change.png"
+    done = command("compare", *pair, "--picture", path)
+    assert done.returncode == 0, done.stderr
+    pixels = matplotlib.image.imread(path)
+    assert pixels.shape[1] > 900
+    saturation = np.ptp(pixels[: -pixels.shape[0] // 3, :, :3], axis=2) > 0.3
+    third = pixels.shape[1] // 3
+    assert not saturation[:, : 2 * third].any()
+    assert saturation[:, 2 * third :].mean() > 0.2
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [(["--output", "x.obj"], ".ply"), (["--picture", "x.svg"], ".png")],
+)
+def test_a_wrong_ending_is_refused_before_any_work(
+    options: list[str], said: str, pair: tuple[Path, Path]
+) -> None:
+    done = command("compare", *pair, *options)
+    assert done.returncode == 2
+    assert said in done.stderr
+
+
+def test_a_mesh_that_is_missing_or_has_no_surface_is_named(
+    pair: tuple[Path, Path], tmp_path: Path
+) -> None:
+    missing = command("compare", pair[0], tmp_path / "none.ply")
+    assert missing.returncode == 1
+    assert "none.ply" in missing.stderr
+    flat = tmp_path / "flat.off"
+    flat.write_text("OFF\n3 1 0\n0 0 0\n0 0 0\n0 0 0\n3 0 1 2\n")
+    done = command("compare", pair[0], flat)
+    assert done.returncode == 1
+    assert "no face with an area" in done.stderr
+    assert "Traceback" not in done.stderr

@@ -1,0 +1,69 @@
+"""The command `meshlab-spectral texture`: numbers, the coloured mesh, messages."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import matplotlib.image
+import numpy as np
+import plyfile
+import pymeshlab
+import pytest
+from commands import command
+from helpers import mesh_set_of
+from meshlab_spectral import surface_texture
+
+
+@pytest.fixture
+def rough(tmp_path: Path) -> Path:
+    """A sphere with random heights."""
+    made = pymeshlab.MeshSet()
+    made.create_sphere(subdiv=5)
+    V, F = made.current_mesh().vertex_matrix(), made.current_mesh().face_matrix()
+    V = V * (1 + 0.003 * np.random.default_rng(1).standard_normal(len(V)))[:, None]
+    path = tmp_path / "rough.ply"
+    mesh_set_of(V, F).save_current_mesh(str(path))
+    return path
+
+
+def test_numbers_and_mesh_are_those_of_the_function(rough: Path, tmp_path: Path) -> None:
+    output = tmp_path / "heights.ply"
+    done = command("texture", rough, "--waviness", "0.3", "--json", "--output", output)
+    assert done.returncode == 0, done.stderr
+    record = json.loads(done.stdout)
+    read = plyfile.PlyData.read(rough)
+    V = np.column_stack([read["vertex"][axis] for axis in "xyz"]).astype(float)
+    F = np.vstack(read["face"]["vertex_indices"])
+    texture = surface_texture(V, F, waviness=0.3)
+    for name, value in texture.report.items():
+        assert record[name] == value, name
+    written = plyfile.PlyData.read(output)["vertex"]
+    np.testing.assert_array_equal(written["quality"], texture.height)
+    assert (written["red"][texture.height > 0] == 255).all()
+    assert (written["blue"][texture.height < 0] == 255).all()
+
+
+def test_the_picture_shows_the_heights_in_colours(rough: Path, tmp_path: Path) -> None:
+    path = tmp_path / "heights.png"
+    done = command("texture", rough, "--waviness", "0.3", "--picture", path)
+    assert done.returncode == 0, done.stderr
+    pixels = matplotlib.image.imread(path)
+    saturated = np.ptp(pixels[: -pixels.shape[0] // 3, :, :3], axis=2) > 0.3
+    half = pixels.shape[1] // 2
+    assert not saturated[:, :half].any()
+    assert saturated[:, half:].mean() > 0.1
+
+
+def test_the_table_has_the_parameters_of_the_standard(rough: Path) -> None:
+    done = command("texture", rough, "--waviness", "0.3")
+    assert done.returncode == 0, done.stderr
+    for name in ("Sa", "Sq", "Ssk", "Sku", "Sp", "Sv", "Sz", "Sdq", "Sdr"):
+        assert f"{name}, " in done.stdout
+
+
+def test_a_cutoff_that_does_not_fit_is_refused(rough: Path) -> None:
+    done = command("texture", rough, "--waviness", "0.3", "--noise", "0.4")
+    assert done.returncode == 1
+    assert "noise = 0.4" in done.stderr
+    assert "Traceback" not in done.stderr
