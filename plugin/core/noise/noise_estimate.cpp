@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/noise/diffusion.h"
+#include "core/noise/local_average.h"
 #include "core/noise/robust_statistics.h"
 
 namespace spectral {
@@ -135,7 +136,7 @@ void forEachOctave(const VertexGraph& graph, const Points& X, const Points& N,
 }
 
 double residualCorrelation(const FaceGraph& graph, const Points& X,
-                           const std::vector<bool>& isMeasured) {
+                           const std::vector<bool>& isMeasured, int shapeSteps) {
     const VertexGraph& vertices = graph.vertices;
     Eigen::VectorXd residual = scaledResiduals(vertices, X, smoothVertexNormals(graph, X));
     std::vector<double> moduli;
@@ -144,6 +145,7 @@ double residualCorrelation(const FaceGraph& graph, const Points& X,
     const double limit = 2.0 * medianDeviation(std::move(moduli));
     if (!(limit > 0.0)) return 1.0;
     residual = residual.cwiseMax(-limit).cwiseMin(limit);
+    if (shapeSteps > 0) residual -= LocalAverage(vertices, isMeasured, shapeSteps).of(residual);
     double products = 0.0, squares = 0.0;
     for (Index i = 0; i < X.rows(); ++i)
         for (Index k = vertices.first[i]; k < vertices.first[i + 1]; ++k) {

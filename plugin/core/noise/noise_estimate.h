@@ -36,9 +36,11 @@ void forEachOctave(const VertexGraph& graph, const Points& X, const Points& N,
 /// without noise, whose curvature varies slowly.
 /// @param X           n x 3 positions.
 /// @param isMeasured  n: whether a vertex counts.
+/// @param shapeSteps  the average over so many steps of lazy diffusion is taken off first, as
+///                    curvature; 0: nothing is.
 /// @return  1 if all residuals vanish.
 double residualCorrelation(const FaceGraph& graph, const Points& X,
-                           const std::vector<bool>& isMeasured);
+                           const std::vector<bool>& isMeasured, int shapeSteps = 0);
 
 /// Height and correlation length of the noise, from the energies along the normals in seven octaves
 /// of lazy diffusion, (I + P) / 2 to the powers 0, 1, 2, 4, ... 64.
