@@ -11,12 +11,14 @@ import numpy as np
 from demo import bunny_file
 from figure_numbers import Drawing, MeshFile, Numbers, diagonal
 from meshlab_spectral.figures.harmonics import draw_basis_file, spread_modes
+from meshlab_spectral.figures.signed_mesh import draw_signed
 from meshlab_spectral.figures.spectrum import draw_spectrum
 from meshlab_spectral.files.meshes import load_arrays
 from meshlab_spectral.filters.harmonics import manifold_harmonics
 from meshlab_spectral.filters.option_types import Length
 from meshlab_spectral.filters.options import BasisOptions, Boundary, FilterOptions
 from meshlab_spectral.filters.spectrum import geometry_spectrum
+from meshlab_spectral.filters.texture import surface_texture
 from numpy.typing import NDArray
 from subject import subject_of
 
@@ -69,6 +71,24 @@ def _spectrum(
     return Drawing(numbers, draw)
 
 
+def roughness(mesh: MeshFile) -> Drawing:
+    """Show the heights of a stone's surface, as `meshlab-spectral texture` does."""
+    source = mesh("rangescan_lato000.ply")
+    V, F = load_arrays(source)
+    texture = surface_texture(V, F)
+    numbers: Numbers = {
+        f"{name}, %": 100 / diagonal(V) * getattr(texture, name) for name in ("Sa", "Sq", "Sz")
+    }
+    numbers["left out, %"] = 100 * texture.vertices_left_out / len(V)
+
+    def draw(path: Path) -> None:
+        extent = 3 * texture.Sq
+        meshes = [(source.name, V, F)]
+        draw_signed(meshes, "roughness", texture.height, extent, "red: peaks", path)
+
+    return Drawing(numbers, draw)
+
+
 def harmonics(name: str, mesh: MeshFile) -> Drawing:
     """Show a dozen harmonics of a mesh, as `meshlab-spectral basis` does."""
     subject = subject_of(mesh(name))
@@ -93,6 +113,7 @@ def harmonics(name: str, mesh: MeshFile) -> Drawing:
 PICTURES: dict[str, Callable[[MeshFile], Drawing]] = {
     "spectrum_noisy_bunny": spectrum_noisy_bunny,
     "spectrum_rangescan": spectrum_rangescan,
+    "surface_texture": roughness,
     "harmonics_dragon_40k": functools.partial(harmonics, "dragon_40k.ply"),
     "harmonics_angel_50k": functools.partial(harmonics, "angel_50k.ply"),
 }

@@ -126,9 +126,10 @@ Filter surfaceTextureContract() {
         "Surface Texture",
         "compute_scalar_surface_texture_per_vertex",
         "Measures how *rough* a surface is, on any shape: separates roughness from waviness and "
-        "form with the Gaussian filter of ISO 16610-61, and reports the parameters of ISO "
-        "25178-2: Sa, Sq, Ssk, Sku, Sp, Sv, Sz, Sdq, Sdr. The height of each vertex above the "
-        "smooth surface, in the units of the mesh, becomes the vertex quality; no vertex moves.",
+        "form with the Gaussian filter of ISO 16610-61, a spectral low-pass, and reports the "
+        "parameters of ISO 25178-2: Sa, Sq, Ssk, Sku, Sp, Sv, Sz, Sdq, Sdr. The height of each "
+        "vertex above the smooth surface, in the units of the mesh, becomes the vertex quality; "
+        "no vertex moves.",
         "",
         parametersOf(textureFields()),
         describedBy(textureEntries()),
