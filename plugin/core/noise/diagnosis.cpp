@@ -113,8 +113,8 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
     constexpr double kMinHeight = 0.02, kMinHeightCorrelated = 0.045;  // mean edges
     constexpr double kMaxCorrelation = 0.2;  // above it, the residuals are those of a shape
     // Detail of a coarse shape looks like weak noise, but alternates less. Its residuals less their
-    // mean over 16 steps, which is curvature, correlate by -0.17 on decimations of igea, by -0.24 on
-    // a sphere with noise.
+    // mean over 16 steps, which is curvature, correlate by -0.17 on decimations of igea, by -0.24
+    // on a sphere with noise.
     constexpr double kWeak = 0.09, kMaxCorrelationWeak = 0.0;  // height in mean edges
     constexpr double kMaxCorrelationFlat = -0.2;
     constexpr int kCurvatureSteps = 16;
