@@ -74,7 +74,9 @@ def test_no_default_of_a_filter_depends_on_them(name: str, shape: Shape) -> None
     usual, far = prepared(V, F), prepared(with_unused(V, 5, 7), F)
     parameters = usual.filter_parameter_values(name)
     assert far.filter_parameter_values(name) == parameters
-    reports = [mesh_set.apply_filter(name) for mesh_set in (usual, far)]
+    # The shape is so coarse that it is all creases.
+    given = {"crease_angle": 180.0} if name.startswith("compute_scalar_surface") else {}
+    reports = [mesh_set.apply_filter(name, **given) for mesh_set in (usual, far)]
     assert_same_report(*reports)
     results = [written(mesh_set.current_mesh(), len(V)) for mesh_set in (usual, far)]
     for one, other in zip(*results, strict=True):

@@ -58,7 +58,7 @@ def compare_command(
     units of the files, means and percentiles are over the surface.
 
       meshlab-spectral compare scan.ply smooth.ply
-      meshlab-spectral compare scan.ply smooth.ply --picture change.png --output change.ply
+      meshlab-spectral compare scan.ply smooth.ply --picture change.png
       meshlab-spectral compare scan.ply smooth.ply --json
     """
     with errors_reported("finished files are complete"), contextlib.ExitStack() as stack:

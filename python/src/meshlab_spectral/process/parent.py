@@ -136,7 +136,8 @@ class MeshLabProcess:
             self.memory_limit, self._remedy = given, _ENVIRONMENT_REMEDY
         else:
             self.memory_limit, self._remedy = limits.memory, _WORKER_REMEDY
-        self._log.clear()
+        if self._is_ready:  # else it says why the child did not start
+            self._log.clear()
         self.jobs += 1
         self.usable = False  # until the job has succeeded
         self._is_verbose = job.get("verbose", True)
