@@ -44,6 +44,7 @@ NAMES = {
     "artefacts": "compute_scalar_spectral_artefacts_per_vertex",
     "harmonics": "compute_scalar_manifold_harmonic_per_vertex",
     "spectrum": "get_geometry_spectrum",
+    "texture": "compute_scalar_surface_texture_per_vertex",
 }
 CALLS = [
     Call("filter", "default", {}),
@@ -70,6 +71,9 @@ CALLS = [
     Call("spectrum", "default", {}),
     Call("spectrum", "large", {"basis_size": 300}),
     Call("spectrum", "fixed", {"boundary": "fixed"}),
+    Call("texture", "default", {}),
+    Call("texture", "all", {"crease_angle": 180.0}),
+    Call("texture", "cotangent", {"laplacian": "cotangent"}),
 ]
 # Filters that may move vertices; the others must keep positions and faces to the bit.
 MOVES = {"filter", "denoise", "equalizer"}

@@ -162,6 +162,8 @@ SurfaceTexture surfaceTexture(const Vertices& V, const Faces& F, const TextureOp
 
     Vertices normals = angleWeightedNormals<double>(reference, mesh.surface.F).vertices;
     normals.rowwise().normalize();  // leaves zeros
+    // None where the reference has shrunk to a point.
+    normals = normals.array().isFinite().select(normals, 0.0).eval();
     Eigen::VectorXd h = detail.cwiseProduct(normals).rowwise().sum();
     const double form = options.form > 0.0 ? options.form : kFormPerWaviness * options.waviness;
     const FullSpectrumResult offset = lowPasses(mesh.laplacian, h, mesh, {form}, progress).front();
