@@ -112,7 +112,8 @@ void checkOrthogonality(const Eigen::MatrixXd& gram, const ManifoldHarmonics& ha
 /// Whether bodies touch at vertices, which then move alike.
 bool hasContacts(const MeshLaplacian& mesh) {
     Vertices distinct(mesh.surface.X.rows(), 3);
-    for (Index i = 0; i < distinct.rows(); ++i) distinct.row(i).setConstant(1.0 + static_cast<double>(i));
+    for (Index i = 0; i < distinct.rows(); ++i)
+        distinct.row(i).setConstant(1.0 + static_cast<double>(i));
     Vertices moved = distinct;
     moveContactsAlike(mesh.surface, mesh.components, moved);
     return moved != distinct;
