@@ -8,6 +8,7 @@
 #include "core/mesh/contacts.h"
 #include "core/mesh/measures.h"
 #include "core/support/frequency.h"
+#include "fuzz/contract.h"
 #include "fuzz/dense_reference.h"
 
 namespace spectral::fuzz {
@@ -145,7 +146,8 @@ Accuracy accuracyOf(const testing::Mesh& mesh, const FilterOptions& options,
     double claimed = std::max(result.errorEstimate, result.accuracy);
     // A warning reports residuals above the accuracy.
     if (result.residuals.size() > 0) claimed = std::max(claimed, result.residuals.maxCoeff());
-    const double tolerance = kLeeway * claimed * diagonal + roundOff;
+    const double tolerance =
+        kLeeway * claimed * diagonal + roundOff + widestCut(mesh.V, reference.mesh().surface);
     if (options.steps > 0 || isBasis) {
         // At a vertex of small mass, round-off is larger than in the norm over the surface.
         const Eigen::VectorXd most =

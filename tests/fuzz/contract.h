@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "core/mesh/surface.h"
 #include "fuzz/cases.h"
 
 namespace spectral::fuzz {
@@ -32,5 +33,8 @@ struct Verdict {
 ///
 /// @param compares  whether to compare with a dense solver, which takes most of the time.
 Verdict check(const Case& of, bool compares = true);
+
+/// Largest distance of a vertex from the one that it is joined to, which it is drawn onto.
+double widestCut(const Vertices& V, const Surface& surface);
 
 }  // namespace spectral::fuzz

@@ -216,7 +216,7 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
     Vertices displacement = moved - whole.X;
     if (!displacement.allFinite()) throw SolverFailure("the denoised coordinates are not finite");
     moveContactsAlike(whole, components, displacement);
-    result.V = displaced(V, whole, displacement);
+    result.V = changed(V, whole, displacement);
     static_cast<Movement&>(result) = movementOf(
         whole.X, whole.F, displacement, Eigen::VectorXd::Ones(displacement.rows()), volumes);
     return result;

@@ -180,7 +180,7 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     static_cast<Movement&>(result) =
         movementOf(surface.X, surface.F, displacement, before, volumes);
     static_cast<Work&>(result) = evaluate.work();
-    result.V = displaced(V, surface, displacement);
+    result.V = changed(V, surface, displacement);
     result.steps = static_cast<int>(steps.last.sizes.size());
     result.passes = steps.passes;
     result.stepSizes = steps.last.sizes;

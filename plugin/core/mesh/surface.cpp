@@ -84,18 +84,6 @@ Eigen::MatrixXd changed(const Eigen::MatrixXd& values, const Surface& surface,
     return after;
 }
 
-Vertices displaced(const Vertices& V, const Surface& surface, const Vertices& displacement) {
-    Vertices after = V;
-    const auto move = [&](Index vertex, Index row) {
-        for (int c = 0; c < 3; ++c)
-            if (displacement(row, c) != 0.0) after(vertex, c) += displacement(row, c);
-    };
-    for (std::size_t i = 0; i < surface.vertex.size(); ++i)
-        move(surface.vertex[i], static_cast<Index>(i));
-    for (const auto& [vertex, row] : surface.copies) move(vertex, row);
-    return after;
-}
-
 Eigen::MatrixXd extendedByZero(Eigen::MatrixXd values, const std::vector<Index>& vertex, Index n) {
     if (values.rows() == n) return values;
     Eigen::MatrixXd extended = Eigen::MatrixXd::Zero(n, values.cols());

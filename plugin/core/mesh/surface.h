@@ -42,10 +42,6 @@ Eigen::MatrixXd extended(Eigen::MatrixXd values, const Surface& surface, Index n
 Eigen::MatrixXd changed(const Eigen::MatrixXd& values, const Surface& surface,
                         const Eigen::MatrixXd& change);
 
-/// Moves the vertices of a mesh with its surface, copies by as much as the vertex they are joined
-/// to. A coordinate whose displacement is zero keeps every bit.
-Vertices displaced(const Vertices& V, const Surface& surface, const Vertices& displacement);
-
 /// Extends values at some of n vertices by zero: row i of `values` (m x c) becomes row vertex[i] of
 /// the result (n x c).
 Eigen::MatrixXd extendedByZero(Eigen::MatrixXd values, const std::vector<Index>& vertex, Index n);
