@@ -7,6 +7,7 @@ import math
 import time
 from collections.abc import Callable, Iterator
 from datetime import timedelta
+from typing import TYPE_CHECKING
 
 from rich.markup import escape
 from rich.progress import (
@@ -22,9 +23,11 @@ from rich.progress import (
 from rich.table import Column
 from rich.text import Text
 
-from meshlab_spectral.batch.jobs import FileResult
 from meshlab_spectral.cli.messages import MESSAGES, VERBOSITY, print_message
 from meshlab_spectral.process.parent import ProgressCallback
+
+if TYPE_CHECKING:
+    from meshlab_spectral.batch.jobs import FileResult
 
 _FEWEST_PER_SECOND = 0.1
 # Between plain lines; a shorter run prints none.

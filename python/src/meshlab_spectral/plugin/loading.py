@@ -2,7 +2,6 @@
 
 import os
 import sys
-from importlib.metadata import version as installed_version
 from pathlib import Path
 
 from meshlab_spectral.errors import PluginError
@@ -98,7 +97,9 @@ def loaded_plugin() -> Path:
 
 
 def _check_pymeshlab_version() -> None:
-    installed = installed_version("pymeshlab")
+    from importlib.metadata import version  # a slow import
+
+    installed = version("pymeshlab")
     if installed != PYMESHLAB_VERSION:
         raise PluginError(
             f"pymeshlab {installed} is installed, but the plugin is built for pymeshlab "

@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import hashlib
 import platform
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from meshlab_spectral import _core
@@ -17,6 +16,8 @@ def versions() -> dict[str, str]:
 
     pymeshlab's is empty if it is not installed.
     """
+    from importlib.metadata import PackageNotFoundError, version  # a slow import
+
     try:
         pymeshlab = version("pymeshlab")
     except PackageNotFoundError:

@@ -11,7 +11,8 @@ from typing import Any
 from meshlab_spectral.files.sources import check_is_place, check_source
 from meshlab_spectral.files.whole_files import remove_leftovers, resolved, writing_whole
 from meshlab_spectral.filters.option_types import Options
-from meshlab_spectral.process.parent import MeshLabProcess, ProgressCallback
+from meshlab_spectral.process.ahead import process_for_job
+from meshlab_spectral.process.parent import ProgressCallback
 
 
 def write_in_child(
@@ -54,5 +55,5 @@ def measure_in_child(
     check_source(source)
     task = {"task": options.TABLE, "options": options.as_dict()} if options else {"task": "info"}
     job = {**task, "source": str(source.absolute()), "mesh": mesh, **(more or {})}
-    with MeshLabProcess() as process:
+    with process_for_job() as process:
         return process.run(job, on_progress).report
