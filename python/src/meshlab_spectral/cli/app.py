@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import sys
 from importlib import import_module
-from importlib.metadata import PackageNotFoundError, version
 from typing import Annotated
 
 import typer
 
 from meshlab_spectral.cli.command_line import AllCommands, OneCommand, with_verbosity
-from meshlab_spectral.cli.messages import EXIT_CODES
+from meshlab_spectral.cli.messages import EXIT_CODES, VERBOSITY
 
 app = typer.Typer(
     cls=AllCommands,
@@ -23,14 +22,35 @@ app = typer.Typer(
 )
 
 
+# What a result, or an error, may depend on.
+_LIBRARIES = ("numpy", "pymeshlab", "nibabel", "pyvista", "vtk", "scipy", "matplotlib", "dask")
+
+
 def _print_version(wanted: bool) -> None:
-    if wanted:
+    if not wanted:
+        return
+    from importlib.metadata import PackageNotFoundError, version
+
+    def of(package: str) -> str:
         try:
-            host = f"pymeshlab {version('pymeshlab')}"
+            return f"{package} {version(package)}"
         except PackageNotFoundError:
-            host = "no pymeshlab"
-        typer.echo(f"meshlab-spectral {version('meshlab-spectral')}, {host}")
-        raise typer.Exit
+            return f"no {package}"
+
+    typer.echo(f"{of('meshlab-spectral')}, {of('pymeshlab')}")
+    if VERBOSITY.verbose:
+        import platform
+
+        from meshlab_spectral.plugin.versions import versions
+
+        typer.echo(f"Python {platform.python_version()} on {platform.platform()}")
+        typer.echo(f"core {versions()['core']}")
+        typer.echo(", ".join(map(of, _LIBRARIES)))
+    raise typer.Exit
+
+
+def _be_verbose(wanted: bool) -> None:
+    VERBOSITY.verbose = wanted
 
 
 @app.callback()
@@ -38,8 +58,12 @@ def _common(
     version: Annotated[
         bool,
         typer.Option(
-            "--version", callback=_print_version, is_eager=True, help="Print the version."
+            "--version", callback=_print_version, help="Print the version; with -v, all versions."
         ),
+    ] = False,
+    # Read first, so that it has an effect on --version wherever it stands.
+    verbose: Annotated[
+        bool, typer.Option("-v", callback=_be_verbose, is_eager=True, hidden=True)
     ] = False,
 ) -> None:
     """Denoise, smooth, sharpen and band-filter meshes by the size of their details."""
