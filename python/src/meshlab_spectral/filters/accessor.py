@@ -1,0 +1,70 @@
+"""`mesh.spectral` of PyVista's meshes, which finds this module by its entry point, from 0.48 on."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pyvista
+
+from meshlab_spectral.filters.denoise import denoise_mesh
+from meshlab_spectral.filters.fractional import filter_mesh
+from meshlab_spectral.filters.harmonics import Harmonics, manifold_harmonics
+from meshlab_spectral.filters.running import plain
+from meshlab_spectral.filters.signals import filter_colors, filter_scalars
+from meshlab_spectral.filters.spectrum import GeometrySpectrum, geometry_spectrum
+from meshlab_spectral.filters.texture import SurfaceTexture, surface_texture
+
+
+@pyvista.register_dataset_accessor("spectral", pyvista.PolyData)
+class SpectralAccessor:
+    """The functions of this package as methods of a mesh; their options and errors are the same.
+
+    Those that return a mesh leave this one as it is, so they can be chained; the report is in
+    ``user_dict["spectral"]`` of the new one.
+
+    Examples
+    --------
+    >>> mesh.spectral.denoise().spectral.filter(feature_size="2%").plot()
+    """
+
+    def __init__(self, mesh: pyvista.PolyData) -> None:
+        self._mesh = mesh
+
+    def filter(self, **options: Any) -> pyvista.PolyData:
+        """Return the filtered mesh: `filter_mesh`."""
+        return _with_report(*filter_mesh(self._mesh, **options))
+
+    def denoise(self, **options: Any) -> pyvista.PolyData:
+        """Return the mesh without its noise: `denoise_mesh`."""
+        return _with_report(*denoise_mesh(self._mesh, **options))
+
+    def filter_scalars(self, name: str, **options: Any) -> pyvista.PolyData:
+        """Return a mesh whose point array of this name is filtered: `filter_scalars`."""
+        return self._with_array(name, *filter_scalars(self._mesh, values=name, **options))
+
+    def filter_colors(self, name: str, **options: Any) -> pyvista.PolyData:
+        """Return a mesh whose point array of colours is filtered: `filter_colors`."""
+        return self._with_array(name, *filter_colors(self._mesh, colors=name, **options))
+
+    def harmonics(self, basis_size: int, **options: Any) -> Harmonics:
+        """Compute the lowest harmonics: `manifold_harmonics`."""
+        return manifold_harmonics(self._mesh, None, basis_size, **options)
+
+    def spectrum(self, **options: Any) -> GeometrySpectrum:
+        """Measure how much of the shape lies in details of each size: `geometry_spectrum`."""
+        return geometry_spectrum(self._mesh, **options)
+
+    def texture(self, **options: Any) -> SurfaceTexture:
+        """Measure the roughness: `surface_texture`."""
+        return surface_texture(self._mesh, **options)
+
+    def _with_array(self, name: str, values: Any, report: dict[str, Any]) -> pyvista.PolyData:
+        mesh = self._mesh.copy()
+        mesh.point_data[name] = np.asarray(values)
+        return _with_report(mesh, report)
+
+
+def _with_report(mesh: pyvista.PolyData, report: dict[str, Any]) -> pyvista.PolyData:
+    mesh.user_dict["spectral"] = plain(report)
+    return mesh
