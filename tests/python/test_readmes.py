@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 REPOSITORY = Path(__file__).resolve().parents[2]
-PAGES = {"README.md", "CHANGELOG.md"}
+PAGES = {"README.md", "CHANGELOG.md", "CONTRIBUTING.md", "RELEASING.md", "SECURITY.md"}
 NOT_OURS = {".git", ".venv", "build"}
 PLUGIN = REPOSITORY / "plugin" / "README.md"
 
@@ -22,7 +22,7 @@ EQUATIONS = re.compile(rf"\bEqs?\. ({NUMBERS})")
 
 
 def readmes() -> list[Path]:
-    """Every README.md of the project, and the changelog."""
+    """Every README.md of the project, and the pages of .github."""
     found = []
     for folder, folders, files in os.walk(REPOSITORY):
         folders[:] = sorted(set(folders) - NOT_OURS)
@@ -126,3 +126,10 @@ def test_a_function_of_the_table_is_in_the_file_beside_it(row: list[str]) -> Non
 @pytest.mark.parametrize("row", EQUATION_ROWS, ids=lambda row: f"{row[0]}, {row[-1].split()[-1]}")
 def test_a_function_cites_the_equation_that_it_computes(row: list[str]) -> None:
     assert numbers(row[0]) <= equations_cited(*place(row))
+
+
+def test_a_citation_names_the_version_of_the_build() -> None:
+    build = (REPOSITORY / "CMakeLists.txt").read_text()
+    version = re.findall(r"project\(\w+ VERSION ([\d.]+)", build)
+    assert re.findall(r"^version: (.*)$", (REPOSITORY / "CITATION.cff").read_text(), re.M) == version
+    assert re.findall(r"version = \{([\d.]+)\}", (REPOSITORY / "README.md").read_text()) == version
