@@ -90,7 +90,7 @@ double largestRow(const Eigen::MatrixXd& X) { return X.rowwise().norm().maxCoeff
 /// Rows of the vertices of the interior.
 Eigen::MatrixXd interiorRows(const DenseReference& reference, const Eigen::MatrixXd& ofMesh) {
     const std::vector<Index>& vertex = reference.mesh().surface.vertex;
-    return reference.interior().restricted(Eigen::MatrixXd(ofMesh(vertex, Eigen::all)));
+    return reference.interior().restricted(Eigen::MatrixXd(ofMesh(vertex, Eigen::indexing::all)));
 }
 
 /// With residuals r_i = W phi_i - lambda_i D phi_i, (lambda_i - lambda_j) phi_i^T D phi_j is

@@ -122,17 +122,17 @@ DenseSpectrum spectrumOf(const MeshLaplacian& mesh, const Interior& interior, Pr
     const Matrix W = all.W(rows, rows);
     const Vector D = all.D(rows);
     centre(all.D, surfaceLabel, all.X);
-    Matrix U = all.X(rows, Eigen::all);
+    Matrix U = all.X(rows, Eigen::indexing::all);
 
     // X - H where a boundary is fixed: W_II U = (W X)_I.
     std::vector<Index> held;
     for (Index i = 0; i < m; ++i)
         if (label[i] < 0) held.push_back(i);
     if (!held.empty()) {
-        const Matrix WX = (all.W * all.X)(rows, Eigen::all);
-        const Matrix right = WX(held, Eigen::all), left = W(held, held);
+        const Matrix WX = (all.W * all.X)(rows, Eigen::indexing::all);
+        const Matrix right = WX(held, Eigen::indexing::all), left = W(held, held);
         const Matrix solution = left.ldlt().solve(right);
-        U(held, Eigen::all) = solution;
+        U(held, Eigen::indexing::all) = solution;
     }
     centre(D, label, U);
 

@@ -5,6 +5,7 @@
 # usage: run.sh TARGET [OPTIONS OF CTEST]
 #
 #   baseline      GCC, without kernels for AVX2
+#   eigen5        GCC, with Eigen and Spectra of Debian testing, which has 5.0 and 1.2
 #   clang         Clang with libc++
 #   mingw         for Windows, by GCC; the tests run under Wine
 #   aarch64       for ARM, by GCC; the tests run under QEMU, which takes long: -R chooses some
@@ -56,8 +57,33 @@ build_libraries() {
     ln -sfn /usr/include/Spectra "$installed/include/Spectra"
 }
 
+# Unpacks packages of Debian testing to $folder/testing; the machine's apt set-up stays as it is.
+unpack_from_testing() {  # packages
+    packages=$*
+    rm -rf "$folder/apt" "$folder/testing"
+    mkdir -p "$folder/apt/lists/partial"
+    keys=/usr/share/keyrings/debian-archive-keyring.gpg
+    mirror=$("$project/plugin/cmake/debian_mirror.sh")
+    echo "deb [signed-by=$keys] $mirror testing main" >"$folder/apt/sources.list"
+    set -- -o "Dir::Etc::SourceList=$folder/apt/sources.list" -o Dir::Etc::SourceParts=/dev/null \
+        -o "Dir::State::Lists=$folder/apt/lists" -o APT::Sandbox::User=root \
+        -o Dir::Cache::pkgcache= -o Dir::Cache::srcpkgcache= -qq
+    apt-get "$@" update
+    # shellcheck disable=SC2086  # the list is meant to be split
+    (cd "$folder/apt" && apt-get "$@" download $packages)
+    for file in "$folder"/apt/*.deb; do
+        dpkg-deb --extract "$file" "$folder/testing"
+    done
+}
+
 case $target in
     baseline) build_project -DSPECTRAL_AVX2=OFF ;;
+    eigen5)
+        unpack_from_testing libeigen3-dev libspectra-dev
+        # GCC 12 takes packets in Eigen's inner products for uninitialized: no errors by warnings.
+        build_project -DSPECTRAL_WARNINGS_AS_ERRORS=OFF \
+            -DEigen3_DIR="$folder/testing/usr/share/eigen3/cmake" \
+            -DSpectra_INCLUDE_DIR="$folder/testing/usr/include" ;;
     *)
         case $target in
             macos_*)

@@ -83,7 +83,7 @@ Eigen::VectorXd refine(const Laplacian& laplacian, Eigen::MatrixXd& Phi) {
     std::iota(order.begin(), order.end(), Index{0});
     std::stable_sort(order.begin(), order.end(),
                      [&](Index a, Index b) { return ritz(a, a) < ritz(b, b); });
-    Phi = Q(Eigen::all, order);
+    Phi = Q(Eigen::indexing::all, order);
     return ritz.diagonal()(order);
 }
 

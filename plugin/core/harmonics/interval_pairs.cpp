@@ -125,7 +125,7 @@ IntervalPairs computeInterval(const Laplacian& laplacian, const SpectralInterval
     if (static_cast<Index>(inside.size()) > interval.count) return {};
     std::sort(inside.begin(), inside.end(),
               [&](Index a, Index b) { return lambda[a] < lambda[b]; });
-    return {known(Eigen::all, inside), lambda(inside)};
+    return {known(Eigen::indexing::all, inside), lambda(inside)};
 }
 
 }  // namespace spectral

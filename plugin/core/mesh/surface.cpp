@@ -54,7 +54,7 @@ Surface joinedSurface(const Vertices& V, const Faces& F) {
 }
 
 Eigen::MatrixXd restricted(const Eigen::MatrixXd& values, const Surface& surface) {
-    Eigen::MatrixXd mean = values(surface.vertex, Eigen::all);
+    Eigen::MatrixXd mean = values(surface.vertex, Eigen::indexing::all);
     if (surface.copies.empty()) return mean;
     Eigen::VectorXd count = Eigen::VectorXd::Ones(mean.rows());
     for (const Surface::Copy& copy : surface.copies) count[copy.row] += 1.0;

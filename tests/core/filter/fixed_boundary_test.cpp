@@ -83,10 +83,10 @@ class DenseFilter {
             if (B.empty()) {
                 H_I.rowwise() = Eigen::RowVector3d(A.constants.means(mesh.V).row(c));
             } else {
-                const Eigen::MatrixXd W_IB = W(I, B), V_B = mesh.V(B, Eigen::all);
+                const Eigen::MatrixXd W_IB = W(I, B), V_B = mesh.V(B, Eigen::indexing::all);
                 H_I = -testing::denseSolution(W_II, W_IB * V_B);
             }
-            const Eigen::MatrixXd U = mesh.V(I, Eigen::all) - H_I;
+            const Eigen::MatrixXd U = mesh.V(I, Eigen::indexing::all) - H_I;
             parts_.push_back(
                 {I, H_I, lambda.cwiseMax(0.0).cwiseSqrt(), Phi, testing::innerProducts(Phi, D, U)});
         }
@@ -95,7 +95,7 @@ class DenseFilter {
     Vertices operator()(const Gain& gain) const {
         Vertices Y = X_;
         for (const Part& part : parts_)
-            Y(part.I, Eigen::all) =
+            Y(part.I, Eigen::indexing::all) =
                 part.H + part.Phi * part.omega.unaryExpr(gain).asDiagonal() * part.spectrum;
         return Y;
     }

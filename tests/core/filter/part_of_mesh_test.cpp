@@ -141,7 +141,7 @@ TEST(PartOfMesh, EveryClosedComponentKeepsItsVolume) {
         std::vector<int> faces;
         for (int t = 0; t < mesh.F.rows(); ++t)
             if (components.label[mesh.F(t, 0)] == c) faces.push_back(t);
-        const Faces F = mesh.F(faces, Eigen::all);
+        const Faces F = mesh.F(faces, Eigen::indexing::all);
         const double before = signedVolume(mesh.V, F);
         EXPECT_NEAR(signedVolume(result.V, F), before, 1e-9 * std::abs(before)) << c;
     }

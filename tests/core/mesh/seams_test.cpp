@@ -27,7 +27,7 @@ struct CutMesh {
     Mesh mesh;
     std::vector<Index> origin;
 
-    Eigen::MatrixXd cut(const Eigen::MatrixXd& values) const { return values(origin, Eigen::all); }
+    Eigen::MatrixXd cut(const Eigen::MatrixXd& values) const { return values(origin, Eigen::indexing::all); }
 };
 
 /// Cuts a mesh between triangles of different charts: corners at a vertex stay joined within a
@@ -45,7 +45,7 @@ CutMesh cutApart(const Mesh& mesh, const std::vector<int>& chart) {
             if (isNew) cut.origin.push_back(i);
             cut.mesh.F(t, c) = at->second;
         }
-    cut.mesh.V = mesh.V(cut.origin, Eigen::all);
+    cut.mesh.V = mesh.V(cut.origin, Eigen::indexing::all);
     return cut;
 }
 
