@@ -131,5 +131,6 @@ def test_a_function_cites_the_equation_that_it_computes(row: list[str]) -> None:
 def test_a_citation_names_the_version_of_the_build() -> None:
     build = (REPOSITORY / "CMakeLists.txt").read_text()
     version = re.findall(r"project\(\w+ VERSION ([\d.]+)", build)
-    assert re.findall(r"^version: (.*)$", (REPOSITORY / "CITATION.cff").read_text(), re.M) == version
+    citation = (REPOSITORY / "CITATION.cff").read_text()
+    assert re.findall(r"^version: (.*)$", citation, flags=re.MULTILINE) == version
     assert re.findall(r"version = \{([\d.]+)\}", (REPOSITORY / "README.md").read_text()) == version

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+import meshlab_spectral
 import numpy as np
 import pytest
-
-import meshlab_spectral
 from meshlab_spectral import OptionError
 
 pyvista = pytest.importorskip("pyvista", minversion="0.48")
