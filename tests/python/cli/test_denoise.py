@@ -89,7 +89,7 @@ def test_a_height_is_given_in_mean_edges(scan: Path, tmp_path: Path) -> None:
 def test_a_wrong_option_is_named_before_any_file_is_touched(
     arguments: list[str], word: str, existing: Path, tmp_path: Path
 ) -> None:
-    done = command("denoise", tmp_path / "no such.ply", existing, *arguments)
+    done = command("denoise", tmp_path / "no such.ply", existing, "--overwrite", *arguments)
     assert_fails(done, 2, word)
 
 

@@ -13,11 +13,12 @@ from commands import COMMAND, assert_fails, command, write_ply
 
 def test_a_missing_input_is_named(existing: Path, tmp_path: Path) -> None:
     missing = tmp_path / "no such.ply"
-    assert_fails(command("filter", missing, existing), 1, str(missing), "does not exist")
+    assert_fails(
+        command("filter", missing, existing, "--overwrite"), 1, str(missing), "does not exist"
+    )
 
 
 NO_FILES = {
-    "-": "not read from standard input; save it",
     "http://example.org/scan.ply": "`meshlab-spectral batch http://example.org/scan.ply --output",
     "s3://scans/a.ply": "`meshlab-spectral batch s3://scans/a.ply --output",
     "folder": "`meshlab-spectral batch folder --output FOLDER`",
@@ -39,20 +40,19 @@ def test_what_is_no_mesh_file_is_refused_with_a_remedy(
     write_ply(Path("scan.e57"), "0 0 0\n1 0 0\n0 1 0", "3 0 1 2")
     Path("scan.vtm").write_text('<VTKFile type="vtkMultiBlockDataSet" version="1.0"></VTKFile>')
     os.mkfifo("pipe")
-    done = command(verb, name, *([existing] if verb != "info" else []))
+    done = command(verb, name, *([existing, "--overwrite"] if verb != "info" else []))
     assert_fails(done, 1, name, NO_FILES[name])
     assert "please report it" not in done.stderr
 
 
-@pytest.mark.parametrize(
-    ("name", "remedy"),
-    [
-        ("-", "not written to standard output; name a file"),
-        ("http://example.org/out.ply", "to which only `meshlab-spectral batch` writes"),
-    ],
-)
-def test_what_is_no_place_for_a_file_is_refused(name: str, remedy: str, cow: Path) -> None:
-    assert_fails(command("filter", cow, name), 1, name, remedy)
+def test_an_address_is_no_place_for_a_file(cow: Path) -> None:
+    address = "http://example.org/out.ply"
+    refused = "to which only `meshlab-spectral batch` writes"
+    assert_fails(command("filter", cow, address), 1, address, refused)
+
+
+def test_a_stream_needs_its_format(cow: Path) -> None:
+    assert_fails(command("filter", cow, "-"), 2, "--format: name the format")
 
 
 def test_a_full_disk_is_called_so(cow: Path, tmp_path: Path) -> None:
@@ -65,11 +65,11 @@ def test_a_full_disk_is_called_so(cow: Path, tmp_path: Path) -> None:
 
 
 def test_a_length_beyond_the_mesh_is_refused(cow: Path, existing: Path) -> None:
-    done = command("filter", cow, existing, "--feature-size", 50)
+    done = command("filter", cow, existing, "--overwrite", "--feature-size", 50)
     assert_fails(done, 1, "feature_size = 50: is", "did you mean 50%?")
-    done = command("denoise", cow, existing, "--noise-height", 15)
+    done = command("denoise", cow, existing, "--overwrite", "--noise-height", 15)
     assert_fails(done, 1, "noise_height = 15: is", "did you mean 15%?")
-    done = command("filter", cow, existing, "--feature-size", 5000)
+    done = command("filter", cow, existing, "--overwrite", "--feature-size", 5000)
     assert_fails(done, 1, "give at most 100%")
 
 
@@ -80,14 +80,14 @@ def test_a_broken_input_is_refused_with_the_cause(
 ) -> None:
     broken = tmp_path / f"broken{ending}"
     broken.write_text(content)
-    assert_fails(command("filter", broken, existing), 1, str(broken), cause)
+    assert_fails(command("filter", broken, existing, "--overwrite"), 1, str(broken), cause)
 
 
 def test_a_cut_off_input_is_refused(cow: Path, existing: Path, tmp_path: Path) -> None:
     whole, cut = tmp_path / "whole.ply", tmp_path / "cut.ply"
     command("filter", cow, whole, "--steps", 1)
     cut.write_bytes(whole.read_bytes()[:20_000])
-    assert_fails(command("filter", cut, existing), 1, str(cut), "was cut off")
+    assert_fails(command("filter", cut, existing, "--overwrite"), 1, str(cut), "was cut off")
 
 
 def test_an_input_of_an_unknown_format_is_refused_with_the_known_ones(
@@ -95,25 +95,38 @@ def test_an_input_of_an_unknown_format_is_refused_with_the_known_ones(
 ) -> None:
     text = tmp_path / "notes.txt2"
     text.write_text("notes\n")
-    assert_fails(command("filter", text, existing), 1, ".txt2", ".ply")
+    assert_fails(command("filter", text, existing, "--overwrite"), 1, ".txt2", ".ply")
 
 
 def test_an_empty_mesh_is_refused(existing: Path, tmp_path: Path) -> None:
-    assert_fails(command("filter", write_ply(tmp_path / "m.ply", "", ""), existing), 1, "empty")
+    assert_fails(
+        command("filter", write_ply(tmp_path / "m.ply", "", ""), existing, "--overwrite"),
+        1,
+        "empty",
+    )
 
 
 def test_a_point_cloud_is_refused_with_a_way_to_a_surface(existing: Path, tmp_path: Path) -> None:
     cloud = write_ply(tmp_path / "cloud.ply", "0 0 0\n1 0 0\n0 1 0", "")
-    assert_fails(command("filter", cloud, existing), 1, "point cloud", "Surface Reconstruction")
+    assert_fails(
+        command("filter", cloud, existing, "--overwrite"),
+        1,
+        "point cloud",
+        "Surface Reconstruction",
+    )
 
 
 def test_a_basis_as_large_as_the_mesh_is_refused(cow: Path, existing: Path) -> None:
     arguments = ("--spectrum", "truncated", "--basis-size", 5000)
-    assert_fails(command("filter", cow, existing, *arguments), 1, "2904", "spectrum = full")
+    assert_fails(
+        command("filter", cow, existing, "--overwrite", *arguments), 1, "2904", "spectrum = full"
+    )
 
 
 def test_a_missing_plugin_is_reported_without_traceback(cow: Path, existing: Path) -> None:
-    done = command("filter", cow, existing, MESHLAB_SPECTRAL_PLUGIN="/no/such/plugin.so")
+    done = command(
+        "filter", cow, existing, "--overwrite", MESHLAB_SPECTRAL_PLUGIN="/no/such/plugin.so"
+    )
     assert_fails(done, 1, "/no/such/plugin.so", "MESHLAB_SPECTRAL_PLUGIN")
 
 
@@ -122,7 +135,11 @@ def test_names_that_are_not_utf_8_are_refused(cow: Path, existing: Path, tmp_pat
     shutil.copy(cow, source)
     folder = tmp_path / "d\udce9"
     folder.mkdir()
-    for files in ((source, existing), (cow, folder / "out.ply"), (cow, tmp_path / "o\udce9.ply")):
+    for files in (
+        (source, existing, "--overwrite"),
+        (cow, folder / "out.ply"),
+        (cow, tmp_path / "o\udce9.ply"),
+    ):
         assert_fails(command("filter", *files), 1, "\\udce9", "not UTF-8", "rename")
     done = command("batch", source, cow, "--output", tmp_path / "smooth", "--workers", 1)
     assert done.returncode == 1
@@ -134,7 +151,7 @@ def test_names_that_are_not_utf_8_are_refused(cow: Path, existing: Path, tmp_pat
 
 def test_debug_shows_where_an_error_arose(existing: Path, tmp_path: Path) -> None:
     cloud = write_ply(tmp_path / "cloud.ply", "0 0 0\n1 0 0\n0 1 0", "")
-    done = command("filter", cloud, existing, "--debug")
+    done = command("filter", cloud, existing, "--overwrite", "--debug")
     assert done.returncode == 1
     assert "Traceback" in done.stderr
     assert "filter_to_scratch" in done.stderr

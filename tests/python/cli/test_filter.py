@@ -92,7 +92,9 @@ def test_a_vertex_that_is_not_a_number_is_named(existing: Path, tmp_path: Path) 
     vertices = "0 0 0\n1 0 0\n0 1 0\n0 0 1\nnan 0 0"
     faces = "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n3 0 1 4"
     source = write_ply(tmp_path / "nan.ply", vertices, faces)
-    assert_fails(command("filter", source, existing), 1, str(source), "vertex 4 is at nan 0 0")
+    assert_fails(
+        command("filter", source, existing, "--overwrite"), 1, str(source), "vertex 4 is at nan 0 0"
+    )
 
 
 @pytest.mark.parametrize("element", ["vertex", "face"])

@@ -18,7 +18,15 @@ from commands import COMMAND, command, command_on_terminal, messages_in
 def long_run(samples: Path, existing: Path) -> Iterator[subprocess.Popen[str]]:
     """A filter that would take a minute, seen at work."""
     process = subprocess.Popen(
-        [*COMMAND, "filter", str(samples / "bunny.obj"), str(existing), "--steps", "500"],
+        [
+            *COMMAND,
+            "filter",
+            str(samples / "bunny.obj"),
+            str(existing),
+            "--overwrite",
+            "--steps",
+            "500",
+        ],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

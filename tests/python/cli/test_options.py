@@ -89,7 +89,7 @@ def test_every_option_reaches_the_filter(cow: Path, tmp_path: Path) -> None:
 def test_a_wrong_option_is_named_before_any_file_is_touched(
     arguments: list[str], word: str, existing: Path, tmp_path: Path
 ) -> None:
-    done = command("filter", tmp_path / "no such.ply", existing, *arguments)
+    done = command("filter", tmp_path / "no such.ply", existing, "--overwrite", *arguments)
     assert_fails(done, 2, word)
 
 

@@ -123,7 +123,7 @@ def test_a_foreign_file_in_place_of_a_texture_is_not_replaced(
     source = textured_bunny(samples, tmp_path / "in", "skin.png")
     foreign = existing.parent / "skin.png"
     foreign.write_bytes(PRECIOUS)
-    done = command("filter", source, existing.with_suffix(".obj"), "--steps", 1)
+    done = command("filter", source, existing.with_suffix(".obj"), "--overwrite", "--steps", 1)
     assert_fails(done, 1, "skin.png", "folder of its own")
     assert foreign.read_bytes() == PRECIOUS
     foreign.unlink()
@@ -182,7 +182,7 @@ def test_a_full_disk_leaves_the_old_output(cow: Path, existing: Path) -> None:
     """A limit on the size of files stands in for a full disk."""
     limited = ["bash", "-c", 'ulimit -f 20; exec "$@"', "bash", *COMMAND]
     done = subprocess.run(
-        [*limited, "filter", str(cow), str(existing), "--steps", "1"],
+        [*limited, "filter", str(cow), str(existing), "--overwrite", "--steps", "1"],
         capture_output=True,
         text=True,
         timeout=60,

@@ -53,4 +53,4 @@ def test_a_file_that_is_cut_off_is_an_error_of_the_command(
     sample.write(source)
     data = source.read_bytes()
     source.write_bytes(data[: len(data) // 2])
-    assert_fails(command("filter", source, existing), 1, sample.name)
+    assert_fails(command("filter", source, existing, "--overwrite"), 1, sample.name)

@@ -26,6 +26,7 @@ from meshlab_spectral.cli.messages import (
 )
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.cli.report_table import report_table
+from meshlab_spectral.cli.streams import STREAM, as_files
 from meshlab_spectral.files.recipe import saving_recipe
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import DenoiseOptions, FilterOptions
@@ -61,13 +62,17 @@ def _command_with(table: type[Options], help_text: str) -> Command:
     def command(
         given: dict[str, Any],
         source: Annotated[
-            Path, typer.Argument(metavar="INPUT", help="Mesh to read: .ply, .obj, .stl, .off, ...")
+            Path,
+            typer.Argument(
+                metavar="INPUT",
+                help="Mesh to read: .ply, .obj, .stl, .off, ...; - is standard input.",
+            ),
         ],
         target: Annotated[
             Path | None,
             typer.Argument(
                 metavar="OUTPUT",
-                help="Mesh to write, in the format of its extension; replaces an existing file.",
+                help="Mesh to write, in the format of its extension; - is standard output.",
             ),
         ] = None,
         output: Annotated[
@@ -81,6 +86,13 @@ def _command_with(table: type[Options], help_text: str) -> Command:
                 help="Only the mesh of this name; by default all meshes of the file, each by "
                 "itself.",
             ),
+        ] = None,
+        overwrite: Annotated[
+            bool, typer.Option("--overwrite", help="Replace OUTPUT if it exists.")
+        ] = False,
+        ending: Annotated[
+            str | None,
+            typer.Option("--format", metavar="ENDING", help="The format of -, such as ply."),
         ] = None,
         recipe: Recipe = None,
         save_recipe: SaveRecipe = None,
@@ -97,14 +109,25 @@ def _command_with(table: type[Options], help_text: str) -> Command:
                 f"{place} is INPUT itself and would be lost: choose another name",
                 param_hint="OUTPUT",
             )
+        if place.exists() and not overwrite:
+            raise typer.BadParameter(
+                f"{place} exists: choose another name, or replace it with --overwrite",
+                param_hint="OUTPUT",
+            )
+        if as_json and place == STREAM:
+            raise typer.BadParameter(
+                "standard output has the mesh already: name a file", param_hint="--json"
+            )
         begin = time.monotonic()
-        with errors_reported():
+        with errors_reported(), as_files(source, place, ending) as (read, written):
             options = chosen_options(table, given, recipe)
             with saving_recipe(save_recipe, options), progress_shown() as on_progress:
-                report = write_in_child(source, place, options, on_progress, mesh)
+                report = write_in_child(read, written, options, on_progress, mesh, overwrite)
         warn_of_points_only(place.suffix)
         for warning in report["warnings"]:
             print_warning(warning)
+        if place == STREAM:
+            return
         if as_json:
             seconds = time.monotonic() - begin
             typer.echo(json.dumps(_record(source, place, options, report, seconds)))

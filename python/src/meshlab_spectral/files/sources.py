@@ -42,7 +42,7 @@ def check_source(source: Path) -> None:
 def _missing(source: Path) -> tuple[str, str]:
     if str(source) == "-":
         return (
-            "- is no file: a mesh is not read from standard input; save it, and name it",
+            "- is no file: only filter and denoise read a mesh from standard input; save it, and name it",
             "no_file",
         )
     if _URL.match(str(source)):
@@ -54,7 +54,7 @@ def _missing(source: Path) -> tuple[str, str]:
 def check_is_place(target: Path) -> None:
     """Raise MeshFileError if an output is named as what is no file: - or a URL."""
     if str(target) == "-":
-        text = "- is no file: a mesh is not written to standard output; name a file"
+        text = "- is no file: only filter and denoise write a mesh to standard output; name a file"
     elif _URL.match(str(target)) and not target.parent.is_dir():
         url = str(target).replace(":/", "://", 1)
         text = f"{url} is a URL, to which only `meshlab-spectral batch` writes: name a file"

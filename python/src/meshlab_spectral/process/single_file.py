@@ -21,10 +21,11 @@ def write_in_child(
     options: Options,
     on_progress: ProgressCallback,
     mesh: str | None = None,
+    overwrite: bool = True,
 ) -> dict[str, Any]:
     """Filter a mesh file into another, or write its harmonics to an archive, in a child process.
 
-    The file is written atomically, and replaces an existing one. `options` are those for
+    The file is written atomically, and replaces an existing one if it may. `options` are those for
     `meshes.filter_to_scratch` or `basis.basis_to_scratch`, `on_progress` is that of
     `MeshLabProcess.run`; without the name of a `mesh`, all meshes of the file are filtered. Returns
     the filter's report; for harmonics, the numbers of "vertices" and "harmonics".
@@ -36,7 +37,7 @@ def write_in_child(
     check_source(source)
     check_is_place(target)
     remove_leftovers(resolved(target).parent, target.name)
-    with writing_whole(target) as scratch:
+    with writing_whole(target, overwrite) as scratch:
         place = {"scratch": str(scratch.absolute())}
         return measure_in_child(source, options, on_progress, mesh, place)
 

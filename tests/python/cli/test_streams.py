@@ -1,0 +1,52 @@
+"""Meshes on standard input and output, and what is in the way of an output."""
+
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import pytest
+from commands import COMMAND, PRECIOUS, assert_fails, command
+
+
+def piped(*arguments: object, mesh: bytes = b"") -> subprocess.CompletedProcess[bytes]:
+    words = [*COMMAND, *map(str, arguments)]
+    return subprocess.run(words, input=mesh, capture_output=True, timeout=120, check=False)
+
+
+@pytest.mark.parametrize("verb", ["filter", "denoise"])
+def test_standard_streams_have_the_bytes_of_files(verb: str, cow: Path, tmp_path: Path) -> None:
+    target = tmp_path / "out.obj"
+    assert command(verb, cow, target).returncode == 0
+    done = piped(verb, "-", "-", "--format", "obj", mesh=cow.read_bytes())
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == target.read_bytes()
+    assert piped(verb, cow, "-", "--format", ".obj").stdout == target.read_bytes()
+    other = tmp_path / "other.obj"
+    assert piped(verb, "-", other, "--format", "obj", mesh=cow.read_bytes()).returncode == 0
+    assert other.read_bytes() == target.read_bytes()
+
+
+def test_a_stream_without_a_mesh_is_called_standard_input() -> None:
+    done = piped("filter", "-", "-", "--format", "obj", mesh=b"no mesh")
+    assert done.returncode == 1
+    assert done.stderr.startswith(b"Error: standard input is not OBJ")
+    assert done.stdout == b""
+
+
+def test_only_filter_and_denoise_read_a_stream() -> None:
+    assert_fails(command("info", "-"), 1, "only filter and denoise read")
+
+
+def test_a_report_does_not_go_where_the_mesh_goes(cow: Path) -> None:
+    assert_fails(command("filter", cow, "-", "--format", "ply", "--json"), 2, "--json")
+
+
+@pytest.mark.parametrize("verb", ["filter", "denoise"])
+def test_an_output_is_replaced_only_on_request(verb: str, cow: Path, tmp_path: Path) -> None:
+    target = tmp_path / "out.ply"
+    target.write_bytes(PRECIOUS)
+    assert_fails(command(verb, cow, target), 2, f"{target} exists", "--overwrite")
+    assert target.read_bytes() == PRECIOUS
+    assert command(verb, cow, target, "--overwrite").returncode == 0
+    assert target.read_bytes() != PRECIOUS
