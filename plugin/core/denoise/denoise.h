@@ -15,6 +15,7 @@ struct DenoiseOptions {
     double strength = 1.0;     ///< Fraction of the displacement to apply, or, if above 1, factor on
                                ///< the noise height; >= 0.
     double noiseHeight = 0.0;  ///< Standard deviation of the noise, length units; 0: measure it.
+    Eigen::VectorXd weight;    ///< n, 0 to 1: factor on noiseHeight at each vertex; empty: 1.
     double noiseSize = 0.0;    ///< Correlation length of the noise, length units; 0: measure it.
     bool keepCreases = true;   ///< If false, smooths across creases, too.
     Boundary boundary = Boundary::Free;

@@ -9,6 +9,7 @@
 #include "core/noise/robust_statistics.h"
 #include "core/noise/scan_lines.h"
 #include "core/noise/spikes.h"
+#include "core/noise/stretched_axis.h"
 #include "core/noise/voxel_lattice.h"
 #include "core/support/threads.h"
 
@@ -122,11 +123,16 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
     diagnosis.X = X;
     const double edge = diagnosis.noise.meanEdge = meanEdgeLength(X, graph.F);
     const Index measured = std::count(isMeasured.begin(), isMeasured.end(), true);
+    diagnosis.stretchedAxis = stretchedAxis(graph, X);
     std::optional<CoordinateGrid> grid;
     if (!isKnown) {
         grid = coordinateGrid(X);
         if (grid) findVoxels(graph, *grid, isMeasured, diagnosis);
         if (diagnosis.kind != NoiseKind::None) return diagnosis;
+        if (diagnosis.stretchedAxis) {
+            diagnosis.kind = NoiseKind::Stretched;
+            return diagnosis;
+        }
         if (quantile(triangleQuality(graph, X), 0.5) < kMinQuality) {
             diagnosis.kind = NoiseKind::Tessellation;
             const auto lines = scanLineNoise(graph, X, isMeasured);
@@ -194,6 +200,27 @@ NoiseField localNoise(const FaceGraph& graph, const std::vector<bool>& isMeasure
 
 }  // namespace
 
+bool Diagnosis::isNoise() const {
+    switch (kind) {
+        case NoiseKind::None:
+        case NoiseKind::Shape:
+        case NoiseKind::Tessellation:
+        case NoiseKind::Stretched:
+        case NoiseKind::TooFew: return false;
+        default: return true;
+    }
+}
+
+double Diagnosis::rmsHeight() const {
+    if (!isNoise()) return 0.0;
+    if (kind != NoiseKind::Local) return noise.height;
+    return field.height.norm() / std::sqrt(static_cast<double>(field.height.size()));
+}
+
+bool Diagnosis::hasVoxels() const {
+    return kind == NoiseKind::Voxels || kind == NoiseKind::VoxelFaces;
+}
+
 Diagnosis diagnose(const FaceGraph& graph, const Points& X, const std::vector<bool>& isMeasured,
                    bool isKnown, const Progress& progress) {
     Diagnosis diagnosis =
@@ -210,6 +237,14 @@ Diagnosis diagnose(const FaceGraph& graph, const Points& X, const std::vector<bo
         diagnosis.noise.height = quantile(std::move(heights), 0.5);
     }
     return diagnosis;
+}
+
+Diagnosis diagnose(const Surface& surface, const Progress& progress) {
+    const Index n = surface.X.rows();
+    const FaceGraph graph = faceGraph(distinctFaces(surface.F, n), n);
+    std::vector<bool> isMeasured(graph.onRim);
+    isMeasured.flip();
+    return diagnose(graph, surface.X, isMeasured, false, progress);
 }
 
 }  // namespace spectral

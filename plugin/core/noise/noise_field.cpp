@@ -171,6 +171,25 @@ Eigen::VectorXd heightWhereNoise(const VertexGraph& graph, const Heights& height
     return height;
 }
 
+/// The field with the statistics of its heights, which are those in edges of the place.
+NoiseField inLengthUnits(NoiseField field, const Flags& isMeasured) {
+    std::vector<double> relative;
+    Index measured = 0, noisy = 0;
+    for (Index i = 0; i < field.height.size(); ++i) {
+        measured += isMeasured[i];
+        if (!(field.height[i] > 0.0)) continue;
+        noisy += isMeasured[i];
+        relative.push_back(field.height[i]);
+    }
+    if (relative.empty()) return {};
+    field.share = static_cast<double>(noisy) / static_cast<double>(measured);
+    field.lowest = quantile(relative, 0.1);
+    field.median = quantile(relative, 0.5);
+    field.highest = quantile(std::move(relative), 0.98);
+    field.height = field.height.cwiseProduct(field.edge);
+    return field;
+}
+
 }  // namespace
 
 LocalResiduals localResiduals(const FaceGraph& graph, const Points& X, const Flags& isMeasured) {
@@ -218,6 +237,14 @@ NoiseField NoiseField::ofHeight(double height, double edge, Index n) {
     return field;
 }
 
+NoiseField NoiseField::ofHeights(const FaceGraph& graph, const Points& X,
+                                 const Eigen::VectorXd& heights) {
+    NoiseField field;
+    field.edge = localEdges(graph.vertices, X);
+    field.height = heights.cwiseQuotient(field.edge);
+    return inLengthUnits(std::move(field), Flags(graph.onRim.size(), true));
+}
+
 NoiseField measureNoiseField(const FaceGraph& graph, const Points& X, const Flags& isMeasured,
                              const LocalResiduals& local) {
     const VertexGraph& vertices = graph.vertices;
@@ -251,21 +278,7 @@ NoiseField measureNoiseField(const FaceGraph& graph, const Points& X, const Flag
         vertices, LocalAverage(vertices, isMeasured, kNear), clipped.cwiseQuotient(unit));
     field.height = heightWhereNoise(vertices, heights, near, isNoise);
 
-    std::vector<double> relative;
-    Index measured = 0, noisy = 0;
-    for (Index i = 0; i < n; ++i) {
-        measured += isMeasured[i];
-        if (!(field.height[i] > 0.0)) continue;
-        noisy += isMeasured[i];
-        relative.push_back(field.height[i]);
-    }
-    if (relative.empty()) return {};
-    field.share = static_cast<double>(noisy) / static_cast<double>(measured);
-    field.lowest = quantile(relative, 0.1);
-    field.median = quantile(relative, 0.5);
-    field.highest = quantile(std::move(relative), 0.98);
-    field.height = field.height.cwiseProduct(field.edge);
-    return field;
+    return inLengthUnits(std::move(field), isMeasured);
 }
 
 }  // namespace spectral

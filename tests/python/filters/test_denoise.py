@@ -203,6 +203,67 @@ def test_a_cad_part_is_left_alone_and_never_crumpled() -> None:
     assert "folded" in report["warnings"][0]
 
 
+@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize(
+    "units", [(111e3, 1), (1e3, 1), (1, 0.01), (111e3, 0.3048)], ids=["degree", "km", "cm", "foot"]
+)
+@pytest.mark.parametrize("seed", range(3))
+def test_a_terrain_of_two_units_is_called_so(
+    units: tuple[float, float], axis: int, seed: int
+) -> None:
+    """`units` are those of the plane and of the height, in metres."""
+    rng = np.random.default_rng(seed)
+    step = 30.0
+    x, y = np.meshgrid(np.arange(45.0), np.arange(45.0), indexing="ij")
+    waves = rng.uniform(0.05, 0.3, (4, 2)), rng.uniform(0, 6, 4)
+    height = sum(30 * np.sin(a * x + b * y + c) for (a, b), c in zip(*waves, strict=True))
+    height += rng.normal(0, 4, x.shape)
+    V = np.stack([step * x / units[0], step * y / units[0], height / units[1]], -1).reshape(-1, 3)
+    i = (np.arange(44)[:, None] * 45 + np.arange(44)).ravel()
+    F = np.concatenate([np.stack([i, i + 45, i + 46], 1), np.stack([i, i + 46, i + 1], 1)])
+    V = np.roll(V, axis - 2, axis=1) + rng.uniform(0, 60, 3)
+    Y, report = denoise_mesh(V, F)
+    np.testing.assert_array_equal(Y, V)
+    assert report["summary"].startswith(f"{'xyz'[axis]} has another unit than the other axes")
+    assert not report["noise_searched"]
+    V[:, axis] *= units[1] / units[0]
+    Y, report = denoise_mesh(V, F)
+    assert "unit" not in report["summary"]
+    assert report["noise_searched"]
+
+
+@pytest.mark.parametrize("size", [None, "2e"])
+def test_heights_by_place_are_removed_where_they_are_given(size: str | None) -> None:
+    V, F = cube(24)
+    up = V[:, 2] > 12
+    rng = np.random.default_rng(3)
+    X = V + np.where(up[:, None], 0.15 * mean_edge(V, F), 0) * rng.standard_normal(V.shape)
+    more = {} if size is None else {"noise_size": size}
+    Y, report = denoise_mesh(
+        X, F, noise_height=0.15 * mean_edge(V, F), weights=up.astype(float), **more
+    )
+    np.testing.assert_array_equal(Y[~up], X[~up])
+    assert report["summary"].startswith("noise of 0.1 edges on ")
+    assert report["summary"].endswith("as given: removed")
+    before, after = (angles(Z, V, F)[up[F].all(axis=1)].mean() for Z in (X, Y))
+    assert after < (0.35 if size is None else 0.8) * before
+    # One height everywhere is what the same number says.
+    ones, _ = denoise_mesh(X, F, noise_height="0.15e", weights=np.ones(len(V)), **more)
+    same, _ = denoise_mesh(X, F, noise_height="0.15e", **more)
+    a, b = (angles(Z, V, F).mean() for Z in (ones, same))
+    assert a == pytest.approx(b, rel=0.3)
+
+
+def test_weights_need_a_height_and_a_noisy_place() -> None:
+    V, F = cube(8)
+    with pytest.raises(OptionError, match=r"not given: give noise_height"):
+        denoise_mesh(V, F, weights=np.ones(len(V)))
+    with pytest.raises(OptionError, match="0 everywhere"):
+        denoise_mesh(V, F, weights=np.zeros(len(V)), noise_height=0.1)
+    with pytest.raises(OptionError, match="weight"):
+        denoise_mesh(V, F, weights=np.full(len(V), 1.5), noise_height=0.1)
+
+
 def test_a_rim_follows_unless_it_is_fixed(decimated: Decimated) -> None:
     V, F = lower_part(*decimated("bunny.obj", 10000))
     X = noisy(V, F, 0.2)
@@ -269,8 +330,9 @@ def test_names_order_and_defaults_are_those_of_the_plugin(decimated: Decimated) 
     expected = DenoiseOptions().as_dict()
     assert list(parameters) == list(expected)
     expected["noise_height"] = expected["noise_size"] = 0.0  # auto
-    boundary = get_args(get_type_hints(DenoiseOptions)["boundary"])
-    expected["boundary"] = boundary.index(expected["boundary"])
+    for name in ("weight", "boundary"):
+        choices = get_args(get_type_hints(DenoiseOptions)[name])
+        expected[name] = choices.index(expected[name])
     assert parameters == expected
 
 
