@@ -11,6 +11,7 @@ std::optional<int> stretchedAxis(const FaceGraph& graph, const Points& X) {
     // Degrees for metres stretch a slope of 1 in 1000 to 100. A tower's walls are steep, too, but
     // seen from above their triangles are slivers.
     constexpr double kMinSlope = 10.0, kMinQuality = 0.6;  // medians
+    constexpr double kMinUpright = 0.9;  // area that faces one side, seen along the axis
     const Points N = areaNormals(X, graph.F);
     for (int axis = 0; axis < 3; ++axis) {
         std::vector<double> cosine;
@@ -19,6 +20,8 @@ std::optional<int> stretchedAxis(const FaceGraph& graph, const Points& X) {
             if (length > 0.0) cosine.push_back(std::abs(N(f, axis)) / length);
         }
         if (cosine.empty() || quantile(std::move(cosine), 0.5) > 1.0 / kMinSlope) continue;
+        const double sum = std::abs(N.col(axis).sum()), all = N.col(axis).cwiseAbs().sum();
+        if (!(sum > kMinUpright * all)) continue;
         Points seen = X;
         seen.col(axis).setZero();
         if (quantile(triangleQuality(graph, seen), 0.5) > kMinQuality) return axis;

@@ -7,8 +7,8 @@
 namespace spectral {
 
 /// The axis along which a surface is stretched beyond any slope of a terrain: its triangles stand
-/// nearly upright, but seen along this axis they are well shaped. Its unit is another one than that
-/// of the other two, as where x and y are degrees and z metres.
+/// nearly upright, but seen along this axis they are well shaped, and face one side. Its unit is
+/// another one than that of the other two, as where x and y are degrees and z metres.
 ///
 /// @param X  n x 3 positions.
 /// @return   0, 1 or 2; none if there is no such axis.
