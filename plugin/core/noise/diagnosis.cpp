@@ -105,11 +105,25 @@ void findRounding(const FaceGraph& graph, const CoordinateGrid& grid,
     diagnosis.field = NoiseField::ofHeight(height, edge, diagnosis.X.rows());
 }
 
+/// Fewer vertices are too few to tell noise from corners: those of a tetrahedron alternate, too.
+constexpr Index kMinMeasured = 100;
+
+/// The measured vertices of components that have enough of them.
+std::vector<bool> inLargeComponents(const FaceGraph& graph, std::vector<bool> isMeasured) {
+    const Index n = static_cast<Index>(isMeasured.size());
+    const Components components = connectedComponents(graph.F, n);
+    std::vector<Index> measured(static_cast<std::size_t>(components.count));
+    for (Index i = 0; i < n; ++i) measured[components.label[i]] += isMeasured[i];
+    for (Index i = 0; i < n; ++i)
+        isMeasured[i] = isMeasured[i] && measured[components.label[i]] >= kMinMeasured;
+    return isMeasured;
+}
+
 /// The noise of the mesh as one.
 Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
                         const std::vector<bool>& isMeasured, bool isKnown,
                         const Progress& progress) {
-    constexpr Index kMinMeasured = 100, kMinMeasuredFine = 1000;  // vertices
+    constexpr Index kMinMeasuredFine = 1000;  // vertices
     constexpr double kMinQuality = 0.6;
     constexpr double kMinHeight = 0.02, kMinHeightCorrelated = 0.045;  // mean edges
     constexpr double kMaxCorrelation = 0.2;  // above it, the residuals are those of a shape
@@ -182,11 +196,12 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
 }
 
 /// The noise by place, where that explains more than the diagnosis of the whole mesh.
-NoiseField localNoise(const FaceGraph& graph, const std::vector<bool>& isMeasured,
+NoiseField localNoise(const FaceGraph& graph, const std::vector<bool>& isMeasuredInWhole,
                       const Diagnosis& whole) {
     const bool isWhite = whole.kind == NoiseKind::White || whole.kind == NoiseKind::Impulses;
     if (!isWhite && whole.kind != NoiseKind::None && whole.kind != NoiseKind::Shape) return {};
     if (hasManySpikes(whole)) return {};
+    const std::vector<bool> isMeasured = inLargeComponents(graph, isMeasuredInWhole);
     const LocalResiduals residuals = localResiduals(graph, whole.X, isMeasured);
     if (isWhite && areAlike(graph, whole.X, residuals, isMeasured)) return {};
     NoiseField field = measureNoiseField(graph, whole.X, isMeasured, residuals);

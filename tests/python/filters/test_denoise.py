@@ -9,6 +9,7 @@ from typing import Any, get_args, get_type_hints
 import numpy as np
 import pymeshlab
 import pytest
+import pyvista
 from denoise_reference import Array, Reference, mean_edge, unit
 from helpers import assert_same, decorated, length, lower_part, mesh_set_of, refusal, snapshot
 from meshlab_spectral import DenoiseOptions, OptionError, denoise_mesh
@@ -230,6 +231,24 @@ def test_a_terrain_of_two_units_is_called_so(
     Y, report = denoise_mesh(V, F)
     assert "unit" not in report["summary"]
     assert report["noise_searched"]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_specks_of_a_few_vertices_are_no_noise(seed: int) -> None:
+    """The corners of a tetrahedron alternate like noise; a range scan has a thousand of them."""
+    sphere = pyvista.Icosphere(nsub=4)
+    corners = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1.0]])
+    rng = np.random.default_rng(seed)
+    points = [np.asarray(sphere.points, float)]
+    for _ in range(150):
+        points.append(0.03 * (corners + rng.normal(0, 0.15, (4, 3))) + rng.uniform(2, 4, 3))
+    firsts = len(points[0]) + 4 * np.arange(150)
+    sides = np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]])
+    F = np.concatenate([sphere.regular_faces, (firsts[:, None, None] + sides).reshape(-1, 3)])
+    V = np.concatenate(points)
+    Y, report = denoise_mesh(V, F)
+    np.testing.assert_array_equal(Y, V)
+    assert report["summary"].startswith("no noise found")
 
 
 @pytest.mark.parametrize("size", [None, "2e"])
