@@ -1,6 +1,6 @@
 """Denoising against ground truth: noisy meshes whose clean originals are known.
 
-usage: bench_denoise.py [--pairs FOLDER] [--all-methods] [NAME ...]
+usage: bench_denoise.py [--pairs FOLDER] [--all-methods] [--rivals] [NAME ...]
        bench_denoise.py --clean [MESH ...]
        bench_denoise.py --estimates [MESH ...]
 
@@ -11,9 +11,9 @@ number of steps that has the least angle for each mesh. For NAME_surface.ply, th
 staircase as another mesh, the angle is between the normals of nearest points. Seconds are those of
 a pymeshlab call; their ratio is to those of MeshLab's Taubin smoothing with 50 steps.
 FOLDER defaults to ../shared/denoise next to the repository. --all-methods adds VTK's windowed sinc
-and bilateral normals; and, at their defaults, as nobody can choose with the truth, the denoisers of
-Debian's meshsdfilter-tools (MeshDenoiser; Zhang et al. 2018) and of MeshLib (`pip install meshlib`),
-each if it is installed, with the time of a call.
+and bilateral normals. --rivals adds, at fixed options, as nobody can choose with the truth, the
+denoisers of Debian's meshsdfilter-tools (MeshDenoiser; Zhang et al. 2018), with the defaults that
+AliceVision gives it, and of MeshLib (`pip install meshlib`): each if it is installed.
 
 --clean: the largest displacement on meshes without noise, by default those of ../shared, some also
 decimated; and the angle before and after with 0.05 mean edges of noise added.
@@ -152,10 +152,10 @@ MORE_METHODS: dict[str, tuple[Method, list[Any]]] = {
 
 
 def mesh_denoiser(V: Array, F: Any, _: None) -> Array:
-    """The static and dynamic filter of meshsdfilter-tools, with an empty file of options."""
+    """The static and dynamic filter of meshsdfilter-tools."""
     with TemporaryDirectory() as folder:
         options, source, target = (Path(folder) / name for name in ("options", "in.obj", "out.obj"))
-        options.touch()
+        options.write_text("Lambda 2\nEta 1.5\nMu 1.5\nNu 0.3\n", encoding="utf-8")
         with source.open("w") as file:
             np.savetxt(file, V, "v %.17g %.17g %.17g")
             np.savetxt(file, F + 1, "f %d %d %d")
@@ -268,9 +268,10 @@ def timed(method: Callable[[], Any]) -> tuple[Any, float]:
     return result, min(seconds)
 
 
-def print_pairs(folder: Path, names: list[str], more: bool) -> None:
+def print_pairs(
+    folder: Path, names: list[str], methods: dict[str, tuple[Method, list[Any]]]
+) -> None:
     """Print a line for every pair, and the means of groups."""
-    methods = METHODS | (MORE_METHODS | rivals() if more else {})
     taubin = METHODS["Taubin"][0]
     print(
         f"{'':20}{'noisy':>14}{'Spectral Denoise':>18}", *(f"{m:>13}" for m in methods), "  times"
@@ -405,6 +406,7 @@ def main() -> None:
     parser.add_argument("names", nargs="*", metavar="NAME")
     parser.add_argument("--pairs", type=Path, default=SHARED / "denoise")
     parser.add_argument("--all-methods", action="store_true")
+    parser.add_argument("--rivals", action="store_true")
     parser.add_argument("--clean", action="store_true")
     parser.add_argument("--estimates", action="store_true")
     arguments = parser.parse_args()
@@ -419,7 +421,8 @@ def main() -> None:
             file.name.removesuffix("_noisy.ply")
             for file in sorted(arguments.pairs.glob("*_noisy.ply"))
         ]
-        print_pairs(arguments.pairs, names, arguments.all_methods)
+        more = MORE_METHODS if arguments.all_methods else {}
+        print_pairs(arguments.pairs, names, METHODS | more | (rivals() if arguments.rivals else {}))
 
 
 if __name__ == "__main__":

@@ -91,9 +91,9 @@ RemovalOptions removalOptions(const DenoiseOptions& options, const Diagnosis& di
                               kMaxHeight * edge);
     // Only the finest octaves of correlated noise can be told from the shape: its true length is
     // about twice the measured one.
-    constexpr double kHidden = 2.0;
+    constexpr double kHiddenSize = 2.0;
     removal.size = options.noiseSize > 0.0 ? options.noiseSize / edge
-                   : noise.size > 1.0      ? kHidden * noise.size
+                   : noise.size > 1.0      ? kHiddenSize * noise.size
                                            : 0.0;
     removal.keepCreases = options.keepCreases;
     removal.areImpulses = diagnosis.kind == NoiseKind::Impulses;

@@ -20,10 +20,10 @@ constexpr double kShort = 2.0;
 /// Smoothed area around each face, relative to the mean: square roots of the areas, repeatedly
 /// averaged with the neighbours to suppress noise.
 Eigen::VectorXd localAreas(const FaceGraph& graph, const Eigen::VectorXd& area) {
-    constexpr int kRepetitions = 6;
+    constexpr int kAreaBlurs = 6;
     constexpr double kOwn = 0.25;
     Eigen::VectorXd length = (area / area.mean()).cwiseSqrt(), next = length;
-    for (int k = 0; k < kRepetitions; ++k) {
+    for (int k = 0; k < kAreaBlurs; ++k) {
         parallelRows(area.size(), [&](Index begin, Index end) {
             for (Index f = begin; f < end; ++f) {
                 double sum = 0.0, count = 0.0;
@@ -96,7 +96,7 @@ class System {
     /// @param X          initial guess.
     /// @param tolerance  squared norms of the columns of the residual.
     void solve(const Points& B, const Columns& tolerance, Points& X) const {
-        constexpr int kMaxIterations = 300;
+        constexpr int kMaxIterationsOfNormals = 300;
         Points Q(B.rows(), 3), R(B.rows(), 3), D(B.rows(), 3);
         multiply(X, Q);
         Columns squares = Columns::Zero();  // squared norms of the residual
@@ -105,7 +105,7 @@ class System {
             D.row(f) = R.row(f) / diagonal_[f];
             return R.row(f);
         });
-        for (int k = 0; k < kMaxIterations && (squares > tolerance).any(); ++k) {
+        for (int k = 0; k < kMaxIterationsOfNormals && (squares > tolerance).any(); ++k) {
             const Columns curvature = multiply(D, Q);
             const Columns step = (curvature > 0.0).select(descent / curvature, 0.0);
             const Columns next = sumOverRows(B.rows(), squares, [&](Index f) {
@@ -166,13 +166,14 @@ class System {
 Points filterNormals(const FaceGraph& graph, const Points& X, const NormalFilterOptions& options,
                      const Points& guess) {
     // Relative residual; a hundredth of it changes no angle of a denoised mesh.
-    constexpr double kAccuracy = 1e-2;
+    constexpr double kAccuracyOfNormals = 1e-2;
     Points N = areaNormals(X, graph.F);
     if (!(N.cwiseAbs().maxCoeff() > 0.0)) return N;  // all faces are degenerate
     const System A(graph, X, N, options);
     normalizeRows(N);
     const Points B = A.mass().asDiagonal() * N;
-    const System::Columns tolerance = kAccuracy * kAccuracy * B.colwise().squaredNorm().array();
+    const System::Columns tolerance =
+        kAccuracyOfNormals * kAccuracyOfNormals * B.colwise().squaredNorm().array();
     Points filtered = guess.rows() == N.rows() ? guess : N;
     A.solve(B, tolerance, filtered);
     if (options.useTwicing) {

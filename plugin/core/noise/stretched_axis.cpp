@@ -10,7 +10,7 @@ namespace spectral {
 std::optional<int> stretchedAxis(const FaceGraph& graph, const Points& X) {
     // Degrees for metres stretch a slope of 1 in 1000 to 100. A tower's walls are steep, too, but
     // seen from above their triangles are slivers.
-    constexpr double kMinSlope = 10.0, kMinQuality = 0.6;  // medians
+    constexpr double kMinSlope = 10.0;   // median
     constexpr double kMinUpright = 0.9;  // area that faces one side, seen along the axis
     const Points N = areaNormals(X, graph.F);
     for (int axis = 0; axis < 3; ++axis) {
@@ -24,7 +24,7 @@ std::optional<int> stretchedAxis(const FaceGraph& graph, const Points& X) {
         if (!(sum > kMinUpright * all)) continue;
         Points seen = X;
         seen.col(axis).setZero();
-        if (quantile(triangleQuality(graph, seen), 0.5) > kMinQuality) return axis;
+        if (quantile(triangleQuality(graph, seen), 0.5) > kNeedleQuality) return axis;
     }
     return std::nullopt;
 }
