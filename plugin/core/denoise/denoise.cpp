@@ -66,6 +66,7 @@ struct MovingPart {
     Surface surface;         ///< Its `vertex` holds rows of the whole surface.
     Eigen::VectorXd weight;  ///< Fraction of its displacement that each vertex moves by, 0 to 1.
     Eigen::VectorXd height;  ///< Given height of the noise at each vertex; empty: not given.
+    Eigen::RowVector3d eye;  ///< The origin of the file's coordinates, where a camera may be.
 
     MovingPart(const Surface& whole, const Eigen::VectorXd& weightOfWhole) {
         Faces F(whole.F.rows(), 3);
@@ -78,6 +79,24 @@ struct MovingPart {
         weight = weightOfWhole(surface.vertex);
     }
 };
+
+/// Unit vectors from the eye, if a surface looks as a camera there has seen it: open, every face
+/// turned towards it, and all of it on one side; else no rows.
+Points raysFrom(const Eigen::RowVector3d& eye, const FaceGraph& graph, const Points& X) {
+    constexpr double kMinSeen = 0.995;  // share of the faces
+    const bool isInside = (eye.array() >= X.colwise().minCoeff().array()).all() &&
+                          (eye.array() <= X.colwise().maxCoeff().array()).all();
+    if (isInside || std::find(graph.onRim.begin(), graph.onRim.end(), true) == graph.onRim.end())
+        return {};
+    Points rays = X.rowwise() - eye;
+    normalizeRows(rays);
+    const Points N = areaNormals(X, graph.F);
+    Index seen = 0;
+    for (Index f = 0; f < N.rows(); ++f) seen += N.row(f).dot(rays.row(graph.F(f, 0))) > 0.0;
+    const double share = static_cast<double>(seen) / static_cast<double>(N.rows());
+    if (std::max(share, 1.0 - share) < kMinSeen) return {};
+    return rays;
+}
 
 /// The noise to remove: as given by the options, or else as measured.
 RemovalOptions removalOptions(const DenoiseOptions& options, const Diagnosis& diagnosis) {
@@ -147,9 +166,13 @@ Points denoisePart(const MovingPart& part, const FaceGraph& graph, const Denoise
         for (Index i = 0; i < X0.rows(); ++i)
             removal.mayMove[i] = removal.mayMove[i] && diagnosis.field.height[i] > 0.0;
     }
+    if (diagnosis.kind == NoiseKind::Correlated && !isKnown && options.keepCreases)
+        removal.rays = raysFrom(part.eye, graph, X0);
     Removal done =
         removeNoise(graph, X0, diagnosis, isKnown, removal, progress.part(kMeasuring, 1.0));
-    if (done.rounds > 0 && !diagnosis.hasVoxels() && isCrumpled(graph, X0, done.X)) {
+    // Along rays nothing can fold: the camera sees the same triangles.
+    if (done.rounds > 0 && !diagnosis.hasVoxels() && removal.rays.rows() == 0 &&
+        isCrumpled(graph, X0, done.X)) {
         result.isCrumpled = true;
         done = {diagnosis.X, 0};
     }
@@ -207,6 +230,9 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
     Vertices moved = whole.X;
     PreservedVolumes volumes;
     MovingPart part(whole, weight);
+    // The surface is centred: the eye is where the origin of the mesh has gone.
+    if (part.surface.X.rows() > 0)
+        part.eye = part.surface.X.row(0) - V.row(whole.vertex[part.surface.vertex[0]]);
     if (height.size() > 0) part.height = height(part.surface.vertex);
     if (options.strength > 0.0 && part.surface.X.rows() > 0) {
         const Index n = part.surface.X.rows();

@@ -39,6 +39,10 @@ struct DenoiseResult : SurfaceCounts, Movement {
 /// rebuilt from the shape after each, as in Kovnatsky et al. 2012, Eq. 11 (normal_filter.h); the
 /// vertices then follow the normals (vertex_update.h).
 ///
+/// The noise of a depth camera lies along its rays. Where a surface with correlated noise looks as
+/// seen from the origin of its coordinates (every face turned towards it), vertices move along
+/// these rays only: the result then depends on where the origin is.
+///
 /// The stages: determine the kind of noise (diagnosis.h); remove spikes (spikes.h); remove noise up
 /// to its height (removal.h), unless that would crumple the surface (crumpling.h); restore the
 /// volume of closed components. Around a selection the displacement fades out within four edges;

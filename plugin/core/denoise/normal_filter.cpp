@@ -40,20 +40,28 @@ Eigen::VectorXd localAreas(const FaceGraph& graph, const Eigen::VectorXd& area) 
     return length.cwiseAbs2();
 }
 
+/// Distance of normals below which total variation is smooth.
+constexpr double kSmooth = 0.05;
+
+Points unitNormals(Points N) {
+    normalizeRows(N);
+    return N;
+}
+
 /// The matrix A = M + t L.
 class System {
   public:
     using Columns = Eigen::Array<double, 1, 3>;
 
-    /// @param N  face normals with length twice the area.
-    System(const FaceGraph& graph, const Points& X, const Points& N,
-           const NormalFilterOptions& options)
+    /// @param N            face normals with length twice the area.
+    /// @param q            unit normals that define the weights.
+    /// @param isVariation  whether these are those of normalsOfLeastVariation.
+    System(const FaceGraph& graph, const Points& X, const Points& N, const Points& q,
+           const NormalFilterOptions& options, bool isVariation = false)
         : neighbours_(graph.neighbours),
           weight_(N.rows(), 3),
           mass_(N.rows()),
           diagonal_(N.rows()) {
-        Points q = blurredNormals(graph, N, options.blurs);
-        normalizeRows(q);
         Eigen::VectorXd area(N.rows());
         parallelRows(N.rows(), [&](Index begin, Index end) {
             for (Index f = begin; f < end; ++f) area[f] = N.row(f).norm();
@@ -65,7 +73,8 @@ class System {
         const double lengths = parallelSum(N.rows(), 0.0, [&](Index begin, Index end) {
             double sum = 0.0;
             for (Index f = begin; f < end; ++f) {
-                mass_[f] = std::sqrt(std::max(area[f] / mean, kMinArea));
+                mass_[f] = std::max(area[f] / mean, kMinArea);
+                if (!isVariation) mass_[f] = std::sqrt(mass_[f]);
                 for (int c = 0; c < 3; ++c) {
                     const Eigen::RowVector3d side =
                         X.row(graph.F(f, (c + 1) % 3)) - X.row(graph.F(f, (c + 2) % 3));
@@ -78,7 +87,9 @@ class System {
                     const double distance = (q.row(f) - q.row(other)).squaredNorm();
                     weight_(f, c) =
                         side.norm() *
-                        std::exp(-0.5 * distance / (squaredScale + squaredTilt * shortness));
+                        (isVariation ? options.edgeScale / std::sqrt(distance + kSmooth * kSmooth)
+                                     : std::exp(-0.5 * distance /
+                                                (squaredScale + squaredTilt * shortness)));
                     if (const Eigen::VectorXd* time = options.timeOfFace)
                         weight_(f, c) *= std::sqrt((*time)[f] * (*time)[other]);
                 }
@@ -169,7 +180,7 @@ Points filterNormals(const FaceGraph& graph, const Points& X, const NormalFilter
     constexpr double kAccuracyOfNormals = 1e-2;
     Points N = areaNormals(X, graph.F);
     if (!(N.cwiseAbs().maxCoeff() > 0.0)) return N;  // all faces are degenerate
-    const System A(graph, X, N, options);
+    const System A(graph, X, N, unitNormals(blurredNormals(graph, N, options.blurs)), options);
     normalizeRows(N);
     const Points B = A.mass().asDiagonal() * N;
     const System::Columns tolerance =
@@ -183,6 +194,23 @@ Points filterNormals(const FaceGraph& graph, const Points& X, const NormalFilter
     }
     normalizeRows(filtered);
     return filtered;
+}
+
+Points normalsOfLeastVariation(const FaceGraph& graph, const Points& X, double time) {
+    constexpr int kIterations = 5, kFirstBlurs = 6;
+    constexpr double kAccuracy = 1e-3;
+    NormalFilterOptions options;
+    options.time = time;
+    options.edgeScale = 0.22;
+    const Points N = areaNormals(X, graph.F);
+    Points smooth = unitNormals(blurredNormals(graph, N, kFirstBlurs));
+    for (int k = 0; k < kIterations; ++k) {
+        const System A(graph, X, N, smooth, options, true);
+        const Points B = A.mass().asDiagonal() * unitNormals(N);
+        A.solve(B, kAccuracy * kAccuracy * B.colwise().squaredNorm().array(), smooth);
+        normalizeRows(smooth);
+    }
+    return smooth;
 }
 
 }  // namespace spectral

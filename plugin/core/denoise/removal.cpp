@@ -9,6 +9,7 @@
 #include "core/denoise/unfold.h"
 #include "core/denoise/vertex_update.h"
 #include "core/denoise/whiteness.h"
+#include "core/noise/local_average.h"
 #include "core/noise/robust_statistics.h"
 
 namespace spectral {
@@ -195,6 +196,20 @@ Removal removeByPlace(const FaceGraph& graph, const Points& X0, const RemovalOpt
     return removal;
 }
 
+/// Noise of a depth camera lies along its rays, and is as large as the details.
+Removal removeAlongRays(const FaceGraph& graph, const Points& X0, const RemovalOptions& options) {
+    constexpr double kStrength = 12.0;
+    constexpr int kSweepsAlong = 160, kIterations = 5, kLong = 128;
+    const Points N = normalsOfLeastVariation(graph, X0, kStrength);
+    Removal removal{followNormalsAlong(graph, X0, N, options.rays, options.mayMove, kSweepsAlong),
+                    kIterations};
+    // Noise has no long waves: those that flatter normals add up to are taken off.
+    Eigen::VectorXd along = (removal.X - X0).cwiseProduct(options.rays).rowwise().sum();
+    along -= LocalAverage(graph.vertices, options.mayMove, kLong).of(along);
+    removal.X = X0 + along.asDiagonal() * options.rays;
+    return removal;
+}
+
 }  // namespace
 
 Removal removeWhiteNoise(const FaceGraph& graph, const Points& X0, const RemovalOptions& options,
@@ -215,6 +230,7 @@ Removal removeWhiteNoise(const FaceGraph& graph, const Points& X0, const Removal
 Removal removeCorrelatedNoise(const FaceGraph& graph, const Points& X0,
                               const RemovalOptions& options, const Progress& progress) {
     constexpr double kLengthOfSize = 0.8, kMaxLength = 4.0;
+    if (options.rays.rows() > 0) return removeAlongRays(graph, X0, options);
     constexpr double kMinRemoved = 0.8;  // part of the height; the rest is as long as details
     constexpr int kMinRounds = 2, kMaxLongRounds = 6;
     const double length = std::min(kLengthOfSize * options.size, kMaxLength);

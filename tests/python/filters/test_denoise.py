@@ -14,6 +14,7 @@ from denoise_reference import Array, Reference, mean_edge, unit
 from helpers import assert_same, decorated, length, lower_part, mesh_set_of, refusal, snapshot
 from meshlab_spectral import DenoiseOptions, OptionError, denoise_mesh
 from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter
 
 DENOISE = "apply_coord_spectral_denoise"
 
@@ -231,6 +232,29 @@ def test_a_terrain_of_two_units_is_called_so(
     Y, report = denoise_mesh(V, F)
     assert "unit" not in report["summary"]
     assert report["noise_searched"]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_vertices_of_a_depth_map_move_along_its_rays(seed: int) -> None:
+    n, f, rng = 90, 400.0, np.random.default_rng(seed)
+    y, x = (np.mgrid[:n, :n] - n / 2) / f
+    depth = 800 + 15 * np.cos(40 * x + seed) * np.cos(30 * y) + 20 * (x > 0.02)
+    noise = gaussian_filter(rng.standard_normal(depth.shape), 0.8)
+    noise *= 1.2 / noise.std()
+    rays = np.stack([x, y, np.ones_like(x)], -1).reshape(-1, 3)
+    V, X = rays * depth.reshape(-1, 1), rays * (depth + noise).reshape(-1, 1)
+    i = (np.arange(n - 1)[:, None] * n + np.arange(n - 1)).ravel()
+    F = np.concatenate([np.stack([i, i + n, i + n + 1], 1), np.stack([i, i + n + 1, i + 1], 1)])
+    Y, report = denoise_mesh(X, F)
+    assert report["summary"].startswith("scanner noise")
+    moves = np.linalg.norm(Y - X, axis=1)
+    along = np.abs(((Y - X) * unit(rays)).sum(axis=1))
+    np.testing.assert_allclose(along, moves, atol=1e-9)
+    assert np.linalg.norm(Y - V, axis=1).mean() < 0.8 * np.linalg.norm(X - V, axis=1).mean()
+    # The camera is not at the origin: along the normals, which come out worse.
+    shift = [3000.0, 0, 0]
+    Z = denoise_mesh(X + shift, F)[0] - shift
+    assert angles(Y, V, F).mean() < 0.9 * angles(Z, V, F).mean()
 
 
 @pytest.mark.parametrize("seed", range(3))
