@@ -1,6 +1,6 @@
 """Denoising against ground truth: noisy meshes whose clean originals are known.
 
-usage: bench_denoise.py [--pairs FOLDER] [--all-methods] [NAME ...]
+usage: bench_denoise.py [--pairs FOLDER] [--all-methods] [--rivals] [NAME ...]
        bench_denoise.py --clean [MESH ...]
        bench_denoise.py --estimates [MESH ...]
 
@@ -11,7 +11,9 @@ number of steps that has the least angle for each mesh. For NAME_surface.ply, th
 staircase as another mesh, the angle is between the normals of nearest points. Seconds are those of
 a pymeshlab call; their ratio is to those of MeshLab's Taubin smoothing with 50 steps.
 FOLDER defaults to ../shared/denoise next to the repository. --all-methods adds VTK's windowed sinc
-and bilateral normals.
+and bilateral normals. --rivals adds, at fixed options, as nobody can choose with the truth, the
+denoisers of Debian's meshsdfilter-tools (MeshDenoiser; Zhang et al. 2018), with the defaults that
+AliceVision gives it, and of MeshLib (`pip install meshlib`): each if it is installed.
 
 --clean: the largest displacement on meshes without noise, by default those of ../shared, some also
 decimated; and the angle before and after with 0.05 mean edges of noise added.
@@ -24,9 +26,13 @@ positions without noise, before and after; all in mean edges.
 from __future__ import annotations
 
 import argparse
+import importlib.util
+import shutil
+import subprocess
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 
 import meshlab_spectral
@@ -145,6 +151,47 @@ MORE_METHODS: dict[str, tuple[Method, list[Any]]] = {
 }
 
 
+def mesh_denoiser(V: Array, F: Any, _: None) -> Array:
+    """The static and dynamic filter of meshsdfilter-tools."""
+    with TemporaryDirectory() as folder:
+        options, source, target = (Path(folder) / name for name in ("options", "in.obj", "out.obj"))
+        options.write_text("Lambda 2\nEta 1.5\nMu 1.5\nNu 0.3\n", encoding="utf-8")
+        with source.open("w") as file:
+            np.savetxt(file, V, "v %.17g %.17g %.17g")
+            np.savetxt(file, F + 1, "f %d %d %d")
+        command = ["MeshDenoiser", options, source, target]
+        subprocess.run(command, check=True, capture_output=True)
+        return load(target)[0]
+
+
+def meshlib_normals(V: Array, F: Any, _: None) -> Array:
+    """MeshLib's denoising via normals."""
+    from meshlib import mrmeshnumpy, mrmeshpy  # type: ignore[import-not-found]
+
+    mesh = mrmeshnumpy.meshFromFacesVerts(np.asarray(F, np.int32), V)
+    mrmeshpy.meshDenoiseViaNormals(mesh)
+    return np.asarray(mrmeshnumpy.getNumpyVerts(mesh), float)
+
+
+def rivals() -> dict[str, tuple[Method, list[Any]]]:
+    """Those that are installed."""
+    found: dict[str, tuple[Method, list[Any]]] = {}
+    if shutil.which("MeshDenoiser"):
+        found["MeshDenoiser"] = (mesh_denoiser, [None])
+    if importlib.util.find_spec("meshlib"):
+        found["MeshLib"] = (meshlib_normals, [None])
+    return found
+
+
+def same_vertices(method: Method, V: Array, F: Any, value: Any) -> Array:
+    """The result of a method; V where it fails, or loses vertices."""
+    try:
+        X = method(V, F, value)
+    except Exception:
+        return V
+    return X if X.shape == V.shape else V
+
+
 def unit(N: Array) -> Array:
     """Scale rows to length 1."""
     return np.asarray(N / np.maximum(np.linalg.norm(N, axis=1), 1e-300)[:, None])
@@ -221,9 +268,10 @@ def timed(method: Callable[[], Any]) -> tuple[Any, float]:
     return result, min(seconds)
 
 
-def print_pairs(folder: Path, names: list[str], more: bool) -> None:
+def print_pairs(
+    folder: Path, names: list[str], methods: dict[str, tuple[Method, list[Any]]]
+) -> None:
     """Print a line for every pair, and the means of groups."""
-    methods = METHODS | (MORE_METHODS if more else {})
     taubin = METHODS["Taubin"][0]
     print(
         f"{'':20}{'noisy':>14}{'Spectral Denoise':>18}", *(f"{m:>13}" for m in methods), "  times"
@@ -234,9 +282,11 @@ def print_pairs(folder: Path, names: list[str], more: bool) -> None:
         pair = Pair(folder, name)
         (X, report), seconds = timed(lambda p=pair: meshlab_spectral.denoise_mesh(p.V, p.F))
         reference = timed(lambda p=pair: taubin(p.V, p.F, 50))[1]
-        best = []
+        best, spent = [], []
         for method, values in methods.values():
-            shapes = [method(pair.V, pair.F, value) for value in values]
+            begin = time.perf_counter()
+            shapes = [same_vertices(method, pair.V, pair.F, value) for value in values]
+            spent.append((time.perf_counter() - begin) / len(values) / reference)
             best.append(min(shapes, key=pair.angle))
         shapes = [pair.V, X, *best]
         angles[name] = [pair.angle(shape) for shape in shapes]
@@ -244,7 +294,8 @@ def print_pairs(folder: Path, names: list[str], more: bool) -> None:
         cells = [
             f"{a:7.2f} /{pair.distance(s):6.3f}" for a, s in zip(angles[name], shapes, strict=True)
         ]
-        print(f"{name:20}", *cells, f"{ratios[-1]:5.2f}  {report['summary']}", flush=True)
+        times = " ".join(f"{ratio:.2f}" for ratio in [ratios[-1], *spent])
+        print(f"{name:20}", *cells, f" {times}  {report['summary']}", flush=True)
     for group, members in GROUPS.items():
         present = [angles[name] for name in members if name in angles]
         if present:
@@ -355,6 +406,7 @@ def main() -> None:
     parser.add_argument("names", nargs="*", metavar="NAME")
     parser.add_argument("--pairs", type=Path, default=SHARED / "denoise")
     parser.add_argument("--all-methods", action="store_true")
+    parser.add_argument("--rivals", action="store_true")
     parser.add_argument("--clean", action="store_true")
     parser.add_argument("--estimates", action="store_true")
     arguments = parser.parse_args()
@@ -369,7 +421,8 @@ def main() -> None:
             file.name.removesuffix("_noisy.ply")
             for file in sorted(arguments.pairs.glob("*_noisy.ply"))
         ]
-        print_pairs(arguments.pairs, names, arguments.all_methods)
+        more = MORE_METHODS if arguments.all_methods else {}
+        print_pairs(arguments.pairs, names, METHODS | more | (rivals() if arguments.rivals else {}))
 
 
 if __name__ == "__main__":

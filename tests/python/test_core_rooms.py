@@ -18,8 +18,17 @@ ARROWS = {
     "noise": {"mesh", "support"},
     "denoise": {"noise", "laplacian", "mesh", "support"},
     "filter": {"transfer", "krylov", "harmonics", "laplacian", "ldlt", "mesh", "support"},
-    "analysis": {"krylov", "harmonics", "laplacian", "ldlt", "mesh", "support"},
-    "contract": {"analysis", "denoise", "filter", "transfer", "laplacian", "mesh", "support"},
+    "analysis": {"noise", "krylov", "harmonics", "laplacian", "ldlt", "mesh", "support"},
+    "contract": {
+        "analysis",
+        "denoise",
+        "noise",
+        "filter",
+        "transfer",
+        "laplacian",
+        "mesh",
+        "support",
+    },
 }
 
 

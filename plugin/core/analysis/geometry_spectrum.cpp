@@ -218,7 +218,7 @@ void setOctaves(const MeasuredBands& bands, GeometrySpectrum& spectrum) {
     spectrum.cumulativeEnergy /= spectrum.cumulativeEnergy[filled - 1];
 }
 
-/// Sets the third octaves with enough harmonics, and the noise floor.
+/// Sets the third octaves with enough harmonics, and where noise begins.
 void setBands(const MeasuredBands& bands, Index vertices, GeometrySpectrum& spectrum) {
     const Bands& thirds = bands.thirds;
     const double minEnergy = kMinHarmonics / static_cast<double>(vertices) * spectrum.area;
@@ -236,10 +236,11 @@ void setBands(const MeasuredBands& bands, Index vertices, GeometrySpectrum& spec
     spectrum.bandFeatureSizes = vectorOf(featureSizes);
     spectrum.bandAmplitudes = vectorOf(amplitudes);
     spectrum.bandNoise = vectorOf(noise);
-    const NoiseFloor floor =
-        noiseFloor(spectrum.bandFeatureSizes, spectrum.bandAmplitudes, spectrum.bandNoise);
-    spectrum.noiseHeight = floor.height;
-    spectrum.noiseFeatureSize = floor.featureSize;
+    const Diagnosis& diagnosis = spectrum.diagnosis;
+    // Correlated noise has its energy in fewer harmonics.
+    spectrum.noiseFeatureSize =
+        noiseFeatureSize(diagnosis.rmsHeight() * diagnosis.noise.size, spectrum.bandFeatureSizes,
+                         spectrum.bandAmplitudes, spectrum.bandNoise);
 }
 
 /// Sets the feature sizes at and above which given fractions of the energy lie, from harmonics or
@@ -287,6 +288,8 @@ GeometrySpectrum geometrySpectrum(const Vertices& V, const Faces& F, const Spect
     spectrum.surfaceDiagonal = lengths.surfaceDiagonal;
     spectrum.meanEdge = lengths.meanEdge;
     spectrum.area = mesh.laplacian.D.sum();
+    spectrum.diagnosis = diagnose(mesh.surface, progress.part(0.0, 0.0));
+    spectrum.diagnosis.X.resize(0, 3);
     const Signal signal = signalOf(std::move(mesh), options.boundary);
     const Laplacian& laplacian = signal.laplacian;
     const Eigen::VectorXd& D = laplacian.D;

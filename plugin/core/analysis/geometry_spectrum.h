@@ -2,6 +2,7 @@
 
 #include "core/laplacian/interior.h"
 #include "core/laplacian/laplacian_builder.h"
+#include "core/noise/diagnosis.h"
 #include "core/support/progress.h"
 
 namespace spectral {
@@ -56,9 +57,9 @@ struct GeometrySpectrum {
                                 ///< 0. bandAmplitudes / bandNoise is the noise height that would
                                 ///< explain a band.
 
-    // The noise floor (noise_floor.h); 0 if there is none.
-    double noiseHeight = 0.0;       ///< Root mean square height, length units.
-    double noiseFeatureSize = 0.0;  ///< Details smaller than this cannot be told from noise.
+    Diagnosis diagnosis;            ///< Without positions.
+    double noiseFeatureSize = 0.0;  ///< Below it there is more noise than shape (noise_floor.h);
+                                    ///< 0: nowhere.
 
     /// Fraction of the energy that may be in another octave. Beyond the basis, the estimated error
     /// of the quadrature, whose energies are scaled to their known sum; in the basis, the energies

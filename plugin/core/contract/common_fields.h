@@ -2,7 +2,9 @@
 
 #include <string>
 
+#include "core/contract/filter.h"
 #include "core/contract/table.h"
+#include "core/support/errors.h"
 
 namespace spectral {
 
@@ -30,6 +32,27 @@ Field<Call> boundaryField(At at, const std::string& help) {
                        ("The boundary of an open surface, holes included. " + help).c_str())
         .of({"free", "fixed"})
         .advanced();
+}
+
+enum class Weight { None, VertexQuality };
+
+/// Field `weight`. @param help  what the vertex quality is a factor on.
+template <class Call, class At>
+Field<Call> weightField(At at, const std::string& help) {
+    return field<Call>(at, "weight", "Weight", ("*vertex quality*: " + help).c_str())
+        .of({"none", "vertex quality"})
+        .advanced();
+}
+
+/// The vertex quality, if it is chosen; else no rows.
+/// @throws InvalidOption  when the mesh has none.
+inline Eigen::VectorXd weightOf(Weight weight, const FilterInput& input) {
+    if (weight == Weight::None) return {};
+    if (input.values.rows() == 0)
+        throw InvalidOption(
+            "weight = vertex quality: the mesh has no vertex quality; compute one, or choose "
+            "weight = none");
+    return input.values.col(0);
 }
 
 /// Field `selected`, whose default is for hosts: on if any faces are selected, where they can be.

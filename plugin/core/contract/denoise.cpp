@@ -10,6 +10,7 @@
 
 #include "core/contract/common_fields.h"
 #include "core/contract/filters.h"
+#include "core/contract/noise_text.h"
 #include "core/contract/report.h"
 #include "core/contract/surface_report.h"
 
@@ -20,6 +21,7 @@ namespace {
 struct DenoiseCall {
     DenoiseOptions options;
     bool selected = false;
+    Weight weight = Weight::None;
 };
 
 Fields<DenoiseCall> denoiseFields() {
@@ -51,6 +53,11 @@ Fields<DenoiseCall> denoiseFields() {
                     "Do not smooth across creases. Off: creases are rounded; for shapes without "
                     "any.")
             .advanced(),
+        weightField<Call>(
+            [](auto& call) -> auto& { return call.weight; },
+            "factor on the |noise_height| at each vertex, from 0 (no noise) to 1, for "
+            "noise that differs from place to place. *none*: as measured, or the "
+            "same everywhere."),
         boundaryField<Call>([](auto& call) -> auto& { return call.options.boundary; },
                             "*free*: it moves along its normals, no further than the noise "
                             "explains. *fixed*: it stays exactly in place."),
@@ -59,8 +66,8 @@ Fields<DenoiseCall> denoiseFields() {
 
 /// Whether the estimate of noise was made.
 bool isSearched(NoiseKind kind) {
-    return kind != NoiseKind::Tessellation && kind != NoiseKind::TooFew &&
-           kind != NoiseKind::Voxels;
+    return kind != NoiseKind::Tessellation && kind != NoiseKind::Stretched &&
+           kind != NoiseKind::TooFew && kind != NoiseKind::Voxels;
 }
 
 Entries<DenoiseResult> denoiseEntries() {
@@ -102,37 +109,6 @@ Entries<DenoiseResult> denoiseEntries() {
          movementEntries<R>()});
 }
 
-std::string numberText(double value) {
-    std::ostringstream text;
-    text << std::setprecision(2) << value;
-    return text.str();
-}
-
-/// A length, in mean edges and in length units.
-std::string lengthText(double length, double edge) {
-    std::ostringstream text;
-    text << std::setprecision(2) << length / edge << " edges" << std::setprecision(3) << " ("
-         << length << ")";
-    return text.str();
-}
-
-std::string voxelsText(const Eigen::RowVector3d& voxel) {
-    std::ostringstream text;
-    text << std::setprecision(3) << "voxel steps of " << voxel[0] << " x " << voxel[1] << " x "
-         << voxel[2] << ": smoothed within half a voxel";
-    return text.str();
-}
-
-std::string noiseName(NoiseKind kind) {
-    switch (kind) {
-        case NoiseKind::Correlated: return "scanner noise";
-        case NoiseKind::Impulses: return "impulse noise";
-        case NoiseKind::ScanLines: return "noise on scan lines";
-        case NoiseKind::Rounded: return "coordinates rounded to a grid";
-        default: return "white noise";
-    }
-}
-
 /// What was chosen instead of the whole displacement.
 std::string strengthText(double strength) {
     if (strength == 1.0) return "";
@@ -141,61 +117,33 @@ std::string strengthText(double strength) {
     return text.str();
 }
 
-std::string localText(const NoiseField& field, double strength) {
-    constexpr double kEverywhere = 0.97;
-    std::ostringstream text, lowest, highest;
-    lowest << std::setprecision(1) << field.lowest;
-    highest << std::setprecision(1) << field.highest;
-    text << "noise of " << lowest.str();
-    if (lowest.str() != highest.str()) text << " to " << highest.str();
-    text << " edges on ";
-    if (field.share > kEverywhere)
-        text << "the surface: removed" << strengthText(strength);
-    else
-        text << std::max(1L, std::lround(100.0 * field.share)) << " % of the surface: removed"
-             << strengthText(strength) << "; the rest is clean";
-    return text.str();
-}
-
 std::string removedText(const DenoiseOptions& options, const DenoiseResult& result) {
-    const double edge = result.diagnosis.noise.meanEdge;
-    const bool isGiven = options.noiseHeight > 0.0;
-    if (result.diagnosis.kind == NoiseKind::Local)
-        return localText(result.diagnosis.field, options.strength);
-    std::string text = isGiven ? "noise" : noiseName(result.diagnosis.kind);
-    text += ": height " +
-            lengthText(isGiven ? options.noiseHeight : result.diagnosis.noise.height, edge);
-    if (result.noiseSize > 0.0)
-        text += ", size " +
-                lengthText(isGiven ? result.noiseSize : result.diagnosis.noise.size * edge, edge);
-    return text + (isGiven ? ", as given: removed" : ": removed") + strengthText(options.strength);
+    const Diagnosis& diagnosis = result.diagnosis;
+    const std::string removed = "removed" + strengthText(options.strength);
+    if (options.noiseHeight > 0.0) {
+        const double edge = diagnosis.noise.meanEdge;
+        std::string text = options.weight.size() > 0
+                               ? noiseText(diagnosis)
+                               : "noise: height " + inEdges(options.noiseHeight, edge);
+        if (result.noiseSize > 0.0) text += ", size " + inEdges(result.noiseSize, edge);
+        return text + ", as given: " + removed;
+    }
+    if (diagnosis.hasVoxels()) return noiseText(diagnosis) + ": smoothed within half a voxel";
+    const bool isInPlaces = diagnosis.kind == NoiseKind::Local && !diagnosis.field.isEverywhere();
+    return noiseText(diagnosis) + ": " + removed + (isInPlaces ? "; the rest is clean" : "");
 }
 
-/// Why there is nothing to remove, and how to override that.
-std::string nothingText(const DenoiseResult& result) {
-    if (result.isCrumpled)
-        return "the noise was not removed: that would have folded the surface over, which happens "
-               "at needle triangles, e.g. of CAD models. Remesh first, or give a smaller noise "
-               "height or size";
-    constexpr double kHeight = 0.1, kSize = 2.0;  // edges
-    const double edge = result.diagnosis.noise.meanEdge;
-    switch (result.diagnosis.kind) {
-        case NoiseKind::Tessellation:
-            return "needle triangles as in a CAD model, not a scan: the mesh was not searched for "
-                   "noise. If it has noise, give the noise height, such as " +
-                   numberText(kHeight * edge) + " (0.1 edges), or remesh first";
-        case NoiseKind::TooFew:
-            return "too few vertices to tell noise from shape. If the mesh has noise, give the "
-                   "noise height, such as " +
-                   numberText(kHeight * edge) + " (0.1 edges)";
-        default:
-            return "no noise found that could not be part of the shape, neither at every vertex "
-                   "nor "
-                   "in places, as spikes, or as steps of voxels or of rounded coordinates. For "
-                   "ripples several edges wide, try noise height " +
-                   numberText(kHeight * edge) + " and noise size " + numberText(kSize * edge) +
-                   " (0.1 and 2 edges), or Spectral Filter (Fractional)";
-    }
+/// Why nothing was removed.
+std::string nothingText(const Diagnosis& diagnosis, bool isCrumpled) {
+    if (!isCrumpled) return noiseText(diagnosis);
+    const char* const cause = diagnosis.stretchedAxis
+                                  ? "where one axis has another unit than the others, such as "
+                                    "degrees and metres. Bring them to one unit first"
+                                  : "at needle triangles, e.g. of CAD models. Remesh first";
+    return std::string(
+               "the noise was not removed: that would have folded the surface over, which "
+               "happens ") +
+           cause + ", or give a smaller noise height or size";
 }
 
 /// What was found and done, in one line.
@@ -204,18 +152,13 @@ std::string summaryOf(const DenoiseOptions& options, const DenoiseResult& result
     std::ostringstream text;
     if (const std::string note = selectionText(options.selected); !note.empty())
         text << note << "; ";
-    if (result.diagnosis.spikes > 0)
-        text << (result.diagnosis.spikes == 1 ? "a spike" : "spikes at ")
-             << (result.diagnosis.spikes == 1 ? "" : std::to_string(result.diagnosis.spikes))
-             << (result.diagnosis.spikes == 1 ? ": removed; " : " vertices: removed; ");
-    if (result.rounds == 0) {
-        text << nothingText(result);
-        if (result.maxDisplacement == 0.0) text << "; nothing changed";
-    } else if (result.noiseHeight == 0.0) {
-        text << voxelsText(result.diagnosis.voxel);
-    } else {
+    if (const std::string spikes = spikesText(result.diagnosis); !spikes.empty())
+        text << spikes << ": removed; ";
+    if (result.rounds > 0)
         text << removedText(options, result);
-    }
+    else
+        text << nothingText(result.diagnosis, result.isCrumpled)
+             << (result.maxDisplacement == 0.0 ? "; nothing changed" : "");
     return text.str();
 }
 
@@ -247,6 +190,7 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
                  const Progress& progress) {
     DenoiseCall call = callOf(denoiseFields(), given, mesh);
     if (call.selected) call.options.selected = input.selected;
+    call.options.weight = weightOf(call.weight, input);
     DenoiseResult result = denoise(input.V, input.F, call.options, progress);
     FilterOutput output;
     output.report = reportOf(denoiseEntries(), result);

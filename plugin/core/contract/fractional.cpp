@@ -14,7 +14,6 @@ namespace spectral {
 
 namespace {
 
-enum class Weight { None, VertexQuality };
 enum class Wanted { FilteredShape, Details };
 
 struct FractionalCall : TransferCall {
@@ -139,12 +138,9 @@ Fields<FractionalCall> fractionalFields() {
                     "its volume. Open components have none.")
             .advanced());
     fields.push_back(
-        field<Call>(
-            [](auto& call) -> auto& { return call.weight; }, "weight", "Weight",
-            "*vertex quality*: how much of the filter each vertex gets, from 0 (nothing) to "
-            "1 (all), to paint where to filter. *none*: all of it.")
-            .of({"none", "vertex quality"})
-            .advanced());
+        weightField<Call>([](auto& call) -> auto& { return call.weight; },
+                          "how much of the filter each vertex gets, from 0 (nothing) to "
+                          "1 (all), to paint where to filter. *none*: all of it."));
     fields.push_back(
         field<Call>(
             [](auto& call) -> auto& { return call.result; }, "result", "Result",
@@ -175,13 +171,7 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
     options.transferFunction = call.transfer;
     options.featureSize = call.featureSize;
     if (call.selected) options.part.selected = input.selected;
-    if (call.weight == Weight::VertexQuality) {
-        if (input.values.rows() == 0)
-            throw InvalidOption(
-                "weight = vertex quality: the mesh has no vertex quality; compute one, or choose "
-                "weight = none");
-        options.part.weight = input.values.col(0);
-    }
+    options.part.weight = weightOf(call.weight, input);
     FilterResult result = fractionalFilter(input.V, input.F, options, progress);
     FilterOutput output;
     output.report = reportOf(fractionalEntries(), result);

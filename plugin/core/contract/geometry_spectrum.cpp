@@ -9,6 +9,7 @@
 
 #include "core/contract/common_fields.h"
 #include "core/contract/filters.h"
+#include "core/contract/noise_text.h"
 #include "core/contract/report.h"
 #include "core/contract/surface_report.h"
 
@@ -65,9 +66,11 @@ Entries<GeometrySpectrum> spectrumEntries() {
          "amplitudes that white noise of height 1 at the vertices has in these third octaves",
          [](const R& r) -> Value { return r.bandNoise; }},
         {"noise_height", "of the noise that was filtered or found, length; 0: none",
-         [](const R& r) -> Value { return r.noiseHeight; }},
+         [](const R& r) -> Value {
+             return r.diagnosis.isNoise() ? r.diagnosis.noise.height : 0.0;
+         }},
         {"noise_feature_size",
-         "details smaller than this are like noise of the vertices, length; 0: none",
+         "in details smaller than this there is more noise than shape, length; 0: in none",
          [](const R& r) -> Value { return r.noiseFeatureSize; }},
         {"feature_size_50", "half of the energy is in features of at least this size, length",
          [](const R& r) -> Value { return r.featureSize50; }},
@@ -100,18 +103,18 @@ std::string barOf(double amplitude, double largest) {
     return bar;
 }
 
-std::string textOf(const GeometrySpectrum& spectrum) {
+std::string textOf(const GeometrySpectrum& spectrum, const std::string& noise) {
     const auto size = [&](double length) { return withPercent(length, spectrum.diagonal); };
     std::ostringstream text;
     text << "Geometry Spectrum: half of the shape's energy is in details of at least "
          << size(spectrum.featureSize50) << ", 90 % in those of at least "
          << size(spectrum.featureSize90) << ", 99 % " << size(spectrum.featureSize99)
          << "; percent are of the diagonal";
-    if (spectrum.noiseHeight > 0.0)
-        text << "\n  details smaller than " << size(spectrum.noiseFeatureSize)
-             << " look like vertex noise, with a root mean square height of "
-             << size(spectrum.noiseHeight) << ": to remove them, try feature size "
-             << std::setprecision(3) << spectrum.noiseFeatureSize;
+    text << "\n  " << noise;
+    if (spectrum.diagnosis.isNoise()) text << ": Spectral Denoise removes it";
+    if (spectrum.noiseFeatureSize > 0.0)
+        text << ". It is more than the shape in details smaller than "
+             << size(spectrum.noiseFeatureSize);
     text << "\n  root mean square height of the details of each size, bars in logarithmic scale:";
     const double largest =
         spectrum.octaveAmplitudes.size() > 0 ? spectrum.octaveAmplitudes.maxCoeff() : 0.0;
@@ -138,7 +141,8 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
     const GeometrySpectrum spectrum = geometrySpectrum(input.V, input.F, options, progress);
     FilterOutput output;
     output.report = reportOf(spectrumEntries(), spectrum);
-    output.text = textOf(spectrum);
+    output.summary = diagnosisText(spectrum.diagnosis);
+    output.text = textOf(spectrum, output.summary);
     output.warnings = warningsOf(spectrum);
     append(percentageWarnings(mesh), output.warnings);
     return output;

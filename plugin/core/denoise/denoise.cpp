@@ -31,6 +31,14 @@ void checkOptions(const DenoiseOptions& options) {
     };
     checkLength("noise_height", options.noiseHeight);
     checkLength("noise_size", options.noiseSize);
+    if (options.weight.size() == 0) return;
+    checkWeights({{}, options.weight});
+    if (options.noiseHeight == 0.0)
+        throw InvalidOption(
+            "weight = vertex quality is a factor on the noise height, which is not given: give "
+            "noise_height, such as 0.2e, or choose weight = none");
+    if (!(options.weight.maxCoeff() > 0.0))
+        throw InvalidOption("weight = vertex quality: it is 0 everywhere; give a noisy vertex 1");
 }
 
 /// Fraction of its displacement that each vertex of the surface moves by, 0 to 1.
@@ -47,10 +55,18 @@ Eigen::VectorXd displacementWeight(const DenoiseOptions& options, const Surface&
     return vertexWeight(part, surface, interior, inEdges, kFadingOut);
 }
 
+/// Height of the noise at each vertex of the surface, if it is given; else no rows.
+Eigen::VectorXd givenHeights(const DenoiseOptions& options, const Surface& surface) {
+    if (options.weight.size() == 0) return {};
+    return options.noiseHeight * restricted(options.weight, surface);
+}
+
 /// The triangles of a surface at which a vertex moves, and their vertices.
 struct MovingPart {
     Surface surface;         ///< Its `vertex` holds rows of the whole surface.
     Eigen::VectorXd weight;  ///< Fraction of its displacement that each vertex moves by, 0 to 1.
+    Eigen::VectorXd height;  ///< Given height of the noise at each vertex; empty: not given.
+    Eigen::RowVector3d eye;  ///< The origin of the file's coordinates, where a camera may be.
 
     MovingPart(const Surface& whole, const Eigen::VectorXd& weightOfWhole) {
         Faces F(whole.F.rows(), 3);
@@ -64,6 +80,24 @@ struct MovingPart {
     }
 };
 
+/// Unit vectors from the eye, if a surface looks as a camera there has seen it: open, every face
+/// turned towards it, and all of it on one side; else no rows.
+Points raysFrom(const Eigen::RowVector3d& eye, const FaceGraph& graph, const Points& X) {
+    constexpr double kMinSeen = 0.995;  // share of the faces
+    const bool isInside = (eye.array() >= X.colwise().minCoeff().array()).all() &&
+                          (eye.array() <= X.colwise().maxCoeff().array()).all();
+    if (isInside || std::find(graph.onRim.begin(), graph.onRim.end(), true) == graph.onRim.end())
+        return {};
+    Points rays = X.rowwise() - eye;
+    normalizeRows(rays);
+    const Points N = areaNormals(X, graph.F);
+    Index seen = 0;
+    for (Index f = 0; f < N.rows(); ++f) seen += N.row(f).dot(rays.row(graph.F(f, 0))) > 0.0;
+    const double share = static_cast<double>(seen) / static_cast<double>(N.rows());
+    if (std::max(share, 1.0 - share) < kMinSeen) return {};
+    return rays;
+}
+
 /// The noise to remove: as given by the options, or else as measured.
 RemovalOptions removalOptions(const DenoiseOptions& options, const Diagnosis& diagnosis) {
     constexpr double kMaxHeight = 1.0;  // mean edges; larger heights are clamped
@@ -76,9 +110,9 @@ RemovalOptions removalOptions(const DenoiseOptions& options, const Diagnosis& di
                               kMaxHeight * edge);
     // Only the finest octaves of correlated noise can be told from the shape: its true length is
     // about twice the measured one.
-    constexpr double kHidden = 2.0;
+    constexpr double kHiddenSize = 2.0;
     removal.size = options.noiseSize > 0.0 ? options.noiseSize / edge
-                   : noise.size > 1.0      ? kHidden * noise.size
+                   : noise.size > 1.0      ? kHiddenSize * noise.size
                                            : 0.0;
     removal.keepCreases = options.keepCreases;
     removal.areImpulses = diagnosis.kind == NoiseKind::Impulses;
@@ -90,24 +124,11 @@ RemovalOptions removalOptions(const DenoiseOptions& options, const Diagnosis& di
 /// Correlation length, in mean edges, up to which noise is filtered as white noise.
 constexpr double kMaxWhiteSize = 1.25;
 
-bool hasVoxels(const Diagnosis& diagnosis) {
-    return diagnosis.kind == NoiseKind::Voxels || diagnosis.kind == NoiseKind::VoxelFaces;
-}
-
-bool isNoise(const Diagnosis& diagnosis) {
-    switch (diagnosis.kind) {
-        case NoiseKind::None:
-        case NoiseKind::Shape:
-        case NoiseKind::Tessellation:
-        case NoiseKind::TooFew: return false;
-        default: return true;
-    }
-}
-
 Removal removeNoise(const FaceGraph& graph, const Points& X, const Diagnosis& diagnosis,
                     bool isKnown, const RemovalOptions& removal, const Progress& progress) {
-    if (hasVoxels(diagnosis)) return removeVoxelSteps(graph, X, diagnosis.voxel, removal, progress);
-    if (!(removal.height > 0.0) || !(isKnown || isNoise(diagnosis))) return {diagnosis.X, 0};
+    if (diagnosis.hasVoxels())
+        return removeVoxelSteps(graph, X, diagnosis.voxel, removal, progress);
+    if (!(removal.height > 0.0) || !(isKnown || diagnosis.isNoise())) return {diagnosis.X, 0};
     return removal.size > kMaxWhiteSize
                ? removeCorrelatedNoise(graph, diagnosis.X, removal, progress)
                : removeWhiteNoise(graph, diagnosis.X, removal, progress);
@@ -133,6 +154,10 @@ Points denoisePart(const MovingPart& part, const FaceGraph& graph, const Denoise
     const bool isKnown = options.noiseHeight > 0.0;
     Diagnosis& diagnosis = result.diagnosis;
     diagnosis = diagnose(graph, X0, isMeasured, isKnown, progress.part(0.0, kMeasuring));
+    if (part.height.size() > 0) {
+        diagnosis.field = NoiseField::ofHeights(graph, X0, part.height);
+        diagnosis.kind = NoiseKind::Local;
+    }
     RemovalOptions removal = removalOptions(options, diagnosis);
     removal.mayMove = std::move(mayMove);
     if (diagnosis.field.isAny()) {
@@ -141,15 +166,19 @@ Points denoisePart(const MovingPart& part, const FaceGraph& graph, const Denoise
         for (Index i = 0; i < X0.rows(); ++i)
             removal.mayMove[i] = removal.mayMove[i] && diagnosis.field.height[i] > 0.0;
     }
+    if (diagnosis.kind == NoiseKind::Correlated && !isKnown && options.keepCreases)
+        removal.rays = raysFrom(part.eye, graph, X0);
     Removal done =
         removeNoise(graph, X0, diagnosis, isKnown, removal, progress.part(kMeasuring, 1.0));
-    if (done.rounds > 0 && !hasVoxels(diagnosis) && isCrumpled(graph, X0, done.X)) {
+    // Along rays nothing can fold: the camera sees the same triangles.
+    if (done.rounds > 0 && !diagnosis.hasVoxels() && removal.rays.rows() == 0 &&
+        isCrumpled(graph, X0, done.X)) {
         result.isCrumpled = true;
         done = {diagnosis.X, 0};
     }
     result.rounds = done.rounds;
     const double strength = std::min(options.strength, 1.0);
-    if (done.rounds > 0 && !hasVoxels(diagnosis)) {
+    if (done.rounds > 0 && !diagnosis.hasVoxels()) {
         result.noiseHeight = strength * removal.height;
         if (removal.size > kMaxWhiteSize) result.noiseSize = removal.size * removal.meanEdge;
     }
@@ -189,7 +218,10 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
     const Interior interior(whole.F, connectedComponents(whole.F, whole.X.rows()),
                             options.boundary);
     const Components& components = interior.surfaceComponents();
-    const Eigen::VectorXd weight = displacementWeight(options, whole, interior);
+    Eigen::VectorXd weight = displacementWeight(options, whole, interior);
+    const Eigen::VectorXd height = givenHeights(options, whole);
+    for (Index i = 0; i < height.size(); ++i)
+        if (height[i] == 0.0) weight[i] = 0.0;
 
     DenoiseResult result;
     static_cast<SurfaceCounts&>(result) =
@@ -197,7 +229,11 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
 
     Vertices moved = whole.X;
     PreservedVolumes volumes;
-    const MovingPart part(whole, weight);
+    MovingPart part(whole, weight);
+    // The surface is centred: the eye is where the origin of the mesh has gone.
+    if (part.surface.X.rows() > 0)
+        part.eye = part.surface.X.row(0) - V.row(whole.vertex[part.surface.vertex[0]]);
+    if (height.size() > 0) part.height = height(part.surface.vertex);
     if (options.strength > 0.0 && part.surface.X.rows() > 0) {
         const Index n = part.surface.X.rows();
         requireMemory(kBytesPerVertex * static_cast<double>(n), n);
@@ -211,7 +247,7 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
             volumes =
                 preserveVolumes(whole.X, isWhole ? graph.F : whole.F, components,
                                 offsetWeight(weight, part, result.diagnosis), kMaxOffset, moved);
-        if (hasVoxels(result.diagnosis)) keepWithin(0.5 * result.diagnosis.voxel, whole.X, moved);
+        if (result.diagnosis.hasVoxels()) keepWithin(0.5 * result.diagnosis.voxel, whole.X, moved);
     }
     Vertices displacement = moved - whole.X;
     if (!displacement.allFinite()) throw SolverFailure("the denoised coordinates are not finite");
@@ -219,6 +255,7 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
     result.V = changed(V, whole, displacement);
     static_cast<Movement&>(result) = movementOf(
         whole.X, whole.F, displacement, Eigen::VectorXd::Ones(displacement.rows()), volumes);
+    result.maxDisplacement = std::max(result.maxDisplacement, largestAtSeams(V, result.V, whole));
     return result;
 }
 

@@ -15,6 +15,7 @@ struct DenoiseOptions {
     double strength = 1.0;     ///< Fraction of the displacement to apply, or, if above 1, factor on
                                ///< the noise height; >= 0.
     double noiseHeight = 0.0;  ///< Standard deviation of the noise, length units; 0: measure it.
+    Eigen::VectorXd weight;    ///< n, 0 to 1: factor on noiseHeight at each vertex; empty: 1.
     double noiseSize = 0.0;    ///< Correlation length of the noise, length units; 0: measure it.
     bool keepCreases = true;   ///< If false, smooths across creases, too.
     Boundary boundary = Boundary::Free;
@@ -37,6 +38,10 @@ struct DenoiseResult : SurfaceCounts, Movement {
 /// faces across a crease hardly mix. Its low-pass is applied in weak rounds, and the operator is
 /// rebuilt from the shape after each, as in Kovnatsky et al. 2012, Eq. 11 (normal_filter.h); the
 /// vertices then follow the normals (vertex_update.h).
+///
+/// The noise of a depth camera lies along its rays. Where a surface with correlated noise looks as
+/// seen from the origin of its coordinates (every face turned towards it), vertices move along
+/// these rays only: the result then depends on where the origin is.
 ///
 /// The stages: determine the kind of noise (diagnosis.h); remove spikes (spikes.h); remove noise up
 /// to its height (removal.h), unless that would crumple the surface (crumpling.h); restore the

@@ -37,6 +37,10 @@ VertexGraph averagedNeighbours(const FaceGraph& graph, const std::vector<bool>& 
     return averaged;
 }
 
+/// Numbers of steps to try, and those before the normals are taken.
+constexpr std::array<int, 11> kSteps{5, 10, 14, 20, 28, 40, 56, 80, 113, 160, 226};
+constexpr int kStepsToNormals = 20;
+
 void takeSteps(const VertexGraph& graph, int count, Rows& X) {
     Rows next = X;
     for (int k = 0; k < count; ++k)
@@ -88,8 +92,6 @@ Points smoothNormals(const FaceGraph& graph, const Points& X) {
 std::optional<LinearSteps> linearSteps(const FaceGraph& graph, const Points& X,
                                        const std::vector<bool>& mayMove, double height,
                                        bool isTailed) {
-    constexpr std::array<int, 11> kSteps{5, 10, 14, 20, 28, 40, 56, 80, 113, 160, 226};
-    constexpr int kStepsToNormals = 20;
     // Error of the slopes, relative to those of the noise, that the normal filter achieves.
     const double maxError = isTailed ? 0.19 : 0.17 - 0.2 * height;
     constexpr double kMaxTail = 1.1, kNoTail = 1.02;
@@ -136,11 +138,9 @@ std::optional<LinearSteps> linearSteps(const FaceGraph& graph, const Points& X,
 LinearStepsByPlace linearStepsByPlace(const FaceGraph& graph, const Points& X,
                                       const std::vector<bool>& mayMove, const NoiseField& place,
                                       int maxSteps) {
-    constexpr std::array<int, 11> kSteps{5, 10, 14, 20, 28, 40, 56, 80, 113, 160, 226};
-    constexpr int kStepsToNormals = 20;
     constexpr int kErrors = 32, kCounts = 16, kShares = 8;  // steps of averages
-    constexpr double kMaxError = 0.17, kOfHeight = 0.2, kMargin = 1.15, kFading = 0.03;
-    constexpr double kWeak = 0.07;  // rounds hardly remove weaker noise
+    constexpr double kMaxError = 0.17, kOfHeight = 0.2, kMargin = 1.15, kFadingError = 0.03;
+    constexpr double kWeakForRounds = 0.07;  // rounds hardly remove weaker noise
     using Slopes = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
     const Index n = X.rows();
     const VertexGraph averaged = averagedNeighbours(graph, mayMove);
@@ -197,9 +197,9 @@ LinearStepsByPlace linearStepsByPlace(const FaceGraph& graph, const Points& X,
         const double fraction = at - static_cast<double>(low);
         result.X.row(i) = (1.0 - fraction) * stages[low].row(i) + fraction * stages[high].row(i);
         const double height = place.height[i] / place.edge[i];
-        const double weakness = std::max(1.0, kWeak / height);
+        const double weakness = std::max(1.0, kWeakForRounds / height);
         const double limit = kMargin * weakness * (kMaxError - kOfHeight * height);
-        result.share[i] = std::clamp((limit - std::sqrt(least[i])) / kFading, 0.0, 1.0);
+        result.share[i] = std::clamp((limit - std::sqrt(least[i])) / kFadingError, 0.0, 1.0);
     }
     result.share = LocalAverage(graph.vertices, mayMove, kShares).of(result.share);
     double moving = 0.0, rejected = 0.0;

@@ -20,10 +20,10 @@ constexpr double kShort = 2.0;
 /// Smoothed area around each face, relative to the mean: square roots of the areas, repeatedly
 /// averaged with the neighbours to suppress noise.
 Eigen::VectorXd localAreas(const FaceGraph& graph, const Eigen::VectorXd& area) {
-    constexpr int kRepetitions = 6;
+    constexpr int kAreaBlurs = 6;
     constexpr double kOwn = 0.25;
     Eigen::VectorXd length = (area / area.mean()).cwiseSqrt(), next = length;
-    for (int k = 0; k < kRepetitions; ++k) {
+    for (int k = 0; k < kAreaBlurs; ++k) {
         parallelRows(area.size(), [&](Index begin, Index end) {
             for (Index f = begin; f < end; ++f) {
                 double sum = 0.0, count = 0.0;
@@ -40,20 +40,28 @@ Eigen::VectorXd localAreas(const FaceGraph& graph, const Eigen::VectorXd& area) 
     return length.cwiseAbs2();
 }
 
+/// Distance of normals below which total variation is smooth.
+constexpr double kSmooth = 0.05;
+
+Points unitNormals(Points N) {
+    normalizeRows(N);
+    return N;
+}
+
 /// The matrix A = M + t L.
 class System {
   public:
     using Columns = Eigen::Array<double, 1, 3>;
 
-    /// @param N  face normals with length twice the area.
-    System(const FaceGraph& graph, const Points& X, const Points& N,
-           const NormalFilterOptions& options)
+    /// @param N            face normals with length twice the area.
+    /// @param q            unit normals that define the weights.
+    /// @param isVariation  whether these are those of normalsOfLeastVariation.
+    System(const FaceGraph& graph, const Points& X, const Points& N, const Points& q,
+           const NormalFilterOptions& options, bool isVariation = false)
         : neighbours_(graph.neighbours),
           weight_(N.rows(), 3),
           mass_(N.rows()),
           diagonal_(N.rows()) {
-        Points q = blurredNormals(graph, N, options.blurs);
-        normalizeRows(q);
         Eigen::VectorXd area(N.rows());
         parallelRows(N.rows(), [&](Index begin, Index end) {
             for (Index f = begin; f < end; ++f) area[f] = N.row(f).norm();
@@ -65,7 +73,8 @@ class System {
         const double lengths = parallelSum(N.rows(), 0.0, [&](Index begin, Index end) {
             double sum = 0.0;
             for (Index f = begin; f < end; ++f) {
-                mass_[f] = std::sqrt(std::max(area[f] / mean, kMinArea));
+                mass_[f] = std::max(area[f] / mean, kMinArea);
+                if (!isVariation) mass_[f] = std::sqrt(mass_[f]);
                 for (int c = 0; c < 3; ++c) {
                     const Eigen::RowVector3d side =
                         X.row(graph.F(f, (c + 1) % 3)) - X.row(graph.F(f, (c + 2) % 3));
@@ -78,7 +87,9 @@ class System {
                     const double distance = (q.row(f) - q.row(other)).squaredNorm();
                     weight_(f, c) =
                         side.norm() *
-                        std::exp(-0.5 * distance / (squaredScale + squaredTilt * shortness));
+                        (isVariation ? options.edgeScale / std::sqrt(distance + kSmooth * kSmooth)
+                                     : std::exp(-0.5 * distance /
+                                                (squaredScale + squaredTilt * shortness)));
                     if (const Eigen::VectorXd* time = options.timeOfFace)
                         weight_(f, c) *= std::sqrt((*time)[f] * (*time)[other]);
                 }
@@ -96,7 +107,7 @@ class System {
     /// @param X          initial guess.
     /// @param tolerance  squared norms of the columns of the residual.
     void solve(const Points& B, const Columns& tolerance, Points& X) const {
-        constexpr int kMaxIterations = 300;
+        constexpr int kMaxIterationsOfNormals = 300;
         Points Q(B.rows(), 3), R(B.rows(), 3), D(B.rows(), 3);
         multiply(X, Q);
         Columns squares = Columns::Zero();  // squared norms of the residual
@@ -105,7 +116,7 @@ class System {
             D.row(f) = R.row(f) / diagonal_[f];
             return R.row(f);
         });
-        for (int k = 0; k < kMaxIterations && (squares > tolerance).any(); ++k) {
+        for (int k = 0; k < kMaxIterationsOfNormals && (squares > tolerance).any(); ++k) {
             const Columns curvature = multiply(D, Q);
             const Columns step = (curvature > 0.0).select(descent / curvature, 0.0);
             const Columns next = sumOverRows(B.rows(), squares, [&](Index f) {
@@ -166,13 +177,14 @@ class System {
 Points filterNormals(const FaceGraph& graph, const Points& X, const NormalFilterOptions& options,
                      const Points& guess) {
     // Relative residual; a hundredth of it changes no angle of a denoised mesh.
-    constexpr double kAccuracy = 1e-2;
+    constexpr double kAccuracyOfNormals = 1e-2;
     Points N = areaNormals(X, graph.F);
     if (!(N.cwiseAbs().maxCoeff() > 0.0)) return N;  // all faces are degenerate
-    const System A(graph, X, N, options);
+    const System A(graph, X, N, unitNormals(blurredNormals(graph, N, options.blurs)), options);
     normalizeRows(N);
     const Points B = A.mass().asDiagonal() * N;
-    const System::Columns tolerance = kAccuracy * kAccuracy * B.colwise().squaredNorm().array();
+    const System::Columns tolerance =
+        kAccuracyOfNormals * kAccuracyOfNormals * B.colwise().squaredNorm().array();
     Points filtered = guess.rows() == N.rows() ? guess : N;
     A.solve(B, tolerance, filtered);
     if (options.useTwicing) {
@@ -182,6 +194,23 @@ Points filterNormals(const FaceGraph& graph, const Points& X, const NormalFilter
     }
     normalizeRows(filtered);
     return filtered;
+}
+
+Points normalsOfLeastVariation(const FaceGraph& graph, const Points& X, double time) {
+    constexpr int kIterations = 5, kFirstBlurs = 6;
+    constexpr double kAccuracy = 1e-3;
+    NormalFilterOptions options;
+    options.time = time;
+    options.edgeScale = 0.22;
+    const Points N = areaNormals(X, graph.F);
+    Points smooth = unitNormals(blurredNormals(graph, N, kFirstBlurs));
+    for (int k = 0; k < kIterations; ++k) {
+        const System A(graph, X, N, smooth, options, true);
+        const Points B = A.mass().asDiagonal() * unitNormals(N);
+        A.solve(B, kAccuracy * kAccuracy * B.colwise().squaredNorm().array(), smooth);
+        normalizeRows(smooth);
+    }
+    return smooth;
 }
 
 }  // namespace spectral

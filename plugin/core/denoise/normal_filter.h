@@ -32,4 +32,11 @@ struct NormalFilterOptions {
 Points filterNormals(const FaceGraph& graph, const Points& X, const NormalFilterOptions& options,
                      const Points& guess = {});
 
+/// The face normals of the shape X of least total variation (lagged diffusivity): the same filter
+/// with weights |e| / mean |e| s / sqrt(|n_a - n_b|^2 + 0.05^2) of the last iterate n. Flat parts
+/// become flat and steps stay steps, which suits noise as large as the details. M holds the areas.
+///
+/// @param time  strength, >= 0.
+Points normalsOfLeastVariation(const FaceGraph& graph, const Points& X, double time);
+
 }  // namespace spectral

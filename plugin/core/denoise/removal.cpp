@@ -9,6 +9,7 @@
 #include "core/denoise/unfold.h"
 #include "core/denoise/vertex_update.h"
 #include "core/denoise/whiteness.h"
+#include "core/noise/local_average.h"
 #include "core/noise/robust_statistics.h"
 
 namespace spectral {
@@ -121,7 +122,7 @@ FilteredInRounds filterInRounds(const FaceGraph& graph, const Points& X0,
         int sweeps;
         double edgeScale;
     };
-    constexpr Round kWeak{4.0, 16, 0.25}, kStrong{8.0, 32, 0.22};
+    constexpr Round kWeakRound{4.0, 16, 0.25}, kStrongRound{8.0, 32, 0.22};
     constexpr int kWeakRounds = 6, kMaxRounds = 10;
     constexpr double kMaxRemoved = 1.03;  // multiple of the height
     constexpr double kMaxSmoothness = 0.957, kFirstSmoothness = 0.76, kColour = 0.75;
@@ -134,7 +135,7 @@ FilteredInRounds filterInRounds(const FaceGraph& graph, const Points& X0,
     double maxSmoothness = 0.0;
     while (removal.rounds < kMaxRounds) {
         progress.report(double(removal.rounds) / kMaxRounds, kStage);
-        const Round& round = removal.rounds < kWeakRounds ? kWeak : kStrong;
+        const Round& round = removal.rounds < kWeakRounds ? kWeakRound : kStrongRound;
         NormalFilterOptions filter;
         filter.time = round.time;
         filter.edgeScale = edgeScale(options, round.edgeScale);
@@ -166,11 +167,11 @@ FilteredInRounds filterInRounds(const FaceGraph& graph, const Points& X0,
 /// Linear steps in which neighbours along a scan line weigh more than those across.
 Removal removeFromScanLines(const FaceGraph& graph, const Points& X0,
                             const RemovalOptions& options) {
-    constexpr int kMaxSteps = 226;
+    constexpr int kMaxStepsOnLines = 226;
     FaceGraph weighted = graph;
     weighted.vertices = weightedByLength(graph.vertices, X0, 1.0);
     const LinearStepsByPlace linear =
-        linearStepsByPlace(weighted, X0, options.mayMove, options.place, kMaxSteps);
+        linearStepsByPlace(weighted, X0, options.mayMove, options.place, kMaxStepsOnLines);
     Removal removal{linear.X, linear.steps};
     limitDisplacement(X0, options, kMaxDeviations, removal.X);
     return removal;
@@ -180,18 +181,32 @@ Removal removeFromScanLines(const FaceGraph& graph, const Points& X0,
 Removal removeByPlace(const FaceGraph& graph, const Points& X0, const RemovalOptions& options,
                       const Progress& progress) {
     constexpr double kFew = 0.02;  // share of the vertices that rounds are not worthwhile for
-    constexpr int kBlurs = 2, kMaxSteps = 160;
+    constexpr int kBlursOfResult = 2, kMaxStepsByPlace = 160;
     const LinearStepsByPlace linear =
-        linearStepsByPlace(graph, X0, options.mayMove, options.place, kMaxSteps);
+        linearStepsByPlace(graph, X0, options.mayMove, options.place, kMaxStepsByPlace);
     Removal removal{linear.X, linear.steps};
     if (linear.rejected > kFew) {
         const Removal rounds = filterInRounds(graph, X0, options, progress).removal;
         removal.X = rounds.X + linear.share.asDiagonal() * (linear.X - rounds.X);
         removal.rounds = rounds.rounds;
     }
-    Points N = blurredNormals(graph, areaNormals(removal.X, graph.F), kBlurs);
+    Points N = blurredNormals(graph, areaNormals(removal.X, graph.F), kBlursOfResult);
     normalizeRows(N);
     finish(graph, X0, N, options, removal.X);
+    return removal;
+}
+
+/// Noise of a depth camera lies along its rays, and is as large as the details.
+Removal removeAlongRays(const FaceGraph& graph, const Points& X0, const RemovalOptions& options) {
+    constexpr double kStrength = 12.0;
+    constexpr int kSweepsAlong = 160, kIterations = 5, kLong = 128;
+    const Points N = normalsOfLeastVariation(graph, X0, kStrength);
+    Removal removal{followNormalsAlong(graph, X0, N, options.rays, options.mayMove, kSweepsAlong),
+                    kIterations};
+    // Noise has no long waves: those that flatter normals add up to are taken off.
+    Eigen::VectorXd along = (removal.X - X0).cwiseProduct(options.rays).rowwise().sum();
+    along -= LocalAverage(graph.vertices, options.mayMove, kLong).of(along);
+    removal.X = X0 + along.asDiagonal() * options.rays;
     return removal;
 }
 
@@ -214,15 +229,17 @@ Removal removeWhiteNoise(const FaceGraph& graph, const Points& X0, const Removal
 
 Removal removeCorrelatedNoise(const FaceGraph& graph, const Points& X0,
                               const RemovalOptions& options, const Progress& progress) {
-    constexpr double kLength = 0.8, kMaxLength = 4.0;
+    constexpr double kLengthOfSize = 0.8, kMaxLength = 4.0;
+    if (options.rays.rows() > 0) return removeAlongRays(graph, X0, options);
     constexpr double kMinRemoved = 0.8;  // part of the height; the rest is as long as details
-    constexpr int kMinRounds = 2, kMaxRounds = 6;
-    const double length = std::min(kLength * options.size, kMaxLength);
+    constexpr int kMinRounds = 2, kMaxLongRounds = 6;
+    const double length = std::min(kLengthOfSize * options.size, kMaxLength);
     Removal removal{X0, 0};
     Points N;
     double removed = 0.0;  // part of the height
-    while (removal.rounds < kMinRounds || (removed < kMinRemoved && removal.rounds < kMaxRounds)) {
-        progress.report(double(removal.rounds) / kMaxRounds, kStage);
+    while (removal.rounds < kMinRounds ||
+           (removed < kMinRemoved && removal.rounds < kMaxLongRounds)) {
+        progress.report(double(removal.rounds) / kMaxLongRounds, kStage);
         N = filterNormals(graph, removal.X, filterOfLength(length, options), N);
         removal.X = followNormals(graph, X0, N, options.mayMove, sweepsOfLength(length));
         removed = removedShare(X0, removal.X, options);
@@ -235,9 +252,9 @@ Removal removeCorrelatedNoise(const FaceGraph& graph, const Points& X0,
 
 Removal removeVoxelSteps(const FaceGraph& graph, const Points& X0, const Eigen::RowVector3d& voxel,
                          const RemovalOptions& options, const Progress& progress) {
-    constexpr double kLength = 1.5, kLengthOfFaces = 2.0, kThickness = 0.5;
+    constexpr double kLengthOfCentres = 1.5, kLengthOfFaces = 2.0, kThickness = 0.5;
     constexpr int kRounds = 3;
-    const double length = options.areVoxelFaces ? kLengthOfFaces : kLength;
+    const double length = options.areVoxelFaces ? kLengthOfFaces : kLengthOfCentres;
     // For thick slices, the filter works in units between lengths and voxels.
     const Eigen::RowVector3d scale =
         (voxel.minCoeff() * voxel.cwiseInverse()).array().pow(kThickness);

@@ -25,6 +25,7 @@ struct RemovalOptions {
     bool areImpulses = false;    ///< White noise with many large values.
     bool areScanLines = false;   ///< White noise on long triangles between lines.
     bool areVoxelFaces = false;  ///< Vertices at the corners of voxels, not between their centres.
+    Points rays;                 ///< n x 3 unit vectors from a camera; no rows: there is none.
     std::vector<bool> mayMove;   ///< n: whether a vertex may move.
 };
 

@@ -1,11 +1,19 @@
 #include "core/denoise/vertex_update.h"
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 #include "core/support/threads.h"
 
 namespace spectral {
 
-Points followNormals(const FaceGraph& graph, Points X, const Points& N,
-                     const std::vector<bool>& mayMove, int sweeps) {
+namespace {
+
+/// @param step  (vertex, sum of n n^T (c - x), its faces) -> displacement.
+template <class Step>
+Points follow(const FaceGraph& graph, Points X, const Points& N, const std::vector<bool>& mayMove,
+              int sweeps, const Step& step) {
     const VertexGraph& faces = graph.faces;
     Eigen::VectorXd height(graph.faceCount());  // n_f^T c_f
     for (int sweep = 0; sweep < sweeps; ++sweep) {
@@ -25,11 +33,37 @@ Points followNormals(const FaceGraph& graph, Points X, const Points& N,
                     const int f = faces.at[k];
                     sum += (height[f] - N.row(f).dot(x)) * N.row(f);
                 }
-                X.row(i) = x + sum / static_cast<double>(faces.degree(i));
+                X.row(i) = x + step(i, sum);
             }
         });
     }
     return X;
+}
+
+}  // namespace
+
+Points followNormals(const FaceGraph& graph, Points X, const Points& N,
+                     const std::vector<bool>& mayMove, int sweeps) {
+    return follow(graph, std::move(X), N, mayMove, sweeps,
+                  [&](Index i, const Eigen::RowVector3d& sum) -> Eigen::RowVector3d {
+                      return sum / static_cast<double>(graph.faces.degree(i));
+                  });
+}
+
+Points followNormalsAlong(const FaceGraph& graph, Points X, const Points& N, const Points& D,
+                          const std::vector<bool>& mayMove, int sweeps) {
+    constexpr double kMinShare = 0.3;  // of the faces, seen along D: grazing rays are held back
+    Eigen::VectorXd scale(X.rows());
+    for (Index i = 0; i < X.rows(); ++i) {
+        double squares = 0.0;
+        for (Index k = graph.faces.first[i]; k < graph.faces.first[i + 1]; ++k)
+            squares += std::pow(N.row(graph.faces.at[k]).dot(D.row(i)), 2);
+        scale[i] = std::max(squares, kMinShare * static_cast<double>(graph.faces.degree(i)));
+    }
+    return follow(graph, std::move(X), N, mayMove, sweeps,
+                  [&](Index i, const Eigen::RowVector3d& sum) -> Eigen::RowVector3d {
+                      return sum.dot(D.row(i)) / scale[i] * D.row(i);
+                  });
 }
 
 }  // namespace spectral

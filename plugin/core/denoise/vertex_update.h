@@ -21,4 +21,10 @@ namespace spectral {
 Points followNormals(const FaceGraph& graph, Points X, const Points& N,
                      const std::vector<bool>& mayMove, int sweeps);
 
+/// The same, but vertices move along given lines only, such as the rays of a camera, on which its
+/// noise lies.
+/// @param D  n x 3 unit directions.
+Points followNormalsAlong(const FaceGraph& graph, Points X, const Points& N, const Points& D,
+                          const std::vector<bool>& mayMove, int sweeps);
+
 }  // namespace spectral

@@ -35,7 +35,7 @@ double smoothness(const VertexGraph& graph, const Eigen::VectorXd& signal) {
 }
 
 double tail(const VertexGraph& graph, const Eigen::VectorXd& signal) {
-    constexpr double kShare = 0.99, kDeviations = 2.5758;  // normal distribution
+    constexpr double kTailShare = 0.99, kNormalTail = 2.5758;  // normal distribution
     Eigen::VectorXd y = signal;
     double largest = 0.0;
     int step = 0;
@@ -45,7 +45,7 @@ double tail(const VertexGraph& graph, const Eigen::VectorXd& signal) {
         std::vector<double> moduli(y.begin(), y.end());
         for (double& value : moduli) value = std::abs(value - mean);
         largest =
-            std::max(largest, quantile(std::move(moduli), kShare) / deviation(y) / kDeviations);
+            std::max(largest, quantile(std::move(moduli), kTailShare) / deviation(y) / kNormalTail);
     }
     return largest;
 }

@@ -181,6 +181,7 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
         movementOf(surface.X, surface.F, displacement, before, volumes);
     static_cast<Work&>(result) = evaluate.work();
     result.V = changed(V, surface, displacement);
+    result.maxDisplacement = std::max(result.maxDisplacement, largestAtSeams(V, result.V, surface));
     result.steps = static_cast<int>(steps.last.sizes.size());
     result.passes = steps.passes;
     result.stepSizes = steps.last.sizes;

@@ -1,5 +1,6 @@
 #include "core/mesh/movement.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/mesh/measures.h"
@@ -17,6 +18,14 @@ Movement movementOf(const Vertices& X, const Faces& F, const Vertices& displacem
     movement.hasVolume = enclosesVolume(X, F);
     movement.volumes = volumes;
     return movement;
+}
+
+double largestAtSeams(const Vertices& V, const Vertices& moved, const Surface& surface) {
+    double largest = 0.0;
+    for (const auto& [vertex, row] : surface.copies)
+        for (const Index i : {vertex, surface.vertex[row]})
+            largest = std::max(largest, (moved.row(i) - V.row(i)).norm());
+    return largest;
 }
 
 }  // namespace spectral

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/mesh/mesh.h"
+#include "core/mesh/surface.h"
 #include "core/mesh/volume.h"
 
 namespace spectral {
@@ -20,5 +21,10 @@ struct Movement {
 /// @param volumes       what was done to them.
 Movement movementOf(const Vertices& X, const Faces& F, const Vertices& displacement,
                     const Eigen::VectorXd& weight, const PreservedVolumes& volumes);
+
+/// The largest displacement of the vertices along seams, which are drawn together where they differ
+/// by round-off (seams.h); 0 without seams.
+/// @param V, moved  vertices of the mesh, before and after.
+double largestAtSeams(const Vertices& V, const Vertices& moved, const Surface& surface);
 
 }  // namespace spectral

@@ -131,7 +131,9 @@ class NearEnds {
     }
 
   private:
-    // Against rounding to six digits in a file; far below what a surface shows on purpose.
+    // Corners off by 1e-5 of the size, as in a text of five digits: the bunny's 69,451 triangles,
+    // with sides of 6e-3 to 7e-4 of the size, become one surface; at .005 they fall into 761 parts.
+    // At .1, corners across the short sides of rocker-arm are near each other, too.
     static constexpr double kTiny = 0.02;
 
     std::vector<std::vector<int>> near_;

@@ -9,6 +9,7 @@
 #include "core/noise/robust_statistics.h"
 #include "core/noise/scan_lines.h"
 #include "core/noise/spikes.h"
+#include "core/noise/stretched_axis.h"
 #include "core/noise/voxel_lattice.h"
 #include "core/support/threads.h"
 
@@ -36,14 +37,14 @@ FoundSpikes sparseSpikes(const FaceGraph& graph, const Points& X, const std::vec
     constexpr Index kMinCount = 50;
     constexpr double kMinShareOfTail = 0.004;
     constexpr double kMaxClustering = 2.0;
-    constexpr Index kMaxRatio = 3;  // of the counts with the lower and the higher limit
+    constexpr Index kMaxGrowth = 3;  // of the counts with the lower and the higher limit
     Spikes spikes = findSpikes(graph, X, mayMove, kDetectionLimit, meanEdge);
     const bool areUnrelated = spikes.count >= kMinCount && spikes.clustering < kMaxClustering;
     bool areTail = areUnrelated && spikes.share() >= kMinShareOfTail;
     if (areUnrelated && spikes.share() >= kMinShareOfSpikes &&
         localTail(localResiduals(graph, X, mayMove), mayMove) > kMinTailOfSpikes) {
         Spikes all = findSpikes(graph, X, mayMove, kRemovalLimit, meanEdge);
-        areTail = all.count > kMaxRatio * spikes.count;
+        areTail = all.count > kMaxGrowth * spikes.count;
         if (!areTail) return {std::move(all)};
     }
     return {certainSpikes(graph, X, std::move(spikes), meanEdge), areTail};
@@ -60,8 +61,8 @@ constexpr double kWholeMesh = 0.7;
 /// Share of the height that is noise. It decreases above a correlation of residuals that may come
 /// from a scanner's noise, but also from a coarse shape with a little noise.
 double noiseShare(double correlation) {
-    constexpr double kMaxPureNoise = 0.1, kSlope = 14.0, kMinShare = 0.3;
-    return std::clamp(1.0 - kSlope * (correlation - kMaxPureNoise), kMinShare, 1.0);
+    constexpr double kMaxPureNoise = 0.1, kSlope = 14.0, kMinNoiseShare = 0.3;
+    return std::clamp(1.0 - kSlope * (correlation - kMaxPureNoise), kMinNoiseShare, 1.0);
 }
 
 // Chosen on blocks1, blocks3, grid05 to grid11 of ../shared/denoise_local. In mean edges:
@@ -70,8 +71,9 @@ constexpr double kMinVoxel = 0.3, kMinRounding = 0.04;
 /// Whether the vertices on a grid are those of the surface of a binary volume.
 void findVoxels(const FaceGraph& graph, const CoordinateGrid& grid,
                 const std::vector<bool>& isMeasured, Diagnosis& diagnosis) {
-    constexpr double kMaxCorrelation = 0.5;  // of weighted residuals; designed shapes have more
-    constexpr double kMinDeviation = 0.01;   // of these, mean edges: designed shapes are flat
+    constexpr double kMaxCorrelationOfFaces =
+        0.5;  // of weighted residuals; designed shapes have more
+    constexpr double kMinDeviationOfFaces = 0.01;  // of these, mean edges: designed shapes are flat
     if (const auto voxel = voxelLattice(grid)) {
         diagnosis.kind = NoiseKind::Voxels;
         diagnosis.voxel = *voxel;
@@ -80,7 +82,7 @@ void findVoxels(const FaceGraph& graph, const CoordinateGrid& grid,
     const double edge = diagnosis.noise.meanEdge;
     if (grid.step.minCoeff() < kMinVoxel * edge) return;
     const auto [deviation, correlation] = weightedResiduals(graph, diagnosis.X, isMeasured);
-    if (!(correlation < kMaxCorrelation && deviation > kMinDeviation * edge)) return;
+    if (!(correlation < kMaxCorrelationOfFaces && deviation > kMinDeviationOfFaces * edge)) return;
     diagnosis.kind = NoiseKind::VoxelFaces;
     diagnosis.voxel = grid.step;
 }
@@ -104,30 +106,48 @@ void findRounding(const FaceGraph& graph, const CoordinateGrid& grid,
     diagnosis.field = NoiseField::ofHeight(height, edge, diagnosis.X.rows());
 }
 
+/// Fewer vertices are too few to tell noise from corners: those of a tetrahedron alternate, too.
+constexpr Index kMinMeasured = 100;
+
+/// The measured vertices of components that have enough of them.
+std::vector<bool> inLargeComponents(const FaceGraph& graph, std::vector<bool> isMeasured) {
+    const Index n = static_cast<Index>(isMeasured.size());
+    const Components components = connectedComponents(graph.F, n);
+    std::vector<Index> measured(static_cast<std::size_t>(components.count));
+    for (Index i = 0; i < n; ++i) measured[components.label[i]] += isMeasured[i];
+    for (Index i = 0; i < n; ++i)
+        isMeasured[i] = isMeasured[i] && measured[components.label[i]] >= kMinMeasured;
+    return isMeasured;
+}
+
 /// The noise of the mesh as one.
 Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
                         const std::vector<bool>& isMeasured, bool isKnown,
                         const Progress& progress) {
-    constexpr Index kMinMeasured = 100, kMinMeasuredFine = 1000;  // vertices
-    constexpr double kMinQuality = 0.6;
-    constexpr double kMinHeight = 0.02, kMinHeightCorrelated = 0.045;  // mean edges
-    constexpr double kMaxCorrelation = 0.2;  // above it, the residuals are those of a shape
+    constexpr Index kMinMeasuredFine = 1000;        // vertices
+    constexpr double kMinHeightCorrelated = 0.045;  // mean edges
+    constexpr double kMaxCorrelationOfNoise = 0.2;  // above it, the residuals are those of a shape
     // Detail of a coarse shape looks like weak noise, but alternates less. Its residuals less their
     // mean over 16 steps, which is curvature, correlate by -0.17 on decimations of igea, by -0.24
     // on a sphere with noise.
-    constexpr double kWeak = 0.09, kMaxCorrelationWeak = 0.0;  // height in mean edges
+    constexpr double kWeakHeight = 0.09, kMaxCorrelationWeak = 0.0;  // height in mean edges
     constexpr double kMaxCorrelationFlat = -0.2;
     constexpr int kCurvatureSteps = 16;
     Diagnosis diagnosis;
     diagnosis.X = X;
     const double edge = diagnosis.noise.meanEdge = meanEdgeLength(X, graph.F);
     const Index measured = std::count(isMeasured.begin(), isMeasured.end(), true);
+    diagnosis.stretchedAxis = stretchedAxis(graph, X);
     std::optional<CoordinateGrid> grid;
     if (!isKnown) {
         grid = coordinateGrid(X);
         if (grid) findVoxels(graph, *grid, isMeasured, diagnosis);
         if (diagnosis.kind != NoiseKind::None) return diagnosis;
-        if (quantile(triangleQuality(graph, X), 0.5) < kMinQuality) {
+        if (diagnosis.stretchedAxis) {
+            diagnosis.kind = NoiseKind::Stretched;
+            return diagnosis;
+        }
+        if (quantile(triangleQuality(graph, X), 0.5) < kNeedleQuality) {
             diagnosis.kind = NoiseKind::Tessellation;
             const auto lines = scanLineNoise(graph, X, isMeasured);
             if (lines && measured >= kMinMeasuredFine) {
@@ -151,10 +171,10 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
     progress.report(0.6, kStage);
     const double correlation = residualCorrelation(graph, diagnosis.X, isMeasured);
     diagnosis.kind = NoiseKind::Shape;
-    if (isKnown || correlation < kMaxCorrelation)
+    if (isKnown || correlation < kMaxCorrelationOfNoise)
         diagnosis.noise = estimateNoise(graph, diagnosis.X, isMeasured, correlation, edge);
     diagnosis.noise.correlation = correlation;
-    if (correlation >= kMaxCorrelation) return diagnosis;
+    if (correlation >= kMaxCorrelationOfNoise) return diagnosis;
 
     NoiseEstimate& noise = diagnosis.noise;
     const double share = noiseShare(correlation);
@@ -164,7 +184,7 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
         return diagnosis;
     }
     if (!hasManySpikes(diagnosis) && correlation > kMaxCorrelationWeak &&
-        noise.height < kWeak * edge &&
+        noise.height < kWeakHeight * edge &&
         residualCorrelation(graph, diagnosis.X, isMeasured, kCurvatureSteps) > kMaxCorrelationFlat)
         return diagnosis;
     noise.height *= share;
@@ -176,11 +196,12 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
 }
 
 /// The noise by place, where that explains more than the diagnosis of the whole mesh.
-NoiseField localNoise(const FaceGraph& graph, const std::vector<bool>& isMeasured,
+NoiseField localNoise(const FaceGraph& graph, const std::vector<bool>& isMeasuredInWhole,
                       const Diagnosis& whole) {
     const bool isWhite = whole.kind == NoiseKind::White || whole.kind == NoiseKind::Impulses;
     if (!isWhite && whole.kind != NoiseKind::None && whole.kind != NoiseKind::Shape) return {};
     if (hasManySpikes(whole)) return {};
+    const std::vector<bool> isMeasured = inLargeComponents(graph, isMeasuredInWhole);
     const LocalResiduals residuals = localResiduals(graph, whole.X, isMeasured);
     if (isWhite && areAlike(graph, whole.X, residuals, isMeasured)) return {};
     NoiseField field = measureNoiseField(graph, whole.X, isMeasured, residuals);
@@ -193,6 +214,27 @@ NoiseField localNoise(const FaceGraph& graph, const std::vector<bool>& isMeasure
 }
 
 }  // namespace
+
+bool Diagnosis::isNoise() const {
+    switch (kind) {
+        case NoiseKind::None:
+        case NoiseKind::Shape:
+        case NoiseKind::Tessellation:
+        case NoiseKind::Stretched:
+        case NoiseKind::TooFew: return false;
+        default: return true;
+    }
+}
+
+double Diagnosis::rmsHeight() const {
+    if (!isNoise()) return 0.0;
+    if (kind != NoiseKind::Local) return noise.height;
+    return field.height.norm() / std::sqrt(static_cast<double>(field.height.size()));
+}
+
+bool Diagnosis::hasVoxels() const {
+    return kind == NoiseKind::Voxels || kind == NoiseKind::VoxelFaces;
+}
 
 Diagnosis diagnose(const FaceGraph& graph, const Points& X, const std::vector<bool>& isMeasured,
                    bool isKnown, const Progress& progress) {
@@ -210,6 +252,14 @@ Diagnosis diagnose(const FaceGraph& graph, const Points& X, const std::vector<bo
         diagnosis.noise.height = quantile(std::move(heights), 0.5);
     }
     return diagnosis;
+}
+
+Diagnosis diagnose(const Surface& surface, const Progress& progress) {
+    const Index n = surface.X.rows();
+    const FaceGraph graph = faceGraph(distinctFaces(surface.F, n), n);
+    std::vector<bool> isMeasured(graph.onRim);
+    isMeasured.flip();
+    return diagnose(graph, surface.X, isMeasured, false, progress);
 }
 
 }  // namespace spectral

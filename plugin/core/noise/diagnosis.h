@@ -1,7 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
+#include "core/mesh/surface.h"
 #include "core/noise/face_graph.h"
 #include "core/noise/noise_estimate.h"
 #include "core/noise/noise_field.h"
@@ -14,6 +16,7 @@ enum class NoiseKind {
     None,          ///< Too little noise to measure.
     Shape,         ///< What looks like noise may be a coarsely sampled, curved shape.
     Tessellation,  ///< Needle triangles between the edges of a CAD part: nothing can be measured.
+    Stretched,     ///< Needle triangles, since one axis has another unit (stretchedAxis).
     TooFew,        ///< Too few vertices to tell noise from corners.
     Voxels,        ///< Staircase of the surface of a binary volume.
     VoxelFaces,    ///< Surface of voxels that consists of their faces.
@@ -27,11 +30,18 @@ enum class NoiseKind {
 
 struct Diagnosis {
     NoiseKind kind = NoiseKind::None;
-    NoiseEstimate noise;  ///< Estimate after the removal of spikes.
-    NoiseField field;     ///< Where it is, if it is Local, Rounded or on ScanLines.
-    Points X;             ///< n x 3 positions without spikes.
-    Index spikes = 0;     ///< Number of vertices that are spikes.
+    NoiseEstimate noise;               ///< Estimate after the removal of spikes.
+    NoiseField field;                  ///< Where it is, if it is Local, Rounded or on ScanLines.
+    Points X;                          ///< n x 3 positions without spikes.
+    Index spikes = 0;                  ///< Number of vertices that are spikes.
+    std::optional<int> stretchedAxis;  ///< That of another unit than the others.
     Eigen::RowVector3d voxel = Eigen::RowVector3d::Zero();  ///< Voxel size along each axis.
+
+    bool isNoise() const;    ///< Whether its kind is one of noise.
+    bool hasVoxels() const;  ///< Whether it is the staircase of a volume.
+
+    /// Root mean square height of the noise over all vertices, length units; 0 without noise.
+    double rmsHeight() const;
 };
 
 /// Classifies the noise by these questions, in order: Is it the surface of a voxel volume? A
@@ -47,5 +57,8 @@ struct Diagnosis {
 /// @throws Cancelled
 Diagnosis diagnose(const FaceGraph& graph, const Points& X, const std::vector<bool>& isMeasured,
                    bool isKnown, const Progress& progress = {});
+
+/// The diagnosis of a whole surface, as Spectral Denoise makes it with nothing chosen.
+Diagnosis diagnose(const Surface& surface, const Progress& progress = {});
 
 }  // namespace spectral

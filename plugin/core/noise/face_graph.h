@@ -55,7 +55,10 @@ Points blurredNormals(const FaceGraph& graph, Points N, int times);
 /// Unit vertex normals, n x 3: the normalized sums of the normals N (m x 3) of their faces.
 Points vertexNormals(const FaceGraph& graph, const Points& N);
 
+constexpr double kNeedleQuality = 0.6;
+
 /// 4 sqrt(3) area / (sum of squared sides) of each face: 1 for equilateral triangles.
+/// Surfaces of needles, as of CAD programs, have a median below kNeedleQuality.
 std::vector<double> triangleQuality(const FaceGraph& graph, const Points& X);
 
 /// Scales each row to length 1; zero rows stay zero.

@@ -54,11 +54,11 @@ class LocalAverage {
     /// proposal 2, 1964), robust against creases and single outliers.
     template <class Rows>
     Rows deviation(const Rows& values) const {
-        constexpr int kRepetitions = 4;
+        constexpr int kClippings = 4;
         constexpr double kClip = 1.5, kClippedVariance = 0.7785;  // of a normal distribution
         constexpr double kRoot = 1.48;  // over the squared mean of its square roots
         Rows s = of(Rows(values.array().abs().sqrt())).array().square() * kRoot;
-        for (int k = 0; k < kRepetitions; ++k)
+        for (int k = 0; k < kClippings; ++k)
             s = (of(Rows(values.array().square().min((kClip * s.array()).square())))
                      .array()
                      .max(0.0) /

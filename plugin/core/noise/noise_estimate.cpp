@@ -39,11 +39,11 @@ std::vector<double> moduliOf(const Eigen::VectorXd& values, const std::vector<bo
 /// The half of the measured vertices around which the given octave of the shape has least energy.
 std::vector<bool> quietest(const VertexGraph& graph, const Eigen::VectorXd& octave,
                            std::vector<bool> isMeasured) {
-    constexpr double kShare = 0.5;
+    constexpr double kQuietShare = 0.5;
     constexpr int kSteps = 16;
     Eigen::VectorXd energy = octave.cwiseAbs2();
     for (int k = 0; k < kSteps; ++k) diffuse(graph, energy);
-    const double limit = quantile(moduliOf(energy, isMeasured), kShare);
+    const double limit = quantile(moduliOf(energy, isMeasured), kQuietShare);
     for (Index i = 0; i < energy.size(); ++i) isMeasured[i] = isMeasured[i] && energy[i] <= limit;
     return isMeasured;
 }
@@ -74,11 +74,11 @@ OctaveDeviations octaveDeviations(const FaceGraph& graph, const Points& X, const
 /// octave to octave, so the coarser octaves, where it dominates, bound the finer ones.
 /// @param height  deviations relative to those of white noise.
 Octaves shapePart(const Octaves& height) {
-    constexpr double kMinRise = 2.3, kMaxRise = 3.0;
+    constexpr double kMaxRiseOfShape = 3.0;
     double rise = 0.0;
     for (int k = 2; k + 1 < kOctaves; ++k)
         if (height[k] > 0.0) rise = std::max(rise, height[k + 1] / height[k]);
-    rise = std::clamp(rise, kMinRise, kMaxRise);
+    rise = std::clamp(rise, kRiseOfShape, kMaxRiseOfShape);
     Octaves shape = height;
     for (int k = kOctaves - 2; k >= 0; --k) shape[k] = std::min(height[k], shape[k + 1] / rise);
     return shape;
@@ -101,9 +101,8 @@ double meanLength(const Octaves& energy, int octaves) {
 
 }  // namespace
 
-Points smoothVertexNormals(const FaceGraph& graph, const Points& X) {
-    constexpr int kBlurs = 3;
-    return vertexNormals(graph, blurredNormals(graph, areaNormals(X, graph.F), kBlurs));
+Points smoothVertexNormals(const FaceGraph& graph, const Points& X, int blurs) {
+    return vertexNormals(graph, blurredNormals(graph, areaNormals(X, graph.F), blurs));
 }
 
 Eigen::VectorXd scaledResiduals(const VertexGraph& graph, const Points& X, const Points& N) {
@@ -142,7 +141,7 @@ double residualCorrelation(const FaceGraph& graph, const Points& X,
     std::vector<double> moduli;
     for (Index i = 0; i < X.rows(); ++i)
         if (isMeasured[i]) moduli.push_back(std::abs(residual[i]));
-    const double limit = 2.0 * medianDeviation(std::move(moduli));
+    const double limit = kResidualClip * medianDeviation(std::move(moduli));
     if (!(limit > 0.0)) return 1.0;
     residual = residual.cwiseMax(-limit).cwiseMin(limit);
     if (shapeSteps > 0) residual -= LocalAverage(vertices, isMeasured, shapeSteps).of(residual);
@@ -160,10 +159,10 @@ double residualCorrelation(const FaceGraph& graph, const Points& X,
 NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X,
                             const std::vector<bool>& isMeasured, double correlation,
                             double meanEdge) {
-    constexpr double kMinNoiseShare = 0.45;  // share of an octave that must be noise
-    constexpr double kMaxRise = 2.03;        // of noise, from an octave to the next coarser one
+    constexpr double kMinNoiseShare = 0.45;   // share of an octave that must be noise
+    constexpr double kMaxRiseOfNoise = 2.03;  // of noise, from an octave to the next coarser one
     // Height over the part of it that the shape does not hide, for noise of 1.5 edges.
-    constexpr double kHidden = 1.3;
+    constexpr double kHiddenHeight = 1.3;
     const Points N = smoothVertexNormals(graph, X);
     const auto [deviation, white] = octaveDeviations(graph, X, N, isMeasured);
     const Octaves height = (white > 0.0).select(deviation / white, 0.0);
@@ -173,7 +172,7 @@ NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X,
     for (int k = 0; k < kOctaves; ++k) {
         const int finer = std::max(k - 1, 0);
         if (!(noise[k] >= kMinNoiseShare * height[k] &&
-              height[finer + 1] < kMaxRise * height[finer]))
+              height[finer + 1] < kMaxRiseOfNoise * height[finer]))
             break;
         energy[k] = std::pow(noise[k] * white[k], 2);
     }
@@ -182,7 +181,7 @@ NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X,
     if (!(energy.sum() > 0.0)) return estimate;
     const double length = meanLength(energy, kOctaves) / meanLength(white.square(), kWhiteOctaves);
     estimate.size = std::max(1.0, length);
-    estimate.height = kHidden * std::sqrt(energy.sum() / white.square().sum());
+    estimate.height = kHiddenHeight * std::sqrt(energy.sum() / white.square().sum());
     // White noise is measured best in the first octave, which has least of the shape.
     constexpr double kMinSize = 1.22, kMaxWhiteCorrelation = -0.1;
     if (estimate.size < kMinSize || correlation < kMaxWhiteCorrelation) {

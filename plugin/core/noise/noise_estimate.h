@@ -15,8 +15,14 @@ struct NoiseEstimate {
     double meanEdge = 0.0;     ///< Mean edge length, length units.
 };
 
+// What the estimates of a mesh and of its places have in common.
+constexpr double kMinHeight = 0.02;    ///< Least height of white noise, mean edges.
+constexpr double kRiseOfShape = 2.3;   ///< Least factor from an octave of a shape to the next.
+constexpr double kResidualClip = 2.0;  ///< Deviations at which residuals are clipped.
+
 /// Unit vertex normals that vary less than the noise, n x 3.
-Points smoothVertexNormals(const FaceGraph& graph, const Points& X);
+/// @param blurs  of the normals of the faces.
+Points smoothVertexNormals(const FaceGraph& graph, const Points& X, int blurs = 3);
 
 /// Residuals L X along the normals N, scaled so that those of white noise have its deviation.
 Eigen::VectorXd scaledResiduals(const VertexGraph& graph, const Points& X, const Points& N);

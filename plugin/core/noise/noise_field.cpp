@@ -23,7 +23,8 @@ struct Limits {
 // Clean meshes of ../shared/data and decimated ones have +.07 and more; igea, whose stone is as
 // rough as weak noise once it is decimated to 4,000 to 15,000 vertices, has -.17 up to .1 edges.
 constexpr Limits kCertain{-0.1, 0.12}, kCertainWeak{-0.18, 0.06}, kPossible{0.15, 0.03};
-constexpr double kMinQuality = 0.5;  // of the triangles: needles have no residuals to compare
+constexpr double kMinQualityOfPlace =
+    0.5;  // of the triangles: needles have no residuals to compare
 
 using Flags = std::vector<bool>;
 using Pair = Eigen::Matrix<double, Eigen::Dynamic, 2, Eigen::RowMajor>;
@@ -102,19 +103,18 @@ struct Heights {
 
 Heights heightsOf(const FaceGraph& graph, const Points& X, const Points& N, const Flags& isMeasured,
                   const LocalAverage& wide, const Eigen::VectorXd& edge) {
-    constexpr int kOctaves = 5;
-    constexpr double kRise = 2.3;  // least factor by which a shape rises from octave to octave
-    using Octaves = Eigen::Matrix<double, Eigen::Dynamic, kOctaves, Eigen::RowMajor>;
-    Octaves octaves(X.rows(), kOctaves);
-    forEachOctave(graph.vertices, X, N, isMeasured, kOctaves,
+    constexpr int kFineOctaves = 5;
+    using Octaves = Eigen::Matrix<double, Eigen::Dynamic, kFineOctaves, Eigen::RowMajor>;
+    Octaves octaves(X.rows(), kFineOctaves);
+    forEachOctave(graph.vertices, X, N, isMeasured, kFineOctaves,
                   [&](int k, const Eigen::VectorXd& along, double white) {
                       octaves.col(k) = along.cwiseQuotient(white * edge);
                   });
     const auto explained = [&](const Octaves& deviation) {
         Eigen::VectorXd least = deviation.col(0);
         double factor = 1.0;
-        for (int k = 1; k < kOctaves; ++k)
-            least = least.cwiseMin(deviation.col(k) / (factor *= kRise));
+        for (int k = 1; k < kFineOctaves; ++k)
+            least = least.cwiseMin(deviation.col(k) / (factor *= kRiseOfShape));
         return least;
     };
     Heights heights;
@@ -147,9 +147,10 @@ Eigen::VectorXd localQuality(const FaceGraph& graph, const Points& X) {
 Eigen::VectorXd heightWhereNoise(const VertexGraph& graph, const Heights& heights,
                                  const Eigen::VectorXd& near, const Flags& isNoise) {
     constexpr int kRingsBeyond = 8, kRingsOfNoise = 3;
-    constexpr double kMaxRatio = 1.5;  // to the height over kWide steps
-    constexpr double kMinHeight = 0.02, kMinRatio = 0.2, kMinRatioNear = 0.25;
-    constexpr double kClean = 0.25, kFading = 0.15;  // correlation of clean places; below it fades
+    constexpr double kMaxOverWide = 1.5;  // to the height over kWide steps
+    constexpr double kMinRatio = 0.2, kMinRatioNear = 0.25;
+    constexpr double kClean = 0.25,
+                     kFadingCorrelation = 0.15;  // correlation of clean places; below it fades
     Eigen::VectorXd wide = heights.wide;
     for (Index i = 0; i < wide.size(); ++i)
         if (!isNoise[i]) wide[i] = 0.0;
@@ -157,8 +158,8 @@ Eigen::VectorXd heightWhereNoise(const VertexGraph& graph, const Heights& height
     Eigen::VectorXd height = (heights.fine.array().square() - heights.shape.array().square())
                                  .max(0.0)
                                  .sqrt()
-                                 .min(kMaxRatio * wide.array());
-    height.array() *= ((kClean - near.array()) / kFading).max(0.0).min(1.0);
+                                 .min(kMaxOverWide * wide.array());
+    height.array() *= ((kClean - near.array()) / kFadingCorrelation).max(0.0).min(1.0);
     const Eigen::VectorXd around = largestWithin(graph, kRingsOfNoise, height);
     const Eigen::ArrayXd least =
         (kMinRatioNear * around.array()).max(kMinRatio * wide.array()).max(kMinHeight);
@@ -169,6 +170,25 @@ Eigen::VectorXd heightWhereNoise(const VertexGraph& graph, const Heights& height
     for (Index i = 0; i < height.size(); ++i)
         if (!isConnected[i]) height[i] = 0.0;
     return height;
+}
+
+/// The field with the statistics of its heights, which are those in edges of the place.
+NoiseField inLengthUnits(NoiseField field, const Flags& isMeasured) {
+    std::vector<double> relative;
+    Index measured = 0, noisy = 0;
+    for (Index i = 0; i < field.height.size(); ++i) {
+        measured += isMeasured[i];
+        if (!(field.height[i] > 0.0)) continue;
+        noisy += isMeasured[i];
+        relative.push_back(field.height[i]);
+    }
+    if (relative.empty()) return {};
+    field.share = static_cast<double>(noisy) / static_cast<double>(measured);
+    field.lowest = quantile(relative, 0.1);
+    field.median = quantile(relative, 0.5);
+    field.highest = quantile(std::move(relative), 0.98);
+    field.height = field.height.cwiseProduct(field.edge);
+    return field;
 }
 
 }  // namespace
@@ -187,26 +207,26 @@ bool areAlike(const FaceGraph& graph, const Points& X, const LocalResiduals& res
               const Flags& isMeasured) {
     // At most 1.9 on the pairs of ../shared/denoise with white noise, the same everywhere; 2.2
     // and more on those of ../shared/denoise_local (real15-igea).
-    constexpr double kMaxRatio = 2.1, kLow = 0.1, kHigh = 0.98;
+    constexpr double kMaxUnevenness = 2.1, kLow = 0.1, kHigh = 0.98;
     const auto isEven = [&](const Eigen::VectorXd& height) {
         std::vector<double> heights;
         for (Index i = 0; i < height.size(); ++i)
             if (isMeasured[i]) heights.push_back(height[i]);
         const double median = quantile(heights, 0.5);
-        return quantile(heights, kHigh) < kMaxRatio * median &&
-               median < kMaxRatio * quantile(heights, kLow);
+        return quantile(heights, kHigh) < kMaxUnevenness * median &&
+               median < kMaxUnevenness * quantile(heights, kLow);
     };
     return isEven(residuals.deviation) ||
            isEven(residuals.deviation.cwiseQuotient(localEdges(graph.vertices, X)));
 }
 
 double localTail(const LocalResiduals& residuals, const Flags& isIncluded) {
-    constexpr double kShare = 0.99;
+    constexpr double kTailShare = 0.99;
     std::vector<double> units;
     for (Index i = 0; i < residuals.deviation.size(); ++i)
         if (isIncluded[i] && residuals.deviation[i] > 0.0)
             units.push_back(std::abs(residuals.residual[i]) / residuals.deviation[i]);
-    return quantile(std::move(units), kShare);
+    return quantile(std::move(units), kTailShare);
 }
 
 NoiseField NoiseField::ofHeight(double height, double edge, Index n) {
@@ -218,12 +238,20 @@ NoiseField NoiseField::ofHeight(double height, double edge, Index n) {
     return field;
 }
 
+NoiseField NoiseField::ofHeights(const FaceGraph& graph, const Points& X,
+                                 const Eigen::VectorXd& heights) {
+    NoiseField field;
+    field.edge = localEdges(graph.vertices, X);
+    field.height = heights.cwiseQuotient(field.edge);
+    return inLengthUnits(std::move(field), Flags(graph.onRim.size(), true));
+}
+
 NoiseField measureNoiseField(const FaceGraph& graph, const Points& X, const Flags& isMeasured,
                              const LocalResiduals& local) {
     const VertexGraph& vertices = graph.vertices;
     const Index n = X.rows();
     const auto clipped = [&] {
-        const Eigen::VectorXd limit = 2.0 * local.deviation;
+        const Eigen::VectorXd limit = kResidualClip * local.deviation;
         return Eigen::VectorXd(local.residual.cwiseMax(-limit).cwiseMin(limit));
     }();
     const LocalAverage wide(vertices, isMeasured, kWide);
@@ -237,7 +265,7 @@ NoiseField measureNoiseField(const FaceGraph& graph, const Points& X, const Flag
     Flags isCertain(static_cast<std::size_t>(n)), isPossible(isCertain);
     for (Index i = 0; i < n; ++i) {
         const auto isWithin = [&](const Limits& limits) {
-            return isMeasured[i] && quality[i] > kMinQuality &&
+            return isMeasured[i] && quality[i] > kMinQualityOfPlace &&
                    correlation[i] < limits.correlation && heights.wide[i] > limits.height;
         };
         isCertain[i] = isWithin(kCertain) || isWithin(kCertainWeak);
@@ -251,21 +279,7 @@ NoiseField measureNoiseField(const FaceGraph& graph, const Points& X, const Flag
         vertices, LocalAverage(vertices, isMeasured, kNear), clipped.cwiseQuotient(unit));
     field.height = heightWhereNoise(vertices, heights, near, isNoise);
 
-    std::vector<double> relative;
-    Index measured = 0, noisy = 0;
-    for (Index i = 0; i < n; ++i) {
-        measured += isMeasured[i];
-        if (!(field.height[i] > 0.0)) continue;
-        noisy += isMeasured[i];
-        relative.push_back(field.height[i]);
-    }
-    if (relative.empty()) return {};
-    field.share = static_cast<double>(noisy) / static_cast<double>(measured);
-    field.lowest = quantile(relative, 0.1);
-    field.median = quantile(relative, 0.5);
-    field.highest = quantile(std::move(relative), 0.98);
-    field.height = field.height.cwiseProduct(field.edge);
-    return field;
+    return inLengthUnits(std::move(field), isMeasured);
 }
 
 }  // namespace spectral

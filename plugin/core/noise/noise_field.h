@@ -37,7 +37,12 @@ struct NoiseField {
     /// The same height at all n vertices, length units.
     static NoiseField ofHeight(double height, double edge, Index n);
 
+    /// The given heights at all n vertices, length units, at least 0.
+    static NoiseField ofHeights(const FaceGraph& graph, const Points& X,
+                                const Eigen::VectorXd& heights);
+
     bool isAny() const { return height.size() > 0; }
+    bool isEverywhere() const { return share > 0.97; }
 };
 
 /// Measures noise where it is, by the correlation of neighbouring residuals (residualCorrelation)

@@ -31,13 +31,13 @@ double medianDeviation(std::vector<double> moduli) {
 }
 
 double trimmedDeviation(std::vector<double> moduli) {
-    constexpr double kDeviations = 3.0, kMedianWithin = 0.6722;  // the same, of moduli below 3
-    constexpr int kRepetitions = 5;
+    constexpr double kTrimmedAt = 3.0, kMedianWithin = 0.6722;  // the same, of moduli below 3
+    constexpr int kTrimmings = 5;
     auto count = static_cast<std::ptrdiff_t>(moduli.size());
     double deviation = valueAt(moduli, count, kHalf) / kMedian;
-    for (int k = 0; k < kRepetitions; ++k) {
+    for (int k = 0; k < kTrimmings; ++k) {
         const auto outliers = std::partition(moduli.begin(), moduli.end(), [&](double modulus) {
-            return modulus < kDeviations * deviation;
+            return modulus < kTrimmedAt * deviation;
         });
         deviation = valueAt(moduli, outliers - moduli.begin(), kHalf) / kMedianWithin;
     }

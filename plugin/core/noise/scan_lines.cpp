@@ -13,19 +13,19 @@ namespace {
 
 /// The length that a fifth of the edges do not exceed.
 double shortEdge(const VertexGraph& graph, const Points& X) {
-    constexpr double kShare = 0.2;
+    constexpr double kShortShare = 0.2;
     std::vector<double> lengths;
     for (Index i = 0; i < graph.size(); ++i)
         for (Index k = graph.first[i]; k < graph.first[i + 1]; ++k)
             if (graph.at[k] > i) lengths.push_back((X.row(graph.at[k]) - X.row(i)).norm());
-    return quantile(std::move(lengths), kShare);
+    return quantile(std::move(lengths), kShortShare);
 }
 
 }  // namespace
 
 WeightedResiduals weightedResiduals(const FaceGraph& graph, const Points& X,
                                     const std::vector<bool>& isMeasured) {
-    constexpr double kPower = 2.0, kClip = 2.0;
+    constexpr double kPower = 2.0;
     const VertexGraph weighted = weightedByLength(graph.vertices, X, kPower);
     Eigen::VectorXd residual = scaledResiduals(weighted, X, smoothVertexNormals(graph, X));
     std::vector<double> moduli;
@@ -35,7 +35,7 @@ WeightedResiduals weightedResiduals(const FaceGraph& graph, const Points& X,
     }
     WeightedResiduals result;
     result.deviation = medianDeviation(std::move(moduli));
-    const double limit = kClip * result.deviation;
+    const double limit = kResidualClip * result.deviation;
     residual = residual.cwiseMax(-limit).cwiseMin(limit);
     Eigen::VectorXd means = Eigen::VectorXd::Zero(X.rows());
     forEachMean(weighted, residual, [&](Index i, const auto& mean) { means[i] = mean[0]; });
@@ -46,10 +46,10 @@ WeightedResiduals weightedResiduals(const FaceGraph& graph, const Points& X,
 std::optional<ScanLineNoise> scanLineNoise(const FaceGraph& graph, const Points& X,
                                            const std::vector<bool>& isMeasured) {
     // lines3, lines5, lines8 of ../shared/denoise_local against ../shared/cad and ../shared/data.
-    constexpr double kMaxCorrelation = -0.2, kMinHeight = 0.02;  // short edges
+    constexpr double kMaxCorrelationOfLines = -0.2;
     const WeightedResiduals residuals = weightedResiduals(graph, X, isMeasured);
     const ScanLineNoise noise{residuals.deviation, shortEdge(graph.vertices, X)};
-    if (!(noise.height > kMinHeight * noise.edge && residuals.correlation < kMaxCorrelation))
+    if (!(noise.height > kMinHeight * noise.edge && residuals.correlation < kMaxCorrelationOfLines))
         return std::nullopt;
     return noise;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/noise/diffusion.h"
+#include "core/noise/noise_estimate.h"
 #include "core/noise/robust_statistics.h"
 
 namespace spectral {
@@ -55,16 +56,12 @@ class UniformLaplacian {
     Eigen::VectorXd squaredNorm_;
 };
 
-Points blurredVertexNormals(const FaceGraph& graph, const Points& X, int blurs) {
-    return vertexNormals(graph, blurredNormals(graph, areaNormals(X, graph.F), blurs));
-}
-
 /// Heights of the spikes, 0 elsewhere: the least-squares solution of L z = r, by conjugate
 /// gradients on the normal equations.
 Eigen::VectorXd heightsOf(const std::vector<bool>& isSpike, const UniformLaplacian& L,
                           const Eigen::VectorXd& r) {
-    constexpr int kMaxIterations = 100;
-    constexpr double kAccuracy = 1e-6;
+    constexpr int kMaxIterationsOfHeights = 100;
+    constexpr double kAccuracyOfHeights = 1e-6;
     const auto restricted = [&](Eigen::VectorXd x) {
         for (Index i = 0; i < x.size(); ++i)
             if (!isSpike[i]) x[i] = 0.0;
@@ -73,8 +70,8 @@ Eigen::VectorXd heightsOf(const std::vector<bool>& isSpike, const UniformLaplaci
     Eigen::VectorXd z = Eigen::VectorXd::Zero(r.size());
     Eigen::VectorXd residual = restricted(L.transposedTimes(r)), direction = residual;
     double squared = residual.squaredNorm();
-    const double tolerance = kAccuracy * kAccuracy * squared;
-    for (int k = 0; k < kMaxIterations && squared > tolerance; ++k) {
+    const double tolerance = kAccuracyOfHeights * kAccuracyOfHeights * squared;
+    for (int k = 0; k < kMaxIterationsOfHeights && squared > tolerance; ++k) {
         const Eigen::VectorXd image = L.times(direction);
         const double curvature = image.squaredNorm();
         if (!(curvature > 0.0)) break;  // all vertices of a component are spikes
@@ -117,22 +114,22 @@ void updateStatistics(const VertexGraph& graph, Spikes& spikes) {
 
 Spikes findSpikes(const FaceGraph& graph, const Points& X, const std::vector<bool>& mayMove,
                   double deviations, double meanEdge) {
-    constexpr int kMaxRounds = 12, kSearchBlurs = 4, kBlurs = 3;
-    constexpr double kMinHeight = 0.1;  // mean edges
+    constexpr int kMaxSearches = 12, kSearchBlurs = 4;
+    constexpr double kMinSpike = 0.1;   // mean edges
     constexpr double kMinFound = 1e-4;  // share of the vertices that makes another round worthwhile
     const UniformLaplacian L(graph.vertices);
     const VertexGraph& vertices = graph.vertices;
     Points without = X;
     std::vector<bool> isSpike(mayMove.size(), false);
-    for (int round = 0; round < kMaxRounds; ++round) {
-        const Points N = blurredVertexNormals(graph, without, kSearchBlurs);
+    for (int round = 0; round < kMaxSearches; ++round) {
+        const Points N = smoothVertexNormals(graph, without, kSearchBlurs);
         const Eigen::VectorXd d =
             L.transposedTimes(L.residual(without, N)).cwiseQuotient(L.squaredNorm());
         std::vector<double> moduli;
         for (Index i = 0; i < d.size(); ++i)
             if (mayMove[i]) moduli.push_back(std::abs(d[i]));
         const double threshold =
-            std::max(deviations * medianDeviation(std::move(moduli)), kMinHeight * meanEdge);
+            std::max(deviations * medianDeviation(std::move(moduli)), kMinSpike * meanEdge);
         Index found = 0;
         for (Index i = 0; i < d.size(); ++i) {
             if (!mayMove[i] || !(std::abs(d[i]) > threshold)) continue;
@@ -148,7 +145,7 @@ Spikes findSpikes(const FaceGraph& graph, const Points& X, const std::vector<boo
             break;
     }
     Spikes spikes;
-    spikes.N = blurredVertexNormals(graph, without, kBlurs);
+    spikes.N = smoothVertexNormals(graph, without);
     const Eigen::VectorXd r = L.residual(X, spikes.N);
     dropClusters(vertices, heightsOf(isSpike, L, r), isSpike);
     spikes.height = heightsOf(isSpike, L, r);
@@ -157,7 +154,7 @@ Spikes findSpikes(const FaceGraph& graph, const Points& X, const std::vector<boo
 }
 
 Spikes certainSpikes(const FaceGraph& graph, const Points& X, Spikes spikes, double meanEdge) {
-    constexpr double kMinHeight = 1.5;  // mean edges
+    constexpr double kMinCertainSpike = 1.5;  // mean edges
     constexpr double kMinExplained = 0.97;
     const UniformLaplacian L(graph.vertices);
     const Eigen::VectorXd r = L.residual(X, spikes.N), rest = r - L.times(spikes.height);
@@ -169,7 +166,7 @@ Spikes certainSpikes(const FaceGraph& graph, const Points& X, Spikes spikes, dou
             before += r[vertices.at[k]] * r[vertices.at[k]];
             after += rest[vertices.at[k]] * rest[vertices.at[k]];
         }
-        if (!(std::abs(spikes.height[i]) > kMinHeight * meanEdge &&
+        if (!(std::abs(spikes.height[i]) > kMinCertainSpike * meanEdge &&
               after < (1.0 - kMinExplained) * before))
             spikes.height[i] = 0.0;
     }

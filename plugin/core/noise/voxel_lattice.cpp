@@ -59,7 +59,7 @@ std::optional<CoordinateGrid> coordinateGrid(const Points& X) {
 }
 
 std::optional<Eigen::RowVector3d> voxelLattice(const CoordinateGrid& grid) {
-    constexpr double kMinShare = 0.97;
+    constexpr double kMinShareOnEdges = 0.97;
     constexpr Index kMinVerticesPerLevel = 8;  // on average: many vertices share a plane
     const Index n = grid.multiples.rows();
     if (kMinVerticesPerLevel * (grid.levels - 1) > n) return std::nullopt;
@@ -71,7 +71,7 @@ std::optional<Eigen::RowVector3d> voxelLattice(const CoordinateGrid& grid) {
             for (int c = 0; c < 3; ++c) halves += (grid.multiples(i, c) + (shift >> c)) & 1;
             onEdges += halves == 1;
         }
-        if (static_cast<double>(onEdges) > kMinShare * static_cast<double>(n))
+        if (static_cast<double>(onEdges) > kMinShareOnEdges * static_cast<double>(n))
             return 2.0 * grid.step;
     }
     return std::nullopt;

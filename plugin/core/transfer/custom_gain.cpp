@@ -146,6 +146,19 @@ std::vector<SizedGain> pointsOf(const std::string& text, const MeshLengths& leng
 
 Equalizer equalizerOf(const std::string& text, const MeshLengths& lengths) {
     const std::vector<SizedGain> points = pointsOf(text, lengths);
+    if (points.size() == 1) {
+        const std::size_t colon = text.find(':');
+        const auto trimmed = [](const std::string& part) {
+            const std::size_t begin = part.find_first_not_of(' ');
+            return part.substr(begin, part.find_last_not_of(' ') + 1 - begin);
+        };
+        throw InvalidOption("transfer_function = " + text +
+                            ": one point is one gain for all sizes, the whole shape's, too; give "
+                            "a second one, such as 20%:1, or choose filter_type = band-pass with "
+                            "feature_size = " +
+                            trimmed(text.substr(0, colon)) + ", pass_gain = " +
+                            trimmed(text.substr(colon + 1)) + " and stop_gain = 1");
+    }
     try {
         return Equalizer(points);
     } catch (const InvalidOption& error) {

@@ -28,23 +28,27 @@ TEST(GeometrySpectrum, RisesTowardsSmallFeaturesForNoise) {
     EXPECT_NEAR(spectrum.octaveAmplitudes.tail(last - 1).norm(), 1e-3 / std::sqrt(3.0), 3e-5);
 }
 
-TEST(GeometrySpectrum, ReturnsTheHeightAndFeatureSizeOfNoise) {
+TEST(GeometrySpectrum, ReturnsTheDiagnosisAndTheFeatureSizeOfNoise) {
     // A plate with a single wave of height e and noise of height s. Above the frequency of the wave
     // there is only noise and, with a free boundary, the rim.
     const double e = 0.05;
     const int p = 6;
-    for (const double s : {1e-3, 2e-3})
+    for (const double s : {2e-3, 4e-3})
         for (const Boundary boundary : {Boundary::Free, Boundary::Fixed}) {
             Mesh mesh = testing::rectangle(2.0, 1.5, 96, 72);
             for (Index i = 0; i < mesh.V.rows(); ++i)
                 mesh.V(i, 2) = e * std::sin(p * kPi * mesh.V(i, 0) / 2.0) *
                                std::sin(p * kPi * mesh.V(i, 1) / 1.5);
-            EXPECT_EQ(spectrumOf(mesh, 100, boundary).noiseHeight, 0.0);
+            const GeometrySpectrum clean = spectrumOf(mesh, 100, boundary);
+            EXPECT_FALSE(clean.diagnosis.isNoise());
+            EXPECT_EQ(clean.noiseFeatureSize, 0.0);
 
             // Uniform in [-a, a]: its height in each direction is a / sqrt(3).
             mesh = testing::withNoise(mesh, std::sqrt(3.0) * s, 7);
             const GeometrySpectrum spectrum = spectrumOf(mesh, 100, boundary);
-            EXPECT_NEAR(spectrum.noiseHeight / s, 1.0, boundary == Boundary::Fixed ? 0.1 : 0.2);
+            EXPECT_NEAR(spectrum.diagnosis.noise.height / s, 1.0, 0.2);
+            EXPECT_EQ(spectrum.diagnosis.noise.height,
+                      diagnose(joinedSurface(mesh.V, mesh.F)).noise.height);
             const double wave = 2.0 / std::hypot(p / 2.0, p / 1.5);
             EXPECT_LT(spectrum.noiseFeatureSize, wave);
             EXPECT_GT(spectrum.noiseFeatureSize,

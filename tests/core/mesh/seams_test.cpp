@@ -233,6 +233,17 @@ TEST(Seams, EdgesThatPairWithinRoundOffAreOne) {
     EXPECT_TRUE(joinedSurface(apart.V, apart.F).copies.empty());
 }
 
+TEST(Seams, TheWidthOfACutCountsAsDisplacement) {
+    for (const double roundOff : {1e-8, 1e-3}) {
+        const Mesh both = nearlyJoinedSheets(roundOff);
+        FilterOptions options;
+        options.featureSize = 0.5;
+        const FilterResult result = fractionalFilter(both.V, both.F, options);
+        EXPECT_NEAR(result.maxDisplacement, (result.V - both.V).rowwise().norm().maxCoeff(), 1e-15)
+            << roundOff;
+    }
+}
+
 TEST(Seams, TrianglesWithLooseCornersAreOneSurface) {
     const Mesh whole = testing::icosphere(3);
     const double diagonal = boundingBoxDiagonal(whole.V);

@@ -56,7 +56,8 @@ def test_noise_is_reported_and_shaded(samples: Path, tmp_path: Path) -> None:
     noisy = V + 0.002 * np.random.default_rng(3).standard_normal(V.shape)
     mesh_set_of(noisy, F).save_current_mesh(str(tmp_path / "noisy.ply"))
     done = command(tmp_path / "noisy.ply", "--basis-size", 50, folder=tmp_path)
-    assert "Noise: details smaller than" in done.stdout
+    assert "White noise: height" in done.stdout
+    assert "more than the shape in details" in " ".join(done.stdout.split())
     shaded = colours(tmp_path / "noisy_spectrum.png")
     # A pale brown that only the shading has, over the right part of the plot.
     brown = (shaded[:, :, 0] > shaded[:, :, 2] + 0.03) & (shaded.min(axis=2) > 0.8)
@@ -70,7 +71,7 @@ def test_a_mesh_too_small_to_estimate_noise_is_drawn(samples: Path, tmp_path: Pa
     ).save_current_mesh(str(tmp_path / "triangle.ply"))
     done = command("triangle.ply", folder=tmp_path)
     assert done.returncode == 0, done.stderr
-    assert "No noise found" in done.stdout
+    assert "Too few vertices" in done.stdout
 
 
 def test_a_fixed_boundary_changes_the_spectrum(tmp_path: Path, decimated: Any) -> None:

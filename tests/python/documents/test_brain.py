@@ -16,7 +16,7 @@ from meshlab_spectral.errors import MeshFileError
 from meshlab_spectral.files.formats import is_same_format
 from meshlab_spectral.files.meshes import load_parts
 from nibabel import gifti
-from nibabel.freesurfer import read_geometry, write_geometry
+from nibabel.freesurfer import read_geometry, write_geometry, write_morph_data
 from numpy.typing import NDArray
 
 V = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], dtype="f4")
@@ -130,7 +130,7 @@ def test_values_without_a_surface_are_refused_with_the_file_to_pass(tmp_path: Pa
         read(path)
     curvature = tmp_path / "lh.pial"
     curvature.write_bytes(b"\xff\xff\xff" + bytes(24))
-    with pytest.raises(MeshFileError, match=r"values or quadrilaterals .* mris_convert"):
+    with pytest.raises(MeshFileError, match=r"values of FreeSurfer, no surface.* lh\.pial"):
         read(curvature)
 
 
@@ -181,10 +181,40 @@ def test_a_surface_of_free_surfer_may_have_any_name(name: str, pial: Path) -> No
 
 
 @pytest.mark.parametrize("magic", [b"\xff\xff\xff", b"\xff\xff\xfd"])
-def test_values_of_free_surfer_are_named(magic: bytes, tmp_path: Path) -> None:
+@pytest.mark.parametrize("seed", range(5))
+def test_quadrilaterals_of_free_surfer_are_those_that_nibabel_reads(
+    seed: int, magic: bytes, tmp_path: Path
+) -> None:
+    rng = np.random.default_rng(seed)
+    n, m = int(rng.integers(4, 400)), int(rng.integers(1, 300))
+    coordinates = rng.integers(-32768, 32768, (n, 3))
+    quads = np.array([rng.permutation(n)[:4] for _ in range(m)])
+    number = ">i2" if magic == b"\xff\xff\xff" else ">f4"
+    path = tmp_path / "lh.any"
+    counts = n.to_bytes(3, "big") + m.to_bytes(3, "big")
+    corners = quads.astype(">u4").reshape(-1, 1).view(np.uint8)[:, 1:].tobytes()
+    path.write_bytes(magic + counts + coordinates.astype(number).tobytes() + corners)
+    points, faces = read_geometry(path)
+    document = open_document(path)
+    (part,) = document.parts
+    np.testing.assert_array_equal(part.vertices, points)
+    np.testing.assert_array_equal(part.faces, faces)
+    same, other = tmp_path / "same", tmp_path / "lh.other"
+    document.save(same, [part.vertices])
+    assert same.read_bytes() == path.read_bytes()
+    assert document.save(other, [moved(part.vertices)]) == []
+    points, faces = read_geometry(other)
+    np.testing.assert_allclose(points, moved(part.vertices), rtol=1e-6)
+    np.testing.assert_array_equal(faces, part.faces)
+    path.write_bytes(path.read_bytes()[:-5])
+    with pytest.raises(MeshFileError, match="no surface" if number == ">i2" else "ends too early"):
+        open_document(path)
+
+
+def test_values_of_free_surfer_are_named(tmp_path: Path) -> None:
     path = tmp_path / "lh.curv"
-    path.write_bytes(magic + bytes(100))
-    with pytest.raises(MeshFileError, match="holds values or quadrilaterals") as error:
+    write_morph_data(path, np.linspace(-1, 1, 100))
+    with pytest.raises(MeshFileError, match="holds values of FreeSurfer, no surface") as error:
         load_parts(path)
     assert error.value.code == "unsupported"
 

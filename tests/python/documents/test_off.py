@@ -33,6 +33,7 @@ HELD = {
 VARIANTS = {
     "plain": PLAIN,
     "all": ALL,
+    "small letters": PLAIN.replace(b"OFF", b"off"),
     "counts in the first line": PLAIN.replace(b"OFF\n4 2 0", b"OFF 4 2"),
     "more than coordinates": PLAIN.replace(b"1 1 0", b"1 1 0 7").replace(b"0 1 0", b"0 1 0 7"),
     "polygon": PLAIN.replace(FACES, b"4 0 1 2 3 255 0 0\n1 3\n"),

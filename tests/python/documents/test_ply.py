@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import re
 import struct
 from pathlib import Path
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from meshlab_spectral.documents.document import Array
 from meshlab_spectral.documents.ply import PlyDocument, read
 from meshlab_spectral.errors import MeshFileError
@@ -215,6 +218,34 @@ def test_integer_coordinates_become_floats_where_they_move(
 
 
 CUBE = encoded("ascii", [vertices(), faces(HALVES)])
+
+
+@settings(max_examples=100, deadline=None)
+@given(data=st.data())
+def test_rows_of_a_text_may_run_over_any_lines(
+    data: st.DataObject, tmp_path_factory: pytest.TempPathFactory
+) -> None:
+    polygons = data.draw(st.sampled_from([HALVES, QUADS, [*HALVES[:6], *QUADS[3:]]]))
+    one_per_line = encoded("ascii", [vertices(), faces(polygons)])
+    head, body = one_per_line.split(b"end_header\n")
+    gaps = st.sampled_from([b" ", b"  ", b"\n", b"\r\n", b"\t\n\n"])
+    text = head + b"end_header\n" + b"".join(word + data.draw(gaps) for word in body.split())
+    folder = tmp_path_factory.mktemp("ply")
+    expected, document = (
+        read(write(folder / name, one))
+        for name, one in (("lines.ply", one_per_line), ("words.ply", text))
+    )
+    np.testing.assert_array_equal(document.parts[0].vertices, expected.parts[0].vertices)
+    np.testing.assert_array_equal(document.parts[0].faces, expected.parts[0].faces)
+    assert saved(document, folder / "same.ply", document.parts[0].vertices) == (text, [])
+    after = document.parts[0].vertices.copy()
+    after[5] += [0, 0, 0.25]
+    content, _ = saved(document, folder / "moved.ply", after)
+    np.testing.assert_array_equal(read(folder / "moved.ply").parts[0].vertices, after)
+    before, new = (re.split(rb"(\s+)", one) for one in (text, content))
+    assert sum(a != b for a, b in zip(before, new, strict=True)) == 1
+    with pytest.raises(MeshFileError, match="element"):
+        read(write(folder / "cut.ply", text.rstrip().rpartition(b"0")[0]))
 
 
 @pytest.mark.parametrize(

@@ -9,10 +9,12 @@ from typing import Any, get_args, get_type_hints
 import numpy as np
 import pymeshlab
 import pytest
+import pyvista
 from denoise_reference import Array, Reference, mean_edge, unit
 from helpers import assert_same, decorated, length, lower_part, mesh_set_of, refusal, snapshot
 from meshlab_spectral import DenoiseOptions, OptionError, denoise_mesh
 from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter
 
 DENOISE = "apply_coord_spectral_denoise"
 
@@ -203,6 +205,108 @@ def test_a_cad_part_is_left_alone_and_never_crumpled() -> None:
     assert "folded" in report["warnings"][0]
 
 
+@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize(
+    "units", [(111e3, 1), (1e3, 1), (1, 0.01), (111e3, 0.3048)], ids=["degree", "km", "cm", "foot"]
+)
+@pytest.mark.parametrize("seed", range(3))
+def test_a_terrain_of_two_units_is_called_so(
+    units: tuple[float, float], axis: int, seed: int
+) -> None:
+    """`units` are those of the plane and of the height, in metres."""
+    rng = np.random.default_rng(seed)
+    step = 30.0
+    x, y = np.meshgrid(np.arange(45.0), np.arange(45.0), indexing="ij")
+    waves = rng.uniform(0.05, 0.3, (4, 2)), rng.uniform(0, 6, 4)
+    height = sum(30 * np.sin(a * x + b * y + c) for (a, b), c in zip(*waves, strict=True))
+    height += rng.normal(0, 4, x.shape)
+    V = np.stack([step * x / units[0], step * y / units[0], height / units[1]], -1).reshape(-1, 3)
+    i = (np.arange(44)[:, None] * 45 + np.arange(44)).ravel()
+    F = np.concatenate([np.stack([i, i + 45, i + 46], 1), np.stack([i, i + 46, i + 1], 1)])
+    V = np.roll(V, axis - 2, axis=1) + rng.uniform(0, 60, 3)
+    Y, report = denoise_mesh(V, F)
+    np.testing.assert_array_equal(Y, V)
+    assert report["summary"].startswith(f"{'xyz'[axis]} has another unit than the other axes")
+    assert not report["noise_searched"]
+    V[:, axis] *= units[1] / units[0]
+    Y, report = denoise_mesh(V, F)
+    assert "unit" not in report["summary"]
+    assert report["noise_searched"]
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_vertices_of_a_depth_map_move_along_its_rays(seed: int) -> None:
+    n, f, rng = 90, 400.0, np.random.default_rng(seed)
+    y, x = (np.mgrid[:n, :n] - n / 2) / f
+    depth = 800 + 15 * np.cos(40 * x + seed) * np.cos(30 * y) + 20 * (x > 0.02)
+    noise = gaussian_filter(rng.standard_normal(depth.shape), 0.8)
+    noise *= 1.2 / noise.std()
+    rays = np.stack([x, y, np.ones_like(x)], -1).reshape(-1, 3)
+    V, X = rays * depth.reshape(-1, 1), rays * (depth + noise).reshape(-1, 1)
+    i = (np.arange(n - 1)[:, None] * n + np.arange(n - 1)).ravel()
+    F = np.concatenate([np.stack([i, i + n, i + n + 1], 1), np.stack([i, i + n + 1, i + 1], 1)])
+    Y, report = denoise_mesh(X, F)
+    assert report["summary"].startswith("scanner noise")
+    moves = np.linalg.norm(Y - X, axis=1)
+    along = np.abs(((Y - X) * unit(rays)).sum(axis=1))
+    np.testing.assert_allclose(along, moves, atol=1e-9)
+    assert np.linalg.norm(Y - V, axis=1).mean() < 0.8 * np.linalg.norm(X - V, axis=1).mean()
+    # The camera is not at the origin: along the normals, which come out worse.
+    shift = [3000.0, 0, 0]
+    Z = denoise_mesh(X + shift, F)[0] - shift
+    assert angles(Y, V, F).mean() < 0.9 * angles(Z, V, F).mean()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_specks_of_a_few_vertices_are_no_noise(seed: int) -> None:
+    """The corners of a tetrahedron alternate like noise; a range scan has a thousand of them."""
+    sphere = pyvista.Icosphere(nsub=4)
+    corners = np.array([[1, 1, 1], [1, -1, -1], [-1, 1, -1], [-1, -1, 1.0]])
+    rng = np.random.default_rng(seed)
+    points = [np.asarray(sphere.points, float)]
+    for _ in range(150):
+        points.append(0.03 * (corners + rng.normal(0, 0.15, (4, 3))) + rng.uniform(2, 4, 3))
+    firsts = len(points[0]) + 4 * np.arange(150)
+    sides = np.array([[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]])
+    F = np.concatenate([sphere.regular_faces, (firsts[:, None, None] + sides).reshape(-1, 3)])
+    V = np.concatenate(points)
+    Y, report = denoise_mesh(V, F)
+    np.testing.assert_array_equal(Y, V)
+    assert report["summary"].startswith("no noise found")
+
+
+@pytest.mark.parametrize("size", [None, "2e"])
+def test_heights_by_place_are_removed_where_they_are_given(size: str | None) -> None:
+    V, F = cube(24)
+    up = V[:, 2] > 12
+    rng = np.random.default_rng(3)
+    X = V + np.where(up[:, None], 0.15 * mean_edge(V, F), 0) * rng.standard_normal(V.shape)
+    more = {} if size is None else {"noise_size": size}
+    Y, report = denoise_mesh(
+        X, F, noise_height=0.15 * mean_edge(V, F), weights=up.astype(float), **more
+    )
+    np.testing.assert_array_equal(Y[~up], X[~up])
+    assert report["summary"].startswith("noise of 0.1 edges on ")
+    assert report["summary"].endswith("as given: removed")
+    before, after = (angles(Z, V, F)[up[F].all(axis=1)].mean() for Z in (X, Y))
+    assert after < (0.35 if size is None else 0.8) * before
+    # One height everywhere is what the same number says.
+    ones, _ = denoise_mesh(X, F, noise_height="0.15e", weights=np.ones(len(V)), **more)
+    same, _ = denoise_mesh(X, F, noise_height="0.15e", **more)
+    a, b = (angles(Z, V, F).mean() for Z in (ones, same))
+    assert a == pytest.approx(b, rel=0.3)
+
+
+def test_weights_need_a_height_and_a_noisy_place() -> None:
+    V, F = cube(8)
+    with pytest.raises(OptionError, match=r"not given: give noise_height"):
+        denoise_mesh(V, F, weights=np.ones(len(V)))
+    with pytest.raises(OptionError, match="0 everywhere"):
+        denoise_mesh(V, F, weights=np.zeros(len(V)), noise_height=0.1)
+    with pytest.raises(OptionError, match="weight"):
+        denoise_mesh(V, F, weights=np.full(len(V), 1.5), noise_height=0.1)
+
+
 def test_a_rim_follows_unless_it_is_fixed(decimated: Decimated) -> None:
     V, F = lower_part(*decimated("bunny.obj", 10000))
     X = noisy(V, F, 0.2)
@@ -269,8 +373,9 @@ def test_names_order_and_defaults_are_those_of_the_plugin(decimated: Decimated) 
     expected = DenoiseOptions().as_dict()
     assert list(parameters) == list(expected)
     expected["noise_height"] = expected["noise_size"] = 0.0  # auto
-    boundary = get_args(get_type_hints(DenoiseOptions)["boundary"])
-    expected["boundary"] = boundary.index(expected["boundary"])
+    for name in ("weight", "boundary"):
+        choices = get_args(get_type_hints(DenoiseOptions)[name])
+        expected[name] = choices.index(expected[name])
     assert parameters == expected
 
 

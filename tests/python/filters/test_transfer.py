@@ -8,9 +8,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+import pyvista
 import spectral_reference as reference
 from hypothesis import assume, event, given, settings
 from hypothesis import strategies as st
+from meshlab_spectral import filter_mesh
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.filters.option_types import Length
 from meshlab_spectral.filters.options import FilterOptions
@@ -171,7 +173,7 @@ def test_an_expression_means_what_it_means_in_python_or_is_refused(texts: Texts)
 @given(
     st.lists(
         st.tuples(st.integers(1, 100), st.integers(1, 40)),
-        min_size=1,
+        min_size=2,
         max_size=6,
         unique_by=lambda p: p[0],
     ),
@@ -194,6 +196,17 @@ def test_points_that_are_joined_otherwise_are_refused(sizes: list[int], joint: s
     options = FilterOptions(filter_type="custom", transfer_function=text)
     with pytest.raises(OptionError, match="at character"):
         gain(options, np.ones(1), LENGTHS)
+
+
+def test_one_point_is_refused_with_the_band_that_it_means() -> None:
+    """It would double the whole shape: a user has asked for details of one size."""
+    remedy = r"one point .* band-pass with feature_size = 5%, pass_gain = 2 and stop_gain = 1"
+    with pytest.raises(OptionError, match=remedy):
+        gain(FilterOptions(filter_type="custom", transfer_function=" 5% : 2"), np.ones(1), LENGTHS)
+    sphere = pyvista.Icosphere(nsub=2)
+    with pytest.raises(OptionError, match=remedy):
+        filter_mesh(sphere, filter_type="custom", transfer_function="5%:2")
+    filter_mesh(sphere, filter_type="band-pass", feature_size="5%", pass_gain=2, stop_gain=1)
 
 
 def test_a_custom_function_needs_the_lengths_of_a_mesh() -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from meshlab_spectral.batch.storage import file_system, is_url, located
-from meshlab_spectral.documents.names import TRIANGLES, ending_of, is_free_surfer
+from meshlab_spectral.documents.names import QUADRILATERALS, TRIANGLES, ending_of, is_free_surfer
 from meshlab_spectral.errors import InputError
 from meshlab_spectral.files.formats import SEARCHED
 from meshlab_spectral.files.whole_files import resolved
@@ -133,7 +133,7 @@ def _begins_as_surface(fs: Any, path: str) -> bool:
     if not posixpath.basename(path).startswith(("lh.", "rh.")) or _looks_like_mesh(path):
         return False
     with fs.open(path, "rb") as file:
-        return bool(file.read(len(TRIANGLES)) == TRIANGLES)
+        return file.read(len(TRIANGLES)) in (TRIANGLES, QUADRILATERALS)
 
 
 def _hidden(relative: str) -> bool:

@@ -75,9 +75,9 @@ def spectrum_command(
     The plot shows the amplitude of details, their root mean square height, by feature size: for
     octaves and, at the lowest frequencies, for single harmonics. The filter's gain is drawn over
     it. The lower plot shows the height of random vertex displacements that would explain the
-    details of each size: where it levels off there is noise, or detail too fine for the mesh to
-    tell from noise. The boundary of an open mesh contributes at all sizes; --boundary fixed leaves
-    it out.
+    details of each size: it levels off at the noise, and with detail too fine for the mesh to tell
+    from noise. The noise is what `denoise` finds. The boundary of an open mesh contributes at all
+    sizes; --boundary fixed leaves it out.
 
       meshlab-spectral spectrum scan.ply
       meshlab-spectral spectrum scan.ply --feature-size 2% --output scan.svg
@@ -128,14 +128,11 @@ def _record(
 
 
 def _noise_line(spectrum: GeometrySpectrum) -> str:
-    if spectrum.noise_height == 0:
-        return "No noise found"
-    percent = 100 / spectrum.diagonal
-    return (
-        f"Noise: details smaller than {spectrum.noise_feature_size:.3g} "
-        f"({percent * spectrum.noise_feature_size:.2g} %) look like random vertex displacements of "
-        f"{spectrum.noise_height:.2g} ({percent * spectrum.noise_height:.2g} %)"
-    )
+    line, size = spectrum.noise_summary, spectrum.noise_feature_size
+    if size > 0:
+        percent = 100 * size / spectrum.diagonal
+        line += f"; more than the shape in details smaller than {size:.3g} ({percent:.2g} %)"
+    return line[0].upper() + line[1:]
 
 
 def _table(spectrum: GeometrySpectrum, options: FilterOptions, name: str) -> Table:

@@ -20,7 +20,7 @@ import numpy as np
 from meshlab_spectral.documents.causes import EndsEarlyError, ForeignError, unreadable, unsupported
 from meshlab_spectral.documents.digits import precision_warnings
 from meshlab_spectral.documents.document import Array, Document, checked_part
-from meshlab_spectral.documents.names import FREE_SURFER, OTHERS, TRIANGLES
+from meshlab_spectral.documents.names import FREE_SURFER, OTHERS, QUADRILATERALS, TRIANGLES
 from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.documents.side_files import copy_side_files
 from meshlab_spectral.errors import MeshFileError, SpectralError
@@ -37,13 +37,12 @@ def read(path: Path) -> Document:
     """
     with path.open("rb") as file:
         magic = file.read(3)
-    if magic in OTHERS:
-        remedy = "name the surface, such as lh.pial, or convert it with FreeSurfer's mris_convert"
-        raise unsupported(path, "holds values or quadrilaterals of FreeSurfer", remedy)
     is_gifti = path.name.lower().endswith((".gii", ".gii.gz"))
     try:
         if magic == TRIANGLES:
             return _read_free_surfer(path)
+        if magic in (QUADRILATERALS, OTHERS):
+            return _read_quadrilaterals(path)
         if not is_gifti:
             raise ForeignError("it does not begin as one")
         return _read_gifti(path)
@@ -84,6 +83,49 @@ def _read_free_surfer(path: Path) -> Document:
     contents = ["volume geometry"] if tail < len(data) else []
     return _FreeSurfer(
         path=path, parts=[checked_part(path, vertices, faces)], contents=contents, begin=begin
+    )
+
+
+@dataclass(kw_only=True)
+class _Quadrilaterals(Document):
+    counts: bytes
+    tail: bytes  # the quadrilaterals, and what follows them
+
+    def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
+        before, after = self.parts[0].vertices, moved[0]
+        if (after == before).all():
+            copyfile(self.path, target)
+            return []
+        target.write_bytes(QUADRILATERALS + self.counts + after.astype(">f4").tobytes() + self.tail)
+        return precision_warnings(before, after, target.name)
+
+
+def _read_quadrilaterals(path: Path) -> Document:
+    """Read quadrilaterals, in FreeSurfer's old layout, too: coordinates in whole hundredths."""
+    data = path.read_bytes()
+    is_old = data.startswith(OTHERS)
+    type_, begin = np.dtype(">i2" if is_old else ">f4"), 9
+    n, m = (int.from_bytes(data[k : k + 3], "big") for k in (3, 6))
+    middle = begin + 3 * n * type_.itemsize
+    if is_old and middle + 12 * m != len(data):  # values begin with the same bytes
+        raise unsupported(
+            path, "holds values of FreeSurfer, no surface", "name the surface, such as lh.pial"
+        )
+    if middle + 12 * m > len(data):
+        raise EndsEarlyError(f"it claims {n} vertices and {m} faces, in {len(data)} bytes")
+    with np.errstate(invalid="ignore"):  # checked_part reports non-finite values
+        vertices = np.frombuffer(data, type_, 3 * n, begin).reshape(-1, 3).astype(np.float64)
+    vertices /= 100 if is_old else 1
+    bytes_ = np.frombuffer(data, np.uint8, 12 * m, middle).reshape(m, 4, 3).astype(np.int64)
+    a, b, c, d = (bytes_ @ [65536, 256, 1]).T
+    is_even = a % 2 == 0  # FreeSurfer's choice of the diagonal
+    halves = np.where(is_even, [a, b, d, c, d, b], [a, b, c, a, c, d])
+    return _Quadrilaterals(
+        path=path,
+        parts=[checked_part(path, vertices, halves.T.reshape(-1, 3))],
+        contents=["polygons"],
+        counts=data[3:begin],
+        tail=data[middle:],
     )
 
 

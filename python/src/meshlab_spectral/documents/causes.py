@@ -61,7 +61,7 @@ _KINDS = [
     _kind("VRML", "wrl", rb"#VRML"),
     _kind("FBX", "fbx", rb"Kaydara FBX|; FBX"),
     _kind("E57", "e57", rb"ASTM-E57"),
-    _kind("OFF", "off", rb"\s*(?:#[^\r\n]*\s+)*(?:ST|C|N|4|n)*OFF(?![A-Za-z])"),
+    _kind("OFF", "off", rb"\s*(?:#[^\r\n]*\s+)*(?:(?:ST|C|N|4|n)*OFF|(?:st|c|n)*off)(?![A-Za-z])"),
     _kind("text STL", "stl", rb"\s*solid\b[^\r\n]*[\r\n]+\s*facet\b"),
     _kind("glTF", "gltf", rb"\s*\{.*\"asset\""),
     _kind("JSON", "gltf", rb"\s*\{\s*\"", _NO_MESH),
@@ -86,7 +86,7 @@ _KINDS = [
     _kind(
         "a surface of FreeSurfer",
         "freesurfer",
-        rb"\xff\xff\xfe",
+        rb"\xff\xff[\xfd\xfe]",
         "give it one of FreeSurfer's names, such as lh.pial",
     ),
     _kind("compressed with gzip", "gii.gz", rb"\x1f\x8b", _UNPACK),

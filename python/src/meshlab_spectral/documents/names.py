@@ -8,7 +8,8 @@ from pathlib import Path
 # bytes. These endings are searched for in folders by name, too.
 FREE_SURFER = "freesurfer"
 TRIANGLES = b"\xff\xff\xfe"
-OTHERS = (b"\xff\xff\xff", b"\xff\xff\xfd")  # quadrilaterals, or values such as curvature
+QUADRILATERALS = b"\xff\xff\xfd"
+OTHERS = b"\xff\xff\xff"  # quadrilaterals in an old layout, or values such as curvature
 FREE_SURFER_ENDINGS = frozenset({"inflated", "pial", "smoothwm", "sphere", "white"})
 
 
@@ -22,7 +23,7 @@ def ending_of(name: str) -> str:
 
 def is_free_surfer(path: Path) -> bool:
     """Whether a file begins as a surface of FreeSurfer; false if it cannot be read."""
-    return begin_of(path) == TRIANGLES
+    return begin_of(path) in (TRIANGLES, QUADRILATERALS)
 
 
 def begin_of(path: Path) -> bytes:

@@ -128,7 +128,7 @@ def _document(path: Path, content: bytes) -> Document:
 def _header(path: Path, lines: Lines) -> tuple[bytes, tuple[int, int], int]:
     """Return the letters before OFF, the numbers of vertices and faces, and the next line."""
     first, *counts = lines.words_of(0) if len(lines) else [b""]
-    match = _HEADER.fullmatch(first)
+    match = _HEADER.fullmatch(first.upper() if first.islower() else first)  # nOFF is not NOFF
     if not match:
         raise ForeignError("its first word is not OFF, COFF, NOFF or the like")
     letters = match["letters"]

@@ -10,6 +10,7 @@ from meshlab_spectral.documents.names import (
     FREE_SURFER,
     FREE_SURFER_ENDINGS,
     OTHERS,
+    QUADRILATERALS,
     TRIANGLES,
     begin_of,
     ending_of,
@@ -44,7 +45,11 @@ def format_of(path: Path) -> str | None:
     ending = ending_of(path.name).lower()
     if ending in _MODULES:
         return ending
-    is_one = ending in FREE_SURFER_ENDINGS or begin_of(path) in (TRIANGLES, *OTHERS)
+    is_one = ending in FREE_SURFER_ENDINGS or begin_of(path) in (
+        TRIANGLES,
+        QUADRILATERALS,
+        OTHERS,
+    )
     return FREE_SURFER if is_one else None
 
 

@@ -7,7 +7,7 @@ import os
 import re
 import warnings
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import IO, Any
 
@@ -35,7 +35,7 @@ from meshlab_spectral.documents.document import (
 from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.documents.polygons import strip_triangles, triangles
 from meshlab_spectral.documents.side_files import copy_side_files
-from meshlab_spectral.documents.text import BYTE_ORDER_MARK, lines_of, whole, write_patched
+from meshlab_spectral.documents.text import BYTE_ORDER_MARK, Lines, lines_of, whole, write_patched
 
 _AXES, _NORMALS = ("x", "y", "z"), ("nx", "ny", "nz")
 _TEXTURE = re.compile(rb"(?m)^[ \t]*comment[ \t]+TextureFile[ \t]+(.*\S)")
@@ -173,10 +173,46 @@ def _read_rows(
     content: bytes, ply: PlyData, counts: dict[str, int], start: int
 ) -> tuple[dict[str, _Table], Indices, int]:
     """Read all elements; return the byte offsets of text vertices, and that of binary ones, too."""
-    tables, begin, at = dict[str, _Table](), 0, 0
     if any(not 0 <= count <= len(content) for count in counts.values()):
         raise ValueError(f"it cannot have {', '.join(map(str, counts.values()))} rows")
     lines = lines_of(content, begin=start, limit=sum(counts.values()) if ply.text else 0)
+    try:
+        return _read_elements(content, ply, counts, start, lines)
+    except ValueError:
+        if not ply.text or (rows := _rows_in_any_lines(lines, ply, counts, start)) is None:
+            raise
+        return _read_elements(content, ply, counts, start, rows)
+
+
+def _rows_in_any_lines(
+    lines: Lines, ply: PlyData, counts: dict[str, int], start: int
+) -> Lines | None:
+    """Return the rows of all elements by their words; None if any are missing or left over."""
+    found = list(re.compile(rb"\S+").finditer(lines.text, start))
+    starts, words, at = list[int](), list[int](), 0
+    try:
+        for element in ply:
+            are_lists = [isinstance(one, PlyListProperty) for one in element.properties]
+            for _ in range(counts[element.name]):
+                first = at
+                for is_list in are_lists:
+                    at += 1 + (max(0, int(found[at][0])) if is_list else 0)
+                starts.append(found[first].start())
+                words.append(at - first)
+    except (ValueError, IndexError):
+        return None
+    if at != len(found):
+        return None
+    kinds = np.zeros(len(starts), np.uint8)
+    rows = np.array(starts, lines.starts.dtype), np.array(words, np.int32), kinds
+    return replace(lines, starts=rows[0], words=rows[1], kinds=rows[2])
+
+
+def _read_elements(
+    content: bytes, ply: PlyData, counts: dict[str, int], start: int, lines: Lines
+) -> tuple[dict[str, _Table], Indices, int]:
+    """Read all elements from the lines of a text, or from a binary file."""
+    tables, begin, at = dict[str, _Table](), 0, 0
     starts = lines.starts[:0]
     for element in ply:
         count, properties = counts[element.name], element.properties

@@ -85,8 +85,8 @@ def plot_spectrum(
     """Plot the spectrum of a mesh, optionally with a filter's transfer function over it.
 
     Large features are on the left, small ones on the right, like low and high notes. The lower plot
-    shows the height of the vertex noise that would explain the details of each size: where it
-    levels off, they are noise (shaded).
+    shows the height of the vertex noise that would explain the details of each size; below the
+    size at which it rises above the noise that there is, they are more noise than shape (shaded).
 
     Parameters
     ----------
@@ -124,7 +124,7 @@ def plot_spectrum(
     _plot_amplitudes(axes, spectrum)
     _plot_noise(noise, spectrum)
     for each in (axes, noise):
-        if spectrum.noise_height > 0:
+        if spectrum.noise_feature_size > 0:
             smallest = min(axes.get_xlim())
             each.axvspan(smallest, spectrum.noise_feature_size, color=_NOISE, alpha=0.12, zorder=0)
     _label(axes, noise, spectrum, title)
@@ -208,7 +208,7 @@ def _plot_noise(axes: Axes, spectrum: GeometrySpectrum) -> None:
     heights = spectrum.noise_heights[spectrum.noise_heights > 0]
     axes.set_ylim(0.05 * heights.min(), 3 * heights.max())  # room for the legend
     if spectrum.noise_height == 0:
-        axes.plot([], [], " ", label="no levelling off: no noise found")
+        axes.plot([], [], " ", label="no noise found")
         return
     size, percent = spectrum.noise_feature_size, 100 / spectrum.diagonal
     axes.axhline(
@@ -219,6 +219,8 @@ def _plot_noise(axes: Axes, spectrum: GeometrySpectrum) -> None:
         label=f"noise of height {spectrum.noise_height:.3g}"
         f" ({percent * spectrum.noise_height:.2g} %)",
     )
+    if size == 0:
+        return
     axes.annotate(
         f"noise from {size:.3g} ({percent * size:.2g} %) down",
         (size, 1),

@@ -23,6 +23,7 @@ def denoise_mesh(
     faces: ArrayLike | None = None,
     options: DenoiseOptions | None = None,
     *,
+    weights: ArrayLike | None = None,
     selection: ArrayLike | None = None,
     progress: Progress | None = None,
     threads: int | None = None,
@@ -40,6 +41,10 @@ def denoise_mesh(
         orientation.
     options
         All options below in one object, instead of by name.
+    weights
+        n factors on `noise_height`, from 0 to 1, one per vertex, or the name of such data of the
+        mesh: for noise that differs from place to place. Heights h of your own are
+        ``noise_height=h.max(), weights=h / h.max()``.
     selection
         What to denoise: n booleans, one per vertex, or indices of faces; around it, the effect
         fades out within four edges.
@@ -83,6 +88,7 @@ def denoise_mesh(
         mesh_or_vertices,
         faces,
         DenoiseOptions.given(options, named),
+        weights=weights,
         selection=selection,
         progress=progress,
         threads=threads,

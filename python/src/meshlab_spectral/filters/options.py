@@ -63,6 +63,7 @@ class DenoiseKeywords(TypedDict, total=False):
     noise_size: Size
     selected: bool
     keep_creases: bool
+    weight: Weight
     boundary: Boundary
 
 
@@ -282,6 +283,12 @@ class DenoiseOptions(Options):
     )
     keep_creases: bool = option(
         True, "Do not smooth across creases. Off: creases are rounded; for shapes without any."
+    )
+    weight: Weight = option(
+        "none",
+        "vertex quality: factor on the --noise-height at each vertex, from 0 (no noise) to "
+        "1, for noise that differs from place to place. none: as measured, or the same "
+        "everywhere.",
     )
     boundary: Boundary = option(
         "free",

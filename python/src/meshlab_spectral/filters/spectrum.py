@@ -64,11 +64,12 @@ class GeometrySpectrum:
     band_noise
         Amplitudes in these bands of white vertex noise of height 1 across the surface; > 0.
     noise_height
-        Root mean square height of the vertex noise that accounts for all details smaller than
-        `noise_feature_size`: noise, or details too fine for the mesh to tell from noise. 0 if there
-        is none. Up to 20 % too large because of the shape's own details.
+        Height of the noise that `denoise_mesh` would remove; 0 if there is none. Details too fine
+        for the mesh to tell from noise are none.
+    noise_summary
+        What noise that is, in words, or why none was found. Empty if made from pymeshlab's report.
     noise_feature_size
-        Feature size at which this noise floor begins; 0 if there is none.
+        In details smaller than this there is more noise than shape; 0 if in none.
     feature_size_50, feature_size_90, feature_size_99
         Feature sizes above which 50, 90 and 99 % of the energy lie.
     mismatch
@@ -92,6 +93,7 @@ class GeometrySpectrum:
     band_amplitudes: Array
     band_noise: Array
     noise_height: float
+    noise_summary: str
     noise_feature_size: float
     feature_size_50: float
     feature_size_90: float
@@ -119,7 +121,7 @@ class GeometrySpectrum:
     def noise_heights(self) -> Array:
         """Heights of the vertex noise that would explain each band on its own.
 
-        They fall towards small features and level off at the noise floor.
+        They fall towards small features and level off where there is noise.
         """
         heights: Array = self.band_amplitudes / self.band_noise
         return heights
@@ -129,9 +131,10 @@ class GeometrySpectrum:
         """Convert the filter's report, with arrays or lists."""
         values: dict[str, Any] = {}
         for field in fields(cls):
-            value = report[field.name]
-            values[field.name] = np.array(value) if np.ndim(value) else float(value)
-        return cls(**values)
+            if field.name != "noise_summary":
+                value = report[field.name]
+                values[field.name] = np.array(value) if np.ndim(value) else float(value)
+        return cls(**values, noise_summary=report.get("summary", ""))
 
 
 @takes_mesh_alone

@@ -1,0 +1,104 @@
+#include "core/contract/noise_text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+namespace spectral {
+
+namespace {
+
+std::string numberText(double value, int digits) {
+    std::ostringstream text;
+    text << std::setprecision(digits) << value;
+    return text.str();
+}
+
+std::string voxelsText(const Eigen::RowVector3d& voxel) {
+    return "voxel steps of " + numberText(voxel[0], 3) + " x " + numberText(voxel[1], 3) + " x " +
+           numberText(voxel[2], 3);
+}
+
+std::string localText(const NoiseField& field) {
+    const std::string lowest = numberText(field.lowest, 1), highest = numberText(field.highest, 1);
+    const std::string upTo = lowest == highest ? "" : " to " + highest;
+    const std::string where =
+        field.isEverywhere()
+            ? ""
+            : std::to_string(std::max(1L, std::lround(100.0 * field.share))) + " % of ";
+    return "noise of " + lowest + upTo + " edges on " + where + "the surface";
+}
+
+std::string noiseName(NoiseKind kind) {
+    switch (kind) {
+        case NoiseKind::Correlated: return "scanner noise";
+        case NoiseKind::Impulses: return "impulse noise";
+        case NoiseKind::ScanLines: return "noise on scan lines";
+        case NoiseKind::Rounded: return "coordinates rounded to a grid";
+        default: return "white noise";
+    }
+}
+
+std::string namedText(const Diagnosis& diagnosis) {
+    const NoiseEstimate& noise = diagnosis.noise;
+    std::string text =
+        noiseName(diagnosis.kind) + ": height " + inEdges(noise.height, noise.meanEdge);
+    if (diagnosis.kind == NoiseKind::Correlated)
+        text += ", size " + inEdges(noise.size * noise.meanEdge, noise.meanEdge);
+    return text;
+}
+
+/// Why there is nothing to remove, and what to give instead, in numbers of this mesh.
+std::string nothingText(const Diagnosis& diagnosis) {
+    constexpr double kHeight = 0.1, kSize = 2.0;  // edges
+    const double edge = diagnosis.noise.meanEdge;
+    const std::string height = numberText(kHeight * edge, 2);
+    switch (diagnosis.kind) {
+        case NoiseKind::Stretched:
+            return std::string(1, "xyz"[diagnosis.stretchedAxis.value_or(2)]) +
+                   " has another unit than the other axes, as in a terrain of degrees and metres: "
+                   "the triangles stand upright, and noise cannot be told from shape. Bring the "
+                   "axes to one unit first, e.g. project degrees to metres (UTM)";
+        case NoiseKind::Tessellation:
+            return "needle triangles as in a CAD model, not a scan: the mesh was not searched for "
+                   "noise. If it has noise, give the noise height, such as " +
+                   height + " (0.1 edges), or remesh first";
+        case NoiseKind::TooFew:
+            return "too few vertices to tell noise from shape. If the mesh has noise, give the "
+                   "noise height, such as " +
+                   height + " (0.1 edges)";
+        default:
+            return "no noise found that could not be part of the shape, neither at every vertex "
+                   "nor in places, as spikes, or as steps of voxels or of rounded coordinates. For "
+                   "ripples several edges wide, try noise height " +
+                   height + " and noise size " + numberText(kSize * edge, 2) +
+                   " (0.1 and 2 edges), or Spectral Filter (Fractional)";
+    }
+}
+
+}  // namespace
+
+std::string inEdges(double length, double edge) {
+    return numberText(length / edge, 2) + " edges (" + numberText(length, 3) + ")";
+}
+
+std::string noiseText(const Diagnosis& diagnosis) {
+    if (!diagnosis.isNoise()) return nothingText(diagnosis);
+    if (diagnosis.hasVoxels()) return voxelsText(diagnosis.voxel);
+    if (diagnosis.kind == NoiseKind::Local) return localText(diagnosis.field);
+    return namedText(diagnosis);
+}
+
+std::string spikesText(const Diagnosis& diagnosis) {
+    if (diagnosis.spikes == 0) return "";
+    if (diagnosis.spikes == 1) return "a spike";
+    return "spikes at " + std::to_string(diagnosis.spikes) + " vertices";
+}
+
+std::string diagnosisText(const Diagnosis& diagnosis) {
+    const std::string spikes = spikesText(diagnosis);
+    return (spikes.empty() ? "" : spikes + "; ") + noiseText(diagnosis);
+}
+
+}  // namespace spectral

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <optional>
+
+#include "core/noise/face_graph.h"
+
+namespace spectral {
+
+/// The axis along which a surface is stretched beyond any slope of a terrain: its triangles stand
+/// nearly upright, but seen along this axis they are well shaped, and face one side. Its unit is
+/// another one than that of the other two, as where x and y are degrees and z metres.
+///
+/// @param X  n x 3 positions.
+/// @return   0, 1 or 2; none if there is no such axis.
+std::optional<int> stretchedAxis(const FaceGraph& graph, const Points& X);
+
+}  // namespace spectral
