@@ -156,7 +156,8 @@ void append(const GeometrySpectrum& r, Numbers& to) {
     to << r.diagonal << r.meanEdge << r.area << r.totalEnergy << r.frequencies << r.amplitudes
        << r.octaveFeatureSizes << r.octaveEnergies << r.octaveAmplitudes << r.cumulativeEnergy
        << r.featureSize50 << r.featureSize90 << r.featureSize99 << r.bandFeatureSizes
-       << r.bandAmplitudes << r.bandNoise << r.diagnosis.noise.height << r.noiseFeatureSize << r.mismatch;
+       << r.bandAmplitudes << r.bandNoise << r.diagnosis.noise.height << r.noiseFeatureSize
+       << r.mismatch;
 }
 
 void append(const DenoiseResult& r, Numbers& to) {

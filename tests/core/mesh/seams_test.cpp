@@ -238,6 +238,7 @@ TEST(Seams, TheWidthOfACutCountsAsDisplacement) {
         const Mesh both = nearlyJoinedSheets(roundOff);
         FilterOptions options;
         options.featureSize = 0.5;
+        options.tolerance = 0.001;
         const FilterResult result = fractionalFilter(both.V, both.F, options);
         EXPECT_NEAR(result.maxDisplacement, (result.V - both.V).rowwise().norm().maxCoeff(), 1e-15)
             << roundOff;
