@@ -103,15 +103,18 @@ std::string barOf(double amplitude, double largest) {
 std::string textOf(const GeometrySpectrum& spectrum) {
     const auto size = [&](double length) { return withPercent(length, spectrum.diagonal); };
     std::ostringstream text;
-    text << "Geometry Spectrum: half of the shape's energy is in details of at least "
+    text << "Geometry Spectrum: to smooth, try feature size "
+         << size(spectrum.noiseHeight > 0.0
+                     ? spectrum.noiseFeatureSize
+                     : defaultFeatureSize(spectrum.meanEdge, spectrum.surfaceDiagonal))
+         << "\n  half of the shape's energy is in details of at least "
          << size(spectrum.featureSize50) << ", 90 % in those of at least "
          << size(spectrum.featureSize90) << ", 99 % " << size(spectrum.featureSize99)
          << "; percent are of the diagonal";
     if (spectrum.noiseHeight > 0.0)
         text << "\n  details smaller than " << size(spectrum.noiseFeatureSize)
              << " look like vertex noise, with a root mean square height of "
-             << size(spectrum.noiseHeight) << ": to remove them, try feature size "
-             << std::setprecision(3) << spectrum.noiseFeatureSize;
+             << size(spectrum.noiseHeight);
     text << "\n  root mean square height of the details of each size, bars in logarithmic scale:";
     const double largest =
         spectrum.octaveAmplitudes.size() > 0 ? spectrum.octaveAmplitudes.maxCoeff() : 0.0;
