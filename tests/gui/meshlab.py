@@ -97,7 +97,7 @@ class MeshLab:
     def layers(self) -> list[str]:
         """The names of the layers, as the list beside the scene shows them."""
         columns = [w.name for w in self.main_window().find_all("tree item")]
-        # Whether it is shown, its number, its name with a star if it was changed, what is shown of it.
+        # Whether it is shown, number, name (with a star if it was changed), what is shown of it.
         return [name.removesuffix(" *") for name in columns[2::4]]
 
     def menu_entry(self, *path: str) -> Widget | None:
