@@ -76,7 +76,9 @@ TEST(EqualizerBands, MoveNothingAtGainsOfOneAndNothingOnAFixedBoundary) {
     const Vertices moved = displacementOf(mesh, options, {2, 2, 2});
     const std::vector<bool> isBoundary = boundaryVertices(mesh.F, mesh.V.rows());
     for (Index i = 0; i < moved.rows(); ++i)
-        if (isBoundary[i]) EXPECT_EQ(moved.row(i).norm(), 0.0);
+        if (isBoundary[i]) {
+            EXPECT_EQ(moved.row(i).norm(), 0.0);
+        }
     EXPECT_GT(moved.norm(), 0.0);
 }
 
