@@ -2,14 +2,24 @@
 
 #include <common/parameters/rich_parameters.h>
 
+#include <algorithm>
+
 #include "core/contract/equalizer.h"
 #include "core/mesh/measures.h"
+#include "meshlab/host_workarounds/apply_anew.h"
+#include "meshlab/host_workarounds/number_fields.h"
+#include "meshlab/host_workarounds/octave_sliders.h"
+#include "meshlab/host_workarounds/share_slider.h"
 #include "meshlab/mesh_conversion.h"
 
 namespace {
 
 using spectral::Parameter;
 using Kind = Parameter::Kind;
+
+/// A parameter of this host alone: others write files.
+const char* const kKeepOriginal = "keep_original";
+const char* const kKeepOriginalLabel = "Keep the original";
 
 /// The number of the equalizer's slider that a parameter is; none if it is not one.
 std::size_t sliderOf(const spectral::Filter& filter, const Parameter& parameter) {
@@ -21,6 +31,15 @@ std::size_t sliderOf(const spectral::Filter& filter, const Parameter& parameter)
 
 bool isSlider(const spectral::Filter& filter, const Parameter& parameter) {
     return sliderOf(filter, parameter) < spectral::kEqualizerTimes.size();
+}
+
+QString sliderLabel(const spectral::Filter& filter, const Parameter& parameter,
+                    const spectral::MeshLengths& mesh) {
+    // The reference documentation is generated without a mesh: there are no sizes.
+    if (!(mesh.meanEdge > 0.0)) return QString::fromStdString(parameter.label);
+    return QString::fromStdString(spectral::equalizerLabel(
+        sliderOf(filter, parameter),
+        spectral::defaultSmallestSize(mesh.meanEdge, mesh.surfaceDiagonal), mesh.diagonal));
 }
 
 QString tooltipOf(const Parameter& parameter, const spectral::MeshLengths& mesh) {
@@ -36,8 +55,7 @@ QString tooltipOf(const Parameter& parameter, const spectral::MeshLengths& mesh)
 void add(const spectral::Filter& filter, const Parameter& one, const spectral::MeshLengths& mesh,
          bool isAnySelected, RichParameterList& list) {
     const QString name = QString::fromStdString(one.name), help = tooltipOf(one, mesh);
-    QString label = QString::fromStdString(one.label);
-    const std::size_t slider = sliderOf(filter, one);
+    const QString label = QString::fromStdString(one.label);
     switch (one.kind) {
         case Kind::Bool:
             // As in MeshLab's own filters.
@@ -56,11 +74,9 @@ void add(const spectral::Filter& filter, const Parameter& one, const spectral::M
                 list.addParam(RichFloat(name, usual, label, help, one.isAdvanced));
                 break;
             }
-            // The reference documentation is generated without a mesh: there are no sizes.
-            if (mesh.meanEdge > 0.0)
-                label = QString::fromStdString(spectral::equalizerLabel(slider, mesh));
             list.addParam(RichDynamicFloat(name, usual, static_cast<Scalarm>(one.low),
-                                           static_cast<Scalarm>(one.high), label, help));
+                                           static_cast<Scalarm>(one.high),
+                                           sliderLabel(filter, one, mesh), help));
             break;
         }
         case Kind::Length: {
@@ -106,14 +122,53 @@ QString helpOf(const spectral::Filter& filter) {
     return help + " <small>" + asHtml(filter.source) + "</small>";
 }
 
-RichParameterList parametersOf(const spectral::Filter& filter, const MeshModel& mesh) {
+RichParameterList parametersOf(const spectral::Filter& filter, const MeshModel& mesh,
+                               bool movesVertices) {
     const MeshMatrices matrices = toMatrices(mesh.cm);
     const spectral::MeshLengths lengths = spectral::lengthsOf(matrices.V, matrices.F);
     RichParameterList list;
     // Not MeshLab's own bounding box, which stays that of a preview that was switched off.
     for (const Parameter& one : filter.parameters)
         add(filter, one, lengths, hasSelectedFaces(mesh.cm), list);
+    if (movesVertices)
+        list.addParam(
+            RichBool(kKeepOriginal, false, kKeepOriginalLabel,
+                     "Keep the mesh as it is now in a hidden layer of its own, as MeshLab "
+                     "cannot undo a filter."));
     return list;
+}
+
+bool isOriginalKept(const RichParameterList& parameters) {
+    return parameters.hasParameter(kKeepOriginal) && parameters.getBool(kKeepOriginal);
+}
+
+void adaptDialog(const spectral::Filter& filter, const MeshModel& mesh) {
+    checkNumberFields(numberLabels(filter).all);
+    QString accurate, size;
+    QStringList sliders;
+    const MeshMatrices matrices = toMatrices(mesh.cm);
+    const spectral::MeshLengths lengths = spectral::lengthsOf(matrices.V, matrices.F);
+    for (const Parameter& one : filter.parameters) {
+        if (one.name == filter.accurate) accurate = QString::fromStdString(one.label);
+        if (one.name == "power") addShareSlider(QString::fromStdString(one.label));
+        if (one.kind == Kind::Length) size = QString::fromStdString(one.label);
+        if (isSlider(filter, one)) sliders.push_back(sliderLabel(filter, one, lengths));
+    }
+    applyAnew(accurate, kKeepOriginalLabel);
+    if (sliders.isEmpty()) return;
+    useOctaves(sliders, size, [lengths](int i, double length) {
+        return QString::fromStdString(
+            spectral::equalizerLabel(static_cast<std::size_t>(i), length, lengths.diagonal));
+    });
+}
+
+bool differInSliders(const spectral::Filter& filter, const spectral::Values& one,
+                     const spectral::Values& other) {
+    return std::all_of(filter.parameters.begin(), filter.parameters.end(),
+                       [&](const Parameter& parameter) {
+                           return isSlider(filter, parameter) ||
+                                  one.at(parameter.name) == other.at(parameter.name);
+                       });
 }
 
 NumberLabels numberLabels(const spectral::Filter& filter) {

@@ -16,10 +16,22 @@ QString asHtml(const std::string& text);
 QString helpOf(const spectral::Filter& filter);
 
 /// The parameters, with defaults for a mesh.
-RichParameterList parametersOf(const spectral::Filter& filter, const MeshModel& mesh);
+/// @param movesVertices  whether the filter does: then the mesh can be kept as it was, in a layer.
+RichParameterList parametersOf(const spectral::Filter& filter, const MeshModel& mesh,
+                               bool movesVertices);
+
+/// Whether the mesh shall be kept as it was.
+bool isOriginalKept(const RichParameterList& parameters);
+
+/// Adapts the dialog that is about to open to what MeshLab's widgets do not offer.
+void adaptDialog(const spectral::Filter& filter, const MeshModel& mesh);
 
 /// The values chosen in a dialog or script.
 spectral::Values valuesOf(const spectral::Filter& filter, const RichParameterList& parameters);
+
+/// Whether two choices of values differ in sliders alone.
+bool differInSliders(const spectral::Filter& filter, const spectral::Values& one,
+                     const spectral::Values& other);
 
 /// Labels of the fields for numbers, without those that are sliders or percentages.
 struct NumberLabels {

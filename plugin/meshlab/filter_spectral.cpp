@@ -5,6 +5,7 @@
 #include <QDockWidget>
 #include <chrono>
 #include <functional>
+#include <iomanip>
 #include <limits>
 #include <sstream>
 #include <type_traits>
@@ -14,6 +15,7 @@
 #include "core/support/memory.h"
 #include "core/support/threads.h"
 #include "meshlab/dialog.h"
+#include "meshlab/host_workarounds/apply_anew.h"
 #include "meshlab/host_workarounds/apply_lock.h"
 #include "meshlab/host_workarounds/filter_dialog.h"
 #include "meshlab/host_workarounds/last_messages.h"
@@ -101,10 +103,13 @@ std::unique_lock<std::recursive_timed_mutex> FilterSpectralPlugin::waitForOtherT
 KeptRun* FilterSpectralPlugin::runKeptFor(QWidget* dialog) {
     auto* dock = qobject_cast<QDockWidget*>(dialog);
     if (dock == nullptr) return nullptr;
-    const auto release = [this](bool isVisible) {
-        if (!isVisible) kept_ = {};
-    };
-    if (kept_.filter == nullptr) connect(dock, &QDockWidget::visibilityChanged, this, release);
+    if (keptFor_ != dock) {
+        kept_ = {};
+        connect(dock, &QDockWidget::visibilityChanged, this, [this](bool isVisible) {
+            if (!isVisible) kept_ = {};
+        });
+        keptFor_ = dock;
+    }
     return &kept_;
 }
 
@@ -114,10 +119,12 @@ const MeshFilter& FilterSpectralPlugin::filterOf(const QAction* action) const {
 
 // What happened, then what to look at, then numbers; line by line, as MeshLab's log joins the lines
 // of an entry.
-void FilterSpectralPlugin::logOutput(const spectral::FilterOutput& output) const {
+void FilterSpectralPlugin::logOutput(const spectral::FilterOutput& output, double seconds) const {
     std::istringstream lines(output.text);
     std::string line;
-    if (std::getline(lines, line)) log(line);
+    std::ostringstream time;
+    time << ". " << std::setprecision(seconds < 100.0 ? 2 : 3) << seconds << " s.";
+    if (std::getline(lines, line)) log(line + time.str());
     for (const std::string& warning : output.warnings)
         if (output.text.find(warning) == std::string::npos) log("  WARNING: " + warning);
     while (std::getline(lines, line)) log(line);
@@ -169,9 +176,9 @@ FilterPlugin::FilterArity FilterSpectralPlugin::filterArity(const QAction*) cons
 
 RichParameterList FilterSpectralPlugin::initParameterList(const QAction* action,
                                                           const MeshModel& mesh) {
-    const spectral::Filter& filter = filterOf(action).contract;
-    checkNumberFields(numberLabels(filter).all);
-    return parametersOf(filter, mesh);
+    const MeshFilter& filter = filterOf(action);
+    adaptDialog(filter.contract, mesh);
+    return parametersOf(filter.contract, mesh, movesVertices(filter));
 }
 
 std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
@@ -182,6 +189,12 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
     checkFields(filter.contract);
     const auto lock = waitForOtherThreads();
     releaseGLContext();
+    const spectral::Values given = valuesOf(filter.contract, parameters);
+    if (draft_.action == action && !isApplying() &&
+        differInSliders(filter.contract, draft_.given, given)) {
+        draft_.newer = given;
+        return {};  // the mesh is as it was; the preview at work writes to it
+    }
     // MeshLab handles user input in its callback, during this run: the user may switch the preview
     // off, apply the filter, close a window, restart the filter by changing a parameter in preview,
     // or delete the mesh.
@@ -204,18 +217,30 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
         const spectral::Progress progress = meshlabProgress(callback, isWanted, isOvertaken);
         spectral::setThreadCount(environmentNumber<int>("MESHLAB_SPECTRAL_THREADS", "threads"));
         spectral::setMemoryLimit(environmentNumber<double>("MESHLAB_SPECTRAL_MEMORY", "bytes"));
+        const bool isPreview = latePreview.isOn() && !isApplying();
+        RunOptions options;
+        options.isPreview = isPreview;
+        options.kept = runKeptFor(dialog);
+        if (!isPreview && (isOriginalKept(parameters) || isLayerWanted()))
+            options.layers = &document;
+        if (isPreview && filter.contract.preview != nullptr) {
+            draft_ = {action, given, {}};
+            options.newer = [this] { return std::exchange(draft_.newer, {}); };
+        }
+        const auto noDraft = [this](const void*) { draft_ = {}; };
+        const std::unique_ptr<void, decltype(noDraft)> draftEnd(&draft_, noDraft);
+        const auto start = std::chrono::steady_clock::now();
         const spectral::FilterOutput output =
-            applyTo(*document.mm(), filter, valuesOf(filter.contract, parameters),
-                    runKeptFor(dialog), progress);
+            applyTo(*document.mm(), filter, given, options, progress);
+        const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
         postConditionMask = static_cast<unsigned>(changedBy(filter, output));
-        logOutput(output);
+        logOutput(output, taken.count());
         keepLastMessages(output.summary, output.warnings);
         return dictionaryOf(output.report);
     } catch (const spectral::Cancelled& cancelled) {
         // No message box: the result of the newer run stays, or the user knows why.
-        if (isOvertaken())
-            log("stopped: the filter was restarted meanwhile");
-        else if (latePreview.isOn() || lateClose.isMeshLeaving())
+        if (isOvertaken()) return {};
+        if (latePreview.isOn() || lateClose.isMeshLeaving())
             log("stopped: the mesh is as it was");
         else
             throw MLException(lateClose.isRequested() ? "stopped: the mesh is as it was"

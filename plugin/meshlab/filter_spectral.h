@@ -2,8 +2,11 @@
 
 #include <common/plugins/interfaces/filter_plugin.h>
 
+#include <QPointer>
+#include <QWidget>
 #include <atomic>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "meshlab/mesh_filter.h"
@@ -44,10 +47,19 @@ class FilterSpectralPlugin : public QObject, public FilterPlugin {
     const MeshFilter& filterOf(const QAction* action) const;
     std::unique_lock<std::recursive_timed_mutex> waitForOtherThreads();
     void releaseGLContext();
-    void logOutput(const spectral::FilterOutput& output) const;
+    void logOutput(const spectral::FilterOutput& output, double seconds) const;
 
     const std::vector<MeshFilter> filters_;  // indexed by ActionIDType
     std::vector<std::atomic<int>> runs_;     // number of runs of each filter so far
     KeptRun kept_;                           // while the dialog of its filter is open
-    std::recursive_timed_mutex running_;     // recursive: MeshLab's dialog restarts a run within it
+    QPointer<QWidget> keptFor_;              // that dialog
+
+    /// A preview at work, which takes over values chosen in the meantime if they differ in sliders
+    /// alone: what takes long then is the same.
+    struct {
+        const QAction* action = nullptr;  // null: none is
+        spectral::Values given;
+        std::optional<spectral::Values> newer;
+    } draft_;
+    std::recursive_timed_mutex running_;  // recursive: MeshLab's dialog restarts a run within it
 };

@@ -1,10 +1,12 @@
 #include "meshlab/mesh_filter.h"
 
 #include <common/mlexception.h>
+#include <vcg/complex/append.h>
 
 #include <algorithm>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 #include "core/mesh/measures.h"
 #include "meshlab/vertex_colors.h"
@@ -162,6 +164,52 @@ bool isSameRun(const KeptRun& kept, const spectral::Filter& filter, const MeshMa
            kept.given == withoutChoice(filter, given);
 }
 
+/// The output of a run, or of one before from which it can be taken.
+FilterOutput outputOf(const MeshModel& mesh, const MeshFilter& filter, const MeshMatrices& input,
+                      const Values& given, const RunOptions& options,
+                      const spectral::Progress& progress) {
+    const spectral::Filter& contract = filter.contract;
+    KeptRun* const kept = options.kept;
+    const bool isChoice = kept != nullptr && contract.choose != nullptr;
+    if (isChoice && isSameRun(*kept, contract, input, given)) {
+        FilterOutput output = kept->output;
+        contract.choose(output, given);
+        return output;
+    }
+    const spectral::FilterInput read{input.V, input.F, selectedVertices(mesh.cm, input),
+                                     valuesOf(mesh, input, filter.values)};
+    if (kept != nullptr && options.isPreview) {
+        if (std::exchange(kept->previewed, &contract) != &contract) kept->bands.reset();
+        FilterOutput output = spectral::preview(contract, read, given, kept->bands, progress);
+        while (const auto newer = options.newer ? options.newer() : std::nullopt)
+            output = spectral::preview(contract, read, *newer, kept->bands, progress);
+        return output;
+    }
+    FilterOutput output = spectral::apply(contract, read, given, progress);
+    if (isChoice) {
+        kept->filter = &contract;
+        kept->V = input.V;
+        kept->F = input.F;
+        kept->given = withoutChoice(contract, given);
+        kept->output = output;
+    }
+    return output;
+}
+
+/// Adds a hidden layer with the mesh as it is, like MeshLab's filter Duplicate Current Layer.
+/// @return  its name.
+QString keepAsLayer(const MeshModel& mesh, MeshDocument& document) {
+    MeshModel* const copy = document.addNewMesh("", mesh.label(), false);
+    copy->updateDataMask(&mesh);
+    vcg::tri::Append<CMeshO, CMeshO>::MeshAppendConst(copy->cm, mesh.cm);
+    for (const std::string& texture : copy->cm.textures)
+        copy->addTexture(texture, mesh.getTexture(texture));
+    copy->cm.Tr = mesh.cm.Tr;
+    copy->updateBoxAndNormals();
+    copy->setVisible(false);
+    return copy->label();
+}
+
 bool isStorable(const Eigen::MatrixXd& values) {
     return values.size() == 0 || values.cwiseAbs().maxCoeff<Eigen::PropagateNumbers>() <=
                                      std::numeric_limits<Scalarm>::max();
@@ -193,31 +241,21 @@ int changedBy(const MeshFilter& filter, const FilterOutput& output) {
     return output.V.rows() > 0 ? kMovesVertices : filter.changes & ~kMovesVertices;
 }
 
-FilterOutput applyTo(MeshModel& mesh, const MeshFilter& filter, const Values& given, KeptRun* kept,
-                     const spectral::Progress& progress) {
+FilterOutput applyTo(MeshModel& mesh, const MeshFilter& filter, const Values& given,
+                     const RunOptions& options, const spectral::Progress& progress) {
     progress.report(0.0, "reading the mesh");
     checkExtent(mesh.cm);
     const MeshMatrices input = toMatrices(mesh.cm);
-    if (filter.contract.choose == nullptr) kept = nullptr;
-    FilterOutput output;
-    if (kept != nullptr && isSameRun(*kept, filter.contract, input, given)) {
-        output = kept->output;
-        filter.contract.choose(output, given);
-    } else {
-        output = spectral::apply(filter.contract,
-                                 {input.V, input.F, selectedVertices(mesh.cm, input),
-                                  valuesOf(mesh, input, filter.values)},
-                                 given, progress);
-        if (kept != nullptr)
-            *kept = {&filter.contract, input.V, input.F, withoutChoice(filter.contract, given),
-                     output};
-    }
+    FilterOutput output = outputOf(mesh, filter, input, given, options, progress);
     if (!isStorable(output.values))
         throw MLException(
             "the filtered quality exceeds the largest number: choose smaller gains, or apply 'Per "
             "Vertex Quality Function', q / 1000, first");
     if (filter.changes != MeshModel::MM_NONE) {
         reportWriting(input, mesh.cm, progress);
+        if (options.layers != nullptr)
+            output.text += "\n  the original is kept, hidden: layer " +
+                           keepAsLayer(mesh, *options.layers).toStdString();
         filter.write(input, given, output, mesh);
     }
     return output;

@@ -1,7 +1,11 @@
 #pragma once
 
+#include <common/ml_document/mesh_document.h>
 #include <common/plugins/interfaces/filter_plugin.h>
 
+#include <functional>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,6 +30,11 @@ struct MeshFilter {
 /// All filters; their positions are MeshLab's action ids.
 std::vector<MeshFilter> allMeshFilters();
 
+/// Whether a filter may move vertices.
+inline bool movesVertices(const MeshFilter& filter) {
+    return (filter.changes & MeshModel::MM_VERTCOORD) != 0;
+}
+
 /// Mask of what a run has written.
 int changedBy(const MeshFilter& filter, const spectral::FilterOutput& output);
 
@@ -36,14 +45,23 @@ struct KeptRun {
     spectral::Faces F;
     spectral::Values given;  ///< Without `choice`.
     spectral::FilterOutput output;
+    const spectral::Filter* previewed = nullptr;  ///< Whose previews have left `bands`.
+    std::shared_ptr<void> bands;
+};
+
+/// How a filter is run.
+struct RunOptions {
+    bool isPreview = false;  ///< A draft will do.
+    /// Of a preview: values that were chosen since it began; none: those given.
+    std::function<std::optional<spectral::Values>()> newer;
+    MeshDocument* layers = nullptr;  ///< Where to keep the mesh as it was; null: nowhere.
+    KeptRun* kept = nullptr;  ///< What a dialog keeps: the run before, whose output is used if only
+                              ///< the choice differs; then this one. Null: nothing is kept.
 };
 
 /// Reads a mesh, applies a filter, and writes the result; throws only while the mesh is unchanged.
 ///
-/// @param kept  the run before, whose output is used if only the choice differs; then this one.
-/// Null:
-///              nothing is kept.
 /// @throws spectral::Error, MLException
 spectral::FilterOutput applyTo(MeshModel& mesh, const MeshFilter& filter,
-                               const spectral::Values& given, KeptRun* kept,
+                               const spectral::Values& given, const RunOptions& options,
                                const spectral::Progress& progress);

@@ -92,11 +92,14 @@ def _filter(described: dict[str, Any]) -> Filter:
     name = described["python_name"]
     defaults = [_defaults(name, described, mesh_set) for mesh_set in _spheres()]
     parameters = []
+    # Without those that the plugin alone has, such as keep_original.
     units = {one["name"]: one["unit"] for one in CONTRACT[name]["parameters"]}
     for parameter in described.pop("parameters"):
         coarse, fine = (of_mesh[parameter["name"]] for of_mesh in defaults)
         default = coarse if coarse == fine else DEFAULTS[parameter["name"]]
-        parameters.append(Parameter(**parameter, default=default, unit=units[parameter["name"]]))
+        parameters.append(
+            Parameter(**parameter, default=default, unit=units.get(parameter["name"], ""))
+        )
     return Filter(**described, parameters=parameters, report=_report(name))
 
 

@@ -94,6 +94,12 @@ class MeshLab:
 
         return wait_for("the main window", find)
 
+    def layers(self) -> list[str]:
+        """The names of the layers, as the list beside the scene shows them."""
+        columns = [w.name for w in self.main_window().find_all("tree item")]
+        # Whether it is shown, number, name (with a star if it was changed), what is shown of it.
+        return [name.removesuffix(" *") for name in columns[2::4]]
+
     def menu_entry(self, *path: str) -> Widget | None:
         """Return an entry of the menus: menu_entry("File", "Exit"); None if there is none."""
         entry = next((w for w in self.main_window().children() if w.has_role("menu bar")), None)

@@ -54,6 +54,7 @@ OTHER_VALUES = {
     "preserve_volume": "false",
     "weight": "none",
     "result": "filtered shape",
+    "keep_original": "true",
 }
 
 
@@ -61,15 +62,24 @@ def test_the_dialog_shows_every_parameter_with_its_default(
     dialog: FilterDialog, bunny: Path
 ) -> None:
     rows = dialog.rows()
-    defaults = FilterOptions().as_dict()
+    defaults = {**FilterOptions().as_dict(), "keep_original": False}
     assert len(rows) == len(PARAMETERS)
     assert len({row.label for row in rows}) == len(PARAMETERS)
     shown = [name for name, row in zip(PARAMETERS, rows, strict=True) if row.showing]
-    assert shown == ["filter_type", "feature_size", "power", "pass_gain", "stop_gain"]
+    assert shown == [
+        "filter_type",
+        "feature_size",
+        "power",
+        "pass_gain",
+        "stop_gain",
+        "keep_original",
+    ]
     dialog.show_advanced()
     for name, row in zip(PARAMETERS, rows, strict=True):
         assert row.showing, name
         assert len(row.tooltip) > len(row.label), name
+        if len(row.editors) == 2:  # a length
+            assert "The mean edge length of this mesh is " in row.tooltip, name
         default = defaults[name]
         editor = row.editors[-1]
         if isinstance(default, bool):
@@ -120,6 +130,23 @@ def test_every_parameter_set_in_the_dialog_is_in_the_copied_call_and_the_saved_s
     assert np.abs(by_call - vertices(load(bunny))).max() > 1e-3
     assert_same_in_floats(in_meshlab, by_call)
     assert_same_in_floats(in_meshlab, vertices(other))
+
+
+def test_the_strength_has_a_slider_of_percent(
+    dialog: FilterDialog, meshlab: MeshLab, desktop: Desktop, bunny: Path
+) -> None:
+    field = dialog.rows()[PARAMETERS.index("power")].editors[0]
+    (slider,) = (slider for slider in dialog.sliders() if slider.showing)
+    wait_for("the slider to have the keys", lambda: dialog.focus(slider))
+    desktop.press_keys("Prior", "Prior")  # a tenth each
+    assert float(field.text) == 1.0
+    desktop.press_keys("Next", "Next", "Left")
+    wait_for("the field to follow", lambda: float(field.text) == 0.79)
+    dialog.apply()
+    dialog.close()
+    ms = load(bunny)
+    ms.apply_filter(FILTER, power=0.79)
+    assert_same_in_floats(saved_vertices(meshlab), vertices(ms))
 
 
 def test_preview_changes_the_picture_and_switching_it_off_restores_the_mesh(
@@ -238,7 +265,9 @@ def test_apply_logs_the_report_and_the_saved_mesh_is_that_of_pymeshlab(
     ms = load(bunny)
     report = ms.apply_filter(FILTER)
     assert f"low-pass at feature size {report['feature_size']:.4g}" in log
-    assert f"at most by {report['max_displacement']:.4g}" in log
+    first = next(line for line in log.splitlines() if "Smoothed: " in line)
+    assert f" on average, {report['max_displacement']:.2g} at most (" in first
+    assert first.endswith(" s.")
     assert f"steps: automatic, {report['steps']} in pass {report['passes']}," in log
     assert f"area: {report['area_before']:.4g} -> {report['area_after']:.4g}" in log
     assert_same_in_floats(saved_vertices(meshlab), vertices(ms))

@@ -74,11 +74,11 @@ def test_a_preview_overtaken_by_another_one_does_not_come_back(
     dialog.wait_for_result(before)
     previewed = saved_vertices(meshlab)
     log = meshlab.log()[before:]
-    assert "stopped: the filter was restarted meanwhile" in log
+    assert "stopped" not in log  # nothing of ours about the one that was abandoned
     mesh_set = load(bunny)
     report = mesh_set.apply_filter(FILTER, steps=4)
     assert log.count("Spectral Filter: ") == 1
-    assert f"at most by {report['max_displacement']:.4g}" in log
+    assert f" on average, {report['max_displacement']:.2g} at most (" in log
     assert_same_in_floats(previewed, vertices(mesh_set))
 
 

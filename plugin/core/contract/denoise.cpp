@@ -162,11 +162,15 @@ std::string summaryOf(const DenoiseOptions& options, const DenoiseResult& result
     return text.str();
 }
 
-std::string reportText(const std::string& summary, const DenoiseResult& result) {
+std::string reportText(const std::string& summary, const DenoiseResult& result, double diagonal) {
     std::ostringstream text;
-    text << "Spectral Denoise: " << summary << std::setprecision(3) << "\n  the vertices moved by "
-         << result.rmsDisplacement << " (root mean square), at most by " << result.maxDisplacement
-         << "\n  " << volumeText(result.hasVolume, result.volumeBefore, result.volumeAfter)
+    if (result.maxDisplacement > 0.0)
+        text << movementText("Denoised", result.meanDisplacement, result.maxDisplacement, diagonal)
+             << "\n  ";
+    text << "Spectral Denoise: " << summary;
+    if (result.maxDisplacement > 0.0)
+        text << "; root mean square " << std::setprecision(3) << result.rmsDisplacement;
+    text << "\n  " << volumeText(result.hasVolume, result.volumeBefore, result.volumeAfter)
          << "\n  " << surfaceText(result) << "\n  work: " << result.rounds << " rounds";
     return text.str();
 }
@@ -195,7 +199,7 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
     FilterOutput output;
     output.report = reportOf(denoiseEntries(), result);
     output.summary = summaryOf(call.options, result);
-    output.text = reportText(output.summary, result);
+    output.text = reportText(output.summary, result, mesh.diagonal);
     output.warnings = warningsOf(call.options, output.summary, result);
     append(percentageWarnings(mesh), output.warnings);
     output.V = std::move(result.V);

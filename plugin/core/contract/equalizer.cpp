@@ -12,6 +12,7 @@
 #include "core/contract/filters.h"
 #include "core/contract/fractional_report.h"
 #include "core/contract/surface_report.h"
+#include "core/filter/equalizer_bands.h"
 #include "core/filter/fractional_filter.h"
 #include "core/support/errors.h"
 #include "core/transfer/equalizer.h"
@@ -64,8 +65,8 @@ Fields<EqualizerCall> equalizerFields() {
         field<Call>([](auto& call) -> auto& { return call.smallestSize; }, "smallest_size",
                     "Smallest size",
                     "Size of the details that the last slider scales; it doubles with each slider "
-                    "above. The labels of the sliders show the sizes for the default, three mean "
-                    "edges of this mesh: it has hardly any finer details.")
+                    "above. The default is three mean edges: a mesh has hardly any finer "
+                    "details.")
             .in("length, above 0")
             .above(0.0)
             .length("auto", smallestSizeOf, "three mean edges, at most 2.5 % of the diagonal"));
@@ -79,7 +80,8 @@ Fields<EqualizerCall> equalizerFields() {
                     "Off: at most two steps, fast enough for the preview. Changes by gains of 0.5 "
                     "to 2 are then accurate to about 1 %, those by a gain of 0 may be off by a "
                     "third; the report states the error. On: as many steps as needed for an "
-                    "accuracy of 0.05 % of the diagonal.")
+                    "accuracy of 0.05 % of the diagonal. *Apply* in a dialog is accurate in any "
+                    "case.")
             .advanced());
     return fields;
 }
@@ -145,11 +147,64 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
     return output;
 }
 
+/// What previews keep: the bands of one mesh, and what they were computed for.
+struct KeptBands {
+    Vertices V;
+    Faces F;
+    double smallestSize;
+    Boundary boundary;
+    std::vector<bool> selected;
+    EqualizerBands bands;
+
+    bool areOf(const FilterInput& input, const EqualizerCall& call,
+               const std::vector<bool>& wanted) const {
+        return smallestSize == call.smallestSize && boundary == call.boundary &&
+               selected == wanted && V.rows() == input.V.rows() && F.rows() == input.F.rows() &&
+               V == input.V && F == input.F;
+    }
+};
+
+FilterOutput preview(const FilterInput& input, const MeshLengths& mesh, const Values& given,
+                     std::shared_ptr<void>& kept, const Progress& progress) {
+    const EqualizerCall call = callOf(equalizerFields(), given, mesh);
+    const Equalizer equalizer = octaveEqualizer(call.smallestSize, gainsOf(call));
+    const std::string changes = changesText(call, mesh.diagonal);
+    if (call.accurate || changes.empty()) return run(input, mesh, given, progress);
+    const std::vector<bool> selected = call.selected ? input.selected : std::vector<bool>();
+    auto* last = static_cast<KeptBands*>(kept.get());
+    if (last == nullptr || !last->areOf(input, call, selected)) {
+        kept.reset();
+        BandOptions options;
+        options.smallestSize = call.smallestSize;
+        options.octaves = static_cast<int>(call.gains.size());
+        options.boundary = call.boundary;
+        options.part.selected = selected;
+        try {
+            auto made = std::make_shared<KeptBands>(
+                KeptBands{input.V, input.F, call.smallestSize, call.boundary, selected,
+                          EqualizerBands(input.V, input.F, options, progress)});
+            last = made.get();
+            kept = std::move(made);
+        } catch (const Error& error) {
+            if (error.code() != ErrorCode::OutOfMemory) throw;
+            return run(input, mesh, given, progress);
+        }
+    }
+    const Surface& surface = last->bands.surface();
+    const Vertices displacement = last->bands.displacement(equalizer);
+    const Eigen::VectorXd length = displacement.rowwise().norm();
+    FilterOutput output;
+    output.text = movementText("Preview", length.mean(), length.maxCoeff(), mesh.diagonal) +
+                  "\n  Spectral Equalizer: " + changes +
+                  "; a draft in one step, Apply computes the accurate shape";
+    output.V = changed(input.V, surface, displacement);
+    return output;
+}
+
 }  // namespace
 
-std::string equalizerLabel(std::size_t i, const MeshLengths& mesh) {
-    return "Details of " +
-           lengthAndPercentage(kEqualizerTimes[i] * smallestSizeOf(mesh), mesh.diagonal);
+std::string equalizerLabel(std::size_t i, double smallestSize, double diagonal) {
+    return "Details of " + lengthAndPercentage(kEqualizerTimes[i] * smallestSize, diagonal);
 }
 
 Filter equalizerContract() {
@@ -162,7 +217,11 @@ Filter equalizerContract() {
             "",
             parametersOf(equalizerFields()),
             describedBy(fractionalEntries()),
-            run};
+            run,
+            "",
+            nullptr,
+            preview,
+            "accurate"};
 }
 
 }  // namespace spectral

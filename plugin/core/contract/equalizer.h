@@ -12,7 +12,7 @@ inline constexpr std::array<int, 6> kEqualizerTimes{32, 16, 8, 4, 2, 1};
 
 inline constexpr double kMaxEqualizerGain = 4.0;
 
-/// Label of slider i: "Details of 0.24 (12 %)", for the default smallest size of a mesh.
-std::string equalizerLabel(std::size_t i, const MeshLengths& mesh);
+/// Label of slider i: "Details of 0.24 (12 %)".
+std::string equalizerLabel(std::size_t i, double smallestSize, double diagonal);
 
 }  // namespace spectral

@@ -27,6 +27,21 @@ namespace {
     throw Error(error.code(), text, error.limit());
 }
 
+/// Calls `work(lengths of the mesh, progress)` in a team of threads.
+template <class Work>
+FilterOutput advised(const Filter& filter, const FilterInput& input, const Values& given,
+                     const Progress& progress, int threads, const Work& work) {
+    try {
+        return withSteadyProgress(progress, [&](const Progress& steady) {
+            const ThreadTeam team(threads > 0 ? threads : threadCount(), steady);
+            checkMesh(input.V, input.F);  // before it is measured
+            return work(lengthsOf(input.V, input.F), steady);
+        });
+    } catch (const Error& error) {
+        throwAdvised(error, filter, given);
+    }
+}
+
 }  // namespace
 
 const std::vector<Filter>& allFilters() {
@@ -53,15 +68,19 @@ const Filter& filterNamed(const std::string& pythonName) {
 
 FilterOutput apply(const Filter& filter, const FilterInput& input, const Values& given,
                    const Progress& progress, int threads) {
-    try {
-        return withSteadyProgress(progress, [&](const Progress& steady) {
-            const ThreadTeam team(threads > 0 ? threads : threadCount(), steady);
-            checkMesh(input.V, input.F);  // before it is measured
-            return filter.run(input, lengthsOf(input.V, input.F), given, steady);
-        });
-    } catch (const Error& error) {
-        throwAdvised(error, filter, given);
-    }
+    return advised(filter, input, given, progress, threads,
+                   [&](const MeshLengths& mesh, const Progress& steady) {
+                       return filter.run(input, mesh, given, steady);
+                   });
+}
+
+FilterOutput preview(const Filter& filter, const FilterInput& input, const Values& given,
+                     std::shared_ptr<void>& kept, const Progress& progress) {
+    if (filter.preview == nullptr) return apply(filter, input, given, progress);
+    return advised(filter, input, given, progress, 0,
+                   [&](const MeshLengths& mesh, const Progress& steady) {
+                       return filter.preview(input, mesh, given, kept, steady);
+                   });
 }
 
 }  // namespace spectral

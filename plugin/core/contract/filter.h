@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -58,6 +59,14 @@ struct Filter {
     std::string choice{};
     /// Makes the output of a run into that of one with another choice; null without.
     void (*choose)(FilterOutput& output, const Values& given) = nullptr;
+
+    /// A draft of the result, while a user moves sliders, with what it keeps for the next one;
+    /// null: there is none that is faster than the result.
+    FilterOutput (*preview)(const FilterInput& input, const MeshLengths& mesh, const Values& given,
+                            std::shared_ptr<void>& kept, const Progress& progress) = nullptr;
+    /// The parameter of type bool that makes a run as accurate as the filter can; empty: every run
+    /// is.
+    std::string accurate{};
 };
 
 /// All filters; their positions never change.
@@ -73,5 +82,11 @@ const Filter& filterNamed(const std::string& pythonName);
 /// @throws Error  with what to do about it.
 FilterOutput apply(const Filter& filter, const FilterInput& input, const Values& given,
                    const Progress& progress = {}, int threads = 0);
+
+/// The same for a preview; that of a filter without one is its result.
+///
+/// @param kept  what the last preview of this filter has left; empty at first.
+FilterOutput preview(const Filter& filter, const FilterInput& input, const Values& given,
+                     std::shared_ptr<void>& kept, const Progress& progress = {});
 
 }  // namespace spectral

@@ -175,7 +175,8 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
     FilterResult result = fractionalFilter(input.V, input.F, options, progress);
     FilterOutput output;
     output.report = reportOf(fractionalEntries(), result);
-    output.text = fractionalText(options, result, mesh.diagonal);
+    output.text = fractionalText(options, result, mesh.diagonal, {},
+                                 call.result == Wanted::Details ? "Details found" : "");
     output.warnings = fractionalWarnings(options, result, mesh.diagonal);
     append(percentageWarnings(mesh), output.warnings);
     append(unusedWarnings(fields, call), output.warnings);

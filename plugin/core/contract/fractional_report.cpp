@@ -102,7 +102,13 @@ std::string stepsText(const FilterResult& result) {
     return text.str();
 }
 
-/// The most important facts in one line: filter and size, displacement, accuracy.
+/// What was done, for everybody.
+std::string deedOf(const FilterOptions& options) {
+    const TransferFunctionOptions& transfer = options.transferFunction;
+    return transfer.type == FilterType::LowPass && transfer.passGain <= 1.0 ? "Smoothed" : "Moved";
+}
+
+/// The most important facts for those who know filters: filter and size, displacement, accuracy.
 std::string headline(const FilterOptions& options, const FilterResult& result, double diagonal,
                      const std::string& subject) {
     const double percent = 100.0 / diagonal;
@@ -113,8 +119,7 @@ std::string headline(const FilterOptions& options, const FilterResult& result, d
     else
         text << "Spectral Filter: " << nameOf(options.transferFunction.type) << " at feature size "
              << result.featureSize << " (" << percent * result.featureSize << " % of the diagonal)";
-    text << "; the surface moves by " << result.rmsDisplacement
-         << " (root mean square), at most by " << result.maxDisplacement << "; ";
+    text << "; root mean square " << result.rmsDisplacement << "; ";
     text << std::setprecision(2);
     if (options.steps > 0)
         text << result.steps << (result.steps == 1 ? " step" : " steps") << ", as requested";
@@ -236,11 +241,14 @@ std::vector<std::string> fractionalWarnings(const FilterOptions& options,
 }
 
 std::string fractionalText(const FilterOptions& options, const FilterResult& result,
-                           double diagonal, const std::string& subject) {
+                           double diagonal, const std::string& subject, const std::string& deed) {
     std::ostringstream text;
     text << std::setprecision(4);
-    text << headline(options, result, diagonal, subject) << "\n  steps: " << stepsText(result)
-         << ", cutoff frequency " << result.cutoffFrequency << " rad per unit\n"
+    text << movementText(deed.empty() ? deedOf(options) : deed, result.meanDisplacement,
+                         result.maxDisplacement, diagonal)
+         << "\n  " << headline(options, result, diagonal, subject)
+         << "\n  steps: " << stepsText(result) << ", cutoff frequency " << result.cutoffFrequency
+         << " rad per unit\n"
          << "  area: " << result.areaBefore << " -> " << result.areaAfter << "\n"
          << "  " << volumeText(result.hasVolume, result.volumeBefore, result.volumeAfter) << "\n  "
          << surfaceText(result, "vertices fixed, on the boundary or a crease");

@@ -14,8 +14,10 @@ const Entries<FilterResult>& fractionalEntries();
 /// The report as lines for a log.
 /// @param diagonal  of the bounding box of the mesh, length units.
 /// @param subject   what was done, in place of the filter type and the feature size.
+/// @param deed      the first word; empty: by the type of filter.
 std::string fractionalText(const FilterOptions& options, const FilterResult& result,
-                           double diagonal, const std::string& subject = {});
+                           double diagonal, const std::string& subject = {},
+                           const std::string& deed = {});
 
 /// Shortcomings of a result, and what to choose instead.
 std::vector<std::string> fractionalWarnings(const FilterOptions& options,

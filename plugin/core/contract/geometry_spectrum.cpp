@@ -106,7 +106,11 @@ std::string barOf(double amplitude, double largest) {
 std::string textOf(const GeometrySpectrum& spectrum, const std::string& noise) {
     const auto size = [&](double length) { return withPercent(length, spectrum.diagonal); };
     std::ostringstream text;
-    text << "Geometry Spectrum: half of the shape's energy is in details of at least "
+    text << "Geometry Spectrum: to smooth, try feature size "
+         << size(spectrum.noiseFeatureSize > 0.0
+                     ? spectrum.noiseFeatureSize
+                     : defaultFeatureSize(spectrum.meanEdge, spectrum.surfaceDiagonal))
+         << "\n  half of the shape's energy is in details of at least "
          << size(spectrum.featureSize50) << ", 90 % in those of at least "
          << size(spectrum.featureSize90) << ", 99 % " << size(spectrum.featureSize99)
          << "; percent are of the diagonal";

@@ -8,6 +8,14 @@
 
 namespace spectral {
 
+std::string movementText(const std::string& done, double mean, double most, double diagonal) {
+    std::ostringstream text;
+    text << done << ": " << std::setprecision(2) << mean << " on average, " << most << " at most ("
+         << 100.0 * mean / diagonal << " % and " << 100.0 * most / diagonal
+         << " % of the diagonal)";
+    return text.str();
+}
+
 std::string surfaceText(const SurfaceCounts& counts, const char* fixed) {
     std::string text = "surface: " + std::to_string(counts.components) +
                        (counts.components == 1 ? " component" : " components");

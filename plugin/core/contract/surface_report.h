@@ -47,6 +47,10 @@ Entries<Result> movementEntries() {
     });
 }
 
+/// The first line of a log, for everybody: "Smoothed: 0.4 on average, 3.1 at most (0.1 % and 0.8 %
+/// of the diagonal)".
+std::string movementText(const std::string& done, double mean, double most, double diagonal);
+
 /// Part of a log line: "surface: 2 components, 5 boundary vertices fixed".
 /// @param fixed  what is fixed, e.g. "boundary vertices fixed".
 std::string surfaceText(const SurfaceCounts& counts, const char* fixed = "boundary vertices fixed");

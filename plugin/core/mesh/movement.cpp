@@ -13,6 +13,7 @@ Movement movementOf(const Vertices& X, const Faces& F, const Vertices& displacem
     Movement movement;
     movement.maxDisplacement = std::sqrt(squares.maxCoeff());
     movement.rmsDisplacement = std::sqrt(squares.dot(weight / weight.sum()));
+    movement.meanDisplacement = squares.cwiseSqrt().dot(weight / weight.sum());
     movement.volumeBefore = signedVolume(X, F);
     movement.volumeAfter = signedVolume(X + displacement, F);
     movement.hasVolume = enclosesVolume(X, F);

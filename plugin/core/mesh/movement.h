@@ -10,6 +10,7 @@ namespace spectral {
 struct Movement {
     double maxDisplacement = 0.0;                  ///< Largest vertex displacement, length units.
     double rmsDisplacement = 0.0;                  ///< Root mean square, length units.
+    double meanDisplacement = 0.0;                 ///< Mean length, length units.
     double volumeBefore = 0.0, volumeAfter = 0.0;  ///< Signed; meaningful only if hasVolume.
     bool hasVolume = false;                        ///< Whether the surface encloses a volume.
     PreservedVolumes volumes;                      ///< Volumes of the closed components.

@@ -67,7 +67,7 @@ def test_quiet_leaves_errors_warnings_and_requested_output(cow: Path, tmp_path: 
 
 
 def test_verbose_adds_every_number_and_meshlabs_log(cow: Path, tmp_path: Path) -> None:
-    arguments = ["filter", cow, tmp_path / "cow.obj", "--steps", 2]
+    arguments = ["filter", cow, tmp_path / "cow.obj", "--overwrite", "--steps", 2]
     report = json.loads(command(*arguments, "--json").stdout)["report"]
     done = command(*arguments, "-v")
     for name in report.keys() - {"warnings"}:

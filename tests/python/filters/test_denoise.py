@@ -370,6 +370,7 @@ def test_noise_above_half_an_edge_is_a_warning(decimated: Decimated) -> None:
 
 def test_names_order_and_defaults_are_those_of_the_plugin(decimated: Decimated) -> None:
     parameters = mesh_set_of(*decimated("cow.obj")).filter_parameter_values(DENOISE)
+    assert parameters.pop("keep_original") is False  # the plugin's own
     expected = DenoiseOptions().as_dict()
     assert list(parameters) == list(expected)
     expected["noise_height"] = expected["noise_size"] = 0.0  # auto

@@ -42,7 +42,7 @@ def check_source(source: Path) -> None:
 def _missing(source: Path) -> tuple[str, str]:
     if str(source) == "-":
         return (
-            "- is no file: only filter and denoise read a mesh from standard input; save it, and name it",
+            "- is no file: only filter and denoise read standard input; save the mesh, and name it",
             "no_file",
         )
     if _URL.match(str(source)):
