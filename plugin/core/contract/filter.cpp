@@ -57,7 +57,9 @@ FilterOutput apply(const Filter& filter, const FilterInput& input, const Values&
         return withSteadyProgress(progress, [&](const Progress& steady) {
             const ThreadTeam team(threads > 0 ? threads : threadCount(), steady);
             checkMesh(input.V, input.F);  // before it is measured
-            return filter.run(input, lengthsOf(input.V, input.F), given, steady);
+            const MeshLengths lengths =
+                input.whole ? input.whole->lengths : lengthsOf(input.V, input.F);
+            return filter.run(input, lengths, given, steady);
         });
     } catch (const Error& error) {
         throwAdvised(error, filter, given);

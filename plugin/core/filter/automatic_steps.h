@@ -20,6 +20,7 @@ struct AutomaticOptions {
     int passes = 0;              ///< Number of passes, whatever the error; 0: as many as needed.
     bool keepThinParts = false;  ///< For a low-pass: parts thinner than the feature size stay
                                  ///< (thin_parts.h).
+    bool areThinPartsElsewhere = false;  ///< X is a tile, and another tile keeps such parts.
 };
 
 /// Approximate limit of the paper's scheme for infinitely many steps.
@@ -31,6 +32,8 @@ struct AutomaticSteps {
 
     /// Fraction of the input surface on which the estimated error exceeds the tolerance.
     double singularPart = 0.0;
+
+    double thinPartFactor = 1.0;  ///< The largest one, kept or not (thin_parts.h).
 };
 
 /// Computes the limit of the paper's scheme for K to infinity, to a tolerance.

@@ -92,9 +92,10 @@ EvaluationOptions evaluationFor(const FilterOptions& options, const Surface& sur
     EvaluationOptions evaluation = options.evaluation;
     if (options.steps > 0) return evaluation;
     const double size = std::sqrt(surface.X.rowwise().squaredNorm().mean());  // X is centred
-    const double error =
-        std::min({kShareOfTolerance * options.tolerance, kShareOfFeatureSize * options.featureSize,
-                  kShareOfEdge * meanEdgeLength(surface.X, surface.F)});
+    const double edge =
+        options.whole ? options.whole->meanEdge : meanEdgeLength(surface.X, surface.F);
+    const double error = std::min({kShareOfTolerance * options.tolerance,
+                                   kShareOfFeatureSize * options.featureSize, kShareOfEdge * edge});
     evaluation.accuracy = std::max(evaluation.accuracy, std::min(error / size, kLoosestAccuracy));
     evaluation.atEveryVertex = false;
     return evaluation;
@@ -111,27 +112,31 @@ AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evalua
                                   options.transferFunction.type == FilterType::LowPass &&
                                   options.evaluation.spectrum == Spectrum::Full;
     const bool isAutomatic = options.steps == 0 && options.basisUpdate != BasisUpdate::None;
+    const bool areThinPartsElsewhere = options.whole && options.whole->hasThinParts;
+    AutomaticSteps done;
     if (!isIdentity && !isAutomatic && areThinPartsKept)
-        keepThinParts(laplacians, evaluate, X, progress.part(0.0, 0.0));
+        done.thinPartFactor =
+            keepThinParts(laplacians, evaluate, X, areThinPartsElsewhere, progress.part(0.0, 0.0));
     if (isIdentity || options.basisUpdate == BasisUpdate::None) {
         // Powers of one operator commute: K steps are the whole filter. A gain of 1 keeps all bits.
-        AutomaticSteps whole;
         if (isIdentity) {
             requireUsable(laplacians.current());
-            whole.last.X = X;
+            done.last.X = X;
         } else {
-            whole.last = fixedSteps(laplacians, evaluate, X, 1, progress);
+            done.last = fixedSteps(laplacians, evaluate, X, 1, progress);
         }
         const int K = std::max(1, options.steps);
-        whole.last.sizes.assign(static_cast<std::size_t>(K), 1.0 / K);
-        return whole;
+        done.last.sizes.assign(static_cast<std::size_t>(K), 1.0 / K);
+        return done;
     }
     if (options.steps == 0) {
-        return automaticSteps(
-            laplacians, evaluate, X,
-            {options.tolerance, options.maxSteps, options.passes, areThinPartsKept}, progress);
+        return automaticSteps(laplacians, evaluate, X,
+                              {options.tolerance, options.maxSteps, options.passes,
+                               areThinPartsKept, areThinPartsElsewhere},
+                              progress);
     }
-    return {fixedSteps(laplacians, evaluate, X, options.steps, progress)};
+    done.last = fixedSteps(laplacians, evaluate, X, options.steps, progress);
+    return done;
 }
 
 }  // namespace
@@ -156,7 +161,9 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
         filterInSteps(laplacians, evaluate, transfer, surface.X, options, progress);
     if (!steps.last.X.allFinite()) throw SolverFailure("the filtered coordinates are not finite");
     const double areaBefore = surfaceArea(surface.X, surface.F);
-    if (options.steps == 0 && options.transferFunction.type == FilterType::LowPass &&
+    // A tile may hold nothing but small debris.
+    if (!options.whole && options.steps == 0 &&
+        options.transferFunction.type == FilterType::LowPass &&
         surfaceArea(steps.last.X, surface.F) < kMinArea * areaBefore)
         throw SolverFailure(ErrorCode::ShrinksToNothing, "the whole surface shrinks to nothing");
     laplacians.reset();
@@ -186,6 +193,7 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     result.stepSizes = steps.last.sizes;
     result.stepError = steps.error;
     result.singularPart = steps.singularPart;
+    result.thinPartFactor = steps.thinPartFactor;
     result.toleranceReached =
         options.steps > 0 || options.passes > 0 || steps.error <= options.tolerance;
     result.cutoffFrequency = transfer.cutoff();

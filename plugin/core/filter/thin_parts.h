@@ -10,6 +10,11 @@
 
 namespace spectral {
 
+struct ThinParts {
+    Eigen::VectorXd factors;  ///< n factors of D >= 1; empty if nothing needs to be kept.
+    double largest = 1.0;     ///< The largest factor, even if there are none.
+};
+
 /// Factors of D that keep the parts of a shape that a low-pass would draw in to lines or points.
 ///
 /// A low-pass of feature size L takes away a part whose girth g is below L: its area shrinks to
@@ -28,13 +33,15 @@ namespace spectral {
 /// @param X      n x 3, the shape.
 /// @param weak   F^(1/4)(sqrt(A)) X.
 /// @param whole  F(sqrt(A)) X.
-/// @return       n factors >= 1; empty if no part loses half of its area.
-Eigen::VectorXd thinPartFactors(const SparseMatrix& W, const Faces& F, const Vertices& X,
-                                const Vertices& weak, const Vertices& whole);
+/// @param areElsewhere  whether X is a tile of a surface that has such parts in another one.
+/// @return       no factors if no part loses half of its area, here or elsewhere.
+ThinParts thinPartFactors(const SparseMatrix& W, const Faces& F, const Vertices& X,
+                          const Vertices& weak, const Vertices& whole, bool areElsewhere = false);
 
 /// Keeps the thin parts of X in all evaluations that follow: multiplies D by their factors.
 /// @param evaluate  of a low-pass.
-void keepThinParts(LaplacianBuilder& laplacians, StepEvaluator& evaluate, const Vertices& X,
-                   const Progress& progress);
+/// @return  the largest factor (ThinParts).
+double keepThinParts(LaplacianBuilder& laplacians, StepEvaluator& evaluate, const Vertices& X,
+                     bool areElsewhere, const Progress& progress);
 
 }  // namespace spectral
