@@ -41,8 +41,8 @@ void requireRows(const Array& array, const Positions& vertices) {
     if (array.shape(0) != vertices.shape(0)) throw nb::value_error("one row for each vertex");
 }
 
-/// Diagonal, mean edge and diagonal of the surface, and whether thin parts are kept elsewhere.
-using TiledTuple = std::tuple<double, double, double, bool>;
+/// Members of TiledSurface: diagonal, mean edge and diagonal of the surface, and so on.
+using TiledTuple = std::tuple<double, double, double, bool, Flags>;
 
 nb::dict applyFilter(const std::string& name, const Positions& vertices, const Indices& faces,
                      const nb::dict& options, const std::optional<Flags>& selected,
@@ -59,8 +59,10 @@ nb::dict applyFilter(const std::string& name, const Positions& vertices, const I
     }
     if (gain) input.gain = mapOf(*gain, 2);
     if (whole) {
-        const auto [diagonal, meanEdge, surfaceDiagonal, hasThinParts] = *whole;
-        input.whole = {{diagonal, meanEdge, surfaceDiagonal}, hasThinParts};
+        const auto& [diagonal, meanEdge, surfaceDiagonal, hasThinParts, inner] = *whole;
+        requireRows(inner, vertices);
+        const std::vector<bool> flags(inner.data(), inner.data() + inner.shape(0));
+        input.whole = {{diagonal, meanEdge, surfaceDiagonal}, hasThinParts, flags};
     }
     const Values given = valuesOf(options);
     FilterOutput output = [&] {

@@ -16,7 +16,8 @@ namespace spectral {
 /// The surface that a mesh is a tile of: what sizes and defaults refer to.
 struct TiledSurface {
     MeshLengths lengths;
-    bool hasThinParts = false;  ///< Whether another tile keeps thin parts (its report tells).
+    bool hasThinParts = false;  ///< Whether some tile has thin parts (their reports tell).
+    std::vector<bool> inner;    ///< n: vertices that are not near where the tile was cut out.
 };
 
 /// A mesh, as a host hands it to a filter.

@@ -57,9 +57,9 @@ const Entries<FilterResult>& fractionalEntries() {
              {"singular_part", "share of the surface, 0 to 1, on which `tolerance` was not reached",
               [](const R& r) -> Value { return r.singularPart; }},
              {"thin_part_factor",
-              "at the default size, how much smaller the size squared must be for the thinnest "
-              "part "
-              "to stay; from 2 on, thin parts are kept",
+              "at the default size, by how much the thinnest part exceeds it, squared; above 2, "
+              "thin "
+              "parts are kept",
               [](const R& r) -> Value { return r.thinPartFactor; }},
              {"shrunken_part", "share of the surface, 0 to 1, that shrinks to lines or points",
               [](const R& r) -> Value { return r.shrunkenPart; }},

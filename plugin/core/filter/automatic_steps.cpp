@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/filter/fractional_steps.h"
-#include "core/filter/thin_parts.h"
 #include "core/mesh/mesh.h"
 #include "core/support/threads.h"
 
@@ -141,7 +140,7 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
     std::vector<Eigen::MatrixXd> first = predictFirst(0.0, 0.5 * kFirstPasses);
     if (options.keepThinParts) {
         ThinParts parts = thinPartFactors(laplacians.current().W, laplacians.faces(), X, first[2],
-                                          first[0], options.areThinPartsElsewhere);
+                                          first[0], options.tile);
         result.thinPartFactor = parts.largest;
         if (parts.factors.size() > 0) {
             laplacians.scaleMass(std::move(parts.factors));

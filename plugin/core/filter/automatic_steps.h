@@ -2,6 +2,7 @@
 
 #include "core/filter/fractional_steps.h"
 #include "core/filter/step_evaluator.h"
+#include "core/filter/thin_parts.h"
 #include "core/laplacian/laplacian_builder.h"
 #include "core/mesh/mesh.h"
 #include "core/support/progress.h"
@@ -20,7 +21,7 @@ struct AutomaticOptions {
     int passes = 0;              ///< Number of passes, whatever the error; 0: as many as needed.
     bool keepThinParts = false;  ///< For a low-pass: parts thinner than the feature size stay
                                  ///< (thin_parts.h).
-    bool areThinPartsElsewhere = false;  ///< X is a tile, and another tile keeps such parts.
+    const ThinPartsOfTile* tile = nullptr;  ///< If X is a tile of a surface.
 };
 
 /// Approximate limit of the paper's scheme for infinitely many steps.

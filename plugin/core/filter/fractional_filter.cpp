@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "core/filter/automatic_steps.h"
@@ -101,10 +102,20 @@ EvaluationOptions evaluationFor(const FilterOptions& options, const Surface& sur
     return evaluation;
 }
 
+/// Which rows of the surface are inner vertices of a tile.
+std::optional<ThinPartsOfTile> thinPartsOfTile(const FilterOptions& options,
+                                               const Surface& surface) {
+    if (!options.whole) return {};
+    ThinPartsOfTile tile{{}, options.whole->hasThinParts};
+    for (const Index i : surface.vertex) tile.inner.push_back(options.whole->inner[i]);
+    return tile;
+}
+
 /// Runs the requested steps.
 AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate,
                              const TransferFunction& F, const Vertices& X,
-                             const FilterOptions& options, const Progress& progress) {
+                             const FilterOptions& options, const ThinPartsOfTile* tile,
+                             const Progress& progress) {
     // A truncated spectrum may drop the residual even if the gain is 1.
     const bool isIdentity = F.isOne() && options.evaluation.spectrum == Spectrum::Full;
     // A truncated basis is that of the mesh, whose metric must not change.
@@ -112,11 +123,9 @@ AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evalua
                                   options.transferFunction.type == FilterType::LowPass &&
                                   options.evaluation.spectrum == Spectrum::Full;
     const bool isAutomatic = options.steps == 0 && options.basisUpdate != BasisUpdate::None;
-    const bool areThinPartsElsewhere = options.whole && options.whole->hasThinParts;
     AutomaticSteps done;
     if (!isIdentity && !isAutomatic && areThinPartsKept)
-        done.thinPartFactor =
-            keepThinParts(laplacians, evaluate, X, areThinPartsElsewhere, progress.part(0.0, 0.0));
+        done.thinPartFactor = keepThinParts(laplacians, evaluate, X, tile, progress.part(0.0, 0.0));
     if (isIdentity || options.basisUpdate == BasisUpdate::None) {
         // Powers of one operator commute: K steps are the whole filter. A gain of 1 keeps all bits.
         if (isIdentity) {
@@ -130,10 +139,10 @@ AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evalua
         return done;
     }
     if (options.steps == 0) {
-        return automaticSteps(laplacians, evaluate, X,
-                              {options.tolerance, options.maxSteps, options.passes,
-                               areThinPartsKept, areThinPartsElsewhere},
-                              progress);
+        return automaticSteps(
+            laplacians, evaluate, X,
+            {options.tolerance, options.maxSteps, options.passes, areThinPartsKept, tile},
+            progress);
     }
     done.last = fixedSteps(laplacians, evaluate, X, options.steps, progress);
     return done;
@@ -156,9 +165,10 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
                                 options.basisUpdate, options.conformalShare);
     const EvaluationOptions evaluation = evaluationFor(options, surface);
     StepEvaluator evaluate(evaluation, interior, transfer);
+    const std::optional<ThinPartsOfTile> tile = thinPartsOfTile(options, surface);
     // Kovnatsky et al. 2012, Eq. 11, or its limit.
-    const AutomaticSteps steps =
-        filterInSteps(laplacians, evaluate, transfer, surface.X, options, progress);
+    const AutomaticSteps steps = filterInSteps(laplacians, evaluate, transfer, surface.X, options,
+                                               tile ? &*tile : nullptr, progress);
     if (!steps.last.X.allFinite()) throw SolverFailure("the filtered coordinates are not finite");
     const double areaBefore = surfaceArea(surface.X, surface.F);
     // A tile may hold nothing but small debris.

@@ -22,7 +22,8 @@ inline constexpr int kMaxPasses = 9;
 /// Decisions of a whole surface, with which a tile of it is filtered in the same way.
 struct WholeSurface {
     double meanEdge = 0.0;      ///< Mean edge length, length units.
-    bool hasThinParts = false;  ///< Whether any tile keeps thin parts.
+    bool hasThinParts = false;  ///< Whether some tile has thin parts that must be kept.
+    std::vector<bool> inner;    ///< n: what is not near where the tile was cut out.
 };
 
 struct FilterOptions {

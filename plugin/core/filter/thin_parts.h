@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "core/filter/step_evaluator.h"
 #include "core/laplacian/laplacian_builder.h"
@@ -13,6 +14,13 @@ namespace spectral {
 struct ThinParts {
     Eigen::VectorXd factors;  ///< n factors of D >= 1; empty if nothing needs to be kept.
     double largest = 1.0;     ///< The largest factor, even if there are none.
+};
+
+/// What decides about the thin parts of a tile of a larger surface. Where it is cut, it shrinks
+/// like a thin part.
+struct ThinPartsOfTile {
+    std::vector<bool> inner;  ///< n, the vertices of the surface that count for ThinParts::largest.
+    bool areKept = false;     ///< Whether the whole surface has parts to be kept.
 };
 
 /// Factors of D that keep the parts of a shape that a low-pass would draw in to lines or points.
@@ -33,15 +41,16 @@ struct ThinParts {
 /// @param X      n x 3, the shape.
 /// @param weak   F^(1/4)(sqrt(A)) X.
 /// @param whole  F(sqrt(A)) X.
-/// @param areElsewhere  whether X is a tile of a surface that has such parts in another one.
-/// @return       no factors if no part loses half of its area, here or elsewhere.
+/// @param tile   null for a whole surface.
+/// @return       no factors if no part loses half of its area, or the whole surface keeps none.
 ThinParts thinPartFactors(const SparseMatrix& W, const Faces& F, const Vertices& X,
-                          const Vertices& weak, const Vertices& whole, bool areElsewhere = false);
+                          const Vertices& weak, const Vertices& whole,
+                          const ThinPartsOfTile* tile = nullptr);
 
 /// Keeps the thin parts of X in all evaluations that follow: multiplies D by their factors.
 /// @param evaluate  of a low-pass.
 /// @return  the largest factor (ThinParts).
 double keepThinParts(LaplacianBuilder& laplacians, StepEvaluator& evaluate, const Vertices& X,
-                     bool areElsewhere, const Progress& progress);
+                     const ThinPartsOfTile* tile, const Progress& progress);
 
 }  // namespace spectral

@@ -113,7 +113,8 @@ TEST(ThinParts, OfAnotherTileDecideForATile) {
     options.keepThinParts = true;
     const FilterResult whole = fractionalFilter(both.V, both.F, options);
     options.passes = whole.passes;
-    options.whole = {whole.meanEdge, false};
+    const std::vector<bool> inner(static_cast<std::size_t>(tube.V.rows()), true);
+    options.whole = {whole.meanEdge, false, inner};
     const FilterResult alone = fractionalFilter(tube.V, tube.F, options);
     EXPECT_GT(alone.thinPartFactor, 1.0);
     EXPECT_LT(alone.thinPartFactor, 2.0);
@@ -123,6 +124,9 @@ TEST(ThinParts, OfAnotherTileDecideForATile) {
     const Vertices expected = whole.V.topRows(tube.V.rows());
     EXPECT_GT(largestDifference(alone.V, expected), 1e-2);
     EXPECT_LT(largestDifference(tile.V, expected), 1e-4);
+    // What is thin only because it was cut out does not count.
+    options.whole = {whole.meanEdge, false, std::vector<bool>(inner.size(), false)};
+    EXPECT_EQ(fractionalFilter(tube.V, tube.F, options).thinPartFactor, 1.0);
 }
 
 TEST(ThinParts, AreDrawnInByFiltersThatAreNoLowPass) {

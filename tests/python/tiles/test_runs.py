@@ -18,9 +18,9 @@ from meshlab_spectral import FilterOptions, MemoryLimitError, MeshFileError
 from meshlab_spectral.batch import whole_or_tiles
 from meshlab_spectral.batch.tiles import filter_in_tiles
 from meshlab_spectral.errors import FilterError
-from meshlab_spectral.filters.running import WholeSurface
 from meshlab_spectral.tiles.halo import kernel_tails, reach_of
 from meshlab_spectral.tiles.rows import UntiledError
+from meshlab_spectral.tiles.survey import Lengths
 from tiled_meshes import bumpy_torus, write_ply
 
 SMALL = FilterOptions(feature_size="6e", passes=1)
@@ -68,7 +68,7 @@ def test_a_filter_that_is_not_local_is_refused_with_the_reason(
     options: dict[str, Any], reason: str
 ) -> None:
     with pytest.raises(UntiledError, match=reason):
-        reach_of(FilterOptions(**options), WholeSurface(1.0, 0.001, 1.0))
+        reach_of(FilterOptions(**options), Lengths(1.0, 0.001, 1.0))
 
 
 def test_a_halo_that_does_not_fit_is_refused(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import math
 import shutil
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 from typing import Any
@@ -60,7 +60,7 @@ def filter_in_tiles(
     check_is_place(target)
     if not is_same_format(source, target):
         raise UntiledError(
-            f"tiles are written in the format of the input: choose {source.suffix} for {target.name}"
+            f"tiles are written in the format of the input: name a {source.suffix} file"
         )
     check_target(target)
     require_local(options)
@@ -208,8 +208,9 @@ def _filtered(plan: Plan, work: Workspace, on_progress: ProgressCallback) -> lis
                 do(asked, decided, (0.0, len(asked) / plan.tiles))
                 if singular_part([_report(work, tile) for tile in asked]) <= _NEGLIGIBLE:
                     break
+            decided["has_thin_parts"] = _has_thin_parts(work, asked)
         do(every, decided, (0.0, 1.0))
-        if any(_thinness(_report(work, tile)) > _WORTHWHILE for tile in every):
+        if not decided["has_thin_parts"] and _has_thin_parts(work, every):
             decided["has_thin_parts"] = True
             do(every, decided, (0.0, 1.0))
     return [_report(work, tile) for tile in every]
@@ -219,18 +220,19 @@ def _report(work: Workspace, tile: int) -> dict[str, Any]:
     return work.report(tile) or {}
 
 
-def _thinness(report: dict[str, Any]) -> float:
-    return float(report.get("thin_part_factor", 1.0))
+def _has_thin_parts(work: Workspace, tiles: Iterable[int]) -> bool:
+    return any(_report(work, tile).get("thin_part_factor", 1) > _WORTHWHILE for tile in tiles)
 
 
 def _is_done(report: dict[str, Any] | None, wanted: dict[str, Any]) -> bool:
     """Whether a tile has been filtered by these decisions, or others that do not differ for it."""
     if report is None:
         return False
+    if "steps" not in report:  # nothing of it moves
+        return True
     if wanted["passes"] != report["wanted_passes"]:
-        return "steps" not in report  # nothing of it moves
-    is_affected = wanted["has_thin_parts"] and 1.0 < _thinness(report) <= _WORTHWHILE
-    return not is_affected or bool(report["wanted_has_thin_parts"])
+        return False
+    return bool(report["wanted_has_thin_parts"] == wanted["has_thin_parts"])
 
 
 @contextlib.contextmanager

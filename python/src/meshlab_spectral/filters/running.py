@@ -23,13 +23,14 @@ Gain = Callable[[Array], ArrayLike]
 _OCTAVES, _PER_OCTAVE = 16, 128
 
 
-class WholeSurface(NamedTuple):
+class TiledSurface(NamedTuple):
     """What the sizes and defaults of a tile refer to, and what it cannot decide by itself."""
 
     diagonal: float  # of the bounding box
     mean_edge: float
     surface_diagonal: float  # of the bounding box of the triangles
-    has_thin_parts: bool = False  # whether some tile keeps parts that are thinner than the size
+    has_thin_parts: bool  # whether some tile has parts that are thinner than the size
+    inner: NDArray[np.bool_]  # n, what is not near where the tile was cut out
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +76,7 @@ def run(
     selected: NDArray[np.bool_] | None = None,
     values: Array | None = None,
     gain: Gain | None = None,
-    whole: WholeSurface | None = None,
+    whole: TiledSurface | None = None,
     progress: Progress | None = None,
     threads: int | None = None,
 ) -> Run:

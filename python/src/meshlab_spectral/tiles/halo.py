@@ -6,9 +6,9 @@ import numpy as np
 
 from meshlab_spectral.documents.document import Array
 from meshlab_spectral.filters.options import FilterOptions
-from meshlab_spectral.filters.running import WholeSurface
 from meshlab_spectral.filters.transfer import MeshLengths, gain
 from meshlab_spectral.tiles.rows import UntiledError
+from meshlab_spectral.tiles.survey import Lengths
 
 # Largest difference to the filter of the whole mesh that a halo may cause, relative to the
 # diagonal.
@@ -21,6 +21,8 @@ _GROWTH = 1.25
 # The effect around a selection ends within one feature size; the width of its fading must not feel
 # where a tile ends.
 _SELECTION = 3.0
+# So near to where a tile was cut, it seems to be thin: thin parts have sizes of their own.
+_THIN = 0.5
 
 
 def require_local(options: FilterOptions) -> None:
@@ -42,7 +44,7 @@ def require_local(options: FilterOptions) -> None:
             raise UntiledError(f"{reason}: choose another value")
 
 
-def reach_of(options: FilterOptions, whole: WholeSurface) -> float:
+def reach_of(options: FilterOptions, whole: Lengths) -> float:
     """Return the distance from which nothing changes a vertex noticeably, in length units.
 
     Raises UntiledError when the filter moves whole components, and OptionError when its transfer
@@ -70,6 +72,8 @@ def reach_of(options: FilterOptions, whole: WholeSurface) -> float:
     halo = _GROWTH * (enough[0] if len(enough) else len(tails)) * spacing
     if options.selected:
         halo = max(halo, _SELECTION)
+    if options.filter_type == "low-pass":
+        halo += _THIN
     return float(min(halo, across) * length + 2 * whole.mean_edge)
 
 

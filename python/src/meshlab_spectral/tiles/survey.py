@@ -3,23 +3,31 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from meshlab_spectral.documents import ply
 from meshlab_spectral.documents.document import Array
 from meshlab_spectral.errors import MeshFileError
-from meshlab_spectral.filters.running import WholeSurface
 from meshlab_spectral.tiles.rows import MeshRows, StageCallback, chunks
 
 _SAMPLE = 400_000  # points, at most, by which the cells are chosen
+
+
+class Lengths(NamedTuple):
+    """Lengths of a mesh that sizes and defaults refer to."""
+
+    diagonal: float  # of the bounding box
+    mean_edge: float
+    surface_diagonal: float  # of the bounding box of the triangles
 
 
 @dataclass(frozen=True)
 class Survey:
     """The lengths of a mesh, points at random places of it, and whether any part is selected."""
 
-    lengths: WholeSurface
+    lengths: Lengths
     sample: Array
     has_selection: bool
 
@@ -45,7 +53,7 @@ def survey(mesh: MeshRows, on_progress: StageCallback) -> Survey:
             has_selection |= bool(mesh.selected_faces(i, j).any())
         mesh.forget()
     diagonal = surface.diagonal if mesh.is_joined_by_position else box.diagonal
-    lengths = WholeSurface(diagonal, total / (3 * mesh.faces), surface.diagonal)
+    lengths = Lengths(diagonal, total / (3 * mesh.faces), surface.diagonal)
     return Survey(lengths, np.vstack(sample), has_selection)
 
 

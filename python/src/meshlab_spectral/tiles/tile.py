@@ -18,7 +18,7 @@ from meshlab_spectral.documents.document import Array, Indices
 from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.errors import MeshError
 from meshlab_spectral.filters.options import FilterOptions
-from meshlab_spectral.filters.running import Progress, WholeSurface, plain, run
+from meshlab_spectral.filters.running import Progress, TiledSurface, plain, run
 from meshlab_spectral.tiles.cells import near_cells
 from meshlab_spectral.tiles.plan import Workspace, write_whole
 from meshlab_spectral.tiles.rows import MeshRows, open_rows
@@ -47,8 +47,11 @@ def filter_tile(
     after, report = before, dict[str, Any]()
     if len(own):
         options = FilterOptions.from_dict(plan.options) if plan.options else FilterOptions()
+        inner = np.zeros(len(before), bool)
+        inner[which[own]] = True
         diagonal, edge, of_surface = plan.lengths
-        whole = WholeSurface(diagonal, edge, of_surface, bool(decided["has_thin_parts"]))
+        thin = bool(decided["has_thin_parts"])
+        whole = TiledSurface(diagonal, edge, of_surface, thin, inner)
         selected = _selected(mesh, work, tile, ids, F) if plan.has_selection else None
         parameters = {**options.core_parameters(), "passes": decided["passes"]}
         if selected is None or selected.any():  # else nothing here moves
