@@ -32,7 +32,7 @@ from meshlab_spectral.cli.report_table import report_table
 from meshlab_spectral.files.recipe import saving_recipe
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import DenoiseOptions, FilterOptions
-from meshlab_spectral.plugin.limits import given_memory_limit, set_memory_limit
+from meshlab_spectral.plugin.limits import set_memory_limit
 from meshlab_spectral.plugin.versions import versions
 from meshlab_spectral.tiles.cells import MOST_TILES
 
@@ -134,7 +134,8 @@ def _command_with(table: type[Options], help_text: str) -> Command:
         with errors_reported():
             options = chosen_options(table, given, recipe)
             with saving_recipe(save_recipe, options), progress_shown() as on_progress:
-                set_memory_limit(memory or given_memory_limit())
+                if memory is not None:
+                    set_memory_limit(memory)
                 report = filter_file(
                     source, place, options, on_progress, mesh, tiles, print_message
                 )
