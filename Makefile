@@ -8,7 +8,7 @@
 #   MESHES              the folder of the meshes that `make screenshots` shows
 #   PICTURES            of `make screenshots`: only these, such as "denoise colors", none of MeshLab
 #   BENCH_MESH          the mesh of the C++ benchmark, skipped when there is no such file
-#   BENCH_OPTIONS       of `make bench-basis`, `bench-contract`, `bench-defaults`, `bench-denoise`, `bench-memory`, `bench-signatures`; --help lists them
+#   BENCH_OPTIONS       of `make bench-basis`, `bench-contract`, `bench-defaults`, `bench-denoise`, `bench-memory`, `bench-signatures`, `bench-tiles`; --help lists them
 #   PROMISES_OPTIONS    of `make promises`, such as '--only artefacts speed'; --help lists them
 #   FUZZ_OPTIONS        of `make fuzz`; tests/fuzz/fuzz_core.cpp lists them
 #   FUZZ_EXAMPLES       of `make fuzz-python`: how many, about 20 a second
@@ -51,7 +51,7 @@ PACKAGE_SOURCES := CMakeLists.txt $(shell find plugin python -not -path '*/__pyc
 # Two targets at once would fetch MeshLab's headers twice; ninja uses every core anyway.
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help demo test wheel sdist docs gui-test screenshots setup build bench bench-basis bench-batch bench-contract bench-defaults bench-denoise bench-ldlt bench-memory bench-signatures promises fuzz fuzz-python lint options format clean
+.PHONY: help demo test wheel sdist docs gui-test screenshots setup build bench bench-basis bench-batch bench-contract bench-defaults bench-denoise bench-ldlt bench-memory bench-signatures bench-tiles promises fuzz fuzz-python lint options format clean
 
 help:  ## list these commands
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 20
@@ -117,6 +117,9 @@ bench-contract: $(PACKAGE)  ## every filter at three settings on real meshes: ou
 
 bench-memory: $(PACKAGE)  ## memory of many runs, and of a large mesh with and without a limit
 	$(BIN)/python tests/benchmarks/bench_memory.py $(BENCH_OPTIONS)
+
+bench-tiles: $(PACKAGE)  ## meshes of millions of vertices, filtered in tiles: memory and time
+	$(BIN)/python tests/benchmarks/bench_tiles.py $(BENCH_OPTIONS)
 
 bench-basis: BENCHMARKS := ON
 bench-basis: build $(PACKAGE) $(COMPETITORS)  ## compare the truncated basis with other programs

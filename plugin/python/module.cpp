@@ -4,11 +4,13 @@
 #include <nanobind/nanobind.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <cstdint>
 #include <numeric>
 #include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -39,10 +41,13 @@ void requireRows(const Array& array, const Positions& vertices) {
     if (array.shape(0) != vertices.shape(0)) throw nb::value_error("one row for each vertex");
 }
 
+/// Members of TiledSurface: diagonal, mean edge and diagonal of the surface, and so on.
+using TiledTuple = std::tuple<double, double, double, bool, Flags>;
+
 nb::dict applyFilter(const std::string& name, const Positions& vertices, const Indices& faces,
                      const nb::dict& options, const std::optional<Flags>& selected,
                      const std::optional<Table>& values, const std::optional<Pairs>& gain,
-                     nb::handle progress, int threads) {
+                     const std::optional<TiledTuple>& whole, nb::handle progress, int threads) {
     FilterInput input{mapOf(vertices, 3), mapOf(faces, 3)};
     if (selected) {
         requireRows(*selected, vertices);
@@ -53,6 +58,12 @@ nb::dict applyFilter(const std::string& name, const Positions& vertices, const I
         input.values = mapOf(*values, static_cast<Eigen::Index>(values->shape(1)));
     }
     if (gain) input.gain = mapOf(*gain, 2);
+    if (whole) {
+        const auto& [diagonal, meanEdge, surfaceDiagonal, hasThinParts, inner] = *whole;
+        requireRows(inner, vertices);
+        const std::vector<bool> flags(inner.data(), inner.data() + inner.shape(0));
+        input.whole = {{diagonal, meanEdge, surfaceDiagonal}, hasThinParts, flags};
+    }
     const Values given = valuesOf(options);
     FilterOutput output = [&] {
         const Running running;
@@ -131,7 +142,7 @@ NB_MODULE(_core, m) {
     m.def("filters", python::describedFilters);
     m.def("apply", python::applyFilter, "name"_a, "vertices"_a, "faces"_a, "options"_a,
           nb::kw_only(), "selected"_a = nb::none(), "values"_a = nb::none(), "gain"_a = nb::none(),
-          "progress"_a = nb::none(), "threads"_a = 0);
+          "whole"_a = nb::none(), "progress"_a = nb::none(), "threads"_a = 0);
     m.def("gains", python::gains, "options"_a, "feature_size"_a, "diagonal"_a, "mean_edge"_a,
           "frequencies"_a);
     m.def("laplacian", python::laplacian, "vertices"_a, "faces"_a, "kind"_a, nb::kw_only(),

@@ -35,7 +35,7 @@ FilterOutput advised(const Filter& filter, const FilterInput& input, const Value
         return withSteadyProgress(progress, [&](const Progress& steady) {
             const ThreadTeam team(threads > 0 ? threads : threadCount(), steady);
             checkMesh(input.V, input.F);  // before it is measured
-            return work(lengthsOf(input.V, input.F), steady);
+            return work(input.whole ? input.whole->lengths : lengthsOf(input.V, input.F), steady);
         });
     } catch (const Error& error) {
         throwAdvised(error, filter, given);

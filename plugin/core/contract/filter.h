@@ -1,16 +1,25 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/contract/parameter.h"
 #include "core/contract/value.h"
+#include "core/mesh/measures.h"
 #include "core/mesh/mesh.h"
 #include "core/support/errors.h"
 #include "core/support/progress.h"
 
 namespace spectral {
+
+/// The surface that a mesh is a tile of: what sizes and defaults refer to.
+struct TiledSurface {
+    MeshLengths lengths;
+    bool hasThinParts = false;  ///< Whether some tile has thin parts (their reports tell).
+    std::vector<bool> inner;    ///< n: vertices that are not near where the tile was cut out.
+};
 
 /// A mesh, as a host hands it to a filter.
 struct FilterInput {
@@ -22,6 +31,8 @@ struct FilterInput {
                                ///< to 255 (c = 3); no rows: the mesh has none.
     Eigen::MatrixXd gain{};    ///< p x 2, in place of a transfer function: frequencies
                                ///< w = feature size / wavelength > 0, and a gain >= 0 for each.
+    std::optional<TiledSurface> whole{};  ///< If the mesh is a tile; only for filters of shapes
+                                          ///< with fixed sizes (fractional.cpp).
 };
 
 /// The result of a filter, for a host to write to its mesh.

@@ -167,6 +167,7 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
     FractionalCall call = callOf(fields, given, mesh);
     FilterOptions& options = call.options;
     options.keepThinParts = isDefaultFeatureSize(call.featureSize, mesh);
+    if (input.whole) options.whole = {mesh.meanEdge, input.whole->hasThinParts, input.whole->inner};
     resolveCustomGain(call, mesh, input.gain);
     options.transferFunction = call.transfer;
     options.featureSize = call.featureSize;

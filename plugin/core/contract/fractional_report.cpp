@@ -56,6 +56,11 @@ const Entries<FilterResult>& fractionalEntries() {
               [](const R& r) -> Value { return r.toleranceReached; }},
              {"singular_part", "share of the surface, 0 to 1, on which `tolerance` was not reached",
               [](const R& r) -> Value { return r.singularPart; }},
+             {"thin_part_factor",
+              "at the default size, by how much the thinnest part exceeds it, squared; above 2, "
+              "thin "
+              "parts are kept",
+              [](const R& r) -> Value { return r.thinPartFactor; }},
              {"shrunken_part", "share of the surface, 0 to 1, that shrinks to lines or points",
               [](const R& r) -> Value { return r.shrunkenPart; }},
              {"mean_edge", "mean edge, length", [](const R& r) -> Value { return r.meanEdge; }},

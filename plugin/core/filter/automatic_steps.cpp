@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/filter/fractional_steps.h"
-#include "core/filter/thin_parts.h"
 #include "core/mesh/mesh.h"
 #include "core/support/threads.h"
 
@@ -132,6 +131,7 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
     // The Laplacian of the input gives the paper's single step and the first half step of each of
     // the first two passes.
     constexpr double kFirstPasses = 0.1;
+    AutomaticSteps result;
     laplacians.reset();
     const auto predictFirst = [&](double from, double to) {
         return evaluate.predict(laplacians.current(), X, {1.0, 0.5, 0.25}, progress.part(from, to))
@@ -139,10 +139,11 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
     };
     std::vector<Eigen::MatrixXd> first = predictFirst(0.0, 0.5 * kFirstPasses);
     if (options.keepThinParts) {
-        Eigen::VectorXd factors =
-            thinPartFactors(laplacians.current().W, laplacians.faces(), X, first[2], first[0]);
-        if (factors.size() > 0) {
-            laplacians.scaleMass(std::move(factors));
+        ThinParts parts = thinPartFactors(laplacians.current().W, laplacians.faces(), X, first[2],
+                                          first[0], options.tile);
+        result.thinPartFactor = parts.largest;
+        if (parts.factors.size() > 0) {
+            laplacians.scaleMass(std::move(parts.factors));
             first = predictFirst(0.5 * kFirstPasses, kFirstPasses);
         }
     }
@@ -150,7 +151,6 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
     Limit limit(first[0], laplacians);
     first.clear();
 
-    AutomaticSteps result;
     double done = kFirstPasses;
     bool wasEven = true;
     for (int K = 1, last = 2;; K *= 2) {

@@ -2,6 +2,7 @@
 
 #include "core/filter/fractional_steps.h"
 #include "core/filter/step_evaluator.h"
+#include "core/filter/thin_parts.h"
 #include "core/laplacian/laplacian_builder.h"
 #include "core/mesh/mesh.h"
 #include "core/support/progress.h"
@@ -20,6 +21,7 @@ struct AutomaticOptions {
     int passes = 0;              ///< Number of passes, whatever the error; 0: as many as needed.
     bool keepThinParts = false;  ///< For a low-pass: parts thinner than the feature size stay
                                  ///< (thin_parts.h).
+    const ThinPartsOfTile* tile = nullptr;  ///< If X is a tile of a surface.
 };
 
 /// Approximate limit of the paper's scheme for infinitely many steps.
@@ -31,6 +33,8 @@ struct AutomaticSteps {
 
     /// Fraction of the input surface on which the estimated error exceeds the tolerance.
     double singularPart = 0.0;
+
+    double thinPartFactor = 1.0;  ///< The largest one, kept or not (thin_parts.h).
 };
 
 /// Computes the limit of the paper's scheme for K to infinity, to a tolerance.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "core/filter/automatic_steps.h"
@@ -92,18 +93,29 @@ EvaluationOptions evaluationFor(const FilterOptions& options, const Surface& sur
     EvaluationOptions evaluation = options.evaluation;
     if (options.steps > 0) return evaluation;
     const double size = std::sqrt(surface.X.rowwise().squaredNorm().mean());  // X is centred
-    const double error =
-        std::min({kShareOfTolerance * options.tolerance, kShareOfFeatureSize * options.featureSize,
-                  kShareOfEdge * meanEdgeLength(surface.X, surface.F)});
+    const double edge =
+        options.whole ? options.whole->meanEdge : meanEdgeLength(surface.X, surface.F);
+    const double error = std::min({kShareOfTolerance * options.tolerance,
+                                   kShareOfFeatureSize * options.featureSize, kShareOfEdge * edge});
     evaluation.accuracy = std::max(evaluation.accuracy, std::min(error / size, kLoosestAccuracy));
     evaluation.atEveryVertex = false;
     return evaluation;
 }
 
+/// Which rows of the surface are inner vertices of a tile.
+std::optional<ThinPartsOfTile> thinPartsOfTile(const FilterOptions& options,
+                                               const Surface& surface) {
+    if (!options.whole) return {};
+    ThinPartsOfTile tile{{}, options.whole->hasThinParts};
+    for (const Index i : surface.vertex) tile.inner.push_back(options.whole->inner[i]);
+    return tile;
+}
+
 /// Runs the requested steps.
 AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate,
                              const TransferFunction& F, const Vertices& X,
-                             const FilterOptions& options, const Progress& progress) {
+                             const FilterOptions& options, const ThinPartsOfTile* tile,
+                             const Progress& progress) {
     // A truncated spectrum may drop the residual even if the gain is 1.
     const bool isIdentity = F.isOne() && options.evaluation.spectrum == Spectrum::Full;
     // A truncated basis is that of the mesh, whose metric must not change.
@@ -111,27 +123,29 @@ AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evalua
                                   options.transferFunction.type == FilterType::LowPass &&
                                   options.evaluation.spectrum == Spectrum::Full;
     const bool isAutomatic = options.steps == 0 && options.basisUpdate != BasisUpdate::None;
+    AutomaticSteps done;
     if (!isIdentity && !isAutomatic && areThinPartsKept)
-        keepThinParts(laplacians, evaluate, X, progress.part(0.0, 0.0));
+        done.thinPartFactor = keepThinParts(laplacians, evaluate, X, tile, progress.part(0.0, 0.0));
     if (isIdentity || options.basisUpdate == BasisUpdate::None) {
         // Powers of one operator commute: K steps are the whole filter. A gain of 1 keeps all bits.
-        AutomaticSteps whole;
         if (isIdentity) {
             requireUsable(laplacians.current());
-            whole.last.X = X;
+            done.last.X = X;
         } else {
-            whole.last = fixedSteps(laplacians, evaluate, X, 1, progress);
+            done.last = fixedSteps(laplacians, evaluate, X, 1, progress);
         }
         const int K = std::max(1, options.steps);
-        whole.last.sizes.assign(static_cast<std::size_t>(K), 1.0 / K);
-        return whole;
+        done.last.sizes.assign(static_cast<std::size_t>(K), 1.0 / K);
+        return done;
     }
     if (options.steps == 0) {
         return automaticSteps(
             laplacians, evaluate, X,
-            {options.tolerance, options.maxSteps, options.passes, areThinPartsKept}, progress);
+            {options.tolerance, options.maxSteps, options.passes, areThinPartsKept, tile},
+            progress);
     }
-    return {fixedSteps(laplacians, evaluate, X, options.steps, progress)};
+    done.last = fixedSteps(laplacians, evaluate, X, options.steps, progress);
+    return done;
 }
 
 }  // namespace
@@ -151,12 +165,15 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
                                 options.basisUpdate, options.conformalShare);
     const EvaluationOptions evaluation = evaluationFor(options, surface);
     StepEvaluator evaluate(evaluation, interior, transfer);
+    const std::optional<ThinPartsOfTile> tile = thinPartsOfTile(options, surface);
     // Kovnatsky et al. 2012, Eq. 11, or its limit.
-    const AutomaticSteps steps =
-        filterInSteps(laplacians, evaluate, transfer, surface.X, options, progress);
+    const AutomaticSteps steps = filterInSteps(laplacians, evaluate, transfer, surface.X, options,
+                                               tile ? &*tile : nullptr, progress);
     if (!steps.last.X.allFinite()) throw SolverFailure("the filtered coordinates are not finite");
     const double areaBefore = surfaceArea(surface.X, surface.F);
-    if (options.steps == 0 && options.transferFunction.type == FilterType::LowPass &&
+    // A tile may hold nothing but small debris.
+    if (!options.whole && options.steps == 0 &&
+        options.transferFunction.type == FilterType::LowPass &&
         surfaceArea(steps.last.X, surface.F) < kMinArea * areaBefore)
         throw SolverFailure(ErrorCode::ShrinksToNothing, "the whole surface shrinks to nothing");
     laplacians.reset();
@@ -187,6 +204,7 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     result.stepSizes = steps.last.sizes;
     result.stepError = steps.error;
     result.singularPart = steps.singularPart;
+    result.thinPartFactor = steps.thinPartFactor;
     result.toleranceReached =
         options.steps > 0 || options.passes > 0 || steps.error <= options.tolerance;
     result.cutoffFrequency = transfer.cutoff();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/filter/step_evaluator.h"
@@ -17,6 +18,13 @@ namespace spectral {
 
 /// More passes, i.e. steps, make no difference, and take hours.
 inline constexpr int kMaxPasses = 9;
+
+/// Decisions of a whole surface, with which a tile of it is filtered in the same way.
+struct WholeSurface {
+    double meanEdge = 0.0;      ///< Mean edge length, length units.
+    bool hasThinParts = false;  ///< Whether some tile has thin parts that must be kept.
+    std::vector<bool> inner;    ///< n: what is not near where the tile was cut out.
+};
 
 struct FilterOptions {
     TransferFunctionOptions transferFunction;
@@ -38,8 +46,9 @@ struct FilterOptions {
                                ///< is filtered across them, degrees; 0: no creases.
     EvaluationOptions evaluation;
 
-    WeightOptions part;           ///< Where to filter.
-    bool preserveVolume = false;  ///< Restores the volume of closed components (volume.h).
+    WeightOptions part;                 ///< Where to filter.
+    std::optional<WholeSurface> whole;  ///< If the mesh is a tile of a larger surface.
+    bool preserveVolume = false;        ///< Restores the volume of closed components (volume.h).
 };
 
 /// Displacements are weighted by the areas of the input.
@@ -62,6 +71,7 @@ struct FilterResult : SurfaceCounts, Movement, Work {
     bool toleranceReached = true;   ///< Automatic steps: whether stepError is within it.
     double singularPart = 0.0;      ///< Automatic steps: fraction of the input surface on which the
                                     ///< estimated error exceeds the tolerance.
+    double thinPartFactor = 1.0;    ///< Largest factor of keepThinParts, applied or not.
     bool cutoffReached = true;      ///< Truncated spectrum: whether the harmonics reach omega_c.
     std::vector<double> stepSizes;  ///< The fractional power alpha of each step; they sum to 1.
 

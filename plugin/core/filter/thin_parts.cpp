@@ -54,8 +54,9 @@ Eigen::ArrayXd logAreas(const SparseMatrix& W, const Faces& F, const Vertices& X
 
 }  // namespace
 
-Eigen::VectorXd thinPartFactors(const SparseMatrix& W, const Faces& F, const Vertices& X,
-                                const Vertices& weak, const Vertices& whole) {
+ThinParts thinPartFactors(const SparseMatrix& W, const Faces& F, const Vertices& X,
+                          const Vertices& weak, const Vertices& whole,
+                          const ThinPartsOfTile* tile) {
     const Eigen::ArrayXd before = logAreas(W, F, X), quarter = logAreas(W, F, weak),
                          after = logAreas(W, F, whole);
     const Eigen::ArrayXd logOfLoss =
@@ -63,18 +64,23 @@ Eigen::VectorXd thinPartFactors(const SparseMatrix& W, const Faces& F, const Ver
     Eigen::VectorXd factors = (before - quarter > -std::log(kLeastArea))
                                   .select(kMaxFactor, logOfLoss / -std::log(kKeptArea))
                                   .max(1.0);
-    if (factors.maxCoeff() <= kWorthwhile) return {};
-    return overRing(W, factors, [](double a, double b) { return std::max(a, b); });
+    double largest = 1.0;
+    for (Index i = 0; i < factors.size(); ++i)
+        if (tile == nullptr || tile->inner[i]) largest = std::max(largest, factors[i]);
+    const bool areKept = tile == nullptr ? largest > kWorthwhile : tile->areKept;
+    if (!areKept) return {{}, largest};
+    return {overRing(W, factors, [](double a, double b) { return std::max(a, b); }), largest};
 }
 
-void keepThinParts(LaplacianBuilder& laplacians, StepEvaluator& evaluate, const Vertices& X,
-                   const Progress& progress) {
+double keepThinParts(LaplacianBuilder& laplacians, StepEvaluator& evaluate, const Vertices& X,
+                     const ThinPartsOfTile* tile, const Progress& progress) {
     laplacians.reset();
     const std::vector<Eigen::MatrixXd> powers =
         evaluate.predict(laplacians.current(), X, {1.0, 0.25}, progress).Y;
-    Eigen::VectorXd factors =
-        thinPartFactors(laplacians.current().W, laplacians.faces(), X, powers[1], powers[0]);
-    if (factors.size() > 0) laplacians.scaleMass(std::move(factors));
+    ThinParts parts =
+        thinPartFactors(laplacians.current().W, laplacians.faces(), X, powers[1], powers[0], tile);
+    if (parts.factors.size() > 0) laplacians.scaleMass(std::move(parts.factors));
+    return parts.largest;
 }
 
 }  // namespace spectral

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "core/filter/step_evaluator.h"
 #include "core/laplacian/laplacian_builder.h"
@@ -9,6 +10,18 @@
 #include "core/support/types.h"
 
 namespace spectral {
+
+struct ThinParts {
+    Eigen::VectorXd factors;  ///< n factors of D >= 1; empty if nothing needs to be kept.
+    double largest = 1.0;     ///< The largest factor, even if there are none.
+};
+
+/// What decides about the thin parts of a tile of a larger surface. Where it is cut, it shrinks
+/// like a thin part.
+struct ThinPartsOfTile {
+    std::vector<bool> inner;  ///< n, the vertices of the surface that count for ThinParts::largest.
+    bool areKept = false;     ///< Whether the whole surface has parts to be kept.
+};
 
 /// Factors of D that keep the parts of a shape that a low-pass would draw in to lines or points.
 ///
@@ -28,13 +41,16 @@ namespace spectral {
 /// @param X      n x 3, the shape.
 /// @param weak   F^(1/4)(sqrt(A)) X.
 /// @param whole  F(sqrt(A)) X.
-/// @return       n factors >= 1; empty if no part loses half of its area.
-Eigen::VectorXd thinPartFactors(const SparseMatrix& W, const Faces& F, const Vertices& X,
-                                const Vertices& weak, const Vertices& whole);
+/// @param tile   null for a whole surface.
+/// @return       no factors if no part loses half of its area, or the whole surface keeps none.
+ThinParts thinPartFactors(const SparseMatrix& W, const Faces& F, const Vertices& X,
+                          const Vertices& weak, const Vertices& whole,
+                          const ThinPartsOfTile* tile = nullptr);
 
 /// Keeps the thin parts of X in all evaluations that follow: multiplies D by their factors.
 /// @param evaluate  of a low-pass.
-void keepThinParts(LaplacianBuilder& laplacians, StepEvaluator& evaluate, const Vertices& X,
-                   const Progress& progress);
+/// @return  the largest factor (ThinParts).
+double keepThinParts(LaplacianBuilder& laplacians, StepEvaluator& evaluate, const Vertices& X,
+                     const ThinPartsOfTile* tile, const Progress& progress);
 
 }  // namespace spectral

@@ -19,6 +19,7 @@ def apply(
     selected: NDArray[np.bool_] | None = None,
     values: NDArray[np.float64] | None = None,
     gain: NDArray[np.float64] | None = None,
+    whole: tuple[float, float, float, bool, NDArray[np.bool_]] | None = None,
     progress: Progress | None = None,
     threads: int = 0,
 ) -> dict[str, Any]: ...

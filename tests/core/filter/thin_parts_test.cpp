@@ -45,7 +45,8 @@ Vertices oneShot(const Mesh& mesh, double featureSize) {
 Eigen::VectorXd factors(const Mesh& mesh) {
     const MeshLaplacian of = meshLaplacian(mesh.V, mesh.F, LaplacianKind::IntrinsicDelaunay);
     return thinPartFactors(of.laplacian.W, mesh.F, mesh.V, oneShot(mesh, 0.5 * kSize),
-                           oneShot(mesh, kSize));
+                           oneShot(mesh, kSize))
+        .factors;
 }
 
 TEST(ThinParts, KeepHalfOfTheirAreaInsteadOfShrinkingToALine) {
@@ -101,6 +102,31 @@ TEST(ThinParts, AreKeptByEveryScheme) {
         options.keepThinParts = true;
         EXPECT_EQ(fractionalFilter(ring.V, ring.F, options).shrunkenPart, 0.0);
     }
+}
+
+TEST(ThinParts, OfAnotherTileDecideForATile) {
+    // A tube that loses a third of its area, next to one that would lose all.
+    const Mesh tube = testing::torus(2, 0.17, 120, 20), both = testing::joined(tube, thinRing());
+    FilterOptions options;
+    options.featureSize = kSize;
+    options.tolerance = 1e-3;
+    options.keepThinParts = true;
+    const FilterResult whole = fractionalFilter(both.V, both.F, options);
+    options.passes = whole.passes;
+    const std::vector<bool> inner(static_cast<std::size_t>(tube.V.rows()), true);
+    options.whole = {whole.meanEdge, false, inner};
+    const FilterResult alone = fractionalFilter(tube.V, tube.F, options);
+    EXPECT_GT(alone.thinPartFactor, 1.0);
+    EXPECT_LT(alone.thinPartFactor, 2.0);
+    EXPECT_GT(whole.thinPartFactor, 2.0);
+    options.whole->hasThinParts = true;
+    const FilterResult tile = fractionalFilter(tube.V, tube.F, options);
+    const Vertices expected = whole.V.topRows(tube.V.rows());
+    EXPECT_GT(largestDifference(alone.V, expected), 1e-2);
+    EXPECT_LT(largestDifference(tile.V, expected), 1e-4);
+    // What is thin only because it was cut out does not count.
+    options.whole = {whole.meanEdge, false, std::vector<bool>(inner.size(), false)};
+    EXPECT_EQ(fractionalFilter(tube.V, tube.F, options).thinPartFactor, 1.0);
 }
 
 TEST(ThinParts, AreDrawnInByFiltersThatAreNoLowPass) {

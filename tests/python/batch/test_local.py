@@ -22,15 +22,15 @@ def group(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_a_machine_is_used_whole() -> None:
-    assert local._processors() == 8
-    assert local._memory() == psutil.virtual_memory().total
+    assert local.processors() == 8
+    assert local.machine_memory() == psutil.virtual_memory().total
 
 
 def test_only_processors_that_the_process_may_use_count(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(psutil.Process, "cpu_affinity", lambda self: [2, 5, 6])
-    assert local._processors() == 3
+    assert local.processors() == 3
     monkeypatch.delattr(psutil.Process, "cpu_affinity")  # as on macOS
-    assert local._processors() == 8
+    assert local.processors() == 8
 
 
 @pytest.mark.parametrize(
@@ -39,26 +39,26 @@ def test_only_processors_that_the_process_may_use_count(monkeypatch: pytest.Monk
 )
 def test_the_share_of_a_container_counts(quota: str, expected: int, group: Path) -> None:
     (group / "cpu.max").write_text(quota + "\n")
-    assert local._processors() == expected
+    assert local.processors() == expected
 
 
 def test_the_memory_of_a_container_counts(group: Path) -> None:
     (group / "memory.max").write_text("max\n")
-    assert local._memory() == psutil.virtual_memory().total
+    assert local.machine_memory() == psutil.virtual_memory().total
     (group / "memory.max").write_text("1000000\n")
-    assert local._memory() == 1000000
+    assert local.machine_memory() == 1000000
 
 
 def test_older_containers_count(group: Path) -> None:
     (group / "cpu" / "cpu.cfs_quota_us").write_text("300000\n")
     (group / "cpu" / "cpu.cfs_period_us").write_text("100000\n")
     (group / "memory" / "memory.limit_in_bytes").write_text("2000000\n")
-    assert local._processors() == 3
-    assert local._memory() == 2000000
+    assert local.processors() == 3
+    assert local.machine_memory() == 2000000
     (group / "cpu" / "cpu.cfs_quota_us").write_text("-1\n")
     (group / "memory" / "memory.limit_in_bytes").write_text(f"{2**63 - 4096}\n")
-    assert local._processors() == 8
-    assert local._memory() == psutil.virtual_memory().total
+    assert local.processors() == 8
+    assert local.machine_memory() == psutil.virtual_memory().total
 
 
 def test_workers_share_nine_tenths_of_the_memory(group: Path) -> None:

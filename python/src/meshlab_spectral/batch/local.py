@@ -34,8 +34,8 @@ def local_workers(count: int | None = None, memory_limit: int | None = None) -> 
     share of the threads. `memory_limit` is in bytes per worker; by default they share nine tenths
     of the machine's memory, and keep to the limit of the environment, if any.
     """
-    count = count or _processors()
-    share = int(_SHARE_OF_MEMORY * _memory() / count)
+    count = count or processors()
+    share = int(_SHARE_OF_MEMORY * machine_memory() / count)
     limits = JobLimits(memory_limit or share, replaces_environment=memory_limit is not None)
     with contextlib.ExitStack() as stack:
         try:
@@ -46,7 +46,7 @@ def local_workers(count: int | None = None, memory_limit: int | None = None) -> 
         yield Workers(partial(run_job, processes), _JOBS_PER_WORKER * count, processes.end)
 
 
-def _processors() -> int:
+def processors() -> int:
     """Return how many processors this process may use."""
     affinity = getattr(psutil.Process(), "cpu_affinity", None)  # missing on macOS
     count: int = len(affinity()) if affinity else os.cpu_count() or 1
@@ -56,7 +56,7 @@ def _processors() -> int:
     return count
 
 
-def _memory() -> int:
+def machine_memory() -> int:
     """Return how much memory this process and its children may use, in bytes."""
     total: int = psutil.virtual_memory().total
     return min([total, *_numbers("memory.max"), *_numbers("memory/memory.limit_in_bytes")])

@@ -27,7 +27,7 @@ _GROUPS = {
     "Where": "mesh selected boundary crease_angle keep_creases weight",
     HOW: """steps tolerance passes basis_update conformal_share spectrum basis_size
         reinject_residual laplacian preserve_volume""",
-    "Files": "recursive overwrite resume dry_run",
+    "Files": "recursive overwrite resume dry_run tiles memory",
     "Workers": "workers memory_limit timeout scheduler",
     "Output": "output name ending result pictures modes scale save_recipe report as_json",
 }

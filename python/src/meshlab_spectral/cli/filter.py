@@ -9,17 +9,20 @@ from typing import Annotated, Any
 
 import typer
 
+from meshlab_spectral.batch.whole_or_tiles import filter_file
 from meshlab_spectral.cli.command_line import Command
 from meshlab_spectral.cli.filter_options import (
     AsJson,
     Recipe,
     SaveRecipe,
+    byte_count,
     chosen_options,
     with_options,
 )
 from meshlab_spectral.cli.messages import (
     VERBOSITY,
     errors_reported,
+    print_message,
     print_result,
     print_warning,
     warn_of_points_only,
@@ -30,8 +33,9 @@ from meshlab_spectral.cli.streams import STREAM, as_files
 from meshlab_spectral.files.recipe import saving_recipe
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import DenoiseOptions, FilterOptions
+from meshlab_spectral.plugin.limits import set_memory_limit
 from meshlab_spectral.plugin.versions import versions
-from meshlab_spectral.process.single_file import write_in_child
+from meshlab_spectral.tiles.cells import MOST_TILES
 
 FILTER_HELP = """Filter one mesh file by the size of its details.
 
@@ -53,6 +57,18 @@ DENOISE_HELP = """Detect and remove the noise of a scanner, spikes or voxel step
 A folder of scans:
   meshlab-spectral batch scans --output clean --denoise
 """
+
+
+def _tiles(text: str | int) -> int | None:
+    """Return a number of tiles, 0 for `auto`, None for `off`."""
+    if isinstance(text, int):
+        return text
+    named = {"auto": 0, "off": None}
+    if text in named:
+        return named[text]
+    if not text.isdecimal() or not 2 <= int(text) <= MOST_TILES:
+        raise typer.BadParameter(f"{text!r}: give auto, off or a number from 2 to {MOST_TILES}")
+    return int(text)
 
 
 def _command_with(table: type[Options], help_text: str) -> Command:
@@ -94,6 +110,23 @@ def _command_with(table: type[Options], help_text: str) -> Command:
             str | None,
             typer.Option("--format", metavar="ENDING", help="The format of -, such as ply."),
         ] = None,
+        tiles: Annotated[
+            int | None,
+            typer.Option(
+                parser=_tiles,
+                metavar="auto|off|N",
+                help="Filter binary PLY or STL in N overlapping tiles, from file to file; auto: "
+                "where the mesh does not fit in memory.",
+            ),
+        ] = 0,
+        memory: Annotated[
+            int | None,
+            typer.Option(
+                parser=byte_count,
+                metavar="SIZE",
+                help="Memory limit, such as 4GB; by default what the machine has free.",
+            ),
+        ] = None,
         recipe: Recipe = None,
         save_recipe: SaveRecipe = None,
         as_json: AsJson = False,
@@ -122,7 +155,11 @@ def _command_with(table: type[Options], help_text: str) -> Command:
         with errors_reported(), as_files(source, place, ending) as (read, written):
             options = chosen_options(table, given, recipe)
             with saving_recipe(save_recipe, options), progress_shown() as on_progress:
-                report = write_in_child(read, written, options, on_progress, mesh, overwrite)
+                if memory is not None:
+                    set_memory_limit(memory)
+                report = filter_file(
+                    read, written, options, on_progress, mesh, overwrite, tiles, print_message
+                )
         warn_of_points_only(place.suffix)
         for warning in report["warnings"]:
             print_warning(warning)

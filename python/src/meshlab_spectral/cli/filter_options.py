@@ -144,7 +144,7 @@ def _parameter(one: Any, type_: Any, panel: str | None) -> tuple[str, Any, Any, 
     if type_ is Length:
         shown |= {"parser": _length, "metavar": "SIZE"}
     elif one.name == "memory_limit":
-        shown["parser"] = _bytes
+        shown["parser"] = byte_count
     default = str(one.default) if type_ is Length else one.default
     return one.name, type_, typer.Option(*one.metadata["flags"], **shown), default
 
@@ -172,7 +172,8 @@ def chosen_options(
     return table.from_dict({**options, **values})
 
 
-def _bytes(text: str | int) -> int:
+def byte_count(text: str | int) -> int:
+    """Parse a size of memory, such as 4GB."""
     if isinstance(text, int):
         return text
     match = _SIZE.fullmatch(text.strip())

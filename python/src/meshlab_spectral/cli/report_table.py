@@ -59,9 +59,13 @@ def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
         ("Largest displacement", f"{report['max_displacement']:.4g}"),
         ("RMS displacement", f"{report['rms_displacement']:.4g}"),
     ]
-    if report["has_volume"]:
+    if report.get("has_volume"):
         rows.append(("Volume", change(report["volume_before"], report["volume_after"])))
-    rows.append(("Components", f"{report['components']}"))
+    # What a run in tiles cannot tell.
+    if "components" in report:
+        rows.append(("Components", f"{report['components']}"))
+    else:
+        rows.append(("Tiles", f"{report['tiles']}"))
     for name, label, more in (
         ("joined_vertices", "Vertices joined at seams", ""),
         ("unreferenced_vertices", "Vertices without faces", ", unchanged"),

@@ -23,9 +23,16 @@ def rounding_told(before: Array, after: Array) -> str | None:
     with np.errstate(over="ignore"):
         rounding = _size(after[moves].astype(np.float32) - after[moves])
     displacement = _size(after[moves] - before[moves])
+    return rounding_message(rounding, displacement, float(np.abs(after).max()))
+
+
+def rounding_message(rounding: float, displacement: float, largest: float) -> str | None:
+    """Describe a rounding error, unless it is tolerable for a displacement.
+
+    Both are root mean squares over the moved vertices; `largest` is the largest coordinate.
+    """
     if rounding <= _TOLERATED * displacement:
         return None
-    largest = float(np.abs(after).max())
     return (
         f"single precision rounds coordinates near {largest:.6g} by {rounding:.2g}, while the "
         f"filter moves vertices by {displacement:.2g} (root mean square)"

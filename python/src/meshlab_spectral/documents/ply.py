@@ -37,17 +37,17 @@ from meshlab_spectral.documents.polygons import strip_triangles, triangles
 from meshlab_spectral.documents.side_files import copy_side_files
 from meshlab_spectral.documents.text import BYTE_ORDER_MARK, Lines, lines_of, whole, write_patched
 
-_AXES, _NORMALS = ("x", "y", "z"), ("nx", "ny", "nz")
+AXES, NORMALS = ("x", "y", "z"), ("nx", "ny", "nz")
 _TEXTURE = re.compile(rb"(?m)^[ \t]*comment[ \t]+TextureFile[ \t]+(.*\S)")
 _COMMENT = re.compile(rb"(?m)^[ \t]*(comment|obj_info)[ \t]+(?!TextureFile|VCGLIB generated)\S")
-_CORNERS = ("vertex_indices", "vertex_index")
+CORNERS = ("vertex_indices", "vertex_index")
 _KNOWN = {
-    "normals": set(_NORMALS),
+    "normals": set(NORMALS),
     "colours": {"red", "green", "blue", "alpha", "diffuse_red", "diffuse_green", "diffuse_blue"},
     "texture coordinates": {"s", "t", "u", "v", "texture_u", "texture_v", "texcoord", "texnumber"},
     "quality": {"quality"},
 }
-_SELECTED = 0x20  # VCG's flag
+SELECTED = 0x20  # VCG's flag
 _Rows = np.ndarray[Any, Any]
 _Table = dict[str, Any]  # the numbers of a property; for lists their sizes, and all items
 _Changes = dict[tuple[str, ...], tuple[Array, Array]]  # before and after
@@ -67,7 +67,7 @@ class PlyDocument(Document):
 
     def save(self, target: Path, moved: Sequence[Array]) -> list[str]:  # noqa: D102
         before, (after,) = self.parts[0].vertices, moved
-        types = {self.ply["vertex"].ply_property(name).val_dtype for name in _AXES}
+        types = {self.ply["vertex"].ply_property(name).val_dtype for name in AXES}
         told = rounding_told(before, after) if "f4" in types else None
         if (after != before).any() and any(type_[0] != "f" for type_ in types):
             told = "the file has integers"
@@ -81,11 +81,11 @@ class PlyDocument(Document):
 
     def _write(self, file: IO[bytes], after: Array, is_wide: bool) -> None:
         (part,), rows, start = self.parts, self.rows, len(self.header)
-        changes: _Changes = {_AXES: (part.vertices, after)}
+        changes: _Changes = {AXES: (part.vertices, after)}
         if self.normals is not None:
             normals = following_normals(part.vertices, after, part.faces, self.normals)
-            changes[_NORMALS] = self.normals, normals
-        file.write(_widened(self.header) if is_wide else self.header)
+            changes[NORMALS] = self.normals, normals
+        file.write(widened(self.header) if is_wide else self.header)
         if self.ply.text:
             digits = digits_for(part.vertices, after)
             words = [(rows, self.first[a], *pair, digits) for a, pair in changes.items()]
@@ -99,7 +99,7 @@ class PlyDocument(Document):
 def _with_columns(rows: _Rows, changes: _Changes, wide: str | None) -> memoryview:
     """Return binary rows with new numbers; `wide` is the byte order of doubles, if needed."""
     fields = [
-        (name, f"{wide}f8" if wide and name in _AXES else type_, *shape)
+        (name, f"{wide}f8" if wide and name in AXES else type_, *shape)
         for name, type_, *shape in rows.dtype.descr
     ]
     rows = rows.astype(fields)
@@ -109,7 +109,7 @@ def _with_columns(rows: _Rows, changes: _Changes, wide: str | None) -> memoryvie
     return rows.view(np.uint8).data
 
 
-def _widened(header: bytes) -> bytes:
+def widened(header: bytes) -> bytes:
     """Return the header with coordinates declared as double."""
     vertex = re.compile(rb"(?ms)^[ \t]*element\s+vertex\s.*?^[ \t]*e")  # next element or end
     axis = re.compile(rb"(?m)^([ \t]*property[ \t]+)\S+(?=[ \t]+[xyz]\s*$)")
@@ -122,19 +122,19 @@ def read(path: Path) -> PlyDocument:
     try:
         with warnings.catch_warnings(), np.errstate(all="ignore"):
             warnings.simplefilter("ignore")  # about empty lists and non-integers
-            ply, counts, header = _read_header(content)
+            ply, counts, header = read_header(content)
             tables, rows, begin = _read_rows(content, ply, counts, len(header))
             vertex = tables["vertex"]
             _check_vertices(path, ply, vertex)
-            vertices = _columns(vertex, *_AXES)
+            vertices = _columns(vertex, *AXES)
             check_vertices(path, vertices)
             faces = _read_faces(tables, vertices)
     except (PlyParseError, ValueError, LookupError, TypeError, OverflowError) as error:
         raise unreadable(path, error) from error
     check_indices(path, faces, len(vertices))
-    values = [name for name in ("quality", "confidence") if _has_floats(ply["vertex"], name)]
+    values = [name for name in ("quality", "confidence") if has_floats(ply["vertex"], name)]
     quality = _columns(vertex, values[0])[:, 0] if values else None
-    has_normals = _has_floats(ply["vertex"], *_NORMALS)
+    has_normals = has_floats(ply["vertex"], *NORMALS)
     return PlyDocument(
         path,
         [Part("", vertices, faces, quality, _selected(tables, len(vertices)))],
@@ -144,12 +144,12 @@ def read(path: Path) -> PlyDocument:
         ply=ply,
         rows=rows if ply.text else np.ndarray(len(vertices), _type(ply, vertex), content, begin),
         begin=begin,
-        normals=_columns(vertex, *_NORMALS) if has_normals else None,
-        first={_AXES: _first_word(vertex, "x"), _NORMALS: _first_word(vertex, "nx")},
+        normals=_columns(vertex, *NORMALS) if has_normals else None,
+        first={AXES: _first_word(vertex, "x"), NORMALS: _first_word(vertex, "nx")},
     )
 
 
-def _read_header(content: bytes) -> tuple[PlyData, dict[str, int], bytes]:
+def read_header(content: bytes) -> tuple[PlyData, dict[str, int], bytes]:
     """Read the header with plyfile, without comments (it accepts only ASCII), with counts of 0."""
     end = re.search(rb"(?s)\n[ \t]*element\s+vertex\s.*?\n[ \t]*end_header[ \t]*\r?\n", content)
     if not end:
@@ -278,12 +278,13 @@ def _check_vertices(path: Path, ply: PlyData, table: _Table) -> None:
         raise unsupported(path, what, "export it again with x, y and z as the first properties")
 
 
-def _has_floats(element: PlyElement, *names: str) -> bool:
+def has_floats(element: PlyElement, *names: str) -> bool:
+    """Whether an element has these properties, as floating-point numbers."""
     return all(name in element and element.ply_property(name).dtype()[1] == "f" for name in names)
 
 
 def _has_numbers(element: PlyElement) -> bool:
-    axes = [element.ply_property(name) for name in _AXES if name in element]
+    axes = [element.ply_property(name) for name in AXES if name in element]
     return len(axes) == 3 and not any(isinstance(one, PlyListProperty) for one in axes)
 
 
@@ -293,7 +294,7 @@ def _columns(table: _Table, *names: str) -> Array:
 
 def _corners(table: _Table) -> tuple[Indices, Indices] | None:
     """Return the corners of all faces or strips, and how many each has; None if there are none."""
-    held = [table[name] for name in _CORNERS if name in table]
+    held = [table[name] for name in CORNERS if name in table]
     return (whole(held[0][1]), held[0][0]) if held and len(held[0][0]) else None
 
 
@@ -309,10 +310,10 @@ def _selected(tables: dict[str, _Table], count: int) -> NDArray[np.bool_] | None
     """Return which vertices MeshLab's flags select, directly or by a face; None if none."""
     chosen = np.zeros(count, bool)
     if "flags" in tables["vertex"]:
-        chosen |= tables["vertex"]["flags"].astype(np.int64) & _SELECTED > 0
+        chosen |= tables["vertex"]["flags"].astype(np.int64) & SELECTED > 0
     faces = _corners(tables.get("face", {}))
     if faces and "flags" in tables["face"]:
-        flags = tables["face"]["flags"].astype(np.int64) & _SELECTED > 0
+        flags = tables["face"]["flags"].astype(np.int64) & SELECTED > 0
         chosen[faces[0][np.repeat(flags, faces[1])]] = True
     return chosen if chosen.any() else None
 
@@ -320,7 +321,7 @@ def _selected(tables: dict[str, _Table], count: int) -> NDArray[np.bool_] | None
 def _contents(ply: PlyData, counts: dict[str, int], header: bytes, triangles: int) -> list[str]:
     mesh = [element for element in ply if element.name in ("vertex", "face", "tristrips")]
     names = {one.name for element in mesh for one in element.properties}
-    others = names.difference(_AXES, _CORNERS, *_KNOWN.values())
+    others = names.difference(AXES, CORNERS, *_KNOWN.values())
     present: dict[str, object] = {word: names & known for word, known in _KNOWN.items()}
     present["polygons"] = counts.get("face", triangles) < triangles
     present["comments"], present["texture names"] = _COMMENT.search(header), _TEXTURE.search(header)

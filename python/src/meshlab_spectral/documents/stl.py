@@ -15,8 +15,8 @@ from meshlab_spectral.documents.digits import SINGLE, digits_for, precision_warn
 from meshlab_spectral.documents.document import Array, Document, Indices, Part, check_vertices
 from meshlab_spectral.documents.text import BYTE_ORDER_MARK, lines_of, write_patched
 
-_HEADER, _LOOKED_AT = 84, 1000  # bytes
-_TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+HEADER, _LOOKED_AT = 84, 1000  # bytes
+TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _LARGEST_CUT = 1000  # of what a file claims to hold to what has arrived
 _EXCESS = 1 / 20  # trailing bytes that a binary file may have, relative to its size
 _KEYWORDS = ["facet", "vertex", "endfacet", "solid", "endsolid"]
@@ -31,7 +31,7 @@ class _BinaryStl(Document):
     def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
         (part,), (after,) = self.parts, moved
         content = bytearray(self.content)
-        rows = np.frombuffer(content, _TRIANGLE, self.count, _HEADER)
+        rows = np.frombuffer(content, TRIANGLE, self.count, HEADER)
         changed = (after != part.vertices)[part.faces]
         np.copyto(rows["corners"], after.astype("<f4")[part.faces], where=changed)
         with np.errstate(invalid="ignore"):
@@ -71,8 +71,8 @@ def read(path: Path) -> Document:
 
 
 def _is_text(content: bytes) -> bool:
-    head = content[: _HEADER + _LOOKED_AT].removeprefix(BYTE_ORDER_MARK)
-    if len(head) < _HEADER:
+    head = content[: HEADER + _LOOKED_AT].removeprefix(BYTE_ORDER_MARK)
+    if len(head) < HEADER:
         return True
     # A binary file may begin with the word solid, like a text file.
     is_whole = len(content) == _size(content)
@@ -81,12 +81,12 @@ def _is_text(content: bytes) -> bool:
 
 def _count(content: bytes) -> int:
     """Return the number of triangles that a binary file claims to hold."""
-    count: int = struct.unpack_from("<I", content, _HEADER - 4)[0]
+    count: int = struct.unpack_from("<I", content, HEADER - 4)[0]
     return count
 
 
 def _size(content: bytes) -> int:
-    return _HEADER + _TRIANGLE.itemsize * _count(content)
+    return HEADER + TRIANGLE.itemsize * _count(content)
 
 
 def _read_binary(path: Path, content: bytes) -> Document:
@@ -96,7 +96,7 @@ def _read_binary(path: Path, content: bytes) -> Document:
         raise (EndsEarlyError if is_cut else ValueError)(
             f"it claims {count} triangles, which does not match its {size} bytes"
         )
-    rows = np.frombuffer(content, _TRIANGLE, count, _HEADER)
+    rows = np.frombuffer(content, TRIANGLE, count, HEADER)
     with np.errstate(invalid="ignore"):  # check_vertices reports non-finite values
         points = rows["corners"].reshape(-1, 3).astype(np.float64)
     part = _connected(path, points)

@@ -20,7 +20,7 @@ USUAL_FORMATS = ".ply, .obj, .stl or .off"
 _SCRATCH_ENDING = ".partial"
 _SCRATCH_NAME = re.compile(r"\.(?P<target>.+)\.[a-z0-9_]{8}\.partial")
 _TEMPORARY = "meshlab-spectral"
-_LOCK = ".lock"  # in a scratch folder
+LOCK = ".lock"  # in a scratch folder
 _LONGEST_NAME = 200  # bytes of the output's name used in that of the scratch folder
 
 
@@ -122,6 +122,25 @@ def temporary_folder(parent: Path) -> Iterator[Path]:
 
 
 @contextlib.contextmanager
+def holding(folder: Path) -> Iterator[None]:
+    """Make a folder, if need be, and keep other processes of this kind out of it.
+
+    Raises MeshFileError when one is at work there, or it cannot be made.
+    """
+    with contextlib.ExitStack() as stack:
+        try:
+            folder.mkdir(exist_ok=True)
+            stack.enter_context(_locked(folder))
+        except BlockingIOError:
+            raise MeshFileError(f"another process is at work in {folder}: wait for it") from None
+        except OSError as error:
+            if not folder.is_dir():
+                raise MeshFileError(f"{folder} cannot be made ({error.strerror})") from error
+            # else a file system without locks
+        yield
+
+
+@contextlib.contextmanager
 def _scratch_folder(target: Path, place: Path) -> Iterator[Path]:
     """Make a hidden folder next to `place`, which `target` resolves to; remove it on exit."""
     folder = place.parent
@@ -174,7 +193,7 @@ def _locked(folder: Path) -> Iterator[None]:
     """
     from filelock import lock_descriptor  # a slow import
 
-    with (folder / _LOCK).open("ab") as file:
+    with (folder / LOCK).open("ab") as file:
         if not lock_descriptor(file.fileno(), blocking=False):
             raise BlockingIOError
         yield
@@ -187,7 +206,7 @@ def _shortened(name: str) -> str:
 def side_files(scratch: Path) -> list[Path]:
     """Return the side files, such as textures, in the folder of a scratch file."""
     folder = scratch.parent
-    ours = (scratch, folder / _LOCK)
+    ours = (scratch, folder / LOCK)
     return sorted(path for path in folder.rglob("*") if path.is_file() and path not in ours)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,6 +21,16 @@ Gain = Callable[[Array], ArrayLike]
 # The core interpolates a gain's logarithm between samples, here to about 1e-5 of a smooth gain;
 # beyond them, where no mesh has details, the gain is constant.
 _OCTAVES, _PER_OCTAVE = 16, 128
+
+
+class TiledSurface(NamedTuple):
+    """What the sizes and defaults of a tile refer to, and what it cannot decide by itself."""
+
+    diagonal: float  # of the bounding box
+    mean_edge: float
+    surface_diagonal: float  # of the bounding box of the triangles
+    has_thin_parts: bool  # whether some tile has parts that are thinner than the size
+    inner: NDArray[np.bool_]  # n, what is not near where the tile was cut out
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +76,7 @@ def run(
     selected: NDArray[np.bool_] | None = None,
     values: Array | None = None,
     gain: Gain | None = None,
+    whole: TiledSurface | None = None,
     progress: Progress | None = None,
     threads: int | None = None,
 ) -> Run:
@@ -85,6 +96,8 @@ def run(
         n x 1 numbers, or n x 3 levels of 0 to 255, to filter or as weights.
     gain
         In place of a transfer function.
+    whole
+        The surface that the mesh is a tile of.
     progress
         Called about twenty times a second in this thread with the current stage and the fraction
         done, 0 to 1; cancels by returning False.
@@ -109,6 +122,7 @@ def run(
         selected=selected,
         values=values,
         gain=None if gain is None else _samples(gain),
+        whole=whole,
         progress=progress,
         threads=thread_count(threads),
     )

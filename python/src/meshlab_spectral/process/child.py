@@ -35,11 +35,15 @@ from meshlab_spectral.filters.running import plain
 from meshlab_spectral.filters.spectrum import measure
 from meshlab_spectral.filters.tables import TABLES
 from meshlab_spectral.plugin.limits import set_memory_limit
+from meshlab_spectral.tiles.tile import filter_tile
 
 
 def _report_of(job: dict[str, Any], on_stage: StageCallback) -> dict[str, Any]:
     """Do a job, and return its report."""
-    source, task = Path(job["source"]), job["task"]
+    task = job["task"]
+    if task == "tile":
+        return filter_tile(Path(job["folder"]), job["tile"], job["decided"], on_stage)
+    source = Path(job["source"])
     verbose = job.get("verbose", True)
     if task == "spectrum":
         on_stage("reading", None)

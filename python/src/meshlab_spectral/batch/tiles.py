@@ -1,0 +1,277 @@
+"""A run in tiles: planned, begun or gone on with, and written whole or not at all."""
+
+from __future__ import annotations
+
+import contextlib
+import math
+import shutil
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from meshlab_spectral.batch.memory import PROCESS_BYTES, TILE_BYTES, workers
+from meshlab_spectral.batch.processes import Processes
+from meshlab_spectral.documents.digits import rounding_message, widening_warnings
+from meshlab_spectral.errors import FilterError, MeshFileError
+from meshlab_spectral.files.formats import is_same_format
+from meshlab_spectral.files.sources import check_is_place, check_source
+from meshlab_spectral.files.whole_files import LOCK, check_target, holding, resolved, writing_whole
+from meshlab_spectral.filters.options import FilterOptions
+from meshlab_spectral.plugin.versions import versions
+from meshlab_spectral.process.parent import JobLimits, ProgressCallback
+from meshlab_spectral.tiles.cells import MOST_TILES, near_cells, split
+from meshlab_spectral.tiles.gather import gather
+from meshlab_spectral.tiles.halo import reach_of, require_local
+from meshlab_spectral.tiles.plan import Plan, Workspace
+from meshlab_spectral.tiles.report import combined, singular_part
+from meshlab_spectral.tiles.rows import MeshRows, UntiledError, open_rows
+from meshlab_spectral.tiles.scatter import scatter
+from meshlab_spectral.tiles.survey import Survey, survey
+
+# Larger tiles are hardly faster, and a failed or interrupted one costs more.
+_LARGEST_TILE = 1_000_000  # vertices
+# A tile whose halo is this many times its cell is none.
+_MOST_WORK = 30.0
+# Tiles, at most, that find out how many passes the mesh needs.
+_ASKED = 5
+# As the core does for a whole mesh: it repeats until the tolerance is reached on all but this share
+# of the surface, or in so many passes (automatic_steps.h).
+_NEGLIGIBLE, _MOST_PASSES = 1e-3, 7
+# The core keeps thin parts as soon as one has a larger factor (thin_parts.h).
+_WORTHWHILE = 2.0
+
+
+def filter_in_tiles(
+    source: Path,
+    target: Path,
+    options: FilterOptions,
+    on_progress: ProgressCallback,
+    tiles: int,
+    tell: Callable[[str], None],
+    overwrite: bool = True,
+) -> dict[str, Any]:
+    """Filter a binary PLY or STL file in tiles, in a folder next to the output.
+
+    The folder is removed at the end, and stays after an error: the same call then goes on from it.
+    """
+    check_source(source)
+    check_is_place(target)
+    if not is_same_format(source, target):
+        raise UntiledError(
+            f"tiles are written in the format of the input: name a {source.suffix} file"
+        )
+    check_target(target)
+    require_local(options)
+    place = resolved(target)
+    work = Workspace(place.with_name(f".{place.name}.tiles"))
+    rows = open_rows(source)
+    with holding(work.folder):
+        plan = _planned(rows, source, options, on_progress, tiles, work)
+        tell(
+            f"{source.name} is filtered in {plan.tiles} tiles"
+            + ("" if tiles else ", as it does not fit in memory as a whole")
+        )
+        try:
+            reports = _filtered(plan, work, on_progress)
+            report, is_wide = _summary(plan, reports, rows)
+            with writing_whole(target, overwrite) as scratch:
+                gather(rows, work, plan.tiles, scratch, is_wide, on_progress)
+        except OSError as error:
+            raise MeshFileError(
+                f"{work.folder} cannot be written ({error.strerror}): make room, and run the same "
+                "command again, which goes on from there",
+                "disk_full",
+            ) from error
+    shutil.rmtree(work.folder, ignore_errors=True)
+    return report
+
+
+def _planned(
+    rows: MeshRows,
+    source: Path,
+    options: FilterOptions,
+    on_progress: ProgressCallback,
+    tiles: int,
+    work: Workspace,
+) -> Plan:
+    """Return the plan of a run, whose faces have been handed to the tiles, now or before."""
+    stat = source.stat()
+    stamp = [stat.st_size, stat.st_mtime_ns]
+    with contextlib.suppress(OSError, ValueError, TypeError):
+        old = work.plan()
+        is_same = (old.source, old.stamp) == (str(source.absolute()), stamp)
+        is_same = is_same and (old.options, old.versions) == (options.as_dict(), versions())
+        if is_same and tiles in (0, old.tiles) and work.has_begun(old):
+            return old
+    measured = survey(rows, on_progress)
+    reach = reach_of(options, measured.lengths)
+    tree, count, grown = _divided(rows, measured, reach, tiles)
+    _clear(work.folder)
+    plan = Plan(
+        str(source.absolute()),
+        stamp,
+        options.as_dict(),
+        list(measured.lengths[:3]),
+        options.selected and measured.has_selection,
+        tree,
+        count,
+        reach,
+        versions(),
+    )
+    _require_space(rows, work.folder, grown)
+    work.begin(plan)
+    try:
+        scatter(rows, plan, work, on_progress)
+    except OSError as error:
+        _clear(work.folder)  # nothing of it is of use
+        raise MeshFileError(
+            f"{work.folder} cannot be written ({error.strerror}): make room on the disk",
+            "disk_full",
+        ) from error
+    return plan
+
+
+def _clear(folder: Path) -> None:
+    for path in folder.iterdir():
+        if path.name != LOCK:
+            path.unlink()
+
+
+def _divided(rows: MeshRows, measured: Survey, reach: float, tiles: int) -> tuple[Any, int, float]:
+    """Return cells, their number, and how many times the mesh all tiles are together.
+
+    Raises UntiledError when tiles with all that they need do not fit in memory.
+    """
+    vertices, each = rows.vertices, workers()[1]
+    largest = max(0, each - PROCESS_BYTES) / TILE_BYTES
+    sample = measured.sample
+    count = tiles or max(2, math.ceil(vertices / _LARGEST_TILE))
+    while True:
+        tree = split(sample, count)
+        held = [len(near) for _, near in near_cells(tree, sample, sample, reach)]
+        share, total = max(held) / len(sample), sum(held) / len(sample)
+        if share * vertices <= largest:
+            return tree, count, total
+        if tiles or count > MOST_TILES or total > _MOST_WORK:
+            raise UntiledError(
+                f"the filter reaches {reach:.3g} far, and tiles with that around them have "
+                f"{share * vertices:.3g} vertices, while {largest:.3g} fit in memory: choose "
+                + ("more tiles or " if tiles else "")
+                + "a smaller feature_size, or give more memory"
+            )
+        count = math.ceil(1.4 * count)
+
+
+def _require_space(rows: MeshRows, folder: Path, times: float) -> None:
+    """Raise MeshFileError unless what tiles write has room, with the output."""
+    each = 4 + 24 + (24 if rows.normals else 0)
+    needed = 1.1 * times * 12 * rows.faces + each * rows.points + 1.3 * rows.path.stat().st_size
+    free = shutil.disk_usage(folder).free
+    if needed > free:
+        raise MeshFileError(
+            f"{folder.parent} needs {needed / 1e9:.2g} GB of free space for tiles, and has "
+            f"{free / 1e9:.2g} GB: make room on the disk, or write the output elsewhere",
+            "disk_full",
+        )
+
+
+def _filtered(plan: Plan, work: Workspace, on_progress: ProgressCallback) -> list[dict[str, Any]]:
+    """Filter all tiles that are not done yet; return the reports of all."""
+    options = FilterOptions.from_dict(plan.options)
+    every = range(plan.tiles)
+    decided = {"passes": options.passes, "has_thin_parts": False}
+    count, memory = workers()
+    with _processes(count, memory, work.folder) as processes:
+
+        def do(tiles: Any, wanted: dict[str, Any], share: tuple[float, float]) -> None:
+            left = [tile for tile in tiles if not _is_done(work.report(tile), wanted)]
+            with ThreadPoolExecutor(count) as pool:
+                runs = {pool.submit(_run, processes, work.folder, t, wanted): t for t in left}
+                done = 0
+                try:
+                    for one in as_completed(runs):
+                        _raise_of(one, runs[one], plan, work)
+                        done += 1
+                        fraction = share[0] + (share[1] - share[0]) * done / len(left)
+                        on_progress(f"tile {plan.tiles - len(left) + done}", fraction)
+                except BaseException:
+                    processes.end()
+                    pool.shutdown(cancel_futures=True)
+                    raise
+
+        if options.steps == 0 and options.passes == 0 and options.basis_update != "none":
+            asked = [int(t) for t in np.unique(np.linspace(0, plan.tiles - 1, _ASKED).round())]
+            while decided["passes"] < _MOST_PASSES:
+                decided["passes"] += 1
+                do(asked, decided, (0.0, len(asked) / plan.tiles))
+                if singular_part([_report(work, tile) for tile in asked]) <= _NEGLIGIBLE:
+                    break
+            decided["has_thin_parts"] = _has_thin_parts(work, asked)
+        do(every, decided, (0.0, 1.0))
+        if not decided["has_thin_parts"] and _has_thin_parts(work, every):
+            decided["has_thin_parts"] = True
+            do(every, decided, (0.0, 1.0))
+    return [_report(work, tile) for tile in every]
+
+
+def _report(work: Workspace, tile: int) -> dict[str, Any]:
+    return work.report(tile) or {}
+
+
+def _has_thin_parts(work: Workspace, tiles: Iterable[int]) -> bool:
+    return any(_report(work, tile).get("thin_part_factor", 1) > _WORTHWHILE for tile in tiles)
+
+
+def _is_done(report: dict[str, Any] | None, wanted: dict[str, Any]) -> bool:
+    """Whether a tile has been filtered by these decisions, or others that do not differ for it."""
+    if report is None:
+        return False
+    if "steps" not in report:  # nothing of it moves
+        return True
+    if wanted["passes"] != report["wanted_passes"]:
+        return False
+    return bool(report["wanted_has_thin_parts"] == wanted["has_thin_parts"])
+
+
+@contextlib.contextmanager
+def _processes(count: int, memory: int, folder: Path) -> Iterator[Processes]:
+    processes = Processes(count, JobLimits(memory, replaces_environment=True), folder)
+    try:
+        yield processes
+    finally:
+        processes.end()
+
+
+def _run(processes: Processes, folder: Path, tile: int, decided: dict[str, Any]) -> None:
+    job = {"task": "tile", "folder": str(folder), "tile": tile, "decided": decided}
+    with processes.one() as process:
+        process.run({**job, "verbose": False}, None, processes.limits)
+
+
+def _raise_of(run: Any, tile: int, plan: Plan, work: Workspace) -> None:
+    """Raise the error of a tile, with its number and what is left."""
+    try:
+        run.result()
+    except FilterError as error:
+        named = type(error)(
+            f"tile {tile + 1} of {plan.tiles}: {error}. The tiles that are done stay in "
+            f"{work.folder}, from which the same command goes on"
+        )
+        named.code, named.limit = error.code, error.limit
+        raise named from error
+
+
+def _summary(
+    plan: Plan, reports: list[dict[str, Any]], rows: MeshRows
+) -> tuple[dict[str, Any], bool]:
+    """Return the report of the whole, and whether coordinates need double precision."""
+    report, (rounding, displacement, largest) = combined(reports)
+    told = rounding_message(rounding, displacement, largest) if rows.is_single else None
+    if told and rows.is_joined_by_position:
+        report["warnings"].append(f"{told}: choose .ply, or move the mesh to the origin first")
+        told = None
+    report["warnings"] += widening_warnings(told)
+    return {"tiles": plan.tiles, **report}, bool(told)

@@ -1,0 +1,89 @@
+"""Whether a file is filtered as a whole or in tiles."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from meshlab_spectral.errors import MemoryLimitError, MeshFileError
+from meshlab_spectral.files.sources import check_source
+from meshlab_spectral.filters.option_types import Options
+from meshlab_spectral.filters.options import FilterOptions
+from meshlab_spectral.process.parent import NO_LIMITS, JobLimits, ProgressCallback
+from meshlab_spectral.process.single_file import write_in_child
+from meshlab_spectral.tiles.rows import UntiledError
+
+# Smaller files are tried as a whole, without a look at them.
+_SMALL = 32 * 2**20
+# Memory that filtering a whole file takes for each vertex, from reading to writing; measured, about
+# 1,500 (tests/benchmarks/bench_tiles.py).
+_SURELY, _MOST = 1000, 2000
+
+
+def filter_file(
+    source: Path,
+    target: Path,
+    options: Options,
+    on_progress: ProgressCallback,
+    mesh: str | None,
+    overwrite: bool,
+    tiles: int | None,
+    tell: Callable[[str], None],
+) -> dict[str, Any]:
+    """Filter a file as `write_in_child` does; in tiles where that is refused for lack of memory.
+
+    Parameters
+    ----------
+    source, target, options, on_progress, mesh, overwrite
+        As for `write_in_child`.
+    tiles
+        How many; 0 for as many as it takes, if it takes any; None for none.
+    tell
+        Called with a line that says why there are tiles.
+
+    Raises
+    ------
+    SpectralError
+        As from `write_in_child`; UntiledError when a number of tiles is given for what cannot be
+        divided.
+    """
+    if tiles and not isinstance(options, FilterOptions):
+        raise UntiledError("only filter works in tiles: denoise looks at the mesh as a whole")
+    if tiles is None or not isinstance(options, FilterOptions):
+        return write_in_child(source, target, options, on_progress, mesh, overwrite)
+    if tiles > 0:
+        from meshlab_spectral.batch.tiles import filter_in_tiles
+
+        return filter_in_tiles(source, target, options, on_progress, tiles, tell, overwrite)
+    try:
+        limits = _limits(source)
+        return write_in_child(source, target, options, on_progress, mesh, overwrite, limits)
+    except MemoryLimitError as refusal:
+        from meshlab_spectral.batch.tiles import filter_in_tiles
+
+        try:
+            return filter_in_tiles(source, target, options, on_progress, 0, tell, overwrite)
+        except UntiledError as error:
+            raise MemoryLimitError(f"{refusal}; nor can it be filtered in tiles: {error}") from None
+
+
+def _limits(source: Path) -> JobLimits:
+    """Return the limits for a whole file; raise MemoryLimitError if it surely is too large."""
+    check_source(source)
+    if source.stat().st_size < _SMALL:
+        return NO_LIMITS
+    from meshlab_spectral.batch.memory import available_memory
+    from meshlab_spectral.tiles.rows import open_rows
+
+    try:
+        vertices = open_rows(source).vertices
+    except MeshFileError:
+        return NO_LIMITS
+    available = available_memory()
+    if _SURELY * vertices > available:
+        raise MemoryLimitError(
+            f"{source.name} needs more than {available / 2**20:.0f} MiB of memory"
+        )
+    # Before the system ends the process, for want of any memory.
+    return JobLimits(memory=available) if _MOST * vertices > available else NO_LIMITS

@@ -1,0 +1,7 @@
+"""Filtering of meshes that do not fit in memory: in overlapping tiles, from file to file.
+
+A filter of a feature size is local: beyond some feature sizes, nothing changes a vertex noticeably.
+`survey` measures the whole, `cells` divide space, `halo` says how far a filter reaches, `scatter`
+hands every face to each tile that needs it, `tile` filters one of them in a child process, `gather`
+writes the output, and `plan` knows the folder in which all of that is. `batch.tiles` runs it.
+"""

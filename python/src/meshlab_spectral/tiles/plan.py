@@ -1,0 +1,89 @@
+"""The folder of a run: its plan, and the files of each tile. An interrupted run goes on from it."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from meshlab_spectral.tiles.cells import Tree
+
+_PLAN, _SCATTERED = "plan.json", "scattered"
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What all tiles have in common.
+
+    Attributes
+    ----------
+    source, stamp
+        The input, and its size and time of change.
+    options
+        Those of the filter, as from `as_dict`.
+    lengths
+        Of the whole mesh: diagonal, mean edge, and diagonal of the surface.
+    has_selection
+        Whether only what is selected moves.
+    tree, tiles, reach
+        The cells, how many there are, and how far each tile goes beyond its cell.
+    versions
+        What the result depends on.
+    """
+
+    source: str
+    stamp: list[int]
+    options: dict[str, Any]
+    lengths: list[float]
+    has_selection: bool
+    tree: Tree
+    tiles: int
+    reach: float
+    versions: dict[str, str]
+
+
+class Workspace:
+    """The files of a run in a folder, which need not exist yet."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+
+    def plan(self) -> Plan:
+        """Return the plan of the run."""
+        return Plan(**json.loads((self.folder / _PLAN).read_text()))
+
+    def has_begun(self, plan: Plan) -> bool:
+        """Whether the faces have been handed to the tiles of this very plan."""
+        try:
+            same = self.plan() == Plan(**json.loads(json.dumps(asdict(plan))))
+        except (OSError, ValueError, TypeError):
+            return False
+        return same and (self.folder / _SCATTERED).exists()
+
+    def begin(self, plan: Plan) -> None:
+        """Write the plan."""
+        write_whole(self.folder / _PLAN, json.dumps(asdict(plan)))
+
+    def set_scattered(self) -> None:
+        """Note that all faces have been handed out."""
+        (self.folder / _SCATTERED).touch()
+
+    def file(self, tile: int, kind: str) -> Path:
+        """Return the file of a tile: "faces", "chosen", "ids", "xyz", "normals" or "json"."""
+        return self.folder / f"{tile}.{kind}"
+
+    def report(self, tile: int) -> dict[str, Any] | None:
+        """Return the report of a tile; None unless it is done."""
+        try:
+            report: dict[str, Any] = json.loads(self.file(tile, "json").read_text())
+        except (OSError, ValueError):
+            return None
+        return report
+
+
+def write_whole(path: Path, text: str) -> None:
+    """Write a small file, whole or not at all."""
+    beside = path.with_name(f"{path.name}.new")
+    beside.write_text(text)
+    beside.replace(path)

@@ -1,0 +1,77 @@
+"""The report of a run in tiles, made from those of its tiles."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Any
+
+_LARGEST = (
+    "step_error",
+    "error_estimate",
+    "thin_part_factor",
+    "passes",
+    "steps",
+    "factorizations",
+    "solves",
+    "products",
+)
+_ALIKE = ("feature_size", "cutoff_frequency")
+_NUMBER = re.compile(r"\d[\d.e+-]*")
+
+
+def combined(reports: list[dict[str, Any]]) -> tuple[dict[str, Any], tuple[float, float, float]]:
+    """Combine the reports of all tiles.
+
+    Returns
+    -------
+    report
+        Of the surface; it lacks what only the whole could tell, such as its components.
+    precision
+        Root mean squares of the rounding to single precision and of the displacement, over the
+        vertices that move, and the largest coordinate.
+    """
+    ran = [one for one in reports if "steps" in one]
+
+    def total(name: str) -> float:
+        return math.fsum(one.get(name, 0) for one in reports)
+
+    area, moved = total("own_area_before"), max(1.0, total("moved"))
+    report: dict[str, Any] = {name: ran[0][name] if ran else 0.0 for name in _ALIKE}
+    report |= {name: max((one[name] for one in ran), default=0) for name in _LARGEST}
+    report |= {
+        "area_before": area,
+        "area_after": total("own_area_after"),
+        "max_displacement": max(one["largest"] for one in reports),
+        "rms_displacement": math.sqrt(total("squares") / area) if area else 0.0,
+        "accuracy_reached": all(one["accuracy_reached"] for one in ran),
+        "singular_part": singular_part(reports),
+        "warnings": _warnings(ran),
+    }
+    precision = (
+        math.sqrt(total("rounding_squares") / moved),
+        math.sqrt(total("moved_squares") / moved),
+        max(one["largest_coordinate"] for one in reports),
+    )
+    return report, precision
+
+
+def singular_part(reports: list[dict[str, Any]]) -> float:
+    """Return the share of the surface on which the tolerance of automatic steps is not reached."""
+    area = math.fsum(one["own_area_before"] for one in reports)
+    parts = math.fsum(one.get("singular_part", 0) * one["own_area_before"] for one in reports)
+    return parts / area if area else 0.0
+
+
+def _warnings(reports: list[dict[str, Any]]) -> list[str]:
+    """Return each warning once, although its numbers differ from tile to tile."""
+    kinds: dict[str, list[str]] = {}
+    for one in reports:
+        for warning in one["warnings"]:
+            kinds.setdefault(_NUMBER.sub("#", warning), []).append(warning)
+    return [
+        told[0]
+        if len(set(told)) == 1 and len(told) == len(reports)
+        else f"{told[0]} (in {len(told)} of {len(reports)} tiles)"
+        for told in kinds.values()
+    ]

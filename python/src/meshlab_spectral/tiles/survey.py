@@ -1,0 +1,81 @@
+"""What a filter needs to know about the whole mesh: a pass over the points, one over the faces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from meshlab_spectral.documents import ply
+from meshlab_spectral.documents.document import Array
+from meshlab_spectral.errors import MeshFileError
+from meshlab_spectral.tiles.rows import MeshRows, StageCallback, chunks
+
+_SAMPLE = 400_000  # points, at most, by which the cells are chosen
+
+
+class Lengths(NamedTuple):
+    """Lengths of a mesh that sizes and defaults refer to."""
+
+    diagonal: float  # of the bounding box
+    mean_edge: float
+    surface_diagonal: float  # of the bounding box of the triangles
+
+
+@dataclass(frozen=True)
+class Survey:
+    """The lengths of a mesh, points at random places of it, and whether any part is selected."""
+
+    lengths: Lengths
+    sample: Array
+    has_selection: bool
+
+
+def survey(mesh: MeshRows, on_progress: StageCallback) -> Survey:
+    """Measure a mesh; raises MeshFileError when a coordinate is not finite or a face is invalid."""
+    box, surface, total, sample, has_selection = _Box(), _Box(), 0.0, [], False
+    if not mesh.is_joined_by_position:
+        for i, j in chunks(mesh.points):
+            box.add(_finite(mesh, mesh.positions(slice(i, j))))
+            if mesh.flags[0]:
+                has_selection |= _any_selected(mesh.columns(slice(i, j), "flags"))
+            mesh.forget()
+    share = min(1.0, _SAMPLE / mesh.faces)
+    for i, j in chunks(mesh.faces):
+        on_progress("measuring the mesh", i / mesh.faces)
+        X = _finite(mesh, mesh.positions(mesh.triangles(i, j).ravel())).reshape(-1, 3, 3)
+        surface.add(X.reshape(-1, 3))
+        total += float(np.linalg.norm(X - X[:, [1, 2, 0]], axis=2).sum())
+        chosen = np.random.default_rng(i).integers(0, len(X), max(1, int(share * len(X))))
+        sample.append(X[chosen, 0])
+        if mesh.flags[1]:
+            has_selection |= bool(mesh.selected_faces(i, j).any())
+        mesh.forget()
+    diagonal = surface.diagonal if mesh.is_joined_by_position else box.diagonal
+    lengths = Lengths(diagonal, total / (3 * mesh.faces), surface.diagonal)
+    return Survey(lengths, np.vstack(sample), has_selection)
+
+
+class _Box:
+    def __init__(self) -> None:
+        self.low, self.high = np.full(3, np.inf), np.full(3, -np.inf)
+
+    def add(self, points: Array) -> None:
+        if len(points):
+            self.low = np.minimum(self.low, points.min(axis=0))
+            self.high = np.maximum(self.high, points.max(axis=0))
+
+    @property
+    def diagonal(self) -> float:
+        return float(np.linalg.norm(self.high - self.low))
+
+
+def _any_selected(flags: Array) -> bool:
+    return bool((flags.astype(np.int64) & ply.SELECTED).any())
+
+
+def _finite(mesh: MeshRows, points: Array) -> Array:
+    if not np.isfinite(points).all():
+        raise MeshFileError(f"{mesh.path} has coordinates that are not finite", "bad_values")
+    return points
