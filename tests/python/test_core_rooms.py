@@ -18,7 +18,16 @@ ARROWS = {
     "noise": {"mesh", "support"},
     "denoise": {"noise", "laplacian", "mesh", "support"},
     "filter": {"transfer", "krylov", "harmonics", "laplacian", "ldlt", "mesh", "support"},
-    "analysis": {"krylov", "harmonics", "laplacian", "ldlt", "mesh", "support"},
+    "analysis": {
+        "filter",
+        "transfer",
+        "krylov",
+        "harmonics",
+        "laplacian",
+        "ldlt",
+        "mesh",
+        "support",
+    },
     "contract": {"analysis", "denoise", "filter", "transfer", "laplacian", "mesh", "support"},
 }
 
