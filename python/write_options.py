@@ -41,6 +41,7 @@ CHOICES = {
     "boundary": "Boundary",
     "weight": "Weight",
     "result": "Result",
+    "form": "Form",
 }
 FLAGS = {("BasisOptions", "basis_size"): ("--basis-size", "-k")}
 # Of FilterOptions: what defines the transfer function and the Laplacian.

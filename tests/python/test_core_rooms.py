@@ -18,7 +18,17 @@ ARROWS = {
     "noise": {"mesh", "support"},
     "denoise": {"noise", "laplacian", "mesh", "support"},
     "filter": {"transfer", "krylov", "harmonics", "laplacian", "ldlt", "mesh", "support"},
-    "analysis": {"noise", "krylov", "harmonics", "laplacian", "ldlt", "mesh", "support"},
+    "analysis": {
+        "filter",
+        "noise",
+        "transfer",
+        "krylov",
+        "harmonics",
+        "laplacian",
+        "ldlt",
+        "mesh",
+        "support",
+    },
     "contract": {
         "analysis",
         "denoise",

@@ -1,185 +1,210 @@
 #include "core/analysis/surface_texture.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <vector>
+#include <optional>
 
-#include "core/krylov/full_spectrum.h"
-#include "core/krylov/pole_selection.h"
-#include "core/laplacian/interior.h"
+#include "core/analysis/coarse_surface.h"
+#include "core/analysis/evaluated_part.h"
+#include "core/analysis/form_fit.h"
+#include "core/filter/full_spectrum_evaluator.h"
 #include "core/laplacian/vertex_weight.h"
-#include "core/mesh/creases.h"
 #include "core/mesh/normals.h"
 #include "core/support/errors.h"
 #include "core/support/frequency.h"
 #include "core/support/threads.h"
+#include "core/transfer/transfer_function.h"
 
 namespace spectral {
 
 namespace {
 
-// Relative to the size of the shape, of which roughness is a thousandth.
-constexpr double kAccuracy = 1e-8;
+std::optional<ShapeKind> shapeKind(FormKind form) {
+    if (form == FormKind::Plane) return ShapeKind::Plane;
+    if (form == FormKind::Sphere) return ShapeKind::Sphere;
+    if (form == FormKind::Cylinder) return ShapeKind::Cylinder;
+    return {};
+}
+
+double formSizeOf(const TextureOptions& options) {
+    return options.formSize > 0.0 ? options.formSize : kFormPerWaviness * options.waviness;
+}
 
 void checkOptions(const TextureOptions& options) {
-    if (!(options.waviness > 0.0) || !std::isfinite(options.waviness))
+    if (!(options.waviness > 0.0 || (isShape(options.form) && options.waviness == 0.0)) ||
+        !std::isfinite(options.waviness))
         throw InvalidOption("waviness = " + textOf(options.waviness) +
                             ": must be a length above zero, the cutoff of the L-filter");
-    if (!(options.noise >= 0.0 && options.noise < options.waviness))
+    if (!(options.noise >= 0.0 && std::isfinite(options.noise)) ||
+        (options.waviness > 0.0 && options.noise >= options.waviness))
         throw InvalidOption("noise = " + textOf(options.noise) +
                             ": must be a length below waviness = " + textOf(options.waviness) +
                             ", or 0 for no S-filter");
-    if (options.form != 0.0 && !(options.form > options.waviness && std::isfinite(options.form)))
-        throw InvalidOption("form = " + textOf(options.form) +
+    if (options.form == FormKind::Size &&
+        !(formSizeOf(options) > options.waviness && std::isfinite(formSizeOf(options))))
+        throw InvalidOption("form_size = " + textOf(options.formSize) +
                             ": must be a length above waviness = " + textOf(options.waviness) +
                             ", or 0 for eight times that");
     if (!(options.creaseAngle >= 0.0 && options.creaseAngle <= 180.0))
         throw InvalidOption("crease_angle = " + textOf(options.creaseAngle) +
                             ": must be between 0 and 180 degrees");
+    checkWeights({options.selected, {}});
 }
 
-/// Low-passes of signals X at several sizes, from one Krylov space with the pole of the largest.
-std::vector<FullSpectrumResult> lowPasses(const Laplacian& laplacian, const Eigen::MatrixXd& X,
-                                          const MeshLaplacian& mesh,
-                                          const std::vector<double>& sizes,
-                                          const Progress& progress) {
-    std::vector<Gain> gains;
-    for (const double size : sizes)
-        gains.emplace_back([size](double omega) { return standardGaussian(omega, size); });
-    ShiftedLdlt ldlt;
-    ldlt.factorizeDefinite(laplacian.W, laplacian.D,
-                           selectPole(gains.back(), cutoffFrequency(sizes.back()),
-                                      bulkSpectrum(mesh.laplacian), kAccuracy));
-    FullSpectrumOptions evaluation;
-    evaluation.accuracy = kAccuracy;
-    evaluation.roundOffAtVertices = roundOffAtVertices(ldlt, laplacian);
-    return applyFullSpectrum(laplacian, ShiftInvert(ldlt), gains, X, evaluation, progress);
+/// The low-pass of ISO 16610-61 with a nesting index, exp(-pi (alpha size / wavelength)^2) with
+/// alpha = sqrt(ln 2 / pi): 2^-(size / wavelength)^2. Ours is 2^(-w^2 / 2), w = feature size /
+/// wavelength, and so the same for a feature size of sqrt(2) nesting indices.
+TransferFunction standardGaussian(double size) {
+    return {{}, cutoffFrequency(std::sqrt(2.0) * size)};
 }
 
-/// Whether each vertex is further than a cutoff from boundaries and sharp creases: within it, the
-/// low-pass averages over what is not there, or over both sides of the crease.
-std::vector<bool> evaluatedVertices(const MeshLaplacian& mesh, const TextureOptions& options) {
-    const Surface& surface = mesh.surface;
-    std::vector<bool> ends = boundaryVertices(surface.F, surface.X.rows());
-    if (options.creaseAngle < 180.0) {
-        const std::vector<bool> creases = creaseVertices(surface.X, surface.F, options.creaseAngle);
-        for (std::size_t i = 0; i < ends.size(); ++i) ends[i] = ends[i] || creases[i];
+/// Low-passes of a signal at a nesting index, and at a smaller one if that is not 0: fractional
+/// powers of one Gaussian. In the order {larger, smaller}; the smallest of all is the signal.
+Evaluation lowPasses(const Laplacian& laplacian, const Eigen::MatrixXd& X, double size,
+                     double smaller, double accuracy, const Progress& progress) {
+    const TransferFunction F = standardGaussian(size);
+    std::vector<double> powers{1.0};
+    if (smaller > 0.0) powers.push_back(std::pow(smaller / size, 2));
+    Evaluation done = FullSpectrumEvaluator(F, accuracy, false, Solver::Cheapest)
+                          .evaluate(laplacian, X, powers, accuracy, progress);
+    if (smaller == 0.0) done.Y.push_back(X);
+    return done;
+}
+
+/// The low-pass of heights at a form size: on cells a sixteenth of it in size, as form varies so
+/// slowly, and then over the steps between them.
+/// @param smooth  n x 3, the surface without roughness.
+Eigen::VectorXd slowPart(const MeshLaplacian& mesh, const Vertices& smooth,
+                         const Eigen::VectorXd& h, double size, const Progress& progress) {
+    constexpr double kCells = 16.0, kStep = 2.0;  // cells in a size, and in what smooths steps
+    constexpr Index kFewer = 4;                   // cells are worth it if there are so many fewer
+    constexpr double kAccuracy = 1e-4;            // of what is a correction
+    const Laplacian& laplacian = mesh.laplacian;
+    const double step = kStep * size / kCells;
+    const CoarseSurface coarse = coarsened(mesh, smooth, size / kCells);
+    if (kFewer * coarse.laplacian.D.size() > laplacian.D.size())
+        return lowPasses(laplacian, h, size, 0.0, kAccuracy, progress).Y[0];
+    const Evaluation form =
+        lowPasses(coarse.laplacian, coarse.meansOf(h, laplacian.D),
+                  std::sqrt(size * size - step * step), 0.0, kAccuracy, progress);
+    return lowPasses(laplacian, coarse.constantIn(form.Y[0]), step, 0.0, kAccuracy, progress).Y[0];
+}
+
+/// What is left of a signal by the S- and L-filters, its reference, and how accurately.
+struct Separated {
+    Eigen::MatrixXd waviness;  ///< The signal without noise and roughness; 0 without an L-filter.
+    Eigen::MatrixXd roughness;
+    double errorEstimate = 0.0;  ///< Root mean square, units of the signal.
+    bool accuracyReached = true;
+};
+
+Separated separated(const Laplacian& laplacian, const Eigen::MatrixXd& X,
+                    const TextureOptions& options, const Progress& progress) {
+    const bool hasWaviness = options.waviness > 0.0;
+    if (!hasWaviness && options.noise == 0.0) return {Eigen::MatrixXd::Zero(X.rows(), X.cols()), X};
+    const Evaluation done =
+        hasWaviness
+            ? lowPasses(laplacian, X, options.waviness, options.noise, kTextureAccuracy, progress)
+            : lowPasses(laplacian, X, options.noise, 0.0, kTextureAccuracy, progress);
+    const double size =
+        std::sqrt((laplacian.D.asDiagonal() * X.cwiseAbs2()).sum() / laplacian.D.sum());
+    Separated parts{done.Y[0], {}, done.errorEstimate * size, done.accuracyReached};
+    if (hasWaviness) {
+        parts.roughness = done.Y[1] - done.Y[0];
+    } else {
+        parts.roughness = done.Y[0];
+        parts.waviness.setZero();
     }
-    std::vector<bool> evaluated(ends.size(), true);
-    if (std::find(ends.begin(), ends.end(), true) == ends.end()) return evaluated;
-    const Eigen::VectorXd near =
-        selectionWeight(mesh.laplacian, mesh.components, ends, options.waviness);
-    for (std::size_t i = 0; i < ends.size(); ++i) evaluated[i] = near[static_cast<Index>(i)] == 0.0;
-    return evaluated;
+    return parts;
 }
 
-/// Heights are weighted with the vertex areas of the reference: moments of the distribution.
-void measureHeights(const Eigen::VectorXd& h, const Eigen::VectorXd& areas,
-                    const std::vector<bool>& evaluated, SurfaceTexture& texture) {
-    double sum = 0.0, squares = 0.0, cubes = 0.0, fourths = 0.0;
-    double highest = 0.0, lowest = 0.0;
-    for (Index i = 0; i < h.size(); ++i) {
-        if (!evaluated[i]) continue;
-        texture.area += areas[i];
-        sum += areas[i] * std::abs(h[i]);
-        squares += areas[i] * std::pow(h[i], 2);
-        cubes += areas[i] * std::pow(h[i], 3);
-        fourths += areas[i] * std::pow(h[i], 4);
-        highest = std::max(highest, h[i]);
-        lowest = std::min(lowest, h[i]);
-    }
-    texture.Sa = sum / texture.area;
-    texture.Sq = std::sqrt(squares / texture.area);
-    texture.Sp = highest;
-    texture.Sv = -lowest;
-    texture.Sz = highest - lowest;
-    if (texture.Sq == 0.0) return;
-    texture.Ssk = cubes / texture.area / std::pow(texture.Sq, 3);
-    texture.Sku = fourths / texture.area / std::pow(texture.Sq, 4);
+/// Unit normals; 0 where the surface has shrunk to a point.
+Vertices unitNormals(const Vertices& X, const Faces& F) {
+    Vertices N = angleWeightedNormals<double>(X, F).vertices;
+    N.rowwise().normalize();  // leaves zeros
+    return N.array().isFinite().select(N, 0.0);
 }
 
-/// Squared slope of a height that is linear on a triangle of the reference; -1 without area.
-double squaredSlope(const Eigen::RowVector3d& a, const Eigen::RowVector3d& b, double da,
-                    double db) {
-    const double aa = a.squaredNorm(), ab = a.dot(b), bb = b.squaredNorm();
-    const double determinant = aa * bb - ab * ab;
-    if (!(determinant > 0.0)) return -1.0;
-    return (bb * da * da - 2.0 * ab * da * db + aa * db * db) / determinant;
+/// Heights, and what they stand on.
+struct Heights {
+    Eigen::VectorXd h;
+    Vertices reference;
+    double formRadius = 0.0;
+    double errorEstimate = 0.0;
+    bool accuracyReached = true;
+};
+
+Heights heightsAboveShape(ShapeKind kind, const MeshLaplacian& mesh,
+                          const std::vector<bool>& evaluated, const TextureOptions& options,
+                          const Progress& progress) {
+    const Vertices& X = mesh.surface.X;
+    Eigen::VectorXd weights = mesh.laplacian.D;
+    for (Index i = 0; i < weights.size(); ++i)
+        if (!evaluated[i]) weights[i] = 0.0;
+    const FittedShape shape = fitShape(kind, X, unitNormals(X, mesh.surface.F), weights);
+    const auto [d, N] = shape.distancesOf(X);
+    const Separated parts = separated(mesh.laplacian, d, options, progress);
+    Heights heights;
+    heights.h = parts.roughness.col(0);
+    heights.reference = X + ((parts.waviness.col(0) - d).asDiagonal() * N);
+    heights.formRadius = shape.radius;
+    heights.errorEstimate = parts.errorEstimate;
+    heights.accuracyReached = parts.accuracyReached;
+    return heights;
 }
 
-void measureSlopes(const Eigen::VectorXd& h, const Vertices& reference, const Faces& F,
-                   const std::vector<bool>& evaluated, SurfaceTexture& texture) {
-    double total = 0.0, slopes = 0.0, added = 0.0;
-    for (Index t = 0; t < F.rows(); ++t) {
-        const int i = F(t, 0), j = F(t, 1), k = F(t, 2);
-        if (!evaluated[i] || !evaluated[j] || !evaluated[k]) continue;
-        const Eigen::RowVector3d a = reference.row(j) - reference.row(i);
-        const Eigen::RowVector3d b = reference.row(k) - reference.row(i);
-        const double squared = squaredSlope(a, b, h[j] - h[i], h[k] - h[i]);
-        if (squared < 0.0) continue;
-        const double area = 0.5 * a.cross(b).norm();
-        total += area;
-        slopes += area * squared;
-        added += area * squared / (std::sqrt(1.0 + squared) + 1.0);  // sqrt(1 + s) - 1
-    }
-    if (total == 0.0) return;
-    texture.Sdq = std::sqrt(slopes / total);
-    texture.Sdr = added / total;
+Heights heightsAboveLowPass(const MeshLaplacian& mesh, const TextureOptions& options,
+                            const Progress& progress) {
+    const Separated parts = separated(mesh.laplacian, mesh.surface.X, options, progress);
+    Heights heights;
+    heights.reference = parts.waviness;
+    heights.errorEstimate = parts.errorEstimate;
+    heights.accuracyReached = parts.accuracyReached;
+    const Vertices N = unitNormals(heights.reference, mesh.surface.F);
+    heights.h = parts.roughness.cwiseProduct(N).rowwise().sum();
+    if (options.form == FormKind::None) return heights;
+    heights.h -= slowPart(mesh, heights.reference, heights.h, formSizeOf(options), progress);
+    return heights;
+}
+
+int countOf(const std::vector<bool>& flags) {
+    return static_cast<int>(std::count(flags.begin(), flags.end(), true));
 }
 
 }  // namespace
-
-// exp(-pi (alpha size / wavelength)^2) with alpha = sqrt(ln 2 / pi) (ISO 16610-61) is
-// 2^-(size / wavelength)^2, with size / wavelength = omega size / 2 pi. The low-pass of the filters
-// is 2^(-w^2 / 2), w = feature size / wavelength, 3 dB at the feature size: it is this one if
-// w^2 / 2 = (size / wavelength)^2, for a feature size of sqrt(2) nesting indices.
-double standardGaussian(double omega, double size) {
-    return std::exp2(-std::pow(omega / cutoffFrequency(size), 2));
-}
 
 SurfaceTexture surfaceTexture(const Vertices& V, const Faces& F, const TextureOptions& options,
                               const Progress& progress) {
     checkOptions(options);
     const ThreadTeam team(progress);
     const MeshLaplacian mesh = meshLaplacian(V, F, options.laplacian);
-    const Vertices& X = mesh.surface.X;
-    const std::vector<bool> evaluated = evaluatedVertices(mesh, options);
-    SurfaceTexture texture;
-    texture.evaluated = static_cast<int>(std::count(evaluated.begin(), evaluated.end(), true));
-    texture.leftOut = static_cast<int>(evaluated.size()) - texture.evaluated;
-    if (texture.evaluated == 0)
-        throw InvalidOption("waviness = " + textOf(options.waviness) +
+    std::vector<bool> evaluated(mesh.surface.vertex.size(), true);
+    if (!options.selected.empty()) evaluated = selectedOn(mesh.surface, options.selected);
+    const int selected = countOf(evaluated);
+    const double cutoff = options.waviness > 0.0 ? options.waviness : options.noise;
+    const std::vector<bool> isFar =
+        farFromEnds(mesh.surface, mesh.laplacian.W, options.creaseAngle, cutoff);
+    for (std::size_t i = 0; i < evaluated.size(); ++i) evaluated[i] = evaluated[i] && isFar[i];
+    const int count = countOf(evaluated);
+    if (count == 0)
+        throw InvalidOption("waviness = " + textOf(cutoff) +
                             ": the whole surface is within this distance of its boundary or of "
                             "creases, choose a smaller one, or a larger crease_angle");
 
-    std::vector<double> sizes{options.waviness};
-    if (options.noise > 0.0) sizes.insert(sizes.begin(), options.noise);
-    const std::vector<FullSpectrumResult> smooth =
-        lowPasses(mesh.laplacian, X, mesh, sizes, progress);
-    const Vertices reference = smooth.back().Y;
-    const Vertices detail = (options.noise > 0.0 ? Vertices(smooth.front().Y) : X) - reference;
-
-    Vertices normals = angleWeightedNormals<double>(reference, mesh.surface.F).vertices;
-    normals.rowwise().normalize();  // leaves zeros
-    // None where the reference has shrunk to a point.
-    normals = normals.array().isFinite().select(normals, 0.0).eval();
-    Eigen::VectorXd h = detail.cwiseProduct(normals).rowwise().sum();
-    const double form = options.form > 0.0 ? options.form : kFormPerWaviness * options.waviness;
-    const FullSpectrumResult offset = lowPasses(mesh.laplacian, h, mesh, {form}, progress).front();
-    h -= offset.Y.col(0);
-
-    measureHeights(h, lumpedMass(reference, mesh.surface.F), evaluated, texture);
-    measureSlopes(h, reference, mesh.surface.F, evaluated, texture);
-    for (Index i = 0; i < h.size(); ++i)
-        if (!evaluated[i]) h[i] = 0.0;
-    texture.height = extended(h, mesh.surface, V.rows());
-    texture.accuracyReached = offset.converged;
-    for (const FullSpectrumResult& one : smooth) {
-        texture.accuracyReached = texture.accuracyReached && one.converged;
-        texture.errorEstimate =
-            std::max(texture.errorEstimate, one.errorEstimate * X.cwiseAbs().maxCoeff());
-    }
+    const std::optional<ShapeKind> kind = shapeKind(options.form);
+    Heights heights = kind ? heightsAboveShape(*kind, mesh, evaluated, options, progress)
+                           : heightsAboveLowPass(mesh, options, progress);
+    SurfaceTexture texture;
+    static_cast<TextureParameters&>(texture) =
+        textureParameters(heights.h, heights.reference, mesh.surface.F, evaluated);
+    for (Index i = 0; i < heights.h.size(); ++i)
+        if (!evaluated[i]) heights.h[i] = 0.0;
+    texture.height = extended(heights.h, mesh.surface, V.rows());
+    texture.evaluated = count;
+    texture.leftOut = selected - count;
+    texture.formRadius = heights.formRadius;
+    texture.errorEstimate = heights.errorEstimate;
+    texture.accuracyReached = heights.accuracyReached;
     return texture;
 }
 

@@ -1,17 +1,35 @@
 #pragma once
 
+#include <vector>
+
+#include "core/analysis/height_statistics.h"
 #include "core/laplacian/laplacian_builder.h"
 #include "core/support/progress.h"
 
 namespace spectral {
 
+/// What of a surface is its form, and no texture (the F-operator).
+enum class FormKind {
+    Size,      ///< What varies more slowly than a size.
+    None,      ///< Nothing: where it is curved, a low-pass draws it in, which adds to the heights.
+    Plane,     ///< The plane nearest to the evaluated vertices, by least squares of distances.
+    Sphere,    ///< The nearest sphere.
+    Cylinder,  ///< The nearest cylinder.
+};
+
+/// Whether heights are distances from a fitted shape.
+constexpr bool isShape(FormKind form) { return form >= FormKind::Plane; }
+
 /// Nesting indices of the filters of ISO 25178-2: wavelengths that are halved, length units.
 struct TextureOptions {
-    double waviness = 0.0;  ///< L-filter: what is larger is waviness, > 0.
+    double waviness = 0.0;  ///< L-filter: what is larger is waviness, > 0; 0: none, with a plane,
+                            ///< sphere or cylinder.
     double noise = 0.0;     ///< S-filter: what is smaller is noise; 0: none.
-    double form = 0.0;  ///< F-operator: what is larger is form, > waviness; 0: `kFormPerWaviness`.
-    double creaseAngle = 60.0;  ///< Edges between planes that differ by more, degrees, have no
-                                ///< texture; 180: all have.
+    FormKind form = FormKind::Size;
+    double formSize = 0.0;       ///< For FormKind::Size, > waviness; 0: `kFormPerWaviness` of that.
+    double creaseAngle = 60.0;   ///< Edges between planes that differ by more, degrees, have no
+                                 ///< texture; 180: all have.
+    std::vector<bool> selected;  ///< n, whether to measure each vertex; empty: all.
     LaplacianKind laplacian = LaplacianKind::IntrinsicDelaunay;
 };
 
@@ -19,35 +37,34 @@ struct TextureOptions {
 /// leaves 4 %: the texture is still that of the L-filter, to .003.
 constexpr double kFormPerWaviness = 8.0;
 
+/// Relative to the size of what is filtered: of a shape, roughness is a thousandth.
+constexpr double kTextureAccuracy = 1e-6;
+
 /// The roughness of a surface, S-L surface in the words of ISO 25178-2, and its parameters.
-struct SurfaceTexture {
-    Eigen::VectorXd height;  ///< n: height above the reference surface along its normal, length
-                             ///< units; 0 where it is left out, and at unreferenced vertices.
-    double Sa = 0.0;         ///< Mean of |height|, length units; the next five are lengths, too.
-    double Sq = 0.0;         ///< Root mean square of the height.
-    double Sp = 0.0, Sv = 0.0, Sz = 0.0;  ///< Highest peak, deepest valley, their sum.
-    double Ssk = 0.0, Sku = 0.0;          ///< Skewness and kurtosis of the heights; 0 if Sq is 0.
-    double Sdq = 0.0;                     ///< Root mean square of the slope.
-    double Sdr = 0.0;   ///< Additional area of the surface, relative to the reference's.
-    double area = 0.0;  ///< Of the reference surface where it is evaluated, length squared.
-    int evaluated = 0;  ///< Number of vertices there.
-    int leftOut = 0;    ///< Number of vertices within a cutoff of a boundary or crease.
-    double errorEstimate = 0.0;  ///< Estimated largest error of the filtered coordinates, length.
+struct SurfaceTexture : TextureParameters {
+    Eigen::VectorXd height;      ///< n: height above the reference surface along its normal, length
+                                 ///< units; 0 where it is left out, and at unreferenced vertices.
+    int evaluated = 0;           ///< Number of vertices that count.
+    int leftOut = 0;             ///< Number of selected vertices within a cutoff of an end.
+    double formRadius = 0.0;     ///< Of the sphere or cylinder, length units; 0: none.
+    double errorEstimate = 0.0;  ///< Estimated error of the heights, root mean square, length.
     bool accuracyReached = false;
 };
 
-/// Transmission of the Gaussian filter of ISO 16610-61 at a frequency, 1/2 at the cutoff 2 pi /
-/// size.
-double standardGaussian(double omega, double size);
-
 /// Separates the roughness of a surface from its form and waviness, and measures it.
 ///
-/// The reference surface is the low-pass G_w X of the coordinates with the Laplacian A of the mesh
-/// itself, in one step (Jiang, Cooper, Scott 2011); the height along its normals N is
-/// h = (1 - G_f) <N, (G_n - G_w) X>, of waviness w, noise n, form f. Where the surface is curved a
-/// low-pass draws it in: this offset is as large as its form and goes with it. Integrals are over
-/// the reference surface. Where that has the radius of curvature r, roughness is transmitted as on
-/// a plane up to a relative error of about (w / 2 pi r)^2: the metric is that of the rough surface.
+/// With the low-passes G_w, G_n, G_f of waviness w, noise n and form size f, of the Laplacian of
+/// the mesh itself (Jiang, Cooper, Scott 2011), in one step each:
+/// - The reference surface is G_w X, and the height along its normals N is
+///   h = (1 - G_f) <N, (G_n - G_w) X>. Where the surface is curved a low-pass draws it in: this
+///   offset is as large as its form and goes with it.
+/// - From a plane, sphere or cylinder, at the distance d: h = (G_n - G_w) d, along its normals.
+/// Integrals are over the reference surface, which is also that without roughness.
+///
+/// On a plane, and from a fitted shape, waves are transmitted as the standard says. Coordinates are
+/// vectors, whose directions turn around a curved surface: on a cylinder of radius r, m waves
+/// around it keep ((1 - 1/m) H(m + 1) + (1 + 1/m) H(m - 1)) / 2 in place of H(m), .479 in place of
+/// .5 at a cutoff of r, .495 at half of it.
 ///
 /// @param V  n x 3 positions, finite.
 /// @param F  m x 3 vertex indices, m >= 1; any topology, unreferenced vertices allowed.

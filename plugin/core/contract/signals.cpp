@@ -170,7 +170,9 @@ Filter qualityContract() {
             "apply_scalar_spectral_filter_per_vertex",
             "Filters the *vertex quality*, i.e. any number per vertex, by the size of its details "
             "on the surface, as Spectral Filter (Fractional) filters shapes. The shape does not "
-            "change; a quality of NaN means no data.",
+            "change; a quality of NaN means no data. Smoothing stated as a full width at half "
+            "maximum (FWHM), as in brain imaging, is the low-pass at a feature size of 3.20 times "
+            "that width.",
             "",
             parametersOf(signalFields()),
             describedBy(signalEntries()),

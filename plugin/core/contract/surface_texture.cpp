@@ -23,29 +23,46 @@ double wavinessOf(const MeshLengths& mesh) {
     return 2.0 * defaultFeatureSize(mesh.meanEdge, mesh.surfaceDiagonal);
 }
 
-Fields<TextureOptions> textureFields() {
-    using Call = TextureOptions;
+struct TextureCall {
+    TextureOptions options;
+    bool selected = false;
+};
+
+Fields<TextureCall> textureFields() {
+    using Call = TextureCall;
     return {
-        field<Call>([](auto& call) -> auto& { return call.waviness; }, "waviness",
+        field<Call>([](auto& call) -> auto& { return call.options.waviness; }, "waviness",
                     "Waviness cutoff",
                     "Nesting index of the L-filter: what is larger is waviness or form, and no "
                     "roughness. Waves of this length keep half of their height, as in ISO "
-                    "16610-61.")
+                    "16610-61. The whole diagonal, with a plane, sphere or cylinder as |form|: no "
+                    "L-filter.")
             .in("length, above 0")
             .above(0.0)
             .length("auto", wavinessOf, "twelve mean edges, at most 10 % of the diagonal"),
-        field<Call>([](auto& call) -> auto& { return call.noise; }, "noise", "Noise cutoff",
+        field<Call>([](auto& call) -> auto& { return call.options.noise; }, "noise", "Noise cutoff",
                     "Nesting index of the S-filter: what is smaller is noise, and no roughness. "
                     "The default: none is removed.")
             .in("length, at least 0")
             .length("auto", nullptr, "0: no S-filter"),
-        field<Call>([](auto& call) -> auto& { return call.form; }, "form", "Form size",
-                    "Size of the F-operator: heights that vary more slowly are form. The default: "
-                    "eight times |waviness|.")
+        field<Call>([](auto& call) -> auto& { return call.options.form; }, "form", "Form",
+                    "What of the shape is form (F-operator), and no roughness. *size*: heights "
+                    "that vary more slowly than |form_size|; fits any shape. *plane*, *sphere*, "
+                    "*cylinder*: the one nearest to the measured surface, by least squares; "
+                    "better for a sphere or a cylinder with a radius of less than two waviness "
+                    "cutoffs. *none*: nothing, so that curvature adds to the heights.")
+            .of({"size", "none", "plane", "sphere", "cylinder"}),
+        field<Call>([](auto& call) -> auto& { return call.options.formSize; }, "form_size",
+                    "Form size",
+                    "For |form| *size*: heights that vary more slowly are form. The default: eight "
+                    "times |waviness|.")
             .in("length, above the waviness cutoff")
             .length("auto", nullptr, "0: eight waviness cutoffs")
-            .advanced(),
-        field<Call>([](auto& call) -> auto& { return call.creaseAngle; }, "crease_angle",
+            .advanced()
+            .unusedIf([](const Call& call) {
+                return call.options.form == FormKind::Size ? nullptr : "without form = size";
+            }),
+        field<Call>([](auto& call) -> auto& { return call.options.creaseAngle; }, "crease_angle",
                     "Crease angle (degrees)",
                     "Edges between faces whose planes differ by more are creases. The surface "
                     "within a waviness cutoff of them, and of boundaries, is left out: it has the "
@@ -53,7 +70,11 @@ Fields<TextureOptions> textureFields() {
             .in("degrees, 0 to 180")
             .to(180.0)
             .advanced(),
-        laplacianField<Call>([](auto& call) -> auto& { return call.laplacian; }),
+        field<Call>([](auto& call) -> auto& { return call.selected; }, "selected",
+                    "Only the selection",
+                    "Measure only the selected faces and vertices; the others have the height 0. "
+                    "A plane, sphere or cylinder is fitted to them alone."),
+        laplacianField<Call>([](auto& call) -> auto& { return call.options.laplacian; }),
     };
 }
 
@@ -83,11 +104,23 @@ Entries<Measured> textureEntries() {
          [](const R& r) -> Value { return r.Sdr; }},
         {"area", "of the reference surface where it is evaluated, length²",
          [](const R& r) -> Value { return r.area; }},
+        {"histogram_heights", "centres of the 64 bins of the histogram, ascending, length",
+         [](const R& r) -> Value { return r.histogramHeights; }},
+        {"histogram_shares", "share of the area with a height in each of these bins",
+         [](const R& r) -> Value { return r.histogramShares; }},
+        {"bearing_heights",
+         "bearing curve (Abbott-Firestone): the heights that 0, 1, ..., 100 % of the area exceed, "
+         "length",
+         [](const R& r) -> Value { return r.bearingHeights; }},
+        {"form_radius", "of the sphere or cylinder that was fitted, length",
+         [](const R& r) -> Value { return r.formRadius; },
+         [](const R& r) { return r.formRadius > 0.0; }},
         {"vertices_evaluated", "number of vertices that count",
          [](const R& r) -> Value { return r.evaluated; }},
-        {"vertices_left_out", "number of vertices within a cutoff of a boundary or a crease",
+        {"vertices_left_out",
+         "number of selected vertices within a cutoff of a boundary or a crease",
          [](const R& r) -> Value { return r.leftOut; }},
-        {"error_estimate", "estimated largest error of the filtered coordinates, length",
+        {"error_estimate", "estimated root mean square error of the heights, length",
          [](const R& r) -> Value { return r.errorEstimate; }},
     };
 }
@@ -101,20 +134,31 @@ std::string textOf(const Measured& texture) {
          << texture.Sku << ", Sdq " << texture.Sdq << ", Sdr " << 100.0 * texture.Sdr
          << " %\n  evaluated: " << texture.evaluated << " vertices; left out: " << texture.leftOut
          << " within a cutoff of boundaries and creases";
+    if (texture.formRadius > 0.0) text << "\n  form: of radius " << texture.formRadius;
     return text.str();
 }
 
 FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values& given,
                  const Progress& progress) {
-    const TextureOptions options = callOf(textureFields(), given, mesh);
+    static const Fields<TextureCall> fields = textureFields();
+    TextureCall call = callOf(fields, given, mesh);
+    TextureOptions& options = call.options;
+    if (call.selected) options.selected = input.selected;
+    constexpr double kSinglePrecision = 1e-6;
+    if (options.waviness >= (1.0 - kSinglePrecision) * mesh.diagonal && isShape(options.form))
+        options.waviness = 0.0;
     Measured texture{surfaceTexture(input.V, input.F, options, progress), options.waviness,
                      options.noise};
     FilterOutput output;
     output.report = reportOf(textureEntries(), texture);
     output.text = textOf(texture);
     output.warnings = percentageWarnings(mesh);
+    if (const std::string note = selectionText(options.selected); !note.empty())
+        output.warnings.push_back(note);
     if (!texture.accuracyReached)
-        output.warnings.push_back(accuracyWarning(1e-8, texture.errorEstimate / mesh.diagonal));
+        output.warnings.push_back(
+            accuracyWarning(kTextureAccuracy, texture.errorEstimate / mesh.diagonal));
+    append(unusedWarnings(fields, call), output.warnings);
     output.values = std::move(texture.height);
     return output;
 }

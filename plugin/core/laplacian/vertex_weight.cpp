@@ -29,6 +29,14 @@ void checkWeights(const WeightOptions& options) {
                 ": it must be between 0, which leaves a vertex alone, and 1, the whole filter");
 }
 
+std::vector<bool> selectedOn(const Surface& surface, const std::vector<bool>& selected) {
+    std::vector<bool> onSurface;
+    for (const Index i : surface.vertex) onSurface.push_back(selected[i]);
+    for (const auto& [vertex, row] : surface.copies)
+        if (selected[vertex]) onSurface[row] = true;
+    return onSurface;
+}
+
 Eigen::VectorXd selectionWeight(const Laplacian& laplacian, const Components& components,
                                 const std::vector<bool>& selected, double width) {
     constexpr double kLengths = 3.0;  // decay lengths in a width
@@ -53,13 +61,9 @@ Eigen::VectorXd vertexWeight(const WeightOptions& options, const Surface& surfac
                              double featureSize) {
     Eigen::VectorXd weight = interior.extended(Eigen::VectorXd::Ones(interior.size()));
     if (contains(options.selected, false)) {
-        std::vector<bool> onSurface;
-        for (const Index i : surface.vertex) onSurface.push_back(options.selected[i]);
-        for (const auto& [vertex, row] : surface.copies)
-            if (options.selected[vertex]) onSurface[row] = true;
-        weight.array() *=
-            selectionWeight(laplacian, interior.surfaceComponents(), onSurface, featureSize)
-                .array();
+        weight.array() *= selectionWeight(laplacian, interior.surfaceComponents(),
+                                          selectedOn(surface, options.selected), featureSize)
+                              .array();
     }
     if (options.weight.size() > 0) weight.array() *= restricted(options.weight, surface).array();
     return weight;

@@ -17,6 +17,9 @@ struct WeightOptions {
 /// @throws InvalidOption  when nothing is selected, or a weight is not between 0 and 1.
 void checkWeights(const WeightOptions& options);
 
+/// Whether each vertex of a surface, or one of its copies, is selected in the mesh.
+std::vector<bool> selectedOn(const Surface& surface, const std::vector<bool>& selected);
+
 /// A smooth weight that is 1 on a selection and exactly 0 beyond about `width` from it.
 ///
 /// It is a smooth step applied to the solution m of W m = -D m / l^2 outside the selection, with

@@ -227,9 +227,9 @@ TEST(SurfaceTexture, RefusesSizesThatDoNotFit) {
     options.noise = 0.3;
     EXPECT_THROW(measured(mesh, options), InvalidOption);
     options.noise = 0.0;
-    options.form = 0.1;
+    options.formSize = 0.1;
     EXPECT_THROW(measured(mesh, options), InvalidOption);
-    options.form = 0.0;
+    options.formSize = 0.0;
     options.creaseAngle = 181.0;
     EXPECT_THROW(measured(mesh, options), InvalidOption);
 }

@@ -67,3 +67,38 @@ def test_a_cutoff_that_does_not_fit_is_refused(rough: Path) -> None:
     assert done.returncode == 1
     assert "noise = 0.4" in done.stderr
     assert "Traceback" not in done.stderr
+
+
+def test_filter_draws_before_after_and_deviation(rough: Path, tmp_path: Path) -> None:
+    for name in ("filter", "denoise"):
+        output, path = tmp_path / f"{name}.ply", tmp_path / f"{name}.png"
+        done = command(name, rough, output, "--picture", path)
+        assert done.returncode == 0, done.stderr
+        pixels = matplotlib.image.imread(path)
+        saturated = np.ptp(pixels[: -pixels.shape[0] // 3, :, :3], axis=2) > 0.15
+        third = pixels.shape[1] // 3
+        assert not saturated[:, : 2 * third].any()
+        assert saturated[:, 2 * third :].mean() > 0.05
+
+
+def test_a_picture_that_cannot_be_written_is_refused_before_the_work(
+    rough: Path, tmp_path: Path
+) -> None:
+    output = tmp_path / "out.ply"
+    done = command("filter", rough, output, "--picture", tmp_path / "out.jpg")
+    assert done.returncode == 2
+    assert "PNG" in done.stderr
+    assert not output.exists()
+
+
+def test_the_selection_of_a_file_is_measured(tmp_path: Path) -> None:
+    made = pymeshlab.MeshSet()
+    made.create_sphere(subdiv=4)
+    made.compute_selection_by_condition_per_face(condselect="z0 > 0")
+    path = tmp_path / "half.ply"
+    made.save_current_mesh(str(path), save_vertex_flag=True, save_face_flag=True)
+    done = command("texture", path, "--waviness", "0.3", "--form", "sphere", "--json", "--selected")
+    assert done.returncode == 0, done.stderr
+    record = json.loads(done.stdout)
+    assert 0 < record["vertices_evaluated"] < made.current_mesh().vertex_number() * 0.6
+    assert record["form_radius"] == pytest.approx(1, rel=0.01)

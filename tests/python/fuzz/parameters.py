@@ -101,7 +101,9 @@ PARAMETERS: dict[str, dict[str, st.SearchStrategy[Any]]] = {
     "compute_scalar_surface_texture_per_vertex": {
         "waviness": _SIZES,
         "noise": _SIZES,
-        "form": _SIZES,
+        "form": st.sampled_from(("size", "none", "plane", "sphere", "cylinder")),
+        "form_size": _SIZES,
+        "selected": st.booleans(),
         "crease_angle": _of((60.0, 0.0, 30.0, 180.0), (-1.0, 181.0, NAN, INFINITY)),
         "laplacian": _LAPLACIAN,
     },

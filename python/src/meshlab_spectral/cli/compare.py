@@ -2,26 +2,22 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from meshlab_spectral.cli.colour_files import Picture, coloured_mesh, compared, writing_coloured
 from meshlab_spectral.cli.filter_options import AsJson
 from meshlab_spectral.cli.messages import errors_reported, print_result
 from meshlab_spectral.cli.report_table import change, table_of
-from meshlab_spectral.errors import MeshError, SpectralError
-from meshlab_spectral.extras import check_extras
 from meshlab_spectral.figures.comparison import (
     colour_extent,
     draw_comparison,
     write_comparison,
 )
-from meshlab_spectral.files.comparison import PERCENTILES, Comparison, compare
-from meshlab_spectral.files.formats import check_ending
-from meshlab_spectral.files.whole_files import check_target, writing_whole
+from meshlab_spectral.files.comparison import PERCENTILES, Comparison
 
 _LABELS = {
     "displacement": "Displacement",
@@ -37,18 +33,9 @@ def compare_command(
     b: Annotated[Path, typer.Argument(metavar="B", help="Mesh that is compared.")],
     output: Annotated[
         Path | None,
-        typer.Option(
-            "--output",
-            "-o",
-            metavar="FILE",
-            help="Write B as .ply with the deviation as quality, and in colours: red outside A, "
-            "blue inside.",
-        ),
+        coloured_mesh("the deviation of B as quality, and in colours: red outside A, blue inside"),
     ] = None,
-    picture: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="Draw A, B and the deviation, a .png file."),
-    ] = None,
+    picture: Picture = None,
     as_json: AsJson = False,
 ) -> None:
     """Compare two meshes: how far B is from A, where, and on which side.
@@ -61,21 +48,11 @@ def compare_command(
       meshlab-spectral compare scan.ply smooth.ply --picture change.png
       meshlab-spectral compare scan.ply smooth.ply --json
     """
-    with errors_reported("finished files are complete"), contextlib.ExitStack() as stack:
-        scratch = None
-        if picture is not None:
-            check_extras("plots", "render")
-            check_ending(picture, "the picture is a PNG file", ".png")
-            check_target(picture)
-        if output is not None:
-            check_ending(output, "a mesh with colours and quality is a PLY file", ".ply")
-            scratch = stack.enter_context(writing_whole(output))
-        try:
-            result = compare(a, b)
-        except SpectralError:
-            raise
-        except ValueError as error:  # of the contents of a file
-            raise MeshError(f"A = {a}, B = {b}: {error}") from None
+    with (
+        errors_reported("finished files are complete"),
+        writing_coloured(output, picture) as scratch,
+    ):
+        result = compared(a, b)
         if scratch is not None:
             write_comparison(result, scratch)
         if picture is not None:

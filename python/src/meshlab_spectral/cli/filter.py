@@ -10,6 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from meshlab_spectral.batch.whole_or_tiles import filter_file
+from meshlab_spectral.cli.colour_files import Picture, check_picture, compared
 from meshlab_spectral.cli.command_line import Command
 from meshlab_spectral.cli.filter_options import (
     AsJson,
@@ -30,6 +31,7 @@ from meshlab_spectral.cli.messages import (
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.cli.report_table import report_table
 from meshlab_spectral.cli.streams import STREAM, as_files
+from meshlab_spectral.figures.comparison import draw_comparison
 from meshlab_spectral.files.recipe import saving_recipe
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import DenoiseOptions, FilterOptions
@@ -129,6 +131,7 @@ def _command_with(table: type[Options], help_text: str) -> Command:
         ] = None,
         recipe: Recipe = None,
         save_recipe: SaveRecipe = None,
+        picture: Picture = None,
         as_json: AsJson = False,
     ) -> None:
         """Filter one file, in a child process, and print the report."""
@@ -153,6 +156,7 @@ def _command_with(table: type[Options], help_text: str) -> Command:
             )
         begin = time.monotonic()
         with errors_reported(), as_files(source, place, ending) as (read, written):
+            check_picture(picture)
             options = chosen_options(table, given, recipe)
             with saving_recipe(save_recipe, options), progress_shown() as on_progress:
                 if memory is not None:
@@ -160,6 +164,8 @@ def _command_with(table: type[Options], help_text: str) -> Command:
                 report = filter_file(
                     read, written, options, on_progress, mesh, overwrite, tiles, print_message
                 )
+            if picture is not None:
+                draw_comparison(compared(read, written), picture, (source.name, place.name))
         warn_of_points_only(place.suffix)
         for warning in report["warnings"]:
             print_warning(warning)

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-import contextlib
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
+import numpy as np
 import typer
+from numpy.typing import NDArray
 
+from meshlab_spectral.cli.colour_files import Picture, coloured_mesh, writing_coloured
 from meshlab_spectral.cli.filter_options import (
     AsJson,
     OneMesh,
@@ -19,14 +22,14 @@ from meshlab_spectral.cli.filter_options import (
 from meshlab_spectral.cli.messages import errors_reported, print_result, print_warning
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.cli.report_table import table_of
-from meshlab_spectral.extras import check_extras
+from meshlab_spectral.documents.document import Part
 from meshlab_spectral.figures.signed_mesh import draw_signed, write_signed
-from meshlab_spectral.files.formats import check_ending
-from meshlab_spectral.files.meshes import load_arrays
-from meshlab_spectral.files.whole_files import check_target, writing_whole
+from meshlab_spectral.files.meshes import joined, load_parts
 from meshlab_spectral.filters.options import TextureOptions
 from meshlab_spectral.filters.texture import SurfaceTexture, surface_texture
 from meshlab_spectral.plugin.versions import versions
+
+_BEARING = (10, 50, 90)
 
 
 @with_options(TextureOptions)
@@ -35,18 +38,11 @@ def texture_command(
     source: Source,
     output: Annotated[
         Path | None,
-        typer.Option(
-            "--output",
-            "-o",
-            metavar="FILE",
-            help="Write the mesh as .ply with the height as quality, and in colours: red peaks, "
-            "blue valleys, full at three Sq.",
+        coloured_mesh(
+            "the height as quality, and in colours: red peaks, blue valleys, full at three Sq"
         ),
     ] = None,
-    picture: Annotated[
-        Path | None,
-        typer.Option(metavar="FILE", help="Draw the mesh and its heights, a .png file."),
-    ] = None,
+    picture: Picture = None,
     mesh: OneMesh = None,
     as_json: AsJson = False,
 ) -> None:
@@ -58,22 +54,20 @@ def texture_command(
 
       meshlab-spectral texture part.stl --waviness 0.8 --noise 0.0025
       meshlab-spectral texture part.stl --waviness 0.8 --output heights.ply
+      meshlab-spectral texture bore.ply --form cylinder --selected
       meshlab-spectral texture part.stl --json
     """
-    with errors_reported("finished files are complete"), contextlib.ExitStack() as stack:
+    with (
+        errors_reported("finished files are complete"),
+        writing_coloured(output, picture) as scratch,
+    ):
         options = chosen_options(TextureOptions, given)
-        scratch = None
-        if picture is not None:
-            check_extras("plots", "render")
-            check_ending(picture, "the picture is a PNG file", ".png")
-            check_target(picture)
-        if output is not None:
-            check_ending(output, "a mesh with colours and quality is a PLY file", ".ply")
-            scratch = stack.enter_context(writing_whole(output))
         with progress_shown() as on_progress:
             on_progress("reading", None)
-            V, F = load_arrays(source, mesh)
-            texture = surface_texture(V, F, options, progress=on_progress)
+            parts = load_parts(source, mesh)
+            V, F = joined(parts)
+            selection = _selection(parts) if options.selected else None
+            texture = surface_texture(V, F, options, selection=selection, progress=on_progress)
         extent = 3 * texture.Sq or 1.0
         if scratch is not None:
             write_signed(V, F, texture.height, extent, scratch)
@@ -92,11 +86,24 @@ def texture_command(
             print_result(path)
 
 
+def _selection(parts: Sequence[Part]) -> NDArray[np.bool_]:
+    """Return the selected vertices of all parts."""
+    return np.concatenate(
+        [
+            np.zeros(len(part.vertices), dtype=bool) if part.selected is None else part.selected
+            for part in parts
+        ]
+    )
+
+
 def _rows(texture: SurfaceTexture) -> list[tuple[str, str]]:
     noise = f"{texture.noise:.4g}" if texture.noise else "none"
     counts = texture.vertices_evaluated, texture.vertices_left_out
+    waviness = f"{texture.waviness:.4g}" if texture.waviness else "none"
+    above = (f"{texture.bearing_heights[percent]:.4g}" for percent in _BEARING)
+    form = [] if texture.form_radius is None else [("Radius of the form", texture.form_radius)]
     return [
-        ("Waviness cutoff (L-filter)", f"{texture.waviness:.4g}"),
+        ("Waviness cutoff (L-filter)", waviness),
         ("Noise cutoff (S-filter)", noise),
         ("Sa, mean height", f"{texture.Sa:.4g}"),
         ("Sq, rms height", f"{texture.Sq:.4g}"),
@@ -107,5 +114,7 @@ def _rows(texture: SurfaceTexture) -> list[tuple[str, str]]:
         ("Sz, both", f"{texture.Sz:.4g}"),
         ("Sdq, rms slope", f"{texture.Sdq:.4g}"),
         ("Sdr, additional area", f"{100 * texture.Sdr:.4g} %"),
+        ("Exceeded by 10 / 50 / 90 % of the area", " / ".join(above)),
+        *((name, f"{radius:.4g}") for name, radius in form),
         ("Vertices evaluated, left out", "{}, {}".format(*counts)),
     ]

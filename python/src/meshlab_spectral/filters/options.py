@@ -18,6 +18,7 @@ LaplacianKind = Literal["intrinsic delaunay", "cotangent", "uniform"]
 Boundary = Literal["free", "fixed"]
 Weight = Literal["none", "vertex quality"]
 Result = Literal["filtered shape", "details"]
+Form = Literal["size", "none", "plane", "sphere", "cylinder"]
 Size = Length | str | float
 
 
@@ -72,8 +73,10 @@ class TextureKeywords(TypedDict, total=False):
 
     waviness: Size
     noise: Size
-    form: Size
+    form: Form
+    form_size: Size
     crease_angle: float
+    selected: bool
     laplacian: LaplacianKind
 
 
@@ -349,18 +352,27 @@ class TextureOptions(Options):
     waviness: Length = option(
         Length(automatic=True),
         "Nesting index of the L-filter: what is larger is waviness or form, and no "
-        "roughness. Waves of this length keep half of their height, as in ISO 16610-61. "
-        "Default: twelve mean edges, at most 10 % of the diagonal.",
+        "roughness. Waves of this length keep half of their height, as in ISO 16610-61. The "
+        "whole diagonal, with a plane, sphere or cylinder as --form: no L-filter. Default: "
+        "twelve mean edges, at most 10 % of the diagonal.",
     )
     noise: Length = option(
         Length(automatic=True),
         "Nesting index of the S-filter: what is smaller is noise, and no roughness. The "
         "default: none is removed. Default: 0: no S-filter.",
     )
-    form: Length = option(
+    form: Form = option(
+        "size",
+        "What of the shape is form (F-operator), and no roughness. size: heights that vary "
+        "more slowly than --form-size; fits any shape. plane, sphere, cylinder: the one "
+        "nearest to the measured surface, by least squares; better for a sphere or a "
+        "cylinder with a radius of less than two waviness cutoffs. none: nothing, so that "
+        "curvature adds to the heights.",
+    )
+    form_size: Length = option(
         Length(automatic=True),
-        "Size of the F-operator: heights that vary more slowly are form. The default: eight "
-        "times --waviness. Default: 0: eight waviness cutoffs.",
+        "For --form size: heights that vary more slowly are form. The default: eight times "
+        "--waviness. Default: 0: eight waviness cutoffs.",
     )
     crease_angle: float = option(
         60.0,
@@ -368,6 +380,11 @@ class TextureOptions(Options):
         "waviness cutoff of them, and of boundaries, is left out: it has the height 0. 180 "
         "keeps creases.",
         Limits(0, 180),
+    )
+    selected: bool = option(
+        False,
+        "Measure only the selected faces and vertices; the others have the height 0. A "
+        "plane, sphere or cylinder is fitted to them alone.",
     )
     laplacian: LaplacianKind = option(
         "intrinsic delaunay",

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshlab_spectral.filters.arrays import mesh_arrays
+from meshlab_spectral.errors import OptionError
+from meshlab_spectral.filters.arrays import chosen_vertices, mesh_arrays
 from meshlab_spectral.filters.keywords import takes_options
-from meshlab_spectral.filters.mesh_objects import takes_mesh_alone
+from meshlab_spectral.filters.mesh_objects import array_of, takes_mesh_alone
 from meshlab_spectral.filters.options import TextureKeywords, TextureOptions
-from meshlab_spectral.filters.running import Progress, run
+from meshlab_spectral.filters.representations import brief, line, table
+from meshlab_spectral.filters.running import Progress, plain, run
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -41,12 +43,20 @@ class SurfaceTexture:
         Cutoffs that were applied, length units; noise = 0: none.
     area
         Area that was evaluated.
+    histogram_heights, histogram_shares
+        Centres of the 64 bins of the histogram of the heights, ascending, and the share of the area
+        in each.
+    bearing_heights
+        Bearing curve (Abbott-Firestone): 101 heights that 0, 1, ..., 100 % of the area exceed.
     vertices_evaluated, vertices_left_out
-        Numbers of vertices that count, and of those within a cutoff of a boundary or a crease.
+        Numbers of vertices that count, and of selected ones within a cutoff of a boundary or a
+        crease.
     error_estimate
-        Estimated largest error of the filtered coordinates, length units.
+        Estimated root mean square error of the heights, length units.
     warnings
         Problems that were not errors.
+    form_radius
+        Radius of the sphere or cylinder that was fitted, if one was.
     """
 
     height: NDArray[np.float64]
@@ -62,16 +72,29 @@ class SurfaceTexture:
     waviness: float
     noise: float
     area: float
+    histogram_heights: NDArray[np.float64]
+    histogram_shares: NDArray[np.float64]
+    bearing_heights: NDArray[np.float64]
     vertices_evaluated: int
     vertices_left_out: int
     error_estimate: float
     warnings: list[str]
+    form_radius: float | None = None
 
     @property
     def report(self) -> dict[str, Any]:
-        """All numbers but the heights, for JSON."""
-        names = (one.name for one in fields(self))
-        return {name: getattr(self, name) for name in names if name != "height"}
+        """All numbers but the heights of the vertices, for JSON."""
+        numbers = {one.name: getattr(self, one.name) for one in fields(self)}
+        del numbers["height"]
+        if self.form_radius is None:
+            del numbers["form_radius"]
+        return plain(numbers)
+
+    def __repr__(self) -> str:
+        return line(self)
+
+    def _repr_html_(self) -> str:
+        return table((one.name, brief(getattr(self, one.name))) for one in fields(self))
 
 
 @takes_options(TextureOptions)
@@ -81,6 +104,7 @@ def surface_texture(
     faces: ArrayLike | None = None,
     options: TextureOptions | None = None,
     *,
+    selection: ArrayLike | None = None,
     progress: Progress | None = None,
     threads: int | None = None,
     **named: Unpack[TextureKeywords],
@@ -100,6 +124,9 @@ def surface_texture(
         As for `filter_mesh`.
     options
         All options below in one object, instead of by name.
+    selection
+        What to measure, and fit a plane, sphere or cylinder to: n booleans, one per vertex, or
+        indices of faces.
     progress, threads
         As for `filter_mesh`.
     **named
@@ -121,9 +148,25 @@ def surface_texture(
     --------
     >>> texture = surface_texture(vertices, faces, waviness=0.8, noise=0.0025)
     >>> texture.Sa, texture.Sz
+    >>> bore = surface_texture(vertices, faces, form="cylinder", selection=faces_of_the_bore)
     """
     V, F = mesh_arrays(mesh_or_vertices, faces)
-    parameters = TextureOptions.given(options, named).core_parameters()
-    done = run(TextureOptions.FILTER, V, F, parameters, progress=progress, threads=threads)
+    parameters = TextureOptions.given(options, named)
+    part: dict[str, Any] = {}
+    selected = None
+    if selection is not None:
+        selected = chosen_vertices(array_of(mesh_or_vertices, selection, "selection"), len(V), F)
+        part["selected"] = True
+    elif parameters.selected:
+        raise OptionError("selected = True: pass the selected vertices or faces as selection")
+    done = run(
+        TextureOptions.FILTER,
+        V,
+        F,
+        {**parameters.core_parameters(), **part},
+        selected=selected,
+        progress=progress,
+        threads=threads,
+    )
     assert done.values is not None
     return SurfaceTexture(height=done.values[:, 0], **done.report)

@@ -1,0 +1,105 @@
+#include "core/analysis/height_statistics.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/laplacian/laplacian.h"
+
+namespace spectral {
+
+namespace {
+
+/// Moments of the distribution of the heights, and its ends.
+void measureHeights(const Eigen::VectorXd& h, const Eigen::VectorXd& areas,
+                    const std::vector<bool>& counts, TextureParameters& texture) {
+    double sum = 0.0, squares = 0.0, cubes = 0.0, fourths = 0.0;
+    double highest = 0.0, lowest = 0.0;
+    for (Index i = 0; i < h.size(); ++i) {
+        if (!counts[i]) continue;
+        texture.area += areas[i];
+        sum += areas[i] * std::abs(h[i]);
+        squares += areas[i] * std::pow(h[i], 2);
+        cubes += areas[i] * std::pow(h[i], 3);
+        fourths += areas[i] * std::pow(h[i], 4);
+        highest = std::max(highest, h[i]);
+        lowest = std::min(lowest, h[i]);
+    }
+    texture.Sa = sum / texture.area;
+    texture.Sq = std::sqrt(squares / texture.area);
+    texture.Sp = highest;
+    texture.Sv = -lowest;
+    texture.Sz = highest - lowest;
+    if (texture.Sq == 0.0) return;
+    texture.Ssk = cubes / texture.area / std::pow(texture.Sq, 3);
+    texture.Sku = fourths / texture.area / std::pow(texture.Sq, 4);
+}
+
+void measureDistribution(const Eigen::VectorXd& h, const Eigen::VectorXd& areas,
+                         const std::vector<bool>& counts, TextureParameters& texture) {
+    constexpr int kPercent = 100;
+    std::vector<Index> order;
+    for (Index i = 0; i < h.size(); ++i)
+        if (counts[i]) order.push_back(i);
+    std::sort(order.begin(), order.end(),
+              [&](Index i, Index j) { return h[i] > h[j] || (h[i] == h[j] && i < j); });
+    const double top = h[order.front()], bottom = h[order.back()];
+    const double width = (top - bottom) / kHistogramBins;
+    texture.histogramHeights =
+        Eigen::VectorXd::LinSpaced(kHistogramBins, bottom + 0.5 * width, top - 0.5 * width);
+    texture.histogramShares = Eigen::VectorXd::Zero(kHistogramBins);
+    texture.bearingHeights = Eigen::VectorXd::Constant(kPercent + 1, bottom);
+    double above = 0.0;
+    int percent = 0;
+    for (const Index i : order) {
+        for (; percent < kPercent && percent * texture.area <= above * kPercent; ++percent)
+            texture.bearingHeights[percent] = h[i];
+        above += areas[i];
+        const int bin = width > 0.0 ? static_cast<int>((h[i] - bottom) / width) : 0;
+        texture.histogramShares[std::min(bin, kHistogramBins - 1)] += areas[i] / texture.area;
+    }
+}
+
+/// Squared slope of a height that is linear on a triangle of the reference; -1 without area.
+double squaredSlope(const Eigen::RowVector3d& a, const Eigen::RowVector3d& b, double da,
+                    double db) {
+    const double aa = a.squaredNorm(), ab = a.dot(b), bb = b.squaredNorm();
+    const double determinant = aa * bb - ab * ab;
+    if (!(determinant > 0.0)) return -1.0;
+    return (bb * da * da - 2.0 * ab * da * db + aa * db * db) / determinant;
+}
+
+void measureSlopes(const Eigen::VectorXd& h, const Vertices& reference, const Faces& F,
+                   const std::vector<bool>& counts, TextureParameters& texture) {
+    double total = 0.0, slopes = 0.0, added = 0.0;
+    for (Index t = 0; t < F.rows(); ++t) {
+        const int i = F(t, 0), j = F(t, 1), k = F(t, 2);
+        if (!counts[i] || !counts[j] || !counts[k]) continue;
+        const Eigen::RowVector3d a = reference.row(j) - reference.row(i);
+        const Eigen::RowVector3d b = reference.row(k) - reference.row(i);
+        const double squared = squaredSlope(a, b, h[j] - h[i], h[k] - h[i]);
+        if (squared < 0.0) continue;
+        const double area = 0.5 * a.cross(b).norm();
+        total += area;
+        slopes += area * squared;
+        added += area * squared / (std::sqrt(1.0 + squared) + 1.0);  // sqrt(1 + s) - 1
+    }
+    if (total == 0.0) return;
+    texture.Sdq = std::sqrt(slopes / total);
+    texture.Sdr = added / total;
+}
+
+}  // namespace
+
+TextureParameters textureParameters(const Eigen::VectorXd& h, const Vertices& reference,
+                                    const Faces& F, const std::vector<bool>& counts) {
+    TextureParameters texture;
+    const Eigen::VectorXd areas = lumpedMass(reference, F);
+    measureHeights(h, areas, counts, texture);
+    measureDistribution(h, areas, counts, texture);
+    measureSlopes(h, reference, F, counts, texture);
+    return texture;
+}
+
+}  // namespace spectral

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "core/mesh/mesh.h"
+
+namespace spectral {
+
+/// The parameters of ISO 25178-2 of heights over a reference surface, by its areas.
+struct TextureParameters {
+    double Sa = 0.0;  ///< Mean of |height|, length units; the next four are lengths, too.
+    double Sq = 0.0;  ///< Root mean square of the height.
+    double Sp = 0.0, Sv = 0.0, Sz = 0.0;  ///< Highest peak, deepest valley, their sum.
+    double Ssk = 0.0, Sku = 0.0;          ///< Skewness and kurtosis of the heights; 0 if Sq is 0.
+    double Sdq = 0.0;                     ///< Root mean square of the slope.
+    double Sdr = 0.0;   ///< Additional area of the surface, relative to the reference's.
+    double area = 0.0;  ///< Of the reference surface where it is evaluated, length squared.
+
+    Eigen::VectorXd histogramHeights;  ///< Centres of `kHistogramBins` equal bins, ascending.
+    Eigen::VectorXd histogramShares;   ///< Share of the area in each bin.
+    /// The bearing curve of Abbott and Firestone: the heights that 0, 1, ..., 100 % of the area
+    /// exceed, 101 descending lengths.
+    Eigen::VectorXd bearingHeights;
+};
+
+constexpr int kHistogramBins = 64;
+
+/// @param h          n heights above the reference along its normals, length units.
+/// @param reference  n x 3 positions.
+/// @param counts     n, whether each vertex is evaluated; some vertex with an area is.
+TextureParameters textureParameters(const Eigen::VectorXd& h, const Vertices& reference,
+                                    const Faces& F, const std::vector<bool>& counts);
+
+}  // namespace spectral

@@ -1,0 +1,58 @@
+"""The files of commands that colour a mesh by a signed number: `--output` and `--picture`."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from meshlab_spectral.errors import MeshError, SpectralError
+from meshlab_spectral.extras import check_extras
+from meshlab_spectral.files.comparison import Comparison, compare
+from meshlab_spectral.files.formats import check_ending
+from meshlab_spectral.files.whole_files import check_target, writing_whole
+
+_PICTURE = typer.Option(
+    metavar="FILE", help="Draw the mesh before, after, and in colours, a .png file."
+)
+Picture = Annotated[Path | None, _PICTURE]
+
+
+def coloured_mesh(what: str) -> typer.models.OptionInfo:
+    """Return the option `--output`; `what` says which number, and what red and blue mean."""
+    text = f"Write the mesh as .ply with {what}."
+    option: typer.models.OptionInfo = typer.Option("--output", "-o", metavar="FILE", help=text)
+    return option
+
+
+def check_picture(picture: Path | None) -> None:
+    """Raise, before any work, what would prevent a picture: its ending, its folder, an extra."""
+    if picture is not None:
+        check_extras("plots", "render")
+        check_ending(picture, "the picture is a PNG file", ".png")
+        check_target(picture)
+
+
+def compared(a: Path, b: Path) -> Comparison:
+    """Compare two files; raise MeshError when one of them holds no surface."""
+    try:
+        return compare(a, b)
+    except SpectralError:
+        raise
+    except ValueError as error:  # of the contents of a file
+        raise MeshError(f"A = {a}, B = {b}: {error}") from None
+
+
+@contextlib.contextmanager
+def writing_coloured(output: Path | None, picture: Path | None) -> Iterator[Path | None]:
+    """Check both files; yield the scratch file of `output`, if any, which it becomes at the end."""
+    check_picture(picture)
+    if output is None:
+        yield None
+        return
+    check_ending(output, "a mesh with colours and quality is a PLY file", ".ply")
+    with writing_whole(output) as scratch:
+        yield scratch
