@@ -14,7 +14,11 @@ namespace spectral {
 namespace {
 
 /// Dimension of the next error check: checks get more expensive as the space grows.
-int nextCheck(int m) { return m + std::max(3, m / 10); }
+/// @param fewest  smallest distance of checks.
+int nextCheck(int m, int fewest) { return m + std::max(fewest, m / 10); }
+
+/// Rows from which a solve takes far longer than a check.
+constexpr Index kCostlySolve = 10000;
 
 /// Dimension from which the error predicts the final one: on real meshes, its logarithm falls like
 /// the dimension to the power 1.5.
@@ -233,6 +237,9 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
     // Even a space of full dimension may not be invariant: where eigenvalues span many decades, its
     // last vectors are round-off.
     const Index largest = std::min<Index>(options.maxDimension, D.size() - constants.count());
+    // At the vertices, the rate of decay takes changes over several dimensions.
+    const bool areSolvesCostly =
+        S.needsOrthogonalBasis() && !options.atEveryVertex && D.size() >= kCostlySolve;
     double firstError = 0.0, furthest = 0.0, roundOff = options.roundOff;
     bool isDone = false;
     for (int m = 1, check = 3; !isDone; ++m) {
@@ -240,7 +247,7 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
         const bool isInvariant = !spaces.extend();
         const bool isLast = m >= largest;
         if (!isInvariant && !isLast && m < check) continue;
-        check = nextCheck(m);
+        check = nextCheck(m, areSolvesCostly ? 1 : 3);
         roundOff = std::max(roundOff, spaces.roundOff());
         if (roundOff > kUselessRoundOff)
             throw SolverFailure(ErrorCode::SingularMatrix,

@@ -28,24 +28,40 @@ FrontalMatrix shapeOf(const SymbolicLdlt::Front& supernode) {
 struct PendingBlock {
     const SymbolicLdlt::Front* supernode = nullptr;
     Index at = 0;                       // position on the stack of this elimination, or
-    const double* elsewhere = nullptr;  // address on the stack of another one
+    const double* elsewhere = nullptr;  // address of the block of a completed subtree
 };
-
-class Elimination;
 
 /// Consecutive fronts, followed by a subtree that another elimination has completed.
 struct FrontRange {
     int begin = 0, end = 0;
-    const Elimination* subtree = nullptr;
-    const SymbolicLdlt::Front* root = nullptr;  // root of the subtree
+    const SymbolicLdlt::Front* root = nullptr;  // root of the subtree, or null
+    const double* contribution = nullptr;       // its contribution block
 };
+
+void require(Index size, Eigen::VectorXd& memory) {
+    if (memory.size() < size) memory.resize(size);
+}
 
 /// Eliminates ranges of fronts from the leaves up. A stack holds the pending contribution blocks.
 class Elimination {
   public:
     Elimination(const SymbolicLdlt& symbolic, const double* W, const Eigen::VectorXd& shifts,
                 LdltNumbers& numbers, const StopPoint& stop)
-        : symbolic_(symbolic), W_(W), shifts_(shifts), numbers_(numbers), stop_(stop) {}
+        : symbolic_(symbolic),
+          W_(W),
+          shifts_(shifts),
+          numbers_(numbers),
+          stop_(stop),
+          columns_(workspace().columns),
+          scratch_(workspace().scratch),
+          stack_(workspace().stack) {}
+
+    /// The contribution block of the last front, valid until the workspace is used again.
+    Eigen::VectorXd contribution() const {
+        if (pending_.empty()) return {};
+        const Index at = pending_.back().at;
+        return stack_.segment(at, top_ - at);
+    }
 
     /// False when a pivot is 0.
     bool run(const std::vector<FrontRange>& ranges) {
@@ -62,7 +78,9 @@ class Elimination {
     }
 
   private:
-    /// Allocates all memory for these fronts.
+    LdltNumbers::Workspace& workspace() { return numbers_.workspaces[ThreadTeam::threadIndex()]; }
+
+    /// Makes the workspace large enough for these fronts.
     void allocate(const std::vector<FrontRange>& ranges) {
         Index columns = 0, stack = 0;
         for (const FrontRange& range : ranges) {
@@ -76,9 +94,9 @@ class Elimination {
         }
         pending_.clear();
         top_ = 0;
-        columns_.resize(columns);
-        scratch_.resize(columns);
-        stack_.resize(stack);
+        require(columns, columns_);
+        require(columns, scratch_);
+        require(stack, stack_);
     }
 
     bool eliminateFront(const SymbolicLdlt::Front& supernode) {
@@ -98,10 +116,10 @@ class Elimination {
         return true;
     }
 
-    /// Adds the contribution block of the subtree's root, the only one on its elimination's stack.
+    /// Adds the contribution block of the subtree's root.
     void pushSubtree(const FrontRange& range) {
-        if (range.subtree != nullptr && range.root->below > 0)
-            pending_.push_back({range.root, top_, range.subtree->stack_.data()});
+        if (range.root != nullptr && range.root->below > 0)
+            pending_.push_back({range.root, top_, range.contribution});
     }
 
     /// Sets the front to its part of W - sigma D plus the contribution blocks of its children.
@@ -160,8 +178,7 @@ class Elimination {
     const Eigen::VectorXd& shifts_;  // sigma D, in the order of the factor
     LdltNumbers& numbers_;
     const StopPoint& stop_;
-    Eigen::VectorXd columns_, scratch_;
-    Eigen::VectorXd stack_;
+    Eigen::VectorXd &columns_, &scratch_, &stack_;
     std::vector<PendingBlock> pending_;
     Index top_ = 0;  // top of the stack
 };
@@ -175,26 +192,31 @@ bool eliminate(const SymbolicLdlt& symbolic, const SparseMatrix& W, const Eigen:
     numbers.values.resize(static_cast<std::size_t>(symbolic.valueStarts.back()));
     numbers.pivots.resize(shifts.size());
 
-    const Elimination none(symbolic, W.valuePtr(), shifts, numbers, stop);
-    std::vector<Elimination> eliminations(symbolic.subtrees.size(), none);
+    // Within a task of a team, all tasks run on the calling thread.
+    const int threads = std::max(ThreadTeam::size(), ThreadTeam::threadIndex() + 1);
+    if (numbers.workspaces.size() < static_cast<std::size_t>(threads))
+        numbers.workspaces.resize(static_cast<std::size_t>(threads));
+    std::vector<char> done(symbolic.subtrees.size());
+    std::vector<Eigen::VectorXd> contributions(symbolic.subtrees.size());
+    parallelFor(static_cast<Index>(done.size()), [&](Index task) {
+        const int t = symbolic.largestFirst[task];
+        const SymbolicLdlt::Subtree& tree = symbolic.subtrees[t];
+        Elimination subtree(symbolic, W.valuePtr(), shifts, numbers, stop);
+        done[t] = subtree.run({{tree.firstFront, tree.endFront, nullptr, nullptr}});
+        contributions[t] = subtree.contribution();
+    });
+    if (std::find(done.begin(), done.end(), 0) != done.end()) return false;
+
     std::vector<FrontRange> above;
     int next = 0;
     for (std::size_t t = 0; t < symbolic.subtrees.size(); ++t) {
         const SymbolicLdlt::Subtree& tree = symbolic.subtrees[t];
         above.push_back(
-            {next, tree.firstFront, &eliminations[t], &symbolic.fronts[tree.endFront - 1]});
+            {next, tree.firstFront, &symbolic.fronts[tree.endFront - 1], contributions[t].data()});
         next = tree.endFront;
     }
     above.push_back({next, static_cast<int>(symbolic.fronts.size()), nullptr, nullptr});
-
-    std::vector<char> done(symbolic.subtrees.size());
-    parallelFor(static_cast<Index>(done.size()), [&](Index task) {
-        const int t = symbolic.largestFirst[task];
-        const SymbolicLdlt::Subtree& tree = symbolic.subtrees[t];
-        done[t] = eliminations[t].run({{tree.firstFront, tree.endFront, nullptr, nullptr}});
-    });
-    if (std::find(done.begin(), done.end(), 0) != done.end()) return false;
-    return Elimination(none).run(above);
+    return Elimination(symbolic, W.valuePtr(), shifts, numbers, stop).run(above);
 }
 
 }  // namespace spectral

@@ -13,6 +13,12 @@ namespace spectral {
 struct LdltNumbers {
     std::vector<double> values;
     Eigen::VectorXd pivots;
+
+    /// Frontal matrices, by thread: fresh memory for every factorization would take a tenth of it.
+    struct Workspace {
+        Eigen::VectorXd columns, scratch, stack;
+    };
+    std::vector<Workspace> workspaces;
 };
 
 /// Factorizes without pivoting, each supernode in a dense frontal matrix whose contribution block
