@@ -27,7 +27,9 @@ struct CutMesh {
     Mesh mesh;
     std::vector<Index> origin;
 
-    Eigen::MatrixXd cut(const Eigen::MatrixXd& values) const { return values(origin, Eigen::indexing::all); }
+    Eigen::MatrixXd cut(const Eigen::MatrixXd& values) const {
+        return values(origin, Eigen::indexing::all);
+    }
 };
 
 /// Cuts a mesh between triangles of different charts: corners at a vertex stay joined within a
