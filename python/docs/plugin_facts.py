@@ -32,6 +32,7 @@ MORE_RUNS: dict[str, dict[str, Any]] = {
         "basis_size": 20,
         "steps": 1,
     },
+    "compute_scalar_surface_texture_per_vertex": {"form": "sphere"},
 }
 
 

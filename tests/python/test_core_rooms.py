@@ -39,6 +39,7 @@ ARROWS = {
         "mesh",
         "support",
     },
+    "examples": {"filter"},
 }
 
 

@@ -57,7 +57,9 @@ def test_quiet_leaves_errors_warnings_and_requested_output(cow: Path, tmp_path: 
     assert re.fullmatch(r"Warning: nothing can move.*\n", done.stderr)
     done = command("denoise", cow, tmp_path / "cow.obj", "--quiet", "--json")
     assert json.loads(done.stdout)["report"]["components"] > 0
-    assert_fails(command("filter", tmp_path / "none.ply", out, "-q"), 1, "does not exist")
+    assert_fails(
+        command("filter", tmp_path / "none.ply", tmp_path / "x.ply", "-q"), 1, "does not exist"
+    )
     bad = tmp_path / "bad.ply"
     bad.write_text("bad")
     arguments = [cow, flat, bad, "--output", tmp_path / "out", "--steps", 1, "--workers", 1]

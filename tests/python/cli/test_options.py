@@ -173,7 +173,7 @@ def test_a_recipe_is_tried_on_one_mesh_and_serves_a_batch(cow: Path, tmp_path: P
     out = tmp_path / "out"
     command("batch", cow, "--output", out, "--recipe", recipe, "--workers", 1)
     assert (out / "cow.obj").read_bytes() == one.read_bytes()
-    done = command("filter", cow, one, "--recipe", recipe, "--steps", 2, "--json")
+    done = command("filter", cow, one, "--overwrite", "--recipe", recipe, "--steps", 2, "--json")
     chosen = json.loads(done.stdout)["options"]
     assert (chosen["steps"], chosen["pass_gain"], chosen["crease_angle"]) == (2, 2.0, 120.0)
 

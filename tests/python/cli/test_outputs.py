@@ -67,7 +67,7 @@ def test_material_and_texture_of_an_obj_appear_beside_it_under_their_names(
     samples: Path, tmp_path: Path
 ) -> None:
     target = tmp_path / "bunny.obj"
-    arguments = ("filter", samples / "bunny10k_textured.obj", target, "--steps", 1)
+    arguments = ("filter", samples / "bunny10k_textured.obj", target, "--overwrite", "--steps", 1)
     for _ in range(2):  # the second run replaces its own files
         done = command(*arguments)
         assert done.returncode == 0, done.stderr
@@ -146,7 +146,7 @@ def test_an_existing_output_is_replaced_and_keeps_its_permissions(
     target = tmp_path / "cow.ply"
     target.write_bytes(PRECIOUS)
     target.chmod(0o640)
-    assert command("filter", cow, target, "--steps", 1).returncode == 0
+    assert command("filter", cow, target, "--overwrite", "--steps", 1).returncode == 0
     assert len(arrays_of(target)[0]) == len(arrays_of(cow)[0])
     assert target.stat().st_mode & 0o777 == 0o640
 
@@ -157,7 +157,7 @@ def test_a_symbolic_link_as_output_stays_a_link(cow: Path, tmp_path: Path) -> No
     for content in (None, PRECIOUS):
         if content is not None:
             real.write_bytes(content)
-        assert command("filter", cow, link, "--steps", 1).returncode == 0
+        assert command("filter", cow, link, "--overwrite", "--steps", 1).returncode == 0
         assert link.is_symlink()
         assert len(arrays_of(real)[0]) == len(arrays_of(cow)[0])
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.metadata
 import os
 import subprocess
 import sys
@@ -153,7 +154,7 @@ def test_another_pymeshlab_is_refused_with_the_version_to_install(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(pymeshlab, "filter_list", list)
-    monkeypatch.setattr(loading, "installed_version", lambda name: "2023.12.post3")
+    monkeypatch.setattr(importlib.metadata, "version", lambda name: "2023.12.post3")
     with pytest.raises(PluginError, match=r"pip install pymeshlab==2025\.7\.post1") as error:
         meshlab_spectral.load()
     assert "2023.12.post3" in str(error.value)

@@ -106,6 +106,7 @@ def test_tiles_take_over_where_memory_is_refused(
     monkeypatch.setattr(whole_or_tiles, "write_in_child", refuse)
     target, lines = tmp_path / "out.ply", list[str]()
     run = partial(whole_or_tiles.filter_file, source, target, on_progress=_ignore, mesh=None)
+    run = partial(run, overwrite=True)
     report = run(SMALL, tiles=0, tell=lines.append)
     assert report["tiles"] >= 2
     assert lines == [
@@ -192,6 +193,7 @@ def test_a_full_disk_loses_nothing(room: int, source: Path, tmp_path: Path) -> N
         "filter",
         source,
         target,
+        "--overwrite",
         "--tiles",
         8,
         "--feature-size",

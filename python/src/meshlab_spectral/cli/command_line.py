@@ -29,7 +29,7 @@ _GROUPS = {
         reinject_residual laplacian preserve_volume""",
     "Files": "recursive overwrite resume dry_run tiles memory",
     "Workers": "workers memory_limit timeout scheduler",
-    "Output": "output name ending result pictures modes scale save_recipe report as_json",
+    "Output": "output name ending result picture pictures modes scale save_recipe report as_json",
 }
 GROUP_OF = {name: group for group, names in _GROUPS.items() for name in names.split()}
 

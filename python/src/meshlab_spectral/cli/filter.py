@@ -145,7 +145,7 @@ def _command_with(table: type[Options], help_text: str) -> Command:
                 f"{place} is INPUT itself and would be lost: choose another name",
                 param_hint="OUTPUT",
             )
-        if place.exists() and not overwrite:
+        if place.is_file() and not overwrite:
             raise typer.BadParameter(
                 f"{place} exists: choose another name, or replace it with --overwrite",
                 param_hint="OUTPUT",
