@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -192,3 +194,14 @@ def test_hundreds_of_warnings_are_cut_short_unless_all_are_asked_for(
     monkeypatch.setattr(VERBOSITY, "verbose", True)
     many_files._print_warnings(groups, Path("report.jsonl"))
     assert len(capsys.readouterr().err.splitlines()) == len(groups)
+
+
+@pytest.mark.parametrize("name", ["filter", "denoise", "info"])
+def test_a_command_starts_without_slow_imports(name: str) -> None:
+    """They are left to the child process, which starts at the same time."""
+    program = (
+        f"import sys; sys.argv = ['meshlab-spectral', '{name}']; import meshlab_spectral.cli.app; "
+        "print({'numpy', 'plyfile', 'pyvista', 'matplotlib'} & sys.modules.keys())"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert done.stdout == "set()\n", done.stderr

@@ -18,8 +18,8 @@ from meshlab_spectral import FilterOptions, MemoryLimitError, MeshFileError
 from meshlab_spectral.batch import whole_or_tiles
 from meshlab_spectral.batch.tiles import filter_in_tiles
 from meshlab_spectral.errors import FilterError
+from meshlab_spectral.tiles.bounds import UntiledError
 from meshlab_spectral.tiles.halo import kernel_tails, reach_of
-from meshlab_spectral.tiles.rows import UntiledError
 from meshlab_spectral.tiles.survey import Lengths
 from tiled_meshes import bumpy_torus, write_ply
 

@@ -22,12 +22,13 @@ from meshlab_spectral.files.whole_files import LOCK, check_target, holding, reso
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.plugin.versions import versions
 from meshlab_spectral.process.parent import JobLimits, ProgressCallback
-from meshlab_spectral.tiles.cells import MOST_TILES, near_cells, split
+from meshlab_spectral.tiles.bounds import MOST_TILES, UntiledError
+from meshlab_spectral.tiles.cells import near_cells, split
 from meshlab_spectral.tiles.gather import gather
 from meshlab_spectral.tiles.halo import reach_of, require_local
 from meshlab_spectral.tiles.plan import Plan, Workspace
 from meshlab_spectral.tiles.report import combined, singular_part
-from meshlab_spectral.tiles.rows import MeshRows, UntiledError, open_rows
+from meshlab_spectral.tiles.rows import MeshRows, open_rows
 from meshlab_spectral.tiles.scatter import scatter
 from meshlab_spectral.tiles.survey import Survey, survey
 

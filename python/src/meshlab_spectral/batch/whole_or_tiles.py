@@ -12,7 +12,7 @@ from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.process.parent import NO_LIMITS, JobLimits, ProgressCallback
 from meshlab_spectral.process.single_file import write_in_child
-from meshlab_spectral.tiles.rows import UntiledError
+from meshlab_spectral.tiles.bounds import UntiledError
 
 # Smaller files are tried as a whole, without a look at them.
 _SMALL = 32 * 2**20

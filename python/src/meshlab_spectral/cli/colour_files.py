@@ -5,15 +5,17 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from meshlab_spectral.errors import MeshError, SpectralError
 from meshlab_spectral.extras import check_extras
-from meshlab_spectral.files.comparison import Comparison, compare
 from meshlab_spectral.files.formats import check_ending
 from meshlab_spectral.files.whole_files import check_target, writing_whole
+
+if TYPE_CHECKING:
+    from meshlab_spectral.files.comparison import Comparison
 
 _PICTURE = typer.Option(
     metavar="FILE", help="Draw the mesh before, after, and in colours, a .png file."
@@ -38,6 +40,8 @@ def check_picture(picture: Path | None) -> None:
 
 def compared(a: Path, b: Path) -> Comparison:
     """Compare two files; raise MeshError when one of them holds no surface."""
+    from meshlab_spectral.files.comparison import compare  # a slow import
+
     try:
         return compare(a, b)
     except SpectralError:

@@ -31,13 +31,12 @@ from meshlab_spectral.cli.messages import (
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.cli.report_table import report_table
 from meshlab_spectral.cli.streams import STREAM, as_files
-from meshlab_spectral.figures.comparison import draw_comparison
 from meshlab_spectral.files.recipe import saving_recipe
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import DenoiseOptions, FilterOptions
 from meshlab_spectral.plugin.limits import set_memory_limit
 from meshlab_spectral.plugin.versions import versions
-from meshlab_spectral.tiles.cells import MOST_TILES
+from meshlab_spectral.tiles.bounds import MOST_TILES
 
 FILTER_HELP = """Filter one mesh file by the size of its details.
 
@@ -165,6 +164,8 @@ def _command_with(table: type[Options], help_text: str) -> Command:
                     read, written, options, on_progress, mesh, overwrite, tiles, print_message
                 )
             if picture is not None:
+                from meshlab_spectral.figures.comparison import draw_comparison  # a slow import
+
                 draw_comparison(compared(read, written), picture, (source.name, place.name))
         warn_of_points_only(place.suffix)
         for warning in report["warnings"]:

@@ -12,7 +12,6 @@ import numpy as np
 
 from meshlab_spectral.documents.document import Array, Indices
 
-MOST_TILES = 4096
 Tree = Any  # int | tuple[int, float, Tree, Tree], or lists from JSON
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from meshlab_spectral.documents.document import Array
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.filters.transfer import MeshLengths, gain
-from meshlab_spectral.tiles.rows import UntiledError
+from meshlab_spectral.tiles.bounds import UntiledError
 from meshlab_spectral.tiles.survey import Lengths
 
 # Largest difference to the filter of the whole mesh that a halo may cause, relative to the

@@ -15,6 +15,7 @@ from plyfile import PlyData, PlyElement, PlyListProperty
 from meshlab_spectral.documents import ply, stl
 from meshlab_spectral.documents.document import Array, Indices
 from meshlab_spectral.errors import MeshFileError
+from meshlab_spectral.tiles.bounds import UntiledError
 
 # Called with the current stage and the fraction of it that is done.
 StageCallback = Callable[[str, float | None], object]
@@ -22,10 +23,6 @@ StageCallback = Callable[[str, float | None], object]
 CHUNK = 1 << 18  # rows that are handled at once
 _HEAD = 1 << 20  # bytes in which a header ends
 _Rows = np.ndarray[Any, Any]
-
-
-class UntiledError(MeshFileError):
-    """A file or a filter cannot be handled in tiles; the message says why, and what to do."""
 
 
 @dataclass(kw_only=True)
