@@ -37,7 +37,7 @@ def main() -> None:
         for file in files:
             for task in ("filter", "denoise"):
                 (out / task).mkdir(exist_ok=True)
-                command(task, file, out / task / file.name)
+                command(task, file, out / task / file.name, "--overwrite")
             command("info", file)
         command("spectrum", files[0])
         one_of_each_name = {file.name: file for file in files}
