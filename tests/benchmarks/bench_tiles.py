@@ -96,7 +96,7 @@ def main() -> None:
     parser.add_argument("--whole-below", type=int, default=1_000_000)
     parser.add_argument("--folder", type=Path, help="for the files; by default a temporary one")
     given = parser.parse_args()
-    program = [sys.executable, "-m", "meshlab_spectral.cli", "filter", "-q"]
+    program = [sys.executable, "-m", "meshlab_spectral.cli", "filter", "-q", "--overwrite"]
     with tempfile.TemporaryDirectory(dir=given.folder) as folder:
         for side in given.sides:
             source, tiled, whole = (
