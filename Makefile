@@ -62,7 +62,8 @@ demo: $(PACKAGE)  ## filter the Stanford bunny: report, mesh and picture in buil
 
 test: build $(PACKAGE)  ## run every test, C++ and Python
 	ctest --test-dir build --output-on-failure --no-tests=error --parallel $$(nproc)
-	$(BIN)/python -m pytest -c python/pyproject.toml --rootdir . $(TEST_OPTIONS) tests/python
+	$(BIN)/python -m pytest -c python/pyproject.toml --rootdir . --numprocesses $$(nproc) --dist loadfile \
+	  $(TEST_OPTIONS) tests/python
 
 wheel: $(VENV)  ## build the wheel that PyPI takes: build/wheel/*.whl
 	rm -rf build/wheel/linux build/wheel/*.whl
