@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/support/threads.h"
@@ -145,7 +146,10 @@ bool IntrinsicTriangulation::flip(int s, bool isFree) {
     put(sidesOfT, slot[2], length_[old[2]]);
     put(sidesOfT, slot[3], length_[old[3]]);
     const std::array<double, 3> ofS = cotangentsOf(sidesOfS), ofT = cotangentsOf(sidesOfT);
-    if (!isFree && !(sum(ofS) + sum(ofT) < sumOfCotangents(s) + sumOfCotangents(t))) return false;
+    // Three corners of needles may be on one line up to round-off: an infinite sum is never less.
+    const double before =
+        isFree ? std::numeric_limits<double>::infinity() : sumOfCotangents(s) + sumOfCotangents(t);
+    if (!(sum(ofS) + sum(ofT) < before)) return false;
 
     const int k = tail_[previousSide(s)], l = tail_[previousSide(t)];
     std::array<int, 4> tails, twins;

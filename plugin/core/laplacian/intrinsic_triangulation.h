@@ -29,6 +29,9 @@ class IntrinsicTriangulation {
     int tail(int side) const { return tail_[side]; }
     int twin(int side) const { return twin_[side]; }
 
+    /// Cotangent of the angle opposite a side.
+    double cotangent(int side) const { return cotangent_[side]; }
+
     /// Sum of the two cotangents opposite the edge of a side.
     double edgeCotangents(int side) const { return cotangent_[side] + cotangent_[twin_[side]]; }
 
@@ -40,7 +43,7 @@ class IntrinsicTriangulation {
 
     std::vector<int> tail_, twin_;
     std::vector<double> length_;
-    std::vector<double> cotangent_;  // cotangent of the angle opposite each side
+    std::vector<double> cotangent_;
 };
 
 }  // namespace spectral
