@@ -4,6 +4,8 @@ import sys
 from importlib.metadata import version as installed_version
 from pathlib import Path
 
+import pyvista
+
 # The extensions next to this file.
 sys.path.insert(0, str(Path(__file__).parent))
 
@@ -14,13 +16,32 @@ version = release = installed_version("meshlab-spectral")
 extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
+    "sphinx_gallery.gen_gallery",
+    "myst_parser",
     "filter_pages",
     "command_pages",
     "docstrings",
+    "math_pages",
+    "readme_pages",
 ]
 default_role = "py:obj"  # `x` in a docstring: a link where there is an x, else code
 smartquotes_action = "D"  # dashes alone: quotes are often those of code
-exclude_patterns = ["**/__pycache__"]
+exclude_patterns = ["**/__pycache__", "notebooks", "**sg_execution_times.rst"]
+html_math_renderer = "mathml"
+
+# Scripts that are run, with their output and pictures, and offered as notebooks.
+pyvista.OFF_SCREEN = pyvista.BUILDING_GALLERY = True
+sphinx_gallery_conf = {
+    "examples_dirs": "notebooks",
+    "gallery_dirs": "built_notebooks",
+    "filename_pattern": "",
+    "within_subsection_order": "FileNameSortKey",
+    "image_scrapers": ("matplotlib", "pyvista"),
+    "abort_on_example_error": True,
+    "download_all_examples": False,
+    "show_signature": False,
+    "min_reported_time": 60,
+}
 
 # Everything is in the pages themselves: they are read from a disk, without a network.
 html_theme = "furo"

@@ -8,7 +8,7 @@ import subprocess
 import sys
 import textwrap
 from pathlib import Path
-from urllib.parse import urlsplit
+from urllib.parse import unquote, urlsplit
 
 import meshlab_spectral
 import numpy as np
@@ -32,7 +32,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Site:
     folder = tmp_path_factory.mktemp("docs")
     command = [sys.executable, "-m", "sphinx", "--fail-on-warning", "--keep-going", "--quiet"]
     done = subprocess.run(
-        [*command, SOURCES, folder], capture_output=True, text=True, timeout=300, check=False
+        [*command, SOURCES, folder], capture_output=True, text=True, timeout=600, check=False
     )
     assert done.returncode == 0, done.stderr
     return Site(folder)
@@ -51,6 +51,42 @@ def test_links_to_the_network_are_complete_addresses(site: Site) -> None:
     links = {link for page in site.pages.values() for link in page.links}
     outside = [urlsplit(link) for link in links if urlsplit(link).scheme]
     assert all(parts.scheme == "https" and "." in parts.netloc for parts in outside)
+
+
+def test_links_within_the_pages_lead_somewhere(site: Site) -> None:
+    for name, page in site.pages.items():
+        for link in page.links:
+            parts = urlsplit(link)
+            if not parts.scheme and parts.path:
+                assert (page.path.parent / unquote(parts.path)).exists(), f"{name}: {link}"
+
+
+NOTEBOOKS = sorted(path.stem for path in (SOURCES / "notebooks").glob("*.py"))
+
+
+@pytest.mark.parametrize("name", NOTEBOOKS)
+def test_a_notebook_has_been_run_and_can_be_downloaded(name: str, site: Site) -> None:
+    page = site.pages[f"built_notebooks/{name}.html"]
+    assert any(f"sphx_glr_{name}_001" in file for file in page.files)
+    assert any(link.endswith(f"{name}.ipynb") for link in page.links)
+    assert f"built_notebooks/{name}.html" in site.pages["index.html"].links
+
+
+def test_formulas_are_drawn_by_the_browser(site: Site) -> None:
+    text = site.pages["mathematics.html"].path.read_text(encoding="utf-8")
+    assert text.count("<math ") > 30
+    assert not re.search(r"\\[a-z]{2,}", text)
+
+
+def test_pages_hold_the_sections_of_the_readmes(site: Site) -> None:
+    for name, words in {
+        "installing": ("make wheel", "glibc 2.35", "--uninstall"),
+        "formats": ("FreeSurfer", "--tiles 16"),
+        "limits": ("no undo", "set_memory_limit"),
+    }.items():
+        text = html.unescape(site.pages[f"{name}.html"].path.read_text(encoding="utf-8"))
+        plain = re.sub(r"<[^>]*>", "", text)
+        assert all(each in plain for each in words), name
 
 
 def test_the_plugin_describes_every_filter() -> None:
@@ -172,6 +208,7 @@ CODE = re.compile(r"^( *)\.\. code-block:: python\n\n((?:\1   .*\n|\n)+)", re.MU
 EXAMPLES = {
     path: [textwrap.dedent(code) for _, code in CODE.findall(path.read_text())]
     for path in sorted(SOURCES.rglob("*.rst"))
+    if "built_notebooks" not in path.parts
 }
 
 
