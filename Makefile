@@ -88,7 +88,7 @@ docs: $(PACKAGE)  ## write the reference of filters and Python API: build/docs/i
 gui-test: $(PACKAGE)  ## test in the real MeshLab 2025.07, made once (Linux, root or sudo)
 	tests/gui/run.sh
 
-screenshots: $(PACKAGE)  ## make the pictures in screenshots/ and their numbers anew
+screenshots: $(PACKAGE)  ## redraw the pictures in screenshots/ and their numbers
 	PYTHONPATH=tests/benchmarks $(BIN)/python screenshots/scripts/draw.py $(MESHES) screenshots $(PICTURES)
 	$(if $(PICTURES),,tests/gui/run.sh tests/gui/screenshots.py)
 

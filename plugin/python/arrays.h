@@ -32,26 +32,26 @@ auto mapOf(const Array& array, Eigen::Index columns) {
 template <class Matrix>
 nb::object given(Matrix&& matrix) {
     using M = std::decay_t<Matrix>;
-    auto* held = new M(std::forward<Matrix>(matrix));
-    nb::capsule owner(held, [](void* p) noexcept { delete static_cast<M*>(p); });
-    const auto rows = static_cast<std::size_t>(held->rows());
-    const auto columns = static_cast<std::size_t>(held->cols());
+    auto* owned = new M(std::forward<Matrix>(matrix));
+    nb::capsule owner(owned, [](void* p) noexcept { delete static_cast<M*>(p); });
+    const auto rows = static_cast<std::size_t>(owned->rows());
+    const auto columns = static_cast<std::size_t>(owned->cols());
     if constexpr (M::ColsAtCompileTime == 1)
-        return nb::cast(nb::ndarray<nb::numpy, typename M::Scalar>(held->data(), {rows}, owner));
+        return nb::cast(nb::ndarray<nb::numpy, typename M::Scalar>(owned->data(), {rows}, owner));
     else
         return nb::cast(nb::ndarray<nb::numpy, typename M::Scalar>(
-            held->data(), {rows, columns}, owner, {1, static_cast<std::int64_t>(rows)}));
+            owned->data(), {rows, columns}, owner, {1, static_cast<std::int64_t>(rows)}));
 }
 
 /// A copy with contiguous rows, which most libraries expect of coordinates.
 template <class Matrix>
 nb::object givenByRows(const Matrix& matrix) {
     using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    auto* held = new Rows(matrix);
-    nb::capsule owner(held, [](void* p) noexcept { delete static_cast<Rows*>(p); });
+    auto* owned = new Rows(matrix);
+    nb::capsule owner(owned, [](void* p) noexcept { delete static_cast<Rows*>(p); });
     return nb::cast(nb::ndarray<nb::numpy, double>(
-        held->data(),
-        {static_cast<std::size_t>(held->rows()), static_cast<std::size_t>(held->cols())}, owner));
+        owned->data(),
+        {static_cast<std::size_t>(owned->rows()), static_cast<std::size_t>(owned->cols())}, owner));
 }
 
 /// Hands the memory of a vector or a text to NumPy: an array, or rows of `columns` numbers.
@@ -60,11 +60,12 @@ nb::object givenRows(Vector&& vector, std::size_t columns = 0) {
     using V = std::decay_t<Vector>;
     using Scalar =
         std::conditional_t<std::is_same_v<V, std::string>, std::uint8_t, typename V::value_type>;
-    auto* held = new V(std::forward<Vector>(vector));
-    nb::capsule owner(held, [](void* p) noexcept { delete static_cast<V*>(p); });
-    auto* const data = reinterpret_cast<Scalar*>(held->data());
-    if (columns == 0) return nb::cast(nb::ndarray<nb::numpy, Scalar>(data, {held->size()}, owner));
-    return nb::cast(nb::ndarray<nb::numpy, Scalar>(data, {held->size() / columns, columns}, owner));
+    auto* owned = new V(std::forward<Vector>(vector));
+    nb::capsule owner(owned, [](void* p) noexcept { delete static_cast<V*>(p); });
+    auto* const data = reinterpret_cast<Scalar*>(owned->data());
+    if (columns == 0) return nb::cast(nb::ndarray<nb::numpy, Scalar>(data, {owned->size()}, owner));
+    return nb::cast(
+        nb::ndarray<nb::numpy, Scalar>(data, {owned->size() / columns, columns}, owner));
 }
 
 }  // namespace spectral::python

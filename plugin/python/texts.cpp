@@ -119,12 +119,12 @@ nb::tuple elements(const nb::bytes& text,
     const std::string_view view = viewOf(text);
     std::vector<XmlKind> kinds;
     for (const auto& [name, attributes] : names) kinds.push_back({name, attributes});
-    XmlRest rest = released([&] { return takeElements(view, kinds); });
+    SplitXml split = released([&] { return takeElements(view, kinds); });
     nb::list taken;
-    for (XmlElements& one : rest.elements)
+    for (XmlElements& one : split.elements)
         taken.append(nb::make_tuple(givenRows(std::move(one.values), 3),
                                     givenRows(std::move(one.places), 3)));
-    return nb::make_tuple(taken, nb::bytes(rest.text.data(), rest.text.size()));
+    return nb::make_tuple(taken, nb::bytes(split.text.data(), split.text.size()));
 }
 
 using IndexTable = nb::ndarray<const std::int64_t, nb::numpy, nb::shape<-1, 3>, nb::c_contig>;

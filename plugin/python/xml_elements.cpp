@@ -127,12 +127,12 @@ double numberOf(std::string_view value) {
 
 }  // namespace
 
-XmlRest takeElements(std::string_view text, const std::vector<XmlKind>& kinds) {
+SplitXml takeElements(std::string_view text, const std::vector<XmlKind>& kinds) {
     constexpr std::size_t shortest = 32;  // bytes of an element with three attributes, about
     const Scanner scanner(text, kinds);
-    XmlRest rest;
-    rest.elements.resize(kinds.size());
-    for (XmlElements& elements : rest.elements) {
+    SplitXml split;
+    split.elements.resize(kinds.size());
+    for (XmlElements& elements : split.elements) {
         elements.values.reserve(3 * (text.size() / shortest));  // costs nothing until it is used
         elements.places.reserve(3 * (text.size() / shortest));
     }
@@ -140,9 +140,9 @@ XmlRest takeElements(std::string_view text, const std::vector<XmlKind>& kinds) {
     Position copied = 0;
     bool isFound = scanner.find(0, tag);
     while (isFound) {
-        XmlElements& elements = rest.elements[tag.kind];
+        XmlElements& elements = split.elements[tag.kind];
         const std::size_t begin = elements.values.size() / 3;
-        rest.text.append(text, copied, tag.begin - copied);
+        split.text.append(text, copied, tag.begin - copied);
         while (true) {
             for (const std::string_view value : tag.values) {
                 elements.values.push_back(numberOf(value));
@@ -155,19 +155,19 @@ XmlRest takeElements(std::string_view text, const std::vector<XmlKind>& kinds) {
                 break;
             tag = next;
         }
-        rest.text.append("<").append(tag.name);
-        rest.text.append(" begin=\"").append(std::to_string(begin));
-        rest.text.append("\" end=\"").append(std::to_string(elements.values.size() / 3));
-        rest.text.append("\"");
+        split.text.append("<").append(tag.name);
+        split.text.append(" begin=\"").append(std::to_string(begin));
+        split.text.append("\" end=\"").append(std::to_string(elements.values.size() / 3));
+        split.text.append("\"");
         copied = tag.begin + 1 + tag.name.size();
         if (tag.isPlain) {
-            rest.text.append(tag.isEmpty ? "/>" : ">");
+            split.text.append(tag.isEmpty ? "/>" : ">");
             copied = tag.end;
         }
         tag = next;
     }
-    rest.text.append(text, copied);
-    return rest;
+    split.text.append(text, copied);
+    return split;
 }
 
 }  // namespace spectral::python

@@ -22,7 +22,7 @@ struct XmlElements {
 };
 
 /// An XML document without the elements of some kinds.
-struct XmlRest {
+struct SplitXml {
     std::vector<XmlElements> elements;  ///< For each kind.
     std::string text;
 };
@@ -31,7 +31,8 @@ struct XmlRest {
 ///
 /// In their place is one element of the same name for each run of empty elements, with the
 /// attributes `begin` and `end`: which of the n rows it stands for. Comments, character data and
-/// what is not well-formed stay for the parser of the rest. So do unusual characters in attributes.
-XmlRest takeElements(std::string_view text, const std::vector<XmlKind>& kinds);
+/// what is not well-formed are left to the parser of the remaining text, as are unusual characters
+/// in attributes.
+SplitXml takeElements(std::string_view text, const std::vector<XmlKind>& kinds);
 
 }  // namespace spectral::python

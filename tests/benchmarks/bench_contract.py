@@ -75,7 +75,7 @@ CALLS = [
     Call("texture", "all", {"crease_angle": 180.0}),
     Call("texture", "cotangent", {"laplacian": "cotangent"}),
 ]
-# Filters that may move vertices; the others must keep positions and faces to the bit.
+# Filters that may move vertices; the others must leave positions and faces bit-for-bit unchanged.
 MOVES = {"filter", "denoise", "equalizer"}
 # Filters of a signal, for which the height is used: files need not have one.
 SIGNALS = {"quality", "color"}

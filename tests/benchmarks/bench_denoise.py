@@ -50,7 +50,7 @@ Method = Callable[[Array, Any], Array]
 REPOSITORY = Path(__file__).resolve().parents[2]
 SHARED = REPOSITORY.parent / "shared"
 GROUPS = {
-    "soft forms": ("igea_n3", "Nicolo0.2", "julius_n2", "child_n3"),
+    "smooth shapes": ("igea_n3", "Nicolo0.2", "julius_n2", "child_n3"),
     "machine parts": ("trimstar_n3", "Fandisk0.3", "Block0.4"),
     "synthetic": tuple(
         f"{shape}_n{noise}"

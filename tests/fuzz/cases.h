@@ -59,7 +59,7 @@ struct Outcome {
 /// Calls the core; any exception is caught. Not for BandsOptions.
 Outcome run(const Case& of, int threads);
 
-/// All numbers of a result, to be compared to the bit.
+/// All numbers of a result, to be compared bit for bit.
 std::vector<double> numbersOf(const Result& result);
 
 const char* nameOf(ErrorCode code);

@@ -24,10 +24,10 @@ struct Verdict {
 /// Runs a case and checks what the headers of the core promise:
 ///  - only an Error with a message is thrown, and always for an option out of range;
 ///  - the input is unchanged, and all numbers of a result are finite and consistent;
-///  - unreferenced and fixed vertices keep their coordinates to the bit, components their
+///  - unreferenced and fixed vertices are left bit-for-bit unchanged, components their
 ///  centroids;
 ///  - intrinsic Delaunay weights are non-negative;
-///  - repeated, and with two threads, the result is the same to the bit;
+///  - repeated, and with two threads, the result is bit-for-bit the same;
 ///  - a filter of one step is as accurate as it claims, harmonics and energies are those of a dense
 ///    solver.
 ///

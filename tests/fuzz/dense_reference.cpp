@@ -125,14 +125,14 @@ DenseSpectrum spectrumOf(const MeshLaplacian& mesh, const Interior& interior, Pr
     Matrix U = all.X(rows, Eigen::indexing::all);
 
     // X - H where a boundary is fixed: W_II U = (W X)_I.
-    std::vector<Index> held;
+    std::vector<Index> fixed;
     for (Index i = 0; i < m; ++i)
-        if (label[i] < 0) held.push_back(i);
-    if (!held.empty()) {
+        if (label[i] < 0) fixed.push_back(i);
+    if (!fixed.empty()) {
         const Matrix WX = (all.W * all.X)(rows, Eigen::indexing::all);
-        const Matrix right = WX(held, Eigen::indexing::all), left = W(held, held);
+        const Matrix right = WX(fixed, Eigen::indexing::all), left = W(fixed, fixed);
         const Matrix solution = left.ldlt().solve(right);
-        U(held, Eigen::indexing::all) = solution;
+        U(fixed, Eigen::indexing::all) = solution;
     }
     centre(D, label, U);
 

@@ -60,13 +60,13 @@ def compared(before: Seen, after: Seen, report: dict[str, Any]) -> dict[str, str
 
     "kept", "follow" the shape, "told" in a warning, or "LOST".
     """
-    told = {kind for kind in before if any(kind in warning for warning in report["warnings"])}
+    warned = {kind for kind in before if any(kind in warning for warning in report["warnings"])}
     rest = before.keys() - {"coordinates", "normals"}
     result = {kind: "kept" for kind in rest if before[kind] and before[kind] == after.get(kind)}
     for kind, follows in {"coordinates": _are_filtered, "normals": _are_normals}.items():
         if kind in before and follows(before, after, report):
             result[kind] = "follow"
-    return dict.fromkeys(before, "LOST") | dict.fromkeys(told, "told") | result
+    return dict.fromkeys(before, "LOST") | dict.fromkeys(warned, "told") | result
 
 
 def _are_filtered(before: Seen, after: Seen, report: dict[str, Any]) -> bool:

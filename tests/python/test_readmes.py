@@ -8,6 +8,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+import tomllib
+import yaml
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 PAGES = {"README.md", "CHANGELOG.md", "CONTRIBUTING.md", "RELEASING.md", "SECURITY.md"}
@@ -111,6 +113,22 @@ def test_the_version_is_below_1_until_everything_is_tested_everywhere() -> None:
     if cells != {"tested"}:
         cmake = (REPOSITORY / "CMakeLists.txt").read_text()
         assert re.search(r"project\(\w+ VERSION 0\.", cmake)
+
+
+def test_the_recipe_for_conda_needs_what_the_package_needs() -> None:
+    recipe = yaml.safe_load((REPOSITORY / ".github" / "conda" / "recipe.yaml").read_text())
+    project = tomllib.loads((REPOSITORY / "python" / "pyproject.toml").read_text())
+    cmake = (REPOSITORY / "CMakeLists.txt").read_text()
+    assert f"VERSION {recipe['context']['version']} " in cmake
+    needed = [
+        each if isinstance(each, str) else each["then"] for each in recipe["requirements"]["run"]
+    ]
+    stated = [each.split(";")[0] for each in project["project"]["dependencies"]]
+    assert sorted(each.replace(" ", "") for each in needed) == sorted([*stated, "python"])
+    built = {each.replace(" ", "") for each in recipe["requirements"]["host"] if each != "python"}
+    assert {
+        each for each in project["build-system"]["requires"] if "pymeshlab" not in each
+    } <= built
 
 
 def test_the_table_covers_every_equation_of_the_paper_that_is_used() -> None:

@@ -74,14 +74,14 @@ Signal signalOf(MeshLaplacian mesh, Boundary boundary) {
             ErrorCode::BoundaryFixesAll,
             "boundary = fixed leaves nothing to measure: every vertex is on the boundary");
     Laplacian inside = interior.restricted(mesh.laplacian);
-    HarmonicExtension::Rest rest =
-        HarmonicExtension(interior).rest(mesh.laplacian, inside, mesh.surface.X);
-    if (rest.relativeSize <= kNoShape)
+    HarmonicExtension::Remainder remainder =
+        HarmonicExtension(interior).remainder(mesh.laplacian, inside, mesh.surface.X);
+    if (remainder.relativeSize <= kNoShape)
         throw InvalidOption(ErrorCode::BoundaryFixesAll,
                             "boundary = fixed leaves nothing to measure: the boundary determines "
                             "the whole surface, as on a flat one");
-    inside.constants.remove(rest.U);
-    return {std::move(inside), std::move(rest.U)};
+    inside.constants.remove(remainder.U);
+    return {std::move(inside), std::move(remainder.U)};
 }
 
 /// Number of harmonics to compute; on a small mesh at most as many as it has.

@@ -91,19 +91,17 @@ Entries<DenoiseResult> denoiseEntries() {
               "of the noise of neighbouring vertices, as measured; above 0.2 it is shape",
               [](const R& r) -> Value { return r.diagnosis.noise.correlation; }},
              {"noise_searched",
-              "whether the mesh was searched for noise; not with needle triangles, too few "
-              "vertices "
-              "or voxels",
+              "whether the mesh was searched for noise: not if it has needle triangles, voxels or "
+              "too few vertices",
               [](const R& r) -> Value { return isSearched(r.diagnosis.kind); }},
              {"spikes", "number of vertices off the surface that were put back",
               [](const R& r) -> Value { return static_cast<int>(r.diagnosis.spikes); }},
-             {"voxel_size",
-              "of the volume that the surface is the border of, along each axis, length; 0: none",
+             {"voxel_size", "of the volume that was segmented, along each axis, length; 0: none",
               [](const R& r) -> Value { return Eigen::VectorXd(r.diagnosis.voxel); }},
              {"mean_edge", "mean edge, length",
               [](const R& r) -> Value { return r.diagnosis.noise.meanEdge; }},
              {"rounds",
-              "number of weak parts in which the normals were filtered; 0: nothing changed",
+              "number of weak filters that were applied to the normals; 0: nothing changed",
               [](const R& r) -> Value { return r.rounds; }},
          },
          movementEntries<R>()});
@@ -212,9 +210,8 @@ Filter denoiseContract() {
     return {"Spectral Denoise",
             "apply_coord_spectral_denoise",
             "Detects which noise a mesh has (scanner noise, spikes or voxel steps) and smooths it "
-            "away, with *no parameters to set*. Creases become sharp; a mesh without noise keeps "
-            "every bit. "
-            "The log says what was found.",
+            "away, with *no parameters to set*. Creases become sharp; a mesh without noise is left "
+            "bit-for-bit unchanged. The log says what was found.",
             "",
             parametersOf(denoiseFields()),
             describedBy(denoiseEntries()),

@@ -57,8 +57,8 @@ Fields<FractionalCall> fractionalFields() {
         field<Call>([](auto& call) -> auto& { return call.options.passes; }, "passes",
                     "Passes (0 = automatic)",
                     "With |steps| 0: the number of passes of 1, 2, 4, ... steps, whatever the "
-                    "|tolerance|. A report tells how many a run took: with that number it is "
-                    "repeated exactly.")
+                    "|tolerance|. A report says how many a run took: setting that number repeats "
+                    "it exactly.")
             .in("number of passes, 0 to 9")
             .to(kMaxPasses)
             .advanced()

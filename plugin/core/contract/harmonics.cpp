@@ -58,7 +58,8 @@ Entries<ManifoldHarmonics> harmonicsEntries() {
         {"inertia_count",
          "number of harmonics that the basis must hold, by Sylvester's law; 0 if unneeded",
          [](const R& r) -> Value { return r.inertiaCount; }},
-        {"whole_size", "size of basis, at least that computed, that splits no multiple eigenvalue",
+        {"whole_size",
+         "smallest basis size, from that computed on, that splits no multiple eigenvalue",
          [](const R& r) -> Value { return r.wholeSize; }},
     };
 }

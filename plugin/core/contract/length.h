@@ -18,7 +18,7 @@ struct Length {
     static Length parse(const std::string& text);
 
     /// In length units, in single precision, in which pymeshlab passes lengths on: a size then
-    /// means the same in all hosts, to the bit.
+    /// is bit-for-bit the same in all hosts.
     /// @param automatic  what `auto` stands for.
     double in(const MeshLengths& mesh, double automatic) const;
 };

@@ -69,9 +69,9 @@ std::string nothingText(const Diagnosis& diagnosis) {
                    "noise height, such as " +
                    height + " (0.1 edges)";
         default:
-            return "no noise found that could not be part of the shape, neither at every vertex "
-                   "nor in places, as spikes, or as steps of voxels or of rounded coordinates. For "
-                   "ripples several edges wide, try noise height " +
+            return "found no noise clearly distinct from the shape: not at every vertex, in "
+                   "places, as spikes, or as steps of voxels or rounded coordinates. For ripples "
+                   "several edges wide, try noise height " +
                    height + " and noise size " + numberText(kSize * edge, 2) +
                    " (0.1 and 2 edges), or Spectral Filter (Fractional)";
     }

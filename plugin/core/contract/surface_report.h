@@ -19,7 +19,7 @@ Entries<Result> surfaceEntries() {
          [](const Result& r) -> Value { return r.components; }},
         {"unreferenced_vertices", "number of vertices without faces, unchanged",
          [](const Result& r) -> Value { return r.unreferencedVertices; }},
-        {"joined_vertices", "number of vertices at seams that are one with another",
+        {"joined_vertices", "number of vertices at seams that were joined to another",
          [](const Result& r) -> Value { return r.joinedVertices; }},
         {"fixed_vertices", "number of vertices on a fixed boundary or a crease, unchanged",
          [](const Result& r) -> Value { return r.fixedVertices; }},

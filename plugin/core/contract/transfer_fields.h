@@ -64,12 +64,12 @@ void addTransferFields(Fields<Call>& fields) {
         "Size at which the filter cuts off: a wavelength along the surface, i.e. a bump and the "
         "hollow next to it. A low-pass leaves a quarter of the height of waves half as long, and "
         "nine tenths of that of waves twice as long. To remove bumps, try four times their width. "
-        "A low-pass of the default size, which removes the noise of a scan, keeps parts that are "
-        "thinner; one of another size draws them in."));
+        "At the default size a low-pass removes the noise of a scan, and thinner parts keep their "
+        "thickness; at any other size they shrink."));
     fields.push_back(field<Call>([](auto& call) -> auto& { return call.transfer.power; }, "power",
                                  "Strength (0 to 1)",
                                  "Fraction of the filter to apply, as a power of its gains: 0.5 is "
-                                 "half of the filter (a gain of 4 becomes 2).")
+                                 "half strength (a gain of 4 becomes 2).")
                          .in("exponent, above 0, at most 1")
                          .above(0.0)
                          .to(1.0));

@@ -35,19 +35,19 @@ Evaluation BasisEvaluator::evaluate(const Laplacian& laplacian, const Eigen::Mat
     }
     const Progress remaining = progress.part(done, 1.0);
     HarmonicBasis basis;
-    double rest = 0.0;
+    double gainBeyond = 0.0;
     if (truncation_) {
         basis = truncatedBasis(laplacian, truncation_->basisSize, ldlt_, remaining);
-        rest = residualGain(laplacian, basis.lambda[basis.size() - 1]);
+        gainBeyond = residualGain(laplacian, basis.lambda[basis.size() - 1]);
     } else {
         basis = harmonicsUpTo(F_.discontinuities().back(), laplacian, ldlt_, remaining);
-        rest = F_(2.0 * F_.discontinuities().back());
+        gainBeyond = F_(2.0 * F_.discontinuities().back());
     }
     Evaluation evaluation;
     for (const double alpha : alphas)
         // The power of the mean gain, not the mean of the power: K steps then make one filter.
-        evaluation.Y.push_back(
-            applyInBasis(basis, laplacian, fractionalPower(F_, alpha), std::pow(rest, alpha), X));
+        evaluation.Y.push_back(applyInBasis(basis, laplacian, fractionalPower(F_, alpha),
+                                            std::pow(gainBeyond, alpha), X));
     basis.Phi = {};
     basis_ = std::move(basis);
     if (computedBases_++ == 0)
@@ -78,11 +78,12 @@ std::optional<Evaluation> BasisEvaluator::aroundTheCut(const Laplacian& laplacia
         if (!size) return {};
         const Index inside = *size - near.first;
         const double below = near.lambda[inside - 1], above = near.lambda[inside];
-        const double cut = std::sqrt(0.5 * (below + above)), rest = residualGain(laplacian, below);
+        const double cut = std::sqrt(0.5 * (below + above)),
+                     gainBeyond = residualGain(laplacian, below);
         // Kovnatsky et al. 2012, Eqs. 6 to 10: F on the first harmonics, F_h on all others.
         std::vector<Gain> gains;
         for (const double alpha : alphas)
-            gains.push_back([F = fractionalPower(F_, alpha), Fh = std::pow(rest, alpha),
+            gains.push_back([F = fractionalPower(F_, alpha), Fh = std::pow(gainBeyond, alpha),
                              cut](double omega) { return omega < cut ? F(omega) : Fh; });
 
         const Eigen::MatrixXd c = near.transform(laplacian.D, X);

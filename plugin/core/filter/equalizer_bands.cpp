@@ -71,7 +71,7 @@ EqualizerBands::EqualizerBands(const Vertices& V, const Faces& F, const BandOpti
     // While they are computed, they are in double precision.
     requireMemory((3.0 / kShareOfMemory) * bytes(X.rows(), options.octaves), X.rows());
     checkWeights(options.part);
-    const Interior interior(components_, verticesAtRest(surface_.F, X.rows(), options.boundary));
+    const Interior interior(components_, fixedVerticesOf(surface_.F, X.rows(), options.boundary));
     const LaplacianBuilder laplacians(surface_, components_, LaplacianKind::IntrinsicDelaunay,
                                       BasisUpdate::Conformal);
     const Laplacian& whole = laplacians.current();
@@ -89,7 +89,7 @@ EqualizerBands::EqualizerBands(const Vertices& V, const Faces& F, const BandOpti
     Eigen::MatrixXd U = X;
     if (!isWhole) {
         inside = interior.restricted(whole);
-        U = HarmonicExtension(interior).rest(whole, inside, X).U;
+        U = HarmonicExtension(interior).remainder(whole, inside, X).U;
     }
     const Laplacian& L = isWhole ? whole : inside;
     std::vector<Gain> gains;

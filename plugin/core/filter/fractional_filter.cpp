@@ -72,12 +72,13 @@ void checkOptions(const FilterOptions& options) {
 }
 
 /// Vertices on a fixed boundary or a crease.
-std::vector<bool> verticesAtRest(const Surface& surface, const FilterOptions& options) {
-    std::vector<bool> rest = verticesAtRest(surface.F, surface.X.rows(), options.boundary);
-    if (options.creaseAngle <= 0.0) return rest;
+std::vector<bool> fixedVerticesOf(const Surface& surface, const FilterOptions& options) {
+    std::vector<bool> fixed = fixedVerticesOf(surface.F, surface.X.rows(), options.boundary);
+    if (options.creaseAngle <= 0.0) return fixed;
     const std::vector<bool> onCrease = creaseVertices(surface.X, surface.F, options.creaseAngle);
-    std::transform(rest.begin(), rest.end(), onCrease.begin(), rest.begin(), std::logical_or<>());
-    return rest;
+    std::transform(fixed.begin(), fixed.end(), onCrease.begin(), fixed.begin(),
+                   std::logical_or<>());
+    return fixed;
 }
 
 /// Fraction of the area at vertices where little of it is left.
@@ -159,7 +160,7 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     const Surface surface = joinedSurface(V, F);
     const TransferFunction transfer(options.transferFunction, cutoffFrequency(options.featureSize));
     const Interior interior(connectedComponents(surface.F, surface.X.rows()),
-                            verticesAtRest(surface, options));
+                            fixedVerticesOf(surface, options));
 
     LaplacianBuilder laplacians(surface, interior.surfaceComponents(), options.laplacian,
                                 options.basisUpdate, options.conformalShare);

@@ -42,7 +42,7 @@ struct FilteredSignal : SurfaceCounts, Work {
 ///
 /// Every connected component keeps the area-weighted mean of each signal, whatever F(0) is. With a
 /// fixed boundary the values there are kept instead, and F acts on the rest of the signal
-/// (harmonic_extension.h). Values that F does not change keep every bit.
+/// (harmonic_extension.h). Values that F does not change are left bit for bit.
 ///
 /// A vertex with a NaN has no data. The surface consists of the triangles with data at all corners;
 /// it has a natural boundary towards the others.

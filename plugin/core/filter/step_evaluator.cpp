@@ -78,7 +78,7 @@ Evaluation StepEvaluator::evaluate(const Laplacian& surface, const Eigen::Matrix
 
     progress.report(0.0, "factorizing");
     const Laplacian inside = interior_.restricted(surface);
-    const auto [U, relativeSize] = extension_.rest(surface, inside, X);
+    const auto [U, relativeSize] = extension_.remainder(surface, inside, X);
     if (relativeSize < 1.0) accuracy = std::min(accuracy / relativeSize, kCoarsestAccuracy);
     Evaluation evaluation = evaluator_->evaluate(inside, U, alphas, accuracy, progress);
     evaluation.errorEstimate *= relativeSize;

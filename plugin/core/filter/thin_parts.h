@@ -23,7 +23,7 @@ struct ThinPartsOfTile {
     bool areKept = false;     ///< Whether the whole surface has parts to be kept.
 };
 
-/// Factors of D that keep the parts of a shape that a low-pass would draw in to lines or points.
+/// Factors of D that keep the parts of a shape that a low-pass would shrink to lines or points.
 ///
 /// A low-pass of feature size L takes away a part whose girth g is below L: its area shrinks to
 /// q = F(2 pi / g) of what it was. Where q would be below 0.75, vertices get a feature size L_i < L

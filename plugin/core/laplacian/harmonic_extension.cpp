@@ -17,8 +17,9 @@ Eigen::MatrixXd applied(const SparseMatrix& W, const Eigen::MatrixXd& X) {
 
 }  // namespace
 
-HarmonicExtension::Rest HarmonicExtension::rest(const Laplacian& surface, const Laplacian& inside,
-                                                const Eigen::MatrixXd& X) {
+HarmonicExtension::Remainder HarmonicExtension::remainder(const Laplacian& surface,
+                                                          const Laplacian& inside,
+                                                          const Eigen::MatrixXd& X) {
     // W_II is singular on components without fixed vertices: adding masses there, and only there,
     // makes it definite. On these components H is the mean, not the solution.
     const Eigen::VectorXd D = (interior_.components().label.array() < 0).select(0.0, inside.D);
@@ -28,19 +29,20 @@ HarmonicExtension::Rest HarmonicExtension::rest(const Laplacian& surface, const 
 
     // X - H = W_II^-1 (W X)_I: no cancellation where X is nearly harmonic. A second solve, for the
     // residual of the first, matters for needle triangles.
-    Rest rest{Eigen::MatrixXd::Zero(interior_.size(), X.cols())};
+    Remainder remainder{Eigen::MatrixXd::Zero(interior_.size(), X.cols())};
     for (int pass = 0; pass < 2; ++pass)
-        rest.U += ldlt_.solve(
-            interior_.restricted(applied(surface.W, centred - interior_.extended(rest.U))));
+        remainder.U += ldlt_.solve(
+            interior_.restricted(applied(surface.W, centred - interior_.extended(remainder.U))));
     const Eigen::MatrixXd moving = interior_.restricted(centred);
     for (Index i = 0; i < moving.rows(); ++i)
-        if (interior_.components().label[i] >= 0) rest.U.row(i) = moving.row(i);
+        if (interior_.components().label[i] >= 0) remainder.U.row(i) = moving.row(i);
 
     const Eigen::VectorXd sqrtD = surface.D.cwiseSqrt();
-    const double norm = (interior_.restricted(sqrtD).col(0).asDiagonal() * rest.U).norm();
-    rest.relativeSize = std::max(norm / (sqrtD.asDiagonal() * centred).norm(),
-                                 rest.U.cwiseAbs().maxCoeff() / centred.cwiseAbs().maxCoeff());
-    return rest;
+    const double norm = (interior_.restricted(sqrtD).col(0).asDiagonal() * remainder.U).norm();
+    remainder.relativeSize =
+        std::max(norm / (sqrtD.asDiagonal() * centred).norm(),
+                 remainder.U.cwiseAbs().maxCoeff() / centred.cwiseAbs().maxCoeff());
+    return remainder;
 }
 
 }  // namespace spectral

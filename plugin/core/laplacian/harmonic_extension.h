@@ -17,7 +17,7 @@ class HarmonicExtension {
     /// @param interior  kept by reference.
     explicit HarmonicExtension(const Interior& interior) : interior_(interior) {}
 
-    struct Rest {
+    struct Remainder {
         Eigen::MatrixXd U;  ///< X - H at the vertices of the interior.
 
         /// Size of U relative to X minus the mean of each component: the larger of the ratios of
@@ -28,7 +28,8 @@ class HarmonicExtension {
     /// @param surface, inside  Laplacian of the surface, and its restriction to the interior.
     /// @param X                n x c signals on the surface.
     /// @throws SolverFailure  when W_II is not positive definite to working precision.
-    Rest rest(const Laplacian& surface, const Laplacian& inside, const Eigen::MatrixXd& X);
+    Remainder remainder(const Laplacian& surface, const Laplacian& inside,
+                        const Eigen::MatrixXd& X);
 
     int factorizations() const { return ldlt_.factorizations(); }
     int solves() const { return ldlt_.solves(); }

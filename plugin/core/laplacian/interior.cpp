@@ -14,13 +14,13 @@ std::vector<bool> boundaryVertices(const Faces& F, Index vertexCount) {
     return onBoundary;
 }
 
-std::vector<bool> verticesAtRest(const Faces& F, Index vertexCount, Boundary boundary) {
+std::vector<bool> fixedVerticesOf(const Faces& F, Index vertexCount, Boundary boundary) {
     if (boundary == Boundary::Fixed) return boundaryVertices(F, vertexCount);
     return std::vector<bool>(static_cast<std::size_t>(vertexCount), false);
 }
 
 Interior::Interior(const Faces& F, Components components, Boundary boundary)
-    : Interior(components, verticesAtRest(F, components.label.size(), boundary)) {}
+    : Interior(components, fixedVerticesOf(F, components.label.size(), boundary)) {}
 
 Interior::Interior(Components components, const std::vector<bool>& fixed)
     : surfaceComponents_(std::move(components)) {

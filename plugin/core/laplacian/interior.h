@@ -20,7 +20,7 @@ enum class Boundary {
 std::vector<bool> boundaryVertices(const Faces& F, Index vertexCount);
 
 /// Whether each vertex is fixed: the boundary vertices for Boundary::Fixed, else none.
-std::vector<bool> verticesAtRest(const Faces& F, Index vertexCount, Boundary boundary);
+std::vector<bool> fixedVerticesOf(const Faces& F, Index vertexCount, Boundary boundary);
 
 /// The vertices of a surface that can move: all, or all except a fixed boundary.
 ///

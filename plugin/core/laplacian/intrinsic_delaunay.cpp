@@ -79,8 +79,8 @@ SparseMatrix stiffnessOf(const IntrinsicTriangulation& triangulation, int copies
                 entries.front().value += weight;
                 entries.push_back({i, -weight});
             }
-            // Sorted by value, too: W_ij and W_ji are summed in the same order, so W is symmetric
-            // to the bit.
+            // Sorted by value, too: W_ij and W_ji are summed in the same order, so W is exactly
+            // symmetric.
             std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
                 return std::pair(a.row, a.value) < std::pair(b.row, b.value);
             });

@@ -40,14 +40,15 @@ std::vector<bool> selectedOn(const Surface& surface, const std::vector<bool>& se
 Eigen::VectorXd selectionWeight(const Laplacian& laplacian, const Components& components,
                                 const std::vector<bool>& selected, double width) {
     constexpr double kLengths = 3.0;  // decay lengths in a width
-    const Interior rest(components, selected);
+    const Interior unselected(components, selected);
     Eigen::VectorXd m(laplacian.D.size());
     for (Index i = 0; i < m.size(); ++i) m[i] = selected[i] ? 1.0 : 0.0;
-    if (rest.size() > 0) {
-        const Laplacian around = rest.restricted(laplacian);
+    if (unselected.size() > 0) {
+        const Laplacian around = unselected.restricted(laplacian);
         ShiftedLdlt ldlt;
         ldlt.factorizeDefinite(around.W, around.D, std::pow(kLengths / width, 2));
-        m += rest.extended(ldlt.solve(-rest.restricted(Eigen::MatrixXd(laplacian.W * m))));
+        m += unselected.extended(
+            ldlt.solve(-unselected.restricted(Eigen::MatrixXd(laplacian.W * m))));
     }
     const double last = std::exp(-kLengths);
     return m.unaryExpr([last](double value) {

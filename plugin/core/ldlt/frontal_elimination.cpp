@@ -65,7 +65,7 @@ void subtractInner(const Subtraction& s, Size inner) {
     constexpr int kColumns = kLane;
     Size j = 0;
     for (; j + kColumns <= s.columns; j += kColumns) subtractFew<Inner, kColumns>(s, inner, j, j);
-    for (Size rest = j; rest < s.columns; ++rest) subtractFew<Inner, 1>(s, inner, rest, j);
+    for (Size i = j; i < s.columns; ++i) subtractFew<Inner, 1>(s, inner, i, j);
 }
 
 void subtractByLoops(const Subtraction& s) {

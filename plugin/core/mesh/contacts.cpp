@@ -21,12 +21,12 @@ void moveContactsAlike(const Surface& surface, const Components& components,
         const auto isOther = [&](int i) { return components.label[i] != components.label[*first]; };
         const auto moves = [&](int i) { return !displacement.row(i).isZero(0.0); };
         if (std::none_of(first, end, isOther) || !std::all_of(first, end, moves)) continue;
-        // By differences: the mean of equal displacements is that displacement, to the bit.
+        // By differences: the mean of equal displacements is then exactly that displacement.
         Eigen::RowVector3d mean = displacement.row(*first);
-        for (auto one = first; one != end; ++one)
-            mean += (displacement.row(*one) - displacement.row(*first)) /
+        for (auto i = first; i != end; ++i)
+            mean += (displacement.row(*i) - displacement.row(*first)) /
                     static_cast<double>(end - first);
-        for (auto one = first; one != end; ++one) displacement.row(*one) = mean;
+        for (auto i = first; i != end; ++i) displacement.row(*i) = mean;
     }
 }
 

@@ -58,7 +58,7 @@ Eigen::MatrixXd restricted(const Eigen::MatrixXd& values, const Surface& surface
     if (surface.copies.empty()) return mean;
     Eigen::VectorXd count = Eigen::VectorXd::Ones(mean.rows());
     for (const Surface::Copy& copy : surface.copies) count[copy.row] += 1.0;
-    // By differences: the mean of equal values is that value, to the bit.
+    // By differences: the mean of equal values is then exactly that value.
     for (const auto& [vertex, row] : surface.copies)
         mean.row(row) += (values.row(vertex) - values.row(surface.vertex[row])) / count[row];
     return mean;

@@ -38,7 +38,7 @@ Eigen::MatrixXd restricted(const Eigen::MatrixXd& values, const Surface& surface
 Eigen::MatrixXd extended(Eigen::MatrixXd values, const Surface& surface, Index n);
 
 /// Adds a change on a surface to the values of its mesh. At a seam all copies get the same value; a
-/// value whose change is zero keeps every bit, including the sign of a zero.
+/// value whose change is zero is left bit-for-bit unchanged, including the sign of a zero.
 Eigen::MatrixXd changed(const Eigen::MatrixXd& values, const Surface& surface,
                         const Eigen::MatrixXd& change);
 

@@ -31,8 +31,8 @@ double availableInGroup() {
     if (used == kUnknown) return kUnknown;
     // Memory used for the file cache is reclaimed when needed.
     const double inFiles = numberAfter("/sys/fs/cgroup/memory.stat", "inactive_file");
-    const double held = used - (inFiles < kUnknown ? inFiles : 0.0);
-    return std::max(0.0, numberIn("/sys/fs/cgroup/memory.max") - held);
+    const double inUse = used - (inFiles < kUnknown ? inFiles : 0.0);
+    return std::max(0.0, numberIn("/sys/fs/cgroup/memory.max") - inUse);
 }
 
 }  // namespace

@@ -24,7 +24,9 @@ scan.points = bunny.points + noise
 def show(meshes, **options):
     """Draw meshes next to each other, from the front."""
     count = len(meshes)
-    plotter = pyvista.Plotter(shape=(1, count), window_size=(500 * count, 500), border=False)
+    plotter = pyvista.Plotter(
+        shape=(1, count), window_size=(max(500 * count, 700), 500), border=False
+    )
     for column, (name, mesh) in enumerate(meshes.items()):
         plotter.subplot(0, column)
         plotter.add_mesh(mesh, **({"color": "lightsteelblue"} | options))
@@ -43,7 +45,7 @@ def show(meshes, **options):
 # square over the surface.
 
 spectrum = spectral.geometry_spectrum(scan)
-spectral.plot_spectrum(spectrum)
+figure = spectral.plot_spectrum(spectrum)
 
 # %%
 # The lower plot says how high noise would have to be to explain the details of each size. Where
@@ -80,6 +82,7 @@ show(
     scalars=removed,
     cmap="RdBu_r",
     clim=(-limit, limit),
+    scalar_bar_args={"vertical": True, "title": ""},
 )
 
 # %%

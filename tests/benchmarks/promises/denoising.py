@@ -1,4 +1,4 @@
-"""Spectral Denoise: degrees by kind of noise, clean meshes to the bit, heights as measured."""
+"""Spectral Denoise: degrees by kind of noise, clean meshes bit for bit, heights as measured."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from promises.record import (
 # Degrees to the normals of the truth, as the tables of README.md and tests/benchmarks/README.md
 # round them.
 BY_KIND: dict[str, tuple[tuple[str, ...], float]] = {
-    "soft forms, noise of 0.2 to 0.3 edges (4)": (GROUPS["soft forms"], 6.85),
+    "smooth shapes, noise of 0.2 to 0.3 edges (4)": (GROUPS["smooth shapes"], 6.85),
     "machine parts, noise of 0.3 to 0.4 edges (3)": (GROUPS["machine parts"], 3.85),
     "synthetic, noise of 0.1 to 0.3 edges (25)": (GROUPS["synthetic"], 2.25),
     "noise in all directions": (("TGV_Block",), 3.35),
@@ -59,7 +59,7 @@ def degrees_by_kind() -> Iterator[Promise]:
 
 
 def smooth_noise() -> Iterator[Promise]:
-    """Smooth ripples may be shape: they stay, unless height and size are given (README.md)."""
+    """Smooth ripples may be real shape: kept, unless height and size are set (README.md)."""
     yield promise(
         "vertices moved by default: smooth noise over two edges", exactly(0), moved_of_smooth
     )
@@ -76,7 +76,7 @@ def not_behind_taubin() -> Iterator[Promise]:
 
 
 def clean_meshes() -> Iterator[Promise]:
-    """ "None moves, to the bit"; with a little noise, none is worse (tests/benchmarks/README.md).
+    """ "No vertex moves"; with a little noise, none is worse (tests/benchmarks/README.md).
 
     97: CAD tessellations, scans, clean halves, decimated meshes; fewer would promise less.
     """

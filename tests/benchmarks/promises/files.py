@@ -79,7 +79,7 @@ def text() -> Iterator[Promise]:
 
 
 def seams() -> Iterator[Promise]:
-    """Copies of a vertex at a seam move alike to the bit (plugin/README.md, Inputs)."""
+    """Copies of a vertex at a seam move exactly alike (plugin/README.md, Inputs)."""
     for name in CUT:
         for what, options in (("filter", SMOOTH), ("denoise", DENOISED)):
             yield promise(

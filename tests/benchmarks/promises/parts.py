@@ -1,4 +1,4 @@
-"""What is to stay stays to the bit: selections, boundaries, volumes, numbers of threads."""
+"""What must not change is left bit-for-bit unchanged: selections, boundaries, volumes."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def promises() -> Iterator[Promise]:
 
 
 def selection() -> Iterator[Promise]:
-    """A selection is filtered as in the whole mesh; beyond its fade everything keeps its bits."""
+    """A selection is filtered as in the whole mesh; beyond its fade nothing changes."""
     for name in (IGEA, BUNNY):
         yield promise(
             f"vertices moved, {REACH} feature sizes off a selection: {name}",
@@ -69,7 +69,7 @@ def volume() -> Iterator[Promise]:
 
 
 def boundary() -> Iterator[Promise]:
-    """With `boundary` fixed rims stay, to the bit (plugin/README.md, Inputs)."""
+    """With `boundary` fixed boundaries do not move at all (plugin/README.md, Inputs)."""
     for name in OPEN:
         yield promise(f"boundary vertices moved: {name}", exactly(0), partial(rim_moved, name))
 

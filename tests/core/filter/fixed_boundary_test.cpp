@@ -223,10 +223,10 @@ TEST(HarmonicExtension, ReproducesALinearFunctionOnAFlatMesh) {
     flat.V.col(2).setZero();
     const Operator A(flat);
     const Interior interior(flat.F, connectedComponents(flat.F, flat.V.rows()), Boundary::Fixed);
-    const HarmonicExtension::Rest rest =
-        HarmonicExtension(interior).rest(A, interior.restricted(A), flat.V);
-    EXPECT_LT(rest.U.cwiseAbs().maxCoeff(), 1e-14);
-    EXPECT_LT(rest.relativeSize, 1e-14);
+    const HarmonicExtension::Remainder remainder =
+        HarmonicExtension(interior).remainder(A, interior.restricted(A), flat.V);
+    EXPECT_LT(remainder.U.cwiseAbs().maxCoeff(), 1e-14);
+    EXPECT_LT(remainder.relativeSize, 1e-14);
 }
 
 TEST(FixedBoundary, FilterEqualsAllEigenvectorsOfTheInterior) {

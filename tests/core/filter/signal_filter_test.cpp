@@ -194,7 +194,7 @@ TEST(SignalFilter, WithIdealResponseIsExact) {
     }
 }
 
-TEST(SignalFilter, KeepsUnreferencedAndFixedVerticesToTheBit) {
+TEST(SignalFilter, LeavesUnreferencedAndFixedVerticesBitForBitUnchanged) {
     const Mesh mesh = testing::rectangle(2, 1, 20, 10);
     Mesh with{Vertices(mesh.V.rows() + 2, 3), (mesh.F.array() + 1).matrix()};
     with.V << Eigen::RowVector3d(9, 9, 9), mesh.V, Eigen::RowVector3d(-50, 0, 0);

@@ -18,7 +18,7 @@ using testing::Mesh;
 
 constexpr double kSize = 1.2;
 
-/// A ring whose tube, of girth 0.63, a low-pass of kSize draws in to a line.
+/// A ring whose tube, of girth 0.63, a low-pass of kSize shrinks to a line.
 Mesh thinRing() {
     Mesh ring = testing::torus(2, 0.1, 120, 12);
     ring.V.rowwise() += Eigen::RowVector3d(8, 0, 0);

@@ -10,7 +10,7 @@
 namespace spectral {
 namespace {
 
-TEST(MeshLengths, AreTheSameToTheBitIfTrianglesUseEveryVertex) {
+TEST(MeshLengths, AreBitForBitTheSameIfTrianglesUseEveryVertex) {
     const testing::Mesh mesh = testing::torus(2, 0.7, 24, 12);
     const MeshLengths lengths = lengthsOf(mesh.V, mesh.F);
     EXPECT_EQ(lengths.diagonal, boundingBoxDiagonal(mesh.V));

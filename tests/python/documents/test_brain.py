@@ -264,8 +264,8 @@ def test_numbers_in_a_file_of_their_own_are_read_and_copied_or_written_into_the_
     assert read(source).save(target, [part.vertices]) == []
     assert target.read_bytes() == source.read_bytes()
     assert target.with_name("s.dat").read_bytes() == blob
-    told = read(source).save(target, [part.vertices + 1])
-    assert told == ["the numbers of s.dat are written into s.gii"]
+    warnings = read(source).save(target, [part.vertices + 1])
+    assert warnings == ["the numbers of s.dat are written into s.gii"]
     target.with_name("s.dat").unlink()
     np.testing.assert_allclose(read(target).parts[0].vertices, part.vertices + 1, atol=1e-6)
     (folder / "s.dat").unlink()

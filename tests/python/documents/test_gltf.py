@@ -162,7 +162,7 @@ def test_the_first_placement_counts(nodes: Any, warning: str | None, tmp_path: P
     document, _ = moved_file(cube(CUBE, *nodes), tmp_path)
     np.testing.assert_array_equal(document.parts[0].vertices, CUBE)
     assert len(document.warnings) == (warning is not None)
-    assert all(str(warning) in told for told in document.warnings)
+    assert all(str(warning) in given for given in document.warnings)
 
 
 def test_triangles_strips_and_fans_are_read(tmp_path: Path) -> None:

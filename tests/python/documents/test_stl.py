@@ -92,8 +92,8 @@ def test_coincident_corners_are_one_vertex_and_the_file_is_unchanged(
     assert len(part.vertices) == 4
     np.testing.assert_array_equal(part.vertices[part.faces], TRIANGLES)
     assert saved(path) == (FILES[name], [])
-    held = {"attributes": ["attribute bytes"], "text": ["names of solids"]}
-    assert read(path).contents == next((held[key] for key in held if key in name), [])
+    contents = {"attributes": ["attribute bytes"], "text": ["names of solids"]}
+    assert read(path).contents == next((contents[key] for key in contents if key in name), [])
 
 
 @pytest.mark.parametrize("side", [1, -1])

@@ -32,7 +32,7 @@ def test_a_picture_shows_what_the_program_computes(
     name: str, shared_mesh: Callable[[str], Path]
 ) -> None:
     changed = differences(recorded(SCREENSHOTS)[f"{name}.png"], computed(name, shared_mesh))
-    lines = "\n".join(["`make screenshots` makes it anew; look at it", *changed])
+    lines = "\n".join(["`make screenshots` redraws it; look at it", *changed])
     assert not changed, lines
 
 

@@ -137,7 +137,7 @@ def test_a_scene_in_which_nothing_moves_is_copied(tmp_path: Path) -> None:
     report = filter_file(source, target, DenoiseOptions())
     assert report["max_displacement"] == 0
     assert target.read_bytes() == source.read_bytes()
-    assert not any("written anew" in warning for warning in report["warnings"])
+    assert not any("rewritten" in warning for warning in report["warnings"])
 
 
 @pytest.mark.parametrize("ending", [".dae", ".ply"])
@@ -145,12 +145,12 @@ def test_what_a_scene_loses_is_told(ending: str, tmp_path: Path) -> None:
     source, target = tmp_path / "in.dae", tmp_path / f"out{ending}"
     write_collada(source, *noisy_sphere())
     report = filter_file(source, target, FilterOptions.from_dict({"feature_size": "20%"}))
-    (told,) = (warning for warning in report["warnings"] if "written anew by MeshLab" in warning)
-    assert told.endswith("loses units, transforms, lights, names")
+    (loss,) = (warning for warning in report["warnings"] if "rewritten by MeshLab" in warning)
+    assert loss.endswith("loses units, transforms, lights, names")
 
 
 @pytest.mark.parametrize("ending", [".dae", ".3ds", ".x3d", ".wrl", ".ctm"])
-def test_every_format_that_only_meshlab_reads_tells_that_it_is_written_anew(
+def test_every_format_that_only_meshlab_reads_warns_that_it_is_rewritten(
     ending: str, tmp_path: Path
 ) -> None:
     mesh_set = pymeshlab.MeshSet()
@@ -159,4 +159,4 @@ def test_every_format_that_only_meshlab_reads_tells_that_it_is_written_anew(
     mesh_set.save_current_mesh(str(source))
     shutil.copyfile(source, tmp_path / "copy")
     report = filter_file(source, target, FilterOptions.from_dict({"feature_size": "20%"}))
-    assert any("written anew by MeshLab" in warning for warning in report["warnings"])
+    assert any("rewritten by MeshLab" in warning for warning in report["warnings"])

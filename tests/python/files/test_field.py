@@ -214,7 +214,7 @@ def test_coordinates_far_from_the_origin_keep_their_digits_or_the_loss_is_report
     W, _ = load_arrays(out)
     assert len(np.unique(W[:, 2])) > 1500
     warnings = filter_file(source, stl, SMOOTH)["warnings"]
-    assert any("single precision rounds coordinates near 5.12" in told for told in warnings)
+    assert any("single precision rounds coordinates near 5.12" in warning for warning in warnings)
 
 
 @pytest.mark.parametrize("name", ["segmentation_staircase.ply", "spikes.ply"])

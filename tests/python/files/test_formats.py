@@ -49,7 +49,7 @@ def test_another_format_gets_the_shape_and_losses_are_reported(
     source, target = tmp_path / name, tmp_path / "new" / f"out{ending}"
     BY_NAME[name].write(source)
     warnings = filter_file(source, target, SMOOTH)["warnings"]
-    (told,) = (warning for warning in warnings if f"{target.name} loses" in warning)
+    (warning,) = (warning for warning in warnings if f"{target.name} loses" in warning)
     before, after = BY_NAME[name].read(source), contents(target)
     points = before["coordinates"]
     bounds = np.column_stack([points.min(axis=0), points.max(axis=0)]).ravel()
@@ -62,7 +62,7 @@ def test_another_format_gets_the_shape_and_losses_are_reported(
     if name == "in.3mf":
         words["texture"] = "textures"
     gone = [kind for kind in words if kind in before and kind not in after]
-    assert [kind for kind in gone if words[kind] not in told] == []
+    assert [kind for kind in gone if words[kind] not in warning] == []
 
 
 def contents(path: Path) -> dict[str, Array]:

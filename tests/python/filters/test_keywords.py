@@ -93,6 +93,6 @@ def test_a_type_checker_knows_options(tmp_path: Path) -> None:
         text=True,
         check=False,
     )
-    told = [line for line in done.stdout.splitlines() if ": error:" in line]
-    assert [line.split(":")[1] for line in told] == ["3", "4", "5"], done.stdout + done.stderr
-    assert 'did you mean "feature_size"?' in told[0]
+    errors = [line for line in done.stdout.splitlines() if ": error:" in line]
+    assert [line.split(":")[1] for line in errors] == ["3", "4", "5"], done.stdout + done.stderr
+    assert 'did you mean "feature_size"?' in errors[0]

@@ -40,7 +40,7 @@ def head_of(V: NDArray[Any]) -> str:
     return f"{np.quantile(V[:, 0], 2 / 3)}"
 
 
-def test_a_selection_is_filtered_by_default_and_all_else_stays_to_the_bit(
+def test_a_selection_is_filtered_by_default_and_all_else_is_left_bit_for_bit_unchanged(
     small: tuple[NDArray[Any], NDArray[Any]],
 ) -> None:
     V, F = small
@@ -137,8 +137,8 @@ def test_a_selection_left_by_another_filter_is_reported(name: str) -> None:
     assert 0 < count < mesh.vertex_number()
     report = mesh_set.apply_filter(name)
     words = [*last_warnings(), report.get("summary", "")]
-    told = f"only the selection: {count} of {mesh.vertex_number()} vertices"
-    assert any(told in text for text in words)
+    message = f"only the selection: {count} of {mesh.vertex_number()} vertices"
+    assert any(message in text for text in words)
 
 
 def test_a_selection_is_ignored_on_request(small: tuple[NDArray[Any], NDArray[Any]]) -> None:

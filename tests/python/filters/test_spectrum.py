@@ -201,7 +201,7 @@ def test_noise_in_a_range_scan_is_distinguished_from_its_relief_and_its_rim(
     V, F = load_arrays(shared_mesh("rangescan_lato000.ply"))
     raw = geometry_spectrum(V, F, 50, boundary="fixed")
     assert raw.noise_height == raw.noise_feature_size == 0
-    assert raw.noise_summary.startswith("no noise found")
+    assert raw.noise_summary.startswith("found no noise")
     height = 0.05
     noisy = V + height * np.random.default_rng(4).standard_normal(V.shape)
     found = geometry_spectrum(noisy, F, 50, boundary="fixed")

@@ -81,8 +81,8 @@ def test_no_default_of_a_filter_depends_on_them(name: str, shape: Shape) -> None
     results = [written(mesh_set.current_mesh(), len(V)) for mesh_set in (usual, far)]
     for one, other in zip(*results, strict=True):
         np.testing.assert_array_equal(one, other)
-    told = [warning for warning in last_warnings() if ENLARGING in warning]
-    assert len(told) == (name != WITHOUT_PERCENTAGES)
+    enlarging = [warning for warning in last_warnings() if ENLARGING in warning]
+    assert len(enlarging) == (name != WITHOUT_PERCENTAGES)
 
 
 CALLS: dict[str, Callable[[Array, Array], Any]] = {
@@ -129,13 +129,13 @@ def test_a_given_percentage_refers_to_all_vertices_and_a_warning_says_so(shape: 
     assert report["feature_size"] == by_meshlab["feature_size"]
     assert report["feature_size"] == pytest.approx(0.02 * diagonal(far), rel=1e-6)
     assert report["feature_size"] == pytest.approx(0.02 * box.diagonal(), rel=1e-2)
-    (told,) = (warning for warning in report["warnings"] if ENLARGING in warning)
+    (enlarging,) = (warning for warning in report["warnings"] if ENLARGING in warning)
     numbers = (
         f"2 vertices without faces enlarge {ENLARGING} {diagonal(V):.3g} to {diagonal(far):.3g}"
     )
-    assert told.startswith(numbers)
-    assert "percentages refer to the larger one" in told
-    assert REMEDY in told
+    assert enlarging.startswith(numbers)
+    assert "percentages refer to the larger one" in enlarging
+    assert REMEDY in enlarging
     mesh_set = mesh_set_of(far, F)
     mesh_set.meshing_remove_unreferenced_vertices()
     assert mesh_set.apply_coord_spectral_filter_fractional()
@@ -156,9 +156,9 @@ def test_one_percent_of_the_diagonal_is_not_worth_a_warning(beyond: float, count
     V = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1e-3, 0], [0.5, 0, 1e-3]])
     F = np.array([[0, 1, 2], [0, 1, 3]])
     _, report = filter_mesh(with_unused(V, beyond), F, stop_gain=1.0)
-    told = [warning for warning in report["warnings"] if "without faces" in warning]
-    assert len(told) == count
-    assert all(warning.startswith("1 vertex without faces enlarges") for warning in told)
+    enlarging = [warning for warning in report["warnings"] if "without faces" in warning]
+    assert len(enlarging) == count
+    assert all(warning.startswith("1 vertex without faces enlarges") for warning in enlarging)
 
 
 def test_vertices_left_by_deleted_faces_are_unused(shape: Shape) -> None:
@@ -169,8 +169,8 @@ def test_vertices_left_by_deleted_faces_are_unused(shape: Shape) -> None:
     mesh_set.compute_selection_by_condition_per_face(condselect=f"fi == {len(F)}")
     mesh_set.meshing_remove_selected_faces()
     report = mesh_set.apply_coord_spectral_filter_fractional()
-    told = f"3 vertices without faces enlarge {ENLARGING}"
-    assert any(told in warning for warning in last_warnings())
+    enlarging = f"3 vertices without faces enlarge {ENLARGING}"
+    assert any(enlarging in warning for warning in last_warnings())
     expected = mesh_set_of(V, F).apply_coord_spectral_filter_fractional()
     assert_same_report(report, expected)
 

@@ -230,11 +230,11 @@ def test_an_option_without_effect_is_reported(
     options: dict[str, Any], warning: str, decimated: Decimated
 ) -> None:
     V, F = decimated("bunny.obj", 500)
-    (told,) = filter_mesh(V, F, feature_size="2e", **options)[1]["warnings"]
-    assert warning in told
+    (found,) = filter_mesh(V, F, feature_size="2e", **options)[1]["warnings"]
+    assert warning in found
     if set(options) <= TransferKeywords.__annotations__.keys():
-        (told,) = filter_scalars(V, F, V[:, 0], **options)[1]["warnings"]
-        assert warning in told
+        (found,) = filter_scalars(V, F, V[:, 0], **options)[1]["warnings"]
+        assert warning in found
 
 
 def test_an_option_with_an_effect_is_not_reported(decimated: Decimated) -> None:

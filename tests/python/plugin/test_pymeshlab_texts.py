@@ -37,9 +37,9 @@ def test_wrong_types_name_their_parameter(name: str, mesh_set: Any) -> None:
         for wrong in [2.0, "2%", None] if is_size else WRONG[type(default)]:
             with pytest.raises(
                 Exception, match=rf"^{parameter}\b.*: (must be|choose|Enum)"
-            ) as told:
+            ) as refused:
                 getattr(mesh_set, name)(**{parameter: wrong})
-            for named in re.findall(r"pymeshlab\.(\w+)", str(told.value)):
+            for named in re.findall(r"pymeshlab\.(\w+)", str(refused.value)):
                 assert hasattr(pymeshlab, named)
 
 

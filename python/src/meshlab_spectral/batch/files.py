@@ -97,7 +97,7 @@ def run_batch(batch: Batch, tally: Tally) -> Generator[FileResult, None, None]:
                 for folder in batch.folders:  # left by killed workers of a cluster
                     storage.tidy(folder)
         seconds = round(time.monotonic() - begin, 3)
-        report.add("summary", {**tally.counts, **tally.told(), "seconds": seconds})
+        report.add("summary", {**tally.counts, **tally.warnings_by_kind(), "seconds": seconds})
 
 
 def _workers(settings: Settings) -> AbstractContextManager[Workers]:

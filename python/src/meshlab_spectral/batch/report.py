@@ -164,7 +164,7 @@ class Tally:
         if result.warnings:
             self.warnings[result.name] = result.warnings
 
-    def told(self) -> dict[str, Any]:
+    def warnings_by_kind(self) -> dict[str, Any]:
         """Return the number of files with warnings, and the warnings as from `grouped_warnings`."""
         grouped = grouped_warnings(self.warnings)
         return {"with_warnings": len(self.warnings), "warnings": grouped}

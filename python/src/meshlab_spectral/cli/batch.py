@@ -103,7 +103,7 @@ def _print_summary(batch: Batch, tally: Tally, seconds: float, as_json: bool) ->
         outcomes: tuple[Outcome, ...] = ("filtered", "failed", "unchanged", "already done")
         summary = {
             **{outcome.replace(" ", "_"): tally.counts[outcome] for outcome in outcomes},
-            **tally.told(),
+            **tally.warnings_by_kind(),
             "seconds": round(seconds, 1),
             "report": str(batch.report),
         }

@@ -46,7 +46,7 @@ def run_shown(batch: Batch, take: Callable[[FileResult], None] = lambda result: 
         for result in results:
             on_result(result)
             take(result)
-    _print_warnings(tally.told()["warnings"], batch.report)
+    _print_warnings(tally.warnings_by_kind()["warnings"], batch.report)
     return tally
 
 

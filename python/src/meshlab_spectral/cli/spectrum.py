@@ -167,7 +167,7 @@ def _table(spectrum: GeometrySpectrum, options: FilterOptions, name: str) -> Tab
             f"{g:.3f}",
         )
     table.caption = Text(
-        f"50, 90, 99 % of the energy are at feature sizes of at least "
+        f"50, 90, 99 % of the energy is at feature sizes of at least "
         f"{spectrum.feature_size_50:.4g}, {spectrum.feature_size_90:.4g}, "
         f"{spectrum.feature_size_99:.4g}\n{_noise_line(spectrum)}"
     )

@@ -154,10 +154,10 @@ class _Gifti(Document):
         content = self.image.to_bytes(mode="force")  # force: doubles are allowed, too
         is_packed = target.suffix.lower() == ".gz"
         target.write_bytes(gzip.compress(content, mtime=0) if is_packed else content)
-        told = [
+        warnings = [
             f"the numbers of {name} are written into {target.name}" for name in sorted(external)
         ]
-        return told + precision_warnings(part.vertices, after, target.name)
+        return warnings + precision_warnings(part.vertices, after, target.name)
 
 
 def _read_gifti(path: Path) -> Document:

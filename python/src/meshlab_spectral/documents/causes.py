@@ -143,12 +143,12 @@ def unreadable(path: Path, reason: object, ending: str = "") -> MeshFileError:
     ending = ending or ending_of(path.name).lower()
     ending = ending if ending in _NAMES else FREE_SURFER
     content = path.read_bytes() if path.is_file() else b"?"
-    told = " ".join(str(reason).split())
-    code, text = _cause(content, ending, told, reason)
+    message = " ".join(str(reason).split())
+    code, text = _cause(content, ending, message, reason)
     return MeshFileError(f"{path} {text}", code)
 
 
-def _cause(content: bytes, ending: str, told: str, reason: object) -> tuple[str, str]:
+def _cause(content: bytes, ending: str, message: str, reason: object) -> tuple[str, str]:
     """Return the code, and what follows the name of the file."""
     name = _NAMES.get(ending, f".{ending}")
     if not content.strip(b" \t\r\n"):
@@ -163,12 +163,12 @@ def _cause(content: bytes, ending: str, told: str, reason: object) -> tuple[str,
     is_cut = kind is not None and ending in _ENDS and not _ENDS[ending](content)
     if is_cut or isinstance(reason, EndsEarlyError):
         damaged = " or is damaged" if isinstance(reason, MayEndEarlyError) else ""
-        return "cut_off", f"ends too early ({told}): it was cut off{damaged}; {_AGAIN}"
+        return "cut_off", f"ends too early ({message}): it was cut off{damaged}; {_AGAIN}"
     if isinstance(reason, ForeignError) or (kind is None and ending in _BEGINS):
-        return "foreign", f"is not {name} ({told}): {_NO_MESH}, with its extension"
+        return "foreign", f"is not {name} ({message}): {_NO_MESH}, with its extension"
     return "damaged", (
-        f"cannot be read as {name} ({told}): it is damaged, or was written with a mistake; correct "
-        "it there, or export it again from the program that made it"
+        f"cannot be read as {name} ({message}): it is damaged, or was written with a mistake; "
+        "correct it there, or export it again from the program that made it"
     )
 
 

@@ -11,7 +11,7 @@ _TOLERATED = 0.01
 SINGLE, DOUBLE = 9, 17  # significant digits for an exact round trip
 
 
-def rounding_told(before: Array, after: Array) -> str | None:
+def rounding_loss(before: Array, after: Array) -> str | None:
     """Describe the error of writing displacements in single precision; None if it is tolerable.
 
     It is tolerable if its root mean square over the moved vertices is at most a hundredth of their
@@ -45,16 +45,16 @@ def _size(difference: Array) -> float:
 
 def precision_warnings(before: Array, after: Array, name: str) -> list[str]:
     """Return the warning, if any, that single precision in the file `name` is too coarse."""
-    told = rounding_told(before, after)
+    message = rounding_loss(before, after)
     remedy = "choose .ply or .obj, or move the mesh to the origin first"
-    return [f"{name}: {told}: {remedy}"] if told else []
+    return [f"{name}: {message}: {remedy}"] if message else []
 
 
-def widening_warnings(told: str | None) -> list[str]:
-    """Return the warning that a file is written in double precision, if `told` says why."""
-    return [f"coordinates are written in double precision, since {told}"] if told else []
+def widening_warnings(message: str | None) -> list[str]:
+    """Return the warning that a file is written in double precision, if `message` says why."""
+    return [f"coordinates are written in double precision, since {message}"] if message else []
 
 
 def digits_for(before: Array, after: Array) -> int:
     """Return the number of significant digits that text needs for the displacements."""
-    return SINGLE if rounding_told(before, after) is None else DOUBLE
+    return SINGLE if rounding_loss(before, after) is None else DOUBLE

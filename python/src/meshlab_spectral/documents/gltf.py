@@ -184,11 +184,11 @@ def _contents(tree: Json, nodes: dict[int, list[_Node]]) -> list[str]:
     primitives = [p for mesh in tree["meshes"] for p in mesh["primitives"]]
     attributes = " ".join(name for primitive in primitives for name in primitive["attributes"])
     found = {kind: kind in tree for kind in _LISTED}
-    found |= {told: name in attributes for name, told in _ATTRIBUTES.items()}
+    found |= {content: name in attributes for name, content in _ATTRIBUTES.items()}
     found["morph targets"] = any("targets" in p for p in primitives)
     found["placement"] = any((m != IDENTITY).any() for placed in nodes.values() for _, m in placed)
     found["points and lines"] = any(p.get("mode", _TRIANGLES) < _TRIANGLES for p in primitives)
-    return [told for told, is_there in found.items() if is_there]
+    return [content for content, is_there in found.items() if is_there]
 
 
 def _moved(mesh: _Mesh, part: Part, vertices: Array) -> Array:

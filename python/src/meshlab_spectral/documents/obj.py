@@ -102,7 +102,7 @@ def _document(path: Path, content: bytes) -> Document:
     vertices, normals, faces, libraries = (
         lines[lines.kinds == kind] for kind in (_VERTEX, _NORMAL, _FACE, _LIBRARY)
     )
-    held = {_CONTENTS[_KEYWORDS[k]] for k in np.unique(lines.kinds) if 2 <= k < len(_KEYWORDS)}
+    found = {_CONTENTS[_KEYWORDS[k]] for k in np.unique(lines.kinds) if 2 <= k < len(_KEYWORDS)}
     del lines
     if not len(vertices):
         raise ForeignError("it has no vertices, which are lines that begin with v")
@@ -115,7 +115,7 @@ def _document(path: Path, content: bytes) -> Document:
         "polygons": (faces.words > 4).any(),
         "comments": b"#" in content and _COMMENT.search(content),
     }
-    contents = [name for name in dict.fromkeys(_CONTENTS.values()) if name in held]
+    contents = [name for name in dict.fromkeys(_CONTENTS.values()) if name in found]
     return _Obj(
         path,
         [Part("", V, corners[split])],

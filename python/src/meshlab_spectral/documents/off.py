@@ -113,7 +113,7 @@ def _document(path: Path, content: bytes) -> Document:
     part = Part("", V, triangles(corners, sizes, V))
     check_indices(path, part.faces, len(V))
     rows.normals = _normals(letters, rows.table, part)
-    held = {
+    kinds = {
         "normals": b"N" in letters,
         "colours": b"C" in letters,
         "texture coordinates": b"ST" in letters,
@@ -121,7 +121,7 @@ def _document(path: Path, content: bytes) -> Document:
         "polygons": (sizes > 3).any(),
         "comments": b"#" in content,
     }
-    contents = [name for name in held if held[name]]
+    contents = [name for name, is_there in kinds.items() if is_there]
     return _Off(path, [part], contents, content=content, rows=rows)
 
 

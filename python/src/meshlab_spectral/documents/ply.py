@@ -23,7 +23,7 @@ from meshlab_spectral.documents.causes import (
     unreadable,
     unsupported,
 )
-from meshlab_spectral.documents.digits import digits_for, rounding_told, widening_warnings
+from meshlab_spectral.documents.digits import digits_for, rounding_loss, widening_warnings
 from meshlab_spectral.documents.document import (
     Array,
     Document,
@@ -68,16 +68,16 @@ class PlyDocument(Document):
     def save(self, target: Path, moved: Sequence[Array]) -> list[str]:  # noqa: D102
         before, (after,) = self.parts[0].vertices, moved
         types = {self.ply["vertex"].ply_property(name).val_dtype for name in AXES}
-        told = rounding_told(before, after) if "f4" in types else None
+        loss = rounding_loss(before, after) if "f4" in types else None
         if (after != before).any() and any(type_[0] != "f" for type_ in types):
-            told = "the file has integers"
+            loss = "the file has integers"
         with target.open("wb") as file:
             if (after != before).any():
-                self._write(file, after, bool(told))
+                self._write(file, after, bool(loss))
             else:
                 file.write(self.content)
         textures = map(os.fsdecode, _TEXTURE.findall(self.header))
-        return widening_warnings(told) + copy_side_files(self.path, target, textures)
+        return widening_warnings(loss) + copy_side_files(self.path, target, textures)
 
     def _write(self, file: IO[bytes], after: Array, is_wide: bool) -> None:
         (part,), rows, start = self.parts, self.rows, len(self.header)
@@ -230,8 +230,8 @@ def _read_elements(
         if ply.text and bad >= 0:
             reasons = [f"property {one.name!r}: missing or malformed" for one in properties]
             reason = [*reasons, "expected end-of-line"][column]
-            told = b" ".join(own.words_of(bad)).decode(errors="replace")[:80]
-            raise own.fault(bad, f"element {element.name!r}: row {bad}: {reason}, in {told!r}")
+            row = b" ".join(own.words_of(bad)).decode(errors="replace")[:80]
+            raise own.fault(bad, f"element {element.name!r}: row {bad}: {reason}, in {row!r}")
         if bad >= 0 or (ply.text and len(own) < count):
             has_lists = not ply.text and any(types_[0] for types_ in types)
             raise (MayEndEarlyError if has_lists else EndsEarlyError)(
@@ -294,8 +294,8 @@ def _columns(table: _Table, *names: str) -> Array:
 
 def _corners(table: _Table) -> tuple[Indices, Indices] | None:
     """Return the corners of all faces or strips, and how many each has; None if there are none."""
-    held = [table[name] for name in CORNERS if name in table]
-    return (whole(held[0][1]), held[0][0]) if held and len(held[0][0]) else None
+    found = [table[name] for name in CORNERS if name in table]
+    return (whole(found[0][1]), found[0][0]) if found and len(found[0][0]) else None
 
 
 def _read_faces(tables: dict[str, _Table], vertices: Array) -> Indices:

@@ -57,10 +57,10 @@ def corners_of_triangles(corners: Indices, sizes: NDArray[np.integer], vertices:
     with np.errstate(all="ignore"):
         for size in np.unique(sizes[sizes > 3]).tolist():
             which = np.flatnonzero(sizes == size)
-            held = corners[begins[which, None] + np.arange(size)]
-            within = ((held >= 0) & (held < len(vertices))).all(axis=1)
-            which, held = which[within], held[within]
-            for chosen, places in _unfolded(vertices[held]):
+            polygons = corners[begins[which, None] + np.arange(size)]
+            within = ((polygons >= 0) & (polygons < len(vertices))).all(axis=1)
+            which, polygons = which[within], polygons[within]
+            for chosen, places in _unfolded(vertices[polygons]):
                 row = rows[which[chosen], None] + np.arange(size - 2)
                 split[row] = begins[which[chosen], None, None] + places
     return split

@@ -91,8 +91,8 @@ class Lines:
         """
         values, _, bad, _ = self.table([False] * count, first)
         if bad >= 0:
-            told = b" ".join(self.words_of(bad)).decode(errors="replace")[:80]
-            reason = f"row {bad} is {told!r}, which lacks the {count} numbers required"
+            row = b" ".join(self.words_of(bad)).decode(errors="replace")[:80]
+            reason = f"row {bad} is {row!r}, which lacks the {count} numbers required"
             raise unreadable(path, self.fault(bad, reason))
         return values
 

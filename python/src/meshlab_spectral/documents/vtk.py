@@ -20,7 +20,7 @@ from meshlab_spectral.documents.digits import (
     DOUBLE,
     SINGLE,
     digits_for,
-    rounding_told,
+    rounding_loss,
     widening_warnings,
 )
 from meshlab_spectral.documents.document import Array, Document, Indices, Part, check_vertices
@@ -119,10 +119,10 @@ class _VtkDocument(Document):
             target.write_bytes(self.path.read_bytes())
             return []
         mesh = self.mesh.copy()
-        told = None if mesh.points.dtype == np.float64 else rounding_told(before, after)
+        loss = None if mesh.points.dtype == np.float64 else rounding_loss(before, after)
         if mesh.points.dtype.kind != "f":
-            told = "the file has integers"
-        mesh.points = after.astype(np.result_type(mesh.points, "f8" if told else "f4"))
+            loss = "the file has integers"
+        mesh.points = after.astype(np.result_type(mesh.points, "f8" if loss else "f4"))
         for normals in _normals(mesh.point_data):
             normals[:] = following_normals(before, after, faces, np.array(normals))
         for normals in _normals(mesh.cell_data):
@@ -132,7 +132,7 @@ class _VtkDocument(Document):
             turned = (old != new).any(axis=1) & (length[:, 0] != 0)
             normals[turned] = new[turned] / length[turned]
         content = self.path.read_bytes()
-        changes, text = _changes_of_text(content, self.mesh, mesh, bool(told))
+        changes, text = _changes_of_text(content, self.mesh, mesh, bool(loss))
         if changes:
             is_double = mesh.points.dtype == np.float64
             changes[0] = (*changes[0][:-1], DOUBLE if is_double else digits_for(before, after))
@@ -140,7 +140,7 @@ class _VtkDocument(Document):
                 write_patched(file, text, changes)
         else:
             mesh.save(target, binary=not _TEXT.search(content))
-        return widening_warnings(told)
+        return widening_warnings(loss)
 
 
 def _changes_of_text(
@@ -233,8 +233,8 @@ def _surface(path: Path, grid: Any, vertices: Array) -> tuple[Indices, Indices]:
     types = np.asarray(grid.celltypes, dtype=np.int64)
     others = set(np.unique(types).tolist()) - {*_OTHERS, _STRIP, *_POLYGONS}
     if others:
-        told = ", ".join(map(str, sorted(others)))
-        raise unsupported(path, f"has volume or curved cells (VTK's type {told})", _EXTRACT)
+        found = ", ".join(map(str, sorted(others)))
+        raise unsupported(path, f"has volume or curved cells (VTK's type {found})", _EXTRACT)
     if ((corners < 0) | (corners >= len(vertices))).any():
         raise ValueError(f"its cells have corners that are not among its {len(vertices)} points")
     polygons, strips = np.isin(types, _POLYGONS), np.flatnonzero(types == _STRIP)

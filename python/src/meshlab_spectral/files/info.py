@@ -61,7 +61,7 @@ def mesh_info(source: Path, on_stage: StageCallback, mesh: str | None = None) ->
         "noise_size": denoised["noise_size"],
         "spikes": denoised["spikes"],
         "voxel_size": denoised["voxel_size"],
-        "warnings": [told for told in denoised["warnings"] if told != denoised["summary"]],
+        "warnings": [warning for warning in denoised["warnings"] if warning != denoised["summary"]],
     }
     return plain(report)
 

@@ -55,8 +55,8 @@ def check_writable(path: Path) -> None:
             f"{path.name} can be written only when the input ends in {ending}, too: choose "
             f"{USUAL_FORMATS}"
         )
-    told = f"ends in {ending}" if ending else "has no extension"
-    raise FormatError(f"{path.name} {told}, which MeshLab cannot write: choose {USUAL_FORMATS}")
+    reason = f"ends in {ending}" if ending else "has no extension"
+    raise FormatError(f"{path.name} {reason}, which MeshLab cannot write: choose {USUAL_FORMATS}")
 
 
 def read_with_meshlab(mesh_set: Any, source: Path) -> None:
@@ -146,13 +146,13 @@ def set_quality(mesh_set: Any, quality: Any) -> None:
 
 
 def left_by_meshlab(source: Path, target: Path, mesh_set: Any) -> list[str]:
-    """Return the warning about what a file that only MeshLab reads loses, being written anew."""
+    """Return the warning about what a file loses that MeshLab reads and rewrites."""
     content = source.read_bytes()
-    lost = [told for told, pattern in _SCENES.items() if pattern.search(content)]
+    lost = [loss for loss, pattern in _SCENES.items() if pattern.search(content)]
     if DUMMY in mesh_set.current_mesh().textures():
         lost.append("textures that MeshLab does not find")
     what = ", ".join(lost or ["what MeshLab does not keep of it, such as units, transforms, names"])
-    return [f"{target.name} is written anew by MeshLab, and loses {what}"]
+    return [f"{target.name} is rewritten by MeshLab, and loses {what}"]
 
 
 def left_behind(

@@ -30,7 +30,7 @@ def followed(
 ) -> dict[str, Any]:
     """Return those arrays in `data` that depend on positions, for vertices moved from V to X.
 
-    Normals are computed anew, on the side of the surface where they were; tangents are made
+    Normals are recomputed, on the side of the surface where they were; tangents are made
     perpendicular to them. What has no direction in the new shape stays.
 
     Parameters

@@ -121,8 +121,8 @@ def option(
     flags, metavar
         How a command spells the option, unless like its name, and what it calls the value.
     """
-    told = {"help": explanation, "limits": limits, "flags": flags, "metavar": metavar}
-    return field(default=default, metadata=told)
+    metadata = {"help": explanation, "limits": limits, "flags": flags, "metavar": metavar}
+    return field(default=default, metadata=metadata)
 
 
 _NAMED = {

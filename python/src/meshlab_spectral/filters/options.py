@@ -106,14 +106,14 @@ class FilterOptions(Options):
         "Size at which the filter cuts off: a wavelength along the surface, i.e. a bump and "
         "the hollow next to it. A low-pass leaves a quarter of the height of waves half as "
         "long, and nine tenths of that of waves twice as long. To remove bumps, try four "
-        "times their width. A low-pass of the default size, which removes the noise of a "
-        "scan, keeps parts that are thinner; one of another size draws them in. Default: "
-        "six mean edges, at most 5 % of the diagonal.",
+        "times their width. At the default size a low-pass removes the noise of a scan, and "
+        "thinner parts keep their thickness; at any other size they shrink. Default: six "
+        "mean edges, at most 5 % of the diagonal.",
     )
     power: float = option(
         1.0,
-        "Fraction of the filter to apply, as a power of its gains: 0.5 is half of the "
-        "filter (a gain of 4 becomes 2).",
+        "Fraction of the filter to apply, as a power of its gains: 0.5 is half strength (a "
+        "gain of 4 becomes 2).",
         Limits(0, 1, low_open=True),
     )
     pass_gain: float = option(
@@ -174,7 +174,7 @@ class FilterOptions(Options):
     passes: int = option(
         0,
         "With --steps 0: the number of passes of 1, 2, 4, ... steps, whatever the "
-        "--tolerance. A report tells how many a run took: with that number it is repeated "
+        "--tolerance. A report says how many a run took: setting that number repeats it "
         "exactly.",
         Limits(0, 9),
     )

@@ -51,11 +51,11 @@ def set_memory_limit(limit: int | None) -> None:
     _set(MEMORY, limit, f"memory limit = {limit}: give a number of bytes")
 
 
-def _set(variable: str, number: int | None, told: str) -> None:
+def _set(variable: str, number: int | None, message: str) -> None:
     if number is None:
         os.environ.pop(variable, None)
     elif number <= 0:
-        raise OptionError(f"{told} above zero, or None")
+        raise OptionError(f"{message} above zero, or None")
     else:
         os.environ[variable] = str(number)
 

@@ -75,11 +75,11 @@ class _Moved:
 
 
 def _forget(rows: Any) -> None:
-    held = rows
-    while not hasattr(held, "madvise") and held is not None:
-        held = getattr(held, "_mmap", None) or getattr(held, "base", None)
-    if held is not None and hasattr(mmap, "MADV_DONTNEED"):
-        held.madvise(mmap.MADV_DONTNEED)
+    owner = rows
+    while not hasattr(owner, "madvise") and owner is not None:
+        owner = getattr(owner, "_mmap", None) or getattr(owner, "base", None)
+    if owner is not None and hasattr(mmap, "MADV_DONTNEED"):
+        owner.madvise(mmap.MADV_DONTNEED)
 
 
 def _vertices(

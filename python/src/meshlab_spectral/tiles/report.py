@@ -70,8 +70,8 @@ def _warnings(reports: list[dict[str, Any]]) -> list[str]:
         for warning in one["warnings"]:
             kinds.setdefault(_NUMBER.sub("#", warning), []).append(warning)
     return [
-        told[0]
-        if len(set(told)) == 1 and len(told) == len(reports)
-        else f"{told[0]} (in {len(told)} of {len(reports)} tiles)"
-        for told in kinds.values()
+        warnings[0]
+        if len(set(warnings)) == 1 and len(warnings) == len(reports)
+        else f"{warnings[0]} (in {len(warnings)} of {len(reports)} tiles)"
+        for warnings in kinds.values()
     ]
