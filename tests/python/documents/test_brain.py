@@ -130,7 +130,7 @@ def test_values_without_a_surface_are_refused_with_the_file_to_pass(tmp_path: Pa
         read(path)
     curvature = tmp_path / "lh.pial"
     curvature.write_bytes(b"\xff\xff\xff" + bytes(24))
-    with pytest.raises(MeshFileError, match=r"values of FreeSurfer, no surface.* lh\.pial"):
+    with pytest.raises(MeshFileError, match=r"values of FreeSurfer, not a surface.* lh\.pial"):
         read(curvature)
 
 
@@ -207,14 +207,16 @@ def test_quadrilaterals_of_free_surfer_are_those_that_nibabel_reads(
     np.testing.assert_allclose(points, moved(part.vertices), rtol=1e-6)
     np.testing.assert_array_equal(faces, part.faces)
     path.write_bytes(path.read_bytes()[:-5])
-    with pytest.raises(MeshFileError, match="no surface" if number == ">i2" else "ends too early"):
+    with pytest.raises(
+        MeshFileError, match="not a surface" if number == ">i2" else "ends too early"
+    ):
         open_document(path)
 
 
 def test_values_of_free_surfer_are_named(tmp_path: Path) -> None:
     path = tmp_path / "lh.curv"
     write_morph_data(path, np.linspace(-1, 1, 100))
-    with pytest.raises(MeshFileError, match="holds values of FreeSurfer, no surface") as error:
+    with pytest.raises(MeshFileError, match="holds values of FreeSurfer, not a surface") as error:
         load_parts(path)
     assert error.value.code == "unsupported"
 

@@ -195,7 +195,7 @@ def check_report(path: Path) -> None:
 
 
 def _foreign_value(record: dict[str, Any]) -> str | None:
-    """Return what in a line no batch writes; None if there is no such thing."""
+    """Return what in a line was not written by a batch, or None."""
     kind = record.get("kind")
     if kind == "run" and "begun" not in record:
         return "begun is missing"

@@ -109,7 +109,7 @@ def _read_quadrilaterals(path: Path) -> Document:
     middle = begin + 3 * n * type_.itemsize
     if is_old and middle + 12 * m != len(data):  # values begin with the same bytes
         raise unsupported(
-            path, "holds values of FreeSurfer, no surface", "name the surface, such as lh.pial"
+            path, "holds values of FreeSurfer, not a surface", "name the surface, such as lh.pial"
         )
     if middle + 12 * m > len(data):
         raise EndsEarlyError(f"it claims {n} vertices and {m} faces, in {len(data)} bytes")

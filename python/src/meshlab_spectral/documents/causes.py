@@ -30,7 +30,7 @@ class _Kind(NamedTuple):
     """A kind of files, told by how they begin."""
 
     name: str
-    endings: tuple[str, ...]  # of mesh files of this kind; none: it is no mesh
+    endings: tuple[str, ...]  # of mesh files of this kind; none: not a mesh
     pattern: re.Pattern[bytes]
     remedy: str = ""
 

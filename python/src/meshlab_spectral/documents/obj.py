@@ -138,7 +138,7 @@ def _corners(faces: Lines, vertices: Lines, normals: Lines) -> tuple[Indices, In
         np.array(
             [int(part or 0) if k else int(part) for k, part in enumerate(parts)][::2], np.int64
         )
-        raise ValueError(f"{word!r} is no corner")
+        raise ValueError(f"{word!r} is not a corner")
     corners = _indices(found[:, 0], faces, vertices)
     if (corners < 0).any():
         face = np.searchsorted(np.cumsum(faces.words - 1), np.argmax(corners < 0), side="right")

@@ -17,7 +17,7 @@ from meshlab_spectral.documents.text import BYTE_ORDER_MARK, lines_of, write_pat
 
 HEADER, _LOOKED_AT = 84, 1000  # bytes
 TRIANGLE = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
-_LARGEST_CUT = 1000  # of what a file claims to hold to what has arrived
+_LARGEST_CUT = 1000  # largest ratio of what a file claims to hold to what it holds
 _EXCESS = 1 / 20  # trailing bytes that a binary file may have, relative to its size
 _KEYWORDS = ["facet", "vertex", "endfacet", "solid", "endsolid"]
 _FACET = [0, 1, 1, 1, 2]  # loops left out

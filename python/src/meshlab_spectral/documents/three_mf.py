@@ -29,7 +29,7 @@ from meshlab_spectral.documents.text import Change, whole, write_patched
 # XML of vertices compresses to about a tenth; a far higher ratio indicates a zip bomb.
 _LARGEST_RATIO, _HARMLESS = 200, 64 << 20
 _TAKEN = [("vertex", ("x", "y", "z")), ("triangle", ("v1", "v2", "v3"))]
-_LEVEL = 1  # of compression: a third of the time of the default, for files a quarter larger
+_LEVEL = 1  # of zlib: takes a third of the default's time, for files a quarter larger
 _CONTENTS = {
     "basematerials": "materials",
     "colorgroup": "colours",

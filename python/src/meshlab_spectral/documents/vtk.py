@@ -29,7 +29,7 @@ from meshlab_spectral.documents.polygons import strip_triangles, triangles
 from meshlab_spectral.documents.text import Change, Lines, write_patched
 from meshlab_spectral.extras import check_extras
 
-_LARGEST_RATIO = 100  # of counts to bytes; zlib packs fewer than 86 points into a byte
+_LARGEST_RATIO = 100  # points per byte: zlib packs fewer than 86 points into a byte
 _COUNTS = re.compile(rb'(?:NumberOf\w+="|\n(?:POINTS|CELLS|POLYGONS|LINES|VERTICES)\s+)(-?\d+)')
 _TEXT = re.compile(rb'<Points>\s*<DataArray[^>]*format="ascii"')
 # Legacy text, after two lines of head and title; then its points, and arrays.

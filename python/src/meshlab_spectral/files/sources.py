@@ -42,7 +42,7 @@ def check_source(source: Path) -> None:
 def _missing(source: Path) -> tuple[str, str]:
     if str(source) == "-":
         return (
-            "- is no file: only filter and denoise read standard input; save the mesh, and name it",
+            "- is not a file: only filter and denoise read standard input; name a file",
             "no_file",
         )
     if _URL.match(str(source)):
@@ -52,9 +52,11 @@ def _missing(source: Path) -> tuple[str, str]:
 
 
 def check_is_place(target: Path) -> None:
-    """Raise MeshFileError if an output is named as what is no file: - or a URL."""
+    """Raise MeshFileError if an output is not a file: - or a URL."""
     if str(target) == "-":
-        text = "- is no file: only filter and denoise write a mesh to standard output; name a file"
+        text = (
+            "- is not a file: only filter and denoise write a mesh to standard output; name a file"
+        )
     elif _URL.match(str(target)) and not target.parent.is_dir():
         url = str(target).replace(":/", "://", 1)
         text = f"{url} is a URL, to which only `meshlab-spectral batch` writes: name a file"

@@ -35,7 +35,7 @@ def mesh_arrays(
         vertices, faces = kind.arrays(mesh_or_vertices)
     elif faces is None:
         if (remedy := remedy_for(mesh_or_vertices)) is not None:
-            raise TypeError(f"{_class_of(mesh_or_vertices)} is no mesh: {remedy}")
+            raise TypeError(f"{_class_of(mesh_or_vertices)} is not a mesh: {remedy}")
         raise TypeError(
             f"there are no faces with {_class_of(mesh_or_vertices)}: pass vertices and faces, or a "
             f"mesh: {known_kinds()}"

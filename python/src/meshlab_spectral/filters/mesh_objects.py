@@ -61,7 +61,7 @@ def known_kinds() -> str:
 
 
 def remedy_for(mesh: Any) -> str | None:
-    """Return what to do with an object that is no mesh but holds some, or None."""
+    """Return what to do with an object that is not a mesh but holds some, or None."""
     classes = [one.__name__ for one in type(mesh).__mro__]
     return next((remedy for name, remedy in _REMEDIES.items() if name in classes), None)
 

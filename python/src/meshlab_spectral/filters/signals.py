@@ -207,9 +207,9 @@ def _smoothing(
     if gain is not None or options is not None or "feature_size" in named:
         raise OptionError("fwhm: replaces feature_size, options and gain; give one of them")
     if named.get("filter_type", "low-pass") != "low-pass":
-        raise OptionError(f"fwhm: is of a low-pass, not of filter_type = {named['filter_type']}")
+        raise OptionError(f"fwhm: for a low-pass, not for filter_type = {named['filter_type']}")
     if named.get("response", "gaussian") != "gaussian":
-        raise OptionError(f"fwhm: is of a Gaussian, not of response = {named['response']}")
+        raise OptionError(f"fwhm: for a Gaussian, not for response = {named['response']}")
     if not (fwhm > 0 and isfinite(fwhm)):
         raise OptionError(f"fwhm = {fwhm}: must be a length above zero")
     return None, {**named, "feature_size": _SIZE_PER_FWHM * fwhm}
