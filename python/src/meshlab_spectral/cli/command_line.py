@@ -24,7 +24,7 @@ _GROUPS = {
         stop_gain transfer_function band_width response order power
         strength noise_height noise_size""",
     DENOISE: "",
-    "Where": "mesh selected boundary crease_angle keep_creases weight",
+    "Where": "mesh selected box component where mask boundary crease_angle keep_creases weight",
     HOW: """steps tolerance passes basis_update conformal_share spectrum basis_size
         reinject_residual laplacian preserve_volume""",
     "Files": "recursive overwrite resume dry_run tiles memory",

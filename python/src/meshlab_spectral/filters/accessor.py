@@ -59,12 +59,12 @@ class SpectralAccessor:
         """Measure the roughness: `surface_texture`."""
         return surface_texture(self._mesh, **options)
 
-    def _with_array(self, name: str, values: Any, report: dict[str, Any]) -> pyvista.PolyData:
+    def _with_array(self, name: str, values: Any, report: Any) -> pyvista.PolyData:
         mesh = self._mesh.copy()
         mesh.point_data[name] = np.asarray(values)
         return _with_report(mesh, report)
 
 
-def _with_report(mesh: pyvista.PolyData, report: dict[str, Any]) -> pyvista.PolyData:
+def _with_report(mesh: pyvista.PolyData, report: Any) -> pyvista.PolyData:
     mesh.user_dict["spectral"] = plain(report)
     return mesh
