@@ -108,7 +108,7 @@ def _command_with(table: type[Options], help_text: str) -> Command:
             ),
         ] = None,
         overwrite: Annotated[
-            bool, typer.Option("--overwrite", help="Replace OUTPUT if it exists.")
+            bool, typer.Option("--overwrite", "--force", "-f", help="Replace OUTPUT if it exists.")
         ] = False,
         ending: Annotated[
             str | None,
@@ -135,6 +135,7 @@ def _command_with(table: type[Options], help_text: str) -> Command:
             bool,
             typer.Option(
                 "--dry-run",
+                "-n",
                 help="Print what would be done, with sizes in the units of the file; nothing is "
                 "written.",
             ),

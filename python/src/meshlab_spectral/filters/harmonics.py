@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -49,6 +49,10 @@ class Harmonics:
     eigenvalues: Array
     harmonics: Array
     masses: Array
+
+    def __iter__(self) -> Iterator[Array]:
+        """Unpack as ``eigenvalues, harmonics = basis``, as eigensolvers return them."""
+        return iter((self.eigenvalues, self.harmonics))
 
     def __repr__(self) -> str:
         waves = self.frequencies[self.eigenvalues > 0]
