@@ -1,9 +1,9 @@
-"""Write the tables of options, filters/options.py, as the core describes its filters.
+"""Write filters/options.py and filters/reports.py, as the core describes its filters.
 
 usage: write_options.py [--check]
 
-With --check nothing is written; the exit code is 1 if the file is not up to date. ruff gives it its
-form.
+With --check nothing is written; the exit code is 1 if a file is not up to date. ruff gives them
+their form.
 """
 
 from __future__ import annotations
@@ -11,12 +11,14 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+import textwrap
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from meshlab_spectral import _core
 
-TARGET = Path(__file__).parent / "src" / "meshlab_spectral" / "filters" / "options.py"
+FOLDER = Path(__file__).parent / "src" / "meshlab_spectral" / "filters"
 SETTINGS = Path(__file__).with_name("pyproject.toml")
 
 # Class -> filter, name of the table in a recipe, parameters that are left out.
@@ -57,6 +59,30 @@ from dataclasses import dataclass
 from typing import Literal, TypedDict
 
 from meshlab_spectral.filters.option_types import LARGEST_INTEGER, Length, Limits, Options, option
+
+'''
+
+# Class -> filter, what has such a report.
+REPORTS = {
+    "FilterReport": ("apply_coord_spectral_filter_fractional", "`filter_mesh`"),
+    "DenoiseReport": ("apply_coord_spectral_denoise", "`denoise_mesh`"),
+    "ScalarsReport": (SIGNALS, "`filter_scalars`"),
+    "ColorsReport": ("apply_color_spectral_filter_per_vertex", "`filter_colors`"),
+    "SpectrumReport": ("get_geometry_spectrum", "`meshlab-spectral spectrum`"),
+    "TextureReport": ("compute_scalar_surface_texture_per_vertex", "`SurfaceTexture`"),
+}
+# Entries that Python adds, in place of all others but the warnings.
+COLUMNS = {"ScalarsReport": ("columns", "of values n x k, their k reports, in place of these")}
+# With these, where a filter has them, its report has all entries that there may be.
+MORE = {"spectrum": "truncated", "basis_size": 20, "steps": 1, "form": "sphere"}
+REPORTS_HEAD = '''"""The reports of the filters: entries, their meaning, their units.
+
+Written by python/write_options.py from the tables in plugin/core/contract: edit those.
+"""
+
+from __future__ import annotations
+
+from typing import TypedDict
 
 '''
 
@@ -182,17 +208,83 @@ def _written() -> str:
             *map(_table_of, TABLES),
         ]
     )
+    return text
+
+
+def _torus(rings: int = 12) -> tuple[Any, Any]:
+    """Return a mesh that every filter accepts."""
+    i, j = (index.ravel() for index in np.meshgrid(np.arange(rings), np.arange(rings)))
+    a, b = i + rings * j, (i + 1) % rings + rings * j
+    c, d = ((corner + rings) % rings**2 for corner in (b, a))
+    F = np.vstack([np.column_stack([a, b, c]), np.column_stack([a, c, d])]).astype(np.int32)
+    u, v = (index * 2 * np.pi / rings for index in (i, j))
+    radius = 1 + 0.7 * np.cos(v)
+    return np.column_stack([radius * np.cos(u), radius * np.sin(u), 0.7 * np.sin(v)]), F
+
+
+def _kinds_of(name: str) -> dict[str, str]:
+    """Return the types of a report's entries, from runs."""
+    V, F = _torus()
+    known = {one["name"] for one in _filter_named(name)["parameters"]}
+    kinds: dict[str, str] = {}
+    for more in ({}, {key: value for key, value in MORE.items() if key in known}):
+        done = _core.apply(name, V, F, more, values=np.abs(V) if "color" in name else V[:, :1])
+        for entry, value in done["report"].items():
+            kinds[entry] = "list[float]" if np.ndim(value) else type(value).__name__
+        if done["summary"]:
+            kinds["summary"] = "str"
+    return kinds
+
+
+def _report_of(table: str) -> str:
+    """Return the class of a report; entries that not every run has are in a class of their own."""
+    name, function = REPORTS[table]
+    kinds = _kinds_of(name)
+    entries = sorted(_filter_named(name)["report"])
+    if table in COLUMNS:
+        entries = [(*one[:2], False) for one in [COLUMNS[table], *entries]]
+        kinds["columns"] = f"list[{table}]"
+    if "summary" in kinds:
+        entries.append(("summary", "what was found and done, in one line", True))
+    entries.append(("warnings", "problems that were not errors, and what to do about them", True))
+    kinds["warnings"] = "list[str]"
+
+    def lines(wanted: bool) -> list[str]:
+        return [
+            f"    {entry}: {kinds[entry]}\n    {_docstring(meaning)}"
+            for entry, meaning, is_always in entries
+            if is_always == wanted
+        ]
+
+    text = f'    """Report of {function}; lengths are in the units of the mesh."""\n'
+    if not (some := lines(False)):
+        return "\n".join([f"class {table}(TypedDict):", text, *lines(True)])
+    always = [f"class _{table}(TypedDict):", *lines(True)]
+    return "\n".join([*always, "\n", f"class {table}(_{table}, total=False):", text, *some])
+
+
+def _docstring(meaning: str) -> str:
+    text = meaning[0].upper() + meaning[1:] + "."
+    quotes = '"""'
+    if len(text) < 88:
+        return f"{quotes}{text}{quotes}"
+    return textwrap.fill(f"{quotes}{text}{quotes}", 96, subsequent_indent="    ")
+
+
+def _formatted(text: str) -> str:
     command = [sys.executable, "-m", "ruff", "format", "--config", str(SETTINGS), "-"]
     done = subprocess.run(command, input=text + "\n", capture_output=True, text=True, check=True)
     return done.stdout
 
 
 def _main() -> None:
-    text = _written()
-    if "--check" not in sys.argv:
-        TARGET.write_text(text, encoding="utf-8")
-    elif TARGET.read_text(encoding="utf-8") != text:
-        sys.exit(f"{TARGET.name} is not up to date: run python/write_options.py")
+    reports = REPORTS_HEAD + "\n\n\n".join(map(_report_of, REPORTS))
+    for name, text in (("options.py", _written()), ("reports.py", reports)):
+        target, formatted = FOLDER / name, _formatted(text)
+        if "--check" not in sys.argv:
+            target.write_text(formatted, encoding="utf-8")
+        elif not target.exists() or target.read_text(encoding="utf-8") != formatted:
+            sys.exit(f"{name} is not up to date: run python/write_options.py")
 
 
 if __name__ == "__main__":

@@ -67,6 +67,7 @@ Number environmentNumber(const char* variable, const char* unit) {
 std::map<std::string, QVariant> dictionaryOf(const spectral::Values& report) {
     std::map<std::string, QVariant> dictionary;
     for (const auto& [name, value] : report) {
+        if (std::holds_alternative<std::string>(value)) continue;
         QVariant& entry = dictionary[name];
         if (const auto* vector = std::get_if<Eigen::VectorXd>(&value))
             entry = QVariant::fromValue(*vector);

@@ -7,6 +7,7 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <numeric>
 #include <optional>
@@ -22,6 +23,7 @@
 #include "core/support/memory.h"
 #include "core/support/steady_progress.h"
 #include "core/support/threads.h"
+#include "core/transfer/expression.h"
 #include "errors.h"
 #include "running.h"
 #include "texts.h"
@@ -131,6 +133,37 @@ nb::object joinedVertices(const Positions& vertices, const Indices& faces) {
     return givenRows(std::move(first));
 }
 
+/// For each vertex its connected component, from 0; -1: no face uses it.
+nb::object components(const Positions& vertices, const Indices& faces) {
+    const Vertices V = mapOf(vertices, 3);
+    const Faces F = mapOf(faces, 3);
+    std::vector<int> labels(static_cast<std::size_t>(V.rows()), -1);
+    {
+        const Running running;
+        const Surface surface = joinedSurface(V, F);
+        const Components found = connectedComponents(surface.F, surface.X.rows());
+        for (Index row = 0; row < surface.X.rows(); ++row)
+            labels[surface.vertex[row]] = found.label[row];
+        for (const auto& [vertex, row] : surface.copies) labels[vertex] = found.label[row];
+    }
+    return givenRows(std::move(labels));
+}
+
+/// The values of an expression where its variables have those in each row of a table.
+nb::object evaluated(const std::string& option, const std::string& text,
+                     const std::string& examples, const std::vector<std::string>& variables,
+                     const Table& values) {
+    if (variables.empty() || values.shape(1) != variables.size())
+        throw nb::value_error("one column for each variable");
+    Expression expression({option, text, examples}, variables);
+    std::vector<double> result(values.shape(0)), row(variables.size());
+    for (std::size_t i = 0; i < result.size(); ++i) {
+        std::copy_n(values.data() + i * row.size(), row.size(), row.begin());
+        result[i] = expression(row);
+    }
+    return givenRows(std::move(result));
+}
+
 }  // namespace
 
 }  // namespace spectral::python
@@ -148,6 +181,9 @@ NB_MODULE(_core, m) {
     m.def("laplacian", python::laplacian, "vertices"_a, "faces"_a, "kind"_a, nb::kw_only(),
           "progress"_a = nb::none(), "threads"_a = 0);
     m.def("joined_vertices", python::joinedVertices, "vertices"_a, "faces"_a);
+    m.def("components", python::components, "vertices"_a, "faces"_a);
+    m.def("evaluated", python::evaluated, "option"_a, "text"_a, "examples"_a, "variables"_a,
+          "values"_a);
     python::addTexts(m);
     m.def("set_memory_limit", setMemoryLimit, "limit"_a);
 }

@@ -88,7 +88,7 @@ nb::list describedFilters() {
         nb::list parameters, report;
         for (const Parameter& one : filter.parameters) parameters.append(described(one));
         for (const ReportEntry& one : filter.report)
-            report.append(nb::make_tuple(one.name, one.meaning));
+            report.append(nb::make_tuple(one.name, one.meaning, one.isAlways));
         result["name"] = filter.name;
         result["python_name"] = filter.pythonName;
         result["help"] = filter.help;

@@ -15,7 +15,9 @@ from meshlab_spectral.plugin.loading import loaded_plugin
 
 CONTRACT = {one["python_name"]: one for one in _core.filters()}
 # Entries of reports, and what they mean.
-MEANINGS: dict[str, str] = {name: text for one in CONTRACT.values() for name, text in one["report"]}
+MEANINGS: dict[str, str] = {
+    name: text for one in CONTRACT.values() for name, text, _ in one["report"]
+}
 # Defaults that depend on the mesh.
 DEFAULTS: dict[str, str] = {
     one["name"]: one["default_in_words"]

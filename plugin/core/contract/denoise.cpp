@@ -70,10 +70,24 @@ bool isSearched(NoiseKind kind) {
            kind != NoiseKind::TooFew && kind != NoiseKind::Voxels;
 }
 
+/// Share of the surface with noise.
+double noiseShare(const Diagnosis& diagnosis) {
+    if (!diagnosis.isNoise()) return 0.0;
+    return diagnosis.kind == NoiseKind::Local ? diagnosis.field.share : 1.0;
+}
+
 Entries<DenoiseResult> denoiseEntries() {
     using R = DenoiseResult;
     return joined<R>(
         {{
+             {"noise_kind",
+              "white, correlated (of a scanner), impulses, scan_lines, rounded (coordinates), "
+              "local "
+              "(in places) or voxels; without noise: none, shape (which it may be), tessellation "
+              "(of CAD), stretched (axis), or too_few (vertices)",
+              [](const R& r) -> Value { return kindText(r.diagnosis.kind); }},
+             {"noise_share", "share of the surface with noise, 0 to 1",
+              [](const R& r) -> Value { return noiseShare(r.diagnosis); }},
              {"noise_height", "of the noise that was filtered or found, length; 0: none",
               [](const R& r) -> Value { return r.noiseHeight; }},
              {"noise_size",

@@ -50,7 +50,8 @@ struct FilterOutput {
 /// One entry of a filter's report.
 struct ReportEntry {
     std::string name;
-    std::string meaning;  ///< With its unit.
+    std::string meaning;   ///< With its unit.
+    bool isAlways = true;  ///< Whether every report has it.
 };
 
 /// A filter: all that a host needs to offer it.

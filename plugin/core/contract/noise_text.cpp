@@ -79,6 +79,25 @@ std::string nothingText(const Diagnosis& diagnosis) {
 
 }  // namespace
 
+std::string kindText(NoiseKind kind) {
+    switch (kind) {
+        case NoiseKind::None: return "none";
+        case NoiseKind::Shape: return "shape";
+        case NoiseKind::Tessellation: return "tessellation";
+        case NoiseKind::Stretched: return "stretched";
+        case NoiseKind::TooFew: return "too_few";
+        case NoiseKind::Voxels:
+        case NoiseKind::VoxelFaces: return "voxels";
+        case NoiseKind::Rounded: return "rounded";
+        case NoiseKind::White: return "white";
+        case NoiseKind::Impulses: return "impulses";
+        case NoiseKind::Local: return "local";
+        case NoiseKind::ScanLines: return "scan_lines";
+        case NoiseKind::Correlated: break;
+    }
+    return "correlated";
+}
+
 std::string inEdges(double length, double edge) {
     return numberText(length / edge, 2) + " edges (" + numberText(length, 3) + ")";
 }

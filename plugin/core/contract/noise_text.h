@@ -6,6 +6,9 @@
 
 namespace spectral {
 
+/// The kind as one word, such as "white", for programs.
+std::string kindText(NoiseKind kind);
+
 /// The noise of a mesh, such as "white noise: height 0.2 edges (0.0051)"; or why there is none to
 /// remove, with what to try.
 std::string noiseText(const Diagnosis& diagnosis);

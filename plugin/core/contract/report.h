@@ -16,7 +16,7 @@ struct Entry : ReportEntry {
 
     Entry(const char* entry, const char* what, Value (*from)(const Result&),
           bool (*when)(const Result&) = nullptr)
-        : ReportEntry{entry, what}, get(from), isThere(when) {}
+        : ReportEntry{entry, what, when == nullptr}, get(from), isThere(when) {}
 };
 
 template <class Result>

@@ -31,6 +31,11 @@ from meshlab_spectral.filters.option_types import Length as Length
 from meshlab_spectral.filters.options import DenoiseOptions as DenoiseOptions
 from meshlab_spectral.filters.options import FilterOptions as FilterOptions
 from meshlab_spectral.filters.options import TextureOptions as TextureOptions
+from meshlab_spectral.filters.reports import ColorsReport as ColorsReport
+from meshlab_spectral.filters.reports import DenoiseReport as DenoiseReport
+from meshlab_spectral.filters.reports import FilterReport as FilterReport
+from meshlab_spectral.filters.reports import ScalarsReport as ScalarsReport
+from meshlab_spectral.filters.reports import TextureReport as TextureReport
 from meshlab_spectral.filters.signals import filter_colors as filter_colors
 from meshlab_spectral.filters.signals import filter_scalars as filter_scalars
 from meshlab_spectral.filters.spectrum import GeometrySpectrum as GeometrySpectrum

@@ -134,7 +134,8 @@ def through_core(call: Call, inputs: Inputs) -> Result:
         "vertices": result.get("vertices", V),
         "quality": quality if is_color else new[:, 0],
         "colors": new.astype(int) if is_color else None,
-        "report": result["report"],
+        # pymeshlab passes on no texts.
+        "report": {k: v for k, v in result["report"].items() if not isinstance(v, str)},
     }
 
 

@@ -175,7 +175,8 @@ def test_defaults_are_those_of_the_options() -> None:
 
 
 def test_every_entry_of_a_report_is_explained_and_no_other() -> None:
-    assert MEANINGS.keys() == {key for each in filters().values() for key in each.report}
+    texts = {"noise_kind"}  # which pymeshlab does not pass on
+    assert MEANINGS.keys() - texts == {key for each in filters().values() for key in each.report}
 
 
 def test_every_public_name_is_on_the_page_of_the_python_api(site: Site) -> None:

@@ -37,7 +37,7 @@ class Settings:
     overwrite: bool = option(
         False,
         "Replace existing outputs, even ones created meanwhile; inputs are never replaced.",
-        flags=("--overwrite",),
+        flags=("--overwrite", "--force", "-f"),
     )
     resume: bool = option(
         False,

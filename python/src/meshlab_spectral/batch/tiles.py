@@ -17,6 +17,7 @@ from meshlab_spectral.batch.processes import Processes
 from meshlab_spectral.documents.digits import rounding_message, widening_warnings
 from meshlab_spectral.errors import FilterError, MeshFileError
 from meshlab_spectral.files.formats import is_same_format
+from meshlab_spectral.files.intent import sizes_of
 from meshlab_spectral.files.sources import check_is_place, check_source
 from meshlab_spectral.files.whole_files import LOCK, check_target, holding, resolved, writing_whole
 from meshlab_spectral.filters.options import FilterOptions
@@ -58,13 +59,7 @@ def filter_in_tiles(
 
     The folder is removed at the end, and stays after an error: the same call then goes on from it.
     """
-    check_source(source)
-    check_is_place(target)
-    if not is_same_format(source, target):
-        raise UntiledError(
-            f"tiles are written in the format of the input: name a {source.suffix} file"
-        )
-    check_target(target)
+    _check_files(source, target)
     require_local(options)
     place = resolved(target)
     work = Workspace(place.with_name(f".{place.name}.tiles"))
@@ -88,6 +83,38 @@ def filter_in_tiles(
             ) from error
     shutil.rmtree(work.folder, ignore_errors=True)
     return report
+
+
+def intent_in_tiles(
+    source: Path, target: Path, options: FilterOptions, on_progress: ProgressCallback, tiles: int
+) -> dict[str, Any]:
+    """Say what `filter_in_tiles` would do; see `whole_or_tiles.intent_of_file`."""
+    _check_files(source, target)
+    require_local(options)
+    rows = open_rows(source)
+    measured = survey(rows, on_progress)
+    diagonal, edge, _ = measured.lengths
+    _, count, _ = _divided(rows, measured, reach_of(options, measured.lengths), tiles)
+    surface = {
+        "mesh": "",
+        "vertices": rows.vertices,
+        "faces": rows.faces,
+        "diagonal": diagonal,
+        "mean_edge": edge,
+        "sizes": sizes_of(options, *measured.lengths),
+    }
+    return {"surfaces": [surface], "is_patched": True, "tiles": count}
+
+
+def _check_files(source: Path, target: Path) -> None:
+    """Raise SpectralError unless tiles of one file can become the other."""
+    check_source(source)
+    check_is_place(target)
+    if not is_same_format(source, target):
+        raise UntiledError(
+            f"tiles are written in the format of the input: name a {source.suffix} file"
+        )
+    check_target(target)
 
 
 def _planned(

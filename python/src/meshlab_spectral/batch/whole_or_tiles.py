@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from meshlab_spectral.errors import MemoryLimitError, MeshFileError
+from meshlab_spectral.files.region import Region
 from meshlab_spectral.files.sources import check_source
+from meshlab_spectral.files.whole_files import check_target
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.process.parent import NO_LIMITS, JobLimits, ProgressCallback
-from meshlab_spectral.process.single_file import write_in_child
+from meshlab_spectral.process.single_file import measure_in_child, write_in_child
 from meshlab_spectral.tiles.bounds import UntiledError
 
 # Smaller files are tried as a whole, without a look at them.
 _SMALL = 32 * 2**20
 # Memory that filtering a whole file takes for each vertex, from reading to writing; measured, about
 # 1,500 (tests/benchmarks/bench_tiles.py).
-_SURELY, _MOST = 1000, 2000
+_SURELY, _USUALLY, _MOST = 1000, 1500, 2000
 
 
 def filter_file(
@@ -30,12 +33,13 @@ def filter_file(
     overwrite: bool,
     tiles: int | None,
     tell: Callable[[str], None],
+    region: Region | None = None,
 ) -> dict[str, Any]:
     """Filter a file as `write_in_child` does; in tiles where that is refused for lack of memory.
 
     Parameters
     ----------
-    source, target, options, on_progress, mesh, overwrite
+    source, target, options, on_progress, mesh, overwrite, region
         As for `write_in_child`.
     tiles
         How many; 0 for as many as it takes, if it takes any; None for none.
@@ -48,10 +52,9 @@ def filter_file(
         As from `write_in_child`; UntiledError when a number of tiles is given for what cannot be
         divided.
     """
-    if tiles and not isinstance(options, FilterOptions):
-        raise UntiledError("only filter works in tiles: denoise looks at the mesh as a whole")
+    tiles = _tiles_for(options, tiles, region)
     if tiles is None or not isinstance(options, FilterOptions):
-        return write_in_child(source, target, options, on_progress, mesh, overwrite)
+        return write_in_child(source, target, options, on_progress, mesh, overwrite, region=region)
     if tiles > 0:
         from meshlab_spectral.batch.tiles import filter_in_tiles
 
@@ -66,6 +69,62 @@ def filter_file(
             return filter_in_tiles(source, target, options, on_progress, 0, tell, overwrite)
         except UntiledError as error:
             raise MemoryLimitError(f"{refusal}; nor can it be filtered in tiles: {error}") from None
+
+
+def intent_of_file(
+    source: Path,
+    target: Path,
+    options: Options,
+    on_progress: ProgressCallback,
+    mesh: str | None,
+    tiles: int | None,
+    region: Region | None = None,
+) -> dict[str, Any]:
+    """Say what `filter_file` would do, and write nothing.
+
+    Returns
+    -------
+    dict
+        As from `files.intent_of`; "tiles", their number, 0 for none; "memory", about what the
+        whole takes, and "available_memory", bytes.
+
+    Raises
+    ------
+    SpectralError
+        As from `filter_file`, as far as can be told from the file and the options.
+    """
+    check_source(source)
+    check_target(target)
+    tiles = _tiles_for(options, tiles, region)
+    if tiles == 0:
+        with contextlib.suppress(MemoryLimitError):
+            _limits(source)
+            tiles = None
+    if tiles is None:
+        more = {"target": str(target.absolute()), "region": region.given() if region else None}
+        intent = {**measure_in_child(source, options, on_progress, mesh, more), "tiles": 0}
+    else:
+        from meshlab_spectral.batch.tiles import intent_in_tiles
+
+        assert isinstance(options, FilterOptions)
+        intent = intent_in_tiles(source, target, options, on_progress, tiles)
+    from meshlab_spectral.batch.memory import available_memory
+
+    vertices = sum(one["vertices"] for one in intent["surfaces"])
+    return {**intent, "memory": _USUALLY * vertices, "available_memory": available_memory()}
+
+
+def _tiles_for(options: Options, tiles: int | None, region: Region | None) -> int | None:
+    """Return the number of tiles, 0 for as many as it takes, None where there are none.
+
+    Raises UntiledError when a number is given for what cannot be divided.
+    """
+    if tiles and not isinstance(options, FilterOptions):
+        raise UntiledError("only filter works in tiles: denoise looks at the mesh as a whole")
+    if tiles and region is not None:
+        names = ", ".join(region.given())
+        raise UntiledError(f"only the whole is filtered in tiles: leave out {names}, or tiles")
+    return tiles if isinstance(options, FilterOptions) and region is None else None
 
 
 def _limits(source: Path) -> JobLimits:

@@ -43,7 +43,7 @@ def batch_command(
         ),
     ],
     dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Only list the outputs that would be written.")
+        bool, typer.Option("--dry-run", "-n", help="Only list the outputs that would be written.")
     ] = False,
     denoise: Annotated[
         bool, typer.Option("--denoise", help="Denoise instead, with the options of denoise.")

@@ -13,6 +13,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 
 from meshlab_spectral.cli.messages import EXIT_USAGE, VERBOSITY, print_error
+from meshlab_spectral.other_words import instead_of
 
 Command = Callable[..., None]
 
@@ -24,7 +25,7 @@ _GROUPS = {
         stop_gain transfer_function band_width response order power
         strength noise_height noise_size""",
     DENOISE: "",
-    "Where": "mesh selected boundary crease_angle keep_creases weight",
+    "Where": "mesh selected box component where mask boundary crease_angle keep_creases weight",
     HOW: """steps tolerance passes basis_update conformal_share spectrum basis_size
         reinject_residual laplacian preserve_volume""",
     "Files": "recursive overwrite resume dry_run tiles memory",
@@ -95,6 +96,9 @@ class AllCommands(TyperGroup):
     def main(self, *args: Any, **extra: Any) -> Any:
         """Run a command line and exit with its exit code."""
         extra["standalone_mode"] = False
+        words = sys.argv[1:]
+        if words[:1] == ["help"]:  # as `git help`
+            extra["args"] = [*words[1:2], "--help"]
         try:
             code = super().main(*args, **extra)
         except _UsageError as error:
@@ -169,6 +173,15 @@ def _print_usage_error(error: Any) -> None:
         typer.echo(f"See: {error.ctx.command_path} --help", err=True)
 
 
+def _as_options(text: str) -> str:
+    """Write the names of options as those of a command."""
+    return re.sub(r"\b(feature_size|overwrite|basis_size)\b", _option, text)
+
+
+def _option(name: re.Match[str]) -> str:
+    return "--" + name[0].replace("_", "-")
+
+
 def _described(error: Any) -> str:
     """Say what is wrong, starting with the name of the option or argument."""
     parameter = getattr(error, "param", None)
@@ -181,7 +194,11 @@ def _described(error: Any) -> str:
     if type(error).__name__ == "NoSuchOption":
         similar = " or ".join(error.possibilities or [])
         hint = f": did you mean {similar}?" if similar else ""
+        if instead := instead_of(error.option_name.lstrip("-").replace("-", "_")):
+            hint = f": {_as_options(instead)}"
         return f"there is no option {error.option_name}{hint}"
+    if error.message.startswith("Got unexpected extra argument"):
+        return f"{error.message[:1].lower()}{error.message[1:]}: for several files, use batch"
     # "Value error, 'x' is not one of ...", "Input should be an integer"
     text = re.sub(r"^(Value error, |Input )", "", error.message).rstrip(".")
     text = text.replace(". Did you mean", ": did you mean")

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
-from meshlab_spectral.batch.whole_or_tiles import filter_file
+from meshlab_spectral.batch.whole_or_tiles import filter_file, intent_of_file
 from meshlab_spectral.cli.colour_files import Picture, check_picture, compared
 from meshlab_spectral.cli.command_line import Command
 from meshlab_spectral.cli.filter_options import (
@@ -20,6 +20,7 @@ from meshlab_spectral.cli.filter_options import (
     chosen_options,
     with_options,
 )
+from meshlab_spectral.cli.intent import print_intent
 from meshlab_spectral.cli.messages import (
     VERBOSITY,
     errors_reported,
@@ -32,6 +33,7 @@ from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.cli.report_table import report_table
 from meshlab_spectral.cli.streams import STREAM, as_files
 from meshlab_spectral.files.recipe import saving_recipe
+from meshlab_spectral.files.region import Region
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import DenoiseOptions, FilterOptions
 from meshlab_spectral.plugin.limits import set_memory_limit
@@ -75,9 +77,10 @@ def _tiles(text: str | int) -> int | None:
 def _command_with(table: type[Options], help_text: str) -> Command:
     """Make the command for the filter that a table of options belongs to."""
 
-    @with_options(table)
+    @with_options(table, Region)
     def command(
         given: dict[str, Any],
+        region: Region,
         source: Annotated[
             Path,
             typer.Argument(
@@ -105,7 +108,7 @@ def _command_with(table: type[Options], help_text: str) -> Command:
             ),
         ] = None,
         overwrite: Annotated[
-            bool, typer.Option("--overwrite", help="Replace OUTPUT if it exists.")
+            bool, typer.Option("--overwrite", "--force", "-f", help="Replace OUTPUT if it exists.")
         ] = False,
         ending: Annotated[
             str | None,
@@ -128,6 +131,15 @@ def _command_with(table: type[Options], help_text: str) -> Command:
                 help="Memory limit, such as 4GB; by default what the machine has free.",
             ),
         ] = None,
+        dry_run: Annotated[
+            bool,
+            typer.Option(
+                "--dry-run",
+                "-n",
+                help="Print what would be done, with sizes in the units of the file; nothing is "
+                "written.",
+            ),
+        ] = False,
         recipe: Recipe = None,
         save_recipe: SaveRecipe = None,
         picture: Picture = None,
@@ -149,7 +161,7 @@ def _command_with(table: type[Options], help_text: str) -> Command:
                 f"{place} exists: choose another name, or replace it with --overwrite",
                 param_hint="OUTPUT",
             )
-        if as_json and place == STREAM:
+        if as_json and place == STREAM and not dry_run:
             raise typer.BadParameter(
                 "standard output has the mesh already: name a file", param_hint="--json"
             )
@@ -157,11 +169,25 @@ def _command_with(table: type[Options], help_text: str) -> Command:
         with errors_reported(), as_files(source, place, ending) as (read, written):
             check_picture(picture)
             options = chosen_options(table, given, recipe)
+            part = region if region.given() else None
+            if memory is not None:
+                set_memory_limit(memory)
+            if dry_run:
+                with progress_shown() as on_progress:
+                    intent = intent_of_file(read, written, options, on_progress, mesh, tiles, part)
+                print_intent(source, place, options, intent, as_json)
+                return
             with saving_recipe(save_recipe, options), progress_shown() as on_progress:
-                if memory is not None:
-                    set_memory_limit(memory)
                 report = filter_file(
-                    read, written, options, on_progress, mesh, overwrite, tiles, print_message
+                    read,
+                    written,
+                    options,
+                    on_progress,
+                    mesh,
+                    overwrite,
+                    tiles,
+                    print_message,
+                    part,
                 )
             if picture is not None:
                 from meshlab_spectral.figures.comparison import draw_comparison  # a slow import
@@ -174,7 +200,7 @@ def _command_with(table: type[Options], help_text: str) -> Command:
             return
         if as_json:
             seconds = time.monotonic() - begin
-            typer.echo(json.dumps(_record(source, place, options, report, seconds)))
+            typer.echo(json.dumps(_record(source, place, options, part, report, seconds)))
         else:
             _print_reports(report, source.name, place.name)
 
@@ -196,12 +222,18 @@ def _print_reports(report: dict[str, Any], source: str, target: str) -> None:
 
 
 def _record(
-    source: Path, target: Path, options: Options, report: dict[str, Any], seconds: float
+    source: Path,
+    target: Path,
+    options: Options,
+    region: Region | None,
+    report: dict[str, Any],
+    seconds: float,
 ) -> dict[str, Any]:
     return {
         "input": str(source),
         "output": str(target),
         "options": options.as_dict(),
+        **({"region": region.given()} if region else {}),
         "report": report,
         "seconds": round(seconds, 3),
         "versions": versions(),

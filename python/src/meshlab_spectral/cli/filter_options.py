@@ -14,6 +14,7 @@ from meshlab_spectral.batch.settings import Settings
 from meshlab_spectral.cli.command_line import DENOISE, GROUP_OF, HOW, Command, with_parameters
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.files.recipe import load_recipe
+from meshlab_spectral.files.region import Region
 from meshlab_spectral.filters.option_types import AnyOptions, Length
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.filters.presets import PRESETS, Preset, equalizer_points
@@ -83,13 +84,17 @@ _PRESET = typer.Option(
 )
 
 
+# Tables that a command gets as objects, and the names of its arguments.
+_OBJECTS: dict[type[Any], str] = {Settings: "settings", Region: "region"}
+
+
 def with_options(
     *tables: type[Any], leave_out: Collection[str] = ()
 ) -> Callable[[Command], Command]:
-    """Add the fields of tables to a command as options, passed on as `given` and `settings`.
+    """Add the fields of tables to a command as options, passed on as `given` and as objects.
 
     `given` is a dict for `chosen_options`, with only the options set on the command line or by a
-    preset; `settings` is a `Settings`, if that is among the tables.
+    preset; `settings` is a `Settings` and `region` a `Region`, if these are among the tables.
 
     Parameters
     ----------
@@ -100,7 +105,7 @@ def with_options(
         Fields that the command has no use for.
     """
     added: dict[str, tuple[str, Any, Any, Any]] = {}
-    settings_names: list[str] = []
+    of_objects: dict[str, type[Any]] = {}
     if FilterOptions in tables:
         added["preset"] = ("preset", Preset | None, _PRESET, None)
         added["equalizer"] = ("equalizer", str | None, _EQUALIZER, None)
@@ -110,8 +115,8 @@ def with_options(
             if one.name in added or one.name in leave_out:
                 continue
             panel: str | None = GROUP_OF.get(one.name, HOW) if table is tables[0] else DENOISE
-            if table is Settings:
-                settings_names.append(one.name)
+            if table in _OBJECTS:
+                of_objects[one.name] = table
                 panel = None
             added[one.name] = _parameter(one, types[one.name], panel)
 
@@ -119,9 +124,13 @@ def with_options(
         def run(arguments: dict[str, Any]) -> None:
             source = arguments.pop("context").get_parameter_source
             values = {name: arguments.pop(name) for name in added}
-            if settings_names:
-                arguments["settings"] = Settings(**{n: values.pop(n) for n in settings_names})
-            if len(settings_names) < len(added):
+            for table in set(of_objects.values()):
+                names = [name for name, of in of_objects.items() if of is table]
+                try:
+                    arguments[_OBJECTS[table]] = table(**{name: values.pop(name) for name in names})
+                except OptionError as error:
+                    raise typer.BadParameter(f"--{error}") from error
+            if values:
                 arguments["given"] = {
                     name: value
                     for name, value in values.items()
@@ -130,7 +139,8 @@ def with_options(
             command(**arguments)
 
         context = ("context", typer.Context, None, None)
-        return with_parameters(command, [context, *added.values()], run, {"given", "settings"})
+        passed = {"given", *_OBJECTS.values()}
+        return with_parameters(command, [context, *added.values()], run, passed)
 
     return decorate
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import math
-import time
 from collections.abc import Callable, Iterator
 from datetime import timedelta
 from typing import TYPE_CHECKING
@@ -24,57 +23,23 @@ from rich.table import Column
 from rich.text import Text
 
 from meshlab_spectral.cli.messages import MESSAGES, VERBOSITY, print_message
+from meshlab_spectral.filters.progress import lines_now_and_then, terminal_bar
 from meshlab_spectral.process.parent import ProgressCallback
 
 if TYPE_CHECKING:
     from meshlab_spectral.batch.jobs import FileResult
 
 _FEWEST_PER_SECOND = 0.1
-# Between plain lines; a shorter run prints none.
-_SECONDS_BETWEEN = 5.0
 
 
 @contextlib.contextmanager
 def progress_shown() -> Iterator[ProgressCallback]:
     """Show MeshLab's progress, on a terminal or as a line every few seconds; none with --quiet."""
-    if not MESSAGES.is_terminal:
-        yield _line_now_and_then()
-        return
-    with Progress(
-        SpinnerColumn(),
-        BarColumn(),
-        TextColumn("{task.description}", markup=False),
-        TimeElapsedColumn(),
-        console=MESSAGES,
-        transient=True,
-        disable=VERBOSITY.quiet,
-    ) as progress:
-        task = progress.add_task("starting", total=None)
-
-        def update(stage: str, fraction: float | None) -> None:
-            if fraction is None:
-                progress.reset(task, start=False, total=None, description=stage)
-                progress.start_task(task)
-            else:
-                # MeshLab's fraction may drop a little when a step turns out to need more work.
-                done = max(fraction, progress.tasks[0].completed)
-                progress.update(task, total=1.0, completed=done, description=stage)
-
-        yield update
-
-
-def _line_now_and_then() -> ProgressCallback:
-    begin = last = time.monotonic()
-
-    def update(stage: str, fraction: float | None) -> None:
-        nonlocal last
-        now = time.monotonic()
-        if now - last >= _SECONDS_BETWEEN and not VERBOSITY.quiet:
-            last = now
-            done = "" if fraction is None else f", {fraction:.0%}"
-            print_message(f"[{now - begin:.0f} s] {stage}{done}")
-
-    return update
+    if MESSAGES.is_terminal:
+        with terminal_bar(MESSAGES, is_transient=True, is_quiet=VERBOSITY.quiet) as update:
+            yield update
+    else:
+        yield lines_now_and_then(lambda line: None if VERBOSITY.quiet else print_message(line))
 
 
 @contextlib.contextmanager

@@ -44,7 +44,7 @@ def as_files(source: Path, target: Path, ending: str | None) -> Iterator[tuple[P
         except MeshFileError as error:
             named = str(error).replace(str(source), "standard input")
             raise MeshFileError(named, error.code) from error
-        if target == STREAM:
+        if target == STREAM and place.exists():  # not in a dry run
             with place.open("rb") as file:
                 shutil.copyfileobj(file, sys.stdout.buffer)
             sys.stdout.buffer.flush()

@@ -18,6 +18,15 @@ from meshlab_spectral.filters.running import plain, run
 from meshlab_spectral.plugin.loading import DENOISE_NAME, load
 
 _OF_SURFACE = ("components", "joined_vertices", "unreferenced_vertices")
+_OF_NOISE = (
+    "noise_kind",
+    "noise_height",
+    "noise_size",
+    "noise_share",
+    "noise_searched",
+    "spikes",
+    "voxel_size",
+)
 _LENGTHS = ("diagonal", "mean_edge", "area", "default_feature_size")
 
 
@@ -35,8 +44,9 @@ def mesh_info(source: Path, on_stage: StageCallback, mesh: str | None = None) ->
         loops), "joined_vertices" (at seams) and "unreferenced_vertices", and, in a PLY file, of
         "selected_vertices" and "selected_faces"; in the units of the file, "extent" along each
         axis, "diagonal", "mean_edge", "area" (squared) and "default_feature_size"; what Spectral
-        Denoise would remove: "noise_summary", "noise_height" and "noise_size", the number of
-        "spikes", "voxel_size", and whether it could search, "noise_searched"; "warnings".
+        Denoise would remove: "noise_summary"; its "noise_kind", "noise_height", "noise_size" and
+        "noise_share" of the surface; the number of "spikes", "voxel_size", and whether it could
+        search, "noise_searched"; "warnings".
     """
     on_stage("reading", None)
     parts = load_parts(source, mesh)
@@ -56,11 +66,7 @@ def mesh_info(source: Path, on_stage: StageCallback, mesh: str | None = None) ->
         "extent": np.ptp(V, axis=0),
         **{name: spectrum[name] for name in _LENGTHS},
         "noise_summary": denoised["summary"],
-        "noise_searched": denoised["noise_searched"],
-        "noise_height": denoised["noise_height"],
-        "noise_size": denoised["noise_size"],
-        "spikes": denoised["spikes"],
-        "voxel_size": denoised["voxel_size"],
+        **{name: denoised[name] for name in _OF_NOISE},
         "warnings": [warning for warning in denoised["warnings"] if warning != denoised["summary"]],
     }
     return plain(report)

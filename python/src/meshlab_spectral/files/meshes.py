@@ -30,10 +30,12 @@ from meshlab_spectral.files.meshlab_files import (
     set_quality,
     write_with_meshlab,
 )
+from meshlab_spectral.files.region import Region
+from meshlab_spectral.files.region_vertices import restricted
 from meshlab_spectral.files.script import apply_script
 from meshlab_spectral.files.sources import check_name, check_source
 from meshlab_spectral.files.touching import moved_alike, pieces
-from meshlab_spectral.filters.calling import DETAILS, call_filter, mesh_set_of
+from meshlab_spectral.filters.calling import DETAILS, call_filter, mesh_set_of, select_vertices
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.filters.running import plain, run
@@ -57,6 +59,7 @@ def filter_to_scratch(
     on_stage: StageCallback,
     verbose: bool = True,
     mesh: str | None = None,
+    region: Region | None = None,
 ) -> dict[str, Any]:
     """Filter a mesh file into another.
 
@@ -78,6 +81,8 @@ def filter_to_scratch(
         Whether the filter's report goes to standard error, as MeshLab's log does.
     mesh
         Filter only the mesh with this name.
+    region
+        Filter only this region, in place of the selection of the file.
 
     Returns
     -------
@@ -95,22 +100,25 @@ def filter_to_scratch(
     FilterError
         When the filter rejects a mesh or the options.
     OptionError
-        When no mesh has the name.
+        When no mesh has the name, or the region is empty.
     """
+    require_one_choice(options, region)
+    if region is not None:
+        options = options.from_dict({**options.as_dict(), "selected": True})
 
     def apply(mesh_set: Any) -> dict[str, Any]:
+        if region is not None:
+            _select(mesh_set, region)
         parameters = options.pymeshlab_parameters(mesh_set.current_mesh())
         return plain(call_filter(mesh_set, options.FILTER, parameters))
 
-    if isinstance(options, FilterOptions) and options.result == "details":
-        if scratch.suffix.lower() != ".ply":
-            raise FormatError(f"{scratch.name} cannot hold details: choose .ply")
+    if wants_details(options, scratch):
         settings = {f"__ca_vp__{DETAILS}": True}
         return _through_meshlab(source, scratch, apply, on_stage, verbose, settings)
     if format_of(source) and (
         source.suffix.lower() not in _READ_BY_MESHLAB or is_same_format(source, scratch)
     ):
-        return _filter_document(source, scratch, options, on_stage, verbose, mesh)
+        return _filter_document(source, scratch, options, on_stage, verbose, mesh, region)
     if mesh is not None:
         raise OptionError(f"{source} is read as one mesh: leave out the name {mesh!r}")
     return _through_meshlab(source, scratch, apply, on_stage, verbose)
@@ -162,6 +170,7 @@ def _filter_document(
     on_stage: StageCallback,
     verbose: bool,
     name: str | None,
+    region: Region | None,
 ) -> dict[str, Any]:
     """Filter the meshes of a document: each surface on its own, of one mesh or several pieces."""
     on_stage("reading", None)
@@ -175,10 +184,14 @@ def _filter_document(
     on_stage("filtering", None)
     moved = {part: part.vertices for part in document.parts}
     names, reports = [], []
-    surfaces = pieces(chosen)
-    for group in surfaces:
-        whole = _whole(group)
-        after, report = _filtered(whole, options, on_stage, verbose, len(surfaces) == 1)
+    groups = pieces(chosen)
+    wholes: list[Part | None] = [whole_of(group) for group in groups]
+    if region is not None:
+        wholes = restricted([whole_of(group) for group in groups], region)
+    for group, whole in zip(groups, wholes, strict=True):
+        if whole is None:
+            continue
+        after, report = _filtered(whole, options, on_stage, verbose, len(groups) == 1)
         ends = np.cumsum([len(part.vertices) for part in group])[:-1]
         moved.update(zip(group, np.split(after, ends), strict=True))
         names.append(whole.name)
@@ -195,7 +208,36 @@ def _filter_document(
     return _report(names, reports, document.warnings + parted + warnings)
 
 
-def _whole(group: Sequence[Part]) -> Part:
+def wants_details(options: Options, target: Path) -> bool:
+    """Whether details are written; raise FormatError unless `target` can hold them."""
+    if not isinstance(options, FilterOptions) or options.result != "details":
+        return False
+    if target.suffix.lower() != ".ply":
+        raise FormatError(f"{target.name} cannot hold details: choose .ply")
+    return True
+
+
+def require_one_choice(options: Options, region: Region | None) -> None:
+    """Raise OptionError when both the file and the user select what is filtered."""
+    if region is not None and getattr(options, "selected", False):
+        names = ", ".join(region.given())
+        raise OptionError(f"selected and {names}: both choose what is filtered; leave one out")
+
+
+def _select(mesh_set: Any, region: Region) -> None:
+    """Select a region of the current mesh."""
+    mesh = mesh_set.current_mesh()
+    quality = mesh.vertex_scalar_array() if mesh.has_vertex_scalar() else None
+    (part,) = restricted(
+        [Part("", mesh.vertex_matrix(), mesh.face_matrix().astype(np.int64), quality)], region
+    )
+    assert part is not None
+    assert part.selected is not None
+    mesh_set.set_selection_none()
+    select_vertices(mesh_set, part.selected)
+
+
+def whole_of(group: Sequence[Part]) -> Part:
     """Return the pieces of a surface as one part."""
     if len(group) == 1:
         return group[0]

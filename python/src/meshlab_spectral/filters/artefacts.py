@@ -13,6 +13,7 @@ from meshlab_spectral.filters.arrays import mesh_arrays
 from meshlab_spectral.filters.mesh_objects import takes_mesh_alone
 from meshlab_spectral.filters.option_types import Length
 from meshlab_spectral.filters.options import LaplacianKind
+from meshlab_spectral.filters.progress import Progress
 from meshlab_spectral.filters.representations import line
 from meshlab_spectral.filters.running import run
 
@@ -52,6 +53,9 @@ def measure_artefacts(
     faces: ArrayLike | None,
     feature_size: float,
     laplacian: LaplacianKind = "intrinsic delaunay",
+    *,
+    progress: Progress | bool | None = None,
+    threads: int | None = None,
 ) -> Artefacts:
     """Measure the artefacts a filter has left in a mesh: spikes, creases, ripples.
 
@@ -71,6 +75,8 @@ def measure_artefacts(
     laplacian
         "intrinsic delaunay" works with any triangles; "cotangent" needs non-degenerate ones;
         "uniform" uses the connectivity only.
+    progress, threads
+        As for `filter_mesh`.
 
     Returns
     -------
@@ -103,7 +109,8 @@ def measure_artefacts(
     if laplacian not in get_args(LaplacianKind):
         raise OptionError(f"laplacian = {laplacian}: choose {', '.join(get_args(LaplacianKind))}")
 
-    done = run(_FILTER_NAME, V, F, {"feature_size": float(size.value), "laplacian": laplacian})
+    given = {"feature_size": float(size.value), "laplacian": laplacian}
+    done = run(_FILTER_NAME, V, F, given, progress=progress, threads=threads)
     assert done.values is not None
     return Artefacts(
         rms=done.report["rms"],

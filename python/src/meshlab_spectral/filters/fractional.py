@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from numpy.typing import ArrayLike
 
 from meshlab_spectral.filters.keywords import takes_options
 from meshlab_spectral.filters.mesh_objects import takes_mesh_alone
 from meshlab_spectral.filters.options import FilterKeywords, FilterOptions
-from meshlab_spectral.filters.running import Gain, Progress, require_no_type
+from meshlab_spectral.filters.progress import Progress
+from meshlab_spectral.filters.reports import FilterReport
+from meshlab_spectral.filters.running import Gain, require_no_type
 from meshlab_spectral.filters.shapes import filtered
 
 if TYPE_CHECKING:
@@ -26,10 +28,10 @@ def filter_mesh(
     weights: ArrayLike | None = None,
     selection: ArrayLike | None = None,
     gain: Gain | None = None,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
     threads: int | None = None,
     **named: Unpack[FilterKeywords],
-) -> tuple[Any, dict[str, Any]]:
+) -> tuple[Any, FilterReport]:
     """Filter a mesh by the size of its details.
 
     A size is a string such as "2%" (of the bounding box diagonal) or "6e" (mean edges), or a length
@@ -53,8 +55,8 @@ def filter_mesh(
         Gain, finite and >= 0, as a function of w > 0, the feature size over the wavelength; in
         place of filter_type="custom". Called once, with an array of a few thousand w.
     progress
-        Called about twenty times a second with the current stage and the fraction done, 0 to 1;
-        cancels by returning False.
+        True shows a bar. A function is called about twenty times a second with the current stage
+        and the fraction done, 0 to 1; it cancels by returning False.
     threads
         Number of threads of this call; by default that of `set_threads`.
     **named
@@ -65,9 +67,9 @@ def filter_mesh(
         n x 3 coordinates, or a mesh of the type passed, with its data; the faces do not change.
         With result="details", n x 3 differences instead, which the filter takes away: the
         coordinates minus the filtered ones.
-    report : dict
-        Numbers, and lists for vectors; lengths in the units of the mesh. "warnings" lists what fell
-        short of the options, or had no effect, and what to do about it.
+    report : FilterReport
+        A dict. Numbers, and lists for vectors; lengths in the units of the mesh. "warnings" lists
+        what fell short of the options, or had no effect, and what to do about it.
 
     Raises
     ------
@@ -92,7 +94,7 @@ def filter_mesh(
     parameters = FilterOptions.given(options, named)
     if gain is not None:
         require_no_type(parameters.filter_type)
-    return filtered(
+    moved, report = filtered(
         mesh_or_vertices,
         faces,
         parameters,
@@ -102,3 +104,4 @@ def filter_mesh(
         progress=progress,
         threads=threads,
     )
+    return moved, cast(FilterReport, report)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,7 +14,8 @@ from meshlab_spectral.filters.arrays import lumped_areas, mesh_arrays
 from meshlab_spectral.filters.mesh_objects import takes_mesh_alone
 from meshlab_spectral.filters.option_types import checked_count
 from meshlab_spectral.filters.options import BasisOptions, Boundary, LaplacianKind
-from meshlab_spectral.filters.running import Progress, run
+from meshlab_spectral.filters.progress import Progress
+from meshlab_spectral.filters.running import run
 
 Array = NDArray[np.float64]
 
@@ -48,6 +49,10 @@ class Harmonics:
     eigenvalues: Array
     harmonics: Array
     masses: Array
+
+    def __iter__(self) -> Iterator[Array]:
+        """Unpack as ``eigenvalues, harmonics = basis``, as eigensolvers return them."""
+        return iter((self.eigenvalues, self.harmonics))
 
     def __repr__(self) -> str:
         waves = self.frequencies[self.eigenvalues > 0]
@@ -294,7 +299,7 @@ def manifold_harmonics(
     laplacian: LaplacianKind = "intrinsic delaunay",
     boundary: Boundary = "free",
     *,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
     threads: int | None = None,
 ) -> Harmonics:
     """Compute the lowest-frequency manifold harmonics of a mesh.
@@ -349,7 +354,7 @@ def shape_dna(
     laplacian: LaplacianKind = "intrinsic delaunay",
     boundary: Boundary = "free",
     *,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
     threads: int | None = None,
 ) -> NDArray[np.float64]:
     """Compute the Shape-DNA of a mesh, its lowest eigenvalues.
@@ -427,7 +432,7 @@ def compute(
     V: NDArray[np.float64],
     F: NDArray[Any],
     options: BasisOptions,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
     threads: int | None = None,
 ) -> Harmonics:
     """Compute the harmonics of validated arrays."""

@@ -12,7 +12,8 @@ from meshlab_spectral.errors import OptionError
 from meshlab_spectral.extras import check_extras
 from meshlab_spectral.filters.arrays import mesh_arrays
 from meshlab_spectral.filters.options import LaplacianKind
-from meshlab_spectral.filters.running import Progress, thread_count
+from meshlab_spectral.filters.progress import Progress, shown
+from meshlab_spectral.filters.running import thread_count
 
 if TYPE_CHECKING:
     import scipy.sparse
@@ -23,7 +24,7 @@ def laplacian(
     faces: ArrayLike | None = None,
     *,
     kind: LaplacianKind = "intrinsic delaunay",
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
     threads: int | None = None,
 ) -> tuple[scipy.sparse.csr_matrix, NDArray[np.float64]]:
     """Compute the stiffness matrix W and the masses D of a mesh, with ``W phi = lambda D phi``.
@@ -76,9 +77,10 @@ def laplacian(
     if kind not in kinds:
         raise OptionError(f"kind = {kind}: choose {', '.join(kinds)}")
     V, F = mesh_arrays(mesh_or_vertices, faces)
-    data, columns, offsets, masses, vertex = _core.laplacian(
-        V, F, kinds.index(kind), progress=progress, threads=thread_count(threads)
-    )
+    with shown(progress) as on_progress:
+        data, columns, offsets, masses, vertex = _core.laplacian(
+            V, F, kinds.index(kind), progress=on_progress, threads=thread_count(threads)
+        )
     rows = np.repeat(vertex, np.diff(offsets))
     W = scipy.sparse.csr_matrix((data, (rows, vertex[columns])), shape=(len(V), len(V)))
     D = np.zeros(len(V))

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshlab_spectral.filters.mesh_normals import followed
+from meshlab_spectral.other_words import instead_of
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 Array = NDArray[np.float64]
@@ -91,7 +92,9 @@ def takes_mesh_alone(function: Function) -> Function:
     The function's first two arguments are vertices and faces. With a mesh, ``f(mesh, x)`` means
     ``f(mesh, None, x)``.
     """
-    third = list(inspect.signature(function).parameters)[2]
+    parameters = inspect.signature(function).parameters
+    third = list(parameters)[2]
+    takes_any = any(one.kind is inspect.Parameter.VAR_KEYWORD for one in parameters.values())
 
     @functools.wraps(function)
     def shifted(*args: Any, **kwargs: Any) -> Any:
@@ -99,6 +102,9 @@ def takes_mesh_alone(function: Function) -> Function:
         # A matrix that cannot be the third argument is meant as faces, an error.
         if has_more and (third in ("values", "colors") or np.ndim(args[1]) < 2):
             args = (args[0], None, *args[1:])
+        for name in kwargs:
+            if not takes_any and name not in parameters and (hint := instead_of(name)):
+                raise TypeError(f"{function.__name__} has no {name}: {hint}")
         return function(*args, **kwargs)
 
     return cast(Function, shifted)
@@ -253,6 +259,18 @@ def _trimesh_moved(mesh: Any, X: Array) -> Any:
     return moved
 
 
+def _lapy_moved(mesh: Any, X: Array) -> Any:
+    moved = copy.deepcopy(mesh)
+    moved.v = X
+    return moved
+
+
+def _pyfm_moved(mesh: Any, X: Array) -> Any:
+    moved = mesh.copy()
+    moved.vertices = X  # which clears what depends on them
+    return moved
+
+
 PYMESHLAB = MeshKind(
     "pymeshlab.Mesh", "face_matrix", _pymeshlab_arrays, _not_moved, _pymeshlab_data
 )
@@ -297,6 +315,20 @@ _KINDS = (
         lambda mesh: _tensor_data(mesh.vertex),
     ),
     MeshKind(
+        "lapy.TriaMesh",
+        "tria_areas",
+        lambda mesh: (mesh.v, mesh.t),
+        _lapy_moved,
+        lambda mesh: {},
+    ),
+    MeshKind(
+        "pyFM.mesh.TriMesh",
+        "l2_sqnorm",
+        lambda mesh: (mesh.vertices, mesh.faces),
+        _pyfm_moved,
+        lambda mesh: {},
+    ),
+    MeshKind(
         "trimesh.Trimesh",
         "faces",
         _trimesh_arrays,
@@ -307,6 +339,7 @@ _KINDS = (
 # By the name of a class or of one that it inherits from.
 _REMEDIES = {
     "MultiBlock": "pass one block, or all as one: combine().extract_surface().triangulate()",
+    "MeshSet": "pass its current_mesh(), or apply the filter as its method, see load()",
     "Scene": "pass one of its geometries, or all as one: to_mesh()",
     "PointCloud": "it has no faces: reconstruct a surface first",
     "DataSet": "pass its surface: extract_surface().triangulate()",  # of pyvista

@@ -10,6 +10,7 @@ from numbers import Integral, Real
 from typing import Any, Literal, TypeVar, get_args, get_type_hints
 
 from meshlab_spectral.errors import OptionError
+from meshlab_spectral.other_words import instead_of
 
 AnyOptions = TypeVar("AnyOptions", bound="Options")
 
@@ -180,6 +181,8 @@ class Options:
         types = _types_of(table)
         for one in fields(self):
             value = getattr(self, one.name)
+            if type(value).__name__ == "PercentageValue":  # of pymeshlab
+                value = f"{value.value()}%"
             if types[one.name] is Length and _is_text_or_number(value):
                 try:
                     value = Length.parse(str(value))
@@ -218,7 +221,7 @@ class Options:
             if name not in known:
                 similar = difflib.get_close_matches(name, known, n=1)
                 hint = f"did you mean {similar[0]}?" if similar else f"choose {', '.join(known)}"
-                raise OptionError(f"there is no option {name}: {hint}")
+                raise OptionError(f"there is no option {name}: {instead_of(name) or hint}")
         return cls(**plain)
 
     @classmethod

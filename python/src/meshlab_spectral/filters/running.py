@@ -11,11 +11,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from meshlab_spectral import _core
 from meshlab_spectral.errors import OptionError
+from meshlab_spectral.filters.progress import Progress, shown
 from meshlab_spectral.filters.representations import Report
 from meshlab_spectral.plugin import limits
 
 Array = NDArray[np.float64]
-Progress = Callable[[str, float], object]
 Gain = Callable[[Array], ArrayLike]
 
 # The core interpolates a gain's logarithm between samples, here to about 1e-5 of a smooth gain;
@@ -77,7 +77,7 @@ def run(
     values: Array | None = None,
     gain: Gain | None = None,
     whole: TiledSurface | None = None,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
     threads: int | None = None,
 ) -> Run:
     """Apply a filter of the core.
@@ -99,8 +99,8 @@ def run(
     whole
         The surface that the mesh is a tile of.
     progress
-        Called about twenty times a second in this thread with the current stage and the fraction
-        done, 0 to 1; cancels by returning False.
+        True shows it. A function is called about twenty times a second in this thread with the
+        current stage and the fraction done, 0 to 1; it cancels by returning False.
     threads
         Number of threads; by default that of `set_threads`.
 
@@ -114,18 +114,19 @@ def run(
         On Ctrl-C, within 0.5 s.
     """
     _core.set_memory_limit(limits.given_memory_limit() or 0)
-    result = _core.apply(
-        name,
-        V,
-        F.astype(np.int32, copy=False),
-        options,
-        selected=selected,
-        values=values,
-        gain=None if gain is None else _samples(gain),
-        whole=whole,
-        progress=progress,
-        threads=thread_count(threads),
-    )
+    with shown(progress) as on_progress:
+        result = _core.apply(
+            name,
+            V,
+            F.astype(np.int32, copy=False),
+            options,
+            selected=selected,
+            values=values,
+            gain=None if gain is None else _samples(gain),
+            whole=whole,
+            progress=on_progress,
+            threads=thread_count(threads),
+        )
     report = {**result.pop("report"), "warnings": result.pop("warnings")}
     if summary := result.pop("summary"):
         report["summary"] = summary

@@ -11,7 +11,8 @@ from meshlab_spectral.filters.arrays import chosen_vertices, mesh_arrays, vertex
 from meshlab_spectral.filters.calling import filtered_by_plugin
 from meshlab_spectral.filters.mesh_objects import PYMESHLAB, array_of, kind_of
 from meshlab_spectral.filters.option_types import Options
-from meshlab_spectral.filters.running import Gain, Progress, run
+from meshlab_spectral.filters.progress import Progress
+from meshlab_spectral.filters.running import Gain, run
 
 
 def filtered(
@@ -22,7 +23,7 @@ def filtered(
     weights: ArrayLike | None = None,
     selection: ArrayLike | None = None,
     gain: Gain | None = None,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
     threads: int | None = None,
 ) -> tuple[Any, dict[str, Any]]:
     """Apply the filter that `options` belong to.
@@ -47,6 +48,8 @@ def filtered(
                 "weights, selection: a pymeshlab mesh has its own; give weight='vertex quality' or "
                 "selected=True, or pass vertices and faces"
             )
+        if progress:
+            raise OptionError("progress: not for a pymeshlab mesh; pass its vertices and faces")
         return filtered_by_plugin(mesh_or_vertices, options)
     if kind is PYMESHLAB:
         raise OptionError("gain: not for a pymeshlab mesh; pass its vertices and faces")

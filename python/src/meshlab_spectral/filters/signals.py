@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import isfinite, log, pi, sqrt
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,8 +13,10 @@ from meshlab_spectral.filters.arrays import mesh_arrays
 from meshlab_spectral.filters.keywords import takes_options
 from meshlab_spectral.filters.mesh_objects import array_of, takes_mesh_alone
 from meshlab_spectral.filters.options import FilterOptions, TransferKeywords
+from meshlab_spectral.filters.progress import Progress, shown
+from meshlab_spectral.filters.reports import ColorsReport, ScalarsReport
 from meshlab_spectral.filters.representations import Report
-from meshlab_spectral.filters.running import Gain, Progress, Run, require_no_type, run
+from meshlab_spectral.filters.running import Gain, Run, require_no_type, run
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -40,10 +42,10 @@ def filter_scalars(
     *,
     fwhm: float | None = None,
     gain: Gain | None = None,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
     threads: int | None = None,
     **named: Unpack[TransferKeywords],
-) -> tuple[NDArray[np.float64], dict[str, Any]]:
+) -> tuple[NDArray[np.float64], ScalarsReport]:
     """Filter a scalar field on a mesh by the size of its details; the shape stays as it is.
 
     With A the Laplacian of the mesh and F the transfer function that `filter_mesh` would apply to
@@ -78,8 +80,8 @@ def filter_scalars(
     -------
     values : array
         The filtered values, in the shape of the input.
-    report : dict
-        Numbers: `rms_change` over the surface and `max_change`, in the units of the values;
+    report : ScalarsReport
+        A dict. Numbers: `rms_change` over the surface and `max_change`, in the units of the values;
         `error_estimate`, relative to their largest deviation from the means; and others.
         "warnings" lists problems and what to do about them. For n x k values, a list of the k
         reports as "columns".
@@ -121,20 +123,20 @@ def filter_scalars(
 
     labels = _warning_of_labels(given_values)
 
-    def filtered(column: NDArray[np.float64]) -> Run:
-        return _run(_SCALARS, V, F, parameters, column[:, None], gain, progress, threads)
-
+    with shown(progress) as on_progress:
+        runs = [
+            _run(_SCALARS, V, F, parameters, column[:, None], gain, on_progress, threads)
+            for column in Q.reshape(len(V), -1).T
+        ]
     if Q.ndim == 2:
-        runs = [filtered(column) for column in Q.T]
         reports = [one.plain_report for one in runs]
         warnings = [f"column {j}: {w}" for j, r in enumerate(reports) for w in r["warnings"]]
         warnings += labels
         values = np.hstack([_values(one) for one in runs])
-        return values, Report(columns=reports, warnings=warnings)
-    done = filtered(Q)
-    report = done.plain_report
+        return values, cast(ScalarsReport, Report(columns=reports, warnings=warnings))
+    report = runs[0].plain_report
     report["warnings"] += labels
-    return _values(done)[:, 0], report
+    return _values(runs[0])[:, 0], cast(ScalarsReport, report)
 
 
 @takes_options(FilterOptions, names=TransferKeywords.__annotations__)
@@ -146,10 +148,10 @@ def filter_colors(
     options: FilterOptions | None = None,
     *,
     gain: Gain | None = None,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
     threads: int | None = None,
     **named: Unpack[TransferKeywords],
-) -> tuple[NDArray[Any], dict[str, Any]]:
+) -> tuple[NDArray[Any], ColorsReport]:
     """Filter colours at the vertices: red, green and blue as by `filter_scalars`.
 
     Parameters
@@ -166,8 +168,8 @@ def filter_colors(
     colors : array
         The filtered levels, in the shape and range of the input: integers as uint8, clamped and
         rounded; floating-point numbers in steps of 1/255, as MeshLab stores them.
-    report : dict
-        As from `filter_scalars`, with changes in levels, and `clamped_values`.
+    report : ColorsReport
+        A dict, as from `filter_scalars`, with changes in levels, and `clamped_values`.
     """
     V, F = mesh_arrays(mesh_or_vertices, faces)
     if colors is None:
@@ -184,7 +186,7 @@ def filter_colors(
     done = _run(_COLORS, V, F, parameters, levels, gain, progress, threads)
     filtered = C.astype(np.float64 if most == 1 else np.uint8)
     filtered[:, :3] = _values(done) / (255 / most)
-    return filtered, done.plain_report
+    return filtered, cast(ColorsReport, done.plain_report)
 
 
 def _warning_of_labels(values: NDArray[Any]) -> list[str]:
@@ -237,7 +239,7 @@ def _run(
     options: FilterOptions,
     values: NDArray[np.float64],
     gain: Gain | None,
-    progress: Progress | None,
+    progress: Progress | bool | None,
     threads: int | None,
 ) -> Run:
     """Filter values, n x c, with the options that a signal has."""

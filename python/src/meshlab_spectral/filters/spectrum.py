@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -11,8 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 from meshlab_spectral.filters.arrays import mesh_arrays
 from meshlab_spectral.filters.mesh_objects import takes_mesh_alone
 from meshlab_spectral.filters.options import Boundary, LaplacianKind, SpectrumOptions
+from meshlab_spectral.filters.progress import Progress
 from meshlab_spectral.filters.representations import table
-from meshlab_spectral.filters.running import Progress, run
+from meshlab_spectral.filters.running import run
 
 Array = NDArray[np.float64]
 
@@ -127,7 +129,7 @@ class GeometrySpectrum:
         return heights
 
     @classmethod
-    def from_report(cls, report: dict[str, Any]) -> GeometrySpectrum:
+    def from_report(cls, report: Mapping[str, Any]) -> GeometrySpectrum:
         """Convert the filter's report, with arrays or lists."""
         values: dict[str, Any] = {}
         for field in fields(cls):
@@ -145,7 +147,7 @@ def geometry_spectrum(
     laplacian: LaplacianKind = "intrinsic delaunay",
     boundary: Boundary = "free",
     *,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
     threads: int | None = None,
 ) -> GeometrySpectrum:
     """Measure the geometry spectrum of a mesh.
@@ -204,7 +206,7 @@ def measure(
     V: Array,
     F: NDArray[Any],
     options: SpectrumOptions,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
     threads: int | None = None,
 ) -> dict[str, Any]:
     """Run the filter on validated arrays and return its report."""

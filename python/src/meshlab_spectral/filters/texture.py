@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -13,8 +13,10 @@ from meshlab_spectral.filters.arrays import chosen_vertices, mesh_arrays
 from meshlab_spectral.filters.keywords import takes_options
 from meshlab_spectral.filters.mesh_objects import array_of, takes_mesh_alone
 from meshlab_spectral.filters.options import TextureKeywords, TextureOptions
+from meshlab_spectral.filters.progress import Progress
+from meshlab_spectral.filters.reports import TextureReport
 from meshlab_spectral.filters.representations import brief, line, table
-from meshlab_spectral.filters.running import Progress, plain, run
+from meshlab_spectral.filters.running import plain, run
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -82,13 +84,13 @@ class SurfaceTexture:
     form_radius: float | None = None
 
     @property
-    def report(self) -> dict[str, Any]:
+    def report(self) -> TextureReport:
         """All numbers but the heights of the vertices, for JSON."""
         numbers = {one.name: getattr(self, one.name) for one in fields(self)}
         del numbers["height"]
         if self.form_radius is None:
             del numbers["form_radius"]
-        return plain(numbers)
+        return cast(TextureReport, plain(numbers))
 
     def __repr__(self) -> str:
         return line(self)
@@ -105,7 +107,7 @@ def surface_texture(
     options: TextureOptions | None = None,
     *,
     selection: ArrayLike | None = None,
-    progress: Progress | None = None,
+    progress: Progress | bool | None = None,
     threads: int | None = None,
     **named: Unpack[TextureKeywords],
 ) -> SurfaceTexture:

@@ -9,9 +9,13 @@ from __future__ import annotations
 import re
 from typing import Any
 
+from meshlab_spectral.other_words import instead_of
+
 _PLAIN_SIZE = re.compile(r"Parameter (\w+): must be a pymeshlab\.Percentage")
 _RANGE = re.compile(r"Must be a value between 0 and (\d+)")
 _NOT_CONVERTED = re.compile("Unable to cast Python instance|incompatible function arguments")
+_UNKNOWN = re.compile(r"Parameter (\w+) not found")
+_PERCENT, _PERCENT_VALUE = "'2%' or '6e'", "pymeshlab.PercentageValue(2)"
 _TOO_LARGE = 2**31
 
 
@@ -23,6 +27,8 @@ def corrected(mesh_set: Any, name: str, parameters: dict[str, Any], error: Excep
             f"{found[1]}: must be a percentage or a length, pymeshlab.PercentageValue or "
             "pymeshlab.PureValue (RichPercentage in a script)"
         )
+    if (unknown := _UNKNOWN.match(text)) and (instead := instead_of(unknown[1])):
+        return f"{name} has no {unknown[1]}: {instead.replace(_PERCENT, _PERCENT_VALUE)}"
     if text.startswith("Enum "):
         return _no_such_choice(parameters, text)
     if _NOT_CONVERTED.search(text):

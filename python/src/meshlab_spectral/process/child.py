@@ -23,12 +23,14 @@ from typing import Any
 from meshlab_spectral import errors
 from meshlab_spectral.files.basis import basis_to_scratch
 from meshlab_spectral.files.info import mesh_info
+from meshlab_spectral.files.intent import intent_of
 from meshlab_spectral.files.meshes import (
     StageCallback,
     filter_to_scratch,
     load_arrays,
     script_to_scratch,
 )
+from meshlab_spectral.files.region import Region
 from meshlab_spectral.files.whole_files import file_trouble, is_disk_full
 from meshlab_spectral.filters.options import BasisOptions, SpectrumOptions
 from meshlab_spectral.filters.running import plain
@@ -53,6 +55,10 @@ def _report_of(job: dict[str, Any], on_stage: StageCallback) -> dict[str, Any]:
         return plain(measure(V, F, spectrum_options, on_stage))
     if task == "info":
         return mesh_info(source, on_stage, job.get("mesh"))
+    region = Region.from_given(job.get("region"))
+    if "target" in job:
+        wanted = TABLES[task].from_dict(job["options"])
+        return intent_of(source, Path(job["target"]), wanted, on_stage, job.get("mesh"), region)
     scratch = Path(job["scratch"])
     if task == "basis":
         basis_options = BasisOptions.from_dict(job["options"])
@@ -60,7 +66,8 @@ def _report_of(job: dict[str, Any], on_stage: StageCallback) -> dict[str, Any]:
     if task == "script":
         return script_to_scratch(source, scratch, job["script"], on_stage, verbose)
     options = TABLES[task].from_dict(job["options"])
-    return filter_to_scratch(source, scratch, options, on_stage, verbose, job.get("mesh"))
+    mesh = job.get("mesh")
+    return filter_to_scratch(source, scratch, options, on_stage, verbose, mesh, region)
 
 
 def _read(jobs: queue.SimpleQueue[str]) -> None:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from meshlab_spectral.files.region import Region
 from meshlab_spectral.files.sources import check_is_place, check_source
 from meshlab_spectral.files.whole_files import remove_leftovers, resolved, writing_whole
 from meshlab_spectral.filters.option_types import Options
@@ -23,13 +24,15 @@ def write_in_child(
     mesh: str | None = None,
     overwrite: bool = True,
     limits: JobLimits = NO_LIMITS,
+    region: Region | None = None,
 ) -> dict[str, Any]:
     """Filter a mesh file into another, or write its harmonics to an archive, in a child process.
 
     The file is written atomically, and replaces an existing one if it may. `options` are those for
     `meshes.filter_to_scratch` or `basis.basis_to_scratch`, `on_progress` is that of
     `MeshLabProcess.run`, as are `limits`; without the name of a `mesh`, all meshes of the file are
-    filtered. Returns the filter's report; for harmonics, the numbers of "vertices" and "harmonics".
+    filtered, or of them only a `region`. Returns the filter's report; for harmonics, the numbers
+    of "vertices" and "harmonics".
 
     Raises SpectralError when `source` cannot be read, `target` cannot be written, the filter
     rejects the mesh or an option, or the child died without an answer. KeyboardInterrupt passes
@@ -39,7 +42,7 @@ def write_in_child(
     check_is_place(target)
     remove_leftovers(resolved(target).parent, target.name)
     with writing_whole(target, overwrite) as scratch:
-        place = {"scratch": str(scratch.absolute())}
+        place = {"scratch": str(scratch.absolute()), "region": region.given() if region else None}
         return measure_in_child(source, options, on_progress, mesh, place, limits)
 
 

@@ -18,7 +18,8 @@ from meshlab_spectral.documents.document import Array, Indices
 from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.errors import MeshError
 from meshlab_spectral.filters.options import FilterOptions
-from meshlab_spectral.filters.running import Progress, TiledSurface, plain, run
+from meshlab_spectral.filters.progress import Progress
+from meshlab_spectral.filters.running import TiledSurface, plain, run
 from meshlab_spectral.tiles.cells import near_cells
 from meshlab_spectral.tiles.plan import Workspace, write_whole
 from meshlab_spectral.tiles.rows import MeshRows, open_rows

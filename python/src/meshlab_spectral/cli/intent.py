@@ -1,0 +1,53 @@
+"""What `filter --dry-run` prints."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import typer
+from rich.console import Console
+
+from meshlab_spectral.cli.report_table import table_of
+from meshlab_spectral.filters.option_types import Options
+from meshlab_spectral.plugin.versions import versions
+
+
+def print_intent(
+    source: Path, target: Path, options: Options, intent: dict[str, Any], as_json: bool
+) -> None:
+    """Print what `intent_of_file` has returned; it is what was asked for, also with --quiet."""
+    if as_json:
+        record = {"input": str(source), "output": str(target), "options": options.as_dict()}
+        typer.echo(json.dumps({**record, "intent": intent, "versions": versions()}))
+        return
+    console = Console(emoji=False)
+    for surface in intent["surfaces"]:
+        name = f", {surface['mesh']}" if surface["mesh"] else ""
+        console.print(table_of(_rows(surface), f"{source} -> {target}{name}"))
+    typer.echo(f"{target} would be {_way(target, intent)}. Nothing was written.")
+
+
+def _rows(surface: dict[str, Any]) -> list[tuple[str, str]]:
+    diagonal, edge = surface["diagonal"], surface["mean_edge"]
+    vertices = f"{surface['vertices']}"
+    if "filtered_vertices" in surface:
+        vertices = f"{surface['filtered_vertices']} of {vertices}, and some around them"
+    rows = [("Vertices", vertices), ("Faces", f"{surface['faces']}")]
+    rows += [("Diagonal", f"{diagonal:.4g}"), ("Mean edge", f"{edge:.4g}")]
+    for name, size in surface["sizes"].items():
+        shown = "as measured in the run"
+        if size is not None:
+            shown = f"{size:.4g} ({size / edge:.3g}e, {100 * size / diagonal:.3g} %)"
+        rows.append((name.replace("_", " ").capitalize(), shown))
+    return rows
+
+
+def _way(target: Path, intent: dict[str, Any]) -> str:
+    """Say how the output would be written, and whether it fits in memory."""
+    replaced = "replaced" if target.is_file() else "written"
+    how = "with all else kept" if intent["is_patched"] else "anew by MeshLab"
+    tiles, needed = intent["tiles"], intent["memory"] / 2**30
+    fits = f"in {tiles} tiles" if tiles else f"as a whole, in about {needed:.2g} GiB of memory"
+    return f"{replaced} {how}, {fits}; {intent['available_memory'] / 2**30:.2g} GiB are free"

@@ -1,0 +1,92 @@
+"""What filtering a file would do, in the units of the file, for `--dry-run`."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from meshlab_spectral.errors import OptionError
+from meshlab_spectral.files.formats import is_same_format
+from meshlab_spectral.files.meshes import (
+    StageCallback,
+    load_parts,
+    require_one_choice,
+    wants_details,
+    whole_of,
+)
+from meshlab_spectral.files.meshlab_files import check_writable
+from meshlab_spectral.files.region import Region
+from meshlab_spectral.files.region_vertices import restricted
+from meshlab_spectral.files.touching import pieces
+from meshlab_spectral.filters.arrays import mean_edge
+from meshlab_spectral.filters.option_types import Length, Options
+
+
+def intent_of(
+    source: Path,
+    target: Path,
+    options: Options,
+    on_stage: StageCallback,
+    mesh: str | None = None,
+    region: Region | None = None,
+) -> dict[str, Any]:
+    """Read a mesh file, and describe what `filter_to_scratch` would do with it.
+
+    Parameters and errors are those of `filter_to_scratch`, `target` is what would be written.
+
+    Returns
+    -------
+    dict
+        "surfaces", for each one that would be filtered its "mesh", the name, "vertices", "faces",
+        "filtered_vertices" if there is a region or a selection, "diagonal", "mean_edge" and
+        "sizes", see `sizes_of`; "is_patched", whether the output keeps all that is not moved.
+    """
+    require_one_choice(options, region)
+    on_stage("reading", None)
+    is_patched = not wants_details(options, target) and is_same_format(source, target)
+    if not is_patched:
+        check_writable(target)
+    parts = load_parts(source, mesh)
+    wholes = [whole_of(group) for group in pieces(parts)]
+    chosen = wholes if region is None else restricted(wholes, region)
+    surfaces = []
+    for part in filter(None, chosen):
+        V, F = part.vertices, part.faces
+        if len(F) == 0:
+            raise OptionError(f"{source} has no faces: reconstruct a surface first")
+        edge, diagonal = mean_edge(V, F), float(np.linalg.norm(np.ptp(V, axis=0)))
+        surface_diagonal = float(np.linalg.norm(np.ptp(V[F.ravel()], axis=0)))
+        described = {
+            "mesh": part.name,
+            "vertices": len(V),
+            "faces": len(F),
+            "diagonal": diagonal,
+            "mean_edge": edge,
+            "sizes": sizes_of(options, diagonal, edge, surface_diagonal),
+        }
+        is_part = region is not None or getattr(options, "selected", False)
+        if is_part and part.selected is not None:
+            described["filtered_vertices"] = int(np.count_nonzero(part.selected))
+        surfaces.append(described)
+    return {"surfaces": surfaces, "is_patched": is_patched}
+
+
+def sizes_of(
+    options: Options, diagonal: float, mean_edge: float, surface_diagonal: float
+) -> dict[str, float | None]:
+    """Return the sizes among the options in the units of a mesh; None: the filter measures it.
+
+    Defaults refer to the diagonal of the triangles alone.
+    """
+    sizes: dict[str, float | None] = {}
+    for one in fields(options):
+        size = getattr(options, one.name)
+        if not isinstance(size, Length):
+            continue
+        is_measured = size.automatic and one.name.startswith("noise_")
+        of = surface_diagonal if size == one.default else diagonal
+        sizes[one.name] = None if is_measured else size.in_units_of_mesh(of, mean_edge)
+    return sizes

@@ -1,0 +1,120 @@
+"""The vertices of a region."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from meshlab_spectral import _core
+from meshlab_spectral.documents.document import Array, Indices, Part
+from meshlab_spectral.errors import InputError, OptionError
+from meshlab_spectral.files.region import Region
+
+Flags = NDArray[np.bool_]
+
+_CONDITIONS = (
+    "give a condition of x, y, z, nx, ny, nz and, if the mesh has it, the quality q, such as "
+    "z > 3 && nz > 0"
+)
+
+
+def vertices_in(region: Region, V: Array, F: Indices, quality: Array | None = None) -> Flags:
+    """Return which of n vertices are in a region.
+
+    Raises OptionError when the region does not fit the mesh, InputError when the mask cannot be
+    read.
+    """
+    chosen = np.ones(len(V), dtype=bool)
+    for name in region.given():
+        chosen &= _VERTICES[name](region, V, F, quality)
+    return chosen
+
+
+def _in_box(region: Region, V: Array, F: Indices, quality: Array | None) -> Flags:
+    corners = np.reshape(region.corners(), (2, 3))
+    inside: Flags = ((corners.min(axis=0) <= V) & (corners.max(axis=0) >= V)).all(axis=1)
+    return inside
+
+
+def _in_component(region: Region, V: Array, F: Indices, quality: Array | None) -> Flags:
+    labels = _core.components(np.ascontiguousarray(V), np.ascontiguousarray(F, dtype=np.int32))
+    areas = np.linalg.norm(_area_vectors(V, F), axis=1)
+    count = int(labels.max(initial=-1)) + 1
+    # By area, descending; a triangle without any is in the component of its corners, or in none.
+    sizes = np.bincount(labels[F[:, 0]] + 1, weights=areas, minlength=count + 1)[1:]
+    if region.number > count:
+        raise OptionError(f"component = {region.component}: the mesh has {count}")
+    wanted = np.argsort(-sizes, kind="stable")[region.number - 1]
+    chosen: Flags = labels == wanted
+    return chosen
+
+
+def _where(region: Region, V: Array, F: Indices, quality: Array | None) -> Flags:
+    normals = np.zeros_like(V)
+    np.add.at(normals, F, _area_vectors(V, F)[:, None])
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    columns = [V, np.divide(normals, lengths, out=normals, where=lengths > 0)]
+    names = ["x", "y", "z", "nx", "ny", "nz"]
+    if quality is not None:
+        columns.append(quality[:, None])
+        names.append("q")
+    values = np.ascontiguousarray(np.hstack(columns), dtype=np.float64)
+    holds = _core.evaluated("where", str(region.where), _CONDITIONS, names, values)
+    chosen: Flags = (holds != 0) & ~np.isnan(holds)
+    return chosen
+
+
+def _in_mask(region: Region, V: Array, F: Indices, quality: Array | None) -> Flags:
+    assert region.mask is not None
+    values = _read_mask(region.mask)
+    if values.shape != (len(V),):
+        raise OptionError(
+            f"mask = {region.mask}: has {values.size} numbers for {len(V)} vertices; where a file "
+            "has several meshes, name one with --mesh"
+        )
+    chosen: Flags = values != 0
+    return chosen
+
+
+def _read_mask(path: Path) -> NDArray[np.float64]:
+    try:
+        values = np.load(path) if path.suffix.lower() == ".npy" else np.loadtxt(path, ndmin=1)
+        return np.asarray(values, dtype=np.float64)
+    except OSError as error:
+        raise InputError(f"the mask {path} cannot be read ({error.strerror or error})") from error
+    except ValueError as error:
+        raise InputError(f"the mask {path} is not one number for each vertex: {error}") from error
+
+
+def _area_vectors(V: Array, F: Indices) -> Array:
+    a, b, c = (V[F[:, corner]] for corner in range(3))
+    vectors: Array = np.cross(b - a, c - a)
+    return vectors
+
+
+# One for each field of Region.
+_VERTICES: Mapping[str, Callable[[Region, Array, Indices, Array | None], Flags]] = {
+    "box": _in_box,
+    "component": _in_component,
+    "where": _where,
+    "mask": _in_mask,
+}
+
+
+def restricted(parts: Sequence[Part], region: Region) -> list[Part | None]:
+    """Return meshes whose selection is what of them is in a region, or None where nothing is.
+
+    Raises OptionError when nothing is in the region at all, and as `vertices_in` does.
+    """
+    chosen = [vertices_in(region, one.vertices, one.faces, one.quality) for one in parts]
+    if not any(flags.any() for flags in chosen):
+        given = ", ".join(f"{name} = {value}" for name, value in region.given().items())
+        raise OptionError(f"{given}: no vertex is there, so nothing would change")
+    return [
+        replace(part, selected=flags) if flags.any() else None
+        for part, flags in zip(parts, chosen, strict=True)
+    ]

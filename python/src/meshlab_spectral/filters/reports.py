@@ -1,0 +1,312 @@
+"""The reports of the filters: entries, their meaning, their units.
+
+Written by python/write_options.py from the tables in plugin/core/contract: edit those.
+"""
+
+from __future__ import annotations
+
+from typing import TypedDict
+
+
+class _FilterReport(TypedDict):
+    accuracy_reached: bool
+    """Whether the evaluation was as accurate as it should be."""
+    area_after: float
+    """Of the filtered surface, length²."""
+    area_before: float
+    """Of the surface, length²."""
+    components: int
+    """Number of connected components of the surface."""
+    cutoff_frequency: float
+    """2 π / feature size, radians per length."""
+    error_estimate: float
+    """Estimated error of the evaluation, relative to the size of what is filtered."""
+    factorizations: int
+    """Number of sparse factorizations."""
+    feature_size: float
+    """As applied, length."""
+    fixed_vertices: int
+    """Number of vertices on a fixed boundary or a crease, unchanged."""
+    has_volume: bool
+    """Whether the surface is closed and consistently oriented."""
+    joined_vertices: int
+    """Number of vertices at seams that are one with another."""
+    max_displacement: float
+    """Largest displacement of a vertex, length."""
+    mean_edge: float
+    """Mean edge, length."""
+    passes: int
+    """Passes of automatic steps, whose number repeats the run exactly; 0: not automatic."""
+    preserved_volumes: int
+    """Number of closed components whose volume was preserved."""
+    products: int
+    """Number of products of the Laplacian with one coordinate, in place of solves."""
+    rms_displacement: float
+    """Root mean square of the displacements, length."""
+    shrunken_part: float
+    """Share of the surface, 0 to 1, that shrinks to lines or points."""
+    singular_part: float
+    """Share of the surface, 0 to 1, on which `tolerance` was not reached."""
+    solves: int
+    """Number of solves with one right-hand side."""
+    step_error: float
+    """With automatic steps, estimated error of the surface, length."""
+    step_sizes: list[float]
+    """Fractional powers of the steps, in their order; their sum is 1."""
+    steps: int
+    """Number of steps; with automatic steps, of the last pass."""
+    thin_part_factor: float
+    """At the default size, by how much the thinnest part exceeds it, squared; above 2, thin parts
+    are kept."""
+    tolerance_reached: bool
+    """With automatic steps, whether `step_error` is within `tolerance`."""
+    unreferenced_vertices: int
+    """Number of vertices without faces, unchanged."""
+    volume_after: float
+    """Signed volume of the filtered surface, length³; meaningless unless `has_volume`."""
+    volume_before: float
+    """Signed volume of the surface, length³; meaningless unless `has_volume`."""
+    warnings: list[str]
+    """Problems that were not errors, and what to do about them."""
+
+
+class FilterReport(_FilterReport, total=False):
+    """Report of `filter_mesh`; lengths are in the units of the mesh."""
+
+    computed_bases: int
+    """Number of bases computed in all steps."""
+    cutoff_reached: bool
+    """Whether the harmonics reach the cutoff frequency."""
+    eigenvalues: list[float]
+    """Of the last basis that was computed, ascending, 1 / length²."""
+    inertia_count: int
+    """Number of harmonics that the basis must hold, by Sylvester's law; 0 if unneeded."""
+    residuals: list[float]
+    """Residuals of the harmonics, relative."""
+
+
+class DenoiseReport(TypedDict):
+    """Report of `denoise_mesh`; lengths are in the units of the mesh."""
+
+    components: int
+    """Number of connected components of the surface."""
+    estimated_noise_height: float
+    """Measured standard deviation of the noise along the normals, length."""
+    estimated_noise_size: float
+    """Measured length over which neighbouring vertices have like noise, length."""
+    fixed_vertices: int
+    """Number of vertices on a fixed boundary or a crease, unchanged."""
+    has_volume: bool
+    """Whether the surface is closed and consistently oriented."""
+    joined_vertices: int
+    """Number of vertices at seams that are one with another."""
+    max_displacement: float
+    """Largest displacement of a vertex, length."""
+    mean_edge: float
+    """Mean edge, length."""
+    noise_correlation: float
+    """Of the noise of neighbouring vertices, as measured; above 0.2 it is shape."""
+    noise_height: float
+    """Of the noise that was filtered or found, length; 0: none."""
+    noise_kind: str
+    """White, correlated (of a scanner), impulses, scan_lines, rounded (coordinates), local (in
+    places) or voxels; without noise: none, shape (which it may be), tessellation (of CAD),
+    stretched (axis), or too_few (vertices)."""
+    noise_searched: bool
+    """Whether the mesh was searched for noise; not with needle triangles, too few vertices or
+    voxels."""
+    noise_share: float
+    """Share of the surface with noise, 0 to 1."""
+    noise_size: float
+    """Of the noise that was filtered, length; 0: independent at every vertex, or none."""
+    preserved_volumes: int
+    """Number of closed components whose volume was preserved."""
+    rms_displacement: float
+    """Root mean square of the displacements, length."""
+    rounds: int
+    """Number of weak parts in which the normals were filtered; 0: nothing changed."""
+    spikes: int
+    """Number of vertices off the surface that were put back."""
+    unreferenced_vertices: int
+    """Number of vertices without faces, unchanged."""
+    volume_after: float
+    """Signed volume of the filtered surface, length³; meaningless unless `has_volume`."""
+    volume_before: float
+    """Signed volume of the surface, length³; meaningless unless `has_volume`."""
+    voxel_size: list[float]
+    """Of the volume that the surface is the border of, along each axis, length; 0: none."""
+    summary: str
+    """What was found and done, in one line."""
+    warnings: list[str]
+    """Problems that were not errors, and what to do about them."""
+
+
+class _ScalarsReport(TypedDict):
+    warnings: list[str]
+    """Problems that were not errors, and what to do about them."""
+
+
+class ScalarsReport(_ScalarsReport, total=False):
+    """Report of `filter_scalars`; lengths are in the units of the mesh."""
+
+    columns: list[ScalarsReport]
+    """Of values n x k, their k reports, in place of these."""
+    accuracy_reached: bool
+    """Whether the evaluation was as accurate as it should be."""
+    components: int
+    """Number of connected components of the surface."""
+    cutoff_frequency: float
+    """2 π / feature size, radians per length."""
+    error_estimate: float
+    """Estimated error of the evaluation, relative to the size of what is filtered."""
+    factorizations: int
+    """Number of sparse factorizations."""
+    feature_size: float
+    """As applied, length."""
+    fixed_vertices: int
+    """Number of vertices on a fixed boundary or a crease, unchanged."""
+    joined_vertices: int
+    """Number of vertices at seams that are one with another."""
+    max_change: float
+    """Largest change of a value, in its units (colours: levels of 0 to 255)."""
+    rms_change: float
+    """Root mean square of the changes over the surface, in the units of the values."""
+    solves: int
+    """Number of solves with one right-hand side."""
+    unreferenced_vertices: int
+    """Number of vertices without faces, unchanged."""
+    vertices_without_data: int
+    """Number of vertices whose value is NaN, unchanged."""
+
+
+class ColorsReport(TypedDict):
+    """Report of `filter_colors`; lengths are in the units of the mesh."""
+
+    accuracy_reached: bool
+    """Whether the evaluation was as accurate as it should be."""
+    clamped_values: int
+    """Number of red, green and blue levels that were clamped to 0 to 255."""
+    components: int
+    """Number of connected components of the surface."""
+    cutoff_frequency: float
+    """2 π / feature size, radians per length."""
+    error_estimate: float
+    """Estimated error of the evaluation, relative to the size of what is filtered."""
+    factorizations: int
+    """Number of sparse factorizations."""
+    feature_size: float
+    """As applied, length."""
+    fixed_vertices: int
+    """Number of vertices on a fixed boundary or a crease, unchanged."""
+    joined_vertices: int
+    """Number of vertices at seams that are one with another."""
+    max_change: float
+    """Largest change of a value, in its units (colours: levels of 0 to 255)."""
+    rms_change: float
+    """Root mean square of the changes over the surface, in the units of the values."""
+    solves: int
+    """Number of solves with one right-hand side."""
+    unreferenced_vertices: int
+    """Number of vertices without faces, unchanged."""
+    vertices_without_data: int
+    """Number of vertices whose value is NaN, unchanged."""
+    warnings: list[str]
+    """Problems that were not errors, and what to do about them."""
+
+
+class SpectrumReport(TypedDict):
+    """Report of `meshlab-spectral spectrum`; lengths are in the units of the mesh."""
+
+    amplitudes: list[float]
+    """Amplitudes of the harmonics of `frequencies`, length; 0 for constants."""
+    area: float
+    """Of the surface, length²."""
+    band_amplitudes: list[float]
+    """Amplitudes of the third octaves of `band_feature_sizes`, length."""
+    band_feature_sizes: list[float]
+    """Centres of the third octaves with at least 30 harmonics, descending, length."""
+    band_noise: list[float]
+    """Amplitudes that white noise of height 1 at the vertices has in these third octaves."""
+    cumulative_energy: list[float]
+    """Share of the energy in each octave and all larger ones, ascending to 1."""
+    default_feature_size: float
+    """Default of `feature_size` for this mesh, length."""
+    diagonal: float
+    """Of the bounding box, length."""
+    feature_size_50: float
+    """Half of the energy is in features of at least this size, length."""
+    feature_size_90: float
+    """90 % of the energy are in features of at least this size, length."""
+    feature_size_99: float
+    """99 % of the energy are in features of at least this size, length."""
+    frequencies: list[float]
+    """Of the lowest harmonics, ascending, radians per length; 0 for constants."""
+    mean_edge: float
+    """Mean edge, length."""
+    mismatch: float
+    """Share of the energy that may belong to other octaves; above 0.01 with a warning."""
+    noise_feature_size: float
+    """In details smaller than this there is more noise than shape, length; 0: in none."""
+    noise_height: float
+    """Of the noise that was filtered or found, length; 0: none."""
+    octave_amplitudes: list[float]
+    """Amplitudes of the octaves, root mean square over the surface, length."""
+    octave_energies: list[float]
+    """Energies of the octaves, length⁴."""
+    octave_feature_sizes: list[float]
+    """Centres of the octaves, descending, length."""
+    total_energy: float
+    """Integral of the squared length of the shape over the surface, length⁴."""
+    summary: str
+    """What was found and done, in one line."""
+    warnings: list[str]
+    """Problems that were not errors, and what to do about them."""
+
+
+class _TextureReport(TypedDict):
+    Sa: float
+    """Mean of the magnitude of the height, length."""
+    Sdq: float
+    """Root mean square of the slope."""
+    Sdr: float
+    """Additional area of the texture, relative to that of the reference surface."""
+    Sku: float
+    """Kurtosis of the heights, 3 if they are normally distributed."""
+    Sp: float
+    """Height of the highest peak, length."""
+    Sq: float
+    """Root mean square of the height, length."""
+    Ssk: float
+    """Skewness of the heights."""
+    Sv: float
+    """Depth of the deepest valley, length."""
+    Sz: float
+    """From the deepest valley to the highest peak, length."""
+    area: float
+    """Of the reference surface where it is evaluated, length²."""
+    bearing_heights: list[float]
+    """Bearing curve (Abbott-Firestone): the heights that 0, 1, ..., 100 % of the area exceed,
+    length."""
+    error_estimate: float
+    """Estimated root mean square error of the heights, length."""
+    histogram_heights: list[float]
+    """Centres of the 64 bins of the histogram, ascending, length."""
+    histogram_shares: list[float]
+    """Share of the area with a height in each of these bins."""
+    noise: float
+    """Cutoff of the S-filter, length; 0: none."""
+    vertices_evaluated: int
+    """Number of vertices that count."""
+    vertices_left_out: int
+    """Number of selected vertices within a cutoff of a boundary or a crease."""
+    waviness: float
+    """Cutoff of the L-filter, length."""
+    warnings: list[str]
+    """Problems that were not errors, and what to do about them."""
+
+
+class TextureReport(_TextureReport, total=False):
+    """Report of `SurfaceTexture`; lengths are in the units of the mesh."""
+
+    form_radius: float
+    """Of the sphere or cylinder that was fitted, length."""

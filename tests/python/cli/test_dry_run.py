@@ -1,0 +1,71 @@
+"""`filter --dry-run` and `denoise --dry-run`: what would be done, and nothing is."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from batches import make_meshes
+from commands import PRECIOUS, assert_fails, command
+
+SIZES = {"filter": ["feature_size", "tolerance"], "denoise": ["noise_height", "noise_size"]}
+
+
+@pytest.mark.parametrize("verb", ["filter", "denoise"])
+def test_nothing_is_written_and_sizes_have_the_units_of_the_file(verb: str, tmp_path: Path) -> None:
+    (scan,) = make_meshes(tmp_path, 1)
+    done = command(verb, scan, tmp_path / "out.ply", "--dry-run", "--json")
+    assert done.returncode == 0, done.stderr
+    record = json.loads(done.stdout)
+    (surface,) = record["intent"]["surfaces"]
+    assert list(surface["sizes"]) == SIZES[verb]
+    assert (surface["vertices"], surface["faces"]) == (144, 288)
+    assert record["output"] == str(tmp_path / "out.ply")
+    assert record["intent"]["tiles"] == 0
+    assert 0 < record["intent"]["memory"] < record["intent"]["available_memory"]
+    assert list(tmp_path.iterdir()) == [scan]
+
+
+@pytest.mark.parametrize("size", ["auto", "3%", "4e", "0.25"])
+def test_the_sizes_are_those_that_the_run_applies(size: str, tmp_path: Path) -> None:
+    (scan,) = make_meshes(tmp_path, 1)
+    arguments = ["filter", scan, tmp_path / "out.ply", "--json", "--feature-size", size]
+    intent = json.loads(command(*arguments, "--dry-run").stdout)["intent"]
+    report = json.loads(command(*arguments).stdout)["report"]
+    assert intent["surfaces"][0]["sizes"]["feature_size"] == pytest.approx(
+        report["feature_size"], rel=1e-6
+    )
+    assert intent["surfaces"][0]["mean_edge"] == pytest.approx(report["mean_edge"], rel=1e-6)
+
+
+def test_in_words_it_says_where_the_output_goes_and_how(tmp_path: Path) -> None:
+    (scan,) = make_meshes(tmp_path, 1)
+    out = tmp_path / "out.obj"
+    out.write_bytes(PRECIOUS)
+    done = command("filter", scan, out, "--dry-run", "--overwrite", "--where", "x > 0", "-q")
+    assert done.returncode == 0, done.stderr
+    assert f"{out} would be replaced anew by MeshLab, as a whole" in done.stdout
+    assert "of 144, and some around them" in done.stdout
+    assert out.read_bytes() == PRECIOUS
+    same = command("filter", scan, tmp_path / "out.ply", "--dry-run", "--tiles", 2).stdout
+    assert "would be written with all else kept, in 2 tiles" in same
+    assert {path.name for path in tmp_path.iterdir()} == {scan.name, "out.obj"}
+
+
+def test_what_the_run_would_refuse_is_refused(tmp_path: Path) -> None:
+    (scan,) = make_meshes(tmp_path, 1)
+    out = tmp_path / "out.ply"
+    refused = {
+        (scan, tmp_path / "out.nothing"): "cannot write",
+        (tmp_path / "none.ply", out): "does not exist",
+        (scan, out, "--where", "x > 99"): "no vertex is there",
+        (scan, out, "--mesh", "left"): "has no mesh",
+        (scan, tmp_path / "none" / "out.ply"): "does not exist",
+        (scan, tmp_path / "out.obj", "--result", "details"): "cannot hold details",
+        (scan, out, "--tiles", 2, "--laplacian", "uniform"): "uniform",
+    }
+    for arguments, reason in refused.items():
+        done = command("filter", *arguments, "--dry-run")
+        assert_fails(done, done.returncode or 1, reason)
+    assert list(tmp_path.iterdir()) == [scan]

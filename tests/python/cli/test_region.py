@@ -1,0 +1,140 @@
+"""`filter` and `denoise` on a region: --box, --component, --where and --mask."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from commands import arrays_of, assert_fails, command
+from helpers import mesh_set_of
+from meshlab_spectral import denoise_mesh, filter_mesh
+from numpy.typing import NDArray
+
+Arrays = tuple[NDArray[np.float64], NDArray[np.int32]]
+Select = Callable[[NDArray[np.float64]], NDArray[np.bool_]]
+
+REGIONS: dict[str, tuple[list[str], Select]] = {
+    "box": (
+        ["--box", "-inf,-inf,0.2,0.1,inf,inf"],
+        lambda V: (V[:, 2] >= 0.2) & (V[:, 0] <= 0.1),
+    ),
+    "a box by any two corners": (["--box", "9,9,9,0,-9,-9"], lambda V: V[:, 0] >= 0),
+    "where": (
+        ["--where", "z > 0.2 && x + y < 0.1"],
+        lambda V: (V[:, 2] > 0.2) & (V[:, 0] + V[:, 1] < 0.1),
+    ),
+    "both": (
+        ["--box", "-9,-9,0.2,9,9,9", "--where", "x < 0"],
+        lambda V: (V[:, 2] >= 0.2) & (V[:, 0] < 0),
+    ),
+}
+
+
+def spheres(*radii: float) -> Arrays:
+    """Noisy icospheres side by side."""
+    import pyvista
+
+    rng, vertices, faces, count = np.random.default_rng(3), [], [], 0
+    for number, radius in enumerate(radii):
+        ball = pyvista.Icosphere(radius=radius, nsub=3, center=(5.0 * number, 0, 0))
+        noise = 1 + 0.03 * rng.standard_normal(ball.n_points)[:, None]
+        vertices.append((ball.points - ball.center) * noise + ball.center)
+        faces.append(ball.regular_faces + count)
+        count += ball.n_points
+    return np.vstack(vertices), np.vstack(faces).astype(np.int32)
+
+
+def written(folder: Path, mesh: Arrays, ending: str = "ply") -> Path:
+    path = folder / f"in.{ending}"
+    mesh_set_of(*mesh).save_current_mesh(str(path))
+    return path
+
+
+@pytest.mark.parametrize("verb", ["filter", "denoise"])
+@pytest.mark.parametrize("region", REGIONS)
+def test_a_region_is_filtered_as_the_same_selection_in_python(
+    verb: str, region: str, tmp_path: Path
+) -> None:
+    arguments, select = REGIONS[region]
+    source, target = written(tmp_path, spheres(1.0)), tmp_path / "out.ply"
+    done = command(verb, source, target, *arguments, "--json")
+    assert done.returncode == 0, done.stderr
+    V, F = arrays_of(source)
+    function: Any = filter_mesh if verb == "filter" else denoise_mesh
+    expected, report = function(V, F, selection=select(V))
+    np.testing.assert_allclose(arrays_of(target)[0], expected, atol=1e-6)
+    record = json.loads(done.stdout)
+    assert record["report"]["max_displacement"] == pytest.approx(report["max_displacement"])
+    assert record["region"].keys() == {name[2:] for name in arguments[::2]}
+    far = np.linalg.norm(V - V[select(V)].mean(axis=0), axis=1).argmax()
+    assert not select(V)[far]
+    if verb == "denoise":  # which reaches four edges beyond
+        np.testing.assert_array_equal(arrays_of(target)[0][far], V[far])
+
+
+def test_the_normal_and_the_quality_are_variables_of_a_condition(tmp_path: Path) -> None:
+    mesh_set = mesh_set_of(*spheres(1.0))
+    mesh_set.compute_scalar_by_function_per_vertex(q="x * 10")
+    source = tmp_path / "in.ply"
+    mesh_set.save_current_mesh(str(source))
+    for condition in ("q > 5", "nx > 0.5"):
+        done = command("filter", source, tmp_path / "out.ply", "--where", condition, "--overwrite")
+        assert done.returncode == 0, done.stderr
+        V, moved = arrays_of(source)[0], arrays_of(tmp_path / "out.ply")[0]
+        where = (moved != V).any(axis=1)
+        assert 50 < where.sum() < 0.7 * len(V)
+        assert V[where, 0].mean() > 0.3
+
+
+@pytest.mark.parametrize(("given", "number"), [("largest", 1), ("1", 1), ("2", 0), ("3", 2)])
+def test_components_are_counted_by_area(given: str, number: int, tmp_path: Path) -> None:
+    source, target = written(tmp_path, spheres(1.0, 1.5, 0.5)), tmp_path / "out.ply"
+    assert command("denoise", source, target, "--component", given).returncode == 0
+    V, moved = arrays_of(source)[0], arrays_of(target)[0]
+    n = len(V) // 3
+    has_moved = (moved != V).any(axis=1).reshape(3, n).sum(axis=1)
+    assert has_moved[number] > n / 2
+    assert has_moved.sum() == has_moved[number]
+
+
+@pytest.mark.parametrize("ending", ["txt", "npy"])
+@pytest.mark.parametrize("output", ["ply", "obj"])
+def test_a_mask_file_has_a_number_for_each_vertex(ending: str, output: str, tmp_path: Path) -> None:
+    source = written(tmp_path, spheres(1.0))
+    V, F = arrays_of(source)
+    mask, path = V[:, 1] > 0.3, tmp_path / f"mask.{ending}"
+    np.save(path, mask) if ending == "npy" else np.savetxt(path, mask)
+    target = tmp_path / f"out.{output}"
+    done = command("denoise", source, target, "--mask", path)
+    assert done.returncode == 0, done.stderr
+    expected, _ = denoise_mesh(V, F, selection=mask)
+    np.testing.assert_allclose(arrays_of(target)[0], expected, atol=1e-5)
+
+
+def test_a_region_that_does_not_fit_is_refused_with_the_remedy(tmp_path: Path) -> None:
+    source, target = written(tmp_path, spheres(1.0), "obj"), tmp_path / "out.ply"
+    (tmp_path / "mask.txt").write_text("1 0 1")
+    (tmp_path / "text.txt").write_text("yes no")
+    refused = {
+        ("--box", "1,2,3"): "give six numbers",
+        ("--box", "8,8,8,9,9,9"): "no vertex is there",
+        ("--component", "0"): "give largest, or a number from 1",
+        ("--component", "2"): "the mesh has 1",
+        ("--where", "z = 3"): "compare with ==",
+        ("--where", "0 < z < 3"): "join two by &&",
+        ("--where", "__import__('os')"): "give a condition of x, y, z",
+        ("--where", "q > 1"): "if the mesh has it",
+        ("--mask", tmp_path / "mask.txt"): "has 3 numbers for 642 vertices",
+        ("--mask", tmp_path / "text.txt"): "is not one number for each vertex",
+        ("--mask", tmp_path / "none.npy"): "cannot be read",
+        ("--box", "0,0,0,1,1,1", "--selected"): "leave one out",
+        ("--box", "0,0,0,1,1,1", "--tiles", "2"): "only the whole is filtered in tiles",
+    }
+    for arguments, reason in refused.items():
+        done = command("filter", source, target, *arguments)
+        assert_fails(done, done.returncode or 1, reason)
+        assert not target.exists()
