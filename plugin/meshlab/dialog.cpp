@@ -2,6 +2,8 @@
 
 #include <common/parameters/rich_parameters.h>
 
+#include <QRegularExpression>
+#include <QTimer>
 #include <algorithm>
 
 #include "core/contract/equalizer.h"
@@ -113,7 +115,8 @@ QString asHtml(const std::string& text) {
         else
             html += isName && c == '_' ? QChar(' ') : c;
     }
-    return html;
+    static const QRegularExpression link("\\[([^]]*)\\]\\((https://[^)]*)\\)");
+    return html.replace(link, "<a href=\"\\2\">\\1</a>");
 }
 
 QString helpOf(const spectral::Filter& filter) {
@@ -140,6 +143,14 @@ RichParameterList parametersOf(const spectral::Filter& filter, const MeshModel& 
 
 bool isOriginalKept(const RichParameterList& parameters) {
     return parameters.hasParameter(kKeepOriginal) && parameters.getBool(kKeepOriginal);
+}
+
+void recordOriginalKept(MeshDocument& document) {
+    FilterScript& history = document.filterHistory;
+    QTimer::singleShot(0, &document, [&history, before = history.size()] {
+        if (history.size() == before + 1)
+            history.last().second.setValue(kKeepOriginal, BoolValue(true));
+    });
 }
 
 void adaptDialog(const spectral::Filter& filter, const MeshModel& mesh) {

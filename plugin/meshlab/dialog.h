@@ -1,6 +1,6 @@
 #pragma once
 
-#include <common/ml_document/mesh_model.h>
+#include <common/ml_document/mesh_document.h>
 #include <common/parameters/rich_parameter_list.h>
 
 #include <QStringList>
@@ -9,7 +9,7 @@
 
 // Filters as MeshLab's dialogs show them, and what was chosen in one.
 
-/// Plain text with *words* that stand out and |parameters| as HTML.
+/// Plain text with *words* that stand out, |parameters| and [links](https://...) as HTML.
 QString asHtml(const std::string& text);
 
 /// The text above the parameters, HTML.
@@ -22,6 +22,10 @@ RichParameterList parametersOf(const spectral::Filter& filter, const MeshModel& 
 
 /// Whether the mesh shall be kept as it was.
 bool isOriginalKept(const RichParameterList& parameters);
+
+/// Corrects what MeshLab writes into its history after a call for which the box was switched off
+/// (apply_anew.h): that the mesh was kept as it was.
+void recordOriginalKept(MeshDocument& document);
 
 /// Adapts the dialog that is about to open to what MeshLab's widgets do not offer.
 void adaptDialog(const spectral::Filter& filter, const MeshModel& mesh);

@@ -237,6 +237,7 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
         postConditionMask = static_cast<unsigned>(changedBy(filter, output));
         logOutput(output, taken.count());
         keepLastMessages(output.summary, output.warnings);
+        if (options.layers != nullptr && !isOriginalKept(parameters)) recordOriginalKept(document);
         return dictionaryOf(output.report);
     } catch (const spectral::Cancelled& cancelled) {
         // No message box: the result of the newer run stays, or the user knows why.

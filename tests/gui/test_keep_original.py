@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from xml.etree import ElementTree
 
 import pytest
 from filter_dialog import FilterDialog
@@ -24,6 +25,12 @@ def test_apply_keeps_the_original_once_and_a_preview_does_not(
     assert f"the original is kept, hidden: layer {LAYER}" in dialog.apply()
     assert row.editors[-1].checked
     dialog.close()
+    script = meshlab.home / "script.mlx"
+    meshlab.save_script(script)
+    (kept,) = (
+        p for p in ElementTree.parse(script).iter("Param") if p.attrib["name"] == "keep_original"
+    )
+    assert kept.attrib["value"] == "true"
     assert meshlab.layers() == ["bunny", LAYER]
     mesh_set = load(bunny)
     mesh_set.apply_filter(FILTER)

@@ -14,6 +14,7 @@
 #include "core/contract/surface_report.h"
 #include "core/filter/equalizer_bands.h"
 #include "core/filter/fractional_filter.h"
+#include "core/mesh/contacts.h"
 #include "core/support/errors.h"
 #include "core/transfer/equalizer.h"
 
@@ -117,6 +118,20 @@ FilterResult withoutTolerance(FilterResult result) {
     return result;
 }
 
+/// Every component keeps its centre, so that larger ones can move away from smaller ones in them.
+std::vector<std::string> partingWarnings(const FilterInput& input, const MeshLengths& mesh,
+                                         const Vertices& moved) {
+    const Parting parting = partingOf(input.V, input.F, moved, mesh.meanEdge);
+    if (parting.components == 0) return {};
+    std::ostringstream text;
+    text << parting.components << " of " << parting.all << " parts "
+         << (parting.components == 1 ? "moves" : "move") << " up to "
+         << lengthAndPercentage(parting.distance, mesh.diagonal)
+         << " away from a part that it touched, since each keeps its centre: choose gains nearer "
+            "to 1, or select the region to be filtered";
+    return {text.str()};
+}
+
 FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values& given,
                  const Progress& progress) {
     const EqualizerCall call = callOf(equalizerFields(), given, mesh);
@@ -144,6 +159,7 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
     output.text =
         fractionalText(options, reported, mesh.diagonal, "Spectral Equalizer: " + changes);
     output.V = std::move(result.V);
+    append(partingWarnings(input, mesh, output.V), output.warnings);
     return output;
 }
 
@@ -198,6 +214,7 @@ FilterOutput preview(const FilterInput& input, const MeshLengths& mesh, const Va
                   "\n  Spectral Equalizer: " + changes +
                   "; a draft in one step, Apply computes the accurate shape";
     output.V = changed(input.V, surface, displacement);
+    output.warnings = partingWarnings(input, mesh, output.V);
     return output;
 }
 

@@ -119,7 +119,8 @@ Filter harmonicsContract() {
         "Computes the *manifold harmonics* of a surface, its spectral basis: standing waves from "
         "low to high frequency, like those of a drum of this shape. One of them becomes the vertex "
         "quality, in colours: red where it is positive, blue where it is negative.",
-        "",
+        "Vallet, L\u00e9vy: [Spectral Geometry Processing with Manifold Harmonics]"
+        "(https://doi.org/10.1111/j.1467-8659.2008.01122.x), 2008",
         parametersOf(harmonicsFields()),
         describedBy(harmonicsEntries()),
         run,

@@ -29,7 +29,7 @@ struct AutomaticSteps {
     FractionalSteps last;  ///< The last pass; X is extrapolated from the last two passes.
     int passes = 0;        ///< 0: this is not the automatic scheme.
     double error = 0.0;    ///< Estimated error over all but kNegligibleArea of the filtered
-                           ///< surface, length units.
+                           ///< surface, length units: mostly within a factor of two.
 
     /// Fraction of the input surface on which the estimated error exceeds the tolerance.
     double singularPart = 0.0;
@@ -43,8 +43,10 @@ struct AutomaticSteps {
 /// series in 1/K whose leading term is quadratic, so Richardson extrapolation
 ///     E_K = Y_K + (Y_K - Y_K/2) / 3
 /// removes it. The distance from E_K/2 to E_K estimates the error of E_K/2; the rate at which these
-/// distances shrink then gives that of E_K, the error of the final shape. A single step (E_1 = Y_1)
-/// is compared with the paper's step, which comes from the same Krylov space as its half step. Most
+/// distances shrink then bounds that of E_K, which ends the passes. A single step (E_1 = Y_1)
+/// is compared with the paper's step, which comes from the same Krylov space as its half step. What
+/// is reported is not that bound, which is several times the error, but the error as it usually is
+/// at such distances (bench_equalizer). Most
 /// runs end after one pass (two evaluations) or two passes (five). All earlier passes together cost
 /// as much as the last.
 ///

@@ -192,11 +192,14 @@ KeptBasis keptBasis(const KrylovOperator& S, const Eigen::MatrixXd& X,
 std::vector<Eigen::MatrixXd> combined(KrylovSpaces& spaces, const Eigen::MatrixXd& X,
                                       const std::vector<Approximation>& approximations,
                                       bool isKept) {
-    std::vector<Eigen::MatrixXd> Y;
-    for (const Approximation& approximation : approximations)
-        Y.push_back(isKept ? spaces.combine(approximation.coefficients())
-                           : Eigen::MatrixXd::Zero(X.rows(), X.cols()));
-    if (isKept) return Y;
+    if (isKept) {
+        std::vector<std::vector<Eigen::VectorXd>> sets;
+        for (const Approximation& approximation : approximations)
+            sets.push_back(approximation.coefficients());
+        return spaces.combineAll(sets);
+    }
+    std::vector<Eigen::MatrixXd> Y(approximations.size(),
+                                   Eigen::MatrixXd::Zero(X.rows(), X.cols()));
     spaces.restart(X);
     for (Index j = 0;; ++j) {
         bool isLast = true;

@@ -413,11 +413,16 @@ Quadrature KrylovSpaces::quadrature(int column) const {
 }
 
 Eigen::MatrixXd KrylovSpaces::combine(const std::vector<Eigen::VectorXd>& coefficients) const {
-    Eigen::MatrixXd Y(D_.size(), columns_);
+    return std::move(combineAll({coefficients}).front());
+}
+
+std::vector<Eigen::MatrixXd> KrylovSpaces::combineAll(
+    const std::vector<std::vector<Eigen::VectorXd>>& sets) const {
+    std::vector<Eigen::MatrixXd> Y(sets.size(), Eigen::MatrixXd(D_.size(), columns_));
     const int* inverse = S_.inverseOrder();
     withColumns(columns_, [&](auto columns) {
         combineColumns<columns>(
-            coefficients, [&](Index i, const auto& row) { Y.row(inverse[i]) = row.matrix(); });
+            sets, [&](std::size_t set, Index i, const auto& row) { Y[set].row(inverse[i]) = row; });
     });
     return Y;
 }
@@ -436,34 +441,48 @@ void KrylovSpaces::addNewest(const Eigen::RowVectorXd& factors, Eigen::MatrixXd&
 double KrylovSpaces::largestEntryOf(const std::vector<Eigen::VectorXd>& coefficients) const {
     std::vector<double> largest(taskCount(D_.size()));
     withColumns(columns_, [&](auto columns) {
-        combineColumns<columns>(coefficients, [&](Index i, const auto& row) {
+        combineColumns<columns>({coefficients}, [&](std::size_t, Index i, const auto& row) {
             double& taskMax = largest[i / kRowsPerTask];
-            taskMax = std::max(taskMax, row.abs().maxCoeff());
+            taskMax = std::max(taskMax, row.cwiseAbs().maxCoeff());
         });
     });
     return *std::max_element(largest.begin(), largest.end());
 }
 
+/// Calls takeRow(set, i, row) with each row of each combination.
 template <int Columns, class TakeRow>
-void KrylovSpaces::combineColumns(const std::vector<Eigen::VectorXd>& coefficients,
+void KrylovSpaces::combineColumns(const std::vector<std::vector<Eigen::VectorXd>>& sets,
                                   const TakeRow& takeRow) const {
+    constexpr Index kRows = 64;  // the sums of a dozen sets stay in a core's cache
+    using Block = Eigen::Matrix<double, kRows, Columns>;
     std::visit(
         [&](const auto& basis) {
             // Padded with zeros, as spaces may differ in dimension.
-            std::vector<Row<Columns>> factors(basis.size(), Row<Columns>::Zero());
-            for (int c = 0; c < Columns; ++c)
-                for (Index j = 0; j < coefficients[c].size(); ++j)
-                    factors[j][c] = unit_ * coefficients[c][j];
+            std::vector<Row<Columns>> factors(basis.size() * sets.size(), Row<Columns>::Zero());
+            for (std::size_t set = 0; set < sets.size(); ++set)
+                for (int c = 0; c < Columns; ++c)
+                    for (Index j = 0; j < sets[set][c].size(); ++j)
+                        factors[j * sets.size() + set][c] = unit_ * sets[set][c][j];
             parallelRows(D_.size(), [&](Index begin, Index end) {
-                Eigen::VectorXd sum = Eigen::VectorXd::Zero((end - begin) * Columns);
-                for (std::size_t j = 0; j < basis.size(); ++j) {
-                    if ((factors[j] == 0.0).all()) continue;
-                    for (Index i = begin; i < end; ++i)
-                        rowOf<Columns>(sum.data(), i - begin) +=
-                            factors[j] * rowOf<Columns>(basis[j].data(), i).template cast<double>();
+                std::vector<Block> sums(sets.size());
+                Block vector = Block::Zero();
+                for (Index from = begin; from < end; from += kRows) {
+                    const Index count = std::min(kRows, end - from);
+                    for (Block& sum : sums) sum.setZero();
+                    for (std::size_t j = 0; j < basis.size(); ++j) {
+                        for (Index i = 0; i < count; ++i)
+                            vector.row(i) = rowOf<Columns>(basis[j].data(), from + i)
+                                                .template cast<double>()
+                                                .matrix();
+                        for (std::size_t set = 0; set < sets.size(); ++set) {
+                            const Row<Columns>& factor = factors[j * sets.size() + set];
+                            for (int c = 0; c < Columns; ++c)
+                                sums[set].col(c) += factor[c] * vector.col(c);
+                        }
+                    }
+                    for (std::size_t set = 0; set < sets.size(); ++set)
+                        for (Index i = 0; i < count; ++i) takeRow(set, from + i, sums[set].row(i));
                 }
-                for (Index i = begin; i < end; ++i)
-                    takeRow(i, rowOf<Columns>(sum.data(), i - begin));
             });
         },
         basis_);

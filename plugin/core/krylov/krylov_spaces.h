@@ -97,6 +97,10 @@ class KrylovSpaces {
     /// @param coefficients  one vector per column, at most as long as the column's dimension.
     Eigen::MatrixXd combine(const std::vector<Eigen::VectorXd>& coefficients) const;
 
+    /// The same for several sets of coefficients: each basis vector is read only once.
+    std::vector<Eigen::MatrixXd> combineAll(
+        const std::vector<std::vector<Eigen::VectorXd>>& sets) const;
+
     /// Largest modulus of the entries of combine(coefficients).
     double largestEntryOf(const std::vector<Eigen::VectorXd>& coefficients) const;
 
@@ -139,7 +143,7 @@ class KrylovSpaces {
     Eigen::Array<double, 1, Columns> orthogonalize(Eigen::Array<double, 1, Columns> norm,
                                                    double* w);
     template <int Columns, class TakeRow>
-    void combineColumns(const std::vector<Eigen::VectorXd>& coefficients,
+    void combineColumns(const std::vector<std::vector<Eigen::VectorXd>>& sets,
                         const TakeRow& takeRow) const;
 
     const KrylovOperator& S_;

@@ -11,4 +11,17 @@ namespace spectral {
 void moveContactsAlike(const Surface& surface, const Components& components,
                        Vertices& displacement);
 
+/// Components that touch others, and have moved away from them.
+struct Parting {
+    int components = 0;     ///< The smaller one of each pair.
+    int all = 0;            ///< Components of the mesh.
+    double distance = 0.0;  ///< By which the largest gap has grown, length units.
+};
+
+/// Finds components that come apart: vertices within a distance of each other before, and more
+/// than it further apart after. A pair of them is enough; those that a grid separates or that
+/// are much denser than the rest are missed.
+/// @param near  length units, > 0.
+Parting partingOf(const Vertices& V, const Faces& F, const Vertices& moved, double near);
+
 }  // namespace spectral

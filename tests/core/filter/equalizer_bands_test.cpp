@@ -111,6 +111,26 @@ TEST(EqualizerPreview, KeepsItsBandsUntilWhatTheyDependOnChanges) {
     EXPECT_NE(kept, others);
 }
 
+TEST(EqualizerPreview, WarnsLikeTheRunWhereAPartLeavesTheOneThatItTouches) {
+    Mesh head = testing::icosphere(4), eye = testing::icosphere(2);
+    head.V.col(0) *= 1.5;
+    eye.V *= 0.15;
+    eye.V.col(0).array() += 1.5;
+    const Mesh both = testing::joined(head, eye);
+    const FilterInput input{both.V, both.F};
+    const Filter& filter = filterNamed("apply_coord_spectral_equalizer");
+    std::shared_ptr<void> kept;
+    for (const double gain : {1.05, 3.0}) {
+        const Values given{{"gain_32x", gain}, {"gain_16x", gain}};
+        const std::size_t expected = gain > 2.0 ? 1 : 0;
+        for (const FilterOutput& output :
+             {apply(filter, input, given), preview(filter, input, given, kept)}) {
+            ASSERT_EQ(output.warnings.size(), expected) << gain;
+            if (expected == 1) EXPECT_EQ(output.warnings[0].find("1 of 2 parts moves up to"), 0u);
+        }
+    }
+}
+
 TEST(EqualizerPreview, IsTheRunItselfWhereMemoryIsShort) {
     const Filter& filter = filterNamed("apply_coord_spectral_equalizer");
     const Mesh mesh = testing::withNoise(testing::icosphere(3), 0.02, 1);

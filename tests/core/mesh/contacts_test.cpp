@@ -57,6 +57,29 @@ TEST(Contacts, MoveAlikeWhenFiltered) {
     }
 }
 
+TEST(Parting, IsFoundWhereAPartLeavesTheOneThatItTouches) {
+    // An eye of 0.2 in a head of 1: half of it is outside.
+    const Mesh head = testing::icosphere(4);
+    Mesh eye = testing::icosphere(3);
+    eye.V *= 0.2;
+    eye.V.col(0).array() += 1.0;
+    const Mesh both = testing::joined(head, eye);
+    const double edge = meanEdgeLength(head.V, head.F);
+    const auto partingAfter = [&](const Eigen::RowVector3d& eyeMoves) {
+        Vertices moved = both.V;
+        moved.bottomRows(eye.V.rows()).rowwise() += eyeMoves;
+        return partingOf(both.V, both.F, moved, edge);
+    };
+    EXPECT_EQ(partingAfter({0.0, 0.0, 0.0}).components, 0);
+    EXPECT_EQ(partingAfter({0.5 * edge, 0.0, 0.0}).components, 0);
+    const Parting parting = partingAfter({0.4, 0.0, 0.0});
+    EXPECT_EQ(parting.components, 1);
+    EXPECT_EQ(parting.all, 2);
+    EXPECT_LE(parting.distance, 0.4);
+    EXPECT_GE(parting.distance, 0.4 - edge);
+    EXPECT_EQ(partingOf(head.V, head.F, 2.0 * head.V, edge).components, 0);  // one part
+}
+
 TEST(Contacts, MoveAlikeWhenDenoised) {
     const Mesh mesh = touchingCubes();
     DenoiseOptions options;
