@@ -82,7 +82,7 @@ show(
     scalars=removed,
     cmap="RdBu_r",
     clim=(-limit, limit),
-    scalar_bar_args={"vertical": True, "title": ""},
+    scalar_bar_args={"vertical": True, "title": "", "fmt": "%.1f", "position_x": 0.86},
 )
 
 # %%
