@@ -14,7 +14,7 @@ from sphinx.util.docutils import SphinxDirective
 
 
 def rst_of(text: str) -> str:
-    """Convert HTML help to reStructuredText: bold, italics and paragraphs are all it has."""
+    """Convert HTML help to reStructuredText: bold, italics, links and paragraphs."""
     text = re.sub(r"</?small>", "", text)
     paragraphs = []
     for paragraph in re.split(r"(?:<br>)+", text):
@@ -22,8 +22,14 @@ def rst_of(text: str) -> str:
         # Within a word, bold and italics need an escaped space, which is not shown.
         plain = re.sub(r"<b>(.+?)</b>", r"\\ **\1**\\ ", plain)
         plain = re.sub(r"<i>(.+?)</i>", r"\\ *\1*\\ ", plain)
+        plain = re.sub(r'<a href="(.+?)">(.+?)</a>', _link, plain)
         paragraphs.append(plain.strip())
     return "\n\n".join(paragraphs)
+
+
+def _link(found: re.Match[str]) -> str:
+    address = found[1].replace("\\", "")  # nothing is escaped there
+    return f"`{found[2]} <{address}>`__"
 
 
 def _table(header: tuple[str, ...], rows: Iterable[tuple[str, ...]], widths: str) -> Iterator[str]:

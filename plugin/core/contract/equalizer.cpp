@@ -124,11 +124,11 @@ std::vector<std::string> partingWarnings(const FilterInput& input, const MeshLen
     const Parting parting = partingOf(input.V, input.F, moved, mesh.meanEdge);
     if (parting.components == 0) return {};
     std::ostringstream text;
-    text << parting.components << " of " << parting.all << " parts "
+    text << parting.components << " of " << parting.all << " components "
          << (parting.components == 1 ? "moves" : "move") << " up to "
          << lengthAndPercentage(parting.distance, mesh.diagonal)
-         << " away from a part that it touched, since each keeps its centre: choose gains nearer "
-            "to 1, or select the region to be filtered";
+         << " away from one that it touched, since each keeps its centre: choose gains nearer to "
+            "1, or select the region to be filtered";
     return {text.str()};
 }
 

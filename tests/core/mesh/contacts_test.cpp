@@ -57,7 +57,7 @@ TEST(Contacts, MoveAlikeWhenFiltered) {
     }
 }
 
-TEST(Parting, IsFoundWhereAPartLeavesTheOneThatItTouches) {
+TEST(Parting, IsFoundWhereAComponentLeavesOneThatItTouched) {
     // An eye of 0.2 in a head of 1: half of it is outside.
     const Mesh head = testing::icosphere(4);
     Mesh eye = testing::icosphere(3);
@@ -77,7 +77,7 @@ TEST(Parting, IsFoundWhereAPartLeavesTheOneThatItTouches) {
     EXPECT_EQ(parting.all, 2);
     EXPECT_LE(parting.distance, 0.4);
     EXPECT_GE(parting.distance, 0.4 - edge);
-    EXPECT_EQ(partingOf(head.V, head.F, 2.0 * head.V, edge).components, 0);  // one part
+    EXPECT_EQ(partingOf(head.V, head.F, 2.0 * head.V, edge).components, 0);  // one component
 }
 
 TEST(Contacts, MoveAlikeWhenDenoised) {
