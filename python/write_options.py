@@ -104,7 +104,7 @@ def _help_of(parameter: dict[str, Any]) -> str:
         return "--" + match[1].replace("_", "-")
 
     text = re.sub(r"\|(\w+)\|", flag, parameter["help"]).replace("*", "")
-    if parameter["kind"] == "length":
+    if parameter["kind"] == "length" and "he default: " not in text:
         text += f" Default: {parameter['default_in_words']}."
     return text
 

@@ -48,3 +48,11 @@ def test_measures_are_those_of_the_functions(mesh: pyvista.PolyData) -> None:
 def test_errors_are_those_of_the_functions(mesh: pyvista.PolyData) -> None:
     with pytest.raises(OptionError, match="feature_size"):
         mesh.spectral.filter(feature_size="-1%")
+
+
+def test_in_place_changes_the_mesh_itself_as_pyvistas_filters_do(mesh: pyvista.PolyData) -> None:
+    filtered = mesh.spectral.filter(feature_size="20%")
+    same = mesh.spectral.filter(feature_size="20%", inplace=True)
+    assert same is mesh
+    np.testing.assert_array_equal(mesh.points, filtered.points)
+    assert mesh.user_dict["spectral"] == filtered.user_dict["spectral"]

@@ -42,7 +42,7 @@ from meshlab_spectral.tiles.bounds import MOST_TILES
 
 FILTER_HELP = """Filter one mesh file by the size of its details.
 
-Only coordinates and normals change, as long as INPUT and OUTPUT are of one format.
+If INPUT and OUTPUT have the same format, only coordinates and normals change.
 
 Smooth a scan, removing bumps narrower than half a percent of it:
   meshlab-spectral filter scan.ply smooth.ply --feature-size 2%
@@ -57,6 +57,8 @@ Save the options, and filter a folder with them:
 DENOISE_HELP = """Detect and remove the noise of a scanner, spikes or voxel steps.
 
   meshlab-spectral denoise scan.ply clean.ply
+Only its upper part:
+  meshlab-spectral denoise scan.ply clean.ply --where 'z > 3'
 A folder of scans:
   meshlab-spectral batch scans --output clean --denoise
 """
@@ -119,6 +121,7 @@ def _command_with(table: type[Options], help_text: str) -> Command:
             typer.Option(
                 parser=_tiles,
                 metavar="auto|off|N",
+                show_default="auto",
                 help="Filter binary PLY or STL in N overlapping tiles, from file to file; auto: "
                 "where the mesh does not fit in memory.",
             ),

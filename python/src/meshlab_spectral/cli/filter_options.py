@@ -30,7 +30,8 @@ AsJson = Annotated[bool, typer.Option("--json", help="Print the result as one JS
 OneMesh = Annotated[
     str | None,
     typer.Option(
-        metavar="NAME", help="Only the mesh of this name; by default all of the file together."
+        metavar="NAME",
+        help="Only the mesh of this name; by default all meshes of the file, as one.",
     ),
 ]
 Recipe = Annotated[
@@ -38,7 +39,7 @@ Recipe = Annotated[
     typer.Option(
         "--recipe",
         metavar="FILE",
-        help="Read options from a recipe, a TOML file; those given here override it.",
+        help="Read options from a recipe, a TOML file; options given as well take precedence.",
     ),
 ]
 SaveRecipe = Annotated[
@@ -80,7 +81,7 @@ _EQUALIZER = typer.Option(
 _PRESET = typer.Option(
     is_eager=True,
     callback=_use_preset,
-    help="Start from the options for a purpose; those given as well override them.",
+    help="Start from the options for a purpose; options given as well take precedence.",
 )
 
 

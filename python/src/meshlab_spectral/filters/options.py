@@ -271,13 +271,12 @@ class DenoiseOptions(Options):
         Length(automatic=True),
         "Standard deviation of the noise along the normals, such as 0.2e. Set it if details "
         "were mistaken for noise, or noise for details. The default: as measured; the "
-        "report then says how high it is. Default: 0: as measured.",
+        "report then says how high it is.",
     )
     noise_size: Length = option(
         Length(automatic=True),
         "Distance over which the noise is correlated: half the width of its bumps, such as "
-        "2e. Up to a mean edge, it is independent at each vertex. The default: as measured. "
-        "Default: 0: as measured.",
+        "2e. Up to a mean edge, it is independent at each vertex. The default: as measured.",
     )
     selected: bool = option(
         False,
@@ -359,7 +358,7 @@ class TextureOptions(Options):
     noise: Length = option(
         Length(automatic=True),
         "Nesting index of the S-filter: what is smaller is noise, and no roughness. The "
-        "default: none is removed. Default: 0: no S-filter.",
+        "default: none is removed.",
     )
     form: Form = option(
         "size",
@@ -372,7 +371,7 @@ class TextureOptions(Options):
     form_size: Length = option(
         Length(automatic=True),
         "For --form size: heights that vary more slowly are form. The default: eight times "
-        "--waviness. Default: 0: eight waviness cutoffs.",
+        "--waviness.",
     )
     crease_angle: float = option(
         60.0,

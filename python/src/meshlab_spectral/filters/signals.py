@@ -58,8 +58,8 @@ def filter_scalars(
     Parameters
     ----------
     mesh_or_vertices
-        Finite n x 3 coordinates, or a pyvista, trimesh, meshio, Open3D or pymeshlab triangle mesh,
-        or a tuple (vertices, faces).
+        Finite n x 3 coordinates, or a triangle mesh of pyvista, trimesh, meshio, Open3D, LaPy, pyFM
+        or pymeshlab, or a tuple (vertices, faces).
     faces
         With coordinates: m x 3 vertex indices of triangles, from 0 to n - 1; any topology.
     values
