@@ -31,6 +31,14 @@ def shorten_arrays(
         lines[number] = re.sub(r"numpy\.ndarray\[.*?\]\]", "array", line)
 
 
+def keep_descriptions(
+    app: Sphinx, what: str, name: str, obj: Any, options: Any, lines: list[str]
+) -> None:
+    """Keep napoleon from reading "Length; 0: none" as a type and what it is for."""
+    if what == "attribute" and lines:
+        lines[0] = f": {lines[0]}"
+
+
 def list_fields(
     app: Sphinx, what: str, name: str, obj: Any, options: Any, lines: list[str]
 ) -> None:
@@ -53,6 +61,7 @@ def help_of(field: Any) -> str:
 def setup(app: Sphinx) -> dict[str, Any]:
     """Register the hooks of autodoc."""
     app.connect("autodoc-process-signature", keep_signature)
+    app.connect("autodoc-process-docstring", keep_descriptions, priority=400)
     app.connect("autodoc-process-docstring", shorten_arrays)
     app.connect("autodoc-process-docstring", list_fields)
     return {"parallel_read_safe": True}
