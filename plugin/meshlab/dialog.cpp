@@ -44,6 +44,13 @@ QString sliderLabel(const spectral::Filter& filter, const Parameter& parameter,
         spectral::defaultSmallestSize(mesh.meanEdge, mesh.surfaceDiagonal), mesh.diagonal));
 }
 
+/// The length that most people choose tells how long an edge is.
+QString lengthLabel(const Parameter& parameter, const spectral::MeshLengths& mesh) {
+    const QString label = QString::fromStdString(parameter.label);
+    if (parameter.isAdvanced || !(mesh.meanEdge > 0.0)) return label;
+    return label + QString("; edge %1").arg(mesh.meanEdge, 0, 'g', 2);
+}
+
 QString tooltipOf(const Parameter& parameter, const spectral::MeshLengths& mesh) {
     QString html = asHtml(parameter.help);
     if (parameter.kind != Kind::Length) return html;
@@ -83,8 +90,8 @@ void add(const spectral::Filter& filter, const Parameter& one, const spectral::M
         }
         case Kind::Length: {
             const auto usual = static_cast<Scalarm>(spectral::automaticLength(one, mesh));
-            list.addParam(RichPercentage(name, usual, 0, static_cast<Scalarm>(mesh.diagonal), label,
-                                         help, one.isAdvanced));
+            list.addParam(RichPercentage(name, usual, 0, static_cast<Scalarm>(mesh.diagonal),
+                                         lengthLabel(one, mesh), help, one.isAdvanced));
             break;
         }
         case Kind::Choice: {
@@ -162,7 +169,7 @@ void adaptDialog(const spectral::Filter& filter, const MeshModel& mesh) {
     for (const Parameter& one : filter.parameters) {
         if (one.name == filter.accurate) accurate = QString::fromStdString(one.label);
         if (one.name == "power") addShareSlider(QString::fromStdString(one.label));
-        if (one.kind == Kind::Length) size = QString::fromStdString(one.label);
+        if (one.kind == Kind::Length) size = lengthLabel(one, lengths);
         if (isSlider(filter, one)) sliders.push_back(sliderLabel(filter, one, lengths));
     }
     applyAnew(accurate, kKeepOriginalLabel);

@@ -20,6 +20,7 @@ from fractional import (
     default_feature_size,
     diagonal,
     load,
+    mean_edge,
     saved_vertices,
     vertices,
 )
@@ -80,6 +81,8 @@ def test_the_dialog_shows_every_parameter_with_its_default(
         assert len(row.tooltip) > len(row.label), name
         if len(row.editors) == 2:  # a length
             assert "The mean edge length of this mesh is " in row.tooltip, name
+        if name == "feature_size":
+            assert f"; edge {mean_edge(load(bunny)):.2g}" in row.label
         default = defaults[name]
         editor = row.editors[-1]
         if isinstance(default, bool):
