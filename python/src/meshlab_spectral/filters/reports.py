@@ -30,7 +30,7 @@ class _FilterReport(TypedDict):
     has_volume: bool
     """Whether the surface is closed and consistently oriented."""
     joined_vertices: int
-    """Number of vertices at seams that are one with another."""
+    """Number of vertices at seams that were joined to another."""
     max_displacement: float
     """Largest displacement of a vertex, length."""
     mean_edge: float
@@ -99,7 +99,7 @@ class DenoiseReport(TypedDict):
     has_volume: bool
     """Whether the surface is closed and consistently oriented."""
     joined_vertices: int
-    """Number of vertices at seams that are one with another."""
+    """Number of vertices at seams that were joined to another."""
     max_displacement: float
     """Largest displacement of a vertex, length."""
     mean_edge: float
@@ -113,8 +113,8 @@ class DenoiseReport(TypedDict):
     places) or voxels; without noise: none, shape (which it may be), tessellation (of CAD),
     stretched (axis), or too_few (vertices)."""
     noise_searched: bool
-    """Whether the mesh was searched for noise; not with needle triangles, too few vertices or
-    voxels."""
+    """Whether the mesh was searched for noise: not if it has needle triangles, voxels or too few
+    vertices."""
     noise_share: float
     """Share of the surface with noise, 0 to 1."""
     noise_size: float
@@ -124,7 +124,7 @@ class DenoiseReport(TypedDict):
     rms_displacement: float
     """Root mean square of the displacements, length."""
     rounds: int
-    """Number of weak parts in which the normals were filtered; 0: nothing changed."""
+    """Number of weak filters that were applied to the normals; 0: nothing changed."""
     spikes: int
     """Number of vertices off the surface that were put back."""
     unreferenced_vertices: int
@@ -134,7 +134,7 @@ class DenoiseReport(TypedDict):
     volume_before: float
     """Signed volume of the surface, length³; meaningless unless `has_volume`."""
     voxel_size: list[float]
-    """Of the volume that the surface is the border of, along each axis, length; 0: none."""
+    """Of the volume that was segmented, along each axis, length; 0: none."""
     summary: str
     """What was found and done, in one line."""
     warnings: list[str]
@@ -166,7 +166,7 @@ class ScalarsReport(_ScalarsReport, total=False):
     fixed_vertices: int
     """Number of vertices on a fixed boundary or a crease, unchanged."""
     joined_vertices: int
-    """Number of vertices at seams that are one with another."""
+    """Number of vertices at seams that were joined to another."""
     max_change: float
     """Largest change of a value, in its units (colours: levels of 0 to 255)."""
     rms_change: float
@@ -199,7 +199,7 @@ class ColorsReport(TypedDict):
     fixed_vertices: int
     """Number of vertices on a fixed boundary or a crease, unchanged."""
     joined_vertices: int
-    """Number of vertices at seams that are one with another."""
+    """Number of vertices at seams that were joined to another."""
     max_change: float
     """Largest change of a value, in its units (colours: levels of 0 to 255)."""
     rms_change: float
@@ -236,9 +236,9 @@ class SpectrumReport(TypedDict):
     feature_size_50: float
     """Half of the energy is in features of at least this size, length."""
     feature_size_90: float
-    """90 % of the energy are in features of at least this size, length."""
+    """90 % of the energy is in features of at least this size, length."""
     feature_size_99: float
-    """99 % of the energy are in features of at least this size, length."""
+    """99 % of the energy is in features of at least this size, length."""
     frequencies: list[float]
     """Of the lowest harmonics, ascending, radians per length; 0 for constants."""
     mean_edge: float
