@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from meshlab_spectral._core import first_equal_rows
+from meshlab_spectral._core import first_equal_rows, vertex_areas
 from meshlab_spectral.documents import ply
 from meshlab_spectral.documents.document import Array, Indices
 from meshlab_spectral.documents.normals import following_normals
@@ -130,10 +130,10 @@ def _measures(
     before: Array, after: Array, F: NDArray[np.integer], own: Indices
 ) -> dict[str, float]:
     """Return sums over the vertices of a cell, from which those of the whole mesh are made."""
-    own = np.unique(own)  # corners of an STL file at one position
     is_own = np.zeros(len(before), bool)
     is_own[own] = True
-    areas = [_vertex_areas(X, F)[own] for X in (before, after)]
+    own = np.flatnonzero(is_own)  # corners of an STL file at one position are one vertex
+    areas = [vertex_areas(X, F.astype(np.int32, copy=False))[own] for X in (before, after)]
     displacement = np.linalg.norm(after[own] - before[own], axis=1)
     moves = displacement > 0
     Y = after[own][moves]
@@ -149,8 +149,3 @@ def _measures(
         "largest": float(displacement.max(initial=0.0)),
         "largest_coordinate": float(np.abs(Y).max(initial=0.0)),
     }
-
-
-def _vertex_areas(X: Array, F: NDArray[np.integer]) -> Array:
-    doubled = np.linalg.norm(np.cross(X[F[:, 1]] - X[F[:, 0]], X[F[:, 2]] - X[F[:, 0]]), axis=1)
-    return np.asarray(np.bincount(F.ravel(), np.repeat(doubled / 6, 3), len(X)), np.float64)
