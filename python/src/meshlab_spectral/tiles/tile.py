@@ -17,7 +17,6 @@ from meshlab_spectral.documents import ply
 from meshlab_spectral.documents.document import Array, Indices
 from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.errors import MeshError
-from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.filters.progress import Progress
 from meshlab_spectral.filters.running import TiledSurface, plain, run
 from meshlab_spectral.tiles.cells import near_cells
@@ -30,7 +29,8 @@ def filter_tile(
 ) -> dict[str, Any]:
     """Filter a tile and write what its cell owns, and its report last; return the report.
 
-    `decided` are the number of "passes", and whether the surface "has_thin_parts" in any tile.
+    `decided` are the number of "passes", and whether the surface "has_thin_parts" in any tile; or
+    "noise_height" and "noise_size", 0 for those that the tile measures.
     """
     work = Workspace(folder)
     plan = work.plan()
@@ -47,21 +47,23 @@ def filter_tile(
         F = which[F].astype(np.int32)
     after, report = before, dict[str, Any]()
     if len(own):
-        options = FilterOptions.from_dict(plan.options) if plan.options else FilterOptions()
+        options = plan.options_of_filter()
         inner = np.zeros(len(before), bool)
         inner[which[own]] = True
         diagonal, edge, of_surface = plan.lengths
-        thin = bool(decided["has_thin_parts"])
+        thin = bool(decided.get("has_thin_parts"))
         whole = TiledSurface(diagonal, edge, of_surface, thin, inner)
         selected = _selected(mesh, work, tile, ids, F) if plan.has_selection else None
-        parameters = {**options.core_parameters(), "passes": decided["passes"]}
+        chosen = {name: value for name, value in decided.items() if name != "has_thin_parts"}
+        parameters = options.core_parameters() | {k: value for k, value in chosen.items() if value}
         if selected is None or selected.any():  # else nothing here moves
             after, report = _filtered(
+                options.FILTER,
                 before,
                 F,
                 parameters,
                 selected=selected,
-                values=mesh.gathered(ids, mesh.quality) if options.weight != "none" else None,
+                values=mesh.gathered(ids, mesh.quality) if parameters["weight"] != "none" else None,
                 progress=on_stage,
                 whole=whole,
             )
@@ -73,7 +75,12 @@ def filter_tile(
         normals = following_normals(before, after, F.astype(np.int64), given)
         normals[own].astype("<f8").tofile(work.file(tile, "normals"))
     asked = {f"wanted_{name}": value for name, value in decided.items()}
-    report |= asked | _measures(before, after, F, which[own]) | {"vertices": len(ids)}
+    report |= (
+        asked
+        | {"ran": bool(report)}
+        | _measures(before, after, F, which[own])
+        | {"vertices": len(ids)}
+    )
     write_whole(work.file(tile, "json"), json.dumps(report))
     return report
 
@@ -113,10 +120,10 @@ def _selected(
 
 
 def _filtered(
-    V: Array, F: NDArray[np.integer], parameters: dict[str, Any], **inputs: Any
+    name: str, V: Array, F: NDArray[np.integer], parameters: dict[str, Any], **inputs: Any
 ) -> tuple[Array, dict[str, Any]]:
     try:
-        done = run(FilterOptions.FILTER, V, F, parameters, **inputs)
+        done = run(name, V, F, parameters, **inputs)
     except MeshError as error:
         if error.code != "no_area":  # the whole mesh may have some
             raise
