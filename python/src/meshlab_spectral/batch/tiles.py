@@ -262,15 +262,14 @@ def _denoised(
 ) -> list[dict[str, Any]]:
     """Denoise all tiles by the noise of some; return the reports of all."""
     noise = given_noise(options, *plan.lengths[:2])
-    is_measured = not all(noise.values())
-    if is_measured:
+    if not all(noise.values()):
         noise = measured_noise(do_asked(noise), options, plan.lengths[1])
     reports = do_every(noise)
     if not any(noise.values()):  # every tile has looked for noise
         noise = measured_noise(reports, options, plan.lengths[1])
         if any(noise.values()):
             reports = do_every(noise)
-    if is_measured:
+    if options.noise_height.automatic:
         for one in reports:
             if "summary" in one:
                 one["summary"] = one["summary"].replace(", as given", ", as measured in tiles")
