@@ -108,9 +108,6 @@ Entries<DenoiseResult> denoiseEntries() {
               "whether the mesh was searched for noise: not if it has needle triangles, voxels or "
               "too few vertices",
               [](const R& r) -> Value { return isSearched(r.diagnosis.kind); }},
-             {"noise_by_place",
-              "whether the noise differs from place to place; each is then filtered by its own",
-              [](const R& r) -> Value { return r.diagnosis.kind == NoiseKind::Local; }},
              {"spikes", "number of vertices off the surface that were put back",
               [](const R& r) -> Value { return static_cast<int>(r.diagnosis.spikes); }},
              {"voxel_size", "of the volume that was segmented, along each axis, length; 0: none",

@@ -13,6 +13,8 @@ from meshlab_spectral.tiles.bounds import UntiledError
 REACH = 32.0
 # Measured in different tiles, the height of noise that is alike differs by less than this factor.
 _ALIKE = 1.5
+# What has methods of its own, by "noise_kind".
+_OF_THE_WHOLE = {"voxels": "steps of voxels", "scan_lines": "scan lines"}
 
 
 def given_noise(options: DenoiseOptions, diagonal: float, mean_edge: float) -> dict[str, float]:
@@ -36,18 +38,15 @@ def measured_noise(
     if not noisy:
         return {"noise_height": 0.0, "noise_size": 0.0}
     heights = [one["noise_height"] / options.strength for one in noisy]
-    if any(any(one["voxel_size"]) for one in noisy):
-        raise UntiledError("the surface consists of voxels, which tiles cannot smooth alike")
-    is_given = not options.noise_height.automatic
-    if not is_given and (
-        len(noisy) < len(searched)
-        or any(one["noise_by_place"] for one in noisy)
-        or max(heights) > _ALIKE * min(heights)
-    ):
-        raise UntiledError(
-            "its noise differs from place to place, which tiles cannot measure: give noise_height, "
-            "if one is right everywhere"
-        )
+    if options.noise_height.automatic:
+        kinds = {one["noise_kind"] for one in noisy}
+        if found := sorted(kinds & _OF_THE_WHOLE.keys()):
+            raise UntiledError(f"{_OF_THE_WHOLE[found[0]]} need the whole mesh")
+        if len(noisy) < len(searched) or "local" in kinds or max(heights) > _ALIKE * min(heights):
+            raise UntiledError(
+                "its noise differs from place to place, which tiles cannot measure: give "
+                "noise_height, if one is right everywhere"
+            )
     # Up to a mean edge, noise is independent at every vertex.
     size = max(mean_edge, median(one["noise_size"] for one in noisy))
     return {"noise_height": median(heights), "noise_size": size}
