@@ -104,7 +104,7 @@ def test_a_file_that_cannot_be_read_in_parts_is_refused(content: str, tmp_path: 
 def test_tiles_take_over_where_memory_is_refused(
     source: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def refuse(*_: object) -> dict[str, Any]:
+    def refuse(*_: object, **__: object) -> dict[str, Any]:
         raise MemoryLimitError("needs more memory")
 
     monkeypatch.setattr(whole_or_tiles, "write_in_child", refuse)
