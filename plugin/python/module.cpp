@@ -18,6 +18,7 @@
 #include "arrays.h"
 #include "core/contract/filter.h"
 #include "core/contract/gains.h"
+#include "core/laplacian/laplacian.h"
 #include "core/laplacian/laplacian_builder.h"
 #include "core/mesh/surface.h"
 #include "core/support/memory.h"
@@ -164,6 +165,16 @@ nb::object evaluated(const std::string& option, const std::string& text,
     return givenRows(std::move(result));
 }
 
+/// A third of the areas of the triangles at each vertex.
+nb::object vertexAreas(const Positions& vertices, const Indices& faces) {
+    Eigen::VectorXd areas;
+    {
+        const Running running;
+        areas = lumpedMass(mapOf(vertices, 3), mapOf(faces, 3));
+    }
+    return python::given(std::move(areas));
+}
+
 }  // namespace
 
 }  // namespace spectral::python
@@ -184,6 +195,7 @@ NB_MODULE(_core, m) {
     m.def("components", python::components, "vertices"_a, "faces"_a);
     m.def("evaluated", python::evaluated, "option"_a, "text"_a, "examples"_a, "variables"_a,
           "values"_a);
+    m.def("vertex_areas", python::vertexAreas, "vertices"_a, "faces"_a);
     python::addTexts(m);
     m.def("set_memory_limit", setMemoryLimit, "limit"_a);
 }

@@ -1,6 +1,6 @@
-"""Memory and processor time of `meshlab-spectral filter` in tiles and as a whole, file to file.
+"""Memory and processor time of `filter` and `denoise` in tiles and as a whole, file to file.
 
-    bench_tiles.py [--sides 800 3200] [--memory 2GB] [--options ...] [--whole-below VERTICES]
+    bench_tiles.py [--sides 800 3200] [--memory 2GB] [--command "denoise"] [--whole-below VERTICES]
 
 Makes a bumpy torus of side^2 vertices chunk by chunk (800: 640,000 vertices, 3200: 10.24 million,
 8944: 80 million), filters it in tiles and, below --whole-below vertices, as a whole. The memory is
@@ -92,24 +92,23 @@ def main() -> None:
     parser.add_argument("--sides", type=int, nargs="+", default=[800, 3200])
     parser.add_argument("--memory", default="2GB")
     parser.add_argument("--tiles", default="auto")
-    parser.add_argument("--options", default="--feature-size 6e")
+    parser.add_argument("--command", default="filter --feature-size 6e", help="with its options")
     parser.add_argument("--whole-below", type=int, default=1_000_000)
     parser.add_argument("--folder", type=Path, help="for the files; by default a temporary one")
     given = parser.parse_args()
-    program = [sys.executable, "-m", "meshlab_spectral.cli", "filter", "-q", "--overwrite"]
+    program = [sys.executable, "-m", "meshlab_spectral.cli", *shlex.split(given.command)]
     with tempfile.TemporaryDirectory(dir=given.folder) as folder:
         for side in given.sides:
             source, tiled, whole = (
                 Path(folder) / f"{name}.ply" for name in ("mesh", "tiled", "whole")
             )
             write_torus(source, side)
-            options = shlex.split(given.options)
             runs = [(tiled, ["--tiles", given.tiles, "--memory", given.memory])]
             if side * side < given.whole_below:
                 runs.append((whole, ["--tiles", "off"]))
             for target, way in runs:
                 seconds, own, all_pages = measured(
-                    [*program, str(source), str(target), *options, *way]
+                    [*program, str(source), str(target), "-q", "--overwrite", *way]
                 )
                 print(
                     f"{side * side:>10} vertices, {' '.join(way)}: {seconds:.0f} processor s "

@@ -207,6 +207,7 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
     DenoiseCall call = callOf(denoiseFields(), given, mesh);
     if (call.selected) call.options.selected = input.selected;
     call.options.weight = weightOf(call.weight, input);
+    if (input.whole) call.options.meanEdge = mesh.meanEdge;
     DenoiseResult result = denoise(input.V, input.F, call.options, progress);
     FilterOutput output;
     output.report = reportOf(denoiseEntries(), result);

@@ -102,7 +102,7 @@ Points raysFrom(const Eigen::RowVector3d& eye, const FaceGraph& graph, const Poi
 RemovalOptions removalOptions(const DenoiseOptions& options, const Diagnosis& diagnosis) {
     constexpr double kMaxHeight = 1.0;  // mean edges; larger heights are clamped
     const NoiseEstimate& noise = diagnosis.noise;
-    const double edge = noise.meanEdge;
+    const double edge = options.meanEdge > 0.0 ? options.meanEdge : noise.meanEdge;
     RemovalOptions removal;
     removal.meanEdge = edge;
     removal.height = std::min(std::max(options.strength, 1.0) *

@@ -48,6 +48,9 @@ def set_memory_limit(limit: float) -> None: ...
 def joined_vertices(
     vertices: NDArray[np.float64], faces: NDArray[np.int32]
 ) -> NDArray[np.int64]: ...
+def vertex_areas(
+    vertices: NDArray[np.float64], faces: NDArray[np.int32]
+) -> NDArray[np.float64]: ...
 def text_lines(
     text: bytes,
     begin: int,

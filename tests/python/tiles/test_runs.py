@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import json
 import math
+import os
 import resource
 import shutil
+import signal
 import subprocess
 import sys
 from functools import partial
@@ -17,7 +20,8 @@ from commands import command
 from meshlab_spectral import FilterOptions, MemoryLimitError, MeshFileError
 from meshlab_spectral.batch import whole_or_tiles
 from meshlab_spectral.batch.tiles import filter_in_tiles
-from meshlab_spectral.errors import FilterError
+from meshlab_spectral.errors import FilterError, ProcessDiedError
+from meshlab_spectral.process.parent import MeshLabProcess
 from meshlab_spectral.tiles.bounds import UntiledError
 from meshlab_spectral.tiles.halo import kernel_tails, reach_of
 from meshlab_spectral.tiles.survey import Lengths
@@ -100,7 +104,7 @@ def test_a_file_that_cannot_be_read_in_parts_is_refused(content: str, tmp_path: 
 def test_tiles_take_over_where_memory_is_refused(
     source: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def refuse(*_: object) -> dict[str, Any]:
+    def refuse(*_: object, **__: object) -> dict[str, Any]:
         raise MemoryLimitError("needs more memory")
 
     monkeypatch.setattr(whole_or_tiles, "write_in_child", refuse)
@@ -118,16 +122,30 @@ def test_tiles_take_over_where_memory_is_refused(
         run(SMALL, tiles=None, tell=_ignore)
 
 
-def test_an_interrupted_run_goes_on(source: Path, tmp_path: Path) -> None:
-    target = tmp_path / "out.ply"
-    folder = tmp_path / ".out.ply.tiles"
+def _interrupted(source: Path, target: Path, options: FilterOptions = SMALL) -> None:
+    """Begin a run in eight tiles, and interrupt it after three."""
 
     def interrupt(stage: str, fraction: float | None) -> None:
         if stage.startswith("tile 3"):
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        filter_in_tiles(source, target, SMALL, interrupt, 8, _ignore)
+        filter_in_tiles(source, target, options, interrupt, 8, _ignore)
+
+
+def _is_as_never_interrupted(source: Path, target: Path, options: FilterOptions = SMALL) -> bool:
+    """Go on with a run; whether its output is that of a run in one go, and nothing else is left."""
+    fresh = target.with_stem("fresh")
+    filter_in_tiles(source, target, options, _ignore, 8, _ignore)
+    filter_in_tiles(source, fresh, options, _ignore, 8, _ignore)
+    assert {path.name for path in target.parent.iterdir()} == {source.name, target.name, fresh.name}
+    return target.read_bytes() == fresh.read_bytes()
+
+
+def test_an_interrupted_run_goes_on(source: Path, tmp_path: Path) -> None:
+    target = tmp_path / "out.ply"
+    folder = tmp_path / ".out.ply.tiles"
+    _interrupted(source, target)
     assert not target.exists()
     done = {path.name: path.stat().st_mtime_ns for path in folder.glob("*.json")}
     assert 3 <= len(done) - 1 < 8
@@ -141,24 +159,34 @@ def test_an_interrupted_run_goes_on(source: Path, tmp_path: Path) -> None:
     filter_in_tiles(source, target, SMALL, look, 8, _ignore)
     assert not any("dividing" in stage for stage in stages)
     assert sum(stage.startswith("tile") for stage in stages) == 8 - (len(done) - 1)
-    assert target.exists()
-    assert not folder.exists()
+    assert _is_as_never_interrupted(source, target)
 
 
 def test_a_run_with_other_options_begins_anew(source: Path, tmp_path: Path) -> None:
     target = tmp_path / "out.ply"
-
-    def interrupt(stage: str, fraction: float | None) -> None:
-        if stage.startswith("tile 2"):
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        filter_in_tiles(source, target, SMALL, interrupt, 8, _ignore)
+    _interrupted(source, target)
     other = FilterOptions(feature_size="8e", passes=1)
-    filter_in_tiles(source, target, other, _ignore, 8, _ignore)
-    fresh = tmp_path / "fresh.ply"
-    filter_in_tiles(source, fresh, other, _ignore, 8, _ignore)
-    assert target.read_bytes() == fresh.read_bytes()
+    assert _is_as_never_interrupted(source, target, other)
+
+
+def test_a_killed_worker_loses_its_tile_alone(
+    source: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    target, send = tmp_path / "out.ply", MeshLabProcess._send
+
+    def send_and_kill(process: MeshLabProcess, line: str) -> None:
+        send(process, line)
+        if json.loads(line)["tile"] == 5:
+            os.kill(process.pid, signal.SIGKILL)
+
+    target.write_bytes(b"before")
+    with monkeypatch.context() as patch:
+        patch.setattr(MeshLabProcess, "_send", send_and_kill)
+        with pytest.raises(ProcessDiedError, match=r"tile 6 of 8: .*SIGKILL.*goes on"):
+            filter_in_tiles(source, target, SMALL, _ignore, 8, _ignore)
+    assert target.read_bytes() == b"before"
+    assert not (tmp_path / ".out.ply.tiles" / "5.json").exists()
+    assert _is_as_never_interrupted(source, target)
 
 
 def test_a_failed_tile_is_named_and_the_others_stay(tmp_path: Path) -> None:
@@ -214,8 +242,7 @@ def test_a_full_disk_loses_nothing(room: int, source: Path, tmp_path: Path) -> N
     done = command(*arguments)
     assert done.returncode == 0, done.stderr
     assert "is filtered in 8 tiles" in done.stderr
-    assert len(target.read_bytes()) == len(source.read_bytes())
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["mesh.ply", "out.ply"]
+    assert _is_as_never_interrupted(source, target)
 
 
 @pytest.mark.parametrize("word", ["1", "many", "0", "-3"])

@@ -25,6 +25,8 @@ class Workers:
     do: Callable[[Job], FileResult]  # in the calling thread
     at_once: int  # threads that should call it
     end: Callable[[], None]  # makes all calls end soon, whatever they are doing
+    # Does several jobs together, unless it is a cluster.
+    do_joined: Callable[[Sequence[Job]], list[FileResult]] | None = None
 
 
 def run_jobs(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Generator, Sequence
+from collections.abc import Callable, Generator, Sequence
 from contextlib import AbstractContextManager, closing
 from dataclasses import fields
 from datetime import datetime, timezone
@@ -88,7 +88,7 @@ def run_batch(batch: Batch, tally: Tally) -> Generator[FileResult, None, None]:
             try:
                 with (
                     _workers(batch.settings) as workers,
-                    closing(run_jobs(workers, batch.jobs, report.add_result)) as results,
+                    closing(_results(workers, batch, report.add_result)) as results,
                 ):
                     for result in results:
                         tally.add(result)
@@ -100,6 +100,21 @@ def run_batch(batch: Batch, tally: Tally) -> Generator[FileResult, None, None]:
         report.add("summary", {**tally.counts, **tally.warnings_by_kind(), "seconds": seconds})
 
 
+def _results(
+    workers: Workers, batch: Batch, record: Callable[[FileResult], None]
+) -> Generator[FileResult, None, None]:
+    if not batch.settings.joined:
+        yield from run_jobs(workers, batch.jobs, record)
+        return
+    assert workers.do_joined is not None
+    try:
+        for result in workers.do_joined(batch.jobs):
+            record(result)
+            yield result
+    finally:
+        workers.end()
+
+
 def _workers(settings: Settings) -> AbstractContextManager[Workers]:
     # Slow imports, not needed by commands for a single file.
     if settings.scheduler is not None:
@@ -108,4 +123,4 @@ def _workers(settings: Settings) -> AbstractContextManager[Workers]:
         return workers_at(settings.scheduler)
     from meshlab_spectral.batch.local import local_workers
 
-    return local_workers(settings.workers, settings.memory_limit)
+    return local_workers(1 if settings.joined else settings.workers, settings.memory_limit)

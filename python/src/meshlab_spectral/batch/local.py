@@ -13,6 +13,7 @@ from pathlib import Path
 import psutil
 
 from meshlab_spectral.batch.engine import Workers
+from meshlab_spectral.batch.joined import run_joined
 from meshlab_spectral.batch.processes import Processes
 from meshlab_spectral.batch.task import run_job
 from meshlab_spectral.errors import BatchError
@@ -43,7 +44,12 @@ def local_workers(count: int | None = None, memory_limit: int | None = None) -> 
         except OSError as error:
             raise BatchError(f"no temporary folder can be made ({error}): set TMPDIR") from error
         processes = Processes(count, limits, folder)
-        yield Workers(partial(run_job, processes), _JOBS_PER_WORKER * count, processes.end)
+        yield Workers(
+            partial(run_job, processes),
+            _JOBS_PER_WORKER * count,
+            processes.end,
+            partial(run_joined, processes),
+        )
 
 
 def processors() -> int:

@@ -72,6 +72,12 @@ def plan_batch(
         settings.name,
         settings.ending,
     )
+    if settings.joined:
+        if described.get("result") == "details":
+            raise OptionError("joined files cannot hold details: leave out either of both")
+        work = {"task": "joined", "filter": work["task"], "options": described}
+        # What becomes of a file depends on the others.
+        described = described | {"joined": [output.source for output in planned]}
     jobs = [
         Job(
             output.source,
@@ -85,6 +91,8 @@ def plan_batch(
         for output in planned
     ]
     done = proved_done(jobs, records, versions()) if resume else {}
+    if settings.joined and len(done) < len(jobs):
+        done = {}
     left = [job for job in jobs if job not in done]
     proved = {job.name for job in done}
     if report_path.as_posix() in (output.target for output in planned):

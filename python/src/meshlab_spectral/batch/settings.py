@@ -34,6 +34,12 @@ class Settings:
         "Search subfolders of the inputs, too, and keep their structure.",
         flags=("--recursive", "-r"),
     )
+    joined: bool = option(
+        False,
+        "The files are one surface cut into parts, such as tiles of a terrain or labels: filter "
+        "them together, in one worker; where their borders coincide, they move alike.",
+        flags=("--joined",),
+    )
     overwrite: bool = option(
         False,
         "Replace existing outputs, even ones created meanwhile; inputs are never replaced.",
@@ -79,12 +85,18 @@ class Settings:
     def check_workers(self) -> None:
         """Raise OptionError when both new workers and those of a cluster are requested.
 
-        Also when a limit of the environment counts, but is invalid.
+        Also when a limit of the environment counts, but is invalid, and when a cluster or a script
+        is to filter joined files.
         """
         if self.scheduler is not None and (self.workers, self.memory_limit) != (None, None):
             raise OptionError(
                 "a cluster configures its own workers: with a scheduler, leave out the number of "
                 "workers and the memory limit"
+            )
+        if self.joined and (self.scheduler, self.script) != (None, None):
+            raise OptionError(
+                "joined files are filtered in one process of this machine, by the options of the "
+                "filter: leave out the scheduler and the script"
             )
         if self.scheduler is None:
             threads()
@@ -98,6 +110,7 @@ class BatchKeywords(FilterKeywords, total=False):
     name: str
     ending: str | None
     recursive: bool
+    joined: bool
     overwrite: bool
     resume: bool
     script: str | Path | None

@@ -39,12 +39,12 @@ def run_job(processes: Processes, job: Job) -> FileResult:
             result["input_sha256"] = storage.digest(source)
             work = job.work | {"source": str(source), "verbose": False}
             if job.target is None:
-                answer = _attempt(processes, work, job.seconds, result)
+                answer = attempt(processes, work, job.seconds, result)
             else:
                 with storage.writing(job.target, job.overwrite, processes.folder) as scratch:
                     work["scratch"] = str(scratch)
-                    answer = _attempt(processes, work, job.seconds, result)
-                    written = _digests(scratch)
+                    answer = attempt(processes, work, job.seconds, result)
+                    written = digests(scratch)
                 result |= written
         result["outcome"] = _outcome(job, answer.report)
         result |= {"report": answer.report, "peak_memory": answer.peak_memory}
@@ -78,7 +78,7 @@ def _warnings(report: dict[str, Any]) -> list[str]:
     return [warning for part in parts for warning in part.get("warnings", [])]
 
 
-def _digests(scratch: Path) -> dict[str, Any]:
+def digests(scratch: Path) -> dict[str, Any]:
     """Return the SHA-256 of an output and its side files."""
     return {
         "output_sha256": storage.digest(scratch) if scratch.is_file() else None,
@@ -89,9 +89,10 @@ def _digests(scratch: Path) -> dict[str, Any]:
     }
 
 
-def _attempt(
+def attempt(
     processes: Processes, work: dict[str, Any], seconds: float | None, result: dict[str, Any]
 ) -> Answer:
+    """Do the work of a job, twice if its process dies; count that and the waiting in `result`."""
     limits = replace(processes.limits, seconds=seconds)
     for attempt in range(1, ATTEMPTS + 1):
         result["attempts"] = attempt

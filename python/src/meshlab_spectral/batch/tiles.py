@@ -5,8 +5,9 @@ from __future__ import annotations
 import contextlib
 import math
 import shutil
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -20,13 +21,15 @@ from meshlab_spectral.files.formats import is_same_format
 from meshlab_spectral.files.intent import sizes_of
 from meshlab_spectral.files.sources import check_is_place, check_source
 from meshlab_spectral.files.whole_files import LOCK, check_target, holding, resolved, writing_whole
-from meshlab_spectral.filters.options import FilterOptions
+from meshlab_spectral.filters.option_types import Options
+from meshlab_spectral.filters.options import DenoiseOptions, FilterOptions
 from meshlab_spectral.plugin.versions import versions
 from meshlab_spectral.process.parent import JobLimits, ProgressCallback
 from meshlab_spectral.tiles.bounds import MOST_TILES, UntiledError
 from meshlab_spectral.tiles.cells import near_cells, split
 from meshlab_spectral.tiles.gather import gather
 from meshlab_spectral.tiles.halo import reach_of, require_local
+from meshlab_spectral.tiles.noise import given_noise, measured_noise
 from meshlab_spectral.tiles.plan import Plan, Workspace
 from meshlab_spectral.tiles.report import combined, singular_part
 from meshlab_spectral.tiles.rows import MeshRows, open_rows
@@ -45,11 +48,14 @@ _NEGLIGIBLE, _MOST_PASSES = 1e-3, 7
 # The core keeps thin parts as soon as one has a larger factor (thin_parts.h).
 _WORTHWHILE = 2.0
 
+# Filters certain tiles by what was decided, unless they are; returns their reports.
+_Doing = Callable[[dict[str, Any]], list[dict[str, Any]]]
+
 
 def filter_in_tiles(
     source: Path,
     target: Path,
-    options: FilterOptions,
+    options: Options,
     on_progress: ProgressCallback,
     tiles: int,
     tell: Callable[[str], None],
@@ -86,7 +92,7 @@ def filter_in_tiles(
 
 
 def intent_in_tiles(
-    source: Path, target: Path, options: FilterOptions, on_progress: ProgressCallback, tiles: int
+    source: Path, target: Path, options: Options, on_progress: ProgressCallback, tiles: int
 ) -> dict[str, Any]:
     """Say what `filter_in_tiles` would do; see `whole_or_tiles.intent_of_file`."""
     _check_files(source, target)
@@ -120,7 +126,7 @@ def _check_files(source: Path, target: Path) -> None:
 def _planned(
     rows: MeshRows,
     source: Path,
-    options: FilterOptions,
+    options: Options,
     on_progress: ProgressCallback,
     tiles: int,
     work: Workspace,
@@ -131,7 +137,8 @@ def _planned(
     with contextlib.suppress(OSError, ValueError, TypeError):
         old = work.plan()
         is_same = (old.source, old.stamp) == (str(source.absolute()), stamp)
-        is_same = is_same and (old.options, old.versions) == (options.as_dict(), versions())
+        is_same = is_same and (old.filter, old.options) == (options.TABLE, options.as_dict())
+        is_same = is_same and old.versions == versions()
         if is_same and tiles in (0, old.tiles) and work.has_begun(old):
             return old
     measured = survey(rows, on_progress)
@@ -141,9 +148,10 @@ def _planned(
     plan = Plan(
         str(source.absolute()),
         stamp,
+        options.TABLE,
         options.as_dict(),
         list(measured.lengths[:3]),
-        options.selected and measured.has_selection,
+        bool(options.as_dict()["selected"]) and measured.has_selection,
         tree,
         count,
         reach,
@@ -208,13 +216,13 @@ def _require_space(rows: MeshRows, folder: Path, times: float) -> None:
 
 def _filtered(plan: Plan, work: Workspace, on_progress: ProgressCallback) -> list[dict[str, Any]]:
     """Filter all tiles that are not done yet; return the reports of all."""
-    options = FilterOptions.from_dict(plan.options)
+    options = plan.options_of_filter()
     every = range(plan.tiles)
-    decided = {"passes": options.passes, "has_thin_parts": False}
+    asked = [int(t) for t in np.unique(np.linspace(0, plan.tiles - 1, _ASKED).round())]
     count, memory = workers()
     with _processes(count, memory, work.folder) as processes:
 
-        def do(tiles: Any, wanted: dict[str, Any], share: tuple[float, float]) -> None:
+        def do(tiles: Any, wanted: dict[str, Any], upto: float = 1.0) -> list[dict[str, Any]]:
             left = [tile for tile in tiles if not _is_done(work.report(tile), wanted)]
             with ThreadPoolExecutor(count) as pool:
                 runs = {pool.submit(_run, processes, work.folder, t, wanted): t for t in left}
@@ -223,45 +231,65 @@ def _filtered(plan: Plan, work: Workspace, on_progress: ProgressCallback) -> lis
                     for one in as_completed(runs):
                         _raise_of(one, runs[one], plan, work)
                         done += 1
-                        fraction = share[0] + (share[1] - share[0]) * done / len(left)
-                        on_progress(f"tile {plan.tiles - len(left) + done}", fraction)
+                        name = f"tile {plan.tiles - len(left) + done}"
+                        on_progress(name, upto * done / len(left))
                 except BaseException:
                     processes.end()
                     pool.shutdown(cancel_futures=True)
                     raise
+            return [_report(work, tile) for tile in tiles]
 
+        do_asked = partial(do, asked, upto=len(asked) / plan.tiles)
+        if isinstance(options, DenoiseOptions):
+            return _denoised(plan, options, do_asked, partial(do, every))
+        assert isinstance(options, FilterOptions)
+        decided = {"passes": options.passes, "has_thin_parts": False}
         if options.steps == 0 and options.passes == 0 and options.basis_update != "none":
-            asked = [int(t) for t in np.unique(np.linspace(0, plan.tiles - 1, _ASKED).round())]
             while decided["passes"] < _MOST_PASSES:
                 decided["passes"] += 1
-                do(asked, decided, (0.0, len(asked) / plan.tiles))
-                if singular_part([_report(work, tile) for tile in asked]) <= _NEGLIGIBLE:
+                if singular_part(do_asked(decided)) <= _NEGLIGIBLE:
                     break
-            decided["has_thin_parts"] = _has_thin_parts(work, asked)
-        do(every, decided, (0.0, 1.0))
-        if not decided["has_thin_parts"] and _has_thin_parts(work, every):
+            decided["has_thin_parts"] = _has_thin_parts(do_asked(decided))
+        reports = do(every, decided)
+        if not decided["has_thin_parts"] and _has_thin_parts(reports):
             decided["has_thin_parts"] = True
-            do(every, decided, (0.0, 1.0))
-    return [_report(work, tile) for tile in every]
+            reports = do(every, decided)
+        return reports
+
+
+def _denoised(
+    plan: Plan, options: DenoiseOptions, do_asked: _Doing, do_every: _Doing
+) -> list[dict[str, Any]]:
+    """Denoise all tiles by the noise of some; return the reports of all."""
+    noise = given_noise(options, *plan.lengths[:2])
+    if not all(noise.values()):
+        noise = measured_noise(do_asked(noise), options, plan.lengths[1])
+    reports = do_every(noise)
+    if not any(noise.values()):  # every tile has looked for noise
+        noise = measured_noise(reports, options, plan.lengths[1])
+        if any(noise.values()):
+            reports = do_every(noise)
+    if options.noise_height.automatic:
+        for one in reports:
+            if "summary" in one:
+                one["summary"] = one["summary"].replace(", as given", ", as measured in tiles")
+    return reports
 
 
 def _report(work: Workspace, tile: int) -> dict[str, Any]:
     return work.report(tile) or {}
 
 
-def _has_thin_parts(work: Workspace, tiles: Iterable[int]) -> bool:
-    return any(_report(work, tile).get("thin_part_factor", 1) > _WORTHWHILE for tile in tiles)
+def _has_thin_parts(reports: list[dict[str, Any]]) -> bool:
+    return any(one.get("thin_part_factor", 1) > _WORTHWHILE for one in reports)
 
 
 def _is_done(report: dict[str, Any] | None, wanted: dict[str, Any]) -> bool:
-    """Whether a tile has been filtered by these decisions, or others that do not differ for it."""
+    """Whether a tile has been filtered by these decisions, or any would do."""
     if report is None:
         return False
-    if "steps" not in report:  # nothing of it moves
-        return True
-    if wanted["passes"] != report["wanted_passes"]:
-        return False
-    return bool(report["wanted_has_thin_parts"] == wanted["has_thin_parts"])
+    is_same = all(report.get(f"wanted_{name}") == value for name, value in wanted.items())
+    return is_same or not report["ran"]  # nothing of it moves
 
 
 @contextlib.contextmanager
@@ -296,7 +324,7 @@ def _summary(
     plan: Plan, reports: list[dict[str, Any]], rows: MeshRows
 ) -> tuple[dict[str, Any], bool]:
     """Return the report of the whole, and whether coordinates need double precision."""
-    report, (rounding, displacement, largest) = combined(reports)
+    report, (rounding, displacement, largest) = combined(plan.filter, reports)
     told = rounding_message(rounding, displacement, largest) if rows.is_single else None
     if told and rows.is_joined_by_position:
         report["warnings"].append(f"{told}: choose .ply, or move the mesh to the origin first")

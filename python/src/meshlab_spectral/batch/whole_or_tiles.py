@@ -12,7 +12,6 @@ from meshlab_spectral.files.region import Region
 from meshlab_spectral.files.sources import check_source
 from meshlab_spectral.files.whole_files import check_target
 from meshlab_spectral.filters.option_types import Options
-from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.process.parent import NO_LIMITS, JobLimits, ProgressCallback
 from meshlab_spectral.process.single_file import measure_in_child, write_in_child
 from meshlab_spectral.tiles.bounds import UntiledError
@@ -52,8 +51,8 @@ def filter_file(
         As from `write_in_child`; UntiledError when a number of tiles is given for what cannot be
         divided.
     """
-    tiles = _tiles_for(options, tiles, region)
-    if tiles is None or not isinstance(options, FilterOptions):
+    tiles = _tiles_for(tiles, region)
+    if tiles is None:
         return write_in_child(source, target, options, on_progress, mesh, overwrite, region=region)
     if tiles > 0:
         from meshlab_spectral.batch.tiles import filter_in_tiles
@@ -95,7 +94,7 @@ def intent_of_file(
     """
     check_source(source)
     check_target(target)
-    tiles = _tiles_for(options, tiles, region)
+    tiles = _tiles_for(tiles, region)
     if tiles == 0:
         with contextlib.suppress(MemoryLimitError):
             _limits(source)
@@ -106,7 +105,6 @@ def intent_of_file(
     else:
         from meshlab_spectral.batch.tiles import intent_in_tiles
 
-        assert isinstance(options, FilterOptions)
         intent = intent_in_tiles(source, target, options, on_progress, tiles)
     from meshlab_spectral.batch.memory import available_memory
 
@@ -114,17 +112,15 @@ def intent_of_file(
     return {**intent, "memory": _USUALLY * vertices, "available_memory": available_memory()}
 
 
-def _tiles_for(options: Options, tiles: int | None, region: Region | None) -> int | None:
+def _tiles_for(tiles: int | None, region: Region | None) -> int | None:
     """Return the number of tiles, 0 for as many as it takes, None where there are none.
 
     Raises UntiledError when a number is given for what cannot be divided.
     """
-    if tiles and not isinstance(options, FilterOptions):
-        raise UntiledError("only filter works in tiles: denoise looks at the mesh as a whole")
     if tiles and region is not None:
         names = ", ".join(region.given())
         raise UntiledError(f"only the whole is filtered in tiles: leave out {names}, or tiles")
-    return tiles if isinstance(options, FilterOptions) and region is None else None
+    return tiles if region is None else None
 
 
 def _limits(source: Path) -> JobLimits:

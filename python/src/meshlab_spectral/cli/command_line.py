@@ -28,7 +28,7 @@ _GROUPS = {
     "Where": "mesh selected box component where mask boundary crease_angle keep_creases weight",
     HOW: """steps tolerance passes basis_update conformal_share spectrum basis_size
         reinject_residual laplacian preserve_volume""",
-    "Files": "recursive overwrite resume dry_run tiles memory",
+    "Files": "recursive joined overwrite resume dry_run tiles memory",
     "Workers": "workers memory_limit timeout scheduler",
     "Output": "output name ending result picture pictures modes scale save_recipe report as_json",
 }

@@ -122,7 +122,7 @@ def _command_with(table: type[Options], help_text: str) -> Command:
                 parser=_tiles,
                 metavar="auto|off|N",
                 show_default="auto",
-                help="Filter binary PLY or STL in N overlapping tiles, from file to file; auto: "
+                help="Process binary PLY or STL in N overlapping tiles, from file to file; auto: "
                 "where the mesh does not fit in memory.",
             ),
         ] = 0,

@@ -17,7 +17,9 @@ from meshlab_spectral.files.whole_files import remove_leftovers, resolved, writi
 from meshlab_spectral.filters.options import SpectrumOptions
 
 
-@with_options(SpectrumOptions, Settings, leave_out=("name", "ending", "overwrite", "script"))
+@with_options(
+    SpectrumOptions, Settings, leave_out=("name", "ending", "joined", "overwrite", "script")
+)
 def spectra_command(
     given: dict[str, Any],
     settings: Settings,

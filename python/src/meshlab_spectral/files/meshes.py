@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable, Collection, Sequence
+from dataclasses import replace
 from pathlib import Path
 from shutil import copyfile
 from typing import Any
@@ -181,8 +182,67 @@ def _filter_document(
         check_writable(scratch)
     document = open_document(source)
     chosen = _chosen(document, name)
+    shapes, names, reports, parted = _moved(
+        document.parts, chosen, options, on_stage, verbose, region
+    )
+    if stays:
+        warnings = document.save(scratch, shapes)
+    else:
+        bare = _BARE.get(scratch.suffix.lower())
+        write_with_meshlab(_merged(document, verbose, shapes), scratch, source, bare)
+        warnings = left_behind(document, scratch)
+        warnings += _rounded(joined(document.parts)[0], np.vstack(shapes), scratch)
+    return _report(names, reports, document.warnings + parted + warnings)
+
+
+def joined_to_scratches(
+    sources: Sequence[Path], scratches: Sequence[Path], options: Options, on_stage: StageCallback
+) -> dict[str, Any]:
+    """Filter the meshes of several files together, as `filter_to_scratch` does those of one.
+
+    Each file is written in its own format. The report has the largest displacement in each file as
+    "largest".
+    """
+    on_stage("reading", None)
+    for source, scratch in zip(sources, scratches, strict=True):
+        check_source(source)
+        if not format_of(source) or not is_same_format(source, scratch):
+            raise FormatError(
+                f"{source.name} cannot be joined with others: convert it to a format that the "
+                "output keeps, such as ply, and leave out --format"
+            )
+    documents = [open_document(source) for source in sources]
+    parts = [
+        replace(part, name=f"{document.path.name} {part.name}".strip())
+        for document in documents
+        for part in document.parts
+    ]
+    shapes, names, reports, warnings = _moved(parts, parts, options, on_stage, verbose=False)
+    ends = np.cumsum([len(document.parts) for document in documents])
+    largest = []
+    for document, scratch, end in zip(documents, scratches, ends.tolist(), strict=True):
+        after = shapes[end - len(document.parts) : end]
+        told = document.warnings + document.save(scratch, after)
+        warnings += [f"{document.path.name}: {warning}" for warning in told]
+        moved = np.vstack(after) - np.vstack([part.vertices for part in document.parts])
+        largest.append(float(np.linalg.norm(moved, axis=1).max(initial=0.0)))
+    return {**_report(names, reports, warnings), "largest": largest}
+
+
+def _moved(
+    parts: Sequence[Part],
+    chosen: Sequence[Part],
+    options: Options,
+    on_stage: StageCallback,
+    verbose: bool,
+    region: Region | None = None,
+) -> tuple[list[Array], list[str], list[dict[str, Any]], list[str]]:
+    """Filter chosen parts, each surface on its own.
+
+    Returns the vertices of all parts; the names of the surfaces, and the report of each; warnings.
+    """
     on_stage("filtering", None)
-    moved = {part: part.vertices for part in document.parts}
+    moved = {part: part.vertices for part in parts}
     names, reports = [], []
     groups = pieces(chosen)
     wholes: list[Part | None] = [whole_of(group) for group in groups]
@@ -197,15 +257,8 @@ def _filter_document(
         names.append(whole.name)
         reports.append(report)
     on_stage("writing", None)
-    shapes, parted = moved_alike(document.parts, list(moved.values()), chosen)
-    if stays:
-        warnings = document.save(scratch, shapes)
-    else:
-        bare = _BARE.get(scratch.suffix.lower())
-        write_with_meshlab(_merged(document, verbose, shapes), scratch, source, bare)
-        warnings = left_behind(document, scratch)
-        warnings += _rounded(joined(document.parts)[0], np.vstack(shapes), scratch)
-    return _report(names, reports, document.warnings + parted + warnings)
+    shapes, parted = moved_alike(parts, list(moved.values()), chosen)
+    return shapes, names, reports, parted
 
 
 def wants_details(options: Options, target: Path) -> bool:
@@ -241,7 +294,18 @@ def whole_of(group: Sequence[Part]) -> Part:
     """Return the pieces of a surface as one part."""
     if len(group) == 1:
         return group[0]
-    return Part(", ".join(part.name for part in group), *joined(group))
+    name = ", ".join(part.name for part in group)
+    qualities = [part.quality for part in group if part.quality is not None]
+    quality = np.concatenate(qualities) if len(qualities) == len(group) else None
+    selected = None
+    if any(part.selected is not None for part in group):
+        selected = np.concatenate(
+            [
+                np.zeros(len(part.vertices), bool) if part.selected is None else part.selected
+                for part in group
+            ]
+        )
+    return Part(name, *joined(group), quality, selected)
 
 
 def _chosen(document: Document, name: str | None) -> list[Part]:

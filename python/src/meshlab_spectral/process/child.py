@@ -27,6 +27,7 @@ from meshlab_spectral.files.intent import intent_of
 from meshlab_spectral.files.meshes import (
     StageCallback,
     filter_to_scratch,
+    joined_to_scratches,
     load_arrays,
     script_to_scratch,
 )
@@ -45,6 +46,10 @@ def _report_of(job: dict[str, Any], on_stage: StageCallback) -> dict[str, Any]:
     task = job["task"]
     if task == "tile":
         return filter_tile(Path(job["folder"]), job["tile"], job["decided"], on_stage)
+    if task == "joined":
+        sources, scratches = (list(map(Path, job[name])) for name in ("sources", "scratches"))
+        table = TABLES[job["filter"]]
+        return joined_to_scratches(sources, scratches, table.from_dict(job["options"]), on_stage)
     source = Path(job["source"])
     verbose = job.get("verbose", True)
     if task == "spectrum":

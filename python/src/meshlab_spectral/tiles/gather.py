@@ -64,7 +64,8 @@ class _Moved:
         """Return points in this range, counted from its begin, and their rows."""
         found: list[tuple[Any, Any]] = [(np.zeros(0, np.int64), np.zeros((0, 3)))]
         for k, (ids, table) in enumerate(self._parts):
-            at, last = self._at[k], int(np.searchsorted(ids, end))
+            # Of the same type: NumPy would convert all of the array.
+            at, last = self._at[k], int(np.searchsorted(ids, ids.dtype.type(end)))
             if last > at:
                 found.append((ids[at:last].astype(np.int64) - begin, np.array(table[at:last])))
                 self._at[k] = last

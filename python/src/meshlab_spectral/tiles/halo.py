@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from meshlab_spectral.documents.document import Array
+from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.filters.transfer import MeshLengths, gain
 from meshlab_spectral.tiles.bounds import UntiledError
+from meshlab_spectral.tiles.noise import REACH
 from meshlab_spectral.tiles.survey import Lengths
 
 # Largest difference to the filter of the whole mesh that a halo may cause, relative to the
@@ -25,8 +27,10 @@ _SELECTION = 3.0
 _THIN = 0.5
 
 
-def require_local(options: FilterOptions) -> None:
+def require_local(options: Options) -> None:
     """Raise UntiledError unless a filter only depends on what is near each vertex."""
+    if not isinstance(options, FilterOptions):
+        return
     reasons = {
         "laplacian = uniform measures sizes by the whole mesh": options.laplacian == "uniform",
         "spectrum = truncated needs the harmonics of the whole mesh": options.spectrum
@@ -44,13 +48,15 @@ def require_local(options: FilterOptions) -> None:
             raise UntiledError(f"{reason}: choose another value")
 
 
-def reach_of(options: FilterOptions, whole: Lengths) -> float:
+def reach_of(options: Options, whole: Lengths) -> float:
     """Return the distance from which nothing changes a vertex noticeably, in length units.
 
     Raises UntiledError when the filter moves whole components, and OptionError when its transfer
     function is invalid.
     """
     require_local(options)
+    if not isinstance(options, FilterOptions):
+        return REACH * whole.mean_edge
     automatic = min(6 * whole.mean_edge, whole.surface_diagonal / 20)
     size = options.feature_size
     length = automatic if size.automatic else size.in_units_of_mesh(whole.diagonal, whole.mean_edge)

@@ -7,6 +7,8 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
+from meshlab_spectral.filters.option_types import Options
+from meshlab_spectral.filters.tables import TABLES
 from meshlab_spectral.tiles.cells import Tree
 
 _PLAN, _SCATTERED = "plan.json", "scattered"
@@ -20,8 +22,8 @@ class Plan:
     ----------
     source, stamp
         The input, and its size and time of change.
-    options
-        Those of the filter, as from `as_dict`.
+    filter, options
+        The name of its table, and its options, as from `as_dict`.
     lengths
         Of the whole mesh: diagonal, mean edge, and diagonal of the surface.
     has_selection
@@ -34,6 +36,7 @@ class Plan:
 
     source: str
     stamp: list[int]
+    filter: str
     options: dict[str, Any]
     lengths: list[float]
     has_selection: bool
@@ -41,6 +44,10 @@ class Plan:
     tiles: int
     reach: float
     versions: dict[str, str]
+
+    def options_of_filter(self) -> Options:
+        """Return the options of the filter."""
+        return TABLES[self.filter].from_dict(self.options)
 
 
 class Workspace:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 import re
+from collections import Counter
+from statistics import median
 from typing import Any
 
 _LARGEST = (
@@ -17,11 +19,22 @@ _LARGEST = (
     "products",
 )
 _ALIKE = ("feature_size", "cutoff_frequency")
+# Of denoising.
+_NOISE = ("noise_height", "noise_size", "mean_edge")
 _NUMBER = re.compile(r"\d[\d.e+-]*")
 
 
-def combined(reports: list[dict[str, Any]]) -> tuple[dict[str, Any], tuple[float, float, float]]:
+def combined(
+    filter_name: str, reports: list[dict[str, Any]]
+) -> tuple[dict[str, Any], tuple[float, float, float]]:
     """Combine the reports of all tiles.
+
+    Parameters
+    ----------
+    filter_name
+        Of its table.
+    reports
+        Of the tiles.
 
     Returns
     -------
@@ -31,21 +44,28 @@ def combined(reports: list[dict[str, Any]]) -> tuple[dict[str, Any], tuple[float
         Root mean squares of the rounding to single precision and of the displacement, over the
         vertices that move, and the largest coordinate.
     """
-    ran = [one for one in reports if "steps" in one]
+    ran = [one for one in reports if one["ran"]]
 
     def total(name: str) -> float:
         return math.fsum(one.get(name, 0) for one in reports)
 
     area, moved = total("own_area_before"), max(1.0, total("moved"))
-    report: dict[str, Any] = {name: ran[0][name] if ran else 0.0 for name in _ALIKE}
-    report |= {name: max((one[name] for one in ran), default=0) for name in _LARGEST}
+    report: dict[str, Any]
+    if filter_name == "denoise":
+        report = {name: median(one[name] for one in ran) if ran else 0.0 for name in _NOISE}
+        report["rounds"] = max((one["rounds"] for one in ran), default=0)
+        told = Counter(one["summary"] for one in ran)
+        report["summary"] = told.most_common(1)[0][0] if told else "nothing changed"
+    else:
+        report = {name: ran[0][name] if ran else 0.0 for name in _ALIKE}
+        report |= {name: max((one[name] for one in ran), default=0) for name in _LARGEST}
+        report["accuracy_reached"] = all(one["accuracy_reached"] for one in ran)
+        report["singular_part"] = singular_part(reports)
     report |= {
         "area_before": area,
         "area_after": total("own_area_after"),
         "max_displacement": max(one["largest"] for one in reports),
         "rms_displacement": math.sqrt(total("squares") / area) if area else 0.0,
-        "accuracy_reached": all(one["accuracy_reached"] for one in ran),
-        "singular_part": singular_part(reports),
         "warnings": _warnings(ran),
     }
     precision = (

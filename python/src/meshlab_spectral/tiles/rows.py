@@ -53,17 +53,17 @@ class MeshRows:
         return self.faces // 2 if self.is_joined_by_position else self.points
 
     def positions(self, numbers: Indices | slice) -> Array:
-        """Return the positions of points, k x 3."""
+        """Return the positions of points, k x 3, column by column in memory."""
         if self.is_joined_by_position:
             if isinstance(numbers, slice):
                 numbers = np.arange(numbers.start, min(numbers.stop, self.points))
-            return self.block["corners"][numbers // 3, numbers % 3].astype(np.float64)
+            return self.block["corners"][numbers // 3, numbers % 3].astype(np.float64, order="F")
         return self.columns(numbers, *ply.AXES)
 
     def columns(self, numbers: Indices | slice, *names: str) -> Array:
         """Return columns of the rows of vertices."""
         rows = self.block[numbers]
-        return np.column_stack([rows[name] for name in names]).astype(np.float64)
+        return np.array([rows[name] for name in names], np.float64).T
 
     def gathered(self, numbers: Indices, *names: str) -> Array:
         """Return columns of many points, by default their positions, a chunk at a time."""
@@ -88,6 +88,10 @@ class MeshRows:
         if found.size and not 0 <= found.min() <= found.max() < self.points:
             raise MeshFileError(f"{self.path} has faces of vertices that it lacks", "damaged")
         return found
+
+    def corners_of(self, F: Indices) -> list[Array]:
+        """Return the positions of the first, second and third corners of triangles."""
+        return [self.positions(F[:, k]) for k in range(3)]
 
     def selected_faces(self, begin: int, end: int) -> NDArray[np.bool_]:
         """Return which triangles are selected."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from meshlab_spectral.tiles.cells import near_cells
 from meshlab_spectral.tiles.plan import Plan, Workspace
 from meshlab_spectral.tiles.rows import MeshRows, StageCallback, chunks
@@ -16,9 +18,10 @@ def scatter(mesh: MeshRows, plan: Plan, work: Workspace, on_progress: StageCallb
     for i, j in chunks(mesh.faces):
         on_progress("dividing the mesh", i / mesh.faces)
         F = mesh.triangles(i, j)
-        X = mesh.positions(F.ravel()).reshape(-1, 3, 3)
+        a, b, c = mesh.corners_of(F)
+        low, high = np.minimum(np.minimum(a, b), c), np.maximum(np.maximum(a, b), c)
         chosen = mesh.selected_faces(i, j) if has_flags else None
-        for tile, rows in near_cells(plan.tree, X.min(axis=1), X.max(axis=1), plan.reach):
+        for tile, rows in near_cells(plan.tree, low, high, plan.reach):
             if not len(rows):
                 continue
             with work.file(tile, "faces").open("ab") as file:

@@ -44,11 +44,12 @@ def survey(mesh: MeshRows, on_progress: StageCallback) -> Survey:
     share = min(1.0, _SAMPLE / mesh.faces)
     for i, j in chunks(mesh.faces):
         on_progress("measuring the mesh", i / mesh.faces)
-        X = _finite(mesh, mesh.positions(mesh.triangles(i, j).ravel())).reshape(-1, 3, 3)
-        surface.add(X.reshape(-1, 3))
-        total += float(np.linalg.norm(X - X[:, [1, 2, 0]], axis=2).sum())
-        chosen = np.random.default_rng(i).integers(0, len(X), max(1, int(share * len(X))))
-        sample.append(X[chosen, 0])
+        X = [_finite(mesh, one) for one in mesh.corners_of(mesh.triangles(i, j))]
+        for k, corners in enumerate(X):
+            surface.add(corners)
+            total += float(np.linalg.norm(corners - X[k - 1], axis=1).sum())
+        chosen = np.random.default_rng(i).integers(0, j - i, max(1, int(share * (j - i))))
+        sample.append(X[0][chosen])
         if mesh.flags[1]:
             has_selection |= bool(mesh.selected_faces(i, j).any())
         mesh.forget()

@@ -12,12 +12,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from meshlab_spectral._core import first_equal_rows
+from meshlab_spectral._core import first_equal_rows, vertex_areas
 from meshlab_spectral.documents import ply
 from meshlab_spectral.documents.document import Array, Indices
 from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.errors import MeshError
-from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.filters.progress import Progress
 from meshlab_spectral.filters.running import TiledSurface, plain, run
 from meshlab_spectral.tiles.cells import near_cells
@@ -30,7 +29,8 @@ def filter_tile(
 ) -> dict[str, Any]:
     """Filter a tile and write what its cell owns, and its report last; return the report.
 
-    `decided` are the number of "passes", and whether the surface "has_thin_parts" in any tile.
+    `decided` are the number of "passes", and whether the surface "has_thin_parts" in any tile; or
+    "noise_height" and "noise_size", 0 for those that the tile measures.
     """
     work = Workspace(folder)
     plan = work.plan()
@@ -47,21 +47,23 @@ def filter_tile(
         F = which[F].astype(np.int32)
     after, report = before, dict[str, Any]()
     if len(own):
-        options = FilterOptions.from_dict(plan.options) if plan.options else FilterOptions()
+        options = plan.options_of_filter()
         inner = np.zeros(len(before), bool)
         inner[which[own]] = True
         diagonal, edge, of_surface = plan.lengths
-        thin = bool(decided["has_thin_parts"])
+        thin = bool(decided.get("has_thin_parts"))
         whole = TiledSurface(diagonal, edge, of_surface, thin, inner)
         selected = _selected(mesh, work, tile, ids, F) if plan.has_selection else None
-        parameters = {**options.core_parameters(), "passes": decided["passes"]}
+        chosen = {name: value for name, value in decided.items() if name != "has_thin_parts"}
+        parameters = options.core_parameters() | {k: value for k, value in chosen.items() if value}
         if selected is None or selected.any():  # else nothing here moves
             after, report = _filtered(
+                options.FILTER,
                 before,
                 F,
                 parameters,
                 selected=selected,
-                values=mesh.gathered(ids, mesh.quality) if options.weight != "none" else None,
+                values=mesh.gathered(ids, mesh.quality) if parameters["weight"] != "none" else None,
                 progress=on_stage,
                 whole=whole,
             )
@@ -73,7 +75,12 @@ def filter_tile(
         normals = following_normals(before, after, F.astype(np.int64), given)
         normals[own].astype("<f8").tofile(work.file(tile, "normals"))
     asked = {f"wanted_{name}": value for name, value in decided.items()}
-    report |= asked | _measures(before, after, F, which[own]) | {"vertices": len(ids)}
+    report |= (
+        asked
+        | {"ran": bool(report)}
+        | _measures(before, after, F, which[own])
+        | {"vertices": len(ids)}
+    )
     write_whole(work.file(tile, "json"), json.dumps(report))
     return report
 
@@ -113,10 +120,10 @@ def _selected(
 
 
 def _filtered(
-    V: Array, F: NDArray[np.integer], parameters: dict[str, Any], **inputs: Any
+    name: str, V: Array, F: NDArray[np.integer], parameters: dict[str, Any], **inputs: Any
 ) -> tuple[Array, dict[str, Any]]:
     try:
-        done = run(FilterOptions.FILTER, V, F, parameters, **inputs)
+        done = run(name, V, F, parameters, **inputs)
     except MeshError as error:
         if error.code != "no_area":  # the whole mesh may have some
             raise
@@ -130,10 +137,10 @@ def _measures(
     before: Array, after: Array, F: NDArray[np.integer], own: Indices
 ) -> dict[str, float]:
     """Return sums over the vertices of a cell, from which those of the whole mesh are made."""
-    own = np.unique(own)  # corners of an STL file at one position
     is_own = np.zeros(len(before), bool)
     is_own[own] = True
-    areas = [_vertex_areas(X, F)[own] for X in (before, after)]
+    own = np.flatnonzero(is_own)  # corners of an STL file at one position are one vertex
+    areas = [vertex_areas(X, F.astype(np.int32, copy=False))[own] for X in (before, after)]
     displacement = np.linalg.norm(after[own] - before[own], axis=1)
     moves = displacement > 0
     Y = after[own][moves]
@@ -149,8 +156,3 @@ def _measures(
         "largest": float(displacement.max(initial=0.0)),
         "largest_coordinate": float(np.abs(Y).max(initial=0.0)),
     }
-
-
-def _vertex_areas(X: Array, F: NDArray[np.integer]) -> Array:
-    doubled = np.linalg.norm(np.cross(X[F[:, 1]] - X[F[:, 0]], X[F[:, 2]] - X[F[:, 0]]), axis=1)
-    return np.asarray(np.bincount(F.ravel(), np.repeat(doubled / 6, 3), len(X)), np.float64)
