@@ -8,7 +8,7 @@
 #   MESHES              the folder of the meshes that `make screenshots` shows
 #   PICTURES            of `make screenshots`: only these, such as "denoise colors", none of MeshLab
 #   BENCH_MESH          the mesh of the C++ benchmark, skipped when there is no such file
-#   BENCH_OPTIONS       of `make bench-basis`, `bench-contract`, `bench-defaults`, `bench-denoise`, `bench-memory`, `bench-signatures`, `bench-tiles`; --help lists them
+#   BENCH_OPTIONS       of `make bench-basis`, `bench-contract`, `bench-defaults`, `bench-denoise`, `bench-memory`, `bench-signatures`, `bench-texture`, `bench-tiles`; --help lists them
 #   PROMISES_OPTIONS    of `make promises`, such as '--only artefacts speed'; --help lists them
 #   FUZZ_OPTIONS        of `make fuzz`; tests/fuzz/fuzz_core.cpp lists them
 #   FUZZ_EXAMPLES       of `make fuzz-python`: how many, about 20 a second
@@ -51,7 +51,7 @@ PACKAGE_SOURCES := CMakeLists.txt $(shell find plugin python -not -path '*/__pyc
 # Two targets at once would fetch MeshLab's headers twice; ninja uses every core anyway.
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help demo test wheel sdist docs gui-test screenshots setup build bench bench-basis bench-batch bench-contract bench-defaults bench-denoise bench-ldlt bench-memory bench-signatures bench-tiles promises fuzz fuzz-python lint options format clean
+.PHONY: help demo test wheel sdist docs gui-test screenshots setup build bench bench-basis bench-batch bench-contract bench-defaults bench-denoise bench-ldlt bench-memory bench-signatures bench-texture bench-tiles promises fuzz fuzz-python lint options format clean
 
 help:  ## list these commands
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 20
@@ -130,6 +130,9 @@ bench-basis: build $(PACKAGE) $(COMPETITORS)  ## compare the truncated basis wit
 bench-signatures: $(PACKAGE) $(COMPETITORS)  ## compare Shape-DNA and signatures with LaPy and pyFM
 	$(BIN)/python tests/benchmarks/bench_signatures.py $(BENCH_OPTIONS)
 
+bench-texture: $(PACKAGE) $(COMPETITORS)  ## compare surface texture with surfalize
+	$(BIN)/python tests/benchmarks/bench_texture.py $(BENCH_OPTIONS)
+
 bench-ldlt: BENCHMARKS := ON
 bench-ldlt: $(COMPETITORS) build  ## compare the factorization with Eigen's and CHOLMOD's
 	build/tests/benchmarks/bench_ldlt $(BENCH_MESH)
@@ -180,7 +183,7 @@ $(VENV): python/requirements.txt | $(PACKAGES)
 	$(BIN)/pip install --quiet --disable-pip-version-check --only-binary :all: --require-hashes -r $<
 	@touch $@
 
-# What the basis and the signatures are compared with. scikit-sparse alone has no wheel.
+# What the basis, the signatures and texture are compared with. scikit-sparse alone has no wheel.
 $(COMPETITORS): tests/benchmarks/requirements.txt tests/benchmarks/scikit_sparse.txt \
   tests/benchmarks/debian_packages.txt $(VENV)
 	plugin/cmake/install_debian_packages.sh tests/benchmarks/debian_packages.txt

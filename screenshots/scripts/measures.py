@@ -11,7 +11,7 @@ import numpy as np
 from demo import bunny_file
 from figure_numbers import Drawing, MeshFile, Numbers, diagonal
 from meshlab_spectral.figures.harmonics import draw_basis_file, spread_modes
-from meshlab_spectral.figures.signed_mesh import draw_signed
+from meshlab_spectral.figures.texture import draw_texture
 from meshlab_spectral.figures.spectrum import draw_spectrum
 from meshlab_spectral.files.meshes import load_arrays
 from meshlab_spectral.filters.harmonics import manifold_harmonics
@@ -81,12 +81,7 @@ def roughness(mesh: MeshFile) -> Drawing:
     }
     numbers["left out, %"] = 100 * texture.vertices_left_out / len(V)
 
-    def draw(path: Path) -> None:
-        extent = 3 * texture.Sq
-        meshes = [(source.name, V, F)]
-        draw_signed(meshes, "roughness", texture.height, extent, "red: peaks", path)
-
-    return Drawing(numbers, draw)
+    return Drawing(numbers, lambda path: draw_texture(V, F, texture, path, source.name))
 
 
 def harmonics(name: str, mesh: MeshFile) -> Drawing:

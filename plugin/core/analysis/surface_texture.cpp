@@ -138,10 +138,14 @@ Heights heightsAboveShape(ShapeKind kind, const MeshLaplacian& mesh,
                           const std::vector<bool>& evaluated, const TextureOptions& options,
                           const Progress& progress) {
     const Vertices& X = mesh.surface.X;
-    Eigen::VectorXd weights = mesh.laplacian.D;
-    for (Index i = 0; i < weights.size(); ++i)
-        if (!evaluated[i]) weights[i] = 0.0;
-    const FittedShape shape = fitShape(kind, X, unitNormals(X, mesh.surface.F), weights);
+    const Eigen::VectorXd counts =
+        Eigen::VectorXd::NullaryExpr(X.rows(), [&](Index i) { return evaluated[i] ? 1.0 : 0.0; });
+    const Vertices normals = unitNormals(X, mesh.surface.F);
+    const auto [roughD, roughN] =
+        fitShape(kind, X, normals, mesh.laplacian.D.cwiseProduct(counts)).distancesOf(X);
+    // Again by areas of the shape, as all means are: steep parts of the surface have larger ones.
+    const Eigen::VectorXd areas = lumpedMass(X - roughD.asDiagonal() * roughN, mesh.surface.F);
+    const FittedShape shape = fitShape(kind, X, normals, areas.cwiseProduct(counts));
     const auto [d, N] = shape.distancesOf(X);
     const Separated parts = separated(mesh.laplacian, d, options, progress);
     Heights heights;

@@ -12,7 +12,7 @@ namespace spectral {
 enum class FormKind {
     Size,      ///< What varies more slowly than a size.
     None,      ///< Nothing: where it is curved, a low-pass draws it in, which adds to the heights.
-    Plane,     ///< The plane nearest to the evaluated vertices, by least squares of distances.
+    Plane,     ///< The plane nearest to the evaluated vertices: least squares over its area.
     Sphere,    ///< The nearest sphere.
     Cylinder,  ///< The nearest cylinder.
 };

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import pyvista
 from meshlab_spectral import (
+    compare,
     denoise_mesh,
     filter_colors,
     filter_mesh,
@@ -17,6 +18,7 @@ from meshlab_spectral import (
     geometry_spectrum,
     manifold_harmonics,
     measure_artefacts,
+    surface_texture,
 )
 
 _SPHERE = pyvista.Icosphere(nsub=3)
@@ -30,6 +32,10 @@ RESULTS = {
     "spectrum": lambda: geometry_spectrum(MESH, 300),
     "harmonics": lambda: manifold_harmonics(MESH, 300),
     "artefacts": lambda: measure_artefacts(MESH, 0.3),
+    "texture": lambda: surface_texture(MESH, waviness=0.5),
+    "same faces": lambda: compare(MESH, (1.1 * MESH[0], MESH[1])),
+    "other faces": lambda: compare(MESH, (1.1 * MESH[0], MESH[1][::-1])),
+    "deviation": lambda: compare(MESH, (1.1 * MESH[0], MESH[1])).deviations["normal"],
 }
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,6 +16,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 TEXTURE = "compute_scalar_surface_texture_per_vertex"
+REFERENCE = Path(__file__).resolve().parents[3] / f"python/docs/filters/{TEXTURE}.rst"
 
 
 def waves(V: Array) -> Array:
@@ -56,7 +59,9 @@ def cylinder(radius: float, waves: int, amplitude: float) -> tuple[Array, NDArra
     """An open cylinder of waves around it."""
     around, along = 360, 120
     angle, z = np.meshgrid(
-        2 * np.pi * np.arange(around) / around, np.linspace(0, 4 * radius, along), indexing="ij"
+        2 * np.pi * np.arange(around) / around,
+        np.linspace(0, 4 * radius, along),
+        indexing="ij",
     )
     r = radius + amplitude * np.cos(waves * angle)
     V = np.column_stack([(r * np.cos(angle)).ravel(), (r * np.sin(angle)).ravel(), z.ravel()])
@@ -81,6 +86,175 @@ def test_a_fitted_cylinder_makes_cutoffs_near_its_radius_exact(waves: int) -> No
         else:
             assert texture.form_radius == pytest.approx(radius, rel=1e-4)
             assert texture.Sq == pytest.approx(0.5 * amplitude / np.sqrt(2), rel=2 * error)
+
+
+def sphere_gain(degree: float, cutoff: float) -> float:
+    """What a height of this degree keeps on the unit sphere, where coordinates turn with it.
+
+    Along the normal, the coordinates of waves of degree l have the degrees l - 1 and l + 1; and
+    waves scale the metric and with it the Laplacian, of which all coordinates, of degree 1, get
+    some.
+    """
+    l = degree  # noqa: E741
+    up = (l - 1) * (l + 1) * (l + 4) / (l * (l + 3) * (2 * l + 1))
+    down = l * (l + 2) * (l - 3) / ((l - 2) * (l + 1) * (2 * l + 1))
+
+    def low(k: float) -> float:
+        return float(2.0 ** -(cutoff**2 * k * (k + 1) / (4 * np.pi**2)))
+
+    return 1 - up * low(l + 1) - down * low(l - 1) - (1 - up - down) * low(1)
+
+
+@pytest.mark.parametrize("length", [0.5, 1, 2, 4])
+def test_a_sphere_transmits_waves_by_the_closed_form_or_fitted_as_the_standard(
+    length: float,
+) -> None:
+    degree, amplitude = 12, 2e-4
+    ball = pyvista.Icosphere(radius=1, nsub=6)
+    V = np.asarray(ball.points, dtype=np.float64)
+    V /= np.linalg.norm(V, axis=1, keepdims=True)
+    P = V @ np.linalg.qr(np.random.default_rng(0).standard_normal((3, 3)))[0]
+    wave = np.hypot(P[:, 0], P[:, 1]) ** degree * np.cos(degree * np.arctan2(P[:, 1], P[:, 0]))
+    cutoff = 2 * np.pi / np.sqrt(degree * (degree + 1)) / length
+    rough = V * (1 + amplitude * wave)[:, None]
+    gains = {}
+    for form in ("size", "sphere"):
+        height = surface_texture(rough, ball.regular_faces, waviness=cutoff, form=form).height
+        gains[form] = height @ wave / (wave @ wave) / amplitude
+    left = 1 - 2 ** -((8 / length) ** 2)  # of form_size
+    assert gains["size"] == pytest.approx(left * sphere_gain(degree, cutoff), abs=0.003)
+    assert gains["sphere"] == pytest.approx(1 - 2 ** -((1 / length) ** 2), abs=0.003)
+
+
+def test_the_table_of_the_reference_is_that_of_the_closed_form() -> None:
+    page = REFERENCE.read_text(encoding="utf-8")
+    rows = re.findall(r"^   (\S+) +of the radius +(.*)$", page, re.MULTILINE)
+    assert [row[0] for row in rows] == ["0.25", "0.5", "1"]
+    for cutoff, shown in rows:
+        for length, gain in zip((0.25, 0.5, 1, 2, 4), shown.split(), strict=True):
+            wave = length * float(cutoff)
+            degree = (np.sqrt(1 + (4 * np.pi / wave) ** 2) - 1) / 2
+            if gain == "-":
+                assert degree < 3
+            else:
+                assert float(gain) == pytest.approx(sphere_gain(degree, float(cutoff)), abs=6e-4), (
+                    cutoff,
+                    length,
+                )
+
+
+def test_waves_around_a_torus_have_the_parameters_of_a_sinusoid() -> None:
+    # Curvature draws the low-pass in, here less outside than inside: a large radius keeps that
+    # difference, of which the form leaves an eighth, below a hundredth of the waves.
+    waves, around, along, radius = 64, 768, 400, 20.0  # twelve vertices per wave
+    length = 2 * np.pi / waves
+    amplitude = 0.02 * length
+    phi, theta = np.meshgrid(
+        *(2 * np.pi * np.arange(count) / count for count in (along, around)),
+        indexing="ij",
+    )
+    r = 1 + amplitude * np.cos(waves * theta + 5 * phi)  # at all phases
+    rho = radius + r * np.cos(theta)
+    V = np.stack([rho * np.cos(phi), rho * np.sin(phi), r * np.sin(theta)], axis=-1).reshape(-1, 3)
+    i, j = np.indices((along, around))
+    a, b, c, d = (
+        ((i + k) % along * around + (j + m) % around).ravel()
+        for k, m in ((0, 0), (1, 0), (1, 1), (0, 1))
+    )
+    F = np.vstack([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
+    texture = surface_texture(V, F, waviness=3 * length)
+    assert texture.vertices_left_out == 0
+    assert texture.Sa == pytest.approx(2 / np.pi * amplitude, rel=0.01)
+    assert texture.Sq == pytest.approx(amplitude / np.sqrt(2), rel=0.01)
+    assert texture.Ssk == pytest.approx(0, abs=0.01)
+    assert texture.Sku == pytest.approx(1.5, rel=0.01)
+    assert texture.Sz == pytest.approx(2 * amplitude, rel=0.01)
+    slope = 2 * np.pi * amplitude / length
+    assert texture.Sdr == pytest.approx(slope**2 / 4, rel=0.04)
+
+
+# Of Sq, at any vertex: form_size is met by cells, which depend on where the mesh is.
+CELLS = 0.02
+
+
+@pytest.mark.parametrize(("form", "error"), [("size", CELLS), ("plane", 2e-3)])
+def test_the_order_of_vertices_and_faces_does_not_matter(form: str, error: float) -> None:
+    V, F = square("random")
+    V = waves(V)
+    rng = np.random.default_rng(3)
+    order = rng.permutation(len(V))
+    G = np.roll(np.argsort(order)[F], 1, axis=1)[rng.permutation(len(F))]
+    one = surface_texture(V, F, waviness=3.0, noise=0.4, form=form)
+    other = surface_texture(V[order], G, waviness=3.0, noise=0.4, form=form)
+    np.testing.assert_allclose(other.height, one.height[order], atol=error * one.Sq)
+    assert other.vertices_evaluated == one.vertices_evaluated
+    for name in ("Sa", "Sq", "Sku", "Sz", "Sdr"):
+        assert getattr(other, name) == pytest.approx(getattr(one, name), rel=error), name
+
+
+@pytest.mark.parametrize(("form", "error"), [("size", CELLS), ("cylinder", 1e-4)])
+def test_a_turned_scaled_and_moved_mesh_has_the_same_texture(form: str, error: float) -> None:
+    V, F = cylinder(3.0, 16, 0.002)
+    turn = np.linalg.qr(np.random.default_rng(5).standard_normal((3, 3)))[0]
+    turn *= np.linalg.det(turn)
+    one = surface_texture(V, F, waviness=1.2, form=form)
+    other = surface_texture(40 * V @ turn + [700, -200, 90], F, waviness=48, form=form)
+    np.testing.assert_allclose(other.height, 40 * one.height, atol=error * other.Sq)
+    assert other.Sdr == pytest.approx(one.Sdr, rel=error)
+
+
+def mirrored_map(cells: int) -> Array:
+    """Heights without symmetry, and mirrored: whatever is said of the rim, their means agree."""
+    x = np.arange(cells + 1) / cells
+    x, y = np.meshgrid(x, x, indexing="ij")
+    z = np.exp(3 * np.sin(7 * x + 2 * y)) + 2 * np.cos(11 * x * y + y)
+    return np.pad(2e-3 * z, ((0, cells), (0, cells)), mode="reflect")
+
+
+def height_map(z: Array, step: float) -> tuple[Array, NDArray[Any]]:
+    n, m = z.shape
+    x, y = np.meshgrid(step * np.arange(n), step * np.arange(m), indexing="ij")
+    i = np.arange(n * m).reshape(n, m)
+    a, b, c, d = (k.ravel() for k in (i[:-1, :-1], i[1:, :-1], i[1:, 1:], i[:-1, 1:]))
+    F = np.vstack([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
+    return np.column_stack([x.ravel(), y.ravel(), z.ravel()]), F
+
+
+def test_a_height_map_has_the_moments_of_its_pixels() -> None:
+    z = mirrored_map(100)
+    texture = surface_texture(*height_map(z, 0.01), waviness="100%", form="plane", crease_angle=180)
+    pixels = z[:-1, :-1] - z[:-1, :-1].mean()
+    Sq = np.sqrt((pixels**2).mean())
+    assert texture.Sa == pytest.approx(np.abs(pixels).mean(), rel=1e-6)
+    assert texture.Sq == pytest.approx(Sq, rel=1e-6)
+    assert texture.Ssk == pytest.approx((pixels**3).mean() / Sq**3, rel=1e-6)
+    assert texture.Sku == pytest.approx((pixels**4).mean() / Sq**4, rel=1e-6)
+    assert texture.Sz == pytest.approx(np.ptp(z), rel=1e-6)
+
+
+def moments(squares: float, cubes: float) -> tuple[float, float]:
+    return squares**0.5, cubes / squares**1.5
+
+
+def test_skewness_converges_to_the_closed_form_in_the_second_order_unlike_means_of_pixels() -> None:
+    # x^4 less its least-squares line. Pixels at the rim count whole, of which half is outside.
+    shape = np.polynomial.Polynomial([0.2, -0.8, 0, 0, 1])
+    exact = moments(*((shape**power).integ()(1) for power in (2, 3)))
+
+    def errors(cells: int) -> tuple[Array, Array]:
+        x = np.arange(cells + 1) / cells
+        z = np.broadcast_to(1e-3 * shape(x)[:, None], (cells + 1, cells + 1))
+        mesh = height_map(z, 1 / cells)
+        ours = surface_texture(*mesh, waviness="100%", form="plane", crease_angle=180)
+        pixels = x**4 - np.polyval(np.polyfit(x, x**4, 1), x)
+        by_pixels = moments(*((pixels**power).mean() for power in (2, 3)))
+        return np.abs(np.array([1e3 * ours.Sq, ours.Ssk]) / exact - 1), np.abs(
+            np.array(by_pixels) / exact - 1
+        )
+
+    (ours, pixels), (finer, finer_pixels) = errors(40), errors(160)
+    assert (finer < ours / 12).all()  # second order
+    assert (finer_pixels > pixels / 6).all()  # first order
 
 
 def test_without_an_l_filter_all_of_the_deviation_from_a_plane_is_measured() -> None:

@@ -23,7 +23,7 @@ from meshlab_spectral.cli.messages import errors_reported, print_result, print_w
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.cli.report_table import table_of
 from meshlab_spectral.documents.document import Part
-from meshlab_spectral.figures.signed_mesh import draw_signed, write_signed
+from meshlab_spectral.figures.texture import draw_texture, write_texture
 from meshlab_spectral.files.meshes import joined, load_parts
 from meshlab_spectral.filters.options import TextureOptions
 from meshlab_spectral.filters.texture import SurfaceTexture, surface_texture
@@ -68,12 +68,10 @@ def texture_command(
             V, F = joined(parts)
             selection = _selection(parts) if options.selected else None
             texture = surface_texture(V, F, options, selection=selection, progress=on_progress)
-        extent = 3 * texture.Sq or 1.0
         if scratch is not None:
-            write_signed(V, F, texture.height, extent, scratch)
+            write_texture(V, F, texture, scratch)
         if picture is not None:
-            meshes = [(source.name, V, F)]
-            draw_signed(meshes, "roughness", texture.height, extent, "red: peaks", picture)
+            draw_texture(V, F, texture, picture, source.name)
     for warning in texture.warnings:
         print_warning(warning)
     if as_json:

@@ -3,9 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from meshlab_spectral.figures.signed_mesh import draw_signed, write_signed
+from meshlab_spectral.figures.sheet import Sheet
+from meshlab_spectral.figures.signed_mesh import signed_sheet, write_signed
 from meshlab_spectral.files.comparison import Comparison
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def colour_extent(comparison: Comparison) -> float:
@@ -18,13 +23,47 @@ def colour_extent(comparison: Comparison) -> float:
 
 
 def draw_comparison(comparison: Comparison, path: Path, names: tuple[str, str]) -> None:
-    """Draw both meshes, with their names, and the deviation of b to a .png file.
+    """Draw both meshes, with their names, and the deviation of b to a .png file, atomically.
 
     Raises MeshFileError when `path` cannot be written.
     """
+    _sheet(comparison, names).save(path)
+
+
+def plot_comparison(comparison: Comparison, names: tuple[str, str] = ("a", "b")) -> Figure:
+    """Show both meshes, and how far b is from a in colours: red outside, blue inside.
+
+    All pictures have the same light and camera; the scale is in the units of the mesh.
+
+    Parameters
+    ----------
+    comparison
+        As from `compare`.
+    names
+        Labels of both meshes.
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+        Not registered with pyplot: a notebook shows it as the value of a cell; ``savefig(path)``
+        saves it.
+
+    Raises
+    ------
+    MissingPackageError
+        When PyVista (extra `render`) or Matplotlib (extra `plots`) is not installed.
+
+    Examples
+    --------
+    >>> plot_comparison(compare("scan.ply", "smooth.ply"))
+    """
+    return _sheet(comparison, names).figure
+
+
+def _sheet(comparison: Comparison, names: tuple[str, str]) -> Sheet:
     meshes = [(name, *mesh) for name, mesh in zip(names, (comparison.a, comparison.b), strict=True)]
-    caption = "red: outside"
-    draw_signed(meshes, "deviation", comparison.signed, colour_extent(comparison), caption, path)
+    extent = colour_extent(comparison)
+    return signed_sheet(meshes, "deviation", comparison.signed, extent, "red: outside")
 
 
 def write_comparison(comparison: Comparison, scratch: Path) -> None:

@@ -51,6 +51,8 @@ class Sheet:
     ----------
     pixels
         Width of a picture in pixels.
+    figure
+        The page, which a notebook shows.
 
     Raises
     ------
@@ -68,7 +70,8 @@ class Sheet:
     ) -> None:
         check_extras("plots")
         from matplotlib.backends.backend_agg import FigureCanvasAgg
-        from matplotlib.figure import Figure
+
+        from meshlab_spectral.figures.notebook import NotebookFigure
 
         fitting = (_PAGE_WIDTH - (columns + 1) * _GAP) / columns
         self._picture = min(fitting, min(aspects) * _MAX_HEIGHT)
@@ -80,8 +83,9 @@ class Sheet:
         area = self._width * self._height
         self._dpi = scale * min(_DOTS_PER_INCH, (_PAGE_PIXELS / area) ** 0.5)
         self.pixels = round(self._picture * self._dpi)
-        self._figure = Figure((self._width, self._height), dpi=self._dpi, facecolor="white")
-        self._canvas = FigureCanvasAgg(self._figure)
+        size = (self._width, self._height)
+        self.figure = NotebookFigure(size, dpi=self._dpi, facecolor="white")
+        self._canvas = FigureCanvasAgg(self.figure)
 
     def picture(self, row: int, column: int, image: Image, label: str, colour: str = INK) -> None:
         """Fill a cell with a picture and the label under it."""
@@ -90,7 +94,7 @@ class Sheet:
         axes = self._axes(left + margin, bottom, self._picture, self._heights[row])
         axes.imshow(image, aspect="auto", interpolation="antialiased")
         axes.set_axis_off()
-        self._figure.text(
+        self.figure.text(
             (left + self._cell / 2) / self._width,
             (bottom - 0.03) / self._height,
             label,
@@ -160,5 +164,5 @@ class Sheet:
             width / self._width,
             height / self._height,
         )
-        axes: Axes = self._figure.add_axes(place)
+        axes: Axes = self.figure.add_axes(place)
         return axes

@@ -15,15 +15,14 @@ from meshlab_spectral.figures.sheet import Sheet
 Array = NDArray[np.float64]
 
 
-def draw_signed(
+def signed_sheet(
     meshes: Sequence[tuple[str, Array, NDArray[Any]]],
     label: str,
     values: Array,
     extent: float,
     caption: str,
-    path: Path,
-) -> None:
-    """Draw meshes, and the last of them again in colours, to a .png file.
+) -> Sheet:
+    """Draw meshes, and the last of them again in colours.
 
     All have the same light and camera. Colours are blue, grey and red for -extent, 0 and extent.
 
@@ -35,13 +34,6 @@ def draw_signed(
         The label of the coloured picture, and the values at the vertices of the last mesh.
     extent, caption
         Value at full colour, and what the colours mean.
-    path
-        The file, written atomically.
-
-    Raises
-    ------
-    MeshFileError
-        When `path` cannot be written.
     """
     panels = [Panel(name, V, F.astype(np.int64)) for name, V, F in meshes]
     last = panels[-1]
@@ -53,7 +45,7 @@ def draw_signed(
         sheet.picture(0, column, render(panel, frame, sheet.pixels), panel.label)
     labels = (f"\N{MINUS SIGN}{extent:.3g}", "0", f"{extent:.3g}")
     sheet.colour_bar(SIGNED_COLOURS, labels, f"{caption}, in the units of the mesh")
-    sheet.save(path)
+    return sheet
 
 
 def write_signed(V: Array, F: NDArray[Any], values: Array, extent: float, scratch: Path) -> None:

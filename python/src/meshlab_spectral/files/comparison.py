@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from meshlab_spectral.extras import check_extras
 from meshlab_spectral.files.meshes import load_arrays
 from meshlab_spectral.filters.arrays import lumped_areas, mesh_arrays
+from meshlab_spectral.filters.representations import brief, line, table
 
 Array = NDArray[np.float64]
 Arrays = tuple[Array, NDArray[Any]]
@@ -62,6 +63,9 @@ class Deviation:
             "position": list(self.position),
         }
 
+    def __repr__(self) -> str:
+        return line(self)
+
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
@@ -105,6 +109,20 @@ class Comparison:
     def signed(self) -> Array:
         """The signed deviation at the vertices of b, to colour b by."""
         return self.deviations["normal" if self.same_faces else "b_to_a"].values
+
+    def __repr__(self) -> str:
+        return f"Comparison({', '.join(f'{name}={value}' for name, value in self._rows())})"
+
+    def _repr_html_(self) -> str:
+        return table(self._rows())
+
+    def _rows(self) -> list[tuple[str, str]]:
+        numbers = {"same_faces": self.same_faces, "areas": self.areas, "volumes": self.volumes}
+        rows = [(name, brief(value)) for name, value in numbers.items()]
+        for name, one in self.deviations.items():
+            of_one = {key: getattr(one, key) for key in ("mean", "rms", "percentiles", "largest")}
+            rows += [(f"{name}_{key}", brief(value)) for key, value in of_one.items()]
+        return rows
 
 
 def compare(a: Any, b: Any) -> Comparison:
