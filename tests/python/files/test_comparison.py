@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 import plyfile
 import pytest
+import trimesh
+import trimesh.proximity
 from meshlab_spectral import MeshFileError, compare
 from numpy.typing import NDArray
 
@@ -117,6 +119,85 @@ def test_distances_are_those_to_the_nearest_of_all_triangles(decimated: Decimate
         exact = np.array([nearest(p, *other) for p in X])
         measured = np.abs(result.deviations[name].values)
         np.testing.assert_allclose(measured, exact, atol=1e-6 * diagonal)
+
+
+def torus(resolution: int) -> tuple[Array, NDArray[Any]]:
+    import pyvista
+
+    ring = pyvista.ParametricTorus(
+        ringradius=1, crosssectionradius=0.3, u_res=2 * resolution, v_res=resolution
+    )
+    ring = ring.triangulate().clean(tolerance=1e-6)
+    return np.asarray(ring.points, dtype=np.float64), ring.regular_faces
+
+
+def plate(thickness: float) -> tuple[Array, NDArray[Any]]:
+    """A bent plate, closed, hardly thicker than what is measured."""
+    import pyvista
+
+    fine = pyvista.PolyData.from_regular_faces(*box(2, 1, thickness)).subdivide(3, "linear")
+    V = np.asarray(fine.points, dtype=np.float64)
+    return V + np.outer(0.2 * V[:, 0] ** 2, [0, 0, 1]), fine.regular_faces
+
+
+def scaled(mesh: tuple[Array, NDArray[Any]], *by: float) -> tuple[Array, NDArray[Any]]:
+    return mesh[0] * by, mesh[1]
+
+
+def outward(mesh: tuple[Array, NDArray[Any]]) -> tuple[Array, NDArray[Any]]:
+    V, F = mesh
+    return (V, F) if np.linalg.det(V[F]).sum() > 0 else (V, F[:, ::-1])
+
+
+PAIRS: dict[str, Callable[[], tuple[Any, Any]]] = {
+    "spheres": lambda: (sphere(1, 3), sphere(1.05, 2)),
+    "sphere and ellipsoid": lambda: (sphere(1, 3), scaled(sphere(1, 2), 1.3, 0.9, 0.7)),
+    "waves": lambda: (sphere(1, 3), waved(sphere(1, 2))),
+    "tori": lambda: (torus(24), scaled(torus(16), 1.02)),
+    "torus and bent torus": lambda: (torus(24), waved(torus(20))),
+    "sphere and torus": lambda: (sphere(1, 3), torus(20)),
+    "box and sphere": lambda: (box(1, 1, 1), sphere(0.6, 3)),
+    "thicker plate": lambda: (plate(0.02), plate(0.026)),
+    "thinner plate": lambda: (plate(0.02), plate(0.014)),
+    "moved plate": lambda: (plate(0.02), (shifted(plate(0.03)[0], 0, 0, 0.013), plate(0.03)[1])),
+}  # fmt: skip
+
+
+def waved(mesh: tuple[Array, NDArray[Any]]) -> tuple[Array, NDArray[Any]]:
+    V, F = mesh
+    return V * (1 + 0.03 * np.sin(7 * V[:, :1] + 4 * V[:, 1:2])), F
+
+
+@pytest.mark.parametrize("name", PAIRS)
+def test_signed_distances_are_those_of_trimesh(name: str) -> None:
+    a, b = (outward(mesh) for mesh in PAIRS[name]())
+    # Facets of both kinds of plates differ.
+    b = b[0], np.roll(b[1], 1, axis=0)
+    result = compare(a, b)
+    assert not result.same_faces
+    for key, (V, _), other in (("a_to_b", a, b), ("b_to_a", b, a)):
+        solid = trimesh.Trimesh(*other, process=False)
+        _, exact, _ = trimesh.proximity.closest_point_naive(solid, V)
+        values = result.deviations[key].values
+        np.testing.assert_allclose(np.abs(values), exact, atol=1e-7)
+        # Inside by the winding number: the sum of the solid angles, no nearest point is asked.
+        inside = winding_number(V, *other) > 0.5
+        positive = inside if key == "a_to_b" else ~inside
+        clear = exact > 1e-6
+        assert clear.any()
+        np.testing.assert_array_equal(values[clear] > 0, positive[clear])
+
+
+def winding_number(points: Array, V: Array, F: NDArray[Any]) -> Array:
+    """How often a closed surface winds around each point (van Oosterom and Strackee 1983)."""
+    total = np.zeros(len(points))
+    for face in F:
+        a, b, c = (V[corner] - points for corner in face)
+        A, B, C = (np.linalg.norm(side, axis=1) for side in (a, b, c))
+        volume = (a * np.cross(b, c)).sum(1)
+        cosine = A * B * C + (a * b).sum(1) * C + (b * c).sum(1) * A + (c * a).sum(1) * B
+        total += np.arctan2(volume, cosine)
+    return total / (2 * np.pi)
 
 
 def test_the_sign_at_every_edge_and_corner_is_that_of_the_side() -> None:
