@@ -1,46 +1,59 @@
 #include "core/analysis/evaluated_part.h"
 
+#include <algorithm>
+#include <array>
 #include <functional>
 #include <queue>
 #include <tuple>
 
-#include "core/laplacian/interior.h"
 #include "core/mesh/creases.h"
+#include "core/mesh/sides.h"
 
 namespace spectral {
 
 namespace {
 
-std::vector<bool> endsOf(const Surface& surface, double creaseAngle) {
-    std::vector<bool> ends = boundaryVertices(surface.F, surface.X.rows());
-    if (creaseAngle >= 180.0) return ends;
-    const std::vector<bool> creases = creaseVertices(surface.X, surface.F, creaseAngle);
-    for (std::size_t i = 0; i < ends.size(); ++i) ends[i] = ends[i] || creases[i];
+using Edge = std::array<Index, 2>;
+
+std::vector<Edge> endsOf(const Surface& surface, double creaseAngle) {
+    std::vector<Edge> ends;
+    if (creaseAngle < 180.0) ends = creaseEdges(surface.X, surface.F, creaseAngle);
+    SidesByEdge(surface.F).forEachEdge([&](auto first, auto end) {
+        if (end - first == 1) ends.push_back({first->low, first->high});
+    });
     return ends;
+}
+
+double distanceToEdge(const Vertices& X, Index i, const Edge& edge) {
+    const Eigen::RowVector3d a = X.row(edge[0]), d = X.row(edge[1]) - a, p = X.row(i) - a;
+    const double squared = d.squaredNorm();
+    const double at = squared > 0.0 ? std::clamp(p.dot(d) / squared, 0.0, 1.0) : 0.0;
+    return (p - at * d).norm();
 }
 
 }  // namespace
 
-/// Dijkstra's algorithm, except that each vertex knows its nearest end and measures straight to it:
-/// paths along edges would depend on how the surface is meshed.
+/// Dijkstra's algorithm, except that each vertex knows its nearest end, an edge, and measures
+/// straight to it: paths along edges would depend on how the surface is meshed.
 std::vector<bool> farFromEnds(const Surface& surface, const SparseMatrix& W, double creaseAngle,
                               double distance) {
     std::vector<bool> isFar(static_cast<std::size_t>(surface.X.rows()), true);
     if (distance <= 0.0) return isFar;
-    using Visit = std::tuple<double, Index, Index>;  // distance, vertex, end
+    using Visit = std::tuple<double, Index, std::size_t>;  // distance, vertex, end
     std::priority_queue<Visit, std::vector<Visit>, std::greater<>> next;
-    const std::vector<bool> ends = endsOf(surface, creaseAngle);
-    for (Index i = 0; i < surface.X.rows(); ++i)
-        if (ends[i]) next.emplace(0.0, i, i);
+    const std::vector<Edge> ends = endsOf(surface, creaseAngle);
+    for (std::size_t k = 0; k < ends.size(); ++k)
+        for (const Index i : ends[k]) next.emplace(0.0, i, k);
     while (!next.empty()) {
         const auto [along, i, end] = next.top();
         next.pop();
-        if (!isFar[i]) continue;
+        if (!isFar[i] && along > 0.0) continue;  // from an end of several edges, all are tried
         isFar[i] = false;
         for (SparseMatrix::InnerIterator entry(W, i); entry; ++entry) {
             const Index j = entry.index();
-            const double straight = (surface.X.row(j) - surface.X.row(end)).norm();
-            if (isFar[j] && straight <= distance) next.emplace(straight, j, end);
+            if (!isFar[j]) continue;
+            const double straight = distanceToEdge(surface.X, j, ends[end]);
+            if (straight <= distance) next.emplace(straight, j, end);
         }
     }
     return isFar;

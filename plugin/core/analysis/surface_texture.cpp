@@ -71,11 +71,12 @@ Evaluation lowPasses(const Laplacian& laplacian, const Eigen::MatrixXd& X, doubl
     return done;
 }
 
-/// The low-pass of heights at a form size: on cells a sixteenth of it in size, as form varies so
+/// The low-pass of signals at a form size: on cells a sixteenth of it in size, as form varies so
 /// slowly, and then over the steps between them.
 /// @param smooth  n x 3, the surface without roughness.
-Eigen::VectorXd slowPart(const MeshLaplacian& mesh, const Vertices& smooth,
-                         const Eigen::VectorXd& h, double size, const Progress& progress) {
+/// @param X       n x c signals.
+Eigen::MatrixXd slowParts(const MeshLaplacian& mesh, const Vertices& smooth,
+                          const Eigen::MatrixXd& X, double size, const Progress& progress) {
     constexpr double kCells = 16.0, kStep = 2.0;  // cells in a size, and in what smooths steps
     constexpr Index kFewer = 4;                   // cells are worth it if there are so many fewer
     constexpr double kAccuracy = 1e-4;            // of what is a correction
@@ -83,11 +84,39 @@ Eigen::VectorXd slowPart(const MeshLaplacian& mesh, const Vertices& smooth,
     const double step = kStep * size / kCells;
     const CoarseSurface coarse = coarsened(mesh, smooth, size / kCells);
     if (kFewer * coarse.laplacian.D.size() > laplacian.D.size())
-        return lowPasses(laplacian, h, size, 0.0, kAccuracy, progress).Y[0];
-    const Evaluation form =
-        lowPasses(coarse.laplacian, coarse.meansOf(h, laplacian.D),
-                  std::sqrt(size * size - step * step), 0.0, kAccuracy, progress);
-    return lowPasses(laplacian, coarse.constantIn(form.Y[0]), step, 0.0, kAccuracy, progress).Y[0];
+        return lowPasses(laplacian, X, size, 0.0, kAccuracy, progress).Y[0];
+    const auto columns = [](const Eigen::MatrixXd& in, Index rows, const auto& map) {
+        Eigen::MatrixXd out(rows, in.cols());
+        for (Index c = 0; c < in.cols(); ++c) out.col(c) = map(Eigen::VectorXd(in.col(c)));
+        return out;
+    };
+    const Eigen::MatrixXd means =
+        columns(X, coarse.laplacian.D.size(),
+                [&](const Eigen::VectorXd& x) { return coarse.meansOf(x, laplacian.D); });
+    const Evaluation form = lowPasses(coarse.laplacian, means, std::sqrt(size * size - step * step),
+                                      0.0, kAccuracy, progress);
+    const Eigen::MatrixXd steps = columns(
+        form.Y[0], X.rows(), [&](const Eigen::VectorXd& x) { return coarse.constantIn(x); });
+    return lowPasses(laplacian, steps, step, 0.0, kAccuracy, progress).Y[0];
+}
+
+/// The low-pass of heights at a form size, a mean over those that are far from ends: heights at
+/// creases are far larger, and would draw the form of the flanks with them.
+Eigen::VectorXd formOf(const Eigen::VectorXd& h, const std::vector<bool>& isFar,
+                       const MeshLaplacian& mesh, const Vertices& smooth, double size,
+                       const Progress& progress) {
+    constexpr double kLeast = 0.01;  // weight that still has a mean; the low-pass is 1e-4 off
+    if (std::count(isFar.begin(), isFar.end(), false) == 0)
+        return slowParts(mesh, smooth, h, size, progress).col(0);
+    Eigen::MatrixXd weighted(h.size(), 2);
+    for (Index i = 0; i < h.size(); ++i)
+        weighted.row(i) << (isFar[i] ? h[i] : 0.0), (isFar[i] ? 1.0 : 0.0);
+    // Columns of one size: the accuracy is that of all of them together.
+    const double scale = weighted.col(0).norm() / weighted.col(1).norm();
+    if (scale == 0.0) return Eigen::VectorXd::Zero(h.size());
+    weighted.col(1) *= scale;
+    const Eigen::MatrixXd slow = slowParts(mesh, smooth, weighted, size, progress);
+    return slow.col(0).cwiseQuotient((slow.col(1) / scale).cwiseMax(kLeast));
 }
 
 /// What is left of a signal by the S- and L-filters, its reference, and how accurately.
@@ -157,8 +186,8 @@ Heights heightsAboveShape(ShapeKind kind, const MeshLaplacian& mesh,
     return heights;
 }
 
-Heights heightsAboveLowPass(const MeshLaplacian& mesh, const TextureOptions& options,
-                            const Progress& progress) {
+Heights heightsAboveLowPass(const MeshLaplacian& mesh, const std::vector<bool>& isFar,
+                            const TextureOptions& options, const Progress& progress) {
     const Separated parts = separated(mesh.laplacian, mesh.surface.X, options, progress);
     Heights heights;
     heights.reference = parts.waviness;
@@ -167,7 +196,7 @@ Heights heightsAboveLowPass(const MeshLaplacian& mesh, const TextureOptions& opt
     const Vertices N = unitNormals(heights.reference, mesh.surface.F);
     heights.h = parts.roughness.cwiseProduct(N).rowwise().sum();
     if (options.form == FormKind::None) return heights;
-    heights.h -= slowPart(mesh, heights.reference, heights.h, formSizeOf(options), progress);
+    heights.h -= formOf(heights.h, isFar, mesh, heights.reference, formSizeOf(options), progress);
     return heights;
 }
 
@@ -197,7 +226,7 @@ SurfaceTexture surfaceTexture(const Vertices& V, const Faces& F, const TextureOp
 
     const std::optional<ShapeKind> kind = shapeKind(options.form);
     Heights heights = kind ? heightsAboveShape(*kind, mesh, evaluated, options, progress)
-                           : heightsAboveLowPass(mesh, options, progress);
+                           : heightsAboveLowPass(mesh, isFar, options, progress);
     SurfaceTexture texture;
     static_cast<TextureParameters&>(texture) =
         textureParameters(heights.h, heights.reference, mesh.surface.F, evaluated);

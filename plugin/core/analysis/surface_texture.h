@@ -27,7 +27,7 @@ struct TextureOptions {
     double noise = 0.0;     ///< S-filter: what is smaller is noise; 0: none.
     FormKind form = FormKind::Size;
     double formSize = 0.0;       ///< For FormKind::Size, > waviness; 0: `kFormPerWaviness` of that.
-    double creaseAngle = 60.0;   ///< Edges between planes that differ by more, degrees, have no
+    double creaseAngle = 50.0;   ///< Edges between planes that differ by more, degrees, have no
                                  ///< texture; 180: all have.
     std::vector<bool> selected;  ///< n, whether to measure each vertex; empty: all.
     LaplacianKind laplacian = LaplacianKind::IntrinsicDelaunay;
@@ -57,7 +57,7 @@ struct SurfaceTexture : TextureParameters {
 /// the mesh itself (Jiang, Cooper, Scott 2011), in one step each:
 /// - The reference surface is G_w X, and the height along its normals N is
 ///   h = (1 - G_f) <N, (G_n - G_w) X>. Where the surface is curved a low-pass draws it in: this
-///   offset is as large as its form and goes with it.
+///   offset is as large as its form and goes with it. G_f is a mean over what is far from ends.
 /// - From a plane, sphere or cylinder, at the distance d: h = (G_n - G_w) d, along its normals.
 /// Integrals are over the reference surface, which is also that without roughness.
 ///

@@ -173,8 +173,8 @@ def test_waves_around_a_torus_have_the_parameters_of_a_sinusoid() -> None:
     assert texture.Sdr == pytest.approx(slope**2 / 4, rel=0.04)
 
 
-# Of Sq, at any vertex: form_size is met by cells, which depend on where the mesh is.
-CELLS = 0.02
+# Of Sq, at any vertex: form_size is met by cells, which depend on the order and the direction.
+CELLS = 0.05
 
 
 @pytest.mark.parametrize(("form", "error"), [("size", CELLS), ("plane", 2e-3)])
@@ -189,7 +189,9 @@ def test_the_order_of_vertices_and_faces_does_not_matter(form: str, error: float
     np.testing.assert_allclose(other.height, one.height[order], atol=error * one.Sq)
     assert other.vertices_evaluated == one.vertices_evaluated
     for name in ("Sa", "Sq", "Sku", "Sz", "Sdr"):
-        assert getattr(other, name) == pytest.approx(getattr(one, name), rel=error), name
+        assert getattr(other, name) == pytest.approx(getattr(one, name), rel=min(error, 0.005)), (
+            name
+        )
 
 
 @pytest.mark.parametrize(("form", "error"), [("size", CELLS), ("cylinder", 1e-4)])
@@ -200,7 +202,7 @@ def test_a_turned_scaled_and_moved_mesh_has_the_same_texture(form: str, error: f
     one = surface_texture(V, F, waviness=1.2, form=form)
     other = surface_texture(40 * V @ turn + [700, -200, 90], F, waviness=48, form=form)
     np.testing.assert_allclose(other.height, 40 * one.height, atol=error * other.Sq)
-    assert other.Sdr == pytest.approx(one.Sdr, rel=error)
+    assert other.Sdr == pytest.approx(one.Sdr, rel=min(error, 0.005))
 
 
 def mirrored_map(cells: int) -> Array:
@@ -255,6 +257,35 @@ def test_skewness_converges_to_the_closed_form_in_the_second_order_unlike_means_
     (ours, pixels), (finer, finer_pixels) = errors(40), errors(160)
     assert (finer < ours / 12).all()  # second order
     assert (finer_pixels > pixels / 6).all()  # first order
+
+
+def test_what_is_near_the_middle_of_a_long_crease_is_left_out() -> None:
+    """A ridge whose crease is one row of long edges, as CAD models have them."""
+    x, y = np.meshgrid(np.array([-4.0, *np.linspace(-2, 2, 41), 4]), np.linspace(0, 12, 4))
+    y[:, 1:-1] += 0.5 * (np.arange(41) % 2)  # no vertex next to the crease is level with its ends
+    z = 4 - np.abs(x)
+    i = np.arange(x.size).reshape(x.shape)
+    a, b, c, d = (k.ravel() for k in (i[:-1, :-1], i[:-1, 1:], i[1:, 1:], i[1:, :-1]))
+    F = np.vstack([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
+    V = np.column_stack([x.ravel(), y.ravel(), z.ravel()])
+    texture = surface_texture(V, F, waviness=0.6, form="none")
+    near = np.abs(x.ravel()) * np.sqrt(2) < 0.6  # the distance to the ridge along the surface
+    assert near.sum() > 20
+    assert not texture.height[near].any()
+
+
+@pytest.mark.parametrize("sides", [3, 4, 5, 6])
+def test_flanks_of_a_prism_are_not_rough_by_its_edges(sides: int) -> None:
+    prism = pyvista.Cylinder(radius=1, height=2, resolution=sides, capping=True).triangulate()
+    prism = prism.clean().subdivide(5, "linear").clean()
+    V, F = np.asarray(prism.points, dtype=np.float64), prism.regular_faces
+    V = V + 1e-4 * np.random.default_rng(1).standard_normal(V.shape)
+    texture = surface_texture(V, F, waviness=0.2)
+    assert texture.vertices_left_out < 0.9 * len(V)
+    kept = surface_texture(V, F, waviness=0.2, crease_angle=180)
+    # A low-pass one cutoff away from an edge of 120 degrees is a hundredth of the cutoff off.
+    assert texture.Sz < 0.015 * 0.2
+    assert texture.Sz < 0.05 * kept.Sz
 
 
 def test_without_an_l_filter_all_of_the_deviation_from_a_plane_is_measured() -> None:

@@ -374,7 +374,7 @@ class TextureOptions(Options):
         "--waviness.",
     )
     crease_angle: float = option(
-        60.0,
+        50.0,
         "Edges between faces whose planes differ by more are creases. The surface within a "
         "waviness cutoff of them, and of boundaries, is left out: it has the height 0. 180 "
         "keeps creases.",
