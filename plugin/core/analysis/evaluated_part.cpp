@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <limits>
 #include <queue>
 #include <tuple>
 
@@ -37,25 +38,33 @@ double distanceToEdge(const Vertices& X, Index i, const Edge& edge) {
 /// straight to it: paths along edges would depend on how the surface is meshed.
 std::vector<bool> farFromEnds(const Surface& surface, const SparseMatrix& W, double creaseAngle,
                               double distance) {
-    std::vector<bool> isFar(static_cast<std::size_t>(surface.X.rows()), true);
+    const std::size_t n = static_cast<std::size_t>(surface.X.rows());
+    std::vector<bool> isFar(n, true);
     if (distance <= 0.0) return isFar;
+    const std::vector<Edge> ends = endsOf(surface, creaseAngle);
+    std::vector<double> nearest(n, std::numeric_limits<double>::infinity());
+    for (const Edge& end : ends)
+        for (const Index i : end) nearest[i] = 0.0;
     using Visit = std::tuple<double, Index, std::size_t>;  // distance, vertex, end
     std::priority_queue<Visit, std::vector<Visit>, std::greater<>> next;
-    const std::vector<Edge> ends = endsOf(surface, creaseAngle);
-    for (std::size_t k = 0; k < ends.size(); ++k)
-        for (const Index i : ends[k]) next.emplace(0.0, i, k);
-    while (!next.empty()) {
-        const auto [along, i, end] = next.top();
-        next.pop();
-        if (!isFar[i] && along > 0.0) continue;  // from an end of several edges, all are tried
-        isFar[i] = false;
+    const auto reachNeighbours = [&](Index i, std::size_t end) {
         for (SparseMatrix::InnerIterator entry(W, i); entry; ++entry) {
             const Index j = entry.index();
-            if (!isFar[j]) continue;
+            if (nearest[j] == 0.0) continue;
             const double straight = distanceToEdge(surface.X, j, ends[end]);
-            if (straight <= distance) next.emplace(straight, j, end);
+            if (straight > distance || straight >= nearest[j]) continue;
+            nearest[j] = straight;
+            next.emplace(straight, j, end);
         }
+    };
+    for (std::size_t end = 0; end < ends.size(); ++end)
+        for (const Index i : ends[end]) reachNeighbours(i, end);
+    while (!next.empty()) {
+        const auto [straight, i, end] = next.top();
+        next.pop();
+        if (straight == nearest[i]) reachNeighbours(i, end);
     }
+    for (std::size_t i = 0; i < n; ++i) isFar[i] = nearest[i] > distance;
     return isFar;
 }
 
