@@ -200,6 +200,16 @@ Heights heightsAboveLowPass(const MeshLaplacian& mesh, const std::vector<bool>& 
     return heights;
 }
 
+/// Whether parts are thinner than a low-pass: around a cylinder with a circumference of .7 cutoffs
+/// it leaves a quarter of the area, as of a sphere of one cutoff.
+std::vector<bool> thinParts(const MeshLaplacian& mesh, const Vertices& reference) {
+    constexpr double kThin = 0.25;
+    const Eigen::VectorXd areas = lumpedMass(reference, mesh.surface.F);
+    std::vector<bool> thin(static_cast<std::size_t>(areas.size()));
+    for (Index i = 0; i < areas.size(); ++i) thin[i] = areas[i] < kThin * mesh.laplacian.D[i];
+    return thin;
+}
+
 int countOf(const std::vector<bool>& flags) {
     return static_cast<int>(std::count(flags.begin(), flags.end(), true));
 }
@@ -228,12 +238,23 @@ SurfaceTexture surfaceTexture(const Vertices& V, const Faces& F, const TextureOp
     Heights heights = kind ? heightsAboveShape(*kind, mesh, evaluated, options, progress)
                            : heightsAboveLowPass(mesh, isFar, options, progress);
     SurfaceTexture texture;
+    const std::vector<bool> thin =
+        kind ? std::vector<bool>(evaluated.size()) : thinParts(mesh, heights.reference);
+    for (std::size_t i = 0; i < evaluated.size(); ++i) {
+        if (!evaluated[i] || !thin[i]) continue;
+        evaluated[i] = false;
+        if (texture.tooThin++ == 0) texture.firstTooThin = static_cast<int>(mesh.surface.vertex[i]);
+    }
+    if (texture.tooThin == count)
+        throw InvalidOption("waviness = " + textOf(cutoff) +
+                            ": all that could be measured is thinner than this, choose a smaller "
+                            "one");
     static_cast<TextureParameters&>(texture) =
         textureParameters(heights.h, heights.reference, mesh.surface.F, evaluated);
     for (Index i = 0; i < heights.h.size(); ++i)
         if (!evaluated[i]) heights.h[i] = 0.0;
     texture.height = extended(heights.h, mesh.surface, V.rows());
-    texture.evaluated = count;
+    texture.evaluated = count - texture.tooThin;
     texture.leftOut = selected - count;
     texture.formRadius = heights.formRadius;
     texture.errorEstimate = heights.errorEstimate;

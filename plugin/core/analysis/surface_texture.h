@@ -46,6 +46,8 @@ struct SurfaceTexture : TextureParameters {
                                  ///< units; 0 where it is left out, and at unreferenced vertices.
     int evaluated = 0;           ///< Number of vertices that count.
     int leftOut = 0;             ///< Number of selected vertices within a cutoff of an end.
+    int tooThin = 0;             ///< Of others, left out on parts that the low-pass draws together.
+    int firstTooThin = -1;       ///< The first of these, a row of V; -1: none.
     double formRadius = 0.0;     ///< Of the sphere or cylinder, length units; 0: none.
     double errorEstimate = 0.0;  ///< Estimated error of the heights, root mean square, length.
     bool accuracyReached = false;

@@ -120,6 +120,9 @@ Entries<Measured> textureEntries() {
         {"vertices_left_out",
          "number of selected vertices within a cutoff of a boundary or a crease",
          [](const R& r) -> Value { return r.leftOut; }},
+        {"vertices_too_thin",
+         "number of others on parts thinner than the waviness cutoff, left out, too",
+         [](const R& r) -> Value { return r.tooThin; }},
         {"error_estimate", "estimated root mean square error of the heights, length",
          [](const R& r) -> Value { return r.errorEstimate; }},
     };
@@ -155,6 +158,12 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
     output.warnings = percentageWarnings(mesh);
     if (const std::string note = selectionText(options.selected); !note.empty())
         output.warnings.push_back(note);
+    if (texture.tooThin > 0)
+        output.warnings.push_back(std::to_string(texture.tooThin) +
+                                  " vertices are on parts thinner than the waviness cutoff, the "
+                                  "first is vertex " +
+                                  std::to_string(texture.firstTooThin) +
+                                  ": they are left out. A smaller cutoff measures them");
     if (!texture.accuracyReached)
         output.warnings.push_back(
             accuracyWarning(kTextureAccuracy, texture.errorEstimate / mesh.diagonal));

@@ -257,6 +257,23 @@ def test_skewness_converges_to_the_closed_form_in_the_second_order_unlike_means_
     assert (finer_pixels > pixels / 6).all()  # first order
 
 
+def test_parts_thinner_than_the_cutoff_are_left_out_and_named() -> None:
+    ball = pyvista.Icosphere(radius=1, nsub=5)
+    V, F = np.asarray(ball.points, dtype=np.float64), ball.regular_faces
+    bead = 0.05 * V + [3, 0, 0]  # its circumference is .31
+    both = np.vstack([V, bead]), np.vstack([F, F + len(V)])
+    texture = surface_texture(*both, waviness=0.5, crease_angle=180)
+    assert texture.vertices_too_thin == len(V)
+    assert texture.vertices_evaluated == len(V)
+    assert not texture.height[len(V) :].any()
+    assert any(f"the first is vertex {len(V)}:" in warning for warning in texture.warnings)
+    fine = surface_texture(*both, waviness=0.1, crease_angle=180)
+    assert fine.vertices_too_thin == 0
+    assert not any("thinner" in warning for warning in fine.warnings)
+    with pytest.raises(OptionError, match="thinner than this"):
+        surface_texture(np.vstack([bead, bead + 2]), both[1], waviness=0.5, crease_angle=180)
+
+
 def test_what_is_near_the_middle_of_a_long_crease_is_left_out() -> None:
     """A ridge whose crease is one row of long edges, as CAD models have them."""
     x, y = np.meshgrid(np.array([-4.0, *np.linspace(-2, 2, 41), 4]), np.linspace(0, 12, 4))

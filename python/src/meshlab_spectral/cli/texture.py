@@ -96,7 +96,11 @@ def _selection(parts: Sequence[Part]) -> NDArray[np.bool_]:
 
 def _rows(texture: SurfaceTexture) -> list[tuple[str, str]]:
     noise = f"{texture.noise:.4g}" if texture.noise else "none"
-    counts = texture.vertices_evaluated, texture.vertices_left_out
+    counts = (
+        texture.vertices_evaluated,
+        texture.vertices_left_out,
+        texture.vertices_too_thin,
+    )
     waviness = f"{texture.waviness:.4g}" if texture.waviness else "none"
     above = (f"{texture.bearing_heights[percent]:.4g}" for percent in _BEARING)
     form = [] if texture.form_radius is None else [("Radius of the form", texture.form_radius)]
@@ -114,5 +118,5 @@ def _rows(texture: SurfaceTexture) -> list[tuple[str, str]]:
         ("Sdr, additional area", f"{100 * texture.Sdr:.4g} %"),
         ("Exceeded by 10 / 50 / 90 % of the area", " / ".join(above)),
         *((name, f"{radius:.4g}") for name, radius in form),
-        ("Vertices evaluated, left out", "{}, {}".format(*counts)),
+        ("Vertices evaluated, left out, too thin", "{}, {}, {}".format(*counts)),
     ]

@@ -53,6 +53,9 @@ class SurfaceTexture:
     vertices_evaluated, vertices_left_out
         Numbers of vertices that count, and of selected ones within a cutoff of a boundary or a
         crease.
+    vertices_too_thin
+        Number of others on parts thinner than the waviness cutoff, left out, too; a warning names
+        the first.
     error_estimate
         Estimated root mean square error of the heights, length units.
     warnings
@@ -79,6 +82,7 @@ class SurfaceTexture:
     bearing_heights: NDArray[np.float64]
     vertices_evaluated: int
     vertices_left_out: int
+    vertices_too_thin: int
     error_estimate: float
     warnings: list[str]
     form_radius: float | None = None
