@@ -170,11 +170,14 @@ Heights heightsAboveShape(ShapeKind kind, const MeshLaplacian& mesh,
     const Eigen::VectorXd counts =
         Eigen::VectorXd::NullaryExpr(X.rows(), [&](Index i) { return evaluated[i] ? 1.0 : 0.0; });
     const Vertices normals = unitNormals(X, mesh.surface.F);
-    const auto [roughD, roughN] =
-        fitShape(kind, X, normals, mesh.laplacian.D.cwiseProduct(counts)).distancesOf(X);
-    // Again by areas of the shape, as all means are: steep parts of the surface have larger ones.
-    const Eigen::VectorXd areas = lumpedMass(X - roughD.asDiagonal() * roughN, mesh.surface.F);
-    const FittedShape shape = fitShape(kind, X, normals, areas.cwiseProduct(counts));
+    FittedShape shape = fitShape(kind, X, normals, mesh.laplacian.D.cwiseProduct(counts));
+    if (kind == ShapeKind::Plane) {
+        // Again by areas of the plane, as all means are: steep parts of the surface have larger
+        // ones. Seen from a centre or an axis near it, parts far from the shape would weigh most.
+        const auto [d, N] = shape.distancesOf(X);
+        const Eigen::VectorXd areas = lumpedMass(X - d.asDiagonal() * N, mesh.surface.F);
+        shape = fitShape(kind, X, normals, areas.cwiseProduct(counts));
+    }
     const auto [d, N] = shape.distancesOf(X);
     const Separated parts = separated(mesh.laplacian, d, options, progress);
     Heights heights;

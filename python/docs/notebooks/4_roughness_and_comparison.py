@@ -25,7 +25,7 @@ V, F = np.asarray(bunny.points, dtype=float), bunny.regular_faces
 # roughness: of the bunny, its fur.
 
 texture = spectral.surface_texture(V, F, waviness="3%")
-spectral.plot_texture(V, F, texture, "bunny")
+figure = spectral.plot_texture(V, F, texture, "bunny")
 
 # %%
 # Sa and Sq are the mean and the root mean square height, Sz the distance from the deepest valley,
@@ -52,4 +52,4 @@ print(texture.vertices_evaluated, texture.vertices_left_out, texture.vertices_to
 smooth, _ = spectral.filter_mesh(V, F, feature_size="6%")
 change = spectral.compare((V, F), (smooth, F))
 print(change.deviations["normal"])
-spectral.plot_comparison(change, ("bunny", "smooth"))
+figure = spectral.plot_comparison(change, ("bunny", "smooth"))

@@ -299,6 +299,8 @@ class _TextureReport(TypedDict):
     """Number of vertices that count."""
     vertices_left_out: int
     """Number of selected vertices within a cutoff of a boundary or a crease."""
+    vertices_too_thin: int
+    """Number of others on parts thinner than the waviness cutoff, left out, too."""
     waviness: float
     """Cutoff of the L-filter, length."""
     warnings: list[str]
