@@ -187,7 +187,7 @@ class Reference:
         for number in range(10):
             time, sweeps, scale = (4, 16, 0.25) if number < 6 else (8, 32, 0.22)
             N = self.filtered_normals(X, time / weaker, scale, height / edge, 2, True)
-            Y = limited(X0, self.followed(X0, N, sweeps), max(3 * height, 0.3 * edge))
+            Y = limited(X0, self.followed(X0, N, sweeps), max(6 * height, 0.3 * edge))
             y = ((Y - X0) * self.vertex_normals(Y, 1)).sum(axis=1)
             degrees = np.diff(self.P.indptr)
             smooth = self.diffused(y, 1).std() / y.std() / np.sqrt((1 + 1 / degrees).mean() / 4)

@@ -126,7 +126,6 @@ FilteredInRounds filterInRounds(const FaceGraph& graph, const Points& X0,
     constexpr int kWeakRounds = 6, kMaxRounds = 10;
     constexpr double kMaxRemoved = 1.03;  // multiple of the height
     constexpr double kMaxSmoothness = 0.957, kFirstSmoothness = 0.76, kColour = 0.75;
-    constexpr double kMaxDeviationsPerRound = 3.0;
 
     const bool isByPlace = options.place.isAny();
     const Eigen::VectorXd times = isByPlace ? timesOfFaces(graph, options) : Eigen::VectorXd();
@@ -148,7 +147,7 @@ FilteredInRounds filterInRounds(const FaceGraph& graph, const Points& X0,
         }
         const Points next = filterNormals(graph, removal.X, filter, N);
         Points X = followNormals(graph, X0, next, options.mayMove, round.sweeps);
-        limitDisplacement(X0, options, kMaxDeviationsPerRound, X);
+        limitDisplacement(X0, options, kMaxDeviations, X);
         const double smooth =
             smoothness(graph.vertices, removedAlongNormals(graph, X0, X, options));
         if (removal.rounds == 0)
