@@ -55,7 +55,14 @@ class FilterDialog:
         """Move the dialog's upper left corner."""
         # It covers the mesh at first; and a window at the edge of the screen stays within it.
         self._desktop.run(
-            *("xdotool", "search", "--onlyvisible", "--name", f"^{re.escape(self.name)}$"),
+            *(
+                "xdotool",
+                "search",
+                "--sync",
+                "--onlyvisible",
+                "--name",
+                f"^{re.escape(self.name)}$",
+            ),
             *("windowmove", str(x), str(y)),
         )
         wait_for("the dialog to move", lambda: abs(self.window.box.x - x) < 20)
