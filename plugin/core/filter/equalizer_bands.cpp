@@ -112,8 +112,10 @@ EqualizerBands::EqualizerBands(const Vertices& V, const Faces& F, const BandOpti
     const std::size_t half = (gains.size() + 1) / 2;
     for (std::size_t from = 0; from < gains.size(); from += half) {
         const std::size_t to = std::min(from + half, gains.size()), middle = (from + to) / 2;
-        const double share = 1.0 / static_cast<double>(gains.size());
-        const Progress stage = progress.part(from * share, to * share);
+        const auto share = [&](std::size_t i) {
+            return static_cast<double>(i) / static_cast<double>(gains.size());
+        };
+        const Progress stage = progress.part(share(from), share(to));
         const double pole =
             selectPole(gains[middle], centres_[middle], bulkSpectrum(L), evaluation.accuracy);
         ldlt.factorizeDefinite(L.W, L.D, pole, [&] { stage.report(0.0, "factorizing"); });
