@@ -14,6 +14,7 @@ from typing import Any
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import meshlab_spectral
+import numpy as np
 import pymeshlab
 import pytest
 from commands import PRECIOUS
@@ -52,6 +53,12 @@ def pytest_configure(config: pytest.Config) -> None:
 @pytest.fixture(scope="session", autouse=True)
 def _plugin_loaded() -> None:
     meshlab_spectral.load()
+
+
+@pytest.fixture
+def record_property(record_property: Callable[[str, Any], None]) -> Callable[[str, Any], None]:
+    """Record plain numbers, which alone pass between the processes of pytest-xdist."""
+    return lambda name, value: record_property(name, np.asarray(value).tolist())
 
 
 @pytest.fixture(scope="session")
