@@ -73,6 +73,13 @@ REPORTS = {
 }
 # Entries that Python adds, in place of all others but the warnings.
 COLUMNS = {"ScalarsReport": ("columns", "of values n x k, their k reports, in place of these")}
+# Entries that Python adds, besides the others.
+ADDED = {
+    "DenoiseReport": (
+        "noise_heights",
+        "with `store_noise_height`, height of the noise at each of the n vertices, length; 0: none",
+    )
+}
 # With these, where a filter has them, its report has all entries that there may be.
 MORE = {"spectrum": "truncated", "basis_size": 20, "steps": 1, "form": "sphere"}
 REPORTS_HEAD = '''"""The reports of the filters: entries, their meaning, their units.
@@ -244,6 +251,9 @@ def _report_of(table: str) -> str:
     if table in COLUMNS:
         entries = [(*one[:2], False) for one in [COLUMNS[table], *entries]]
         kinds["columns"] = f"list[{table}]"
+    if table in ADDED:
+        entries.append((*ADDED[table], False))
+        kinds[ADDED[table][0]] = "list[float]"
     if "summary" in kinds:
         entries.append(("summary", "what was found and done, in one line", True))
     entries.append(("warnings", "problems that were not errors, and what to do about them", True))

@@ -22,6 +22,9 @@ constexpr int kMovesVertices =
 /// Vertex attribute that holds the details.
 const char* const kDetails = "spectral_details";
 
+/// Vertex attribute that holds the height of noise.
+const char* const kNoiseHeight = "noise_height";
+
 /// Prefix of the names of the vertex attributes that hold harmonics, followed by the mode.
 const char* const kHarmonic = "harmonic_";
 
@@ -80,6 +83,10 @@ void showSigned(const MeshMatrices& input, const Eigen::VectorXd& values, double
 void writePositions(const MeshMatrices& input, const Values&, FilterOutput& output,
                     MeshModel& mesh) {
     if (output.V.rows() > 0) setPositions(input, output.V, mesh);
+    if (output.values.rows() > 0) {
+        setAttribute(input.vertexIndex, kNoiseHeight, output.values, mesh);
+        output.text += std::string("\n  the height of the noise: attribute ") + kNoiseHeight;
+    }
     if (output.details.rows() == 0) return;
     const Eigen::VectorXd outward = alongNormals(input, output.details, mesh.cm);
     setVectors(input.vertexIndex, kDetails, output.details, mesh);

@@ -22,6 +22,7 @@ struct DenoiseCall {
     DenoiseOptions options;
     bool selected = false;
     Weight weight = Weight::None;
+    bool storeNoiseHeight = false;
 };
 
 Fields<DenoiseCall> denoiseFields() {
@@ -61,6 +62,11 @@ Fields<DenoiseCall> denoiseFields() {
         boundaryField<Call>([](auto& call) -> auto& { return call.options.boundary; },
                             "*free*: it moves along its normals, no further than the noise "
                             "explains. *fixed*: it stays exactly in place."),
+        field<Call>([](auto& call) -> auto& { return call.storeNoiseHeight; }, "store_noise_height",
+                    "Store noise height",
+                    "Keep the height of the noise at each vertex, 0 where there is none, as the "
+                    "vertex attribute noise_height: where it was found.")
+            .advanced(),
     };
 }
 
@@ -215,6 +221,7 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
     output.text = reportText(output.summary, result, mesh.diagonal);
     output.warnings = warningsOf(call.options, output.summary, result);
     append(percentageWarnings(mesh), output.warnings);
+    if (call.storeNoiseHeight) output.values = std::move(result.heights);
     output.V = std::move(result.V);
     return output;
 }

@@ -185,6 +185,13 @@ Points denoisePart(const MovingPart& part, const FaceGraph& graph, const Denoise
     return strength * part.weight.asDiagonal() * (done.X - X0);
 }
 
+/// Height of the noise at every vertex of the part, as given or else as measured; 0: none.
+Eigen::VectorXd heightsOf(const Diagnosis& diagnosis, const DenoiseOptions& options, Index n) {
+    if (diagnosis.field.isAny()) return diagnosis.field.height;
+    const bool isKnown = options.noiseHeight > 0.0;
+    return Eigen::VectorXd::Constant(n, isKnown ? options.noiseHeight : diagnosis.rmsHeight());
+}
+
 /// The weights of the offset that restores the volume: clean places stay.
 Eigen::VectorXd offsetWeight(Eigen::VectorXd weight, const MovingPart& part,
                              const Diagnosis& diagnosis) {
@@ -224,6 +231,7 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
         if (height[i] == 0.0) weight[i] = 0.0;
 
     DenoiseResult result;
+    result.heights.setZero(V.rows());
     static_cast<SurfaceCounts&>(result) =
         countsOf(whole, V.rows(), components.count, interior.fixedVertices());
 
@@ -239,6 +247,9 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
         requireMemory(kBytesPerVertex * static_cast<double>(n), n);
         const FaceGraph graph = faceGraph(part.surface.F, part.surface.X.rows());
         const Points displacement = denoisePart(part, graph, options, progress, result);
+        result.heights = extended(extendedByZero(heightsOf(result.diagnosis, options, n),
+                                                 part.surface.vertex, whole.X.rows()),
+                                  whole, V.rows());
         for (Index i = 0; i < displacement.rows(); ++i)
             moved.row(part.surface.vertex[i]) += displacement.row(i);
         // Prefer the oriented faces of the graph; their indices are valid only if the part is all.

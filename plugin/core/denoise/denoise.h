@@ -30,6 +30,8 @@ struct DenoiseResult : SurfaceCounts, Movement {
     Diagnosis diagnosis;
     double noiseHeight = 0.0;  ///< Height of the removed noise, length units; 0: none.
     double noiseSize = 0.0;    ///< Its correlation length, length units; 0: white noise.
+    Eigen::VectorXd heights;   ///< n: height of the noise at each vertex as found, or as given,
+                               ///< length units; 0: none.
     int rounds = 0;            ///< Rounds of the normal filter, or linear steps; 0: none.
     bool isCrumpled = false;   ///< Nothing removed: that would have folded the surface.
 };

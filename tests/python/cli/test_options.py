@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import plyfile
 import pymeshlab
 import pytest
 from commands import arrays_of, assert_fails, command
@@ -144,6 +145,15 @@ def test_details_are_saved_with_the_shape_they_were_taken_from(cow: Path, tmp_pa
     )
     done = command("filter", cow, tmp_path / "details.obj", "--result", "details")
     assert_fails(done, 2, "details.obj", ".ply")
+
+
+def test_the_height_of_noise_is_saved_as_an_attribute(cow: Path, tmp_path: Path) -> None:
+    target = tmp_path / "heights.ply"
+    command("denoise", cow, target, "--noise-height", "0.1e", "--store-noise-height")
+    heights = plyfile.PlyData.read(target)["vertex"]["noise_height"]
+    assert (heights > 0).all()
+    done = command("denoise", cow, tmp_path / "heights.obj", "--store-noise-height")
+    assert_fails(done, 2, "heights.obj", ".ply")
 
 
 def test_options_given_besides_a_preset_replace_its_own(cow: Path, tmp_path: Path) -> None:

@@ -297,6 +297,26 @@ def test_heights_by_place_are_removed_where_they_are_given(size: str | None) -> 
     assert a == pytest.approx(b, rel=0.3)
 
 
+def test_the_height_of_each_vertex_is_kept_on_request() -> None:
+    V, F = cube(24)
+    up, height = V[:, 2] > 12, 0.25 * mean_edge(V, F)
+    X = V + np.where(up[:, None], height, 0) * np.random.default_rng(3).standard_normal(V.shape)
+    Y, report = denoise_mesh(X, F, store_noise_height=True)
+    found = np.array(report["noise_heights"])
+    np.testing.assert_array_equal(found > 0, (Y != X).any(axis=1))
+    assert np.median(found[V[:, 2] > 16]) == pytest.approx(height, rel=0.25)
+    assert not found[V[:, 2] < 6].any()
+    plain, report = denoise_mesh(X, F)
+    np.testing.assert_array_equal(plain, Y)
+    assert "noise_heights" not in report
+    assert not any(denoise_mesh(V, F, store_noise_height=True)[1]["noise_heights"])
+
+    mesh_set = mesh_set_of(X, F)
+    mesh_set.apply_filter(DENOISE, store_noise_height=True)
+    stored = mesh_set.current_mesh().vertex_custom_scalar_attribute_array("noise_height")
+    np.testing.assert_allclose(stored, found)
+
+
 def test_weights_need_a_height_and_a_noisy_place() -> None:
     V, F = cube(8)
     with pytest.raises(OptionError, match=r"not given: give noise_height"):

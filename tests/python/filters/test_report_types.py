@@ -26,7 +26,10 @@ TRUNCATED: dict[str, Any] = {"spectrum": "truncated", "basis_size": 20, "steps":
 # Reports without and with the entries that only some have.
 RUNS: dict[str, list[Callable[[], Any]]] = {
     "FilterReport": [lambda: filter_mesh(V, F)[1], lambda: filter_mesh(V, F, **TRUNCATED)[1]],
-    "DenoiseReport": [lambda: denoise_mesh(V, F)[1]],
+    "DenoiseReport": [
+        lambda: denoise_mesh(V, F)[1],
+        lambda: denoise_mesh(V, F, store_noise_height=True)[1],
+    ],
     "ScalarsReport": [
         lambda: filter_scalars(V, F, V[:, 0])[1],
         lambda: filter_scalars(V, F, V)[1],

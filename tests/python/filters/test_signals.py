@@ -91,7 +91,7 @@ def test_filtered_quality_agrees_with_scipy(
         Y, report = filter_scalars(V, F, Q, feature_size="15%", **options)
         expected = expected_signals(V, F, Q[:, None], options, report)[:, 0]
         error = np.abs(Y - expected).max() / np.ptp(Q)
-        record_property(f"error, {name}", error)
+        record_property(f"error, {name}", float(error))
         assert error <= AGREEMENT, name
         assert report["warnings"] == []
         change, d = expected - Q, reference.lumped_areas(V, F)

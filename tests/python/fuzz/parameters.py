@@ -76,6 +76,7 @@ PARAMETERS: dict[str, dict[str, st.SearchStrategy[Any]]] = {
         "strength": _of((1.0, 0.5, 3.0, 0.0, 1e-30, 1e30), (-1.0, NAN, INFINITY)),
         "noise_height": _SIZES,
         "keep_creases": st.booleans(),
+        "store_noise_height": st.booleans(),
         "boundary": _BOUNDARY,
     },
     "apply_coord_spectral_equalizer": {

@@ -89,6 +89,9 @@ def test_noise_that_differs_from_place_to_place_needs_a_height(tmp_path: Path) -
     write_ply(source, np.where(truth[:, :1] > 0, noisy, truth), F)
     with pytest.raises(UntiledError, match="give noise_height"):
         filter_in_tiles(source, tiled, DenoiseOptions(), _ignore, TILES, _ignore)
+    stored = DenoiseOptions(store_noise_height=True)
+    with pytest.raises(UntiledError, match="store_noise_height"):
+        filter_in_tiles(source, tiled, stored, _ignore, TILES, _ignore)
     assert not tiled.exists()
     given = DenoiseOptions(noise_height="0.2e")
     assert filter_in_tiles(source, tiled, given, _ignore, TILES, _ignore)["rounds"] > 0

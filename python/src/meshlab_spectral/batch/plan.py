@@ -73,8 +73,10 @@ def plan_batch(
         settings.ending,
     )
     if settings.joined:
-        if described.get("result") == "details":
-            raise OptionError("joined files cannot hold details: leave out either of both")
+        if described.get("result") == "details" or described.get("store_noise_height"):
+            raise OptionError(
+                "joined files cannot hold details or the height of noise: leave out either of both"
+            )
         work = {"task": "joined", "filter": work["task"], "options": described}
         # What becomes of a file depends on the others.
         described = described | {"joined": [output.source for output in planned]}

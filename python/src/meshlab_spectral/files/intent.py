@@ -14,7 +14,7 @@ from meshlab_spectral.files.meshes import (
     StageCallback,
     load_parts,
     require_one_choice,
-    wants_details,
+    wanted_attribute,
     whole_of,
 )
 from meshlab_spectral.files.meshlab_files import check_writable
@@ -46,7 +46,7 @@ def intent_of(
     """
     require_one_choice(options, region)
     on_stage("reading", None)
-    is_patched = not wants_details(options, target) and is_same_format(source, target)
+    is_patched = not wanted_attribute(options, target) and is_same_format(source, target)
     if not is_patched:
         check_writable(target)
     parts = load_parts(source, mesh)

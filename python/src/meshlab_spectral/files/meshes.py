@@ -36,9 +36,14 @@ from meshlab_spectral.files.region_vertices import restricted
 from meshlab_spectral.files.script import apply_script
 from meshlab_spectral.files.sources import check_name, check_source
 from meshlab_spectral.files.touching import moved_alike, pieces
-from meshlab_spectral.filters.calling import DETAILS, call_filter, mesh_set_of, select_vertices
+from meshlab_spectral.filters.calling import (
+    DETAILS,
+    NOISE_HEIGHT,
+    call_filter,
+    mesh_set_of,
+    select_vertices,
+)
 from meshlab_spectral.filters.option_types import Options
-from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.filters.running import plain, run
 from meshlab_spectral.plugin.loading import load
 
@@ -113,9 +118,8 @@ def filter_to_scratch(
         parameters = options.pymeshlab_parameters(mesh_set.current_mesh())
         return plain(call_filter(mesh_set, options.FILTER, parameters))
 
-    if wants_details(options, scratch):
-        settings = {f"__ca_vp__{DETAILS}": True}
-        return _through_meshlab(source, scratch, apply, on_stage, verbose, settings)
+    if attribute := wanted_attribute(options, scratch):
+        return _through_meshlab(source, scratch, apply, on_stage, verbose, {attribute: True})
     if format_of(source) and (
         source.suffix.lower() not in _READ_BY_MESHLAB or is_same_format(source, scratch)
     ):
@@ -261,13 +265,20 @@ def _moved(
     return shapes, names, reports, parted
 
 
-def wants_details(options: Options, target: Path) -> bool:
-    """Whether details are written; raise FormatError unless `target` can hold them."""
-    if not isinstance(options, FilterOptions) or options.result != "details":
-        return False
+def wanted_attribute(options: Options, target: Path) -> str:
+    """Return the vertex attribute to write, by the name that MeshLab's exporter gives it, or "".
+
+    Raises FormatError unless `target` can hold it.
+    """
+    if getattr(options, "result", "") == "details":
+        setting, contents = f"__ca_vp__{DETAILS}", "details"
+    elif getattr(options, "store_noise_height", False):
+        setting, contents = f"__ca_vs__{NOISE_HEIGHT}", "the height of noise"
+    else:
+        return ""
     if target.suffix.lower() != ".ply":
-        raise FormatError(f"{target.name} cannot hold details: choose .ply")
-    return True
+        raise FormatError(f"{target.name} cannot hold {contents}: choose .ply")
+    return setting
 
 
 def require_one_choice(options: Options, region: Region | None) -> None:

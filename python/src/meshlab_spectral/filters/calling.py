@@ -19,8 +19,9 @@ from meshlab_spectral.plugin.library import last_error, last_summary, last_warni
 from meshlab_spectral.plugin.loading import load
 from meshlab_spectral.plugin.pymeshlab_texts import corrected
 
-# The vertex attribute in which the plugin stores the details.
+# The vertex attributes in which the plugin stores the details, and the height of noise.
 DETAILS = "spectral_details"
+NOISE_HEIGHT = "noise_height"
 
 
 def call_filter(mesh_set: Any, name: str, parameters: dict[str, Any]) -> dict[str, Any]:

@@ -64,8 +64,9 @@ def denoise_mesh(
         `noise_height` and `noise_size` of the removed noise, both 0 if none was; the measured
         `estimated_noise_height`, `estimated_noise_size` and `noise_correlation` of neighbours;
         `spikes`, a number of vertices; `voxel_size` along each axis; `mean_edge`,
-        `max_displacement`, `rms_displacement` and others. "warnings" lists problems and what to
-        do about them, and says so if nothing has changed.
+        `max_displacement`, `rms_displacement` and others; with `store_noise_height` also
+        `noise_heights`, the height at each vertex, 0 where there is no noise. "warnings" lists
+        problems and what to do about them, and says so if nothing has changed.
 
     Raises
     ------

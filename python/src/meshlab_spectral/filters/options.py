@@ -66,6 +66,7 @@ class DenoiseKeywords(TypedDict, total=False):
     keep_creases: bool
     weight: Weight
     boundary: Boundary
+    store_noise_height: bool
 
 
 class TextureKeywords(TypedDict, total=False):
@@ -296,6 +297,11 @@ class DenoiseOptions(Options):
         "free",
         "The boundary of an open surface, holes included. free: it moves along its normals, "
         "no further than the noise explains. fixed: it stays exactly in place.",
+    )
+    store_noise_height: bool = option(
+        False,
+        "Keep the height of the noise at each vertex, 0 where there is none, as the vertex "
+        "attribute noise_height: where it was found.",
     )
 
 

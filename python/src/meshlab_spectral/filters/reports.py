@@ -85,9 +85,7 @@ class FilterReport(_FilterReport, total=False):
     """Residuals of the harmonics, relative."""
 
 
-class DenoiseReport(TypedDict):
-    """Report of `denoise_mesh`; lengths are in the units of the mesh."""
-
+class _DenoiseReport(TypedDict):
     components: int
     """Number of connected components of the surface."""
     estimated_noise_height: float
@@ -139,6 +137,13 @@ class DenoiseReport(TypedDict):
     """What was found and done, in one line."""
     warnings: list[str]
     """Problems that were not errors, and what to do about them."""
+
+
+class DenoiseReport(_DenoiseReport, total=False):
+    """Report of `denoise_mesh`; lengths are in the units of the mesh."""
+
+    noise_heights: list[float]
+    """With `store_noise_height`, height of the noise at each of the n vertices, length; 0: none."""
 
 
 class _ScalarsReport(TypedDict):

@@ -77,7 +77,10 @@ def filtered(
         progress=progress,
         threads=threads,
     )
+    report = done.plain_report
     if done.details is not None:
-        return done.details, done.plain_report
+        return done.details, report
+    if done.values is not None:
+        report["noise_heights"] = done.values[:, 0].tolist()
     X = V.copy() if done.vertices is None else done.vertices
-    return X if kind is None else kind.moved(mesh_or_vertices, X), done.plain_report
+    return X if kind is None else kind.moved(mesh_or_vertices, X), report

@@ -30,6 +30,8 @@ _THIN = 0.5
 def require_local(options: Options) -> None:
     """Raise UntiledError unless a filter only depends on what is near each vertex."""
     if not isinstance(options, FilterOptions):
+        if getattr(options, "store_noise_height", False):
+            raise UntiledError("store_noise_height is not written in tiles: choose another value")
         return
     reasons = {
         "laplacian = uniform measures sizes by the whole mesh": options.laplacian == "uniform",
