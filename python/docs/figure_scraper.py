@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import pyvista
 from matplotlib.figure import Figure
 from sphinx_gallery.scrapers import figure_rst
 
@@ -22,4 +23,7 @@ def scrape(block: Any, variables: dict[str, Any], gallery: dict[str, Any]) -> st
             setattr(value, _SHOWN, True)
             paths.append(next(variables["image_path_iterator"]))
             value.savefig(paths[-1], dpi=100)
+    if paths:
+        # The figures' meshes were drawn by plotters that are closed: PyVista would save them, too.
+        pyvista.close_all()
     return str(figure_rst(paths, gallery["src_dir"]))
