@@ -197,7 +197,7 @@ Filter fractionalFilterContract() {
             "Smooths, sharpens or enhances details *by their size*, as an equalizer filters sound "
             "by frequency. Low-pass: details larger than the feature size stay, smaller ones go.",
             "Kovnatsky, Bronstein, Bronstein: [Stable Spectral Mesh Filtering]"
-            "(https://doi.org/10.1007/978-3-642-33863-2_9), 2012",
+            "(https://doi.org/10.1007/978-3-642-33863-2), 2012",
             parametersOf(fractionalFields()),
             describedBy(fractionalEntries()),
             run};
