@@ -19,7 +19,7 @@ from meshlab_spectral.figures.pictures import Image, Panel, View
 from side_by_side import save, side_by_side
 
 # From the folder of the meshes.
-PAIRS = "../denoise"
+PAIRS, LOCAL_PAIRS = "../denoise", "../denoise_local"
 
 
 @dataclass(frozen=True)
@@ -50,12 +50,18 @@ def trimstar(mesh: MeshFile) -> Drawing:
     return _drawing(mesh, {"trimstar_n3": Detail()})
 
 
-def _drawing(mesh: MeshFile, details: dict[str, Detail]) -> Drawing:
+def local(mesh: MeshFile) -> Drawing:
+    """Show a part, a building and a scan with noise in some places only."""
+    names = ("half-boxy", "facade00-20", "real30-bunny")
+    return _drawing(mesh, {name: Detail() for name in names}, LOCAL_PAIRS)
+
+
+def _drawing(mesh: MeshFile, details: dict[str, Detail], folder: str = PAIRS) -> Drawing:
     """Make a picture with a row for each pair."""
     rows: list[tuple[list[Panel], Detail]] = []
     numbers: Numbers = {}
     for name, detail in details.items():
-        pair = Pair(mesh(f"{PAIRS}/{name}_noisy.ply").parent, name)
+        pair = Pair(mesh(f"{folder}/{name}_noisy.ply").parent, name)
         taubin, counts = METHODS["Taubin"]
         smoothed = [taubin(pair.V, pair.F, count) for count in counts]
         shapes = {
@@ -92,5 +98,6 @@ def _row(panels: list[Panel], detail: Detail) -> Image:
 
 PICTURES: dict[str, Callable[[MeshFile], Drawing]] = {
     "denoise": denoise,
+    "denoise_local": local,
     "denoise_trimstar_n3": trimstar,
 }
