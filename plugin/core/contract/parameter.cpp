@@ -59,13 +59,11 @@ double inProportion(double length, const Parameter& parameter, const Value& valu
     if (!std::isfinite(share) || share <= kRoundOff * parameter.largestShare) return length;
     std::ostringstream wanted;
     wanted << std::setprecision(3) << "is " << 100.0 * share << " % of the diagonal of the mesh, "
-           << mesh.diagonal << ": ";
+           << mesh.diagonal << ": give at most " << 100.0 * parameter.largestShare << "%";
     const double* const number = std::get_if<double>(&value);
     const double percent = number != nullptr ? *number : length;
     if (!std::holds_alternative<std::string>(value) && percent <= 100.0 * parameter.largestShare)
-        wanted << "did you mean " << percent << "%?";
-    else
-        wanted << "give at most " << 100.0 * parameter.largestShare << "%";
+        wanted << "; did you mean " << percent << "%?";
     reject(parameter, value, wanted.str());
 }
 
