@@ -49,11 +49,28 @@ std::string namedText(const Diagnosis& diagnosis) {
     return text;
 }
 
+/// What to give where nothing was found: the noise that the detail measured in a shape would be, or
+/// else ripples, which no measure tells from a shape.
+std::string remedyText(const NoiseEstimate& noise, bool isShape) {
+    constexpr double kRippleHeight = 0.1, kRippleSize = 2.0;  // edges
+    const double edge = noise.meanEdge;
+    const bool isDetail = isShape && noise.height >= kMinHeight * edge;
+    const double height = isDetail ? noise.height / edge : kRippleHeight;
+    const double size = isDetail ? noise.size : kRippleSize;
+    std::string values = "noise height " + numberText(height * edge, 2);
+    std::string edges = numberText(height, 2);
+    if (size > 1.0) {
+        values += " and noise size " + numberText(size * edge, 2);
+        edges += " and " + numberText(size, 2);
+    }
+    return (isDetail ? "If its finest detail is noise, try "
+                     : "For ripples several edges wide, try ") +
+           values + " (" + edges + " edges), or Spectral Filter (Fractional)";
+}
+
 /// Why there is nothing to remove, and what to give instead, in numbers of this mesh.
 std::string nothingText(const Diagnosis& diagnosis) {
-    constexpr double kHeight = 0.1, kSize = 2.0;  // edges
-    const double edge = diagnosis.noise.meanEdge;
-    const std::string height = numberText(kHeight * edge, 2);
+    const std::string height = numberText(0.1 * diagnosis.noise.meanEdge, 2);
     switch (diagnosis.kind) {
         case NoiseKind::Stretched:
             return std::string(1, "xyz"[diagnosis.stretchedAxis.value_or(2)]) +
@@ -70,10 +87,8 @@ std::string nothingText(const Diagnosis& diagnosis) {
                    height + " (0.1 edges)";
         default:
             return "found no noise clearly distinct from the shape: not at every vertex, in "
-                   "places, as spikes, or as steps of voxels or rounded coordinates. For ripples "
-                   "several edges wide, try noise height " +
-                   height + " and noise size " + numberText(kSize * edge, 2) +
-                   " (0.1 and 2 edges), or Spectral Filter (Fractional)";
+                   "places, as spikes, or as steps of voxels or rounded coordinates. " +
+                   remedyText(diagnosis.noise, diagnosis.kind == NoiseKind::Shape);
     }
 }
 
