@@ -51,5 +51,6 @@ print(texture.vertices_evaluated, texture.vertices_left_out, texture.vertices_to
 
 smooth, _ = spectral.filter_mesh(V, F, feature_size="6%")
 change = spectral.compare((V, F), (smooth, F))
-print(change.deviations["normal"])
+deviation = change.deviations["normal"]
+print(f"rms {deviation.rms:.2g}, largest {deviation.largest:.2g}")
 figure = spectral.plot_comparison(change, ("bunny", "smooth"))
