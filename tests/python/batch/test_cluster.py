@@ -2,29 +2,27 @@
 
 from __future__ import annotations
 
-import contextlib
-import json
 import os
 import re
 import signal
-import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from unittest.mock import patch
 
 import psutil
 import pytest
-from batches import REPORT, alive, contents, make_meshes, records, start_batch, wait_until
+from batches import REPORT, contents, make_meshes, records, start_batch, wait_until
 from commands import command, messages_in
+from dask_clusters import dask_cluster, meshlab_processes
 from distributed import get_worker
 from meshlab_spectral import BatchError, filter_files
 from meshlab_spectral.batch import cluster as cluster_module
 from meshlab_spectral.batch.jobs import FileResult, Job
-from meshlab_spectral.batch.task import run_job
+from meshlab_spectral.batch.processes import Processes
 
-CHILD = "meshlab_spectral.process.child"
+_Doing = Callable[[Processes, Job], FileResult]
 
 
 @pytest.fixture(scope="module")
@@ -41,50 +39,12 @@ def expected(meshes: Path, tmp_path_factory: pytest.TempPathFactory) -> dict[str
     return contents(out)
 
 
-@contextlib.contextmanager
-def dask_cluster(
-    folder: Path, workers: int = 2
-) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
-    """A scheduler and workers, started by hand; the scheduler's address, and all processes."""
-    address_file = folder / "scheduler.json"
-    dask = [sys.executable, "-m", "dask"]
-    common = ["--no-dashboard", "--host", "127.0.0.1"]
-    log = (folder / "log").open("w")
-    started = [
-        subprocess.Popen(
-            [*dask, "scheduler", *common, "--port", "0", "--scheduler-file", str(address_file)],
-            stdout=log,
-            stderr=log,
-        )
-    ]
-    try:
-        wait_until(lambda: address_file.is_file() and address_file.stat().st_size > 0)
-        for number in range(workers):
-            local = ["--local-directory", str(folder / str(number)), "--nthreads", "1"]
-            file = ["--scheduler-file", str(address_file)]
-            started.append(
-                subprocess.Popen([*dask, "worker", *common, *file, *local], stdout=log, stderr=log)
-            )
-        wait_until(lambda: (folder / "log").read_text().count("Registered to:") >= workers)
-        yield json.loads(address_file.read_text())["address"], started
-    finally:
-        for process in reversed(started):
-            process.kill()  # a worker ends with its nanny
-            process.wait()
-        log.close()
-
-
 @pytest.fixture(scope="module")
 def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     with dask_cluster(tmp_path_factory.mktemp("cluster")) as (address, processes):
         workers = [psutil.Process(process.pid) for process in processes[1:]]
         yield address
         wait_until(lambda: not meshlab_processes(workers))  # whatever has happened to batches
-
-
-def meshlab_processes(workers: list[psutil.Process]) -> list[psutil.Process]:
-    children = [child for worker in workers for child in worker.children(recursive=True)]
-    return [child for child in alive(children) if CHILD in child.cmdline()]
 
 
 def test_an_existing_cluster_gives_the_same_outputs(
@@ -144,9 +104,9 @@ def test_a_file_whose_workers_die_again_and_again_fails_alone(
     inputs, out = sorted(meshes.iterdir())[:3], tmp_path / "out"
     deadly = inputs[0].name
 
-    def run_or_die(plugin: str, job: Job) -> FileResult:
+    def run_or_die(plugin: str, do: _Doing, job: Job) -> FileResult:
         if job.name != deadly:
-            return run_job(get_worker().plugins[plugin].processes, job)
+            return do(get_worker().plugins[plugin].processes, job)
         while (out / REPORT).read_text().count('"kind": "file"') < 2:  # of the others
             time.sleep(0.02)
         os.kill(os.getpid(), signal.SIGKILL)
@@ -218,9 +178,9 @@ def test_a_meshlab_process_killed_on_a_worker_is_replaced(
 def test_a_cluster_whose_processes_do_not_start_is_reported(
     cluster: str, meshes: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def run_without_python(plugin: str, job: Job) -> FileResult:
+    def run_without_python(plugin: str, do: _Doing, job: Job) -> FileResult:
         with patch.object(sys, "executable", "/bin/false"):
-            return run_job(get_worker().plugins[plugin].processes, job)
+            return do(get_worker().plugins[plugin].processes, job)
 
     monkeypatch.setattr(cluster_module, "_run", run_without_python)
     with pytest.raises(BatchError, match="with status 1 before it was ready"):

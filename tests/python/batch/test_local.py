@@ -8,6 +8,7 @@ from pathlib import Path
 import psutil
 import pytest
 from meshlab_spectral.batch import local
+from meshlab_spectral.batch.task import run_job
 
 
 @pytest.fixture(autouse=True)
@@ -63,11 +64,11 @@ def test_older_containers_count(group: Path) -> None:
 
 def test_workers_share_nine_tenths_of_the_memory(group: Path) -> None:
     (group / "memory.max").write_text(f"{10 * 2**30}\n")
-    with local.local_workers(3) as workers:
+    with local.local_workers(run_job, 3) as workers:
         processes = workers.do.args[0]  # type: ignore[attr-defined]
     assert processes.limits.memory == 3 * 2**30
     assert not processes.limits.replaces_environment
-    with local.local_workers(3, 2**30) as workers:
+    with local.local_workers(run_job, 3, 2**30) as workers:
         processes = workers.do.args[0]  # type: ignore[attr-defined]
     assert processes.limits.memory == 2**30
     assert processes.limits.replaces_environment
@@ -77,5 +78,5 @@ def test_without_a_place_for_temporary_files_the_remedy_is_named(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "none"))
-    with pytest.raises(local.BatchError, match="set TMPDIR"), local.local_workers(1):
+    with pytest.raises(local.BatchError, match="set TMPDIR"), local.local_workers(run_job, 1):
         pass

@@ -50,6 +50,7 @@ def test_a_command_on_this_machine_needs_no_extra(arguments: list[str], cow: Pat
     [
         (["batch", "COW", "--output", "out", "--scheduler", "host:8786"], "cluster"),
         (["spectra", "COW", "--scheduler", "host:8786"], "cluster"),
+        (["filter", "COW", "out.obj", "--scheduler", "host:8786"], "cluster"),
         (["spectrum", "COW"], "plots"),
         (["basis", "COW", "--pictures", "out.png"], "plots,render"),
     ],

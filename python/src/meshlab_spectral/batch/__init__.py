@@ -5,4 +5,6 @@ names the results, `resume` recognizes what an earlier run has done, and `plan` 
 the remaining `jobs`; `engine` distributes them to workers, `local` or on a Dask `cluster`, where
 `task` does each in a MeshLab process from `processes`; `report` records the results. `files`
 combines these, `storage` handles paths and URLs, `spectra` measures instead of filtering.
+
+`tiles` divides one file into `tile_jobs`, for the same workers, when `whole_or_tiles` says so.
 """

@@ -1,23 +1,22 @@
-"""The workers of a batch on a Dask cluster."""
+"""Workers on a Dask cluster."""
 
 from __future__ import annotations
 
 import contextlib
 import logging
 import uuid
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol, TypeVar
 
 from distributed import CancelledError, Client, KilledWorker, Reschedule, WorkerPlugin, get_worker
 from distributed import TimeoutError as DaskTimeoutError  # in Python 3.10, not Python's own
 
-from meshlab_spectral.batch.engine import Workers
-from meshlab_spectral.batch.jobs import FileResult, Job
+from meshlab_spectral.batch.engine import ResultT, Workers
 from meshlab_spectral.batch.processes import Processes, ProcessesEndedError
-from meshlab_spectral.batch.task import run_job
-from meshlab_spectral.errors import BatchError
+from meshlab_spectral.errors import BatchError, SpectralError
+from meshlab_spectral.plugin.limits import given_memory_limit
 from meshlab_spectral.plugin.versions import versions
 from meshlab_spectral.process.parent import JobLimits
 
@@ -28,19 +27,30 @@ _SUBMITTED_PER_THREAD = 2
 _FEWEST_SUBMITTED = 100  # for workers that join later
 
 
+class ClusterJob(Protocol):
+    """A job that can be sent to a worker."""
+
+    def failed(self, reason: str, attempts: int) -> Any:
+        """Return, or raise, what comes of it when no worker can do it."""
+
+
+JobT = TypeVar("JobT", bound=ClusterJob)
+
+
 @contextlib.contextmanager
-def workers_at(address: str) -> Iterator[Workers]:
-    """Yield the workers of a running Dask cluster.
+def workers_at(
+    address: str, do: Callable[[Processes, JobT], ResultT]
+) -> Iterator[Workers[JobT, ResultT]]:
+    """Yield the workers of a running Dask cluster, which `do` jobs by their processes.
 
     `address` is the scheduler's, such as tcp://10.0.0.1:8786. Raises BatchError when it cannot be
     reached, has no workers, or has workers with other software versions.
     """
     plugin = f"meshlab-spectral-{uuid.uuid4()}"  # other batches may use the cluster, too
 
-    def end() -> None:
+    def unregister() -> None:
         with contextlib.suppress(OSError, DaskTimeoutError):  # the cluster is gone
             client.unregister_worker_plugin(plugin)
-        client.close(timeout=_SECONDS_TO_CLOSE)
 
     with contextlib.ExitStack() as stack:
         for name in ("distributed", "distributed.client"):  # what matters is reported
@@ -54,28 +64,36 @@ def workers_at(address: str) -> Iterator[Workers]:
                 f"no Dask scheduler can be reached at {address} ({error}): check the address and "
                 "that `dask scheduler` is running there"
             ) from error
-        stack.callback(client.close, timeout=_SECONDS_TO_CLOSE)
+        ending = stack.enter_context(contextlib.ExitStack())  # once, by whoever is first
+        ending.callback(client.close, timeout=_SECONDS_TO_CLOSE)
         _check_workers(client, address)
         client.register_plugin(_Processes(), plugin)
+        ending.callback(unregister)
         threads = sum(client.nthreads().values())
         at_once = max(_FEWEST_SUBMITTED, _SUBMITTED_PER_THREAD * threads)
-        yield Workers(partial(_submit, client, plugin), at_once, end)
+        memory = min(filter(None, client.run(_memory).values()), default=None)
+        yield Workers(
+            partial(_submit, client, plugin, do), at_once, ending.close, memory, client.run
+        )
 
 
-def _submit(client: Client, plugin: str, job: Job) -> FileResult:
+def _submit(
+    client: Client, plugin: str, do: Callable[[Processes, JobT], ResultT], job: JobT
+) -> ResultT:
     """Let a worker do a job.
 
     If the worker dies, Dask gives it to another one, up to three times. The death of a MeshLab
     process is handled by the worker, see `task`.
     """
     try:
-        result: FileResult = client.submit(_run, plugin, job, pure=False).result()
+        result: ResultT = client.submit(_run, plugin, do, job, pure=False).result()
         return result
-    except BatchError:
+    except SpectralError:
         raise
     except (OSError, CancelledError, DaskTimeoutError) as error:
         raise BatchError(
-            "the Dask cluster is gone: restart it, then run the same command with --resume"
+            "the Dask cluster is gone: restart it, then run the same command again, a batch with "
+            "--resume"
         ) from error
     except KilledWorker as error:
         attempts = error.allowed_failures + 1
@@ -85,27 +103,36 @@ def _submit(client: Client, plugin: str, job: Job) -> FileResult:
         )
     except Exception as error:
         attempts, reason = 0, f"unexpected error: {error!r}; please report it"
-    return job.result("failed", reason=reason, attempts=attempts, versions=versions())
+    instead: ResultT = job.failed(reason, attempts)
+    return instead
 
 
-def _run(plugin: str, job: Job) -> FileResult:
+def _run(plugin: str, do: Callable[[Processes, JobT], ResultT], job: JobT) -> ResultT:
     """Run a job, in a thread of a worker."""
     try:
-        return run_job(get_worker().plugins[plugin].processes, job)
+        return do(get_worker().plugins[plugin].processes, job)
     except ProcessesEndedError:
         raise Reschedule from None  # the worker is closing
 
 
 class _Processes(WorkerPlugin):  # type: ignore[misc]
-    """The MeshLab processes of a worker, for one batch."""
+    """The MeshLab processes of a worker, for one run."""
 
     def setup(self, worker: Any) -> None:
-        at_once, memory = worker.state.nthreads, worker.memory_manager.memory_limit
-        limits = JobLimits(int(memory / at_once) if memory else None)
-        self.processes = Processes(at_once, limits, Path(worker.local_directory))
+        limits = JobLimits(_share(worker))
+        self.processes = Processes(worker.state.nthreads, limits, Path(worker.local_directory))
 
     def teardown(self, worker: Any) -> None:
         self.processes.end()
+
+
+def _share(worker: Any) -> int | None:
+    memory = worker.memory_manager.memory_limit
+    return int(memory / worker.state.nthreads) if memory else None
+
+
+def _memory(dask_worker: Any) -> int | None:  # Dask knows the name
+    return min(filter(None, (_share(dask_worker), given_memory_limit())), default=None)
 
 
 def _check_workers(client: Client, address: str) -> None:

@@ -1,4 +1,4 @@
-"""Running the jobs of a batch, each in a thread that waits for a worker."""
+"""Running jobs, such as files of a batch, each in a thread that waits for a worker."""
 
 from __future__ import annotations
 
@@ -9,8 +9,10 @@ import threading
 import time
 from collections.abc import Callable, Generator, Sequence
 from dataclasses import dataclass
+from typing import Generic, TypeVar
 
-from meshlab_spectral.batch.jobs import FileResult, Job
+JobT = TypeVar("JobT")
+ResultT = TypeVar("ResultT")
 
 # On Windows, a program that waits for longer does not notice Ctrl-C.
 _SECONDS_TO_WAIT = 0.2
@@ -19,26 +21,27 @@ _SECONDS_TO_END = 5
 
 
 @dataclass(frozen=True)
-class Workers:
+class Workers(Generic[JobT, ResultT]):
     """What does the jobs: processes on this machine, or the workers of a cluster."""
 
-    do: Callable[[Job], FileResult]  # in the calling thread
+    do: Callable[[JobT], ResultT]  # in the calling thread
     at_once: int  # threads that should call it
     end: Callable[[], None]  # makes all calls end soon, whatever they are doing
-    # Does several jobs together, unless it is a cluster.
-    do_joined: Callable[[Sequence[Job]], list[FileResult]] | None = None
+    memory: int | None  # bytes that every job may take; None: not limited
+    on_each: Callable[[Callable[[], object]], object]  # calls a function on each machine
 
 
 def run_jobs(
-    workers: Workers, jobs: Sequence[Job], record: Callable[[FileResult], None]
-) -> Generator[FileResult, None, None]:
+    workers: Workers[JobT, ResultT], jobs: Sequence[JobT], record: Callable[[ResultT], object]
+) -> Generator[ResultT, None, None]:
     """Run jobs, begun in this order, and yield the result of each as soon as it is done.
 
     `record` gets it first, even if the caller is still busy with another one, or ends the iteration
-    meanwhile; several threads call it. Raises what `record` or a worker has raised.
+    meanwhile; several threads call it. Raises what `record` or a worker has raised; the workers end
+    then, and when the iteration ends early.
     """
-    waiting: queue.SimpleQueue[Job] = queue.SimpleQueue()
-    results: queue.SimpleQueue[FileResult | BaseException] = queue.SimpleQueue()
+    waiting: queue.SimpleQueue[JobT] = queue.SimpleQueue()
+    results: queue.SimpleQueue[ResultT | BaseException] = queue.SimpleQueue()
     for job in jobs:
         waiting.put(job)
 
@@ -73,6 +76,8 @@ def run_jobs(
             if isinstance(result, BaseException):
                 raise result
             yield result
-    finally:
+    except BaseException:
         stop()
+        raise
+    finally:
         atexit.unregister(stop)

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from meshlab_spectral.batch import storage
 from meshlab_spectral.batch.engine import Workers, run_jobs
-from meshlab_spectral.batch.jobs import FileResult
+from meshlab_spectral.batch.jobs import FileResult, Job
 from meshlab_spectral.batch.plan import Batch, plan_batch
 from meshlab_spectral.batch.report import Report, Tally
 from meshlab_spectral.batch.settings import BatchKeywords, Settings
@@ -86,10 +86,7 @@ def run_batch(batch: Batch, tally: Tally) -> Generator[FileResult, None, None]:
             storage.tidy(folder)
         if batch.jobs:
             try:
-                with (
-                    _workers(batch.settings) as workers,
-                    closing(_results(workers, batch, report.add_result)) as results,
-                ):
+                with closing(_results(batch, report.add_result)) as results:
                     for result in results:
                         tally.add(result)
                         yield result
@@ -101,26 +98,34 @@ def run_batch(batch: Batch, tally: Tally) -> Generator[FileResult, None, None]:
 
 
 def _results(
-    workers: Workers, batch: Batch, record: Callable[[FileResult], None]
+    batch: Batch, record: Callable[[FileResult], None]
 ) -> Generator[FileResult, None, None]:
     if not batch.settings.joined:
-        yield from run_jobs(workers, batch.jobs, record)
+        with (
+            _workers(batch.settings) as workers,
+            closing(run_jobs(workers, batch.jobs, record)) as results,
+        ):
+            yield from results
         return
-    assert workers.do_joined is not None
-    try:
-        for result in workers.do_joined(batch.jobs):
-            record(result)
-            yield result
-    finally:
-        workers.end()
+    from meshlab_spectral.batch.joined import run_joined
+    from meshlab_spectral.batch.local import local_workers
+
+    with (
+        local_workers(run_joined, 1, batch.settings.memory_limit) as one,
+        closing(run_jobs(one, [batch.jobs], lambda done: [*map(record, done)])) as all_results,
+    ):
+        for together in all_results:
+            yield from together
 
 
-def _workers(settings: Settings) -> AbstractContextManager[Workers]:
+def _workers(settings: Settings) -> AbstractContextManager[Workers[Job, FileResult]]:
     # Slow imports, not needed by commands for a single file.
+    from meshlab_spectral.batch.task import run_job
+
     if settings.scheduler is not None:
         from meshlab_spectral.batch.cluster import workers_at
 
-        return workers_at(settings.scheduler)
+        return workers_at(settings.scheduler, run_job)
     from meshlab_spectral.batch.local import local_workers
 
-    return local_workers(1 if settings.joined else settings.workers, settings.memory_limit)
+    return local_workers(run_job, settings.workers, settings.memory_limit)

@@ -6,6 +6,8 @@ import math
 from dataclasses import asdict, dataclass, field
 from typing import Any, Literal
 
+from meshlab_spectral.plugin.versions import versions
+
 Outcome = Literal["filtered", "unchanged", "measured", "failed", "already done"]
 
 
@@ -27,6 +29,10 @@ class Job:
         return FileResult(
             outcome, self.source, self.target, self.name, options=self.options, **more
         )
+
+    def failed(self, reason: str, attempts: int) -> FileResult:
+        """Return the result when no worker could do it."""
+        return self.result("failed", reason=reason, attempts=attempts, versions=versions())
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""The workers of a batch on this machine."""
+"""Workers on this machine."""
 
 from __future__ import annotations
 
@@ -6,16 +6,14 @@ import contextlib
 import math
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 
 import psutil
 
-from meshlab_spectral.batch.engine import Workers
-from meshlab_spectral.batch.joined import run_joined
+from meshlab_spectral.batch.engine import JobT, ResultT, Workers
 from meshlab_spectral.batch.processes import Processes
-from meshlab_spectral.batch.task import run_job
 from meshlab_spectral.errors import BatchError
 from meshlab_spectral.files.whole_files import temporary_folder
 from meshlab_spectral.process.parent import JobLimits
@@ -28,10 +26,14 @@ _GROUP = Path("/sys/fs/cgroup")  # the control group of a container, if any
 
 
 @contextlib.contextmanager
-def local_workers(count: int | None = None, memory_limit: int | None = None) -> Iterator[Workers]:
+def local_workers(
+    do: Callable[[Processes, JobT], ResultT],
+    count: int | None = None,
+    memory_limit: int | None = None,
+) -> Iterator[Workers[JobT, ResultT]]:
     """Yield workers that are processes of this machine.
 
-    Each of the `count` workers, by default one per processor, filters one mesh at a time, with its
+    Each of the `count` workers, by default one per processor, does one job at a time, with its
     share of the threads. `memory_limit` is in bytes per worker; by default they share nine tenths
     of the machine's memory, and keep to the limit of the environment, if any.
     """
@@ -44,11 +46,13 @@ def local_workers(count: int | None = None, memory_limit: int | None = None) -> 
         except OSError as error:
             raise BatchError(f"no temporary folder can be made ({error}): set TMPDIR") from error
         processes = Processes(count, limits, folder)
+        stack.callback(processes.end)
         yield Workers(
-            partial(run_job, processes),
+            partial(do, processes),
             _JOBS_PER_WORKER * count,
             processes.end,
-            partial(run_joined, processes),
+            limits.memory,
+            lambda function: function(),
         )
 
 

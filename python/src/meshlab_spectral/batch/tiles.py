@@ -5,18 +5,19 @@ from __future__ import annotations
 import contextlib
 import math
 import shutil
-from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from meshlab_spectral.batch.engine import Workers, run_jobs
+from meshlab_spectral.batch.local import local_workers
 from meshlab_spectral.batch.memory import PROCESS_BYTES, TILE_BYTES, workers
-from meshlab_spectral.batch.processes import Processes
+from meshlab_spectral.batch.tile_jobs import TileJob, check_seen, run_tile
 from meshlab_spectral.documents.digits import rounding_message, widening_warnings
-from meshlab_spectral.errors import FilterError, MeshFileError
+from meshlab_spectral.errors import MeshFileError
 from meshlab_spectral.files.formats import is_same_format
 from meshlab_spectral.files.intent import sizes_of
 from meshlab_spectral.files.sources import check_is_place, check_source
@@ -24,7 +25,7 @@ from meshlab_spectral.files.whole_files import LOCK, check_target, holding, reso
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import DenoiseOptions, FilterOptions
 from meshlab_spectral.plugin.versions import versions
-from meshlab_spectral.process.parent import JobLimits, ProgressCallback
+from meshlab_spectral.process.parent import ProgressCallback
 from meshlab_spectral.tiles.bounds import MOST_TILES, UntiledError
 from meshlab_spectral.tiles.cells import near_cells, split
 from meshlab_spectral.tiles.gather import gather
@@ -50,6 +51,7 @@ _WORTHWHILE = 2.0
 
 # Filters certain tiles by what was decided, unless they are; returns their reports.
 _Doing = Callable[[dict[str, Any]], list[dict[str, Any]]]
+_Pool = Workers[TileJob, tuple[int, dict[str, Any]]]
 
 
 def filter_in_tiles(
@@ -60,24 +62,27 @@ def filter_in_tiles(
     tiles: int,
     tell: Callable[[str], None],
     overwrite: bool = True,
+    scheduler: str | None = None,
 ) -> dict[str, Any]:
     """Filter a binary PLY or STL file in tiles, in a folder next to the output.
 
     The folder is removed at the end, and stays after an error: the same call then goes on from it.
+    With the address of a Dask scheduler its workers do the tiles; they must see folder and source.
     """
     _check_files(source, target)
     require_local(options)
     place = resolved(target)
     work = Workspace(place.with_name(f".{place.name}.tiles"))
     rows = open_rows(source)
-    with holding(work.folder):
-        plan = _planned(rows, source, options, on_progress, tiles, work)
-        tell(
-            f"{source.name} is filtered in {plan.tiles} tiles"
-            + ("" if tiles else ", as it does not fit in memory as a whole")
-        )
+    with _workers(scheduler) as pool, holding(work.folder):
+        pool.on_each(partial(check_seen, str(source.absolute()), str(work.folder)))
+        plan = _planned(rows, source, options, on_progress, tiles, work, pool.memory)
+        why = f" by the workers at {scheduler}" if scheduler else ""
+        if not tiles and not scheduler:
+            why = ", as it does not fit in memory as a whole"
+        tell(f"{source.name} is filtered in {plan.tiles} tiles{why}")
         try:
-            reports = _filtered(plan, work, on_progress)
+            reports = _filtered(plan, work, on_progress, pool)
             report, is_wide = _summary(plan, reports, rows)
             with writing_whole(target, overwrite) as scratch:
                 gather(rows, work, plan.tiles, scratch, is_wide, on_progress)
@@ -92,7 +97,12 @@ def filter_in_tiles(
 
 
 def intent_in_tiles(
-    source: Path, target: Path, options: Options, on_progress: ProgressCallback, tiles: int
+    source: Path,
+    target: Path,
+    options: Options,
+    on_progress: ProgressCallback,
+    tiles: int,
+    scheduler: str | None = None,
 ) -> dict[str, Any]:
     """Say what `filter_in_tiles` would do; see `whole_or_tiles.intent_of_file`."""
     _check_files(source, target)
@@ -100,7 +110,9 @@ def intent_in_tiles(
     rows = open_rows(source)
     measured = survey(rows, on_progress)
     diagonal, edge, _ = measured.lengths
-    _, count, _ = _divided(rows, measured, reach_of(options, measured.lengths), tiles)
+    with _workers(scheduler) as pool:
+        reach = reach_of(options, measured.lengths)
+        _, count, _ = _divided(rows, measured, reach, tiles, pool.memory)
     surface = {
         "mesh": "",
         "vertices": rows.vertices,
@@ -130,6 +142,7 @@ def _planned(
     on_progress: ProgressCallback,
     tiles: int,
     work: Workspace,
+    memory: int | None,
 ) -> Plan:
     """Return the plan of a run, whose faces have been handed to the tiles, now or before."""
     stat = source.stat()
@@ -143,7 +156,7 @@ def _planned(
             return old
     measured = survey(rows, on_progress)
     reach = reach_of(options, measured.lengths)
-    tree, count, grown = _divided(rows, measured, reach, tiles)
+    tree, count, grown = _divided(rows, measured, reach, tiles, memory)
     _clear(work.folder)
     plan = Plan(
         str(source.absolute()),
@@ -176,13 +189,15 @@ def _clear(folder: Path) -> None:
             path.unlink()
 
 
-def _divided(rows: MeshRows, measured: Survey, reach: float, tiles: int) -> tuple[Any, int, float]:
+def _divided(
+    rows: MeshRows, measured: Survey, reach: float, tiles: int, memory: int | None
+) -> tuple[Any, int, float]:
     """Return cells, their number, and how many times the mesh all tiles are together.
 
-    Raises UntiledError when tiles with all that they need do not fit in memory.
+    Raises UntiledError when tiles with all that they need do not fit in the memory of a worker.
     """
-    vertices, each = rows.vertices, workers()[1]
-    largest = max(0, each - PROCESS_BYTES) / TILE_BYTES
+    vertices = rows.vertices
+    largest = math.inf if memory is None else max(0, memory - PROCESS_BYTES) / TILE_BYTES
     sample = measured.sample
     count = tiles or max(2, math.ceil(vertices / _LARGEST_TILE))
     while True:
@@ -214,47 +229,50 @@ def _require_space(rows: MeshRows, folder: Path, times: float) -> None:
         )
 
 
-def _filtered(plan: Plan, work: Workspace, on_progress: ProgressCallback) -> list[dict[str, Any]]:
+def _workers(scheduler: str | None) -> contextlib.AbstractContextManager[_Pool]:
+    if scheduler is None:
+        return local_workers(run_tile, *workers())
+    from meshlab_spectral.batch.cluster import workers_at
+
+    return workers_at(scheduler, run_tile)
+
+
+def _filtered(
+    plan: Plan, work: Workspace, on_progress: ProgressCallback, pool: _Pool
+) -> list[dict[str, Any]]:
     """Filter all tiles that are not done yet; return the reports of all."""
     options = plan.options_of_filter()
     every = range(plan.tiles)
     asked = [int(t) for t in np.unique(np.linspace(0, plan.tiles - 1, _ASKED).round())]
-    count, memory = workers()
-    with _processes(count, memory, work.folder) as processes:
 
-        def do(tiles: Any, wanted: dict[str, Any], upto: float = 1.0) -> list[dict[str, Any]]:
-            left = [tile for tile in tiles if not _is_done(work.report(tile), wanted)]
-            with ThreadPoolExecutor(count) as pool:
-                runs = {pool.submit(_run, processes, work.folder, t, wanted): t for t in left}
-                done = 0
-                try:
-                    for one in as_completed(runs):
-                        _raise_of(one, runs[one], plan, work)
-                        done += 1
-                        name = f"tile {plan.tiles - len(left) + done}"
-                        on_progress(name, upto * done / len(left))
-                except BaseException:
-                    processes.end()
-                    pool.shutdown(cancel_futures=True)
-                    raise
-            return [_report(work, tile) for tile in tiles]
+    def do(tiles: Any, wanted: dict[str, Any], upto: float = 1.0) -> list[dict[str, Any]]:
+        reports = {tile: work.report(tile) for tile in tiles}
+        left = [tile for tile in tiles if not _is_done(reports[tile], wanted)]
+        place = plan.source, str(work.folder)
+        jobs = [TileJob(*place, tile, plan.tiles, wanted) for tile in left]
+        with contextlib.closing(run_jobs(pool, jobs, lambda _: None)) as results:
+            for done, (tile, report) in enumerate(results, 1):
+                reports[tile] = report
+                name = f"tile {plan.tiles - len(left) + done}"
+                on_progress(name, upto * done / len(left))
+        return [report or {} for report in reports.values()]
 
-        do_asked = partial(do, asked, upto=len(asked) / plan.tiles)
-        if isinstance(options, DenoiseOptions):
-            return _denoised(plan, options, do_asked, partial(do, every))
-        assert isinstance(options, FilterOptions)
-        decided = {"passes": options.passes, "has_thin_parts": False}
-        if options.steps == 0 and options.passes == 0 and options.basis_update != "none":
-            while decided["passes"] < _MOST_PASSES:
-                decided["passes"] += 1
-                if singular_part(do_asked(decided)) <= _NEGLIGIBLE:
-                    break
-            decided["has_thin_parts"] = _has_thin_parts(do_asked(decided))
+    do_asked = partial(do, asked, upto=len(asked) / plan.tiles)
+    if isinstance(options, DenoiseOptions):
+        return _denoised(plan, options, do_asked, partial(do, every))
+    assert isinstance(options, FilterOptions)
+    decided = {"passes": options.passes, "has_thin_parts": False}
+    if options.steps == 0 and options.passes == 0 and options.basis_update != "none":
+        while decided["passes"] < _MOST_PASSES:
+            decided["passes"] += 1
+            if singular_part(do_asked(decided)) <= _NEGLIGIBLE:
+                break
+        decided["has_thin_parts"] = _has_thin_parts(do_asked(decided))
+    reports = do(every, decided)
+    if not decided["has_thin_parts"] and _has_thin_parts(reports):
+        decided["has_thin_parts"] = True
         reports = do(every, decided)
-        if not decided["has_thin_parts"] and _has_thin_parts(reports):
-            decided["has_thin_parts"] = True
-            reports = do(every, decided)
-        return reports
+    return reports
 
 
 def _denoised(
@@ -276,10 +294,6 @@ def _denoised(
     return reports
 
 
-def _report(work: Workspace, tile: int) -> dict[str, Any]:
-    return work.report(tile) or {}
-
-
 def _has_thin_parts(reports: list[dict[str, Any]]) -> bool:
     return any(one.get("thin_part_factor", 1) > _WORTHWHILE for one in reports)
 
@@ -290,34 +304,6 @@ def _is_done(report: dict[str, Any] | None, wanted: dict[str, Any]) -> bool:
         return False
     is_same = all(report.get(f"wanted_{name}") == value for name, value in wanted.items())
     return is_same or not report["ran"]  # nothing of it moves
-
-
-@contextlib.contextmanager
-def _processes(count: int, memory: int, folder: Path) -> Iterator[Processes]:
-    processes = Processes(count, JobLimits(memory, replaces_environment=True), folder)
-    try:
-        yield processes
-    finally:
-        processes.end()
-
-
-def _run(processes: Processes, folder: Path, tile: int, decided: dict[str, Any]) -> None:
-    job = {"task": "tile", "folder": str(folder), "tile": tile, "decided": decided}
-    with processes.one() as process:
-        process.run({**job, "verbose": False}, None, processes.limits)
-
-
-def _raise_of(run: Any, tile: int, plan: Plan, work: Workspace) -> None:
-    """Raise the error of a tile, with its number and what is left."""
-    try:
-        run.result()
-    except FilterError as error:
-        named = type(error)(
-            f"tile {tile + 1} of {plan.tiles}: {error}. The tiles that are done stay in "
-            f"{work.folder}, from which the same command goes on"
-        )
-        named.code, named.limit = error.code, error.limit
-        raise named from error
 
 
 def _summary(

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from meshlab_spectral.errors import MemoryLimitError, MeshFileError
+from meshlab_spectral.errors import MemoryLimitError, MeshFileError, OptionError
+from meshlab_spectral.extras import check_extras
 from meshlab_spectral.files.region import Region
 from meshlab_spectral.files.sources import check_source
 from meshlab_spectral.files.whole_files import check_target
@@ -33,6 +35,7 @@ def filter_file(
     tiles: int | None,
     tell: Callable[[str], None],
     region: Region | None = None,
+    scheduler: str | None = None,
 ) -> dict[str, Any]:
     """Filter a file as `write_in_child` does; in tiles where that is refused for lack of memory.
 
@@ -44,6 +47,8 @@ def filter_file(
         How many; 0 for as many as it takes, if it takes any; None for none.
     tell
         Called with a line that says why there are tiles.
+    scheduler
+        Of a Dask cluster that filters in tiles, whether or not the whole fits in memory.
 
     Raises
     ------
@@ -51,13 +56,14 @@ def filter_file(
         As from `write_in_child`; UntiledError when a number of tiles is given for what cannot be
         divided.
     """
-    tiles = _tiles_for(tiles, region)
+    tiles = _tiles_for(tiles, region, scheduler)
     if tiles is None:
         return write_in_child(source, target, options, on_progress, mesh, overwrite, region=region)
-    if tiles > 0:
+    if tiles > 0 or scheduler is not None:
         from meshlab_spectral.batch.tiles import filter_in_tiles
 
-        return filter_in_tiles(source, target, options, on_progress, tiles, tell, overwrite)
+        run = partial(filter_in_tiles, source, target, options, on_progress, tiles, tell)
+        return run(overwrite, scheduler)
     try:
         limits = _limits(source)
         return write_in_child(source, target, options, on_progress, mesh, overwrite, limits)
@@ -78,6 +84,7 @@ def intent_of_file(
     mesh: str | None,
     tiles: int | None,
     region: Region | None = None,
+    scheduler: str | None = None,
 ) -> dict[str, Any]:
     """Say what `filter_file` would do, and write nothing.
 
@@ -94,8 +101,8 @@ def intent_of_file(
     """
     check_source(source)
     check_target(target)
-    tiles = _tiles_for(tiles, region)
-    if tiles == 0:
+    tiles = _tiles_for(tiles, region, scheduler)
+    if tiles == 0 and scheduler is None:
         with contextlib.suppress(MemoryLimitError):
             _limits(source)
             tiles = None
@@ -105,21 +112,26 @@ def intent_of_file(
     else:
         from meshlab_spectral.batch.tiles import intent_in_tiles
 
-        intent = intent_in_tiles(source, target, options, on_progress, tiles)
+        intent = intent_in_tiles(source, target, options, on_progress, tiles, scheduler)
     from meshlab_spectral.batch.memory import available_memory
 
     vertices = sum(one["vertices"] for one in intent["surfaces"])
     return {**intent, "memory": _USUALLY * vertices, "available_memory": available_memory()}
 
 
-def _tiles_for(tiles: int | None, region: Region | None) -> int | None:
+def _tiles_for(tiles: int | None, region: Region | None, scheduler: str | None) -> int | None:
     """Return the number of tiles, 0 for as many as it takes, None where there are none.
 
-    Raises UntiledError when a number is given for what cannot be divided.
+    Raises UntiledError when a number, or a scheduler, is given for what cannot be divided.
     """
-    if tiles and region is not None:
+    asking = "tiles" if tiles else "the scheduler"
+    if region is not None and (tiles or scheduler is not None):
         names = ", ".join(region.given())
-        raise UntiledError(f"only the whole is filtered in tiles: leave out {names}, or tiles")
+        raise UntiledError(f"only the whole is filtered in tiles: leave out {names}, or {asking}")
+    if scheduler is not None and tiles is None:
+        raise OptionError("a cluster filters in tiles: leave out tiles = off, or the scheduler")
+    if scheduler is not None:
+        check_extras("cluster")
     return tiles if region is None else None
 
 

@@ -32,6 +32,7 @@ from meshlab_spectral.cli.messages import (
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.cli.report_table import report_table
 from meshlab_spectral.cli.streams import STREAM, as_files
+from meshlab_spectral.errors import OptionError
 from meshlab_spectral.files.recipe import saving_recipe
 from meshlab_spectral.files.region import Region
 from meshlab_spectral.filters.option_types import Options
@@ -134,6 +135,15 @@ def _command_with(table: type[Options], help_text: str) -> Command:
                 help="Memory limit, such as 4GB; by default what the machine has free.",
             ),
         ] = None,
+        scheduler: Annotated[
+            str | None,
+            typer.Option(
+                metavar="ADDRESS",
+                help="Process the tiles on the workers of the Dask cluster with a scheduler such "
+                "as host:8786; they must see INPUT and the folder of OUTPUT under the same paths. "
+                "Excludes --memory.",
+            ),
+        ] = None,
         dry_run: Annotated[
             bool,
             typer.Option(
@@ -174,10 +184,14 @@ def _command_with(table: type[Options], help_text: str) -> Command:
             options = chosen_options(table, given, recipe)
             part = region if region.given() else None
             if memory is not None:
+                if scheduler is not None:
+                    raise OptionError("a cluster configures its own workers: leave out --memory")
                 set_memory_limit(memory)
             if dry_run:
                 with progress_shown() as on_progress:
-                    intent = intent_of_file(read, written, options, on_progress, mesh, tiles, part)
+                    intent = intent_of_file(
+                        read, written, options, on_progress, mesh, tiles, part, scheduler
+                    )
                 print_intent(source, place, options, intent, as_json)
                 return
             with saving_recipe(save_recipe, options), progress_shown() as on_progress:
@@ -191,6 +205,7 @@ def _command_with(table: type[Options], help_text: str) -> Command:
                     tiles,
                     print_message,
                     part,
+                    scheduler,
                 )
             if picture is not None:
                 from meshlab_spectral.figures.comparison import draw_comparison  # a slow import

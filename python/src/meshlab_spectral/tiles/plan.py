@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import secrets
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -70,7 +71,7 @@ class Workspace:
 
     def begin(self, plan: Plan) -> None:
         """Write the plan."""
-        write_whole(self.folder / _PLAN, json.dumps(asdict(plan)))
+        write_whole(self.folder / _PLAN, json.dumps(asdict(plan)).encode())
 
     def set_scattered(self) -> None:
         """Note that all faces have been handed out."""
@@ -89,8 +90,8 @@ class Workspace:
         return report
 
 
-def write_whole(path: Path, text: str) -> None:
-    """Write a small file, whole or not at all."""
-    beside = path.with_name(f"{path.name}.new")
-    beside.write_text(text)
+def write_whole(path: Path, content: bytes | memoryview) -> None:
+    """Write a file, whole or not at all, even if another worker of a cluster writes the same."""
+    beside = path.with_name(f"{path.name}.{secrets.token_hex(4)}")
+    beside.write_bytes(content)
     beside.replace(path)

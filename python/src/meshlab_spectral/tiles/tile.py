@@ -16,7 +16,7 @@ from meshlab_spectral._core import first_equal_rows, vertex_areas
 from meshlab_spectral.documents import ply
 from meshlab_spectral.documents.document import Array, Indices
 from meshlab_spectral.documents.normals import following_normals
-from meshlab_spectral.errors import MeshError
+from meshlab_spectral.errors import MeshError, MeshFileError
 from meshlab_spectral.filters.progress import Progress
 from meshlab_spectral.filters.running import TiledSurface, plain, run
 from meshlab_spectral.tiles.cells import near_cells
@@ -68,12 +68,14 @@ def filter_tile(
                 whole=whole,
             )
     moved = after[which[own]]
-    ids[own].astype("<u4").tofile(work.file(tile, "ids"))
-    moved.astype("<f8").tofile(work.file(tile, "xyz"))
+    if work.plan() != plan:  # the run that has sent this tile to a worker of a cluster is over
+        raise MeshFileError(f"another run has begun in {folder}")
+    write_whole(work.file(tile, "ids"), np.ascontiguousarray(ids[own], "<u4").data)
+    write_whole(work.file(tile, "xyz"), np.ascontiguousarray(moved, "<f8").data)
     if mesh.normals and len(own):
         given = mesh.gathered(ids, *ply.NORMALS)
         normals = following_normals(before, after, F.astype(np.int64), given)
-        normals[own].astype("<f8").tofile(work.file(tile, "normals"))
+        write_whole(work.file(tile, "normals"), np.ascontiguousarray(normals[own], "<f8").data)
     asked = {f"wanted_{name}": value for name, value in decided.items()}
     report |= (
         asked
@@ -81,7 +83,7 @@ def filter_tile(
         | _measures(before, after, F, which[own])
         | {"vertices": len(ids)}
     )
-    write_whole(work.file(tile, "json"), json.dumps(report))
+    write_whole(work.file(tile, "json"), json.dumps(report).encode())
     return report
 
 
