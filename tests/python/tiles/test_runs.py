@@ -10,6 +10,7 @@ import shutil
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -24,7 +25,9 @@ from meshlab_spectral.errors import FilterError, ProcessDiedError
 from meshlab_spectral.process.parent import MeshLabProcess
 from meshlab_spectral.tiles.bounds import UntiledError
 from meshlab_spectral.tiles.halo import kernel_tails, reach_of
+from meshlab_spectral.tiles.plan import Workspace
 from meshlab_spectral.tiles.survey import Lengths
+from meshlab_spectral.tiles.tile import filter_tile
 from tiled_meshes import bumpy_torus, write_ply
 
 SMALL = FilterOptions(feature_size="6e", passes=1)
@@ -187,6 +190,21 @@ def test_a_killed_worker_loses_its_tile_alone(
     assert target.read_bytes() == b"before"
     assert not (tmp_path / ".out.ply.tiles" / "5.json").exists()
     assert _is_as_never_interrupted(source, target)
+
+
+def test_a_tile_of_a_run_that_is_over_writes_nothing(source: Path, tmp_path: Path) -> None:
+    _interrupted(source, tmp_path / "out.ply")
+    folder = tmp_path / ".out.ply.tiles"
+    tile = next(tile for tile in range(8) if not (folder / f"{tile}.json").exists())
+    before = {path.name for path in folder.iterdir()}
+
+    def begin_another(stage: str, fraction: float | None) -> None:
+        work = Workspace(folder)
+        work.begin(replace(work.plan(), stamp=[0, 0]))
+
+    with pytest.raises(MeshFileError, match="another run has begun"):
+        filter_tile(folder, tile, {"passes": 1}, begin_another)
+    assert {path.name for path in folder.iterdir()} == before
 
 
 def test_a_failed_tile_is_named_and_the_others_stay(tmp_path: Path) -> None:
