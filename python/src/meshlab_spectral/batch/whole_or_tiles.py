@@ -56,7 +56,7 @@ def filter_file(
         As from `write_in_child`; UntiledError when a number of tiles is given for what cannot be
         divided.
     """
-    tiles = _tiles_for(tiles, region, scheduler)
+    tiles = _tiles_for(tiles, region, mesh, scheduler)
     if tiles is None:
         return write_in_child(source, target, options, on_progress, mesh, overwrite, region=region)
     if tiles > 0 or scheduler is not None:
@@ -101,7 +101,7 @@ def intent_of_file(
     """
     check_source(source)
     check_target(target)
-    tiles = _tiles_for(tiles, region, scheduler)
+    tiles = _tiles_for(tiles, region, mesh, scheduler)
     if tiles == 0 and scheduler is None:
         with contextlib.suppress(MemoryLimitError):
             _limits(source)
@@ -119,20 +119,23 @@ def intent_of_file(
     return {**intent, "memory": _USUALLY * vertices, "available_memory": available_memory()}
 
 
-def _tiles_for(tiles: int | None, region: Region | None, scheduler: str | None) -> int | None:
+def _tiles_for(
+    tiles: int | None, region: Region | None, mesh: str | None, scheduler: str | None
+) -> int | None:
     """Return the number of tiles, 0 for as many as it takes, None where there are none.
 
     Raises UntiledError when a number, or a scheduler, is given for what cannot be divided.
     """
     asking = "tiles" if tiles else "the scheduler"
-    if region is not None and (tiles or scheduler is not None):
-        names = ", ".join(region.given())
+    parts = [*(region.given() if region is not None else ()), *(["mesh"] if mesh else [])]
+    if parts and (tiles or scheduler is not None):
+        names = ", ".join(parts)
         raise UntiledError(f"only the whole is filtered in tiles: leave out {names}, or {asking}")
     if scheduler is not None and tiles is None:
         raise OptionError("a cluster filters in tiles: leave out tiles = off, or the scheduler")
     if scheduler is not None:
         check_extras("cluster")
-    return tiles if region is None else None
+    return None if parts else tiles
 
 
 def _limits(source: Path) -> JobLimits:
