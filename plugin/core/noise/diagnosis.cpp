@@ -42,7 +42,7 @@ FoundSpikes sparseSpikes(const FaceGraph& graph, const Points& X, const std::vec
     const bool areUnrelated = spikes.count >= kMinCount && spikes.clustering < kMaxClustering;
     bool areTail = areUnrelated && spikes.share() >= kMinShareOfTail;
     if (areUnrelated && spikes.share() >= kMinShareOfSpikes &&
-        localTail(localResiduals(graph, X, mayMove), mayMove) > kMinTailOfSpikes) {
+        localTail(graph.vertices, localResiduals(graph, X, mayMove), mayMove) > kMinTailOfSpikes) {
         Spikes all = findSpikes(graph, X, mayMove, kRemovalLimit, meanEdge);
         areTail = all.count > kMaxGrowth * spikes.count;
         if (!areTail) return {std::move(all)};
@@ -209,7 +209,7 @@ NoiseField localNoise(const FaceGraph& graph, const std::vector<bool>& isMeasure
     std::vector<bool> isNoisy(isMeasured);
     for (Index i = 0; i < field.height.size(); ++i)
         isNoisy[i] = isNoisy[i] && field.height[i] > 0.0;
-    if (localTail(residuals, isNoisy) > kMinTailOfSpikes) return {};
+    if (localTail(graph.vertices, residuals, isNoisy) > kMinTailOfSpikes) return {};
     return field;
 }
 

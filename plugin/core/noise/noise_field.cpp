@@ -220,12 +220,23 @@ bool areAlike(const FaceGraph& graph, const Points& X, const LocalResiduals& res
            isEven(residuals.deviation.cwiseQuotient(localEdges(graph.vertices, X)));
 }
 
-double localTail(const LocalResiduals& residuals, const Flags& isIncluded) {
+double localTail(const VertexGraph& graph, const LocalResiduals& residuals,
+                 const Flags& isIncluded) {
     constexpr double kTailShare = 0.99;
+    // Along a crease the neighbours have like residuals, on the same side; those of a spike are on
+    // the other side.
+    constexpr double kLike = 0.5;
+    const auto isOnCrease = [&](Index i) {
+        const double r = residuals.residual[i];
+        for (Index k = graph.first[i]; k < graph.first[i + 1]; ++k)
+            if (residuals.residual[graph.at[k]] * r > kLike * r * r) return true;
+        return false;
+    };
     std::vector<double> units;
     for (Index i = 0; i < residuals.deviation.size(); ++i)
         if (isIncluded[i] && residuals.deviation[i] > 0.0)
-            units.push_back(std::abs(residuals.residual[i]) / residuals.deviation[i]);
+            units.push_back(
+                isOnCrease(i) ? 0.0 : std::abs(residuals.residual[i]) / residuals.deviation[i]);
     return quantile(std::move(units), kTailShare);
 }
 

@@ -21,9 +21,11 @@ LocalResiduals localResiduals(const FaceGraph& graph, const Points& X,
 bool areAlike(const FaceGraph& graph, const Points& X, const LocalResiduals& residuals,
               const std::vector<bool>& isMeasured);
 
-/// 99 % quantile of the residuals of some vertices, in deviations of their places: 2.3 to 2.5 for
-/// noise, whatever its distribution over the surface, more for spikes; 0 if there are none.
-double localTail(const LocalResiduals& residuals, const std::vector<bool>& isIncluded);
+/// 99 % quantile of the residuals of some vertices, in deviations of their places, where those on
+/// creases count as 0: at most 2.5 for noise, whatever its distribution over the surface, more for
+/// spikes; 0 if there are none.
+double localTail(const VertexGraph& graph, const LocalResiduals& residuals,
+                 const std::vector<bool>& isIncluded);
 
 /// The height of white noise at every vertex of a surface that is noisy in places.
 struct NoiseField {
