@@ -235,7 +235,7 @@ SurfaceTexture surfaceTexture(const Vertices& V, const Faces& F, const TextureOp
     if (count == 0)
         throw InvalidOption("waviness = " + textOf(cutoff) +
                             ": the whole surface is within this distance of its boundary or of "
-                            "creases, choose a smaller one, or a larger crease_angle");
+                            "creases. Choose a smaller one, or a larger crease_angle");
 
     const std::optional<ShapeKind> kind = shapeKind(options.form);
     Heights heights = kind ? heightsAboveShape(*kind, mesh, evaluated, options, progress)

@@ -178,11 +178,10 @@ std::string toleranceWarning(const FilterOptions& options, const FilterResult& r
 
 std::string volumeWarning(const FilterResult& result) {
     std::ostringstream text;
-    text << "the volume of " << result.volumes.preserved << " of " << result.components
-         << " components is preserved: " << result.volumes.open
-         << " are open, or not consistently oriented";
+    text << "components that keep their volume: " << result.volumes.preserved << " of "
+         << result.components << "; open, or not consistently oriented: " << result.volumes.open;
     if (result.volumes.lost > 0)
-        text << ", and " << result.volumes.lost << " have shrunk too far, or must not move";
+        text << "; shrunk too far, or not movable: " << result.volumes.lost;
     return text.str() + ". Close holes and orient the faces first, or turn preserve_volume off";
 }
 

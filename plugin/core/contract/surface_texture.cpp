@@ -128,6 +128,10 @@ Entries<Measured> textureEntries() {
     };
 }
 
+std::string countText(int vertices) {
+    return std::to_string(vertices) + (vertices == 1 ? " vertex" : " vertices");
+}
+
 std::string textOf(const Measured& texture) {
     std::ostringstream text;
     text << std::setprecision(4) << "Surface Texture: waviness cutoff " << texture.waviness;
@@ -159,11 +163,17 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
     if (const std::string note = selectionText(options.selected); !note.empty())
         output.warnings.push_back(note);
     if (texture.tooThin > 0)
-        output.warnings.push_back(std::to_string(texture.tooThin) +
-                                  " vertices are on parts thinner than the waviness cutoff, the "
-                                  "first is vertex " +
+        output.warnings.push_back("parts thinner than the waviness cutoff are left out, in all " +
+                                  countText(texture.tooThin) + ", the first is vertex " +
                                   std::to_string(texture.firstTooThin) +
-                                  ": they are left out. A smaller cutoff measures them");
+                                  ". A smaller cutoff measures them");
+    if (texture.leftOut > texture.evaluated)
+        output.warnings.push_back(
+            "only " + std::to_string(texture.evaluated) + " of " +
+            countText(texture.leftOut + texture.evaluated + texture.tooThin) +
+            " are measured: the others are within a cutoff of boundaries, or of folds of more "
+            "than crease_angle, which a rough surface has, too. A smaller waviness, or a larger "
+            "crease_angle such as 180, measures more");
     if (!texture.accuracyReached)
         output.warnings.push_back(
             accuracyWarning(kTextureAccuracy, texture.errorEstimate / mesh.diagonal));

@@ -10,6 +10,7 @@
 #include "core/laplacian/laplacian.h"
 #include "core/laplacian/vertex_weight.h"
 #include "core/mesh/contacts.h"
+#include "core/mesh/measures.h"
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/surface.h"
 #include "core/support/errors.h"
@@ -232,6 +233,7 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
 
     DenoiseResult result;
     result.heights.setZero(V.rows());
+    result.diagnosis.noise.meanEdge = meanEdgeLength(whole.X, whole.F);
     static_cast<SurfaceCounts&>(result) =
         countsOf(whole, V.rows(), components.count, interior.fixedVertices());
 

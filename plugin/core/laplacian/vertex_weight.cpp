@@ -21,7 +21,7 @@ void checkWeights(const WeightOptions& options) {
     if (!options.selected.empty() && !contains(options.selected, true))
         throw InvalidOption(
             "nothing is selected: select faces or vertices, or set selected = "
-            "false, which filters the whole mesh");
+            "false for the whole mesh");
     for (Index i = 0; i < options.weight.size(); ++i)
         if (!(options.weight[i] >= 0.0 && options.weight[i] <= 1.0))
             throw InvalidOption(

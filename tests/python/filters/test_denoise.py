@@ -379,6 +379,7 @@ def test_a_given_height_and_strength_are_applied(decimated: Decimated) -> None:
     np.testing.assert_array_equal(Y, Z)
     same, report = denoise_mesh(X, F, strength=0.0)
     assert report["rounds"] == 0
+    assert report["mean_edge"] == pytest.approx(edge, rel=1e-6)
     np.testing.assert_array_equal(same, X)
 
 

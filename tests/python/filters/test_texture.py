@@ -266,7 +266,7 @@ def test_parts_thinner_than_the_cutoff_are_left_out_and_named() -> None:
     assert texture.vertices_too_thin == len(V)
     assert texture.vertices_evaluated == len(V)
     assert not texture.height[len(V) :].any()
-    assert any(f"the first is vertex {len(V)}:" in warning for warning in texture.warnings)
+    assert any(f"the first is vertex {len(V)}." in warning for warning in texture.warnings)
     fine = surface_texture(*both, waviness=0.1, crease_angle=180)
     assert fine.vertices_too_thin == 0
     assert not any("thinner" in warning for warning in fine.warnings)
@@ -372,3 +372,12 @@ def test_what_does_not_fit_is_named(options: dict[str, Any], said: str) -> None:
     V, F = square("square")
     with pytest.raises(OptionError, match=said):
         surface_texture(V, F, **options)
+
+
+def test_a_rough_surface_that_is_mostly_left_out_is_told() -> None:
+    V, F = square("square")
+    V = V + [0, 0, 0.012] * np.random.default_rng(4).normal(size=(len(V), 1))
+    texture = surface_texture(V, F, waviness=0.3)
+    assert texture.vertices_left_out > texture.vertices_evaluated
+    assert any("larger crease_angle such as 180" in warning for warning in texture.warnings)
+    assert not surface_texture(V, F, waviness=0.3, crease_angle=180).warnings
