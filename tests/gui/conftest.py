@@ -15,7 +15,7 @@ import pytest
 import shown
 from desktop import Desktop, save_picture
 from filter_dialog import FilterDialog
-from fractional import HEAD, MENU, WEIGHT
+from fractional import HEAD, MENU, WEIGHT, save_shape
 from meshlab import MeshLab
 
 ROOT_VARIABLE = "MESHLAB_SPECTRAL_GUI_ROOT"
@@ -69,14 +69,6 @@ def bunny(home: Path) -> Path:
 def noisy_bunny(home: Path) -> Path:
     """The bunny with noise of a fifth of an edge along every axis, as a scanner leaves it."""
     return save_shape(shown.noisy_bunny(), home / "scan.ply")
-
-
-def save_shape(mesh_set: pymeshlab.MeshSet, path: Path) -> Path:
-    """Save nothing but the shape: MeshLab then shows it in its own colour, grey."""
-    mesh_set.save_current_mesh(
-        str(path), save_vertex_color=False, save_vertex_quality=False, save_vertex_normal=False
-    )
-    return path
 
 
 @pytest.fixture

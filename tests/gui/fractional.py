@@ -34,6 +34,14 @@ def load(path: Path) -> pymeshlab.MeshSet:
     return mesh_set
 
 
+def save_shape(mesh_set: pymeshlab.MeshSet, path: Path) -> Path:
+    """Save nothing but the shape: MeshLab then shows it in its own colour, grey."""
+    mesh_set.save_current_mesh(
+        str(path), save_vertex_color=False, save_vertex_quality=False, save_vertex_normal=False
+    )
+    return path
+
+
 def vertices(mesh_set: pymeshlab.MeshSet) -> NDArray[np.float64]:
     return mesh_set.current_mesh().vertex_matrix().copy()
 
