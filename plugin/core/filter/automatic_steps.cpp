@@ -74,9 +74,10 @@ class Convergence {
     /// The error of the last shape relative to the last distance, as it usually is.
     double usual() const {
         if (passes_ == 1) return kUsualFirst;
-        const double shrinking = std::max(shrinking_, kMinShrinking);
-        if (passes_ == 2) return kUsualSecond / shrinking;
-        return shrinking < kSecondOrder ? 1.0 / (shrinking - 1.0) : kUsualLater;
+        if (passes_ == 2) return kUsualSecond / std::max(shrinking_, kMinShrinking);
+        if (stagnates()) return 1.0 / (kMinShrinking - 1.0);
+        // Rates scatter: the next one is between the last one and that of the theory.
+        return 1.0 / (std::sqrt(shrinking_ * kExtrapolated) - 1.0);
     }
 
     double error() const { return usual() * distance_; }  ///< Estimated error of the last shape.
@@ -95,8 +96,9 @@ class Convergence {
     /// about that of the latter to the error of E_2, which is of the next order.
     static constexpr double kUsualSecond = 0.6;
 
-    /// Where distances shrink as theory wants, those from E_K to E_2K do so 8 to 16 times.
-    static constexpr double kUsualLater = 0.12;
+    /// Factor by which the errors of E_K shrink in theory, 8 if their order is 3 and 16 if it is 4:
+    /// the geometric mean.
+    static constexpr double kExtrapolated = 11.3;
 
     double distance_ = std::numeric_limits<double>::infinity(), shrinking_ = kUnknown;
     int passes_ = 0;

@@ -28,8 +28,8 @@ struct AutomaticOptions {
 struct AutomaticSteps {
     FractionalSteps last;  ///< The last pass; X is extrapolated from the last two passes.
     int passes = 0;        ///< 0: this is not the automatic scheme.
-    double error = 0.0;    ///< Estimated error over all but kNegligibleArea of the filtered
-                           ///< surface, length units: mostly within a factor of two.
+    double error = 0.0;    ///< Estimated error of the steps over all but kNegligibleArea of the
+                           ///< filtered surface, length units: mostly within a factor of two.
 
     /// Fraction of the input surface on which the estimated error exceeds the tolerance.
     double singularPart = 0.0;

@@ -67,8 +67,8 @@ struct FilterResult : SurfaceCounts, Movement, Work {
     double errorEstimate = 0.0;   ///< Estimated relative error of the evaluation, all steps.
     bool accuracyReached = true;  ///< Whether every step was within its share of `accuracy`.
     double stepError = 0.0;  ///< Automatic steps: estimated error over all but a thousandth of the
-                             ///< filtered surface, length units.
-    bool toleranceReached = true;   ///< Automatic steps: whether stepError is within it.
+                             ///< filtered surface, that of the evaluations included, length units.
+    bool toleranceReached = true;   ///< Automatic steps: whether that of the steps is within it.
     double singularPart = 0.0;      ///< Automatic steps: fraction of the input surface on which the
                                     ///< estimated error exceeds the tolerance.
     double thinPartFactor = 1.0;    ///< Largest factor of keepThinParts, applied or not.
