@@ -245,7 +245,7 @@ std::vector<MeshFilter> allMeshFilters() {
 }
 
 int changedBy(const MeshFilter& filter, const FilterOutput& output) {
-    return output.V.rows() > 0 ? kMovesVertices : filter.changes & ~kMovesVertices;
+    return output.V.rows() > 0 ? kMovesVertices : filter.changes;
 }
 
 FilterOutput applyTo(MeshModel& mesh, const MeshFilter& filter, const Values& given,

@@ -35,7 +35,8 @@ inline bool movesVertices(const MeshFilter& filter) {
     return (filter.changes & MeshModel::MM_VERTCOORD) != 0;
 }
 
-/// Mask of what a run has written.
+/// Mask of what MeshLab must draw anew after a run: what it has written, and where it leaves the
+/// vertices alone, these, too, since the preview before may have moved them.
 int changedBy(const MeshFilter& filter, const spectral::FilterOutput& output);
 
 /// A run from whose output other values of the parameter `choice` choose.

@@ -68,6 +68,21 @@ def test_the_shape_follows_a_slider_that_is_moved(
     assert distance <= 1e-6 * diagonal(vertices(ms))
 
 
+def test_a_slider_moved_back_shows_the_mesh_as_it_was(meshlab: MeshLab, desktop: Desktop) -> None:
+    dialog = meshlab.open_filter(*MENU)
+    dialog.move(1000, 20)
+    scene = scene_of(meshlab, dialog)
+    before = desktop.settled_picture(scene)
+    dialog.preview(True)
+    slider = visible_sliders(dialog)[2]
+    press_on(dialog, desktop, slider, "Prior")
+    wait_for("the picture to change", lambda: share_changed(before, desktop.picture(scene)) > 0.02)
+    desktop.press_keys("Next")
+    wait_for(
+        "the picture to be as before", lambda: share_changed(before, desktop.picture(scene)) < 0.001
+    )
+
+
 def test_the_middle_of_a_slider_is_unchanged_and_a_tick_doubles(
     meshlab: MeshLab, desktop: Desktop
 ) -> None:
