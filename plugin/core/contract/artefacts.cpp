@@ -43,12 +43,14 @@ Entries<Measured> artefactEntries() {
 }
 
 std::string textOf(const Measured& artefacts) {
+    const double percent = 100.0 / artefacts.diagonal;
     std::ostringstream text;
-    text << std::setprecision(4) << "Spectral Artefacts above twice the cutoff of feature size "
-         << artefacts.featureSize << "\n  root mean square " << artefacts.rms << " ("
-         << artefacts.rms / artefacts.diagonal << " diagonals), largest " << artefacts.maximum
-         << " (" << artefacts.maximum / artefacts.diagonal
-         << " diagonals), estimated error of these lengths " << artefacts.errorEstimate;
+    text << std::setprecision(4) << "Spectral Artefacts: root mean square " << artefacts.rms
+         << ", largest " << artefacts.maximum << std::setprecision(2) << " ("
+         << percent * artefacts.rms << " % and " << percent * artefacts.maximum
+         << " % of the diagonal)\n  ripples finer than half of feature size "
+         << std::setprecision(4) << artefacts.featureSize << "; estimated error of these lengths "
+         << std::setprecision(2) << artefacts.errorEstimate;
     return text.str();
 }
 
