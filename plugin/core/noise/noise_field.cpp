@@ -258,7 +258,7 @@ NoiseField NoiseField::ofHeights(const FaceGraph& graph, const Points& X,
 }
 
 NoiseField measureNoiseField(const FaceGraph& graph, const Points& X, const Flags& isMeasured,
-                             const LocalResiduals& local) {
+                             const LocalResiduals& local, double leastCertain) {
     const VertexGraph& vertices = graph.vertices;
     const Index n = X.rows();
     const auto clipped = [&] {
@@ -268,7 +268,9 @@ NoiseField measureNoiseField(const FaceGraph& graph, const Points& X, const Flag
     const LocalAverage wide(vertices, isMeasured, kWide);
     const Eigen::VectorXd correlation = localCorrelation(vertices, wide, clipped);
     NoiseField field;
-    if (!(correlation.array() < kCertain.correlation).any()) return field;
+    const Index certain = (correlation.array() < kCertain.correlation).count();
+    if (certain == 0 || static_cast<double>(certain) < leastCertain * static_cast<double>(n))
+        return field;
 
     field.edge = localEdges(vertices, X);
     const Eigen::VectorXd quality = localQuality(graph, X);
