@@ -34,6 +34,8 @@ class Part:
     selected
         n booleans, the vertices that MeshLab would show as selected and those of selected faces;
         None if nothing is selected.
+    copies
+        4 x 4 transforms of the vertices to where the scene has the mesh again.
     """
 
     name: str
@@ -41,6 +43,7 @@ class Part:
     faces: Indices
     quality: Array | None = None
     selected: NDArray[np.bool_] | None = None
+    copies: tuple[Array, ...] = ()
 
 
 @dataclass

@@ -113,7 +113,8 @@ def _add_part(document: GltfDocument, number: int, mesh: Json, nodes: list[_Node
     table = np.concatenate(tables)
     placed = placement.placed(table[:, _P])
     check_vertices(document.path, placed)
-    document.parts.append(Part(name, placed, placement.oriented(np.concatenate(faces))))
+    oriented = placement.oriented(np.concatenate(faces))
+    document.parts.append(Part(name, placed, oriented, copies=placement.copies))
     document._meshes.append(_Mesh(number, rows, table, placement))
     if any("skin" in node for node, _ in nodes):
         document.warnings.append(f"{name} has a skeleton: lengths are measured without its pose")
@@ -187,6 +188,7 @@ def _contents(tree: Json, nodes: dict[int, list[_Node]]) -> list[str]:
     found |= {content: name in attributes for name, content in _ATTRIBUTES.items()}
     found["morph targets"] = any("targets" in p for p in primitives)
     found["placement"] = any((m != IDENTITY).any() for placed in nodes.values() for _, m in placed)
+    found["instances"] = "EXT_mesh_gpu_instancing" in tree.get("extensionsUsed", [])
     found["points and lines"] = any(p.get("mode", _TRIANGLES) < _TRIANGLES for p in primitives)
     return [content for content, is_there in found.items() if is_there]
 

@@ -16,9 +16,13 @@ _SINGULAR = 1e-9  # smallest over largest singular value
 
 @dataclass(frozen=True)
 class Placement:
-    """An invertible affine transform, a 4 x 4 matrix for column vectors."""
+    """An invertible affine transform, a 4 x 4 matrix for column vectors.
+
+    `copies` are transforms from there to the mesh's other places in the scene.
+    """
 
     matrix: Array
+    copies: tuple[Array, ...] = ()
 
     def placed(self, own: Array) -> Array:
         """Transform vertices of the mesh, n x 3, to the scene."""
@@ -43,23 +47,32 @@ class Placement:
 def placement_of(name: str, matrices: Sequence[Array], warnings: list[str]) -> Placement:
     """Return the first placement of a mesh, or the identity if it has none or a singular one.
 
-    Appends to `warnings` if it is singular, or if others have another scale.
+    The others become its copies, if they are not singular and show the mesh somewhere else. Appends
+    to `warnings` if the first is singular, or if others have another scale.
     """
     if not matrices:
         return Placement(IDENTITY)
-    largest, _, smallest = _scales(matrices[0])
-    if smallest <= _SINGULAR * largest:
+    places = list(
+        {matrix.tobytes(): matrix for matrix in matrices if not _is_flat(matrix)}.values()
+    )
+    if _is_flat(matrices[0]):
         warnings.append(
             f"{name} is flattened by a transform of scale 0 where it is placed: it is filtered in "
             "the size that it has without transforms"
         )
-        return Placement(IDENTITY)
+        return Placement(IDENTITY, tuple(places))
     if not all(same_scale(matrices[0], matrix) for matrix in matrices[1:]):
         warnings.append(
             f"{name} is placed several times at different scales: lengths are those of its first "
             "placement"
         )
-    return Placement(matrices[0])
+    back = np.linalg.inv(matrices[0])
+    return Placement(matrices[0], tuple(matrix @ back for matrix in places[1:]))
+
+
+def _is_flat(matrix: Array) -> bool:
+    largest, _, smallest = _scales(matrix)
+    return bool(smallest <= _SINGULAR * largest)
 
 
 def same_scale(first: Array, second: Array) -> bool:

@@ -10,7 +10,7 @@ import zipfile
 import zlib
 from collections import defaultdict
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from graphlib import TopologicalSorter
 from itertools import chain
 from pathlib import Path
@@ -23,11 +23,12 @@ from meshlab_spectral._core import xml_elements
 from meshlab_spectral.documents.causes import unreadable, unsupported
 from meshlab_spectral.documents.digits import digits_for
 from meshlab_spectral.documents.document import Array, Document, Indices, checked_part
-from meshlab_spectral.documents.placement import IDENTITY, Placement, placement_of, same_scale
+from meshlab_spectral.documents.placement import IDENTITY, Placement, placement_of
 from meshlab_spectral.documents.text import Change, whole, write_patched
 
 # XML of vertices compresses to about a tenth; a far higher ratio indicates a zip bomb.
 _LARGEST_RATIO, _HARMLESS = 200, 64 << 20
+_MOST_PLACEMENTS = 1000  # of an object: those of nested components multiply
 _TAKEN = [("vertex", ("x", "y", "z")), ("triangle", ("v1", "v2", "v3"))]
 _LEVEL = 1  # of zlib: takes a third of the default's time, for files a quarter larger
 _CONTENTS = {
@@ -159,9 +160,15 @@ class _ThreeMfDocument(Document):
     def add(self, model: str, mesh: _Object, matrices: list[Array]) -> None:
         """Add an object to the parts."""
         mesh.placement = placement_of(mesh.name, matrices, self.warnings)
+        if len(matrices) == _MOST_PLACEMENTS:
+            self.warnings.append(
+                f"{mesh.name} is placed {_MOST_PLACEMENTS} times or more: other formats get only "
+                "as many of it"
+            )
         placed = mesh.placement.placed(mesh.own)
         faces = mesh.placement.oriented(mesh.faces)
-        self.parts.append(checked_part(self.path, placed, faces, mesh.name))
+        part = checked_part(self.path, placed, faces, mesh.name)
+        self.parts.append(replace(part, copies=mesh.placement.copies))
         self.meshes.append((model, mesh))
 
     def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
@@ -235,7 +242,7 @@ def _models(path: Path, archive: zipfile.ZipFile, root: str) -> dict[str, _Model
 
 
 def _matrices(objects: dict[_Key, _Object], items: list[_Placed]) -> dict[_Key, list[Array]]:
-    """Return each object's first transform and, if any, the first one of another scale."""
+    """Return the transforms of each object, at most _MOST_PLACEMENTS."""
     graph = {key: [child for child, _ in found.components] for key, found in objects.items()}
     for key in [*(key for key, _ in items), *chain(*graph.values())]:
         if key not in objects:
@@ -250,11 +257,9 @@ def _matrices(objects: dict[_Key, _Object], items: list[_Placed]) -> dict[_Key, 
 
 def _place(matrices: dict[_Key, list[Array]], placed: list[_Placed], outer: Array) -> None:
     for key, inner in placed:
-        with np.errstate(all="ignore"):
-            matrix = outer @ inner
-        found = matrices[key]
-        if not found or (len(found) == 1 and not same_scale(found[0], matrix)):
-            found.append(matrix)
+        if len(matrices[key]) < _MOST_PLACEMENTS:
+            with np.errstate(all="ignore"):
+                matrices[key].append(outer @ inner)
 
 
 def _contents(models: dict[str, _Model], unit: str, names: list[str]) -> list[str]:

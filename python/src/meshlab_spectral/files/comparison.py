@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshlab_spectral.extras import check_extras
-from meshlab_spectral.files.meshes import load_arrays
+from meshlab_spectral.files.meshes import in_scene, joined, load_parts
 from meshlab_spectral.filters.arrays import lumped_areas, mesh_arrays
 from meshlab_spectral.filters.representations import brief, line, table
 
@@ -172,7 +172,7 @@ def compare(a: Any, b: Any) -> Comparison:
 
 def _arrays(mesh: Any, name: str) -> Arrays:
     if isinstance(mesh, str | Path):
-        mesh = load_arrays(Path(mesh))
+        mesh = joined(in_scene(load_parts(Path(mesh))))
     V, F = mesh_arrays(*mesh) if isinstance(mesh, tuple) else mesh_arrays(mesh)
     if not np.isfinite(V).all():
         raise ValueError(f"{name} has coordinates that are not finite: remove these vertices")

@@ -67,7 +67,13 @@ def mesh_info(source: Path, on_stage: StageCallback, mesh: str | None = None) ->
         **{name: spectrum[name] for name in _LENGTHS},
         "noise_summary": denoised["summary"],
         **{name: denoised[name] for name in _OF_NOISE},
-        "warnings": [warning for warning in denoised["warnings"] if warning != denoised["summary"]],
+        "warnings": [
+            f"{part.name} is placed {1 + len(part.copies)} times: it is described once, in its "
+            "first place"
+            for part in parts
+            if part.copies
+        ]
+        + [warning for warning in denoised["warnings"] if warning != denoised["summary"]],
     }
     return plain(report)
 

@@ -18,6 +18,7 @@ import numpy as np
 from meshlab_spectral.documents.digits import precision_warnings
 from meshlab_spectral.documents.document import Array, Document, Indices, Part
 from meshlab_spectral.documents.opening import format_of, open_document
+from meshlab_spectral.documents.placement import IDENTITY, Placement
 from meshlab_spectral.documents.side_files import copy_side_files
 from meshlab_spectral.errors import FilterError, FormatError, MeshFileError, OptionError
 from meshlab_spectral.files.formats import is_same_format
@@ -352,18 +353,32 @@ def _filtered(
     return part.vertices if done.vertices is None else done.vertices, done.plain_report
 
 
-def joined(parts: Sequence[Part], moved: Sequence[Array] | None = None) -> tuple[Array, Indices]:
-    """Return several meshes as one, with the vertices `moved`, if given."""
-    vertices = [part.vertices for part in parts] if moved is None else moved
+def in_scene(parts: Sequence[Part]) -> list[Part]:
+    """Return the parts, and each once more wherever else the scene has it."""
+    return [
+        replace(
+            part, vertices=place.placed(part.vertices), faces=place.oriented(part.faces), copies=()
+        )
+        for part in parts
+        for place in map(Placement, (IDENTITY, *part.copies))
+    ]
+
+
+def joined(parts: Sequence[Part]) -> tuple[Array, Indices]:
+    """Return several meshes as one."""
+    vertices = [part.vertices for part in parts]
     begins = np.cumsum([0, *(len(V) for V in vertices)])
     faces = [part.faces + begin for part, begin in zip(parts, begins, strict=False)]
     return np.vstack(vertices), np.vstack(faces)
 
 
 def _merged(document: Document, verbose: bool, moved: Sequence[Array] | None = None) -> Any:
-    """Return a MeshSet with all meshes of a document as one."""
-    signal = _signal(document.parts[0]) if len(document.parts) == 1 else {}
-    return mesh_set_of(*joined(document.parts, moved), signal, verbose)
+    """Return a MeshSet with all that is in the scene of a document as one mesh."""
+    parts = document.parts
+    if moved is not None:
+        parts = [replace(part, vertices=V) for part, V in zip(parts, moved, strict=True)]
+    parts = in_scene(parts)
+    return mesh_set_of(*joined(parts), _signal(parts[0]) if len(parts) == 1 else {}, verbose)
 
 
 def _signal(part: Part) -> dict[str, Array]:
