@@ -11,9 +11,12 @@ from typing import Any
 import numpy as np
 import pymeshlab
 import pytest
+import trimesh
 from commands import arrays_of, assert_fails, command, messages_in, write_ply
 from helpers import FILTER, lower_part, mesh_set_of, percent
-from meshlab_spectral import FilterOptions
+from meshlab_spectral import FilterOptions, OptionError
+from meshlab_spectral.documents.document import Part
+from meshlab_spectral.files.region_vertices import chosen_parts
 
 
 def test_output_is_what_the_filter_computes(cow: Path, tmp_path: Path) -> None:
@@ -117,3 +120,25 @@ def test_only_the_selection_stored_in_a_ply_file_is_filtered(
     assert 100 < moved.sum() < 0.8 * len(before)
     assert before[moved, 0].min() > 0.1
     assert target.read_bytes()[:200] == source.read_bytes()[:200]  # the flags stay
+
+
+@pytest.mark.parametrize("verb", ["filter", "denoise"])
+@pytest.mark.parametrize("ending", ["ply", "obj", "glb"])
+def test_a_selection_that_the_file_does_not_have_is_refused(
+    verb: str, ending: str, tmp_path: Path
+) -> None:
+    source, target = tmp_path / f"in.{ending}", tmp_path / f"out.{ending}"
+    trimesh.creation.icosphere(2).export(source)
+    for more in ([], ["--dry-run"]):
+        assert_fails(command(verb, source, target, "--selected", *more), 2, "nothing is selected")
+        assert not target.exists()
+
+
+def test_of_several_meshes_those_with_a_selection_are_filtered() -> None:
+    V, F = np.eye(3), np.array([[0, 1, 2]])
+    bare, part = Part("", V, F), Part("", V, F, selected=np.array([True, False, False]))
+    options = FilterOptions(selected=True)
+    assert chosen_parts([bare, part], options, None) == [None, part]
+    assert chosen_parts([bare, part], FilterOptions(), None) == [bare, part]
+    with pytest.raises(OptionError, match="nothing is selected"):
+        chosen_parts([bare, bare], options, None)

@@ -19,7 +19,7 @@ from meshlab_spectral.files.meshes import (
 )
 from meshlab_spectral.files.meshlab_files import check_writable
 from meshlab_spectral.files.region import Region
-from meshlab_spectral.files.region_vertices import restricted
+from meshlab_spectral.files.region_vertices import chosen_parts
 from meshlab_spectral.files.touching import pieces
 from meshlab_spectral.filters.arrays import mean_edge
 from meshlab_spectral.filters.option_types import Length, Options
@@ -51,9 +51,8 @@ def intent_of(
         check_writable(target)
     parts = load_parts(source, mesh)
     wholes = [whole_of(group) for group in pieces(parts)]
-    chosen = wholes if region is None else restricted(wholes, region)
     surfaces = []
-    for part in filter(None, chosen):
+    for part in filter(None, chosen_parts(wholes, options, region)):
         V, F = part.vertices, part.faces
         if len(F) == 0:
             raise OptionError(f"{source} has no faces: reconstruct a surface first")

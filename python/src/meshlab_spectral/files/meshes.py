@@ -33,7 +33,7 @@ from meshlab_spectral.files.meshlab_files import (
     write_with_meshlab,
 )
 from meshlab_spectral.files.region import Region
-from meshlab_spectral.files.region_vertices import restricted
+from meshlab_spectral.files.region_vertices import chosen_parts, restricted
 from meshlab_spectral.files.script import apply_script
 from meshlab_spectral.files.sources import check_name, check_source
 from meshlab_spectral.files.touching import moved_alike, pieces
@@ -250,9 +250,7 @@ def _moved(
     moved = {part: part.vertices for part in parts}
     names, reports = [], []
     groups = pieces(chosen)
-    wholes: list[Part | None] = [whole_of(group) for group in groups]
-    if region is not None:
-        wholes = restricted([whole_of(group) for group in groups], region)
+    wholes = chosen_parts([whole_of(group) for group in groups], options, region)
     for group, whole in zip(groups, wholes, strict=True):
         if whole is None:
             continue

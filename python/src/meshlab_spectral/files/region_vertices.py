@@ -13,6 +13,7 @@ from meshlab_spectral import _core
 from meshlab_spectral.documents.document import Array, Indices, Part
 from meshlab_spectral.errors import InputError, OptionError
 from meshlab_spectral.files.region import Region
+from meshlab_spectral.filters.option_types import Options
 
 Flags = NDArray[np.bool_]
 
@@ -103,6 +104,25 @@ _VERTICES: Mapping[str, Callable[[Region, Array, Indices, Array | None], Flags]]
     "where": _where,
     "mask": _in_mask,
 }
+
+
+def chosen_parts(
+    parts: Sequence[Part], options: Options, region: Region | None
+) -> list[Part | None]:
+    """Return meshes whose selection is what of them is filtered, or None where nothing is.
+
+    Raises OptionError when nothing is selected or in the region, and as `vertices_in` does.
+    """
+    if region is not None:
+        return restricted(parts, region)
+    if not getattr(options, "selected", False):
+        return list(parts)
+    if all(part.selected is None for part in parts):
+        raise OptionError(
+            "nothing is selected: select faces or vertices in MeshLab and save as .ply, or leave "
+            "out selected, which filters the whole mesh"
+        )
+    return [None if part.selected is None else part for part in parts]
 
 
 def restricted(parts: Sequence[Part], region: Region) -> list[Part | None]:
