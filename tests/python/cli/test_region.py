@@ -11,7 +11,9 @@ import numpy as np
 import pytest
 from commands import arrays_of, assert_fails, command
 from helpers import mesh_set_of
-from meshlab_spectral import denoise_mesh, filter_mesh
+from meshlab_spectral import InputError, OptionError, denoise_mesh, filter_mesh
+from meshlab_spectral.files.region import Region
+from meshlab_spectral.files.region_vertices import vertices_in
 from numpy.typing import NDArray
 
 Arrays = tuple[NDArray[np.float64], NDArray[np.int32]]
@@ -139,3 +141,18 @@ def test_a_region_that_does_not_fit_is_refused_with_the_remedy(tmp_path: Path) -
         done = command("filter", source, target, *arguments)
         assert_fails(done, done.returncode or 1, reason)
         assert not target.exists()
+
+
+MASKS: dict[str, tuple[Any, str]] = {
+    "nan": ([0.0, np.nan, 1.0], "has nan for vertex 1: give 0"),
+    "infinite": ([0.0, 1.0, np.inf], "has inf for vertex 2: give 0"),
+    "complex": ([0.0, 1.0, 1j], "it has complex numbers"),
+}
+
+
+@pytest.mark.parametrize("mask", MASKS)
+def test_a_mask_that_does_not_say_what_is_selected_is_refused(mask: str, tmp_path: Path) -> None:
+    numbers, reason = MASKS[mask]
+    np.save(tmp_path / "mask.npy", numbers)
+    with pytest.raises((InputError, OptionError), match=reason):
+        vertices_in(Region(mask=tmp_path / "mask.npy"), np.eye(3), np.array([[0, 1, 2]]))

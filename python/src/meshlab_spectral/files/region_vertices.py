@@ -77,6 +77,12 @@ def _in_mask(region: Region, V: Array, F: Indices, quality: Array | None) -> Fla
             f"mask = {region.mask}: has {values.size} numbers for {len(V)} vertices; where a file "
             "has several meshes, name one with --mesh"
         )
+    if not (finite := np.isfinite(values)).all():
+        first = int(np.argmin(finite))
+        raise InputError(
+            f"the mask {region.mask} has {values[first]} for vertex {first}: give 0, which leaves "
+            "it out, or another number"
+        )
     chosen: Flags = values != 0
     return chosen
 
@@ -84,6 +90,8 @@ def _in_mask(region: Region, V: Array, F: Indices, quality: Array | None) -> Fla
 def _read_mask(path: Path) -> NDArray[np.float64]:
     try:
         values = np.load(path) if path.suffix.lower() == ".npy" else np.loadtxt(path, ndmin=1)
+        if np.iscomplexobj(values):
+            raise ValueError("it has complex numbers")
         return np.asarray(values, dtype=np.float64)
     except OSError as error:
         raise InputError(f"the mask {path} cannot be read ({error.strerror or error})") from error
