@@ -146,6 +146,7 @@ def test_a_region_that_does_not_fit_is_refused_with_the_remedy(tmp_path: Path) -
 MASKS: dict[str, tuple[Any, str]] = {
     "nan": ([0.0, np.nan, 1.0], "has nan for vertex 1: give 0"),
     "infinite": ([0.0, 1.0, np.inf], "has inf for vertex 2: give 0"),
+    "several": (np.zeros((3, 2)), "has 3 x 2 numbers for 3 vertices"),
     "complex": ([0.0, 1.0, 1j], "it has complex numbers"),
 }
 
@@ -156,3 +157,20 @@ def test_a_mask_that_does_not_say_what_is_selected_is_refused(mask: str, tmp_pat
     np.save(tmp_path / "mask.npy", numbers)
     with pytest.raises((InputError, OptionError), match=reason):
         vertices_in(Region(mask=tmp_path / "mask.npy"), np.eye(3), np.array([[0, 1, 2]]))
+
+
+@pytest.mark.parametrize("name", ["mask.npy", "mask.txt", "mask.npz"])
+def test_a_mask_without_numbers_is_refused(name: str, tmp_path: Path) -> None:
+    path = tmp_path / name
+    path.touch()
+    if name == "mask.npz":
+        np.savez(path, np.ones(3))
+    with pytest.raises((InputError, OptionError), match=r"^the mask .*/mask.* is no"):
+        vertices_in(Region(mask=path), np.eye(3), np.array([[0, 1, 2]]))
+
+
+@pytest.mark.parametrize("shape", [(3, 1), (1, 3)])
+def test_a_mask_may_be_a_column_or_a_row(shape: tuple[int, int], tmp_path: Path) -> None:
+    np.save(tmp_path / "mask.npy", np.reshape([0, 1, 0], shape))
+    chosen = vertices_in(Region(mask=tmp_path / "mask.npy"), np.eye(3), np.array([[0, 1, 2]]))
+    np.testing.assert_array_equal(chosen, [False, True, False])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -74,7 +75,8 @@ def _in_mask(region: Region, V: Array, F: Indices, quality: Array | None) -> Fla
     values = _read_mask(region.mask)
     if values.shape != (len(V),):
         raise OptionError(
-            f"mask = {region.mask}: has {values.size} numbers for {len(V)} vertices; where a file "
+            f"mask = {region.mask}: has {' x '.join(map(str, values.shape))} numbers for {len(V)} "
+            "vertices; where a file "
             "has several meshes, name one with --mesh"
         )
     if not (finite := np.isfinite(values)).all():
@@ -89,13 +91,18 @@ def _in_mask(region: Region, V: Array, F: Indices, quality: Array | None) -> Fla
 
 def _read_mask(path: Path) -> NDArray[np.float64]:
     try:
-        values = np.load(path) if path.suffix.lower() == ".npy" else np.loadtxt(path, ndmin=1)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", UserWarning)  # of a text without numbers
+            values = np.load(path) if path.suffix.lower() == ".npy" else np.loadtxt(path, ndmin=1)
         if np.iscomplexobj(values):
             raise ValueError("it has complex numbers")
-        return np.asarray(values, dtype=np.float64)
+        # A column or a row of a table is one number for each vertex, too.
+        return np.atleast_1d(np.squeeze(np.asarray(values, dtype=np.float64)))
     except OSError as error:
         raise InputError(f"the mask {path} cannot be read ({error.strerror or error})") from error
-    except ValueError as error:
+    except UnicodeDecodeError as error:
+        raise InputError(f"the mask {path} is no text: give text or .npy") from error
+    except (ValueError, TypeError, EOFError, UserWarning) as error:
         raise InputError(f"the mask {path} is not one number for each vertex: {error}") from error
 
 
