@@ -1,6 +1,8 @@
 # What the package exports, for type checkers and for __init__.py.
 from meshlab_spectral.batch.files import filter_files as filter_files
 from meshlab_spectral.batch.jobs import FileResult as FileResult
+from meshlab_spectral.errors import ArgumentError as ArgumentError
+from meshlab_spectral.errors import ArrayError as ArrayError
 from meshlab_spectral.errors import BatchError as BatchError
 from meshlab_spectral.errors import Cancelled as Cancelled
 from meshlab_spectral.errors import FilterError as FilterError

@@ -35,6 +35,14 @@ class MeshFileError(SpectralError):
         self.code = code
 
 
+class ArrayError(SpectralError, ValueError):
+    """An array passed to a function has the wrong shape, type or values."""
+
+
+class ArgumentError(SpectralError, TypeError):
+    """An argument is missing, or an object of the wrong kind, such as one that is no mesh."""
+
+
 class FilterError(SpectralError):
     """The filter rejected a mesh or an option, or failed.
 

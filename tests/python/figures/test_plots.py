@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 import pyvista
 from meshlab_spectral import (
+    ArgumentError,
     FilterOptions,
     GeometrySpectrum,
     Harmonics,
@@ -21,8 +22,10 @@ from meshlab_spectral import (
     OptionError,
     geometry_spectrum,
     manifold_harmonics,
+    plot_comparison,
     plot_harmonics,
     plot_spectrum,
+    plot_texture,
 )
 from meshlab_spectral.figures.pictures import to_full_colours
 from meshlab_spectral.figures.spectrum import draw_spectrum
@@ -169,3 +172,15 @@ def test_nothing_is_imported_for_plots_until_one_is_made() -> None:
         "sys.exit(any(name in sys.modules for name in ('matplotlib', 'pyvista', 'vtk')))"
     )
     subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+
+
+def test_what_is_no_result_to_plot_is_refused_with_its_source(mesh: Mesh) -> None:
+    calls: dict[str, Callable[[], Any]] = {
+        "compare": lambda: plot_comparison(mesh),  # type: ignore[arg-type]
+        "geometry_spectrum": lambda: plot_spectrum(None),  # type: ignore[arg-type]
+        "manifold_harmonics": lambda: plot_harmonics(*mesh, mesh[0]),  # type: ignore[arg-type]
+        "surface_texture": lambda: plot_texture(*mesh, mesh[0]),  # type: ignore[arg-type]
+    }
+    for source, call in calls.items():
+        with pytest.raises(ArgumentError, match=f"pass the result of {source}$"):
+            call()

@@ -10,6 +10,14 @@ import numpy as np
 import pymeshlab
 import pytest
 from helpers import FILTER, assert_same, length, mesh_set_of, percent, refusal, snapshot
+from meshlab_spectral import (
+    ArrayError,
+    SpectralError,
+    filter_colors,
+    filter_mesh,
+    filter_scalars,
+    manifold_harmonics,
+)
 from meshlab_spectral.plugin.loading import FILTERS
 
 DENOISE, ARTEFACTS = FILTERS["Spectral Denoise"], FILTERS["Spectral Artefacts"]
@@ -218,3 +226,35 @@ def test_the_laplacian_in_use_is_not_recommended_for_parts_destroyed_by_round_of
     message = refusal(mesh_set_of(V, np.vstack([F, F + 4, F + 8])))
     assert "intrinsic delaunay" not in message
     assert "'Remove Isolated pieces (wrt Diameter)'" in message
+
+
+V = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+F = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
+
+
+def test_complex_numbers_are_refused_rather_than_cut() -> None:
+    def turned(w: Any) -> Any:
+        return 1 / (1 + 1j * w)
+
+    basis = manifold_harmonics(V, F, 2)
+    calls: tuple[Callable[[], Any], ...] = (
+        lambda: filter_mesh(V + 0.5j, F),
+        lambda: filter_mesh(V, F, gain=turned),
+        lambda: filter_mesh(V, F, gain=lambda w: turned(float(w))),
+        lambda: filter_mesh(V, F, weights=[0, 1, 1j, 0]),
+        lambda: filter_scalars(V, F, [0, 1, 1j, 0]),
+        lambda: filter_colors(V, F, V + 0j),
+        lambda: basis.filter(V[:, 0], turned),
+        lambda: basis.project(V + 0j),
+        lambda: basis.heat_kernel_signature([1j]),
+    )
+    for call in calls:
+        with pytest.raises(ArrayError, match="are complex: pass real numbers"):
+            call()
+
+
+def test_arrays_of_the_wrong_shape_are_errors_of_this_package() -> None:
+    for vertices, faces in ((V[:, :2], F), (V, F + 1), (V[:0], F[:0]), (V, F * 0.5), ("ab", F)):
+        with pytest.raises(SpectralError) as refused:
+            filter_mesh(vertices, faces)
+        assert isinstance(refused.value, ValueError)

@@ -18,6 +18,7 @@ from meshlab_spectral import (
     FilterOptions,
     OptionError,
     PluginError,
+    SpectralError,
     denoise_mesh,
     filter_colors,
     filter_mesh,
@@ -182,8 +183,9 @@ QUADS = pyvista.Plane(i_resolution=2, j_resolution=2)
 )
 def test_what_is_no_mesh_of_triangles_is_refused_with_the_remedy(mesh: Any, words: str) -> None:
     for call in (filter_mesh, denoise_mesh, manifold_harmonics, geometry_spectrum):
-        with pytest.raises((TypeError, ValueError), match=words):
+        with pytest.raises((TypeError, ValueError), match=words) as refused:
             call(mesh)
+        assert isinstance(refused.value, SpectralError)
 
 
 @pytest.mark.filterwarnings("ignore:The default value of `algorithm`")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from meshlab_spectral.figures.sheet import Sheet
 from meshlab_spectral.figures.signed_mesh import signed_sheet, write_signed
 from meshlab_spectral.files.comparison import Comparison
+from meshlab_spectral.filters.arrays import check_class
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -57,6 +58,7 @@ def plot_comparison(comparison: Comparison, names: tuple[str, str] = ("a", "b"))
     --------
     >>> plot_comparison(compare("scan.ply", "smooth.ply"))
     """
+    check_class(comparison, Comparison, "compare")
     return _sheet(comparison, names).figure
 
 

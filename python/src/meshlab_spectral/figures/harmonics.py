@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshlab_spectral.errors import OptionError
+from meshlab_spectral.errors import ArrayError, OptionError
 from meshlab_spectral.figures.pictures import (
     SIGNED_COLOURS,
     Frame,
@@ -23,7 +23,7 @@ from meshlab_spectral.figures.pictures import (
     to_full_colours,
 )
 from meshlab_spectral.figures.sheet import Sheet
-from meshlab_spectral.filters.arrays import mesh_arrays
+from meshlab_spectral.filters.arrays import check_class, mesh_arrays
 from meshlab_spectral.filters.harmonics import Harmonics
 from meshlab_spectral.filters.mesh_objects import takes_mesh_alone
 
@@ -114,7 +114,7 @@ def plot_harmonics(
 
     Raises
     ------
-    ValueError
+    ArrayError
         When an array of the mesh has the wrong shape or type, or the harmonics belong to a mesh
         with another number of vertices.
     OptionError
@@ -126,9 +126,10 @@ def plot_harmonics(
     --------
     >>> plot_harmonics(V, F, manifold_harmonics(V, F), [1, 2, 3, 10]).show()
     """
+    check_class(harmonics, Harmonics, "manifold_harmonics")
     V, F = mesh_arrays(mesh_or_vertices, faces)
     if len(harmonics.masses) != len(V):
-        raise ValueError(
+        raise ArrayError(
             f"the harmonics are of a mesh of {len(harmonics.masses)} vertices, not of {len(V)}: "
             "pass those of this mesh"
         )

@@ -9,6 +9,7 @@ import numpy as np
 
 from meshlab_spectral.extras import check_extras
 from meshlab_spectral.figures.sheet import FONT_SIZE, INK
+from meshlab_spectral.filters.arrays import check_class
 from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.filters.spectrum import Array, GeometrySpectrum
 from meshlab_spectral.filters.transfer import MeshLengths, gain
@@ -113,6 +114,7 @@ def plot_spectrum(
     >>> figure = plot_spectrum(geometry_spectrum(V, F, 100), FilterOptions(), "scan")
     >>> figure.savefig("spectrum.png")
     """
+    check_class(spectrum, GeometrySpectrum, "geometry_spectrum")
     check_extras("plots")
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from meshlab_spectral.errors import ArrayError
 from meshlab_spectral.figures.sheet import Sheet
 from meshlab_spectral.figures.signed_mesh import signed_sheet, write_signed
-from meshlab_spectral.filters.arrays import mesh_arrays
+from meshlab_spectral.filters.arrays import check_class, mesh_arrays
 from meshlab_spectral.filters.mesh_objects import takes_mesh_alone
 from meshlab_spectral.filters.texture import SurfaceTexture
 
@@ -47,7 +48,7 @@ def plot_texture(
 
     Raises
     ------
-    ValueError
+    ArrayError
         When an array of the mesh has the wrong shape or type, or the texture belongs to a mesh with
         another number of vertices.
     MissingPackageError
@@ -57,9 +58,10 @@ def plot_texture(
     --------
     >>> plot_texture(V, F, surface_texture(V, F, waviness=0.8))
     """
+    check_class(texture, SurfaceTexture, "surface_texture")
     V, F = mesh_arrays(mesh_or_vertices, faces)
     if len(texture.height) != len(V):
-        raise ValueError(
+        raise ArrayError(
             f"the texture is of a mesh of {len(texture.height)} vertices, not of {len(V)}: "
             "pass that of this mesh"
         )

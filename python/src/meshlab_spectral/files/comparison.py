@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from meshlab_spectral.errors import ArrayError
 from meshlab_spectral.extras import check_extras
 from meshlab_spectral.files.meshes import in_scene, joined, load_parts
 from meshlab_spectral.filters.arrays import lumped_areas, mesh_arrays
@@ -143,7 +144,7 @@ def compare(a: Any, b: Any) -> Comparison:
 
     Raises
     ------
-    ValueError
+    ArrayError
         When an array has the wrong shape or type, a coordinate is not finite, or no face has an
         area.
     MeshFileError
@@ -175,9 +176,9 @@ def _arrays(mesh: Any, name: str) -> Arrays:
         mesh = joined(in_scene(load_parts(Path(mesh))))
     V, F = mesh_arrays(*mesh) if isinstance(mesh, tuple) else mesh_arrays(mesh)
     if not np.isfinite(V).all():
-        raise ValueError(f"{name} has coordinates that are not finite: remove these vertices")
+        raise ArrayError(f"{name} has coordinates that are not finite: remove these vertices")
     if not lumped_areas(V, F).any():
-        raise ValueError(f"{name} has no face with an area: there is no surface to compare")
+        raise ArrayError(f"{name} has no face with an area: there is no surface to compare")
     return V, F
 
 

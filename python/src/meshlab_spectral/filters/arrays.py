@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from meshlab_spectral.errors import ArgumentError, ArrayError
 from meshlab_spectral.filters.mesh_objects import kind_of, known_kinds, remedy_for
 
 
@@ -24,9 +25,9 @@ def mesh_arrays(
 
     Raises
     ------
-    ValueError
+    ArrayError
         When an array has the wrong shape or type, or an index is out of range.
-    TypeError
+    ArgumentError
         When a mesh is of no known kind.
     """
     vertices = mesh_or_vertices
@@ -35,39 +36,50 @@ def mesh_arrays(
         vertices, faces = kind.arrays(mesh_or_vertices)
     elif faces is None:
         if (remedy := remedy_for(mesh_or_vertices)) is not None:
-            raise TypeError(f"{_class_of(mesh_or_vertices)} is not a mesh: {remedy}")
-        raise TypeError(
+            raise ArgumentError(f"{_class_of(mesh_or_vertices)} is not a mesh: {remedy}")
+        raise ArgumentError(
             f"there are no faces with {_class_of(mesh_or_vertices)}: pass vertices and faces, or a "
             f"mesh: {known_kinds()}"
         )
     elif kind is not None:
-        raise TypeError(f"faces: {kind.name} has its own; pass the mesh alone, or two arrays")
-    V, F = np.asarray(vertices, dtype=np.float64), _faces_array(faces)
+        raise ArgumentError(f"faces: {kind.name} has its own; pass the mesh alone, or two arrays")
+    V, F = real_numbers(vertices, "vertices"), _faces_array(faces)
     if V.ndim != 2 or V.shape[1] != 3:
-        raise ValueError(f"vertices have shape {V.shape}: pass n x 3 coordinates")
+        raise ArrayError(f"vertices have shape {V.shape}: pass n x 3 coordinates")
     if len(V) == 0:
-        raise ValueError("there are no vertices: pass a mesh")
+        raise ArrayError("there are no vertices: pass a mesh")
     if F.ndim == 2 and F.shape[1] == 4 and np.issubdtype(F.dtype, np.integer):
-        raise ValueError(
+        raise ArrayError(
             f"faces have shape {F.shape}: pass triangles; quadrangles are split by "
             "numpy.vstack([faces[:, :3], faces[:, [0, 2, 3]]])"
         )
     if F.ndim != 2 or F.shape[1] != 3 or not np.issubdtype(F.dtype, np.integer):
-        raise ValueError(
+        raise ArrayError(
             f"faces have shape {F.shape} and type {F.dtype}: pass m x 3 integers, the corners of "
             "triangles"
         )
     if F.size and (F.min() < 0 or F.max() >= len(V)):
         wrong = F.min() if F.min() < 0 else F.max()
-        raise ValueError(f"a face refers to vertex {wrong}, but there are {len(V)} vertices")
+        raise ArrayError(f"a face refers to vertex {wrong}, but there are {len(V)} vertices")
     return V, F.astype(np.int32)
+
+
+def real_numbers(values: Any, name: str) -> NDArray[np.float64]:
+    """Return values as an array; raise ArrayError when they are complex, or no numbers."""
+    try:
+        array = np.asarray(values)
+        if not np.iscomplexobj(array):
+            return array.astype(np.float64, copy=False)
+    except (ValueError, TypeError) as error:
+        raise ArrayError(f"{name} are not an array of numbers: {error}") from error
+    raise ArrayError(f"{name} are complex: pass real numbers")
 
 
 def _faces_array(faces: Any) -> NDArray[Any]:
     try:
         return np.asarray(faces)
     except ValueError as error:  # rows of several lengths
-        raise ValueError(
+        raise ArrayError(
             "faces have several numbers of corners: split them into triangles first"
         ) from error
 
@@ -79,10 +91,10 @@ def _class_of(mesh: Any) -> str:
 
 
 def vertex_numbers(values: ArrayLike, count: int, name: str) -> NDArray[np.float64]:
-    """Return one number for each of `count` vertices; raise ValueError unless there are as many."""
-    numbers = np.asarray(values, dtype=np.float64)
+    """Return one number for each of `count` vertices; raise ArrayError unless there are as many."""
+    numbers = real_numbers(values, name)
     if numbers.shape != (count,):
-        raise ValueError(
+        raise ArrayError(
             f"{name} have shape {numbers.shape}: pass {count} numbers, one for each vertex"
         )
     return numbers
@@ -92,7 +104,7 @@ def chosen_vertices(selection: ArrayLike, count: int, F: NDArray[np.integer]) ->
     """Return which of `count` vertices are selected.
 
     `selection` is one boolean per vertex, or indices of faces in `F`, m x 3, which select their
-    corners. Raises ValueError when it is neither, or an index is out of range.
+    corners. Raises ArrayError when it is neither, or an index is out of range.
     """
     given = np.asarray(selection)
     if given.dtype == bool and given.shape == (count,):
@@ -101,15 +113,23 @@ def chosen_vertices(selection: ArrayLike, count: int, F: NDArray[np.integer]) ->
     if given.size == 0:
         return chosen
     if given.ndim != 1 or not np.issubdtype(given.dtype, np.integer):
-        raise ValueError(
+        raise ArrayError(
             f"selection has shape {given.shape} and type {given.dtype}: pass {count} booleans, one "
             "for each vertex, or indices of faces (of a mask: numpy.flatnonzero(mask))"
         )
     if given.min() < 0 or given.max() >= len(F):
         wrong = given.min() if given.min() < 0 else given.max()
-        raise ValueError(f"selection has face {wrong}, but there are {len(F)} faces")
+        raise ArrayError(f"selection has face {wrong}, but there are {len(F)} faces")
     chosen[F[given]] = True
     return chosen
+
+
+def check_class(value: Any, expected: type[Any], source: str) -> None:
+    """Raise ArgumentError unless a value is of a class, as the function `source` returns it."""
+    if not isinstance(value, expected):
+        raise ArgumentError(
+            f"{_class_of(value)} is no {expected.__name__}: pass the result of {source}"
+        )
 
 
 def lumped_areas(V: NDArray[np.float64], F: NDArray[np.integer]) -> NDArray[np.float64]:

@@ -85,7 +85,7 @@ def measure_artefacts(
 
     Raises
     ------
-    ValueError
+    ArrayError
         When an array has the wrong shape or type, or an index is out of range.
     OptionError
         When `feature_size` is not positive or `laplacian` is unknown.

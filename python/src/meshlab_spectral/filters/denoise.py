@@ -70,9 +70,9 @@ def denoise_mesh(
 
     Raises
     ------
-    ValueError
+    ArrayError
         When an array has the wrong shape or type, or an index is out of range.
-    TypeError
+    ArgumentError
         When the mesh is of none of these libraries.
     OptionError
         When an option is unknown or has an invalid value.

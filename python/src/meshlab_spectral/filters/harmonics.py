@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshlab_spectral.errors import FilterError
-from meshlab_spectral.filters.arrays import lumped_areas, mesh_arrays
+from meshlab_spectral.errors import ArrayError, FilterError
+from meshlab_spectral.filters.arrays import lumped_areas, mesh_arrays, real_numbers
 from meshlab_spectral.filters.mesh_objects import takes_mesh_alone
 from meshlab_spectral.filters.option_types import checked_count
 from meshlab_spectral.filters.options import BasisOptions, Boundary, LaplacianKind
@@ -83,7 +83,7 @@ class Harmonics:
 
         Raises
         ------
-        ValueError
+        ArrayError
             When f does not have a finite value for each vertex.
 
         Examples
@@ -111,7 +111,7 @@ class Harmonics:
 
         Raises
         ------
-        ValueError
+        ArrayError
             When c does not have a finite value for each harmonic.
 
         Examples
@@ -144,7 +144,7 @@ class Harmonics:
 
         Raises
         ------
-        ValueError
+        ArrayError
             When f does not have a finite value for each vertex, or `gain` does not return finite
             gains; names the frequency.
 
@@ -155,16 +155,16 @@ class Harmonics:
         """
         waves = self.eigenvalues > 0
         omega = self.frequencies[waves]
-        F = np.asarray(gain(omega.copy()), dtype=np.float64)
+        F = real_numbers(gain(omega.copy()), "gains")
         if F.shape not in ((), omega.shape):
-            raise ValueError(
+            raise ArrayError(
                 f"gain returns shape {F.shape} for {len(omega)} frequencies: return a gain for each"
             )
         gains = np.ones(len(waves))
         gains[waves] = F
         if not np.isfinite(gains).all():
             wrong = np.flatnonzero(~np.isfinite(gains))[0]
-            raise ValueError(
+            raise ArrayError(
                 f"gain({self.frequencies[wrong]:g}) = {gains[wrong]}: return finite gains at all "
                 "positive frequencies"
             )
@@ -195,7 +195,7 @@ class Harmonics:
 
         Raises
         ------
-        ValueError
+        ArrayError
             When `times` are not finite and >= 0, or all harmonics are constant, so that there are
             no default times.
 
@@ -206,15 +206,15 @@ class Harmonics:
         """
         if times is None:
             if not (self.eigenvalues > 0).any():
-                raise ValueError(
+                raise ArrayError(
                     f"all {len(self.eigenvalues)} harmonics are constant: compute more, or pass "
                     "times"
                 )
             t = heat_times(self.eigenvalues, DEFAULT_TIMES)
         else:
-            t = np.asarray(times, dtype=np.float64)
+            t = real_numbers(times, "times")
             if t.ndim != 1 or len(t) == 0 or not (np.isfinite(t) & (t >= 0)).all():
-                raise ValueError(f"times = {times}: pass a list of finite numbers from 0 on")
+                raise ArrayError(f"times = {times}: pass a list of finite numbers from 0 on")
         signature: Array = self.harmonics**2 @ np.exp(-np.outer(self.eigenvalues, t))
         return signature
 
@@ -245,7 +245,7 @@ class Harmonics:
         ------
         OptionError
             When `count` is not a positive integer.
-        ValueError
+        ArrayError
             When the basis has fewer than two different positive eigenvalues.
 
         Examples
@@ -255,7 +255,7 @@ class Harmonics:
         count = checked_count("count", count)
         positive = np.unique(self.eigenvalues[self.eigenvalues > 0])
         if len(positive) < 2:
-            raise ValueError(
+            raise ArrayError(
                 "energies lie between two different positive eigenvalues, of which the basis has "
                 f"{len(positive)}: compute more harmonics"
             )
@@ -328,7 +328,7 @@ def manifold_harmonics(
 
     Raises
     ------
-    ValueError
+    ArrayError
         When an array has the wrong shape or type, or an index is out of range.
     OptionError
         When `laplacian` or `boundary` is unknown, or `basis_size` is not a positive integer.
@@ -385,7 +385,7 @@ def shape_dna(
 
     Raises
     ------
-    ValueError
+    ArrayError
         When an array has the wrong shape or type, or an index is out of range.
     OptionError
         When `laplacian` or `boundary` is unknown, or `count` is not an integer >= 2.
@@ -416,15 +416,15 @@ def shape_dna(
 
 def _rows(name: str, values: ArrayLike, count: int, what: str) -> Array:
     """Validate a number, or a row of numbers, for each vertex or harmonic."""
-    rows = np.asarray(values, dtype=np.float64)
+    rows = real_numbers(values, name)
     if rows.ndim not in (1, 2) or len(rows) != count:
-        raise ValueError(
+        raise ArrayError(
             f"{name} has shape {rows.shape}: pass {count} values, one for each {what}, or a matrix "
             f"with {count} rows"
         )
     if not np.isfinite(rows).all():
         wrong = np.argwhere(~np.isfinite(rows))[0, 0]
-        raise ValueError(f"{name} is not finite at {what} {wrong}: pass finite values")
+        raise ArrayError(f"{name} is not finite at {what} {wrong}: pass finite values")
     return rows
 
 

@@ -56,7 +56,7 @@ def laplacian(
 
     Raises
     ------
-    ValueError
+    ArrayError
         When an array has the wrong shape or type, or an index is out of range.
     OptionError
         When `kind` is unknown.

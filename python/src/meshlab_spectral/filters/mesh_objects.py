@@ -16,6 +16,7 @@ from typing import Any, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from meshlab_spectral.errors import ArgumentError, ArrayError
 from meshlab_spectral.filters.mesh_normals import followed
 from meshlab_spectral.other_words import instead_of
 
@@ -70,16 +71,16 @@ def remedy_for(mesh: Any) -> str | None:
 def array_of(mesh: Any, values: Any, name: str) -> Any:
     """Return `values`, or where this is a text, the array at the vertices that it names.
 
-    `name` is that of the argument, for the ValueError when the mesh has no such array.
+    `name` is that of the argument, for the ArrayError when the mesh has no such array.
     """
     if not isinstance(values, str):
         return values
     kind = kind_of(mesh)
     if kind is None:
-        raise ValueError(f"{name} = {values!r}: vertices and faces have no named arrays; pass one")
+        raise ArrayError(f"{name} = {values!r}: vertices and faces have no named arrays; pass one")
     data = kind.data(mesh)
     if values not in data:
-        raise ValueError(
+        raise ArrayError(
             f"{name} = {values!r}: the mesh has no such array at its vertices; "
             f"it has {', '.join(map(repr, data)) or 'none'}"
         )
@@ -104,7 +105,7 @@ def takes_mesh_alone(function: Function) -> Function:
             args = (args[0], None, *args[1:])
         for name in kwargs:
             if not takes_any and name not in parameters and (hint := instead_of(name)):
-                raise TypeError(f"{function.__name__} has no {name}: {hint}")
+                raise ArgumentError(f"{function.__name__} has no {name}: {hint}")
         return function(*args, **kwargs)
 
     return cast(Function, shifted)
@@ -119,7 +120,7 @@ def owned_mesh(mesh_set: Any) -> Any:
 
 def _pymeshlab_arrays(mesh: Any) -> tuple[Any, Any]:
     if not mesh.is_compact():
-        raise ValueError("the mesh has deleted elements: call its compact() first")
+        raise ArrayError("the mesh has deleted elements: call its compact() first")
     return mesh.vertex_matrix(), mesh.face_matrix()
 
 
@@ -153,8 +154,8 @@ def _as_before(X: Array, points: Any) -> NDArray[Any]:
 def _pyvista_arrays(mesh: Any) -> tuple[Any, Any]:
     if not mesh.is_all_triangles:
         if mesh.n_cells == mesh.n_verts + mesh.n_lines:
-            raise ValueError("the mesh has no faces: reconstruct a surface first")
-        raise ValueError("the mesh has faces that are not triangles: call its triangulate() first")
+            raise ArrayError("the mesh has no faces: reconstruct a surface first")
+        raise ArrayError("the mesh has faces that are not triangles: call its triangulate() first")
     return mesh.points, mesh.regular_faces
 
 
@@ -163,7 +164,7 @@ _VTK_TRIANGLE = 5
 
 def _grid_arrays(mesh: Any) -> tuple[Any, Any]:
     if set(np.unique(mesh.celltypes).tolist()) != {_VTK_TRIANGLE}:
-        raise ValueError(
+        raise ArrayError(
             "the grid has cells that are not triangles: pass its surface, "
             "extract_surface().triangulate()"
         )
@@ -185,7 +186,7 @@ def _vtk_moved(mesh: Any, X: Array) -> Any:
 def _meshio_arrays(mesh: Any) -> tuple[Any, Any]:
     surfaces = sorted(set(mesh.cells_dict) - {"vertex", "line"})
     if surfaces != ["triangle"]:
-        raise ValueError(
+        raise ArrayError(
             f"the mesh has cells {', '.join(surfaces) or 'of no surface'}: pass a mesh of "
             "triangles only, such as "
             "pyvista.from_meshio(mesh).extract_surface().triangulate()"

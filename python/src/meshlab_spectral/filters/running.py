@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from meshlab_spectral import _core
 from meshlab_spectral.errors import OptionError
+from meshlab_spectral.filters.arrays import real_numbers
 from meshlab_spectral.filters.progress import Progress, shown
 from meshlab_spectral.filters.representations import Report
 from meshlab_spectral.plugin import limits
@@ -158,9 +159,10 @@ def _samples(gain: Gain) -> Array:
     """Sample a gain; raise OptionError, which names w, when one is negative or not finite."""
     w = np.exp2(np.arange(-_OCTAVES * _PER_OCTAVE, _OCTAVES * _PER_OCTAVE + 1) / _PER_OCTAVE)
     try:
-        gains = np.asarray(gain(w), dtype=np.float64)
+        returned: Any = np.asarray(gain(w))
     except (TypeError, ValueError):  # a function of one number, such as one with an if
-        gains = np.array([gain(one) for one in w], dtype=np.float64)
+        returned = [gain(one) for one in w]
+    gains = real_numbers(returned, "gains")
     if gains.shape not in ((), w.shape):
         raise OptionError(
             f"gain returns shape {gains.shape} for {len(w)} frequencies: return a gain for each"

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from meshlab_spectral.errors import OptionError
-from meshlab_spectral.filters.arrays import mesh_arrays
+from meshlab_spectral.errors import ArgumentError, ArrayError, OptionError
+from meshlab_spectral.filters.arrays import mesh_arrays, real_numbers
 from meshlab_spectral.filters.keywords import takes_options
 from meshlab_spectral.filters.mesh_objects import array_of, takes_mesh_alone
 from meshlab_spectral.filters.options import FilterOptions, TransferKeywords
@@ -88,7 +88,7 @@ def filter_scalars(
 
     Raises
     ------
-    ValueError
+    ArrayError
         When an array has the wrong shape or type, or an index is out of range.
     OptionError
         When an option is unknown, has an invalid value, or applies only to shapes.
@@ -109,14 +109,14 @@ def filter_scalars(
     """
     V, F = mesh_arrays(mesh_or_vertices, faces)
     if values is None:
-        raise TypeError("values: pass numbers to filter, one for each vertex")
+        raise ArgumentError("values: pass numbers to filter, one for each vertex")
     if fwhm is not None:
         options, named = _smoothing(fwhm, options, named, gain)
     parameters = _options_for(options, named, gain)
     given_values = np.asarray(array_of(mesh_or_vertices, values, "values"))
-    Q = given_values.astype(np.float64)
+    Q = real_numbers(given_values, "values")
     if Q.ndim not in (1, 2) or len(Q) != len(V) or Q.size == 0:
-        raise ValueError(
+        raise ArrayError(
             f"values have shape {Q.shape}: pass {len(V)} numbers, one for each vertex, or a matrix "
             f"with {len(V)} rows"
         )
@@ -173,12 +173,13 @@ def filter_colors(
     """
     V, F = mesh_arrays(mesh_or_vertices, faces)
     if colors is None:
-        raise TypeError("colors: pass red, green and blue of each vertex")
+        raise ArgumentError("colors: pass red, green and blue of each vertex")
     parameters = _options_for(options, named, gain)
     C = np.asarray(array_of(mesh_or_vertices, colors, "colors"))
     most = 1 if np.issubdtype(C.dtype, np.floating) else 255
+    real_numbers(C, "colors")
     if C.shape not in ((len(V), 3), (len(V), 4)) or not ((C >= 0) & (most >= C)).all():
-        raise ValueError(
+        raise ArrayError(
             f"colors: pass {len(V)} x 3 or {len(V)} x 4 integers from 0 to 255, or floating-point "
             "numbers from 0 to 1"
         )

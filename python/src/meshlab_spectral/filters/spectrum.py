@@ -183,7 +183,7 @@ def geometry_spectrum(
 
     Raises
     ------
-    ValueError
+    ArrayError
         When an array has the wrong shape or type, or an index is out of range.
     OptionError
         When `laplacian` or `boundary` is unknown, or `basis_size` is not an integer >= 0.

@@ -143,7 +143,7 @@ def surface_texture(
 
     Raises
     ------
-    ValueError
+    ArrayError
         When an array has the wrong shape or type, or an index is out of range.
     OptionError
         When a size or the angle is out of range, or nothing is left to evaluate.

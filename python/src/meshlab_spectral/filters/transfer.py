@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from meshlab_spectral import _core
 from meshlab_spectral.errors import OptionError
+from meshlab_spectral.filters.arrays import real_numbers
 from meshlab_spectral.filters.options import FilterOptions
 
 Array = NDArray[np.float64]
@@ -68,6 +69,6 @@ def gain(options: FilterOptions, x: Array, lengths: MeshLengths | None = None) -
     given = {
         name: value for name, value in options.core_parameters().items() if name in TRANSFER_NAMES
     }
-    w = np.ascontiguousarray(x, dtype=np.float64)
+    w = np.ascontiguousarray(real_numbers(x, "x"))
     gains = _core.gains(given, lengths.feature_size, lengths.diagonal, lengths.mean_edge, w.ravel())
     return gains.reshape(w.shape)
