@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import trimesh
 from commands import arrays_of, assert_fails, command
 from helpers import mesh_set_of
 from meshlab_spectral import InputError, OptionError, denoise_mesh, filter_mesh
@@ -125,7 +126,7 @@ def test_a_region_that_does_not_fit_is_refused_with_the_remedy(tmp_path: Path) -
         ("--box", "1,2,3"): "give six numbers",
         ("--box", "8,8,8,9,9,9"): "no vertex is there",
         ("--component", "0"): "give largest, or a number from 1",
-        ("--component", "2"): "the mesh has 1",
+        ("--component", "2"): "there are 1",
         ("--where", "z = 3"): "compare with ==",
         ("--where", "0 < z < 3"): "join two by &&",
         ("--where", "__import__('os')"): "give a condition of x, y, z",
@@ -174,3 +175,21 @@ def test_a_mask_may_be_a_column_or_a_row(shape: tuple[int, int], tmp_path: Path)
     np.save(tmp_path / "mask.npy", np.reshape([0, 1, 0], shape))
     chosen = vertices_in(Region(mask=tmp_path / "mask.npy"), np.eye(3), np.array([[0, 1, 2]]))
     np.testing.assert_array_equal(chosen, [False, True, False])
+
+
+@pytest.mark.parametrize(("given", "name"), [("largest", "b"), ("2", "a"), ("3", "c")])
+def test_components_are_counted_over_all_meshes_of_a_file(
+    given: str, name: str, tmp_path: Path
+) -> None:
+    source, target = tmp_path / "in.glb", tmp_path / "out.glb"
+    scene = trimesh.Scene()
+    V, F = spheres(1.0, 1.5, 0.5)
+    for number, one in enumerate("abc"):
+        part = slice(number * len(V) // 3, (number + 1) * len(V) // 3)
+        corners = F[number * len(F) // 3 : (number + 1) * len(F) // 3] - part.start
+        scene.add_geometry(trimesh.Trimesh(V[part], corners, process=False), geom_name=one)
+    scene.export(source)
+    assert_fails(command("denoise", source, target, "--component", 4), 2, "there are 3")
+    done = command("denoise", source, target, "--component", given, "--json")
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["report"]["mesh"] == name

@@ -23,7 +23,7 @@ class Region:
     component: str | None = option(
         None,
         "Filter only the largest connected component, or the one of this number: 1 is the largest "
-        "by area, 2 the next.",
+        "by area, 2 the next, over all meshes of the file.",
         metavar="largest|N",
     )
     where: str | None = option(

@@ -25,7 +25,7 @@ _CONDITIONS = (
 
 
 def vertices_in(region: Region, V: Array, F: Indices, quality: Array | None = None) -> Flags:
-    """Return which of n vertices are in a region.
+    """Return which of n vertices are in a region, whose components are those of this mesh.
 
     Raises OptionError when the region does not fit the mesh, InputError when the mask cannot be
     read.
@@ -49,7 +49,7 @@ def _in_component(region: Region, V: Array, F: Indices, quality: Array | None) -
     # By area, descending; a triangle without any is in the component of its corners, or in none.
     sizes = np.bincount(labels[F[:, 0]] + 1, weights=areas, minlength=count + 1)[1:]
     if region.number > count:
-        raise OptionError(f"component = {region.component}: the mesh has {count}")
+        raise OptionError(f"component = {region.component}: there are {count}")
     wanted = np.argsort(-sizes, kind="stable")[region.number - 1]
     chosen: Flags = labels == wanted
     return chosen
@@ -145,7 +145,18 @@ def restricted(parts: Sequence[Part], region: Region) -> list[Part | None]:
 
     Raises OptionError when nothing is in the region at all, and as `vertices_in` does.
     """
-    chosen = [vertices_in(region, one.vertices, one.faces, one.quality) for one in parts]
+    chosen = [
+        vertices_in(replace(region, component=None), one.vertices, one.faces, one.quality)
+        for one in parts
+    ]
+    if region.component is not None:  # counted over all meshes
+        ends = np.cumsum([len(one.vertices) for one in parts])
+        V = np.vstack([one.vertices for one in parts])
+        F = np.vstack(
+            [one.faces + end - len(one.vertices) for one, end in zip(parts, ends, strict=True)]
+        )
+        flags = np.split(_in_component(region, V, F, None), ends[:-1])
+        chosen = [one & more for one, more in zip(chosen, flags, strict=True)]
     if not any(flags.any() for flags in chosen):
         given = ", ".join(f"{name} = {value}" for name, value in region.given().items())
         raise OptionError(f"{given}: no vertex is there, so nothing would change")
