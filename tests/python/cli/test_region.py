@@ -93,6 +93,19 @@ def test_the_normal_and_the_quality_are_variables_of_a_condition(tmp_path: Path)
         assert V[where, 0].mean() > 0.3
 
 
+@pytest.mark.parametrize("ending", ["ply", "obj"])
+def test_how_much_is_in_the_region_is_no_warning(ending: str, tmp_path: Path) -> None:
+    source, target = written(tmp_path, spheres(1.0)), tmp_path / f"out.{ending}"
+    V, _ = arrays_of(source)
+    arguments = ("filter", source, target, "--where", "z > 0.2", "--overwrite")
+    done = command(*arguments)
+    number = np.count_nonzero(V[:, 2] > 0.2)
+    assert f"in.ply: only {number} of {len(V)} vertices are chosen" in done.stdout
+    quiet = command(*arguments, "--quiet")
+    assert quiet.stdout == ""
+    assert "vertices" not in done.stderr + quiet.stderr
+
+
 @pytest.mark.parametrize(("given", "number"), [("largest", 1), ("1", 1), ("2", 0), ("3", 2)])
 def test_components_are_counted_by_area(given: str, number: int, tmp_path: Path) -> None:
     source, target = written(tmp_path, spheres(1.0, 1.5, 0.5)), tmp_path / "out.ply"

@@ -6,6 +6,7 @@ change. Conversions, scripts, and formats that only MeshLab knows go through Mes
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
@@ -55,6 +56,8 @@ StageCallback = Callable[[str, float | None], object]
 _READ_BY_MESHLAB = (".ply", ".obj", ".off", ".stl")
 # MeshLab would invent both for a mesh made from arrays.
 _BARE = {".ply": {"save_vertex_color": False, "save_vertex_quality": False}}
+# The core's warning for those who do not know of a selection that another filter has left.
+_SELECTION = re.compile(r"only the selection: (\d+ of \d+ vertices)")
 # Formats in which MeshLab writes coordinates in single precision, or with fewer digits.
 _COARSE = (".stl", ".3ds", ".3mf", ".ctm", ".dae", ".wrl", ".x3d")
 
@@ -117,7 +120,7 @@ def filter_to_scratch(
         if region is not None:
             _select(mesh_set, region)
         parameters = options.pymeshlab_parameters(mesh_set.current_mesh())
-        return plain(call_filter(mesh_set, options.FILTER, parameters))
+        return _as_chosen(plain(call_filter(mesh_set, options.FILTER, parameters)))
 
     if attribute := wanted_attribute(options, scratch):
         return _through_meshlab(source, scratch, apply, on_stage, verbose, {attribute: True})
@@ -348,7 +351,18 @@ def _filtered(
         raise type(error)(f"mesh {part.name}: {error}") from error
     if verbose:
         print(done.text, *done.report["warnings"], sep="\n", file=sys.stderr)
-    return part.vertices if done.vertices is None else done.vertices, done.plain_report
+    report = _as_chosen(done.plain_report)
+    return part.vertices if done.vertices is None else done.vertices, report
+
+
+def _as_chosen(report: dict[str, Any]) -> dict[str, Any]:
+    """Make of the warning of a selection, which was asked for, the summary."""
+    for warning in report["warnings"]:
+        if found := _SELECTION.fullmatch(warning):
+            told = f"only {found[1]} are chosen; around them, the effect fades out"
+            rest = [other for other in report["warnings"] if other != warning]
+            return {**report, "summary": told, "warnings": rest}
+    return report
 
 
 def in_scene(parts: Sequence[Part]) -> list[Part]:
