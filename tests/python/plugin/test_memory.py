@@ -38,9 +38,10 @@ def _restored() -> Iterator[None]:
     set_memory_limit(None)
 
 
-def test_an_invalid_limit_is_refused() -> None:
-    with pytest.raises(OptionError, match="memory limit = 0: give a number"):
-        set_memory_limit(0)
+@pytest.mark.parametrize("limit", [0, -1.5, float("nan"), float("inf"), "2GB"])
+def test_an_invalid_limit_is_refused(limit: Any) -> None:
+    with pytest.raises(OptionError, match=f"memory limit = {limit}: give a number of bytes"):
+        set_memory_limit(limit)
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -41,6 +42,13 @@ def test_an_invalid_number_of_threads_is_refused(
     with pytest.raises(OptionError, match="threads = 0: give a number"):
         set_threads(0)
     V, F = decimated("cow.obj", 2000)
+    wrong: Any
+    for wrong in (-1, 1.5, "a", 1 << 40):
+        words = f"threads = {wrong}: give a number of threads"
+        with pytest.raises(OptionError, match=words):
+            set_threads(wrong)
+        with pytest.raises(OptionError, match=words):
+            filter_mesh(V, F, threads=wrong)
     for value in ("0", "-3", "many", ""):
         monkeypatch.setenv(THREADS, value)
         with pytest.raises(FilterError, match=f"{THREADS} = {value}: give a number of threads"):

@@ -135,10 +135,8 @@ def run(
 
 
 def thread_count(threads: int | None) -> int:
-    """Return a number of threads for the core; raise OptionError if it is below 1."""
-    if threads is not None and threads < 1:
-        raise OptionError(f"threads = {threads}: give a number of threads above zero, or None")
-    return threads or limits.threads() or 0
+    """Return a number of threads for the core; raise OptionError if it is none above zero."""
+    return limits.checked_threads(threads) or limits.threads() or 0
 
 
 def require_no_type(filter_type: str) -> None:

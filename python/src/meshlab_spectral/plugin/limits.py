@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+from numbers import Integral, Real
 
 from meshlab_spectral.errors import OptionError
 
@@ -27,7 +28,8 @@ def set_threads(count: int | None) -> None:
     OptionError
         When `count` is below 1.
     """
-    _set(THREADS, count, f"threads = {count}: give a number of threads")
+    checked_threads(count)
+    _set(THREADS, count)
 
 
 def set_memory_limit(limit: int | None) -> None:
@@ -48,14 +50,21 @@ def set_memory_limit(limit: int | None) -> None:
     OptionError
         When `limit` is not above zero.
     """
-    _set(MEMORY, limit, f"memory limit = {limit}: give a number of bytes")
+    if limit is not None and not (isinstance(limit, Real) and 0 < limit < math.inf):
+        raise OptionError(f"memory limit = {limit}: give a number of bytes above zero, or None")
+    _set(MEMORY, limit)
 
 
-def _set(variable: str, number: int | None, message: str) -> None:
+def checked_threads(count: int | None) -> int | None:
+    """Return a number of threads, or None; raise OptionError unless it is an integer above zero."""
+    if count is not None and not (isinstance(count, Integral) and 0 < count < 1 << 31):
+        raise OptionError(f"threads = {count}: give a number of threads above zero, or None")
+    return count
+
+
+def _set(variable: str, number: int | None) -> None:
     if number is None:
         os.environ.pop(variable, None)
-    elif number <= 0:
-        raise OptionError(f"{message} above zero, or None")
     else:
         os.environ[variable] = str(number)
 
