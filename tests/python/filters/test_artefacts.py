@@ -97,7 +97,7 @@ def test_the_filter_fills_quality_and_colours_and_moves_nothing(decimated: Decim
     assert_same(before, after)
 
 
-@pytest.mark.parametrize("feature_size", [0.0, -1.0, float("nan"), float("inf"), 1e39, "5%"])
+@pytest.mark.parametrize("feature_size", [0.0, -1.0, float("nan"), float("inf"), 1e39, "500%"])
 def test_an_invalid_feature_size_is_refused_by_name(feature_size: Any) -> None:
     with pytest.raises(OptionError, match="feature_size"):
         measure_artefacts(*TRIANGLE, feature_size)
@@ -138,3 +138,15 @@ def test_lists_are_accepted() -> None:
     found = measure_artefacts([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], 1.0)
     assert isinstance(found, Artefacts)
     assert found.length.shape == (3,)
+
+
+def test_a_size_may_be_relative_to_the_mesh(decimated: Decimated) -> None:
+    V, F = decimated("cow.obj")
+    corners = V[F]
+    edge = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).mean()
+    for text, length in (("20%", 0.2 * diagonal(V)), ("6e", 6 * edge)):
+        found, expected = measure_artefacts(V, F, text), measure_artefacts(V, F, length)
+        assert found.rms == pytest.approx(expected.rms, rel=1e-5)
+    for wrong in ("auto", "much", "0%"):
+        with pytest.raises(OptionError, match="feature_size = "):
+            measure_artefacts(V, F, wrong)

@@ -51,7 +51,7 @@ class Artefacts:
 def measure_artefacts(
     vertices: Any,
     faces: ArrayLike | None,
-    feature_size: float,
+    feature_size: str | float,
     laplacian: LaplacianKind = "intrinsic delaunay",
     *,
     progress: Progress | bool | None = None,
@@ -71,7 +71,8 @@ def measure_artefacts(
     faces
         With coordinates: m x 3 vertex indices of triangles, from 0 to n - 1; any topology.
     feature_size
-        Feature size of the applied low-pass or band, length units, > 0.
+        Feature size of the applied low-pass or band, > 0: a length, or as "2%" of this mesh's
+        diagonal, "6e" in its mean edges.
     laplacian
         "intrinsic delaunay" works with any triangles; "cotangent" needs non-degenerate ones;
         "uniform" uses the connectivity only.
@@ -103,13 +104,17 @@ def measure_artefacts(
     """
     V, F = mesh_arrays(vertices, faces)
     try:
-        size = Length(feature_size)
+        size = Length.parse(feature_size) if isinstance(feature_size, str) else Length(feature_size)
+        if size.automatic:
+            raise OptionError("auto: give the size that was filtered with")
     except OptionError as error:
         raise OptionError(f"feature_size = {error}") from None
     if laplacian not in get_args(LaplacianKind):
         raise OptionError(f"laplacian = {laplacian}: choose {', '.join(get_args(LaplacianKind))}")
 
-    given = {"feature_size": float(size.value), "laplacian": laplacian}
+    length = float(size.value)
+    of_mesh = f"{length!r}{size.unit}" if size.unit else length
+    given = {"feature_size": of_mesh, "laplacian": laplacian}
     done = run(_FILTER_NAME, V, F, given, progress=progress, threads=threads)
     assert done.values is not None
     return Artefacts(
