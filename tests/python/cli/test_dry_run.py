@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -25,6 +26,17 @@ def test_nothing_is_written_and_sizes_have_the_units_of_the_file(verb: str, tmp_
     assert record["intent"]["tiles"] == 0
     assert 0 < record["intent"]["memory"] < record["intent"]["available_memory"]
     assert list(tmp_path.iterdir()) == [scan]
+
+
+@pytest.mark.parametrize("more", [[], ["--json"]])
+def test_a_size_below_the_edges_is_warned_of_as_by_the_run(more: list[str], tmp_path: Path) -> None:
+    (scan,) = make_meshes(tmp_path, 1)
+    arguments = ["filter", scan, tmp_path / "out.ply", "--overwrite", *more]
+    for dry in ([], ["--dry-run"]):
+        done = command(*arguments, "--feature-size", "0.1%", *dry)
+        words = r"feature size \S+ is below|feature size \S+, which is below"
+        assert re.search(words, done.stderr)
+    assert "is below" not in command(*arguments, "--dry-run").stderr
 
 
 @pytest.mark.parametrize("size", ["auto", "3%", "4e", "0.25"])

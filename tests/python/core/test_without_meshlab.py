@@ -78,6 +78,7 @@ def test_what_needs_meshlab_says_what_to_install(
     sample = SAMPLES[0]
     source = tmp_path / sample.name
     sample.write(source)
-    done = command("filter", source, tmp_path / "other.dae", **without_meshlab)
-    assert done.returncode != 0
-    assert "pip install" in messages_in(done.stderr)
+    for more in ([], ["--dry-run"]):
+        done = command("filter", source, tmp_path / "other.dae", *more, **without_meshlab)
+        assert done.returncode != 0
+        assert "pip install" in messages_in(done.stderr)

@@ -9,6 +9,7 @@ from typing import Any
 import typer
 from rich.console import Console
 
+from meshlab_spectral.cli.messages import print_warning
 from meshlab_spectral.cli.report_table import table_of
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.plugin.versions import versions
@@ -18,6 +19,13 @@ def print_intent(
     source: Path, target: Path, options: Options, intent: dict[str, Any], as_json: bool
 ) -> None:
     """Print what `intent_of_file` has returned; it is what was asked for, also with --quiet."""
+    for surface in intent["surfaces"]:
+        size, edge = surface["sizes"].get("feature_size"), surface["mean_edge"]
+        if size is not None and size < edge:
+            print_warning(
+                f"the feature size {size:.3g} is below the mean edge length {edge:.3g}: choose at "
+                f"least two edges, {2 * edge:.3g}"
+            )
     if as_json:
         record = {"input": str(source), "output": str(target), "options": options.as_dict()}
         typer.echo(json.dumps({**record, "intent": intent, "versions": versions()}))

@@ -23,6 +23,7 @@ from meshlab_spectral.files.region_vertices import chosen_parts
 from meshlab_spectral.files.touching import pieces
 from meshlab_spectral.filters.arrays import mean_edge
 from meshlab_spectral.filters.option_types import Length, Options
+from meshlab_spectral.plugin.loading import load
 
 
 def intent_of(
@@ -48,6 +49,7 @@ def intent_of(
     on_stage("reading", None)
     is_patched = not wanted_attribute(options, target) and is_same_format(source, target)
     if not is_patched:
+        load()
         check_writable(target)
     parts = load_parts(source, mesh)
     wholes = [whole_of(group) for group in pieces(parts)]
