@@ -206,3 +206,11 @@ def test_components_are_counted_over_all_meshes_of_a_file(
     done = command("denoise", source, target, "--component", given, "--json")
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout)["report"]["mesh"] == name
+
+
+def test_a_recipe_that_lacks_the_region_says_so(tmp_path: Path) -> None:
+    source, recipe = written(tmp_path, spheres(1.0)), tmp_path / "recipe.toml"
+    arguments = ("filter", source, tmp_path / "out.ply", "--overwrite", "--save-recipe", recipe)
+    assert "recipe" not in command(*arguments).stderr
+    done = command(*arguments, "--where", "z > 0", "--box", "0,0,0,2,2,2")
+    assert f"{recipe} does not hold --box, --where" in done.stderr

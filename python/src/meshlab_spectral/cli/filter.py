@@ -211,6 +211,9 @@ def _command_with(table: type[Options], help_text: str) -> Command:
                 from meshlab_spectral.figures.comparison import draw_comparison  # a slow import
 
                 draw_comparison(compared(read, written), picture, (source.name, place.name))
+        if save_recipe is not None and part is not None:
+            names = ", ".join(f"--{name}" for name in part.given())
+            print_warning(f"{save_recipe} does not hold {names}: a region is of one file")
         warn_of_points_only(place.suffix)
         for warning in report["warnings"]:
             print_warning(warning)

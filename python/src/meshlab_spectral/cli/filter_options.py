@@ -47,7 +47,7 @@ SaveRecipe = Annotated[
     typer.Option(
         "--save-recipe",
         metavar="FILE",
-        help="Write all options to a recipe, for the next scan or a batch.",
+        help="Write all options but those of a region to a recipe, for the next scan or a batch.",
     ),
 ]
 
