@@ -12,6 +12,7 @@ from rich.console import Console
 from meshlab_spectral.cli.messages import print_warning
 from meshlab_spectral.cli.report_table import table_of
 from meshlab_spectral.filters.option_types import Options
+from meshlab_spectral.filters.options import FilterOptions
 from meshlab_spectral.plugin.versions import versions
 
 
@@ -21,7 +22,7 @@ def print_intent(
     """Print what `intent_of_file` has returned; it is what was asked for, also with --quiet."""
     for surface in intent["surfaces"]:
         size, edge = surface["sizes"].get("feature_size"), surface["mean_edge"]
-        if size is not None and size < edge:
+        if _is_size_given(options) and size < edge:
             print_warning(
                 f"the feature size {size:.3g} is below the mean edge length {edge:.3g}: choose at "
                 f"least two edges, {2 * edge:.3g}"
@@ -35,6 +36,14 @@ def print_intent(
         name = f", {surface['mesh']}" if surface["mesh"] else ""
         console.print(table_of(_rows(surface), f"{source} -> {target}{name}"))
     typer.echo(f"{target} would be {_way(target, intent)}. Nothing was written.")
+
+
+def _is_size_given(options: Options) -> bool:
+    """Whether there is a feature size that the run would warn of where the edges are longer."""
+    if not isinstance(options, FilterOptions) or options.filter_type == "custom":
+        return False
+    size = options.feature_size
+    return not size.automatic and size != FilterOptions().feature_size
 
 
 def _rows(surface: dict[str, Any]) -> list[tuple[str, str]]:
