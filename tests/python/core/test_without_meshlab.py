@@ -78,7 +78,15 @@ def test_what_needs_meshlab_says_what_to_install(
     sample = SAMPLES[0]
     source = tmp_path / sample.name
     sample.write(source)
-    for more in ([], ["--dry-run"]):
-        done = command("filter", source, tmp_path / "other.dae", *more, **without_meshlab)
+    needing = [
+        ("filter", "other.dae"),
+        ("filter", "other.dae", "--dry-run"),
+        ("filter", "details.ply", "--preset", "extract-details"),
+        ("denoise", "heights.ply", "--store-noise-height"),
+    ]
+    for verb, name, *more in needing:
+        done = command(verb, source, tmp_path / name, *more, **without_meshlab)
         assert done.returncode != 0
-        assert "pip install" in messages_in(done.stderr)
+        assert "needs pymeshlab: pip install 'meshlab-spectral[meshlab]'" in messages_in(
+            done.stderr
+        )

@@ -109,7 +109,7 @@ def _check_pymeshlab_version() -> None:
 
 def _pymeshlab_missing(error: ImportError) -> str:
     if isinstance(error, ModuleNotFoundError):
-        return f"pymeshlab is not installed: pip install pymeshlab=={PYMESHLAB_VERSION}"
+        return "this needs pymeshlab: pip install 'meshlab-spectral[meshlab]'"
     # Usual cause on a server: the wheel needs the system's OpenGL libraries.
     return (
         f"pymeshlab cannot be imported ({error}): if a library is missing, install it; on Debian: "
