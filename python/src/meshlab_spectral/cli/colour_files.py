@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from meshlab_spectral.errors import MeshError, SpectralError
+from meshlab_spectral.errors import MeshError, OptionError, SpectralError
 from meshlab_spectral.extras import check_extras
 from meshlab_spectral.files.formats import check_ending
 from meshlab_spectral.files.whole_files import check_target, writing_whole
@@ -51,8 +51,13 @@ def compared(a: Path, b: Path) -> Comparison:
 
 
 @contextlib.contextmanager
-def writing_coloured(output: Path | None, picture: Path | None) -> Iterator[Path | None]:
+def writing_coloured(
+    output: Path | None, picture: Path | None, *inputs: Path
+) -> Iterator[Path | None]:
     """Check both files; yield the scratch file of `output`, if any, which it becomes at the end."""
+    for source in inputs:
+        if output is not None and output.exists() and source.exists() and output.samefile(source):
+            raise OptionError(f"{output} is an input itself and would be lost: choose another name")
     check_picture(picture)
     if output is None:
         yield None

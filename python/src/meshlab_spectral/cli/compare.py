@@ -50,7 +50,7 @@ def compare_command(
     """
     with (
         errors_reported("finished files are complete"),
-        writing_coloured(output, picture) as scratch,
+        writing_coloured(output, picture, a, b) as scratch,
     ):
         result = compared(a, b)
         if scratch is not None:
