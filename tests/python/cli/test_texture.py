@@ -102,3 +102,24 @@ def test_the_selection_of_a_file_is_measured(tmp_path: Path) -> None:
     record = json.loads(done.stdout)
     assert 0 < record["vertices_evaluated"] < made.current_mesh().vertex_number() * 0.6
     assert record["form_radius"] == pytest.approx(1, rel=0.01)
+
+
+def test_a_file_without_faces_is_refused(tmp_path: Path) -> None:
+    none = tmp_path / "none.ply"
+    none.write_text(
+        "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n"
+        "property float z\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n"
+    )
+    done = command("texture", none)
+    assert done.returncode == 1
+    assert "has no faces" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_the_input_is_not_replaced(rough: Path) -> None:
+    before = rough.read_bytes()
+    for arguments in (["texture", rough], ["compare", rough, rough]):
+        done = command(*arguments, "--output", rough)
+        assert done.returncode == 2
+        assert "would be lost" in done.stderr
+        assert rough.read_bytes() == before

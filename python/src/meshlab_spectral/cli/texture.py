@@ -23,6 +23,7 @@ from meshlab_spectral.cli.messages import errors_reported, print_result, print_w
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.cli.report_table import table_of
 from meshlab_spectral.documents.document import Part
+from meshlab_spectral.errors import MeshError
 from meshlab_spectral.figures.texture import draw_texture, write_texture
 from meshlab_spectral.files.meshes import joined, load_parts
 from meshlab_spectral.filters.options import TextureOptions
@@ -59,13 +60,15 @@ def texture_command(
     """
     with (
         errors_reported("finished files are complete"),
-        writing_coloured(output, picture) as scratch,
+        writing_coloured(output, picture, source) as scratch,
     ):
         options = chosen_options(TextureOptions, given)
         with progress_shown() as on_progress:
             on_progress("reading", None)
             parts = load_parts(source, mesh)
             V, F = joined(parts)
+            if len(F) == 0:
+                raise MeshError(f"{source} has no faces: there is no surface to measure")
             selection = _selection(parts) if options.selected else None
             texture = surface_texture(V, F, options, selection=selection, progress=on_progress)
         if scratch is not None:
