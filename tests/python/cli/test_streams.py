@@ -50,3 +50,18 @@ def test_an_output_is_replaced_only_on_request(verb: str, cow: Path, tmp_path: P
     assert target.read_bytes() == PRECIOUS
     assert command(verb, cow, target, "--overwrite").returncode == 0
     assert target.read_bytes() != PRECIOUS
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is full")
+def test_a_full_disk_is_an_error_without_a_traceback(cow: Path) -> None:
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(
+            [*COMMAND, "info", str(cow)],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            check=False,
+        )
+    assert done.returncode == 1
+    assert "standard output cannot be written" in done.stderr
+    assert "Traceback" not in done.stderr

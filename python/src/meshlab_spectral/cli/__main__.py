@@ -1,5 +1,7 @@
 """The command `meshlab-spectral`, also as `python -m meshlab_spectral.cli`."""
 
+import errno
+import os
 import sys
 
 from meshlab_spectral.cli.interrupts import end_at_once, ignore_interrupts
@@ -18,7 +20,17 @@ def main() -> None:
     from meshlab_spectral.cli.app import app  # takes a fifth of a second
 
     try:
-        app(prog_name="meshlab-spectral")
+        try:
+            app(prog_name="meshlab-spectral")
+        finally:
+            if sys.stdout is not None:
+                sys.stdout.flush()
+    except OSError as error:
+        if error.errno != errno.ENOSPC or error.filename is not None:
+            raise
+        # Python would flush what is left once more, at its end.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(f"Error: standard output cannot be written ({error.strerror})")
     finally:
         ignore_interrupts()
         end_unused()
