@@ -123,3 +123,14 @@ def test_the_input_is_not_replaced(rough: Path) -> None:
         assert done.returncode == 2
         assert "would be lost" in done.stderr
         assert rough.read_bytes() == before
+
+
+def test_other_files_are_replaced_on_request_only(rough: Path, tmp_path: Path) -> None:
+    other = tmp_path / "other.ply"
+    for arguments in (["texture", rough], ["compare", rough, rough]):
+        other.write_text("precious")
+        done = command(*arguments, "--output", other)
+        assert (done.returncode, other.read_text()) == (2, "precious")
+        assert "replace it with --overwrite" in done.stderr
+        assert command(*arguments, "--output", other, "-f").returncode == 0
+        assert other.read_bytes().startswith(b"ply")

@@ -53,7 +53,7 @@ TARGETS = {
 }
 # An error ends with what to do, or names an option with its range.
 REMEDY = re.compile(
-    r"choose|apply |load or create|scale the mesh|reconstruct|delete them|must be|lies between|"
+    r"[Cc]hoose|apply |load or create|scale the mesh|reconstruct|delete them|must be|lies between|"
     r"has the modes|a positive number|must be finite|above zero|[Mm]ust be a value between|"
     r"Possible values|between 0 and 100|select faces or|give at most"
 )

@@ -117,7 +117,7 @@ def test_tiles_take_over_where_memory_is_refused(
     report = run(SMALL, tiles=0, tell=lines.append)
     assert report["tiles"] >= 2
     assert lines == [
-        f"mesh.ply is filtered in {report['tiles']} tiles, as it does not fit in memory as a whole"
+        f"mesh.ply is processed in {report['tiles']} tiles, as it does not fit in memory as a whole"
     ]
     with pytest.raises(MemoryLimitError, match="nor can it be filtered in tiles"):
         run(FilterOptions(preserve_volume=True), tiles=0, tell=_ignore)
@@ -229,6 +229,7 @@ def test_space_is_asked_for_first(
     with pytest.raises(MeshFileError, match="GB of free space") as caught:
         filter_in_tiles(source, tmp_path / "out.ply", SMALL, _ignore, 8, _ignore)
     assert caught.value.code == "disk_full"
+    assert not (tmp_path / ".out.ply.tiles").exists()  # nothing can go on from it
 
 
 @pytest.mark.parametrize("room", [20_000, 100_000], ids=["tiles", "output"])
@@ -259,7 +260,7 @@ def test_a_full_disk_loses_nothing(room: int, source: Path, tmp_path: Path) -> N
     assert target.read_bytes() == b"before"
     done = command(*arguments)
     assert done.returncode == 0, done.stderr
-    assert "is filtered in 8 tiles" in done.stderr
+    assert "is processed in 8 tiles" in done.stderr
     assert _is_as_never_interrupted(source, target)
 
 

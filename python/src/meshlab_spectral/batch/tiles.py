@@ -17,9 +17,10 @@ from meshlab_spectral.batch.local import local_workers
 from meshlab_spectral.batch.memory import PROCESS_BYTES, TILE_BYTES, workers
 from meshlab_spectral.batch.tile_jobs import TileJob, check_seen, run_tile
 from meshlab_spectral.documents.digits import rounding_message, widening_warnings
-from meshlab_spectral.errors import MeshFileError
+from meshlab_spectral.errors import MeshFileError, OptionError
 from meshlab_spectral.files.formats import is_same_format
 from meshlab_spectral.files.intent import sizes_of
+from meshlab_spectral.files.region_vertices import NOTHING_SELECTED
 from meshlab_spectral.files.sources import check_is_place, check_source
 from meshlab_spectral.files.whole_files import LOCK, check_target, holding, resolved, writing_whole
 from meshlab_spectral.filters.option_types import Options
@@ -66,7 +67,8 @@ def filter_in_tiles(
 ) -> dict[str, Any]:
     """Filter a binary PLY or STL file in tiles, in a folder next to the output.
 
-    The folder is removed at the end, and stays after an error: the same call then goes on from it.
+    The folder is removed at the end. After an error it stays if all faces have been handed to the
+    tiles: the same call then goes on from it.
     With the address of a Dask scheduler its workers do the tiles; they must see folder and source.
     """
     _check_files(source, target)
@@ -74,13 +76,13 @@ def filter_in_tiles(
     place = resolved(target)
     work = Workspace(place.with_name(f".{place.name}.tiles"))
     rows = open_rows(source)
-    with _workers(scheduler) as pool, holding(work.folder):
+    with _workers(scheduler) as pool, holding(work.folder), work.removed_if_not_begun():
         pool.on_each(partial(check_seen, str(source.absolute()), str(work.folder)))
         plan = _planned(rows, source, options, on_progress, tiles, work, pool.memory)
         why = f" by the workers at {scheduler}" if scheduler else ""
         if not tiles and not scheduler:
             why = ", as it does not fit in memory as a whole"
-        tell(f"{source.name} is filtered in {plan.tiles} tiles{why}")
+        tell(f"{source.name} is processed in {plan.tiles} tiles{why}")
         try:
             reports = _filtered(plan, work, on_progress, pool)
             report, is_wide = _summary(plan, reports, rows)
@@ -108,7 +110,7 @@ def intent_in_tiles(
     _check_files(source, target)
     require_local(options)
     rows = open_rows(source)
-    measured = survey(rows, on_progress)
+    measured = _surveyed(rows, options, on_progress)
     diagonal, edge, _ = measured.lengths
     with _workers(scheduler) as pool:
         reach = reach_of(options, measured.lengths)
@@ -154,7 +156,7 @@ def _planned(
         is_same = is_same and old.versions == versions()
         if is_same and tiles in (0, old.tiles) and work.has_begun(old):
             return old
-    measured = survey(rows, on_progress)
+    measured = _surveyed(rows, options, on_progress)
     reach = reach_of(options, measured.lengths)
     tree, count, grown = _divided(rows, measured, reach, tiles, memory)
     _clear(work.folder)
@@ -164,7 +166,7 @@ def _planned(
         options.TABLE,
         options.as_dict(),
         list(measured.lengths[:3]),
-        bool(options.as_dict()["selected"]) and measured.has_selection,
+        bool(options.as_dict()["selected"]),
         tree,
         count,
         reach,
@@ -181,6 +183,14 @@ def _planned(
             "disk_full",
         ) from error
     return plan
+
+
+def _surveyed(rows: MeshRows, options: Options, on_progress: ProgressCallback) -> Survey:
+    """Survey a mesh; raise OptionError where nothing is selected of what was asked for."""
+    measured = survey(rows, on_progress)
+    if options.as_dict()["selected"] and not measured.has_selection:
+        raise OptionError(NOTHING_SELECTED)
+    return measured
 
 
 def _clear(folder: Path) -> None:

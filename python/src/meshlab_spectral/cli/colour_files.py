@@ -21,6 +21,10 @@ _PICTURE = typer.Option(
     metavar="FILE", help="Draw the mesh before, after, and in colours, a .png file."
 )
 Picture = Annotated[Path | None, _PICTURE]
+Overwrite = Annotated[
+    bool,
+    typer.Option("--overwrite", "--force", "-f", help="Replace the file of --output if it exists."),
+]
 
 
 def coloured_mesh(what: str) -> typer.models.OptionInfo:
@@ -52,12 +56,14 @@ def compared(a: Path, b: Path) -> Comparison:
 
 @contextlib.contextmanager
 def writing_coloured(
-    output: Path | None, picture: Path | None, *inputs: Path
+    output: Path | None, picture: Path | None, overwrite: bool, *inputs: Path
 ) -> Iterator[Path | None]:
     """Check both files; yield the scratch file of `output`, if any, which it becomes at the end."""
     for source in inputs:
         if output is not None and output.exists() and source.exists() and output.samefile(source):
             raise OptionError(f"{output} is an input itself and would be lost: choose another name")
+    if output is not None and output.is_file() and not overwrite:
+        raise OptionError(f"{output} exists: choose another name, or replace it with --overwrite")
     check_picture(picture)
     if output is None:
         yield None

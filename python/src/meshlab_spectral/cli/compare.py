@@ -8,7 +8,13 @@ from typing import Annotated
 
 import typer
 
-from meshlab_spectral.cli.colour_files import Picture, coloured_mesh, compared, writing_coloured
+from meshlab_spectral.cli.colour_files import (
+    Overwrite,
+    Picture,
+    coloured_mesh,
+    compared,
+    writing_coloured,
+)
 from meshlab_spectral.cli.filter_options import AsJson
 from meshlab_spectral.cli.messages import errors_reported, print_result
 from meshlab_spectral.cli.report_table import change, table_of
@@ -36,6 +42,7 @@ def compare_command(
         coloured_mesh("the deviation of B as quality, and in colours: red outside A, blue inside"),
     ] = None,
     picture: Picture = None,
+    overwrite: Overwrite = False,
     as_json: AsJson = False,
 ) -> None:
     """Compare two meshes: how far B is from A, where, and on which side.
@@ -50,7 +57,7 @@ def compare_command(
     """
     with (
         errors_reported("finished files are complete"),
-        writing_coloured(output, picture, a, b) as scratch,
+        writing_coloured(output, picture, overwrite, a, b) as scratch,
     ):
         result = compared(a, b)
         if scratch is not None:

@@ -11,7 +11,12 @@ import numpy as np
 import typer
 from numpy.typing import NDArray
 
-from meshlab_spectral.cli.colour_files import Picture, coloured_mesh, writing_coloured
+from meshlab_spectral.cli.colour_files import (
+    Overwrite,
+    Picture,
+    coloured_mesh,
+    writing_coloured,
+)
 from meshlab_spectral.cli.filter_options import (
     AsJson,
     OneMesh,
@@ -44,6 +49,7 @@ def texture_command(
         ),
     ] = None,
     picture: Picture = None,
+    overwrite: Overwrite = False,
     mesh: OneMesh = None,
     as_json: AsJson = False,
 ) -> None:
@@ -60,7 +66,7 @@ def texture_command(
     """
     with (
         errors_reported("finished files are complete"),
-        writing_coloured(output, picture, source) as scratch,
+        writing_coloured(output, picture, overwrite, source) as scratch,
     ):
         options = chosen_options(TextureOptions, given)
         with progress_shown() as on_progress:

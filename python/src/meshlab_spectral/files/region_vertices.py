@@ -18,6 +18,11 @@ from meshlab_spectral.filters.option_types import Options
 
 Flags = NDArray[np.bool_]
 
+NOTHING_SELECTED = (
+    "nothing is selected: select faces or vertices in MeshLab and save as .ply, or leave out "
+    "selected, for the whole mesh"
+)
+
 _CONDITIONS = (
     "give a condition of x, y, z, nx, ny, nz and, if the mesh has it, the quality q, such as "
     "z > 3 && nz > 0"
@@ -133,10 +138,7 @@ def chosen_parts(
     if not getattr(options, "selected", False):
         return list(parts)
     if all(part.selected is None for part in parts):
-        raise OptionError(
-            "nothing is selected: select faces or vertices in MeshLab and save as .ply, or leave "
-            "out selected, which filters the whole mesh"
-        )
+        raise OptionError(NOTHING_SELECTED)
     return [None if part.selected is None else part for part in parts]
 
 

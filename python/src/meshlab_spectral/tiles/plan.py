@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import secrets
+import shutil
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -68,6 +71,16 @@ class Workspace:
         except (OSError, ValueError, TypeError):
             return False
         return same and (self.folder / _SCATTERED).exists()
+
+    @contextlib.contextmanager
+    def removed_if_not_begun(self) -> Iterator[None]:
+        """Remove the folder after an error, unless another run can go on from it."""
+        try:
+            yield
+        except BaseException:
+            if not (self.folder / _SCATTERED).exists():
+                shutil.rmtree(self.folder, ignore_errors=True)
+            raise
 
     def begin(self, plan: Plan) -> None:
         """Write the plan."""
