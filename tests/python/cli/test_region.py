@@ -150,7 +150,6 @@ def test_a_region_that_does_not_fit_is_refused_with_the_remedy(tmp_path: Path) -
         ("--box", "0,0,0,1,1,1", "--selected"): "leave one out",
         ("--box", "0,0,0,1,1,1", "--tiles", "2"): "only the whole is filtered in tiles",
         ("--mesh", "part", "--tiles", "2"): "leave out mesh, or tiles",
-        ("--selected", "--tiles", "2"): "nothing is selected",
     }
     for arguments, reason in refused.items():
         done = command("filter", source, target, *arguments)

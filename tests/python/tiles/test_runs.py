@@ -21,7 +21,7 @@ from commands import command
 from meshlab_spectral import FilterOptions, MemoryLimitError, MeshFileError
 from meshlab_spectral.batch import whole_or_tiles
 from meshlab_spectral.batch.tiles import filter_in_tiles
-from meshlab_spectral.errors import FilterError, ProcessDiedError
+from meshlab_spectral.errors import FilterError, OptionError, ProcessDiedError
 from meshlab_spectral.process.parent import MeshLabProcess
 from meshlab_spectral.tiles.bounds import UntiledError
 from meshlab_spectral.tiles.halo import kernel_tails, reach_of
@@ -230,6 +230,13 @@ def test_space_is_asked_for_first(
         filter_in_tiles(source, tmp_path / "out.ply", SMALL, _ignore, 8, _ignore)
     assert caught.value.code == "disk_full"
     assert not (tmp_path / ".out.ply.tiles").exists()  # nothing can go on from it
+
+
+def test_an_empty_selection_is_refused(source: Path, tmp_path: Path) -> None:
+    selected = FilterOptions(feature_size="6e", passes=1, selected=True)
+    with pytest.raises(OptionError, match="nothing is selected"):
+        filter_in_tiles(source, tmp_path / "out.ply", selected, _ignore, 8, _ignore)
+    assert not (tmp_path / ".out.ply.tiles").exists()
 
 
 @pytest.mark.parametrize("room", [20_000, 100_000], ids=["tiles", "output"])
