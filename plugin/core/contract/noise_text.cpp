@@ -63,9 +63,11 @@ std::string remedyText(const NoiseEstimate& noise, bool isShape) {
         values += " and noise size " + numberText(size * edge, 2);
         edges += " and " + numberText(size, 2);
     }
-    return (isDetail ? "If its finest detail is noise, try "
-                     : "For ripples several edges wide, try ") +
-           values + " (" + edges + " edges), or Spectral Filter (Fractional)";
+    values += " (" + edges + " edges)";
+    return isDetail ? "If its finest detail is noise, try " + values +
+                          ", or Spectral Filter (Fractional)"
+                    : "For ripples with crests some four edges apart, try " + values +
+                          "; for wider ones, Spectral Filter (Fractional)";
 }
 
 /// Why there is nothing to remove, and what to give instead, in numbers of this mesh.

@@ -30,8 +30,8 @@ TEST(NoiseText, SuggestsTheMeasuredDetailWhereItMayBeNoise) {
 
 TEST(NoiseText, SuggestsRipplesWhereThereIsNoDetail) {
     const std::string ripples =
-        "For ripples several edges wide, try noise height 0.2 and noise size 4 (0.1 and 2 edges), "
-        "or Spectral Filter (Fractional)";
+        "For ripples with crests some four edges apart, try noise height 0.2 and noise size 4 (0.1 "
+        "and 2 edges); for wider ones, Spectral Filter (Fractional)";
     EXPECT_EQ(remedyOf(shapeWith(0.0, 1.0)), ripples);
     EXPECT_EQ(remedyOf(shapeWith(0.01, 1.0)), ripples);
     Diagnosis none = shapeWith(0.085, 1.0);
