@@ -59,7 +59,7 @@ struct Filter {
     std::string name;        ///< In menus: unique, must never change.
     std::string pythonName;  ///< In pymeshlab: unique, must never change.
     std::string help;        ///< For the dialog; plain text, *words* stand out.
-    std::string source{};    ///< The publication of the method, [its title](https://its.place).
+    std::string source{};    ///< The publication of the method, [its title](its address).
     std::vector<Parameter> parameters;
     std::vector<ReportEntry> report;  ///< Entries that there may be, in no order.
 

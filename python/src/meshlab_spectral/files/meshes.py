@@ -6,7 +6,6 @@ change. Conversions, scripts, and formats that only MeshLab knows go through Mes
 
 from __future__ import annotations
 
-import re
 import sys
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
@@ -57,7 +56,7 @@ _READ_BY_MESHLAB = (".ply", ".obj", ".off", ".stl")
 # MeshLab would invent both for a mesh made from arrays.
 _BARE = {".ply": {"save_vertex_color": False, "save_vertex_quality": False}}
 # The core's warning for those who do not know of a selection that another filter has left.
-_SELECTION = re.compile(r"only the selection: (\d+ of \d+ vertices)")
+_SELECTION = "only the selection: "
 # Formats in which MeshLab writes coordinates in single precision, or with fewer digits.
 _COARSE = (".stl", ".3ds", ".3mf", ".ctm", ".dae", ".wrl", ".x3d")
 
@@ -358,10 +357,11 @@ def _filtered(
 def _as_chosen(report: dict[str, Any]) -> dict[str, Any]:
     """Make of the warning of a selection, which was asked for, the summary."""
     for warning in report["warnings"]:
-        if found := _SELECTION.fullmatch(warning):
-            told = f"only {found[1]} are chosen; around them, the effect fades out"
-            rest = [other for other in report["warnings"] if other != warning]
-            return {**report, "summary": told, "warnings": rest}
+        if warning.startswith(_SELECTION):
+            chosen = warning.removeprefix(_SELECTION)
+            summary = f"only {chosen} are chosen; around them, the effect fades out"
+            others = [other for other in report["warnings"] if other != warning]
+            return {**report, "summary": summary, "warnings": others}
     return report
 
 
