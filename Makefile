@@ -28,7 +28,12 @@ SANITIZE ?= OFF
 
 BENCHMARKS := OFF
 BIN := .venv/bin
-CMAKE_OPTIONS := $(if $(MESHLAB_SOURCE_DIR),-DMESHLAB_SOURCE_DIR=$(abspath $(MESHLAB_SOURCE_DIR)))
+CMAKE_OPTIONS = -DSPECTRAL_WARNINGS_AS_ERRORS=$(WARNINGS_AS_ERRORS) \
+  -Dmuparser_DIR=$(MUPARSER)/lib/cmake/muparser -DPython3_EXECUTABLE=$(CURDIR)/$(BIN)/python \
+  $(if $(MESHLAB_SOURCE_DIR),-DMESHLAB_SOURCE_DIR=$(abspath $(MESHLAB_SOURCE_DIR)))
+# One tree of objects for the package, its wheel, the tests and the benchmarks.
+PACKAGE_OPTIONS := --quiet --disable-pip-version-check --no-index --no-build-isolation --no-deps \
+  --config-settings=build-dir="$(CURDIR)/build" --config-settings=cmake.define.SPECTRAL_BUILD_TESTS=ON
 
 # Stamp files live in the folder they describe, so that deleting .venv or build/ is enough to
 # have it set up again.
@@ -68,9 +73,7 @@ test: build $(PACKAGE)  ## run every test, C++ and Python
 wheel: $(VENV)  ## build the wheel that PyPI takes: build/wheel/*.whl
 	rm -rf build/wheel/linux build/wheel/*.whl
 	plugin/cmake/static_muparser.sh $(MUPARSER)
-	CMAKE_ARGS="$(CMAKE_OPTIONS) -Dmuparser_DIR=$(MUPARSER)/lib/cmake/muparser" \
-	  $(BIN)/pip wheel --quiet --disable-pip-version-check --no-index --no-build-isolation --no-deps \
-	  --config-settings=build-dir="$(CURDIR)/build/wheel/package" --wheel-dir build/wheel/linux ./python
+	CMAKE_ARGS="$(CMAKE_OPTIONS)" $(BIN)/pip wheel $(PACKAGE_OPTIONS) --wheel-dir build/wheel/linux ./python
 	PATH="$(CURDIR)/$(BIN):$$PATH" $(BIN)/auditwheel repair --plat $(MANYLINUX) --wheel-dir build/wheel \
 	  $(patsubst %,--exclude %,$(HOST_LIBRARIES)) build/wheel/linux/*.whl
 
@@ -94,10 +97,8 @@ screenshots: $(PACKAGE)  ## redraw the pictures in screenshots/ and their number
 
 setup: $(PACKAGES) $(VENV)  ## install what is missing: Debian packages, .venv
 
-build: setup  ## compile the plugin and the C++ tests, in build/
-	cmake -S . -B build -G Ninja -DPython3_EXECUTABLE="$(CURDIR)/$(BIN)/python" \
-	  -DSPECTRAL_WARNINGS_AS_ERRORS=$(WARNINGS_AS_ERRORS) \
-	  -DSPECTRAL_BUILD_BENCHMARKS=$(BENCHMARKS) $(CMAKE_OPTIONS)
+build: $(PACKAGE)  ## compile the package and the C++ tests, in build/
+	cmake -S . -B build -DSPECTRAL_BUILD_BENCHMARKS=$(BENCHMARKS) $(CMAKE_OPTIONS)
 	cmake --build build
 
 bench: BENCHMARKS := ON
@@ -143,11 +144,13 @@ bench-batch: $(PACKAGE)  ## measure a batch of 1,000 meshes against one process
 promises: $(PACKAGE)  ## ask every number that READMEs and benchmarks promise; ten minutes
 	PYTHONPATH=tests/benchmarks:tests/python $(BIN)/python -m promises $(PROMISES_OPTIONS)
 
-fuzz: setup  ## try the core with random meshes and options; about half an hour
-	cmake -S . -B build/fuzz-sanitize-$(SANITIZE) -G Ninja -DSPECTRAL_BUILD_PLUGIN=OFF \
-	  -DSPECTRAL_SANITIZE=$(SANITIZE)
-	cmake --build build/fuzz-sanitize-$(SANITIZE) --target fuzz_core
-	build/fuzz-sanitize-$(SANITIZE)/tests/fuzz/fuzz_core $(FUZZ_OPTIONS)
+SANITIZED := $(filter ON,$(SANITIZE))
+fuzz: $(if $(SANITIZED),setup,build)  ## try the core with random meshes and options; about half an hour
+ifdef SANITIZED
+	cmake -S . -B build/sanitized -G Ninja -DSPECTRAL_BUILD_PLUGIN=OFF -DSPECTRAL_SANITIZE=ON
+	cmake --build build/sanitized --target fuzz_core
+endif
+	build/$(if $(SANITIZED),sanitized/)tests/fuzz/fuzz_core $(FUZZ_OPTIONS)
 
 fuzz-python: $(PACKAGE)  ## try filters and commands with random meshes, parameters, arguments
 	MESHLAB_SPECTRAL_FUZZ=$(FUZZ_EXAMPLES) $(BIN)/python -m pytest -c python/pyproject.toml \
@@ -192,13 +195,10 @@ $(COMPETITORS): tests/benchmarks/requirements.txt tests/benchmarks/scikit_sparse
 	  --require-hashes -r tests/benchmarks/scikit_sparse.txt
 	@touch $@
 
-# The package holds a plugin of its own, built by scikit-build-core in a folder that is kept, so
-# that a changed file costs its own compilation only. --force-reinstall: the version is the same.
+# Built by scikit-build-core in a folder that is kept, so that a changed file costs its own compilation
+# only. --force-reinstall: the version is the same.
 $(PACKAGE): $(VENV) $(PACKAGE_SOURCES)
 	@echo 'Building the plugin and installing the package: about a minute at first'
 	plugin/cmake/static_muparser.sh $(MUPARSER) >/dev/null
-	CMAKE_ARGS="$(CMAKE_OPTIONS) -Dmuparser_DIR=$(MUPARSER)/lib/cmake/muparser" \
-	  $(BIN)/pip install --quiet --disable-pip-version-check --no-index \
-	  --no-build-isolation --no-deps --force-reinstall \
-	  --config-settings=build-dir="$(CURDIR)/build/python" ./python
+	CMAKE_ARGS="$(CMAKE_OPTIONS)" $(BIN)/pip install $(PACKAGE_OPTIONS) --force-reinstall ./python
 	@touch $@
