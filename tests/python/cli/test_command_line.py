@@ -38,10 +38,11 @@ def test_help_has_a_short_option_and_lists_the_common_options(name: str) -> None
 @pytest.mark.parametrize("name", ["filter", "denoise", "batch"])
 def test_help_has_options_in_groups(name: str) -> None:
     text = command(name, "--help", COLUMNS="80").stdout
+    assert "{" not in text.splitlines()[0]
     sections = SECTION.findall(text)
     assert sections[0] == "Arguments"
     assert sections[-1] == "Options"
-    assert {"What to do", "Where", "Output"} <= set(sections)
+    assert {"Filter", "Region", "Output"} <= set(sections)
     assert text.rpartition("\nOptions:")[2].count("\n  -") == 3
     tables = (DenoiseOptions,) if name == "denoise" else (FilterOptions,)
     for option in [option for table in tables for option in table().as_dict()]:

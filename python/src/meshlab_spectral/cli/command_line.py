@@ -19,14 +19,14 @@ Command = Callable[..., None]
 
 # The groups of --help and their options; all other options are under "Options", or in the group
 # named by `rich_help_panel`.
-HOW, DENOISE = "How", "With --denoise"
+SOLVER, DENOISE = "Solver", "With --denoise"
 _GROUPS = {
-    "What to do": """preset equalizer recipe script denoise only filter_type feature_size pass_gain
+    "Filter": """preset equalizer recipe script denoise only filter_type feature_size pass_gain
         stop_gain transfer_function band_width response order power
         strength noise_height noise_size""",
     DENOISE: "",
-    "Where": "mesh selected box component where mask boundary crease_angle keep_creases weight",
-    HOW: """steps tolerance passes basis_update conformal_share spectrum basis_size
+    "Region": "mesh selected box component where mask boundary crease_angle keep_creases weight",
+    SOLVER: """steps tolerance passes basis_update conformal_share spectrum basis_size
         reinject_residual laplacian preserve_volume""",
     "Files": "recursive joined overwrite resume dry_run tiles memory",
     "Workers": "workers memory_limit timeout scheduler",
@@ -68,6 +68,10 @@ class OneCommand(TyperCommand):
             if group in groups:
                 with formatter.section(group):
                     formatter.write_dl(groups[group])
+
+    def collect_usage_pieces(self, ctx: Any) -> list[str]:
+        """Return what the usage line shows; Typer has braces around what is required."""
+        return [re.sub("[{}]", "", piece) for piece in super().collect_usage_pieces(ctx)]
 
     def parse_args(self, ctx: Any, args: list[str]) -> Any:
         """Parse the command line; usage errors carry the command's context."""

@@ -122,9 +122,9 @@ def _command_with(table: type[Options], help_text: str) -> Command:
             typer.Option(
                 parser=_tiles,
                 metavar="auto|off|N",
-                show_default="auto",
-                help="Process binary PLY or STL in N overlapping tiles, from file to file; auto: "
-                "where the mesh does not fit in memory.",
+                show_default=False,
+                help="Process binary PLY or STL in N overlapping tiles, from file to file; auto "
+                "(the default): where the mesh does not fit in memory.",
             ),
         ] = 0,
         memory: Annotated[

@@ -11,7 +11,7 @@ from typing import Annotated, Any, get_type_hints
 import typer
 
 from meshlab_spectral.batch.settings import Settings
-from meshlab_spectral.cli.command_line import DENOISE, GROUP_OF, HOW, Command, with_parameters
+from meshlab_spectral.cli.command_line import DENOISE, GROUP_OF, SOLVER, Command, with_parameters
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.files.recipe import load_recipe
 from meshlab_spectral.files.region import Region
@@ -115,7 +115,7 @@ def with_options(
         for one in fields(table):
             if one.name in added or one.name in leave_out:
                 continue
-            panel: str | None = GROUP_OF.get(one.name, HOW) if table is tables[0] else DENOISE
+            panel: str | None = GROUP_OF.get(one.name, SOLVER) if table is tables[0] else DENOISE
             if table in _OBJECTS:
                 of_objects[one.name] = table
                 panel = None
