@@ -15,8 +15,9 @@ ARROWS = {
     "transfer": {"mesh", "support"},
     "krylov": {"laplacian", "ldlt", "mesh", "support"},
     "harmonics": {"laplacian", "ldlt", "mesh", "support"},
-    "noise": {"mesh", "support"},
-    "denoise": {"noise", "laplacian", "mesh", "support"},
+    "graph": {"mesh", "support"},
+    "noise": {"graph", "mesh", "support"},
+    "denoise": {"noise", "graph", "laplacian", "mesh", "support"},
     "filter": {"transfer", "krylov", "harmonics", "laplacian", "ldlt", "mesh", "support"},
     "analysis": {
         "filter",

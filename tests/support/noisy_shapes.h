@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
+#include "core/graph/face_graph.h"
 #include "core/mesh/measures.h"
-#include "core/noise/face_graph.h"
 #include "support/shapes.h"
 
 namespace spectral::testing {

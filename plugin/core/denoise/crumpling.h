@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/noise/face_graph.h"
+#include "core/graph/face_graph.h"
 
 namespace spectral {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "core/denoise/whiteness.h"
-#include "core/noise/diffusion.h"
-#include "core/noise/local_average.h"
+#include "core/graph/diffusion.h"
+#include "core/graph/local_average.h"
 
 namespace spectral {
 

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "core/graph/face_graph.h"
 #include "core/mesh/mesh.h"
-#include "core/noise/face_graph.h"
 
 namespace spectral {
 

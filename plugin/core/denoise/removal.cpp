@@ -9,8 +9,8 @@
 #include "core/denoise/unfold.h"
 #include "core/denoise/vertex_update.h"
 #include "core/denoise/whiteness.h"
-#include "core/noise/local_average.h"
-#include "core/noise/robust_statistics.h"
+#include "core/graph/local_average.h"
+#include "core/graph/robust_statistics.h"
 
 namespace spectral {
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/noise/face_graph.h"
+#include "core/graph/face_graph.h"
 #include "core/noise/noise_field.h"
 #include "core/support/progress.h"
 

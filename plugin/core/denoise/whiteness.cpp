@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "core/noise/diffusion.h"
-#include "core/noise/robust_statistics.h"
+#include "core/graph/diffusion.h"
+#include "core/graph/robust_statistics.h"
 
 namespace spectral {
 

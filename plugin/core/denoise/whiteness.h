@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "core/noise/face_graph.h"
+#include "core/graph/face_graph.h"
 
 namespace spectral {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "core/graph/robust_statistics.h"
 #include "core/mesh/measures.h"
-#include "core/noise/robust_statistics.h"
 #include "core/noise/scan_lines.h"
 #include "core/noise/spikes.h"
 #include "core/noise/stretched_axis.h"

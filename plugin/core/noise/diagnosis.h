@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
+#include "core/graph/face_graph.h"
 #include "core/mesh/surface.h"
-#include "core/noise/face_graph.h"
 #include "core/noise/noise_estimate.h"
 #include "core/noise/noise_field.h"
 #include "core/support/progress.h"

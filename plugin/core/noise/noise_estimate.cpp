@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "core/noise/diffusion.h"
-#include "core/noise/local_average.h"
-#include "core/noise/robust_statistics.h"
+#include "core/graph/diffusion.h"
+#include "core/graph/local_average.h"
+#include "core/graph/robust_statistics.h"
 
 namespace spectral {
 

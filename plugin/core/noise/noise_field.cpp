@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/noise/diffusion.h"
-#include "core/noise/local_average.h"
+#include "core/graph/diffusion.h"
+#include "core/graph/local_average.h"
+#include "core/graph/robust_statistics.h"
 #include "core/noise/noise_estimate.h"
-#include "core/noise/robust_statistics.h"
 
 namespace spectral {
 

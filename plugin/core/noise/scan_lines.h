@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/noise/face_graph.h"
+#include "core/graph/face_graph.h"
 
 namespace spectral {
 

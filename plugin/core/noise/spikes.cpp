@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/noise/diffusion.h"
+#include "core/graph/diffusion.h"
+#include "core/graph/robust_statistics.h"
 #include "core/noise/noise_estimate.h"
-#include "core/noise/robust_statistics.h"
 
 namespace spectral {
 

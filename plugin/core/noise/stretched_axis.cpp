@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/noise/robust_statistics.h"
+#include "core/graph/robust_statistics.h"
 
 namespace spectral {
 

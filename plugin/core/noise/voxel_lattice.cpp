@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/noise/robust_statistics.h"
+#include "core/graph/robust_statistics.h"
 #include "core/support/threads.h"
 
 namespace spectral {

@@ -9,7 +9,7 @@
 #include "core/denoise/linear_steps.h"
 #include "core/denoise/removal.h"
 #include "core/denoise/whiteness.h"
-#include "core/noise/diffusion.h"
+#include "core/graph/diffusion.h"
 #include "core/support/errors.h"
 #include "core/support/threads.h"
 #include "support/noisy_shapes.h"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
-#include "core/noise/diffusion.h"
-#include "core/noise/robust_statistics.h"
+#include "core/graph/diffusion.h"
+#include "core/graph/robust_statistics.h"
 #include "core/noise/spikes.h"
 #include "core/noise/voxel_lattice.h"
 #include "support/noisy_shapes.h"

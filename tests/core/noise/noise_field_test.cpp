@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "core/graph/local_average.h"
 #include "core/noise/diagnosis.h"
-#include "core/noise/local_average.h"
 #include "core/support/threads.h"
 #include "support/noisy_shapes.h"
 

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/noise/diffusion.h"
+#include "core/graph/diffusion.h"
 
 namespace spectral {
 

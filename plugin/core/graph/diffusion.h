@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "core/noise/face_graph.h"
+#include "core/graph/face_graph.h"
 #include "core/support/threads.h"
 #include "core/support/types.h"
 

@@ -1,4 +1,4 @@
-#include "core/noise/face_graph.h"
+#include "core/graph/face_graph.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "core/noise/local_average.h"
+#include "core/graph/local_average.h"
 
 namespace spectral {
 

@@ -1,4 +1,4 @@
-#include "core/noise/diffusion.h"
+#include "core/graph/diffusion.h"
 
 #include <cmath>
 #include <random>

@@ -1,4 +1,4 @@
-#include "core/noise/robust_statistics.h"
+#include "core/graph/robust_statistics.h"
 
 #include <algorithm>
 #include <cstddef>
