@@ -149,22 +149,36 @@ std::string cutoffWarning(const FilterResult& result, double last) {
     return text.str();
 }
 
-/// Why the steps do not converge, and what to change.
-std::string convergingFilter(const FilterOptions& options) {
+/// The settings with which parts of a surface neither collapse nor grow as fast.
+std::string weakerFilter(const FilterOptions& options) {
     const TransferFunctionOptions& transfer = options.transferFunction;
     const bool stopsLargeDetails =
         transfer.type == FilterType::HighPass || transfer.type == FilterType::BandPass;
-    std::string text = "parts of it shrink away. Choose ";
+    std::string text = options.basisUpdate == BasisUpdate::Full ? "basis_update = conformal, " : "";
     if (transfer.type == FilterType::Custom)
         text += "gains closer to 1";
     else if (std::max(transfer.passGain, transfer.stopGain) > 1.0)
-        text = "parts of it grow too fast. Choose smaller gains";
+        text += "smaller gains";
     else if (stopsLargeDetails && transfer.stopGain < 0.1)
         text += "stop_gain = 1, which keeps the large details";
     else
         text += "a smaller feature_size";
-    if (options.basisUpdate == BasisUpdate::Full) text += ", basis_update = conformal";
-    return text + ", or a larger tolerance";
+    return text;
+}
+
+/// Why the steps do not converge, and what to change.
+std::string convergingFilter(const FilterOptions& options) {
+    const TransferFunctionOptions& transfer = options.transferFunction;
+    const bool grows =
+        transfer.type != FilterType::Custom && std::max(transfer.passGain, transfer.stopGain) > 1.0;
+    return std::string("parts of it ") + (grows ? "grow too fast" : "shrink away") + ". Choose " +
+           weakerFilter(options) + ", or a larger tolerance";
+}
+
+std::string foldWarning(const FilterOptions& options, const FilterResult& result) {
+    return std::to_string(result.foldedFaces) +
+           (result.foldedFaces == 1 ? " face has" : " faces have") + " folded over. Choose " +
+           weakerFilter(options);
 }
 
 std::string toleranceWarning(const FilterOptions& options, const FilterResult& result) {
@@ -232,6 +246,7 @@ std::vector<std::string> fractionalWarnings(const FilterOptions& options,
     if (!isDefault && keepsTheRest && result.shrunkenPart > kNoticeable &&
         result.toleranceReached && result.cutoffReached)
         warnings.push_back(shrinkingWarning(result, diagonal));
+    if (!isDefault && result.foldedFaces > 0) warnings.push_back(foldWarning(options, result));
     if (options.preserveVolume && result.volumes.preserved < result.components)
         warnings.push_back(volumeWarning(result));
     if (!result.accuracyReached)
@@ -253,7 +268,8 @@ std::string fractionalText(const FilterOptions& options, const FilterResult& res
          << "\n  " << headline(options, result, diagonal, subject)
          << "\n  steps: " << stepsText(result) << ", cutoff frequency " << result.cutoffFrequency
          << " rad per unit\n"
-         << "  area: " << result.areaBefore << " -> " << result.areaAfter << "\n"
+         << "  area: " << result.areaBefore << " -> " << result.areaAfter
+         << ", faces folded over: " << result.foldedFaces << "\n"
          << "  " << volumeText(result.hasVolume, result.volumeBefore, result.volumeAfter) << "\n  "
          << surfaceText(result, "vertices fixed, on the boundary or a crease");
     if (options.preserveVolume)

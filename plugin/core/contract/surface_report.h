@@ -41,6 +41,10 @@ Entries<Result> movementEntries() {
          {"volume_after",
           "signed volume of the filtered surface, length³; meaningless unless `has_volume`",
           [](const Result& r) -> Value { return r.volumeAfter; }},
+         {"folded_faces",
+          "number of faces that have folded over: turned against the input and the faces around "
+          "them, of more than 1 % of the mean area",
+          [](const Result& r) -> Value { return static_cast<int>(r.foldedFaces); }},
          {"preserved_volumes", "number of closed components whose volume was preserved",
           [](const Result& r) -> Value { return r.volumes.preserved; }}},
         surfaceEntries<Result>(),

@@ -13,6 +13,7 @@ struct Movement {
     double meanDisplacement = 0.0;                 ///< Mean length, length units.
     double volumeBefore = 0.0, volumeAfter = 0.0;  ///< Signed; meaningful only if hasVolume.
     bool hasVolume = false;                        ///< Whether the surface encloses a volume.
+    Index foldedFaces = 0;                         ///< See foldedFaces().
     PreservedVolumes volumes;                      ///< Volumes of the closed components.
 };
 
@@ -22,6 +23,12 @@ struct Movement {
 /// @param volumes       what was done to them.
 Movement movementOf(const Vertices& X, const Faces& F, const Vertices& displacement,
                     const Eigen::VectorXd& weight, const PreservedVolumes& volumes);
+
+/// Number of faces that have folded over: they have turned by more than 90 degrees, and face away
+/// from the sum of the faces around them, which where a part of the surface has turned as a whole
+/// they do not. Faces of less than 1 % of the mean area after are too small to be seen.
+/// @param before, after  n x 3 positions.
+Index foldedFaces(const Vertices& before, const Vertices& after, const Faces& F);
 
 /// The largest displacement of the vertices along seams, which are drawn together where they differ
 /// by round-off (seams.h); 0 without seams.

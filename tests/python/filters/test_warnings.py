@@ -135,6 +135,24 @@ def test_steps_that_do_not_converge_recommend_an_option_not_yet_chosen(
     assert not re.search(r"e\+\d+ %", warning)
 
 
+def test_faces_that_fold_over_are_counted_and_come_with_the_remedy(decimated: Decimated) -> None:
+    V, F = decimated("cow.obj")
+    paper: dict[str, Any] = {"feature_size": "10%", "steps": 10, "basis_update": "full"}
+    X, report = filter_mesh(V, F, **paper)
+    before, after = (np.cross(P[F[:, 1]] - P[F[:, 0]], P[F[:, 2]] - P[F[:, 0]]) for P in (V, X))
+    around = np.zeros_like(V)
+    for corner in F.T:
+        np.add.at(around, corner, after)
+    turned = np.einsum("ij,ij->i", before, after) < 0
+    opposed = np.einsum("ij,ij->i", around[F].sum(axis=1) - 3 * after, after) < 0
+    area = np.linalg.norm(after, axis=1)
+    assert report["folded_faces"] == np.sum(turned & opposed & (area > 0.01 * area.mean())) > 0
+    (warning,) = (text for text in report["warnings"] if "folded over" in text)
+    assert "basis_update = conformal" in warning
+    _, conformal = filter_mesh(V, F, **(paper | {"basis_update": "conformal"}))
+    assert conformal["folded_faces"] < report["folded_faces"] / 4
+
+
 def warnings_in_mesh_set(V: Any, F: Any, name: str = FILTER, **options: Any) -> list[str]:
     """The warnings of a run of the plugin in this thread."""
     found: list[str] = call_filter(mesh_set_of(V, F), name, options)["warnings"]

@@ -70,6 +70,7 @@ def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
         ("joined_vertices", "Vertices joined at seams", ""),
         ("unreferenced_vertices", "Vertices without faces", ", unchanged"),
         ("fixed_vertices", "Vertices on a fixed boundary or crease", ", unchanged"),
+        ("folded_faces", "Faces folded over", ""),
     ):
         if report.get(name):
             rows.append((label, f"{report[name]}{more}"))

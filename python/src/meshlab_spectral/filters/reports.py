@@ -27,6 +27,9 @@ class _FilterReport(TypedDict):
     """As applied, length."""
     fixed_vertices: int
     """Number of vertices on a fixed boundary or a crease, unchanged."""
+    folded_faces: int
+    """Number of faces that have folded over: turned against the input and the faces around them, of
+    more than 1 % of the mean area."""
     has_volume: bool
     """Whether the surface is closed and consistently oriented."""
     joined_vertices: int
@@ -94,6 +97,9 @@ class _DenoiseReport(TypedDict):
     """Measured length over which neighbouring vertices have like noise, length."""
     fixed_vertices: int
     """Number of vertices on a fixed boundary or a crease, unchanged."""
+    folded_faces: int
+    """Number of faces that have folded over: turned against the input and the faces around them, of
+    more than 1 % of the mean area."""
     has_volume: bool
     """Whether the surface is closed and consistently oriented."""
     joined_vertices: int
