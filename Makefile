@@ -7,6 +7,7 @@
 #   TEST_OPTIONS        of pytest in `make test`, such as --without-posix: as on Windows
 #   MESHES              the folder of the meshes that `make screenshots` shows
 #   PICTURES            of `make screenshots`: only these, such as "denoise colors", none of MeshLab
+#   INSTALL             ON: `make web` installs Emscripten, from Debian
 #   BENCH_MESH          the mesh of the C++ benchmark, skipped when there is no such file
 #   BENCH_OPTIONS       of `make bench-basis`, `bench-contract`, `bench-defaults`, `bench-denoise`, `bench-memory`, `bench-signatures`, `bench-texture`, `bench-tiles`; --help lists them
 #   PROMISES_OPTIONS    of `make promises`, such as '--only artefacts speed'; --help lists them
@@ -22,6 +23,7 @@ BENCH_MESH ?= $(MESHES)/dragon_40k.ply
 BENCH_OPTIONS ?=
 PROMISES_OPTIONS ?=
 TEST_OPTIONS ?=
+INSTALL ?= OFF
 FUZZ_OPTIONS ?= --cases 1000000
 FUZZ_EXAMPLES ?= 5000
 SANITIZE ?= OFF
@@ -56,7 +58,7 @@ PACKAGE_SOURCES := CMakeLists.txt $(shell find plugin python -not -path '*/__pyc
 # Two targets at once would fetch MeshLab's headers twice; ninja uses every core anyway.
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help demo test wheel sdist docs gui-test screenshots setup build bench bench-basis bench-batch bench-contract bench-defaults bench-denoise bench-ldlt bench-memory bench-signatures bench-texture bench-tiles promises fuzz fuzz-python lint options format clean
+.PHONY: help demo test wheel sdist web docs gui-test screenshots setup build bench bench-basis bench-batch bench-contract bench-defaults bench-denoise bench-ldlt bench-memory bench-signatures bench-texture bench-tiles promises fuzz fuzz-python lint options format clean
 
 help:  ## list these commands
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 20
@@ -83,6 +85,13 @@ sdist: $(VENV)  ## build the source package: build/sdist/*.tar.gz
 	sed -i 's|"\.\."|"."|; s|"\.\./CMakeLists\.txt"|"CMakeLists.txt"|' build/sdist/tree/pyproject.toml
 	cd build/sdist/tree && $(CURDIR)/$(BIN)/python -c \
 	  'from scikit_build_core.build import build_sdist; print(build_sdist(".."))'
+
+web:  ## build spectral-mesh for browsers and Node: build/web/*.tgz (needs Emscripten; INSTALL=ON installs it)
+	$(if $(filter ON,$(INSTALL)),plugin/cmake/install_debian_packages.sh plugin/web/debian_packages.txt)
+	plugin/web/build.sh build/web
+	node plugin/web/npm/package.mjs build/web/module build/web/spectral-mesh
+	rm -f build/web/*.tgz
+	npm pack --silent --pack-destination build/web ./build/web/spectral-mesh
 
 docs: $(PACKAGE)  ## write the reference of filters and Python API: build/docs/index.html
 	rm -rf build/docs

@@ -4,7 +4,7 @@
 #   spectral_plugin_target(<target>)  the same for a plugin of MeshLab
 #   spectral_compile_quickly(<target>)  for code that takes longer to compile than to run
 #   SPECTRAL_AVX2_OPTIONS             compiles for AVX2 and FMA; empty where that cannot be
-#   SPECTRAL_SYSTEM                   linux, macos or windows: the ending of system-specific sources
+#   SPECTRAL_SYSTEM                   linux, macos, windows or web: the ending of system-specific sources
 include(CheckCXXCompilerFlag)
 
 option(SPECTRAL_AVX2 "Compile the kernels for AVX2, too, where the compiler can" ON)
@@ -13,12 +13,20 @@ if(WIN32)
   set(SPECTRAL_SYSTEM windows)
 elseif(APPLE)
   set(SPECTRAL_SYSTEM macos)
+elseif(EMSCRIPTEN)
+  set(SPECTRAL_SYSTEM web)
 else()
   set(SPECTRAL_SYSTEM linux)
 endif()
 
+if(EMSCRIPTEN)
+  # Instructions and exceptions of WebAssembly itself, not those of JavaScript.
+  add_compile_options(-msimd128 -fwasm-exceptions)
+  add_link_options(-fwasm-exceptions)
+endif()
+
 set(SPECTRAL_AVX2_OPTIONS)
-if(SPECTRAL_AVX2)
+if(SPECTRAL_AVX2 AND NOT EMSCRIPTEN)
   if(MSVC)
     set(options /arch:AVX2)
   else()
