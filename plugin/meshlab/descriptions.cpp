@@ -34,7 +34,7 @@ QJsonObject described(const RichParameter& parameter) {
 QJsonObject described(const MeshFilter& filter) {
     QJsonArray parameters;
     for (const RichParameter& parameter :
-         parametersOf(filter.contract, MeshModel(-1, "", ""), movesVertices(filter)))
+         parametersOf(filter.contract, MeshModel(-1, "", ""), {}, movesVertices(filter)))
         parameters.append(described(parameter));
     return {{"name", QString::fromStdString(filter.contract.name)},
             {"python_name", QString::fromStdString(filter.contract.pythonName)},

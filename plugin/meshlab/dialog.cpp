@@ -9,6 +9,8 @@
 #include "core/contract/equalizer.h"
 #include "core/mesh/measures.h"
 #include "meshlab/host_workarounds/apply_anew.h"
+#include "meshlab/host_workarounds/closed_preview.h"
+#include "meshlab/host_workarounds/fit_screen.h"
 #include "meshlab/host_workarounds/number_fields.h"
 #include "meshlab/host_workarounds/octave_sliders.h"
 #include "meshlab/host_workarounds/share_slider.h"
@@ -52,7 +54,9 @@ QString lengthLabel(const Parameter& parameter, const spectral::MeshLengths& mes
 }
 
 QString tooltipOf(const Parameter& parameter, const spectral::MeshLengths& mesh) {
-    QString html = asHtml(parameter.help);
+    // MeshLab's fields take no unit: 0.2e is for scripts.
+    static const QRegularExpression inEdges("\\b([0-9.]+)e\\b");
+    QString html = asHtml(parameter.help).replace(inEdges, "\\1 mean edges");
     if (parameter.kind != Kind::Length) return html;
     html += QString(" Default: %1.").arg(QString::fromStdString(parameter.automaticText));
     if (mesh.meanEdge > 0.0)
@@ -60,9 +64,10 @@ QString tooltipOf(const Parameter& parameter, const spectral::MeshLengths& mesh)
     return html;
 }
 
+/// @param vertices       of the mesh; 0: the reference documentation is generated without one.
 /// @param isAnySelected  whether any face is.
 void add(const spectral::Filter& filter, const Parameter& one, const spectral::MeshLengths& mesh,
-         bool isAnySelected, RichParameterList& list) {
+         int vertices, bool isAnySelected, RichParameterList& list) {
     const QString name = QString::fromStdString(one.name), help = tooltipOf(one, mesh);
     const QString label = QString::fromStdString(one.label);
     switch (one.kind) {
@@ -74,9 +79,13 @@ void add(const spectral::Filter& filter, const Parameter& one, const spectral::M
                 list.addParam(
                     RichBool(name, std::get<bool>(one.usual), label, help, one.isAdvanced));
             break;
-        case Kind::Integer:
-            list.addParam(RichInt(name, std::get<int>(one.usual), label, help, one.isAdvanced));
+        case Kind::Integer: {
+            int usual = std::get<int>(one.usual);
+            // A mesh of fewer vertices has no such basis.
+            if (one.name == "basis_size" && vertices > 1) usual = std::min(usual, vertices - 1);
+            list.addParam(RichInt(name, usual, label, help, one.isAdvanced));
             break;
+        }
         case Kind::Number: {
             const auto usual = static_cast<Scalarm>(std::get<double>(one.usual));
             if (!isSlider(filter, one)) {
@@ -133,13 +142,11 @@ QString helpOf(const spectral::Filter& filter) {
 }
 
 RichParameterList parametersOf(const spectral::Filter& filter, const MeshModel& mesh,
-                               bool movesVertices) {
-    const MeshMatrices matrices = toMatrices(mesh.cm);
-    const spectral::MeshLengths lengths = spectral::lengthsOf(matrices.V, matrices.F);
+                               const spectral::MeshLengths& lengths, bool movesVertices) {
     RichParameterList list;
     // Not MeshLab's own bounding box, which stays that of a preview that was switched off.
     for (const Parameter& one : filter.parameters)
-        add(filter, one, lengths, hasSelectedFaces(mesh.cm), list);
+        add(filter, one, lengths, mesh.cm.vn, hasSelectedFaces(mesh.cm), list);
     if (movesVertices)
         list.addParam(
             RichBool(kKeepOriginal, false, kKeepOriginalLabel,
@@ -160,23 +167,23 @@ void recordOriginalKept(MeshDocument& document) {
     });
 }
 
-void adaptDialog(const spectral::Filter& filter, const MeshModel& mesh) {
+void adaptDialog(const spectral::Filter& filter, const spectral::MeshLengths& mesh) {
     checkNumberFields(numberLabels(filter).all);
     QString accurate, size;
     QStringList sliders;
-    const MeshMatrices matrices = toMatrices(mesh.cm);
-    const spectral::MeshLengths lengths = spectral::lengthsOf(matrices.V, matrices.F);
     for (const Parameter& one : filter.parameters) {
         if (one.name == filter.accurate) accurate = QString::fromStdString(one.label);
         if (one.name == "power") addShareSlider(QString::fromStdString(one.label));
-        if (one.kind == Kind::Length) size = lengthLabel(one, lengths);
-        if (isSlider(filter, one)) sliders.push_back(sliderLabel(filter, one, lengths));
+        if (one.kind == Kind::Length) size = lengthLabel(one, mesh);
+        if (isSlider(filter, one)) sliders.push_back(sliderLabel(filter, one, mesh));
     }
     applyAnew(accurate, kKeepOriginalLabel);
+    endPreviewOnClose();
+    fitDialogOnScreen();
     if (sliders.isEmpty()) return;
-    useOctaves(sliders, size, [lengths](int i, double length) {
+    useOctaves(sliders, size, [mesh](int i, double length) {
         return QString::fromStdString(
-            spectral::equalizerLabel(static_cast<std::size_t>(i), length, lengths.diagonal));
+            spectral::equalizerLabel(static_cast<std::size_t>(i), length, mesh.diagonal));
     });
 }
 

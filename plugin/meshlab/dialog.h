@@ -16,9 +16,10 @@ QString asHtml(const std::string& text);
 QString helpOf(const spectral::Filter& filter);
 
 /// The parameters, with defaults for a mesh.
+/// @param lengths        of the mesh.
 /// @param movesVertices  whether the filter does: then the mesh can be kept as it was, in a layer.
 RichParameterList parametersOf(const spectral::Filter& filter, const MeshModel& mesh,
-                               bool movesVertices);
+                               const spectral::MeshLengths& lengths, bool movesVertices);
 
 /// Whether the mesh shall be kept as it was.
 bool isOriginalKept(const RichParameterList& parameters);
@@ -28,7 +29,9 @@ bool isOriginalKept(const RichParameterList& parameters);
 void recordOriginalKept(MeshDocument& document);
 
 /// Adapts the dialog that is about to open to what MeshLab's widgets do not offer.
-void adaptDialog(const spectral::Filter& filter, const MeshModel& mesh);
+///
+/// @param mesh  lengths of the mesh that the dialog opens for.
+void adaptDialog(const spectral::Filter& filter, const spectral::MeshLengths& mesh);
 
 /// The values chosen in a dialog or script.
 spectral::Values valuesOf(const spectral::Filter& filter, const RichParameterList& parameters);

@@ -1,7 +1,9 @@
 #include "meshlab/filter_spectral.h"
 
 #include <common/ml_shared_data_context/ml_plugin_gl_context.h>
+#include <common/ml_shared_data_context/ml_scene_gl_shared_data_context.h>
 
+#include <QApplication>
 #include <QDockWidget>
 #include <chrono>
 #include <functional>
@@ -114,6 +116,34 @@ KeptRun* FilterSpectralPlugin::runKeptFor(QWidget* dialog) {
     return &kept_;
 }
 
+// A dialog stays open when another layer becomes current; its lengths are those of the layer
+// before.
+void FilterSpectralPlugin::checkLayer(const MeshFilter& filter, const MeshModel& mesh) const {
+    const QWidget* dialog = openFilterDialog();
+    if (dialog == nullptr || shown_.id == mesh.id() || shown_.id < 0 ||
+        dialog->windowTitle() != QString::fromStdString(filter.contract.name))
+        return;
+    const MeshMatrices matrices = toMatrices(mesh.cm);
+    const spectral::MeshLengths lengths = spectral::lengthsOf(matrices.V, matrices.F);
+    if (lengths.diagonal == shown_.lengths.diagonal && lengths.meanEdge == shown_.lengths.meanEdge)
+        return;
+    throw MLException("the dialog has the sizes of layer \"" + shown_.label +
+                      "\", and the current layer is \"" + nameOf(mesh) +
+                      "\": close the dialog and open the filter again, or go back to that layer");
+}
+
+// MeshLab restores the layer of a preview when another becomes current, but goes on showing the
+// preview.
+void FilterSpectralPlugin::showOnly(int mesh) {
+    if (previewed_ < 0 || previewed_ == mesh) return;
+    for (QWidget* widget : QApplication::allWidgets())
+        if (auto* scene = qobject_cast<MLSceneGLSharedDataContext*>(widget)) {
+            scene->meshAttributesUpdated(previewed_, true, MLRenderingData::RendAtts(true));
+            scene->manageBuffers(previewed_);
+        }
+    previewed_ = -1;
+}
+
 const MeshFilter& FilterSpectralPlugin::filterOf(const QAction* action) const {
     return filters_.at(static_cast<std::size_t>(ID(action)));
 }
@@ -178,8 +208,11 @@ FilterPlugin::FilterArity FilterSpectralPlugin::filterArity(const QAction*) cons
 RichParameterList FilterSpectralPlugin::initParameterList(const QAction* action,
                                                           const MeshModel& mesh) {
     const MeshFilter& filter = filterOf(action);
-    adaptDialog(filter.contract, mesh);
-    return parametersOf(filter.contract, mesh, movesVertices(filter));
+    const MeshMatrices matrices = toMatrices(mesh.cm);
+    const spectral::MeshLengths lengths = spectral::lengthsOf(matrices.V, matrices.F);
+    adaptDialog(filter.contract, lengths);
+    if (hasWindows()) shown_ = {mesh.id(), nameOf(mesh), lengths};
+    return parametersOf(filter.contract, mesh, lengths, movesVertices(filter));
 }
 
 std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
@@ -187,6 +220,8 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
     unsigned int& postConditionMask, vcg::CallBackPos* callback) {
     keepLastMessages({}, {});
     const MeshFilter& filter = filterOf(action);
+    if (document.mm() == nullptr)
+        throw MLException("there is no mesh: open one, then this filter anew");
     checkFields(filter.contract);
     const auto lock = waitForOtherThreads();
     releaseGLContext();
@@ -202,6 +237,10 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
     const LatePreview latePreview;
     const ApplyLock applyLock;
     const LateClose lateClose;
+    const bool isPreview = latePreview.isOn() && !isApplying();  // now: it ends within the run
+    showOnly(document.mm()->id());
+    checkLayer(filter, *document.mm());
+    if (isPreview) previewed_ = document.mm()->id();
     // Only a dialog restarts a run; runs in other threads wait.
     QWidget* const dialog = openFilterDialog();
     const bool hasDialog = dialog != nullptr;
@@ -218,7 +257,6 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
         const spectral::Progress progress = meshlabProgress(callback, isWanted, isOvertaken);
         spectral::setThreadCount(environmentNumber<int>("MESHLAB_SPECTRAL_THREADS", "threads"));
         spectral::setMemoryLimit(environmentNumber<double>("MESHLAB_SPECTRAL_MEMORY", "bytes"));
-        const bool isPreview = latePreview.isOn() && !isApplying();
         RunOptions options;
         options.isPreview = isPreview;
         options.kept = runKeptFor(dialog);
@@ -242,7 +280,7 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
     } catch (const spectral::Cancelled& cancelled) {
         // No message box: the result of the newer run stays, or the user knows why.
         if (isOvertaken()) return {};
-        if (latePreview.isOn() || lateClose.isMeshLeaving())
+        if (isPreview || lateClose.isMeshLeaving())
             log("stopped: the mesh is as it was");
         else
             throw MLException(lateClose.isRequested() ? "stopped: the mesh is as it was"

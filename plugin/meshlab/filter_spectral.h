@@ -44,6 +44,8 @@ class FilterSpectralPlugin : public QObject, public FilterPlugin {
 
   private:
     KeptRun* runKeptFor(QWidget* dialog);
+    void checkLayer(const MeshFilter& filter, const MeshModel& mesh) const;
+    void showOnly(int mesh);
     const MeshFilter& filterOf(const QAction* action) const;
     std::unique_lock<std::recursive_timed_mutex> waitForOtherThreads();
     void releaseGLContext();
@@ -51,8 +53,16 @@ class FilterSpectralPlugin : public QObject, public FilterPlugin {
 
     const std::vector<MeshFilter> filters_;  // indexed by ActionIDType
     std::vector<std::atomic<int>> runs_;     // number of runs of each filter so far
-    KeptRun kept_;                           // while the dialog of its filter is open
-    QPointer<QWidget> keptFor_;              // that dialog
+    int previewed_ = -1;                     // the layer of the last preview; -1: there was none
+
+    /// The layer whose lengths the open dialog shows.
+    struct {
+        int id = -1;
+        QString label;
+        spectral::MeshLengths lengths;
+    } shown_;
+    KeptRun kept_;               // while the dialog of its filter is open
+    QPointer<QWidget> keptFor_;  // that dialog
 
     /// A preview at work, which takes over values chosen in the meantime if they differ in sliders
     /// alone: what takes long then is the same.

@@ -3,6 +3,7 @@
 #include <common/mlexception.h>
 #include <vcg/complex/append.h>
 
+#include <QFileInfo>
 #include <algorithm>
 #include <limits>
 #include <sstream>
@@ -206,7 +207,7 @@ FilterOutput outputOf(const MeshModel& mesh, const MeshFilter& filter, const Mes
 /// Adds a hidden layer with the mesh as it is, like MeshLab's filter Duplicate Current Layer.
 /// @return  its name.
 QString keepAsLayer(const MeshModel& mesh, MeshDocument& document) {
-    MeshModel* const copy = document.addNewMesh("", mesh.label(), false);
+    MeshModel* const copy = document.addNewMesh("", nameOf(mesh) + " (original)", false);
     copy->updateDataMask(&mesh);
     vcg::tri::Append<CMeshO, CMeshO>::MeshAppendConst(copy->cm, mesh.cm);
     for (const std::string& texture : copy->cm.textures)
@@ -243,6 +244,8 @@ std::vector<MeshFilter> allMeshFilters() {
         {all[8], Class(quality | measure), kQuality | kColor, MeshValues::None, writeHeights},
     };
 }
+
+QString nameOf(const MeshModel& mesh) { return QFileInfo(mesh.label()).completeBaseName(); }
 
 int changedBy(const MeshFilter& filter, const FilterOutput& output) {
     return output.V.rows() > 0 ? kMovesVertices : filter.changes;

@@ -30,6 +30,9 @@ struct MeshFilter {
 /// All filters; their positions are MeshLab's action ids.
 std::vector<MeshFilter> allMeshFilters();
 
+/// The name of a layer as MeshLab lists it: that of its file without the ending.
+QString nameOf(const MeshModel& mesh);
+
 /// Whether a filter may move vertices.
 inline bool movesVertices(const MeshFilter& filter) {
     return (filter.changes & MeshModel::MM_VERTCOORD) != 0;

@@ -74,12 +74,12 @@ def noisy_bunny(home: Path) -> Path:
 @pytest.fixture
 def start(
     desktop: Desktop, home: Path, request: pytest.FixtureRequest
-) -> Iterator[Callable[[Path], MeshLab]]:
+) -> Iterator[Callable[..., MeshLab]]:
     """Start MeshLab with a mesh; after the test a picture is taken, and MeshLab is ended."""
     running: list[MeshLab] = []
 
-    def run(mesh: Path) -> MeshLab:
-        running.append(MeshLab(desktop, home, mesh))
+    def run(mesh: Path, **environment: str) -> MeshLab:
+        running.append(MeshLab(desktop, home, mesh, **environment))
         return running[-1]
 
     yield run

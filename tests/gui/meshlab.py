@@ -31,9 +31,11 @@ class MeshLab:
         there, and the mesh.
     mesh
         File, below `home`, that it opens at its start.
+    environment
+        Variables that it starts with.
     """
 
-    def __init__(self, desktop: Desktop, home: Path, mesh: Path) -> None:
+    def __init__(self, desktop: Desktop, home: Path, mesh: Path, **environment: str) -> None:
         self.desktop, self.home = desktop, home
         settings = home / ".config/VCG/MeshLab_64bit_fp.conf"
         settings.parent.mkdir(parents=True)
@@ -48,6 +50,7 @@ class MeshLab:
             QT_LINUX_ACCESSIBILITY_ALWAYS_ON="1",
             # Freed memory returns to the system, so that leaks can be measured.
             MALLOC_MMAP_THRESHOLD_="131072",
+            **environment,
         )
         wait_for("MeshLab's window", self._shows_itself)
         bus = self._session.listen()

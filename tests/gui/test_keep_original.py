@@ -10,7 +10,7 @@ from filter_dialog import FilterDialog
 from fractional import FILTER, PARAMETERS, assert_same_in_floats, load, saved_vertices, vertices
 from meshlab import MeshLab
 
-LAYER = "bunny(1)"
+LAYER = "bunny (original)"
 
 
 @pytest.mark.parametrize("is_previewed", [False, True])

@@ -77,12 +77,14 @@ Fields<EqualizerCall> equalizerFields() {
         boundaryField<Call>([](auto& call) -> auto& { return call.boundary; },
                             "*free*: it moves like the rest. *fixed*: it stays exactly in place."));
     fields.push_back(
-        field<Call>([](auto& call) -> auto& { return call.accurate; }, "accurate", "Accurate",
-                    "Off: at most two steps, fast enough for the preview. Changes by gains of 0.5 "
-                    "to 2 are then accurate to about 1 %, those by a gain of 0 may be off by a "
-                    "third; the report states the error. On: as many steps as needed for an "
-                    "accuracy of 0.05 % of the diagonal. *Apply* in a dialog is accurate in any "
-                    "case.")
+        field<Call>(
+            [](auto& call) -> auto& { return call.accurate; }, "accurate", "Accurate",
+            "Off: at most two steps. Changes by gains of 0.5 to 2 are then accurate to about "
+            "1 %, those by a gain of 0 may be off by a third; the report states the "
+            "error. On: as many steps as needed for an accuracy of 0.05 % of the "
+            "diagonal. A preview is one step: changes by a gain of 2 are a tenth off, "
+            "those by a gain of 0 up to a half; *Apply* in a dialog is accurate in any "
+            "case.")
             .advanced());
     return fields;
 }
@@ -212,7 +214,8 @@ FilterOutput preview(const FilterInput& input, const MeshLengths& mesh, const Va
     FilterOutput output;
     output.text = movementText("Preview", length.mean(), length.maxCoeff(), mesh.diagonal) +
                   "\n  Spectral Equalizer: " + changes +
-                  "; a draft in one step, Apply computes the accurate shape";
+                  "; a draft in one step: where a gain is 2 the movement is about a tenth off, "
+                  "where it is 0 up to a half; Apply computes the accurate shape";
     output.V = changed(input.V, surface, displacement);
     output.warnings = partingWarnings(input, mesh, output.V);
     return output;

@@ -67,7 +67,7 @@ void addTransferFields(Fields<Call>& fields) {
         "At the default size a low-pass removes the noise of a scan, and thinner parts keep their "
         "thickness; at any other size they shrink."));
     fields.push_back(field<Call>([](auto& call) -> auto& { return call.transfer.power; }, "power",
-                                 "Strength (0 to 1)",
+                                 "Strength (up to 1)",
                                  "Fraction of the filter to apply, as a power of its gains: 0.5 is "
                                  "half strength (a gain of 4 becomes 2).")
                          .in("exponent, above 0, at most 1")

@@ -5,7 +5,6 @@
 #include <QCheckBox>
 #include <QPointer>
 #include <QSignalBlocker>
-#include <QThread>
 #include <QTimer>
 
 #include "meshlab/host_workarounds/filter_dialog.h"
@@ -37,9 +36,7 @@ void released(const QAbstractButton* preview, QCheckBox* accurate, QCheckBox* ke
         switchFor(keep, false);
 }
 
-void prepareOpenDialog(const QString& accurate, const QString& keep) {
-    const QWidget* dialog = openFilterDialog();
-    if (dialog == nullptr) return;
+void prepareApply(const QWidget* dialog, const QString& accurate, const QString& keep) {
     auto* apply = dialog->findChild<QAbstractButton*>("applyPushButton");
     auto* preview = dialog->findChild<QAbstractButton*>("previewCheckBox");
     if (apply == nullptr || preview == nullptr) return;
@@ -52,9 +49,7 @@ void prepareOpenDialog(const QString& accurate, const QString& keep) {
 }  // namespace
 
 void applyAnew(const QString& accurate, const QString& keep) {
-    auto* program = qobject_cast<QApplication*>(QCoreApplication::instance());
-    if (program == nullptr || program->thread() != QThread::currentThread()) return;
-    QTimer::singleShot(0, program, [=] { prepareOpenDialog(accurate, keep); });
+    whenDialogOpens([=](const QWidget* dialog) { prepareApply(dialog, accurate, keep); });
 }
 
 bool isApplying() { return applying; }

@@ -5,12 +5,9 @@
 #include <QMainWindow>
 #include <QMdiSubWindow>
 #include <QMetaObject>
-#include <QThread>
 
 LateClose::LateClose() {
-    auto* program = qobject_cast<QApplication*>(QCoreApplication::instance());
-    if (program != nullptr && program->thread() == QThread::currentThread())
-        program->installEventFilter(this);
+    if (hasWindows()) qApp->installEventFilter(this);
 }
 
 LateClose::~LateClose() {

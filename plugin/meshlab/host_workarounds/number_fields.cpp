@@ -1,13 +1,10 @@
 #include "meshlab/host_workarounds/number_fields.h"
 
-#include <QApplication>
 #include <QDoubleSpinBox>
 #include <QDoubleValidator>
 #include <QGridLayout>
 #include <QLabel>
 #include <QLineEdit>
-#include <QThread>
-#include <QTimer>
 
 #include "meshlab/host_workarounds/filter_dialog.h"
 
@@ -50,9 +47,7 @@ void forEachField(const QWidget* dialog, const QStringList& labels, Use use) {
         }
 }
 
-void checkOpenDialog(const QStringList& labels) {
-    const QWidget* dialog = openFilterDialog();
-    if (dialog == nullptr) return;
+void prepareNumbers(const QWidget* dialog, const QStringList& labels) {
     for (const QDoubleSpinBox* box : dialog->findChildren<QDoubleSpinBox*>())
         if (auto* field = box->findChild<QLineEdit*>())
             field->setValidator(new PointValidator(field->validator(), field));
@@ -66,9 +61,7 @@ void checkOpenDialog(const QStringList& labels) {
 }  // namespace
 
 void checkNumberFields(const QStringList& labels) {
-    auto* program = qobject_cast<QApplication*>(QCoreApplication::instance());
-    if (program == nullptr || program->thread() != QThread::currentThread()) return;
-    QTimer::singleShot(0, program, [=] { checkOpenDialog(labels); });
+    whenDialogOpens([=](const QWidget* dialog) { prepareNumbers(dialog, labels); });
 }
 
 QString fieldWithoutNumber(const QStringList& labels, const QStringList& integers) {

@@ -1,14 +1,11 @@
 #include "meshlab/host_workarounds/octave_sliders.h"
 
-#include <QApplication>
 #include <QBoxLayout>
 #include <QDoubleSpinBox>
 #include <QLabel>
 #include <QLineEdit>
 #include <QSignalBlocker>
 #include <QSlider>
-#include <QThread>
-#include <QTimer>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -55,16 +52,15 @@ void replace(QBoxLayout* layout, QSlider* linear, QLineEdit* field, const QStrin
         if (positionOf(field->text().toDouble()) != position || position == kNothing)
             field->setText(gainAt(position));
     });
-    QObject::connect(field, &QLineEdit::textChanged, slider, [slider](const QString& text) {
+    // Not the signal's text: a preview runs within this signal, and the slider moves on meanwhile.
+    QObject::connect(field, &QLineEdit::textChanged, slider, [slider, field] {
         const QSignalBlocker silence(slider);
-        slider->setValue(positionOf(text.toDouble()));
+        slider->setValue(positionOf(field->text().toDouble()));
     });
 }
 
-void prepareOpenDialog(const QStringList& labels, const QString& size,
-                       const std::function<QString(int, double)>& text) {
-    const QWidget* dialog = openFilterDialog();
-    if (dialog == nullptr) return;
+void prepareOctaves(const QWidget* dialog, const QStringList& labels, const QString& size,
+                    const std::function<QString(int, double)>& text) {
     auto* length = find<QDoubleSpinBox>(rowOf(dialog, size).fields);
     for (int i = 0; i < labels.size(); ++i) {
         const DialogRow row = rowOf(dialog, labels[i]);
@@ -84,8 +80,7 @@ void prepareOpenDialog(const QStringList& labels, const QString& size,
 
 void useOctaves(const QStringList& labels, const QString& size,
                 std::function<QString(int i, double length)> text) {
-    auto* program = qobject_cast<QApplication*>(QCoreApplication::instance());
-    if (program == nullptr || program->thread() != QThread::currentThread()) return;
-    QTimer::singleShot(0, program,
-                       [=, text = std::move(text)] { prepareOpenDialog(labels, size, text); });
+    whenDialogOpens([=, text = std::move(text)](const QWidget* dialog) {
+        prepareOctaves(dialog, labels, size, text);
+    });
 }

@@ -1,13 +1,10 @@
 #include "meshlab/host_workarounds/share_slider.h"
 
-#include <QApplication>
 #include <QGridLayout>
 #include <QHBoxLayout>
 #include <QLineEdit>
 #include <QSignalBlocker>
 #include <QSlider>
-#include <QThread>
-#include <QTimer>
 #include <cmath>
 
 #include "meshlab/host_workarounds/filter_dialog.h"
@@ -22,9 +19,7 @@ int percentOf(const QString& text) {
     return static_cast<int>(std::lround(kWhole * text.toDouble()));
 }
 
-void addToOpenDialog(const QString& label) {
-    const QWidget* dialog = openFilterDialog();
-    if (dialog == nullptr) return;
+void prepareShare(const QWidget* dialog, const QString& label) {
     auto* field = qobject_cast<QLineEdit*>(fieldBeside(dialog, label));
     if (field == nullptr) return;
     auto* slider = new QSlider(Qt::Horizontal, field);
@@ -45,16 +40,15 @@ void addToOpenDialog(const QString& label) {
         field->setText(QString::number(static_cast<double>(percent) / kWhole));
         emit field->editingFinished();
     });
-    QObject::connect(field, &QLineEdit::textChanged, slider, [slider](const QString& text) {
+    // Not the signal's text: a preview runs within this signal, and the slider moves on meanwhile.
+    QObject::connect(field, &QLineEdit::textChanged, slider, [slider, field] {
         const QSignalBlocker silence(slider);
-        slider->setValue(percentOf(text));
+        slider->setValue(percentOf(field->text()));
     });
 }
 
 }  // namespace
 
 void addShareSlider(const QString& label) {
-    auto* program = qobject_cast<QApplication*>(QCoreApplication::instance());
-    if (program == nullptr || program->thread() != QThread::currentThread()) return;
-    QTimer::singleShot(0, program, [=] { addToOpenDialog(label); });
+    whenDialogOpens([=](const QWidget* dialog) { prepareShare(dialog, label); });
 }

@@ -212,3 +212,11 @@ def test_the_basis_is_stored_only_when_asked_for_and_replaces_an_older_one(
 def test_an_invalid_basis_size_is_refused(basis_size: Any) -> None:
     with pytest.raises(OptionError, match="basis_size"):
         manifold_harmonics([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], basis_size)
+
+
+def test_the_defaults_of_a_mesh_set_suit_a_tiny_mesh() -> None:
+    V = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    mesh_set = mesh_set_of(V, np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]))
+    report = mesh_set.apply_filter(HARMONICS)
+    assert len(report["eigenvalues"]) == 3
+    mesh_set.apply_filter("apply_coord_spectral_filter_fractional", spectrum="truncated")
