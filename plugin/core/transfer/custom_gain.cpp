@@ -65,6 +65,31 @@ std::vector<SizedGain> pointsOf(const std::string& text, const MeshLengths& leng
     return points;
 }
 
+/// The text with % behind every size.
+std::string inPercent(std::string text) {
+    for (std::size_t at = 0; (at = text.find(':', at)) != std::string::npos; at += 2)
+        text.insert(at, "%");
+    return text;
+}
+
+/// Points that are all larger than the mesh give every detail of it one gain: they scale it.
+void checkSizes(const std::string& text, const std::vector<SizedGain>& points,
+                const MeshLengths& lengths) {
+    if (!(lengths.diagonal > 0.0) ||
+        std::any_of(points.begin(), points.end(),
+                    [&](const SizedGain& point) { return point.size <= lengths.diagonal; }))
+        return;
+    std::ostringstream why;
+    why << "transfer_function = " << text
+        << ": all sizes are larger than the mesh, whose diagonal is " << lengths.diagonal
+        << ", so that it would only be scaled; ";
+    if (text.find_first_of("%e") == std::string::npos)
+        why << "did you mean " << inPercent(text) << "?";
+    else
+        why << "give smaller ones, such as 20%:1, 5%:2";
+    throw InvalidOption(why.str());
+}
+
 Equalizer equalizerOf(const std::string& text, const MeshLengths& lengths) {
     const std::vector<SizedGain> points = pointsOf(text, lengths);
     if (points.size() == 1) {
@@ -80,6 +105,7 @@ Equalizer equalizerOf(const std::string& text, const MeshLengths& lengths) {
                             trimmed(text.substr(0, colon)) + ", pass_gain = " +
                             trimmed(text.substr(colon + 1)) + " and stop_gain = 1");
     }
+    checkSizes(text, points, lengths);
     try {
         return Equalizer(points);
     } catch (const InvalidOption& error) {

@@ -104,6 +104,12 @@ TEST(CustomGain, ErrorsNameThePositionOfTheMistake) {
         EXPECT_TRUE(mentions(messageOf(text), words)) << text << ": " << messageOf(text);
 }
 
+TEST(CustomGain, SizesThatAreAllLargerThanTheMeshAreRefused) {
+    EXPECT_TRUE(mentions(messageOf("20:1, 12:2"), "did you mean 20%:1, 12%:2?"));
+    EXPECT_TRUE(mentions(messageOf("200%:1, 150%:2"), "give smaller ones"));
+    EXPECT_NO_THROW(parsed("20:1, 5:2"));
+}
+
 TEST(CustomGain, WhatIsNotReadAsMathematicsIsRejectedAtItsPosition) {
     for (const auto& [text, words] : std::vector<std::pair<std::string, std::string>>{
              {"0.5<w<1.5", "at character 6, a second comparison"},
