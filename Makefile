@@ -58,7 +58,7 @@ PACKAGE_SOURCES := CMakeLists.txt $(shell find plugin python -not -path '*/__pyc
 # Two targets at once would fetch MeshLab's headers twice; ninja uses every core anyway.
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help demo test wheel sdist web docs gui-test screenshots setup build bench bench-basis bench-batch bench-contract bench-defaults bench-denoise bench-ldlt bench-memory bench-signatures bench-texture bench-tiles promises fuzz fuzz-python lint options format clean
+.PHONY: help demo test wheel sdist web web-test docs gui-test screenshots setup build bench bench-basis bench-batch bench-contract bench-defaults bench-denoise bench-ldlt bench-memory bench-signatures bench-texture bench-tiles promises fuzz fuzz-python lint options format clean
 
 help:  ## list these commands
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 20
@@ -92,6 +92,14 @@ web:  ## build spectral-mesh for browsers and Node: build/web/*.tgz (needs Emscr
 	node plugin/web/npm/package.mjs build/web/module build/web/spectral-mesh
 	rm -f build/web/*.tgz
 	npm pack --silent --pack-destination build/web ./build/web/spectral-mesh
+	rm -rf build/web/site && mkdir -p build/web/site && cp -r plugin/web/page build/web/site/browser
+	cp -r build/web/spectral-mesh build/web/site/browser/
+
+web-test: web $(PACKAGE)  ## test spectral-mesh in Node, and its page in Chromium and Firefox of Debian
+	plugin/cmake/install_debian_packages.sh tests/web/debian_packages.txt
+	mkdir -p build/web/tests && cp tests/web/package*.json build/web/tests
+	npm ci --silent --ignore-scripts --prefix build/web/tests
+	$(BIN)/python -m pytest -c python/pyproject.toml --rootdir . tests/python/web
 
 docs: $(PACKAGE)  ## write the reference of filters and Python API: build/docs/index.html
 	rm -rf build/docs

@@ -50,6 +50,12 @@ html_title = f"{project} {version}"
 html_static_path = ["static"]
 html_css_files = ["pages.css"]
 html_copy_source = False
+
+# The page that filters in the browser, where `make web` has built it.
+WEB_SITE = Path(__file__).parents[2] / "build" / "web" / "site"
+if WEB_SITE.is_dir():
+    tags.add("web")  # noqa: F821 -- Sphinx's own
+    html_extra_path = [str(WEB_SITE)]
 html_show_copyright = False
 
 autodoc_member_order = "bysource"

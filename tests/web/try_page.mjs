@@ -1,0 +1,128 @@
+// Tries the page in a real browser, and takes pictures of it.
+//
+// usage: node try_page.mjs BROWSER PAGE MESHES TARGET
+//
+// BROWSER is chromium or firefox, of Debian; each mesh in the folder MESHES is opened, denoised and saved, twice,
+// to TARGET, where the pictures are, too; broken.ply and huge.ply must be told.
+import assert from 'node:assert/strict';
+import {mkdir, readFile, readdir, writeFile} from 'node:fs/promises';
+import {join, resolve} from 'node:path';
+import {launch} from './browsers.mjs';
+import {serve} from './serve.mjs';
+
+const [name, pageFolder, meshes, target] = process.argv.slice(2);
+await mkdir(target, {recursive: true});
+const site = await serve(resolve(pageFolder));
+const browser = await launch(name);
+console.log(await browser.version());
+const page = await browser.newPage();
+const faults = [];
+page.on('pageerror', (error) => faults.push(error.message));
+page.on('console', (message) => { if (message.type() === 'error') faults.push(message.text()); });
+const sent = [];
+page.on('request', (request) => { if (!request.url().startsWith(site.address) && !/^(blob|data):/.test(request.url())) sent.push(request.url()); });
+await page.setViewport({width: 1280, height: 720});
+await page.goto(site.address);
+
+const shot = (what) => page.screenshot({path: join(target, `${what}.png`), fullPage: true});
+const log = () => page.$eval('#log', (element) => element.innerText);
+const idle = () => page.waitForFunction(() => document.body.dataset.ready && document.getElementById('cancel').disabled, {timeout: 400000});
+const both = async (what) => {
+  await shot(`${what}_1280`);
+  await page.setViewport({width: 400, height: 800});
+  await shot(`${what}_400`);
+  await page.setViewport({width: 1280, height: 720});
+};
+
+/** Opens a file as by the button. */
+async function open(file) {
+  const input = await page.$('#file');
+  await input.uploadFile(join(resolve(meshes), file));
+  await page.waitForFunction((text) => document.getElementById('facts').textContent.startsWith(text) || document.querySelector('#log .error'), {timeout: 400000}, `${file}:`);
+}
+
+/** What the page saves, as bytes. */
+async function saved() {
+  await page.evaluate(() => {
+    window.kept ??= URL.createObjectURL;
+    URL.createObjectURL = (blob) => { window.saved = blob; return window.kept(blob); };
+    window.saved = null;
+  });
+  await page.click('#save');
+  await page.waitForFunction(() => window.saved, {timeout: 60000});
+  const text = await page.evaluate(async () => {
+    const bytes = new Uint8Array(await window.saved.arrayBuffer());
+    let text = '';
+    for (let i = 0; i < bytes.length; i += 32768) text += String.fromCharCode(...bytes.subarray(i, i + 32768));
+    return btoa(text);
+  });
+  return Buffer.from(text, 'base64');
+}
+
+await idle();
+await both('before');
+await page.click('#sample');
+await page.waitForFunction(() => !document.getElementById('cancel').disabled);
+await shot('during_1280');
+await idle();
+assert.match(await log(), /scanner noise.*removed/);
+await both('after');
+for (const kind of ['moved', 'values']) {
+  await page.select('#colors', kind);
+  await both(`colours_${kind}`);
+}
+await page.select('#colors', 'none');
+
+// A slider's preview, an equalizer, texture, a mistake; and a run that is cancelled.
+await page.select('#filter', 'apply_coord_spectral_filter_fractional');
+await idle();
+await page.$eval('.field input[type=range]', (slider) => { slider.value = Math.log(20); slider.dispatchEvent(new Event('input', {bubbles: true})); });
+await new Promise((done) => setTimeout(done, 600));
+await idle();
+assert.equal(await page.$eval('#field-feature_size', (input) => input.value), '20e');
+assert.match(await page.$eval('#same', (element) => element.textContent), /feature_size="20e"/);
+await both('filter');
+await page.$eval('#field-feature_size', (input) => { input.value = '-3'; });
+await page.click('#run');
+await idle();
+assert.match(await log(), /feature_size = -3: must be a length above zero/);
+await page.$eval('#field-feature_size', (input) => { input.value = '300e'; });
+await page.click('#run');
+await page.waitForFunction(() => !document.getElementById('cancel').disabled);
+await page.click('#cancel');
+await idle();
+assert.match(await log(), /Cancelled/);
+for (const filter of ['apply_coord_spectral_equalizer', 'compute_scalar_surface_texture_per_vertex']) {
+  await page.select('#filter', filter);
+  await new Promise((done) => setTimeout(done, 600));
+  await idle();
+  assert.equal(await page.$('#log .error'), null, await log());
+  await shot(`${filter}_1280`);
+}
+await page.select('#filter', 'apply_coord_spectral_denoise');
+await new Promise((done) => setTimeout(done, 600));
+await idle();
+
+for (const file of (await readdir(meshes)).sort()) {
+  if (file === 'broken.ply' || file === 'huge.ply') {
+    await open(file);
+    if (file === 'huge.ply') await idle();
+    console.log(file, '->', await log());
+    assert.notEqual(await page.$('#log .error'), null);
+    continue;
+  }
+  for (const again of [false, true]) {
+    await open(file);
+    await idle();
+    assert.equal(await page.$('#log .error'), null, await log());
+    const first = await saved();
+    if (again) assert.deepEqual(first, await readFile(join(target, file)));
+    await writeFile(join(target, file), first);
+  }
+  console.log(file, '->', (await log()).split('\n')[0]);
+  await shot(file);
+}
+assert.deepEqual(faults, []);
+assert.deepEqual(sent, []);
+await browser.close();
+site.close();
