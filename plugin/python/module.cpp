@@ -198,4 +198,5 @@ NB_MODULE(_core, m) {
     m.def("vertex_areas", python::vertexAreas, "vertices"_a, "faces"_a);
     python::addTexts(m);
     m.def("set_memory_limit", setMemoryLimit, "limit"_a);
+    m.def("available_memory", availableMemory);
 }

@@ -40,6 +40,9 @@ constexpr double kDenseError = 1e-15;
 /// Tolerable error, relative to the eigenvalue at an edge, in deciding which are below the edge.
 constexpr double kEdgeAccuracy = 1e-6;
 
+/// Memory of the factorization, bytes per row, which ShiftedLdlt asks for, too, but later.
+constexpr double kFactorBytesPerRow = 1000.0;
+
 constexpr const char* kStage = "computing the harmonics";
 
 /// Orthogonalizes every second interval against its neighbours: eigenvectors of close eigenvalues
@@ -156,14 +159,17 @@ HarmonicBasis certified(const Laplacian& laplacian, HarmonicBasis basis, Index s
 void requireMemory(Index k, Index n) {
     // Phi, its copies for the certificate, and the vectors of the intervals being computed.
     const double bytesPerHarmonic = 1.3 * sizeof(double) * static_cast<double>(n);
+    const double factor = isDenseQuicker(n) ? 0.0 : kFactorBytesPerRow * static_cast<double>(n);
+    const double needed = factor + bytesPerHarmonic * static_cast<double>(k);
     const double available = availableMemory();
-    if (bytesPerHarmonic * static_cast<double>(k) <= available) return;
+    if (needed <= available) return;
+    const auto fitting =
+        static_cast<Index>(std::max(0.0, 0.9 * available - factor) / bytesPerHarmonic);
+    if (fitting < 2) spectral::requireMemory(needed, n);
     std::ostringstream text;
-    text << k << " harmonics of " << n << " vertices need about "
-         << Bytes{bytesPerHarmonic * static_cast<double>(k)} << " of memory, " << Bytes{available}
-         << " are free";
-    throw Error(ErrorCode::BasisOutOfMemory, text.str(),
-                static_cast<Index>(0.9 * available / bytesPerHarmonic));
+    text << k << " harmonics of " << n << " vertices need about " << Bytes{needed} << " of memory, "
+         << Bytes{available} << " are free";
+    throw Error(ErrorCode::BasisOutOfMemory, text.str(), fitting);
 }
 
 void checkSize(Index k, Index n, Index constants) {

@@ -26,8 +26,9 @@ class MeshFileError(SpectralError):
         The cause. Of a file to read: "missing", "no_file" (a folder, a device), "no_access",
         "bad_name", "empty", "foreign" (of another format than its name says), "encoding" (UTF-16),
         "decimal_commas", "cut_off", "damaged", "bad_values" (coordinates that are not finite),
-        "unsupported" (valid, with something that is not read), "unknown_format". Of one to write:
-        "not_written", "disk_full".
+        "unsupported" (valid, with something that is not read), "unknown_format", "side_file" (it
+        refers to a file that is missing, or outside its folder), "too_large" (it would grow beyond
+        its budget of memory). Of one to write: "not_written", "disk_full".
     """
 
     def __init__(self, message: str, code: str = "") -> None:

@@ -113,5 +113,26 @@ TEST_F(Memory, IsCheckedForABasisAndTheErrorNamesTheSizeThatFits) {
     }
 }
 
+TEST_F(Memory, OfABasisIsForecastWithItsFactorization) {
+    const Operator A(testing::icosphere(5));  // 10 MB for the factor, 10 MB for 100 harmonics
+    limitTo(15.0);
+    ShiftedLdlt ldlt;
+    try {
+        truncatedBasis(A, 100, ldlt);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::BasisOutOfMemory) << error.what();
+        EXPECT_LT(error.limit(), 100);
+    }
+    limitTo(5.0);
+    try {
+        truncatedBasis(A, 20, ldlt);
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(error.code(), ErrorCode::OutOfMemory) << error.what();
+    }
+    EXPECT_EQ(ldlt.factorizations(), 0);
+}
+
 }  // namespace
 }  // namespace spectral

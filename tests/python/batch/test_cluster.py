@@ -121,6 +121,32 @@ def test_a_file_whose_workers_die_again_and_again_fails_alone(
     assert [result.outcome for result in results.values()] == ["filtered"] * 2
 
 
+def test_files_queued_at_a_worker_that_dies_are_tried_again(
+    cluster: str,
+    meshes: Path,
+    expected: dict[str, bytes],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Dask counts the death against all that the worker had."""
+    inputs, out = sorted(meshes.iterdir()), tmp_path / "out"
+    deadly = inputs[0].name
+
+    def run_or_die(plugin: str, do: _Doing, job: Job) -> FileResult:
+        if job.name == deadly:
+            os.kill(os.getpid(), signal.SIGKILL)
+        time.sleep(0.2)  # so that others are queued
+        return do(get_worker().plugins[plugin].processes, job)
+
+    monkeypatch.setattr(cluster_module, "_run", run_or_die)
+    results = {r.name: r for r in filter_files(inputs, out, scheduler=cluster, steps=1)}
+    failed = results.pop(deadly)
+    assert failed.outcome == "failed"
+    assert "and one that did nothing else" in (failed.reason or "")
+    assert {one.outcome for one in results.values()} == {"filtered"}
+    assert contents(out) == {name: mesh for name, mesh in expected.items() if name != deadly}
+
+
 def test_an_interrupted_batch_ends_its_processes_on_the_workers_and_resumes(tmp_path: Path) -> None:
     folder, out = tmp_path / "in", tmp_path / "out"
     make_meshes(folder, 12, rings=32)

@@ -21,6 +21,8 @@ OF_ONE_MESH = {
     "denoise": ["out.ply"],
     "spectrum": ["-o", "out.png"],
     "basis": ["-o", "out.npz"],
+    "texture": ["--waviness", "30%"],
+    "compare": ["in/torus_000.ply"],
 }
 OF_MANY = {"batch": ["--output", "out"], "spectra": ["--output", "out.csv"]}
 NOT_NUMBERS = ["", "4GB", "0", "-1", "nan"]

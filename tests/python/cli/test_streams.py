@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import errno
+import io
+import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 import pytest
 from commands import COMMAND, PRECIOUS, assert_fails, command
+from meshlab_spectral.cli.__main__ import buffer_output
 
 
 def piped(*arguments: object, mesh: bytes = b"") -> subprocess.CompletedProcess[bytes]:
@@ -65,3 +70,47 @@ def test_a_full_disk_is_an_error_without_a_traceback(cow: Path) -> None:
     assert done.returncode == 1
     assert "standard output cannot be written" in done.stderr
     assert "Traceback" not in done.stderr
+
+
+class _SmallDisk(io.RawIOBase):
+    """A file that takes three bytes at a time, and a hundred in all."""
+
+    def __init__(self, room: int) -> None:
+        self.room, self.content = room, b""
+
+    def writable(self) -> bool:
+        return True
+
+    def write(self, data: bytes) -> int:  # type: ignore[override]
+        taken = bytes(data[: min(3, self.room - len(self.content))])
+        if not taken:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        self.content += taken
+        return len(taken)
+
+
+@pytest.mark.parametrize("room", [1000, 100])
+def test_unbuffered_output_is_written_whole_or_an_error(
+    room: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As with PYTHONUNBUFFERED=1, usual in containers: Python would drop what is not taken."""
+    disk = _SmallDisk(room)
+    monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(disk, "utf-8", write_through=True))  # type: ignore[arg-type]
+    buffer_output()
+    mesh = bytes(range(250))
+    try:
+        shutil.copyfileobj(io.BytesIO(mesh), sys.stdout.buffer)
+        print("that is all")
+        sys.stdout.flush()
+        assert disk.content == mesh + b"that is all\n"
+    except OSError as error:
+        assert error.errno == errno.ENOSPC
+        assert room < len(mesh)
+        monkeypatch.undo()
+
+
+def test_a_mesh_on_unbuffered_output_is_whole(cow: Path) -> None:
+    words = [sys.executable, "-u", *COMMAND[1:], "denoise", str(cow), "-", "--format", "obj"]
+    done = subprocess.run(words, capture_output=True, timeout=120, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout == piped("denoise", cow, "-", "--format", "obj").stdout

@@ -296,7 +296,7 @@ def test_the_buffer_of_the_input_is_never_overwritten(name: str, tmp_path: Path)
         (("accessors", 0, "count"), 9, "does not hold 9"),
         (("accessors", 0), {"componentType": 5126, "count": 10**9, "type": "VEC3"}, "claim"),
         (("buffers", 0, "byteLength"), 10**12, "bytes, of"),
-        (("buffers", 0, "uri"), "lost.bin", "lost.bin is missing"),
+        (("buffers", 0, "uri"), "lost.bin", "lost.bin, which in.glb refers to, is missing"),
         (("meshes", 0, "primitives", 0, "indices"), 7, r"accessors\[7\]"),
         (("nodes", 0, "children"), [0], "cycle"),
         (("nodes", 0, "children"), [1, 1], "two parents"),

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from meshlab_spectral.documents import three_mf
+from meshlab_spectral.documents import budget
 from meshlab_spectral.documents.document import Document
 from meshlab_spectral.documents.three_mf import read
 from meshlab_spectral.errors import MeshFileError
@@ -227,6 +227,6 @@ def test_a_damaged_archive_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_bomb_is_not_unpacked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(three_mf, "_HARMLESS", 1 << 20)
+    monkeypatch.setattr(budget, "_LEAST", 1 << 20)
     with pytest.raises(MeshFileError, match="would grow"):
         read(archive(tmp_path / "in.3mf", one_object() + " " * (2 << 20)))

@@ -26,7 +26,12 @@ from meshlab_spectral import (
     shape_dna,
 )
 from meshlab_spectral.errors import MemoryLimitError
-from meshlab_spectral.plugin.limits import MEMORY, given_memory_limit
+from meshlab_spectral.plugin.limits import (
+    MEMORY,
+    given_memory_limit,
+    memory_remedy,
+    name_memory_limit,
+)
 from meshlab_spectral.process.parent import JobLimits, MeshLabProcess
 
 MEBIBYTE = 2**20
@@ -123,3 +128,14 @@ def test_the_limit_of_a_job_is_that_of_the_plugin(samples: Path, tmp_path: Path)
         with pytest.raises(MemoryLimitError, match="raise the memory limit"):
             process.run(job("bunny.obj"), limits=JobLimits(memory=limit))
         assert not (tmp_path / "out.ply.partial").exists()
+
+
+def test_texts_name_the_limit_as_it_was_set(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv(MEMORY, raising=False)
+    assert memory_remedy(3e9) == "give it a machine with 2862MB more free memory"
+    set_memory_limit(1e9)
+    assert memory_remedy() == "raise set_memory_limit"
+    name_memory_limit("--memory")
+    assert memory_remedy(3e9) == "raise --memory to at least 2862MB"
+    monkeypatch.setenv(MEMORY, "2e9")
+    assert memory_remedy() == f"raise or unset the environment variable {MEMORY}"

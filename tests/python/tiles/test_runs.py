@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
+import re
 import resource
 import shutil
 import signal
@@ -19,7 +20,7 @@ import numpy as np
 import pytest
 from commands import command
 from meshlab_spectral import FilterOptions, MemoryLimitError, MeshFileError
-from meshlab_spectral.batch import whole_or_tiles
+from meshlab_spectral.batch import memory, whole_or_tiles
 from meshlab_spectral.batch.tiles import filter_in_tiles
 from meshlab_spectral.errors import FilterError, OptionError, ProcessDiedError
 from meshlab_spectral.process.parent import MeshLabProcess
@@ -123,6 +124,20 @@ def test_tiles_take_over_where_memory_is_refused(
         run(FilterOptions(preserve_volume=True), tiles=0, tell=_ignore)
     with pytest.raises(MemoryLimitError, match=r"needs more memory$"):
         run(SMALL, tiles=None, tell=_ignore)
+
+
+@pytest.mark.parametrize("given", [100 << 20, 160 << 20])
+def test_the_memory_that_tiles_are_said_to_need_is_enough(
+    given: int, source: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(memory, "machine_memory", lambda: given)
+    run = partial(filter_in_tiles, source, tmp_path / "out.ply", SMALL, _ignore, 0, _ignore)
+    with pytest.raises(UntiledError, match=r"more free memory") as refused:
+        run()
+    assert "smaller feature_size" not in str(refused.value)  # no tile fits, however small
+    (needed,) = re.findall(r"a machine with (\d+)MB", str(refused.value))
+    monkeypatch.setattr(memory, "machine_memory", lambda: int(needed) << 20)
+    assert run()["tiles"] >= 2
 
 
 def _interrupted(source: Path, target: Path, options: FilterOptions = SMALL) -> None:

@@ -4,13 +4,23 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import threading
 import uuid
 from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
-from distributed import CancelledError, Client, KilledWorker, Reschedule, WorkerPlugin, get_worker
+from distributed import (
+    CancelledError,
+    Client,
+    Event,
+    KilledWorker,
+    Reschedule,
+    WorkerPlugin,
+    get_client,
+    get_worker,
+)
 from distributed import TimeoutError as DaskTimeoutError  # in Python 3.10, not Python's own
 
 from meshlab_spectral.batch.engine import ResultT, Workers
@@ -72,39 +82,115 @@ def workers_at(
         threads = sum(client.nthreads().values())
         at_once = max(_FEWEST_SUBMITTED, _SUBMITTED_PER_THREAD * threads)
         memory = min(filter(None, client.run(_memory).values()), default=None)
+        turns = _Turns()
         yield Workers(
-            partial(_submit, client, plugin, do), at_once, ending.close, memory, client.run
+            partial(_submit, client, plugin, turns, do),
+            at_once,
+            ending.close,
+            memory,
+            client.run,
+            on_cluster=True,
         )
 
 
+class _Turns:
+    """Lets jobs run together, or one alone once no other is running."""
+
+    def __init__(self) -> None:
+        self._changed = threading.Condition()
+        self._running = 0
+        self._is_one_alone = False
+
+    @contextlib.contextmanager
+    def together(self) -> Iterator[None]:
+        """Take part in what runs together."""
+        with self._changed:
+            self._changed.wait_for(lambda: not self._is_one_alone)
+            self._running += 1
+        try:
+            yield
+        finally:
+            with self._changed:
+                self._running -= 1
+                self._changed.notify_all()
+
+    @contextlib.contextmanager
+    def alone(self) -> Iterator[None]:
+        """Run alone."""
+        with self._changed:
+            self._changed.wait_for(lambda: not self._running and not self._is_one_alone)
+            self._is_one_alone = True
+        try:
+            yield
+        finally:
+            with self._changed:
+                self._is_one_alone = False
+                self._changed.notify_all()
+
+
 def _submit(
-    client: Client, plugin: str, do: Callable[[Processes, JobT], ResultT], job: JobT
+    client: Client, plugin: str, turns: _Turns, do: Callable[[Processes, JobT], ResultT], job: JobT
 ) -> ResultT:
     """Let a worker do a job.
 
-    If the worker dies, Dask gives it to another one, up to three times. The death of a MeshLab
+    If the worker dies, Dask gives all jobs that it had to others, up to three times: those merely
+    queued there, too. After that each of them gets one more try, alone. The death of a MeshLab
     process is handled by the worker, see `task`.
     """
     try:
-        result: ResultT = client.submit(_run, plugin, do, job, pure=False).result()
-        return result
-    except SpectralError:
-        raise
-    except (OSError, CancelledError, DaskTimeoutError) as error:
+        with turns.together():
+            result: ResultT = client.submit(_run, plugin, do, job, pure=False).result()
+            return result
+    except KilledWorker as error:
+        attempts = error.allowed_failures + 1
+    except Exception as error:
+        instead: ResultT = _instead(error, job)
+        return instead
+    try:
+        with turns.alone():
+            token = uuid.uuid4().hex
+            result = client.submit(_run_once, token, _run, plugin, do, job, pure=False).result()
+            return result
+    except (KilledWorker, _TriedError):
+        reason = (
+            f"{attempts} workers that had it were ended from outside, and one that did nothing "
+            "else: if memory is short there, give the workers more, or filter it by itself"
+        )
+        instead = job.failed(reason, attempts + 1)
+    except Exception as error:
+        instead = _instead(error, job)
+    return instead
+
+
+def _instead(error: Exception, job: ClusterJob) -> Any:
+    """Raise what stops the run, and return the result of a job that alone has failed."""
+    if isinstance(error, SpectralError):
+        raise error
+    if isinstance(error, OSError | CancelledError | DaskTimeoutError):
         raise BatchError(
             "the Dask cluster is gone: restart it, then run the same command again, a batch with "
             "--resume"
         ) from error
-    except KilledWorker as error:
-        attempts = error.allowed_failures + 1
-        reason = (
-            "every worker that tried it was ended from outside: if memory is short, use fewer "
-            "workers"
-        )
-    except Exception as error:
-        attempts, reason = 0, f"unexpected error: {error!r}; please report it"
-    instead: ResultT = job.failed(reason, attempts)
-    return instead
+    return job.failed(f"unexpected error: {error!r}; please report it", 0)
+
+
+class _TriedError(Exception):
+    """A worker has ended in the only try of a job."""
+
+
+def _run_once(
+    token: str,
+    run: Callable[[str, Callable[[Processes, JobT], ResultT], JobT], ResultT],
+    plugin: str,
+    do: Callable[[Processes, JobT], ResultT],
+    job: JobT,
+) -> ResultT:
+    """Run a job, unless a worker has begun it: Dask would try it three times more."""
+    begun = Event(token, client=get_client())
+    if begun.is_set():
+        raise _TriedError
+    begun.set()
+    return run(plugin, do, job)
 
 
 def _run(plugin: str, do: Callable[[Processes, JobT], ResultT], job: JobT) -> ResultT:

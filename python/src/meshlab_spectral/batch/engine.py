@@ -29,6 +29,7 @@ class Workers(Generic[JobT, ResultT]):
     end: Callable[[], None]  # makes all calls end soon, whatever they are doing
     memory: int | None  # bytes that every job may take; None: not limited
     on_each: Callable[[Callable[[], object]], object]  # calls a function on each machine
+    on_cluster: bool = False
 
 
 def run_jobs(

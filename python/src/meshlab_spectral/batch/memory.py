@@ -20,9 +20,19 @@ def available_memory() -> int:
 
 def workers() -> tuple[int, int]:
     """Return the number of child processes, and the memory of each, in bytes."""
+    available = available_memory()
+    count = _workers_within(available)
+    return count, (available - PROCESS_BYTES) // count
+
+
+def limit_for(each: int) -> int:
+    """Return the least `available_memory` that gives every child process so many bytes."""
+    limits = ((count, PROCESS_BYTES + count * each) for count in range(1, processors() + 1))
+    return next(limit for count, limit in limits if _workers_within(limit) <= count)
+
+
+def _workers_within(available: int) -> int:
     count = processors()
-    while True:
-        each = (available_memory() - PROCESS_BYTES) // count
-        if count == 1 or each > 4 * PROCESS_BYTES:
-            return count, each
+    while count > 1 and (available - PROCESS_BYTES) // count <= 4 * PROCESS_BYTES:
         count -= 1
+    return count

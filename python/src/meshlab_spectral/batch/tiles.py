@@ -14,7 +14,7 @@ import numpy as np
 
 from meshlab_spectral.batch.engine import Workers, run_jobs
 from meshlab_spectral.batch.local import local_workers
-from meshlab_spectral.batch.memory import PROCESS_BYTES, TILE_BYTES, workers
+from meshlab_spectral.batch.memory import PROCESS_BYTES, TILE_BYTES, limit_for, workers
 from meshlab_spectral.batch.tile_jobs import TileJob, check_seen, run_tile
 from meshlab_spectral.documents.digits import rounding_message, widening_warnings
 from meshlab_spectral.errors import MeshFileError, OptionError
@@ -25,6 +25,7 @@ from meshlab_spectral.files.sources import check_is_place, check_source
 from meshlab_spectral.files.whole_files import LOCK, check_target, holding, resolved, writing_whole
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import DenoiseOptions, FilterOptions
+from meshlab_spectral.plugin.limits import memory_remedy
 from meshlab_spectral.plugin.versions import versions
 from meshlab_spectral.process.parent import ProgressCallback
 from meshlab_spectral.tiles.bounds import MOST_TILES, UntiledError
@@ -78,7 +79,7 @@ def filter_in_tiles(
     rows = open_rows(source)
     with _workers(scheduler) as pool, holding(work.folder), work.removed_if_not_begun():
         pool.on_each(partial(check_seen, str(source.absolute()), str(work.folder)))
-        plan = _planned(rows, source, options, on_progress, tiles, work, pool.memory)
+        plan = _planned(rows, source, options, on_progress, tiles, work, pool)
         why = f" by the workers at {scheduler}" if scheduler else ""
         if not tiles and not scheduler:
             why = ", as it does not fit in memory as a whole"
@@ -114,7 +115,7 @@ def intent_in_tiles(
     diagonal, edge, _ = measured.lengths
     with _workers(scheduler) as pool:
         reach = reach_of(options, measured.lengths)
-        _, count, _ = _divided(rows, measured, reach, tiles, pool.memory)
+        _, count, _ = _divided(rows, measured, reach, tiles, pool)
     surface = {
         "mesh": "",
         "vertices": rows.vertices,
@@ -144,7 +145,7 @@ def _planned(
     on_progress: ProgressCallback,
     tiles: int,
     work: Workspace,
-    memory: int | None,
+    pool: _Pool,
 ) -> Plan:
     """Return the plan of a run, whose faces have been handed to the tiles, now or before."""
     stat = source.stat()
@@ -158,7 +159,7 @@ def _planned(
             return old
     measured = _surveyed(rows, options, on_progress)
     reach = reach_of(options, measured.lengths)
-    tree, count, grown = _divided(rows, measured, reach, tiles, memory)
+    tree, count, grown = _divided(rows, measured, reach, tiles, pool)
     _clear(work.folder)
     plan = Plan(
         str(source.absolute()),
@@ -200,15 +201,15 @@ def _clear(folder: Path) -> None:
 
 
 def _divided(
-    rows: MeshRows, measured: Survey, reach: float, tiles: int, memory: int | None
+    rows: MeshRows, measured: Survey, reach: float, tiles: int, pool: _Pool
 ) -> tuple[Any, int, float]:
     """Return cells, their number, and how many times the mesh all tiles are together.
 
     Raises UntiledError when tiles with all that they need do not fit in the memory of a worker.
     """
-    vertices = rows.vertices
+    vertices, memory = rows.vertices, pool.memory
     largest = math.inf if memory is None else max(0, memory - PROCESS_BYTES) / TILE_BYTES
-    sample = measured.sample
+    sample, least = measured.sample, math.inf
     count = tiles or max(2, math.ceil(vertices / _LARGEST_TILE))
     while True:
         tree = split(sample, count)
@@ -216,14 +217,24 @@ def _divided(
         share, total = max(held) / len(sample), sum(held) / len(sample)
         if share * vertices <= largest:
             return tree, count, total
+        least = min(least, share * vertices)
         if tiles or count > MOST_TILES or total > _MOST_WORK:
-            raise UntiledError(
-                f"the filter reaches {reach:.3g} far, and tiles with that around them have "
-                f"{share * vertices:.3g} vertices, while {largest:.3g} fit in memory: choose "
-                + ("more tiles or " if tiles else "")
-                + "a smaller feature_size, or give more memory"
-            )
+            raise _too_large(reach, least, pool, bool(tiles))
         count = math.ceil(1.4 * count)
+
+
+def _too_large(reach: float, vertices: float, pool: _Pool, has_number: bool) -> UntiledError:
+    """Return the error for tiles of so many vertices, at least, that do not fit in a worker."""
+    needed, memory = math.ceil(PROCESS_BYTES + TILE_BYTES * vertices), pool.memory or 0
+    more = f"give the workers {needed / 2**20:.0f} MiB each"
+    remedies = [more if pool.on_cluster else memory_remedy(limit_for(needed))]
+    if memory > PROCESS_BYTES:  # else no tile fits, however small
+        remedies += ["choose more tiles"] * has_number + ["choose a smaller feature_size"]
+    return UntiledError(
+        f"the filter reaches {reach:.3g} far, and tiles with that around them have {vertices:.3g} "
+        f"vertices or more, which take {needed / 2**20:.0f} MiB, while a worker has "
+        f"{memory / 2**20:.0f} MiB: {', or '.join(remedies)}"
+    )
 
 
 def _require_space(rows: MeshRows, folder: Path, times: float) -> None:

@@ -5,17 +5,14 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from meshlab_spectral.errors import MeshError, OptionError, SpectralError
+from meshlab_spectral.errors import OptionError
 from meshlab_spectral.extras import check_extras
 from meshlab_spectral.files.formats import check_ending
 from meshlab_spectral.files.whole_files import check_target, writing_whole
-
-if TYPE_CHECKING:
-    from meshlab_spectral.files.comparison import Comparison
 
 _PICTURE = typer.Option(
     metavar="FILE", help="Draw the mesh before, after, and in colours, a .png file."
@@ -40,18 +37,6 @@ def check_picture(picture: Path | None) -> None:
         check_extras("plots", "render")
         check_ending(picture, "the picture is a PNG file", ".png")
         check_target(picture)
-
-
-def compared(a: Path, b: Path) -> Comparison:
-    """Compare two files; raise MeshError when one of them holds no surface."""
-    from meshlab_spectral.files.comparison import compare  # a slow import
-
-    try:
-        return compare(a, b)
-    except SpectralError:
-        raise
-    except ValueError as error:  # of the contents of a file
-        raise MeshError(f"A = {a}, B = {b}: {error}") from None
 
 
 @contextlib.contextmanager

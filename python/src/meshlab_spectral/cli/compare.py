@@ -12,11 +12,11 @@ from meshlab_spectral.cli.colour_files import (
     Overwrite,
     Picture,
     coloured_mesh,
-    compared,
     writing_coloured,
 )
 from meshlab_spectral.cli.filter_options import AsJson
 from meshlab_spectral.cli.messages import errors_reported, print_result
+from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.cli.report_table import change, table_of
 from meshlab_spectral.figures.comparison import (
     colour_extent,
@@ -24,6 +24,7 @@ from meshlab_spectral.figures.comparison import (
     write_comparison,
 )
 from meshlab_spectral.files.comparison import PERCENTILES, Comparison
+from meshlab_spectral.process.single_file import compare_in_child
 
 _LABELS = {
     "displacement": "Displacement",
@@ -59,7 +60,8 @@ def compare_command(
         errors_reported("finished files are complete"),
         writing_coloured(output, picture, overwrite, a, b) as scratch,
     ):
-        result = compared(a, b)
+        with progress_shown() as on_progress:
+            result = compare_in_child(a, b, on_progress, whole=bool(output or picture))
         if scratch is not None:
             write_comparison(result, scratch)
         if picture is not None:

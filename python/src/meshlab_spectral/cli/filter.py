@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from meshlab_spectral.batch.whole_or_tiles import filter_file, intent_of_file
-from meshlab_spectral.cli.colour_files import Picture, check_picture, compared
+from meshlab_spectral.cli.colour_files import Picture, check_picture
 from meshlab_spectral.cli.command_line import Command
 from meshlab_spectral.cli.filter_options import (
     AsJson,
@@ -37,8 +37,9 @@ from meshlab_spectral.files.recipe import saving_recipe
 from meshlab_spectral.files.region import Region
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import DenoiseOptions, FilterOptions
-from meshlab_spectral.plugin.limits import set_memory_limit
+from meshlab_spectral.plugin.limits import name_memory_limit, set_memory_limit
 from meshlab_spectral.plugin.versions import versions
+from meshlab_spectral.process.single_file import compare_in_child
 from meshlab_spectral.tiles.bounds import MOST_TILES
 
 FILTER_HELP = """Filter one mesh file by the size of its details.
@@ -187,6 +188,7 @@ def _command_with(table: type[Options], help_text: str) -> Command:
                 if scheduler is not None:
                     raise OptionError("a cluster configures its own workers: leave out --memory")
                 set_memory_limit(memory)
+                name_memory_limit("--memory")
             if dry_run:
                 with progress_shown() as on_progress:
                     intent = intent_of_file(
@@ -210,7 +212,9 @@ def _command_with(table: type[Options], help_text: str) -> Command:
             if picture is not None:
                 from meshlab_spectral.figures.comparison import draw_comparison  # a slow import
 
-                draw_comparison(compared(read, written), picture, (source.name, place.name))
+                with progress_shown() as on_progress:
+                    change = compare_in_child(read, written, on_progress, whole=True)
+                draw_comparison(change, picture, (source.name, place.name))
         if save_recipe is not None and part is not None:
             names = ", ".join(f"--{name}" for name in part.given())
             print_warning(f"{save_recipe} does not hold {names}: a region is of one file")

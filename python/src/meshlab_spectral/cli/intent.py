@@ -9,7 +9,7 @@ from typing import Any
 import typer
 from rich.console import Console
 
-from meshlab_spectral.cli.messages import print_warning
+from meshlab_spectral.cli.messages import one_line, print_warning
 from meshlab_spectral.cli.report_table import table_of
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import FilterOptions
@@ -35,7 +35,7 @@ def print_intent(
     for surface in intent["surfaces"]:
         name = f", {surface['mesh']}" if surface["mesh"] else ""
         console.print(table_of(_rows(surface), f"{source} -> {target}{name}"))
-    typer.echo(f"{target} would be {_way(target, intent)}. Nothing was written.")
+    typer.echo(one_line(f"{target} would be {_way(target, intent)}. Nothing was written."))
 
 
 def _is_size_given(options: Options) -> bool:

@@ -12,11 +12,13 @@ from rich.console import Console
 from rich.table import Table
 
 from meshlab_spectral.cli.interrupts import EXIT_INTERRUPTED, raise_interrupts
+from meshlab_spectral.documents.names import visible
 from meshlab_spectral.errors import FormatError, InputError, OptionError, SpectralError
 from meshlab_spectral.files.formats import POINTS_ONLY
 from meshlab_spectral.process.parent import LOG
 
 EXIT_FAILED, EXIT_USAGE = 1, 2
+_LONGEST = 5000  # characters of a message: two paths of Linux' 4,096 and more are rare
 
 EXIT_CODES = (
     "Exit codes: 0 all done; 1 a file could not be read, filtered or written; 2 invalid command "
@@ -74,13 +76,19 @@ def print_result(result: Table | object) -> None:
     if isinstance(result, Table):
         Console(emoji=False).print(result)
     else:
-        typer.echo(result)
+        typer.echo(one_line(str(result)))
 
 
 def print_message(text: str) -> None:
     """Print a line on standard error."""
     # No markup or wrapping: file names may contain brackets, and scripts parse messages.
-    MESSAGES.print(text, markup=False, highlight=False, soft_wrap=True)
+    MESSAGES.print(one_line(text), markup=False, highlight=False, soft_wrap=True)
+
+
+def one_line(text: str) -> str:
+    """Return a text as one line that a terminal prints, and does not obey."""
+    line = visible(text)
+    return line if len(line) <= _LONGEST else f"{line[: _LONGEST - 900]} ... {line[-900:]}"
 
 
 def print_error(text: str) -> None:

@@ -22,7 +22,7 @@ from rich.progress import (
 from rich.table import Column
 from rich.text import Text
 
-from meshlab_spectral.cli.messages import MESSAGES, VERBOSITY, print_message
+from meshlab_spectral.cli.messages import MESSAGES, VERBOSITY, one_line, print_message
 from meshlab_spectral.filters.progress import lines_now_and_then, terminal_bar
 from meshlab_spectral.process.parent import ProgressCallback
 
@@ -73,7 +73,7 @@ def batch_progress(files: int) -> Iterator[Callable[[FileResult], None]]:
                 reason = result.reason or ""
                 named = reason if result.input in reason else f"{result.input}: {reason}"
                 MESSAGES.print(
-                    f"[red]Failed:[/red] {escape(named)}", highlight=False, soft_wrap=True
+                    f"[red]Failed:[/red] {escape(one_line(named))}", highlight=False, soft_wrap=True
                 )
             elif has_lines and result.outcome != "already done":  # these come all at once
                 print_message(f"[{done}/{files}] {result.name}: {result.outcome}")

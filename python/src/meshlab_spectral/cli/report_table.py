@@ -7,6 +7,8 @@ from typing import Any
 from rich.table import Table
 from rich.text import Text
 
+from meshlab_spectral.cli.messages import one_line
+
 _SHOWN_NUMBERS = 6  # of a vector
 
 
@@ -26,11 +28,12 @@ def report_table(report: dict[str, Any], title: str, in_full: bool = False) -> T
 def table_of(rows: list[tuple[str, str]], title: str) -> Table:
     """Format labels and values."""
     # Text, not str: a name such as "[red].ply" is not markup.
-    table = Table(title=Text(title), show_header=False, title_justify="left", title_style="bold")
+    shown = Text(one_line(title))
+    table = Table(title=shown, show_header=False, title_justify="left", title_style="bold")
     table.add_column(style="cyan", no_wrap=True)
     table.add_column(justify="right")
     for label, value in rows:
-        table.add_row(label, Text(value))
+        table.add_row(one_line(label), Text(one_line(value)))
     return table
 
 

@@ -22,7 +22,7 @@ from meshlab_spectral.cli.filter_options import (
     chosen_options,
     with_options,
 )
-from meshlab_spectral.cli.messages import errors_reported, print_result
+from meshlab_spectral.cli.messages import errors_reported, one_line, print_result
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.extras import check_extras
 from meshlab_spectral.figures.spectrum import (
@@ -138,8 +138,9 @@ def _noise_line(spectrum: GeometrySpectrum) -> str:
 def _table(spectrum: GeometrySpectrum, options: FilterOptions, name: str) -> Table:
     """Format the octaves, with the gain of the filter at their centres."""
     size = feature_size_of(options, spectrum)
+    diagonal = f"diagonal {spectrum.diagonal:.6g}"
     # Text, not str: a name such as "[red].ply" is not markup.
-    title = Text(f"{name}: diagonal {spectrum.diagonal:.6g}, {options.filter_type} at {size:.6g}")
+    title = Text(f"{one_line(name)}: {diagonal}, {options.filter_type} at {size:.6g}")
     table = Table(title=title, title_justify="left", title_style="bold")
     for heading in (
         "Feature size",

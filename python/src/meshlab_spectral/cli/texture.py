@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
-import numpy as np
 import typer
-from numpy.typing import NDArray
 
 from meshlab_spectral.cli.colour_files import (
     Overwrite,
@@ -27,13 +24,11 @@ from meshlab_spectral.cli.filter_options import (
 from meshlab_spectral.cli.messages import errors_reported, print_result, print_warning
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.cli.report_table import table_of
-from meshlab_spectral.documents.document import Part
-from meshlab_spectral.errors import MeshError
 from meshlab_spectral.figures.texture import draw_texture, write_texture
-from meshlab_spectral.files.meshes import joined, load_parts
 from meshlab_spectral.filters.options import TextureOptions
-from meshlab_spectral.filters.texture import SurfaceTexture, surface_texture
+from meshlab_spectral.filters.texture import SurfaceTexture
 from meshlab_spectral.plugin.versions import versions
+from meshlab_spectral.process.single_file import texture_in_child
 
 _BEARING = (10, 50, 90)
 
@@ -70,13 +65,9 @@ def texture_command(
     ):
         options = chosen_options(TextureOptions, given)
         with progress_shown() as on_progress:
-            on_progress("reading", None)
-            parts = load_parts(source, mesh)
-            V, F = joined(parts)
-            if len(F) == 0:
-                raise MeshError(f"{source} has no faces: there is no surface to measure")
-            selection = _selection(parts) if options.selected else None
-            texture = surface_texture(V, F, options, selection=selection, progress=on_progress)
+            V, F, texture = texture_in_child(
+                source, options, on_progress, mesh, whole=bool(output or picture)
+            )
         if scratch is not None:
             write_texture(V, F, texture, scratch)
         if picture is not None:
@@ -91,16 +82,6 @@ def texture_command(
     for path in (output, picture):
         if path is not None:
             print_result(path)
-
-
-def _selection(parts: Sequence[Part]) -> NDArray[np.bool_]:
-    """Return the selected vertices of all parts."""
-    return np.concatenate(
-        [
-            np.zeros(len(part.vertices), dtype=bool) if part.selected is None else part.selected
-            for part in parts
-        ]
-    )
 
 
 def _rows(texture: SurfaceTexture) -> list[tuple[str, str]]:

@@ -8,7 +8,10 @@ are replaced in place.
 
 from __future__ import annotations
 
+import base64
 import gzip
+import math
+import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,16 +20,27 @@ from typing import Any
 
 import numpy as np
 
+from meshlab_spectral.documents.budget import Budget
 from meshlab_spectral.documents.causes import EndsEarlyError, ForeignError, unreadable, unsupported
 from meshlab_spectral.documents.digits import precision_warnings
 from meshlab_spectral.documents.document import Array, Document, checked_part
-from meshlab_spectral.documents.names import FREE_SURFER, OTHERS, QUADRILATERALS, TRIANGLES
+from meshlab_spectral.documents.names import (
+    FREE_SURFER,
+    OTHERS,
+    QUADRILATERALS,
+    TRIANGLES,
+    shown,
+)
 from meshlab_spectral.documents.normals import following_normals
-from meshlab_spectral.documents.side_files import copy_side_files
+from meshlab_spectral.documents.side_files import beside, copy_side_files
+from meshlab_spectral.documents.text import numbers_from
 from meshlab_spectral.errors import MeshFileError, SpectralError
 from meshlab_spectral.extras import check_extras
 
-_TEXT, _BINARY, _EXTERNAL = 1, 2, 4  # encodings of GIFTI
+_TEXT, _BINARY, _PACKED, _EXTERNAL = 1, 2, 3, 4  # encodings of GIFTI
+_MOST_DIMENSIONS = 6  # in GIFTI
+_ARRAY_BYTES = 4096  # of nibabel's objects for one
+_BUFFER = 35_000_000  # of its parser, bytes
 
 
 def read(path: Path) -> Document:
@@ -50,7 +64,9 @@ def read(path: Path) -> Document:
         raise
     except Exception as error:  # nibabel raises whatever its parsers do
         ending = "gii.gz" if path.suffix.lower() == ".gz" else "gii" if is_gifti else FREE_SURFER
-        reason = EndsEarlyError(error) if isinstance(error, EOFError) else error
+        reason: object = EndsEarlyError(error) if isinstance(error, EOFError) else error
+        if isinstance(error, AssertionError | AttributeError | LookupError | TypeError):
+            reason = f"its elements are not those of GIFTI: {type(error).__name__} {error}"
         raise unreadable(path, reason, ending) from error
 
 
@@ -155,16 +171,21 @@ class _Gifti(Document):
         is_packed = target.suffix.lower() == ".gz"
         target.write_bytes(gzip.compress(content, mtime=0) if is_packed else content)
         warnings = [
-            f"the numbers of {name} are written into {target.name}" for name in sorted(external)
+            f"the numbers of {shown(name)} are written into {target.name}"
+            for name in sorted(external)
         ]
         return warnings + precision_warnings(part.vertices, after, target.name)
 
 
 def _read_gifti(path: Path) -> Document:
     check_extras("formats")
-    import nibabel
-
-    image: Any = nibabel.gifti.GiftiImage.from_filename(path, mmap=False)
+    budget = Budget(path, path.stat().st_size)
+    with path.open("rb") as file:
+        content = file.read()
+    if path.suffix.lower() == ".gz":
+        with gzip.open(path) as packed:
+            content = budget.unpacked(packed, "its XML")
+    image = _parsed(path, content, budget)
     if image is None:
         raise ValueError("it is XML, but not GIFTI")
     points = image.get_arrays_from_intent("NIFTI_INTENT_POINTSET")
@@ -186,6 +207,70 @@ def _read_gifti(path: Path) -> Document:
     return _Gifti(
         path=path, parts=[part], contents=contents, image=image, points=points[0], vectors=vectors
     )
+
+
+def _parsed(path: Path, content: bytes, budget: Budget) -> Any:
+    """Parse GIFTI with nibabel, which would read whatever a file claims or names."""
+    from nibabel.gifti.parse_gifti_fast import GiftiImageParser
+
+    class Parser(GiftiImageParser):  # type: ignore[misc]
+        def StartElementHandler(self, name: str, attributes: dict[str, str]) -> None:
+            if name == "DataArray":
+                budget.take(_ARRAY_BYTES, "its arrays")
+                if int(attributes.get("Dimensionality", 0)) > _MOST_DIMENSIONS:
+                    raise ValueError(
+                        f"an array has {shown(attributes['Dimensionality'])} dimensions, of "
+                        f"{_MOST_DIMENSIONS} at most"
+                    )
+            super().StartElementHandler(name, attributes)
+
+        def flush_chardata(self) -> None:
+            if self.write_to != "Data":
+                super().flush_chardata()
+                return
+            text = "".join(self._char_blocks or ())
+            self._char_blocks: list[str] | None = None
+            self.da.data = _data(path, self.da, text, budget)
+
+    parser = Parser(buffer_size=min(len(content) + 1, _BUFFER))
+    parser.parse(string=content)
+    return parser.img
+
+
+def _data(path: Path, array: Any, text: str, budget: Budget) -> Any:
+    """Return the numbers of an array, as many as its dimensions say."""
+    from nibabel.gifti.util import array_index_order_codes, gifti_endian_codes
+    from nibabel.nifti1 import data_type_codes
+
+    endian = gifti_endian_codes.byteorder[array.endian]
+    type_ = data_type_codes.dtype[array.datatype].newbyteorder(endian)
+    count = math.prod(array.dims)
+    size = count * type_.itemsize
+    if min(array.dims, default=0) < 0:
+        raise ValueError(f"an array has the dimensions {array.dims}")
+    if array.encoding == _TEXT:
+        with np.errstate(invalid="ignore"):
+            numbers = numbers_from(text.encode(), 0, count, "an array").astype(type_)
+    elif array.encoding == _EXTERNAL:
+        file = beside(path, array.ext_fname)
+        budget.extend(file.stat().st_size)
+        budget.take(size, f"an array of {count} numbers")
+        numbers = np.fromfile(file, type_, count, offset=array.ext_offset)
+    elif array.encoding in (_BINARY, _PACKED):
+        content = base64.b64decode(text)
+        if array.encoding == _PACKED:
+            budget.take(size, f"an array of {count} numbers")
+            content = zlib.decompressobj().decompress(content, size + 1)
+        if len(content) > size:
+            raise ValueError(f"an array of {count} numbers has more")
+        whole = len(content) - len(content) % type_.itemsize
+        numbers = np.frombuffer(bytearray(content[:whole]), type_)
+    else:
+        raise ValueError(f"it has an encoding of the number {array.encoding}")
+    if len(numbers) != count:
+        reason = f"an array of {count} numbers has {len(numbers)}"
+        raise EndsEarlyError(reason) if len(numbers) < count else ValueError(reason)
+    return numbers.reshape(array.dims, order=array_index_order_codes.npcode[array.ind_ord])
 
 
 def _are_normals(vectors: Any, count: int) -> bool:

@@ -7,10 +7,11 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
-from meshlab_spectral.documents.names import FREE_SURFER, ending_of
+from meshlab_spectral.documents.names import FREE_SURFER, ending_of, shown
 from meshlab_spectral.errors import MeshFileError
 
 _LOOKED_AT = 4096  # bytes
+_LONGEST = 300  # characters of a reader's reason
 _AGAIN = "copy it again, or export it again from the program that made it"
 
 
@@ -61,7 +62,11 @@ _KINDS = [
     _kind("VRML", "wrl", rb"#VRML"),
     _kind("FBX", "fbx", rb"Kaydara FBX|; FBX"),
     _kind("E57", "e57", rb"ASTM-E57"),
-    _kind("OFF", "off", rb"\s*(?:#[^\r\n]*\s+)*(?:(?:ST|C|N|4|n)*OFF|(?:st|c|n)*off)(?![A-Za-z])"),
+    _kind(
+        "OFF",
+        "off",
+        rb"\s*(?:#[^\r\n]*[\r\n]\s*)*(?:(?:ST|C|N|4|n)*OFF|(?:st|c|n)*off)(?![A-Za-z])",
+    ),
     _kind("text STL", "stl", rb"\s*solid\b[^\r\n]*[\r\n]+\s*facet\b"),
     _kind("glTF", "gltf", rb"\s*\{.*\"asset\""),
     _kind("JSON", "gltf", rb"\s*\{\s*\"", _NO_MESH),
@@ -143,7 +148,7 @@ def unreadable(path: Path, reason: object, ending: str = "") -> MeshFileError:
     ending = ending or ending_of(path.name).lower()
     ending = ending if ending in _NAMES else FREE_SURFER
     content = path.read_bytes() if path.is_file() else b"?"
-    message = " ".join(str(reason).split())
+    message = shown(" ".join(str(reason).split()), _LONGEST)
     code, text = _cause(content, ending, message, reason)
     return MeshFileError(f"{path} {text}", code)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -67,6 +67,10 @@ class Document(ABC):
     parts: list[Part]
     contents: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
+
+    def side_files(self) -> Iterable[str]:
+        """Return the names of files that it refers to, such as textures, relative to its folder."""
+        return ()
 
     @abstractmethod
     def save(self, target: Path, moved: Sequence[Array]) -> list[str]:

@@ -20,7 +20,14 @@ from meshlab_spectral.documents.document import (
     check_indices,
     check_vertices,
 )
-from meshlab_spectral.documents.gltf_accessors import Asset, Json, parsed, reporting_faults
+from meshlab_spectral.documents.gltf_accessors import (
+    Asset,
+    Json,
+    numbers_of,
+    parsed,
+    reporting_faults,
+)
+from meshlab_spectral.documents.names import shown
 from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.documents.placement import IDENTITY, Placement, placement_of
 from meshlab_spectral.documents.side_files import copy_side_files
@@ -108,7 +115,7 @@ def _add_part(document: GltfDocument, number: int, mesh: Json, nodes: list[_Node
     if not sum(map(len, faces)):
         return
     names = [holder.get("name") for holder in [mesh, *(node for node, _ in nodes)]]
-    name = str(next(filter(None, names), f"mesh {number}"))
+    name = shown(next(filter(None, names), f"mesh {number}"))
     placement = placement_of(name, [matrix for _, matrix in nodes], document.warnings)
     table = np.concatenate(tables)
     placed = placement.placed(table[:, _P])
@@ -124,6 +131,7 @@ def _add_part(document: GltfDocument, number: int, mesh: Json, nodes: list[_Node
 
 def _read_table(asset: Asset, key: _Key) -> Array:
     columns = [asset.values(key[0], 3)]
+    asset.budget.take(80 * len(columns[0]), f"a table of {len(columns[0])} vertices")
     for accessor, width in zip(key[1:], (3, 4), strict=True):
         missing = np.zeros((len(columns[0]), width))
         columns.append(missing if accessor is None else asset.values(accessor, width))
@@ -132,9 +140,11 @@ def _read_table(asset: Asset, key: _Key) -> Array:
 
 def _read_faces(asset: Asset, primitive: Json, rows: slice) -> Indices:
     vertices = rows.stop - rows.start
-    corners = np.arange(vertices)
     if "indices" in primitive:
         corners = asset.values(primitive["indices"], 1).ravel().astype(np.int64)
+    else:
+        asset.budget.take(32 * vertices, "primitives without indices")
+        corners = np.arange(vertices)
     step = np.arange(len(corners) - 2)
     modes = {
         _TRIANGLES: (step[::3], step[::3] + 1, step[::3] + 2),
@@ -169,11 +179,10 @@ def _nodes_of_meshes(asset: Asset) -> dict[int, list[_Node]]:
 
 def _local_matrix(node: Json) -> Array:
     if "matrix" in node:
-        return np.array(node["matrix"], dtype=np.float64).reshape(4, 4).T
+        return numbers_of(node, "matrix", 16 * [0]).reshape(4, 4).T
     matrix = np.eye(4)
     matrix[:3, 3], (x, y, z, w), scale = (
-        np.array(node.get(key, default), dtype=np.float64).reshape(len(default))
-        for key, default in _TRANSFORM.items()
+        numbers_of(node, key, default) for key, default in _TRANSFORM.items()
     )
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     turn = 2 / (x * x + y * y + z * z + w * w or 1.0) * (w * cross + cross @ cross)

@@ -17,8 +17,11 @@ from urllib.parse import quote, unquote
 import numpy as np
 from numpy.typing import NDArray
 
+from meshlab_spectral.documents.budget import Budget
 from meshlab_spectral.documents.causes import unreadable, unsupported
 from meshlab_spectral.documents.document import Array
+from meshlab_spectral.documents.names import shown
+from meshlab_spectral.documents.side_files import beside
 
 _FLOAT = 5126
 _COMPONENTS = {5120: "<i1", 5121: "<u1", 5122: "<i2", 5123: "<u2", 5125: "<u4", _FLOAT: "<f4"}
@@ -48,10 +51,10 @@ class Asset:
     tree: Json
     binary: bytes | None  # the buffer in a GLB
     rest: bytes  # its other chunks
+    budget: Budget
     buffers: list[bytearray] = field(default_factory=list)
     _patched: set[int] = field(default_factory=set)
     _written: dict[int, list[tuple[int, Array]]] = field(default_factory=lambda: defaultdict(list))
-    _left: int = 1_000_000  # accessor elements that may still be read
 
     def entry(self, kind: str, index: object) -> Any:
         """Return an entry of one of the top-level arrays."""
@@ -66,9 +69,7 @@ class Asset:
         count, component = accessor["count"], accessor["componentType"]
         if accessor["type"] != _KINDS[width]:
             raise ValueError(f"accessor {index} is a {accessor['type']!r:.80}")
-        self._left -= count
-        if self._left < 0:
-            raise ValueError("its accessors claim more elements than a file of its size can have")
+        self.budget.take(8 * count * width, f"its accessors claim {count} elements")
         values = np.zeros((count, width))
         if "bufferView" in accessor:
             values = self._view(accessor, component, width, count).astype(np.float64)
@@ -122,15 +123,15 @@ class Asset:
             if uri.startswith("data:"):
                 data = base64.b64decode(uri.partition(";base64,")[2], validate=True)
             elif uri:
-                file = (self.path.parent / unquote(uri)).resolve()
-                if not file.is_file() or file in files:  # reading a device might never end
-                    raise ValueError(f"its file {unquote(uri)[:200]} is missing, or named twice")
+                file = beside(self.path, unquote(uri))
+                if file in files:
+                    raise ValueError(f"its file {shown(unquote(uri))} is named twice")
                 files.add(file)
                 data = file.read_bytes()
+                self.budget.extend(len(data))
             if len(data) < entry["byteLength"]:
                 raise ValueError(f"buffer {number} has {len(data)} bytes, of {entry['byteLength']}")
             self.buffers.append(bytearray(data))
-            self._left += 8 * len(data)  # accessors may share them
 
     def _view(self, owner: Json, component: int, width: int, count: int) -> NDArray[Any]:
         """View elements in their buffer."""
@@ -188,13 +189,24 @@ def parsed(path: Path, data: bytes) -> Asset:
         text, rest = data[20 : 20 + size], data[20 + size : length]
         end = 8 + int.from_bytes(rest[:4], "little")
         binary, rest = rest[8:end], rest[end:]
-    asset = Asset(path, data, json.loads(text), binary, rest)
+    asset = Asset(
+        path, data, json.loads(text.decode("utf-8-sig")), binary, rest, Budget(path, len(data))
+    )
     version = str(asset.tree["asset"]["version"])
     if version.split(".")[0] != "2":
         remedy = "convert it to glTF 2.0, for example by importing and exporting it in Blender"
-        raise unsupported(path, f"is of glTF version {version[:80]}", remedy)
+        raise unsupported(path, f"is of glTF version {shown(version)}", remedy)
     asset.read_buffers()
     return asset
+
+
+def numbers_of(entry: Json, key: str, default: list[int]) -> Array:
+    """Return the numbers of an entry, as many as by default."""
+    given = entry.get(key, default)
+    is_list = isinstance(given, list) and len(given) == len(default)
+    if not is_list or any(type(x) not in (int, float) for x in given):
+        raise ValueError(f"{key} is not a list of {len(default)} numbers")
+    return np.array(given, dtype=np.float64)
 
 
 def _bounds(values: Array) -> dict[str, list[float]]:

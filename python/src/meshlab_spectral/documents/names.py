@@ -1,4 +1,7 @@
-"""Names of mesh files: their extensions, and surfaces of FreeSurfer, whose names have none."""
+"""Names of mesh files: their extensions, and surfaces of FreeSurfer, whose names have none.
+
+And names in mesh files, as texts show them.
+"""
 
 from __future__ import annotations
 
@@ -35,3 +38,16 @@ def begin_of(path: Path) -> bytes:
             return file.read(len(TRIANGLES))
     except OSError:
         return b""
+
+
+def shown(name: object, longest: int = 100) -> str:
+    """Return what a file calls something for a text: in one line of so many characters at most."""
+    text = visible(str(name))
+    return text if len(text) <= longest else f"{text[: longest - 3]}..."
+
+
+def visible(text: str) -> str:
+    """Escape what a terminal would not print but obey, such as control characters."""
+    if text.isprintable():
+        return text
+    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text)

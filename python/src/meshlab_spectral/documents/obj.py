@@ -16,8 +16,9 @@ from meshlab_spectral.documents.digits import SINGLE, digits_for
 from meshlab_spectral.documents.document import Array, Document, Indices, Part, check_vertices
 from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.documents.polygons import corners_of_triangles
-from meshlab_spectral.documents.side_files import copy_side_files
+from meshlab_spectral.documents.side_files import beside, copy_side_files
 from meshlab_spectral.documents.text import Lines, lines_of, write_patched
+from meshlab_spectral.errors import MeshFileError
 
 _CONTENTS = {
     "vn": "normals",
@@ -39,7 +40,7 @@ _TEXTURE = re.compile(
 _KEYWORDS = ["v", "f", *_CONTENTS]
 _CONTINUED = 3  # vertices, faces and normals, which may go on after a backslash
 _VERTEX, _FACE, _NORMAL, _LIBRARY = map(_KEYWORDS.index, ("v", "f", "vn", "mtllib"))
-_COMMENT = re.compile(rb"(?:\A|[\r\n])\s*#")
+_COMMENT = re.compile(rb"(?m)^[ \t]*#")
 
 
 @dataclass(kw_only=True)
@@ -63,20 +64,24 @@ class _Obj(Document):
             changes.append((self.normal_starts, 1, self.normals, normals, SINGLE))
         with target.open("wb") as file:
             write_patched(file, self.content, changes)
-        return copy_side_files(self.path, target, self._side_files())
+        return copy_side_files(self.path, target, self.side_files())
 
-    def _side_files(self) -> Iterator[str]:
-        """Yield the names of material libraries and their textures, relative to the file."""
+    def side_files(self) -> Iterator[str]:
+        """Yield the names of material libraries and their textures."""
         folder = self.path.parent
-        for line in map(_name, self.libraries):
+        for line in dict.fromkeys(map(_name, self.libraries)):
             whole = _slashed(folder, line)
             is_one = os.path.isfile(folder / whole)  # noqa: PTH113 - false for impossible names
-            for library in [whole] if is_one else [_slashed(folder, w) for w in line.split()]:
+            words = [whole] if is_one else [_slashed(folder, w) for w in line.split()]
+            for library in dict.fromkeys(words):
                 yield library
-                if os.path.isfile(folder / library):  # noqa: PTH113
-                    for texture in _TEXTURE.findall((folder / library).read_bytes()):
-                        name = _name(texture).replace("\\", "/")
-                        yield str(PurePosixPath(library).parent / name)
+                try:
+                    content = beside(self.path, library).read_bytes()
+                except MeshFileError:  # told when it is copied
+                    continue
+                for texture in dict.fromkeys(_TEXTURE.findall(content)):
+                    name = _name(texture).replace("\\", "/")
+                    yield str(PurePosixPath(library).parent / name)
 
 
 def _name(name: bytes) -> str:

@@ -44,24 +44,26 @@ class Placement:
         return result
 
 
-def placement_of(name: str, matrices: Sequence[Array], warnings: list[str]) -> Placement:
+def placement_of(name: str, matrices: Sequence[Array] | Array, warnings: list[str]) -> Placement:
     """Return the first placement of a mesh, or the identity if it has none or a singular one.
 
     The others become its copies, if they are not singular and show the mesh somewhere else. Appends
     to `warnings` if the first is singular, or if others have another scale.
     """
-    if not matrices:
+    if not len(matrices):
         return Placement(IDENTITY)
+    scales = _scales(np.asarray(matrices))
+    is_flat = scales[:, 2] <= _SINGULAR * scales[:, 0]
     places = list(
-        {matrix.tobytes(): matrix for matrix in matrices if not _is_flat(matrix)}.values()
+        {m.tobytes(): m for m, flat in zip(matrices, is_flat, strict=True) if not flat}.values()
     )
-    if _is_flat(matrices[0]):
+    if is_flat[0]:
         warnings.append(
             f"{name} is flattened by a transform of scale 0 where it is placed: it is filtered in "
             "the size that it has without transforms"
         )
         return Placement(IDENTITY, tuple(places))
-    if not all(same_scale(matrices[0], matrix) for matrix in matrices[1:]):
+    if (np.abs(scales[0] - scales) > _SAME_SCALE * scales[0]).any():
         warnings.append(
             f"{name} is placed several times at different scales: lengths are those of its first "
             "placement"
@@ -70,19 +72,8 @@ def placement_of(name: str, matrices: Sequence[Array], warnings: list[str]) -> P
     return Placement(matrices[0], tuple(matrix @ back for matrix in places[1:]))
 
 
-def _is_flat(matrix: Array) -> bool:
-    largest, _, smallest = _scales(matrix)
-    return bool(smallest <= _SINGULAR * largest)
-
-
-def same_scale(first: Array, second: Array) -> bool:
-    """Return whether two transforms have the same singular values."""
-    a, b = _scales(first), _scales(second)
-    return bool((np.abs(a - b) <= _SAME_SCALE * a).all())
-
-
-def _scales(matrix: Array) -> Array:
-    """Return the singular values of the linear part, descending; zeros if it is not finite."""
-    linear = matrix[:3, :3]
-    linear = linear if np.isfinite(linear).all() else np.zeros((3, 3))
+def _scales(matrices: Array) -> Array:
+    """Return the singular values of linear parts, k x 3, descending; zeros if one is not finite."""
+    linear = matrices[:, :3, :3]
+    linear = np.where(np.isfinite(linear).all(axis=(1, 2), keepdims=True), linear, 0.0)
     return np.asarray(np.linalg.svd(linear, compute_uv=False), dtype=np.float64)

@@ -32,13 +32,14 @@ from meshlab_spectral.documents.document import (
     check_indices,
     check_vertices,
 )
+from meshlab_spectral.documents.names import shown
 from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.documents.polygons import strip_triangles, triangles
 from meshlab_spectral.documents.side_files import copy_side_files
 from meshlab_spectral.documents.text import BYTE_ORDER_MARK, Lines, lines_of, whole, write_patched
 
 AXES, NORMALS = ("x", "y", "z"), ("nx", "ny", "nz")
-_TEXTURE = re.compile(rb"(?m)^[ \t]*comment[ \t]+TextureFile[ \t]+(.*\S)")
+_TEXTURE = re.compile(rb"(?m)^[ \t]*comment[ \t]+TextureFile[ \t]+(\S.*)")
 _COMMENT = re.compile(rb"(?m)^[ \t]*(comment|obj_info)[ \t]+(?!TextureFile|VCGLIB generated)\S")
 CORNERS = ("vertex_indices", "vertex_index")
 _KNOWN = {
@@ -48,6 +49,10 @@ _KNOWN = {
     "quality": {"quality"},
 }
 SELECTED = 0x20  # VCG's flag
+# Elements, or properties: Gaussian splats have 62, with learned features some 1,000. The time of
+# plyfile grows with their square.
+_MOST_NAMES = 10_000
+_LONGEST_SIZE = 12  # characters of the size of a list, of at most 32 bits, and a blank
 _Rows = np.ndarray[Any, Any]
 _Table = dict[str, Any]  # the numbers of a property; for lists their sizes, and all items
 _Changes = dict[tuple[str, ...], tuple[Array, Array]]  # before and after
@@ -76,8 +81,10 @@ class PlyDocument(Document):
                 self._write(file, after, bool(loss))
             else:
                 file.write(self.content)
-        textures = map(os.fsdecode, _TEXTURE.findall(self.header))
-        return widening_warnings(loss) + copy_side_files(self.path, target, textures)
+        return widening_warnings(loss) + copy_side_files(self.path, target, self.side_files())
+
+    def side_files(self) -> list[str]:  # noqa: D102
+        return [os.fsdecode(name.rstrip()) for name in _TEXTURE.findall(self.header)]
 
     def _write(self, file: IO[bytes], after: Array, is_wide: bool) -> None:
         (part,), rows, start = self.parts, self.rows, len(self.header)
@@ -151,21 +158,26 @@ def read(path: Path) -> PlyDocument:
 
 def read_header(content: bytes) -> tuple[PlyData, dict[str, int], bytes]:
     """Read the header with plyfile, without comments (it accepts only ASCII), with counts of 0."""
-    end = re.search(rb"(?s)\n[ \t]*element\s+vertex\s.*?\n[ \t]*end_header[ \t]*\r?\n", content)
+    if not content.removeprefix(BYTE_ORDER_MARK).startswith(b"ply"):
+        raise ForeignError("it does not begin with the word ply")
+    end = re.search(rb"\n[ \t]*end_header[ \t]*\r?\n", content)
     if not end:
-        if not content.removeprefix(BYTE_ORDER_MARK).startswith(b"ply"):
-            raise ForeignError("it does not begin with the word ply")
-        if not re.search(rb"(?m)^[ \t]*end_header[ \t]*\r?\n", content):
-            raise EndsEarlyError("it ends before the end of its header")
-        raise ValueError("it has no PLY header with vertices")
+        raise EndsEarlyError("it ends before the end of its header")
     header = content[: end.end()]
     lines = b"".join(
         line.strip() + b"\n" for line in header.removeprefix(BYTE_ORDER_MARK).splitlines()
     )
     lines = re.sub(rb"(?m)^(comment|obj_info)\b.*", b"comment", lines)
     counts = [int(word) for word in re.findall(rb"(?m)^element\s+\S+\s+(\S+)", lines)]
+    properties = len(re.findall(rb"(?m)^property\b", lines))
+    if max(len(counts), properties) > _MOST_NAMES:
+        raise ValueError(
+            f"it has {len(counts)} elements and {properties} properties, of {_MOST_NAMES} at most"
+        )
     empty = re.sub(rb"(?m)^(element\s+\S+)\s+\S+", rb"\1 0", lines)
     ply = PlyData.read(io.BytesIO(empty))
+    if "vertex" not in ply:
+        raise ValueError("it has no PLY header with vertices")
     return ply, dict(zip([one.name for one in ply], counts, strict=True)), header
 
 
@@ -188,24 +200,45 @@ def _rows_in_any_lines(
     lines: Lines, ply: PlyData, counts: dict[str, int], start: int
 ) -> Lines | None:
     """Return the rows of all elements by their words; None if any are missing or left over."""
-    found = list(re.compile(rb"\S+").finditer(lines.text, start))
-    starts, words, at = list[int](), list[int](), 0
+    text = np.frombuffer(lines.text, np.uint8)[start:]
+    is_blank = np.isin(text, np.frombuffer(b" \t\n\r\v\f", np.uint8))
+    found = start + np.flatnonzero(~is_blank & np.append(True, is_blank[:-1]))
+    del is_blank
+    first, words, at = list[Indices](), list[Indices](), 0
     try:
         for element in ply:
             are_lists = [isinstance(one, PlyListProperty) for one in element.properties]
-            for _ in range(counts[element.name]):
-                first = at
-                for is_list in are_lists:
-                    at += 1 + (max(0, int(found[at][0])) if is_list else 0)
-                starts.append(found[first].start())
-                words.append(at - first)
+            count = counts[element.name]
+            if not any(are_lists):
+                sizes = np.full(count, len(are_lists))
+            else:
+                rows = _sizes_of_rows(lines.text, found, at, are_lists, count)
+                sizes = np.array(rows, np.int64)
+            first.append(found[at + np.cumsum(sizes) - sizes])
+            words.append(sizes.astype(np.int32))
+            at += int(sizes.sum())
     except (ValueError, IndexError):
         return None
     if at != len(found):
         return None
-    kinds = np.zeros(len(starts), np.uint8)
-    rows = np.array(starts, lines.starts.dtype), np.array(words, np.int32), kinds
-    return replace(lines, starts=rows[0], words=rows[1], kinds=rows[2])
+    kinds = np.zeros(sum(map(len, words)), np.uint8)
+    return replace(lines, starts=np.concatenate(first), words=np.concatenate(words), kinds=kinds)
+
+
+def _sizes_of_rows(
+    text: bytes, found: Indices, at: int, are_lists: Sequence[bool], count: int
+) -> list[int]:
+    """Return how many words each of an element's rows has, the first of which is word `at`."""
+    sizes = list[int]()
+    for _ in range(count):
+        begin = at
+        for is_list in are_lists:
+            if is_list:
+                place = int(found[at])
+                at += max(0, int(text[place : place + _LONGEST_SIZE].split(maxsplit=1)[0]))
+            at += 1
+        sizes.append(at - begin)
+    return sizes
 
 
 def _read_elements(
@@ -325,6 +358,8 @@ def _contents(ply: PlyData, counts: dict[str, int], header: bytes, triangles: in
     present: dict[str, object] = {word: names & known for word, known in _KNOWN.items()}
     present["polygons"] = counts.get("face", triangles) < triangles
     present["comments"], present["texture names"] = _COMMENT.search(header), _TEXTURE.search(header)
-    present.update((f"property {name}", True) for name in sorted(others))
-    present.update((f"element {one.name}", counts[one.name]) for one in ply if one not in mesh)
+    present.update((f"property {shown(name)}", True) for name in sorted(others))
+    present.update(
+        (f"element {shown(one.name)}", counts[one.name]) for one in ply if one not in mesh
+    )
     return [word for word, is_there in present.items() if is_there]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,14 +10,16 @@ from numpy.typing import NDArray
 from meshlab_spectral.documents.document import Array, Indices
 
 _ROUND_OFF = 1e-9
+# Cutting ears takes the square of the corners where sides cross: 5 s for so many. Sections of CAD
+# models have some 20,000.
+_MOST_CORNERS = 30_000
 
 
 def triangles(corners: Indices, sizes: NDArray[np.integer], vertices: Array) -> Indices:
     """Split polygons into triangles, in order.
 
     A polygon becomes a fan around its first corner, as in MeshLab. Where that would fold it, as it
-    may a concave one, the fan is around the next corner that does not, and if there is none, ears
-    are cut off. A polygon with fewer than three corners is dropped.
+    may a concave one, ears are cut off it. A polygon with fewer than three corners is dropped.
 
     Parameters
     ----------
@@ -32,6 +33,8 @@ def triangles(corners: Indices, sizes: NDArray[np.integer], vertices: Array) -> 
     Returns
     -------
     m x 3 vertex indices.
+
+    Raises ValueError for a polygon that would fold, of more than 30,000 corners.
     """
     if (sizes == 3).all():
         return corners.reshape(-1, 3)
@@ -55,8 +58,11 @@ def corners_of_triangles(corners: Indices, sizes: NDArray[np.integer], vertices:
     begin = begins[owner]
     split = np.column_stack([begin, begin + step + 1, begin + step + 2])
     with np.errstate(all="ignore"):
-        for size in np.unique(sizes[sizes > 3]).tolist():
-            which = np.flatnonzero(sizes == size)
+        larger = np.flatnonzero(sizes > 3)
+        larger = larger[np.argsort(sizes[larger], kind="stable")]
+        groups = np.split(larger, np.flatnonzero(np.diff(sizes[larger])) + 1)
+        for which in groups if len(larger) else []:
+            size = int(sizes[which[0]])
             polygons = corners[begins[which, None] + np.arange(size)]
             within = ((polygons >= 0) & (polygons < len(vertices))).all(axis=1)
             which, polygons = which[within], polygons[within]
@@ -72,17 +78,15 @@ def _unfolded(P: Array) -> Iterator[tuple[Indices, Indices]]:
     With some of them come the places of the corners, (k - 2) x 3, of triangles that do not.
     """
     size = P.shape[1]
-    normals = _fan(P, 0).sum(axis=1)
-    folded = np.flatnonzero(_folds(_fan(P, 0), normals))
-    for first in range(1, size):
-        around = _folds(_fan(P[folded], first), normals[folded])
-        step = np.arange(size - 2)
-        fan = np.column_stack([0 * step, step + 1, step + 2])
-        yield folded[~around], (first + fan) % size
-        folded = folded[around]
-        if not len(folded):
-            return
-    for polygon in folded.tolist() if size > 4 else []:  # a quadrilateral has no other triangles
+    fan = _fan(P, 0)
+    normals = fan.sum(axis=1)
+    folded = np.flatnonzero(_folds(fan, normals))
+    if size == 4:  # a quadrilateral has one other diagonal
+        yield folded[~_folds(_fan(P[folded], 1), normals[folded])], np.array([[1, 2, 3], [1, 3, 0]])
+        return
+    for polygon in folded.tolist():
+        if size > _MOST_CORNERS:
+            raise ValueError(f"a polygon has {size} corners, and would fold: divide it first")
         ears = _ears(P[polygon], normals[polygon])
         if ears is not None:
             yield np.array([polygon]), ears
@@ -103,33 +107,42 @@ def _folds(areas: Array, normals: Array) -> NDArray[np.bool_]:
 
 def _ears(P: Array, normal: Array) -> Indices | None:
     """Triangulate a polygon, k x 3, by cutting off ears; None if it crosses itself."""
+    from mapbox_earcut import triangulate_float64
+
     turn = np.linalg.svd(normal[None])[2][1:]  # two directions across the normal
     turn[1] *= np.sign(np.linalg.det(np.vstack([turn, normal])))
-    Q = P @ turn.T
-    left, found = list(range(len(P))), list[tuple[int, int, int]]()
-
-    def is_ear(a: int, b: int, c: int) -> bool:
-        if _turn(Q[a], Q[b], Q[c]) <= 0:
-            return False
-        others = Q[[k for k in left if k not in (a, b, c)]]
-        corners = ((a, b), (b, c), (c, a))
-        inside = np.all([_turn(Q[i], Q[j], others) >= 0 for i, j in corners], axis=0)
-        return not (inside & ~(others[:, None] == Q[[a, b, c]]).all(axis=2).any(axis=1)).any()
-
-    while len(left) > 3:
-        corners = zip([left[-1], *left], left, [*left[1:], left[0]], strict=False)
-        ear = next((three for three in corners if is_ear(*three)), None)
-        if ear is None:
-            return None
-        found.append(ear)
-        left.remove(ear[1])
-    return np.array([*found, tuple(left)], dtype=np.int64)
+    Q = np.ascontiguousarray(P @ turn.T)
+    found = triangulate_float64(Q, np.array([len(Q)], np.uint32)).astype(np.int64).reshape(-1, 3)
+    a, b, c = (Q[found[:, k]] for k in range(3))
+    (x, y), along = (b - a).T, c - a
+    areas = x * along[:, 1] - y * along[:, 0]
+    found[areas < 0] = found[areas < 0][:, ::-1]
+    total = np.abs(areas).sum()
+    if abs(total - np.linalg.norm(normal)) > _ROUND_OFF * total:
+        return None
+    ears = _with_all_corners(found.tolist(), len(P))
+    return np.array(ears, np.int64) if len(ears) == len(P) - 2 else None
 
 
-def _turn(a: Array, b: Array, c: Array) -> Any:
-    """Return twice the area of plane triangles, positive if they turn left."""
-    (x, y), along = b - a, c - a
-    return x * along[..., 1] - y * along[..., 0]
+def _with_all_corners(ears: list[list[int]], size: int) -> list[list[int]]:
+    """Divide triangles at the corners that were left out, since they lie on a line with others."""
+    places = {(one[k], one[k - 2]): row for row, one in enumerate(ears) for k in range(3)}
+    used = sorted({corner for one in ears for corner in one})
+    for begin, end in zip(used, [*used[1:], *(k + size for k in used[:1])], strict=True):
+        row = places.get((begin, end % size), -1)
+        for corner in range(begin + 1, end) if row >= 0 else ():
+            # The triangle at the side from the corner before to `end` is cut at this one.
+            before = (corner - 1) % size if corner > begin + 1 else begin
+            third = {*ears[row]} - {before, end % size}
+            if len(third) != 1:
+                return []
+            (apex,) = third
+            ears[row] = [before, corner % size, apex]
+            places[apex, before] = row
+            ears.append([corner % size, end % size, apex])
+            row = len(ears) - 1
+            places[end % size, apex] = row
+    return ears
 
 
 def strip_triangles(corners: Indices) -> Indices:

@@ -123,6 +123,20 @@ def lines_of(
     return Lines(text, *found, comments, continued)
 
 
+def numbers_from(text: bytes, begin: int, count: int, what: str) -> Array:
+    """Return so many numbers from a byte offset on; raise ValueError if there are fewer."""
+    most = min(count, len(text) - begin)  # each takes a byte or more
+    words = np.array([most], np.int32)
+    all_ = Lines(text, np.array([begin]), words, np.zeros(1, np.uint8), comments=False)
+    values, _, bad, found = all_.table([False] * most)
+    if bad >= 0 or most < count:
+        reason = f"it has {found if bad >= 0 else most} numbers of {count} in {what}"
+        at_end = not text[begin:].strip(b"0123456789.+-eE \t\r\n")
+        raise EndsEarlyError(reason) if at_end else ValueError(reason)
+    numbers: Array = values[0]
+    return numbers
+
+
 def write_patched(file: IO[bytes], text: bytes, changes: Sequence[Change], begin: int = 0) -> None:
     """Write a text, from a byte offset on, with those numbers that have changed replaced.
 
@@ -137,5 +151,5 @@ def whole(numbers: Array) -> Indices:
         integers = numbers.astype(np.int64)
     wrong = integers != numbers
     if wrong.any():
-        raise ValueError(f"{numbers[np.argmax(wrong)]:g} is not an integer")
+        raise ValueError(f"{numbers[wrong][0]:g} is not an integer")
     return integers

@@ -16,18 +16,23 @@ from itertools import chain
 from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
+from xml.parsers import expat
 
 import numpy as np
 
 from meshlab_spectral._core import xml_elements
+from meshlab_spectral.documents.budget import Budget
 from meshlab_spectral.documents.causes import unreadable, unsupported
 from meshlab_spectral.documents.digits import digits_for
 from meshlab_spectral.documents.document import Array, Document, Indices, checked_part
+from meshlab_spectral.documents.names import shown
 from meshlab_spectral.documents.placement import IDENTITY, Placement, placement_of
 from meshlab_spectral.documents.text import Change, whole, write_patched
 
-# XML of vertices compresses to about a tenth; a far higher ratio indicates a zip bomb.
-_LARGEST_RATIO, _HARMLESS = 200, 64 << 20
+_DECRYPT = "save it without encryption"
+# What a package of the Open Packaging Conventions may have; zipfile unpacks others in one piece.
+_PACKED = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
+_TAG_BYTES = 250  # of what ElementTree makes of a tag, at least
 _MOST_PLACEMENTS = 1000  # of an object: those of nested components multiply
 _TAKEN = [("vertex", ("x", "y", "z")), ("triangle", ("v1", "v2", "v3"))]
 _LEVEL = 1  # of zlib: takes a third of the default's time, for files a quarter larger
@@ -52,7 +57,7 @@ def read(path: Path) -> Document:
             return _document(path, data, archive)
     except KeyError as error:
         raise unreadable(path, f"not found: {error}") from error
-    except (*_DAMAGES, *_OF_ARCHIVES, ElementTree.ParseError) as error:
+    except (*_DAMAGES, *_OF_ARCHIVES, ElementTree.ParseError, expat.ExpatError) as error:
         raise unreadable(path, f"{error!s:.300}") from error
 
 
@@ -69,7 +74,7 @@ class _Object:
     placement: Placement = Placement(IDENTITY)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class _Elements:
     """The elements of one name in a model, of which there may be millions; read in C++."""
 
@@ -77,10 +82,18 @@ class _Elements:
     attributes: tuple[str, str, str]
     values: Array  # n x 3
     places: Indices  # their byte offsets
+    passed: int = 0  # rows of the objects before
 
     def among(self, elements: Iterable[ElementTree.Element]) -> tuple[Array, Indices]:
-        """Return values and places of those that elements of the rest of the model stand for."""
+        """Return values and places of those that elements of the rest of the model stand for.
+
+        Raises ValueError if elements of the file itself have the attributes `begin` and `end`.
+        """
         spans = [slice(int(one.attrib["begin"]), int(one.attrib["end"])) for one in elements]
+        for span in spans:
+            if not self.passed == span.start <= span.stop <= len(self.values):
+                raise ValueError(f"an element claims rows {span.start} to {span.stop}")
+            self.passed = span.stop
         values, places = _joined(self.values, spans), _joined(self.places, spans)
         for row, column in np.argwhere(np.isnan(values)).tolist():  # blanks or &#49; in it
             place = int(places[row, column])
@@ -98,10 +111,13 @@ def _joined(rows: Any, spans: list[slice]) -> Any:
 class _Model:
     """A model of the archive: its objects, and the items built from them."""
 
-    def __init__(self, path: Path, name: str, data: bytes) -> None:
+    def __init__(self, path: Path, name: str, data: bytes, budget: Budget) -> None:
+        called = shown(name)
         if b"<!DOCTYPE" in data or b"\0" in data:  # UTF-16 has null bytes
-            raise unsupported(path, f"has a document type or UTF-16 in {name}", "save it in UTF-8")
+            what = f"has a document type or UTF-16 in {called}"
+            raise unsupported(path, what, "save it in UTF-8")
         found, rest = xml_elements(data, _TAKEN)
+        budget.take(_TAG_BYTES * rest.count(b"<"), f"elements of {called}")
         vertices, triangles = (
             _Elements(data, attributes, *one)
             for (_, attributes), one in zip(_TAKEN, found, strict=True)
@@ -109,22 +125,25 @@ class _Model:
         try:
             root = ElementTree.fromstring(rest)
         except ElementTree.ParseError:
-            root = ElementTree.fromstring(data)  # for its line
+            expat.ParserCreate().Parse(data, True)  # for its line
+            raise
         if not root.tag.endswith("model"):
-            raise ValueError(f"{name} begins with {root.tag[-80:]}, not with a model")
+            raise ValueError(f"{called} begins with {shown(root.tag[-80:])}, not with a model")
         self.name, self.unit = name, root.get("unit", "millimeter")
         self.elements = {tag.rpartition("}")[2] for tag in {element.tag for element in root.iter()}}
         self._namespace = ns = root.tag.removesuffix("model")
         self.items = [self._placed(item) for item in root.iter(f"{ns}item")]
-        elements = list(root.iter(f"{ns}object"))
+        elements = root.findall(f"{ns}resources/{ns}object")
+        if len(elements) < len(list(root.iter(f"{ns}object"))):
+            raise ValueError(f"{called} has an object within another, or outside its resources")
+        inside = sum(len(list(element.iter(f"{ns}vertex"))) for element in elements)
+        if inside < len(list(root.iter(f"{ns}vertex"))):
+            raise unsupported(path, f"has vertices outside meshes in {called}", "export it again")
         self.objects = {
             element.attrib["id"]: self._object(element, vertices, triangles) for element in elements
         }
         if len(self.objects) < len(elements):
-            raise ValueError(f"{name} has two objects with the same id")
-        outside = len(list(root.iter(f"{ns}vertex")))
-        if outside != sum(len(list(element.iter(f"{ns}vertex"))) for element in elements):
-            raise unsupported(path, f"has vertices outside meshes in {name}", "export it again")
+            raise ValueError(f"{called} has two objects with the same id")
 
     def _object(
         self, element: ElementTree.Element, vertices: _Elements, triangles: _Elements
@@ -134,7 +153,7 @@ class _Model:
         faces = whole(triangles.among(element.iter(f"{ns}triangle"))[0])
         name = element.get("name") or element.get("partnumber")
         return _Object(
-            name=name or f"object {element.attrib['id']}",
+            name=shown(name or f"object {element.attrib['id']}"),
             is_part=len(faces) > 0 and element.get("type", "model") == "model",
             own=own,
             places=places,
@@ -148,7 +167,10 @@ class _Model:
         model = paths[0].lstrip("/") if paths else self.name  # of the production extension
         matrix = np.eye(4)  # for column vectors; in the file it is for row vectors
         if transform := element.get("transform"):
-            matrix[:3] = np.array(transform.split(), dtype=np.float64).reshape(4, 3).T
+            numbers = transform.split()
+            if len(numbers) != 12:
+                raise ValueError(f"a transform has {len(numbers)} numbers, not 12")
+            matrix[:3] = np.array([*map(float, numbers)]).reshape(4, 3).T
         return (model, element.attrib["objectid"]), matrix
 
 
@@ -157,7 +179,7 @@ class _ThreeMfDocument(Document):
     data: bytes
     meshes: list[tuple[str, _Object]]  # the model's name and the object of each part
 
-    def add(self, model: str, mesh: _Object, matrices: list[Array]) -> None:
+    def add(self, model: str, mesh: _Object, matrices: Array) -> None:
         """Add an object to the parts."""
         mesh.placement = placement_of(mesh.name, matrices, self.warnings)
         if len(matrices) == _MOST_PLACEMENTS:
@@ -180,15 +202,23 @@ class _ThreeMfDocument(Document):
         if not changes:
             target.write_bytes(self.data)
             return []
+        budget = Budget(self.path, len(self.data))
         with zipfile.ZipFile(io.BytesIO(self.data)) as source, zipfile.ZipFile(target, "w") as copy:
             copy.comment = source.comment
             for info in source.infolist():
-                content, columns = source.read(info), _columns(changes.get(info.filename, []))
+                columns = _columns(changes.get(info.filename, []))
+                content = _unpacked(source, info, budget)
                 # Public is only writestr's argument, for an entry that is whole in memory.
                 info._compresslevel = _LEVEL  # type: ignore[attr-defined]
                 with copy.open(info, "w") as entry:
                     write_patched(entry, content, columns)
         return ["its slices stay as they are"] * ("slices" in self.contents)
+
+
+def _unpacked(archive: zipfile.ZipFile, info: zipfile.ZipInfo, budget: Budget) -> bytes:
+    """Return what an entry of an archive holds."""
+    with archive.open(info) as entry:
+        return budget.unpacked(entry, f"its entry {shown(info.filename)}")
 
 
 def _columns(changes: list[tuple[_Object, Array]]) -> list[Change]:
@@ -201,26 +231,25 @@ def _columns(changes: list[tuple[_Object, Array]]) -> list[Change]:
 
 
 def _document(path: Path, data: bytes, archive: zipfile.ZipFile) -> Document:
-    entries = archive.infolist()
-    if any(e.flag_bits & 1 for e in entries) or b"/keystore" in archive.read("_rels/.rels"):
-        raise unsupported(path, "is encrypted", "save it without encryption")
-    if sum(info.file_size for info in entries) > max(_HARMLESS, _LARGEST_RATIO * len(data)):
-        raise ValueError(
-            f"its {len(data)} bytes would grow more than {_LARGEST_RATIO} times when unpacked"
-        )
-    relationships = ElementTree.fromstring(archive.read("_rels/.rels"))
+    budget, entries = Budget(path, len(data)), archive.infolist()
+    if any(info.flag_bits & 1 for info in entries):
+        raise unsupported(path, "is encrypted", _DECRYPT)
+    if strange := [info for info in entries if info.compress_type not in _PACKED]:
+        what = f"has {shown(strange[0].filename)} in a compression that 3MF does not allow"
+        raise unsupported(path, what, "zip it again, with Deflate")
+    unpacked = {info.filename: _unpacked(archive, info, budget) for info in entries}  # checks all
+    if b"/keystore" in unpacked["_rels/.rels"]:
+        raise unsupported(path, "is encrypted", _DECRYPT)
+    relationships = ElementTree.fromstring(unpacked["_rels/.rels"])
     targets = {r.attrib["Type"].rpartition("/")[2]: r.attrib["Target"] for r in relationships}
     root = targets["3dmodel"].lstrip("/")
-    models = _models(path, archive, root)
-    others = [info for info in entries if info.filename not in models]
-    if len(others) + len(models) < len(entries):
+    models = _models(path, unpacked, root, budget)
+    if len([info for info in entries if info.filename in models]) > len(models):
         raise ValueError("two models in it have the same name")
-    for info in others:
-        archive.read(info)  # checks it
     objects = {(m, o): found for m, model in models.items() for o, found in model.objects.items()}
-    contents = _contents(models, models[root].unit, archive.namelist())
+    contents = _contents(models, shown(models[root].unit), list(unpacked))
     document = _ThreeMfDocument(path, [], contents, data=data, meshes=[])
-    for key, matrices in _matrices(objects, models[root].items).items():
+    for key, matrices in _matrices(objects, models[root].items, budget).items():
         if objects[key].is_part:
             document.add(key[0], objects[key], matrices)
     if not document.parts:
@@ -228,38 +257,43 @@ def _document(path: Path, data: bytes, archive: zipfile.ZipFile) -> Document:
     return document
 
 
-def _models(path: Path, archive: zipfile.ZipFile, root: str) -> dict[str, _Model]:
+def _models(path: Path, unpacked: dict[str, bytes], root: str, budget: Budget) -> dict[str, _Model]:
     """Read the root model and all models that it refers to."""
     models: dict[str, _Model] = {}
     wanted = [root]
     while wanted:
         name = wanted.pop()
         if name not in models:
-            model = models[name] = _Model(path, name, archive.read(name))
+            model = models[name] = _Model(path, name, unpacked[name], budget)
             placed = [c for entry in model.objects.values() for c in entry.components]
             wanted += [key[0] for key, _ in [*placed, *model.items]]
     return models
 
 
-def _matrices(objects: dict[_Key, _Object], items: list[_Placed]) -> dict[_Key, list[Array]]:
-    """Return the transforms of each object, at most _MOST_PLACEMENTS."""
+def _matrices(
+    objects: dict[_Key, _Object], items: list[_Placed], budget: Budget
+) -> dict[_Key, Array]:
+    """Return the transforms of each object, k x 4 x 4, at most _MOST_PLACEMENTS."""
     graph = {key: [child for child, _ in found.components] for key, found in objects.items()}
     for key in [*(key for key, _ in items), *chain(*graph.values())]:
         if key not in objects:
-            raise ValueError(f"{key[0]} has no object {key[1]}")
-    matrices: dict[_Key, list[Array]] = {key: [] for key in objects}
-    _place(matrices, items, IDENTITY)
+            raise ValueError(f"{shown(key[0])} has no object {shown(key[1])}")
+    found: dict[_Key, list[Array]] = {key: [np.zeros((0, 4, 4))] for key in objects}
+    matrices: dict[_Key, Array] = {}
+
+    def place(placed: list[_Placed], outer: Array) -> None:
+        for key, inner in placed:
+            room = _MOST_PLACEMENTS - sum(map(len, found[key]))
+            if room > 0 and len(outer):
+                budget.take(128 * min(room, len(outer)), "places of its objects")
+                with np.errstate(all="ignore"):
+                    found[key].append(outer[:room] @ inner)
+
+    place(items, IDENTITY[None])
     for key in reversed([*TopologicalSorter(graph).static_order()]):  # parents before components
-        for matrix in matrices[key]:
-            _place(matrices, objects[key].components, matrix)
-    return matrices
-
-
-def _place(matrices: dict[_Key, list[Array]], placed: list[_Placed], outer: Array) -> None:
-    for key, inner in placed:
-        if len(matrices[key]) < _MOST_PLACEMENTS:
-            with np.errstate(all="ignore"):
-                matrices[key].append(outer @ inner)
+        matrices[key] = np.concatenate(found.pop(key))
+        place(objects[key].components, matrices[key])
+    return {key: matrices[key] for key in objects}
 
 
 def _contents(models: dict[str, _Model], unit: str, names: list[str]) -> list[str]:

@@ -7,6 +7,7 @@ normals are replaced in place.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from meshlab_spectral.documents.budget import Budget, guarded
 from meshlab_spectral.documents.causes import EndsEarlyError, unreadable, unsupported
 from meshlab_spectral.documents.digits import (
     DOUBLE,
@@ -24,13 +26,23 @@ from meshlab_spectral.documents.digits import (
     widening_warnings,
 )
 from meshlab_spectral.documents.document import Array, Document, Indices, Part, check_vertices
+from meshlab_spectral.documents.names import shown
 from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.documents.polygons import strip_triangles, triangles
-from meshlab_spectral.documents.text import Change, Lines, write_patched
+from meshlab_spectral.documents.text import Change, numbers_from, write_patched
 from meshlab_spectral.extras import check_extras
 
-_LARGEST_RATIO = 100  # points per byte: zlib packs fewer than 86 points into a byte
-_COUNTS = re.compile(rb'(?:NumberOf\w+="|\n(?:POINTS|CELLS|POLYGONS|LINES|VERTICES)\s+)(-?\d+)')
+_TAG_BYTES = 800  # of what VTK makes of a tag
+_OF_VTK = 256 << 20  # bytes of its own, such as tables of threads
+_LONGEST = 18  # digits of a count
+# Numbers from which VTK allocates: attributes of its XML; in legacy files those after keywords, and
+# the columns and rows of arrays.
+_COUNTS = re.compile(
+    rb"NumberOf\w+\s*=\s*[\"']\s*([-+]?\d+)|[\r\n][ \t]*(?i:(?:POINTS|CELLS|CELL_TYPES|POLYGONS"
+    rb"|TRIANGLE_STRIPS|LINES|VERTICES|POINT_DATA|CELL_DATA|(?:FIELD|COLOR_SCALARS|LOOKUP_TABLE"
+    rb"|TEXTURE_COORDINATES|SCALARS\s+\S+)\s+\S+)\s+([-+]?\d+)|[^\s\d]\S*[ \t]+(\d+)[ \t]+(\d+)"
+    rb"[ \t]+[a-z]\w*[ \t]*[\r\n])"
+)
 _TEXT = re.compile(rb'<Points>\s*<DataArray[^>]*format="ascii"')
 # Legacy text, after two lines of head and title; then its points, and arrays.
 _LEGACY = re.compile(rb"#[^\n]*\n[^\n]*\n\s*ASCII\s", re.IGNORECASE)
@@ -55,11 +67,17 @@ def read(path: Path) -> Document:
     import pyvista
 
     try:
-        counts = [int(count) for count in _COUNTS.findall(path.read_bytes())]
-        if counts and not 0 <= min(counts) <= max(counts) <= _LARGEST_RATIO * path.stat().st_size:
-            raise ValueError(f"it claims {counts} points and cells")
-        _check_text(path.read_bytes())
-        with pyvista.vtk_verbosity("off"), pyvista.VtkErrorCatcher(send_to_logging=False) as caught:
+        content = path.read_bytes()
+        budget = Budget(path, len(content))
+        _check_counts(content, budget)
+        _check_text(content)
+        size = len(content)
+        del content
+        with (
+            pyvista.vtk_verbosity("off"),
+            pyvista.VtkErrorCatcher(send_to_logging=False) as caught,
+            guarded(size, _OF_VTK + budget.most),
+        ):
             reader = pyvista.get_reader(path).reader
             reader.Update()
             (reader.GetOutputDataObject(0) or pyvista.PolyData()).CheckAttributes()
@@ -68,6 +86,18 @@ def read(path: Path) -> Document:
         return _document(path, pyvista.wrap(reader.GetOutputDataObject(0)))
     except (ValueError, TypeError, LookupError, RuntimeError, MemoryError, AttributeError) as error:
         raise unreadable(path, type(error)(f"{error!s:.300}")) from error
+
+
+def _check_counts(content: bytes, budget: Budget) -> None:
+    """Raise MeshFileError if a file claims more than a file of its size may have."""
+    for match in _COUNTS.finditer(content):
+        words = [word for word in match.groups() if word]
+        number = math.prod(int(word[:_LONGEST]) for word in words)
+        if number < 0:
+            raise ValueError(f"it claims {number} points, cells or numbers")
+        budget.take(8 * number, f"it claims {number} points, cells or numbers")
+    if not content.startswith(b"#"):
+        budget.take(_TAG_BYTES * content.count(b"<"), "its XML")
 
 
 def _fault(alert: str, path: Path) -> ValueError:
@@ -83,7 +113,7 @@ def _check_text(content: bytes) -> None:
     points = _POINTS.search(content, head.end()) if head else None
     if not points:
         return
-    _check_numbers(content, points.end(), 3 * int(points[1]), "its points")
+    numbers_from(content, points.end(), 3 * int(points[1]), "its points")
     if content.endswith((b"\n", b"\r")):
         return
     if not _CELLS.search(content, points.end()):
@@ -95,17 +125,7 @@ def _check_text(content: bytes) -> None:
         widths = (last[name] for name in ("width", "texture", "colours", "columns"))
         width = 3 if last["three"] else int(next(filter(None, widths), 1))
         count = int(last["rows"] or sections[-1][1])
-        _check_numbers(content, last.end(), count * width, "its last array")
-
-
-def _check_numbers(content: bytes, begin: int, count: int, what: str) -> None:
-    words = np.array([count], np.int32)
-    all_ = Lines(content, np.array([begin]), words, np.zeros(1, np.uint8), comments=False)
-    _, _, bad, found = all_.table([False] * count)
-    if bad >= 0:
-        reason = f"it has {found} numbers of {count} in {what}"
-        at_end = not content[begin:].strip(b"0123456789.+-eE \t\r\n")
-        raise EndsEarlyError(reason) if at_end else ValueError(reason)
+        numbers_from(content, last.end(), count * width, "its last array")
 
 
 @dataclass(kw_only=True)
@@ -178,12 +198,15 @@ def _place_of_array(content: bytes, begin: int, section: bytes, name: str) -> in
     """Return where the numbers of a vector array begin in legacy text; None if it is not found."""
     encoded = re.escape(name.replace("%", "%25").replace(" ", "%20").encode())
     found = re.compile(
-        rb"(?mi)^[ \t]*(?:(?:NORMALS|VECTORS)[ \t]+" + encoded + rb"[ \t]+\w+"
+        rb"(?mi)^[ \t]*(?:(?:(?:NORMALS|VECTORS)[ \t]+" + encoded + rb"[ \t]+\w+"
         rb"|" + encoded + rb"[ \t]+3[ \t]+\d+[ \t]+\w+)[ \t]*[\r\n]\s*"
+        rb"|(POINT_DATA|CELL_DATA)[ \t]+\d)"
     )
+    current = b""
     for match in found.finditer(content, begin):
-        sections = _SECTION.findall(content, begin, match.start())
-        if sections and sections[-1][0].upper() == section:
+        if match[1]:
+            current = match[1].upper()
+        elif current == section:
             return match.end()
     return None
 
@@ -215,7 +238,7 @@ def _document(path: Path, mesh: Any) -> Document:
         raise unsupported(path, "holds no polygons and no strips", "name a file with a surface")
     scalars = mesh.point_data.active_scalars
     quality = scalars.astype(np.float64) if np.ndim(scalars) == 1 else None
-    contents = [f"array {name}" for name in mesh.array_names]
+    contents = [f"array {shown(name)}" for name in mesh.array_names]
     contents += ["points and lines"] * bool(np.isin(np.asarray(grid.celltypes), _OTHERS).any())
     return _VtkDocument(
         path, [Part("", vertices, faces, quality)], contents, mesh=mesh, owners=owners

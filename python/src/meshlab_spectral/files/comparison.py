@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -105,6 +107,29 @@ class Comparison:
             "area": list(self.areas),
             "volume": None if self.volumes is None else list(self.volumes),
         }
+
+    def save(self, archive: Path) -> None:
+        """Write what `report` leaves out, as an archive of NumPy."""
+        values: dict[str, Any] = {name: one.values for name, one in self.deviations.items()}
+        np.savez(archive, V=self.a[0], F=self.a[1], W=self.b[0], G=self.b[1], **values)
+
+    @classmethod
+    def from_report(cls, report: Mapping[str, Any], archive: Path | None) -> Comparison:
+        """Return the comparison of a `report`; without meshes and values if there is no archive."""
+        arrays = defaultdict[str, Array](lambda: np.zeros((0, 3)))
+        if archive is not None:
+            with np.load(archive) as saved:
+                arrays.update({name: saved[name] for name in saved.files})
+        deviations = {
+            name: Deviation(
+                **{**one, "percentiles": {int(p): x for p, x in one["percentiles"].items()}},
+                values=arrays[name],
+            )
+            for name, one in report["deviations"].items()
+        }
+        meshes = (arrays["V"], arrays["F"]), (arrays["W"], arrays["G"])
+        volumes = report["volume"] and tuple(report["volume"])
+        return cls(*meshes, report["same_faces"], deviations, tuple(report["area"]), volumes)
 
     @property
     def signed(self) -> Array:

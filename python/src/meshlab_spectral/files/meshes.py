@@ -17,9 +17,10 @@ import numpy as np
 
 from meshlab_spectral.documents.digits import precision_warnings
 from meshlab_spectral.documents.document import Array, Document, Indices, Part
+from meshlab_spectral.documents.names import shown
 from meshlab_spectral.documents.opening import format_of, open_document
 from meshlab_spectral.documents.placement import IDENTITY, Placement
-from meshlab_spectral.documents.side_files import copy_side_files
+from meshlab_spectral.documents.side_files import copy_side_files, is_outside
 from meshlab_spectral.errors import FilterError, FormatError, MeshFileError, OptionError
 from meshlab_spectral.files.formats import is_same_format
 from meshlab_spectral.files.meshlab_files import (
@@ -57,6 +58,7 @@ _READ_BY_MESHLAB = (".ply", ".obj", ".off", ".stl")
 _BARE = {".ply": {"save_vertex_color": False, "save_vertex_quality": False}}
 # The core's warning for those who do not know of a selection that another filter has left.
 _SELECTION = "only the selection: "
+_NAMED = 50  # meshes to choose from
 # Formats in which MeshLab writes coordinates in single precision, or with fewer digits.
 _COARSE = (".stl", ".3ds", ".3mf", ".ctm", ".dae", ".wrl", ".x3d")
 
@@ -323,10 +325,12 @@ def whole_of(group: Sequence[Part]) -> Part:
 def _chosen(document: Document, name: str | None) -> list[Part]:
     if name is None:
         return document.parts
-    parts = [part for part in document.parts if part.name == name]
+    parts = [part for part in document.parts if part.name in (name, shown(name))]
     if not parts:
-        names = ", ".join(part.name or "one without a name" for part in document.parts)
-        raise OptionError(f"{document.path} has no mesh {name!r}: choose from {names}")
+        names = [part.name or "one without a name" for part in document.parts]
+        more = f" and {len(names) - _NAMED} more" if len(names) > _NAMED else ""
+        given = ", ".join(names[:_NAMED])
+        raise OptionError(f"{document.path} has no mesh {name!r}: choose from {given}{more}")
     return parts
 
 
@@ -465,7 +469,11 @@ def _loaded(
     """
     import pymeshlab
 
-    if document is None or source.suffix.lower() in _READ_BY_MESHLAB:
+    if document is None or (
+        source.suffix.lower() in _READ_BY_MESHLAB
+        # MeshLab would open whatever a file names.
+        and not any(is_outside(source, name) for name in document.side_files())
+    ):
         mesh_set = pymeshlab.MeshSet(verbose=verbose)
         try:
             read_with_meshlab(mesh_set, source)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import re
 import shutil
 from collections.abc import Collection
@@ -10,9 +11,12 @@ from typing import Any
 
 import numpy as np
 
+from meshlab_spectral import _core
+from meshlab_spectral.documents.budget import guarded
 from meshlab_spectral.documents.causes import other_kind
 from meshlab_spectral.documents.document import Document
 from meshlab_spectral.documents.opening import PATCHED
+from meshlab_spectral.documents.side_files import beside, is_outside
 from meshlab_spectral.errors import FormatError, MeshFileError
 from meshlab_spectral.files.formats import WRITABLE
 from meshlab_spectral.files.whole_files import USUAL_FORMATS, resolved
@@ -37,8 +41,14 @@ _SCENES = {
     "materials": re.compile(rb"<material\b|<Material\b|\bMaterial\s*\{"),
     "animations": re.compile(rb"<animation\b|Interpolator\b"),
     "skeletons": re.compile(rb"<controller\b|HAnim"),
-    "names": re.compile(rb"<(?:geometry|node)\b[^>]*\bname=|\bDEF\b"),
+    "names": re.compile(rb"<(?:geometry|node)\b[^<>]*\bname=|\bDEF\b"),
 }
+# Scenes that take in others, the elements that do so, and addresses, which MeshLab does not fetch.
+_TAKING_IN = (".x3d", ".x3dv", ".wrl")
+_INLINED = re.compile(r"\b(?:Inline|ExternProtoDeclare|EXTERNPROTO)\b[^>}]*")
+_QUOTED = re.compile(r"[\"'\s]([^\"'\s\0]+)[\"']")
+_REMOTE = re.compile("https?:|urn:|#", re.IGNORECASE)
+_SHARE = 0.75  # of the memory there is, for what MeshLab reads with its textures
 _QUALITY = "spectral_quality"  # a passing attribute
 _LEAST_ROOM = 1 << 14  # bytes, a few blocks
 # MeshLab's substitute for textures not found, such as those with blanks in their names.
@@ -63,8 +73,10 @@ def read_with_meshlab(mesh_set: Any, source: Path) -> None:
     """Load the one mesh of a file into a MeshSet; raises MeshFileError."""
     import pymeshlab
 
+    _check_inlined(source)
     try:
-        mesh_set.load_new_mesh(str(source))
+        with guarded(source.stat().st_size, _SHARE * min(_core.available_memory(), 1e15)):
+            mesh_set.load_new_mesh(str(source))
     except (pymeshlab.PyMeshLabException, RuntimeError) as error:  # some plugins raise their own
         foreign = other_kind(source)
         if foreign is not None:
@@ -87,6 +99,17 @@ def read_with_meshlab(mesh_set: Any, source: Path) -> None:
             "Visible Layers', or save them separately",
             "unsupported",
         )
+
+
+def _check_inlined(source: Path) -> None:
+    """Raise MeshFileError if a scene takes in a file outside its folder: MeshLab would read it."""
+    if source.suffix.lower() not in _TAKING_IN:
+        return
+    text = html.unescape(source.read_bytes().decode(errors="replace"))
+    for element in _INLINED.finditer(text):
+        for name in _QUOTED.findall(element[0]):
+            if not _REMOTE.match(name) and is_outside(source, name):
+                beside(source, name)
 
 
 def write_with_meshlab(

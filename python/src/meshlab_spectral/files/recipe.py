@@ -10,6 +10,7 @@ from typing import Any
 
 import tomli_w
 
+from meshlab_spectral.documents.names import shown
 from meshlab_spectral.errors import InputError, OptionError
 from meshlab_spectral.files.whole_files import writing_whole
 from meshlab_spectral.filters.option_types import Length, Options
@@ -19,6 +20,9 @@ if sys.version_info >= (3, 11):
     import tomllib
 else:
     import tomli as tomllib
+
+
+_NAMED, _LONGEST = 5, 1000  # unknown keys, and characters of what is wrong with a value
 
 
 def load_recipe(path: Path) -> tuple[type[Options], dict[str, Any]]:
@@ -32,7 +36,7 @@ def load_recipe(path: Path) -> tuple[type[Options], dict[str, Any]]:
     try:
         table.from_dict(options)
     except OptionError as error:
-        raise OptionError(f"the recipe {path}: {error}") from error
+        raise OptionError(f"the recipe {path}: {shown(error, _LONGEST)}") from error
     return table, options
 
 
@@ -78,7 +82,7 @@ def _content(path: Path) -> tuple[type[Options], dict[str, Any]]:
     if unknown or len(content) != 1 or not all(isinstance(v, dict) for v in content.values()):
         wrong = "has several tables" if len(content) > 1 else "has no table"
         if unknown:
-            wrong = f"has {', '.join(sorted(unknown))} outside it"
+            wrong = f"has {', '.join(map(shown, sorted(unknown)[:_NAMED]))} outside it"
         raise OptionError(f"the recipe {path} {wrong}: all options belong in one table, {names}")
     ((name, options),) = content.items()
     return TABLES[name], options

@@ -33,14 +33,20 @@ def pieces(parts: Sequence[Part]) -> list[list[Part]]:
     edge, owner = edge.ravel()[order], owner[order]
     same = edge[1:] == edge[:-1]
     pairs = np.unique(np.column_stack([owner[:-1], owner[1:]])[same], axis=0)
-    group = list(range(len(parts)))
+    above = list(range(len(parts)))
+
+    def first_of(one: int) -> int:
+        while above[one] != one:
+            above[one] = one = above[above[one]]
+        return one
+
     for one, other in pairs.tolist():
-        first, second = sorted((group[one], group[other]))
-        group = [first if number == second else number for number in group]
-    return [
-        [part for part, number in zip(parts, group, strict=True) if number == first]
-        for first in dict.fromkeys(group)
-    ]
+        first, second = sorted((first_of(one), first_of(other)))
+        above[second] = first
+    groups: dict[int, list[Part]] = {}
+    for number, part in enumerate(parts):
+        groups.setdefault(first_of(number), []).append(part)
+    return list(groups.values())
 
 
 def _boundary(faces: Indices) -> Indices:
@@ -86,7 +92,8 @@ def moved_alike(
         differs = (displacement != displacement[first[where]]).any(axis=1)
         apart = np.zeros(len(first), bool)
         apart[where[differs]] = True
-        stays = np.array([part not in chosen for part in parts])[owner[rows]]
+        filtered = set(map(id, chosen))
+        stays = np.array([id(part) not in filtered for part in parts])[owner[rows]]
         fixed = np.zeros(len(first), bool)
         fixed[where[stays]] = True
         if (apart & fixed).any():

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any, cast
 
@@ -95,6 +96,15 @@ class SurfaceTexture:
         if self.form_radius is None:
             del numbers["form_radius"]
         return cast(TextureReport, plain(numbers))
+
+    @classmethod
+    def from_report(cls, report: Mapping[str, Any], height: NDArray[np.float64]) -> SurfaceTexture:
+        """Return the texture of a `report`, with the heights of the vertices or none."""
+        numbers: dict[str, Any] = {
+            name: np.array(value) if isinstance(value, list) and name != "warnings" else value
+            for name, value in report.items()
+        }
+        return cls(height=height, **numbers)
 
     def __repr__(self) -> str:
         return line(self)

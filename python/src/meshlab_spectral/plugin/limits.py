@@ -10,6 +10,8 @@ from meshlab_spectral.errors import OptionError
 
 # The plugin reads them whenever a filter starts.
 THREADS, MEMORY = "MESHLAB_SPECTRAL_THREADS", "MESHLAB_SPECTRAL_MEMORY"
+# What has set the limit of memory: texts name that, unless the environment has another since.
+_SETTER = {"value": "", "name": ""}
 
 
 def set_threads(count: int | None) -> None:
@@ -53,6 +55,24 @@ def set_memory_limit(limit: int | None) -> None:
     if limit is not None and not (isinstance(limit, Real) and 0 < limit < math.inf):
         raise OptionError(f"memory limit = {limit}: give a number of bytes above zero, or None")
     _set(MEMORY, limit)
+    name_memory_limit("set_memory_limit")
+
+
+def name_memory_limit(name: str) -> None:
+    """Let texts call the limit that was just set so, such as the option of a command."""
+    _SETTER.update(value=os.environ.get(MEMORY, ""), name=name)
+
+
+def memory_remedy(needed: float | None = None) -> str:
+    """Say how to raise the limit of `given_memory_limit`, to bytes that are needed if known."""
+    text = os.environ.get(MEMORY)
+    size = "" if needed is None else f" to at least {math.ceil(needed / 2**20)}MB"
+    if text is None:
+        return f"give it a machine with{size.removeprefix(' to at least')} more free memory"
+    if text == _SETTER["value"]:
+        return f"raise {_SETTER['name']}{size}"
+    in_bytes = "" if needed is None else f" to at least {needed:.2g} bytes"
+    return f"raise or unset the environment variable {MEMORY}{in_bytes}"
 
 
 def checked_threads(count: int | None) -> int | None:

@@ -20,8 +20,10 @@ import traceback
 from pathlib import Path
 from typing import Any
 
-from meshlab_spectral import errors
+from meshlab_spectral import _core, errors
+from meshlab_spectral.documents.budget import guard_process
 from meshlab_spectral.files.basis import basis_to_scratch
+from meshlab_spectral.files.comparison import compare
 from meshlab_spectral.files.info import mesh_info
 from meshlab_spectral.files.intent import intent_of
 from meshlab_spectral.files.meshes import (
@@ -32,8 +34,9 @@ from meshlab_spectral.files.meshes import (
     script_to_scratch,
 )
 from meshlab_spectral.files.region import Region
+from meshlab_spectral.files.texture import texture_of
 from meshlab_spectral.files.whole_files import file_trouble, is_disk_full
-from meshlab_spectral.filters.options import BasisOptions, SpectrumOptions
+from meshlab_spectral.filters.options import BasisOptions, SpectrumOptions, TextureOptions
 from meshlab_spectral.filters.running import plain
 from meshlab_spectral.filters.spectrum import measure
 from meshlab_spectral.filters.tables import TABLES
@@ -51,6 +54,16 @@ def _report_of(job: dict[str, Any], on_stage: StageCallback) -> dict[str, Any]:
         table = TABLES[job["filter"]]
         return joined_to_scratches(sources, scratches, table.from_dict(job["options"]), on_stage)
     source = Path(job["source"])
+    archive = Path(job["archive"]) if job.get("archive") else None
+    if task == "compare":
+        on_stage("reading", None)
+        comparison = compare(source, Path(job["other"]))
+        if archive is not None:
+            comparison.save(archive)
+        return comparison.report
+    if task == "texture":
+        texture_options = TextureOptions.from_dict(job["options"])
+        return texture_of(source, texture_options, on_stage, job.get("mesh"), archive)
     verbose = job.get("verbose", True)
     if task == "spectrum":
         on_stage("reading", None)
@@ -111,6 +124,7 @@ def _described(error: Exception, job: dict[str, Any]) -> dict[str, Any]:
 def _main() -> None:
     # Ctrl-C reaches every process of the terminal; the parent handles it.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    guard_process()
     # Keep C++ output out of the answers.
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8", buffering=1)
     os.dup2(2, 1)
@@ -129,6 +143,7 @@ def _main() -> None:
         try:
             job = json.loads(jobs.get())
             set_memory_limit(job.get("memory"))
+            _core.set_memory_limit(job.get("memory") or 0)
             answer(report=_report_of(job, on_stage))
         except Exception as error:
             answer(**_described(error, job), traceback=traceback.format_exc().strip())

@@ -24,7 +24,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from meshlab_spectral import errors
-from meshlab_spectral.plugin.limits import MEMORY, THREADS, given_memory_limit
+from meshlab_spectral.plugin.limits import THREADS, given_memory_limit, memory_remedy
 
 ProgressCallback = Callable[[str, float | None], None]
 
@@ -36,7 +36,6 @@ _LOG_LINE = re.compile(_LOG_BEGIN.pattern + r"(?P<stage>.*?)\s+\[ (?P<percent>\d
 _KEPT_LOG_LINES = 30
 # Seconds between polls of the child, within which its memory can grow by some 100 MB.
 _LOOK_INTERVAL = 0.05
-_ENVIRONMENT_REMEDY = f"its limit: raise or unset the environment variable {MEMORY}"
 _WORKER_REMEDY = "the limit of a worker: raise the memory limit, with fewer workers if need be"
 # By default glibc returns the memory of every matrix to the system and requests it again for the
 # next one, which is slow for small meshes, more so with several processes. These settings keep up
@@ -85,6 +84,7 @@ class MeshLabProcess:
         self.usable = True
         self.memory_limit: int | None = None
         self._is_ready = self._is_verbose = False
+        self._stage = ""  # of the job
         self._log: deque[str] = deque(maxlen=_KEPT_LOG_LINES)
         # Messages from the child: stages and the answer of a job; None at its end.
         self._messages: queue.SimpleQueue[dict[str, Any] | None] = queue.SimpleQueue()
@@ -133,14 +133,14 @@ class MeshLabProcess:
         """
         given = None if limits.replaces_environment else given_memory_limit()
         if given is not None and (limits.memory is None or given <= limits.memory):
-            self.memory_limit, self._remedy = given, _ENVIRONMENT_REMEDY
+            self.memory_limit, self._remedy = given, f"its limit: {memory_remedy()}"
         else:
             self.memory_limit, self._remedy = limits.memory, _WORKER_REMEDY
         if self._is_ready:  # else it says why the child did not start
             self._log.clear()
         self.jobs += 1
         self.usable = False  # until the job has succeeded
-        self._is_verbose = job.get("verbose", True)
+        self._is_verbose, self._stage = job.get("verbose", True), ""
         # The plugin refuses work beyond the memory limit; what it cannot foresee is caught below.
         line = json.dumps({**job, "memory": self.memory_limit}) + "\n"
         # In a thread: a long script fills the pipe, and the child may hang before it reads it.
@@ -202,7 +202,8 @@ class MeshLabProcess:
             if "ready" in message:
                 self._is_ready = True
             elif "stage" in message:
-                on_progress(message["stage"], message.get("fraction"))
+                self._stage = message["stage"]
+                on_progress(self._stage, message.get("fraction"))
             elif message:
                 return message, peak_memory
             if time_limit is not None and time.monotonic() - begin > time_limit:
@@ -222,7 +223,13 @@ class MeshLabProcess:
     def _death(self) -> errors.ProcessDiedError:
         status = self._await_end()
         how = f"by signal {signal.Signals(-status).name}" if status < 0 else f"with status {status}"
-        if self._is_ready:
+        if self._is_ready and self._stage == "reading":
+            error = errors.ProcessDiedError(
+                f"the file cannot be read: its reader was ended {how}. Unless that was "
+                "intentional, it is damaged, or would take more memory or time than its size "
+                "allows: export it again from the program that made it"
+            )
+        elif self._is_ready:
             error = errors.ProcessDiedError(
                 f"the process running MeshLab was ended {how} before it had finished. Unless that "
                 "was intentional, the mesh may need more memory than available, or have hit a bug "

@@ -1,17 +1,30 @@
-"""Filtering and measuring a file in a child process, one per call.
+"""Filtering, measuring and comparing files in a child process, one per call.
 
 The calling command can thus be interrupted, show progress, and report even a crash of MeshLab.
 """
 
 from __future__ import annotations
 
+import contextlib
+import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from meshlab_spectral.files.comparison import Comparison
 from meshlab_spectral.files.region import Region
 from meshlab_spectral.files.sources import check_is_place, check_source
-from meshlab_spectral.files.whole_files import remove_leftovers, resolved, writing_whole
+from meshlab_spectral.files.whole_files import (
+    remove_leftovers,
+    resolved,
+    temporary_folder,
+    writing_whole,
+)
 from meshlab_spectral.filters.option_types import Options
+from meshlab_spectral.filters.options import TextureOptions
+from meshlab_spectral.filters.texture import SurfaceTexture
 from meshlab_spectral.process.ahead import process_for_job
 from meshlab_spectral.process.parent import NO_LIMITS, JobLimits, ProgressCallback
 
@@ -63,3 +76,48 @@ def measure_in_child(
     job = {**task, "source": str(source.absolute()), "mesh": mesh, **(more or {})}
     with process_for_job() as process:
         return process.run(job, on_progress, limits).report
+
+
+def compare_in_child(a: Path, b: Path, on_progress: ProgressCallback, whole: bool) -> Comparison:
+    """Compare two mesh files in a child process: `comparison.compare`, which says what is raised.
+
+    Only the `whole` comparison has meshes, and values at their vertices.
+    """
+    check_source(a)
+    check_source(b)
+    job = {"task": "compare", "source": str(a.absolute()), "other": str(b.absolute())}
+    with _archive(whole) as archive, process_for_job() as process:
+        report = process.run({**job, "archive": archive and str(archive)}, on_progress).report
+        return Comparison.from_report(report, archive)
+
+
+def texture_in_child(
+    source: Path,
+    options: TextureOptions,
+    on_progress: ProgressCallback,
+    mesh: str | None,
+    whole: bool,
+) -> tuple[Any, Any, SurfaceTexture]:
+    """Measure the texture of a mesh file in a child process, as `texture_of` does.
+
+    Returns vertices and faces, too; they and the heights of the vertices are left out unless the
+    `whole` is asked for.
+    """
+    with _archive(whole) as archive:
+        more = {"archive": archive and str(archive)}
+        report = measure_in_child(source, options, on_progress, mesh, more)
+        if archive is None:
+            return None, None, SurfaceTexture.from_report(report, np.zeros(0))
+        with np.load(archive) as saved:
+            texture = SurfaceTexture.from_report(report, saved["height"])
+            return saved["vertices"], saved["faces"], texture
+
+
+@contextlib.contextmanager
+def _archive(wanted: bool) -> Iterator[Path | None]:
+    """Yield the name of a temporary file for arrays from the child, if it is wanted."""
+    if not wanted:
+        yield None
+        return
+    with temporary_folder(Path(tempfile.gettempdir())) as folder:
+        yield folder / "arrays.npz"

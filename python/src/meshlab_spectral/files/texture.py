@@ -1,0 +1,44 @@
+"""The roughness of the surface in a file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from meshlab_spectral.errors import MeshError
+from meshlab_spectral.files.meshes import StageCallback, joined, load_parts
+from meshlab_spectral.filters.options import TextureOptions
+from meshlab_spectral.filters.texture import surface_texture
+
+
+def texture_of(
+    source: Path,
+    options: TextureOptions,
+    on_stage: StageCallback,
+    mesh: str | None = None,
+    archive: Path | None = None,
+) -> dict[str, Any]:
+    """Measure a mesh file; several meshes are one surface. Returns `SurfaceTexture.report`.
+
+    Parameters and errors are those of `load_parts` and `surface_texture`. An `archive` of NumPy is
+    written with the vertices, n x 3, the faces, m x 3, and the height of each vertex.
+    """
+    on_stage("reading", None)
+    parts = load_parts(source, mesh)
+    V, F = joined(parts)
+    if len(F) == 0:
+        raise MeshError(f"{source} has no faces: there is no surface to measure")
+    selection = None
+    if options.selected:
+        flags = [
+            np.zeros(len(part.vertices), bool) if part.selected is None else part.selected
+            for part in parts
+        ]
+        selection = np.concatenate(flags)
+    on_stage("measuring", None)
+    texture = surface_texture(V, F, options, selection=selection, progress=on_stage)
+    if archive is not None:
+        np.savez(archive, vertices=V, faces=F, height=texture.height)
+    return {**texture.report}
