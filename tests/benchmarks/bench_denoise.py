@@ -3,6 +3,7 @@
 usage: bench_denoise.py [--pairs FOLDER] [--all-methods] [--rivals] [NAME ...]
        bench_denoise.py --clean [MESH ...]
        bench_denoise.py --estimates [MESH ...]
+       bench_denoise.py --relief
 
 For every pair NAME_noisy.ply, NAME_clean.ply: mean angle between the face normals in degrees / mean
 distance of the vertices from their clean positions along the normals, in mean edges; before, after
@@ -21,6 +22,10 @@ decimated; and the angle before and after with 0.05 mean edges of noise added.
 --estimates: for every MESH, by default some of ../shared/data, without noise and with noise of
 known kind and height: the estimate, and the root mean square distance of the vertices from their
 positions without noise, before and after; all in mean edges.
+
+--relief: sheets of 60 x 60 vertices with ribs, waves, threads or knurls, 4, 6 or 8 edges apart, and
+noise of 0.1, 0.2 and 0.3 edges in all directions (fixed seeds): part of the relief that is left
+away from the rim, and the angle before, after, and after the best Taubin smoothing.
 """
 
 from __future__ import annotations
@@ -136,7 +141,10 @@ def bilateral_normals(V: Array, F: Any, chosen: tuple[float, int]) -> Array:
 
 # Methods, and the parameters of which the best is taken.
 METHODS: dict[str, tuple[Method, list[Any]]] = {
-    "Laplacian": (meshlab("apply_coord_laplacian_smoothing", "stepsmoothnum"), [1, 2, 3, 5, 8]),
+    "Laplacian": (
+        meshlab("apply_coord_laplacian_smoothing", "stepsmoothnum"),
+        [1, 2, 3, 5, 8],
+    ),
     "Taubin": (
         meshlab("apply_coord_taubin_smoothing", "stepsmoothnum"),
         [3, 5, 8, 10, 15, 20, 30, 45],
@@ -274,7 +282,9 @@ def print_pairs(
     """Print a line for every pair, and the means of groups."""
     taubin = METHODS["Taubin"][0]
     print(
-        f"{'':20}{'noisy':>14}{'Spectral Denoise':>18}", *(f"{m:>13}" for m in methods), "  times"
+        f"{'':20}{'noisy':>14}{'Spectral Denoise':>18}",
+        *(f"{m:>13}" for m in methods),
+        "  times",
     )
     angles: dict[str, list[float]] = {}
     ratios = []
@@ -329,7 +339,10 @@ def print_estimates(files: list[Path]) -> None:
         V, F = load(file)
         edge = mean_edge(V, F)
         print(f"\n{file.name}: {len(V)} vertices")
-        kinds = [("none", 0.0), *(("white", height) for height in (0.05, 0.1, 0.2, 0.4))]
+        kinds = [
+            ("none", 0.0),
+            *(("white", height) for height in (0.05, 0.1, 0.2, 0.4)),
+        ]
         for kind, height in [*kinds, ("correlated", 0.4), ("spikes", 0.7)]:
             X = V + (noise_of(kind, height, V, F) if height else 0.0)
             Y, report = meshlab_spectral.denoise_mesh(X, F)
@@ -357,7 +370,11 @@ def clean_meshes(given: list[str]) -> Iterator[tuple[str, Array, NDArray[Any]]]:
             meshes.load_new_mesh(str(SHARED / "data" / name))
             meshes.meshing_decimation_quadric_edge_collapse(targetfacenum=faces)
             mesh = meshes.current_mesh()
-            yield f"{name}, {faces} faces", mesh.vertex_matrix().copy(), mesh.face_matrix().copy()
+            yield (
+                f"{name}, {faces} faces",
+                mesh.vertex_matrix().copy(),
+                mesh.face_matrix().copy(),
+            )
 
 
 class CleanRow(NamedTuple):
@@ -396,8 +413,70 @@ def print_clean(given: list[str]) -> None:
             f"{row.after:5.2f} degrees; {row.summary[:60]}",
             flush=True,
         )
-    moved, worse = sum(row.moved > 0 for row in rows), sum(row.after > row.before for row in rows)
+    moved, worse = (
+        sum(row.moved > 0 for row in rows),
+        sum(row.after > row.before for row in rows),
+    )
     print(f"{len(rows)} meshes: {moved} moved; with noise added, {worse} are worse than before")
+
+
+def sheet(kind: str, pitch: int, height: float) -> tuple[Array, Any]:
+    """A sheet with relief of a height over its mean, 60 x 60 vertices one unit apart."""
+    x, y = (a.ravel() for a in np.meshgrid(np.arange(60.0), np.arange(60.0)))
+    wave = 2 * np.pi / pitch
+    s = np.sqrt(0.5)
+    z = {
+        "ribs": np.clip(1.6 * np.cos(wave * x + 0.3), -1, 1),
+        "waves": np.cos(wave * (0.92 * x + 0.39 * y) + 0.6 * np.sin(2 * np.pi * y / 37)),
+        "threads": 4 * np.abs(((x + 0.17 * y) / pitch + 0.1) % 1 - 0.5) - 1,
+        "knurls": (np.cos(wave * s * (x + y) + 0.3) + np.cos(wave * s * (x - y) + 0.8)) / 2,
+    }[kind]
+    at = np.arange(3600).reshape(60, 60)
+    a, b, c, d = (q.ravel() for q in (at[:-1, :-1], at[:-1, 1:], at[1:, 1:], at[1:, :-1]))
+    odd = (np.add.outer(np.arange(59), np.arange(59)) % 2 == 1).ravel()
+    F = np.concatenate(
+        [
+            np.c_[a, b, c][~odd],
+            np.c_[a, c, d][~odd],
+            np.c_[a, b, d][odd],
+            np.c_[b, c, d][odd],
+        ]
+    )
+    return np.c_[x, y, height * z], F
+
+
+def print_relief() -> None:
+    """Relief kept and angles on sheets with noise."""
+    heights, noises = (0.25, 0.5, 1.0), (0.1, 0.2, 0.3)
+    taubin, all_steps = METHODS["Taubin"]
+    print("relief   apart height noise | kept | before  after  Taubin, best")
+    rows: dict[float, list[tuple[float, ...]]] = {}
+    for kind in ("ribs", "waves", "threads", "knurls"):
+        for pitch in (4, 6, 8):
+            for height in heights:
+                W, F = sheet(kind, pitch, height)
+                inner = ((W[:, :2] > 8) & (W[:, :2] < 51)).all(axis=1)
+                for seed, noise in enumerate(noises):
+                    V = W + np.random.default_rng([pitch, seed]).normal(0, noise, W.shape)
+                    X, _ = meshlab_spectral.denoise_mesh(V, F)
+                    kept = (X[inner, 2] @ W[inner, 2]) / (W[inner, 2] @ W[inner, 2])
+                    N = unit(face_normals(W, F))
+                    shapes = [V, X, *(taubin(V, F, steps) for steps in all_steps)]
+                    angles = [mean_angle(unit(face_normals(Y, F)), N) for Y in shapes]
+                    before, after, best = angles[0], angles[1], min(angles[2:])
+                    rows.setdefault(height, []).append((kept, before, after, best))
+                    print(
+                        f"{kind:8s} {pitch:5d} {height:6.2f} {noise:5.1f} | {100 * kept:3.0f} % |"
+                        f" {before:6.2f} {after:6.2f} {best:6.2f}",
+                        flush=True,
+                    )
+    for height, found in rows.items():
+        kept, before, after, best = np.array(found).T
+        print(
+            f"height {height}: of {len(found)} sheets {(kept < 0.85).sum()} keep less than"
+            f" 85 %, the least {100 * kept.min():.0f} %; {(after > before).sum()} worse than"
+            f" before; {before.mean():.1f} -> {after.mean():.1f}, Taubin {best.mean():.1f} degrees"
+        )
 
 
 def main() -> None:
@@ -409,6 +488,7 @@ def main() -> None:
     parser.add_argument("--rivals", action="store_true")
     parser.add_argument("--clean", action="store_true")
     parser.add_argument("--estimates", action="store_true")
+    parser.add_argument("--relief", action="store_true")
     arguments = parser.parse_args()
     meshlab_spectral.load()
     if arguments.estimates:
@@ -416,13 +496,19 @@ def main() -> None:
         print_estimates(given or [SHARED / "data" / name for name in ESTIMATED])
     elif arguments.clean:
         print_clean(arguments.names)
+    elif arguments.relief:
+        print_relief()
     else:
         names = arguments.names or [
             file.name.removesuffix("_noisy.ply")
             for file in sorted(arguments.pairs.glob("*_noisy.ply"))
         ]
         more = MORE_METHODS if arguments.all_methods else {}
-        print_pairs(arguments.pairs, names, METHODS | more | (rivals() if arguments.rivals else {}))
+        print_pairs(
+            arguments.pairs,
+            names,
+            METHODS | more | (rivals() if arguments.rivals else {}),
+        )
 
 
 if __name__ == "__main__":

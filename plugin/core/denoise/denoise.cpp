@@ -13,6 +13,7 @@
 #include "core/mesh/measures.h"
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/surface.h"
+#include "core/noise/scan_rays.h"
 #include "core/support/errors.h"
 #include "core/support/memory.h"
 #include "core/support/threads.h"
@@ -81,24 +82,6 @@ struct MovingPart {
     }
 };
 
-/// Unit vectors from the eye, if a surface looks as a camera there has seen it: open, every face
-/// turned towards it, and all of it on one side; else no rows.
-Points raysFrom(const Eigen::RowVector3d& eye, const FaceGraph& graph, const Points& X) {
-    constexpr double kMinSeen = 0.995;  // share of the faces
-    const bool isInside = (eye.array() >= X.colwise().minCoeff().array()).all() &&
-                          (eye.array() <= X.colwise().maxCoeff().array()).all();
-    if (isInside || std::find(graph.onRim.begin(), graph.onRim.end(), true) == graph.onRim.end())
-        return {};
-    Points rays = X.rowwise() - eye;
-    normalizeRows(rays);
-    const Points N = areaNormals(X, graph.F);
-    Index seen = 0;
-    for (Index f = 0; f < N.rows(); ++f) seen += N.row(f).dot(rays.row(graph.F(f, 0))) > 0.0;
-    const double share = static_cast<double>(seen) / static_cast<double>(N.rows());
-    if (std::max(share, 1.0 - share) < kMinSeen) return {};
-    return rays;
-}
-
 /// The noise to remove: as given by the options, or else as measured.
 RemovalOptions removalOptions(const DenoiseOptions& options, const Diagnosis& diagnosis) {
     constexpr double kMaxHeight = 1.0;  // mean edges; larger heights are clamped
@@ -116,6 +99,7 @@ RemovalOptions removalOptions(const DenoiseOptions& options, const Diagnosis& di
                    : noise.size > 1.0      ? kHiddenSize * noise.size
                                            : 0.0;
     removal.keepCreases = options.keepCreases;
+    removal.isUnderShape = noise.isUnderShape;
     removal.areImpulses = diagnosis.kind == NoiseKind::Impulses;
     removal.areVoxelFaces = diagnosis.kind == NoiseKind::VoxelFaces;
     removal.areScanLines = diagnosis.kind == NoiseKind::ScanLines;
@@ -167,12 +151,13 @@ Points denoisePart(const MovingPart& part, const FaceGraph& graph, const Denoise
         for (Index i = 0; i < X0.rows(); ++i)
             removal.mayMove[i] = removal.mayMove[i] && diagnosis.field.height[i] > 0.0;
     }
-    if (diagnosis.kind == NoiseKind::Correlated && !isKnown && options.keepCreases)
-        removal.rays = raysFrom(part.eye, graph, X0);
+    if (diagnosis.isNoise() && !diagnosis.hasVoxels() && !isKnown && options.keepCreases)
+        removal.rays =
+            scanRays(part.eye, graph, X0, isMeasured, diagnosis.kind == NoiseKind::Correlated);
     Removal done =
         removeNoise(graph, X0, diagnosis, isKnown, removal, progress.part(kMeasuring, 1.0));
     // Along rays nothing can fold: the camera sees the same triangles.
-    if (done.rounds > 0 && !diagnosis.hasVoxels() && removal.rays.rows() == 0 &&
+    if (done.rounds > 0 && !diagnosis.hasVoxels() && removal.rays.direction.rows() == 0 &&
         isCrumpled(graph, X0, done.X)) {
         result.isCrumpled = true;
         done = {diagnosis.X, 0};

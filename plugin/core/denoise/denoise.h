@@ -43,9 +43,9 @@ struct DenoiseResult : SurfaceCounts, Movement {
 /// rebuilt from the shape after each, as in Kovnatsky et al. 2012, Eq. 11 (normal_filter.h); the
 /// vertices then follow the normals (vertex_update.h).
 ///
-/// The noise of a depth camera lies along its rays. Where a surface with correlated noise looks as
-/// seen from the origin of its coordinates (every face turned towards it), vertices move along
-/// these rays only: the result then depends on where the origin is.
+/// The noise of a single scan lies along its rays: where they can be seen (scan_rays.h), vertices
+/// move along them only. Those of a depth camera start at the origin of the coordinates, so that
+/// the result depends on where it is.
 ///
 /// The stages: determine the kind of noise (diagnosis.h); remove spikes (spikes.h); remove noise up
 /// to its height (removal.h), unless that would crumple the surface (crumpling.h); restore the

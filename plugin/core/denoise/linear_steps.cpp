@@ -15,28 +15,6 @@ namespace {
 /// Positions, and white noise that undergoes the same steps.
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
 
-/// The neighbours each vertex is averaged with: none if it may not move, only those on the rim if
-/// it is on the rim itself.
-VertexGraph averagedNeighbours(const FaceGraph& graph, const std::vector<bool>& mayMove) {
-    VertexGraph averaged;
-    averaged.first.push_back(0);
-    const VertexGraph& all = graph.vertices;
-    for (Index i = 0; i < all.size(); ++i) {
-        double sum = 0.0;
-        for (Index k = all.first[i]; k < all.first[i + 1]; ++k) {
-            if (!mayMove[i] || (graph.onRim[i] && !graph.onRim[all.at[k]])) continue;
-            averaged.at.push_back(all.at[k]);
-            if (all.weight.empty()) continue;
-            averaged.weight.push_back(all.weight[k]);
-            sum += all.weight[k];
-        }
-        for (std::size_t k = averaged.first.back(); k < averaged.weight.size(); ++k)
-            averaged.weight[k] /= sum;
-        averaged.first.push_back(static_cast<Index>(averaged.at.size()));
-    }
-    return averaged;
-}
-
 /// Numbers of steps to try, and those before the normals are taken.
 constexpr std::array<int, 11> kSteps{5, 10, 14, 20, 28, 40, 56, 80, 113, 160, 226};
 constexpr int kStepsToNormals = 20;
@@ -88,6 +66,26 @@ Points smoothNormals(const FaceGraph& graph, const Points& X) {
 }
 
 }  // namespace
+
+VertexGraph averagedNeighbours(const FaceGraph& graph, const std::vector<bool>& mayMove) {
+    VertexGraph averaged;
+    averaged.first.push_back(0);
+    const VertexGraph& all = graph.vertices;
+    for (Index i = 0; i < all.size(); ++i) {
+        double sum = 0.0;
+        for (Index k = all.first[i]; k < all.first[i + 1]; ++k) {
+            if (!mayMove[i] || (graph.onRim[i] && !graph.onRim[all.at[k]])) continue;
+            averaged.at.push_back(all.at[k]);
+            if (all.weight.empty()) continue;
+            averaged.weight.push_back(all.weight[k]);
+            sum += all.weight[k];
+        }
+        for (std::size_t k = averaged.first.back(); k < averaged.weight.size(); ++k)
+            averaged.weight[k] /= sum;
+        averaged.first.push_back(static_cast<Index>(averaged.at.size()));
+    }
+    return averaged;
+}
 
 std::optional<LinearSteps> linearSteps(const FaceGraph& graph, const Points& X,
                                        const std::vector<bool>& mayMove, double height,

@@ -8,6 +8,10 @@
 
 namespace spectral {
 
+/// The neighbours each vertex is averaged with: none if it may not move, only those on the rim if
+/// it is on the rim itself.
+VertexGraph averagedNeighbours(const FaceGraph& graph, const std::vector<bool>& mayMove);
+
 struct LinearSteps {
     Points X;       ///< n x 3 smoothed positions.
     int steps = 0;  ///< Number of steps taken.

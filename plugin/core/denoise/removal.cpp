@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/denoise/least_risk.h"
 #include "core/denoise/linear_steps.h"
 #include "core/denoise/normal_filter.h"
 #include "core/denoise/unfold.h"
@@ -195,17 +196,30 @@ Removal removeByPlace(const FaceGraph& graph, const Points& X0, const RemovalOpt
     return removal;
 }
 
-/// Noise of a depth camera lies along its rays, and is as large as the details.
+/// Noise of a scanner lies along its rays. That of the pixels of a depth camera is as large as the
+/// details; otherwise the strength is doubled until the removed height is that of the noise.
 Removal removeAlongRays(const FaceGraph& graph, const Points& X0, const RemovalOptions& options) {
-    constexpr double kStrength = 12.0;
+    constexpr double kStrengthOfPixels = 12.0, kWeakest = 1.0, kStrongest = 16.0;
+    constexpr double kGrazing = 0.2;  // cosine: such faces do not say where on its ray a vertex is
     constexpr int kSweepsAlong = 160, kIterations = 5, kLong = 128;
-    const Points N = normalsOfLeastVariation(graph, X0, kStrength);
-    Removal removal{followNormalsAlong(graph, X0, N, options.rays, options.mayMove, kSweepsAlong),
-                    kIterations};
+    const Points& D = options.rays.direction;
+    Removal removal{X0, kIterations};
+    for (double strength = options.rays.arePixels ? kStrengthOfPixels : kWeakest;
+         strength <= kStrongest; strength *= 2.0) {
+        Points N = normalsOfLeastVariation(graph, X0, strength);
+        for (Index f = 0; f < N.rows(); ++f)  // such as a bridge over a silhouette
+            if (std::abs(N.row(f).dot(D.row(graph.F(f, 0)))) < kGrazing) N.row(f).setZero();
+        removal.X = followNormalsAlong(graph, X0, N, D, options.mayMove, kSweepsAlong);
+        if (options.rays.arePixels) break;
+        Eigen::VectorXd removed = removedAlongNormals(graph, X0, removal.X, options).cwiseAbs();
+        if (medianDeviation({removed.begin(), removed.end()}) > options.height) break;
+    }
     // Noise has no long waves: those that flatter normals add up to are taken off.
-    Eigen::VectorXd along = (removal.X - X0).cwiseProduct(options.rays).rowwise().sum();
+    Eigen::VectorXd along = (removal.X - X0).cwiseProduct(D).rowwise().sum();
     along -= LocalAverage(graph.vertices, options.mayMove, kLong).of(along);
-    removal.X = X0 + along.asDiagonal() * options.rays;
+    for (Index i = 0; i < along.size(); ++i)
+        if (!options.mayMove[i]) along[i] = 0.0;
+    removal.X = X0 + along.asDiagonal() * D;
     return removal;
 }
 
@@ -215,12 +229,19 @@ Removal removeWhiteNoise(const FaceGraph& graph, const Points& X0, const Removal
                          const Progress& progress) {
     progress.report(0.0, kStage);
     if (options.areScanLines) return removeFromScanLines(graph, X0, options);
+    if (options.rays.arePixels) return removeAlongRays(graph, X0, options);
     if (options.place.isAny()) return removeByPlace(graph, X0, options, progress);
+    if (options.isUnderShape) {
+        Removal removal{withLeastRisk(graph, X0, options.mayMove, options.height), 1};
+        limitDisplacement(X0, options, kMaxDeviations, removal.X);
+        return removal;
+    }
     if (std::optional<LinearSteps> linear = linearSteps(
             graph, X0, options.mayMove, options.height / options.meanEdge, options.areImpulses)) {
         finish(graph, X0, linear->N, options, linear->X);
         return {std::move(linear->X), linear->steps};
     }
+    if (options.rays.direction.rows() > 0) return removeAlongRays(graph, X0, options);
     auto [removal, N] = filterInRounds(graph, X0, options, progress);
     finish(graph, X0, N, options, removal.X);
     return std::move(removal);
@@ -229,7 +250,7 @@ Removal removeWhiteNoise(const FaceGraph& graph, const Points& X0, const Removal
 Removal removeCorrelatedNoise(const FaceGraph& graph, const Points& X0,
                               const RemovalOptions& options, const Progress& progress) {
     constexpr double kLengthOfSize = 0.8, kMaxLength = 4.0;
-    if (options.rays.rows() > 0) return removeAlongRays(graph, X0, options);
+    if (options.rays.direction.rows() > 0) return removeAlongRays(graph, X0, options);
     constexpr double kMinRemoved = 0.8;  // part of the height; the rest is as long as details
     constexpr int kMinRounds = 2, kMaxLongRounds = 6;
     const double length = std::min(kLengthOfSize * options.size, kMaxLength);

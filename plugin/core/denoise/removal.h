@@ -4,6 +4,7 @@
 
 #include "core/graph/face_graph.h"
 #include "core/noise/noise_field.h"
+#include "core/noise/scan_rays.h"
 #include "core/support/progress.h"
 
 namespace spectral {
@@ -22,15 +23,17 @@ struct RemovalOptions {
     double size = 0.0;           ///< Correlation length of the noise, mean edges.
     double meanEdge = 0.0;       ///< Mean edge length, length units.
     bool keepCreases = true;     ///< If false, smooths across creases, too.
+    bool isUnderShape = false;   ///< White noise under a shape that is as high, such as ribs.
     bool areImpulses = false;    ///< White noise with many large values.
     bool areScanLines = false;   ///< White noise on long triangles between lines.
     bool areVoxelFaces = false;  ///< Vertices at the corners of voxels, not between their centres.
-    Points rays;                 ///< n x 3 unit vectors from a camera; no rows: there is none.
+    ScanRays rays;               ///< That the noise lies along, if there are any.
     std::vector<bool> mayMove;   ///< n: whether a vertex may move.
 };
 
 /// Removes noise that is independent at every vertex.
 ///
+/// Where the shape is as high as the noise, such as ribs, takes what has least risk (least_risk.h).
 /// Takes linear steps where they do better (linear_steps.h). Otherwise weak, then stronger rounds,
 /// until the displacement is smoother than noise (whiteness.h) or its median exceeds that of the
 /// noise: the discrepancy principle (Morozov 1966). Unfolds faces that the noise has folded.

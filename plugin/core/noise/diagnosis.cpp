@@ -127,17 +127,13 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
     constexpr Index kMinMeasuredFine = 1000;        // vertices
     constexpr double kMinHeightCorrelated = 0.045;  // mean edges
     constexpr double kMaxCorrelationOfNoise = 0.2;  // above it, the residuals are those of a shape
-    // Detail of a coarse shape looks like weak noise, but alternates less. Its residuals less their
-    // mean over 16 steps, which is curvature, correlate by -0.17 on decimations of igea, by -0.24
-    // on a sphere with noise.
-    constexpr double kWeakHeight = 0.09, kMaxCorrelationWeak = 0.0;  // height in mean edges
-    constexpr double kMaxCorrelationFlat = -0.2;
-    constexpr int kCurvatureSteps = 16;
+    constexpr double kHighNoise = 0.09;  // mean edges: no shape alternates as high, if at all
     Diagnosis diagnosis;
     diagnosis.X = X;
     const double edge = diagnosis.noise.meanEdge = meanEdgeLength(X, graph.F);
     const Index measured = std::count(isMeasured.begin(), isMeasured.end(), true);
     diagnosis.stretchedAxis = stretchedAxis(graph, X);
+    const bool areNeedles = quantile(triangleQuality(graph, X), 0.5) < kNeedleQuality;
     std::optional<CoordinateGrid> grid;
     if (!isKnown) {
         grid = coordinateGrid(X);
@@ -147,7 +143,7 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
             diagnosis.kind = NoiseKind::Stretched;
             return diagnosis;
         }
-        if (quantile(triangleQuality(graph, X), 0.5) < kNeedleQuality) {
+        if (areNeedles) {
             diagnosis.kind = NoiseKind::Tessellation;
             const auto lines = scanLineNoise(graph, X, isMeasured);
             if (lines && measured >= kMinMeasuredFine) {
@@ -170,28 +166,30 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
     if (diagnosis.spikes > 0) diagnosis.X -= found.spikes.height.asDiagonal() * found.spikes.N;
     progress.report(0.6, kStage);
     const double correlation = residualCorrelation(graph, diagnosis.X, isMeasured);
-    diagnosis.kind = NoiseKind::Shape;
-    if (isKnown || correlation < kMaxCorrelationOfNoise)
-        diagnosis.noise = estimateNoise(graph, diagnosis.X, isMeasured, correlation, edge);
-    diagnosis.noise.correlation = correlation;
-    if (correlation >= kMaxCorrelationOfNoise) return diagnosis;
-
+    const SecondResiduals second = secondResiduals(graph, diagnosis.X, isMeasured);
+    const bool isWhite = second.isNoise(correlation, edge);
     NoiseEstimate& noise = diagnosis.noise;
-    const double share = noiseShare(correlation);
+    diagnosis.kind = NoiseKind::Shape;
+    const bool isRising = !isWhite && correlation >= kMaxCorrelationOfNoise;
+    if (isKnown || !isRising)
+        noise = estimateNoise(graph, diagnosis.X, isMeasured, correlation, second, edge);
+    noise.correlation = correlation;
+    noise.isUnderShape = noise.isUnderShape && !areNeedles;
+    if (isRising) return diagnosis;
     if (noise.size > 1.0) {
-        if (measured >= kMinMeasuredFine && share * noise.height >= kMinHeightCorrelated * edge)
+        if (!noise.isShape && measured >= kMinMeasuredFine &&
+            noiseShare(correlation) * noise.height >= kMinHeightCorrelated * edge)
             diagnosis.kind = NoiseKind::Correlated;
         return diagnosis;
     }
-    if (!hasManySpikes(diagnosis) && correlation > kMaxCorrelationWeak &&
-        noise.height < kWeakHeight * edge &&
-        residualCorrelation(graph, diagnosis.X, isMeasured, kCurvatureSteps) > kMaxCorrelationFlat)
+    const double share = noise.isUnderShape ? 1.0 : noiseShare(correlation);
+    if (!isWhite && !noise.isUnderShape && noise.height < kHighNoise * edge &&
+        !hasManySpikes(diagnosis))
         return diagnosis;
     noise.height *= share;
-    if (noise.height >= kMinHeight * edge)
-        diagnosis.kind = found.areTail ? NoiseKind::Impulses : NoiseKind::White;
-    else if (share == 1.0)
-        diagnosis.kind = NoiseKind::None;
+    diagnosis.kind = noise.height < kMinHeight * edge ? NoiseKind::None
+                     : found.areTail                  ? NoiseKind::Impulses
+                                                      : NoiseKind::White;
     return diagnosis;
 }
 

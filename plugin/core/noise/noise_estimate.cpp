@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "core/graph/diffusion.h"
@@ -36,34 +37,53 @@ std::vector<double> moduliOf(const Eigen::VectorXd& values, const std::vector<bo
     return moduli;
 }
 
-/// The half of the measured vertices around which the given octave of the shape has least energy.
-std::vector<bool> quietest(const VertexGraph& graph, const Eigen::VectorXd& octave,
+/// Correlation between neighbours of values clipped at two deviations; 1 if all vanish.
+double correlationOfNeighbours(const VertexGraph& graph, Eigen::VectorXd values,
+                               const std::vector<bool>& isMeasured) {
+    const double limit = kResidualClip * medianDeviation(moduliOf(values, isMeasured));
+    if (!(limit > 0.0)) return 1.0;
+    values = values.cwiseMax(-limit).cwiseMin(limit);
+    double products = 0.0, squares = 0.0;
+    for (Index i = 0; i < values.size(); ++i)
+        for (Index k = graph.first[i]; k < graph.first[i + 1]; ++k) {
+            const int j = graph.at[k];
+            if (!isMeasured[i] || !isMeasured[j]) continue;
+            products += values[i] * values[j];
+            squares += values[i] * values[i];
+        }
+    return squares > 0.0 ? products / squares : 1.0;
+}
+
+/// The half of the measured vertices around which, averaged over so many steps, the given octave of
+/// the shape has least energy.
+std::vector<bool> quietest(const VertexGraph& graph, const Eigen::VectorXd& octave, int steps,
                            std::vector<bool> isMeasured) {
     constexpr double kQuietShare = 0.5;
-    constexpr int kSteps = 16;
     Eigen::VectorXd energy = octave.cwiseAbs2();
-    for (int k = 0; k < kSteps; ++k) diffuse(graph, energy);
+    for (int k = 0; k < steps; ++k) diffuse(graph, energy);
     const double limit = quantile(moduliOf(energy, isMeasured), kQuietShare);
     for (Index i = 0; i < energy.size(); ++i) isMeasured[i] = isMeasured[i] && energy[i] <= limit;
     return isMeasured;
 }
 
-/// Standard deviations in each octave: of the shape along its normals, and of white noise.
+/// The octaves of the shape along its normals, and standard deviations: theirs, and of white noise.
 struct OctaveDeviations {
+    std::array<Eigen::VectorXd, kOctaves> along;
     Octaves shape, white;
 };
 
 OctaveDeviations octaveDeviations(const FaceGraph& graph, const Points& X, const Points& N,
                                   const std::vector<bool>& isMeasured) {
-    constexpr int kShapeOctave = 3;
+    constexpr int kShapeOctave = 3, kQuietSteps = 16;
     OctaveDeviations deviations;
-    std::array<Eigen::VectorXd, kOctaves> along;
+    auto& along = deviations.along;
     forEachOctave(graph.vertices, X, N, isMeasured, kOctaves,
                   [&](int k, Eigen::VectorXd values, double white) {
                       along[k] = std::move(values);
                       deviations.white[k] = white;
                   });
-    const std::vector<bool> isQuiet = quietest(graph.vertices, along[kShapeOctave], isMeasured);
+    const std::vector<bool> isQuiet =
+        quietest(graph.vertices, along[kShapeOctave], kQuietSteps, isMeasured);
     parallelFor(kOctaves, [&](Index k) {
         deviations.shape[k] = trimmedDeviation(moduliOf(along[k], isQuiet));
     });
@@ -82,6 +102,64 @@ Octaves shapePart(const Octaves& height) {
     Octaves shape = height;
     for (int k = kOctaves - 2; k >= 0; --k) shape[k] = std::min(height[k], shape[k + 1] / rise);
     return shape;
+}
+
+/// Fourth moment over the squared second one, of the values in deviations of their places, where
+/// the shape is quiet: 3 for noise, less for crests of one height.
+double kurtosis(const VertexGraph& graph, const OctaveDeviations& octaves, int octave,
+                const std::vector<bool>& isMeasured) {
+    constexpr int kPlace = 64, kShapeOctave = 5;
+    const std::vector<bool> isQuiet =
+        quietest(graph, octaves.along[kShapeOctave], kPlace, isMeasured);
+    const Eigen::VectorXd squares = octaves.along[octave].cwiseAbs2();
+    const Eigen::VectorXd place = LocalAverage(graph, isMeasured, kPlace).of(squares);
+    double second = 0.0, fourth = 0.0, count = 0.0;
+    for (Index i = 0; i < squares.size(); ++i) {
+        if (!isQuiet[i] || !(place[i] > 0.0)) continue;
+        const double square = squares[i] / place[i];
+        second += square;
+        fourth += square * square;
+        count += 1.0;
+    }
+    return second > 0.0 ? count * fourth / (second * second) : 3.0;
+}
+
+/// Whether an octave longer than white noise is relief, such as ribs, waves, threads or knurls: it
+/// has crests of like height, where noise has a normal distribution.
+/// @param white  height of the white noise.
+bool areCrestsAlike(const VertexGraph& graph, const OctaveDeviations& octaves, int octave,
+                    double height, double white, const std::vector<bool>& isMeasured) {
+    // Excess kurtosis less the white noise in it: at most -.6 with knurls, the least of reliefs,
+    // and
+    // -.38 and more with noise over two edges (corr2_bunny of ../shared/denoise).
+    constexpr double kMaxExcess = -0.5;
+    const double relief = 1.0 - std::pow(white / height, 2);
+    return relief > 0.0 &&
+           kurtosis(graph, octaves, octave, isMeasured) - 3.0 < kMaxExcess * relief * relief;
+}
+
+/// The octave of relief on a flat part: they rise to it and fall again, which noise on a shape does
+/// not. At the end they have .8 of it on sheets with ribs, waves or threads at the most, and 1 or
+/// more on machine parts (../shared/denoise).
+std::optional<int> octaveOfCrests(const Octaves& height) {
+    constexpr double kMinRise = 1.25, kMaxEnd = 0.8;
+    int crest = 0;
+    const double highest = height.maxCoeff(&crest);
+    if (crest < 2 || highest < kMinRise * height[0] || height[kOctaves - 1] > kMaxEnd * highest)
+        return std::nullopt;
+    return crest;
+}
+
+/// Whether the octaves rise alike, as on natural ground: there is neither a size that noise ends at
+/// nor a shape under it. The rise is at most 2.15 on fractal ground, 1.47 at least; a shape under
+/// scanner noise reaches 2.29 and more (depth_igea of ../shared/denoise), noise on a flat part ends
+/// with 1.3 and less.
+bool isSelfSimilar(const Octaves& height) {
+    constexpr double kLeast = 1.4, kMost = 2.22;
+    for (int k = 2; k + 1 < kOctaves; ++k)
+        if (const double rise = height[k + 1] / height[k]; !(rise > kLeast && rise < kMost))
+            return false;
+    return true;
 }
 
 /// Diffusion powers in the middle of each octave; their roots are lengths in edges.
@@ -135,36 +213,55 @@ void forEachOctave(const VertexGraph& graph, const Points& X, const Points& N,
 }
 
 double residualCorrelation(const FaceGraph& graph, const Points& X,
-                           const std::vector<bool>& isMeasured, int shapeSteps) {
+                           const std::vector<bool>& isMeasured) {
+    return correlationOfNeighbours(
+        graph.vertices, scaledResiduals(graph.vertices, X, smoothVertexNormals(graph, X)),
+        isMeasured);
+}
+
+bool SecondResiduals::isNoise(double firstCorrelation, double meanEdge) const {
+    // Stone of igea, decimated, is white noise of .045 edges; on steep ground there are .072.
+    constexpr double kWeakHeight = 0.06;
+    // At least -.22 on fractal ground and on all decimated shapes but that; -.26 and less with
+    // white noise on any shape (../shared/denoise).
+    constexpr double kMaxCorrelation = -0.24;
+    return correlation < kMaxCorrelation &&
+           (firstCorrelation < 0.0 || height > kWeakHeight * meanEdge);
+}
+
+SecondResiduals secondResiduals(const FaceGraph& graph, const Points& X,
+                                const std::vector<bool>& isMeasured) {
+    using Rows = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
     const VertexGraph& vertices = graph.vertices;
-    Eigen::VectorXd residual = scaledResiduals(vertices, X, smoothVertexNormals(graph, X));
-    std::vector<double> moduli;
-    for (Index i = 0; i < X.rows(); ++i)
-        if (isMeasured[i]) moduli.push_back(std::abs(residual[i]));
-    const double limit = kResidualClip * medianDeviation(std::move(moduli));
-    if (!(limit > 0.0)) return 1.0;
-    residual = residual.cwiseMax(-limit).cwiseMin(limit);
-    if (shapeSteps > 0) residual -= LocalAverage(vertices, isMeasured, shapeSteps).of(residual);
-    double products = 0.0, squares = 0.0;
-    for (Index i = 0; i < X.rows(); ++i)
-        for (Index k = vertices.first[i]; k < vertices.first[i + 1]; ++k) {
-            const int j = vertices.at[k];
-            if (!isMeasured[i] || !isMeasured[j]) continue;
-            products += residual[i] * residual[j];
-            squares += residual[i] * residual[i];
-        }
-    return squares > 0.0 ? products / squares : 1.0;
+    std::vector<bool> isInner(isMeasured);
+    for (Index i = 0; i < vertices.size(); ++i)
+        for (Index k = vertices.first[i]; k < vertices.first[i + 1]; ++k)
+            isInner[i] = isInner[i] && isMeasured[vertices.at[k]];
+    Rows residual(X.rows(), 4);  // of positions and white noise
+    residual << X, whiteNoise(X.rows());
+    for (int k = 0; k < 2; ++k) {
+        Rows next = Rows::Zero(X.rows(), 4);
+        forEachMean(vertices, residual,
+                    [&](Index i, const auto& mean) { next.row(i) = residual.row(i) - mean; });
+        residual.swap(next);
+    }
+    const Eigen::VectorXd along =
+        residual.leftCols<3>().cwiseProduct(smoothVertexNormals(graph, X)).rowwise().sum();
+    const double white = deviationOf(residual.col(3), isInner);
+    return {white > 0.0 ? trimmedDeviation(moduliOf(along, isInner)) / white : 0.0,
+            correlationOfNeighbours(vertices, along, isInner)};
 }
 
 NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X,
                             const std::vector<bool>& isMeasured, double correlation,
-                            double meanEdge) {
+                            const SecondResiduals& second, double meanEdge) {
     constexpr double kMinNoiseShare = 0.45;   // share of an octave that must be noise
     constexpr double kMaxRiseOfNoise = 2.03;  // of noise, from an octave to the next coarser one
     // Height over the part of it that the shape does not hide, for noise of 1.5 edges.
     constexpr double kHiddenHeight = 1.3;
     const Points N = smoothVertexNormals(graph, X);
-    const auto [deviation, white] = octaveDeviations(graph, X, N, isMeasured);
+    const OctaveDeviations octaves = octaveDeviations(graph, X, N, isMeasured);
+    const auto& [along, deviation, white] = octaves;
     const Octaves height = (white > 0.0).select(deviation / white, 0.0);
     const Octaves noise = (height.square() - shapePart(height).square()).max(0.0).sqrt();
 
@@ -178,15 +275,27 @@ NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X,
     }
     NoiseEstimate estimate;
     estimate.meanEdge = meanEdge;
-    if (!(energy.sum() > 0.0)) return estimate;
-    const double length = meanLength(energy, kOctaves) / meanLength(white.square(), kWhiteOctaves);
-    estimate.size = std::max(1.0, length);
-    estimate.height = kHiddenHeight * std::sqrt(energy.sum() / white.square().sum());
-    // White noise is measured best in the first octave, which has least of the shape.
+    estimate.isShape = isSelfSimilar(height);
+    if (energy.sum() > 0.0) {
+        const double length =
+            meanLength(energy, kOctaves) / meanLength(white.square(), kWhiteOctaves);
+        estimate.size = std::max(1.0, length);
+        estimate.height = kHiddenHeight * std::sqrt(energy.sum() / white.square().sum());
+    }
+    // White noise is measured best in the first octave, which has least of the shape, or beyond it.
     constexpr double kMinSize = 1.22, kMaxWhiteCorrelation = -0.1;
-    if (estimate.size < kMinSize || correlation < kMaxWhiteCorrelation) {
+    constexpr double kMaxPureNoise = 0.1;  // correlation
+    constexpr int kLongerThanWhite = 2;
+    const bool isLong = estimate.size >= kMinSize && correlation >= kMaxWhiteCorrelation;
+    const std::optional<int> crests =
+        isLong ? std::optional<int>(kLongerThanWhite) : octaveOfCrests(height);
+    estimate.isUnderShape =
+        (correlation >= kMaxPureNoise && second.isNoise(correlation, meanEdge)) ||
+        (crests && areCrestsAlike(graph.vertices, octaves, *crests, height[*crests], second.height,
+                                  isMeasured));
+    if (estimate.isUnderShape || !isLong) {
         estimate.size = 1.0;
-        estimate.height = noise[0];
+        estimate.height = estimate.isUnderShape ? second.height : noise[0];
     }
     return estimate;
 }

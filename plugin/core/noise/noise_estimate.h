@@ -11,8 +11,10 @@ namespace spectral {
 struct NoiseEstimate {
     double height = 0.0;  ///< Standard deviation along the normals, length units; 0 if none found.
     double size = 1.0;    ///< Correlation length, mean edges; 1: independent at every vertex.
-    double correlation = 1.0;  ///< Correlation of neighbouring residuals: residualCorrelation.
-    double meanEdge = 0.0;     ///< Mean edge length, length units.
+    double correlation = 1.0;   ///< Correlation of neighbouring residuals: residualCorrelation.
+    double meanEdge = 0.0;      ///< Mean edge length, length units.
+    bool isUnderShape = false;  ///< White noise under a shape that is as high, such as ribs.
+    bool isShape = false;       ///< Its octaves are those of a shape that is rough at all sizes.
 };
 
 // What the estimates of a mesh and of its places have in common.
@@ -42,11 +44,25 @@ void forEachOctave(const VertexGraph& graph, const Points& X, const Points& N,
 /// without noise, whose curvature varies slowly.
 /// @param X           n x 3 positions.
 /// @param isMeasured  n: whether a vertex counts.
-/// @param shapeSteps  the average over so many steps of lazy diffusion is taken off first, as
-///                    curvature; 0: nothing is.
 /// @return  1 if all residuals vanish.
 double residualCorrelation(const FaceGraph& graph, const Points& X,
-                           const std::vector<bool>& isMeasured, int shapeSteps = 0);
+                           const std::vector<bool>& isMeasured);
+
+/// The residuals of the residuals, L L X along the normals: what alternates from vertex to vertex.
+struct SecondResiduals {
+    double height = 0.0;       ///< Standard deviation of the white noise that has these.
+    double correlation = 1.0;  ///< Of neighbours; 1 if all vanish.
+
+    /// Whether they are those of white noise.
+    /// @param firstCorrelation  result of residualCorrelation: weak noise must alternate there,
+    /// too.
+    bool isNoise(double firstCorrelation, double meanEdge) const;
+};
+
+/// Tells white noise from the shape under it where that is as high, such as steep ground, cells of
+/// few vertices, ribs and knurls: L L suppresses a wave of six edges 20 times as strongly as noise.
+SecondResiduals secondResiduals(const FaceGraph& graph, const Points& X,
+                                const std::vector<bool>& isMeasured);
 
 /// Height and correlation length of the noise, from the energies along the normals in seven octaves
 /// of lazy diffusion, (I + P) / 2 to the powers 0, 1, 2, 4, ... 64.
@@ -56,8 +72,9 @@ double residualCorrelation(const FaceGraph& graph, const Points& X,
 /// factor of 1.3 to 2, and a shape by 2.3 to 3. From the finest octave on, whatever a shape cannot
 /// explain is noise. Medians exclude creases and single outliers.
 /// @param correlation  result of residualCorrelation; if it is that of white noise, the size is 1.
+/// @param second       result of secondResiduals, likewise.
 NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X,
                             const std::vector<bool>& isMeasured, double correlation,
-                            double meanEdge);
+                            const SecondResiduals& second, double meanEdge);
 
 }  // namespace spectral

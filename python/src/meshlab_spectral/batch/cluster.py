@@ -149,10 +149,8 @@ def _submit(
     try:
         with turns.alone():
             token = uuid.uuid4().hex
-            again: ResultT = client.submit(
-                _run_once, token, _run, plugin, do, job, pure=False
-            ).result()
-            return again
+            result = client.submit(_run_once, token, _run, plugin, do, job, pure=False).result()
+            return result
     except (KilledWorker, _TriedError):
         reason = (
             f"{attempts} workers that had it were ended from outside, and one that did nothing "

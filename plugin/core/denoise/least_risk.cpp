@@ -1,0 +1,108 @@
+#include "core/denoise/least_risk.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/denoise/linear_steps.h"
+#include "core/graph/diffusion.h"
+
+namespace spectral {
+
+namespace {
+
+constexpr int kDegree = 16;
+
+/// Positions, and white noise that undergoes the same.
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
+using Basis = Eigen::Matrix<double, Eigen::Dynamic, kDegree>;
+using Gram = Eigen::Matrix<double, kDegree, kDegree>;
+using Coefficients = Eigen::Matrix<double, kDegree, 1>;
+
+/// Calls visit(j, (T_j(P) - 1) X), j from 1 to kDegree.
+template <class Visit>
+void forEachPolynomial(const VertexGraph& graph, const Rows& X, const Visit& visit) {
+    Rows before = X, here = X, next = X;
+    for (int j = 1; j <= kDegree; ++j) {
+        next = j == 1 ? X : Rows(2.0 * here - before);  // of vertices that may not move
+        forEachMean(graph, here, [&](Index i, const auto& mean) {
+            next.row(i) =
+                j == 1 ? Eigen::RowVector4d(mean) : Eigen::RowVector4d(2.0 * mean - before.row(i));
+        });
+        visit(j, Rows(next - X));
+        before.swap(here);
+        here.swap(next);
+    }
+}
+
+/// The solution of A c = b without the directions in which A is singular.
+Coefficients solved(const Gram& A, const Coefficients& b) {
+    constexpr double kSingular = 1e-10;
+    const Eigen::SelfAdjointEigenSolver<Gram> eigen(A);
+    const Coefficients& lambda = eigen.eigenvalues();
+    const Coefficients inverse =
+        (lambda.array() > kSingular * lambda[kDegree - 1]).select(lambda.cwiseInverse(), 0.0);
+    return eigen.eigenvectors() * (inverse.asDiagonal() * (eigen.eigenvectors().transpose() * b));
+}
+
+}  // namespace
+
+Points withLeastRisk(const FaceGraph& graph, const Points& X, const std::vector<bool>& mayMove,
+                     double height) {
+    // Residuals along the surface are those of noise in all directions if they are as high as those
+    // along the normals, in each direction of space.
+    constexpr double kLeastAlike = 0.8, kMostAlike = 1.3;
+    constexpr int kBlurs = 2;
+    constexpr double kMaxTaken = 0.97;
+    const VertexGraph averaged = averagedNeighbours(graph, mayMove);
+    const Points N = vertexNormals(graph, blurredNormals(graph, areaNormals(X, graph.F), kBlurs));
+    const Index n = X.rows();
+    const Eigen::VectorXd white = whiteNoise(n);
+    Rows start(n, 4);
+    start << X, white;
+
+    Basis along(n, kDegree);
+    Coefficients trace;
+    double whiteSquares = 0.0;
+    Eigen::Matrix3d squares;
+    forEachPolynomial(averaged, start, [&](int j, const Rows& change) {
+        along.col(j - 1) = change.leftCols<3>().cwiseProduct(N).rowwise().sum();
+        trace[j - 1] = change.col(3).dot(white);
+        if (j > 1) return;
+        squares = change.leftCols<3>().transpose() * change.leftCols<3>();
+        whiteSquares = change.col(3).squaredNorm();
+    });
+    const double variance = height * height;
+    const Coefficients c = solved(along.transpose() * along, -variance * trace);
+    const Eigen::VectorXd change = along * c;
+    // What is taken away is lower than the noise; if not, the given height is that of the shape.
+    const double taken =
+        change.norm() / (height * std::sqrt(static_cast<double>(std::max<Index>(n, 1))));
+    const double share = std::pow(std::min(1.0, kMaxTaken / taken), 2);
+    Points moved = X + (share * change).asDiagonal() * N;
+
+    const Eigen::Array3d axes = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(squares)
+                                    .eigenvalues()
+                                    .array()
+                                    .max(0.0)
+                                    .sqrt() /
+                                (height * std::sqrt(whiteSquares));
+    const double tangential =
+        std::sqrt((squares.trace() - along.col(0).squaredNorm()) / 2.0 / whiteSquares) / height;
+    if (!(std::min(axes[0], tangential) > kLeastAlike && tangential < kMostAlike)) return moved;
+
+    std::vector<Points> parts;
+    forEachPolynomial(averaged, start, [&](int j, const Rows& change) {
+        parts.emplace_back(change.leftCols<3>() - along.col(j - 1).asDiagonal() * N);
+    });
+    Gram gram;
+    for (int j = 0; j < kDegree; ++j)
+        for (int k = 0; k <= j; ++k)
+            gram(j, k) = gram(k, j) = parts[j].cwiseProduct(parts[k]).sum();
+    const Coefficients d = solved(gram, -2.0 * variance * trace);
+    for (int j = 0; j < kDegree; ++j) moved += share * d[j] * parts[j];
+    return moved;
+}
+
+}  // namespace spectral

@@ -1,0 +1,180 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "core/denoise/denoise.h"
+#include "core/denoise/least_risk.h"
+#include "core/graph/face_graph.h"
+#include "core/mesh/measures.h"
+#include "core/noise/noise_estimate.h"
+#include "core/noise/scan_rays.h"
+#include "support/noisy_shapes.h"
+
+namespace spectral {
+namespace {
+
+using testing::Mesh;
+
+constexpr int kCells = 60;
+
+/// A sheet of squares of one unit with the given height over them.
+Mesh sheet(const std::function<double(double, double)>& height) {
+    Mesh mesh = testing::rectangle(kCells, kCells, kCells, kCells);
+    for (Index i = 0; i < mesh.V.rows(); ++i) mesh.V(i, 2) = height(mesh.V(i, 0), mesh.V(i, 1));
+    return mesh;
+}
+
+double wave(double x, double pitch) { return std::cos(2.0 * kPi * x / pitch + 0.3); }
+double thread(double x, double pitch) {
+    return 4.0 * std::abs(x / pitch - std::floor(x / pitch) - 0.5) - 1.0;
+}
+
+/// Mean angle between the normals of the faces, degrees.
+double angle(const Mesh& mesh, const Vertices& X) {
+    Points M = areaNormals(mesh.V, mesh.F), N = areaNormals(X, mesh.F);
+    normalizeRows(M);
+    normalizeRows(N);
+    return (M.cwiseProduct(N).rowwise().sum().array().min(1.0).max(-1.0).acos()).mean() * 180.0 /
+           kPi;
+}
+
+/// Part of the relief that is left, away from the rim.
+double kept(const Mesh& mesh, const Vertices& X) {
+    double products = 0.0, squares = 0.0;
+    for (Index i = 0; i < X.rows(); ++i) {
+        const auto isInner = [&](double x) { return x > 8.0 && x < kCells - 8.0; };
+        if (!isInner(mesh.V(i, 0)) || !isInner(mesh.V(i, 1))) continue;
+        products += X(i, 2) * mesh.V(i, 2);
+        squares += mesh.V(i, 2) * mesh.V(i, 2);
+    }
+    return products / squares;
+}
+
+TEST(Denoise, RemovesNoiseFromReliefAndKeepsIt) {
+    const double s = std::sqrt(0.5);
+    for (const double pitch : {6.0, 8.0})
+        for (const double height : {0.1, 0.2, 0.3}) {
+            const Mesh reliefs[]{
+                sheet([&](double x, double) { return 0.5 * wave(x, pitch); }),
+                sheet([&](double x, double y) { return 0.5 * thread(x + 0.17 * y, pitch); }),
+                sheet([&](double x, double y) {
+                    return 0.5 * (wave(s * (x + y), pitch) + wave(s * (x - y), pitch));
+                })};
+            for (const Mesh& relief : reliefs) {
+                Mesh noisy = relief;
+                std::mt19937 random(3);
+                std::normal_distribution<double> normal(0.0, height);
+                for (double& x : noisy.V.reshaped()) x += normal(random);
+                const DenoiseResult result = denoise(noisy.V, noisy.F, {});
+                EXPECT_GT(kept(relief, result.V), 0.85) << pitch << " " << height;
+                EXPECT_LE(angle(relief, result.V), angle(relief, noisy.V))
+                    << pitch << " " << height;
+            }
+        }
+}
+
+TEST(Denoise, LeavesCleanReliefAndNaturalGroundBitIdentical) {
+    const Mesh ribs = sheet([](double x, double) { return 0.5 * wave(x, 6.0); });
+    EXPECT_EQ(denoise(ribs.V, ribs.F, {}).V, ribs.V);
+    // Ground as rough at all sizes: waves of random directions whose heights fall with their
+    // number.
+    for (const double exponent : {0.4, 0.8}) {
+        std::mt19937 random(5);
+        std::uniform_real_distribution<double> uniform(0.0, 2.0 * kPi);
+        constexpr int kWaves = 1500;
+        Eigen::VectorXd height = Eigen::VectorXd::Zero((kCells + 1) * (kCells + 1));
+        Mesh ground = sheet([](double, double) { return 0.0; });
+        for (int k = 0; k < kWaves; ++k) {
+            const double number = 0.05 * std::pow(64.0, uniform(random) / (2.0 * kPi));
+            const double direction = uniform(random), phase = uniform(random);
+            for (Index i = 0; i < height.size(); ++i)
+                height[i] += std::pow(number, -exponent) *
+                             std::cos(number * (std::cos(direction) * ground.V(i, 0) +
+                                                std::sin(direction) * ground.V(i, 1)) +
+                                      phase);
+        }
+        ground.V.col(2) = 0.01 * height;
+        EXPECT_EQ(denoise(ground.V, ground.F, {}).V, ground.V) << exponent;
+    }
+}
+
+TEST(Diagnosis, MeasuresNoiseUnderAShapeThatIsAsHigh) {
+    const Mesh steep =
+        sheet([](double x, double y) { return 6.0 * wave(x, 30.0) * wave(y, 26.0); });
+    const Mesh cells = [] {
+        Mesh all = testing::icosphere(2);
+        for (int k = 1; k < 30; ++k) {
+            Mesh one = testing::icosphere(2);
+            one.V.col(0).array() += 3.0 * k;
+            all = testing::joined(all, one);
+        }
+        return all;
+    }();
+    for (const Mesh& mesh : {steep, cells}) {
+        const Mesh noisy = testing::withGaussianNoise(mesh, 0.12, 2);
+        const double height = 0.12 * meanEdgeLength(mesh.V, mesh.F);
+        const DenoiseResult result = denoise(noisy.V, noisy.F, {});
+        EXPECT_EQ(result.diagnosis.kind, NoiseKind::White);
+        EXPECT_NEAR(result.diagnosis.noise.height, height, 0.1 * height);
+        EXPECT_LT(angle(mesh, result.V), 0.5 * angle(mesh, noisy.V));
+    }
+}
+
+TEST(LeastRisk, MovesAlongTheSurfaceOnlyWhereNoiseHasAllDirections) {
+    const Mesh ribs = sheet([](double x, double) { return 0.5 * wave(x, 6.0); });
+    const FaceGraph graph = faceGraph(ribs.F, ribs.V.rows());
+    const std::vector<bool> all = testing::everywhere(ribs.V.rows());
+    const Points N = vertexNormals(graph, areaNormals(ribs.V, ribs.F));
+    std::mt19937 random(3);
+    std::normal_distribution<double> normal(0.0, 0.1);
+    Points along = ribs.V, everywhere = ribs.V;
+    for (Index i = 0; i < along.rows(); ++i) {
+        along.row(i) += normal(random) * N.row(i);
+        for (int c = 0; c < 3; ++c) everywhere(i, c) += normal(random);
+    }
+    const auto slide = [&](const Points& X) {
+        const Points change = withLeastRisk(graph, X, all, 0.1) - X;
+        const Points smooth = smoothVertexNormals(graph, X, 2);
+        const Eigen::VectorXd part = change.cwiseProduct(smooth).rowwise().sum();
+        return (change - part.asDiagonal() * smooth).norm() / change.norm();
+    };
+    EXPECT_LT(slide(along), 1e-12);
+    EXPECT_GT(slide(everywhere), 0.5);
+    // Nothing moves that may not.
+    EXPECT_EQ(withLeastRisk(graph, along, std::vector<bool>(all.size(), false), 0.1), along);
+}
+
+TEST(ScanRays, AreTheDirectionOfNoiseOrTheRaysOfPixels) {
+    const auto hills = [](double x, double y) { return wave(x, 25.0) + wave(y, 31.0); };
+    Mesh scan = sheet(hills);
+    const FaceGraph graph = faceGraph(scan.F, scan.V.rows());
+    std::vector<bool> inner(graph.onRim);
+    inner.flip();
+    const Eigen::RowVector3d direction = Eigen::RowVector3d(0.3, -0.2, 1.0).normalized();
+    std::mt19937 random(3);
+    std::normal_distribution<double> normal(0.0, 0.15);
+    Mesh noisy = scan;
+    for (Index i = 0; i < noisy.V.rows(); ++i) noisy.V.row(i) += normal(random) * direction;
+    const Eigen::RowVector3d inside = scan.V.colwise().mean();
+    const ScanRays rays = scanRays(inside, graph, noisy.V, inner, false);
+    ASSERT_EQ(rays.direction.rows(), noisy.V.rows());
+    EXPECT_FALSE(rays.arePixels);
+    EXPECT_GT(std::abs(rays.direction.row(0).dot(direction)), 0.995);
+    const Mesh all = testing::withGaussianNoise(scan, 0.15, 4);
+    EXPECT_EQ(scanRays(inside, graph, all.V, inner, false).direction.rows(), 0);
+
+    // A camera at the origin: pixels have few slopes.
+    Mesh depth = scan;
+    for (Index i = 0; i < depth.V.rows(); ++i) {
+        const double z = 100.0 + hills(scan.V(i, 0), scan.V(i, 1)) + normal(random);
+        depth.V.row(i) << (scan.V(i, 0) - 30.0) / 100.0 * z, (scan.V(i, 1) - 30.0) / 100.0 * z, z;
+    }
+    const ScanRays pixels = scanRays(Eigen::RowVector3d::Zero(), graph, depth.V, inner, false);
+    EXPECT_TRUE(pixels.arePixels);
+    EXPECT_LT((pixels.direction - Points(depth.V.rowwise().normalized())).norm(), 1e-9);
+}
+
+}  // namespace
+}  // namespace spectral
