@@ -169,8 +169,11 @@ namespace SPECTRAL_INSTRUCTIONS {
 bool eliminateFront(const FrontalMatrix& front) {
     const SubnormalsAreZero mode;
     const PivotColumns columns(front);
+    dropTiny(front.columns, front.width * front.stride);
     if (!columns.eliminate(0, front.width)) return false;
+    dropTiny(front.columns, front.width * front.stride);
     columns.updateContribution();
+    dropTiny(front.contribution, front.below * front.contributionStride());
     return true;
 }
 

@@ -59,6 +59,7 @@ class UnitLower {
         for (int i = 0; i < Width; ++i) {
             y[i] = Y.row(j + i);
             for (int k = 0; k < i; ++k) y[i] -= value_[start_[j + k] + i - k - 1] * y[k];
+            dropTiny(y[i].data(), Columns);
             Y.row(j + i) = y[i];
         }
         const Tails<Width> tails(*this, j);
@@ -80,6 +81,7 @@ class UnitLower {
             for (int k = 0; k < Width; ++k) y[k] -= tails.value[k][p] * z;
         }
         for (int i = Width - 1; i >= 0; --i) {
+            dropTiny(y[i].data(), Columns);
             for (int k = 0; k < i; ++k) y[k] -= value_[start_[j + k] + i - k - 1] * y[i];
             Y.row(j + i) = y[i];
         }
