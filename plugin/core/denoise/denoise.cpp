@@ -154,6 +154,9 @@ Points denoisePart(const MovingPart& part, const FaceGraph& graph, const Denoise
     if (diagnosis.isNoise() && !diagnosis.hasVoxels() && !isKnown && options.keepCreases)
         removal.rays =
             scanRays(part.eye, graph, X0, isMeasured, diagnosis.kind == NoiseKind::Correlated);
+    // Depths of pixels have few values, so that flat parts are noisy, too.
+    for (std::size_t i = 0; i < diagnosis.isClean.size() && !removal.rays.arePixels; ++i)
+        removal.mayMove[i] = removal.mayMove[i] && !diagnosis.isClean[i];
     Removal done =
         removeNoise(graph, X0, diagnosis, isKnown, removal, progress.part(kMeasuring, 1.0));
     // Along rays nothing can fold: the camera sees the same triangles.
@@ -175,7 +178,11 @@ Points denoisePart(const MovingPart& part, const FaceGraph& graph, const Denoise
 Eigen::VectorXd heightsOf(const Diagnosis& diagnosis, const DenoiseOptions& options, Index n) {
     if (diagnosis.field.isAny()) return diagnosis.field.height;
     const bool isKnown = options.noiseHeight > 0.0;
-    return Eigen::VectorXd::Constant(n, isKnown ? options.noiseHeight : diagnosis.rmsHeight());
+    Eigen::VectorXd heights =
+        Eigen::VectorXd::Constant(n, isKnown ? options.noiseHeight : diagnosis.rmsHeight());
+    for (std::size_t i = 0; i < diagnosis.isClean.size(); ++i)
+        if (diagnosis.isClean[i]) heights[static_cast<Index>(i)] = 0.0;
+    return heights;
 }
 
 /// The weights of the offset that restores the volume: clean places stay.

@@ -120,6 +120,75 @@ std::vector<bool> inLargeComponents(const FaceGraph& graph, std::vector<bool> is
     return isMeasured;
 }
 
+/// Adds the components without the noise of the whole: quiet ones, in length units and in their own
+/// edges, and those of too few vertices to tell, unless most are.
+void addCleanComponents(const FaceGraph& graph, std::vector<bool> isMeasured, Diagnosis& whole) {
+    constexpr double kQuiet = 0.25;  // height over that of the whole
+    const Index n = whole.X.rows();
+    const Components components = connectedComponents(graph.F, n);
+    if (components.count < 2) return;
+    struct Component {
+        std::vector<double> moduli;  // of the residuals of its measured vertices
+        double length = 0.0;         // of its edges
+        Index edges = 0;
+        bool isClean = false;
+    };
+    std::vector<Component> parts(static_cast<std::size_t>(components.count));
+    const VertexGraph& vertices = graph.vertices;
+    std::vector<Index> measured(parts.size());
+    for (Index i = 0; i < n; ++i) measured[components.label[i]] += isMeasured[i];
+    const Eigen::VectorXd residual = scaledSecondResiduals(graph, whole.X, isMeasured);
+    for (Index i = 0; i < n; ++i) {
+        Component& part = parts[components.label[i]];
+        if (isMeasured[i]) part.moduli.push_back(std::abs(residual[i]));
+        for (Index k = vertices.first[i]; k < vertices.first[i + 1]; ++k)
+            part.length += (whole.X.row(i) - whole.X.row(vertices.at[k])).norm();
+        part.edges += vertices.degree(i);
+    }
+    Index few = 0, all = 0;  // vertices
+    for (const Index count : measured) {
+        few += count < kMinMeasured ? count : 0;
+        all += count;
+    }
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        Component& part = parts[k];
+        const double edge = part.length / static_cast<double>(std::max<Index>(part.edges, 1));
+        const double limit =
+            kQuiet * whole.noise.height * std::min(1.0, edge / whole.noise.meanEdge);
+        part.isClean = measured[k] < kMinMeasured ? 2 * few < all
+                                                  : medianDeviation(std::move(part.moduli)) < limit;
+    }
+    whole.isClean.resize(static_cast<std::size_t>(n), false);
+    for (Index i = 0; i < n; ++i)
+        if (parts[components.label[i]].isClean) whole.isClean[i] = true;
+}
+
+/// Adds the vertices of flat parts, such as lakes of a terrain: many connected faces in one plane.
+void addFlatParts(const FaceGraph& graph, const Points& X, std::vector<bool>& isClean) {
+    constexpr double kSame = 1.0 - 1e-10;  // cosine: of a hundred-thousandth of a radian
+    constexpr std::size_t kMinFaces = 50;
+    Points N = areaNormals(X, graph.F);
+    normalizeRows(N);
+    std::vector<bool> isReached(static_cast<std::size_t>(graph.faceCount()), false);
+    std::vector<int> part;
+    for (int start = 0; start < graph.faceCount(); ++start) {
+        part.clear();
+        const auto reach = [&](int f) {
+            if (isReached[f] || !(N.row(f).dot(N.row(start)) > kSame)) return;
+            isReached[f] = true;
+            part.push_back(f);
+        };
+        reach(start);
+        for (std::size_t k = 0; k < part.size(); ++k)
+            for (int c = 0; c < 3; ++c)
+                if (graph.neighbours(part[k], c) >= 0) reach(graph.neighbours(part[k], c));
+        if (part.size() < kMinFaces) continue;
+        isClean.resize(static_cast<std::size_t>(X.rows()), false);
+        for (const int f : part)
+            for (int c = 0; c < 3; ++c) isClean[graph.F(f, c)] = true;
+    }
+}
+
 /// The noise of the mesh as one.
 Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
                         const std::vector<bool>& isMeasured, bool isKnown,
@@ -187,6 +256,8 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
         !hasManySpikes(diagnosis))
         return diagnosis;
     noise.height *= share;
+    // The steps of voxels are flat, too, but do not alternate.
+    if (isWhite) addFlatParts(graph, X, diagnosis.isClean);
     diagnosis.kind = noise.height < kMinHeight * edge ? NoiseKind::None
                      : found.areTail                  ? NoiseKind::Impulses
                                                       : NoiseKind::White;
@@ -245,9 +316,15 @@ Diagnosis diagnose(const FaceGraph& graph, const Points& X, const std::vector<bo
                    bool isKnown, const Progress& progress) {
     Diagnosis diagnosis =
         diagnoseWhole(graph, X, isMeasured, isKnown, progress.part(0.0, kWholeMesh));
+    const bool isOnAll = diagnosis.kind == NoiseKind::White ||
+                         diagnosis.kind == NoiseKind::Impulses ||
+                         diagnosis.kind == NoiseKind::Correlated;
+    if (isOnAll) addCleanComponents(graph, isMeasured, diagnosis);
     if (isKnown) return diagnosis;
     NoiseField field = localNoise(graph, isMeasured, diagnosis);
     if (field.isAny()) {
+        for (std::size_t i = 0; i < diagnosis.isClean.size(); ++i)
+            if (diagnosis.isClean[i]) field.height[static_cast<Index>(i)] = 0.0;
         diagnosis.field = std::move(field);
         diagnosis.kind = NoiseKind::Local;
         diagnosis.noise.size = 1.0;

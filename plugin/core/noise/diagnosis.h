@@ -30,10 +30,11 @@ enum class NoiseKind {
 
 struct Diagnosis {
     NoiseKind kind = NoiseKind::None;
-    NoiseEstimate noise;               ///< Estimate after the removal of spikes.
-    NoiseField field;                  ///< Where it is, if it is Local, Rounded or on ScanLines.
-    Points X;                          ///< n x 3 positions without spikes.
-    Index spikes = 0;                  ///< Number of vertices that are spikes.
+    NoiseEstimate noise;        ///< Estimate after the removal of spikes.
+    NoiseField field;           ///< Where it is, if it is Local, Rounded or on ScanLines.
+    std::vector<bool> isClean;  ///< n: components and flat parts without it; empty: none are.
+    Points X;                   ///< n x 3 positions without spikes.
+    Index spikes = 0;           ///< Number of vertices that are spikes.
     std::optional<int> stretchedAxis;  ///< That of another unit than the others.
     Eigen::RowVector3d voxel = Eigen::RowVector3d::Zero();  ///< Voxel size along each axis.
 

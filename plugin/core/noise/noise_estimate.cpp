@@ -229,14 +229,14 @@ bool SecondResiduals::isNoise(double firstCorrelation, double meanEdge) const {
            (firstCorrelation < 0.0 || height > kWeakHeight * meanEdge);
 }
 
-SecondResiduals secondResiduals(const FaceGraph& graph, const Points& X,
-                                const std::vector<bool>& isMeasured) {
+Eigen::VectorXd scaledSecondResiduals(const FaceGraph& graph, const Points& X,
+                                      std::vector<bool>& isMeasured) {
     using Rows = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
     const VertexGraph& vertices = graph.vertices;
-    std::vector<bool> isInner(isMeasured);
+    const std::vector<bool> wasMeasured(isMeasured);
     for (Index i = 0; i < vertices.size(); ++i)
         for (Index k = vertices.first[i]; k < vertices.first[i + 1]; ++k)
-            isInner[i] = isInner[i] && isMeasured[vertices.at[k]];
+            isMeasured[i] = isMeasured[i] && wasMeasured[vertices.at[k]];
     Rows residual(X.rows(), 4);  // of positions and white noise
     residual << X, whiteNoise(X.rows());
     for (int k = 0; k < 2; ++k) {
@@ -245,11 +245,16 @@ SecondResiduals secondResiduals(const FaceGraph& graph, const Points& X,
                     [&](Index i, const auto& mean) { next.row(i) = residual.row(i) - mean; });
         residual.swap(next);
     }
-    const Eigen::VectorXd along =
-        residual.leftCols<3>().cwiseProduct(smoothVertexNormals(graph, X)).rowwise().sum();
-    const double white = deviationOf(residual.col(3), isInner);
-    return {white > 0.0 ? trimmedDeviation(moduliOf(along, isInner)) / white : 0.0,
-            correlationOfNeighbours(vertices, along, isInner)};
+    const double white = deviationOf(residual.col(3), isMeasured);
+    return residual.leftCols<3>().cwiseProduct(smoothVertexNormals(graph, X)).rowwise().sum() /
+           (white > 0.0 ? white : 1.0);
+}
+
+SecondResiduals secondResiduals(const FaceGraph& graph, const Points& X,
+                                std::vector<bool> isMeasured) {
+    const Eigen::VectorXd residual = scaledSecondResiduals(graph, X, isMeasured);
+    return {trimmedDeviation(moduliOf(residual, isMeasured)),
+            correlationOfNeighbours(graph.vertices, residual, isMeasured)};
 }
 
 NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X,

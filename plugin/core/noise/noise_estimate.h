@@ -48,7 +48,14 @@ void forEachOctave(const VertexGraph& graph, const Points& X, const Points& N,
 double residualCorrelation(const FaceGraph& graph, const Points& X,
                            const std::vector<bool>& isMeasured);
 
-/// The residuals of the residuals, L L X along the normals: what alternates from vertex to vertex.
+/// The residuals of the residuals, L L X along the normals, scaled so that those of white noise
+/// have its deviation.
+/// @param isMeasured  n: whether a vertex counts; those with a neighbour that does not are taken
+/// out.
+Eigen::VectorXd scaledSecondResiduals(const FaceGraph& graph, const Points& X,
+                                      std::vector<bool>& isMeasured);
+
+/// Second residuals as a whole: what alternates from vertex to vertex.
 struct SecondResiduals {
     double height = 0.0;       ///< Standard deviation of the white noise that has these.
     double correlation = 1.0;  ///< Of neighbours; 1 if all vanish.
@@ -62,7 +69,7 @@ struct SecondResiduals {
 /// Tells white noise from the shape under it where that is as high, such as steep ground, cells of
 /// few vertices, ribs and knurls: L L suppresses a wave of six edges 20 times as strongly as noise.
 SecondResiduals secondResiduals(const FaceGraph& graph, const Points& X,
-                                const std::vector<bool>& isMeasured);
+                                std::vector<bool> isMeasured);
 
 /// Height and correlation length of the noise, from the energies along the normals in seven octaves
 /// of lazy diffusion, (I + P) / 2 to the powers 0, 1, 2, 4, ... 64.

@@ -122,6 +122,34 @@ TEST(Diagnosis, MeasuresNoiseUnderAShapeThatIsAsHigh) {
     }
 }
 
+TEST(Denoise, LeavesCleanPartsBesideANoisyOneBitIdentical) {
+    const Mesh noisy = testing::withGaussianNoise(testing::icosphere(5), 0.15, 4);
+    Mesh box = testing::cube(1), fine = testing::cube(12);
+    box.V.col(0).array() += 5.0;
+    fine.V.col(0).array() -= 5.0;
+    const Mesh all = testing::joined(noisy, testing::joined(box, fine));
+    const Index n = noisy.V.rows(), others = all.V.rows() - n;
+    const DenoiseResult result = denoise(all.V, all.F, {});
+    EXPECT_EQ(result.V.bottomRows(others), all.V.bottomRows(others));
+    EXPECT_EQ(result.heights.tail(others).cwiseAbs().maxCoeff(), 0.0);
+    EXPECT_LT(angle(testing::icosphere(5), result.V.topRows(n)), 3.0);
+
+    // A lake on noisy ground.
+    Mesh ground = sheet([](double x, double y) { return 2.0 * wave(x, 40.0) + wave(y, 30.0); });
+    std::mt19937 random(3);
+    std::normal_distribution<double> normal(0.0, 0.15);
+    std::vector<Index> lake;
+    for (Index i = 0; i < ground.V.rows(); ++i) {
+        const double x = ground.V(i, 0), y = ground.V(i, 1);
+        const bool isLake = std::hypot(x - 30.0, y - 20.0) < 8.0;
+        ground.V(i, 2) = isLake ? -1.0 : ground.V(i, 2) + normal(random);
+        if (std::hypot(x - 30.0, y - 20.0) < 7.0) lake.push_back(i);
+    }
+    const Vertices V = denoise(ground.V, ground.F, {}).V;
+    for (const Index i : lake) EXPECT_EQ(V.row(i), ground.V.row(i));
+    EXPECT_NE(V.row(0), ground.V.row(0));
+}
+
 TEST(LeastRisk, MovesAlongTheSurfaceOnlyWhereNoiseHasAllDirections) {
     const Mesh ribs = sheet([](double x, double) { return 0.5 * wave(x, 6.0); });
     const FaceGraph graph = faceGraph(ribs.F, ribs.V.rows());
