@@ -455,9 +455,9 @@ def _nesting(path: Path, size: int, rng: Rng) -> None:
         path.write_text(gifti(POINTS, TRIANGLES, f"<MetaData>{tags}</MetaData>"))
 
 
-@_kind("tags", "dae", "x3d", "wrl")
+@_kind("tags", "dae", "x3d")
 def _tags(path: Path, size: int, rng: Rng) -> None:
-    heads = {".dae": "<COLLADA>", ".x3d": "<X3D><Scene>", ".wrl": "#VRML V2.0 utf8\n"}
+    heads = {".dae": "<COLLADA>", ".x3d": "<X3D><Scene>"}
     path.write_text(heads[path.suffix] + "<node " * (size // 6))
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from meshlab_spectral.documents.causes import unreadable
+from meshlab_spectral.documents.side_files import is_outside
 from meshlab_spectral.errors import MeshFileError
 
 Array = NDArray[np.float64]
@@ -61,16 +62,28 @@ class Document(ABC):
         coordinates"), for the warning about what another format loses.
     warnings
         Problems noticed while reading.
+    largest_face
+        Corners of the largest polygon; 3 where it does not matter.
     """
 
     path: Path
     parts: list[Part]
     contents: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
+    largest_face: int = field(default=3, kw_only=True)
 
     def side_files(self) -> Iterable[str]:
         """Return the names of files that it refers to, such as textures, relative to its folder."""
         return ()
+
+    def is_harmless(self) -> bool:
+        """Whether MeshLab may read the file: it would open whatever that names.
+
+        And divide polygons in a time that is the square of their corners: 8 s for one of 2,000.
+        """
+        if self.largest_face > _MOST_CORNERS:
+            return False
+        return not any(is_outside(self.path, name) for name in self.side_files())
 
     @abstractmethod
     def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
@@ -98,6 +111,7 @@ class Document(ABC):
         """
 
 
+_MOST_CORNERS = 500
 # The largest coordinate that the filters accept: MeshLab keeps lengths in single precision.
 _LARGEST = 1e37
 

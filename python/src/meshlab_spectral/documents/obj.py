@@ -37,6 +37,7 @@ _TEXTURE = re.compile(
     rb"(?:[ \t]+-\w+(?:[ \t]+(?:on|off|sphere|cube_\w+|[rgbmlz]|[-+\d.e]+)(?=[ \t]))*)*[ \t]+(.*)",
     re.MULTILINE | re.IGNORECASE,
 )
+_MOST_LIBRARIES = 100  # MeshLab reads each as often as it is named
 _KEYWORDS = ["v", "f", *_CONTENTS]
 _CONTINUED = 3  # vertices, faces and normals, which may go on after a backslash
 _VERTEX, _FACE, _NORMAL, _LIBRARY = map(_KEYWORDS.index, ("v", "f", "vn", "mtllib"))
@@ -65,6 +66,9 @@ class _Obj(Document):
         with target.open("wb") as file:
             write_patched(file, self.content, changes)
         return copy_side_files(self.path, target, self.side_files())
+
+    def is_harmless(self) -> bool:
+        return len(self.libraries) <= _MOST_LIBRARIES and super().is_harmless()
 
     def side_files(self) -> Iterator[str]:
         """Yield the names of material libraries and their textures."""
@@ -131,6 +135,7 @@ def _document(path: Path, content: bytes) -> Document:
         libraries=[libraries.line(k).removeprefix(b"mtllib") for k in range(len(libraries))],
         normals=normals.numbers(path, 1),
         which=which[split],
+        largest_face=int(faces.words.max(initial=1)) - 1,
     )
 
 

@@ -122,7 +122,8 @@ def _document(path: Path, content: bytes) -> Document:
         "comments": b"#" in content,
     }
     contents = [name for name, is_there in kinds.items() if is_there]
-    return _Off(path, [part], contents, content=content, rows=rows)
+    largest = int(sizes.max(initial=3))
+    return _Off(path, [part], contents, content=content, rows=rows, largest_face=largest)
 
 
 def _header(path: Path, lines: Lines) -> tuple[bytes, tuple[int, int], int]:

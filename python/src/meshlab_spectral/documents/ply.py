@@ -152,6 +152,7 @@ def read(path: Path) -> PlyDocument:
         rows=rows if ply.text else np.ndarray(len(vertices), _type(ply, vertex), content, begin),
         begin=begin,
         normals=_columns(vertex, *NORMALS) if has_normals else None,
+        largest_face=int(corners[1].max()) if (corners := _corners(tables.get("face", {}))) else 3,
         first={AXES: _first_word(vertex, "x"), NORMALS: _first_word(vertex, "nx")},
     )
 

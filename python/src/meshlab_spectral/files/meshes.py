@@ -20,7 +20,7 @@ from meshlab_spectral.documents.document import Array, Document, Indices, Part
 from meshlab_spectral.documents.names import shown
 from meshlab_spectral.documents.opening import format_of, open_document
 from meshlab_spectral.documents.placement import IDENTITY, Placement
-from meshlab_spectral.documents.side_files import copy_side_files, is_outside
+from meshlab_spectral.documents.side_files import copy_side_files
 from meshlab_spectral.errors import FilterError, FormatError, MeshFileError, OptionError
 from meshlab_spectral.files.formats import is_same_format
 from meshlab_spectral.files.meshlab_files import (
@@ -469,11 +469,7 @@ def _loaded(
     """
     import pymeshlab
 
-    if document is None or (
-        source.suffix.lower() in _READ_BY_MESHLAB
-        # MeshLab would open whatever a file names.
-        and not any(is_outside(source, name) for name in document.side_files())
-    ):
+    if document is None or (source.suffix.lower() in _READ_BY_MESHLAB and document.is_harmless()):
         mesh_set = pymeshlab.MeshSet(verbose=verbose)
         try:
             read_with_meshlab(mesh_set, source)

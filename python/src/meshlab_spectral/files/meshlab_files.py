@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import os
 import re
 import shutil
 from collections.abc import Collection
@@ -15,6 +16,7 @@ from meshlab_spectral import _core
 from meshlab_spectral.documents.budget import guarded
 from meshlab_spectral.documents.causes import other_kind
 from meshlab_spectral.documents.document import Document
+from meshlab_spectral.documents.names import shown
 from meshlab_spectral.documents.opening import PATCHED
 from meshlab_spectral.documents.side_files import beside, is_outside
 from meshlab_spectral.errors import FormatError, MeshFileError
@@ -48,7 +50,10 @@ _TAKING_IN = (".x3d", ".x3dv", ".wrl")
 _INLINED = re.compile(r"\b(?:Inline|ExternProtoDeclare|EXTERNPROTO)\b[^>}]*")
 _QUOTED = re.compile(r"[\"'\s]([^\"'\s\0]+)[\"']")
 _REMOTE = re.compile("https?:|urn:|#", re.IGNORECASE)
-_SHARE = 0.75  # of the memory there is, for what MeshLab reads with its textures
+# What MeshLab may take: bytes, of which a texture 4,096 pixels wide takes 64 MiB; times the size of
+# a file and those beside it; and of the memory there is.
+_MESHLAB_BYTES, _TIMES, _SHARE = 1 << 30, 40, 0.75
+_LONGEST = 300  # characters of its reasons
 _QUALITY = "spectral_quality"  # a passing attribute
 _LEAST_ROOM = 1 << 14  # bytes, a few blocks
 # MeshLab's substitute for textures not found, such as those with blanks in their names.
@@ -75,13 +80,13 @@ def read_with_meshlab(mesh_set: Any, source: Path) -> None:
 
     _check_inlined(source)
     try:
-        with guarded(source.stat().st_size, _SHARE * min(_core.available_memory(), 1e15)):
+        with guarded(source.stat().st_size, _memory_for(source)):
             mesh_set.load_new_mesh(str(source))
     except (pymeshlab.PyMeshLabException, RuntimeError) as error:  # some plugins raise their own
         foreign = other_kind(source)
         if foreign is not None:
             raise foreign from error
-        reason = reason_of(error)
+        reason = shown(reason_of(error), _LONGEST)
         if reason.startswith("Unknown format"):
             raise MeshFileError(
                 f"{source} ends in {source.suffix or 'nothing'}, which MeshLab cannot read as a "
@@ -99,6 +104,14 @@ def read_with_meshlab(mesh_set: Any, source: Path) -> None:
             "Visible Layers', or save them separately",
             "unsupported",
         )
+
+
+def _memory_for(source: Path) -> float:
+    """Return the bytes that MeshLab may take for a file, with the textures beside it."""
+    with os.scandir(source.parent) as entries:
+        size = sum(one.stat().st_size for one in entries if one.is_file(follow_symlinks=False))
+    most = _MESHLAB_BYTES + _TIMES * (size + source.stat().st_size)
+    return min(most, _SHARE * _core.available_memory())
 
 
 def _check_inlined(source: Path) -> None:
