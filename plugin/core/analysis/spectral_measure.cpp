@@ -83,7 +83,7 @@ Quadrature SpectralMeasure::last() const {
 void addMeasures(const KrylovOperator& S, const Laplacian& laplacian,
                  const Eigen::MatrixXd& signals, int dimension, const Progress& progress,
                  ShapeAndNoise& measures) {
-    KrylovSpaces spaces(S, laplacian, signals, KrylovSpaces::kOrthogonal, KeptBasis::None);
+    KrylovSpaces spaces(S, laplacian, signals, KrylovSpaces::kOrthogonal, false);
     constexpr int kShape = 3, kSignals = kShape + 1;
     using Columns = std::array<Quadrature, kSignals>;
     const auto grow = [&](int begin, int end) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 
@@ -46,6 +47,10 @@ constexpr double kShrunken = 0.1;
 
 /// More steps make no difference, and take hours.
 constexpr int kMaxSteps = 1000;
+
+/// Multiple of the cutoff, or of that of the default size if it is larger, beyond which frequencies
+/// are those of single vertices of slivers.
+constexpr double kBeyond = 24.0;
 
 void checkOptions(const FilterOptions& options) {
     if (options.steps < 0 || options.steps > kMaxSteps)
@@ -93,15 +98,18 @@ double sizeOf(const Surface& surface) {
     return std::sqrt(surface.X.rowwise().squaredNorm().mean());  // X is centred
 }
 
+double meanEdgeOf(const FilterOptions& options, const Surface& surface) {
+    return options.whole ? options.whole->meanEdge : meanEdgeLength(surface.X, surface.F);
+}
+
 /// Evaluation options; those of automatic steps need not be much more accurate than the steps and
 /// the details.
 EvaluationOptions evaluationFor(const FilterOptions& options, const Surface& surface) {
     EvaluationOptions evaluation = options.evaluation;
     if (options.steps > 0) return evaluation;
-    const double edge =
-        options.whole ? options.whole->meanEdge : meanEdgeLength(surface.X, surface.F);
-    const double error = std::min({kShareOfTolerance * options.tolerance,
-                                   kShareOfFeatureSize * options.featureSize, kShareOfEdge * edge});
+    const double error =
+        std::min({kShareOfTolerance * options.tolerance, kShareOfFeatureSize * options.featureSize,
+                  kShareOfEdge * meanEdgeOf(options, surface)});
     evaluation.accuracy =
         std::max(evaluation.accuracy, std::min(error / sizeOf(surface), kLoosestAccuracy));
     evaluation.atEveryVertex = false;
@@ -119,9 +127,10 @@ std::optional<ThinPartsOfTile> thinPartsOfTile(const FilterOptions& options,
 
 /// Runs the requested steps.
 AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate,
-                             const TransferFunction& F, const Vertices& X,
+                             const TransferFunction& F, const Surface& surface,
                              const FilterOptions& options, const ThinPartsOfTile* tile,
                              const Progress& progress) {
+    const Vertices& X = surface.X;
     // A truncated spectrum may drop the residual even if the gain is 1.
     const bool isIdentity = F.isOne() && options.evaluation.spectrum == Spectrum::Full;
     // A truncated basis is that of the mesh, whose metric must not change.
@@ -145,6 +154,12 @@ AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evalua
         return done;
     }
     if (options.steps == 0) {
+        if (options.evaluation.spectrum == Spectrum::Full && F.discontinuities().empty()) {
+            const double size = defaultFeatureSize(meanEdgeOf(options, surface),
+                                                   std::numeric_limits<double>::infinity());
+            const double last = kBeyond * std::max(F.cutoff(), cutoffFrequency(size));
+            laplacians.boundEigenvalues(last * last);
+        }
         return automaticSteps(
             laplacians, evaluate, X,
             {options.tolerance, options.maxSteps, options.passes, areThinPartsKept, tile},
@@ -173,7 +188,7 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     StepEvaluator evaluate(evaluation, interior, transfer);
     const std::optional<ThinPartsOfTile> tile = thinPartsOfTile(options, surface);
     // Kovnatsky et al. 2012, Eq. 11, or its limit.
-    const AutomaticSteps steps = filterInSteps(laplacians, evaluate, transfer, surface.X, options,
+    const AutomaticSteps steps = filterInSteps(laplacians, evaluate, transfer, surface, options,
                                                tile ? &*tile : nullptr, progress);
     if (!steps.last.X.allFinite()) throw SolverFailure("the filtered coordinates are not finite");
     const double areaBefore = surfaceArea(surface.X, surface.F);

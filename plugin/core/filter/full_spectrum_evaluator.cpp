@@ -10,11 +10,11 @@ namespace spectral {
 
 namespace {
 
-/// Dimension at which products cost as much as a factorization and its solves, for n vertices: a
-/// fit to measurements. It is higher after the first evaluation: if products sufficed there, a
+/// Products per column that cost as much as a factorization and its solves, for n vertices: a fit
+/// to measurements. There are more after the first evaluation: if products sufficed there, a
 /// symbolic analysis would pay off over fewer evaluations.
-int affordableDimension(Index n, bool isFirst) {
-    return static_cast<int>((isFirst ? 36.0 : 54.0) * std::pow(static_cast<double>(n) / 1e5, 0.2));
+int affordableProducts(Index n, bool isFirst) {
+    return static_cast<int>((isFirst ? 95.0 : 140.0) * std::pow(static_cast<double>(n) / 1e5, 0.2));
 }
 
 Evaluation joined(std::vector<FullSpectrumResult> results) {
@@ -71,7 +71,9 @@ Evaluation FullSpectrumEvaluator::evaluate(const Laplacian& laplacian, const Eig
     } catch (const Error& error) {
         if (error.code() != ErrorCode::OutOfMemory || solver_ == Solver::Factorization) throw;
         lacksMemory_ = true;
-        return *evaluateByProducts(laplacian, gains, X, options, progress);
+        if (auto evaluation = evaluateByProducts(laplacian, gains, X, options, progress))
+            return *std::move(evaluation);
+        throw;
     }
     return evaluateInKrylovSpaces(laplacian, ldlt_, gains, X, std::move(options), progress);
 }
@@ -82,16 +84,15 @@ std::optional<Evaluation> FullSpectrumEvaluator::evaluateByProducts(const Laplac
                                                                     FullSpectrumOptions options,
                                                                     const Progress& progress) {
     const bool isRequired = solver_ == Solver::Products || lacksMemory_;
+    // With a symbolic analysis at hand, factorizations cost less.
     const bool isWorthTrying =
-        solver_ == Solver::Cheapest && !atEveryVertex_ && !areProductsCostly_;
+        solver_ == Solver::Cheapest && !atEveryVertex_ && ldlt_.factorizations() == 0;
     if (!isRequired && !isWorthTrying) return {};
-    if (!isRequired) options.affordable = affordableDimension(laplacian.D.size(), products_ == 0);
-    const Products A(laplacian, F_.cutoff());
+    if (!isRequired) options.affordable = affordableProducts(laplacian.D.size(), products_ == 0);
     std::vector<FullSpectrumResult> results =
-        applyFullSpectrum(laplacian, A, gains, X, options, progress);
-    products_ += A.count();
-    areProductsCostly_ = results.empty();
+        applyFullSpectrum(laplacian, Products(laplacian, F_.cutoff()), gains, X, options, progress);
     if (results.empty()) return {};
+    products_ += static_cast<int>(X.cols()) * results.front().dimension;
     return joined(std::move(results));
 }
 

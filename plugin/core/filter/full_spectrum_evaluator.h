@@ -30,10 +30,9 @@ Evaluation evaluateInKrylovSpaces(const Laplacian& laplacian, const ShiftedLdlt&
 /// Evaluates a continuous F over all n harmonics, by a Krylov method that computes none of them
 /// (full_spectrum.h).
 ///
-/// Products with W alone are tried first if the accuracy refers to the surface as a whole: they
-/// cost a tenth of a solve and need no factorization, but may need many dimensions if triangles are
-/// needles, F is steep, or the feature size spans many edges. Once they are expected to cost more
-/// than a factorization, all later Laplacians are factorized.
+/// Products with W alone cost a tenth of a solve and need no factorization, but there may have to
+/// be many if triangles are needles, F is steep, or the feature size spans many edges. If they cost
+/// more than a factorization, this and all later Laplacians are factorized.
 class FullSpectrumEvaluator : public Evaluator {
   public:
     /// @param F  kept by reference.
@@ -60,7 +59,6 @@ class FullSpectrumEvaluator : public Evaluator {
     double accuracy_;
     bool atEveryVertex_;
     Solver solver_;
-    bool areProductsCostly_ = false;         // more than a factorization, as estimated
     std::optional<SpectrumRange> spectrum_;  // of the first Laplacian
     SpareVectors spare_;
     std::map<double, double> poles_;  // by power, for those requested so far

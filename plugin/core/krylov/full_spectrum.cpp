@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "core/krylov/krylov_spaces.h"
+#include "core/krylov/series_evaluation.h"
 #include "core/support/errors.h"
-#include "core/support/memory.h"
 
 namespace spectral {
 
@@ -20,18 +20,9 @@ int nextCheck(int m, int fewest) { return m + std::max(fewest, m / 10); }
 /// Rows from which a solve takes far longer than a check.
 constexpr Index kCostlySolve = 10000;
 
-/// Dimension from which the error predicts the final one: on real meshes, its logarithm falls like
-/// the dimension to the power 1.5.
-constexpr int kMinDimensionToJudge = 9;
-constexpr double kPace = 1.0 / 1.5;
-
 /// Multiple of the accuracy below which the error at the vertices is estimated as well. Each
 /// estimate is a pass over the basis, wasted far from convergence, but its rate takes a few checks.
 constexpr double kNearlyConverged = 30.0;
-
-/// Factor on the error estimate without convergence: at a cusp the changes decay more slowly than
-/// any geometric series. Large enough for all cusps of full_spectrum_test.
-constexpr double kNotConverged = 3.0;
 
 /// Relative round-off of solves beyond which results are useless.
 constexpr double kUselessRoundOff = 0.03;
@@ -175,48 +166,6 @@ class Approximation {
     double largest_ = 0.0;
 };
 
-/// How to keep the basis: not at all if the largest one that may be needed does not fit in memory.
-KeptBasis keptBasis(const KrylovOperator& S, const Eigen::MatrixXd& X,
-                    const FullSpectrumOptions& options) {
-    constexpr double kNarrow = 1e-6;
-    if (S.needsOrthogonalBasis() || options.accuracy < kNarrow) return KeptBasis::Double;
-    if (options.atEveryVertex) return KeptBasis::Single;
-    const int dimensions =
-        std::min(options.affordable.value_or(options.maxDimension), options.maxDimension);
-    const double bytes =
-        static_cast<double>(sizeof(float)) * dimensions * static_cast<double>(X.size());
-    return bytes > availableMemory() ? KeptBasis::None : KeptBasis::Single;
-}
-
-/// The signals with these coefficients in their bases; X are the signals the spaces started from.
-std::vector<Eigen::MatrixXd> combined(KrylovSpaces& spaces, const Eigen::MatrixXd& X,
-                                      const std::vector<Approximation>& approximations,
-                                      bool isKept) {
-    if (isKept) {
-        std::vector<std::vector<Eigen::VectorXd>> sets;
-        for (const Approximation& approximation : approximations)
-            sets.push_back(approximation.coefficients());
-        return spaces.combineAll(sets);
-    }
-    std::vector<Eigen::MatrixXd> Y(approximations.size(),
-                                   Eigen::MatrixXd::Zero(X.rows(), X.cols()));
-    spaces.restart(X);
-    for (Index j = 0;; ++j) {
-        bool isLast = true;
-        for (std::size_t g = 0; g < Y.size(); ++g) {
-            Eigen::RowVectorXd factors = Eigen::RowVectorXd::Zero(X.cols());
-            for (Index c = 0; c < X.cols(); ++c) {
-                const Eigen::VectorXd& coefficients = approximations[g].coefficients()[c];
-                if (j < coefficients.size()) factors[c] = coefficients[j];
-                isLast = isLast && j + 1 >= coefficients.size();
-            }
-            spaces.addNewest(factors, Y[g]);
-        }
-        if (isLast) return Y;
-        spaces.extend();
-    }
-}
-
 }  // namespace
 
 std::vector<FullSpectrumResult> applyFullSpectrum(
@@ -224,15 +173,19 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
     const Eigen::MatrixXd& X, const FullSpectrumOptions& options, const Progress& progress) {
     const Eigen::VectorXd& D = laplacian.D;
     const ConstantModes& constants = laplacian.constants;
+    const Eigen::VectorXd omega = sampleFrequencies(S, options.samples);
+    // Over the surface alone, a Lanczos space takes as few solves, and so few that it costs
+    // nothing.
+    if (S.isProduct() || options.atEveryVertex) {
+        auto results = applySeries(laplacian, S, gains, X, omega, options, progress);
+        if (!results.empty() || S.isProduct()) return results;
+    }
     double orthogonal = KrylovSpaces::kOrthogonal;
     if (options.atEveryVertex)  // at vertices of small mass, basis vectors have large entries
         orthogonal = std::min(orthogonal, options.accuracy * std::sqrt(D.minCoeff() / D.sum()));
-    const KeptBasis kept = keptBasis(S, X, options);
-    const double errorOfBasis = kept == KeptBasis::Single ? 1e-7 : 0.0;
-    KrylovSpaces spaces(S, laplacian, X, orthogonal, kept, options.spare);
+    KrylovSpaces spaces(S, laplacian, X, orthogonal, true, options.spare);
     if (!(spaces.largestEntry() > 0.0)) return {gains.size(), {X, 0.0, 0, true}};
     std::vector<FullSpectrumResult> results(gains.size());
-    const Eigen::VectorXd omega = sampleFrequencies(S, options.samples);
     std::vector<Approximation> approximations;
     for (const Gain& gain : gains)
         approximations.emplace_back(spaces, gain, S, omega, D.minCoeff(), options);
@@ -241,8 +194,7 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
     // last vectors are round-off.
     const Index largest = std::min<Index>(options.maxDimension, D.size() - constants.count());
     // At the vertices, the rate of decay takes changes over several dimensions.
-    const bool areSolvesCostly =
-        S.needsOrthogonalBasis() && !options.atEveryVertex && D.size() >= kCostlySolve;
+    const bool areSolvesCostly = !options.atEveryVertex && D.size() >= kCostlySolve;
     double firstError = 0.0, furthest = 0.0, roundOff = options.roundOff;
     bool isDone = false;
     for (int m = 1, check = 3; !isDone; ++m) {
@@ -262,7 +214,7 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
         for (std::size_t g = 0; g < gains.size(); ++g) {
             FullSpectrumResult& result = results[g];
             result.dimension = isInvariant ? m - 1 : m;
-            result.errorEstimate = approximations[g].update() + errorOfBasis;
+            result.errorEstimate = approximations[g].update();
             result.converged = result.errorEstimate <= options.accuracy;
             allConverged = allConverged && result.converged;
             largestError = std::max(largestError, result.errorEstimate);
@@ -274,9 +226,6 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
         if (firstError <= 0.0) firstError = std::max(largestError, options.accuracy * 10);
         const double done =
             std::log(firstError / largestError) / std::log(firstError / options.accuracy);
-        if (options.affordable && m >= kMinDimensionToJudge &&
-            m > *options.affordable * std::pow(std::max(0.0, done), kPace))
-            return {};
         furthest = std::clamp(done, furthest, 1.0);  // the estimate may increase
     }
 
@@ -290,7 +239,10 @@ std::vector<FullSpectrumResult> applyFullSpectrum(
         if (!result.converged) result.errorEstimate *= kNotConverged;
     }
     // Kovnatsky et al. 2012, Eq. 6: Y = Phi F(Lambda^1/2) Phi^T D X, except for the constants.
-    std::vector<Eigen::MatrixXd> Y = combined(spaces, X, approximations, kept != KeptBasis::None);
+    std::vector<std::vector<Eigen::VectorXd>> coefficients;
+    for (const Approximation& approximation : approximations)
+        coefficients.push_back(approximation.coefficients());
+    std::vector<Eigen::MatrixXd> Y = spaces.combineAll(coefficients);
     for (std::size_t g = 0; g < gains.size(); ++g) {
         FullSpectrumResult& result = results[g];
         result.Y = std::move(Y[g]);

@@ -15,7 +15,7 @@ namespace spectral {
 struct FullSpectrumOptions {
     double accuracy = 1e-6;  ///< Requested error of Y, relative as in FullSpectrumResult.
     int maxDimension = 200;  ///< Krylov dimension at which to give up.
-    /// Give up without a result as soon as more than this Krylov dimension is expected.
+    /// Give up without a result if more than this number of products per column is needed.
     std::optional<int> affordable;
     bool atEveryVertex = true;  ///< If false, only |dY|_D / |X|_D, over the surface, is bounded.
 
@@ -34,13 +34,17 @@ struct FullSpectrumOptions {
     std::vector<double> samples;
 };
 
+/// Factor on the error estimate without convergence: at a cusp the changes decay more slowly than
+/// any geometric series. Large enough for all cusps of full_spectrum_test.
+inline constexpr double kNotConverged = 3.0;
+
 struct FullSpectrumResult {
     Eigen::MatrixXd Y;  ///< n x c, the filtered signals.
 
     /// Estimated error of Y, relative to X without its constants: the larger of |dY|_D / |X|_D and
     /// max|dY| / max|X|, over all columns together.
     double errorEstimate = 0.0;
-    int dimension = 0;  ///< Krylov dimension reached: solves per column.
+    int dimension = 0;  ///< Krylov dimension reached: applications of S per column.
 
     /// Whether errorEstimate is within the accuracy. False when F is too steep or has a cusp, as
     /// fractional powers of a band-stop with stop gain 0 have at its centre.
@@ -50,12 +54,12 @@ struct FullSpectrumResult {
 /// Y = F(sqrt(A)) X over the whole spectrum for several gains F, without computing eigenvectors.
 ///
 /// Equals the result with all n harmonics, Y = Phi F(Lambda^1/2) Phi^T D X (Kovnatsky et al. 2012,
-/// Eq. 6). Computed by a Lanczos method, rational with one repeated real pole or polynomial,
-/// depending on S (krylov_operator.h, krylov_spaces.h).
+/// Eq. 6). Computed by a Chebyshev series in S (series_evaluation.h), products with A always; by a
+/// Lanczos method with solves (krylov_spaces.h) if the series would take too many of them.
 ///
-/// The stopping rule is a posteriori: over the surface by a bound from the spectral measure
-/// (KrylovSpaces::squaredErrorBound), at every vertex from the differences between approximations a
-/// few dimensions apart and their rate of decay.
+/// The stopping rule of the latter is a posteriori: over the surface by a bound from the spectral
+/// measure (KrylovSpaces::squaredErrorBound), at every vertex from the differences between
+/// approximations a few dimensions apart and their rate of decay.
 ///
 /// @param gains  continuous, finite and >= 0 on [0, infinity]; constant modes keep gain 1.
 /// @param X      n x c signals, e.g. the three coordinates.

@@ -37,9 +37,8 @@ class KrylovOperator {
     virtual double centralFrequency() const = 0;  ///< The frequency that is resolved best.
     virtual double lastFrequency() const = 0;     ///< Upper bound of all frequencies.
 
-    /// Whether the basis must be reorthogonalized. Products with A are so cheap that the few more
-    /// that make up for lost orthogonality (Druskin and Knizhnerman 1991) cost less.
-    virtual bool needsOrthogonalBasis() const = 0;
+    /// Whether S is A itself, but for a factor: then theta is lambda over its largest value.
+    virtual bool isProduct() const = 0;
 };
 
 /// S = (W + lambda_p D)^-1 D, with theta = 1/(lambda + lambda_p): one solve per dimension.
@@ -58,7 +57,7 @@ class ShiftInvert final : public KrylovOperator {
     double errorOf(double theta, double relative) const override { return relative * theta; }
     double centralFrequency() const override;
     double lastFrequency() const override;
-    bool needsOrthogonalBasis() const override { return true; }
+    bool isProduct() const override { return false; }
 
   private:
     const ShiftedLdlt& ldlt_;
@@ -74,7 +73,7 @@ class Products final : public KrylovOperator {
   public:
     /// @param laplacian  kept by reference.
     /// @param central    frequency around which F varies.
-    /// @throws Error  with code OutOfMemory, when even a space that keeps no basis does not fit.
+    /// @throws Error  with code OutOfMemory, when a series of products does not fit.
     Products(const Laplacian& laplacian, double central);
 
     Eigen::ArrayXd apply(const Eigen::VectorXd& D, const double* Q, int columns,
@@ -87,15 +86,13 @@ class Products final : public KrylovOperator {
     double errorOf(double, double relative) const override { return relative; }
     double centralFrequency() const override { return central_; }
     double lastFrequency() const override;
-    bool needsOrthogonalBasis() const override { return false; }
-    int count() const { return count_; }  ///< Products of W with a vector so far.
+    bool isProduct() const override { return true; }
 
   private:
     const Laplacian& laplacian_;
     double central_;
     double largest_;         // upper bound of lambda
     Eigen::VectorXi order_;  // identity: vectors are in the order of the mesh
-    mutable int count_ = 0;
 };
 
 }  // namespace spectral

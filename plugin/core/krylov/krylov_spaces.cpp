@@ -86,7 +86,7 @@ Moments<Columns> momentsOf(const Eigen::VectorXd& D, const Eigen::VectorXi& labe
 }  // namespace
 
 KrylovSpaces::KrylovSpaces(const KrylovOperator& S, const Laplacian& laplacian,
-                           const Eigen::MatrixXd& X, double orthogonal, KeptBasis kept,
+                           const Eigen::MatrixXd& X, double orthogonal, bool isKept,
                            SpareVectors* spare)
     : S_(S),
       constants_(laplacian.constants),
@@ -94,7 +94,7 @@ KrylovSpaces::KrylovSpaces(const KrylovOperator& S, const Laplacian& laplacian,
       columns_(static_cast<int>(X.cols())),
       D_(laplacian.D.size()),
       label_(laplacian.D.size()),
-      kept_(kept),
+      isKept_(isKept),
       spare_(spare),
       alpha_(X.cols()),
       beta_(X.cols()),
@@ -105,10 +105,6 @@ KrylovSpaces::KrylovSpaces(const KrylovOperator& S, const Laplacian& laplacian,
       mayBeRoundOff_(X.cols()),
       roundOff_(kBreakdown) {
     assert(columns_ >= 1 && columns_ <= kMaxSignals);
-    if (kept == KeptBasis::Single) {
-        basis_.emplace<Vectors<float>>();
-        unit_ = 1.0 / std::sqrt(laplacian.D.sum());
-    }
     for (Eigen::VectorXd* rows : {&newest_, &before_, &next_}) rows->resize(S.rows() * columns_);
     before_.setZero();
     const int* order = S.order();
@@ -122,24 +118,7 @@ KrylovSpaces::KrylovSpaces(const KrylovOperator& S, const Laplacian& laplacian,
 }
 
 KrylovSpaces::~KrylovSpaces() {
-    if (spare_ == nullptr) return;
-    std::visit(
-        [&](auto& basis) {
-            auto& spare = std::get<std::decay_t<decltype(basis)>>(*spare_);
-            std::move(basis.begin(), basis.end(), std::back_inserter(spare));
-        },
-        basis_);
-}
-
-void KrylovSpaces::restart(const Eigen::MatrixXd& X) {
-    assert(kept_ == KeptBasis::None);
-    before_.setZero();
-    const auto columns = static_cast<std::size_t>(columns_);
-    alpha_.assign(columns, {});
-    beta_.assign(columns, {});
-    ritz_.assign(columns, {});
-    mayBeRoundOff_.assign(columns, false);
-    withColumns(columns_, [&](auto count) { start<count>(X); });
+    if (spare_ != nullptr) std::move(basis_.begin(), basis_.end(), std::back_inserter(*spare_));
 }
 
 bool KrylovSpaces::extend() {
@@ -191,30 +170,19 @@ void KrylovSpaces::start(const Eigen::MatrixXd& X) {
 /// Computes the rows of the newest vector and appends it to the basis.
 template <int Columns, class MakeRow>
 void KrylovSpaces::append(const MakeRow& row) {
-    if (kept_ == KeptBasis::None) {
-        parallelRows(D_.size(), [&](Index begin, Index end) {
-            for (Index i = begin; i < end; ++i) row(i);
-        });
-        return;
+    Eigen::VectorXd vector;
+    if (isKept_ && spare_ != nullptr && !spare_->empty()) {
+        vector = std::move(spare_->back());
+        spare_->pop_back();
     }
-    std::visit(
-        [&](auto& basis) {
-            using Vector = typename std::decay_t<decltype(basis)>::value_type;
-            using Scalar = typename Vector::Scalar;
-            Vector vector;
-            if (spare_ != nullptr && !std::get<std::vector<Vector>>(*spare_).empty()) {
-                vector = std::move(std::get<std::vector<Vector>>(*spare_).back());
-                std::get<std::vector<Vector>>(*spare_).pop_back();
-            }
-            vector.resize(D_.size() * Columns);
-            const double inverse = 1.0 / unit_;
-            parallelRows(D_.size(), [&](Index begin, Index end) {
-                for (Index i = begin; i < end; ++i)
-                    rowOf<Columns>(vector.data(), i) = (inverse * row(i)).template cast<Scalar>();
-            });
-            basis.push_back(std::move(vector));
-        },
-        basis_);
+    if (isKept_) vector.resize(D_.size() * Columns);
+    parallelRows(D_.size(), [&](Index begin, Index end) {
+        for (Index i = begin; i < end; ++i) {
+            const Row<Columns> values = row(i);
+            if (isKept_) rowOf<Columns>(vector.data(), i) = values;
+        }
+    });
+    if (isKept_) basis_.push_back(std::move(vector));
 }
 
 template <int Columns>
@@ -240,8 +208,7 @@ void KrylovSpaces::extendColumns() {
     Row<Columns> beta = moments.squares.sqrt();
     for (int c = 0; c < Columns; ++c)
         if (!exhausted_[c]) alpha_[c].push_back(alpha[c]);
-    if (kept_ != KeptBasis::None && S_.needsOrthogonalBasis() && losesOrthogonality(beta))
-        beta = orthogonalize<Columns>(beta, w);
+    if (isKept_ && losesOrthogonality(beta)) beta = orthogonalize<Columns>(beta, w);
 
     Row<Columns> inverse = Row<Columns>::Zero();
     for (int c = 0; c < Columns; ++c) {
@@ -300,42 +267,33 @@ Eigen::Array<double, 1, Columns> KrylovSpaces::orthogonalize(Eigen::Array<double
                                                              double* w) {
     using Overlaps = Eigen::Array<double, Eigen::Dynamic, Columns>;
     const Index n = D_.size();
-    std::visit(
-        [&](const auto& basis) {
-            const auto m = static_cast<Index>(basis.size());
-            for (int pass = 0; pass < 2; ++pass) {
-                const Overlaps overlaps = parallelSum(
-                    n, Overlaps(Overlaps::Zero(m, Columns)), [&](Index begin, Index end) {
-                        Overlaps sums = Overlaps::Zero(m, Columns);
-                        for (Index j = 0; j < m; ++j) {
-                            Row<Columns> sum = Row<Columns>::Zero();
-                            for (Index i = begin; i < end; ++i)
-                                sum += D_[i] *
-                                       rowOf<Columns>(basis[j].data(), i).template cast<double>() *
-                                       rowOf<Columns>(w, i);
-                            sums.row(j) = sum;
-                        }
-                        return sums;
-                    });
-                parallelRows(n, [&](Index begin, Index end) {
-                    for (Index j = 0; j < m; ++j) {
-                        const Row<Columns> overlap = overlaps.row(j);
-                        for (Index i = begin; i < end; ++i)
-                            rowOf<Columns>(w, i) -=
-                                overlap *
-                                rowOf<Columns>(basis[j].data(), i).template cast<double>();
-                    }
-                });
-                const Row<Columns> squares =  // without the means, which are removed later
-                    momentsOf<Columns>(D_, label_, constants_.masses(), [&](Index i) {
-                        return Row<Columns>(rowOf<Columns>(w, i));
-                    }).squares;
-                const Row<Columns> before = std::exchange(norm, squares.sqrt());
-                if ((norm >= 0.5 * before).all())
-                    break;  // otherwise cancellation requires a second pass
+    const auto m = static_cast<Index>(basis_.size());
+    for (int pass = 0; pass < 2; ++pass) {
+        const Overlaps overlaps =
+            parallelSum(n, Overlaps(Overlaps::Zero(m, Columns)), [&](Index begin, Index end) {
+                Overlaps sums = Overlaps::Zero(m, Columns);
+                for (Index j = 0; j < m; ++j) {
+                    Row<Columns> sum = Row<Columns>::Zero();
+                    for (Index i = begin; i < end; ++i)
+                        sum += D_[i] * rowOf<Columns>(basis_[j].data(), i) * rowOf<Columns>(w, i);
+                    sums.row(j) = sum;
+                }
+                return sums;
+            });
+        parallelRows(n, [&](Index begin, Index end) {
+            for (Index j = 0; j < m; ++j) {
+                const Row<Columns> overlap = overlaps.row(j);
+                for (Index i = begin; i < end; ++i)
+                    rowOf<Columns>(w, i) -= overlap * rowOf<Columns>(basis_[j].data(), i);
             }
-        },
-        basis_);
+        });
+        const Row<Columns> squares =  // without the means, which are removed later
+            momentsOf<Columns>(D_, label_, constants_.masses(), [&](Index i) {
+                return Row<Columns>(rowOf<Columns>(w, i));
+            }).squares;
+        const Row<Columns> before = std::exchange(norm, squares.sqrt());
+        if ((norm >= 0.5 * before).all()) break;  // otherwise cancellation requires a second pass
+    }
     for (std::vector<double>& overlaps : overlap_)
         if (!overlaps.empty()) std::fill(overlaps.begin(), overlaps.end() - 1, kRoundOff);
     return norm;
@@ -427,17 +385,6 @@ std::vector<Eigen::MatrixXd> KrylovSpaces::combineAll(
     return Y;
 }
 
-void KrylovSpaces::addNewest(const Eigen::RowVectorXd& factors, Eigen::MatrixXd& Y) const {
-    const int* inverse = S_.inverseOrder();
-    withColumns(columns_, [&](auto columns) {
-        const Row<columns> factor = factors.array();
-        parallelRows(D_.size(), [&](Index begin, Index end) {
-            for (Index i = begin; i < end; ++i)
-                Y.row(inverse[i]) += (factor * rowOf<columns>(newest_.data(), i)).matrix();
-        });
-    });
-}
-
 double KrylovSpaces::largestEntryOf(const std::vector<Eigen::VectorXd>& coefficients) const {
     std::vector<double> largest(taskCount(D_.size()));
     withColumns(columns_, [&](auto columns) {
@@ -455,37 +402,30 @@ void KrylovSpaces::combineColumns(const std::vector<std::vector<Eigen::VectorXd>
                                   const TakeRow& takeRow) const {
     constexpr Index kRows = 64;  // the sums of a dozen sets stay in a core's cache
     using Block = Eigen::Matrix<double, kRows, Columns>;
-    std::visit(
-        [&](const auto& basis) {
-            // Padded with zeros, as spaces may differ in dimension.
-            std::vector<Row<Columns>> factors(basis.size() * sets.size(), Row<Columns>::Zero());
-            for (std::size_t set = 0; set < sets.size(); ++set)
-                for (int c = 0; c < Columns; ++c)
-                    for (Index j = 0; j < sets[set][c].size(); ++j)
-                        factors[j * sets.size() + set][c] = unit_ * sets[set][c][j];
-            parallelRows(D_.size(), [&](Index begin, Index end) {
-                std::vector<Block> sums(sets.size());
-                Block vector = Block::Zero();
-                for (Index from = begin; from < end; from += kRows) {
-                    const Index count = std::min(kRows, end - from);
-                    for (Block& sum : sums) sum.setZero();
-                    for (std::size_t j = 0; j < basis.size(); ++j) {
-                        for (Index i = 0; i < count; ++i)
-                            vector.row(i) = rowOf<Columns>(basis[j].data(), from + i)
-                                                .template cast<double>()
-                                                .matrix();
-                        for (std::size_t set = 0; set < sets.size(); ++set) {
-                            const Row<Columns>& factor = factors[j * sets.size() + set];
-                            for (int c = 0; c < Columns; ++c)
-                                sums[set].col(c) += factor[c] * vector.col(c);
-                        }
-                    }
-                    for (std::size_t set = 0; set < sets.size(); ++set)
-                        for (Index i = 0; i < count; ++i) takeRow(set, from + i, sums[set].row(i));
+    // Padded with zeros, as spaces may differ in dimension.
+    std::vector<Row<Columns>> factors(basis_.size() * sets.size(), Row<Columns>::Zero());
+    for (std::size_t set = 0; set < sets.size(); ++set)
+        for (int c = 0; c < Columns; ++c)
+            for (Index j = 0; j < sets[set][c].size(); ++j)
+                factors[j * sets.size() + set][c] = sets[set][c][j];
+    parallelRows(D_.size(), [&](Index begin, Index end) {
+        std::vector<Block> sums(sets.size());
+        Block vector = Block::Zero();
+        for (Index from = begin; from < end; from += kRows) {
+            const Index count = std::min(kRows, end - from);
+            for (Block& sum : sums) sum.setZero();
+            for (std::size_t j = 0; j < basis_.size(); ++j) {
+                for (Index i = 0; i < count; ++i)
+                    vector.row(i) = rowOf<Columns>(basis_[j].data(), from + i).matrix();
+                for (std::size_t set = 0; set < sets.size(); ++set) {
+                    const Row<Columns>& factor = factors[j * sets.size() + set];
+                    for (int c = 0; c < Columns; ++c) sums[set].col(c) += factor[c] * vector.col(c);
                 }
-            });
-        },
-        basis_);
+            }
+            for (std::size_t set = 0; set < sets.size(); ++set)
+                for (Index i = 0; i < count; ++i) takeRow(set, from + i, sums[set].row(i));
+        }
+    });
 }
 
 }  // namespace spectral

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <tuple>
-#include <variant>
 #include <vector>
 
 #include "core/krylov/krylov_operator.h"
@@ -18,17 +16,9 @@ struct Quadrature {
     Eigen::VectorXd weight;  ///< m weights, >= 0.
 };
 
-/// How Krylov spaces keep their bases.
-enum class KeptBasis {
-    Double,
-    Single,  ///< Relative error 1e-7 in linear combinations; T stays in double precision.
-    None     ///< For quadrature, which needs only T, orthogonal basis or not (Golub and Meurant),
-             ///< and for linear combinations in a second pass: see restart.
-};
-
 /// Basis vectors no longer in use, to be reused by later spaces: fresh memory costs as much as the
 /// rest of a dimension.
-using SpareVectors = std::tuple<std::vector<Eigen::VectorXd>, std::vector<Eigen::VectorXf>>;
+using SpareVectors = std::vector<Eigen::VectorXd>;
 
 /// Simultaneous Lanczos recurrences for several signals: each application of an operator S extends
 /// the Krylov spaces of all signals.
@@ -54,12 +44,13 @@ class KrylovSpaces {
 
     /// @param S, laplacian  kept by reference; the constant modes are removed from all vectors.
     /// @param X  n x c signals, 1 <= c <= kMaxSignals.
-    /// @param orthogonal  largest inner product of two basis vectors before reorthogonalization, if
-    ///                    S needs an orthogonal basis.
-    /// @param kept  how the basis is kept; with None, combine and largestEntryOf are not available.
+    /// @param orthogonal  largest inner product of two basis vectors before reorthogonalization.
+    /// @param isKept  whether the basis is kept, orthogonal; quadrature needs only T, of an
+    /// orthogonal
+    ///                basis or not (Golub and Meurant 1994).
     /// @param spare  pool that vectors are taken from and returned to at the end; may be null.
     KrylovSpaces(const KrylovOperator& S, const Laplacian& laplacian, const Eigen::MatrixXd& X,
-                 double orthogonal = kOrthogonal, KeptBasis kept = KeptBasis::Double,
+                 double orthogonal = kOrthogonal, bool isKept = true,
                  SpareVectors* spare = nullptr);
     ~KrylovSpaces();
     KrylovSpaces(const KrylovSpaces&) = delete;
@@ -104,13 +95,6 @@ class KrylovSpaces {
     /// Largest modulus of the entries of combine(coefficients).
     double largestEntryOf(const std::vector<Eigen::VectorXd>& coefficients) const;
 
-    /// Restarts with the same signals: extend() repeats the recurrence, and addNewest sums up the
-    /// vectors of a basis that is not kept, at twice the products (two-pass Lanczos).
-    void restart(const Eigen::MatrixXd& X);
-
-    /// Y += the newest vector of each column's basis times its factor; Y is n x c, in mesh order.
-    void addNewest(const Eigen::RowVectorXd& factors, Eigen::MatrixXd& Y) const;
-
     /// D-norm of each signal without its constants, c.
     const Eigen::ArrayXd& norms() const { return norms_; }
     /// Largest modulus of the entries of the signals without their constants.
@@ -121,10 +105,6 @@ class KrylovSpaces {
     double roundOff() const { return roundOff_; }
 
   private:
-    /// Basis vectors, each n rows of columns_ values.
-    template <class Scalar>
-    using Vectors = std::vector<Eigen::Matrix<Scalar, Eigen::Dynamic, 1>>;
-
     /// Eigenpairs of T: frequencies of the Ritz values, and eigenvectors as columns.
     struct Ritz {
         Eigen::VectorXd omega;
@@ -152,9 +132,8 @@ class KrylovSpaces {
     int columns_;
     Eigen::VectorXd D_;      // in the order of S, like all that follow
     Eigen::VectorXi label_;  // components; see ConstantModes
-    KeptBasis kept_;
-    double unit_ = 1.0;  // scale of the stored basis: single precision has a small exponent range
-    std::variant<Vectors<double>, Vectors<float>> basis_;
+    bool isKept_;
+    std::vector<Eigen::VectorXd> basis_;  // each n rows of columns_ values
     SpareVectors* spare_;
     Eigen::VectorXd newest_, before_, next_;  // basis vectors followed by the scratch rows of S
     std::vector<std::vector<double>> alpha_, beta_;  // diagonal and off-diagonal of T, by column

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+
+#include "core/krylov/chebyshev_series.h"
 
 namespace spectral {
 
@@ -39,48 +40,12 @@ Extremes extremesOf(const Gain& gain, double cutoff, const SpectrumRange& range)
     return {least, largest};
 }
 
-/// Chebyshev series of a gain on an interval of theta.
-class ChebyshevSeries {
-  public:
-    ChebyshevSeries(const Gain& gain, double pole, double first, double last, int nodes)
-        : tail_(static_cast<std::size_t>(nodes) + 1, 0.0) {
-        std::vector<double> cosine(4 * static_cast<std::size_t>(nodes));  // cos(pi i / (2 nodes))
-        for (std::size_t i = 0; i < cosine.size(); ++i)
-            cosine[i] = std::cos(kPi * static_cast<double>(i) / (2.0 * nodes));
-        std::vector<double> value(static_cast<std::size_t>(nodes));
-        for (int i = 0; i < nodes; ++i) {
-            const double theta = first + (last - first) * 0.5 * (1.0 + cosine[2 * i + 1]);
-            value[i] = gain(std::sqrt(std::max(0.0, pole / theta - pole)));
-        }
-        const auto [least, largest] = std::minmax_element(value.begin(), value.end());
-        least_ = *least;
-        largest_ = *largest;
-        for (int degree = nodes - 1; degree >= 0; --degree) {
-            double coefficient = 0.0;
-            for (int i = 0; i < nodes; ++i)
-                coefficient += value[i] * cosine[degree * (2 * i + 1) % (4 * nodes)];
-            tail_[degree] = tail_[degree + 1] + std::abs(coefficient) * 2.0 / nodes;
-        }
-    }
-
-    /// Number of leading coefficients needed for the accuracy.
-    int requiredDimension(double accuracy) const {
-        return static_cast<int>(std::partition_point(tail_.begin(), tail_.end(),
-                                                     [&](double t) { return t > accuracy; }) -
-                                tail_.begin());
-    }
-
-    /// Whether the values at the nodes come close to the extremes of the gain.
-    bool reaches(const Extremes& extremes, double accuracy) const {
-        const double margin = kExtremeTolerance * (largest_ - least_) + accuracy;
-        return extremes.least >= least_ - margin && extremes.largest <= largest_ + margin;
-    }
-
-  private:
-    std::vector<double>
-        tail_;  // sums of |coefficients| from each degree on: truncation error bound
-    double least_ = 0.0, largest_ = 0.0;
-};
+/// Whether the values at the nodes of a series come close to the extremes of the gain.
+bool reaches(const ChebyshevSeries& series, const Extremes& extremes, double accuracy) {
+    const double margin = kExtremeTolerance * (series.largest() - series.least()) + accuracy;
+    return extremes.least >= series.least() - margin &&
+           extremes.largest <= series.largest() + margin;
+}
 
 }  // namespace
 
@@ -94,10 +59,11 @@ double selectPole(const Gain& gain, double cutoff, const SpectrumRange& range, d
         int fewest = nodes + 1;
         for (int power = kLowestPower; power <= kHighestPower; ++power) {
             const double pole = std::min(std::exp2(power) * atCutoff, range.highest * kMaxOutside);
-            const ChebyshevSeries series(gain, pole, pole / (range.highest + pole),
-                                         pole / (range.lowest + pole), nodes);
-            const int dimension = series.requiredDimension(target);
-            if (dimension >= fewest || !series.reaches(extremes, accuracy)) continue;
+            const ChebyshevSeries series(
+                [&](double theta) { return gain(std::sqrt(std::max(0.0, pole / theta - pole))); },
+                pole / (range.highest + pole), pole / (range.lowest + pole), nodes);
+            const int dimension = series.lengthFor(target);
+            if (dimension >= fewest || !reaches(series, extremes, accuracy)) continue;
             fewest = dimension;
             best = pole;
         }

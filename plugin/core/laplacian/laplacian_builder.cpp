@@ -43,8 +43,16 @@ void LaplacianBuilder::reset() {
 }
 
 void LaplacianBuilder::scaleMass(Eigen::VectorXd factors) {
+    if (massFactors_.size() > 0) factors.array() *= massFactors_.array();
     massFactors_ = std::move(factors);
     reset();
+}
+
+void LaplacianBuilder::boundEigenvalues(double largest) {
+    constexpr double kMostAdded = 0.25;  // of the mean mass
+    const double most = kMostAdded * inputMass_.mean();
+    const Eigen::ArrayXd least = (current_.W.diagonal().array() * (2.0 / largest)).min(most);
+    if ((least > inputMass_.array()).any()) scaleMass((least / inputMass_.array()).max(1.0));
 }
 
 void LaplacianBuilder::update(const Vertices& X) {

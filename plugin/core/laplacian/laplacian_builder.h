@@ -47,9 +47,17 @@ class LaplacianBuilder {
     /// Returns to the Laplacian of the input.
     void reset();
 
-    /// Multiplies D of the input and of all later shapes (thin_parts.h); returns to the input.
+    /// Multiplies D of the input and of all later shapes, by all factors so far (thin_parts.h);
+    /// returns to the input.
     /// @param factors  n, > 0.
     void scaleMass(Eigen::VectorXd factors);
+
+    /// Multiplies D where slivers alone cause eigenvalues of the input above `largest`: so that
+    /// 2 W_ii / D_ii is at most that, but by no more than a quarter of the mean mass. Such a vertex
+    /// follows its neighbours at once with either mass. It is a factor, not a lower bound, so that
+    /// the mass of what collapses does so, too.
+    /// @param largest  > 0, far above the eigenvalues of all details of the filter.
+    void boundEigenvalues(double largest);
 
     /// Area of the current shape: the sum of D before its lower bound and factors are applied.
     double area() const { return area_; }

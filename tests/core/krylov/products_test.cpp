@@ -1,11 +1,14 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
+#include "core/krylov/chebyshev_series.h"
 #include "core/krylov/full_spectrum.h"
 #include "core/krylov/krylov_operator.h"
+#include "core/laplacian/interior.h"
 #include "core/laplacian/laplacian_builder.h"
-#include "core/support/memory.h"
 #include "core/transfer/transfer_function.h"
 #include "support/evaluation.h"
 
@@ -55,35 +58,107 @@ TEST(Products, EqualAllEigenvectorsWithinTheRequestedAccuracy) {
     }
 }
 
-TEST(Products, AreRepeatedWhenABasisDoesNotFitInMemory) {
-    const Operator A(
-        testing::joined(testing::blob(), testing::withNoise(testing::cube(8), 0.02, 4)));
-    const HarmonicBasis dense = denseBasis(A);
-    const TransferFunction F({}, 2.0 * kPi / 0.5);
-    FullSpectrumOptions options;
-    options.accuracy = 1e-5;
-    options.atEveryVertex = false;
-    options.samples = F.samples();
-    const auto filtered = [&] {
-        return applyFullSpectrum(A, Products(A, F.cutoff()),
-                                 {fractionalPower(F, 1.0), fractionalPower(F, 0.5)}, A.mesh.V,
-                                 options);
-    };
-    const auto kept = filtered();
-    setMemoryMeasure([] { return 5e5; });  // 200 dimensions of 1,028 vertices need 2.5 MB
-    const auto repeated = filtered();
-    setMemoryMeasure(nullptr);
-    for (const std::size_t g : {0, 1}) {
-        EXPECT_EQ(repeated[g].dimension, kept[g].dimension);
-        EXPECT_GT((repeated[g].Y - kept[g].Y).norm(), 0.0);  // not the same code path
-        EXPECT_LE((repeated[g].Y - kept[g].Y).norm(), 1e-6 * kept[g].Y.norm());
-        const Vertices error =
-            repeated[g].Y -
-            testing::filteredDense(A, dense, fractionalPower(F, g == 0 ? 1.0 : 0.5));
-        EXPECT_LE(std::sqrt(A.D.dot(error.rowwise().squaredNorm())),
-                  repeated[g].errorEstimate * std::sqrt(A.D.sum()) *
-                      A.mesh.V.rowwise().norm().maxCoeff());
+TEST(Products, HaveNoEigenvalueAboveTheirBound) {
+    // A sliver, whose weights are far above those of its neighbours; and obtuse angles, with
+    // weights below 0.
+    Mesh sliver = testing::cube(4);
+    sliver.V.row(0) = 0.999 * sliver.V.row(1) + 0.001 * sliver.V.row(0);
+    for (const Mesh& mesh : {testing::blob(), sliver, testing::rectangle(8, 1, 6, 9)})
+        for (const LaplacianKind kind :
+             {LaplacianKind::IntrinsicDelaunay, LaplacianKind::Cotangent}) {
+            const Surface surface = surfaceOf(mesh.V, mesh.F);
+            const Components components = connectedComponents(surface.F, surface.X.rows());
+            const LaplacianBuilder laplacians(surface, components, kind, BasisUpdate::None);
+            const Interior fixed(surface.F, components, Boundary::Fixed);
+            const Laplacian inside = fixed.restricted(laplacians.current());
+            for (const Laplacian& A : {laplacians.current(), inside}) {
+                const Eigen::VectorXd root = A.D.cwiseSqrt().cwiseInverse();
+                const double largest =
+                    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(
+                        root.asDiagonal() * Eigen::MatrixXd(A.W) * root.asDiagonal())
+                        .eigenvalues()
+                        .maxCoeff();
+                const double bound = std::pow(Products(A, 1.0).lastFrequency(), 2);
+                EXPECT_GE(bound, largest * (1.0 - 1e-12));
+                EXPECT_LE(bound, 3.0 * largest);
+            }
+        }
+}
+
+TEST(Products, InSinglePrecisionAreAsAccurateAsTheyClaim) {
+    // A small displacement of a large shape, in any unit: its rounding is relative to what moves.
+    for (const double scale : {1e-30, 1.0, 1e30}) {
+        Mesh mesh = testing::withNoise(testing::icosphere(3), 1e-3, 4);
+        mesh.V *= scale;
+        const Operator A(mesh);
+        const HarmonicBasis dense = denseBasis(A);
+        for (const double size : {0.05, 0.5}) {
+            const TransferFunction F({}, 2.0 * kPi / (size * scale));
+            FullSpectrumOptions options;
+            options.atEveryVertex = false;
+            options.samples = F.samples();
+            for (const double accuracy : {1e-4, 1e-5, 1e-6, 1e-7}) {
+                options.accuracy = accuracy;
+                const FullSpectrumResult result = byProducts(A, F, 1.0, options).front();
+                const Vertices error =
+                    (result.Y - testing::filteredDense(A, dense, fractionalPower(F, 1.0))) / scale;
+                const double relative =
+                    std::sqrt(A.D.dot(error.rowwise().squaredNorm()) / A.D.sum());
+                EXPECT_TRUE(result.converged);
+                EXPECT_LE(relative, accuracy) << "size " << size << ", scale " << scale;
+                EXPECT_LE(relative, result.errorEstimate);
+            }
+        }
     }
+}
+
+TEST(ChebyshevSeries, OfAPolynomialEndsAtItsDegree) {
+    // T_3(x) = 4 x^3 - 3 x, with x = t - 1 on [0, 2].
+    const ChebyshevSeries series(
+        [](double t) { return 4.0 * std::pow(t - 1.0, 3) - 3.0 * (t - 1.0); }, 0.0, 2.0, 16);
+    EXPECT_EQ(series.lengthFor(1e-12), 4);
+    for (int k = 0; k < 16; ++k) EXPECT_NEAR(series.coefficients()[k], k == 3 ? 1.0 : 0.0, 1e-14);
+    EXPECT_NEAR(series(0.5), 1.0, 1e-14);  // cos(3 arccos(-1/2))
+}
+
+TEST(ChebyshevSeries, IsBoundedByItsTail) {
+    const auto f = [](double t) { return std::exp(-7.0 * t); };
+    const ChebyshevSeries series(f, 0.0, 1.0, 32);
+    for (const double accuracy : {1e-2, 1e-5, 1e-9}) {
+        const auto length = static_cast<std::size_t>(series.lengthFor(accuracy));
+        EXPECT_LE(series.tail(length), accuracy);
+        EXPECT_GT(series.tail(length - 1), accuracy);
+        for (double t = 0.0; t <= 1.0; t += 0.01) {
+            double sum = 0.0;
+            for (std::size_t k = 0; k < length; ++k)
+                sum += series.coefficients()[k] *
+                       std::cos(static_cast<double>(k) * std::acos(2.0 * t - 1.0));
+            EXPECT_LE(std::abs(sum - f(t)), accuracy);
+        }
+    }
+}
+
+TEST(LaplacianBuilder, BoundsTheEigenvaluesOfSlivers) {
+    Mesh mesh = testing::cube(6);
+    mesh.V.row(0) = 0.99 * mesh.V.row(1) + 0.01 * mesh.V.row(0);
+    const Surface surface = surfaceOf(mesh.V, mesh.F);
+    LaplacianBuilder laplacians(surface, connectedComponents(surface.F, surface.X.rows()),
+                                LaplacianKind::IntrinsicDelaunay, BasisUpdate::Conformal);
+    const Eigen::VectorXd D = laplacians.current().D;
+    const Eigen::VectorXd local = 2.0 * laplacians.current().W.diagonal().cwiseQuotient(D);
+    Eigen::VectorXd sorted = local;
+    std::sort(sorted.begin(), sorted.end());
+    const double largest = 1.01 * sorted[sorted.size() * 9 / 10];
+    ASSERT_LT(largest, sorted[sorted.size() - 1]);
+    laplacians.boundEigenvalues(largest);
+    const Eigen::VectorXd factor = laplacians.current().D.cwiseQuotient(D);
+    for (Index i = 0; i < D.size(); ++i) {
+        const double most = std::max(1.0, 0.25 * D.mean() / D[i]);
+        EXPECT_NEAR(factor[i], std::clamp(local[i] / largest, 1.0, most), 1e-12) << i;
+    }
+    // What shrinks does so with its mass.
+    laplacians.update(0.1 * surface.X);
+    EXPECT_TRUE(laplacians.current().D.isApprox(0.01 * factor.cwiseProduct(D), 1e-12));
 }
 
 TEST(Products, GiveUpWhenTooManyAreExpected) {
