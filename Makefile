@@ -53,7 +53,7 @@ CPP_FILES = find plugin tests -name '*.h' -o -name '*.cpp'
 PYTHON_FILES = python tests screenshots
 # With the folders themselves, whose time changes when a file in them goes.
 PACKAGE_SOURCES := CMakeLists.txt $(shell find plugin python -not -path '*/__pycache__*' \
-  -not -path 'python/docs*')
+  -not -path 'python/docs*' -not -path 'plugin/web*')
 
 # Two targets at once would fetch MeshLab's headers twice; ninja uses every core anyway.
 .NOTPARALLEL:
@@ -91,7 +91,7 @@ web:  ## build spectral-mesh for browsers and Node: build/web/*.tgz (needs Emscr
 	plugin/web/build.sh build/web
 	node plugin/web/npm/package.mjs build/web/module build/web/spectral-mesh
 	rm -f build/web/*.tgz
-	npm pack --silent --pack-destination build/web ./build/web/spectral-mesh
+	! command -v npm >/dev/null || npm pack --silent --pack-destination build/web ./build/web/spectral-mesh
 	rm -rf build/web/site && mkdir -p build/web/site && cp -r plugin/web/page build/web/site/browser
 	cp -r build/web/spectral-mesh build/web/site/browser/
 
