@@ -112,7 +112,7 @@ constexpr double kMaxWhiteSize = 1.25;
 Removal removeNoise(const FaceGraph& graph, const Points& X, const Diagnosis& diagnosis,
                     bool isKnown, const RemovalOptions& removal, const Progress& progress) {
     if (diagnosis.hasVoxels())
-        return removeVoxelSteps(graph, X, diagnosis.voxel, removal, progress);
+        return removeVoxelSteps(graph, X, diagnosis.voxel, diagnosis.voxelAxes, removal, progress);
     if (!(removal.height > 0.0) || !(isKnown || diagnosis.isNoise())) return {diagnosis.X, 0};
     return removal.size > kMaxWhiteSize
                ? removeCorrelatedNoise(graph, diagnosis.X, removal, progress)
@@ -195,10 +195,15 @@ Eigen::VectorXd offsetWeight(Eigen::VectorXd weight, const MovingPart& part,
     return weight;
 }
 
-/// Clamps coordinates that the volume correction has moved farther than `limit` from X0.
-void keepWithin(const Eigen::RowVector3d& limit, const Vertices& X0, Vertices& X) {
-    for (Index i = 0; i < X.rows(); ++i)
-        X.row(i) = X.row(i).cwiseMax(X0.row(i) - limit).cwiseMin(X0.row(i) + limit);
+/// Clamps coordinates along the axes that the volume correction has moved farther than `limit` from
+/// X0.
+void keepWithin(const Eigen::RowVector3d& limit, const Eigen::Matrix3d& axes, const Vertices& X0,
+                Vertices& X) {
+    for (Index i = 0; i < X.rows(); ++i) {
+        const Eigen::RowVector3d moved = (X.row(i) - X0.row(i)) * axes.transpose();
+        if ((moved.cwiseAbs().array() > limit.array()).any())
+            X.row(i) = X0.row(i) + moved.cwiseMax(-limit).cwiseMin(limit) * axes;
+    }
 }
 
 /// Largest offset that restores volume, as a multiple of the displacement: noise lies on both sides
@@ -252,7 +257,8 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
             volumes =
                 preserveVolumes(whole.X, isWhole ? graph.F : whole.F, components,
                                 offsetWeight(weight, part, result.diagnosis), kMaxOffset, moved);
-        if (result.diagnosis.hasVoxels()) keepWithin(0.5 * result.diagnosis.voxel, whole.X, moved);
+        if (result.diagnosis.hasVoxels())
+            keepWithin(0.5 * result.diagnosis.voxel, result.diagnosis.voxelAxes, whole.X, moved);
     }
     Vertices displacement = moved - whole.X;
     if (!displacement.allFinite()) throw SolverFailure("the denoised coordinates are not finite");

@@ -271,7 +271,8 @@ Removal removeCorrelatedNoise(const FaceGraph& graph, const Points& X0,
 }
 
 Removal removeVoxelSteps(const FaceGraph& graph, const Points& X0, const Eigen::RowVector3d& voxel,
-                         const RemovalOptions& options, const Progress& progress) {
+                         const Eigen::Matrix3d& axes, const RemovalOptions& options,
+                         const Progress& progress) {
     constexpr double kLengthOfCentres = 1.5, kLengthOfFaces = 2.0, kThickness = 0.5;
     constexpr int kRounds = 3;
     const double length = options.areVoxelFaces ? kLengthOfFaces : kLengthOfCentres;
@@ -279,7 +280,7 @@ Removal removeVoxelSteps(const FaceGraph& graph, const Points& X0, const Eigen::
     const Eigen::RowVector3d scale =
         (voxel.minCoeff() * voxel.cwiseInverse()).array().pow(kThickness);
     const Eigen::RowVector3d half = 0.5 * voxel.cwiseProduct(scale);
-    const Points start = X0 * scale.asDiagonal();
+    const Points start = X0 * axes.transpose() * scale.asDiagonal();
     Removal removal{start, 0};
     while (removal.rounds < kRounds) {
         progress.report(double(removal.rounds) / kRounds, kStage);
@@ -291,7 +292,7 @@ Removal removeVoxelSteps(const FaceGraph& graph, const Points& X0, const Eigen::
         ++removal.rounds;
     }
     // Add to X0, so that a vertex that has not moved stays bit-identical.
-    removal.X = X0 + (removal.X - start) * scale.cwiseInverse().asDiagonal();
+    removal.X = X0 + (removal.X - start) * scale.cwiseInverse().asDiagonal() * axes;
     return removal;
 }
 

@@ -53,7 +53,9 @@ Removal removeCorrelatedNoise(const FaceGraph& graph, const Points& X,
 
 /// Removes the staircase of voxels; no coordinate moves farther than half a voxel.
 /// @param voxel  voxel size along each axis, length units.
+/// @param axes   unit axes of the voxels, as rows.
 Removal removeVoxelSteps(const FaceGraph& graph, const Points& X, const Eigen::RowVector3d& voxel,
-                         const RemovalOptions& options, const Progress& progress);
+                         const Eigen::Matrix3d& axes, const RemovalOptions& options,
+                         const Progress& progress);
 
 }  // namespace spectral

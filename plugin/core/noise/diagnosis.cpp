@@ -87,6 +87,26 @@ void findVoxels(const FaceGraph& graph, const CoordinateGrid& grid,
     diagnosis.voxel = grid.step;
 }
 
+/// Whether the vertices are those of the surface of a binary volume that is turned, or most are.
+void findTurnedVoxels(const FaceGraph& graph, const std::vector<bool>& isMeasured,
+                      Diagnosis& diagnosis) {
+    std::vector<Eigen::Matrix3d> candidates = latticeAxes(graph, diagnosis.X);
+    candidates.insert(candidates.begin(), Eigen::Matrix3d::Identity());
+    for (const Eigen::Matrix3d& axes : candidates) {
+        const Points X = diagnosis.X * axes.transpose();
+        diagnosis.voxelAxes = axes;
+        if (const auto grid = coordinateGrid(X)) {
+            findVoxels(graph, *grid, isMeasured, diagnosis);
+        } else if (const auto nearly = coordinateGrid(X, false)) {
+            if (const auto voxel = voxelLattice(*nearly, false)) {
+                diagnosis.kind = NoiseKind::Voxels;
+                diagnosis.voxel = *voxel;
+            }
+        }
+        if (diagnosis.kind != NoiseKind::None) return;
+    }
+}
+
 /// Whether the coordinates were rounded to the grid, which explains most of the residuals.
 void findRounding(const FaceGraph& graph, const CoordinateGrid& grid,
                   const std::vector<bool>& isMeasured, Diagnosis& diagnosis) {
@@ -207,6 +227,7 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
     if (!isKnown) {
         grid = coordinateGrid(X);
         if (grid) findVoxels(graph, *grid, isMeasured, diagnosis);
+        if (!grid) findTurnedVoxels(graph, isMeasured, diagnosis);
         if (diagnosis.kind != NoiseKind::None) return diagnosis;
         if (diagnosis.stretchedAxis) {
             diagnosis.kind = NoiseKind::Stretched;

@@ -36,7 +36,8 @@ struct Diagnosis {
     Points X;                   ///< n x 3 positions without spikes.
     Index spikes = 0;           ///< Number of vertices that are spikes.
     std::optional<int> stretchedAxis;  ///< That of another unit than the others.
-    Eigen::RowVector3d voxel = Eigen::RowVector3d::Zero();  ///< Voxel size along each axis.
+    Eigen::RowVector3d voxel = Eigen::RowVector3d::Zero();    ///< Voxel size along each axis.
+    Eigen::Matrix3d voxelAxes = Eigen::Matrix3d::Identity();  ///< Unit axes of the voxels, as rows.
 
     bool isNoise() const;    ///< Whether its kind is one of noise.
     bool hasVoxels() const;  ///< Whether it is the staircase of a volume.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <random>
 
@@ -156,7 +157,8 @@ TEST(Denoise, SmoothsVoxelStepsWithinHalfAVoxel) {
     options.mayMove = testing::everywhere(ball.V.rows());
     const Eigen::RowVector3d voxel(1.0, 1.0, 2.0);
     Vertices V = ball.V * voxel.asDiagonal();
-    const Vertices smooth = removeVoxelSteps(graph, V, voxel, options, {}).X;
+    const Vertices smooth =
+        removeVoxelSteps(graph, V, voxel, Eigen::Matrix3d::Identity(), options, {}).X;
     for (int c = 0; c < 3; ++c)
         EXPECT_LE((smooth - V).col(c).cwiseAbs().maxCoeff(), 0.5 * voxel[c] + 1e-12);
     const auto roughness = [&](const Vertices& X) {
@@ -170,6 +172,20 @@ TEST(Denoise, SmoothsVoxelStepsWithinHalfAVoxel) {
         return sum;
     };
     EXPECT_LT(roughness(smooth), 0.25 * roughness(V));
+}
+
+TEST(Denoise, SmoothsVoxelStepsAlikeWhereTheyAreTurned) {
+    Mesh ball = testing::segmentedBall(12);
+    ball.V.col(2) *= 2.0;
+    const DenoiseResult aligned = denoise(ball.V, ball.F, {});
+    ASSERT_TRUE(aligned.diagnosis.hasVoxels());
+    const Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(0.5, Eigen::Vector3d(1.0, -2.0, 0.7).normalized()).toRotationMatrix();
+    const Vertices V = ball.V * turn.transpose();
+    const DenoiseResult turned = denoise(V, ball.F, {});
+    EXPECT_EQ(turned.diagnosis.kind, aligned.diagnosis.kind);
+    EXPECT_NEAR(turned.diagnosis.voxel.maxCoeff(), 2.0 * turned.diagnosis.voxel.minCoeff(), 1e-6);
+    EXPECT_LT((turned.V - aligned.V * turn.transpose()).cwiseAbs().maxCoeff(), 1e-6);
 }
 
 TEST(Denoise, DoesNotCrumpleAMeshOfNeedles) {

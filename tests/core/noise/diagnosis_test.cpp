@@ -132,6 +132,17 @@ TEST(VoxelLattice, ReturnsTheVoxelSizeAlongEachAxis) {
     const auto voxel = voxelLattice(*grid);
     ASSERT_TRUE(voxel);
     EXPECT_LT((*voxel - size).cwiseAbs().maxCoeff(), 1e-9);
+
+    // One vertex off the lattice, and a tenth of them.
+    for (const Index every : {X.rows(), Index{10}}) {
+        Points off = X;
+        for (Index i = 0; i < X.rows(); i += every) off.row(i).array() += 0.05 + 1e-4 * double(i);
+        const auto nearly = coordinateGrid(off, false);
+        ASSERT_TRUE(nearly);
+        const auto found = voxelLattice(*nearly, false);
+        ASSERT_TRUE(found);
+        EXPECT_LT((*found - size).cwiseAbs().maxCoeff(), 1e-9);
+    }
 }
 
 TEST(CoordinateGrid, CoordinatesRoundedToAGridAreNoiseOfKnownHeight) {
