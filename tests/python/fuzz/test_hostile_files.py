@@ -148,7 +148,7 @@ def test_a_hostile_file_is_read_or_refused_by_every_command(
     source = write_hostile(name, folder / "in", size, seed)
     bytes_ = sum(one.stat().st_size for one in (folder / "in").iterdir() if not one.is_symlink())
     for command, arguments in COMMANDS.items():
-        words = [word.format(ending=source.suffix) for word in arguments]
+        words = [word.format(ending="." + KINDS[name][0]) for word in arguments]
         trace = folder / "trace"
         done = run([command, str(source.relative_to(folder)), *words], folder, trace)
         what = f"{command} {name} {seed} of {bytes_} bytes: {done}"
