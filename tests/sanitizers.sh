@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
-# Runs tests of the module _core with AddressSanitizer or ThreadSanitizer, beside the built package
-# (`make demo` builds it): each kind takes five minutes of building and a few of tests.
+# Runs tests of the module _core with AddressSanitizer and UndefinedBehaviorSanitizer, or with
+# ThreadSanitizer, beside the built package (`make demo` builds it): each kind takes five minutes of
+# building and a few of tests.
 #
 # usage: sanitizers.sh [address|thread] [TESTS]
 #
-#   TESTS   of pytest instead of the usual ones, such as tests/python/tiles
+#   TESTS   of pytest instead of the usual ones, such as tests/python/tiles; the processes that they
+#           start are checked, too
 #
 # Left out of AddressSanitizer's run: the tests of memory, which it needs itself, and those that only
 # compare bits with pymeshlab or start commands, which it does not see.
@@ -16,11 +18,14 @@ shift || true
 case $kind in
     address)
         export ASAN_OPTIONS=detect_leaks=0:alloc_dealloc_mismatch=0
+        export UBSAN_OPTIONS=print_stacktrace=1
+        flags='-fsanitize=address,undefined -fno-sanitize=vptr -fno-sanitize-recover=undefined'
         tests=(tests/python/core tests/python/documents
             -k 'not mesh_set and not command and not same_bits and not memory')
         library=libasan.so ;;
     thread)
         export TSAN_OPTIONS=ignore_noninstrumented_modules=1:report_signal_unsafe=0:exitcode=66
+        flags=-fsanitize=thread
         tests=(tests/python/core/test_faces_agree.py -k 'threads and module or number_of_threads')
         library=libtsan.so ;;
     *) sed -n '2,/^set /{s/^# \{0,1\}//p}' "$0" >&2; exit 2 ;;
@@ -32,8 +37,8 @@ cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo \
     -DSPECTRAL_BUILD_PLUGIN=OFF -DSPECTRAL_BUILD_TESTS=OFF -DSPECTRAL_BUILD_PYTHON=ON \
     -Dmuparser_DIR="$PWD/build/muparser/lib/cmake/muparser" \
     -DPython_EXECUTABLE="$PWD/.venv/bin/python" \
-    -DCMAKE_CXX_FLAGS="-fsanitize=$kind -fno-omit-frame-pointer -g1 -O1" \
-    -DCMAKE_MODULE_LINKER_FLAGS="-fsanitize=$kind"
+    -DCMAKE_CXX_FLAGS="$flags -fno-omit-frame-pointer -g1 -O1" \
+    -DCMAKE_MODULE_LINKER_FLAGS="$flags"
 cmake --build "$build" --target _core
 
 # The installed package with another module, before the one in .venv.

@@ -185,7 +185,7 @@ def test_tiles_fit_the_memory_of_the_workers(
     cluster: str, source: Path, target: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(cluster_module, "_memory", lambda dask_worker: 152 * 2**20)
-    with pytest.raises(MeshFileError, match="give the workers [0-9]+ MiB each"):
+    with pytest.raises(MeshFileError, match=r"give the workers \d+ MiB each"):
         filter_in_tiles(source, target, SMALL, _ignore, 2, _ignore, scheduler=cluster)
 
 

@@ -149,8 +149,10 @@ def _submit(
     try:
         with turns.alone():
             token = uuid.uuid4().hex
-            result = client.submit(_run_once, token, _run, plugin, do, job, pure=False).result()
-            return result
+            again: ResultT = client.submit(
+                _run_once, token, _run, plugin, do, job, pure=False
+            ).result()
+            return again
     except (KilledWorker, _TriedError):
         reason = (
             f"{attempts} workers that had it were ended from outside, and one that did nothing "

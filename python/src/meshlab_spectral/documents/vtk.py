@@ -37,11 +37,11 @@ _OF_VTK = 256 << 20  # bytes of its own, such as tables of threads
 _LONGEST = 18  # digits of a count
 # Numbers from which VTK allocates: attributes of its XML; in legacy files those after keywords, and
 # the columns and rows of arrays.
+_ATTRIBUTES = re.compile(rb"NumberOf\w+\s*=\s*[\"']\s*([-+]?\d+)")
 _COUNTS = re.compile(
-    rb"NumberOf\w+\s*=\s*[\"']\s*([-+]?\d+)|[\r\n][ \t]*(?i:(?:POINTS|CELLS|CELL_TYPES|POLYGONS"
-    rb"|TRIANGLE_STRIPS|LINES|VERTICES|POINT_DATA|CELL_DATA|(?:FIELD|COLOR_SCALARS|LOOKUP_TABLE"
-    rb"|TEXTURE_COORDINATES|SCALARS\s+\S+)\s+\S+)\s+([-+]?\d+)|[^\s\d]\S*[ \t]+(\d+)[ \t]+(\d+)"
-    rb"[ \t]+[a-z]\w*[ \t]*[\r\n])"
+    rb"[\r\n][ \t]*(?=[^\s\d.+-])(?i:(?:POINTS|CELLS|CELL_TYPES|POLYGONS|TRIANGLE_STRIPS|LINES"
+    rb"|VERTICES|POINT_DATA|CELL_DATA|(?:FIELD|COLOR_SCALARS|LOOKUP_TABLE|TEXTURE_COORDINATES"
+    rb"|SCALARS\s+\S+)\s+\S+)\s+([-+]?\d+)|\S+[ \t]+(\d+)[ \t]+(\d+)[ \t]+[a-z]\w*[ \t]*[\r\n])"
 )
 _TEXT = re.compile(rb'<Points>\s*<DataArray[^>]*format="ascii"')
 # Legacy text, after two lines of head and title; then its points, and arrays.
@@ -90,13 +90,14 @@ def read(path: Path) -> Document:
 
 def _check_counts(content: bytes, budget: Budget) -> None:
     """Raise MeshFileError if a file claims more than a file of its size may have."""
-    for match in _COUNTS.finditer(content):
+    is_legacy = content.startswith(b"#")
+    for match in (_COUNTS if is_legacy else _ATTRIBUTES).finditer(content):
         words = [word for word in match.groups() if word]
         number = math.prod(int(word[:_LONGEST]) for word in words)
         if number < 0:
             raise ValueError(f"it claims {number} points, cells or numbers")
-        budget.take(8 * number, f"it claims {number} points, cells or numbers")
-    if not content.startswith(b"#"):
+        budget.take(24 * number, f"it claims {number} points, cells or numbers")  # three doubles
+    if not is_legacy:
         budget.take(_TAG_BYTES * content.count(b"<"), "its XML")
 
 
