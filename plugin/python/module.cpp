@@ -20,6 +20,7 @@
 #include "core/contract/gains.h"
 #include "core/laplacian/laplacian.h"
 #include "core/laplacian/laplacian_builder.h"
+#include "core/mesh/contacts.h"
 #include "core/mesh/surface.h"
 #include "core/support/memory.h"
 #include "core/support/steady_progress.h"
@@ -150,6 +151,30 @@ nb::object components(const Positions& vertices, const Indices& faces) {
     return givenRows(std::move(labels));
 }
 
+/// Displacements of vertices, those where different components touch alike (contacts.h).
+nb::object movedAlike(const Positions& vertices, const Indices& faces,
+                      const Positions& displacement) {
+    requireRows(displacement, vertices);
+    const Vertices V = mapOf(vertices, 3);
+    const Faces F = mapOf(faces, 3);
+    Vertices moved = mapOf(displacement, 3);
+    {
+        const Running running;
+        const Surface surface = joinedSurface(V, F);
+        Vertices rows = moved(surface.vertex, Eigen::indexing::all);
+        moveContactsAlike(surface, connectedComponents(surface.F, surface.X.rows()), rows);
+        // A copy may belong to a mesh that stays.
+        const Vertices before = moved;
+        const auto follow = [&](Index vertex, Index row) {
+            if (before.row(vertex) == before.row(surface.vertex[row]))
+                moved.row(vertex) = rows.row(row);
+        };
+        for (Index row = 0; row < rows.rows(); ++row) follow(surface.vertex[row], row);
+        for (const auto& [vertex, row] : surface.copies) follow(vertex, row);
+    }
+    return python::given(std::move(moved));
+}
+
 /// The values of an expression where its variables have those in each row of a table.
 nb::object evaluated(const std::string& option, const std::string& text,
                      const std::string& examples, const std::vector<std::string>& variables,
@@ -193,6 +218,7 @@ NB_MODULE(_core, m) {
           "progress"_a = nb::none(), "threads"_a = 0);
     m.def("joined_vertices", python::joinedVertices, "vertices"_a, "faces"_a);
     m.def("components", python::components, "vertices"_a, "faces"_a);
+    m.def("moved_alike", python::movedAlike, "vertices"_a, "faces"_a, "displacement"_a);
     m.def("evaluated", python::evaluated, "option"_a, "text"_a, "examples"_a, "variables"_a,
           "values"_a);
     m.def("vertex_areas", python::vertexAreas, "vertices"_a, "faces"_a);

@@ -52,15 +52,30 @@ Triangle triangleOf(const Rows<double>& V, const std::int64_t* corners) {
 /// A normal, of length twice the area.
 Vector areaVector(const Triangle& P) { return (P[1] - P[0]).cross(P[2] - P[0]); }
 
-/// Adds a triangle's unit normal to those of its corners, weighted with their angles.
-void addNormal(const Triangle& P, const std::array<std::int64_t, 3>& groups, Table3& sums) {
+/// Sums of the triangles' normals at corners, by the usual weights: angles, areas, none.
+using Means = std::array<Table3, 3>;
+
+/// Adds a triangle's normal to the sums of its corners.
+void addNormal(const Triangle& P, const std::array<std::int64_t, 3>& groups, Means& sums) {
     const Vector area = areaVector(P);
     const double length = area.norm();
     if (!(length > 0.0)) return;
     for (std::size_t c = 0; c < 3; ++c) {
         const double cosine = (P[(c + 1) % 3] - P[c]).dot(P[(c + 2) % 3] - P[c]);
-        sums.row(groups[c]) += std::atan2(length, cosine) / length * area;
+        sums[0].row(groups[c]) += std::atan2(length, cosine) / length * area;
+        sums[1].row(groups[c]) += area;
+        sums[2].row(groups[c]) += area / length;
     }
+}
+
+/// A vector after the least rotation from one unit vector to another; its unit vector.
+Vector rotated(const Vector& vector, const Vector& from, const Vector& to) {
+    constexpr double kOpposite = 1e-6;  // then any axis would do
+    const double cosine = from.dot(to);
+    if (cosine < kOpposite - 1.0) return (vector.dot(from) < 0.0 ? -1.0 : 1.0) * to;
+    const Vector axis = from.cross(to);
+    const Vector across = axis.cross(vector);
+    return (vector + across + axis.cross(across) / (1.0 + cosine)).normalized();
 }
 
 /// A new normal's unit vector, on the side of the surface where the given one was.
@@ -90,7 +105,8 @@ Table3 followingNormals(const Rows<double>& before, const Rows<double>& after,
                         const Rows<std::int64_t>& F, const Rows<double>& N,
                         const Rows<std::int64_t>& which) {
     const std::vector<std::int64_t> groups = groupsOf(before, F, N, which);
-    Table3 given = Table3::Zero(N.rows(), 3), old = given, sums = given;
+    Table3 given = Table3::Zero(N.rows(), 3);
+    Means old{given, given, given}, sums = old;
     std::vector<bool> hasMoved(N.rows(), false);
     for (Eigen::Index i = 0; i < N.rows(); ++i) given.row(groups[i]) += N.row(i);
     for (Eigen::Index f = 0; f < F.rows(); ++f) {
@@ -105,8 +121,22 @@ Table3 followingNormals(const Rows<double>& before, const Rows<double>& after,
     Table3 result = N;
     for (Eigen::Index i = 0; i < N.rows(); ++i) {
         const std::int64_t group = groups[i];
-        if (hasMoved[group] && sums.row(group).norm() > 0.0)
-            result.row(i) = turned(sums.row(group), given.row(group), old.row(group));
+        if (!hasMoved[group]) continue;
+        const Vector normal = given.row(group).normalized();
+        const Table3 *nearest = nullptr, *moved = nullptr;
+        double most = -1.0;
+        for (std::size_t k = 0; k < old.size(); ++k) {
+            if (!(old[k].row(group).norm() > 0.0 && sums[k].row(group).norm() > 0.0)) continue;
+            const double cosine = std::abs(normal.dot(old[k].row(group).normalized()));
+            if (cosine <= most) continue;
+            most = cosine;
+            nearest = &old[k];
+            moved = &sums[k];
+        }
+        if (nearest == nullptr) continue;
+        const Vector from = nearest->row(group).normalized(), to = moved->row(group).normalized();
+        const bool isNone = N.row(i).isZero(0.0);
+        result.row(i) = isNone ? to : rotated(N.row(i), from, to);
     }
     return result;
 }

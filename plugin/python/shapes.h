@@ -18,10 +18,12 @@ std::vector<std::int64_t> firstEqualRows(const Rows<double>& rows);
 
 /// New normals of a shape whose vertices have moved.
 ///
-/// A new normal is the angle-weighted mean of the triangles' normals at its corners, of unit
-/// length, on the side of the surface where it was; one whose triangles have not moved is kept.
-/// Normals that were equal at the same position, as along texture seams, stay equal: hard edges
-/// stay hard, smooth ones smooth.
+/// Each turns as its surface turns, by the least rotation between the means of the triangles'
+/// normals at its corners before and after, of unit length. Of the usual means, weighted by angles,
+/// by areas or not at all, the one that is nearest to the normal is taken: normals that are such a
+/// mean are so afterwards, and those that were chosen, as on leaves, keep their angle to the
+/// surface. One whose triangles have not moved is kept. Normals that were equal at the same
+/// position, as along texture seams, stay equal: hard edges stay hard, smooth ones smooth.
 ///
 /// @param before, after  n x 3 vertices.
 /// @param F              m x 3 vertex indices.

@@ -221,6 +221,7 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
     output.text = reportText(output.summary, result, mesh.diagonal);
     output.warnings = warningsOf(call.options, output.summary, result);
     append(percentageWarnings(mesh), output.warnings);
+    if (!input.whole) append(periodicWarnings(input.V, input.F, result.V), output.warnings);
     if (call.storeNoiseHeight) output.values = std::move(result.heights);
     output.V = std::move(result.V);
     return output;

@@ -216,7 +216,7 @@ FilterOutput preview(const FilterInput& input, const MeshLengths& mesh, const Va
                   "\n  Spectral Equalizer: " + changes +
                   "; a draft in one step: where a gain is 2 the movement is about a tenth off, "
                   "where it is 0 up to a half; Apply computes the accurate shape";
-    output.V = changed(input.V, surface, displacement);
+    output.V = moved(input.V, surface, displacement);
     output.warnings = partingWarnings(input, mesh, output.V);
     return output;
 }

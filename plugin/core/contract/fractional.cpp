@@ -180,6 +180,8 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
                                  call.result == Wanted::Details ? "Details found" : "");
     output.warnings = fractionalWarnings(options, result, mesh.diagonal);
     append(percentageWarnings(mesh), output.warnings);
+    if (!input.whole && call.result != Wanted::Details)
+        append(periodicWarnings(input.V, input.F, result.V), output.warnings);
     append(unusedWarnings(fields, call), output.warnings);
     if (call.result == Wanted::Details)
         output.details = input.V - result.V;

@@ -6,6 +6,8 @@
 #include <sstream>
 #include <utility>
 
+#include "core/mesh/periodic.h"
+
 namespace spectral {
 
 std::string movementText(const std::string& done, double mean, double most, double diagonal) {
@@ -51,10 +53,32 @@ void append(std::vector<std::string> more, std::vector<std::string>& warnings) {
 }
 
 std::vector<std::string> surfaceWarnings(const SurfaceCounts& counts) {
-    if (counts.nearlyJoined == 0) return {};
-    return {std::to_string(counts.nearlyJoined) +
+    std::vector<std::string> warnings;
+    if (counts.nearlyJoined > 0)
+        warnings.push_back(
+            std::to_string(counts.nearlyJoined) +
             " vertices on the boundary are within round-off of others, but not at the same point: "
-            "the surface may tear there. Apply 'Merge Close Vertices' first"};
+            "the surface may tear there. Apply 'Merge Close Vertices' first");
+    if (counts.flatComponents > 0)
+        warnings.push_back(std::to_string(counts.flatComponents) +
+                           (counts.flatComponents == 1 ? " component" : " components") +
+                           " without area, such as a triangle of three equal points, ignored");
+    return warnings;
+}
+
+std::vector<std::string> periodicWarnings(const Vertices& before, const Faces& F,
+                                          const Vertices& after) {
+    constexpr double kRoundOff = 1e-6;  // of the diagonal
+    const auto pairs = periodicPairs(before, F);
+    const double mismatch = largestMismatch(pairs, before, after);
+    if (!(mismatch > kRoundOff * boundingBoxDiagonal(before))) return {};
+    std::ostringstream text;
+    text << std::setprecision(3) << pairs.size()
+         << " pairs of vertices on opposite sides matched by a translation, as those of a periodic "
+            "cell, and are now apart by up to "
+         << mismatch
+         << ": choose boundary = fixed, or filter 3 x 3 x 3 copies and keep the one in the middle";
+    return {text.str()};
 }
 
 std::string selectionText(const std::vector<bool>& selected) {
@@ -67,16 +91,30 @@ std::string selectionText(const std::vector<bool>& selected) {
 
 std::vector<std::string> percentageWarnings(const MeshLengths& mesh) {
     constexpr double kNoticeable = 1.01;
-    if (!(mesh.diagonal > kNoticeable * mesh.surfaceDiagonal)) return {};
-    const bool isOne = mesh.outside == 1;
+    std::vector<std::string> warnings;
     std::ostringstream text;
-    text << std::setprecision(3) << mesh.outside
-         << (isOne ? " vertex without faces enlarges" : " vertices without faces enlarge")
-         << " the diagonal of the bounding box from " << mesh.surfaceDiagonal << " to "
-         << mesh.diagonal
-         << ": percentages refer to the larger one, defaults to the smaller. Apply 'Remove "
-            "Unreferenced Vertices' first";
-    return {text.str()};
+    text << std::setprecision(3);
+    if (mesh.filler.vertices == 0 && mesh.diagonal > kNoticeable * mesh.surfaceDiagonal) {
+        text << mesh.outside
+             << (mesh.outside == 1 ? " vertex without faces enlarges"
+                                   : " vertices without faces enlarge")
+             << " the diagonal of the bounding box from " << mesh.surfaceDiagonal << " to "
+             << mesh.diagonal
+             << ": percentages refer to the larger one, defaults to the smaller. Apply 'Remove "
+                "Unreferenced Vertices' first";
+        warnings.push_back(text.str());
+        text.str({});
+    }
+    if (const MeshLengths::Filler& filler = mesh.filler; filler.vertices > 0) {
+        const char axis = "xyz"[filler.axis];
+        text << std::setprecision(9) << filler.vertices << " vertices have " << axis << " = "
+             << filler.value
+             << ", far from all others, which defaults do not count: where that stands for "
+             << "missing data, select the rest (--where '" << axis
+             << (filler.isLowest ? " > " : " < ") << filler.value << "')";
+        warnings.push_back(text.str());
+    }
+    return warnings;
 }
 
 }  // namespace spectral

@@ -77,9 +77,13 @@ std::string allFixedWarning(const std::string& verb);
 /// Warns of what may tear the surface apart, and says what to do about it.
 std::vector<std::string> surfaceWarnings(const SurfaceCounts& counts);
 
-/// Warns of vertices without faces that enlarge the diagonal by more than 1 %: percentages then do
-/// not mean what they seem to.
+/// Warns of vertices without faces that enlarge the diagonal by more than 1 %, and of a value that
+/// may stand for missing data: percentages then do not mean what they seem to.
 std::vector<std::string> percentageWarnings(const MeshLengths& mesh);
+
+/// Warns where opposite boundaries of a periodic cell matched and do not any more.
+std::vector<std::string> periodicWarnings(const Vertices& before, const Faces& F,
+                                          const Vertices& after);
 
 /// Appends warnings.
 void append(std::vector<std::string> more, std::vector<std::string>& warnings);

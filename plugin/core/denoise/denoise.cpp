@@ -263,7 +263,8 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
     Vertices displacement = moved - whole.X;
     if (!displacement.allFinite()) throw SolverFailure("the denoised coordinates are not finite");
     moveContactsAlike(whole, components, displacement);
-    result.V = changed(V, whole, displacement);
+    followEdges(whole, displacement);
+    result.V = spectral::moved(V, whole, displacement);
     static_cast<Movement&>(result) = movementOf(
         whole.X, whole.F, displacement, Eigen::VectorXd::Ones(displacement.rows()), volumes);
     result.maxDisplacement = std::max(result.maxDisplacement, largestAtSeams(V, result.V, whole));

@@ -149,6 +149,7 @@ Vertices EqualizerBands::displacement(const Equalizer& gain) const {
     });
     Vertices displacement = sum.cast<double>();
     moveContactsAlike(surface_, components_, displacement);
+    followEdges(surface_, displacement);
     return displacement;
 }
 

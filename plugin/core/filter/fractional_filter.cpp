@@ -209,6 +209,7 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
         displacement = X - surface.X;
     }
     moveContactsAlike(surface, interior.surfaceComponents(), displacement);
+    followEdges(surface, displacement);
     X = surface.X + displacement;
 
     const Eigen::VectorXd before = lumpedMass(surface.X, surface.F);
@@ -218,7 +219,7 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     static_cast<Movement&>(result) =
         movementOf(surface.X, surface.F, displacement, before, volumes);
     static_cast<Work&>(result) = evaluate.work();
-    result.V = changed(V, surface, displacement);
+    result.V = moved(V, surface, displacement);
     result.maxDisplacement = std::max(result.maxDisplacement, largestAtSeams(V, result.V, surface));
     result.steps = static_cast<int>(steps.last.sizes.size());
     result.passes = steps.passes;

@@ -7,8 +7,8 @@
 
 namespace spectral {
 
-/// Creases: edges between two triangles whose planes differ by more than `angle`, whatever their
-/// orientation, each with its two vertices.
+/// Creases: edges at which the planes of any two triangles differ by more than `angle`, whatever
+/// their orientation, each with its two vertices. Three sheets may meet there.
 ///
 /// @param X      n x 3 positions.
 /// @param F      m x 3 indices into X.

@@ -1,6 +1,10 @@
 #include "core/mesh/measures.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
 
 #include "core/support/threads.h"
 
@@ -20,10 +24,14 @@ MeshLengths lengthsOf(const Vertices& V, const Faces& F) {
     const auto diagonalOf = [](const Eigen::AlignedBox3d& box) {
         return box.isEmpty() ? 0.0 : box.sizes().norm();
     };
+    MeshLengths lengths;
+    lengths.filler = fillerOf(V, F);
     for (Index i = 0; i < V.rows(); ++i) extend(all, i);
     for (Index t = 0; t < F.rows(); ++t)
-        for (int c = 0; c < 3; ++c) extend(surface, F(t, c));
-    MeshLengths lengths;
+        for (int c = 0; c < 3; ++c)
+            if (lengths.filler.vertices == 0 ||
+                V(F(t, c), lengths.filler.axis) != lengths.filler.value)
+                extend(surface, F(t, c));
     lengths.meanEdge = meanEdgeLength(V, F);
     lengths.diagonal = diagonalOf(all);
     lengths.surfaceDiagonal = diagonalOf(surface.isEmpty() ? all : surface);
@@ -35,10 +43,78 @@ MeshLengths lengthsOf(const Vertices& V, const Faces& F) {
 }
 
 double meanEdgeLength(const Vertices& V, const Faces& F) {
+    // Walls around the cells of a terrain without data are 100 to 10,000 cells long; of the sides
+    // of clean parts by CAD, which are long and short too, none is 64 times their median.
+    constexpr int kLonger = 6;  // by exponents of 2
+    constexpr int kExponents = 4096;
+    const auto length = [&](Index t, int c) {
+        return (V.row(F(t, (c + 1) % 3)) - V.row(F(t, c))).norm();
+    };
+    const auto exponentOf = [](double side) {
+        int exponent = 0;
+        std::frexp(side, &exponent);
+        return exponent;
+    };
     double sum = 0.0;
+    std::vector<Index> counts(kExponents, 0);
     for (Index t = 0; t < F.rows(); ++t)
-        for (int c = 0; c < 3; ++c) sum += (V.row(F(t, (c + 1) % 3)) - V.row(F(t, c))).norm();
-    return F.rows() > 0 ? sum / (3.0 * static_cast<double>(F.rows())) : 0.0;
+        for (int c = 0; c < 3; ++c) {
+            const double side = length(t, c);
+            sum += side;
+            ++counts[std::clamp(exponentOf(side) + kExponents / 2, 0, kExponents - 1)];
+        }
+    Index below = 0;
+    int median = 0;
+    while (median + 1 < kExponents && 2 * (below + counts[median]) < 3 * F.rows())
+        below += counts[median++];
+    Index longer = 0;
+    for (int e = median + kLonger + 1; e < kExponents; ++e) longer += counts[e];
+    if (longer == 0) return F.rows() > 0 ? sum / (3.0 * static_cast<double>(F.rows())) : 0.0;
+    sum = 0.0;
+    for (Index t = 0; t < F.rows(); ++t)
+        for (int c = 0; c < 3; ++c)
+            if (const double side = length(t, c);
+                exponentOf(side) + kExponents / 2 <= median + kLonger)
+                sum += side;
+    return sum / static_cast<double>(3 * F.rows() - longer);
+}
+
+MeshLengths::Filler fillerOf(const Vertices& V, const Faces& F) {
+    std::vector<bool> isUsed(static_cast<std::size_t>(V.rows()), false);
+    for (const int i : F.reshaped()) isUsed[i] = true;
+    for (const int axis : {2, 1, 0})
+        for (const double sign : {1.0, -1.0}) {
+            constexpr double kNone = std::numeric_limits<double>::infinity();
+            double lowest = kNone, next = kNone, highest = -kNone;
+            Index count = 0;
+            for (Index i = 0; i < V.rows(); ++i) {
+                if (!isUsed[i]) continue;
+                const double at = sign * V(i, axis);
+                highest = std::max(highest, at);
+                if (at < lowest) {
+                    next = lowest;
+                    lowest = at;
+                    count = 0;
+                } else if (at > lowest) {
+                    next = std::min(next, at);
+                }
+                count += at == lowest;
+            }
+            if (count < 2 || !(next < highest) || !(next - lowest > highest - next)) continue;
+            double all = 0.0, seen = 0.0;
+            bool hasWall = false;
+            for (Index t = 0; t < F.rows() && !hasWall; ++t) {
+                const Eigen::RowVector3d a = V.row(F(t, 0)), b = V.row(F(t, 1)), c = V.row(F(t, 2));
+                const double area = (b - a).cross(c - a)[axis];
+                all += std::abs(area);
+                seen += area;
+                const double low = std::min({sign * a[axis], sign * b[axis], sign * c[axis]});
+                hasWall = area == 0.0 && low == lowest;
+            }
+            if (!hasWall && std::abs(seen) > (1.0 - 1e-9) * all)
+                return {axis, sign * lowest, count, sign > 0.0};
+        }
+    return {};
 }
 
 double defaultFeatureSize(double meanEdge, double diagonal) {

@@ -15,14 +15,26 @@ struct MeshLengths {
     double surfaceDiagonal = 0.0;  ///< Of the bounding box of the corners of triangles, without any
                                    ///< that of all vertices: defaults refer to it.
     Index outside = 0;             ///< Number of vertices outside the box of the corners.
+    /// A value that may stand for missing data, as -9999 in a terrain.
+    struct Filler {
+        int axis = 0;
+        double value = 0.0;
+        Index vertices = 0;  ///< How many have it; 0: none is found.
+        bool isLowest = false;
+    } filler{};
 };
 
 /// @param V  n x 3; positions that are not finite do not count for the diagonals.
 /// @param F  m x 3 indices in [0, n); n and m may be 0.
 MeshLengths lengthsOf(const Vertices& V, const Faces& F);
 
-/// Mean side length over all triangles, counting interior edges twice; 0 without triangles.
+/// Mean side length over all triangles, counting interior edges twice; 0 without triangles. Sides
+/// that are more than 64 times as long as half of all are left out: walls around missing data.
 double meanEdgeLength(const Vertices& V, const Faces& F);
+
+/// Finds the lowest or highest coordinate of a height field, if several vertices have it, the
+/// others are farther from it than from each other, and no vertical wall leads to it.
+MeshLengths::Filler fillerOf(const Vertices& V, const Faces& F);
 
 /// Default feature size: six mean edges, at most 5 % of the diagonal of the bounding box.
 ///

@@ -17,18 +17,18 @@ constexpr double kDegenerateAspect = 1e-10;
 /// Largest modulus of a coordinate: the fourth power of a length must be finite.
 constexpr double kMaxCoordinate = 1e75;
 
+std::string counted(Index count, const char* one, const char* many) {
+    return std::to_string(count) + " " + (count == 1 ? one : many);
+}
+
+}  // namespace
+
 bool isDegenerate(const Vertices& V, const Faces& F, Index t) {
     const Eigen::RowVector3d a = V.row(F(t, 0)), b = V.row(F(t, 1)), c = V.row(F(t, 2));
     const Eigen::RowVector3d ab = b - a, ac = c - a, bc = c - b;
     const double longest2 = std::max({ab.squaredNorm(), ac.squaredNorm(), bc.squaredNorm()});
     return !(ab.cross(ac).norm() > kDegenerateAspect * longest2);
 }
-
-std::string counted(Index count, const char* one, const char* many) {
-    return std::to_string(count) + " " + (count == 1 ? one : many);
-}
-
-}  // namespace
 
 void checkMesh(const Vertices& V, const Faces& F) {
     if (V.rows() == 0) throw InvalidMesh(ErrorCode::EmptyMesh, "the mesh is empty: no vertices");

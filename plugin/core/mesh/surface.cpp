@@ -1,6 +1,11 @@
 #include "core/mesh/surface.h"
 
-#include "core/mesh/seams.h"
+#include <algorithm>
+#include <array>
+#include <map>
+#include <numeric>
+
+#include "core/mesh/mesh_check.h"
 #include "core/mesh/union_find.h"
 
 namespace spectral {
@@ -34,21 +39,104 @@ Surface surfaceOf(const Vertices& V, const Faces& F) {
     return surface;
 }
 
+namespace {
+
+using Triangle = std::array<int, 3>;
+using Points = std::array<std::vector<int>, 3>;  // on the sides of a triangle, in its order
+
+/// Appends a triangle, split at the points on its sides.
+void appendSplit(Triangle triangle, Points points, std::vector<Triangle>& split) {
+    for (int turn = 0; turn < 2 && points[0].empty(); ++turn) {
+        std::rotate(triangle.begin(), triangle.begin() + 1, triangle.end());
+        std::rotate(points.begin(), points.begin() + 1, points.end());
+    }
+    if (points[0].empty()) {
+        split.push_back(triangle);
+        return;
+    }
+    const auto [a, b, c] = triangle;
+    const std::vector<int>& along = points[0];
+    appendSplit({a, along.front(), c}, {{{}, {}, points[2]}}, split);
+    for (std::size_t k = 1; k < along.size(); ++k) split.push_back({along[k - 1], along[k], c});
+    appendSplit({along.back(), b, c}, {{{}, points[1], {}}}, split);
+}
+
+/// Splits triangles at the vertices that hang on their sides.
+Faces splitAt(const std::vector<Hanging>& hanging, const Faces& F) {
+    std::map<int, Points> points;  // of the triangles
+    for (const Hanging& one : hanging) {
+        const int t = one.side / 3, c = one.side % 3;
+        std::vector<int>& along = points[t][c];
+        along.insert(F(t, c) == one.from ? along.end() : along.begin(), one.vertex);
+    }
+    std::vector<Triangle> triangles;
+    for (Index t = 0; t < F.rows(); ++t) {
+        const Triangle triangle{F(t, 0), F(t, 1), F(t, 2)};
+        const auto found = points.find(static_cast<int>(t));
+        if (found == points.end())
+            triangles.push_back(triangle);
+        else
+            appendSplit(triangle, found->second, triangles);
+    }
+    Faces split(static_cast<Index>(triangles.size()), 3);
+    for (Index t = 0; t < split.rows(); ++t)
+        for (int c = 0; c < 3; ++c) split(t, c) = triangles[t][c];
+    return split;
+}
+
+/// Leaves out components all of whose triangles have no area: their Laplacian is infinite.
+void removeFlatComponents(Surface& surface) {
+    std::vector<bool> isFlat(static_cast<std::size_t>(surface.F.rows()));
+    for (Index t = 0; t < surface.F.rows(); ++t) isFlat[t] = isDegenerate(surface.X, surface.F, t);
+    if (std::find(isFlat.begin(), isFlat.end(), true) == isFlat.end()) return;
+    const Components components = connectedComponents(surface.F, surface.X.rows());
+    std::vector<bool> hasArea(static_cast<std::size_t>(components.count), false);
+    for (Index t = 0; t < surface.F.rows(); ++t)
+        if (!isFlat[t]) hasArea[components.label[surface.F(t, 0)]] = true;
+    const auto flat = std::count(hasArea.begin(), hasArea.end(), false);
+    if (flat == 0 || flat == components.count) return;
+    Index kept = 0;
+    for (Index t = 0; t < surface.F.rows(); ++t)
+        if (hasArea[components.label[surface.F(t, 0)]])
+            surface.F.row(kept++) = surface.F.row(t).eval();
+    surface.F.conservativeResize(kept, 3);
+    Surface rest = surfaceOf(surface.X, surface.F);
+    for (Index& vertex : rest.vertex) vertex = surface.vertex[vertex];
+    surface = std::move(rest);
+    surface.flatComponents = static_cast<int>(flat);
+}
+
+}  // namespace
+
 Surface joinedSurface(const Vertices& V, const Faces& F) {
     Surface cut = surfaceOf(V, F);
+    removeFlatComponents(cut);
     const Seams seams = findSeams(cut.X, cut.F);
-    if (seams.first.empty()) {
+    if (seams.first.empty() && seams.hanging.empty()) {
         cut.nearlyCopies = seams.nearby;
         return cut;
     }
-    Surface surface = surfaceOf(cut.X, cut.F.unaryExpr([&](int i) { return seams.first[i]; }));
+    std::vector<int> first = seams.first;
+    if (first.empty()) {
+        first.resize(cut.vertex.size());
+        std::iota(first.begin(), first.end(), 0);
+    }
+    Faces joined = cut.F.unaryExpr([&](int i) { return first[i]; });
+    if (!seams.hanging.empty()) joined = splitAt(seams.hanging, joined);
+    Surface surface = surfaceOf(cut.X, joined);
     if (surface.F.rows() == 0) return cut;  // all triangles degenerate once joined
     surface.nearlyCopies = seams.nearby;
-    std::vector<Index> row(seams.first.size(), -1);
+    surface.flatComponents = cut.flatComponents;
+    std::vector<Index> row(first.size(), -1);
     for (Index i = 0; i < surface.X.rows(); ++i) row[surface.vertex[i]] = i;
     for (std::size_t i = 0; i < row.size(); ++i)
-        if (seams.first[i] != static_cast<int>(i) && row[seams.first[i]] >= 0)
-            surface.copies.push_back({cut.vertex[i], row[seams.first[i]]});
+        if (first[i] != static_cast<int>(i) && row[first[i]] >= 0)
+            surface.copies.push_back({cut.vertex[i], row[first[i]]});
+    for (Hanging one : seams.hanging)
+        if (one.follows) {
+            for (int* end : {&one.vertex, &one.from, &one.to}) *end = static_cast<int>(row[*end]);
+            surface.hanging.push_back(one);
+        }
     for (Index& vertex : surface.vertex) vertex = cut.vertex[vertex];
     return surface;
 }
@@ -84,6 +172,29 @@ Eigen::MatrixXd changed(const Eigen::MatrixXd& values, const Surface& surface,
     return after;
 }
 
+void followEdges(const Surface& surface, Vertices& displacement) {
+    for (const Hanging& one : surface.hanging)
+        displacement.row(one.vertex) =
+            (1.0 - one.share) * displacement.row(one.from) + one.share * displacement.row(one.to);
+}
+
+Vertices moved(const Vertices& V, const Surface& surface, const Vertices& displacement) {
+    Vertices after = changed(V, surface, displacement);
+    if (surface.hanging.empty()) return after;
+    std::vector<bool> follows(surface.vertex.size(), false);
+    for (const Hanging& one : surface.hanging) {
+        const Index i = surface.vertex[one.vertex], from = surface.vertex[one.from],
+                    to = surface.vertex[one.to];
+        if (displacement.row(one.from).isZero(0.0) && displacement.row(one.to).isZero(0.0))
+            continue;
+        after.row(i) = (1.0 - one.share) * after.row(from) + one.share * after.row(to);
+        follows[one.vertex] = true;
+    }
+    for (const auto& [vertex, row] : surface.copies)
+        if (follows[row]) after.row(vertex) = after.row(surface.vertex[row]);
+    return after;
+}
+
 Eigen::MatrixXd extendedByZero(Eigen::MatrixXd values, const std::vector<Index>& vertex, Index n) {
     if (values.rows() == n) return values;
     Eigen::MatrixXd extended = Eigen::MatrixXd::Zero(n, values.cols());
@@ -98,6 +209,7 @@ SurfaceCounts countsOf(const Surface& surface, Index n, int components, Index fi
     counts.joinedVertices = static_cast<int>(surface.copies.size());
     counts.unreferencedVertices = static_cast<int>(n - surface.X.rows()) - counts.joinedVertices;
     counts.nearlyJoined = surface.nearlyCopies;
+    counts.flatComponents = surface.flatComponents;
     return counts;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/mesh/mesh.h"
+#include "core/mesh/seams.h"
 
 namespace spectral {
 
@@ -17,9 +18,13 @@ struct Surface {
 
     Vertices X;  ///< n x 3, centred by bounding box: no digits are lost far from the origin.
     Faces F;     ///< m x 3, indices into X; the corners of a triangle are distinct.
-    std::vector<Index> vertex;   ///< Row in the mesh of each row of X, ascending.
-    std::vector<Copy> copies{};  ///< Vertices of the mesh that are joined to those, ascending.
-    int nearlyCopies = 0;        ///< Vertices that would be copies but for round-off.
+    std::vector<Index> vertex;       ///< Row in the mesh of each row of X, ascending.
+    std::vector<Copy> copies{};      ///< Vertices of the mesh that are joined to those, ascending.
+    std::vector<Hanging> hanging{};  ///< Rows of X on edges of coarser triangles, which are split
+                                     ///< there (seams.h).
+    int nearlyCopies = 0;            ///< Vertices that would be copies but for round-off.
+    int flatComponents = 0;  ///< Components without area, such as a triangle of three equal points,
+                             ///< which are left out; X and F do not have them.
 };
 
 /// The triangles with three distinct corners, and their vertices, renumbered. Unreferenced vertices
@@ -27,7 +32,7 @@ struct Surface {
 Surface surfaceOf(const Vertices& V, const Faces& F);
 
 /// The same, with the vertices along seams joined: each row of X is the first such vertex of the
-/// mesh, the others are its copies.
+/// mesh, the others are its copies. Components without area are left out, unless all are.
 Surface joinedSurface(const Vertices& V, const Faces& F);
 
 /// Restricts values at the vertices of a mesh to its surface; at a seam, to the mean of the copies.
@@ -42,6 +47,14 @@ Eigen::MatrixXd extended(Eigen::MatrixXd values, const Surface& surface, Index n
 Eigen::MatrixXd changed(const Eigen::MatrixXd& values, const Surface& surface,
                         const Eigen::MatrixXd& change);
 
+/// Lets hanging vertices follow their edges: the mean of the ends' displacements, by the share.
+/// @param displacement  n x 3, of the rows of X.
+void followEdges(const Surface& surface, Vertices& displacement);
+
+/// `changed` for positions; hanging vertices are on their edges to the last bit, if these have
+/// moved.
+Vertices moved(const Vertices& V, const Surface& surface, const Vertices& displacement);
+
 /// Extends values at some of n vertices by zero: row i of `values` (m x c) becomes row vertex[i] of
 /// the result (n x c).
 Eigen::MatrixXd extendedByZero(Eigen::MatrixXd values, const std::vector<Index>& vertex, Index n);
@@ -52,6 +65,7 @@ struct SurfaceCounts {
     int unreferencedVertices = 0;  ///< Vertices in no triangle; they do not change.
     int joinedVertices = 0;        ///< Vertices of the mesh joined to another (seams.h).
     int nearlyJoined = 0;          ///< Vertices that would be joined but for round-off.
+    int flatComponents = 0;        ///< Components without area, which do not change.
     int fixedVertices = 0;         ///< Vertices of the surface that must not move.
 };
 

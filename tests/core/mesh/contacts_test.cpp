@@ -9,6 +9,7 @@
 #include "core/denoise/denoise.h"
 #include "core/filter/fractional_filter.h"
 #include "core/mesh/measures.h"
+#include "core/mesh/surface.h"
 #include "support/noisy_shapes.h"
 
 namespace spectral {
@@ -55,6 +56,28 @@ TEST(Contacts, MoveAlikeWhenFiltered) {
         EXPECT_EQ(result.components, 2);
         expectAlike(mesh, result.V);
     }
+}
+
+TEST(Contacts, AreNotWhereLevelsOfDetailLieOverOneAnother) {
+    // Every fourth vertex of the finer sphere is one of the coarser: they have no edge in common.
+    const Mesh fine = testing::icosphere(4), coarse = testing::icosphere(3);
+    const Mesh both = testing::joined(fine, coarse);
+    const Surface surface = joinedSurface(both.V, both.F);
+    const Components components = connectedComponents(surface.F, surface.X.rows());
+    ASSERT_GE(contactsOf(both.V).size(), 600u);
+    Vertices displacement = Vertices::Random(surface.X.rows(), 3);
+    const Vertices before = displacement;
+    moveContactsAlike(surface, components, displacement);
+    EXPECT_EQ(displacement, before);
+
+    // The same faces twice.
+    const Mesh over = testing::joined(fine, fine);
+    const Surface twice = joinedSurface(over.V, over.F);
+    const Components layers = connectedComponents(twice.F, twice.X.rows());
+    displacement = Vertices::Random(twice.X.rows(), 3);
+    const Vertices apart = displacement;
+    moveContactsAlike(twice, layers, displacement);
+    EXPECT_EQ(displacement, apart);
 }
 
 TEST(Parting, IsFoundWhereAComponentLeavesOneThatItTouched) {

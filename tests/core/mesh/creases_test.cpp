@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
+#include "core/support/types.h"
 #include "support/shapes.h"
 
 namespace spectral {
@@ -43,6 +46,54 @@ TEST(Creases, IncludeAFoldedEdge) {
     Faces F(2, 3);
     F << 0, 1, 2, 1, 0, 3;
     EXPECT_EQ(count(creaseVertices(V, F, 179.0)), 2);
+}
+
+/// Sheets of quadrilaterals that meet in the z axis, each in a direction across it, in degrees.
+Mesh sheets(const std::vector<double>& directions, int cells) {
+    Mesh mesh = testing::rectangle(cells, cells, cells, cells);
+    const Mesh sheet = mesh;
+    const Index n = sheet.V.rows(), m = sheet.F.rows(), k = static_cast<Index>(directions.size());
+    mesh.V.resize(k * n, 3);
+    mesh.F.resize(k * m, 3);
+    const double left = sheet.V.col(0).minCoeff();
+    for (Index s = 0; s < k; ++s) {
+        const double angle = directions[static_cast<std::size_t>(s)] * kPi / 180.0;
+        const auto along = (sheet.V.col(0).array() - left).matrix();
+        mesh.V.middleRows(s * n, n) << std::cos(angle) * along, std::sin(angle) * along,
+            sheet.V.col(1);
+        mesh.F.middleRows(s * m, m) = sheet.F.array() + static_cast<int>(s * n);
+    }
+    const auto first = [&](int i) {  // of the sheets' vertices at a point
+        for (int j = 0; j < i; ++j)
+            if ((mesh.V.row(j) - mesh.V.row(i)).norm() < 1e-9) return j;
+        return i;
+    };
+    mesh.F = mesh.F.unaryExpr(first).eval();
+    return mesh;
+}
+
+TEST(Creases, AreWhereAnyTwoOfSeveralSheetsFold) {
+    const int cells = 4;
+    const auto crease = [&](const std::vector<double>& directions) {
+        const Mesh mesh = sheets(directions, cells);
+        return count(creaseVertices(mesh.V, mesh.F, 40.0));
+    };
+    EXPECT_EQ(crease({0, 180}), 0);
+    EXPECT_EQ(crease({0, 120}), cells + 1);
+    EXPECT_EQ(crease({0, 180, 90}), cells + 1);
+    EXPECT_EQ(crease({0, 120, 240}), cells + 1);
+    EXPECT_EQ(crease({0, 180, 90, 270}), cells + 1);
+}
+
+TEST(Creases, AreNotWhereASheetHasTwoSides) {
+    Mesh mesh = sheets({0, 170}, 4);
+    const Index m = mesh.F.rows();
+    Faces F(2 * m, 3);
+    F.topRows(m) = mesh.F;
+    F.bottomRows(m).col(0) = mesh.F.col(1);
+    F.bottomRows(m).col(1) = mesh.F.col(0);
+    F.bottomRows(m).col(2) = mesh.F.col(2);
+    EXPECT_EQ(count(creaseVertices(mesh.V, F, 40.0)), 24);  // the rim, where the sides meet
 }
 
 }  // namespace

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
+#include <functional>
 #include <map>
 #include <random>
 #include <utility>
@@ -315,6 +318,73 @@ TEST(Seams, ATriangleWithoutAreaJoinsNothing) {
     F << 0, 1, 2, 1, 2, 3;
     const Surface surface = joinedSurface(V, F);
     EXPECT_EQ(surface.X.rows(), 4);
+}
+
+/// A square of 8 x 8 coarse cells, of which some are divided: `level(row, column)` halvings. Each
+/// cell has vertices of its own.
+Mesh quadtree(const std::function<int(int, int)>& level) {
+    constexpr int kCells = 8;
+    Mesh mesh{Vertices(0, 3), Faces(0, 3)};
+    for (int row = 0; row < kCells; ++row)
+        for (int column = 0; column < kCells; ++column) {
+            const int n = 1 << level(row, column);
+            Mesh cell = testing::rectangle(1.0, 1.0, n, n);
+            cell.V.rowwise() += Eigen::RowVector3d(column, row, 0.0);
+            mesh = testing::joined(mesh, cell);
+        }
+    return mesh;
+}
+
+/// For each vertex in the middle of a side of a cell of `size`, its distance from the middle of the
+/// side's ends; all vertices by their places before.
+double largestGap(const Mesh& mesh, const Vertices& moved, double size,
+                  const std::function<int(int, int)>& level) {
+    std::map<std::array<double, 2>, Index> at;
+    for (Index i = 0; i < mesh.V.rows(); ++i) {
+        const auto [found, isNew] = at.try_emplace({mesh.V(i, 0), mesh.V(i, 1)}, i);
+        if (!isNew) EXPECT_EQ(moved.row(i), moved.row(found->second));
+    }
+    double largest = 0.0;
+    int count = 0;
+    for (int row = 0; row < 8; ++row)
+        for (int column = 0; column < 8; ++column) {
+            if (level(row, column) != 0) continue;
+            for (int side = 0; side < 4; ++side)
+                for (double share = size; share < 1.0; share += size) {
+                    const double x = column + (side % 2 ? share : side / 2),
+                                 y = row + (side % 2 ? side / 2 : share);
+                    const auto middle = at.find({x, y});
+                    if (middle == at.end()) continue;
+                    const bool isAlong = side % 2;
+                    const Index from = at.at({isAlong ? column : x, isAlong ? y : row}),
+                                to = at.at({isAlong ? column + 1.0 : x, isAlong ? y : row + 1.0});
+                    const Eigen::RowVector3d expected =
+                        (1.0 - share) * moved.row(from) + share * moved.row(to);
+                    largest = std::max(largest, (moved.row(middle->second) - expected).norm());
+                    ++count;
+                }
+        }
+    EXPECT_GT(count, 8);
+    return largest;
+}
+
+TEST(Seams, OfLevelsOfDetailHaveNoGaps) {
+    // Two, three and four levels side by side.
+    for (const int most : {1, 2, 3}) {
+        const auto level = [&](int row, int column) {
+            return (3 * row + 5 * column) % 4 == 0 || column > 5 ? most - row % 2 * (most > 1) : 0;
+        };
+        Mesh mesh = quadtree(level);
+        const Mesh flat = mesh;
+        mesh.V.col(2) = 0.25 * mesh.V.col(0) + 0.5 * mesh.V.col(1);
+        FilterOptions options;
+        options.featureSize = 6.0;
+        options.tolerance = 1e-3;
+        const FilterResult result = fractionalFilter(mesh.V, mesh.F, options);
+        EXPECT_EQ(result.components, 1);
+        EXPECT_GT(result.maxDisplacement, 0.01);
+        EXPECT_EQ(largestGap(flat, result.V, std::exp2(-most), level), 0.0) << most;
+    }
 }
 
 }  // namespace

@@ -6,11 +6,13 @@ from collections.abc import Iterable
 from pathlib import Path
 
 import fsspec
+import numpy as np
 import pytest
 from meshlab_spectral import InputError
 from meshlab_spectral.batch.inputs import Input, find_inputs
 from meshlab_spectral.batch.outputs import plan_outputs
 from meshlab_spectral.batch.storage import is_url
+from nibabel import gifti
 
 
 def files(folder: Path, *names: str) -> None:
@@ -166,3 +168,24 @@ def test_a_folder_of_free_surfer_gives_all_its_surfaces(remote: bool, tmp_path: 
         "rh.sphere_smooth.reg",
         "z.surf_smooth.gii.gz",
     ]
+
+
+def test_gifti_of_values_beside_surfaces_is_left_out(tmp_path: Path) -> None:
+    """As in the folders of fmriprep and of templates, whatever the names."""
+    V = np.eye(3, dtype="f4")
+    surface = {"POINTSET": V, "TRIANGLE": np.array([[0, 1, 2]], "i4")}
+    values = {"SHAPE": V[0], "TIME_SERIES": V[0], "LABEL": np.arange(3, dtype="i4")}
+    files = {"lh.pial.surf.gii": surface, "white_left.gii.gz": surface}
+    for name, intent in {"a.shape.gii": "SHAPE", "b.func.gii": "TIME_SERIES"}.items():
+        files[name] = {intent: values[intent]}
+    files |= {"lh.annot.label.gii": {"LABEL": values["LABEL"]}, "sulc_left.gii.gz": {"SHAPE": V[0]}}
+    for name, arrays in files.items():
+        image = gifti.GiftiImage()
+        for intent, array in arrays.items():
+            data = gifti.GiftiDataArray(array, f"NIFTI_INTENT_{intent}")
+            image.add_gifti_data_array(data)
+        image.to_filename(tmp_path / name)
+    (tmp_path / "damaged.gii.gz").write_bytes(b"no gzip")
+    found = [one.name for one in find_inputs([str(tmp_path)])]
+    assert found == ["damaged.gii.gz", "lh.pial.surf.gii", "white_left.gii.gz"]
+    assert len(find_inputs([str(tmp_path / "a.shape.gii")])) == 1  # a file that is named fails

@@ -113,3 +113,42 @@ def test_what_cannot_be_joined_is_refused(
 ) -> None:
     with pytest.raises(OptionError, match="joined files"):
         next(filter_files(folder, tmp_path / "out", joined=True, **more))
+
+
+def test_levels_of_detail_have_no_gaps(folder: Path, tmp_path: Path) -> None:
+    """Tiles of an octree: to the bit where a vertex hangs in the middle of a coarser edge."""
+    for row in range(3):
+        for column in range(3):
+            cells = 4 * 2 ** ((row + column) % 3)
+            x, y = np.meshgrid(np.arange(cells + 1), np.arange(cells + 1), indexing="ij")
+            k = np.arange((cells + 1) ** 2).reshape(cells + 1, cells + 1)
+            a, b, c, d = (q.ravel() for q in (k[:-1, :-1], k[1:, :-1], k[1:, 1:], k[:-1, 1:]))
+            F = np.vstack([np.stack([a, b, c], -1), np.stack([a, c, d], -1)])
+            x, y = (8 * one.ravel() / cells + 8 * k for one, k in ((x, row), (y, column)))
+            height = np.where((x % 8 > 0) & (y % 8 > 0), np.sin(3 * x + 5 * y), 0)
+            V = np.column_stack([x, y, 0.5 * height])
+            write_ply(folder / f"tile{row}{column}.ply", V, F, "<f8")
+    before = {path.name: _vertices(path) for path in sorted(folder.iterdir())}
+    results = list(filter_files(folder, tmp_path / "out", joined=True, **OPTIONS))
+    assert {result.outcome for result in results} == {"filtered"}
+    after = {name: _vertices(tmp_path / "out" / name) for name in before}
+    at: dict[tuple[float, ...], Array] = {}
+    for name, V in before.items():
+        for place, position in zip(V[:, :2].tolist(), after[name], strict=True):
+            np.testing.assert_array_equal(at.setdefault(tuple(place), position), position)
+    hanging = 0
+    for name in before:
+        row, column = int(name[4]), int(name[5])
+        size = 2.0 / 2 ** ((row + column) % 3)
+        for line in (0, 8):
+            for start in np.arange(0, 8, size):
+                for share in (0.25, 0.5, 0.75):
+                    ends = [(line, start), (line, start + size), (line, start + share * size)]
+                    for turn in (False, True):
+                        places = [(p[::-1] if turn else p) for p in ends]
+                        keys = [(8.0 * row + p[0], 8.0 * column + p[1]) for p in places]
+                        if keys[2] in at:
+                            a, b, h = (at[key] for key in keys)
+                            np.testing.assert_array_equal(h, (1 - share) * a + share * b)
+                            hanging += 1
+    assert hanging > 50

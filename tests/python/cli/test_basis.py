@@ -102,7 +102,7 @@ def test_the_chosen_pictures_are_drawn(half_bunny: Path, tmp_path: Path) -> None
     assert done.stdout == f"{output}\n{sheet}\n"
     few = matplotlib.image.imread(sheet)
     assert 0.1 < (few[:, :, :3] < 0.98).any(axis=2).mean() < 0.9
-    assert command(half_bunny, *arguments).returncode == 0
+    assert command(half_bunny, *arguments, "--overwrite").returncode == 0
     dozen = matplotlib.image.imread(sheet)
     assert dozen.shape[0] > 1.5 * few.shape[0], "more rows"
 
@@ -138,13 +138,25 @@ def test_a_wrong_option_is_named_and_nothing_is_written(
     folder.mkdir()
     monkeypatch.chdir(folder)
     (folder / "basis.npz").write_bytes(PRECIOUS)
-    done = command(half_bunny, *arguments)
+    done = command(half_bunny, "--overwrite", *arguments)
     assert done.returncode == code, done.stderr
     assert named in done.stderr
     assert "Traceback" not in done.stderr
     assert done.stdout == ""
     assert list(folder.iterdir()) == [folder / "basis.npz"]
     assert (folder / "basis.npz").read_bytes() == PRECIOUS
+
+
+def test_an_archive_is_replaced_on_request_only(half_bunny: Path, tmp_path: Path) -> None:
+    output = tmp_path / "basis.npz"
+    output.write_bytes(PRECIOUS)
+    arguments = (half_bunny, "--output", output, "--basis-size", 5)
+    done = command(*arguments)
+    assert done.returncode == 2
+    assert "basis.npz exists" in done.stderr
+    assert output.read_bytes() == PRECIOUS
+    assert command(*arguments, "--overwrite").returncode == 0
+    assert output.read_bytes() != PRECIOUS
 
 
 def test_a_missing_mesh_and_one_without_faces_are_named(

@@ -47,6 +47,13 @@ def test_a_mistake_leaves_the_old_table(cow: Path, existing: Path, tmp_path: Pat
     assert existing.read_bytes() == PRECIOUS
 
 
+def test_a_mesh_is_not_replaced_by_the_table(cow: Path, tmp_path: Path) -> None:
+    mesh = tmp_path / "other.obj"
+    shutil.copy(cow, mesh)
+    assert_fails(command("spectra", cow, "--output", mesh), 2, "is no table of spectra")
+    assert mesh.read_bytes() == cow.read_bytes()
+
+
 @pytest.mark.parametrize("table", [".", "/"])
 def test_a_table_that_is_a_folder_is_refused(table: str, cow: Path) -> None:
     assert_fails(command("spectra", cow, "--output", table), 1, "is a folder or a device")

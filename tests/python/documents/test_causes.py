@@ -27,10 +27,10 @@ ALIKE = [{"gltf", "glb"}, {"gii", "pial"}]
 TEXTS = ["in.ply", "in.obj", "in.off", "in.stl", "in.gltf", "text.vtk", "in.surf.gii"]
 
 
-def archive() -> bytes:
+def archive(name: str = "readme.txt") -> bytes:
     file = BytesIO()
     with zipfile.ZipFile(file, "w") as zipped:
-        zipped.writestr("readme.txt", "a scan")
+        zipped.writestr(name, "a scan")
     return file.getvalue()
 
 
@@ -38,6 +38,8 @@ OUTSIDERS = {
     "a web page": b"<!DOCTYPE html>\n<html><head><title>404</title></head></html>",
     "Git LFS": b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a21\nsize 12345\n",
     "a ZIP archive": archive(),
+    "a USD package: convert it to .glb": archive("scan.usdc"),
+    "USD: convert it to .glb": b'#usda 1.0\n(\n    upAxis = "Y"\n)\n',
     "gzip": gzip.compress(b"ply\n" * 100),
     "a PNG image": b"\x89PNG\r\n\x1a\n" + bytes(200),
     "a PDF document": b"%PDF-1.7\n" + b"1 0 obj\n" * 50,

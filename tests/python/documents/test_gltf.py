@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from meshlab_spectral.documents.gltf import GltfDocument, read
 from meshlab_spectral.errors import MeshFileError
+from meshlab_spectral.files.meshes import in_scene
 from meshlab_spectral.files.whole_files import writing_whole
 from numpy.typing import NDArray
 
@@ -290,8 +291,7 @@ def test_the_buffer_of_the_input_is_never_overwritten(name: str, tmp_path: Path)
 @pytest.mark.parametrize(
     ("keys", "value", "match"),
     [
-        (("extensionsUsed",), ["KHR_draco_mesh_compression"], "draco.*without compression"),
-        (("extensionsUsed",), ["EXT_meshopt_compression"], "meshopt.*without compression"),
+        (("extensionsRequired",), ["EXT_meshopt_compression"], "meshopt.*without compression"),
         (("asset", "version"), "1.0", r"version 1\.0.*convert"),
         (("accessors", 0, "count"), 9, "does not hold 9"),
         (("accessors", 0), {"componentType": 5126, "count": 10**9, "type": "VEC3"}, "claim"),
@@ -328,3 +328,97 @@ def test_any_value_of_the_wrong_type_is_refused_or_harmless(tmp_path: Path) -> N
             with contextlib.suppress(MeshFileError):
                 document = read(spoiled(keys, value).write(tmp_path / "in.glb"))
                 document.save(tmp_path / "out.glb", [bent(p.vertices) for p in document.parts])
+
+
+def test_chosen_normals_turn_as_their_surface_turns(tmp_path: Path) -> None:
+    """As on leaves, whose normals point to the sky."""
+    x, y = (axis.ravel() for axis in np.meshgrid(np.linspace(-1, 1, 9), np.linspace(-1, 1, 9)))
+    V = np.column_stack([x, y, 0 * x]).astype("<f4")
+    k = np.arange(81).reshape(9, 9)
+    F = np.stack([k[:-1, :-1], k[:-1, 1:], k[1:, 1:], k[:-1, :-1], k[1:, 1:], k[1:, :-1]], axis=2)
+    chosen = np.column_stack([0.6 + 0 * x, 0.5 * x, 0.5 + 0 * x])
+    chosen = (chosen / np.linalg.norm(chosen, axis=1, keepdims=True)).astype("<f4")
+    asset = Asset()
+    attributes = {"POSITION": asset.accessor(V), "NORMAL": asset.accessor(chosen)}
+    indices = asset.accessor(F.reshape(-1).astype("<u2"))
+    asset.mesh({"attributes": attributes, "indices": indices})
+    document = read(asset.write(tmp_path / "in.glb"))
+    angle = 0.3  # the sheet turns around y
+    turn = np.array(
+        [[np.cos(angle), 0, np.sin(angle)], [0, 1, 0], [-np.sin(angle), 0, np.cos(angle)]]
+    )
+    document.save(tmp_path / "out.glb", [V.astype(float) @ turn.T])
+    np.testing.assert_allclose(floats(tmp_path / "out.glb", 1), chosen @ turn.T, atol=1e-6)
+
+
+def test_the_default_scene_is_what_a_conversion_takes(tmp_path: Path) -> None:
+    asset = cube(CUBE, {"mesh": 0}, {"mesh": 1}, {"children": [3]}, {"mesh": 1, "scale": [2, 2, 2]})
+    asset.mesh(*asset.tree["meshes"][0]["primitives"])
+    asset.tree |= {"scenes": [{"nodes": [0, 1]}, {"nodes": [2]}], "scene": 1}
+    document = read(asset.write(tmp_path / "in.glb"))
+    assert [part.is_shown for part in document.parts] == [False, True]
+    assert "other scenes" in document.contents
+    np.testing.assert_array_equal(document.parts[1].vertices, 2 * CUBE)
+    assert document.parts[1].copies == ()
+    (part,) = in_scene(document.parts)
+    np.testing.assert_array_equal(part.vertices, 2 * CUBE)
+
+
+@pytest.mark.parametrize("is_required", [False, True])
+def test_draco_is_decoded_and_told(is_required: bool, tmp_path: Path) -> None:
+    """Where the file has an uncompressed copy, too, that is taken."""
+    asset = cube()
+    primitive = asset.tree["meshes"][0]["primitives"][0]
+    labels = np.arange(8, dtype="<f4")
+    primitive["attributes"]["_LABEL"] = asset.accessor(labels)
+    if is_required:
+        draco = pytest.importorskip("DracoPy")
+        packed = draco.encode(
+            CUBE.astype(float),
+            FACES.astype("u4"),
+            quantization_bits=20,
+            preserve_order=True,
+            generic_attributes={5: labels[:, None]},
+        )
+        ids = {one["attribute_type"]: one["unique_id"] for one in draco.decode(packed).attributes}
+        for number in (*primitive["attributes"].values(), primitive["indices"]):
+            del asset.tree["accessors"][number]["bufferView"]
+        asset.tree["extensionsRequired"] = ["KHR_draco_mesh_compression"]
+        attributes = {"POSITION": ids[0], "_LABEL": 5}
+    else:
+        packed, attributes = b"nobody decodes it", {"POSITION": 0}
+    extension = {"bufferView": asset.view(packed), "attributes": attributes}
+    primitive["extensions"] = {"KHR_draco_mesh_compression": extension}
+    asset.tree["extensionsUsed"] = ["KHR_draco_mesh_compression", "KHR_materials_unlit"]
+    source, target = asset.write(tmp_path / "in.glb"), tmp_path / "out.glb"
+    document = read(source)
+    (part,) = document.parts
+    corners = [part.vertices[part.faces], CUBE[FACES]]
+    rows = [np.sort(np.round(one, 4).reshape(-1, 9), axis=1) for one in corners]
+    assert sorted(rows[0].tolist()) == sorted(rows[1].tolist())
+    assert document.save(target, [part.vertices]) == []
+    assert target.read_bytes() == source.read_bytes()
+    moved = bent(part.vertices)
+    (warning,) = document.save(target, [moved])
+    assert warning == "it is written without its compression, KHR_draco_mesh_compression"
+    tree, _ = opened(target)
+    assert tree["extensionsUsed"] == ["KHR_materials_unlit"]
+    assert "extensionsRequired" not in tree
+    assert "extensions" not in tree["meshes"][0]["primitives"][0]
+    np.testing.assert_allclose(read(target).parts[0].vertices, moved, atol=1e-6)
+    written = tree["meshes"][0]["primitives"][0]["attributes"]["_LABEL"]
+    assert sorted(floats(target, written, 1).ravel().tolist()) == labels.tolist()
+
+
+def test_the_uncompressed_copy_beside_meshopt_is_taken(tmp_path: Path) -> None:
+    asset = cube()
+    for view in asset.tree["bufferViews"]:
+        view["extensions"] = {"EXT_meshopt_compression": {"buffer": 0, "byteLength": 1}}
+    asset.tree["extensionsUsed"] = ["EXT_meshopt_compression"]
+    document = read(asset.write(tmp_path / "in.glb"))
+    moved = bent(document.parts[0].vertices)
+    assert len(document.save(tmp_path / "out.glb", [moved])) == 1
+    tree, _ = opened(tmp_path / "out.glb")
+    assert "extensionsUsed" not in tree
+    assert not any("extensions" in view for view in tree["bufferViews"])
+    np.testing.assert_allclose(read(tmp_path / "out.glb").parts[0].vertices, moved, atol=1e-6)

@@ -244,3 +244,36 @@ def test_names_with_the_slashes_of_windows_are_found(
     copied = target.parent / folder.relative_to(tmp_path)
     assert (copied / "a.mtl").is_file()
     assert (copied / "textures" / "t.png").read_bytes() == b"an image"
+
+
+def test_a_normal_that_serves_faces_which_turn_apart_becomes_several(tmp_path: Path) -> None:
+    """A strip of four squares with one normal, as exporters write that save equal ones once."""
+    vertices = b"".join(b"v %d %d 0\n" % (x, y) for x in range(5) for y in range(2))
+    normals = b"vn 0 0 1 # up\nvn 0 1 0\n"
+    faces = b"".join(
+        b"f %d//1 %d//1 %d//1 %d//-2 # %d\n" % (2 * k + 1, 2 * k + 3, 2 * k + 4, 2 * k + 2, k)
+        for k in range(4)
+    )
+    path = write(tmp_path / "in.obj", vertices + normals + b"g strip\n" + faces + b"l 1 2\n")
+    document = read(path)
+    (part,) = document.parts
+    moved = part.vertices.copy()
+    moved[:, 2] = 0.25 * moved[:, 0] ** 2
+    target = tmp_path / "out.obj"
+    (warning,) = document.save(target, [moved])
+    assert warning == "4 normals are added, as others serve faces that turn apart"
+    written = [line.partition(b"#")[0].split() for line in target.read_bytes().splitlines()]
+    N = np.array([words[1:] for words in written if words[0] == b"vn"], float)
+    assert len(N) == 2 + 4
+    np.testing.assert_array_equal(N[-1], [0, 1, 0])
+    np.testing.assert_allclose(np.linalg.norm(N, axis=1), 1, atol=1e-6)
+    corners = [w.split(b"//") for words in written if words[0] == b"f" for w in words[1:]]
+    for vertex, normal in corners:
+        x = moved[int(vertex) - 1, 0]
+        slope = 0.25 if x == 0 else 1.75 if x == 4 else 0.5 * x  # of the chords, in the mean
+        angle = np.arctan2(-N[int(normal) - 1][0], N[int(normal) - 1][2])
+        assert angle == pytest.approx(np.arctan(slope), abs=0.06)
+    others = [w for w in written if w[0] in (b"g", b"l")]
+    assert others == [[b"g", b"strip"], [b"l", b"1", b"2"]]
+    assert b"# up" in target.read_bytes()
+    assert read(target).contents == document.contents

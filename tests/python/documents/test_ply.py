@@ -14,7 +14,7 @@ from meshlab_spectral.documents.document import Array
 from meshlab_spectral.documents.names import shown
 from meshlab_spectral.documents.ply import PlyDocument, read
 from meshlab_spectral.errors import MeshFileError
-from plyfile import PlyData
+from plyfile import PlyData, PlyElement
 
 FORMATS = ("ascii", "binary_little_endian", "binary_big_endian")
 CODES = {"uchar": "B", "int": "i", "uint": "I", "short": "h", "float": "f", "double": "d"}
@@ -309,3 +309,39 @@ def test_textures_are_copied_next_to_the_file_and_never_elsewhere(tmp_path: Path
     assert sorted(path.name for path in target.parent.rglob("*.*")) == ["a.ply", "b.png", names[0]]
     assert not list((tmp_path / "elsewhere").iterdir())
     assert document.save(tmp_path / "in/scratch.ply", [document.parts[0].vertices]) == []
+
+
+@pytest.mark.parametrize("order", ["=", "<", ">"])
+@pytest.mark.parametrize("is_last", [False, True])
+def test_lists_of_several_lengths_at_the_vertices_are_kept(
+    is_last: bool, order: str, tmp_path: Path
+) -> None:
+    """As of neighbours, or of the views that see a vertex."""
+    if order == "=" and not is_last:
+        return  # words before the coordinates of a text have to be as many in each row
+    V = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], "f4")
+    views = np.empty(4, object)
+    views[:] = [np.arange(k, dtype="u2") for k in (1, 3, 1, 2)]
+    names = ["x", "y", "z", "age", "views"] if is_last else ["views", "x", "y", "z", "age"]
+    types = {"views": object, "age": "u1"} | dict.fromkeys("xyz", "f4")
+    vertex = np.zeros(4, [(name, types[name]) for name in names])
+    vertex["x"], vertex["y"], vertex["z"] = V.T
+    vertex["views"], vertex["age"] = views, [4, 5, 6, 7]
+    face = np.array([([0, 1, 2],), ([0, 2, 3],)], [("vertex_indices", "i4", 3)])
+    elements = [
+        PlyElement.describe(vertex, "vertex", len_types={"views": "u1"}, val_types={"views": "u2"}),
+        PlyElement.describe(face, "face"),
+    ]
+    source, target = tmp_path / "in.ply", tmp_path / "out.ply"
+    PlyData(elements, text=order == "=", byte_order=order).write(source)
+    document = read(source)
+    moved = document.parts[0].vertices + np.array([0, 0, 0.25])
+    document.save(target, [moved])
+    before, after = PlyData.read(source), PlyData.read(target)
+    assert str(before) == str(after)
+    np.testing.assert_array_equal(after["vertex"]["z"], [0.25] * 4)
+    assert [one.tolist() for one in after["vertex"]["views"]] == [one.tolist() for one in views]
+    for name in ("x", "y", "age"):
+        np.testing.assert_array_equal(after["vertex"][name], before["vertex"][name])
+    if order != "=":
+        assert target.stat().st_size == source.stat().st_size

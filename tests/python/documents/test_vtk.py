@@ -11,6 +11,7 @@ import pytest
 import pyvista as pv
 from meshlab_spectral.documents import vtk
 from meshlab_spectral.errors import MeshFileError
+from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
 
 LEGACY = """# vtk DataFile Version 3.0
 A title: POINTS 7 float
@@ -131,3 +132,36 @@ def test_volume_cells_are_refused_with_a_remedy(tmp_path: Path) -> None:
     grid.save(tmp_path / "volume.vtu")
     with pytest.raises(MeshFileError, match="Extract Surface"):
         vtk.read(tmp_path / "volume.vtu")
+
+
+@pytest.mark.parametrize("version", ["3.0", "5.1"])
+@pytest.mark.parametrize("is_far", [False, True])
+def test_the_lines_before_binary_data_are_kept(version: str, is_far: bool, tmp_path: Path) -> None:
+    """Slicer says in the title which way the axes point."""
+    sphere = pv.Icosphere(nsub=2).compute_normals()
+    sphere.points = np.float32(sphere.points + is_far * 1e6)
+    sphere.save(tmp_path / "in.vtk")
+    content = (tmp_path / "in.vtk").read_bytes()
+    _, _, rest = content.split(b"\n", 2)
+    if version == "3.0":
+        writer = vtkPolyDataWriter()
+        writer.SetInputData(sphere)
+        writer.SetFileTypeToBinary()
+        writer.SetFileVersion(42)
+        writer.SetFileName(str(tmp_path / "in.vtk"))
+        writer.Write()
+        _, _, rest = (tmp_path / "in.vtk").read_bytes().split(b"\n", 2)
+    head = b"# vtk DataFile Version " + version.encode() + b"\nSlicer output. SPACE=RAS\n"
+    (tmp_path / "in.vtk").write_bytes(head + rest)
+    document = vtk.read(tmp_path / "in.vtk")
+    moved = document.parts[0].vertices + 0.01 * np.sin(9 * document.parts[0].vertices)
+    warnings = document.save(tmp_path / "out.vtk", [moved])
+    assert len(warnings) == is_far
+    after = (tmp_path / "out.vtk").read_bytes()
+    assert after.startswith(head)
+    np.testing.assert_allclose(vtk.read(tmp_path / "out.vtk").parts[0].vertices, moved, atol=1e-6)
+    seen = pv.read(tmp_path / "out.vtk")
+    assert seen.points.dtype == (np.float64 if is_far else np.float32)
+    assert seen.faces.tolist() == sphere.faces.tolist()
+    np.testing.assert_allclose(np.linalg.norm(seen.point_data["Normals"], axis=1), 1, atol=1e-6)
+    assert (seen.point_data["Normals"] != sphere.point_data["Normals"]).any()

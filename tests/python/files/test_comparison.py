@@ -267,3 +267,40 @@ def test_what_cannot_be_compared_is_named(tmp_path: Path) -> None:
         compare((0 * V, F), (V, F))
     with pytest.raises(MeshFileError, match="missing"):
         compare(tmp_path / "missing.ply", (V, F))
+
+
+def strip(low: float, high: float, cells: int) -> tuple[NDArray[Any], NDArray[Any]]:
+    x, y = (a.ravel() for a in np.meshgrid(np.linspace(low, high, cells + 1), np.arange(11) / 10))
+    k = np.arange(len(x)).reshape(11, cells + 1)
+    a, b, c, d = (one.ravel() for one in (k[:-1, :-1], k[:-1, 1:], k[1:, 1:], k[1:, :-1]))
+    return np.column_stack([x, y, 0 * x]), np.vstack(
+        [np.stack([a, b, c], 1), np.stack([a, c, d], 1)]
+    )
+
+
+def test_what_lies_beyond_a_rim_is_counted_apart() -> None:
+    """Two scans that overlap in half, .01 apart."""
+    (V, F), (W, G) = strip(0, 1, 10), strip(0.5, 1.5, 12)
+    W[:, 2] = 0.01
+    change = compare((V, F), (W, G))
+    for name, one in change.deviations.items():
+        assert abs(one.mean) == pytest.approx(0.01, rel=0.2), name
+        assert abs(one.largest) < 0.012
+        assert change.beyond[name] == pytest.approx(0.5, abs=0.1)
+    assert [w.split(" lies")[0].split("% ")[1] for w in change.warnings] == [
+        f"of the surface of {name}" for name in "ab"
+    ]
+    assert change.report["beyond"] == change.beyond
+    farther = compare((V, F), (W, G), max_distance=0.001)
+    assert set(farther.beyond.values()) == {1.0}
+    whole = compare((V, F), (V + np.array([0, 0, 0.01]), F[::-1]))
+    assert set(whole.beyond.values()) == {0.0}
+
+
+@pytest.mark.parametrize("factor", [10.0, 25.4, 100.0, 1000.0])
+@pytest.mark.parametrize("same", [False, True])
+def test_other_units_are_named(same: bool, factor: float) -> None:
+    V, F = strip(0, 1, 10)
+    change = compare((V, F), (factor * V, F if same else F[::-1]))
+    assert change.warnings[0] == f"b is {factor:g} times as large as a: are the units equal?"
+    assert not compare((V, F), (1.5 * V, F)).warnings

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import struct
 from pathlib import Path
@@ -13,6 +14,7 @@ import pytest
 import pyvista
 from helpers import filter_file
 from meshlab_spectral import DenoiseOptions, FilterOptions
+from meshlab_spectral.errors import FormatError
 from meshlab_spectral.files.meshes import load_arrays, script_to_scratch
 from meshlab_spectral.files.whole_files import writing_whole
 from numpy.typing import NDArray
@@ -178,3 +180,97 @@ def test_every_format_that_only_meshlab_reads_warns_that_it_is_rewritten(
     shutil.copyfile(source, tmp_path / "copy")
     report = filter_file(source, target, FilterOptions.from_dict({"feature_size": "20%"}))
     assert any("rewritten by MeshLab" in warning for warning in report["warnings"])
+
+
+def write_sphere(path: Path, size: float = 1.0, **data: Array) -> None:
+    """Write a PLY file with what is given of colours; normals if there are colours."""
+    V, F = noisy_sphere()
+    mesh_set = pymeshlab.MeshSet(verbose=False)
+    mesh_set.add_mesh(pymeshlab.Mesh(size * V, F, **data))
+    flags = {"save_vertex_color": "v_color_matrix" in data, "save_vertex_normal": bool(data)}
+    flags |= {"save_face_color": "f_color_matrix" in data, "save_vertex_quality": False}
+    mesh_set.save_current_mesh(str(path), **flags)
+
+
+SMOOTH = FilterOptions.from_dict({"feature_size": "20%"})
+
+
+@pytest.mark.parametrize("ending", [".obj", ".x3d", ".xyz"])
+@pytest.mark.parametrize("has_normals", [False, True])
+def test_normals_are_of_unit_length_or_none(has_normals: bool, ending: str, tmp_path: Path) -> None:
+    colours = {"v_color_matrix": np.full((642, 4), 0.5)} if has_normals else {}
+    write_sphere(tmp_path / "in.ply", **colours)
+    filter_file(tmp_path / "in.ply", tmp_path / f"out{ending}", SMOOTH)
+    text = (tmp_path / f"out{ending}").read_text()
+    if ending == ".obj":
+        rows = [line.split()[1:] for line in text.splitlines() if line.startswith("vn ")]
+    elif ending == ".xyz":
+        rows = [line.split()[3:] for line in text.splitlines()]
+    else:
+        found = re.search(r'<Normal vector="([^"]*)"', text)
+        rows = np.reshape(found[1].split(), (-1, 3)).tolist() if found else []
+    normals = np.reshape(np.array([row for row in rows if row], float), (-1, 3))
+    assert len(normals) == (642 if has_normals else 0)
+    np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1, atol=1e-4)
+
+
+def test_off_files_have_no_normals_and_colours_only_if_there_are(tmp_path: Path) -> None:
+    """Readers take three numbers, or colours after them."""
+    write_sphere(tmp_path / "in.ply")
+    filter_file(tmp_path / "in.ply", tmp_path / "out.off", SMOOTH)
+    assert (tmp_path / "out.off").read_text().splitlines()[0] == "OFF"
+    write_sphere(tmp_path / "in.ply", v_color_matrix=np.full((642, 4), 0.5))
+    report = filter_file(tmp_path / "in.ply", tmp_path / "out.off", SMOOTH)
+    assert (tmp_path / "out.off").read_text().splitlines()[0] == "COFF"
+    assert report["warnings"] == ["out.off loses normals"]
+
+
+FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("colour", "<u2")])
+
+
+@pytest.mark.parametrize("source", ["in.ply", "in.vtp"])
+def test_stl_files_have_colours_only_if_there_are(source: str, tmp_path: Path) -> None:
+    if source == "in.vtp":
+        pyvista.PolyData.from_regular_faces(*noisy_sphere()).save(tmp_path / source)
+    else:
+        write_sphere(tmp_path / source)
+    filter_file(tmp_path / source, tmp_path / "out.stl", SMOOTH)
+    content = (tmp_path / "out.stl").read_bytes()
+    assert b"COLOR=" not in content[:80]
+    assert not content.startswith(b"solid")
+    assert not np.frombuffer(content, FACET, offset=84)["colour"].any()
+    red = np.tile([1.0, 0, 0, 1], (1280, 1))
+    write_sphere(tmp_path / "red.ply", f_color_matrix=red)
+    report = filter_file(tmp_path / "red.ply", tmp_path / "red.stl", SMOOTH)
+    content = (tmp_path / "red.stl").read_bytes()
+    assert b"COLOR=\xff\xff\xff\xff" in content[:80]
+    assert (np.frombuffer(content, FACET, offset=84)["colour"] == 31).all()  # red is lowest
+    assert report["warnings"] == ["red.stl loses normals"]
+
+
+@pytest.mark.parametrize("size", [1e-5, 1.0])
+@pytest.mark.parametrize(
+    "ending", [".3mf", ".ctm", ".dae", ".dxf", ".json", ".off", ".obj", ".stl", ".wrl", ".x3d"]
+)
+def test_a_format_that_rounds_away_the_filter_is_told(
+    ending: str, size: float, tmp_path: Path
+) -> None:
+    write_sphere(tmp_path / "in.ply", size)
+    report = filter_file(tmp_path / "in.ply", tmp_path / f"out{ending}", SMOOTH)
+    is_coarse = size < 1 and ending in (".3mf", ".dxf")
+    assert any("six decimals round coordinates" in w for w in report["warnings"]) == is_coarse
+    if ending not in (".dxf", ".json", ".stl", ".x3d"):  # MeshLab reads the vertices in order
+        after, _ = load_arrays(tmp_path / f"out{ending}")
+        filter_file(tmp_path / "in.ply", tmp_path / "expected.ply", SMOOTH)
+        expected, _ = load_arrays(tmp_path / "expected.ply")
+        if ending != ".ctm":  # in another order
+            error = np.sqrt(np.mean((after - expected) ** 2))
+            moved = np.sqrt(np.mean((expected - load_arrays(tmp_path / "in.ply")[0]) ** 2))
+            assert (error > 0.01 * moved) == is_coarse
+
+
+def test_a_format_that_cannot_be_written_is_not_offered(tmp_path: Path) -> None:
+    write_sphere(tmp_path / "in.ply")
+    with pytest.raises(FormatError, match="cannot write"):
+        filter_file(tmp_path / "in.ply", tmp_path / "out.u3d", SMOOTH)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["in.ply"]

@@ -165,3 +165,84 @@ def test_an_stl_with_loose_corners_is_one_surface(round_off: float, tmp_path: Pa
     expected, _ = filter_mesh(V, F, SMOOTH)
     after = np.frombuffer((tmp_path / "out.stl").read_bytes(), facets.dtype, offset=84)
     np.testing.assert_allclose(after["corners"], expected[F], atol=10 * round_off * diagonal + 1e-6)
+
+
+def shared_glb(path: Path, V: Array, faces: Sequence[Array], shifts: Sequence[float]) -> Path:
+    """Write meshes that have all their positions in one accessor, each at a place of its own."""
+    write_glb(path, [(V, F) for F in faces])
+    data = path.read_bytes()
+    size = struct.unpack_from("<I", data, 12)[0]
+    tree, blob = json.loads(data[20 : 20 + size]), data[20 + size :]
+    for mesh in tree["meshes"]:
+        mesh["primitives"][0]["attributes"]["POSITION"] = 0
+    for node, shift in zip(tree["nodes"], shifts, strict=True):
+        angle = 0.1 * shift
+        node["translation"] = [shift, shift / 3, 0]
+        node["rotation"] = [0, 0, float(np.sin(angle)), float(np.cos(angle))]
+    text = json.dumps(tree).encode()
+    text += b" " * (-len(text) % 4)
+    head = struct.pack("<4sIII4s", b"glTF", 2, 20 + len(text) + len(blob), len(text), b"JSON")
+    path.write_bytes(head + text + blob)
+    return path
+
+
+def tree_of(path: Path) -> dict[str, Any]:
+    data = path.read_bytes()
+    tree: dict[str, Any] = json.loads(data[20 : 20 + struct.unpack_from("<I", data, 12)[0]])
+    return tree
+
+
+def coarser(V: Array, F: Array) -> Array:
+    """Faces of another level of detail at some of the same points."""
+    import pyvista
+
+    points = np.asarray(pyvista.Icosphere(nsub=3).points, float)
+    directions = V / np.linalg.norm(V, axis=1)[:, None]
+    nearest = np.array([np.argmax(directions @ point) for point in points])
+    faces = np.asarray(pyvista.Icosphere(nsub=3).faces).reshape(-1, 4)[:, 1:]
+    assert len(np.unique(nearest)) == len(points)
+    return np.array(nearest[faces])
+
+
+def test_levels_of_detail_at_the_same_points_do_not_mix(tmp_path: Path) -> None:
+    V, F = noisy_sphere()
+    alone = filter_mesh(V, F, SMOOTH)[0]
+    levels = [F, coarser(V, F)]
+    source = shared_glb(tmp_path / "in.glb", V, levels, [0, 0])
+    report = filter_file(source, tmp_path / "out.glb", SMOOTH)
+    fine, coarse = (part.vertices for part in open_document(tmp_path / "out.glb").parts)
+    np.testing.assert_allclose(fine, alone, atol=1e-5)
+    assert np.linalg.norm((fine - coarse)[np.unique(levels[1])], axis=1).max() > 0.01
+    assert any("vertices in common with piece 0 that move apart" in w for w in report["warnings"])
+    # As two objects of a file that has no accessors.
+    used, index = np.unique(levels[1], return_inverse=True)
+    pieces = [(V, F), (V[used], index.reshape(-1, 3))]
+    filter_file(write_obj(tmp_path / "in.obj", pieces), tmp_path / "out.obj", SMOOTH)
+    after = open_document(tmp_path / "out.obj").parts[0].vertices
+    np.testing.assert_allclose(after[: len(V)], alone, atol=2e-3)
+
+
+def test_meshes_that_use_parts_of_one_accessor_are_filtered_as_the_whole(tmp_path: Path) -> None:
+    V, F = noisy_sphere()
+    upper = V[F].mean(axis=1)[:, 2] > 0
+    source = shared_glb(tmp_path / "in.glb", V, [F[upper], F[~upper]], [0, 0])
+    report = filter_file(source, tmp_path / "out.glb", SMOOTH)
+    assert report["components"] == 1
+    for part in open_document(tmp_path / "out.glb").parts:
+        np.testing.assert_allclose(part.vertices, filter_mesh(V, F, SMOOTH)[0], atol=1e-5)
+    assert len(tree_of(tmp_path / "out.glb")["accessors"]) == len(tree_of(source)["accessors"])
+
+
+def test_an_accessor_of_meshes_at_many_places_stays_one(tmp_path: Path) -> None:
+    V, F = noisy_sphere()
+    options = FilterOptions.from_dict({"feature_size": 0.4, "steps": 1})
+    source = shared_glb(tmp_path / "in.glb", V, [F] * 8, list(range(0, 80, 10)))
+    filter_file(source, tmp_path / "out.glb", options)
+    before, after = tree_of(source), tree_of(tmp_path / "out.glb")
+    assert len(after["accessors"]) == len(before["accessors"])
+    assert (tmp_path / "out.glb").stat().st_size <= source.stat().st_size + 200
+    np.testing.assert_allclose(
+        open_document(tmp_path / "out.glb").parts[0].vertices,
+        filter_mesh(V, F, options)[0],
+        atol=1e-5,
+    )

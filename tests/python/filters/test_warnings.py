@@ -285,3 +285,67 @@ def test_a_part_that_shrinks_to_a_line_is_reported_with_a_size_that_keeps_it() -
     assert "Try feature_size = 0.8 (" in warning
     assert 0.1 < report["shrunken_part"] < 0.3
     assert filter_mesh(mesh, feature_size=0.4)[1]["warnings"] == []
+
+
+def cells(side: int, height: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """A height field of cells of 30."""
+    x, y = (30.0 * one.ravel() for one in np.meshgrid(np.arange(side), np.arange(side)))
+    k = np.arange(side * side).reshape(side, side)
+    a, b, c, d = (one.ravel() for one in (k[:-1, :-1], k[:-1, 1:], k[1:, 1:], k[1:, :-1]))
+    return np.column_stack([x, y, height]), np.vstack(
+        [np.stack(t, 1) for t in ((a, b, c), (a, c, d))]
+    )
+
+
+@pytest.mark.parametrize("filler", [-9999.0, -32768.0])
+def test_missing_data_in_a_terrain_are_named_with_the_option_that_leaves_them_out(
+    filler: float,
+) -> None:
+    rng = np.random.default_rng(3)
+    height = 50 * np.sin(np.arange(900) / 40) + rng.normal(size=900)
+    lake = [100, 101, 130, 131, 500]
+    V, F = cells(30, height)
+    expected, plain = filter_mesh(V, F)
+    V[lake, 2] = filler
+    _, report = filter_mesh(V, F)
+    (warning,) = (text for text in report["warnings"] if "--where" in text)
+    assert warning.startswith(f"5 vertices have z = {filler:g}, far from all others")
+    assert f"--where 'z > {filler:g}'" in warning
+    assert report["feature_size"] == pytest.approx(plain["feature_size"], rel=0.02)
+    kept = V[:, 2] != filler
+    selected, report = filter_mesh(V, F, selection=kept)
+    far = kept & (np.abs(V[:, 0] - 300) + np.abs(V[:, 1] - 100) > 500) & (V[:, 1] < 400)
+    assert far.sum() > 20
+    np.testing.assert_allclose(selected[far], expected[far], atol=0.05)
+    np.testing.assert_array_equal(selected[lake], V[lake])
+
+
+def test_a_periodic_cell_that_loses_its_match_is_told() -> None:
+    wave = np.linspace(0, 2 * np.pi, 31)
+    height = np.random.default_rng(5).normal(size=(31, 31)) + 20 * np.sin(wave)[:, None]
+    height[:, -1], height[-1] = height[:, 0], height[0]
+    height[-1, -1] = height[0, 0]
+    V, F = cells(31, height.ravel())
+    _, report = filter_mesh(V, F)
+    (warning,) = (text for text in report["warnings"] if "periodic" in text)
+    assert warning.startswith("62 pairs of vertices on opposite sides matched by a translation")
+    assert "boundary = fixed" in warning
+    _, report = filter_mesh(V, F, boundary="fixed")
+    assert not any("periodic" in text for text in report["warnings"])
+    V[5, 2] += 1  # a cell along the other axis only
+    (warning,) = (text for text in filter_mesh(V, F)[1]["warnings"] if "periodic" in text)
+    assert warning.startswith("31 pairs")
+    V[31 * 5, 2] += 1
+    assert not any("periodic" in text for text in filter_mesh(V, F)[1]["warnings"])
+
+
+def test_a_triangle_of_equal_points_is_ignored_and_counted() -> None:
+    V, F = cells(20, np.random.default_rng(5).normal(size=400))
+    expected, _ = filter_mesh(V, F)
+    with_debris = np.vstack([V, np.full((3, 3), 0.5)])
+    moved, report = filter_mesh(with_debris, np.vstack([F, [[400, 401, 402]]]))
+    np.testing.assert_allclose(moved[:400], expected, atol=1e-6)
+    np.testing.assert_array_equal(moved[400:], with_debris[400:])
+    (warning,) = (text for text in report["warnings"] if "without area" in text)
+    assert warning.startswith("1 component without area")
+    assert report["unreferenced_vertices"] == 3

@@ -11,7 +11,13 @@ from pathlib import Path
 from typing import Any
 
 from meshlab_spectral.batch.storage import file_system, is_url, located
-from meshlab_spectral.documents.names import QUADRILATERALS, TRIANGLES, ending_of, is_free_surfer
+from meshlab_spectral.documents.names import (
+    QUADRILATERALS,
+    TRIANGLES,
+    ending_of,
+    holds_values,
+    is_free_surfer,
+)
 from meshlab_spectral.errors import InputError
 from meshlab_spectral.files.formats import SEARCHED
 from meshlab_spectral.files.whole_files import resolved
@@ -37,10 +43,10 @@ def find_inputs(
     """Find the files given by names, folders, patterns such as scans/*.ply, and URLs.
 
     A named file is accepted whatever its extension; in folders, only visible files with that of a
-    mesh are, and surfaces of FreeSurfer. If `recursive`, subfolders are searched, too, and ** in a
-    pattern matches any folders; outputs, the files and folders to `leave_out`, are skipped. Inputs
-    are in the order of the arguments, sorted within each, without duplicates. Raises InputError
-    when an argument matches no file.
+    mesh are, and surfaces of FreeSurfer, but no GIFTI of values at vertices. If `recursive`,
+    subfolders are searched, too, and ** in a pattern matches any folders; outputs, the files and
+    folders to `leave_out`, are skipped. Inputs are in the order of the arguments, sorted within
+    each, without duplicates. Raises InputError when an argument matches no file.
     """
     outputs = {resolved(path) for path in leave_out}
     found: dict[str, Input] = {}
@@ -98,7 +104,7 @@ def _search(folder: Path, relative: str, recursive: bool, outputs: set[Path]) ->
             if within:
                 continue
         is_surface = is_free_surfer(path)
-        if is_surface or _looks_like_mesh(entry.name):
+        if is_surface or (_looks_like_mesh(entry.name) and not holds_values(path)):
             yield Input(path.as_posix(), relative, is_surface)
 
 

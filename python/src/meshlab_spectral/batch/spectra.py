@@ -60,6 +60,8 @@ def plan_spectra(
         file.place for file in find_inputs(map(str, inputs), settings.recursive, [table, report])
     ]
     refuse_inputs([str(table)], places)
+    if table.is_file() and table.stat().st_size and not _is_table(table):
+        raise InputError(f"{table} exists and is no table of spectra: choose another name")
     described = options.as_dict()
     work = {"task": options.TABLE, "options": described}
     jobs = [Job(place, None, place, work, described, settings.timeout) for place in places]
@@ -68,6 +70,11 @@ def plan_spectra(
     )
     done = {job: result for job, result in proved.items() if _is_whole(result)}
     return Batch([job for job in jobs if job not in done], list(done.values()), report, settings)
+
+
+def _is_table(path: Path) -> bool:
+    with path.open("rb") as file:
+        return file.read(len(COLUMNS[0])) == COLUMNS[0].encode()
 
 
 def write_table(path: Path, results: Iterable[FileResult]) -> None:

@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from meshlab_spectral.cli.colour_files import Overwrite, refuse_existing
 from meshlab_spectral.cli.filter_options import OneMesh, Source, with_options
 from meshlab_spectral.cli.messages import errors_reported, print_result
 from meshlab_spectral.cli.progress import progress_shown
@@ -28,7 +29,7 @@ def basis_command(
             "--output",
             "-o",
             metavar="FILE",
-            help="NumPy archive to write; replaces an existing file.",
+            help="NumPy archive to write.",
         ),
     ] = Path("basis.npz"),
     mesh: OneMesh = None,
@@ -41,6 +42,7 @@ def basis_command(
     scale: Annotated[
         float, typer.Option(min=0.1, max=10, help="Resolution of the pictures; 1 fills a screen.")
     ] = 1.0,
+    overwrite: Overwrite = False,
 ) -> None:
     """Compute manifold harmonics, as arrays and pictures.
 
@@ -55,6 +57,7 @@ def basis_command(
         options = BasisOptions.from_dict(given)
         shown = None if modes is None else _modes(modes, options.basis_size)
         check_ending(output, "a basis is a NumPy archive", ".npz")
+        refuse_existing(output, overwrite)
         if pictures is not None:
             check_extras("plots", "render")
             check_ending(pictures, "the pictures are one PNG file", ".png")

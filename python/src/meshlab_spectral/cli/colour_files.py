@@ -39,6 +39,12 @@ def check_picture(picture: Path | None) -> None:
         check_target(picture)
 
 
+def refuse_existing(output: Path, overwrite: bool) -> None:
+    """Raise OptionError for an output that exists, unless the user wants it replaced."""
+    if output.is_file() and not overwrite:
+        raise OptionError(f"{output} exists: choose another name, or replace it with --overwrite")
+
+
 @contextlib.contextmanager
 def writing_coloured(
     output: Path | None, picture: Path | None, overwrite: bool, *inputs: Path
@@ -47,8 +53,8 @@ def writing_coloured(
     for source in inputs:
         if output is not None and output.exists() and source.exists() and output.samefile(source):
             raise OptionError(f"{output} is an input itself and would be lost: choose another name")
-    if output is not None and output.is_file() and not overwrite:
-        raise OptionError(f"{output} exists: choose another name, or replace it with --overwrite")
+    if output is not None:
+        refuse_existing(output, overwrite)
     check_picture(picture)
     if output is None:
         yield None

@@ -15,7 +15,7 @@ from meshlab_spectral.cli.colour_files import (
     writing_coloured,
 )
 from meshlab_spectral.cli.filter_options import AsJson
-from meshlab_spectral.cli.messages import errors_reported, print_result
+from meshlab_spectral.cli.messages import errors_reported, print_result, print_warning
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.cli.report_table import change, table_of
 from meshlab_spectral.figures.comparison import (
@@ -43,14 +43,21 @@ def compare_command(
         coloured_mesh("the deviation of B as quality, and in colours: red outside A, blue inside"),
     ] = None,
     picture: Picture = None,
+    max_distance: Annotated[
+        float | None,
+        typer.Option(
+            metavar="LENGTH", min=0, help="Leave out what is farther from the other mesh than that."
+        ),
+    ] = None,
     overwrite: Overwrite = False,
     as_json: AsJson = False,
 ) -> None:
     """Compare two meshes: how far B is from A, where, and on which side.
 
     If both have the same faces, as before and after a filter, each vertex is compared with itself.
-    Otherwise each vertex is compared with the nearest point of the other mesh. Lengths are in the
-    units of the files, means and percentiles are over the surface.
+    Otherwise each vertex is compared with the nearest point of the other mesh, and what lies beyond
+    its rim is left out. Lengths are in the units of the files, means and percentiles are over the
+    surface.
 
       meshlab-spectral compare scan.ply smooth.ply
       meshlab-spectral compare scan.ply smooth.ply --picture change.png
@@ -61,11 +68,13 @@ def compare_command(
         writing_coloured(output, picture, overwrite, a, b) as scratch,
     ):
         with progress_shown() as on_progress:
-            result = compare_in_child(a, b, on_progress, whole=bool(output or picture))
+            result = compare_in_child(a, b, on_progress, bool(output or picture), max_distance)
         if scratch is not None:
             write_comparison(result, scratch)
         if picture is not None:
             draw_comparison(result, picture, (a.name, b.name))
+    for warning in result.warnings:
+        print_warning(warning)
     if as_json:
         record = {"a": str(a), "b": str(b), **result.report}
         if output is not None or picture is not None:

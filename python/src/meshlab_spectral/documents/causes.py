@@ -41,6 +41,7 @@ def _kind(name: str, endings: str, pattern: bytes, remedy: str = "") -> _Kind:
 
 
 _UNPACK, _NO_MESH = "unpack it first", "name a mesh file"
+_CONVERT = "convert it to .glb first, for example by importing and exporting it in Blender"
 _KINDS = [
     _kind("PLY", "ply", rb"ply\s*[\r\n]"),
     _kind("binary glTF", "glb", rb"glTF"),
@@ -95,6 +96,8 @@ _KINDS = [
         "give it one of FreeSurfer's names, such as lh.pial",
     ),
     _kind("compressed with gzip", "gii.gz", rb"\x1f\x8b", _UNPACK),
+    _kind("a USD package", "", rb"PK\x03\x04.{26}[^\0]{1,200}\.usd[ac]?", _CONVERT),
+    _kind("USD", "", rb"PXR-USDC|#usda", _CONVERT),
     _kind("a ZIP archive", "", rb"PK\x03\x04", _UNPACK),
     _kind("an archive", "", rb"7z\xbc\xaf|Rar!|BZh|\xfd7zXZ|\x28\xb5\x2f\xfd", _UNPACK),
     _kind("a PNG image", "", rb"\x89PNG", _NO_MESH),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from meshlab_spectral.documents.document import Array
@@ -11,30 +13,44 @@ _TOLERATED = 0.01
 SINGLE, DOUBLE = 9, 17  # significant digits for an exact round trip
 
 
-def rounding_loss(before: Array, after: Array) -> str | None:
-    """Describe the error of writing displacements in single precision; None if it is tolerable.
+def in_single_precision(numbers: Array) -> Array:
+    """Return numbers as single precision keeps them."""
+    with np.errstate(over="ignore"):
+        return numbers.astype(np.float32).astype(np.float64)
+
+
+def rounding_loss(
+    before: Array,
+    after: Array,
+    rounded: Callable[[Array], Array] = in_single_precision,
+    kept: str = "single precision",
+) -> str | None:
+    """Describe the error of writing displacements with few digits; None if it is tolerable.
 
     It is tolerable if its root mean square over the moved vertices is at most a hundredth of their
-    displacement's. `before` and `after` are n x 3, in the coordinates to be written.
+    displacement's. `before` and `after` are n x 3, in the coordinates to be written, `rounded` says
+    what is left of them, and `kept` what that is called.
     """
     moves = (before != after).any(axis=1)
     if not moves.any():
         return None
-    with np.errstate(over="ignore"):
-        rounding = _size(after[moves].astype(np.float32) - after[moves])
+    rounding = _size(rounded(after[moves]) - after[moves])
     displacement = _size(after[moves] - before[moves])
-    return rounding_message(rounding, displacement, float(np.abs(after).max()))
+    return rounding_message(rounding, displacement, float(np.abs(after).max()), kept)
 
 
-def rounding_message(rounding: float, displacement: float, largest: float) -> str | None:
+def rounding_message(
+    rounding: float, displacement: float, largest: float, kept: str = "single precision"
+) -> str | None:
     """Describe a rounding error, unless it is tolerable for a displacement.
 
     Both are root mean squares over the moved vertices; `largest` is the largest coordinate.
     """
     if rounding <= _TOLERATED * displacement:
         return None
+    verb = "rounds" if kept == "single precision" else "round"
     return (
-        f"single precision rounds coordinates near {largest:.6g} by {rounding:.2g}, while the "
+        f"{kept} {verb} coordinates near {largest:.6g} by {rounding:.2g}, while the "
         f"filter moves vertices by {displacement:.2g} (root mean square)"
     )
 
@@ -43,9 +59,15 @@ def _size(difference: Array) -> float:
     return float(np.sqrt(np.mean(difference**2)))
 
 
-def precision_warnings(before: Array, after: Array, name: str) -> list[str]:
-    """Return the warning, if any, that single precision in the file `name` is too coarse."""
-    message = rounding_loss(before, after)
+def precision_warnings(
+    before: Array,
+    after: Array,
+    name: str,
+    rounded: Callable[[Array], Array] = in_single_precision,
+    kept: str = "single precision",
+) -> list[str]:
+    """Return the warning, if any, that the digits in the file `name` are too few."""
+    message = rounding_loss(before, after, rounded, kept)
     remedy = "choose .ply or .obj, or move the mesh to the origin first"
     return [f"{name}: {message}: {remedy}"] if message else []
 

@@ -37,6 +37,8 @@ class Part:
         None if nothing is selected.
     copies
         4 x 4 transforms of the vertices to where the scene has the mesh again.
+    is_shown
+        Whether it is in the scene that the file shows first.
     """
 
     name: str
@@ -45,6 +47,14 @@ class Part:
     quality: Array | None = None
     selected: NDArray[np.bool_] | None = None
     copies: tuple[Array, ...] = ()
+    is_shown: bool = True
+
+
+def joined(parts: Sequence[Part]) -> tuple[Array, Indices]:
+    """Return several meshes as one."""
+    begins = np.cumsum([0, *(len(part.vertices) for part in parts)])
+    faces = [part.faces + begin for part, begin in zip(parts, begins, strict=False)]
+    return np.vstack([part.vertices for part in parts]), np.vstack(faces)
 
 
 @dataclass

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import copy
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from meshlab_spectral.documents.causes import unsupported
 from meshlab_spectral.documents.digits import precision_warnings
@@ -27,19 +28,20 @@ from meshlab_spectral.documents.gltf_accessors import (
     parsed,
     reporting_faults,
 )
+from meshlab_spectral.documents.gltf_compression import uncompress
 from meshlab_spectral.documents.names import shown
 from meshlab_spectral.documents.normals import following_normals
 from meshlab_spectral.documents.placement import IDENTITY, Placement, placement_of
 from meshlab_spectral.documents.side_files import copy_side_files
 
 _TRIANGLES, _STRIP, _FAN = 4, 5, 6
-_COMPRESSIONS = ("KHR_draco_mesh_compression", "EXT_meshopt_compression", "KHR_meshopt_compression")
 _LISTED = ("materials", "textures", "skins", "animations", "cameras")
 _ATTRIBUTES = {"TEXCOORD": "texture coordinates", "COLOR": "colours", "NORMAL": "normals"}
 _TRANSFORM = {"translation": [0, 0, 0], "rotation": [0, 0, 0, 1], "scale": [1, 1, 1]}
 # The columns of a vertex table.
 _COLUMNS = {"POSITION": slice(0, 3), "NORMAL": slice(3, 6), "TANGENT": slice(6, 10)}
 _P, _N, _ = _COLUMNS.values()
+_ROUND_OFF = 2.0**-22  # of the largest value: a few of the last digits of single precision
 _Key = tuple[int | None, ...]  # the accessor of each column
 _Node = tuple[Json, Array]  # a node, and its transform to the scene
 
@@ -55,23 +57,43 @@ class _Mesh:
 
 
 @dataclass
+class _User:
+    """What a mesh makes of an accessor."""
+
+    mesh: str
+    attribute: str
+    primitives: list[Json]
+    used: NDArray[np.bool_]  # the rows that its faces use
+    before: Array
+    after: Array
+    is_common: bool = False  # whether others agree
+
+
+@dataclass
 class GltfDocument(Document):
     """A glTF asset; its JSON is kept, its buffers are patched."""
 
     _asset: Asset = field(kw_only=True, repr=False)
     _meshes: list[_Mesh] = field(default_factory=list, kw_only=True, repr=False)
+    _compression: list[str] = field(default_factory=list, kw_only=True, repr=False)
 
     def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
         """Write the asset with new positions, normals and tangents; see `Document`."""
         warnings: list[str] = []
         with reporting_faults(self.path):
             asset = copy.deepcopy(self._asset)
+            users = defaultdict[int, list[_User]](list)
             for mesh, part, vertices in zip(self._meshes, self.parts, moved, strict=True):
                 table = mesh.table
                 if not np.array_equal(vertices, part.vertices):
                     table = _moved(mesh, part, vertices)
                     warnings += precision_warnings(mesh.table[:, _P], table[:, _P], target.name)
-                _put(asset, mesh, table)
+                for accessor, user in _users(asset, mesh, part, table):
+                    users[accessor].append(user)
+            for accessor, sharing in users.items():
+                warnings += _put(asset, accessor, sharing)
+            if asset.is_patched:
+                warnings += self._compression
             warnings += copy_side_files(self.path, target, asset.write(target))
         return warnings
 
@@ -79,15 +101,12 @@ class GltfDocument(Document):
 def read(path: Path) -> GltfDocument:
     """Read a .gltf or .glb file; each mesh with triangles is a part."""
     data = path.read_bytes()
-    for name in _COMPRESSIONS:
-        if f'"{name}"'.encode() in data:
-            remedy = "export it again without compression from the program that made it"
-            raise unsupported(path, f"is compressed with {name}", remedy)
     with reporting_faults(path):
         document = GltfDocument(path, [], _asset=parsed(path, data))
-        nodes = _nodes_of_meshes(document._asset)
+        document._compression = uncompress(document._asset)
+        nodes, shown = _nodes_of_meshes(document._asset)
         for number, mesh in enumerate(document._asset.tree.get("meshes", [])):
-            _add_part(document, number, mesh, nodes[number])
+            _add_part(document, number, mesh, nodes[number], not shown or number in shown)
         if not document.parts:
             raise unsupported(path, "holds no triangles", "give a file with a triangle mesh")
         document.contents = _contents(document._asset.tree, nodes)
@@ -98,7 +117,9 @@ def _key(primitive: Json) -> _Key:
     return tuple(primitive["attributes"].get(name) for name in _COLUMNS)
 
 
-def _add_part(document: GltfDocument, number: int, mesh: Json, nodes: list[_Node]) -> None:
+def _add_part(
+    document: GltfDocument, number: int, mesh: Json, nodes: list[_Node], is_shown: bool
+) -> None:
     """Add a mesh as a part, unless it has no triangles."""
     tables: list[Array] = []
     rows: dict[_Key, slice] = {}
@@ -121,7 +142,8 @@ def _add_part(document: GltfDocument, number: int, mesh: Json, nodes: list[_Node
     placed = placement.placed(table[:, _P])
     check_vertices(document.path, placed)
     oriented = placement.oriented(np.concatenate(faces))
-    document.parts.append(Part(name, placed, oriented, copies=placement.copies))
+    part = Part(name, placed, oriented, copies=placement.copies, is_shown=is_shown)
+    document.parts.append(part)
     document._meshes.append(_Mesh(number, rows, table, placement))
     if any("skin" in node for node, _ in nodes):
         document.warnings.append(f"{name} has a skeleton: lengths are measured without its pose")
@@ -156,25 +178,35 @@ def _read_faces(asset: Asset, primitive: Json, rows: slice) -> Indices:
     return faces
 
 
-def _nodes_of_meshes(asset: Asset) -> dict[int, list[_Node]]:
-    """Return the nodes that place each mesh, by the mesh's index."""
+def _nodes_of_meshes(asset: Asset) -> tuple[dict[int, list[_Node]], set[int]]:
+    """Return the nodes that place each mesh, and the meshes in the default scene, by their indices.
+
+    Nodes of other scenes count for meshes that are not in it.
+    """
     nodes = asset.tree.get("nodes", [])
     children = [child for node in nodes for child in node.get("children", [])]
     inner = set(children)
     if len(inner) < len(children):
         raise ValueError("a node has two parents")
-    result: dict[int, list[_Node]] = defaultdict(list)
-    found = [(number, IDENTITY) for number in range(len(nodes)) if number not in inner]
-    for number, outer in found:  # grows while iterating
+    default = set(range(len(nodes)))
+    if scenes := asset.tree.get("scenes"):
+        default = set(scenes[asset.tree.get("scene", 0)].get("nodes", []))
+    # Nodes in the default scene, and others.
+    placed: list[dict[int, list[_Node]]] = [defaultdict(list), defaultdict(list)]
+    roots = [number for number in range(len(nodes)) if number not in inner]
+    found = [(number, IDENTITY, number in default) for number in roots]
+    for number, outer, is_default in found:  # grows while iterating
         node = asset.entry("nodes", number)
         matrix = outer @ _local_matrix(node)
-        found += [(child, matrix) for child in node.get("children", [])]
+        found += [(child, matrix, is_default) for child in node.get("children", [])]
         if "mesh" in node:
             # A mesh with a skin is placed by its joints, not by its node.
-            result[node["mesh"]].append((node, IDENTITY if "skin" in node else matrix))
+            place = node, IDENTITY if "skin" in node else matrix
+            placed[not is_default][node["mesh"]].append(place)
     if len(found) < len(nodes):
         raise ValueError("its node hierarchy has a cycle")
-    return result
+    shown, others = placed
+    return defaultdict(list, others | shown), set(shown)
 
 
 def _local_matrix(node: Json) -> Array:
@@ -197,6 +229,7 @@ def _contents(tree: Json, nodes: dict[int, list[_Node]]) -> list[str]:
     found |= {content: name in attributes for name, content in _ATTRIBUTES.items()}
     found["morph targets"] = any("targets" in p for p in primitives)
     found["placement"] = any((m != IDENTITY).any() for placed in nodes.values() for _, m in placed)
+    found["other scenes"] = len(tree.get("scenes", [])) > 1
     found["instances"] = "EXT_mesh_gpu_instancing" in tree.get("extensionsUsed", [])
     found["points and lines"] = any(p.get("mode", _TRIANGLES) < _TRIANGLES for p in primitives)
     return [content for content, is_there in found.items() if is_there]
@@ -217,14 +250,41 @@ def _moved(mesh: _Mesh, part: Part, vertices: Array) -> Array:
     return after
 
 
-def _put(asset: Asset, mesh: _Mesh, table: Array) -> None:
-    """Write a table to the accessors that it was read from, or to new ones."""
-    users = defaultdict[_Key, list[Json]](list)
+def _users(asset: Asset, mesh: _Mesh, part: Part, table: Array) -> Iterator[tuple[int, _User]]:
+    """Yield the accessors of a mesh, and what it makes of each."""
+    primitives = defaultdict[_Key, list[Json]](list)
     for primitive in asset.entry("meshes", mesh.number)["primitives"]:
-        users[_key(primitive)].append(primitive)
+        primitives[_key(primitive)].append(primitive)
+    used = np.zeros(len(table), bool)
+    used[part.faces] = True
     for key, rows in mesh.rows.items():
         for (name, columns), accessor in zip(_COLUMNS.items(), key, strict=True):
             if accessor is not None:
-                number = asset.put(accessor, mesh.table[rows, columns], table[rows, columns])
-                for primitive in users[key]:
-                    primitive["attributes"][name] = number
+                tables = mesh.table[rows, columns], table[rows, columns]
+                yield accessor, _User(part.name, name, primitives[key], used[rows], *tables)
+
+
+def _put(asset: Asset, accessor: int, users: list[_User]) -> list[str]:
+    """Write what users have made of an accessor to it, and to new ones where they disagree."""
+    before = users[0].before
+    values, taken, apart = before.copy(), np.zeros(len(before), bool), list[_User]()
+    for user in users:
+        tolerance = _ROUND_OFF * np.abs(user.after).max()
+        both = taken & user.used
+        if (np.abs(values - user.after)[both] > tolerance).any():
+            apart.append(user)
+            continue
+        new = user.used & ~taken
+        values[new] = user.after[new]
+        taken |= new
+        user.is_common = True
+    number = asset.put(accessor, before, values)
+    for user in users:
+        own = number if user.is_common else asset.put(accessor, before, user.after)
+        for primitive in user.primitives:
+            primitive["attributes"][user.attribute] = own
+    return [
+        f"{user.mesh} has vertices in common with {users[0].mesh} that move apart: it gets its own"
+        for user in apart
+        if user.attribute == "POSITION"
+    ]

@@ -54,6 +54,7 @@ class Asset:
     budget: Budget
     buffers: list[bytearray] = field(default_factory=list)
     _patched: set[int] = field(default_factory=set)
+    _grown: set[int] = field(default_factory=set)  # to be written if any is patched
     _written: dict[int, list[tuple[int, Array]]] = field(default_factory=lambda: defaultdict(list))
 
     def entry(self, kind: str, index: object) -> Any:
@@ -81,6 +82,24 @@ class Asset:
             values = np.maximum(values / np.iinfo(_COMPONENTS[component]).max, -1.0)
         return values
 
+    def fill(self, index: object, values: NDArray[Any]) -> None:
+        """Give an accessor without data its elements, count x width, in a new view of them."""
+        accessor = self.entry("accessors", index)
+        self.budget.take(8 * values.size, "its compressed geometry")
+        data = values.astype(_COMPONENTS[accessor["componentType"]]).tobytes()
+        accessor |= {"bufferView": self._new_view(data), "count": len(values)}
+        accessor.pop("byteOffset", None)
+        self._grown = {0}
+
+    def _new_view(self, content: bytes) -> int:
+        """Append bytes to the first buffer; return the number of their view."""
+        data, views = self.buffers[0], self.tree["bufferViews"]
+        data.extend(bytes(-len(data) % 4))
+        views.append({"buffer": 0, "byteOffset": len(data), "byteLength": len(content)})
+        data.extend(content)
+        self.tree["buffers"][0]["byteLength"] = len(data)
+        return len(views) - 1
+
     def put(self, index: int, before: Array, values: Array) -> int:
         """Replace the elements of an accessor, or append a new accessor; return its number."""
         for number, others in self._written[index]:
@@ -98,7 +117,7 @@ class Asset:
         uris = [entry["uri"] for entry in entries if "uri" in entry]
         names = [unquote(uri) for uri in uris if not uri.startswith(("data:", "http:", "https:"))]
         taken = set(names)
-        for number in self._patched:
+        for number in self._patched | self._grown if self._patched else ():
             entry, data = self.tree["buffers"][number], self.buffers[number]
             uri = entry.get("uri")
             if uri is None:
@@ -114,6 +133,11 @@ class Asset:
                 entry["uri"] = quote(name)
         target.write_bytes(self._serialized() if self._patched else self.data)
         return names
+
+    @property
+    def is_patched(self) -> bool:
+        """Whether anything differs from the file."""
+        return bool(self._patched)
 
     def read_buffers(self) -> None:
         """Read all buffers."""
@@ -158,14 +182,10 @@ class Asset:
 
     def _append(self, values: Array) -> int:
         """Append an accessor of floats to the first buffer; return its number."""
-        data, views, accessors = self.buffers[0], self.tree["bufferViews"], self.tree["accessors"]
-        data.extend(bytes(-len(data) % 4))
-        views.append({"buffer": 0, "byteOffset": len(data), "byteLength": 4 * values.size})
-        data.extend(values.astype("<f4").tobytes())
         self._patched.add(0)
-        self.tree["buffers"][0]["byteLength"] = len(data)
+        view, accessors = self._new_view(values.astype("<f4").tobytes()), self.tree["accessors"]
         layout = {"componentType": _FLOAT, "count": len(values), "type": _KINDS[values.shape[1]]}
-        accessors.append({"bufferView": len(views) - 1, **layout, **_bounds(values)})
+        accessors.append({"bufferView": view, **layout, **_bounds(values)})
         return len(accessors) - 1
 
     def _serialized(self) -> bytes:

@@ -6,11 +6,13 @@ import os
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path, PurePosixPath
 
 import numpy as np
+from numpy.typing import NDArray
 
-from meshlab_spectral._core import text_corners
+from meshlab_spectral._core import first_equal_rows, text_corners
 from meshlab_spectral.documents.causes import ForeignError, unreadable
 from meshlab_spectral.documents.digits import SINGLE, digits_for
 from meshlab_spectral.documents.document import Array, Document, Indices, Part, check_vertices
@@ -41,6 +43,8 @@ _MOST_LIBRARIES = 100  # MeshLab reads each as often as it is named
 _KEYWORDS = ["v", "f", *_CONTENTS]
 _CONTINUED = 3  # vertices, faces and normals, which may go on after a backslash
 _VERTEX, _FACE, _NORMAL, _LIBRARY = map(_KEYWORDS.index, ("v", "f", "vn", "mtllib"))
+_WORD = re.compile(rb"[^\s\\]+")
+_DECIMALS = 6  # of normals: those that are equal in them stay one
 _COMMENT = re.compile(rb"(?m)^[ \t]*#")
 
 
@@ -55,17 +59,64 @@ class _Obj(Document):
 
     def save(self, target: Path, moved: Sequence[Array]) -> list[str]:
         part, after, which = self.parts[0], moved[0], self.which
-        before, faces = part.vertices, part.faces
-        changes = [(self.starts, 1, before, after, digits_for(before, after))]
-        if len(self.normals):
-            shaded = (which >= 0).all(axis=1)
+        before, faces, content = part.vertices, part.faces, self.content
+        starts, normal_starts, given = self.starts, self.normal_starts, self.normals
+        normals, warnings = given, list[str]()
+        if len(given):
+            shaded = np.array((which >= 0).all(axis=1))
             if not shaded.all():
                 faces, which = faces[shaded], which[shaded]
-            normals = following_normals(before, after, faces, self.normals, which)
-            changes.append((self.normal_starts, 1, self.normals, normals, SINGLE))
+            if _is_shared(which, faces).any():
+                given, normals, content = self._split(after, faces, which, shaded)
+                starts, normal_starts = (lines.starts for lines in _lines(content)[:2])
+            else:
+                normals = following_normals(before, after, faces, given, which)
+            if len(given) > len(self.normals):
+                more = len(given) - len(self.normals)
+                warnings.append(f"{more} normals are added, as others serve faces that turn apart")
+        changes = [(starts, 1, before, after, digits_for(before, after))]
+        if len(given):
+            changes.append((normal_starts, 1, given, normals, SINGLE))
         with target.open("wb") as file:
-            write_patched(file, self.content, changes)
-        return copy_side_files(self.path, target, self.side_files())
+            write_patched(file, content, changes)
+        return warnings + copy_side_files(self.path, target, self.side_files())
+
+    def _split(
+        self, after: Array, faces: Indices, which: Indices, shaded: NDArray[np.bool_]
+    ) -> tuple[Array, Array, bytes]:
+        """Let a normal that serves several faces follow the shape at each of its vertices.
+
+        Returns the normals before and after, and the text, in which some have become several.
+        """
+        vertices, normals, lines = _lines(self.content)[:3]
+        before, given, none = self.parts[0].vertices, self.normals, len(vertices)
+        face = np.repeat(np.arange(len(lines)), np.maximum(lines.words - 3, 0))[shaded]
+        several = np.zeros(len(given), bool)
+        several[which[_is_shared(which, np.repeat(face[:, None], 3, axis=1))]] = True
+
+        def keys_of(normal: Indices, vertex: Indices) -> Indices:
+            return normal * (none + 1) + np.where(several[normal], vertex, none)
+
+        keys, corners = np.unique(keys_of(which, faces), return_inverse=True)
+        of = keys // (none + 1)
+        new = following_normals(before, after, faces, given[of], corners.reshape(-1, 3))
+        first = first_equal_rows(np.column_stack([of, np.round(new, _DECIMALS)]))
+        is_first = first == np.arange(len(keys))
+        counts = np.maximum(np.bincount(of[is_first], minlength=len(given)), 1)
+        begins = np.cumsum(counts) - counts
+        place = np.cumsum(is_first) - 1  # among those that differ
+        numbers = (begins[of] + place - place[np.searchsorted(of, of)])[first]
+        result = np.repeat(given, counts, axis=0)
+        moved = result.copy()
+        moved[numbers] = new
+        vertex, normal = _corners(lines, vertices, normals)
+        at = np.searchsorted(keys, keys_of(normal, vertex)).clip(max=len(keys) - 1)
+        found = keys[at] == keys_of(normal, vertex)  # not of faces that have no triangle
+        numbers = np.where(normal < 0, -1, np.where(found, numbers[at], begins[normal]))
+        content = self.content
+        if counts.max() > 1:
+            content = _renumbered(content, normals, counts, lines, numbers)
+        return result, moved, content
 
     def is_harmless(self) -> bool:
         return len(self.libraries) <= _MOST_LIBRARIES and super().is_harmless()
@@ -88,6 +139,39 @@ class _Obj(Document):
                     yield str(PurePosixPath(library).parent / name)
 
 
+def _is_shared(which: Indices, owners: Indices) -> NDArray[np.bool_]:
+    """Whether a normal has another owner, too, at each corner."""
+    owner = np.zeros(which.max(initial=0) + 1, np.int64)
+    owner[which] = owners
+    shared: NDArray[np.bool_] = owner[which] != owners
+    return shared
+
+
+def _renumbered(
+    content: bytes, normals: Lines, counts: Indices, faces: Lines, numbers: Indices
+) -> bytes:
+    """Return the text with so many lines for each normal, and new numbers of these in its faces."""
+    edits = list[tuple[int, int, bytes]]()  # begin, end, and what stands there
+    for k in np.flatnonzero(counts > 1).tolist():
+        line = normals.line(k).partition(b"#")[0].rstrip()
+        begin = int(normals.starts[k])
+        edits.append((begin, begin, (line + b"\n") * (int(counts[k]) - 1)))
+    corner = 0
+    for k in range(len(faces)):
+        words = _WORD.finditer(content, int(faces.starts[k]))
+        for word in islice(words, 1, int(faces.words[k])):
+            if numbers[corner] >= 0:
+                begin = word.start() + word[0].rindex(b"/") + 1
+                edits.append((begin, word.end(), b"%d" % (numbers[corner] + 1)))
+            corner += 1
+    edits.sort()
+    pieces, end = list[bytes](), 0
+    for begin, after, text in edits:
+        pieces += [content[end:begin], text]
+        end = after
+    return b"".join([*pieces, content[end:]])
+
+
 def _name(name: bytes) -> str:
     return re.sub(r'^"(.*)"$', r"\1", name.strip().decode("utf-8", "surrogateescape"))
 
@@ -107,12 +191,8 @@ def read(path: Path) -> Document:
 
 
 def _document(path: Path, content: bytes) -> Document:
-    lines = lines_of(content, _KEYWORDS, comments=True, continued=_CONTINUED)
-    vertices, normals, faces, libraries = (
-        lines[lines.kinds == kind] for kind in (_VERTEX, _NORMAL, _FACE, _LIBRARY)
-    )
-    found = {_CONTENTS[_KEYWORDS[k]] for k in np.unique(lines.kinds) if 2 <= k < len(_KEYWORDS)}
-    del lines
+    vertices, normals, faces, libraries, kinds = _lines(content)
+    found = {_CONTENTS[_KEYWORDS[k]] for k in kinds if 2 <= k < len(_KEYWORDS)}
     if not len(vertices):
         raise ForeignError("it has no vertices, which are lines that begin with v")
     V = vertices.numbers(path, 1)
@@ -137,6 +217,15 @@ def _document(path: Path, content: bytes) -> Document:
         which=which[split],
         largest_face=int(faces.words.max(initial=1)) - 1,
     )
+
+
+def _lines(content: bytes) -> tuple[Lines, Lines, Lines, Lines, list[int]]:
+    """Return the lines of vertices, normals, faces and libraries, and the kinds of all lines."""
+    lines = lines_of(content, _KEYWORDS, comments=True, continued=_CONTINUED)
+    vertices, normals, faces, libraries = (
+        lines[lines.kinds == kind] for kind in (_VERTEX, _NORMAL, _FACE, _LIBRARY)
+    )
+    return vertices, normals, faces, libraries, np.unique(lines.kinds).tolist()
 
 
 def _corners(faces: Lines, vertices: Lines, normals: Lines) -> tuple[Indices, Indices]:

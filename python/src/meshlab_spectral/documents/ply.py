@@ -23,7 +23,12 @@ from meshlab_spectral.documents.causes import (
     unreadable,
     unsupported,
 )
-from meshlab_spectral.documents.digits import digits_for, rounding_loss, widening_warnings
+from meshlab_spectral.documents.digits import (
+    digits_for,
+    precision_warnings,
+    rounding_loss,
+    widening_warnings,
+)
 from meshlab_spectral.documents.document import (
     Array,
     Document,
@@ -48,6 +53,7 @@ _KNOWN = {
     "texture coordinates": {"s", "t", "u", "v", "texture_u", "texture_v", "texcoord", "texnumber"},
     "quality": {"quality"},
 }
+_LARGEST_CUT = 1000  # largest ratio of what a file claims to hold to what it holds, as of STL
 SELECTED = 0x20  # VCG's flag
 # Elements, or properties: Gaussian splats have 62, with learned features some 1,000. The time of
 # plyfile grows with their square.
@@ -69,6 +75,7 @@ class PlyDocument(Document):
     begin: int  # byte offset of binary rows
     normals: Array | None
     first: dict[tuple[str, ...], int]  # text: the words before coordinates, and before normals
+    places: dict[str, Indices] | None = None  # of binary numbers whose rows differ in length
 
     def save(self, target: Path, moved: Sequence[Array]) -> list[str]:  # noqa: D102
         before, (after,) = self.parts[0].vertices, moved
@@ -76,12 +83,15 @@ class PlyDocument(Document):
         loss = rounding_loss(before, after) if "f4" in types else None
         if (after != before).any() and any(type_[0] != "f" for type_ in types):
             loss = "the file has integers"
+        told = widening_warnings(loss)
+        if self.places is not None:
+            told = precision_warnings(before, after, target.name) if "f4" in types else []
         with target.open("wb") as file:
             if (after != before).any():
-                self._write(file, after, bool(loss))
+                self._write(file, after, bool(loss) and self.places is None)
             else:
                 file.write(self.content)
-        return widening_warnings(loss) + copy_side_files(self.path, target, self.side_files())
+        return told + copy_side_files(self.path, target, self.side_files())
 
     def side_files(self) -> list[str]:  # noqa: D102
         return [os.fsdecode(name.rstrip()) for name in _TEXTURE.findall(self.header)]
@@ -97,10 +107,25 @@ class PlyDocument(Document):
             digits = digits_for(part.vertices, after)
             words = [(rows, self.first[a], *pair, digits) for a, pair in changes.items()]
             write_patched(file, self.content, words, start)
+        elif self.places is not None:
+            file.write(memoryview(self._patched(changes))[start:])
         else:
             content, end = memoryview(self.content), self.begin + rows.nbytes
             new = _with_columns(rows, changes, self.ply.byte_order if is_wide else None)
             file.writelines([content[start : self.begin], new, content[end:]])
+
+    def _patched(self, changes: _Changes) -> bytearray:
+        """Return the bytes of the file with new numbers in rows of several lengths."""
+        assert self.places is not None
+        content = bytearray(self.content)
+        bytes_ = np.frombuffer(content, np.uint8)
+        for names, (_, after) in changes.items():
+            for name, column in zip(names, after.T, strict=True):
+                type_ = self.ply["vertex"].ply_property(name).val_dtype
+                new = np.ascontiguousarray(column, self.ply.byte_order + type_)
+                at = self.places[name][:, None] + np.arange(new.itemsize)
+                bytes_[at] = new.view(np.uint8).reshape(len(new), -1)
+        return content
 
 
 def _with_columns(rows: _Rows, changes: _Changes, wide: str | None) -> memoryview:
@@ -142,6 +167,7 @@ def read(path: Path) -> PlyDocument:
     values = [name for name in ("quality", "confidence") if has_floats(ply["vertex"], name)]
     quality = _columns(vertex, values[0])[:, 0] if values else None
     has_normals = has_floats(ply["vertex"], *NORMALS)
+    is_uneven = not ply.text and _is_uneven(vertex)
     return PlyDocument(
         path,
         [Part("", vertices, faces, quality, _selected(tables, len(vertices)))],
@@ -149,7 +175,10 @@ def read(path: Path) -> PlyDocument:
         content=content,
         header=header,
         ply=ply,
-        rows=rows if ply.text else np.ndarray(len(vertices), _type(ply, vertex), content, begin),
+        rows=rows
+        if ply.text or is_uneven
+        else np.ndarray(len(vertices), _type(ply, vertex), content, begin),
+        places=_places(ply, vertex, begin) if is_uneven else None,
         begin=begin,
         normals=_columns(vertex, *NORMALS) if has_normals else None,
         largest_face=int(corners[1].max()) if (corners := _corners(tables.get("face", {}))) else 3,
@@ -187,7 +216,9 @@ def _read_rows(
 ) -> tuple[dict[str, _Table], Indices, int]:
     """Read all elements; return the byte offsets of text vertices, and that of binary ones, too."""
     if any(not 0 <= count <= len(content) for count in counts.values()):
-        raise ValueError(f"it cannot have {', '.join(map(str, counts.values()))} rows")
+        is_short = 0 <= min(counts.values()) <= max(counts.values()) < _LARGEST_CUT * len(content)
+        reason = f"it cannot have {', '.join(map(str, counts.values()))} rows"
+        raise MayEndEarlyError(reason) if is_short else ValueError(reason)
     lines = lines_of(content, begin=start, limit=sum(counts.values()) if ply.text else 0)
     try:
         return _read_elements(content, ply, counts, start, lines)
@@ -305,11 +336,38 @@ def _type(ply: PlyData, table: _Table) -> np.dtype[Any]:
 def _check_vertices(path: Path, ply: PlyData, table: _Table) -> None:
     names = " ".join(["", *table, ""])
     is_apart = " x y z " not in names or (" nx " in names and " nx ny nz " not in names)
-    sizes = _sizes(table)
-    is_uneven = any((table[name][0] != size).any() for name, size in sizes.items())
-    if is_uneven or (ply.text and is_apart) or not _has_numbers(ply["vertex"]):
-        what = "has vertices with lists of several lengths, or without x, y, z side by side"
+    if (ply.text and (is_apart or _is_uneven(table, before="x"))) or not _has_numbers(
+        ply["vertex"]
+    ):
+        what = "has vertices without x, y, z side by side, or with uneven lists before them"
         raise unsupported(path, what, "export it again with x, y and z as the first properties")
+    axes = {ply["vertex"].ply_property(name).val_dtype[0] for name in AXES}
+    if _is_uneven(table) and not ply.text and axes != {"f"}:
+        what = "has integers as coordinates, and lists of several lengths"
+        raise unsupported(path, what, "export it again without these lists")
+
+
+def _is_uneven(table: _Table, before: str | None = None) -> bool:
+    """Whether lists have several lengths, of those before the last of coordinates and normals."""
+    names = list(table)
+    if before is not None:
+        names = names[: max(names.index(name) for name in (before, "nx") if name in names)]
+    sizes = {name: table[name][0] for name in names if isinstance(table[name], tuple)}
+    return any((one != one[0]).any() for one in sizes.values() if len(one))
+
+
+def _places(ply: PlyData, table: _Table, begin: int) -> dict[str, Indices]:
+    """Return the byte offsets of the numbers of binary vertices."""
+    within, places = np.zeros(len(table["x"]), np.int64), dict[str, Indices]()
+    for one in ply["vertex"].properties:
+        size = np.dtype(one.val_dtype).itemsize
+        places[one.name] = within.copy()
+        if isinstance(one, PlyListProperty):
+            within += np.dtype(one.len_dtype).itemsize + size * table[one.name][0].astype(np.int64)
+        else:
+            within += size
+    starts = begin + np.cumsum(within) - within
+    return {name: starts + place for name, place in places.items()}
 
 
 def has_floats(element: PlyElement, *names: str) -> bool:
@@ -357,6 +415,9 @@ def _contents(ply: PlyData, counts: dict[str, int], header: bytes, triangles: in
     names = {one.name for element in mesh for one in element.properties}
     others = names.difference(AXES, CORNERS, *_KNOWN.values())
     present: dict[str, object] = {word: names & known for word, known in _KNOWN.items()}
+    colours = {one.name: _KNOWN["colours"] & {p.name for p in one.properties} for one in mesh}
+    present["colours"] = colours.pop("vertex")
+    present["face colours"] = any(colours.values())
     present["polygons"] = counts.get("face", triangles) < triangles
     present["comments"], present["texture names"] = _COMMENT.search(header), _TEXTURE.search(header)
     present.update((f"property {shown(name)}", True) for name in sorted(others))

@@ -1,8 +1,7 @@
 """VTK files, read and written with PyVista: legacy .vtk, and XML .vtp and .vtu.
 
-All arrays are kept, but VTK writes its own version of the format, without comments and with no
-compression but zlib. In legacy text, of which VTK would write only six digits, coordinates and
-normals are replaced in place.
+In legacy files coordinates and normals are replaced in place. XML keeps all arrays, but VTK writes
+its own version of the format, without comments and with no compression but zlib.
 """
 
 from __future__ import annotations
@@ -46,6 +45,9 @@ _COUNTS = re.compile(
 _TEXT = re.compile(rb'<Points>\s*<DataArray[^>]*format="ascii"')
 # Legacy text, after two lines of head and title; then its points, and arrays.
 _LEGACY = re.compile(rb"#[^\n]*\n[^\n]*\n\s*ASCII\s", re.IGNORECASE)
+_HEAD = b"# vtk DataFile"
+_BINARY = re.compile(rb"#[^\n]*\n[^\n]*\n\s*BINARY\s", re.IGNORECASE)
+_LAST_WORD = re.compile(rb"(?i)(POINTS[ \t]+\d+[ \t]+)float([ \t]*[\r\n]+)\Z")
 _POINTS = re.compile(rb"(?mi)^[ \t]*POINTS[ \t]+(\d+)[ \t]+(\w+)[ \t]*[\r\n]\s*")
 _CELLS = re.compile(rb"(?mi)^[ \t]*(?:CELLS|POLYGONS|TRIANGLE_STRIPS|LINES|VERTICES)[ \t]")
 _SECTION = re.compile(rb"(?mi)^[ \t]*(POINT_DATA|CELL_DATA)[ \t]+(\d+)")
@@ -159,8 +161,11 @@ class _VtkDocument(Document):
             changes[0] = (*changes[0][:-1], DOUBLE if is_double else digits_for(before, after))
             with target.open("wb") as file:
                 write_patched(file, text, changes)
+        elif (patched := _patched_binary(content, self.mesh, mesh)) is not None:
+            target.write_bytes(patched)
         else:
             mesh.save(target, binary=not _TEXT.search(content))
+            _keep_title(content, target)
         return widening_warnings(loss)
 
 
@@ -187,6 +192,39 @@ def _changes_of_text(
             if place is not None:
                 changes.append(_change(place, old[name], new[name], SINGLE))
     return changes, content
+
+
+def _patched_binary(content: bytes, before: Any, after: Any) -> bytes | None:
+    """Return binary legacy data with the bytes of points and normals replaced.
+
+    None if it is no such data, or an array is not found in it just once.
+    """
+    if not _BINARY.match(content):
+        return None
+    pairs = [(before.points, after.points)]
+    for association in ("point_data", "cell_data"):
+        old, new = (getattr(mesh, association) for mesh in (before, after))
+        pairs += [(old[name], new[name]) for name in _names_of_normals(old)]
+    for number, (one, other) in enumerate(pairs):
+        old, new = (np.asarray(a).astype(a.dtype.newbyteorder(">")).tobytes() for a in (one, other))
+        at = content.find(old)
+        if at < 0 or content.find(old, at + 1) >= 0:
+            return None
+        head = content[:at]
+        if len(new) != len(old):  # points only
+            head, found = _LAST_WORD.subn(rb"\1double\2", head)
+            if number or not found:
+                return None
+        content = head + new + content[at + len(old) :]
+    return content
+
+
+def _keep_title(content: bytes, target: Path) -> None:
+    """Give a file that VTK has written the second line of the one that was read."""
+    if content.startswith(_HEAD):
+        first, _, rest = target.read_bytes().partition(b"\n")
+        lines = [first, content.split(b"\n", 2)[1], rest.partition(b"\n")[2]]
+        target.write_bytes(b"\n".join(lines))
 
 
 def _change(place: int, before: Any, after: Any, digits: int) -> Change:

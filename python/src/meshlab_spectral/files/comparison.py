@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from meshlab_spectral.documents.document import joined
 from meshlab_spectral.errors import ArrayError
 from meshlab_spectral.extras import check_extras
-from meshlab_spectral.files.meshes import in_scene, joined, load_parts
+from meshlab_spectral.files.meshes import in_scene, load_parts
 from meshlab_spectral.filters.arrays import lumped_areas, mesh_arrays
 from meshlab_spectral.filters.representations import brief, line, table
 
@@ -23,6 +24,11 @@ Arrays = tuple[Array, NDArray[Any]]
 PERCENTILES = (50, 90, 95, 99)
 # Relative to the sum of the areas: what round-off leaves of the area vectors of a closed surface.
 _CLOSED = 1e-9
+_AT_RIM = 1e-6  # of the diagonal
+_ABOVE = 0.866  # cosine of 30 degrees: the distance is at most 15 % more than across the surface
+# Of lengths in other units: mm in cm, in inches, in 0.1 m, in m.
+_FACTORS = (10.0, 25.4, 100.0, 1000.0)
+_SAME_SIZE = 0.02  # scans of one object differ by as much
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,6 +95,11 @@ class Comparison:
         Of a and b, length units squared.
     volumes
         Of a and b, length units cubed; None unless both are closed.
+    beyond
+        The share of the surface of each mesh, by the names of `deviations`, whose nearest point is
+        on the rim of the other, or farther than the greatest distance: not in the statistics.
+    warnings
+        What the numbers may be due to: other units, or no common part.
     """
 
     a: Arrays
@@ -97,6 +108,8 @@ class Comparison:
     deviations: dict[str, Deviation]
     areas: tuple[float, float]
     volumes: tuple[float, float] | None
+    beyond: dict[str, float] = field(default_factory=dict)
+    warnings: list[str] = field(default_factory=list)
 
     @property
     def report(self) -> dict[str, Any]:
@@ -106,6 +119,8 @@ class Comparison:
             "deviations": {name: one.numbers for name, one in self.deviations.items()},
             "area": list(self.areas),
             "volume": None if self.volumes is None else list(self.volumes),
+            "beyond": self.beyond,
+            "warnings": self.warnings,
         }
 
     def save(self, archive: Path) -> None:
@@ -129,7 +144,8 @@ class Comparison:
         }
         meshes = (arrays["V"], arrays["F"]), (arrays["W"], arrays["G"])
         volumes = report["volume"] and tuple(report["volume"])
-        return cls(*meshes, report["same_faces"], deviations, tuple(report["area"]), volumes)
+        areas, rest = tuple(report["area"]), (report["beyond"], report["warnings"])
+        return cls(*meshes, report["same_faces"], deviations, areas, volumes, *rest)
 
     @property
     def signed(self) -> Array:
@@ -151,17 +167,21 @@ class Comparison:
         return rows
 
 
-def compare(a: Any, b: Any) -> Comparison:
+def compare(a: Any, b: Any, *, max_distance: float | None = None) -> Comparison:
     """Compare two meshes: how far the surface of b is from that of a, and on which side.
 
     If b has the faces of a, as after any filter of this package, each vertex is compared with
     itself. Otherwise each vertex is compared with the nearest point of the other mesh, found by
-    VTK. The sign is that of the nearest point's normal: faces must be oriented consistently.
+    VTK. The sign is that of the nearest point's normal: faces must be oriented consistently. Where
+    that point is on the rim of the other mesh, as between scans that overlap in part, the distance
+    says nothing of either: such vertices are counted apart.
 
     Parameters
     ----------
     a, b
         Mesh files, meshes as for `filter_mesh`, or tuples (vertices, faces).
+    max_distance
+        Vertices farther than that from the other mesh are counted apart, too, length units.
 
     Returns
     -------
@@ -185,7 +205,10 @@ def compare(a: Any, b: Any) -> Comparison:
     meshes = _arrays(a, "a"), _arrays(b, "b")
     (V, F), (W, G) = meshes
     same = V.shape == W.shape and np.array_equal(F, G)
-    deviations = _displacements(V, W, F) if same else _distances(*meshes)
+    if same:
+        deviations, beyond = _displacements(V, W, F), dict[str, float]()
+    else:
+        deviations, beyond = _distances(*meshes, max_distance)
     closed = _is_closed(V, F) and _is_closed(W, G)
     return Comparison(
         *meshes,
@@ -193,7 +216,29 @@ def compare(a: Any, b: Any) -> Comparison:
         deviations,
         (float(lumped_areas(V, F).sum()), float(lumped_areas(W, G).sum())),
         (_volume(V, F), _volume(W, G)) if closed else None,
+        beyond,
+        _warnings(V[np.unique(F)], W[np.unique(G)], beyond),
     )
+
+
+def _warnings(V: Array, W: Array, beyond: dict[str, float]) -> list[str]:
+    """Return what the numbers may be due to."""
+    sizes = [float(np.linalg.norm(np.ptp(points, axis=0))) for points in (V, W)]
+    ratio = max(sizes) / min(sizes)
+    found = []
+    for factor in _FACTORS:
+        if abs(ratio / factor - 1) < _SAME_SIZE:
+            larger, smaller = ("a", "b") if sizes[0] > sizes[1] else ("b", "a")
+            found.append(
+                f"{larger} is {factor:g} times as large as {smaller}: are the units equal?"
+            )
+    found += [
+        f"{share:.1%} of the surface of {name[0]} lies beyond the rim of the other, or too far "
+        "away, and is left out"
+        for name, share in beyond.items()
+        if share > 0
+    ]
+    return found
 
 
 def _arrays(mesh: Any, name: str) -> Arrays:
@@ -223,20 +268,34 @@ def _displacements(V: Array, W: Array, F: NDArray[Any]) -> dict[str, Deviation]:
     return {name: _deviation(values, V, areas) for name, values in parts.items()}
 
 
-def _distances(a: Arrays, b: Arrays) -> dict[str, Deviation]:
+def _distances(
+    a: Arrays, b: Arrays, most: float | None
+) -> tuple[dict[str, Deviation], dict[str, float]]:
     check_extras("render")
     areas = [lumped_areas(*mesh) for mesh in (a, b)]
     # From b, a point of a is inside where b is outside a.
-    to_b = np.where(areas[0] > 0, -_signed_distances(a[0], *b), 0.0)
-    to_a = np.where(areas[1] > 0, _signed_distances(b[0], *a), 0.0)
-    return {
-        "a_to_b": _deviation(to_b, a[0], areas[0]),
-        "b_to_a": _deviation(to_a, b[0], areas[1]),
-    }
+    to_b, beyond_b = _signed_distances(a[0], *b, most)
+    to_a, beyond_a = _signed_distances(b[0], *a, most)
+    deviations, beyond = dict[str, Deviation](), dict[str, float]()
+    for name, distances, is_beyond, (points, _), area in (
+        ("a_to_b", -to_b, beyond_b, a, areas[0]),
+        ("b_to_a", to_a, beyond_a, b, areas[1]),
+    ):
+        counted = area * ~is_beyond
+        beyond[name] = 1 - float(counted.sum() / area.sum())
+        if not counted.any():  # no common part
+            counted = area
+        deviations[name] = _deviation(np.where(counted > 0, distances, 0.0), points, counted)
+    return deviations, beyond
 
 
-def _signed_distances(points: Array, V: Array, F: NDArray[Any]) -> Array:
-    """Return the distances of points to a surface, positive on the side its normals point to."""
+def _signed_distances(
+    points: Array, V: Array, F: NDArray[Any], most: float | None
+) -> tuple[Array, NDArray[np.bool_]]:
+    """Return the distances of points to a surface, positive on the side its normals point to.
+
+    And for which of them the nearest point is on its rim, or farther than `most`.
+    """
     import pyvista
 
     # At an edge VTK takes the normals of both faces; it needs them to share its vertices.
@@ -245,7 +304,22 @@ def _signed_distances(points: Array, V: Array, F: NDArray[Any]) -> Array:
     G = G[np.linalg.norm(_area_vectors(X, G), axis=1) > 0]
     surface = pyvista.PolyData.from_regular_faces(X, G)
     measured = pyvista.PolyData(points).compute_implicit_distance(surface)
-    return np.asarray(measured["implicit_distance"], dtype=np.float64)
+    distances = np.asarray(measured["implicit_distance"], dtype=np.float64)
+    is_beyond = np.zeros(len(points), bool) if most is None else np.abs(distances) > most
+    rim = surface.extract_feature_edges(
+        feature_edges=False, manifold_edges=False, non_manifold_edges=False
+    )
+    if rim.n_cells:
+        cells, nearest = surface.find_closest_cell(points, return_closest_point=True)
+        _, on_rim = rim.find_closest_cell(nearest, return_closest_point=True)
+        at_rim = np.linalg.norm(on_rim - nearest, axis=1)
+        tiny = _AT_RIM * float(np.linalg.norm(np.ptp(X, axis=0)))
+        # What lies above or below the rim is not beyond it.
+        normals = _area_vectors(X, G)[cells]
+        height = np.abs(((points - nearest) * normals).sum(axis=1))
+        size = np.linalg.norm(points - nearest, axis=1) * np.linalg.norm(normals, axis=1)
+        is_beyond |= (at_rim <= tiny) & (height < _ABOVE * size) & (np.abs(distances) > tiny)
+    return distances, is_beyond
 
 
 def _deviation(values: Array, V: Array, areas: Array) -> Deviation:

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
+
+from meshlab_spectral.documents.digits import in_single_precision
+from meshlab_spectral.documents.document import Array
 from meshlab_spectral.documents.names import FREE_SURFER, FREE_SURFER_ENDINGS, ending_of
 from meshlab_spectral.documents.opening import PATCHED, format_of
 from meshlab_spectral.errors import FormatError
@@ -11,13 +16,32 @@ from meshlab_spectral.errors import FormatError
 _BOTH = {"3ds", "3mf", "ctm", "dae", "e57", "obj", "off", "ply", "stl", "wrl", "x3d", "xyz"}
 _READ_ONLY = {"apts", "asc", "bre", "fbx", "glb", "gltf", "pdb", "pts", "ptx", "qobj", "tri"}
 READABLE = frozenset(_BOTH | _READ_ONLY | {"txt", "vmi", "x3dv"} | PATCHED)
-WRITABLE = frozenset(_BOTH | {"dxf", "idtf", "json", "nxs", "nxz", "u3d"})
+WRITABLE = frozenset(_BOTH | {"dxf", "idtf", "json", "nxs", "nxz"})
 # MeshLab drops the faces in these without an error.
 POINTS_ONLY = frozenset({"e57", "xyz"})
 # Searched for in folders. MeshLab reads any .txt as a point list, which is rarely intended.
 SEARCHED = READABLE - {"txt"}
 
 FALLBACK = "ply"
+
+
+def _decimals(numbers: Array) -> Array:
+    return np.round(numbers, 6)
+
+
+def _six_digits(numbers: Array) -> Array:
+    size = np.where(numbers == 0, 1.0, np.abs(numbers))
+    step = 10.0 ** (np.floor(np.log10(size)) - 5)
+    return np.asarray(np.round(numbers / step) * step, dtype=np.float64)
+
+
+# Formats in which MeshLab writes coordinates with fewer digits than it has: what is left of these,
+# and what that is called.
+ROUNDED: dict[str, tuple[Callable[[Array], Array], str]] = {
+    **dict.fromkeys(("stl", "3ds", "ctm", "nxs"), (in_single_precision, "single precision")),
+    **dict.fromkeys(("dae", "json", "wrl", "x3d"), (_six_digits, "six digits")),
+    **dict.fromkeys(("3mf", "dxf", "idtf", "xyz"), (_decimals, "six decimals")),
+}
 _GIFTI = ("gii", "gii.gz")
 
 

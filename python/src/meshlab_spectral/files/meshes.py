@@ -16,13 +16,13 @@ from typing import Any
 import numpy as np
 
 from meshlab_spectral.documents.digits import precision_warnings
-from meshlab_spectral.documents.document import Array, Document, Indices, Part
+from meshlab_spectral.documents.document import Array, Document, Indices, Part, joined
 from meshlab_spectral.documents.names import shown
 from meshlab_spectral.documents.opening import format_of, open_document
 from meshlab_spectral.documents.placement import IDENTITY, Placement
 from meshlab_spectral.documents.side_files import copy_side_files
 from meshlab_spectral.errors import FilterError, FormatError, MeshFileError, OptionError
-from meshlab_spectral.files.formats import is_same_format
+from meshlab_spectral.files.formats import ROUNDED, is_same_format
 from meshlab_spectral.files.meshlab_files import (
     DUMMY,
     check_writable,
@@ -54,13 +54,11 @@ StageCallback = Callable[[str, float | None], object]
 
 # Formats that MeshLab reads without losing placement, units or all meshes but one.
 _READ_BY_MESHLAB = (".ply", ".obj", ".off", ".stl")
-# MeshLab would invent both for a mesh made from arrays.
-_BARE = {".ply": {"save_vertex_color": False, "save_vertex_quality": False}}
+# MeshLab would invent it for a mesh made from arrays.
+_BARE = {".ply": {"save_vertex_quality": False}}
 # The core's warning for those who do not know of a selection that another filter has left.
 _SELECTION = "only the selection: "
 _NAMED = 50  # meshes to choose from
-# Formats in which MeshLab writes coordinates in single precision, or with fewer digits.
-_COARSE = (".stl", ".3ds", ".3mf", ".ctm", ".dae", ".wrl", ".x3d")
 
 
 def filter_to_scratch(
@@ -143,7 +141,12 @@ def script_to_scratch(
     and `script.apply_script`, which also describes the report.
     """
     return _through_meshlab(
-        source, scratch, lambda mesh_set: apply_script(mesh_set, script), on_stage, verbose
+        source,
+        scratch,
+        lambda mesh_set: apply_script(mesh_set, script),
+        on_stage,
+        verbose,
+        is_script=True,
     )
 
 
@@ -198,7 +201,7 @@ def _filter_document(
         warnings = document.save(scratch, shapes)
     else:
         bare = _BARE.get(scratch.suffix.lower())
-        write_with_meshlab(_merged(document, verbose, shapes), scratch, source, bare)
+        write_with_meshlab(_merged(document, verbose, shapes), scratch, source, (), bare)
         warnings = left_behind(document, scratch)
         warnings += _rounded(joined(document.parts)[0], np.vstack(shapes), scratch)
     return _report(names, reports, document.warnings + parted + warnings)
@@ -370,22 +373,15 @@ def _as_chosen(report: dict[str, Any]) -> dict[str, Any]:
 
 
 def in_scene(parts: Sequence[Part]) -> list[Part]:
-    """Return the parts, and each once more wherever else the scene has it."""
+    """Return the parts of the scene, and each once more wherever else it has it."""
     return [
         replace(
             part, vertices=place.placed(part.vertices), faces=place.oriented(part.faces), copies=()
         )
         for part in parts
+        if part.is_shown
         for place in map(Placement, (IDENTITY, *part.copies))
     ]
-
-
-def joined(parts: Sequence[Part]) -> tuple[Array, Indices]:
-    """Return several meshes as one."""
-    vertices = [part.vertices for part in parts]
-    begins = np.cumsum([0, *(len(V) for V in vertices)])
-    faces = [part.faces + begin for part, begin in zip(parts, begins, strict=False)]
-    return np.vstack(vertices), np.vstack(faces)
 
 
 def _merged(document: Document, verbose: bool, moved: Sequence[Array] | None = None) -> Any:
@@ -403,9 +399,10 @@ def _signal(part: Part) -> dict[str, Array]:
 
 def _rounded(before: Array, after: Array, scratch: Path) -> list[str]:
     """Return the warning, if any, that MeshLab writes this format with too few digits."""
-    if scratch.suffix.lower() not in _COARSE or before.shape != after.shape:
+    rounded = ROUNDED.get(scratch.suffix[1:].lower())
+    if rounded is None or before.shape != after.shape:
         return []
-    return precision_warnings(before, after, scratch.name)
+    return precision_warnings(before, after, scratch.name, *rounded)
 
 
 def _report(names: list[str], reports: list[dict[str, Any]], warnings: list[str]) -> dict[str, Any]:
@@ -432,6 +429,7 @@ def _through_meshlab(
     on_stage: StageCallback,
     verbose: bool,
     settings: dict[str, bool] | None = None,
+    is_script: bool = False,
 ) -> dict[str, Any]:
     """Let MeshLab write the file and, if it reads all of its contents, also read it."""
     load()
@@ -450,7 +448,10 @@ def _through_meshlab(
         textures = mesh_set.current_mesh().textures()
         warnings = copy_side_files(source, scratch, [one for one in textures if one != DUMMY])
         return {**report, "warnings": report.get("warnings", []) + warnings}
-    write_with_meshlab(mesh_set, scratch, source, settings)
+    given = None
+    if document is not None and not is_script:
+        given = () if lacking is None else document.contents
+    write_with_meshlab(mesh_set, scratch, source, given, settings)
     if document is None:
         warnings = left_by_meshlab(source, scratch, mesh_set)
     else:

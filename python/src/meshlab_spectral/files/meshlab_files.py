@@ -19,6 +19,7 @@ from meshlab_spectral.documents.document import Document
 from meshlab_spectral.documents.names import shown
 from meshlab_spectral.documents.opening import PATCHED
 from meshlab_spectral.documents.side_files import beside, is_outside
+from meshlab_spectral.documents.stl import HEADER, TRIANGLE
 from meshlab_spectral.errors import FormatError, MeshFileError
 from meshlab_spectral.files.formats import WRITABLE
 from meshlab_spectral.files.whole_files import USUAL_FORMATS, resolved
@@ -28,9 +29,20 @@ from meshlab_spectral.filters.calling import reason_of
 _POLYGON_FORMATS = (".obj", ".off")
 # The `contents` of a document that MeshLab, having read it, also writes, by format.
 _WRITTEN = {
-    ".ply": {"normals", "colours", "texture coordinates", "quality", "texture names"},
-    ".obj": {"normals", "colours", "texture coordinates", "materials", "texture names"},
-    ".off": {"normals", "colours", "texture coordinates"},
+    ".ply": {"face colours", "texture coordinates", "quality", "texture names"},
+    ".obj": {"texture coordinates", "materials", "texture names"},
+    ".off": {"face colours", "texture coordinates"},
+}
+# Contents that MeshLab would invent, or write as readers do not expect: the setting, and the
+# formats that have it.
+_SETTINGS = {
+    "normals": ("save_vertex_normal", "dae e57 idtf json nxs nxz obj ply x3d xyz"),
+    "colours": ("save_vertex_color", "ctm dae e57 idtf json nxs nxz obj off ply wrl x3d"),
+    "face colours": ("save_face_color", "stl"),
+}
+_OTHER_SETTINGS = {
+    ".ctm": {"lossless": True},
+    ".off": {"save_vertex_normal": False},  # only MeshLab reads NOFF with normals after colours
 }
 # What scenes as text hold besides a shape, such as COLLADA, X3D and VRML.
 _SCENES = {
@@ -54,6 +66,7 @@ _REMOTE = re.compile("https?:|urn:|#", re.IGNORECASE)
 # a file and those beside it; and of the memory there is.
 _MESHLAB_BYTES, _TIMES, _SHARE = 1 << 30, 40, 0.75
 _LONGEST = 300  # characters of its reasons
+_STL_HEADER = 80  # bytes
 _QUALITY = "spectral_quality"  # a passing attribute
 _LEAST_ROOM = 1 << 14  # bytes, a few blocks
 # MeshLab's substitute for textures not found, such as those with blanks in their names.
@@ -126,25 +139,34 @@ def _check_inlined(source: Path) -> None:
 
 
 def write_with_meshlab(
-    mesh_set: Any, scratch: Path, source: Path, settings: dict[str, bool] | None = None
+    mesh_set: Any,
+    scratch: Path,
+    source: Path,
+    contents: Collection[str] | None = None,
+    settings: dict[str, bool] | None = None,
 ) -> None:
     """Save the current mesh of a MeshSet to a file from `writing_whole`; raises MeshFileError.
 
-    `source` is the file that the mesh comes from, `settings` are those of
-    `MeshSet.save_current_mesh`.
+    `source` is the file that the mesh comes from, `contents` what it holds of normals and colours
+    (None: what the mesh has), `settings` are those of `MeshSet.save_current_mesh`.
     """
     import pymeshlab
 
     settings = {
+        **_settings(mesh_set.current_mesh(), scratch, contents),
         **(settings or {}),
         "save_textures": _textures_to_be_saved(mesh_set, scratch, source),
     }
+    if settings.get("save_vertex_normal"):
+        mesh_set.apply_normal_normalization_per_vertex()
     if scratch.suffix.lower() in _POLYGON_FORMATS and _has_non_manifold_edges(mesh_set):
         # MeshLab would trace its polygons without end and use up all memory.
         settings["save_polygonal"] = False
     try:
         mesh_set.save_current_mesh(str(scratch), **settings)
         _check_room(scratch)
+        if scratch.suffix.lower() == ".stl":
+            _mend_stl_colours(scratch, settings["save_face_color"])
     except (pymeshlab.PyMeshLabException, RuntimeError) as error:
         _check_room(scratch)
         reason = reason_of(error).rsplit(": ", 1)[-1]  # without the scratch file's name
@@ -153,6 +175,33 @@ def write_with_meshlab(
             f"{USUAL_FORMATS}",
             "not_written",
         ) from error
+
+
+def _settings(mesh: Any, scratch: Path, contents: Collection[str] | None) -> dict[str, bool]:
+    """Return which normals and colours are written, of those that the format may have."""
+    if contents is None:
+        present = {"colours": mesh.has_vertex_color(), "face colours": mesh.has_face_color()}
+        contents = {"normals"} | {name for name, is_there in present.items() if is_there}
+    ending = scratch.suffix[1:].lower()
+    found = {
+        setting: name in contents
+        for name, (setting, endings) in _SETTINGS.items()
+        if ending in endings.split()
+    }
+    return found | _OTHER_SETTINGS.get(f".{ending}", {})
+
+
+def _mend_stl_colours(scratch: Path, has_colours: bool) -> None:
+    """Write no colours to an STL file that has none, where MeshLab makes every facet black.
+
+    Where there are, the colour of the whole, which MeshLab writes too, becomes opaque white.
+    """
+    content = bytearray(scratch.read_bytes())
+    content[:_STL_HEADER] = (b"COLOR=\xff\xff\xff\xff" if has_colours else b"").ljust(_STL_HEADER)
+    # With that header, facets whose highest bit is not set have a colour of their own.
+    facets = np.frombuffer(content, TRIANGLE, -1, HEADER)
+    facets["attribute"] &= 0x7FFF if has_colours else 0
+    scratch.write_bytes(content)
 
 
 def _check_room(scratch: Path) -> None:
@@ -201,7 +250,9 @@ def left_behind(
     """
     written = {"placement"}
     if mesh_set is not None:
-        written |= _WRITTEN.get(target.suffix.lower(), set())
+        ending = target.suffix.lower()
+        written |= _WRITTEN.get(ending, set())
+        written |= {name for name, (_, all_) in _SETTINGS.items() if ending[1:] in all_.split()}
         if (document.path.suffix.lower(), target.suffix.lower()) == (".obj", ".ply"):
             written.remove("normals")  # an OBJ file has them at corners
         written.difference_update(lacking)

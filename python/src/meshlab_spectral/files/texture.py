@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from meshlab_spectral.documents.document import joined
 from meshlab_spectral.errors import MeshError
-from meshlab_spectral.files.meshes import StageCallback, joined, load_parts
+from meshlab_spectral.files.meshes import StageCallback, in_scene, load_parts
 from meshlab_spectral.filters.options import TextureOptions
 from meshlab_spectral.filters.texture import surface_texture
 
@@ -26,7 +27,7 @@ def texture_of(
     written with the vertices, n x 3, the faces, m x 3, and the height of each vertex.
     """
     on_stage("reading", None)
-    parts = load_parts(source, mesh)
+    parts = in_scene(load_parts(source, mesh))
     V, F = joined(parts)
     if len(F) == 0:
         raise MeshError(f"{source} has no faces: there is no surface to measure")

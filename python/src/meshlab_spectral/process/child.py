@@ -57,7 +57,7 @@ def _report_of(job: dict[str, Any], on_stage: StageCallback) -> dict[str, Any]:
     archive = Path(job["archive"]) if job.get("archive") else None
     if task == "compare":
         on_stage("reading", None)
-        comparison = compare(source, Path(job["other"]))
+        comparison = compare(source, Path(job["other"]), max_distance=job.get("max_distance"))
         if archive is not None:
             comparison.save(archive)
         return comparison.report

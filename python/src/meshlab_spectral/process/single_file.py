@@ -78,7 +78,13 @@ def measure_in_child(
         return process.run(job, on_progress, limits).report
 
 
-def compare_in_child(a: Path, b: Path, on_progress: ProgressCallback, whole: bool) -> Comparison:
+def compare_in_child(
+    a: Path,
+    b: Path,
+    on_progress: ProgressCallback,
+    whole: bool,
+    max_distance: float | None = None,
+) -> Comparison:
     """Compare two mesh files in a child process: `comparison.compare`, which says what is raised.
 
     Only the `whole` comparison has meshes, and values at their vertices.
@@ -86,8 +92,11 @@ def compare_in_child(a: Path, b: Path, on_progress: ProgressCallback, whole: boo
     check_source(a)
     check_source(b)
     job = {"task": "compare", "source": str(a.absolute()), "other": str(b.absolute())}
+    more = {"max_distance": max_distance}
     with _archive(whole) as archive, process_for_job() as process:
-        report = process.run({**job, "archive": archive and str(archive)}, on_progress).report
+        report = process.run(
+            {**job, **more, "archive": archive and str(archive)}, on_progress
+        ).report
         return Comparison.from_report(report, archive)
 
 

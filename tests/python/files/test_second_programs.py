@@ -1,0 +1,148 @@
+"""What is written is what other programs open: faces, normals, colours.
+
+Each program reads the formats that it knows; those that are not installed are skipped by name:
+`pip install open3d assimp-py` adds them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import pymeshlab
+import pytest
+import pyvista
+from helpers import filter_file
+from meshlab_spectral import FilterOptions
+from numpy.typing import NDArray
+from plyfile import PlyData
+
+Array = NDArray[Any]
+SMOOTH = FilterOptions.from_dict({"feature_size": "20%"})
+RED, BLUE = [1.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 1.0]
+
+
+class Seen(NamedTuple):
+    """What a program sees."""
+
+    vertices: Array
+    faces: Array
+    normals: Array | None = None  # of the vertices
+    colours: Array | None = None  # of the vertices, 0 to 1
+
+
+def by_trimesh(path: Path) -> Seen:
+    trimesh = pytest.importorskip("trimesh")
+    mesh = trimesh.load(path, process=False, force="mesh")
+    normals = mesh._cache.cache.get("vertex_normals")
+    colours = None
+    if mesh.visual.kind == "vertex":
+        colours = np.asarray(mesh.visual.vertex_colors)[:, :3] / 255
+    return Seen(np.asarray(mesh.vertices), np.asarray(mesh.faces), normals, colours)
+
+
+def by_vtk(path: Path) -> Seen:
+    mesh = pyvista.read(path)
+    colours = mesh.point_data.get("RGB", mesh.point_data.get("RGBA"))
+    return Seen(
+        np.asarray(mesh.points),
+        mesh.faces.reshape(-1, 4)[:, 1:],
+        mesh.point_data.active_normals,
+        None if colours is None else np.asarray(colours)[:, :3] / 255,
+    )
+
+
+def by_meshio(path: Path) -> Seen:
+    mesh = pytest.importorskip("meshio").read(path)
+    names = [name for name in mesh.point_data if name in ("obj:vn", "Normals")]
+    normals = mesh.point_data[names[0]] if names else None
+    return Seen(mesh.points[:, :3], mesh.cells_dict["triangle"], normals)
+
+
+def by_open3d(path: Path) -> Seen:
+    open3d = pytest.importorskip("open3d")
+    mesh = open3d.io.read_triangle_mesh(str(path))
+    normals = np.asarray(mesh.vertex_normals) if mesh.has_vertex_normals() else None
+    colours = np.asarray(mesh.vertex_colors) if mesh.has_vertex_colors() else None
+    return Seen(np.asarray(mesh.vertices), np.asarray(mesh.triangles), normals, colours)
+
+
+def by_assimp(path: Path) -> Seen:
+    assimp = pytest.importorskip("assimp_py")
+    (mesh,) = assimp.import_file(str(path), assimp.Process_Triangulate).meshes
+    normals = None if mesh.normals is None else np.reshape(mesh.normals, (-1, 3))
+    vertices = np.reshape(mesh.vertices, (-1, 3))
+    return Seen(vertices, np.reshape(mesh.indices, (-1, 3)), normals)
+
+
+def by_meshlab(path: Path) -> Seen:
+    mesh_set = pymeshlab.MeshSet(verbose=False)
+    mesh_set.load_new_mesh(str(path))
+    mesh = mesh_set.current_mesh()
+    colours = mesh.vertex_color_matrix()[:, :3] if mesh.has_vertex_color() else None
+    return Seen(mesh.vertex_matrix(), mesh.face_matrix(), None, colours)
+
+
+PROGRAMS: dict[Callable[[Path], Seen], str] = {
+    by_trimesh: "obj off ply stl",
+    by_vtk: "obj ply stl",
+    by_meshio: "obj ply stl",
+    by_open3d: "obj off ply stl",
+    by_assimp: "3ds obj off ply stl",
+    by_meshlab: "3ds 3mf ctm dae obj off ply stl wrl x3d",
+}
+# Formats whose colours the program reads, too.
+COLOURED = {
+    by_trimesh: "obj ply",
+    by_vtk: "obj ply",
+    by_open3d: "obj off ply",
+    by_meshlab: "dae obj off ply wrl x3d",
+}
+CASES = [(read, ending) for read, endings in PROGRAMS.items() for ending in endings.split()]
+
+
+def write_source(path: Path, has_more: bool) -> None:
+    """Write a noisy sphere, red above and blue below, or without colours and normals."""
+    sphere = pyvista.Icosphere(nsub=3)
+    V = np.asarray(sphere.points, float)
+    V *= 1 + np.random.default_rng(2).normal(0, 0.01, (len(V), 1))
+    F = np.asarray(sphere.faces).reshape(-1, 4)[:, 1:]
+    colours = np.where(V[:, [2]] > 0, [RED], [BLUE])
+    mesh_set = pymeshlab.MeshSet(verbose=False)
+    mesh_set.add_mesh(pymeshlab.Mesh(V, F, v_color_matrix=colours))
+    flags = {"save_vertex_color": has_more, "save_vertex_normal": has_more}
+    mesh_set.save_current_mesh(str(path), **flags, save_vertex_quality=False)
+
+
+@pytest.mark.parametrize("has_more", [False, True], ids=["bare", "coloured"])
+@pytest.mark.parametrize(("read", "ending"), CASES, ids=lambda one: getattr(one, "__name__", one))
+def test_a_second_program_sees_what_was_written(
+    read: Callable[[Path], Seen], ending: str, has_more: bool, tmp_path: Path
+) -> None:
+    source, target = tmp_path / "in.ply", tmp_path / f"out.{ending}"
+    write_source(source, has_more)
+    report = filter_file(source, target, SMOOTH)
+    filter_file(source, tmp_path / "expected.ply", SMOOTH)
+    expected = PlyData.read(tmp_path / "expected.ply")
+    V = np.column_stack([expected["vertex"][axis] for axis in "xyz"])
+    F = np.vstack(expected["face"]["vertex_indices"])
+    seen = read(target)
+    assert len(seen.faces) == len(F)
+    corners = [P[G].mean(axis=1) for P, G in ((V, F), (seen.vertices, seen.faces))]
+    distances = np.linalg.norm(corners[1][:, None] - corners[0][None], axis=2).min(axis=1)
+    assert distances.max() < 1e-4
+    if seen.normals is not None and len(seen.normals):
+        directions = seen.vertices / np.linalg.norm(seen.vertices, axis=1)[:, None]
+        np.testing.assert_allclose(np.linalg.norm(seen.normals, axis=1), 1, atol=1e-3)
+        assert (np.einsum("ij,ij->i", seen.normals, directions) > 0.8).all()
+    has_colours = seen.colours is not None and len(np.unique(seen.colours, axis=0)) > 1
+    keeps = has_more and ending in COLOURED.get(read, "").split()
+    assert has_colours == keeps
+    told = any("colours" in warning for warning in report["warnings"])
+    assert told == (has_more and ending in ("3ds", "3mf", "stl"))
+    if keeps:
+        assert seen.colours is not None
+        is_above = seen.vertices[:, 2] > 0.05
+        np.testing.assert_allclose(seen.colours[is_above], [RED[:3]] * is_above.sum(), atol=0.01)
