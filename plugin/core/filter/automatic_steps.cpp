@@ -171,7 +171,7 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
             first = predictFirst(0.5 * kFirstPasses, kFirstPasses);
         }
     }
-    const Vertices halves[] = {first[1], first[2]};
+    Vertices halves[] = {first[1], first[2]};
     Limit limit(first[0], laplacians);
     first.clear();
 
@@ -184,6 +184,7 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
         result.last = midpointSteps(laplacians, evaluate, X, K, std::max(K, kFinest),
                                     progress.part(done, end), firstHalf);
         done = end;
+        if (K <= 2) halves[K - 1].resize(0, 3);
         // If one of two passes had to take smaller steps, both may have taken the same ones.
         const bool isEven = result.last.sizes.size() == static_cast<std::size_t>(K);
         const bool isComparable = std::exchange(wasEven, isEven) && isEven;

@@ -69,7 +69,8 @@ std::optional<Evaluation> BasisEvaluator::aroundTheCut(const Laplacian& laplacia
     options.atEveryVertex = atEveryVertex_;
     options.samples = F_.samples();
     // A Krylov space of maximum dimension may need more memory than the basis did.
-    const auto numbers = static_cast<double>(n * X.cols() * options.maxDimension);
+    const double numbers =
+        static_cast<double>(options.maxDimension) * static_cast<double>(X.size());
     if (sizeof(double) * numbers > availableMemory()) return {};
     try {
         const HarmonicBasis near =

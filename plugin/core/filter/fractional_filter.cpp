@@ -52,6 +52,10 @@ constexpr int kMaxSteps = 1000;
 /// are those of single vertices of slivers.
 constexpr double kBeyond = 24.0;
 
+/// The most that a sliver's mass is increased to, in squared edges: a quarter of the mass of a
+/// vertex of equilateral triangles.
+constexpr double kMostMass = 0.22;
+
 void checkOptions(const FilterOptions& options) {
     if (options.steps < 0 || options.steps > kMaxSteps)
         throw InvalidOption("steps = " + std::to_string(options.steps) +
@@ -98,18 +102,15 @@ double sizeOf(const Surface& surface) {
     return std::sqrt(surface.X.rowwise().squaredNorm().mean());  // X is centred
 }
 
-double meanEdgeOf(const FilterOptions& options, const Surface& surface) {
-    return options.whole ? options.whole->meanEdge : meanEdgeLength(surface.X, surface.F);
-}
-
 /// Evaluation options; those of automatic steps need not be much more accurate than the steps and
 /// the details.
-EvaluationOptions evaluationFor(const FilterOptions& options, const Surface& surface) {
+EvaluationOptions evaluationFor(const FilterOptions& options, const Surface& surface,
+                                double meanEdge) {
     EvaluationOptions evaluation = options.evaluation;
     if (options.steps > 0) return evaluation;
     const double error =
         std::min({kShareOfTolerance * options.tolerance, kShareOfFeatureSize * options.featureSize,
-                  kShareOfEdge * meanEdgeOf(options, surface)});
+                  kShareOfEdge * meanEdge});
     evaluation.accuracy =
         std::max(evaluation.accuracy, std::min(error / sizeOf(surface), kLoosestAccuracy));
     evaluation.atEveryVertex = false;
@@ -127,10 +128,9 @@ std::optional<ThinPartsOfTile> thinPartsOfTile(const FilterOptions& options,
 
 /// Runs the requested steps.
 AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate,
-                             const TransferFunction& F, const Surface& surface,
+                             const TransferFunction& F, const Vertices& X, double meanEdge,
                              const FilterOptions& options, const ThinPartsOfTile* tile,
                              const Progress& progress) {
-    const Vertices& X = surface.X;
     // A truncated spectrum may drop the residual even if the gain is 1.
     const bool isIdentity = F.isOne() && options.evaluation.spectrum == Spectrum::Full;
     // A truncated basis is that of the mesh, whose metric must not change.
@@ -155,10 +155,10 @@ AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evalua
     }
     if (options.steps == 0) {
         if (options.evaluation.spectrum == Spectrum::Full && F.discontinuities().empty()) {
-            const double size = defaultFeatureSize(meanEdgeOf(options, surface),
-                                                   std::numeric_limits<double>::infinity());
+            const double size =
+                defaultFeatureSize(meanEdge, std::numeric_limits<double>::infinity());
             const double last = kBeyond * std::max(F.cutoff(), cutoffFrequency(size));
-            laplacians.boundEigenvalues(last * last);
+            laplacians.boundEigenvalues(last * last, kMostMass * meanEdge * meanEdge);
         }
         return automaticSteps(
             laplacians, evaluate, X,
@@ -184,12 +184,14 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
 
     LaplacianBuilder laplacians(surface, interior.surfaceComponents(), options.laplacian,
                                 options.basisUpdate, options.conformalShare);
-    const EvaluationOptions evaluation = evaluationFor(options, surface);
+    const double edge = meanEdgeLength(surface.X, surface.F),
+                 meanEdge = options.whole ? options.whole->meanEdge : edge;
+    const EvaluationOptions evaluation = evaluationFor(options, surface, meanEdge);
     StepEvaluator evaluate(evaluation, interior, transfer);
     const std::optional<ThinPartsOfTile> tile = thinPartsOfTile(options, surface);
     // Kovnatsky et al. 2012, Eq. 11, or its limit.
-    const AutomaticSteps steps = filterInSteps(laplacians, evaluate, transfer, surface, options,
-                                               tile ? &*tile : nullptr, progress);
+    const AutomaticSteps steps = filterInSteps(laplacians, evaluate, transfer, surface.X, meanEdge,
+                                               options, tile ? &*tile : nullptr, progress);
     if (!steps.last.X.allFinite()) throw SolverFailure("the filtered coordinates are not finite");
     const double areaBefore = surfaceArea(surface.X, surface.F);
     // A tile may hold nothing but small debris.
@@ -237,7 +239,7 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     result.shrunkenPart = shrunkenPart(before, lumpedMass(X, surface.F));
     result.areaBefore = areaBefore;
     result.areaAfter = surfaceArea(X, surface.F);
-    result.meanEdge = meanEdgeLength(surface.X, surface.F);
+    result.meanEdge = edge;
     result.accuracy = evaluation.accuracy;
     result.errorEstimate = steps.last.errorEstimate;
     result.accuracyReached = steps.last.accuracyReached;

@@ -100,6 +100,7 @@ void IntrinsicTriangulation::makeDelaunay() {
         for (const int outer : {nextSide(s), previousSide(s), nextSide(t), previousSide(t)})
             push(outer);
     }
+    std::vector<double>().swap(length_);  // only flips need lengths
 }
 
 bool IntrinsicTriangulation::isDelaunay(int side) const {

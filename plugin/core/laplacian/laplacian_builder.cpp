@@ -48,9 +48,7 @@ void LaplacianBuilder::scaleMass(Eigen::VectorXd factors) {
     reset();
 }
 
-void LaplacianBuilder::boundEigenvalues(double largest) {
-    constexpr double kMostAdded = 0.25;  // of the mean mass
-    const double most = kMostAdded * inputMass_.mean();
+void LaplacianBuilder::boundEigenvalues(double largest, double most) {
     const Eigen::ArrayXd least = (current_.W.diagonal().array() * (2.0 / largest)).min(most);
     if ((least > inputMass_.array()).any()) scaleMass((least / inputMass_.array()).max(1.0));
 }

@@ -52,12 +52,12 @@ class LaplacianBuilder {
     /// @param factors  n, > 0.
     void scaleMass(Eigen::VectorXd factors);
 
-    /// Multiplies D where slivers alone cause eigenvalues of the input above `largest`: so that
-    /// 2 W_ii / D_ii is at most that, but by no more than a quarter of the mean mass. Such a vertex
-    /// follows its neighbours at once with either mass. It is a factor, not a lower bound, so that
-    /// the mass of what collapses does so, too.
+    /// Multiplies D where slivers alone cause eigenvalues of the input above `largest`: D_ii
+    /// becomes 2 W_ii / largest, but at most `most`. Such a vertex follows its neighbours at once
+    /// with either mass. It is a factor, not a lower bound, so that the mass of what collapses does
+    /// so, too.
     /// @param largest  > 0, far above the eigenvalues of all details of the filter.
-    void boundEigenvalues(double largest);
+    void boundEigenvalues(double largest, double most);
 
     /// Area of the current shape: the sum of D before its lower bound and factors are applied.
     double area() const { return area_; }

@@ -2,6 +2,7 @@
 
 #include <Eigen/OrderingMethods>
 #include <algorithm>
+#include <cstdint>
 #include <iterator>
 #include <limits>
 #include <numeric>
@@ -106,15 +107,13 @@ void SymbolicLdlt::forRows(const Work& work) const {
 
 SymbolicLdlt::Columns SymbolicLdlt::findOrder(const SparseMatrix& W, const SymbolicLdlt* similar) {
     const auto entriesOf = [](const Columns& columns) {
-        return std::accumulate(columns.count.begin(), columns.count.end(), Index{0});
+        return std::accumulate(columns.count.begin(), columns.count.end(), 0.0);
     };
     if (similar != nullptr && similar->order.size() == W.rows()) {
         adaptOrder(*similar);
         entriesWhenOrdered_ = similar->entriesWhenOrdered_;
         const Columns columns = eliminationTree();
-        if (static_cast<double>(entriesOf(columns)) <=
-            kMaxFill * static_cast<double>(entriesWhenOrdered_))
-            return postordered(columns);
+        if (entriesOf(columns) <= kMaxFill * entriesWhenOrdered_) return postordered(columns);
     }
     Eigen::AMDOrdering<int>::PermutationType minimumDegree;  // its indices are those of `inverse`
     Eigen::AMDOrdering<int>()(W.selfadjointView<Eigen::Lower>(), minimumDegree);
@@ -238,9 +237,10 @@ void SymbolicLdlt::findFronts(const Columns& columns) {
         }
         supernodes.push_back(supernode);
     }
-    const Index total = std::accumulate(
-        supernodes.begin(), supernodes.end(), Index{0},
-        [](Index sum, const Supernode& supernode) { return sum + supernode.entries(); });
+    // In 64 bits even where Index has 32.
+    const auto total =
+        std::accumulate(supernodes.begin(), supernodes.end(), std::int64_t{0},
+                        [](std::int64_t sum, const Supernode& s) { return sum + s.entries(); });
     if (total > std::numeric_limits<int>::max())
         throw SolverFailure(ErrorCode::TooManyVertices,
                             "the factor of W - sigma D (" + std::to_string(n) +
@@ -290,7 +290,7 @@ void SymbolicLdlt::findSubtrees() {
     const auto isSmall = [&](int f) { return size[f] <= maxSize; };
     for (int f = 0; f < count; ++f) {
         const int parent = parentFront_[f];
-        if (!isSmall(f) || size[f] * kMaxParts < total || (parent >= 0 && isSmall(parent)))
+        if (!isSmall(f) || size[f] <= (total - 1) / kMaxParts || (parent >= 0 && isSmall(parent)))
             continue;
         Subtree tree;
         tree.firstFront = f + 1 - frontsBelow[f];

@@ -97,9 +97,9 @@ struct SymbolicLdlt {
     template <class Work>
     void forRows(const Work& work) const;
 
-    Index entriesWhenOrdered_ = 0;  // off-diagonal entries of L for the pattern that was ordered
-    std::vector<int> frontOf_;      // n: front of each column
-    std::vector<int> parentFront_;  // parent of each front, or -1
+    double entriesWhenOrdered_ = 0.0;  // off-diagonal entries of L for the pattern that was ordered
+    std::vector<int> frontOf_;         // n: front of each column
+    std::vector<int> parentFront_;     // parent of each front, or -1
 };
 
 }  // namespace spectral

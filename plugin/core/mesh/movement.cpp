@@ -28,10 +28,11 @@ Movement movementOf(const Vertices& X, const Faces& F, const Vertices& displacem
     movement.rmsDisplacement = std::sqrt(squares.dot(weight / weight.sum()));
     movement.meanDisplacement = squares.cwiseSqrt().dot(weight / weight.sum());
     movement.volumeBefore = signedVolume(X, F);
-    movement.volumeAfter = signedVolume(X + displacement, F);
+    const Vertices moved = X + displacement;
+    movement.volumeAfter = signedVolume(moved, F);
     movement.hasVolume = enclosesVolume(X, F);
     movement.volumes = volumes;
-    movement.foldedFaces = foldedFaces(X, X + displacement, F);
+    movement.foldedFaces = foldedFaces(X, moved, F);
     return movement;
 }
 
