@@ -157,7 +157,8 @@ void addCleanComponents(const FaceGraph& graph, std::vector<bool> isMeasured, Di
     const VertexGraph& vertices = graph.vertices;
     std::vector<Index> measured(parts.size());
     for (Index i = 0; i < n; ++i) measured[components.label[i]] += isMeasured[i];
-    const Eigen::VectorXd residual = scaledSecondResiduals(graph, whole.X, isMeasured);
+    const Eigen::VectorXd residual =
+        scaledSecondResiduals(graph, whole.X, smoothVertexNormals(graph, whole.X), isMeasured);
     for (Index i = 0; i < n; ++i) {
         Component& part = parts[components.label[i]];
         if (isMeasured[i]) part.moduli.push_back(std::abs(residual[i]));
@@ -255,14 +256,15 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
     diagnosis.spikes = found.spikes.count;
     if (diagnosis.spikes > 0) diagnosis.X -= found.spikes.height.asDiagonal() * found.spikes.N;
     progress.report(0.6, kStage);
-    const double correlation = residualCorrelation(graph, diagnosis.X, isMeasured);
-    const SecondResiduals second = secondResiduals(graph, diagnosis.X, isMeasured);
+    const Points N = smoothVertexNormals(graph, diagnosis.X);
+    const double correlation = residualCorrelation(graph, diagnosis.X, N, isMeasured);
+    const SecondResiduals second = secondResiduals(graph, diagnosis.X, N, isMeasured);
     const bool isWhite = second.isNoise(correlation, edge);
     NoiseEstimate& noise = diagnosis.noise;
     diagnosis.kind = NoiseKind::Shape;
     const bool isRising = !isWhite && correlation >= kMaxCorrelationOfNoise;
     if (isKnown || !isRising)
-        noise = estimateNoise(graph, diagnosis.X, isMeasured, correlation, second, edge);
+        noise = estimateNoise(graph, diagnosis.X, N, isMeasured, correlation, second, edge);
     noise.correlation = correlation;
     noise.isUnderShape = noise.isUnderShape && !areNeedles;
     if (isRising) return diagnosis;

@@ -212,11 +212,10 @@ void forEachOctave(const VertexGraph& graph, const Points& X, const Points& N,
     }
 }
 
-double residualCorrelation(const FaceGraph& graph, const Points& X,
+double residualCorrelation(const FaceGraph& graph, const Points& X, const Points& N,
                            const std::vector<bool>& isMeasured) {
-    return correlationOfNeighbours(
-        graph.vertices, scaledResiduals(graph.vertices, X, smoothVertexNormals(graph, X)),
-        isMeasured);
+    return correlationOfNeighbours(graph.vertices, scaledResiduals(graph.vertices, X, N),
+                                   isMeasured);
 }
 
 bool SecondResiduals::isNoise(double firstCorrelation, double meanEdge) const {
@@ -229,7 +228,7 @@ bool SecondResiduals::isNoise(double firstCorrelation, double meanEdge) const {
            (firstCorrelation < 0.0 || height > kWeakHeight * meanEdge);
 }
 
-Eigen::VectorXd scaledSecondResiduals(const FaceGraph& graph, const Points& X,
+Eigen::VectorXd scaledSecondResiduals(const FaceGraph& graph, const Points& X, const Points& N,
                                       std::vector<bool>& isMeasured) {
     using Rows = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
     const VertexGraph& vertices = graph.vertices;
@@ -246,25 +245,23 @@ Eigen::VectorXd scaledSecondResiduals(const FaceGraph& graph, const Points& X,
         residual.swap(next);
     }
     const double white = deviationOf(residual.col(3), isMeasured);
-    return residual.leftCols<3>().cwiseProduct(smoothVertexNormals(graph, X)).rowwise().sum() /
-           (white > 0.0 ? white : 1.0);
+    return residual.leftCols<3>().cwiseProduct(N).rowwise().sum() / (white > 0.0 ? white : 1.0);
 }
 
-SecondResiduals secondResiduals(const FaceGraph& graph, const Points& X,
+SecondResiduals secondResiduals(const FaceGraph& graph, const Points& X, const Points& N,
                                 std::vector<bool> isMeasured) {
-    const Eigen::VectorXd residual = scaledSecondResiduals(graph, X, isMeasured);
+    const Eigen::VectorXd residual = scaledSecondResiduals(graph, X, N, isMeasured);
     return {trimmedDeviation(moduliOf(residual, isMeasured)),
             correlationOfNeighbours(graph.vertices, residual, isMeasured)};
 }
 
-NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X,
+NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X, const Points& N,
                             const std::vector<bool>& isMeasured, double correlation,
                             const SecondResiduals& second, double meanEdge) {
     constexpr double kMinNoiseShare = 0.45;   // share of an octave that must be noise
     constexpr double kMaxRiseOfNoise = 2.03;  // of noise, from an octave to the next coarser one
     // Height over the part of it that the shape does not hide, for noise of 1.5 edges.
     constexpr double kHiddenHeight = 1.3;
-    const Points N = smoothVertexNormals(graph, X);
     const OctaveDeviations octaves = octaveDeviations(graph, X, N, isMeasured);
     const auto& [along, deviation, white] = octaves;
     const Octaves height = (white > 0.0).select(deviation / white, 0.0);

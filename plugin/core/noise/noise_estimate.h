@@ -43,16 +43,17 @@ void forEachOctave(const VertexGraph& graph, const Points& X, const Points& N,
 /// It is -0.24 for independent noise and up to 0.16 for that of scanners; 0.23 and more for a shape
 /// without noise, whose curvature varies slowly.
 /// @param X           n x 3 positions.
+/// @param N           n x 3 smoothVertexNormals, here and below.
 /// @param isMeasured  n: whether a vertex counts.
 /// @return  1 if all residuals vanish.
-double residualCorrelation(const FaceGraph& graph, const Points& X,
+double residualCorrelation(const FaceGraph& graph, const Points& X, const Points& N,
                            const std::vector<bool>& isMeasured);
 
 /// The residuals of the residuals, L L X along the normals, scaled so that those of white noise
 /// have its deviation.
 /// @param isMeasured  n: whether a vertex counts; those with a neighbour that does not are taken
 /// out.
-Eigen::VectorXd scaledSecondResiduals(const FaceGraph& graph, const Points& X,
+Eigen::VectorXd scaledSecondResiduals(const FaceGraph& graph, const Points& X, const Points& N,
                                       std::vector<bool>& isMeasured);
 
 /// Second residuals as a whole: what alternates from vertex to vertex.
@@ -68,7 +69,7 @@ struct SecondResiduals {
 
 /// Tells white noise from the shape under it where that is as high, such as steep ground, cells of
 /// few vertices, ribs and knurls: L L suppresses a wave of six edges 20 times as strongly as noise.
-SecondResiduals secondResiduals(const FaceGraph& graph, const Points& X,
+SecondResiduals secondResiduals(const FaceGraph& graph, const Points& X, const Points& N,
                                 std::vector<bool> isMeasured);
 
 /// Height and correlation length of the noise, from the energies along the normals in seven octaves
@@ -80,7 +81,7 @@ SecondResiduals secondResiduals(const FaceGraph& graph, const Points& X,
 /// explain is noise. Medians exclude creases and single outliers.
 /// @param correlation  result of residualCorrelation; if it is that of white noise, the size is 1.
 /// @param second       result of secondResiduals, likewise.
-NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X,
+NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X, const Points& N,
                             const std::vector<bool>& isMeasured, double correlation,
                             const SecondResiduals& second, double meanEdge);
 
