@@ -49,10 +49,13 @@ const Entries<FilterResult>& fractionalEntries() {
               [](const R& r) -> Value { return r.errorEstimate; }},
              {"accuracy_reached", "whether the evaluation was as accurate as it should be",
               [](const R& r) -> Value { return r.accuracyReached; }},
-             {"step_error", "with automatic steps, estimated error of the surface, length",
+             {"step_error",
+              "with automatic steps, estimated error over all but a thousandth of the input "
+              "surface, without what collapses, length",
               [](const R& r) -> Value { return r.stepError; }},
              {"tolerance_reached",
-              "with automatic steps, whether `step_error` is within `tolerance`",
+              "with automatic steps, whether all but a thousandth of the input surface is within "
+              "`tolerance`, what collapses included",
               [](const R& r) -> Value { return r.toleranceReached; }},
              {"singular_part", "share of the surface, 0 to 1, on which `tolerance` was not reached",
               [](const R& r) -> Value { return r.singularPart; }},
@@ -107,6 +110,11 @@ std::string stepsText(const FilterResult& result) {
     return text.str();
 }
 
+/// Whether the surface is within the tolerance, but for parts that collapse.
+bool isAccurateElsewhere(const FilterOptions& options, const FilterResult& result) {
+    return result.toleranceReached || result.stepError <= options.tolerance;
+}
+
 /// What was done, for everybody.
 std::string deedOf(const FilterOptions& options) {
     const TransferFunctionOptions& transfer = options.transferFunction;
@@ -128,7 +136,7 @@ std::string headline(const FilterOptions& options, const FilterResult& result, d
     text << std::setprecision(2);
     if (options.steps > 0)
         text << result.steps << (result.steps == 1 ? " step" : " steps") << ", as requested";
-    else if (result.toleranceReached)
+    else if (isAccurateElsewhere(options, result))
         text << "accurate to " << result.stepError << " (" << percent * result.stepError << " %)";
     else
         text << "NOT accurate: estimated error " << result.stepError << " ("
@@ -184,10 +192,23 @@ std::string foldWarning(const FilterOptions& options, const FilterResult& result
 std::string toleranceWarning(const FilterOptions& options, const FilterResult& result) {
     std::ostringstream text;
     text << std::setprecision(2) << "the tolerance of " << options.tolerance
-         << " was not reached on " << percentOf(result.singularPart)
-         << " of the surface, where the estimated error is at least " << result.stepError << ": "
-         << convergingFilter(options);
+         << " was not reached on " << percentOf(result.singularPart) << " of the surface, "
+         << (isAccurateElsewhere(options, result)
+                 ? "most of which collapses; elsewhere the estimated error is "
+                 : "where the estimated error is at least ")
+         << result.stepError << ": " << convergingFilter(options);
     return text.str();
+}
+
+/// Gains above 1 at the largest sizes are meant for details by those who set them.
+std::vector<std::string> scalingWarnings(const FilterOptions& options, const FilterResult& result) {
+    constexpr double kNoticeable = 1.01;
+    const double gain = TransferFunction(options.transferFunction, result.cutoffFrequency)(0.0);
+    if (!(gain > kNoticeable)) return {};
+    std::ostringstream text;
+    text << std::setprecision(3) << "the gain of what is largest is " << gain
+         << ", which scales the whole object. Choose 1 for it to keep its size";
+    return {text.str()};
 }
 
 std::string volumeWarning(const FilterResult& result) {
@@ -214,8 +235,11 @@ std::string shrinkingWarning(const FilterResult& result, double diagonal) {
     std::ostringstream text;
     text << percentOf(result.shrunkenPart) << std::setprecision(2)
          << " of the surface shrinks to lines or points, as it is thin compared with the feature "
-            "size. Try feature_size = "
-         << half << " (" << 100.0 * half / diagonal
+            "size"
+         << (result.toleranceReached
+                 ? ""
+                 : ", and on " + percentOf(result.singularPart) + " the tolerance was not reached")
+         << ". Try feature_size = " << half << " (" << 100.0 * half / diagonal
          << " % of the diagonal), or filter a selection without these parts";
     return text.str();
 }
@@ -243,9 +267,10 @@ std::vector<std::string> fractionalWarnings(const FilterOptions& options,
         warnings.push_back(edgeWarning(result));
     const TransferFunctionOptions& transfer = options.transferFunction;
     const bool keepsTheRest = transfer.type == FilterType::LowPass && transfer.passGain >= 1.0;
-    if (!isDefault && keepsTheRest && result.shrunkenPart > kNoticeable &&
-        result.toleranceReached && result.cutoffReached)
-        warnings.push_back(shrinkingWarning(result, diagonal));
+    const bool shrinks = !isDefault && keepsTheRest && result.shrunkenPart > kNoticeable &&
+                         isAccurateElsewhere(options, result) && result.cutoffReached;
+    if (shrinks) warnings.push_back(shrinkingWarning(result, diagonal));
+    append(scalingWarnings(options, result), warnings);
     if (!isDefault && result.foldedFaces > 0) warnings.push_back(foldWarning(options, result));
     if (options.preserveVolume && result.volumes.preserved < result.components)
         warnings.push_back(volumeWarning(result));
@@ -253,7 +278,7 @@ std::vector<std::string> fractionalWarnings(const FilterOptions& options,
         warnings.push_back(accuracyWarning(result.accuracy, result.errorEstimate) +
                            ", or fewer steps; if triangles are needles, apply 'Remeshing: "
                            "Isotropic Explicit Remeshing' first");
-    if (!result.toleranceReached) warnings.push_back(toleranceWarning(options, result));
+    if (!result.toleranceReached && !shrinks) warnings.push_back(toleranceWarning(options, result));
     if (!result.cutoffReached) warnings.push_back(cutoffWarning(result, lastFrequency(result)));
     append(residualWarnings(result.residuals), warnings);
     return warnings;

@@ -15,7 +15,7 @@ namespace spectral {
 inline constexpr double kNegligibleArea = 1e-3;
 
 struct AutomaticOptions {
-    double tolerance = 0.0;      ///< Maximum error over all but kNegligibleArea of the filtered
+    double tolerance = 0.0;      ///< Maximum error over all but kNegligibleArea of the input
                                  ///< surface, length units, > 0.
     int maxSteps = 64;           ///< Maximum number of steps of one pass, >= 2.
     int passes = 0;              ///< Number of passes, whatever the error; 0: as many as needed.
@@ -29,9 +29,11 @@ struct AutomaticSteps {
     FractionalSteps last;  ///< The last pass; X is extrapolated from the last two passes.
     int passes = 0;        ///< 0: this is not the automatic scheme.
     double error = 0.0;    ///< Estimated error of the steps over all but kNegligibleArea of the
-                           ///< filtered surface, length units: mostly within a factor of two.
+                           ///< input surface, without what collapses to less than a tenth of its
+                           ///< area, length units: mostly half to three times the error.
 
-    /// Fraction of the input surface on which the estimated error exceeds the tolerance.
+    /// Fraction of the input surface on which the estimated error exceeds the tolerance, what
+    /// collapses included.
     double singularPart = 0.0;
 
     double thinPartFactor = 1.0;  ///< The largest one, kept or not (thin_parts.h).
@@ -40,18 +42,18 @@ struct AutomaticSteps {
 /// Computes the limit of the paper's scheme for K to infinity, to a tolerance.
 ///
 /// The midpoint rule (midpointSteps) runs in passes of K = 1, 2, 4, ... equal steps. Its error is a
-/// series in 1/K whose leading term is quadratic, so Richardson extrapolation
+/// series in 1/K whose leading term is quadratic, so from K = 8 on Richardson extrapolation
 ///     E_K = Y_K + (Y_K - Y_K/2) / 3
-/// removes it. The distance from E_K/2 to E_K estimates the error of E_K/2; the rate at which these
-/// distances shrink then bounds that of E_K, which ends the passes. A single step (E_1 = Y_1)
-/// is compared with the paper's step, which comes from the same Krylov space as its half step. What
-/// is reported is not that bound, which is several times the error, but the error as it usually is
-/// at such distances (bench_equalizer). Most
-/// runs end after one pass (two evaluations) or two passes (five). All earlier passes together cost
-/// as much as the last.
+/// removes it; before, E_K = Y_K. A single step is compared with the paper's step, which comes from
+/// the same Krylov space as its half step: their distance is the error of a method of first order.
+/// That of the midpoint rule is a tenth of it, times the square of the ratio by which the areas
+/// change in the last three quarters of the step. Later, the distance from E_K/2 to E_K and the
+/// rate at which such distances shrink tell the error of E_K. Most runs end after one pass (two
+/// evaluations) or two passes (six). All earlier passes together cost as much as the last.
 ///
-/// Where parts of the surface shrink away, the flow is singular and passes converge slowly: they
-/// stop when the distances no longer shrink, or at maxSteps. E_K is nearer to the limit there, too.
+/// Where parts of the surface collapse, the flow is singular and passes converge slowly. These
+/// parts do not hold up the rest: passes end when the error everywhere else is within the
+/// tolerance, when distances no longer shrink, or at maxSteps.
 ///
 /// The same number of passes gives the same result, so a run can be repeated exactly, and the tiles
 /// of a surface agree.

@@ -172,7 +172,8 @@ AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evalua
 }  // namespace
 
 FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOptions& options,
-                              const Progress& progress) {
+                              const Progress& caller) {
+    const Progress progress = caller.forwards();
     const ThreadTeam team(progress);
     // First: a mesh that is not finite has no valid feature size.
     checkMesh(V, F, options.laplacian);
@@ -226,14 +227,17 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     result.steps = static_cast<int>(steps.last.sizes.size());
     result.passes = steps.passes;
     result.stepSizes = steps.last.sizes;
-    // The evaluations' error at a thousandth of the surface is about what they are granted as a
-    // root mean square: they stop within a bound of it.
-    if (steps.passes > 0)
-        result.stepError = std::hypot(steps.error, evaluation.accuracy * sizeOf(surface));
+    // The evaluations estimate a root mean square; a thousandth of the surface is several times as
+    // far off, but hardly more than what they are granted.
+    constexpr double kTail = 4.0;
+    const double evaluated =
+        std::min(kTail * steps.last.errorEstimate, evaluation.accuracy) * sizeOf(surface);
+    if (steps.passes > 0) result.stepError = std::hypot(steps.error, evaluated);
     result.singularPart = steps.singularPart;
     result.thinPartFactor = steps.thinPartFactor;
     result.toleranceReached =
-        options.steps > 0 || options.passes > 0 || steps.error <= options.tolerance;
+        steps.passes == 0 || options.passes > 0 ||
+        (steps.error <= options.tolerance && steps.singularPart <= kNegligibleArea);
     result.cutoffFrequency = transfer.cutoff();
     result.featureSize = options.featureSize;
     result.shrunkenPart = shrunkenPart(before, lumpedMass(X, surface.F));

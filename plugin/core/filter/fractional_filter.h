@@ -31,7 +31,7 @@ struct FilterOptions {
     double featureSize = 0.0;  ///< Wavelength of the cutoff, 2 pi / omega_c, length units, > 0.
     int steps = 0;             ///< K >= 1: K steps of F^(1/K), the paper's scheme; 0: automatic.
     double tolerance = 0.0;    ///< For automatic steps: maximum distance from the result of
-                               ///< infinitely many steps, over all but a thousandth of the filtered
+                               ///< infinitely many steps, over all but a thousandth of the input
                                ///< surface, length units, > 0.
     int maxSteps = 64;         ///< For automatic steps: limit, whatever the error, >= 2.
     int passes = 0;  ///< For automatic steps: exactly this many passes of 1, 2, 4, ... steps, up to
@@ -66,13 +66,16 @@ struct FilterResult : SurfaceCounts, Movement, Work {
     double accuracy = 0.0;      ///< Requested relative accuracy of the evaluation, all steps.
     double errorEstimate = 0.0;   ///< Estimated relative error of the evaluation, all steps.
     bool accuracyReached = true;  ///< Whether every step was within its share of `accuracy`.
-    double stepError = 0.0;  ///< Automatic steps: estimated error over all but a thousandth of the
-                             ///< filtered surface, that of the evaluations included, length units.
-    bool toleranceReached = true;   ///< Automatic steps: whether that of the steps is within it.
-    double singularPart = 0.0;      ///< Automatic steps: fraction of the input surface on which the
-                                    ///< estimated error exceeds the tolerance.
-    double thinPartFactor = 1.0;    ///< Largest factor of keepThinParts, applied or not.
-    bool cutoffReached = true;      ///< Truncated spectrum: whether the harmonics reach omega_c.
+    double stepError = 0.0;       ///< Automatic steps: estimated error, that of the evaluations
+                             ///< included, over all but a thousandth of the input surface, without
+                             ///< what collapses (shrunkenPart), length units.
+    bool toleranceReached = true;  ///< Automatic steps: whether the estimated error is within the
+                                   ///< tolerance on all but a thousandth of the input surface, what
+                                   ///< collapses included.
+    double singularPart = 0.0;     ///< Automatic steps: fraction of the input surface on which the
+                                   ///< estimated error exceeds the tolerance.
+    double thinPartFactor = 1.0;   ///< Largest factor of keepThinParts, applied or not.
+    bool cutoffReached = true;     ///< Truncated spectrum: whether the harmonics reach omega_c.
     std::vector<double> stepSizes;  ///< The fractional power alpha of each step; they sum to 1.
 
     // The last computed basis: that of the last step, or of the input if no other was needed.

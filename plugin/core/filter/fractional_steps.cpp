@@ -26,14 +26,16 @@ void append(Evaluation step, double h, FractionalSteps& steps) {
 constexpr double kMinArea = 1e-2;
 
 /// One step of the midpoint rule, or several smaller ones.
-/// @param half  shape at the half step if it is known, else null.
+/// @param half   shape at the half step if it is known, else null.
+/// @param ahead  shape whose Laplacian predicts the half step; null: that of the step's start.
 void midpointStep(LaplacianBuilder& laplacians, StepEvaluator& evaluate, double h, double smallest,
-                  const Vertices* half, const Progress& progress, FractionalSteps& steps) {
+                  const Vertices* half, const Vertices* ahead, const Progress& progress,
+                  FractionalSteps& steps) {
     try {
         Vertices predicted;
         double area = laplacians.inputMass().sum();
         if (half == nullptr) {
-            laplacians.update(steps.X);
+            laplacians.update(ahead != nullptr ? *ahead : steps.X);
             area = laplacians.area();
             predicted =
                 evaluate.predict(laplacians.current(), steps.X, {0.5 * h}, progress.part(0.0, 0.5))
@@ -47,10 +49,9 @@ void midpointStep(LaplacianBuilder& laplacians, StepEvaluator& evaluate, double 
         append(evaluate(laplacians.current(), steps.X, h, progress.part(0.5, 1.0)), h, steps);
     } catch (const SolverFailure&) {
         if (0.5 * h < smallest) throw;
-        midpointStep(laplacians, evaluate, 0.5 * h, smallest, nullptr, progress.part(0.0, 0.5),
-                     steps);
-        midpointStep(laplacians, evaluate, 0.5 * h, smallest, nullptr, progress.part(0.5, 1.0),
-                     steps);
+        for (const double from : {0.0, 0.5})
+            midpointStep(laplacians, evaluate, 0.5 * h, smallest, nullptr, nullptr,
+                         progress.part(from, from + 0.5), steps);
     }
 }
 
@@ -88,15 +89,23 @@ FractionalSteps fixedSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate
 
 FractionalSteps midpointSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate,
                               const Vertices& X, int K, int finest, const Progress& progress,
-                              const Vertices* firstHalf) {
+                              const Vertices* firstHalf, const Vertices* firstQuarter) {
     const double smallest = (1.0 - 1e-9) / finest;
     FractionalSteps steps{X, {}};
+    Vertices before, quarter;
     for (int step = 0; step < K; ++step) {
         const double from = static_cast<double>(step) / K;
+        const Vertices* ahead = step == 0 ? firstQuarter : nullptr;
+        const bool areEven = steps.sizes.size() == static_cast<std::size_t>(step);
+        if (firstQuarter != nullptr && step > 0 && areEven) {
+            quarter = 1.25 * steps.X - 0.25 * before;
+            ahead = &quarter;
+        }
+        if (firstQuarter != nullptr) before = steps.X;
         const Progress stage = progress.part(from, (step + 1.0) / K, nameOf(step, K));
         try {
             midpointStep(laplacians, evaluate, 1.0 / K, smallest, step == 0 ? firstHalf : nullptr,
-                         stage, steps);
+                         ahead, stage, steps);
         } catch (const SolverFailure& failure) {
             throw failureDuring(failure, "at " + std::to_string(static_cast<int>(100.0 * from)) +
                                              " % of the filter: ");

@@ -45,20 +45,18 @@ Eigen::VectorXd overRing(const SparseMatrix& W, const Eigen::VectorXd& values,
     return result;
 }
 
-/// Logarithms of the areas around each vertex and its neighbours: as much as noise needs, as little
-/// as narrow rims allow.
-Eigen::ArrayXd logAreas(const SparseMatrix& W, const Faces& F, const Vertices& X) {
+}  // namespace
+
+Eigen::ArrayXd logAreasAround(const SparseMatrix& W, const Faces& F, const Vertices& X) {
     const Eigen::VectorXd area = overRing(W, lumpedMass(X, F), std::plus<>());
     return area.array().max(std::numeric_limits<double>::min()).log();
 }
 
-}  // namespace
-
 ThinParts thinPartFactors(const SparseMatrix& W, const Faces& F, const Vertices& X,
                           const Vertices& weak, const Vertices& whole,
                           const ThinPartsOfTile* tile) {
-    const Eigen::ArrayXd before = logAreas(W, F, X), quarter = logAreas(W, F, weak),
-                         after = logAreas(W, F, whole);
+    const Eigen::ArrayXd before = logAreasAround(W, F, X), quarter = logAreasAround(W, F, weak),
+                         after = logAreasAround(W, F, whole);
     const Eigen::ArrayXd logOfLoss =
         ((quarter - after) * 4.0 / 3.0).max((before - quarter - std::log(kNoisyArea)) * 4.0);
     Eigen::VectorXd factors = (before - quarter > -std::log(kLeastArea))

@@ -23,6 +23,11 @@ struct ThinPartsOfTile {
     bool areKept = false;     ///< Whether the whole surface has parts to be kept.
 };
 
+/// Logarithms of the areas around each vertex and its neighbours: as much as noise needs, as little
+/// as narrow rims allow.
+/// @param W  stiffness matrix; its pattern gives the neighbours.
+Eigen::ArrayXd logAreasAround(const SparseMatrix& W, const Faces& F, const Vertices& X);
+
 /// Factors of D that keep the parts of a shape that a low-pass would shrink to lines or points.
 ///
 /// A low-pass of feature size L takes away a part whose girth g is below L: its area shrinks to

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -35,6 +37,18 @@ class Progress {
         if (!callback_) return;
         const bool goOn = callback_(begin_ + (end_ - begin_) * fraction, prefix_ + stage);
         if (!goOn || isInterrupted()) throw Cancelled();
+    }
+
+    /// A progress that never goes back: what is done again, in another way, does not count.
+    Progress forwards() const {
+        if (!callback_) return *this;
+        Progress steady(*this);
+        steady.callback_ = [callback = callback_, furthest = std::make_shared<double>(0.0)](
+                               double fraction, const std::string& stage) {
+            *furthest = std::max(*furthest, fraction);
+            return callback(*furthest, stage);
+        };
+        return steady;
     }
 
     /// A progress whose range [0, 1] maps to [begin, end] of this one; prepends `prefix` to stages.

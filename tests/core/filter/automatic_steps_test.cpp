@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <numeric>
+#include <string>
+#include <vector>
 
 #include "core/filter/fractional_steps.h"
 #include "core/laplacian/interior.h"
@@ -31,6 +34,12 @@ struct Setting : testing::FilterOfBlob {
         StepEvaluator evaluate(evaluation, interior, F);
         return midpointSteps(laplacians, evaluate, surface.X, K, K, {}).X;
     }
+
+    /// By Richardson's extrapolation of K and 2 K steps: the error is of a higher order.
+    Vertices limit(int K) const {
+        const Vertices Y = midpoint(2 * K);
+        return Y + (Y - midpoint(K)) / 3.0;
+    }
 };
 
 TEST(AutomaticSteps, KeepTheirToleranceAndEstimateTheirErrorWithinAFactorOfThree) {
@@ -40,7 +49,7 @@ TEST(AutomaticSteps, KeepTheirToleranceAndEstimateTheirErrorWithinAFactorOfThree
             for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
                 const AutomaticSteps steps = setting.automatic(tolerance);
                 const int finer = 8 * static_cast<int>(steps.last.sizes.size());
-                const double error = largestDifference(steps.last.X, setting.midpoint(finer));
+                const double error = largestDifference(steps.last.X, setting.limit(finer));
                 EXPECT_LE(steps.error, tolerance);
                 EXPECT_LE(error, tolerance);
                 EXPECT_LE(error, 3.0 * steps.error) << "tolerance " << tolerance;
@@ -130,6 +139,36 @@ TEST(AutomaticSteps, ReportProgressThatNeverDecreases) {
     StepEvaluator evaluate(setting.evaluation, setting.interior, setting.F);
     automaticSteps(setting.laplacians, evaluate, setting.surface.X, {1e-4}, progress);
     EXPECT_GT(reports, 10);
+}
+
+TEST(AutomaticSteps, AreNotNearlyDoneWhenHalfOfTheirWorkIsLeft) {
+    const Setting setting(boost(), 1.0, BasisUpdate::Full);
+    for (const double tolerance : {1e-4, 1e-6, 1e-8}) {
+        std::map<std::string, double> begins;  // of each pass, by the name of its first step
+        const Progress progress([&](double fraction, const std::string& stage) {
+            const std::size_t at = stage.find("step 1 of ");
+            if (at == 0) begins.try_emplace(stage.substr(0, stage.find(':')), fraction);
+            return true;
+        });
+        StepEvaluator evaluate(setting.evaluation, setting.interior, setting.F);
+        const AutomaticSteps steps = automaticSteps(setting.laplacians, evaluate, setting.surface.X,
+                                                    {tolerance, 32}, progress);
+        const std::string last = "step 1 of " + std::to_string(steps.last.sizes.size());
+        ASSERT_EQ(begins.count(last), 1u) << tolerance;
+        EXPECT_LT(begins[last], 0.85) << tolerance;
+    }
+}
+
+TEST(Progress, ThatOnlyGoesForwardsRepeatsTheFurthestFraction) {
+    std::vector<double> seen;
+    const Progress progress([&](double fraction, const std::string&) {
+        seen.push_back(fraction);
+        return true;
+    });
+    const Progress steady = progress.forwards();
+    for (const double fraction : {0.1, 0.6, 0.2, 0.7}) steady.report(fraction, "");
+    steady.part(0.5, 1.0).report(0.0, "");
+    EXPECT_EQ(seen, (std::vector<double>{0.1, 0.6, 0.6, 0.7, 0.7}));
 }
 
 }  // namespace

@@ -153,6 +153,16 @@ def test_faces_that_fold_over_are_counted_and_come_with_the_remedy(decimated: De
     assert conformal["folded_faces"] < report["folded_faces"] / 4
 
 
+def test_a_gain_of_what_is_largest_is_said_to_scale_the_object(decimated: Decimated) -> None:
+    V, F = decimated("cow.obj")
+    for options in ({"pass_gain": 1.5}, {"filter_type": "high-pass", "stop_gain": 1.5}):
+        warnings = filter_mesh(V, F, feature_size="5%", **options)[1]["warnings"]
+        assert any("largest is 1.5, which scales the whole object" in text for text in warnings)
+    details = {"filter_type": "high-pass", "stop_gain": 1.0, "pass_gain": 1.5}
+    warnings = filter_mesh(V, F, feature_size="5%", **details)[1]["warnings"]
+    assert not any("scales" in text for text in warnings)
+
+
 def warnings_in_mesh_set(V: Any, F: Any, name: str = FILTER, **options: Any) -> list[str]:
     """The warnings of a run of the plugin in this thread."""
     found: list[str] = call_filter(mesh_set_of(V, F), name, options)["warnings"]
@@ -260,7 +270,7 @@ def test_an_option_with_an_effect_is_not_reported(decimated: Decimated) -> None:
     for options in (
         {"filter_type": "custom", "transfer_function": "1/(1 + w^2)"},
         {"response": "butterworth", "order": 4},
-        {"filter_type": "band-stop", "band_width": 0.5},
+        {"filter_type": "band-stop", "band_width": 0.5, "stop_gain": 0.05},
         {"basis_update": "full", "conformal_share": 0.5, "steps": 2},
     ):
         assert filter_mesh(V, F, feature_size="2e", **options)[1]["warnings"] == [], options

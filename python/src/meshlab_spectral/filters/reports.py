@@ -53,7 +53,8 @@ class _FilterReport(TypedDict):
     solves: int
     """Number of solves with one right-hand side."""
     step_error: float
-    """With automatic steps, estimated error of the surface, length."""
+    """With automatic steps, estimated error over all but a thousandth of the input surface, without
+    what collapses, length."""
     step_sizes: list[float]
     """Fractional powers of the steps, in their order; their sum is 1."""
     steps: int
@@ -62,7 +63,8 @@ class _FilterReport(TypedDict):
     """At the default size, by how much the thinnest part exceeds it, squared; above 2, thin parts
     are kept."""
     tolerance_reached: bool
-    """With automatic steps, whether `step_error` is within `tolerance`."""
+    """With automatic steps, whether all but a thousandth of the input surface is within
+    `tolerance`, what collapses included."""
     unreferenced_vertices: int
     """Number of vertices without faces, unchanged."""
     volume_after: float
