@@ -141,13 +141,18 @@ class Reference:
         return unit(filtered)
 
     def followed(self, X: Array, N: Array, sweeps: int) -> Array:
-        faces = self.incidence.sum(axis=1)
+        corners = X[self.F]
+        sides = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
+        altitude = np.linalg.norm(self.area_normals(X), axis=1) / sides.max(axis=1)
+        distance = np.linalg.norm(corners.mean(axis=1, keepdims=True) - corners, axis=2)
+        weight = np.minimum(0.0625, (altitude[:, None] / distance) ** 2)
+        weights = np.bincount(self.F.ravel(), weight.ravel())
         for _ in range(sweeps):
             pull = np.zeros_like(X)
             for k in range(3):
                 away = (N * (X[self.F].mean(axis=1) - X[self.F[:, k]])).sum(axis=1)
-                np.add.at(pull, self.F[:, k], N * away[:, None])
-            X = X + pull / faces[:, None]
+                np.add.at(pull, self.F[:, k], N * (weight[:, k] * away)[:, None])
+            X = X + pull / weights[:, None]
         return X
 
     def unfolded(self, X: Array, N: Array, farthest: float) -> Array:
@@ -170,8 +175,8 @@ class Reference:
         a, b, c = (X[self.F[:, k]] for k in range(3))
         return float((np.cross(a, b) * c).sum() / 6)
 
-    def finished(self, X0: Array, X: Array, N: Array, height: float, edge: float) -> Array:
-        X = limited(X0, self.unfolded(X, N, 5 * height), max(6 * height, 0.3 * edge))
+    def finished(self, X0: Array, X: Array, N: Array, height: float) -> Array:
+        X = self.unfolded(X, N, 5 * height)
         for _ in range(4):  # Newton's method for the volume, along the normals of the vertices
             G = self.incidence @ self.area_normals(X)
             size = np.linalg.norm(G, axis=1).sum() / 6
@@ -187,7 +192,7 @@ class Reference:
         for number in range(10):
             time, sweeps, scale = (4, 16, 0.25) if number < 6 else (8, 32, 0.22)
             N = self.filtered_normals(X, time / weaker, scale, height / edge, 2, True)
-            Y = limited(X0, self.followed(X0, N, sweeps), max(6 * height, 0.3 * edge))
+            Y = limited(X0, self.followed(X0, N, sweeps), 6 * height)
             y = ((Y - X0) * self.vertex_normals(Y, 1)).sum(axis=1)
             degrees = np.diff(self.P.indptr)
             smooth = self.diffused(y, 1).std() / y.std() / np.sqrt((1 + 1 / degrees).mean() / 4)
@@ -198,7 +203,7 @@ class Reference:
             X, last = Y, N
             if upper_median(np.linalg.norm(X - X0, axis=1)) / 0.6745 > 1.03 * height:
                 break
-        return self.finished(X0, X, last, height, edge)
+        return self.finished(X0, X, last, height)
 
     def without_correlated_noise(self, X0: Array, height: float, size: float) -> Array:
         edge = mean_edge(X0, self.F)
@@ -207,7 +212,8 @@ class Reference:
         for number in range(6):
             N = self.filtered_normals(X, 1.5 * length**2, 0.22, 0, int(2 * length**2), False)
             Y = self.followed(X0, N, round(12 * length))
-            X = limited(X0, Y, max(6 * height, 0.3 * edge))
-            if number and upper_median(np.linalg.norm(Y - X0, axis=1)) / 0.6745 >= 0.8 * height:
+            removed = upper_median(np.linalg.norm(Y - X0, axis=1)) / 0.6745
+            X = limited(X0, Y, 6 * height)
+            if number and removed >= 0.8 * height:
                 break
-        return self.finished(X0, X, N, height, edge)
+        return self.finished(X0, X, N, height)

@@ -82,41 +82,52 @@ struct MovingPart {
     }
 };
 
-/// The noise to remove: as given by the options, or else as measured.
-RemovalOptions removalOptions(const DenoiseOptions& options, const Diagnosis& diagnosis) {
-    constexpr double kMaxHeight = 1.0;  // mean edges; larger heights are clamped
+/// Correlation length, in mean edges, up to which noise is filtered as white noise.
+constexpr double kMaxWhiteSize = 1.25;
+
+/// Height of the noise to remove: as given by the options, or else as measured.
+double heightToRemove(const DenoiseOptions& options, const Diagnosis& diagnosis) {
+    const double height = options.noiseHeight > 0.0 ? options.noiseHeight : diagnosis.noise.height;
+    return std::max(options.strength, 1.0) * height;
+}
+
+/// The noise to remove.
+RemovalOptions removalOptions(const DenoiseOptions& options, const Diagnosis& diagnosis, Index n) {
     const NoiseEstimate& noise = diagnosis.noise;
-    const double edge = options.meanEdge > 0.0 ? options.meanEdge : noise.meanEdge;
     RemovalOptions removal;
-    removal.meanEdge = edge;
-    removal.height = std::min(std::max(options.strength, 1.0) *
-                                  (options.noiseHeight > 0.0 ? options.noiseHeight : noise.height),
-                              kMaxHeight * edge);
+    removal.meanEdge = options.meanEdge > 0.0 ? options.meanEdge : noise.meanEdge;
+    if (diagnosis.field.isAny()) {
+        removal.noise = diagnosis.field;
+        removal.noise.height *= std::max(options.strength, 1.0);
+    } else {
+        removal.noise =
+            NoiseField::ofHeight(heightToRemove(options, diagnosis), removal.meanEdge, n);
+    }
+    removal.noise.height = removal.noise.height.cwiseMin(removal.noise.edge);  // higher is clamped
     // Only the finest octaves of correlated noise can be told from the shape: its true length is
     // about twice the measured one.
     constexpr double kHiddenSize = 2.0;
-    removal.size = options.noiseSize > 0.0 ? options.noiseSize / edge
+    removal.size = options.noiseSize > 0.0 ? options.noiseSize / removal.meanEdge
                    : noise.size > 1.0      ? kHiddenSize * noise.size
                                            : 0.0;
+    if (removal.size <= kMaxWhiteSize) removal.size = 0.0;
     removal.keepCreases = options.keepCreases;
     removal.isUnderShape = noise.isUnderShape;
-    removal.areImpulses = diagnosis.kind == NoiseKind::Impulses;
-    removal.areVoxelFaces = diagnosis.kind == NoiseKind::VoxelFaces;
     removal.areScanLines = diagnosis.kind == NoiseKind::ScanLines;
     return removal;
 }
 
-/// Correlation length, in mean edges, up to which noise is filtered as white noise.
-constexpr double kMaxWhiteSize = 1.25;
-
-Removal removeNoise(const FaceGraph& graph, const Points& X, const Diagnosis& diagnosis,
-                    bool isKnown, const RemovalOptions& removal, const Progress& progress) {
+Removal removeAsDiagnosed(const FaceGraph& graph, const Points& X, const Diagnosis& diagnosis,
+                          bool isKnown, const RemovalOptions& removal, const Progress& progress) {
+    constexpr double kLengthOfCentres = 1.5, kLengthOfFaces = 2.0;  // voxels
     if (diagnosis.hasVoxels())
-        return removeVoxelSteps(graph, X, diagnosis.voxel, diagnosis.voxelAxes, removal, progress);
-    if (!(removal.height > 0.0) || !(isKnown || diagnosis.isNoise())) return {diagnosis.X, 0};
-    return removal.size > kMaxWhiteSize
-               ? removeCorrelatedNoise(graph, diagnosis.X, removal, progress)
-               : removeWhiteNoise(graph, diagnosis.X, removal, progress);
+        return removeVoxelSteps(
+            graph, X, diagnosis.voxel, diagnosis.voxelAxes,
+            diagnosis.kind == NoiseKind::VoxelFaces ? kLengthOfFaces : kLengthOfCentres, removal,
+            progress);
+    if (!(removal.noise.height.maxCoeff() > 0.0) || !(isKnown || diagnosis.isNoise()))
+        return {diagnosis.X, 0};
+    return removeNoise(graph, diagnosis.X, removal, progress);
 }
 
 /// Memory for the graph of the faces, the measurement and the filter of the normals, bytes per
@@ -139,18 +150,19 @@ Points denoisePart(const MovingPart& part, const FaceGraph& graph, const Denoise
     const bool isKnown = options.noiseHeight > 0.0;
     Diagnosis& diagnosis = result.diagnosis;
     diagnosis = diagnose(graph, X0, isMeasured, isKnown, progress.part(0.0, kMeasuring));
+    const bool areImpulses = diagnosis.kind == NoiseKind::Impulses;
     if (part.height.size() > 0) {
-        diagnosis.field = NoiseField::ofHeights(graph, X0, part.height);
+        const bool isOne = part.height.minCoeff() == part.height.maxCoeff();
+        diagnosis.field =
+            isOne ? NoiseField::ofHeight(part.height[0], diagnosis.noise.meanEdge, X0.rows())
+                  : NoiseField::ofHeights(graph, X0, part.height);
         diagnosis.kind = NoiseKind::Local;
     }
-    RemovalOptions removal = removalOptions(options, diagnosis);
+    RemovalOptions removal = removalOptions(options, diagnosis, X0.rows());
+    removal.areImpulses = areImpulses;
     removal.mayMove = std::move(mayMove);
-    if (diagnosis.field.isAny()) {
-        removal.place = diagnosis.field;
-        removal.place.height *= std::max(options.strength, 1.0);
-        for (Index i = 0; i < X0.rows(); ++i)
-            removal.mayMove[i] = removal.mayMove[i] && diagnosis.field.height[i] > 0.0;
-    }
+    for (Index i = 0; i < diagnosis.field.height.size(); ++i)
+        removal.mayMove[i] = removal.mayMove[i] && diagnosis.field.height[i] > 0.0;
     if (diagnosis.isNoise() && !diagnosis.hasVoxels() && !isKnown && options.keepCreases)
         removal.rays =
             scanRays(part.eye, graph, X0, isMeasured, diagnosis.kind == NoiseKind::Correlated);
@@ -158,7 +170,7 @@ Points denoisePart(const MovingPart& part, const FaceGraph& graph, const Denoise
     for (std::size_t i = 0; i < diagnosis.isClean.size() && !removal.rays.arePixels; ++i)
         removal.mayMove[i] = removal.mayMove[i] && !diagnosis.isClean[i];
     Removal done =
-        removeNoise(graph, X0, diagnosis, isKnown, removal, progress.part(kMeasuring, 1.0));
+        removeAsDiagnosed(graph, X0, diagnosis, isKnown, removal, progress.part(kMeasuring, 1.0));
     // Along rays nothing can fold: the camera sees the same triangles.
     if (done.rounds > 0 && !diagnosis.hasVoxels() && removal.rays.direction.rows() == 0 &&
         isCrumpled(graph, X0, done.X)) {
@@ -168,8 +180,9 @@ Points denoisePart(const MovingPart& part, const FaceGraph& graph, const Denoise
     result.rounds = done.rounds;
     const double strength = std::min(options.strength, 1.0);
     if (done.rounds > 0 && !diagnosis.hasVoxels()) {
-        result.noiseHeight = strength * removal.height;
-        if (removal.size > kMaxWhiteSize) result.noiseSize = removal.size * removal.meanEdge;
+        result.noiseHeight =
+            strength * std::min(heightToRemove(options, diagnosis), removal.meanEdge);
+        result.noiseSize = removal.size * removal.meanEdge;
     }
     return strength * part.weight.asDiagonal() * (done.X - X0);
 }
@@ -223,10 +236,8 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
     const Interior interior(whole.F, connectedComponents(whole.F, whole.X.rows()),
                             options.boundary);
     const Components& components = interior.surfaceComponents();
-    Eigen::VectorXd weight = displacementWeight(options, whole, interior);
+    const Eigen::VectorXd weight = displacementWeight(options, whole, interior);
     const Eigen::VectorXd height = givenHeights(options, whole);
-    for (Index i = 0; i < height.size(); ++i)
-        if (height[i] == 0.0) weight[i] = 0.0;
 
     DenoiseResult result;
     result.heights.setZero(V.rows());

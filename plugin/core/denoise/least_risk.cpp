@@ -55,7 +55,7 @@ Points withLeastRisk(const FaceGraph& graph, const Points& X, const std::vector<
     constexpr double kLeastAlike = 0.8, kMostAlike = 1.3;
     constexpr int kBlurs = 2;
     constexpr double kMaxTaken = 0.97;
-    const VertexGraph averaged = averagedNeighbours(graph, mayMove);
+    const VertexGraph averaged = averagedNeighbours(graph, graph.vertices, mayMove);
     const Points N = vertexNormals(graph, blurredNormals(graph, areaNormals(X, graph.F), kBlurs));
     const Index n = X.rows();
     const Eigen::VectorXd white = whiteNoise(n);
@@ -93,8 +93,8 @@ Points withLeastRisk(const FaceGraph& graph, const Points& X, const std::vector<
     if (!(std::min(axes[0], tangential) > kLeastAlike && tangential < kMostAlike)) return moved;
 
     std::vector<Points> parts;
-    forEachPolynomial(averaged, start, [&](int j, const Rows& change) {
-        parts.emplace_back(change.leftCols<3>() - along.col(j - 1).asDiagonal() * N);
+    forEachPolynomial(averaged, start, [&](int j, const Rows& all) {
+        parts.emplace_back(all.leftCols<3>() - along.col(j - 1).asDiagonal() * N);
     });
     Gram gram;
     for (int j = 0; j < kDegree; ++j)

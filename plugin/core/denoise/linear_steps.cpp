@@ -3,10 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "core/denoise/whiteness.h"
 #include "core/graph/diffusion.h"
 #include "core/graph/local_average.h"
+#include "core/graph/robust_statistics.h"
 
 namespace spectral {
 
@@ -14,6 +19,36 @@ namespace {
 
 /// Positions, and white noise that undergoes the same steps.
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, 4, Eigen::RowMajor>;
+
+/// A bijection whose bits depend on all those of its argument (Steele, Lea, Flood 2014).
+std::uint64_t mixed(std::uint64_t bits) {
+    bits += 0x9e3779b97f4a7c15;
+    bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9;
+    bits = (bits ^ (bits >> 27)) * 0x94d049bb133111eb;
+    return bits ^ (bits >> 31);
+}
+
+/// White noise of height 1: random signs, whose energies after a filter vary least from draw to
+/// draw (Hutchinson 1990). They are drawn by position, so that they do not depend on the numbering
+/// of the vertices, nor on the unit and the place of the mesh.
+Eigen::VectorXd randomSigns(const Points& X) {
+    // Finer than single precision tells positions apart, and coarser than the rounding of a mesh
+    // that is scaled or moved.
+    constexpr double kPlaces = 1073741824.0;
+    const Eigen::RowVector3d centre = X.colwise().mean();
+    const double radius =
+        std::sqrt((X.rowwise() - centre).rowwise().stableNorm().cwiseAbs2().mean());
+    Eigen::VectorXd signs(X.rows());
+    for (Index i = 0; i < X.rows(); ++i) {
+        std::uint64_t bits = 0;
+        for (int c = 0; c < 3; ++c) {
+            const double place = radius > 0.0 ? (X(i, c) - centre[c]) / radius * kPlaces : 0.0;
+            bits = mixed(bits ^ static_cast<std::uint64_t>(std::llround(place)));
+        }
+        signs[i] = bits >> 63 == 0 ? 1.0 : -1.0;
+    }
+    return signs;
+}
 
 /// Numbers of steps to try, and those before the normals are taken.
 constexpr std::array<int, 11> kSteps{5, 10, 14, 20, 28, 40, 56, 80, 113, 160, 226};
@@ -28,23 +63,6 @@ void takeSteps(const VertexGraph& graph, int count, Rows& X) {
             });
             X.swap(next);
         }
-}
-
-/// Mean squared difference along the edges without a vertex on the rim.
-double squaredSlope(const FaceGraph& graph, const Eigen::VectorXd& y) {
-    const VertexGraph& vertices = graph.vertices;
-    const Eigen::Array2d sums =
-        parallelSum(vertices.size(), Eigen::Array2d(0.0, 0.0), [&](Index begin, Index end) {
-            Eigen::Array2d sum(0.0, 0.0);
-            for (Index i = begin; i < end; ++i)
-                for (Index k = vertices.first[i]; k < vertices.first[i + 1]; ++k) {
-                    const int j = vertices.at[k];
-                    if (graph.onRim[i] || graph.onRim[j]) continue;
-                    sum += Eigen::Array2d(std::pow(y[i] - y[j], 2), 1.0);
-                }
-            return sum;
-        });
-    return sums[1] > 0.0 ? sums[0] / sums[1] : 0.0;
 }
 
 /// Squared difference to the neighbours, on average, at every vertex, of each column of Y.
@@ -65,20 +83,162 @@ Points smoothNormals(const FaceGraph& graph, const Points& X) {
     return vertexNormals(graph, blurredNormals(graph, areaNormals(X, graph.F), 1));
 }
 
+/// Averages over the place of each vertex, or over all vertices of a map that is alike everywhere.
+class Average {
+  public:
+    /// @param counts  n: whether a vertex counts; kept by reference.
+    Average(const VertexGraph& graph, const std::vector<bool>& counts, int steps, bool isOfAll)
+        : counts_(counts) {
+        if (!isOfAll) place_.emplace(graph, counts, steps);
+    }
+
+    /// Average of each column of Y, n x C.
+    template <class Columns>
+    Columns of(Columns Y) const {
+        if (place_) return place_->of(std::move(Y));
+        Eigen::Matrix<double, 1, Columns::ColsAtCompileTime> sum = 0.0 * Y.row(0);
+        double count = 0.0;
+        for (Index i = 0; i < Y.rows(); ++i) {
+            if (!counts_[i]) continue;
+            sum += Y.row(i);
+            count += 1.0;
+        }
+        Y.rowwise() = sum / std::max(count, 1.0);
+        return Y;
+    }
+
+  private:
+    const std::vector<bool>& counts_;
+    std::optional<LocalAverage> place_;
+};
+
+/// Least share of slopes and of noise, to divide by.
+constexpr double kTiny = 1e-300;
+
+/// The stages of the steps, and which of them has least error in each place.
+struct Stages {
+    std::vector<Points> X;
+    std::vector<int> steps;
+    Eigen::VectorXd best;   ///< n: index of the stage, between two of them as well.
+    Eigen::VectorXd error;  ///< n: of the slopes, relative to those of the noise.
+};
+
+Stages takeStages(const FaceGraph& graph, const VertexGraph& averaged, const Points& X,
+                  const std::vector<bool>& mayMove, const NoiseField& noise) {
+    constexpr int kErrors = 32, kCounts = 16;  // steps of averages
+    using Slopes = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+    const Index n = X.rows();
+    std::vector<bool> counts(mayMove);
+    for (Index i = 0; i < n; ++i) counts[i] = mayMove[i] && !graph.onRim[i];
+    const Average average(graph.vertices, counts, kErrors, noise.isAlike());
+    const Eigen::VectorXd white = randomSigns(X).cwiseProduct(noise.height);
+    const Eigen::VectorXd whiteSlope =
+        average.of(squaredSlopes(graph.vertices, white)).cwiseMax(kTiny);
+    Rows start(n, 4);
+    start << X, white;
+    Rows Y = start;
+    takeSteps(averaged, kStepsToNormals, Y);
+    // The same normals for all steps, so that a change of normals is not mistaken for shape.
+    const Points N = smoothNormals(graph, Y.leftCols<3>());
+
+    Y = start;
+    Stages stages;
+    Eigen::VectorXd least, first;
+    stages.best.setZero(n);
+    int taken = 0;
+    for (const int steps : kSteps) {
+        takeSteps(averaged, steps - taken, Y);
+        taken = steps;
+        Slopes slopes(n, 3);  // of the displacement, of what is taken from noise, and left of it
+        slopes.col(0) = (Y.leftCols<3>() - X).cwiseProduct(N).rowwise().sum();
+        slopes.col(1) = white - Y.col(3);
+        slopes.col(2) = Y.col(3);
+        slopes = average.of(squaredSlopes(graph.vertices, slopes));
+        const Eigen::VectorXd fromNoise = slopes.col(1).cwiseMax(kTiny);
+        const Eigen::VectorXd ratio = slopes.col(0).cwiseQuotient(fromNoise);
+        const bool isFirst = stages.X.empty();
+        if (isFirst) first = ratio.cwiseMax(kTiny);  // the first steps remove only noise
+        const Eigen::VectorXd error =
+            ((ratio.cwiseQuotient(first).array() - 1.0).max(0.0) * fromNoise.array() +
+             slopes.col(2).array()) /
+            whiteSlope.array();
+        bool isBetter = isFirst;
+        if (isFirst) least = error;
+        for (Index i = 0; i < n; ++i)
+            if (mayMove[i] && error[i] < least[i]) {
+                least[i] = error[i];
+                stages.best[i] = static_cast<double>(stages.X.size());
+                isBetter = true;
+            }
+        if (!isBetter) break;
+        stages.X.emplace_back(Y.leftCols<3>());
+        stages.steps.push_back(steps);
+    }
+    stages.best = Average(graph.vertices, mayMove, kCounts, noise.isAlike()).of(stages.best);
+    stages.error = least.cwiseSqrt();
+    return stages;
+}
+
+/// The shape of each place at its best stage.
+Points shapeOf(const Stages& stages, const Points& X, const std::vector<bool>& mayMove) {
+    Points shape = X;
+    const double last = static_cast<double>(stages.X.size()) - 1.0;
+    for (Index i = 0; i < X.rows(); ++i) {
+        if (!mayMove[i]) continue;
+        const double at = std::clamp(stages.best[i], 0.0, last);
+        const auto low = static_cast<std::size_t>(at),
+                   high = std::min(low + 1, stages.X.size() - 1);
+        const double fraction = at - static_cast<double>(low);
+        shape.row(i) = (1.0 - fraction) * stages.X[low].row(i) + fraction * stages.X[high].row(i);
+    }
+    return shape;
+}
+
+/// Whether the noise lies in all directions, not along the normals: whether the residuals within
+/// the surface are louder where it is higher. Those of an irregular mesh are alike everywhere.
+bool hasAllDirections(const VertexGraph& graph, const Points& X, const Points& N,
+                      const NoiseField& noise) {
+    // Of what such noise would make: up to .01 where noise is along normals, .59 (real15-bunny of
+    // ../shared/denoise_local) and more where it is not.
+    constexpr double kMinRise = 0.3;
+    constexpr double kMedianOfTwo = 1.386;  // squared length of a normal distribution in a plane
+    const Eigen::VectorXd squares = noise.height.cwiseQuotient(noise.edge).cwiseAbs2();
+    std::vector<double> heights;
+    for (const double square : squares)
+        if (square > 0.0) heights.push_back(square);
+    const double middle = quantile(std::move(heights), 0.5);
+    std::array<std::vector<double>, 2> within, along;  // where it is lower, and higher
+    Eigen::VectorXd tangential = Eigen::VectorXd::Zero(X.rows());
+    forEachMean(graph, X, [&](Index i, const Eigen::RowVector3d& mean) {
+        const Eigen::RowVector3d residual = X.row(i) - mean;
+        tangential[i] = (residual.squaredNorm() - std::pow(residual.dot(N.row(i)), 2)) /
+                        (1.0 + 1.0 / static_cast<double>(graph.degree(i)));
+    });
+    for (Index i = 0; i < X.rows(); ++i) {
+        const bool isHigh = squares[i] >= middle;
+        within[isHigh].push_back(tangential[i] / (noise.edge[i] * noise.edge[i]));
+        along[isHigh].push_back(squares[i]);
+    }
+    const auto rise = [](std::array<std::vector<double>, 2>& values) {
+        return quantile(std::move(values[1]), 0.5) - quantile(std::move(values[0]), 0.5);
+    };
+    return rise(within) > kMinRise * kMedianOfTwo * rise(along);
+}
+
 }  // namespace
 
-VertexGraph averagedNeighbours(const FaceGraph& graph, const std::vector<bool>& mayMove) {
+VertexGraph averagedNeighbours(const FaceGraph& graph, const VertexGraph& means,
+                               const std::vector<bool>& mayMove) {
     VertexGraph averaged;
     averaged.first.push_back(0);
-    const VertexGraph& all = graph.vertices;
-    for (Index i = 0; i < all.size(); ++i) {
+    for (Index i = 0; i < means.size(); ++i) {
         double sum = 0.0;
-        for (Index k = all.first[i]; k < all.first[i + 1]; ++k) {
-            if (!mayMove[i] || (graph.onRim[i] && !graph.onRim[all.at[k]])) continue;
-            averaged.at.push_back(all.at[k]);
-            if (all.weight.empty()) continue;
-            averaged.weight.push_back(all.weight[k]);
-            sum += all.weight[k];
+        for (Index k = means.first[i]; k < means.first[i + 1]; ++k) {
+            if (!mayMove[i] || (graph.onRim[i] && !graph.onRim[means.at[k]])) continue;
+            averaged.at.push_back(means.at[k]);
+            if (means.weight.empty()) continue;
+            averaged.weight.push_back(means.weight[k]);
+            sum += means.weight[k];
         }
         for (std::size_t k = averaged.first.back(); k < averaged.weight.size(); ++k)
             averaged.weight[k] /= sum;
@@ -87,119 +247,45 @@ VertexGraph averagedNeighbours(const FaceGraph& graph, const std::vector<bool>& 
     return averaged;
 }
 
-std::optional<LinearSteps> linearSteps(const FaceGraph& graph, const Points& X,
-                                       const std::vector<bool>& mayMove, double height,
-                                       bool isTailed) {
+LinearSteps linearSteps(const FaceGraph& graph, const VertexGraph& means, const Points& X,
+                        const std::vector<bool>& mayMove, const NoiseField& noise, bool isTailed) {
     // Error of the slopes, relative to those of the noise, that the normal filter achieves.
-    const double maxError = isTailed ? 0.19 : 0.17 - 0.2 * height;
-    constexpr double kMaxTail = 1.1, kNoTail = 1.02;
-    const VertexGraph averaged = averagedNeighbours(graph, mayMove);
-    const Eigen::VectorXd white = whiteNoise(X.rows());
-    const double whiteSlope = squaredSlope(graph, white);
-    Rows start(X.rows(), 4);
-    start << X, white;
-
-    Rows Y = start;
-    takeSteps(averaged, kStepsToNormals, Y);
-    // The same normals for all steps, so that a change of normals is not mistaken for shape.
-    const Points N = smoothNormals(graph, Y.leftCols<3>());
-    Y = start;
-    LinearSteps best;
-    double least = 0.0, noise = 0.0;  // squared error, and squared height of the noise
-    int taken = 0;
-    for (const int steps : kSteps) {
-        takeSteps(averaged, steps - taken, Y);
-        taken = steps;
-        const Eigen::VectorXd along = (Y.leftCols<3>() - X).cwiseProduct(N).rowwise().sum();
-        const double takenFromNoise = squaredSlope(graph, white - Y.col(3));
-        const double ratio = squaredSlope(graph, along) / takenFromNoise;
-        if (noise == 0.0) noise = ratio;  // the first steps remove only noise
-        if (!(noise > 0.0)) return std::nullopt;
-        const double shape = std::max(0.0, ratio / noise - 1.0) * takenFromNoise;
-        const double error = (shape + squaredSlope(graph, Y.col(3))) / whiteSlope;
-        if (best.steps > 0 && error >= least) break;
-        least = error;
-        best.X = Y.leftCols<3>();
-        best.steps = steps;
-    }
-    const Points ownN = smoothNormals(graph, best.X);
-    const Eigen::VectorXd along = (best.X - X).cwiseProduct(ownN).rowwise().sum();
-    const double heaviness = tail(graph.vertices, along);
-    const bool isEven = isTailed || heaviness < kMaxTail;
-    if (!(isEven && least < maxError * maxError) && !(heaviness < kNoTail)) return std::nullopt;
-    best.N = areaNormals(best.X, graph.F);
-    normalizeRows(best.N);
-    best.X = X + along.asDiagonal() * ownN;
-    return best;
-}
-
-LinearStepsByPlace linearStepsByPlace(const FaceGraph& graph, const Points& X,
-                                      const std::vector<bool>& mayMove, const NoiseField& place,
-                                      int maxSteps) {
-    constexpr int kErrors = 32, kCounts = 16, kShares = 8;  // steps of averages
-    constexpr double kMaxError = 0.17, kOfHeight = 0.2, kMargin = 1.15, kFadingError = 0.03;
+    constexpr double kMaxError = 0.17, kOfHeight = 0.2, kMaxErrorTailed = 0.19;
+    constexpr double kMargin = 1.15, kFadingError = 0.03;
     constexpr double kWeakForRounds = 0.07;  // rounds hardly remove weaker noise
-    using Slopes = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+    constexpr double kMaxTail = 1.1, kNoTail = 1.02;
+    constexpr int kShares = 8;  // steps of averages
     const Index n = X.rows();
-    const VertexGraph averaged = averagedNeighbours(graph, mayMove);
-    const Eigen::VectorXd white = whiteNoise(n).cwiseProduct(place.height);
-    const LocalAverage average(graph.vertices, mayMove, kErrors);
-    const Eigen::VectorXd whiteSlope =
-        average.of(squaredSlopes(graph.vertices, white)).cwiseMax(1e-300);
-    Rows start(n, 4);
-    start << X, white;
-    Rows Y = start;
-    takeSteps(averaged, kStepsToNormals, Y);
-    const Points N = smoothNormals(graph, Y.leftCols<3>());
-
-    Y = start;
-    std::vector<Points> stages;
-    Eigen::VectorXd least, first, best = Eigen::VectorXd::Zero(n);
-    int taken = 0;
-    for (const int steps : kSteps) {
-        if (steps > maxSteps) break;
-        takeSteps(averaged, steps - taken, Y);
-        taken = steps;
-        Slopes slopes(n, 3);  // of the displacement, of what is taken from noise, and left of it
-        slopes.col(0) = (Y.leftCols<3>() - X).cwiseProduct(N).rowwise().sum();
-        slopes.col(1) = white - Y.col(3);
-        slopes.col(2) = Y.col(3);
-        slopes = average.of(squaredSlopes(graph.vertices, slopes));
-        const Eigen::VectorXd fromNoise = slopes.col(1).cwiseMax(1e-300);
-        const Eigen::VectorXd ratio = slopes.col(0).cwiseQuotient(fromNoise);
-        if (stages.empty()) first = ratio.cwiseMax(1e-300);  // the first steps remove only noise
-        const Eigen::VectorXd error =
-            ((ratio.cwiseQuotient(first).array() - 1.0).max(0.0) * fromNoise.array() +
-             slopes.col(2).array()) /
-            whiteSlope.array();
-        const auto stage = static_cast<double>(stages.size());
-        bool isBetter = stages.empty();
-        if (stages.empty()) least = error;
-        for (Index i = 0; i < n; ++i)
-            if (mayMove[i] && error[i] < least[i]) {
-                least[i] = error[i];
-                best[i] = stage;
-                isBetter = true;
-            }
-        if (!isBetter) break;
-        stages.emplace_back(Y.leftCols<3>());
-    }
-    best = LocalAverage(graph.vertices, mayMove, kCounts).of(best);
-
-    LinearStepsByPlace result{X, taken, Eigen::VectorXd::Zero(n)};
-    const double last = static_cast<double>(stages.size()) - 1.0;
+    const Stages stages =
+        takeStages(graph, averagedNeighbours(graph, means, mayMove), X, mayMove, noise);
+    LinearSteps result;
+    result.steps = stages.steps.back();
+    result.X = shapeOf(stages, X, mayMove);
+    result.N = areaNormals(result.X, graph.F);
+    normalizeRows(result.N);
+    const Points N = smoothNormals(graph, result.X);
+    const Eigen::VectorXd along = (result.X - X).cwiseProduct(N).rowwise().sum();
+    const bool isAlike = noise.isAlike();
+    if (isAlike || !hasAllDirections(graph.vertices, X, N, noise))
+        result.X = X + along.asDiagonal() * N;
+    // Shapes with creases move far in places.
+    const double heaviness = isAlike ? tail(graph.vertices, along) : 1.0;
+    const bool isEven = isTailed || heaviness < kMaxTail;
+    result.share.setZero(n);
     for (Index i = 0; i < n; ++i) {
         if (!mayMove[i]) continue;
-        const double at = std::clamp(best[i], 0.0, last);
-        const auto low = static_cast<std::size_t>(at), high = std::min(low + 1, stages.size() - 1);
-        const double fraction = at - static_cast<double>(low);
-        result.X.row(i) = (1.0 - fraction) * stages[low].row(i) + fraction * stages[high].row(i);
-        const double height = place.height[i] / place.edge[i];
+        const double height = noise.height[i] / noise.edge[i];
+        const double limit = isTailed ? kMaxErrorTailed : kMaxError - kOfHeight * height;
+        if (isAlike) {
+            result.share[i] =
+                (isEven && stages.error[i] < limit) || heaviness < kNoTail ? 1.0 : 0.0;
+            continue;
+        }
         const double weakness = std::max(1.0, kWeakForRounds / height);
-        const double limit = kMargin * weakness * (kMaxError - kOfHeight * height);
-        result.share[i] = std::clamp((limit - std::sqrt(least[i])) / kFadingError, 0.0, 1.0);
+        result.share[i] =
+            std::clamp((kMargin * weakness * limit - stages.error[i]) / kFadingError, 0.0, 1.0);
     }
-    result.share = LocalAverage(graph.vertices, mayMove, kShares).of(result.share);
+    result.share = Average(graph.vertices, mayMove, kShares, isAlike).of(result.share);
     double moving = 0.0, rejected = 0.0;
     for (Index i = 0; i < n; ++i) {
         result.share[i] = mayMove[i] ? std::clamp(2.0 * result.share[i] - 0.5, 0.0, 1.0) : 0.0;

@@ -69,7 +69,6 @@ class System {
         const double mean = area.mean();
         const Eigen::VectorXd local = localAreas(graph, area);
         const double squaredScale = options.edgeScale * options.edgeScale;
-        const double squaredTilt = std::pow(kTilt * options.height, 2);
         const double lengths = parallelSum(N.rows(), 0.0, [&](Index begin, Index end) {
             double sum = 0.0;
             for (Index f = begin; f < end; ++f) {
@@ -82,16 +81,19 @@ class System {
                     const int other = neighbours_(f, c);
                     weight_(f, c) = 0.0;
                     if (other < 0) continue;
-                    const double shortness =
-                        std::max(0.0, 1.0 / std::sqrt(local[f] * local[other]) - kShort);
                     const double distance = (q.row(f) - q.row(other)).squaredNorm();
+                    double squaredTilt = 0.0, factor = 1.0;
+                    if (const FacesInNoise* noise = options.noise) {
+                        const double shortness =
+                            std::max(0.0, 1.0 / std::sqrt(local[f] * local[other]) - kShort);
+                        squaredTilt =
+                            kTilt * kTilt * noise->height[f] * noise->height[other] * shortness;
+                        factor = std::sqrt(noise->time[f] * noise->time[other]);
+                    }
                     weight_(f, c) =
-                        side.norm() *
+                        factor * side.norm() *
                         (isVariation ? options.edgeScale / std::sqrt(distance + kSmooth * kSmooth)
-                                     : std::exp(-0.5 * distance /
-                                                (squaredScale + squaredTilt * shortness)));
-                    if (const Eigen::VectorXd* time = options.timeOfFace)
-                        weight_(f, c) *= std::sqrt((*time)[f] * (*time)[other]);
+                                     : std::exp(-0.5 * distance / (squaredScale + squaredTilt)));
                 }
             }
             return sum;

@@ -5,13 +5,18 @@
 
 namespace spectral {
 
+/// What differs from face to face with the noise.
+struct FacesInNoise {
+    Eigen::VectorXd time;    ///< m factors on the diffusion time, >= 0.
+    Eigen::VectorXd height;  ///< m: standard deviation of the noise, mean edges.
+};
+
 struct NormalFilterOptions {
     double time = 0.0;        ///< Diffusion time t, >= 0.
     double edgeScale = 0.0;   ///< s: distance of unit normals beyond which they hardly mix, > 0.
-    double height = 0.0;      ///< Standard deviation of the noise, mean edges.
     int blurs = 2;            ///< Number of blurs of the normals that define the weights, >= 0.
     bool useTwicing = false;  ///< F + F (1 - F) instead of F: flatter at the shape's frequencies.
-    const Eigen::VectorXd* timeOfFace = nullptr;  ///< m factors on the time; null: all 1.
+    const FacesInNoise* noise = nullptr;  ///< Null: the same time for all, and no noise.
 };
 
 /// The face normals of the shape X (n x 3), smoothed over the faces but not across creases:

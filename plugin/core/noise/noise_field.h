@@ -45,6 +45,12 @@ struct NoiseField {
 
     bool isAny() const { return height.size() > 0; }
     bool isEverywhere() const { return share > 0.97; }
+
+    /// Whether it is the same at all vertices, as that of ofHeight.
+    bool isAlike() const {
+        return isAny() && height.minCoeff() == height.maxCoeff() &&
+               edge.minCoeff() == edge.maxCoeff();
+    }
 };
 
 /// Measures noise where it is, by the correlation of neighbouring residuals (residualCorrelation)

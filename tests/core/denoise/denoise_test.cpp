@@ -158,7 +158,7 @@ TEST(Denoise, SmoothsVoxelStepsWithinHalfAVoxel) {
     const Eigen::RowVector3d voxel(1.0, 1.0, 2.0);
     Vertices V = ball.V * voxel.asDiagonal();
     const Vertices smooth =
-        removeVoxelSteps(graph, V, voxel, Eigen::Matrix3d::Identity(), options, {}).X;
+        removeVoxelSteps(graph, V, voxel, Eigen::Matrix3d::Identity(), 1.5, options, {}).X;
     for (int c = 0; c < 3; ++c)
         EXPECT_LE((smooth - V).col(c).cwiseAbs().maxCoeff(), 0.5 * voxel[c] + 1e-12);
     const auto roughness = [&](const Vertices& X) {
@@ -286,13 +286,41 @@ TEST(Denoise, AppliesTheGivenStrengthAndHeight) {
     EXPECT_NEAR(denoise(mesh.V, mesh.F, options).noiseSize, options.noiseSize, 1e-12 * edge);
 }
 
-TEST(Denoise, RemovesTheSameNoiseWhenGivenTheReportedHeightAndSize) {
-    const Mesh mesh = withGaussianNoise(testing::cube(16), 0.2, 1);
-    const DenoiseResult measured = denoise(mesh.V, mesh.F, {});
+TEST(Denoise, RemovesTheSameNoiseInWhateverWayItIsGiven) {
+    for (const Mesh& shape : {testing::icosphere(4), testing::cube(16)}) {
+        const Mesh mesh = withGaussianNoise(shape, 0.2, 1);
+        const DenoiseResult measured = denoise(mesh.V, mesh.F, {});
+        ASSERT_GT(measured.noiseHeight, 0.0);
+        DenoiseOptions options;
+        options.noiseHeight = measured.noiseHeight;
+        options.noiseSize = measured.noiseSize;
+        EXPECT_EQ(denoise(mesh.V, mesh.F, options).V, measured.V);
+        options.weight.setOnes(mesh.V.rows());
+        EXPECT_EQ(denoise(mesh.V, mesh.F, options).V, measured.V);
+    }
+    const Mesh half = testing::noisyAbove(testing::icosphere(5), 0.0, 0.2, 3);
+    const DenoiseResult measured = denoise(half.V, half.F, {});
+    ASSERT_EQ(measured.diagnosis.kind, NoiseKind::Local);
     DenoiseOptions options;
-    options.noiseHeight = measured.noiseHeight;
-    options.noiseSize = measured.noiseSize;
-    EXPECT_EQ(denoise(mesh.V, mesh.F, options).V, measured.V);
+    options.noiseHeight = measured.heights.maxCoeff();
+    options.weight = measured.heights / options.noiseHeight;
+    EXPECT_LT((denoise(half.V, half.F, options).V - measured.V).cwiseAbs().maxCoeff(), 1e-9);
+}
+
+TEST(Denoise, RemovesTheSameWhateverTheNumbering) {
+    for (const Mesh& shape : {testing::icosphere(4), testing::cube(16)}) {
+        const Mesh mesh = withGaussianNoise(shape, 0.2, 1);
+        DenoiseOptions options;
+        options.noiseHeight = 0.2 * meanEdgeLength(mesh.V, mesh.F);
+        options.noiseSize = options.noiseHeight;  // white
+        const Vertices expected = denoise(mesh.V, mesh.F, options).V;
+        ASSERT_GT((expected - mesh.V).norm(), 0.0);
+        const Mesh reversed{
+            mesh.V.colwise().reverse(),
+            (static_cast<int>(mesh.V.rows()) - 1 - mesh.F.array()).matrix().colwise().reverse()};
+        const Vertices found = denoise(reversed.V, reversed.F, options).V.colwise().reverse();
+        EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 1e-6);
+    }
 }
 
 TEST(Denoise, AcceptsAnyTriangles) {
@@ -355,14 +383,17 @@ TEST(Whiteness, IsOneForWhiteNoiseAndLargerForAShape) {
 TEST(LinearSteps, DenoiseASphereButNotACube) {
     const auto stepsOf = [](const Mesh& shape) {
         const Mesh noisy = withGaussianNoise(shape, 0.2, 1);
-        return linearSteps(faceGraph(noisy.F, noisy.V.rows()), noisy.V,
-                           testing::everywhere(noisy.V.rows()), 0.2, false);
+        const FaceGraph graph = faceGraph(noisy.F, noisy.V.rows());
+        const double edge = meanEdgeLength(noisy.V, noisy.F);
+        const Index n = noisy.V.rows();
+        return linearSteps(graph, graph.vertices, noisy.V, testing::everywhere(n),
+                           NoiseField::ofHeight(0.2 * edge, edge, n), false);
     };
-    EXPECT_FALSE(stepsOf(testing::cube(20)));
+    EXPECT_EQ(stepsOf(testing::cube(20)).rejected, 1.0);
     const Mesh sphere = testing::icosphere(4);
-    const auto steps = stepsOf(sphere);
-    ASSERT_TRUE(steps);
-    EXPECT_LT(meanAngle(steps->X, sphere.V, sphere.F), 6.0);
+    const LinearSteps steps = stepsOf(sphere);
+    EXPECT_EQ(steps.rejected, 0.0);
+    EXPECT_LT(meanAngle(steps.X, sphere.V, sphere.F), 6.0);
 }
 
 }  // namespace
