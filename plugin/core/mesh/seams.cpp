@@ -207,7 +207,7 @@ class HangingVertices {
         const auto isAtSame = [&](const Hanging& a, const Hanging& b) {
             return a.side == b.side &&
                    (at(a.vertex) - at(b.vertex)).norm() <=
-                       kTiny * std::min(shortest_[a.vertex], shortest_[b.vertex]);
+                       kOnEdge * std::min(shortest_[a.vertex], shortest_[b.vertex]);
         };
         for (std::size_t k = 1; k < found_.size(); ++k)
             if (isAtSame(found_[k - 1], found_[k]))
@@ -247,7 +247,7 @@ class HangingVertices {
     double shareOf(const Side& side, int i) const {
         const Eigen::RowVector3d along = at(side.high) - at(side.low), to = at(i) - at(side.low);
         const double length = along.norm(), distance = to.dot(along) / length;
-        const double tiny = kTiny * shortest_[i];
+        const double tiny = kOnEdge * shortest_[i];
         if (!(length > 0.0)) return -1.0;
         if ((to - distance / length * along).norm() > tiny) return -1.0;
         if (distance < -tiny || distance > length + tiny) return -1.0;
@@ -290,6 +290,9 @@ class HangingVertices {
                                                          dependsOn(found->second[1], other)));
     }
 
+    // Of the shortest side: single precision leaves 6e-6 of coordinates 100 sides from the origin.
+    // Terrains in degrees and metres have lines of vertices 3e-4 of a side apart.
+    static constexpr double kOnEdge = 1e-5;
     static constexpr double kDyadic = 1024.0;  // as shares are in octrees, but for round-off
     static constexpr double kRoundOff = 1e-6;
 
