@@ -45,7 +45,11 @@ CHOICES = {
     "result": "Result",
     "form": "Form",
 }
-FLAGS = {("BasisOptions", "basis_size"): ("--basis-size", "-k")}
+FLAGS = {
+    ("BasisOptions", "basis_size"): ("--basis-size", "-k"),
+    ("TextureOptions", "waviness"): ("--waviness", "--nesting-index-l"),
+    ("TextureOptions", "noise"): ("--noise", "--nesting-index-s"),
+}
 # Of FilterOptions: what defines the transfer function and the Laplacian.
 SIGNALS = "apply_scalar_spectral_filter_per_vertex"
 HEAD = '''"""The options of the filters: names, defaults, limits, help.

@@ -159,6 +159,10 @@ bool isFlat(const FittedShape& shape, const Vertices& X, const Eigen::VectorXd& 
 
 }  // namespace
 
+const char* nameOf(ShapeKind kind) {
+    return kind == ShapeKind::Plane ? "plane" : kind == ShapeKind::Sphere ? "sphere" : "cylinder";
+}
+
 FittedShape::Distances FittedShape::distancesOf(const Vertices& X) const {
     Distances distances{Eigen::VectorXd(X.rows()), Vertices(X.rows(), 3)};
     for (Index i = 0; i < X.rows(); ++i) {
@@ -181,8 +185,7 @@ FittedShape fitShape(ShapeKind kind, const Vertices& X, const Vertices& N,
                         : kind == ShapeKind::Sphere ? fittedSphere(X, weights)
                                                     : fittedCylinder(X, N, weights);
     if (kind != ShapeKind::Plane && isFlat(shape, X, weights))
-        throw InvalidOption(std::string("form = ") +
-                            (kind == ShapeKind::Sphere ? "sphere" : "cylinder") +
+        throw InvalidOption(std::string("form = ") + nameOf(kind) +
                             ": the surface is too flat to have a radius, choose plane or size");
     const FittedShape::Distances distances = shape.distancesOf(X);
     if ((distances.N.cwiseProduct(N).rowwise().sum()).dot(weights) < 0.0) shape.outside = -1.0;

@@ -8,6 +8,8 @@ namespace spectral {
 
 enum class ShapeKind { Plane, Sphere, Cylinder };
 
+const char* nameOf(ShapeKind kind);
+
 /// A plane, sphere or cylinder, with a side that is outside.
 struct FittedShape {
     ShapeKind kind;

@@ -36,29 +36,73 @@ void measureHeights(const Eigen::VectorXd& h, const Eigen::VectorXd& areas,
     texture.Sku = fourths / texture.area / std::pow(texture.Sq, 4);
 }
 
-void measureDistribution(const Eigen::VectorXd& h, const Eigen::VectorXd& areas,
-                         const std::vector<bool>& counts, TextureParameters& texture) {
-    constexpr int kPercent = 100;
+/// Evaluated vertices from the highest to the lowest.
+std::vector<Index> descending(const Eigen::VectorXd& h, const std::vector<bool>& counts) {
     std::vector<Index> order;
     for (Index i = 0; i < h.size(); ++i)
         if (counts[i]) order.push_back(i);
     std::sort(order.begin(), order.end(),
               [&](Index i, Index j) { return h[i] > h[j] || (h[i] == h[j] && i < j); });
+    return order;
+}
+
+/// The heights that 0, 1 / parts, ..., 1 of the area exceed.
+Eigen::VectorXd bearingCurve(const Eigen::VectorXd& h, const Eigen::VectorXd& areas,
+                             const std::vector<Index>& order, double area, int parts) {
+    Eigen::VectorXd heights = Eigen::VectorXd::Constant(parts + 1, h[order.back()]);
+    double above = 0.0;
+    int part = 0;
+    for (const Index i : order) {
+        for (; part < parts && part * area <= above * parts; ++part) heights[part] = h[i];
+        above += areas[i];
+    }
+    return heights;
+}
+
+void measureDistribution(const Eigen::VectorXd& h, const Eigen::VectorXd& areas,
+                         const std::vector<Index>& order, TextureParameters& texture) {
+    constexpr int kPercent = 100;
     const double top = h[order.front()], bottom = h[order.back()];
     const double width = (top - bottom) / kHistogramBins;
     texture.histogramHeights =
         Eigen::VectorXd::LinSpaced(kHistogramBins, bottom + 0.5 * width, top - 0.5 * width);
     texture.histogramShares = Eigen::VectorXd::Zero(kHistogramBins);
-    texture.bearingHeights = Eigen::VectorXd::Constant(kPercent + 1, bottom);
-    double above = 0.0;
-    int percent = 0;
+    texture.bearingHeights = bearingCurve(h, areas, order, texture.area, kPercent);
     for (const Index i : order) {
-        for (; percent < kPercent && percent * texture.area <= above * kPercent; ++percent)
-            texture.bearingHeights[percent] = h[i];
-        above += areas[i];
         const int bin = width > 0.0 ? static_cast<int>((h[i] - bottom) / width) : 0;
         texture.histogramShares[std::min(bin, kHistogramBins - 1)] += areas[i] / texture.area;
     }
+}
+
+void measureCore(const Eigen::VectorXd& h, const Eigen::VectorXd& areas,
+                 const std::vector<Index>& order, TextureParameters& texture) {
+    constexpr int kParts = 1000, kCore = 400;  // of the area, in the curve and in its core
+    const Eigen::VectorXd curve = bearingCurve(h, areas, order, texture.area, kParts);
+    int first = 0;
+    for (int k = 1; k + kCore <= kParts; ++k)
+        if (curve[k] - curve[k + kCore] < curve[first] - curve[first + kCore]) first = k;
+    const Eigen::VectorXd ratio =
+        Eigen::VectorXd::LinSpaced(kCore + 1, first, first + kCore) / kParts;
+    const Eigen::VectorXd core = curve.segment(first, kCore + 1);
+    const Eigen::ArrayXd centred = ratio.array() - ratio.mean();
+    const double slope = (centred * core.array()).sum() / centred.square().sum();
+    const double top = core.mean() - slope * ratio.mean(), bottom = top + slope;
+    double peaks = 0.0, valleys = 0.0, above = 0.0, below = 0.0;
+    for (const Index i : order) {
+        if (h[i] > top) {
+            above += areas[i];
+            peaks += areas[i] * (h[i] - top);
+        } else if (h[i] < bottom) {
+            below += areas[i];
+            valleys += areas[i] * (bottom - h[i]);
+        }
+    }
+    texture.Sk = top - bottom;
+    texture.Smr1 = above / texture.area;
+    texture.Smr2 = 1.0 - below / texture.area;
+    // The heights of triangles of the same areas over the same shares.
+    if (above > 0.0) texture.Spk = 2.0 * peaks / above;
+    if (below > 0.0) texture.Svk = 2.0 * valleys / below;
 }
 
 /// Squared slope of a height that is linear on a triangle of the reference; -1 without area.
@@ -97,7 +141,9 @@ TextureParameters textureParameters(const Eigen::VectorXd& h, const Vertices& re
     TextureParameters texture;
     const Eigen::VectorXd areas = lumpedMass(reference, F);
     measureHeights(h, areas, counts, texture);
-    measureDistribution(h, areas, counts, texture);
+    const std::vector<Index> order = descending(h, counts);
+    measureDistribution(h, areas, order, texture);
+    measureCore(h, areas, order, texture);
     measureSlopes(h, reference, F, counts, texture);
     return texture;
 }

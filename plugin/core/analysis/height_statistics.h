@@ -14,7 +14,9 @@ struct TextureParameters {
     double Sp = 0.0, Sv = 0.0, Sz = 0.0;  ///< Highest peak, deepest valley, their sum.
     double Ssk = 0.0, Sku = 0.0;          ///< Skewness and kurtosis of the heights; 0 if Sq is 0.
     double Sdq = 0.0;                     ///< Root mean square of the slope.
-    double Sdr = 0.0;   ///< Additional area of the surface, relative to the reference's.
+    double Sdr = 0.0;  ///< Additional area of the surface, relative to the reference's.
+    double Sk = 0.0, Spk = 0.0, Svk = 0.0;  ///< Core height, reduced peaks and valleys, lengths.
+    double Smr1 = 0.0, Smr2 = 0.0;          ///< Material ratios at the ends of the core, 0 to 1.
     double area = 0.0;  ///< Of the reference surface where it is evaluated, length squared.
 
     Eigen::VectorXd histogramHeights;  ///< Centres of `kHistogramBins` equal bins, ascending.
@@ -28,6 +30,9 @@ constexpr int kHistogramBins = 64;
 
 /// @param h          n heights above the reference along its normals, length units.
 /// @param reference  n x 3 positions.
+/// The parameters of the core are those of ISO 25178-2 (ISO 13565-2): the line nearest to the 40 %
+/// of the bearing curve whose secant is flattest spans the core, from its heights at 0 to 100 %.
+///
 /// @param counts     n, whether each vertex is evaluated; some vertex with an area is.
 TextureParameters textureParameters(const Eigen::VectorXd& h, const Vertices& reference,
                                     const Faces& F, const std::vector<bool>& counts);

@@ -34,6 +34,18 @@ Field<Call> boundaryField(At at, const std::string& help) {
         .advanced();
 }
 
+/// Field `max_displacement`.
+template <class Call, class At>
+Field<Call> maxDisplacementField(At at) {
+    return field<Call>(at, "max_displacement", "Largest displacement",
+                       "No vertex moves farther. Where the filter would move one farther, all "
+                       "around it move less, so that no ridge is left; the report says on how "
+                       "much of the surface. The default: no bound.")
+        .in("length, at least 0")
+        .length("auto", nullptr, "0: no bound")
+        .advanced();
+}
+
 enum class Weight { None, VertexQuality };
 
 /// Field `weight`. @param help  what the vertex quality is a factor on.

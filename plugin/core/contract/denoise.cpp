@@ -54,6 +54,8 @@ Fields<DenoiseCall> denoiseFields() {
                     "Do not smooth across creases. Off: creases are rounded; for shapes without "
                     "any.")
             .advanced(),
+        maxDisplacementField<Call>(
+            [](auto& call) -> auto& { return call.options.maxDisplacement; }),
         weightField<Call>(
             [](auto& call) -> auto& { return call.weight; },
             "factor on the |noise_height| at each vertex, from 0 (no noise) to 1, for "
@@ -173,7 +175,7 @@ std::string summaryOf(const DenoiseOptions& options, const DenoiseResult& result
     if (const std::string spikes = spikesText(result.diagnosis); !spikes.empty())
         text << spikes << ": removed; ";
     if (result.rounds > 0)
-        text << removedText(options, result);
+        text << removedText(options, result) << limitText(result.limitedShare);
     else
         text << nothingText(result.diagnosis, result.isCrumpled)
              << (result.maxDisplacement == 0.0 ? "; nothing changed" : "");

@@ -137,6 +137,8 @@ Fields<FractionalCall> fractionalFields() {
                     "Move the surface along its normals until every closed component has regained "
                     "its volume. Open components have none.")
             .advanced());
+    fields.push_back(maxDisplacementField<Call>(
+        [](auto& call) -> auto& { return call.options.maxDisplacement; }));
     fields.push_back(
         weightField<Call>([](auto& call) -> auto& { return call.weight; },
                           "how much of the filter each vertex gets, from 0 (nothing) to "

@@ -290,7 +290,7 @@ std::string fractionalText(const FilterOptions& options, const FilterResult& res
     text << std::setprecision(4);
     text << movementText(deed.empty() ? deedOf(options) : deed, result.meanDisplacement,
                          result.maxDisplacement, diagonal)
-         << "\n  " << headline(options, result, diagonal, subject)
+         << limitText(result.limitedShare) << "\n  " << headline(options, result, diagonal, subject)
          << "\n  steps: " << stepsText(result) << ", cutoff frequency " << result.cutoffFrequency
          << " rad per unit\n"
          << "  area: " << result.areaBefore << " -> " << result.areaAfter

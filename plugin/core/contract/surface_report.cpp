@@ -18,6 +18,13 @@ std::string movementText(const std::string& done, double mean, double most, doub
     return text.str();
 }
 
+std::string limitText(double share) {
+    if (share == 0.0) return "";
+    std::ostringstream text;
+    text << std::setprecision(2) << "; bound reached at " << 100.0 * share << " % of the surface";
+    return text.str();
+}
+
 std::string surfaceText(const SurfaceCounts& counts, const char* fixed) {
     std::string text = "surface: " + std::to_string(counts.components) +
                        (counts.components == 1 ? " component" : " components");

@@ -34,6 +34,8 @@ Entries<Result> movementEntries() {
           [](const Result& r) -> Value { return r.rmsDisplacement; }},
          {"max_displacement", "largest displacement of a vertex, length",
           [](const Result& r) -> Value { return r.maxDisplacement; }},
+         {"limited_share", "share of the surface, 0 to 1, at which the bound on it was reached",
+          [](const Result& r) -> Value { return r.limitedShare; }},
          {"has_volume", "whether the surface is closed and consistently oriented",
           [](const Result& r) -> Value { return r.hasVolume; }},
          {"volume_before", "signed volume of the surface, length³; meaningless unless `has_volume`",
@@ -54,6 +56,10 @@ Entries<Result> movementEntries() {
 /// The first line of a log, for everybody: "Smoothed: 0.4 on average, 3.1 at most (0.1 % and 0.8 %
 /// of the diagonal)".
 std::string movementText(const std::string& done, double mean, double most, double diagonal);
+
+/// What follows a deed: "; bound reached at 3 % of the surface", or nothing.
+/// @param share  of the surface, 0 to 1.
+std::string limitText(double share);
 
 /// Part of a log line: "surface: 2 components, 5 boundary vertices fixed".
 /// @param fixed  what is fixed, e.g. "boundary vertices fixed".

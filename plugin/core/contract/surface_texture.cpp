@@ -31,12 +31,13 @@ struct TextureCall {
 Fields<TextureCall> textureFields() {
     using Call = TextureCall;
     return {
-        field<Call>([](auto& call) -> auto& { return call.options.waviness; }, "waviness",
-                    "Waviness cutoff",
-                    "Nesting index of the L-filter: what is larger is waviness or form, and no "
-                    "roughness. Waves of this length keep half of their height, as in ISO "
-                    "16610-61. The whole diagonal, with a plane, sphere or cylinder as |form|: no "
-                    "L-filter.")
+        field<Call>(
+            [](auto& call) -> auto& { return call.options.waviness; }, "waviness",
+            "Waviness cutoff",
+            "Nesting index of the L-filter of ISO 25178-3: what is larger is waviness or "
+            "form, and no roughness. Waves of this length keep half of their height, as in ISO "
+            "16610-61. The whole diagonal, with a plane, sphere or cylinder as |form|: no "
+            "L-filter.")
             .in("length, above 0")
             .above(0.0)
             .length("auto", wavinessOf, "twelve mean edges, at most 10 % of the diagonal"),
@@ -64,9 +65,11 @@ Fields<TextureCall> textureFields() {
             }),
         field<Call>([](auto& call) -> auto& { return call.options.creaseAngle; }, "crease_angle",
                     "Crease angle (degrees)",
-                    "Edges between faces whose planes differ by more are creases. The surface "
-                    "within a waviness cutoff of them, and of boundaries, is left out: it has the "
-                    "height 0. 180 keeps creases.")
+                    "Edges between faces whose planes differ by more are creases, where the form "
+                    "turns as far, too. The surface within a waviness cutoff of them, and of "
+                    "boundaries, is left out: it has the height 0. Holes of up to half a cutoff "
+                    "are points missing, and leave nothing out. 180 keeps creases; a plane, sphere "
+                    "or cylinder has none.")
             .in("degrees, 0 to 180")
             .to(180.0)
             .advanced(),
@@ -102,6 +105,15 @@ Entries<Measured> textureEntries() {
         {"Sdq", "root mean square of the slope", [](const R& r) -> Value { return r.Sdq; }},
         {"Sdr", "additional area of the texture, relative to that of the reference surface",
          [](const R& r) -> Value { return r.Sdr; }},
+        {"Sk", "height of the core, length", [](const R& r) -> Value { return r.Sk; }},
+        {"Spk", "reduced height of the peaks above the core, length",
+         [](const R& r) -> Value { return r.Spk; }},
+        {"Svk", "reduced depth of the valleys below the core, length",
+         [](const R& r) -> Value { return r.Svk; }},
+        {"Smr1", "share of the area above the core, 0 to 1",
+         [](const R& r) -> Value { return r.Smr1; }},
+        {"Smr2", "share of the area above the lower end of the core, 0 to 1",
+         [](const R& r) -> Value { return r.Smr2; }},
         {"area", "of the reference surface where it is evaluated, length²",
          [](const R& r) -> Value { return r.area; }},
         {"histogram_heights", "centres of the 64 bins of the histogram, ascending, length",
@@ -118,8 +130,11 @@ Entries<Measured> textureEntries() {
         {"vertices_evaluated", "number of vertices that count",
          [](const R& r) -> Value { return r.evaluated; }},
         {"vertices_left_out",
-         "number of selected vertices within a cutoff of a boundary or a crease",
+         "number of selected vertices within a cutoff of a boundary or a crease, or not on the "
+         "fitted shape, as the caps of a cylinder",
          [](const R& r) -> Value { return r.leftOut; }},
+        {"Sq_left_out", "root mean square height of those near a boundary, length; 0: none",
+         [](const R& r) -> Value { return r.leftOutSq; }},
         {"vertices_too_thin",
          "number of others on parts thinner than the waviness cutoff, left out, too",
          [](const R& r) -> Value { return r.tooThin; }},
@@ -138,11 +153,30 @@ std::string textOf(const Measured& texture) {
     if (texture.noise > 0.0) text << ", noise cutoff " << texture.noise;
     text << "\n  Sa " << texture.Sa << ", Sq " << texture.Sq << ", Sp " << texture.Sp << ", Sv "
          << texture.Sv << ", Sz " << texture.Sz << "\n  Ssk " << texture.Ssk << ", Sku "
-         << texture.Sku << ", Sdq " << texture.Sdq << ", Sdr " << 100.0 * texture.Sdr
+         << texture.Sku << ", Sdq " << texture.Sdq << ", Sdr " << 100.0 * texture.Sdr << " %\n  Sk "
+         << texture.Sk << ", Spk " << texture.Spk << ", Svk " << texture.Svk << ", Smr1 "
+         << 100.0 * texture.Smr1 << " %, Smr2 " << 100.0 * texture.Smr2
          << " %\n  evaluated: " << texture.evaluated << " vertices; left out: " << texture.leftOut
          << " within a cutoff of boundaries and creases";
     if (texture.formRadius > 0.0) text << "\n  form: of radius " << texture.formRadius;
     return text.str();
+}
+
+std::string shortText(double number) {
+    std::ostringstream text;
+    text << std::setprecision(3) << number;
+    return text.str();
+}
+
+/// Tells that what is left out near boundaries is another surface than what is measured.
+std::string leftOutText(const Measured& texture) {
+    constexpr double kAlike = 1.5;  // the end of a low-pass changes heights by a third at most
+    const double most = std::max(texture.leftOutSq, texture.Sq);
+    if (texture.leftOutSq == 0.0 || most <= kAlike * std::min(texture.leftOutSq, texture.Sq))
+        return {};
+    return "what is left out near boundaries has other heights, of Sq " +
+           shortText(texture.leftOutSq) + ", than what is measured, of " + shortText(texture.Sq) +
+           ". A smaller waviness measures more of it";
 }
 
 FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values& given,
@@ -171,9 +205,17 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
         output.warnings.push_back(
             "only " + std::to_string(texture.evaluated) + " of " +
             countText(texture.leftOut + texture.evaluated + texture.tooThin) +
-            " are measured: the others are within a cutoff of boundaries, or of folds of more "
-            "than crease_angle, which a rough surface has, too. A smaller waviness, or a larger "
-            "crease_angle such as 180, measures more");
+            " are measured: the others are within a cutoff of boundaries or creases, or not on "
+            "the fitted shape. A smaller waviness, or a larger crease_angle such as 180, measures "
+            "more");
+    constexpr double kSteep = 0.7;  // Sq is .5 % off at .4, and 3 % at 1
+    if (!isShape(options.form) && texture.Sdq > kSteep)
+        output.warnings.push_back(
+            "slopes of the texture are steep, Sdq " + shortText(texture.Sdq) +
+            ": on a free shape they make heights 2 % too low, or more. Choose the plane, sphere or "
+            "cylinder that the surface is as form");
+    if (const std::string note = leftOutText(texture); !note.empty())
+        output.warnings.push_back(note);
     if (!texture.accuracyReached)
         output.warnings.push_back(
             accuracyWarning(kTextureAccuracy, texture.errorEstimate / mesh.diagonal));

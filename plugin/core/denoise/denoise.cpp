@@ -10,6 +10,7 @@
 #include "core/laplacian/laplacian.h"
 #include "core/laplacian/vertex_weight.h"
 #include "core/mesh/contacts.h"
+#include "core/mesh/displacement_limit.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/surface.h"
@@ -33,6 +34,9 @@ void checkOptions(const DenoiseOptions& options) {
     };
     checkLength("noise_height", options.noiseHeight);
     checkLength("noise_size", options.noiseSize);
+    if (!(options.maxDisplacement >= 0.0 && std::isfinite(options.maxDisplacement)))
+        throw InvalidOption("max_displacement = " + textOf(options.maxDisplacement) +
+                            ": must be a length, or 0 for no bound");
     if (options.weight.size() == 0) return;
     checkWeights({{}, options.weight});
     if (options.noiseHeight == 0.0)
@@ -43,10 +47,12 @@ void checkOptions(const DenoiseOptions& options) {
         throw InvalidOption("weight = vertex quality: it is 0 everywhere; give a noisy vertex 1");
 }
 
+/// Edges within which the displacement fades out around a selection, and where it is limited.
+constexpr double kFadingOut = 4.0;
+
 /// Fraction of its displacement that each vertex of the surface moves by, 0 to 1.
 Eigen::VectorXd displacementWeight(const DenoiseOptions& options, const Surface& surface,
                                    const Interior& interior) {
-    constexpr double kFadingOut = 4.0;  // edges
     const WeightOptions part{options.selected, {}};
     checkWeights(part);
     Laplacian inEdges;  // measures distances in edges, as if all had length 1
@@ -273,11 +279,15 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
     }
     Vertices displacement = moved - whole.X;
     if (!displacement.allFinite()) throw SolverFailure("the denoised coordinates are not finite");
+    const double limited =
+        limitDisplacement(whole.F, lumpedMass(whole.X, whole.F), options.maxDisplacement,
+                          ringsWithin(kFadingOut), displacement);
     moveContactsAlike(whole, components, displacement);
     followEdges(whole, displacement);
     result.V = spectral::moved(V, whole, displacement);
     static_cast<Movement&>(result) = movementOf(
         whole.X, whole.F, displacement, Eigen::VectorXd::Ones(displacement.rows()), volumes);
+    result.limitedShare = limited;
     result.maxDisplacement = std::max(result.maxDisplacement, largestAtSeams(V, result.V, whole));
     return result;
 }

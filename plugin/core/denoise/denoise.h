@@ -17,9 +17,11 @@ struct DenoiseOptions {
     double noiseHeight = 0.0;  ///< Standard deviation of the noise, length units; 0: measure it.
     Eigen::VectorXd weight;    ///< n, 0 to 1: factor on noiseHeight at each vertex; empty: 1.
     double noiseSize = 0.0;    ///< Correlation length of the noise, length units; 0: measure it.
-    double meanEdge = 0.0;     ///< Of the surface that the mesh is a tile of, length units; 0: the
-                               ///< mesh is the whole.
-    bool keepCreases = true;   ///< If false, smooths across creases, too.
+    double maxDisplacement = 0.0;  ///< Bound on the displacement of every vertex, length units
+                                   ///< (displacement_limit.h); 0: none.
+    double meanEdge = 0.0;    ///< Of the surface that the mesh is a tile of, length units; 0: the
+                              ///< mesh is the whole.
+    bool keepCreases = true;  ///< If false, smooths across creases, too.
     Boundary boundary = Boundary::Free;
     std::vector<bool> selected;  ///< n: vertices to denoise; empty: all.
 };

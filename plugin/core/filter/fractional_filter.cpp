@@ -13,6 +13,7 @@
 #include "core/laplacian/interior.h"
 #include "core/mesh/contacts.h"
 #include "core/mesh/creases.h"
+#include "core/mesh/displacement_limit.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/mesh.h"
 #include "core/mesh/surface.h"
@@ -77,6 +78,9 @@ void checkOptions(const FilterOptions& options) {
     if (!(options.creaseAngle >= 0.0 && options.creaseAngle <= 180.0))
         throw InvalidOption("crease_angle = " + textOf(options.creaseAngle) +
                             ": must be between 0 (no creases) and 180 degrees");
+    if (!(options.maxDisplacement >= 0.0 && std::isfinite(options.maxDisplacement)))
+        throw InvalidOption("max_displacement = " + textOf(options.maxDisplacement) +
+                            ": must be a length, or 0 for no bound");
     checkWeights(options.part);
 }
 
@@ -211,16 +215,20 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
                                   kMaxOffset, X);
         displacement = X - surface.X;
     }
+    const Eigen::VectorXd before = lumpedMass(surface.X, surface.F);
+    const double limited =
+        limitDisplacement(surface.F, before, options.maxDisplacement,
+                          ringsWithin(0.5 * options.featureSize / meanEdge), displacement);
     moveContactsAlike(surface, interior.surfaceComponents(), displacement);
     followEdges(surface, displacement);
     X = surface.X + displacement;
 
-    const Eigen::VectorXd before = lumpedMass(surface.X, surface.F);
     FilterResult result;
     static_cast<SurfaceCounts&>(result) =
         countsOf(surface, V.rows(), interior.surfaceComponents().count, interior.fixedVertices());
     static_cast<Movement&>(result) =
         movementOf(surface.X, surface.F, displacement, before, volumes);
+    result.limitedShare = limited;
     static_cast<Work&>(result) = evaluate.work();
     result.V = moved(V, surface, displacement);
     result.maxDisplacement = std::max(result.maxDisplacement, largestAtSeams(V, result.V, surface));

@@ -48,6 +48,8 @@ struct FilterOptions {
 
     WeightOptions part;                 ///< Where to filter.
     std::optional<WholeSurface> whole;  ///< If the mesh is a tile of a larger surface.
+    double maxDisplacement = 0.0;       ///< Bound on the displacement of every vertex, length
+                                        ///< units (displacement_limit.h); 0: none.
     bool preserveVolume = false;        ///< Restores the volume of closed components (volume.h).
 };
 

@@ -197,14 +197,14 @@ Points vertexNormals(const FaceGraph& graph, const Points& N) {
     return normals;
 }
 
-std::vector<double> triangleQuality(const FaceGraph& graph, const Points& X) {
-    std::vector<double> quality(static_cast<std::size_t>(graph.faceCount()));
-    const Points N = areaNormals(X, graph.F);
-    parallelRows(graph.faceCount(), [&](Index begin, Index end) {
+std::vector<double> triangleQuality(const Faces& F, const Points& X) {
+    std::vector<double> quality(static_cast<std::size_t>(F.rows()));
+    const Points N = areaNormals(X, F);
+    parallelRows(F.rows(), [&](Index begin, Index end) {
         for (Index f = begin; f < end; ++f) {
             double squares = 0.0;
             for (int c = 0; c < 3; ++c)
-                squares += (X.row(graph.F(f, c)) - X.row(graph.F(f, (c + 1) % 3))).squaredNorm();
+                squares += (X.row(F(f, c)) - X.row(F(f, (c + 1) % 3))).squaredNorm();
             quality[f] = squares > 0.0 ? 2.0 * std::sqrt(3.0) * N.row(f).norm() / squares : 0.0;
         }
     });

@@ -59,7 +59,7 @@ constexpr double kNeedleQuality = 0.6;
 
 /// 4 sqrt(3) area / (sum of squared sides) of each face: 1 for equilateral triangles.
 /// Surfaces of needles, as of CAD programs, have a median below kNeedleQuality.
-std::vector<double> triangleQuality(const FaceGraph& graph, const Points& X);
+std::vector<double> triangleQuality(const Faces& F, const Points& X);
 
 /// Scales each row to length 1; zero rows stay zero.
 void normalizeRows(Points& N);

@@ -92,7 +92,10 @@ Eigen::VectorXd LaplacianBuilder::boundedMass(const Eigen::VectorXd& D) const {
 
 MeshLaplacian meshLaplacian(const Vertices& V, const Faces& F, LaplacianKind kind) {
     checkMesh(V, F, kind);
-    Surface surface = joinedSurface(V, F);
+    return meshLaplacian(joinedSurface(V, F), kind);
+}
+
+MeshLaplacian meshLaplacian(Surface surface, LaplacianKind kind) {
     Components components = connectedComponents(surface.F, surface.X.rows());
     Laplacian laplacian = LaplacianBuilder(surface, components, kind, BasisUpdate::None).current();
     requireUsable(laplacian);

@@ -101,4 +101,8 @@ struct MeshLaplacian {
 /// @throws SolverFailure  when a cotangent or a mass is not finite.
 MeshLaplacian meshLaplacian(const Vertices& V, const Faces& F, LaplacianKind kind);
 
+/// That of a surface.
+/// @throws SolverFailure  when a cotangent or a mass is not finite.
+MeshLaplacian meshLaplacian(Surface surface, LaplacianKind kind);
+
 }  // namespace spectral

@@ -12,9 +12,10 @@ struct Movement {
     double rmsDisplacement = 0.0;                  ///< Root mean square, length units.
     double meanDisplacement = 0.0;                 ///< Mean length, length units.
     double volumeBefore = 0.0, volumeAfter = 0.0;  ///< Signed; meaningful only if hasVolume.
-    bool hasVolume = false;                        ///< Whether the surface encloses a volume.
-    Index foldedFaces = 0;                         ///< See foldedFaces().
-    PreservedVolumes volumes;                      ///< Volumes of the closed components.
+    double limitedShare = 0.0;  ///< Of the area, 0 to 1, at which a bound limited it.
+    bool hasVolume = false;     ///< Whether the surface encloses a volume.
+    Index foldedFaces = 0;      ///< See foldedFaces().
+    PreservedVolumes volumes;   ///< Volumes of the closed components.
 };
 
 /// @param X, F          n x 3 positions before, and the triangles.

@@ -222,8 +222,8 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
     diagnosis.X = X;
     const double edge = diagnosis.noise.meanEdge = meanEdgeLength(X, graph.F);
     const Index measured = std::count(isMeasured.begin(), isMeasured.end(), true);
-    diagnosis.stretchedAxis = stretchedAxis(graph, X);
-    const bool areNeedles = quantile(triangleQuality(graph, X), 0.5) < kNeedleQuality;
+    diagnosis.stretchedAxis = stretchedAxis(graph.F, X);
+    const bool areNeedles = quantile(triangleQuality(graph.F, X), 0.5) < kNeedleQuality;
     std::optional<CoordinateGrid> grid;
     if (!isKnown) {
         grid = coordinateGrid(X);

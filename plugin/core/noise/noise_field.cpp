@@ -131,7 +131,7 @@ Heights heightsOf(const FaceGraph& graph, const Points& X, const Points& N, cons
 /// 4 sqrt(3) area / (sum of squared sides), 1 for equilateral triangles, in the place of each
 /// vertex.
 Eigen::VectorXd localQuality(const FaceGraph& graph, const Points& X) {
-    const std::vector<double> quality = triangleQuality(graph, X);
+    const std::vector<double> quality = triangleQuality(graph.F, X);
     Eigen::VectorXd mean(X.rows());
     for (Index i = 0; i < X.rows(); ++i) {
         double sum = 0.0;

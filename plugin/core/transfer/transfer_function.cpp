@@ -64,7 +64,9 @@ TransferFunction::TransferFunction(const TransferFunctionOptions& options, doubl
 double TransferFunction::operator()(double omega) const { return power(omega, 1.0); }
 
 double TransferFunction::power(double omega, double alpha) const {
-    const double x = omega / cutoff_, exponent = alpha * options_.power;
+    const double c = options_.dispersion;
+    const double x = (c > 0.0 ? omega * std::sqrt(1.0 + c * omega * omega) : omega) / cutoff_;
+    const double exponent = alpha * options_.power;
     if (options_.type == FilterType::Custom) return std::pow(custom(omega), exponent);
     // A band-stop is 1 minus the band-pass B: stopGain applies where B is 1.
     double at0 = options_.stopGain, at1 = options_.passGain;

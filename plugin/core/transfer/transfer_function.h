@@ -14,12 +14,14 @@ enum class Response { Gaussian, Butterworth, Ideal };
 struct TransferFunctionOptions {
     FilterType type = FilterType::LowPass;
     Response response = Response::Gaussian;
-    int order = 2;           ///< Butterworth order m, 1 to 64.
-    double bandWidth = 1.0;  ///< Full width of a band between its -3 dB points, octaves, > 0.
-    double passGain = 1.0;   ///< Gain in the pass band, >= 0.
-    double stopGain = 0.0;   ///< Gain in the stop band, >= 0.
-    double power = 1.0;      ///< Fractional power, 0 < power <= 1; 1 is the whole filter.
-    Gain custom;             ///< Gain for FilterType::Custom, which otherwise uses only the power.
+    int order = 2;            ///< Butterworth order m, 1 to 64.
+    double bandWidth = 1.0;   ///< Full width of a band between its -3 dB points, octaves, > 0.
+    double passGain = 1.0;    ///< Gain in the pass band, >= 0.
+    double stopGain = 0.0;    ///< Gain in the stop band, >= 0.
+    double power = 1.0;       ///< Fractional power, 0 < power <= 1; 1 is the whole filter.
+    double dispersion = 0.0;  ///< c, length^2, >= 0: a mesh shows waves of the frequency
+                              ///< omega (1 + c omega^2)^1/2 at the frequency omega.
+    Gain custom;              ///< Gain for FilterType::Custom, which otherwise uses only the power.
 };
 
 /// Transfer function F(omega) = (stopGain + (passGain - stopGain) B(omega / omega_c))^power.

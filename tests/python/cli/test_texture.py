@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import json
 from pathlib import Path
 
@@ -134,3 +135,75 @@ def test_other_files_are_replaced_on_request_only(rough: Path, tmp_path: Path) -
         assert "replace it with --overwrite" in done.stderr
         assert command(*arguments, "--output", other, "-f").returncode == 0
         assert other.read_bytes().startswith(b"ply")
+
+
+@pytest.fixture
+def block(tmp_path: Path) -> Path:
+    """A closed box of 4 x 4 x 1 with a rough top."""
+    n = 61
+    x, y = (grid.ravel() for grid in np.meshgrid(*2 * [np.linspace(0, 4, n)], indexing="ij"))
+    rim = (x == 0) | (x == 4) | (y == 0) | (y == 4)
+    wave = np.where(rim, 0, 0.02 * np.cos(2 * np.pi * x / 0.5))
+    top, base = np.column_stack([x, y, 1 + wave]), np.column_stack([x, y, 0 * x])
+    i = np.arange(n * n).reshape(n, n)
+    a, b, c, d = (k.ravel() for k in (i[:-1, :-1], i[1:, :-1], i[1:, 1:], i[:-1, 1:]))
+    up = np.vstack([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
+    loop = np.concatenate([i[:-1, 0], i[-1, :-1], i[:0:-1, -1], i[0, :0:-1]])
+    after, below = np.roll(loop, -1), n * n
+    sides = [[loop, loop + below, after + below], [loop, after + below, after]]
+    F = np.vstack([up, up[:, ::-1] + below, *(np.column_stack(one) for one in sides)])
+    path = tmp_path / "block.ply"
+    mesh_set_of(np.vstack([top, base]), F).save_current_mesh(str(path))
+    return path
+
+
+def test_a_region_of_a_closed_block_is_its_top(block: Path, tmp_path: Path) -> None:
+    measure = ["texture", block, "--form", "plane", "--waviness", "1", "--json"]
+    refused = command(*measure)
+    assert refused.returncode == 1
+    assert "as much of the surface faces backwards" in refused.stderr
+    mask = tmp_path / "mask.txt"
+    np.savetxt(mask, np.repeat([1, 0], 61 * 61))
+    exact = 0.02 / np.sqrt(2) * (1 - 2**-4)
+    for region in (
+        ["--where", "nz > 0.5"],
+        ["--box", "0,0,0.5,4,4,inf"],
+        ["--mask", mask],
+    ):
+        done = command(*measure, *region)
+        assert done.returncode == 0, done.stderr
+        assert json.loads(done.stdout)["Sq"] == pytest.approx(exact, rel=0.03)
+    nowhere = command(*measure, "--box", "9,9,9,10,10,10")
+    assert nowhere.returncode == 2
+    assert "no vertex is there" in nowhere.stderr
+
+
+def test_many_files_are_one_table(rough: Path, tmp_path: Path) -> None:
+    other, broken = tmp_path / "other.ply", tmp_path / "broken.ply"
+    other.write_bytes(rough.read_bytes())
+    broken.write_text("no mesh")
+    rows = tmp_path / "table.csv"
+    measure = ["texture", rough, broken, other, "--waviness", "0.3", "--unit", "mm"]
+    done = command(*measure, "--csv", rows, "--smr", "0")
+    assert done.returncode == 1
+    assert "broken.ply" in done.stderr
+    assert "lengths in mm" in done.stdout
+    with rows.open(newline="", encoding="utf-8") as file:
+        read = list(csv.DictReader(file))
+    assert [Path(row["input"]).name for row in read] == ["rough.ply", "other.ply"]
+    assert read[0]["Sq"] == read[1]["Sq"]
+    assert read[0]["unit"] == "mm"
+    assert float(read[0]["Smr(0)"]) == pytest.approx(0.5, abs=0.02)
+    assert command(*measure, "--csv", rows).returncode == 2  # not replaced
+    record = json.loads(command(*measure, "--json").stdout)
+    assert len(record["files"]) == 2
+    assert float(read[0]["Sq"]) == record["files"][0]["Sq"]
+    one = command("texture", rough, other, "--picture", tmp_path / "one.png")
+    assert one.returncode == 2
+    assert "name only one" in one.stderr
+
+
+def test_lengths_have_their_unit_and_cutoffs_the_names_of_the_standard(rough: Path) -> None:
+    done = command("texture", rough, "--nesting-index-l", "0.3", "--unit", "mm")
+    assert done.returncode == 0, done.stderr
+    assert "0.3 mm" in done.stdout

@@ -374,10 +374,59 @@ def test_what_does_not_fit_is_named(options: dict[str, Any], said: str) -> None:
         surface_texture(V, F, **options)
 
 
-def test_a_rough_surface_that_is_mostly_left_out_is_told() -> None:
+def test_roughness_is_no_crease_and_a_surface_that_is_mostly_left_out_is_told() -> None:
     V, F = square("square")
     V = V + [0, 0, 0.012] * np.random.default_rng(4).normal(size=(len(V), 1))
     texture = surface_texture(V, F, waviness=0.3)
+    assert not texture.warnings
+    assert texture.vertices_evaluated > 0.8 * len(V)
+    texture = surface_texture(V, F, waviness=3.0)
     assert texture.vertices_left_out > texture.vertices_evaluated
-    assert any("larger crease_angle such as 180" in warning for warning in texture.warnings)
-    assert not surface_texture(V, F, waviness=0.3, crease_angle=180).warnings
+    assert any("within a cutoff of boundaries" in warning for warning in texture.warnings)
+
+
+def test_cutoffs_have_the_names_of_the_standard() -> None:
+    V, F = square("square")
+    ours = surface_texture(waves(V), F, waviness=3.0, noise=0.5)
+    theirs = surface_texture(waves(V), F, nesting_index_l=3.0, nesting_index_s=0.5)
+    assert ours.report == theirs.report
+    with pytest.raises(OptionError, match="nesting_index_l = waviness: give one of the two"):
+        surface_texture(waves(V), F, nesting_index_l=3.0, waviness=3.0)
+
+
+def test_the_material_ratio_is_the_share_of_higher_heights() -> None:
+    V, F = square("fine")
+    texture = surface_texture(waves(V), F, waviness="100%", form="plane")
+    for c in (-0.006, -0.001, 0.0, 0.003):
+        share = (texture.height[texture.height != 0] >= c).mean()
+        assert texture.material_ratio(c) == pytest.approx(share, abs=0.01)
+    assert (texture.material_ratio([-1, 1]) == [1, 0]).all()
+    assert np.isnan(texture.material_ratio(np.nan))
+    # The core of ISO 13565-2, from the quantiles of the closed form.
+    x = (np.arange(1200) + 0.5) / 1200
+    z = np.add.outer(np.cos(2 * np.pi * x), np.cos(2 * np.pi * x)).ravel() * 0.004
+    curve = np.quantile(z, 1 - np.linspace(0, 1, 1001))
+    first = int(np.argmin(curve[:-400] - curve[400:]))
+    slope, top = np.polyfit(
+        np.linspace(0, 1, 1001)[first : first + 401], curve[first : first + 401], 1
+    )
+    assert texture.Sk == pytest.approx(-slope, rel=0.02)
+    assert texture.Smr1 == pytest.approx((z > top).mean(), abs=0.01)
+    assert texture.Smr2 == pytest.approx((z > top + slope).mean(), abs=0.01)
+    assert texture.Spk == pytest.approx(2 * (z - top)[z > top].mean(), rel=0.03)
+
+
+def test_grains_and_scratches_are_measured() -> None:
+    V, F = square("fine")
+    z = np.zeros(len(V))
+    for x, y in ((4.0, 4.0), (6.0, 7.5), (8.0, 5.0)):
+        r = np.hypot(V[:, 0] - x, V[:, 1] - y)
+        z += np.where(r < 0.15, np.sqrt(np.maximum(0, 0.15**2 - r**2)), 0)
+    z -= np.where(np.abs(V[:, 0] - V[:, 1]) < 0.05, 0.05, 0)
+    rough = np.column_stack([V[:, 0], V[:, 1], z])
+    plane = surface_texture(rough, F, waviness=2.0, form="plane")
+    free = surface_texture(rough, F, waviness=2.0)
+    kept = surface_texture(rough, F, waviness=2.0, crease_angle=180)
+    assert free.vertices_evaluated == kept.vertices_evaluated
+    assert free.Sq == pytest.approx(plane.Sq, rel=0.03)
+    assert plane.Sp == pytest.approx(0.15, rel=0.1)

@@ -62,6 +62,8 @@ def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:
         ("Largest displacement", f"{report['max_displacement']:.4g}"),
         ("RMS displacement", f"{report['rms_displacement']:.4g}"),
     ]
+    if report.get("limited_share"):
+        rows.append(("Bound reached at", f"{100 * report['limited_share']:.2g} % of the surface"))
     if report.get("has_volume"):
         rows.append(("Volume", change(report["volume_before"], report["volume_after"])))
     # What a run in tiles cannot tell.

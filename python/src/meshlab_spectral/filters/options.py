@@ -52,6 +52,7 @@ class FilterKeywords(TransferKeywords, total=False):
     reinject_residual: bool
     crease_angle: float
     preserve_volume: bool
+    max_displacement: Size
     weight: Weight
     result: Result
 
@@ -64,6 +65,7 @@ class DenoiseKeywords(TypedDict, total=False):
     noise_size: Size
     selected: bool
     keep_creases: bool
+    max_displacement: Size
     weight: Weight
     boundary: Boundary
     store_noise_height: bool
@@ -235,6 +237,12 @@ class FilterOptions(Options):
         "Move the surface along its normals until every closed component has regained its "
         "volume. Open components have none.",
     )
+    max_displacement: Length = option(
+        Length(automatic=True),
+        "No vertex moves farther. Where the filter would move one farther, all around it "
+        "move less, so that no ridge is left; the report says on how much of the surface. "
+        "The default: no bound.",
+    )
     weight: Weight = option(
         "none",
         "vertex quality: how much of the filter each vertex gets, from 0 (nothing) to 1 "
@@ -286,6 +294,12 @@ class DenoiseOptions(Options):
     )
     keep_creases: bool = option(
         True, "Do not smooth across creases. Off: creases are rounded; for shapes without any."
+    )
+    max_displacement: Length = option(
+        Length(automatic=True),
+        "No vertex moves farther. Where the filter would move one farther, all around it "
+        "move less, so that no ridge is left; the report says on how much of the surface. "
+        "The default: no bound.",
     )
     weight: Weight = option(
         "none",
@@ -356,15 +370,17 @@ class TextureOptions(Options):
 
     waviness: Length = option(
         Length(automatic=True),
-        "Nesting index of the L-filter: what is larger is waviness or form, and no "
-        "roughness. Waves of this length keep half of their height, as in ISO 16610-61. The "
-        "whole diagonal, with a plane, sphere or cylinder as --form: no L-filter. Default: "
-        "twelve mean edges, at most 10 % of the diagonal.",
+        "Nesting index of the L-filter of ISO 25178-3: what is larger is waviness or form, "
+        "and no roughness. Waves of this length keep half of their height, as in ISO "
+        "16610-61. The whole diagonal, with a plane, sphere or cylinder as --form: no "
+        "L-filter. Default: twelve mean edges, at most 10 % of the diagonal.",
+        flags=("--waviness", "--nesting-index-l"),
     )
     noise: Length = option(
         Length(automatic=True),
         "Nesting index of the S-filter: what is smaller is noise, and no roughness. The "
         "default: none is removed.",
+        flags=("--noise", "--nesting-index-s"),
     )
     form: Form = option(
         "size",
@@ -381,9 +397,10 @@ class TextureOptions(Options):
     )
     crease_angle: float = option(
         50.0,
-        "Edges between faces whose planes differ by more are creases. The surface within a "
-        "waviness cutoff of them, and of boundaries, is left out: it has the height 0. 180 "
-        "keeps creases.",
+        "Edges between faces whose planes differ by more are creases, where the form turns "
+        "as far, too. The surface within a waviness cutoff of them, and of boundaries, is "
+        "left out: it has the height 0. Holes of up to half a cutoff are points missing, "
+        "and leave nothing out. 180 keeps creases; a plane, sphere or cylinder has none.",
         Limits(0, 180),
     )
     selected: bool = option(

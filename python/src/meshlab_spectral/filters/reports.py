@@ -34,6 +34,8 @@ class _FilterReport(TypedDict):
     """Whether the surface is closed and consistently oriented."""
     joined_vertices: int
     """Number of vertices at seams that were joined to another."""
+    limited_share: float
+    """Share of the surface, 0 to 1, at which the bound on it was reached."""
     max_displacement: float
     """Largest displacement of a vertex, length."""
     mean_edge: float
@@ -106,6 +108,8 @@ class _DenoiseReport(TypedDict):
     """Whether the surface is closed and consistently oriented."""
     joined_vertices: int
     """Number of vertices at seams that were joined to another."""
+    limited_share: float
+    """Share of the surface, 0 to 1, at which the bound on it was reached."""
     max_displacement: float
     """Largest displacement of a vertex, length."""
     mean_edge: float
@@ -283,16 +287,28 @@ class _TextureReport(TypedDict):
     """Root mean square of the slope."""
     Sdr: float
     """Additional area of the texture, relative to that of the reference surface."""
+    Sk: float
+    """Height of the core, length."""
     Sku: float
     """Kurtosis of the heights, 3 if they are normally distributed."""
+    Smr1: float
+    """Share of the area above the core, 0 to 1."""
+    Smr2: float
+    """Share of the area above the lower end of the core, 0 to 1."""
     Sp: float
     """Height of the highest peak, length."""
+    Spk: float
+    """Reduced height of the peaks above the core, length."""
     Sq: float
     """Root mean square of the height, length."""
+    Sq_left_out: float
+    """Root mean square height of those near a boundary, length; 0: none."""
     Ssk: float
     """Skewness of the heights."""
     Sv: float
     """Depth of the deepest valley, length."""
+    Svk: float
+    """Reduced depth of the valleys below the core, length."""
     Sz: float
     """From the deepest valley to the highest peak, length."""
     area: float
@@ -311,7 +327,8 @@ class _TextureReport(TypedDict):
     vertices_evaluated: int
     """Number of vertices that count."""
     vertices_left_out: int
-    """Number of selected vertices within a cutoff of a boundary or a crease."""
+    """Number of selected vertices within a cutoff of a boundary or a crease, or not on the fitted
+    shape, as the caps of a cylinder."""
     vertices_too_thin: int
     """Number of others on parts thinner than the waviness cutoff, left out, too."""
     waviness: float

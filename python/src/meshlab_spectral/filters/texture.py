@@ -42,6 +42,10 @@ class SurfaceTexture:
         Height of the highest peak, depth of the deepest valley, their sum.
     Sdq, Sdr
         Root mean square of the slope; additional area relative to the reference surface.
+    Sk, Spk, Svk
+        Height of the core; reduced height of the peaks above and depth of the valleys below it.
+    Smr1, Smr2
+        Shares of the area above the upper and the lower end of the core, 0 to 1.
     waviness, noise
         Cutoffs that were applied, length units; noise = 0: none.
     area
@@ -53,7 +57,9 @@ class SurfaceTexture:
         Bearing curve (Abbott-Firestone): 101 heights that 0, 1, ..., 100 % of the area exceed.
     vertices_evaluated, vertices_left_out
         Numbers of vertices that count, and of selected ones within a cutoff of a boundary or a
-        crease.
+        crease, or not on the fitted shape.
+    Sq_left_out
+        Root mean square height of those near a boundary; a warning tells if it is another one.
     vertices_too_thin
         Number of others on parts thinner than the waviness cutoff, left out, too; a warning names
         the first.
@@ -75,6 +81,11 @@ class SurfaceTexture:
     Sz: float
     Sdq: float
     Sdr: float
+    Sk: float
+    Spk: float
+    Svk: float
+    Smr1: float
+    Smr2: float
     waviness: float
     noise: float
     area: float
@@ -83,10 +94,21 @@ class SurfaceTexture:
     bearing_heights: NDArray[np.float64]
     vertices_evaluated: int
     vertices_left_out: int
+    Sq_left_out: float
     vertices_too_thin: int
     error_estimate: float
     warnings: list[str]
     form_radius: float | None = None
+
+    def material_ratio(self, height: ArrayLike) -> NDArray[np.float64]:
+        """Return Smr(c): shares of the area, 0 to 1, that are at least as high as `height`.
+
+        Interpolated in `bearing_heights`, and so to half a percent. Heights of any shape, length
+        units above the reference surface; NaN for those that are not finite.
+        """
+        c = np.asarray(height, dtype=np.float64)
+        heights, shares = self.bearing_heights[::-1], np.linspace(1, 0, len(self.bearing_heights))
+        return np.where(np.isfinite(c), np.interp(c, heights, shares, left=1, right=0), np.nan)
 
     @property
     def report(self) -> TextureReport:
@@ -113,6 +135,19 @@ class SurfaceTexture:
         return table((one.name, brief(getattr(self, one.name))) for one in fields(self))
 
 
+# What the standard calls the cutoffs.
+_STANDARD = {"nesting_index_l": "waviness", "nesting_index_s": "noise"}
+
+
+def _by_our_names(named: Mapping[str, object]) -> dict[str, object]:
+    """Return options whose names may be those of the standard; OptionError if one is twice."""
+    ours = {_STANDARD.get(name, name): value for name, value in named.items()}
+    if len(ours) < len(named):
+        twice = ", ".join(f"{name} = {_STANDARD[name]}" for name in named if name in _STANDARD)
+        raise OptionError(f"{twice}: give one of the two")
+    return ours
+
+
 @takes_options(TextureOptions)
 @takes_mesh_alone
 def surface_texture(
@@ -132,7 +167,11 @@ def surface_texture(
     surface, along its normals.
 
     A size is a string such as "2%" (of the bounding box diagonal) or "6e" (mean edges), or a length
-    in the units of the mesh.
+    in the units of the mesh. `waviness` and `noise` may be given by the names of the standard,
+    `nesting_index_l` and `nesting_index_s`.
+
+    End effects: nothing within a cutoff of a boundary or a crease counts. Points missing, holes of
+    up to half a cutoff, have weight 0 in the filters instead (normalized convolution).
 
     Parameters
     ----------
@@ -167,7 +206,7 @@ def surface_texture(
     >>> bore = surface_texture(vertices, faces, form="cylinder", selection=faces_of_the_bore)
     """
     V, F = mesh_arrays(mesh_or_vertices, faces)
-    parameters = TextureOptions.given(options, named)
+    parameters = TextureOptions.given(options, _by_our_names(named))
     part: dict[str, Any] = {}
     selected = None
     if selection is not None:

@@ -63,7 +63,8 @@ def _report_of(job: dict[str, Any], on_stage: StageCallback) -> dict[str, Any]:
         return comparison.report
     if task == "texture":
         texture_options = TextureOptions.from_dict(job["options"])
-        return texture_of(source, texture_options, on_stage, job.get("mesh"), archive)
+        part = Region.from_given(job.get("region"))
+        return texture_of(source, texture_options, on_stage, job.get("mesh"), archive, part)
     verbose = job.get("verbose", True)
     if task == "spectrum":
         on_stage("reading", None)

@@ -106,6 +106,7 @@ def texture_in_child(
     on_progress: ProgressCallback,
     mesh: str | None,
     whole: bool,
+    region: Region,
 ) -> tuple[Any, Any, SurfaceTexture]:
     """Measure the texture of a mesh file in a child process, as `texture_of` does.
 
@@ -113,7 +114,7 @@ def texture_in_child(
     `whole` is asked for.
     """
     with _archive(whole) as archive:
-        more = {"archive": archive and str(archive)}
+        more = {"archive": archive and str(archive), "region": region.given()}
         report = measure_in_child(source, options, on_progress, mesh, more)
         if archive is None:
             return None, None, SurfaceTexture.from_report(report, np.zeros(0))

@@ -24,6 +24,13 @@ _NOISE = ("noise_height", "noise_size", "mean_edge")
 _NUMBER = re.compile(r"\d[\d.e+-]*")
 
 
+def _mean(name: str, reports: list[dict[str, Any]]) -> float:
+    """Return the mean of a share over the tiles, by the areas that are their own."""
+    area = math.fsum(one["own_area_before"] for one in reports)
+    sums = math.fsum(one.get(name, 0.0) * one["own_area_before"] for one in reports)
+    return sums / area if area else 0.0
+
+
 def combined(
     filter_name: str, reports: list[dict[str, Any]]
 ) -> tuple[dict[str, Any], tuple[float, float, float]]:
@@ -66,6 +73,7 @@ def combined(
         "area_after": total("own_area_after"),
         "max_displacement": max(one["largest"] for one in reports),
         "rms_displacement": math.sqrt(total("squares") / area) if area else 0.0,
+        "limited_share": _mean("limited_share", reports),
         "warnings": _warnings(ran),
     }
     precision = (
