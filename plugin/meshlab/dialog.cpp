@@ -82,7 +82,8 @@ void add(const spectral::Filter& filter, const Parameter& one, const spectral::M
         case Kind::Integer: {
             int usual = std::get<int>(one.usual);
             // A mesh of fewer vertices has no such basis.
-            if (one.name == "basis_size" && vertices > 1) usual = std::min(usual, vertices - 1);
+            if (one.name == "basis_size" && !one.isAdvanced && vertices > 1)
+                usual = std::min(usual, vertices - 1);
             list.addParam(RichInt(name, usual, label, help, one.isAdvanced));
             break;
         }

@@ -92,7 +92,8 @@ void checkUnmoved(const Vertices& V, const Vertices& moved, const std::vector<bo
         const Eigen::RowVector3d before = V.row(i), after = moved.row(i);
         if (!mustStay[i] || isSame(before, after)) continue;
         failures.push_back(failure(before == after ? "negative zero" : "moved", "vertex ", i,
-                                   " must stay where it is"));
+                                   " must stay where it is, and moves by ",
+                                   (after - before).norm()));
         return;
     }
 }

@@ -202,9 +202,9 @@ std::string toleranceWarning(const FilterOptions& options, const FilterResult& r
 
 /// Gains above 1 at the largest sizes are meant for details by those who set them.
 std::vector<std::string> scalingWarnings(const FilterOptions& options, const FilterResult& result) {
-    constexpr double kNoticeable = 1.01;
+    constexpr double kScaling = 1.01;
     const double gain = TransferFunction(options.transferFunction, result.cutoffFrequency)(0.0);
-    if (!(gain > kNoticeable)) return {};
+    if (!(gain > kScaling)) return {};
     std::ostringstream text;
     text << std::setprecision(3) << "the gain of what is largest is " << gain
          << ", which scales the whole object. Choose 1 for it to keep its size";

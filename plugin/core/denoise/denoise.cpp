@@ -162,7 +162,7 @@ Points denoisePart(const MovingPart& part, const FaceGraph& graph, const Denoise
         diagnosis.field =
             isOne ? NoiseField::ofHeight(part.height[0], diagnosis.noise.meanEdge, X0.rows())
                   : NoiseField::ofHeights(graph, X0, part.height);
-        diagnosis.kind = NoiseKind::Local;
+        if (!areImpulses) diagnosis.kind = NoiseKind::Local;
     }
     RemovalOptions removal = removalOptions(options, diagnosis, X0.rows());
     removal.areImpulses = areImpulses;
@@ -239,8 +239,9 @@ DenoiseResult denoise(const Vertices& V, const Faces& F, const DenoiseOptions& o
     progress.report(0.0, "measuring the noise");
     Surface whole = joinedSurface(V, F);
     whole.F = distinctFaces(whole.F, whole.X.rows());
-    const Interior interior(whole.F, connectedComponents(whole.F, whole.X.rows()),
-                            options.boundary);
+    const std::vector<bool> isFixed = fixedVerticesOf(whole.F, whole.X.rows(), options.boundary);
+    keepFixed(isFixed, whole);
+    const Interior interior(connectedComponents(whole.F, whole.X.rows()), isFixed);
     const Components& components = interior.surfaceComponents();
     const Eigen::VectorXd weight = displacementWeight(options, whole, interior);
     const Eigen::VectorXd height = givenHeights(options, whole);

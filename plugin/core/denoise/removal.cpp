@@ -30,7 +30,7 @@ double removedShare(const Points& X0, const Points& X, const RemovalOptions& opt
     return medianDeviation(std::move(displacements));
 }
 
-/// Largest displacement before faces are unfolded, in standard deviations of the noise.
+/// Largest displacement, in standard deviations of the noise.
 constexpr double kMaxDeviations = 6.0;
 
 /// Limits displacements: where triangles are narrower than the height of the noise, normals are
@@ -231,8 +231,10 @@ Removal removeNoise(const FaceGraph& graph, const Points& X0, const RemovalOptio
         return removeAlongRays(graph, X0, options);
     auto [removal, N] = options.size > 0.0 ? correlatedRounds(graph, X0, options, progress)
                                            : withoutWhiteNoise(graph, X0, options, progress);
-    if (N.rows() > 0)
+    if (N.rows() > 0) {
         unfoldFaces(graph, N, kMaxAlongSurface * options.noise.height, options.mayMove, removal.X);
+        limitDisplacement(X0, options, removal.X);
+    }
     return std::move(removal);
 }
 

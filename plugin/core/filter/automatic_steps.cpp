@@ -8,6 +8,7 @@
 
 #include "core/filter/fractional_steps.h"
 #include "core/mesh/mesh.h"
+#include "core/support/errors.h"
 #include "core/support/threads.h"
 
 namespace spectral {
@@ -202,8 +203,16 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
                 ahead = evaluate.predict(laplacians.current(), X, {0.25 / K}, pass.part(0.0, 0.0))
                             .Y.front();
             }
-            result.last = midpointSteps(laplacians, evaluate, X, K, std::max(K, kFinest), pass,
-                                        nullptr, &ahead);
+            const auto run = [&](const Vertices* firstQuarter) {
+                return midpointSteps(laplacians, evaluate, X, K, std::max(K, kFinest), pass,
+                                     nullptr, firstQuarter);
+            };
+            try {
+                result.last = run(&ahead);
+            } catch (const SolverFailure&) {
+                // The whole shape changes so fast that shapes ahead mislead: it has collapsed.
+                result.last = run(nullptr);
+            }
         }
         // If one of two passes had to take smaller steps, both may have taken the same ones.
         const bool isEven = result.last.sizes.size() == static_cast<std::size_t>(K);

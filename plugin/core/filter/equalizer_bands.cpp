@@ -71,7 +71,9 @@ EqualizerBands::EqualizerBands(const Vertices& V, const Faces& F, const BandOpti
     // While they are computed, they are in double precision.
     requireMemory((3.0 / kShareOfMemory) * bytes(X.rows(), options.octaves), X.rows());
     checkWeights(options.part);
-    const Interior interior(components_, fixedVerticesOf(surface_.F, X.rows(), options.boundary));
+    const std::vector<bool> isFixed = fixedVerticesOf(surface_.F, X.rows(), options.boundary);
+    keepFixed(isFixed, surface_);
+    const Interior interior(components_, isFixed);
     const LaplacianBuilder laplacians(surface_, components_, LaplacianKind::IntrinsicDelaunay,
                                       BasisUpdate::Conformal);
     const Laplacian& whole = laplacians.current();

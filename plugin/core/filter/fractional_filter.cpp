@@ -182,10 +182,11 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     // First: a mesh that is not finite has no valid feature size.
     checkMesh(V, F, options.laplacian);
     checkOptions(options);
-    const Surface surface = joinedSurface(V, F);
+    Surface surface = joinedSurface(V, F);
     const TransferFunction transfer(options.transferFunction, cutoffFrequency(options.featureSize));
-    const Interior interior(connectedComponents(surface.F, surface.X.rows()),
-                            fixedVerticesOf(surface, options));
+    const std::vector<bool> isFixed = fixedVerticesOf(surface, options);
+    keepFixed(isFixed, surface);
+    const Interior interior(connectedComponents(surface.F, surface.X.rows()), isFixed);
 
     LaplacianBuilder laplacians(surface, interior.surfaceComponents(), options.laplacian,
                                 options.basisUpdate, options.conformalShare);

@@ -172,6 +172,13 @@ Eigen::MatrixXd changed(const Eigen::MatrixXd& values, const Surface& surface,
     return after;
 }
 
+void keepFixed(const std::vector<bool>& isFixed, Surface& surface) {
+    auto& hanging = surface.hanging;
+    hanging.erase(std::remove_if(hanging.begin(), hanging.end(),
+                                 [&](const Hanging& one) { return isFixed[one.vertex]; }),
+                  hanging.end());
+}
+
 void followEdges(const Surface& surface, Vertices& displacement) {
     for (const Hanging& one : surface.hanging)
         displacement.row(one.vertex) =

@@ -47,6 +47,10 @@ Eigen::MatrixXd extended(Eigen::MatrixXd values, const Surface& surface, Index n
 Eigen::MatrixXd changed(const Eigen::MatrixXd& values, const Surface& surface,
                         const Eigen::MatrixXd& change);
 
+/// Lets the hanging vertices that are fixed stay, whatever their edges do.
+/// @param isFixed  n, of the rows of surface.X.
+void keepFixed(const std::vector<bool>& isFixed, Surface& surface);
+
 /// Lets hanging vertices follow their edges: the mean of the ends' displacements, by the share.
 /// @param displacement  n x 3, of the rows of X.
 void followEdges(const Surface& surface, Vertices& displacement);

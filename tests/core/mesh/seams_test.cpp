@@ -342,7 +342,9 @@ double largestGap(const Mesh& mesh, const Vertices& moved, double size,
     std::map<std::array<double, 2>, Index> at;
     for (Index i = 0; i < mesh.V.rows(); ++i) {
         const auto [found, isNew] = at.try_emplace({mesh.V(i, 0), mesh.V(i, 1)}, i);
-        if (!isNew) EXPECT_EQ(moved.row(i), moved.row(found->second));
+        if (!isNew) {
+            EXPECT_EQ(moved.row(i), moved.row(found->second));
+        }
     }
     double largest = 0.0;
     int count = 0;

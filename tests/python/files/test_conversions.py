@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import locale
 import re
 import shutil
 import struct
@@ -267,6 +268,13 @@ def test_a_format_that_rounds_away_the_filter_is_told(
             error = np.sqrt(np.mean((after - expected) ** 2))
             moved = np.sqrt(np.mean((expected - load_arrays(tmp_path / "in.ply")[0]) ** 2))
             assert (error > 0.01 * moved) == is_coarse
+
+
+def test_the_locale_of_the_process_stays(tmp_path: Path) -> None:
+    write_sphere(tmp_path / "in.ply")
+    before = locale.setlocale(locale.LC_ALL)
+    filter_file(tmp_path / "in.ply", tmp_path / "out.3mf", SMOOTH)
+    assert locale.setlocale(locale.LC_ALL) == before
 
 
 def test_a_format_that_cannot_be_written_is_not_offered(tmp_path: Path) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import sys
 from collections.abc import Iterator
 from gzip import GzipFile
 from pathlib import Path
@@ -75,12 +76,12 @@ def guarded(size: int, memory: float) -> Iterator[None]:
     it then: the parent reports that. Without effect unless `guard_process` was called, and on
     systems without such limits.
     """
-    try:
-        import resource
-    except ImportError:  # Windows
+    if sys.platform == "win32" or not _Guard.is_on:
         yield
         return
-    if not _Guard.is_on:
+    try:
+        import resource
+    except ImportError:
         yield
         return
     used = resource.getrusage(resource.RUSAGE_SELF)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import locale
 import os
 import re
 import shutil
@@ -162,6 +163,7 @@ def write_with_meshlab(
     if scratch.suffix.lower() in _POLYGON_FORMATS and _has_non_manifold_edges(mesh_set):
         # MeshLab would trace its polygons without end and use up all memory.
         settings["save_polygonal"] = False
+    words = locale.setlocale(locale.LC_ALL)  # to be restored: MeshLab leaves "C" after a .3mf
     try:
         mesh_set.save_current_mesh(str(scratch), **settings)
         _check_room(scratch)
@@ -175,6 +177,8 @@ def write_with_meshlab(
             f"{USUAL_FORMATS}",
             "not_written",
         ) from error
+    finally:
+        locale.setlocale(locale.LC_ALL, words)
 
 
 def _settings(mesh: Any, scratch: Path, contents: Collection[str] | None) -> dict[str, bool]:
