@@ -29,9 +29,9 @@ std::vector<std::array<Index, 2>> periodicPairs(const Vertices& V, const Faces& 
     if (V.rows() == 0) return pairs;
     const Eigen::RowVector3d low = V.colwise().minCoeff(), high = V.colwise().maxCoeff();
     const double round = kRoundOff * boundingBoxDiagonal(V);
+    if ((high - low).minCoeff() <= round) return pairs;  // a flat rectangle is no cell
     std::vector<bool> isBoundary;
     for (int axis = 0; axis < 3; ++axis) {
-        if (high[axis] - low[axis] <= round) continue;
         using Placed = std::pair<std::array<double, 2>, Index>;
         const auto side = [&](double at) {
             std::vector<Placed> found;

@@ -10,7 +10,10 @@ import pytest
 from batches import make_meshes
 from commands import PRECIOUS, assert_fails, command
 
-SIZES = {"filter": ["feature_size", "tolerance"], "denoise": ["noise_height", "noise_size"]}
+SIZES = {
+    "filter": ["feature_size", "tolerance", "max_displacement"],
+    "denoise": ["noise_height", "noise_size", "max_displacement"],
+}
 
 
 @pytest.mark.parametrize("verb", ["filter", "denoise"])

@@ -43,6 +43,7 @@ def test_every_option_reaches_the_filter(cow: Path, tmp_path: Path) -> None:
         "boundary": "fixed",
         "crease_angle": 120.0,
         "preserve_volume": True,
+        "max_displacement": "1%",
         "weight": "none",
         "result": "filtered shape",
     }
@@ -60,7 +61,13 @@ def test_every_option_reaches_the_filter(cow: Path, tmp_path: Path) -> None:
     mesh_set = pymeshlab.MeshSet()
     mesh_set.load_new_mesh(str(cow))
     mesh_set.apply_filter(
-        FILTER, **{**options, "feature_size": percent(12), "tolerance": percent(0.1)}
+        FILTER,
+        **{
+            **options,
+            "feature_size": percent(12),
+            "tolerance": percent(0.1),
+            "max_displacement": percent(1),
+        },
     )
     V, _ = arrays_of(target)
     np.testing.assert_array_equal(V, mesh_set.current_mesh().vertex_matrix())

@@ -397,7 +397,9 @@ def test_names_order_and_defaults_are_those_of_the_plugin(decimated: Decimated) 
     assert parameters.pop("keep_original") is False  # the plugin's own
     expected = DenoiseOptions().as_dict()
     assert list(parameters) == list(expected)
-    expected["noise_height"] = expected["noise_size"] = 0.0  # auto
+    for name in ("noise_height", "noise_size", "max_displacement"):
+        assert expected[name] == "auto"
+        expected[name] = 0.0
     for name in ("weight", "boundary"):
         choices = get_args(get_type_hints(DenoiseOptions)[name])
         expected[name] = choices.index(expected[name])

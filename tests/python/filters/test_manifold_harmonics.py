@@ -219,4 +219,3 @@ def test_the_defaults_of_a_mesh_set_suit_a_tiny_mesh() -> None:
     mesh_set = mesh_set_of(V, np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]))
     report = mesh_set.apply_filter(HARMONICS)
     assert len(report["eigenvalues"]) == 3
-    mesh_set.apply_filter("apply_coord_spectral_filter_fractional", spectrum="truncated")

@@ -48,6 +48,8 @@ def test_names_order_and_defaults_are_those_of_the_plugin(tetrahedron: pymeshlab
         elif name == "feature_size":
             assert default == "auto"  # of a mesh as coarse as this: 5 %
             assert value == pytest.approx(0.05 * diagonal)
+        elif name == "max_displacement":
+            assert (value, default) == (0.0, "auto")  # no bound
         elif name == "tolerance":
             assert f"{100 * value / diagonal:g}%" == default
         else:
@@ -210,6 +212,7 @@ def test_options_given_to_pymeshlab_reach_the_filter(
         basis_update="conformal",
         conformal_share=0.5,
         boundary="fixed",
+        max_displacement=Length(0.5),
     )
     tetrahedron.apply_filter(FILTER, **options.pymeshlab_parameters(tetrahedron.current_mesh()))
     script = tmp_path / "script.mlx"
