@@ -176,7 +176,7 @@ class Reference:
         return float((np.cross(a, b) * c).sum() / 6)
 
     def finished(self, X0: Array, X: Array, N: Array, height: float) -> Array:
-        X = self.unfolded(X, N, 5 * height)
+        X = limited(X0, self.unfolded(X, N, 5 * height), 6 * height)
         for _ in range(4):  # Newton's method for the volume, along the normals of the vertices
             G = self.incidence @ self.area_normals(X)
             size = np.linalg.norm(G, axis=1).sum() / 6

@@ -115,7 +115,7 @@ ALL_NEAR_CREASES = "the whole surface is within this distance of its boundary or
 ERRORS: dict[str, dict[str, str]] = {
     "T.ply": {
         **dict.fromkeys(
-            ("filter truncated", "harmonics large", "harmonics fixed"),
+            ("filter truncated", "harmonics large"),
             "choose at most 19",
         ),
         **dict.fromkeys(("texture default", "texture cotangent"), ALL_NEAR_CREASES),
