@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
-import numpy as np
-
-from meshlab_spectral.documents.digits import in_single_precision
-from meshlab_spectral.documents.document import Array
 from meshlab_spectral.documents.names import FREE_SURFER, FREE_SURFER_ENDINGS, ending_of
 from meshlab_spectral.documents.opening import PATCHED, format_of
 from meshlab_spectral.errors import FormatError
@@ -23,25 +18,6 @@ POINTS_ONLY = frozenset({"e57", "xyz"})
 SEARCHED = READABLE - {"txt"}
 
 FALLBACK = "ply"
-
-
-def _decimals(numbers: Array) -> Array:
-    return np.round(numbers, 6)
-
-
-def _six_digits(numbers: Array) -> Array:
-    size = np.where(numbers == 0, 1.0, np.abs(numbers))
-    step = 10.0 ** (np.floor(np.log10(size)) - 5)
-    return np.asarray(np.round(numbers / step) * step, dtype=np.float64)
-
-
-# Formats in which MeshLab writes coordinates with fewer digits than it has: what is left of these,
-# and what that is called.
-ROUNDED: dict[str, tuple[Callable[[Array], Array], str]] = {
-    **dict.fromkeys(("stl", "3ds", "ctm", "nxs"), (in_single_precision, "single precision")),
-    **dict.fromkeys(("dae", "json", "wrl", "x3d"), (_six_digits, "six digits")),
-    **dict.fromkeys(("3mf", "dxf", "idtf", "xyz"), (_decimals, "six decimals")),
-}
 _GIFTI = ("gii", "gii.gz")
 
 

@@ -15,14 +15,13 @@ from typing import Any
 
 import numpy as np
 
-from meshlab_spectral.documents.digits import precision_warnings
 from meshlab_spectral.documents.document import Array, Document, Indices, Part, joined
 from meshlab_spectral.documents.names import shown
 from meshlab_spectral.documents.opening import format_of, open_document
 from meshlab_spectral.documents.placement import IDENTITY, Placement
 from meshlab_spectral.documents.side_files import copy_side_files
 from meshlab_spectral.errors import FilterError, FormatError, MeshFileError, OptionError
-from meshlab_spectral.files.formats import ROUNDED, is_same_format
+from meshlab_spectral.files.formats import is_same_format
 from meshlab_spectral.files.meshlab_files import (
     DUMMY,
     check_writable,
@@ -35,6 +34,7 @@ from meshlab_spectral.files.meshlab_files import (
 )
 from meshlab_spectral.files.region import Region
 from meshlab_spectral.files.region_vertices import chosen_parts, restricted
+from meshlab_spectral.files.rounding import rounding_warnings
 from meshlab_spectral.files.script import apply_script
 from meshlab_spectral.files.sources import check_name, check_source
 from meshlab_spectral.files.touching import moved_alike, pieces
@@ -203,7 +203,7 @@ def _filter_document(
         bare = _BARE.get(scratch.suffix.lower())
         write_with_meshlab(_merged(document, verbose, shapes), scratch, source, (), bare)
         warnings = left_behind(document, scratch)
-        warnings += _rounded(joined(document.parts)[0], np.vstack(shapes), scratch)
+        warnings += rounding_warnings(joined(document.parts)[0], np.vstack(shapes), scratch)
     return _report(names, reports, document.warnings + parted + warnings)
 
 
@@ -397,14 +397,6 @@ def _signal(part: Part) -> dict[str, Array]:
     return {} if part.quality is None else {"v_scalar_array": part.quality}
 
 
-def _rounded(before: Array, after: Array, scratch: Path) -> list[str]:
-    """Return the warning, if any, that MeshLab writes this format with too few digits."""
-    rounded = ROUNDED.get(scratch.suffix[1:].lower())
-    if rounded is None or before.shape != after.shape:
-        return []
-    return precision_warnings(before, after, scratch.name, *rounded)
-
-
 def _report(names: list[str], reports: list[dict[str, Any]], warnings: list[str]) -> dict[str, Any]:
     """Combine the reports of all meshes."""
     if len(reports) == 1:
@@ -457,7 +449,7 @@ def _through_meshlab(
     else:
         read = None if lacking is None else mesh_set
         warnings = left_behind(document, scratch, read, lacking or ())
-    warnings += _rounded(before, mesh_set.current_mesh().vertex_matrix(), scratch)
+    warnings += rounding_warnings(before, mesh_set.current_mesh().vertex_matrix(), scratch)
     return {**report, "warnings": report.get("warnings", []) + warnings}
 
 

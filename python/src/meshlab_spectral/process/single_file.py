@@ -9,11 +9,8 @@ import contextlib
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from meshlab_spectral.files.comparison import Comparison
 from meshlab_spectral.files.region import Region
 from meshlab_spectral.files.sources import check_is_place, check_source
 from meshlab_spectral.files.whole_files import (
@@ -24,9 +21,12 @@ from meshlab_spectral.files.whole_files import (
 )
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import TextureOptions
-from meshlab_spectral.filters.texture import SurfaceTexture
 from meshlab_spectral.process.ahead import process_for_job
 from meshlab_spectral.process.parent import NO_LIMITS, JobLimits, ProgressCallback
+
+if TYPE_CHECKING:
+    from meshlab_spectral.files.comparison import Comparison
+    from meshlab_spectral.filters.texture import SurfaceTexture
 
 
 def write_in_child(
@@ -97,6 +97,8 @@ def compare_in_child(
         report = process.run(
             {**job, **more, "archive": archive and str(archive)}, on_progress
         ).report
+        from meshlab_spectral.files.comparison import Comparison  # a slow import
+
         return Comparison.from_report(report, archive)
 
 
@@ -116,6 +118,10 @@ def texture_in_child(
     with _archive(whole) as archive:
         more = {"archive": archive and str(archive), "region": region.given()}
         report = measure_in_child(source, options, on_progress, mesh, more)
+        import numpy as np  # a slow import, as is what needs it
+
+        from meshlab_spectral.filters.texture import SurfaceTexture
+
         if archive is None:
             return None, None, SurfaceTexture.from_report(report, np.zeros(0))
         with np.load(archive) as saved:
