@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import psutil
 import pymeshlab
 import pytest
 from helpers import refusal
@@ -49,21 +50,26 @@ def test_an_invalid_limit_is_refused(limit: Any) -> None:
         set_memory_limit(limit)
 
 
-@pytest.mark.parametrize(
-    ("options", "words"),
-    [
-        ({"steps": 1}, "needs about .* more memory, of which 0 MiB are free: simplify it"),
-        ({"steps": 1, "spectrum": "truncated"}, "harmonics of .* need about .* spectrum = full"),
-    ],
-)
-def test_a_filter_beyond_the_limit_is_refused_with_numbers(
-    options: dict[str, Any], words: str, samples: Path
-) -> None:
+@pytest.mark.parametrize("spectrum", ["full", "truncated"])
+def test_a_filter_beyond_the_limit_is_refused_with_numbers(spectrum: str, samples: Path) -> None:
     meshes = pymeshlab.MeshSet()
     meshes.load_new_mesh(str(samples / "cow.obj"))
     before = meshes.current_mesh().vertex_matrix().copy()
     set_memory_limit(1)
-    assert re.search(words, refusal(meshes, **options))
+    words = "needs about .* more memory, of which 0 MiB are free: simplify it"
+    assert re.search(words, refusal(meshes, steps=1, spectrum=spectrum))
+    np.testing.assert_array_equal(before, meshes.current_mesh().vertex_matrix())
+
+
+def test_a_basis_beyond_the_limit_is_refused_with_the_size_that_fits(samples: Path) -> None:
+    meshes = pymeshlab.MeshSet()
+    meshes.load_new_mesh(str(samples / "bunny.obj"))  # 1000 harmonics take 290 MB, the rest 28 MB
+    before = meshes.current_mesh().vertex_matrix().copy()
+    set_memory_limit(psutil.Process().memory_info().rss + 150 * MEBIBYTE)
+    words = r"harmonics of .* need about .* are free: choose at most (\d+).* spectrum = full"
+    refused = re.search(words, refusal(meshes, steps=1, spectrum="truncated", basis_size=1000))
+    assert refused
+    assert 10 < int(refused[1]) < 1000
     np.testing.assert_array_equal(before, meshes.current_mesh().vertex_matrix())
 
 
@@ -101,22 +107,32 @@ def test_every_function_keeps_to_the_limit(
     assert given_memory_limit() == 4_000_000_000
 
 
-def test_a_job_without_a_limit_has_that_of_the_environment(samples: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("is_set", [True, False], ids=["set", "environment"])
+def test_a_job_without_a_limit_has_that_of_the_environment(
+    is_set: bool, samples: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     options = FilterOptions(steps=1).as_dict()
     files = {"source": str(samples / "cow.obj"), "scratch": str(tmp_path / "out.ply")}
     job = {"task": "filter", "options": options, **files}
+    remedy = (
+        "raise set_memory_limit" if is_set else f"raise or unset the environment variable {MEMORY}"
+    )
     with MeshLabProcess() as process:
         process.run(job)
-        set_memory_limit(process.memory() + MEBIBYTE)
-        refused = f"raise or unset the environment variable {MEMORY}"
-        with pytest.raises(MemoryLimitError, match=refused):
+        limit = process.memory() + MEBIBYTE
+        if is_set:
+            set_memory_limit(limit)
+        else:
+            monkeypatch.setenv(MEMORY, str(limit))
+        with pytest.raises(MemoryLimitError, match=f"its limit: {remedy};"):
             process.run(job | {"source": str(samples / "bunny.obj")})
     with MeshLabProcess() as process:
         set_memory_limit(None)
         process.run(job)
 
 
-def test_the_limit_of_a_job_is_that_of_the_plugin(samples: Path, tmp_path: Path) -> None:
+@pytest.mark.parametrize("more", [5, 15, 20, 25])  # where reading takes too much, and filtering
+def test_the_limit_of_a_job_is_that_of_the_plugin(more: int, samples: Path, tmp_path: Path) -> None:
     def job(name: str) -> dict[str, Any]:
         options = FilterOptions(steps=1).as_dict()
         files = {"source": str(samples / name), "scratch": str(tmp_path / "out.ply")}
@@ -124,7 +140,7 @@ def test_the_limit_of_a_job_is_that_of_the_plugin(samples: Path, tmp_path: Path)
 
     with MeshLabProcess() as process:
         process.run(job("cow.obj"))
-        limit = process.memory() + 25 * MEBIBYTE
+        limit = process.memory() + more * MEBIBYTE
         with pytest.raises(MemoryLimitError, match="raise the memory limit"):
             process.run(job("bunny.obj"), limits=JobLimits(memory=limit))
         assert not (tmp_path / "out.ply.partial").exists()

@@ -21,7 +21,7 @@ from meshlab_spectral.documents.names import shown
 from meshlab_spectral.documents.opening import PATCHED
 from meshlab_spectral.documents.side_files import beside, is_outside
 from meshlab_spectral.documents.stl import HEADER, TRIANGLE
-from meshlab_spectral.errors import FormatError, MeshFileError
+from meshlab_spectral.errors import FormatError, MemoryLimitError, MeshFileError
 from meshlab_spectral.files.formats import WRITABLE
 from meshlab_spectral.files.whole_files import USUAL_FORMATS, resolved
 from meshlab_spectral.filters.calling import reason_of
@@ -89,13 +89,20 @@ def check_writable(path: Path) -> None:
 
 
 def read_with_meshlab(mesh_set: Any, source: Path) -> None:
-    """Load the one mesh of a file into a MeshSet; raises MeshFileError."""
+    """Load the one mesh of a file into a MeshSet; raises MeshFileError or MemoryLimitError."""
     import pymeshlab
 
     _check_inlined(source)
+    most, there_is = _memory_for(source), _SHARE * _core.available_memory()
     try:
-        with guarded(source.stat().st_size, _memory_for(source)):
+        with guarded(source.stat().st_size, min(most, there_is)):
             mesh_set.load_new_mesh(str(source))
+    except MemoryError as error:
+        if most <= there_is:  # more than a file of this size should need
+            raise
+        raise MemoryLimitError(
+            f"MeshLab cannot read it with {there_is / 2**20:.0f} MiB, {_SHARE:.0%} of what is free"
+        ) from error
     except (pymeshlab.PyMeshLabException, RuntimeError) as error:  # some plugins raise their own
         foreign = other_kind(source)
         if foreign is not None:
@@ -120,12 +127,11 @@ def read_with_meshlab(mesh_set: Any, source: Path) -> None:
         )
 
 
-def _memory_for(source: Path) -> float:
-    """Return the bytes that MeshLab may take for a file, with the textures beside it."""
+def _memory_for(source: Path) -> int:
+    """Return the bytes that MeshLab should need for a file, with the textures beside it."""
     with os.scandir(source.parent) as entries:
         size = sum(one.stat().st_size for one in entries if one.is_file(follow_symlinks=False))
-    most = _MESHLAB_BYTES + _TIMES * (size + source.stat().st_size)
-    return min(most, _SHARE * _core.available_memory())
+    return _MESHLAB_BYTES + _TIMES * (size + source.stat().st_size)
 
 
 def _check_inlined(source: Path) -> None:
