@@ -165,18 +165,32 @@ def test_nothing_but_coordinates_and_normals_of_a_ply_differs(field: Field, targ
 def test_nothing_but_coordinates_and_normals_of_an_obj_differs(
     field: Field, target: Target
 ) -> None:
+    """Its one normal serves faces that turn apart, so that others are added where it stands."""
     source, out = field("obj_materials/model.obj"), target("out.obj")
     report = filter_file(source, out, SMOOTH)
-    for line, new in zip(
-        source.read_bytes().splitlines(), out.read_bytes().splitlines(), strict=True
-    ):
-        if line.split()[:1] not in ([b"v"], [b"vn"]):
-            assert line == new
-        else:
+    lines, after = (path.read_bytes().splitlines() for path in (source, out))
+    first = next(k for k, line in enumerate(lines) if line[:3] == b"vn ")
+    added = len(after) - len(lines)
+    assert all(line.split()[:1] == [b"vn"] for line in after[first : first + added + 1])
+    for line, new in zip(lines, after[: first + 1] + after[first + added + 1 :], strict=True):
+        kind = line.split()[:1]
+        if kind in ([b"v"], [b"vn"]):
+            assert kind == new.split()[:1]
             assert line.split()[4:] == new.split()[4:]
+        elif kind == [b"f"]:
+            without = [[word.rpartition(b"/")[0] for word in one.split()] for one in (line, new)]
+            assert without[0] == without[1]
+        else:
+            assert line == new
+    N = np.array([line.split()[1:] for line in after if line[:3] == b"vn "], float)
+    np.testing.assert_allclose(np.linalg.norm(N, axis=1), 1, atol=1e-6)
+    words = [word for line in after if line[:2] == b"f " for word in line.split()[1:]]
+    assert {int(word.rpartition(b"/")[2]) for word in words} == {*range(1, len(N) + 1)}
+    added_text = f"{added} normals are added, as others serve faces that turn apart"
     for name in ("model.mtl", "my tex a.png", "b.png"):
         assert (out.parent / name).read_bytes() == (source.parent / name).read_bytes()
-    assert report["warnings"] == ["bump.png, which model.obj refers to, is missing"]
+    missing = "bump.png, which model.obj refers to, is missing"
+    assert report["warnings"] == [added_text, missing]
 
 
 @pytest.mark.parametrize("name", ["uv_seam_split.ply", "triangle_soup.ply"])
