@@ -53,10 +53,6 @@ constexpr int kMaxSteps = 1000;
 /// are those of single vertices of slivers.
 constexpr double kBeyond = 24.0;
 
-/// The most that a sliver's mass is increased to, in squared edges: a quarter of the mass of a
-/// vertex of equilateral triangles.
-constexpr double kMostMass = 0.22;
-
 void checkOptions(const FilterOptions& options) {
     if (options.steps < 0 || options.steps > kMaxSteps)
         throw InvalidOption("steps = " + std::to_string(options.steps) +
@@ -162,7 +158,7 @@ AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evalua
             const double size =
                 defaultFeatureSize(meanEdge, std::numeric_limits<double>::infinity());
             const double last = kBeyond * std::max(F.cutoff(), cutoffFrequency(size));
-            laplacians.boundEigenvalues(last * last, kMostMass * meanEdge * meanEdge);
+            laplacians.boundEigenvalues(last * last);
         }
         return automaticSteps(
             laplacians, evaluate, X,

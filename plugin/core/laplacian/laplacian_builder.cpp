@@ -1,10 +1,12 @@
 #include "core/laplacian/laplacian_builder.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/mesh/measures.h"
 #include "core/mesh/mesh_check.h"
 #include "core/support/errors.h"
+#include "core/support/threads.h"
 
 namespace spectral {
 
@@ -48,9 +50,23 @@ void LaplacianBuilder::scaleMass(Eigen::VectorXd factors) {
     reset();
 }
 
-void LaplacianBuilder::boundEigenvalues(double largest, double most) {
-    const Eigen::ArrayXd least = (current_.W.diagonal().array() * (2.0 / largest)).min(most);
-    if ((least > inputMass_.array()).any()) scaleMass((least / inputMass_.array()).max(1.0));
+void LaplacianBuilder::boundEigenvalues(double largest) {
+    constexpr double kShare = 0.25;  // of the mean: too little to slow down a region of slivers
+    const SparseMatrix& W = current_.W;
+    Eigen::VectorXd factors(W.rows());
+    parallelRows(W.rows(), [&](Index begin, Index end) {
+        for (Index i = begin; i < end; ++i) {
+            double around = 0.0, diagonal = 0.0, count = 0.0;
+            for (SparseMatrix::InnerIterator entry(W, i); entry; ++entry) {
+                if (entry.row() == i) diagonal = entry.value();
+                around += inputMass_[entry.row()];
+                count += 1.0;
+            }
+            const double least = std::min(2.0 * diagonal / largest, kShare * around / count);
+            factors[i] = least > inputMass_[i] ? least / inputMass_[i] : 1.0;
+        }
+    });
+    if ((factors.array() > 1.0).any()) scaleMass(std::move(factors));
 }
 
 void LaplacianBuilder::update(const Vertices& X) {

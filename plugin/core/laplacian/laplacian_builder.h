@@ -53,11 +53,12 @@ class LaplacianBuilder {
     void scaleMass(Eigen::VectorXd factors);
 
     /// Multiplies D where slivers alone cause eigenvalues of the input above `largest`: D_ii
-    /// becomes 2 W_ii / largest, but at most `most`. Such a vertex follows its neighbours at once
-    /// with either mass. It is a factor, not a lower bound, so that the mass of what collapses does
-    /// so, too.
+    /// becomes 2 W_ii / largest, but at most a quarter of the mean of D around the vertex. Such a
+    /// vertex follows its neighbours at once with either mass; where all triangles are needles, as
+    /// on a cylinder by CAD, it would not, and D remains. It is a factor, not a lower bound, so
+    /// that the mass of what collapses does so, too.
     /// @param largest  > 0, far above the eigenvalues of all details of the filter.
-    void boundEigenvalues(double largest, double most);
+    void boundEigenvalues(double largest);
 
     /// Area of the current shape: the sum of D before its lower bound and factors are applied.
     double area() const { return area_; }

@@ -139,8 +139,18 @@ TEST(ChebyshevSeries, IsBoundedByItsTail) {
 }
 
 TEST(LaplacianBuilder, BoundsTheEigenvaluesOfSlivers) {
+    // A point beside a side of a triangle, and another one between that and the side.
     Mesh mesh = testing::cube(6);
-    mesh.V.row(0) = 0.99 * mesh.V.row(1) + 0.01 * mesh.V.row(0);
+    const int p = static_cast<int>(mesh.V.rows()), q = p + 1;
+    const int a = mesh.F(0, 0), b = mesh.F(0, 1), c = mesh.F(0, 2);
+    mesh.V.conservativeResize(q + 1, 3);
+    mesh.V.row(p) = 0.49 * mesh.V.row(a) + 0.49 * mesh.V.row(b) + 0.02 * mesh.V.row(c);
+    mesh.V.row(q) = 0.495 * mesh.V.row(a) + 0.495 * mesh.V.row(b) + 0.01 * mesh.V.row(c);
+    Faces split(5, 3);
+    split << b, c, p, c, a, p, a, b, q, b, p, q, p, a, q;
+    mesh.F.conservativeResize(mesh.F.rows() + 4, 3);
+    mesh.F.row(0) = split.row(0);
+    mesh.F.bottomRows(4) = split.bottomRows(4);
     const Surface surface = surfaceOf(mesh.V, mesh.F);
     LaplacianBuilder laplacians(surface, connectedComponents(surface.F, surface.X.rows()),
                                 LaplacianKind::IntrinsicDelaunay, BasisUpdate::Conformal);
@@ -150,16 +160,31 @@ TEST(LaplacianBuilder, BoundsTheEigenvaluesOfSlivers) {
     std::sort(sorted.begin(), sorted.end());
     const double largest = 1.01 * sorted[sorted.size() * 9 / 10];
     ASSERT_LT(largest, sorted[sorted.size() - 1]);
-    const double limit = 0.25 * D.mean();
-    laplacians.boundEigenvalues(largest, limit);
+    const SparseMatrix W = laplacians.current().W;
+    laplacians.boundEigenvalues(largest);
     const Eigen::VectorXd factor = laplacians.current().D.cwiseQuotient(D);
+    EXPECT_GT(factor.maxCoeff(), 2.0);
     for (Index i = 0; i < D.size(); ++i) {
-        const double most = std::max(1.0, limit / D[i]);
+        double sum = 0.0, count = 0.0;
+        for (SparseMatrix::InnerIterator entry(W, i); entry; ++entry, count += 1.0)
+            sum += D[entry.row()];
+        const double most = std::max(1.0, 0.25 * sum / count / D[i]);
         EXPECT_NEAR(factor[i], std::clamp(local[i] / largest, 1.0, most), 1e-12) << i;
     }
     // What shrinks does so with its mass.
     laplacians.update(0.1 * surface.X);
     EXPECT_TRUE(laplacians.current().D.isApprox(0.01 * factor.cwiseProduct(D), 1e-12));
+}
+
+TEST(LaplacianBuilder, KeepsTheMassesOfARegionOfNeedles) {
+    Mesh mesh = testing::icosphere(3);
+    mesh.V.col(2) *= 100.0;  // 100 times as long as wide
+    const Surface surface = surfaceOf(mesh.V, mesh.F);
+    LaplacianBuilder laplacians(surface, connectedComponents(surface.F, surface.X.rows()),
+                                LaplacianKind::IntrinsicDelaunay, BasisUpdate::Conformal);
+    const double area = laplacians.current().D.sum();
+    laplacians.boundEigenvalues(1e-3);
+    EXPECT_LT(laplacians.current().D.sum(), 1.02 * area);
 }
 
 TEST(Products, GiveUpWhenTooManyAreExpected) {
