@@ -27,6 +27,13 @@ Evaluation joined(std::vector<FullSpectrumResult> results) {
     return evaluation;
 }
 
+/// Whether there are components so small that no error over the surface tells theirs.
+bool hasDebris(const ConstantModes& components) {
+    constexpr double kDebris = 1e-3;  // of the mass; what the errors of automatic steps leave out
+    return components.count() > 1 &&
+           components.masses().minCoeff() < kDebris * components.masses().sum();
+}
+
 }  // namespace
 
 Evaluation evaluateInKrylovSpaces(const Laplacian& laplacian, const ShiftedLdlt& ldlt,
@@ -75,6 +82,8 @@ Evaluation FullSpectrumEvaluator::evaluate(const Laplacian& laplacian, const Eig
             return *std::move(evaluation);
         throw;
     }
+    // A series of products is as accurate for debris; Lanczos spaces do not see it.
+    options.atEveryVertex = atEveryVertex_ || hasDebris(laplacian.constants);
     return evaluateInKrylovSpaces(laplacian, ldlt_, gains, X, std::move(options), progress);
 }
 
