@@ -53,6 +53,7 @@ OTHER_VALUES = {
     "boundary": "fixed",
     "crease_angle": "150",
     "preserve_volume": "false",
+    "max_displacement": "20",  # per cent
     "weight": "none",
     "result": "filtered shape",
     "keep_original": "true",
@@ -87,6 +88,8 @@ def test_the_dialog_shows_every_parameter_with_its_default(
         editor = row.editors[-1]
         if isinstance(default, bool):
             assert editor.checked == default, name
+        elif name == "max_displacement":
+            assert (default, float(editor.text)) == ("auto", 0.0)  # no bound
         elif name == "transfer_function":
             assert editor.text == default
         elif name == "feature_size":
