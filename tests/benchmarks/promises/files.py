@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator
@@ -35,8 +36,10 @@ FIELD = (
     "lh.white",
 )
 CUT = ("uv_seam_split.ply", "triangle_soup.ply")
-# What an OBJ file keeps to the byte: all but coordinates and normals.
-FOLLOWS = ({b"v"}, {b"vn"})
+# What an OBJ file keeps to the byte: all but coordinates, normals, of which some may become
+# several, and the numbers of normals in faces.
+COORDINATES, NORMAL, FACE = (re.compile(rb"[ \t]*" + word + rb"\s") for word in (b"v", b"vn", b"f"))
+NUMBER_OF_NORMAL = re.compile(rb"(?<=/)\d+(?=\s|$)")
 
 
 def promises() -> Iterator[Promise]:
@@ -137,9 +140,19 @@ def lost() -> Found:
 def other_lines(name: str) -> int:
     with tempfile.TemporaryDirectory() as folder:
         before, after = filtered(name, Path(folder), SMOOTH)
-        lines = [path.read_bytes().splitlines(keepends=True) for path in (before, after)]
-    pairs = list(zip(*lines, strict=True))
-    return sum(old != new and set(old.split()[:1]) not in FOLLOWS for old, new in pairs)
+        kept = [list(kept_lines(path)) for path in (before, after)]
+    return sum(old != new for old, new in zip(*kept, strict=True))
+
+
+def kept_lines(path: Path) -> Iterator[bytes]:
+    """Yield the lines of an OBJ file of v/vt/vn corners, as far as they keep their bytes."""
+    for line in path.read_bytes().splitlines(keepends=True):
+        if COORDINATES.match(line):
+            yield b"v"
+        elif FACE.match(line):
+            yield NUMBER_OF_NORMAL.sub(b"", line)
+        elif not NORMAL.match(line):
+            yield line
 
 
 def came_apart(name: str, options: Options) -> int:
