@@ -25,7 +25,7 @@ echo "| installed | MB |"
 echo "| --- | --- |"
 echo "| nothing but pip | $(size) |"
 echo "| the wheel, $(du -B1000000 "$wheel" | cut -f1) MB to download | $(size "$wheel") |"
-for extra in draco matrices cluster plots render formats meshlab; do
+for extra in draco maps matrices cluster plots render formats meshlab; do
     echo "| with \`$extra\` | $(size "$wheel[$extra]") |"
 done
-echo "| with all of them | $(size "$wheel[cluster,draco,formats,matrices,meshlab,pictures]") |"
+echo "| with all of them | $(size "$wheel[cluster,draco,formats,maps,matrices,meshlab,pictures]") |"

@@ -11,6 +11,7 @@ _PACKAGES = {
     "cluster": ["distributed"],
     "draco": ["DracoPy"],
     "formats": ["nibabel", "pyvista"],
+    "maps": ["rasterio", "surfalize"],
     "matrices": ["scipy"],
     "meshlab": ["pymeshlab"],
     "plots": ["matplotlib"],

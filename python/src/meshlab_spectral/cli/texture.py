@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -60,7 +61,8 @@ def texture_command(
     overwrite: Overwrite = False,
     mesh: OneMesh = None,
     unit: Annotated[
-        str, typer.Option(metavar="UNIT", help="What a length is in the file, such as mm or µm.")
+        str,
+        typer.Option(metavar="UNIT", help="What a length is, such as mm; else as the file says."),
     ] = "",
     smr: Annotated[
         list[float] | None,
@@ -123,12 +125,10 @@ def texture_command(
                 write_texture(V, F, texture, scratch)
             if picture is not None:
                 draw_texture(V, F, texture, picture, source.name)
-            measured.append((source, texture))
+            measured.append((source, replace(texture, unit=unit or texture.unit)))
             for warning in texture.warnings:
                 print_warning(f"{source}: {warning}" if many else warning)
-        records = [
-            _record(source, texture, output, unit, smr or ()) for source, texture in measured
-        ]
+        records = [_record(source, texture, output, smr or ()) for source, texture in measured]
         if table is not None:
             with writing_whole(table) as rows:
                 _write_table(records, rows)
@@ -136,9 +136,9 @@ def texture_command(
         whole = {"files": records} if many else records[0]
         typer.echo(json.dumps({**whole, "versions": versions()}))
     elif many:
-        print_result(_table_of_many(records, unit))
+        print_result(_table_of_many(records))
     else:
-        print_result(table_of(_rows(measured[0][1], unit, smr or ()), sources[0].name))
+        print_result(table_of(_rows(measured[0][1], smr or ()), sources[0].name))
     if not as_json:
         for path in (output, picture, table):
             if path is not None:
@@ -148,13 +148,12 @@ def texture_command(
 
 
 def _record(
-    source: Path, texture: SurfaceTexture, output: Path | None, unit: str, smr: Sequence[float]
+    source: Path, texture: SurfaceTexture, output: Path | None, smr: Sequence[float]
 ) -> dict[str, Any]:
     """Return all that is known of a file, for JSON."""
     record: dict[str, Any] = {
         "input": str(source),
         "output": None if output is None else str(output),
-        **({"unit": unit} if unit else {}),
         **texture.report,
     }
     if smr:
@@ -176,18 +175,24 @@ def _write_table(records: Sequence[dict[str, Any]], path: Path) -> None:
         writer.writerows(plain)
 
 
-def _table_of_many(records: Sequence[dict[str, Any]], unit: str) -> Table:
-    title = f"Surface texture, lengths in {unit}" if unit else "Surface texture"
+def _table_of_many(records: Sequence[dict[str, Any]]) -> Table:
+    units = {one.get("unit", "") for one in records}
+    title = "Surface texture"
+    if len(units) == 1 and any(units):
+        title += f", lengths in {units.pop()}"
     table = Table(title=title, title_justify="left", title_style="bold")
     table.add_column("file", style="cyan")
-    for name in _COLUMNS:
+    for name in ("unit",) * (len(units) > 1) + _COLUMNS:
         table.add_column(name, justify="right")
     for one in records:
-        table.add_row(Path(one["input"]).name, *(f"{one[name]:.4g}" for name in _COLUMNS))
+        numbers = [f"{one[name]:.4g}" for name in _COLUMNS]
+        table.add_row(Path(one["input"]).name, *[one.get("unit", "")] * (len(units) > 1), *numbers)
     return table
 
 
-def _rows(texture: SurfaceTexture, unit: str, smr: Sequence[float]) -> list[tuple[str, str]]:
+def _rows(texture: SurfaceTexture, smr: Sequence[float]) -> list[tuple[str, str]]:
+    unit = texture.unit
+
     def length(number: float) -> str:
         return f"{number:.4g} {unit}".rstrip()
 

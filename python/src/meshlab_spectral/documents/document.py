@@ -39,6 +39,8 @@ class Part:
         4 x 4 transforms of the vertices to where the scene has the mesh again.
     is_shown
         Whether it is in the scene that the file shows first.
+    unit
+        What a length is; "" if the file does not say so.
     """
 
     name: str
@@ -48,6 +50,7 @@ class Part:
     selected: NDArray[np.bool_] | None = None
     copies: tuple[Array, ...] = ()
     is_shown: bool = True
+    unit: str = ""
 
 
 def joined(parts: Sequence[Part]) -> tuple[Array, Indices]:

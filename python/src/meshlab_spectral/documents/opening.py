@@ -35,6 +35,10 @@ _MODULES = {
     "gii.gz": "brain",
 }
 PATCHED = frozenset(_MODULES) | FREE_SURFER_ENDINGS
+# Height maps: only read.
+INSTRUMENTS = frozenset({"al3d", "gwy", "nms", "opd", "plu", "plux", "sdf", "sur", "tmd", "x3p"})
+TERRAINS = frozenset({"tif", "tiff"})
+_MODULES |= dict.fromkeys(INSTRUMENTS | TERRAINS, "height_map")
 
 
 def format_of(path: Path) -> str | None:

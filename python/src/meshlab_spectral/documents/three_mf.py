@@ -36,6 +36,14 @@ _TAG_BYTES = 250  # of what ElementTree makes of a tag, at least
 _MOST_PLACEMENTS = 1000  # of an object: those of nested components multiply
 _TAKEN = [("vertex", ("x", "y", "z")), ("triangle", ("v1", "v2", "v3"))]
 _LEVEL = 1  # of zlib: takes a third of the default's time, for files a quarter larger
+_UNITS = {
+    "micron": "µm",
+    "millimeter": "mm",
+    "centimeter": "cm",
+    "inch": "in",
+    "foot": "ft",
+    "meter": "m",
+}
 _CONTENTS = {
     "basematerials": "materials",
     "colorgroup": "colours",
@@ -252,6 +260,8 @@ def _document(path: Path, data: bytes, archive: zipfile.ZipFile) -> Document:
     for key, matrices in _matrices(objects, models[root].items, budget).items():
         if objects[key].is_part:
             document.add(key[0], objects[key], matrices)
+    unit = _UNITS.get(models[root].unit, "")
+    document.parts = [replace(part, unit=unit) for part in document.parts]
     if not document.parts:
         raise unsupported(path, "holds no triangles", "give a file with a triangle mesh")
     return document

@@ -5,17 +5,18 @@ from __future__ import annotations
 from pathlib import Path
 
 from meshlab_spectral.documents.names import FREE_SURFER, FREE_SURFER_ENDINGS, ending_of
-from meshlab_spectral.documents.opening import PATCHED, format_of
+from meshlab_spectral.documents.opening import INSTRUMENTS, PATCHED, TERRAINS, format_of
 from meshlab_spectral.errors import FormatError
 
 _BOTH = {"3ds", "3mf", "ctm", "dae", "e57", "obj", "off", "ply", "stl", "wrl", "x3d", "xyz"}
 _READ_ONLY = {"apts", "asc", "bre", "fbx", "glb", "gltf", "pdb", "pts", "ptx", "qobj", "tri"}
-READABLE = frozenset(_BOTH | _READ_ONLY | {"txt", "vmi", "x3dv"} | PATCHED)
+READABLE = frozenset(_BOTH | _READ_ONLY | {"txt", "vmi", "x3dv"} | PATCHED | INSTRUMENTS | TERRAINS)
 WRITABLE = frozenset(_BOTH | {"dxf", "idtf", "json", "nxs", "nxz"})
 # MeshLab drops the faces in these without an error.
 POINTS_ONLY = frozenset({"e57", "xyz"})
-# Searched for in folders. MeshLab reads any .txt as a point list, which is rarely intended.
-SEARCHED = READABLE - {"txt"}
+# Searched for in folders. MeshLab reads any .txt as a point list, which is rarely intended, and
+# most .tif are textures.
+SEARCHED = READABLE - TERRAINS - {"txt"}
 
 FALLBACK = "ply"
 _GIFTI = ("gii", "gii.gz")
@@ -31,7 +32,8 @@ def is_same_format(source: Path, target: Path) -> bool:
         return given not in (READABLE | WRITABLE) - FREE_SURFER_ENDINGS
     if ending in _GIFTI:
         return given in _GIFTI
-    return (ending or ending_of(source.name).lower()) == given
+    own = ending or ending_of(source.name).lower()
+    return own == given and given not in INSTRUMENTS | TERRAINS
 
 
 def check_ending(path: Path, what: str, *endings: str) -> None:

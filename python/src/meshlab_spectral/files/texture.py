@@ -49,4 +49,5 @@ def texture_of(
     texture = surface_texture(V, F, options, selection=selection, progress=on_stage)
     if archive is not None:
         np.savez(archive, vertices=V, faces=F, height=texture.height)
-    return {**texture.report}
+    units = {part.unit for part in parts}
+    return {**texture.report, **({"unit": units.pop()} if len(units) == 1 and any(units) else {})}

@@ -342,3 +342,5 @@ class TextureReport(_TextureReport, total=False):
 
     form_radius: float
     """Of the sphere or cylinder that was fitted, length."""
+    unit: str
+    """What a length is, if the file says so."""

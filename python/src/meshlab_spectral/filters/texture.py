@@ -69,6 +69,8 @@ class SurfaceTexture:
         Problems that were not errors.
     form_radius
         Radius of the sphere or cylinder that was fitted, if one was.
+    unit
+        What a length is, if the file says so; else "".
     """
 
     height: NDArray[np.float64]
@@ -99,6 +101,7 @@ class SurfaceTexture:
     error_estimate: float
     warnings: list[str]
     form_radius: float | None = None
+    unit: str = ""
 
     def material_ratio(self, height: ArrayLike) -> NDArray[np.float64]:
         """Return Smr(c): shares of the area, 0 to 1, that are at least as high as `height`.
@@ -115,8 +118,9 @@ class SurfaceTexture:
         """All numbers but the heights of the vertices, for JSON."""
         numbers = {one.name: getattr(self, one.name) for one in fields(self)}
         del numbers["height"]
-        if self.form_radius is None:
-            del numbers["form_radius"]
+        for name in ("form_radius", "unit"):
+            if not numbers[name]:
+                del numbers[name]
         return cast(TextureReport, plain(numbers))
 
     @classmethod
