@@ -77,12 +77,14 @@ REPORTS = {
 }
 # Entries that Python adds, in place of all others but the warnings.
 COLUMNS = {"ScalarsReport": ("columns", "of values n x k, their k reports, in place of these")}
-# Entries that Python adds, besides the others.
+# Entries that Python adds, besides the others, and their types.
 ADDED = {
     "DenoiseReport": (
         "noise_heights",
         "with `store_noise_height`, height of the noise at each of the n vertices, length; 0: none",
-    )
+        "list[float]",
+    ),
+    "TextureReport": ("unit", "what a length is, if the file says so", "str"),
 }
 # With these, where a filter has them, its report has all entries that there may be.
 MORE = {"spectrum": "truncated", "basis_size": 20, "steps": 1, "form": "sphere"}
@@ -233,12 +235,23 @@ def _torus(rings: int = 12) -> tuple[Any, Any]:
     return np.column_stack([radius * np.cos(u), radius * np.sin(u), 0.7 * np.sin(v)]), F
 
 
+def _map(size: int = 24) -> tuple[Any, Any]:
+    """Return crossed waves over a regular grid."""
+    y, x = (index.ravel() for index in np.indices((size, size)))
+    a = np.arange(size * size).reshape(size, size)[:-1, :-1].ravel()
+    F = np.vstack([[a, a + 1, a + size], [a + 1, a + size + 1, a + size]])
+    F = F.reshape(2, 3, -1).swapaxes(1, 2).reshape(-1, 3).astype(np.int32)
+    return np.column_stack([x, y, 0.2 * np.sin(x) + 0.2 * np.sin(y)]), F
+
+
 def _kinds_of(name: str) -> dict[str, str]:
     """Return the types of a report's entries, from runs."""
-    V, F = _torus()
     known = {one["name"] for one in _filter_named(name)["parameters"]}
     kinds: dict[str, str] = {}
-    for more in ({}, {key: value for key, value in MORE.items() if key in known}):
+    runs = [(_torus(), {}), (_torus(), {key: MORE[key] for key in MORE if key in known})]
+    if "form" in known:
+        runs.append((_map(), {"form": "plane", "waviness": 3.0}))
+    for (V, F), more in runs:
         done = _core.apply(name, V, F, more, values=np.abs(V) if "color" in name else V[:, :1])
         for entry, value in done["report"].items():
             kinds[entry] = "list[float]" if np.ndim(value) else type(value).__name__
@@ -256,8 +269,8 @@ def _report_of(table: str) -> str:
         entries = [(*one[:2], False) for one in [COLUMNS[table], *entries]]
         kinds["columns"] = f"list[{table}]"
     if table in ADDED:
-        entries.append((*ADDED[table], False))
-        kinds[ADDED[table][0]] = "list[float]"
+        added, meaning, kinds[added] = ADDED[table]
+        entries.append((added, meaning, False))
     if "summary" in kinds:
         entries.append(("summary", "what was found and done, in one line", True))
     entries.append(("warnings", "problems that were not errors, and what to do about them", True))

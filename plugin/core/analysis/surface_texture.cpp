@@ -442,6 +442,9 @@ SurfaceTexture surfaceTexture(const Vertices& V, const Faces& F, const TextureOp
                             "one");
     static_cast<TextureParameters&>(texture) =
         textureParameters(heights.h, heights.reference, mesh.surface.F, evaluated);
+    Vertices points(heights.h.size(), 3);
+    for (Index i = 0; i < points.rows(); ++i) points.row(i) = V.row(mesh.surface.vertex[i]);
+    texture.lengths = textureLengths(heights.h, points, heights.reference, evaluated);
     for (Index i = 0; i < heights.h.size(); ++i)
         if (!evaluated[i]) heights.h[i] = 0.0;
     texture.height = extended(heights.h, mesh.surface, V.rows());

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "core/analysis/autocorrelation.h"
 #include "core/analysis/height_statistics.h"
 #include "core/laplacian/laplacian_builder.h"
 #include "core/support/progress.h"
@@ -47,6 +48,7 @@ constexpr double kHolePerCutoff = 0.25;
 
 /// The roughness of a surface, S-L surface in the words of ISO 25178-2, and its parameters.
 struct SurfaceTexture : TextureParameters {
+    TextureLengths lengths;   ///< Of a height map.
     Eigen::VectorXd height;   ///< n: height above the reference surface along its normal, length
                               ///< units; 0 where it is left out, and at unreferenced vertices.
     int evaluated = 0;        ///< Number of vertices that count.

@@ -114,6 +114,14 @@ Entries<Measured> textureEntries() {
          [](const R& r) -> Value { return r.Smr1; }},
         {"Smr2", "share of the area above the lower end of the core, 0 to 1",
          [](const R& r) -> Value { return r.Smr2; }},
+        {"Sal", "of a height map: shortest lag at which the autocorrelation falls to .2, length",
+         [](const R& r) -> Value { return r.lengths.Sal; },
+         [](const R& r) { return r.lengths.Sal > 0.0; }},
+        {"Str",
+         "of a height map: Sal over the longest such lag, 1 without a direction; none if that is "
+         "longer than half of the map",
+         [](const R& r) -> Value { return r.lengths.Str; },
+         [](const R& r) { return r.lengths.Str > 0.0; }},
         {"area", "of the reference surface where it is evaluated, length²",
          [](const R& r) -> Value { return r.area; }},
         {"histogram_heights", "centres of the 64 bins of the histogram, ascending, length",
@@ -155,8 +163,10 @@ std::string textOf(const Measured& texture) {
          << texture.Sv << ", Sz " << texture.Sz << "\n  Ssk " << texture.Ssk << ", Sku "
          << texture.Sku << ", Sdq " << texture.Sdq << ", Sdr " << 100.0 * texture.Sdr << " %\n  Sk "
          << texture.Sk << ", Spk " << texture.Spk << ", Svk " << texture.Svk << ", Smr1 "
-         << 100.0 * texture.Smr1 << " %, Smr2 " << 100.0 * texture.Smr2
-         << " %\n  evaluated: " << texture.evaluated << " vertices; left out: " << texture.leftOut
+         << 100.0 * texture.Smr1 << " %, Smr2 " << 100.0 * texture.Smr2 << " %";
+    if (texture.lengths.Sal > 0.0) text << "\n  Sal " << texture.lengths.Sal;
+    if (texture.lengths.Str > 0.0) text << ", Str " << texture.lengths.Str;
+    text << "\n  evaluated: " << texture.evaluated << " vertices; left out: " << texture.leftOut
          << " within a cutoff of boundaries and creases";
     if (texture.formRadius > 0.0) text << "\n  form: of radius " << texture.formRadius;
     return text.str();
@@ -232,7 +242,8 @@ Filter surfaceTextureContract() {
         "compute_scalar_surface_texture_per_vertex",
         "Measures how *rough* a surface is, on any shape: separates roughness from waviness and "
         "form with the Gaussian filter of ISO 16610-61, a spectral low-pass, and reports the "
-        "parameters of ISO 25178-2: Sa, Sq, Ssk, Sku, Sp, Sv, Sz, Sdq, Sdr. The height of each "
+        "parameters of ISO 25178-2: Sa, Sq, Ssk, Sku, Sp, Sv, Sz, Sdq, Sdr, Sk, Spk, Svk, of "
+        "height maps Sal, Str. The height of each "
         "vertex above the smooth surface, in the units of the mesh, becomes the vertex quality; "
         "no vertex moves.",
         "",

@@ -11,10 +11,11 @@ import pytest
 import rasterio
 import surfalize
 from commands import command
-from meshlab_spectral import MeshFileError
+from meshlab_spectral import MeshFileError, surface_texture
 from meshlab_spectral.documents.document import Array, Part
 from meshlab_spectral.documents.height_map import read
 from rasterio.transform import Affine
+from scipy.ndimage import gaussian_filter
 
 DX, DY = 0.5, 0.75  # micrometres, or metres
 pytestmark = pytest.mark.filterwarnings("ignore:The surface has different pixel size")
@@ -156,6 +157,17 @@ def test_texture_of_a_map_is_that_of_surfalize_in_micrometres(tmp_path: Path) ->
     for name in ("Sa", "Sq", "Sz", "Sku", "Sdq"):
         assert record[name] == pytest.approx(getattr(surface, name)(), rel=0.01), name
     assert record["unit"] == "µm"
+
+
+def test_autocorrelation_lengths_of_a_map_are_those_of_surfalize(tmp_path: Path) -> None:
+    noise = np.random.default_rng(1).normal(size=(200, 220))
+    z = gaussian_filter(noise, (4, 6), mode="wrap")
+    path = saved(z / z.std(), tmp_path / "map.sdf")
+    (part,) = read(path).parts
+    texture = surface_texture(part.vertices, part.faces, form="plane", waviness="100%")
+    surface = surfalize.Surface.load(path).level()
+    assert texture.Sal == pytest.approx(surface.Sal(), rel=0.01)
+    assert texture.Str == pytest.approx(surface.Str(), rel=0.01)
 
 
 def test_a_map_becomes_a_mesh_and_is_never_written(tmp_path: Path) -> None:

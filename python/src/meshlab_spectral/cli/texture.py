@@ -203,6 +203,9 @@ def _rows(texture: SurfaceTexture, smr: Sequence[float]) -> list[tuple[str, str]
     )
     above = (f"{texture.bearing_heights[percent]:.4g}" for percent in _BEARING)
     form = [] if texture.form_radius is None else [("Radius of the form", texture.form_radius)]
+    lags = [] if texture.Sal is None else [("Sal, autocorrelation length", length(texture.Sal))]
+    if texture.Str is not None:
+        lags.append(("Str, aspect ratio", f"{texture.Str:.4g}"))
     return [
         ("Waviness cutoff (L-filter)", length(texture.waviness) if texture.waviness else "none"),
         ("Noise cutoff (S-filter)", length(texture.noise) if texture.noise else "none"),
@@ -219,6 +222,7 @@ def _rows(texture: SurfaceTexture, smr: Sequence[float]) -> list[tuple[str, str]
         ("Spk, reduced peaks", length(texture.Spk)),
         ("Svk, reduced valleys", length(texture.Svk)),
         ("Smr1, Smr2", f"{100 * texture.Smr1:.4g} %, {100 * texture.Smr2:.4g} %"),
+        *lags,
         *((f"Smr({c:g})", f"{100 * float(texture.material_ratio(c)):.4g} %") for c in smr),
         ("Exceeded by 10 / 50 / 90 % of the area", f"{' / '.join(above)} {unit}".rstrip()),
         *((name, length(radius)) for name, radius in form),

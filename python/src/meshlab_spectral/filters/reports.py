@@ -340,6 +340,11 @@ class _TextureReport(TypedDict):
 class TextureReport(_TextureReport, total=False):
     """Report of `SurfaceTexture`; lengths are in the units of the mesh."""
 
+    Sal: float
+    """Of a height map: shortest lag at which the autocorrelation falls to .2, length."""
+    Str: float
+    """Of a height map: Sal over the longest such lag, 1 without a direction; none if that is longer
+    than half of the map."""
     form_radius: float
     """Of the sphere or cylinder that was fitted, length."""
     unit: str

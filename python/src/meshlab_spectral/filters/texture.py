@@ -67,6 +67,10 @@ class SurfaceTexture:
         Estimated root mean square error of the heights, length units.
     warnings
         Problems that were not errors.
+    Sal, Str
+        Of a height map, whose vertices are on a regular grid: shortest lag at which the
+        autocorrelation falls to .2, length units; that over the longest such lag, 0 to 1, or None
+        if this is longer than half of the map, as along grooves.
     form_radius
         Radius of the sphere or cylinder that was fitted, if one was.
     unit
@@ -100,6 +104,8 @@ class SurfaceTexture:
     vertices_too_thin: int
     error_estimate: float
     warnings: list[str]
+    Sal: float | None = None
+    Str: float | None = None
     form_radius: float | None = None
     unit: str = ""
 
@@ -118,7 +124,7 @@ class SurfaceTexture:
         """All numbers but the heights of the vertices, for JSON."""
         numbers = {one.name: getattr(self, one.name) for one in fields(self)}
         del numbers["height"]
-        for name in ("form_radius", "unit"):
+        for name in ("Sal", "Str", "form_radius", "unit"):
             if not numbers[name]:
                 del numbers[name]
         return cast(TextureReport, plain(numbers))
