@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# Runs tests of the module _core with AddressSanitizer and UndefinedBehaviorSanitizer, or with
-# ThreadSanitizer, beside the built package (`make demo` builds it): each kind takes five minutes of
-# building and a few of tests.
+# Runs tests of the module _core, or the C++ tests, with AddressSanitizer and
+# UndefinedBehaviorSanitizer, or with ThreadSanitizer, beside the built package (`make demo` builds
+# it): each kind takes five minutes of building and a few of tests.
 #
-# usage: sanitizers.sh [address|thread] [TESTS]
+# usage: sanitizers.sh [address|thread] [cpp|TESTS]
 #
+#   cpp     the C++ tests, by ctest
 #   TESTS   of pytest instead of the usual ones, such as tests/python/tiles; the processes that they
 #           start are checked, too
 #
@@ -34,11 +35,15 @@ esac
 
 build=build/sanitize-$kind
 cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo \
-    -DSPECTRAL_BUILD_PLUGIN=OFF -DSPECTRAL_BUILD_TESTS=OFF -DSPECTRAL_BUILD_PYTHON=ON \
+    -DSPECTRAL_BUILD_PLUGIN=OFF -DSPECTRAL_BUILD_PYTHON=ON \
     -Dmuparser_DIR="$PWD/build/muparser/lib/cmake/muparser" \
     -DPython_EXECUTABLE="$PWD/.venv/bin/python" \
     -DCMAKE_CXX_FLAGS="$flags -fno-omit-frame-pointer -g1 -O1" \
-    -DCMAKE_MODULE_LINKER_FLAGS="$flags"
+    -DCMAKE_EXE_LINKER_FLAGS="$flags" -DCMAKE_MODULE_LINKER_FLAGS="$flags"
+if [ "${tests[*]}" = cpp ]; then
+    cmake --build "$build"
+    exec ctest --test-dir "$build" --output-on-failure --no-tests=error
+fi
 cmake --build "$build" --target _core
 
 # The installed package with another module, before the one in .venv.

@@ -455,10 +455,18 @@ def _nesting(path: Path, size: int, rng: Rng) -> None:
         path.write_text(gifti(POINTS, TRIANGLES, f"<MetaData>{tags}</MetaData>"))
 
 
-@_kind("tags", "dae", "x3d")
+@_kind("tags", "dae", "x3d", "wrl")
 def _tags(path: Path, size: int, rng: Rng) -> None:
-    heads = {".dae": "<COLLADA>", ".x3d": "<X3D><Scene>"}
-    path.write_text(heads[path.suffix] + "<node " * (size // 6))
+    """Nodes without an end, in the folder of a large file that has nothing to do with them."""
+    with path.with_name("beside.raw").open("wb") as file:
+        file.truncate(1 << 33)  # without a block on the disk
+    heads = {
+        ".dae": ("<COLLADA>", "<node "),
+        ".x3d": ("<X3D><Scene>", "<node "),
+        ".wrl": ("#VRML V2.0 utf8\n", ["Group { children [ ", "Shape { "][rng.integers(2)]),
+    }
+    head, node = heads[path.suffix]
+    path.write_text(head + node * (size // len(node)))
 
 
 # --- names

@@ -11,11 +11,13 @@ import hostile_files
 import numpy as np
 import pytest
 from hostile_files import KINDS, SECRET, write_hostile
+from meshlab_spectral.documents import budget
 from meshlab_spectral.documents.names import shown
 from meshlab_spectral.documents.opening import open_document
 from meshlab_spectral.documents.polygons import triangles
 from meshlab_spectral.documents.side_files import beside
-from meshlab_spectral.errors import MeshFileError
+from meshlab_spectral.errors import MemoryLimitError, MeshFileError
+from meshlab_spectral.files.meshlab_files import named_files
 
 OWN = [name for name, (ending, _) in KINDS.items() if ending not in ("x3d", "dae", "wrl")]
 SIZE = 100_000  # bytes, about
@@ -122,6 +124,43 @@ def test_a_file_that_a_mesh_names_is_one_in_its_folder_links_resolved(tmp_path: 
 def test_the_reason_is_told_with_the_number(name: str, words: str, folder: Path) -> None:
     with pytest.raises(MeshFileError, match=words):
         open_document(write_hostile(name, folder, SIZE, 1))
+
+
+@pytest.mark.parametrize(
+    "name", ["blanks.3mf", "no indices.gltf", "zeros.surf.gii.gz", "counts.vtp", "counts.vtk"]
+)
+def test_a_lack_of_memory_is_not_called_a_fault_of_the_file(
+    name: str, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(budget._core, "available_memory", lambda: 1000.0)
+    with pytest.raises(MemoryLimitError, match="50% of the memory that is free"):
+        open_document(write_hostile(name, folder, SIZE, 1))
+
+
+@pytest.mark.parametrize(("there_is", "kind"), [(1e6, MemoryLimitError), (1e12, MeshFileError)])
+def test_a_reader_without_memory_is_told_whose_fault_it_is(
+    there_is: float, kind: type[Exception], folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(budget._core, "available_memory", lambda: there_is)
+    taken = budget.Budget(folder / "a.vtp", 1000)
+    with pytest.raises(kind, match="what its reader makes of it"), budget.guarded(taken):
+        raise MemoryError
+
+
+def test_meshlab_gets_memory_for_the_files_that_a_mesh_names(folder: Path) -> None:
+    (folder / "maps").mkdir()
+    for name in ("maps/a b.png", "c.jpg", "near.mtl", "data 1.bin", "other.png", "e.x3d"):
+        (folder / name).write_bytes(b"c.jpg" if name == "other.png" else b"")
+    texts = {
+        "a.obj": ("mtllib near.mtl", {"near.mtl"}),
+        "a.mtl": ("map_Kd maps/a b.png\nmap_Ks -s 1 1 1 c.jpg", {"maps/a b.png", "c.jpg"}),
+        "a.gltf": ('{"uri":"data%201.bin"}', {"data 1.bin"}),
+        "a.dae": ("<init_from>./maps/a%20b.png</init_from>", {"./maps/a b.png"}),
+        "a.x3d": ("<Inline url='\"e.x3d\"'/><a b='no.png'/>", {"e.x3d"}),
+    }
+    for name, (text, named) in texts.items():
+        (folder / name).write_text(text)
+        assert named_files(folder / name) == {f"{folder}/{one}" for one in named}
 
 
 @pytest.mark.parametrize("value", ["0.5", "1e300", "nan"])

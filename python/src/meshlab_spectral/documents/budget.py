@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import IO
 
 from meshlab_spectral import _core
-from meshlab_spectral.errors import MeshFileError
+from meshlab_spectral.errors import MemoryLimitError, MeshFileError, SpectralError
 
 # Bytes that a file may grow to, and how many times its own size. Of real files the text of a 3MF
 # grows most, to about 10 times; zlib packs zeros into a thousandth.
-_LEAST, _TIMES = 64 << 20, 40
+LEAST, _TIMES = 64 << 20, 40
 _SHARE = 0.5  # of the memory there is
 _BLOCK = 1 << 20
 # Seconds that another library's reader may compute, and for each byte: real files take a hundredth.
@@ -25,28 +25,44 @@ class Budget:
     """Bytes that may come of a file beyond its own: what it unpacks to, and arrays that it claims.
 
     Every reader takes from it, before the memory, whatever a few bytes of the file may multiply.
+    `least` is what the smallest file may take, `share` what any may of the memory there is.
     """
 
-    def __init__(self, path: Path, size: int) -> None:
-        self._path, self._size, self._taken = path, 0, 0
+    def __init__(self, path: Path, size: int, least: int = LEAST, share: float = _SHARE) -> None:
+        self._path, self._least, self._share = path, least, share
+        self.size = self._taken = 0
         self.extend(size)
 
     def extend(self, size: int) -> None:
         """Count the bytes of another file that this one consists of."""
-        self._size += size
-        available = min(_core.available_memory(), 1e15)  # infinite if unknown
-        self.most = min(_LEAST + _TIMES * self._size, int(_SHARE * available))
+        self.size += size
+        there_is = self._share * min(_core.available_memory(), 1e15)  # infinite if unknown
+        usual = self._least + _TIMES * self.size
+        self._is_scarce = there_is < usual
+        self.most = min(usual, int(there_is))
 
     def take(self, count: int, what: str) -> None:
-        """Take bytes for `what`; raise MeshFileError if the file may not have as many."""
+        """Take bytes for `what`; raise `exceeded` if the file may not have as many."""
         self._taken += count
         if self._taken > self.most:
-            raise MeshFileError(
-                f"{self._path} would grow from {self._size} to more than {self.most} bytes when "
-                f"it is read ({what}): it is damaged, or made to use up memory; if it is neither, "
-                "save it without compression, or in another format",
-                "too_large",
+            raise self.exceeded(what)
+
+    def exceeded(self, what: str) -> SpectralError:
+        """Return the error for a file that takes more, for `what`: by its fault, or the machine's.
+
+        A MeshFileError, or a MemoryLimitError where a file of its size may take what is not there.
+        """
+        grows = f"{self._path} would grow from {self.size} to more than {self.most} bytes when it"
+        if self._is_scarce:
+            return MemoryLimitError(
+                f"{grows} is read ({what}), {self._share:.0%} of the memory that is free: free "
+                "some, or read it on a machine with more"
             )
+        return MeshFileError(
+            f"{grows} is read ({what}): it is damaged, or made to use up memory; if it is neither, "
+            "save it without compression, or in another format",
+            "too_large",
+        )
 
     def unpacked(self, file: IO[bytes] | GzipFile, what: str) -> bytes:
         """Read all of a file that unpacks itself, in blocks."""
@@ -69,13 +85,24 @@ def guard_process() -> None:
 
 
 @contextlib.contextmanager
-def guarded(size: int, memory: float) -> Iterator[None]:
-    """Limit what another library's reader takes for a file: memory to add, and processor time.
+def guarded(budget: Budget, own: int = 0) -> Iterator[None]:
+    """Limit what another library's reader takes for a file: its budget, and processor time.
 
-    The system ends the process for more time. For more memory the library gets none, and most end
-    it then: the parent reports that. Without effect unless `guard_process` was called, and on
+    `own` are bytes that the library takes for any file. The system ends the process for more time.
+    For more memory the library gets none: most end the process then, which the parent reports; from
+    others `Budget.exceeded` is raised. No limit is set unless `guard_process` was called, nor on
     systems without such limits.
     """
+    try:
+        with _limited(budget.size, budget.most + own):
+            yield
+    except MemoryError as error:
+        raise budget.exceeded("what its reader makes of it") from error
+
+
+@contextlib.contextmanager
+def _limited(size: int, memory: float) -> Iterator[None]:
+    """Limit the memory to be added and the processor time of this process, for a file's bytes."""
     if sys.platform == "win32" or not _Guard.is_on:
         yield
         return

@@ -73,12 +73,11 @@ def read(path: Path) -> Document:
         budget = Budget(path, len(content))
         _check_counts(content, budget)
         _check_text(content)
-        size = len(content)
         del content
         with (
             pyvista.vtk_verbosity("off"),
             pyvista.VtkErrorCatcher(send_to_logging=False) as caught,
-            guarded(size, _OF_VTK + budget.most),
+            guarded(budget, _OF_VTK),
         ):
             reader = pyvista.get_reader(path).reader
             reader.Update()
@@ -86,7 +85,7 @@ def read(path: Path) -> Document:
         for event in caught.events:
             raise _fault(event.alert, path)
         return _document(path, pyvista.wrap(reader.GetOutputDataObject(0)))
-    except (ValueError, TypeError, LookupError, RuntimeError, MemoryError, AttributeError) as error:
+    except (ValueError, TypeError, LookupError, RuntimeError, AttributeError) as error:
         raise unreadable(path, type(error)(f"{error!s:.300}")) from error
 
 

@@ -10,18 +10,18 @@ import shutil
 from collections.abc import Collection
 from pathlib import Path
 from typing import Any
+from urllib.parse import unquote
 
 import numpy as np
 
-from meshlab_spectral import _core
-from meshlab_spectral.documents.budget import guarded
+from meshlab_spectral.documents.budget import Budget, guarded
 from meshlab_spectral.documents.causes import other_kind
 from meshlab_spectral.documents.document import Document
 from meshlab_spectral.documents.names import shown
 from meshlab_spectral.documents.opening import PATCHED
 from meshlab_spectral.documents.side_files import beside, is_outside
 from meshlab_spectral.documents.stl import HEADER, TRIANGLE
-from meshlab_spectral.errors import FormatError, MemoryLimitError, MeshFileError
+from meshlab_spectral.errors import FormatError, MeshFileError
 from meshlab_spectral.files.formats import WRITABLE
 from meshlab_spectral.files.whole_files import USUAL_FORMATS, resolved
 from meshlab_spectral.filters.calling import reason_of
@@ -63,9 +63,15 @@ _TAKING_IN = (".x3d", ".x3dv", ".wrl")
 _INLINED = re.compile(r"\b(?:Inline|ExternProtoDeclare|EXTERNPROTO)\b[^>}]*")
 _QUOTED = re.compile(r"[\"'\s]([^\"'\s\0]+)[\"']")
 _REMOTE = re.compile("https?:|urn:|#", re.IGNORECASE)
-# What MeshLab may take: bytes, of which a texture 4,096 pixels wide takes 64 MiB; times the size of
-# a file and those beside it; and of the memory there is.
-_MESHLAB_BYTES, _TIMES, _SHARE = 1 << 30, 40, 0.75
+# What MeshLab may take: bytes, of which a texture 4,096 pixels wide takes 64 MiB; and of the memory
+# there is.
+_MESHLAB_BYTES, _SHARE = 1 << 30, 0.75
+# Ends of the names of files that a mesh file takes in; what is before a name; and bytes of it.
+_NAMED = re.compile(
+    rb"\.(?:png|jpe?g|tga|bmp|gif|tiff?|dds|webp|mtl|bin|x3dv?|wrl)\b", re.IGNORECASE
+)
+_BEFORE_NAME = re.compile(r"[\"'<>\r\n\0]")
+_LONGEST_NAME = 255
 _LONGEST = 300  # characters of its reasons
 _STL_HEADER = 80  # bytes
 _QUALITY = "spectral_quality"  # a passing attribute
@@ -93,16 +99,14 @@ def read_with_meshlab(mesh_set: Any, source: Path) -> None:
     import pymeshlab
 
     _check_inlined(source)
-    most, there_is = _memory_for(source), _SHARE * _core.available_memory()
+    named = named_files(source)
+    for library in [Path(name) for name in named if name.lower().endswith(".mtl")]:
+        named |= named_files(library)
+    budget = Budget(source, source.stat().st_size, _MESHLAB_BYTES, _SHARE)
+    budget.extend(sum(map(os.path.getsize, named)))
     try:
-        with guarded(source.stat().st_size, min(most, there_is)):
+        with guarded(budget):
             mesh_set.load_new_mesh(str(source))
-    except MemoryError as error:
-        if most <= there_is:  # more than a file of this size should need
-            raise
-        raise MemoryLimitError(
-            f"MeshLab cannot read it with {there_is / 2**20:.0f} MiB, {_SHARE:.0%} of what is free"
-        ) from error
     except (pymeshlab.PyMeshLabException, RuntimeError) as error:  # some plugins raise their own
         foreign = other_kind(source)
         if foreign is not None:
@@ -127,11 +131,15 @@ def read_with_meshlab(mesh_set: Any, source: Path) -> None:
         )
 
 
-def _memory_for(source: Path) -> int:
-    """Return the bytes that MeshLab should need for a file, with the textures beside it."""
-    with os.scandir(source.parent) as entries:
-        size = sum(one.stat().st_size for one in entries if one.is_file(follow_symlinks=False))
-    return _MESHLAB_BYTES + _TIMES * (size + source.stat().st_size)
+def named_files(source: Path) -> set[str]:
+    """Return the files that a mesh file names, each to a quote or a blank in its line."""
+    text, names = source.read_bytes(), set[str]()
+    for match in _NAMED.finditer(text):
+        before = text[max(0, match.end() - _LONGEST_NAME) : match.end()].decode(errors="replace")
+        line = unquote(_BEFORE_NAME.split(before)[-1])
+        names |= {line, line.partition(" ")[2], line.rpartition(" ")[2]}
+    paths = (os.path.join(source.parent, name) for name in names)  # noqa: PTH118
+    return {path for path in paths if os.path.isfile(path)}  # noqa: PTH113 - false for any text
 
 
 def _check_inlined(source: Path) -> None:
