@@ -34,11 +34,11 @@ esac
 [ $# -eq 0 ] || tests=("$@")
 
 build=build/sanitize-$kind
-cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo \
+cmake -S . -B "$build" -G Ninja -DCMAKE_CXX_FLAGS_RELEASE="-O1 -g1 -DNDEBUG" \
     -DSPECTRAL_BUILD_PLUGIN=OFF -DSPECTRAL_BUILD_PYTHON=ON \
     -Dmuparser_DIR="$PWD/build/muparser/lib/cmake/muparser" \
     -DPython_EXECUTABLE="$PWD/.venv/bin/python" \
-    -DCMAKE_CXX_FLAGS="$flags -fno-omit-frame-pointer -g1 -O1" \
+    -DCMAKE_CXX_FLAGS="$flags -fno-omit-frame-pointer" \
     -DCMAKE_EXE_LINKER_FLAGS="$flags" -DCMAKE_MODULE_LINKER_FLAGS="$flags"
 if [ "${tests[*]}" = cpp ]; then
     cmake --build "$build"
