@@ -11,6 +11,7 @@ import struct
 import zipfile
 from collections.abc import Callable
 from functools import partial
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, NamedTuple
 from xml.etree import ElementTree
@@ -421,6 +422,81 @@ def read_freesurfer(path: Path) -> Seen:
     return {"coordinates": points, **seen}
 
 
+def write_usd(path: Path) -> None:
+    """Write a text, or a package of it with its image; the mesh is left-handed."""
+    from pxr import Gf, Sdf, Usd, UsdGeom, UsdShade, UsdUtils, Vt
+
+    scene = path.with_suffix(".usda")
+    (path.parent / SKIN).write_bytes(IMAGE)
+    stage = Usd.Stage.CreateNew(str(scene))
+    stage.SetMetadata("comment", "made by hand")
+    UsdGeom.SetStageMetersPerUnit(stage, 0.0254)
+    UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.z)
+    turned = UsdGeom.Xform.Define(stage, "/turned")
+    stage.SetDefaultPrim(turned.GetPrim())
+    matrix = np.vstack([placed(np.eye(4, 3)) - [5, 0, 0], [5, 0, 0]])[[0, 1, 2, 4]]
+    turned.AddTransformOp().Set(Gf.Matrix4d(np.column_stack([matrix, [0, 0, 0, 1]]).tolist()))
+    mesh = UsdGeom.Mesh.Define(stage, "/turned/my_part")
+    mesh.CreateSubdivisionSchemeAttr(UsdGeom.Tokens.none)
+    mesh.CreateOrientationAttr(UsdGeom.Tokens.leftHanded)
+    mesh.CreatePointsAttr(Vt.Vec3fArray.FromNumpy(CUT))
+    mesh.CreateExtentAttr(UsdGeom.PointBased.ComputeExtent(mesh.GetPointsAttr().Get()))
+    mesh.CreateFaceVertexCountsAttr([len(p) for p in POLYGONS])
+    mesh.CreateFaceVertexIndicesAttr([k for p in POLYGONS for k in reversed(p)])
+    mesh.CreateNormalsAttr(Vt.Vec3fArray.FromNumpy(NORMALS))
+    api, types = UsdGeom.PrimvarsAPI(mesh), Sdf.ValueTypeNames
+    for name, kind, numbers in (
+        ("st", types.TexCoord2fArray, Vt.Vec2fArray.FromNumpy(UV)),
+        ("displayColor", types.Color3fArray, Vt.Vec3fArray.FromNumpy((RGB / 255).astype("f4"))),
+        ("age", types.DoubleArray, AGE),
+    ):
+        api.CreatePrimvar(name, kind, UsdGeom.Tokens.vertex).Set(numbers)
+    paint = UsdShade.Material.Define(stage, "/turned/red_paint")
+    texture = UsdShade.Shader.Define(stage, "/turned/red_paint/skin")
+    texture.CreateIdAttr("UsdUVTexture")
+    texture.CreateInput("file", types.Asset).Set(SKIN)
+    UsdShade.MaterialBindingAPI.Apply(mesh.GetPrim()).Bind(paint)
+    stage.GetRootLayer().Save()
+    if path != scene:
+        UsdUtils.CreateNewUsdzPackage(str(scene), str(path))
+        scene.unlink()
+        (path.parent / SKIN).unlink()
+
+
+def read_usd(path: Path) -> Seen:
+    from pxr import Usd, UsdGeom
+
+    stage = Usd.Stage.Open(str(path))
+    mesh = UsdGeom.Mesh(stage.GetPrimAtPath("/turned/my_part"))
+    api = UsdGeom.PrimvarsAPI(mesh)
+    values = {name: np.array(api.GetPrimvar(name).Get()) for name in ("st", "displayColor", "age")}
+    points = np.array(mesh.GetPointsAttr().Get(), dtype=float)
+    extent = np.array([points.min(axis=0), points.max(axis=0)], dtype="f4")
+    np.testing.assert_array_equal(mesh.GetExtentAttr().Get(), extent)
+    images: object = beside(path)
+    if path.suffix == ".usdz":
+        with zipfile.ZipFile(path) as archive:
+            images = [(one.filename, one.CRC) for one in archive.infolist()[1:]]
+    paint = stage.GetPrimAtPath("/turned/red_paint/skin")
+    sizes, corners = mesh.GetFaceVertexCountsAttr().Get(), mesh.GetFaceVertexIndicesAttr().Get()
+    place = UsdGeom.Xformable(stage.GetPrimAtPath("/turned")).GetLocalTransformation()
+    units = UsdGeom.GetStageMetersPerUnit(stage), UsdGeom.GetStageUpAxis(stage)
+    return {
+        "coordinates": placed(points),
+        "normals": np.array(mesh.GetNormalsAttr().Get()),
+        "faces": [list(sizes), list(corners), mesh.GetOrientationAttr().Get()],
+        "lines": list(sizes),
+        "colours": values["displayColor"].tolist(),
+        "texture": values["st"].tolist(),
+        "materials": [paint.GetAttribute("inputs:file").Get().path, images],
+        "names": [str(prim.GetPath()) for prim in stage.Traverse()],
+        "values": values["age"].tolist(),
+        "comments": stage.GetMetadata("comment"),
+        "types": [str(one.GetTypeName()) for one in mesh.GetPrim().GetAttributes()],
+        "placement": [units, [list(row) for row in place]],
+    }
+
+
 PLY = [partial(write_ply, text=order == "=", byte_order=order) for order in "=<>"]
 STL = [(partial(write_stl, text=text), partial(read_stl, text=text)) for text in (True, False)]
 SAMPLES = [
@@ -438,3 +514,5 @@ SAMPLES = [
     Sample("GIFTI", "in.surf.gii.gz", write_gifti, read_gifti),
     Sample("FreeSurfer", "lh.pial", write_freesurfer, read_freesurfer),
 ]
+if find_spec("pxr"):  # of USD, which not every system has
+    SAMPLES += [Sample("USD", name, write_usd, read_usd) for name in ("in.usda", "in.usdz")]

@@ -109,6 +109,11 @@ def ply(header: str = "", vertices: int = 4, body: str = "") -> bytes:
     ).encode()
 
 
+USD = (
+    f'#usda 1.0\ndef Mesh "m" {{ point3f[] points = {TETRAHEDRON}\n'
+    f"int[] faceVertexCounts = {[3] * 4}\n"
+    f"int[] faceVertexIndices = {[k for side in SIDES for k in side]}\n}}\n"
+)
 OBJ = "".join(f"v {x} {y} {z}\n" for x, y, z in TETRAHEDRON) + "".join(
     f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in SIDES
 )
@@ -184,6 +189,38 @@ def _scene_outside(path: Path, size: int, rng: Rng) -> None:
     path.write_text(f"<X3D><Scene>{shape if rng.integers(2) else ''}{inline}</Scene></X3D>")
 
 
+@_kind("image outside", "usda")
+def _image_of_usd_outside(path: Path, size: int, rng: Rng) -> None:
+    paint = f'def Shader "a" {{ asset inputs:file = @{outside(path, rng)}@\n}}\n'
+    path.write_text(USD + paint)
+
+
+@_kind("composed", "usda", "usdz")
+def _composed(path: Path, size: int, rng: Rng) -> None:
+    """A scene that has what it shows in another file, in one of the ways to say so."""
+    other = path.parent.parent / "secret.usda"
+    other.write_text(USD)
+    name = ["../secret.usda", str(other), "/dev/zero"][rng.integers(3)]
+    head, clips = (
+        "#usda 1.0\n",
+        "dictionary clips = {{ dictionary a = {{ asset[] assetPaths = [@{0}@] }} }}",
+    )
+    ways = [
+        'def "a" (references = @{0}@) {{}}',
+        'def "a" (payload = @{0}@) {{}}',
+        f'def "a" ({clips}) {{{{}}}}',
+    ]
+    text = head + ways[rng.integers(3)].format(name)
+    if rng.integers(4) == 0:
+        text = f"{head}(subLayers = [@{name}@])"
+    if path.suffix == ".usda":
+        path.write_text(text)
+    else:
+        with zipfile.ZipFile(path, "w") as archive:
+            archive.writestr("a.usda", text)
+            archive.writestr("../b.usda", USD)
+
+
 # --- files that grow
 
 
@@ -213,6 +250,12 @@ def three_mf(
     with zipfile.ZipFile(path, "w", packed) as archive:
         archive.writestr("_rels/.rels", RELATIONSHIPS)
         archive.writestr("3D/3dmodel.model", model)
+
+
+@_kind("blanks", "usdz")
+def _blanks_of_usd(path: Path, size: int, rng: Rng) -> None:
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("a.usda", USD + " " * (1000 * size))
 
 
 @_kind("blanks", "3mf")

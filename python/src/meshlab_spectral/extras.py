@@ -9,6 +9,7 @@ from meshlab_spectral.errors import MissingPackageError
 # Extra -> its packages.
 _PACKAGES = {
     "cluster": ["distributed"],
+    "usd": ["pxr"],
     "draco": ["DracoPy"],
     "formats": ["nibabel", "pyvista"],
     "maps": ["rasterio", "surfalize"],

@@ -8,6 +8,7 @@ from __future__ import annotations
 import gzip
 import re
 import zipfile
+from importlib.util import find_spec
 from io import BytesIO
 from pathlib import Path
 
@@ -22,6 +23,7 @@ from meshlab_spectral.errors import MeshFileError
 from meshlab_spectral.files.meshes import load_parts
 
 ENDINGS = ["ply", "obj", "off", "stl", "gltf", "glb", "3mf", "vtk", "vtp", "vtu", "gii", "pial"]
+ENDINGS += ["usda", "usdc", "usdz"] if find_spec("pxr") else []
 # Formats that each other's readers read, too.
 ALIKE = [{"gltf", "glb"}, {"gii", "pial"}]
 TEXTS = ["in.ply", "in.obj", "in.off", "in.stl", "in.gltf", "text.vtk", "in.surf.gii"]
@@ -38,8 +40,6 @@ OUTSIDERS = {
     "a web page": b"<!DOCTYPE html>\n<html><head><title>404</title></head></html>",
     "Git LFS": b"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a21\nsize 12345\n",
     "a ZIP archive": archive(),
-    "a USD package: convert it to .glb": archive("scan.usdc"),
-    "USD: convert it to .glb": b'#usda 1.0\n(\n    upAxis = "Y"\n)\n',
     "gzip": gzip.compress(b"ply\n" * 100),
     "a PNG image": b"\x89PNG\r\n\x1a\n" + bytes(200),
     "a PDF document": b"%PDF-1.7\n" + b"1 0 obj\n" * 50,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import resource
 import sys
 import time
+from importlib.util import find_spec
 from pathlib import Path
 
 import hostile_files
@@ -19,7 +20,8 @@ from meshlab_spectral.documents.side_files import beside
 from meshlab_spectral.errors import MemoryLimitError, MeshFileError
 from meshlab_spectral.files.meshlab_files import named_files
 
-OWN = [name for name, (ending, _) in KINDS.items() if ending not in ("x3d", "dae", "wrl")]
+OTHERS = {"x3d", "dae", "wrl"} | (set() if find_spec("pxr") else {"usda", "usdz"})
+OWN = [name for name, (ending, _) in KINDS.items() if ending not in OTHERS]
 SIZE = 100_000  # bytes, about
 # Beyond 40 times the file: what a file of a few bytes may grow to, a few times over, since arrays
 # are copied; and seconds, on a machine that does other work, too.

@@ -41,10 +41,10 @@ def _kind(name: str, endings: str, pattern: bytes, remedy: str = "") -> _Kind:
 
 
 _UNPACK, _NO_MESH = "unpack it first", "name a mesh file"
-_CONVERT = "convert it to .glb first, for example by importing and exporting it in Blender"
 _KINDS = [
     _kind("PLY", "ply", rb"ply\s*[\r\n]"),
     _kind("binary glTF", "glb", rb"glTF"),
+    _kind("a USD package", "usdz", rb"PK\x03\x04.{26}[^\0]{1,200}\.usd[ac]?"),
     _kind("3MF", "3mf", rb"PK\x03\x04.*(?:\[Content_Types\]|3D/|_rels/)"),
     _kind("legacy VTK", "vtk", rb"# vtk DataFile"),
     _kind("VTK PolyData", "vtp", rb"\s*(?:<[?!][^>]*>\s*)*<VTKFile[^>]*type=.PolyData"),
@@ -104,8 +104,8 @@ _KINDS = [
         "give it one of FreeSurfer's names, such as lh.pial",
     ),
     _kind("compressed with gzip", "gii.gz", rb"\x1f\x8b", _UNPACK),
-    _kind("a USD package", "", rb"PK\x03\x04.{26}[^\0]{1,200}\.usd[ac]?", _CONVERT),
-    _kind("USD", "", rb"PXR-USDC|#usda", _CONVERT),
+    _kind("binary USD", "usdc usd", rb"PXR-USDC"),
+    _kind("USD", "usda usd", rb"#usda"),
     _kind("a ZIP archive", "", rb"PK\x03\x04", _UNPACK),
     _kind("an archive", "", rb"7z\xbc\xaf|Rar!|BZh|\xfd7zXZ|\x28\xb5\x2f\xfd", _UNPACK),
     _kind("a PNG image", "", rb"\x89PNG", _NO_MESH),
@@ -129,6 +129,10 @@ _NAMES = {
     "vtu": "VTK",
     "gii": "GIFTI",
     "gii.gz": "GIFTI",
+    "usd": "USD",
+    "usda": "USD",
+    "usdc": "binary USD",
+    "usdz": "a USD package",
     "al3d": "Alicona AL3D",
     "gwy": "Gwyddion",
     "nms": "NanoFocus NMS",
@@ -143,7 +147,7 @@ _NAMES = {
     "x3p": "X3P",
     FREE_SURFER: "a surface of FreeSurfer",
 }
-_TEXTS = ("ply", "obj", "off", "stl", "gltf", "vtk", "vtp", "vtu", "gii")
+_TEXTS = ("ply", "obj", "off", "stl", "gltf", "vtk", "vtp", "vtu", "gii", "usda")
 _COMMAS = re.compile(rb"(?m)^[ \t]*(?:v[nt]?[ \t]+|vertex[ \t]+)?-?\d+,\d+[ \t]+-?\d+,\d+[ \t]")
 # What the end of a whole file holds.
 _ENDS: dict[str, Callable[[bytes], bool]] = {

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from meshlab_spectral.documents.budget import Budget, guarded
 from meshlab_spectral.documents.causes import unreadable, unsupported
 from meshlab_spectral.documents.document import Array, Document, Indices, Part, check_vertices
-from meshlab_spectral.errors import FormatError, MeshFileError
+from meshlab_spectral.errors import FormatError, SpectralError
 from meshlab_spectral.extras import check_extras
 
 # What the libraries take, whatever the file: bytes.
@@ -37,13 +37,13 @@ def read(path: Path) -> Document:
     no heights over a plane, and MissingPackageError for the extra "maps".
     """
     check_extras("maps")
-    size = path.stat().st_size
+    budget = Budget(path, path.stat().st_size)
     try:
-        with warnings.catch_warnings(), guarded(size, _OF_LIBRARY + Budget(path, size).most):
+        with warnings.catch_warnings(), guarded(budget, _OF_LIBRARY):
             warnings.simplefilter("ignore")
             reader = _of_terrain if path.suffix.lower() in (".tif", ".tiff") else _of_instrument
             heights, place, unit = reader(path)
-    except (MeshFileError, MemoryError):
+    except SpectralError:
         raise
     except Exception as error:  # of many kinds: readers of twenty formats
         raise unreadable(path, f"{error!s:.300}" or type(error).__name__) from error

@@ -33,6 +33,7 @@ _MODULES = {
     "vtu": "vtk",
     "gii": "brain",
     "gii.gz": "brain",
+    **dict.fromkeys(("usd", "usda", "usdc", "usdz"), "usd"),
 }
 PATCHED = frozenset(_MODULES) | FREE_SURFER_ENDINGS
 # Height maps: only read.
