@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/mesh/measures.h"
+#include "meshlab/host_workarounds/given_output.h"
 #include "meshlab/vertex_colors.h"
 
 namespace {
@@ -172,10 +173,17 @@ bool isSameRun(const KeptRun& kept, const spectral::Filter& filter, const MeshMa
            kept.given == withoutChoice(filter, given);
 }
 
-/// The output of a run, or of one before from which it can be taken.
+/// The output of a run, or of one before from which it can be taken, or what was handed over.
 FilterOutput outputOf(const MeshModel& mesh, const MeshFilter& filter, const MeshMatrices& input,
                       const Values& given, const RunOptions& options,
                       const spectral::Progress& progress) {
+    if (std::optional<FilterOutput> handedOver = takeGivenOutput()) {
+        for (const Eigen::Index rows :
+             {handedOver->V.rows(), handedOver->details.rows(), handedOver->values.rows()})
+            if (rows > 0 && rows != input.V.rows())
+                throw MLException("the result is that of a mesh with another number of vertices");
+        return *std::move(handedOver);
+    }
     const spectral::Filter& contract = filter.contract;
     KeptRun* const kept = options.kept;
     const bool isChoice = kept != nullptr && contract.choose != nullptr;

@@ -17,9 +17,10 @@ from meshlab_spectral.cli.report_table import report_table
 from meshlab_spectral.errors import SpectralError
 from meshlab_spectral.figures.pictures import Panel, View
 from meshlab_spectral.files.whole_files import writing_whole
+from meshlab_spectral.filters.fractional import filter_mesh
 from meshlab_spectral.filters.option_types import Length
 from meshlab_spectral.filters.options import FilterOptions
-from meshlab_spectral.plugin.loading import FILTER_NAME, load
+from meshlab_spectral.filters.reports import FilterReport
 from rich.console import Console
 from side_by_side import draw_side_by_side
 
@@ -29,12 +30,14 @@ BUNNY_VIEW = View(direction=(0.25, 0.2, 1.0))
 
 def demonstrate(folder: Path) -> None:
     """Filter the bunny that comes with pymeshlab; write the mesh and a picture to `folder`."""
-    before, mesh_set, report = _filtered_bunny()
+    before, filtered, report = _filtered_bunny()
     folder.mkdir(parents=True, exist_ok=True)
     mesh_file, picture = folder / "bunny_filtered.ply", folder / "before_after.png"
+    mesh_set = _mesh_set()
+    mesh_set.add_mesh(filtered)
     with writing_whole(mesh_file) as scratch:
         mesh_set.save_current_mesh(str(scratch))
-    _draw([before, _after(mesh_set)], picture)
+    _draw([before, _after(filtered)], picture)
 
     console = Console(soft_wrap=True)
     console.print(report_table(report, "Stanford bunny, low-pass"))
@@ -43,22 +46,24 @@ def demonstrate(folder: Path) -> None:
 
 def before_and_after(mesh: MeshFile) -> Drawing:
     """Compute the demonstration's picture; it needs no mesh of the collection."""
-    before, mesh_set, _ = _filtered_bunny()
-    after = _after(mesh_set)
+    before, filtered, _ = _filtered_bunny()
+    after = _after(filtered)
     numbers = displacement(before.V, before.F, after.V)
     return Drawing(numbers, functools.partial(_draw, [before, after]))
 
 
-def _filtered_bunny() -> tuple[Panel, Any, dict[str, Any]]:
-    """Return the bunny, a MeshSet with the filtered one, and the filter's report."""
-    import pymeshlab
-
-    load()
-    mesh_set = pymeshlab.MeshSet()
+def _filtered_bunny() -> tuple[Panel, Any, FilterReport]:
+    """Return the bunny, the filtered one as a `pymeshlab.Mesh`, and the filter's report."""
+    mesh_set = _mesh_set()
     mesh_set.load_new_mesh(str(bunny_file()))
     before = _panel("Stanford bunny", mesh_set.current_mesh())
-    parameters = OPTIONS.pymeshlab_parameters(mesh_set.current_mesh())
-    return before, mesh_set, mesh_set.apply_filter(FILTER_NAME, **parameters)
+    return before, *filter_mesh(mesh_set.current_mesh(), OPTIONS)
+
+
+def _mesh_set() -> Any:
+    import pymeshlab
+
+    return pymeshlab.MeshSet()
 
 
 def bunny_file() -> Path:
@@ -68,10 +73,10 @@ def bunny_file() -> Path:
     return Path(pymeshlab.__file__).parent / "tests" / "sample_meshes" / "bunny.obj"
 
 
-def _after(mesh_set: Any) -> Panel:
+def _after(mesh: Any) -> Panel:
     size = str(OPTIONS.feature_size).replace("%", " %")
     label = f"low-pass, {size} of the diagonal, {OPTIONS.steps} steps"
-    return _panel(label, mesh_set.current_mesh())
+    return _panel(label, mesh)
 
 
 def _draw(panels: list[Panel], path: Path) -> None:

@@ -87,8 +87,8 @@ def called(path: str, call: Call) -> dict[str, Any]:
     """Make one call in this process; return its row."""
     import numpy as np
     import pymeshlab
-    from meshlab_spectral.filters.calling import reason_of
     from meshlab_spectral.plugin.library import last_warnings
+    from meshlab_spectral.plugin.mesh_sets import reason_of
 
     mesh_set = pymeshlab.MeshSet()
     mesh_set.load_new_mesh(path)

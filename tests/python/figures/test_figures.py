@@ -18,8 +18,8 @@ import pytest
 import spectral_reference as reference
 from eigenfunctions import most_alike
 from figure_numbers import recorded
-from helpers import FILTER, diagonal, largest_distance, mesh_set_of
-from meshlab_spectral import manifold_harmonics
+from helpers import diagonal, largest_distance, mesh_set_of
+from meshlab_spectral import filter_mesh, manifold_harmonics
 from meshlab_spectral.figures.pictures import Frame, Panel, View, render
 from meshlab_spectral.filters.arrays import lumped_areas
 from meshlab_spectral.filters.options import FilterOptions
@@ -114,9 +114,7 @@ def test_sequences_show_intermediate_shapes_of_the_filter(
     V, F = decimated("bunny.obj", 1000)
 
     def shape(options: FilterOptions) -> NDArray[np.float64]:
-        mesh_set = mesh_set_of(V, F)
-        mesh_set.apply_filter(FILTER, **options.pymeshlab_parameters(mesh_set.current_mesh()))
-        return mesh_set.current_mesh().vertex_matrix().copy()
+        return np.asarray(filter_mesh(V, F, options)[0])
 
     shapes = [V, *(shape(after(options, i, update)) for i in (3, 6, K))]
     ways = [largest_distance(a, b) for a, b in pairwise(shapes)]

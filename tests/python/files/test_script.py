@@ -11,8 +11,8 @@ import pytest
 from helpers import FILTER, mesh_set_of
 from meshlab_spectral.errors import FilterError, OptionError
 from meshlab_spectral.files.script import apply_script
-from meshlab_spectral.filters.calling import call_filter
 from meshlab_spectral.plugin.failed_calls import keep_failed
+from meshlab_spectral.plugin.mesh_sets import call_filter
 
 ENUMERATIONS = {
     "filter_type": 5,

@@ -94,8 +94,39 @@ def test_a_mesh_of_pymeshlab_keeps_quality_and_selection() -> None:
     weighted, _ = filter_mesh(mesh, feature_size="30%", weight="vertex quality")
     by_arrays, _ = filter_mesh(V, F, feature_size="30%", weights=quality)
     np.testing.assert_array_equal(weighted.vertex_matrix(), by_arrays)
-    with pytest.raises(OptionError, match="has its own"):
-        filter_mesh(mesh, weights=quality)
+
+
+def test_a_mesh_of_pymeshlab_takes_all_that_arrays_take() -> None:
+    colours = np.column_stack([np.abs(V), np.ones(len(V))])
+    mesh = pymeshlab.Mesh(V, F, v_color_matrix=colours)
+    stages: list[str] = []
+    given: dict[str, Any] = {
+        "feature_size": "30%",
+        "weights": np.linspace(1, 0, len(V)),
+        "selection": V[:, 2] > 0,
+        "gain": lambda w: 1 / (1 + w**4),
+        "progress": lambda stage, done: stages.append(stage),
+        "threads": 1,
+    }
+    moved, report = filter_mesh(mesh, **given)
+    expected, of_arrays = filter_mesh(V, F, **given)
+    np.testing.assert_array_equal(moved.vertex_matrix(), expected)
+    np.testing.assert_array_equal(moved.vertex_color_matrix(), mesh.vertex_color_matrix())
+    assert (np.sum(moved.vertex_normal_matrix() * expected, axis=1) > 0).all()
+    assert report == of_arrays
+    assert stages
+    details, _ = filter_mesh(mesh, result="details")
+    np.testing.assert_array_equal(details, filter_mesh(V, F, result="details")[0])
+    again, _ = filter_mesh(moved, **given)
+    np.testing.assert_array_equal(again.vertex_matrix(), filter_mesh(expected, F, **given)[0])
+
+
+def test_a_mesh_of_pymeshlab_keeps_the_heights_of_noise() -> None:
+    X = V + 0.01 * np.random.default_rng(1).standard_normal(V.shape)
+    moved, report = denoise_mesh(pymeshlab.Mesh(X, F), store_noise_height=True)
+    heights = moved.vertex_custom_scalar_attribute_array("noise_height")
+    np.testing.assert_array_equal(heights, report["noise_heights"])
+    np.testing.assert_array_equal(moved.vertex_matrix(), denoise_mesh(X, F)[0])
 
 
 def test_an_object_that_is_not_a_mesh_is_refused() -> None:

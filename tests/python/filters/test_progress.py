@@ -11,7 +11,6 @@ from typing import Any
 
 import meshlab_spectral
 import numpy as np
-import pymeshlab
 import pytest
 import pyvista
 from meshlab_spectral import Cancelled, OptionError, filter_mesh
@@ -105,8 +104,3 @@ def test_a_notebook_gets_one_output_that_is_updated(monkeypatch: pytest.MonkeyPa
     assert "done" in shown[-1]
     with pytest.raises(OptionError):
         filter_mesh(V, F, laplacian="uniform", feature_size=-1, progress=True)
-
-
-def test_a_mesh_of_pymeshlab_has_none() -> None:
-    with pytest.raises(OptionError, match="not for a pymeshlab mesh; pass its vertices"):
-        filter_mesh(pymeshlab.Mesh(V, F), progress=True)

@@ -23,9 +23,9 @@ from meshlab_spectral import (
     filter_scalars,
 )
 from meshlab_spectral.files.script import apply_script
-from meshlab_spectral.filters.calling import call_filter
 from meshlab_spectral.filters.options import TransferKeywords
 from meshlab_spectral.plugin.library import last_warnings
+from meshlab_spectral.plugin.mesh_sets import call_filter
 
 TRIANGLE = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]])
 # Each falls short in a different way.
@@ -39,7 +39,7 @@ Decimated = Callable[..., tuple[np.ndarray, np.ndarray]]
 PROGRAM = """
 import json, sys
 import meshlab_spectral, pymeshlab
-from meshlab_spectral.filters.calling import call_filter
+from meshlab_spectral.plugin.mesh_sets import call_filter
 meshlab_spectral.load()
 mesh_set = pymeshlab.MeshSet(verbose=True)
 mesh_set.load_new_mesh(sys.argv[1])

@@ -24,8 +24,8 @@ import pymeshlab
 from fuzz.meshes import ATTRIBUTE, mesh_set_of
 from fuzz.parameters import for_pymeshlab
 from helpers import snapshot
-from meshlab_spectral.filters.calling import reason_of
 from meshlab_spectral.plugin.library import last_warnings
+from meshlab_spectral.plugin.mesh_sets import reason_of
 
 # What a filter may write; nothing else changes, even where it succeeds.
 TARGETS = {

@@ -167,7 +167,7 @@ def test_an_absent_pymeshlab_is_reported_with_the_way_to_install_it() -> None:
 
 FILTER_AND_SHOW = (
     "import meshlab_spectral\n"
-    "from meshlab_spectral.filters.calling import call_filter, mesh_set_of\n"
+    "from meshlab_spectral.plugin.mesh_sets import call_filter, mesh_set_of\n"
     "import numpy as np\n"
     "try: call_filter(mesh_set_of(np.eye(3), np.array([[0, 1, 2]])), "
     f"{FILTER!r}, {{'boundary': 'fixed'}})\n"

@@ -33,21 +33,16 @@ from meshlab_spectral.files.meshlab_files import (
     write_with_meshlab,
 )
 from meshlab_spectral.files.region import Region
-from meshlab_spectral.files.region_vertices import chosen_parts, restricted
+from meshlab_spectral.files.region_vertices import chosen_parts
 from meshlab_spectral.files.rounding import rounding_warnings
 from meshlab_spectral.files.script import apply_script
 from meshlab_spectral.files.sources import check_name, check_source
 from meshlab_spectral.files.touching import moved_alike, pieces
-from meshlab_spectral.filters.calling import (
-    DETAILS,
-    NOISE_HEIGHT,
-    call_filter,
-    mesh_set_of,
-    select_vertices,
-)
+from meshlab_spectral.filters.mesh_objects import PYMESHLAB
 from meshlab_spectral.filters.option_types import Options
-from meshlab_spectral.filters.running import plain, run
+from meshlab_spectral.filters.running import Run, run
 from meshlab_spectral.plugin.loading import load
+from meshlab_spectral.plugin.mesh_sets import DETAILS, NOISE_HEIGHT, mesh_set_of, write
 
 # Called with the current stage, and the fraction of it that is done or None.
 StageCallback = Callable[[str, float | None], object]
@@ -116,10 +111,15 @@ def filter_to_scratch(
         options = options.from_dict({**options.as_dict(), "selected": True})
 
     def apply(mesh_set: Any) -> dict[str, Any]:
-        if region is not None:
-            _select(mesh_set, region)
-        parameters = options.pymeshlab_parameters(mesh_set.current_mesh())
-        return _as_chosen(plain(call_filter(mesh_set, options.FILTER, parameters)))
+        (part,) = chosen_parts([_part_of(mesh_set.current_mesh())], options, region)
+        assert part is not None
+        done = _run(part, options, on_stage)
+        text = done.text if verbose else ""
+        results = {"vertices": done.vertices, "details": done.details, "values": done.values}
+        write(mesh_set, options.FILTER, **results, text=text)
+        if verbose:
+            print(*done.report["warnings"], sep="\n", file=sys.stderr)
+        return _as_chosen(done.plain_report)
 
     if attribute := wanted_attribute(options, scratch):
         return _through_meshlab(source, scratch, apply, on_stage, verbose, {attribute: True})
@@ -172,8 +172,15 @@ def load_parts(source: Path, mesh: str | None = None) -> list[Part]:
 
     mesh_set = pymeshlab.MeshSet()
     read_with_meshlab(mesh_set, source)
-    current = mesh_set.current_mesh()
-    return [Part("", current.vertex_matrix().copy(), current.face_matrix().astype(np.int64))]
+    return [_part_of(mesh_set.current_mesh())]
+
+
+def _part_of(mesh: Any) -> Part:
+    """Return a `pymeshlab.Mesh` as a part, without selection if nothing is selected."""
+    data = {name: np.array(values) for name, values in PYMESHLAB.data(mesh).items()}
+    selected = data["selection"] if data["selection"].any() else None
+    V, F = PYMESHLAB.arrays(mesh)
+    return Part("", V.copy(), F.astype(np.int64), data.get("quality"), selected)
 
 
 def _filter_document(
@@ -294,19 +301,6 @@ def require_one_choice(options: Options, region: Region | None) -> None:
         raise OptionError(f"selected and {names}: both choose what is filtered; leave one out")
 
 
-def _select(mesh_set: Any, region: Region) -> None:
-    """Select a region of the current mesh."""
-    mesh = mesh_set.current_mesh()
-    quality = mesh.vertex_scalar_array() if mesh.has_vertex_scalar() else None
-    (part,) = restricted(
-        [Part("", mesh.vertex_matrix(), mesh.face_matrix().astype(np.int64), quality)], region
-    )
-    assert part is not None
-    assert part.selected is not None
-    mesh_set.set_selection_none()
-    select_vertices(mesh_set, part.selected)
-
-
 def whole_of(group: Sequence[Part]) -> Part:
     """Return the pieces of a surface as one part."""
     if len(group) == 1:
@@ -342,15 +336,7 @@ def _filtered(
 ) -> tuple[Array, dict[str, Any]]:
     """Filter a mesh; return its vertices and the report."""
     try:
-        done = run(
-            options.FILTER,
-            part.vertices,
-            part.faces,
-            options.core_parameters(),
-            selected=part.selected,
-            values=None if part.quality is None else part.quality[:, None],
-            progress=on_stage,
-        )
+        done = _run(part, options, on_stage)
     except FilterError as error:
         if is_alone:
             raise
@@ -359,6 +345,18 @@ def _filtered(
         print(done.text, *done.report["warnings"], sep="\n", file=sys.stderr)
     report = _as_chosen(done.plain_report)
     return part.vertices if done.vertices is None else done.vertices, report
+
+
+def _run(part: Part, options: Options, on_stage: StageCallback) -> Run:
+    return run(
+        options.FILTER,
+        part.vertices,
+        part.faces,
+        options.core_parameters(),
+        selected=part.selected,
+        values=None if part.quality is None else part.quality[:, None],
+        progress=on_stage,
+    )
 
 
 def _as_chosen(report: dict[str, Any]) -> dict[str, Any]:

@@ -24,7 +24,7 @@ from meshlab_spectral.documents.stl import HEADER, TRIANGLE
 from meshlab_spectral.errors import FormatError, MeshFileError
 from meshlab_spectral.files.formats import WRITABLE
 from meshlab_spectral.files.whole_files import USUAL_FORMATS, resolved
-from meshlab_spectral.filters.calling import reason_of
+from meshlab_spectral.plugin.mesh_sets import reason_of
 
 # Formats in which MeshLab joins triangles back into the polygons that it has read.
 _POLYGON_FORMATS = (".obj", ".off")

@@ -8,10 +8,10 @@ from typing import Any
 from xml.etree import ElementTree
 
 from meshlab_spectral.errors import FilterError, OptionError
-from meshlab_spectral.filters.calling import call_filter, reason_of
 from meshlab_spectral.filters.running import plain
 from meshlab_spectral.plugin.failed_calls import keep_failed
 from meshlab_spectral.plugin.loading import FILTERS, load
+from meshlab_spectral.plugin.mesh_sets import call_filter, reason_of
 
 _HEAD, _FOOT = "<!DOCTYPE FilterScript>\n<FilterScript>\n", "</FilterScript>\n"
 # pymeshlab's only message for an unknown filter.

@@ -8,7 +8,6 @@ from __future__ import annotations
 import copy
 import functools
 import inspect
-import weakref
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeVar, cast
@@ -19,6 +18,8 @@ from numpy.typing import NDArray
 from meshlab_spectral.errors import ArgumentError, ArrayError
 from meshlab_spectral.filters.mesh_normals import followed
 from meshlab_spectral.other_words import instead_of
+from meshlab_spectral.plugin.loading import FILTER_NAME
+from meshlab_spectral.plugin.mesh_sets import written_copy
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 Array = NDArray[np.float64]
@@ -111,25 +112,20 @@ def takes_mesh_alone(function: Function) -> Function:
     return cast(Function, shifted)
 
 
-def owned_mesh(mesh_set: Any) -> Any:
-    """Return the current mesh of a `pymeshlab.MeshSet`, which then lives as long as the mesh."""
-    mesh = mesh_set.current_mesh()
-    weakref.finalize(mesh, id, mesh_set)  # only keeps the MeshSet alive
-    return mesh
-
-
 def _pymeshlab_arrays(mesh: Any) -> tuple[Any, Any]:
     if not mesh.is_compact():
         raise ArrayError("the mesh has deleted elements: call its compact() first")
     return mesh.vertex_matrix(), mesh.face_matrix()
 
 
-def _not_moved(mesh: Any, V: Array) -> Any:
-    raise NotImplementedError("pymeshlab sets no coordinates: filter a copy, see owned_mesh")
+def _pymeshlab_moved(mesh: Any, X: Array) -> Any:
+    return written_copy(mesh, FILTER_NAME, X)
 
 
 def _pymeshlab_data(mesh: Any) -> dict[str, Any]:
-    data: dict[str, Any] = {}
+    selected = mesh.vertex_selection_array().copy()
+    selected[mesh.face_matrix()[mesh.face_selection_array()]] = True
+    data: dict[str, Any] = {"selection": selected}
     if mesh.has_vertex_scalar():
         data["quality"] = mesh.vertex_scalar_array()
     if mesh.has_vertex_color():
@@ -273,7 +269,7 @@ def _pyfm_moved(mesh: Any, X: Array) -> Any:
 
 
 PYMESHLAB = MeshKind(
-    "pymeshlab.Mesh", "face_matrix", _pymeshlab_arrays, _not_moved, _pymeshlab_data
+    "pymeshlab.Mesh", "face_matrix", _pymeshlab_arrays, _pymeshlab_moved, _pymeshlab_data
 )
 _PAIR = MeshKind(
     "a tuple (vertices, faces)",

@@ -259,35 +259,6 @@ class Options:
                 parameters[one.name] = f"{length!r}{value.unit}" if value.unit else length
         return parameters
 
-    def pymeshlab_parameters(self, mesh: Any) -> dict[str, Any]:
-        """Return the keyword arguments for pymeshlab; automatic and default lengths are left out.
-
-        Parameters
-        ----------
-        mesh
-            The `pymeshlab.Mesh` to filter, for its mean edge length.
-        """
-        import pymeshlab
-
-        from meshlab_spectral.filters.arrays import mean_edge
-
-        parameters = self.as_dict()
-        for one in fields(self):
-            value = getattr(self, one.name)
-            if not isinstance(value, Length):
-                continue
-            if value.automatic or value == one.default:
-                del parameters[one.name]  # the plugin's default suits the mesh
-            elif value.unit == "%":
-                parameters[one.name] = pymeshlab.PercentageValue(value.value)
-            else:
-                edge = 0.0
-                if value.unit == "e":
-                    edge = mean_edge(mesh.vertex_matrix(), mesh.face_matrix())
-                length = value.in_units_of_mesh(0.0, edge)
-                parameters[one.name] = pymeshlab.PureValue(length)
-        return parameters
-
 
 def checked_count(name: str, value: Any, least: int = 1) -> int:
     """Return a count as an int; raise OptionError unless it is an integer >= `least`."""

@@ -8,11 +8,11 @@ from numpy.typing import ArrayLike
 
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.filters.arrays import chosen_vertices, mesh_arrays, vertex_numbers
-from meshlab_spectral.filters.calling import filtered_by_plugin
 from meshlab_spectral.filters.mesh_objects import PYMESHLAB, array_of, kind_of
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.progress import Progress
 from meshlab_spectral.filters.running import Gain, run
+from meshlab_spectral.plugin.mesh_sets import written_copy
 
 
 def filtered(
@@ -29,8 +29,8 @@ def filtered(
     """Apply the filter that `options` belong to.
 
     The mesh is as for `mesh_arrays`; errors are those of `mesh_arrays` and `run`. `weights` and
-    `selection` are what the options `weight` and `selected` refer to. A pymeshlab mesh has its own;
-    it is filtered by the plugin, in a MeshSet, because pymeshlab has no other way to change it.
+    `selection` are what the options `weight` and `selected` refer to; a pymeshlab mesh has its own,
+    too.
 
     Returns
     -------
@@ -42,17 +42,11 @@ def filtered(
     """
     V, F = mesh_arrays(mesh_or_vertices, faces)
     kind = kind_of(mesh_or_vertices)
-    if kind is PYMESHLAB and gain is None:
-        if weights is not None or selection is not None:
-            raise OptionError(
-                "weights, selection: a pymeshlab mesh has its own; give weight='vertex quality' or "
-                "selected=True, or pass vertices and faces"
-            )
-        if progress:
-            raise OptionError("progress: not for a pymeshlab mesh; pass its vertices and faces")
-        return filtered_by_plugin(mesh_or_vertices, options)
-    if kind is PYMESHLAB:
-        raise OptionError("gain: not for a pymeshlab mesh; pass its vertices and faces")
+    own = kind.data(mesh_or_vertices) if kind is PYMESHLAB else {}
+    if weights is None and getattr(options, "weight", "none") != "none":
+        weights = own.get("quality")
+    if selection is None and getattr(options, "selected", False):
+        selection = own.get("selection")
     values = selected = None
     part: dict[str, Any] = {}
     if weights is not None:
@@ -82,5 +76,8 @@ def filtered(
         return done.details, report
     if done.values is not None:
         report["noise_heights"] = done.values[:, 0].tolist()
+    if kind is PYMESHLAB:  # which keeps the heights, too
+        copy = written_copy(mesh_or_vertices, options.FILTER, done.vertices, done.values)
+        return copy, report
     X = V.copy() if done.vertices is None else done.vertices
     return X if kind is None else kind.moved(mesh_or_vertices, X), report

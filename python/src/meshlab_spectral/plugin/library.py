@@ -50,7 +50,7 @@ def last_error() -> tuple[str, str, int] | None:
 
 @functools.cache
 def function_of(plugin: Path, name: str, arguments: Sequence[Any]) -> Any:
-    """Return a text-valued function of the loaded plugin; errors are those of `last_warnings`."""
+    """Return a function of the loaded plugin; errors are those of `last_warnings`."""
     try:
         function = getattr(opened(plugin), name)
     except OSError as error:

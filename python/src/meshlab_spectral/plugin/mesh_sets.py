@@ -1,7 +1,9 @@
-"""Calls of the plugin's filters in MeshSets: adds their warnings, translates their errors."""
+"""pymeshlab's MeshSets: results written to their meshes, and filters of the plugin in scripts."""
 
 from __future__ import annotations
 
+import ctypes
+import weakref
 from collections.abc import Mapping
 from typing import Any
 
@@ -10,22 +12,80 @@ from numpy.typing import NDArray
 
 from meshlab_spectral import errors
 from meshlab_spectral.errors import FilterError
-from meshlab_spectral.filters.mesh_objects import owned_mesh
-from meshlab_spectral.filters.option_types import Options
-from meshlab_spectral.filters.representations import Report
-from meshlab_spectral.filters.running import plain
 from meshlab_spectral.plugin.failed_calls import is_interrupt, keep_failed
-from meshlab_spectral.plugin.library import last_error, last_summary, last_warnings
-from meshlab_spectral.plugin.loading import load
+from meshlab_spectral.plugin.library import function_of, last_error, last_summary, last_warnings
+from meshlab_spectral.plugin.loading import load, loaded_plugin
 from meshlab_spectral.plugin.pymeshlab_texts import corrected
+
+Array = NDArray[np.float64]
 
 # The vertex attributes in which the plugin stores the details, and the height of noise.
 DETAILS = "spectral_details"
 NOISE_HEIGHT = "noise_height"
 
+_GIVEN = (ctypes.c_int, *[ctypes.c_void_p] * 3, ctypes.c_char_p)
+
+
+def mesh_set_of(
+    V: Array,
+    F: NDArray[np.integer],
+    data: Mapping[str, NDArray[Any]] | None = None,
+    verbose: bool = False,
+) -> Any:
+    """Return a `pymeshlab.MeshSet` with one mesh.
+
+    `V` and `F` are as from `mesh_arrays`; `data` are further arguments of `pymeshlab.Mesh`, such as
+    `v_scalar_array`. With `verbose`, MeshLab writes its log. Raises PluginError when the plugin
+    cannot be loaded.
+    """
+    load()  # first: its error says what to do if pymeshlab is missing
+    import pymeshlab
+
+    return _set_with(pymeshlab.Mesh(V, F, **(data or {})), verbose)
+
+
+def written_copy(
+    mesh: Any, name: str, vertices: Array | None = None, values: Array | None = None
+) -> Any:
+    """Return a copy of a `pymeshlab.Mesh` with what the filter `name` has returned, see `write`."""
+    load()
+    mesh_set = _set_with(mesh)
+    write(mesh_set, name, vertices=vertices, values=values)
+    copy = mesh_set.current_mesh()
+    weakref.finalize(copy, id, mesh_set)  # keeps the MeshSet alive, which owns the mesh
+    return copy
+
+
+def write(
+    mesh_set: Any,
+    name: str,
+    *,
+    vertices: Array | None = None,
+    details: Array | None = None,
+    values: Array | None = None,
+    text: str = "",
+) -> None:
+    """Write what the filter `name` has returned to the current mesh of a MeshSet.
+
+    That is what the filter itself would write: n x 3 `vertices` with their normals, n x 3 `details`
+    and n heights of noise, `values`, as attributes; `text` goes to the log. Raises FilterError when
+    MeshLab's numbers cannot hold it.
+    """
+    give = function_of(loaded_plugin(), "meshlab_spectral_give", _GIVEN)
+    arrays = [
+        None if one is None else np.ascontiguousarray(one, dtype=np.float64)
+        for one in (vertices, details, values)
+    ]
+    addresses = [None if one is None else one.ctypes.data for one in arrays]
+    give(mesh_set.current_mesh().vertex_number(), *addresses, text.encode())
+    try:
+        call_filter(mesh_set, name, {})
+    finally:
+        give(0, None, None, None, b"")  # it has been taken, unless pymeshlab has refused the call
+
 
 def call_filter(mesh_set: Any, name: str, parameters: dict[str, Any]) -> dict[str, Any]:
-    """Apply a filter of the plugin to the current mesh of a MeshSet.
+    """Apply a filter of the plugin to the current mesh of a MeshSet, as a script does.
 
     Parameters
     ----------
@@ -70,52 +130,13 @@ def call_filter(mesh_set: Any, name: str, parameters: dict[str, Any]) -> dict[st
     return report
 
 
-def mesh_set_of(
-    V: NDArray[np.float64],
-    F: NDArray[np.integer],
-    data: Mapping[str, NDArray[Any]] | None = None,
-    verbose: bool = False,
-) -> Any:
-    """Return a `pymeshlab.MeshSet` with one mesh, for filters of the plugin.
-
-    `V` and `F` are as from `mesh_arrays`; `data` are further arguments of `pymeshlab.Mesh`, such as
-    `v_scalar_array`. With `verbose`, MeshLab writes its log. Raises PluginError when the plugin
-    cannot be loaded.
-    """
-    load()  # first: its error says what to do if pymeshlab is missing
-    import pymeshlab
-
-    return _set_of(pymeshlab.Mesh(V, F, **(data or {})), verbose)
-
-
-def _set_of(mesh: Any, verbose: bool = False) -> Any:
+def _set_with(mesh: Any, verbose: bool = False) -> Any:
     """Return a MeshSet with a copy of a mesh; the plugin must be loaded."""
     import pymeshlab
 
     mesh_set = pymeshlab.MeshSet(verbose=verbose)
     mesh_set.add_mesh(mesh)
     return mesh_set
-
-
-def filtered_by_plugin(mesh: Any, options: Options) -> tuple[Any, dict[str, Any]]:
-    """Apply the filter that `options` belong to, to a copy of a `pymeshlab.Mesh`.
-
-    Returns the copy, or the details if these are wanted, and the report with lists for arrays.
-    """
-    load()
-    mesh_set = _set_of(mesh)
-    parameters = options.pymeshlab_parameters(mesh_set.current_mesh())
-    report = Report(plain(call_filter(mesh_set, options.FILTER, parameters)))
-    if getattr(options, "result", "") == "details":
-        details = mesh_set.current_mesh().vertex_custom_point_attribute_matrix(DETAILS)
-        return details.copy(), report
-    return owned_mesh(mesh_set), report
-
-
-def select_vertices(mesh_set: Any, chosen: NDArray[np.bool_]) -> None:
-    """Select vertices, which pymeshlab can only do by a condition."""
-    mesh_set.current_mesh().add_vertex_custom_scalar_attribute(chosen.astype(float), "chosen")
-    mesh_set.compute_selection_by_condition_per_vertex(condselect="chosen > 0.5")
 
 
 def _error_of(reason: str) -> FilterError:
