@@ -171,12 +171,14 @@ AutomaticSteps filterInSteps(LaplacianBuilder& laplacians, StepEvaluator& evalua
 
 }  // namespace
 
-FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOptions& options,
+FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOptions& given,
                               const Progress& caller) {
     const Progress progress = caller.forwards();
     const ThreadTeam team(progress);
     // First: a mesh that is not finite has no valid feature size.
-    checkMesh(V, F, options.laplacian);
+    checkMesh(V, F, given.laplacian);
+    FilterOptions options = given;
+    if (options.tolerance == 0.0) options.tolerance = defaultTolerance(lengthsOf(V, F));
     checkOptions(options);
     Surface surface = joinedSurface(V, F);
     const TransferFunction transfer(options.transferFunction, cutoffFrequency(options.featureSize));

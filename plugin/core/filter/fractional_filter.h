@@ -32,7 +32,7 @@ struct FilterOptions {
     int steps = 0;             ///< K >= 1: K steps of F^(1/K), the paper's scheme; 0: automatic.
     double tolerance = 0.0;    ///< For automatic steps: maximum distance from the result of
                                ///< infinitely many steps, over all but a thousandth of the input
-                               ///< surface, length units, > 0.
+                               ///< surface, length units; 0: defaultTolerance (measures.h).
     int maxSteps = 64;         ///< For automatic steps: limit, whatever the error, >= 2.
     int passes = 0;  ///< For automatic steps: exactly this many passes of 1, 2, 4, ... steps, up to
                      ///< kMaxPasses, whatever the error; 0: as many as the tolerance needs.

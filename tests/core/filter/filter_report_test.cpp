@@ -180,7 +180,10 @@ TEST(FractionalFilter, RefusesOptionsOutOfRange) {
     };
     refuses([](FilterOptions& o) { o.steps = -1; });
     refuses([](FilterOptions& o) { o.steps = 1001; });
-    refuses([](FilterOptions& o) { o.steps = 0; });  // automatic, without a tolerance
+    refuses([](FilterOptions& o) {
+        o.steps = 0;
+        o.tolerance = -1.0;
+    });
     refuses([](FilterOptions& o) { o.conformalShare = -0.1; });
     refuses([](FilterOptions& o) { o.conformalShare = 1.1; });
     refuses([](FilterOptions& o) { o.featureSize = 0.0; });

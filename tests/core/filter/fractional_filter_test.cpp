@@ -96,6 +96,15 @@ TEST(FractionalFilter, IsBitIdenticalForEveryNumberOfThreads) {
             }
 }
 
+TEST(FractionalFilter, NeedsNoOptionButTheFeatureSize) {
+    const Mesh mesh = testing::blob();
+    FilterOptions options;
+    options.featureSize = 0.2 * boundingBoxDiagonal(mesh.V);
+    const Vertices result = fractionalFilter(mesh.V, mesh.F, options).V;
+    options.tolerance = 0.0005 * boundingBoxDiagonal(mesh.V);
+    EXPECT_TRUE(result == fractionalFilter(mesh.V, mesh.F, options).V);
+}
+
 TEST(FractionalFilter, CommutesWithRigidMotions) {
     const Eigen::Matrix3d rotation =
         Eigen::AngleAxisd(1.1, Eigen::Vector3d(1, 2, -0.5).normalized()).toRotationMatrix();
