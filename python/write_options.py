@@ -12,6 +12,7 @@ import re
 import subprocess
 import sys
 import textwrap
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
@@ -60,9 +61,12 @@ Written by python/write_options.py from the tables in plugin/core/contract: edit
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, TypedDict
+from typing import TYPE_CHECKING, Literal, TypedDict
 
 from meshlab_spectral.filters.option_types import LARGEST_INTEGER, Length, Limits, Options, option
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 '''
 
@@ -168,6 +172,11 @@ def _table_of(table: str) -> str:
         f"    FILTER = {name!r}",
         f"    TABLE = {short!r}",
         "",
+        # A length may be given as a text or a number, and is a `Length` then.
+        "    if TYPE_CHECKING:",
+        "",
+        f"        def __init__(self, **named: Unpack[{_keywords_named(table)}]) -> None: ...",
+        "",
     ]
     for one in _parameters_of(table):
         flags = FLAGS.get((table, one["name"]))
@@ -192,7 +201,14 @@ def _wrapped(text: str, width: int = 84) -> str:
     return " ".join(repr(part) for part in parts)
 
 
-def _keywords_of(table: str, name: str, left_out: set[str], base: str) -> str:
+def _keywords_named(table: str) -> str:
+    return table.replace("Options", "Keywords")
+
+
+def _keywords_of(
+    table: str, left_out: Collection[str] = (), base: str = "TypedDict", name: str = ""
+) -> str:
+    name = name or _keywords_named(table)
     lines = [f"class {name}({base}, total=False):", f'    """Fields of `{table}`, by name."""', ""]
     for one in _parameters_of(table):
         kind = "Size" if one["kind"] == "length" else _type_of(one)
@@ -214,10 +230,12 @@ def _written() -> str:
     text = HEAD + "\n".join([*types, "Size = Length | str | float"]) + "\n\n\n"
     text += "\n\n\n".join(
         [
-            _keywords_of("FilterOptions", "TransferKeywords", every - of_signals, "TypedDict"),
-            _keywords_of("FilterOptions", "FilterKeywords", of_signals, "TransferKeywords"),
-            _keywords_of("DenoiseOptions", "DenoiseKeywords", set(), "TypedDict"),
-            _keywords_of("TextureOptions", "TextureKeywords", set(), "TypedDict"),
+            _keywords_of("FilterOptions", every - of_signals, name="TransferKeywords"),
+            _keywords_of(
+                "FilterOptions", {"result", *of_signals}, "TransferKeywords", "ShapeKeywords"
+            ),
+            _keywords_of("FilterOptions", every - {"result"}, "ShapeKeywords"),
+            *(_keywords_of(table) for table in TABLES if table != "FilterOptions"),
             *map(_table_of, TABLES),
         ]
     )

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, TypeVar, cast, overload
 
-from numpy.typing import ArrayLike
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from meshlab_spectral.filters.keywords import takes_options
 from meshlab_spectral.filters.mesh_objects import takes_mesh_alone
@@ -15,6 +16,34 @@ from meshlab_spectral.filters.shapes import filtered
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
+
+Mesh = TypeVar("Mesh")
+
+
+@overload
+def denoise_mesh(
+    mesh_or_vertices: ArrayLike,
+    faces: ArrayLike,
+    options: DenoiseOptions | None = None,
+    *,
+    weights: ArrayLike | None = None,
+    selection: ArrayLike | None = None,
+    progress: Progress | bool | None = None,
+    threads: int | None = None,
+    **named: Unpack[DenoiseKeywords],
+) -> tuple[NDArray[np.float64], DenoiseReport]: ...
+@overload
+def denoise_mesh(
+    mesh_or_vertices: Mesh,
+    faces: None = None,
+    options: DenoiseOptions | None = None,
+    *,
+    weights: ArrayLike | None = None,
+    selection: ArrayLike | None = None,
+    progress: Progress | bool | None = None,
+    threads: int | None = None,
+    **named: Unpack[DenoiseKeywords],
+) -> tuple[Mesh, DenoiseReport]: ...
 
 
 @takes_options(DenoiseOptions)

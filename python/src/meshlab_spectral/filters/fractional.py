@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, Literal, TypeVar, cast, overload
 
-from numpy.typing import ArrayLike
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from meshlab_spectral.filters.keywords import takes_options
 from meshlab_spectral.filters.mesh_objects import takes_mesh_alone
-from meshlab_spectral.filters.options import FilterKeywords, FilterOptions
+from meshlab_spectral.filters.options import FilterKeywords, FilterOptions, ShapeKeywords
 from meshlab_spectral.filters.progress import Progress
 from meshlab_spectral.filters.reports import FilterReport
 from meshlab_spectral.filters.running import Gain, require_no_type
@@ -16,6 +17,55 @@ from meshlab_spectral.filters.shapes import filtered
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
+
+Mesh = TypeVar("Mesh")
+
+
+class DetailsKeywords(ShapeKeywords):
+    """Keywords with which `filter_mesh` returns differences."""
+
+    result: Literal["details"]
+
+
+@overload
+def filter_mesh(
+    mesh_or_vertices: ArrayLike,
+    faces: ArrayLike,
+    options: FilterOptions | None = None,
+    *,
+    weights: ArrayLike | None = None,
+    selection: ArrayLike | None = None,
+    gain: Gain | None = None,
+    progress: Progress | bool | None = None,
+    threads: int | None = None,
+    **named: Unpack[FilterKeywords],
+) -> tuple[NDArray[np.float64], FilterReport]: ...
+@overload
+def filter_mesh(
+    mesh_or_vertices: Mesh,
+    faces: None = None,
+    options: FilterOptions | None = None,
+    *,
+    weights: ArrayLike | None = None,
+    selection: ArrayLike | None = None,
+    gain: Gain | None = None,
+    progress: Progress | bool | None = None,
+    threads: int | None = None,
+    **named: Unpack[ShapeKeywords],
+) -> tuple[Mesh, FilterReport]: ...
+@overload
+def filter_mesh(
+    mesh_or_vertices: object,
+    faces: None = None,
+    options: FilterOptions | None = None,
+    *,
+    weights: ArrayLike | None = None,
+    selection: ArrayLike | None = None,
+    gain: Gain | None = None,
+    progress: Progress | bool | None = None,
+    threads: int | None = None,
+    **named: Unpack[DetailsKeywords],
+) -> tuple[NDArray[np.float64], FilterReport]: ...
 
 
 @takes_options(FilterOptions)

@@ -6,9 +6,12 @@ Written by python/write_options.py from the tables in plugin/core/contract: edit
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, TypedDict
+from typing import TYPE_CHECKING, Literal, TypedDict
 
 from meshlab_spectral.filters.option_types import LARGEST_INTEGER, Length, Limits, Options, option
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
 
 FilterType = Literal["low-pass", "high-pass", "band-pass", "band-stop", "custom"]
 Response = Literal["gaussian", "butterworth", "ideal"]
@@ -38,7 +41,7 @@ class TransferKeywords(TypedDict, total=False):
     boundary: Boundary
 
 
-class FilterKeywords(TransferKeywords, total=False):
+class ShapeKeywords(TransferKeywords, total=False):
     """Fields of `FilterOptions`, by name."""
 
     selected: bool
@@ -54,6 +57,11 @@ class FilterKeywords(TransferKeywords, total=False):
     preserve_volume: bool
     max_displacement: Size
     weight: Weight
+
+
+class FilterKeywords(ShapeKeywords, total=False):
+    """Fields of `FilterOptions`, by name."""
+
     result: Result
 
 
@@ -71,6 +79,14 @@ class DenoiseKeywords(TypedDict, total=False):
     store_noise_height: bool
 
 
+class SpectrumKeywords(TypedDict, total=False):
+    """Fields of `SpectrumOptions`, by name."""
+
+    basis_size: int
+    laplacian: LaplacianKind
+    boundary: Boundary
+
+
 class TextureKeywords(TypedDict, total=False):
     """Fields of `TextureOptions`, by name."""
 
@@ -81,6 +97,14 @@ class TextureKeywords(TypedDict, total=False):
     crease_angle: float
     selected: bool
     laplacian: LaplacianKind
+
+
+class BasisKeywords(TypedDict, total=False):
+    """Fields of `BasisOptions`, by name."""
+
+    basis_size: int
+    laplacian: LaplacianKind
+    boundary: Boundary
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,6 +119,10 @@ class FilterOptions(Options):
 
     FILTER = "apply_coord_spectral_filter_fractional"
     TABLE = "filter"
+
+    if TYPE_CHECKING:
+
+        def __init__(self, **named: Unpack[FilterKeywords]) -> None: ...
 
     filter_type: FilterType = option(
         "low-pass",
@@ -270,6 +298,10 @@ class DenoiseOptions(Options):
     FILTER = "apply_coord_spectral_denoise"
     TABLE = "denoise"
 
+    if TYPE_CHECKING:
+
+        def __init__(self, **named: Unpack[DenoiseKeywords]) -> None: ...
+
     strength: float = option(
         1.0,
         "1 removes the noise as measured. More removes finer details, too; less leaves some "
@@ -332,6 +364,10 @@ class SpectrumOptions(Options):
     FILTER = "get_geometry_spectrum"
     TABLE = "spectrum"
 
+    if TYPE_CHECKING:
+
+        def __init__(self, **named: Unpack[SpectrumKeywords]) -> None: ...
+
     basis_size: int = option(
         0,
         "Number of the largest features (manifold harmonics, constant ones included) that "
@@ -367,6 +403,10 @@ class TextureOptions(Options):
 
     FILTER = "compute_scalar_surface_texture_per_vertex"
     TABLE = "texture"
+
+    if TYPE_CHECKING:
+
+        def __init__(self, **named: Unpack[TextureKeywords]) -> None: ...
 
     waviness: Length = option(
         Length(automatic=True),
@@ -430,6 +470,10 @@ class BasisOptions(Options):
 
     FILTER = "compute_scalar_manifold_harmonic_per_vertex"
     TABLE = "basis"
+
+    if TYPE_CHECKING:
+
+        def __init__(self, **named: Unpack[BasisKeywords]) -> None: ...
 
     basis_size: int = option(
         100,
