@@ -58,7 +58,7 @@ PACKAGE_SOURCES := CMakeLists.txt $(shell find plugin python -not -path '*/__pyc
 # Two targets at once would fetch MeshLab's headers twice; ninja uses every core anyway.
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
-.PHONY: help demo test wheel sdist web web-test docs gui-test screenshots setup build bench bench-basis bench-batch bench-contract bench-defaults bench-denoise bench-ldlt bench-memory bench-signatures bench-texture bench-tiles promises fuzz fuzz-python lint options format clean
+.PHONY: help demo test quick wheel sdist web web-test docs gui-test screenshots setup build bench bench-basis bench-batch bench-contract bench-defaults bench-denoise bench-ldlt bench-memory bench-signatures bench-texture bench-tiles promises fuzz fuzz-python lint options format clean
 
 help:  ## list these commands
 	@sed -n 's/^\([a-z-]*\):.*## /  make \1\t/p' $(firstword $(MAKEFILE_LIST)) | expand -t 20
@@ -71,6 +71,9 @@ test: build $(PACKAGE)  ## run every test, C++ and Python
 	ctest --test-dir build --output-on-failure --no-tests=error --parallel $$(nproc)
 	$(BIN)/python -m pytest -c python/pyproject.toml --rootdir . --numprocesses $$(nproc) --dist loadfile \
 	  $(TEST_OPTIONS) tests/python
+
+quick: build  ## run the tests of what has changed since main, and the contract's: a minute
+	$(BIN)/python tests/quick.py
 
 wheel: $(VENV)  ## build the wheel that PyPI takes: build/wheel/*.whl
 	rm -rf build/wheel/linux build/wheel/*.whl
@@ -180,7 +183,7 @@ lint: setup  ## check style and types, change nothing
 	cd python/src && "$(CURDIR)/$(BIN)/lint-imports" ../pyproject.toml --no-cache
 	for platform in linux win32 darwin; do \
 	  $(BIN)/mypy --strict --platform $$platform --config-file python/pyproject.toml python/src \
-	  || exit; done
+	    tests/python/filters/test_types.py || exit; done
 
 options: $(PACKAGE)  ## write the tables of options of the Python package as the core has them
 	$(BIN)/python python/write_options.py

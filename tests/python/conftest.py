@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import os
 import runpy
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -31,10 +32,14 @@ settings.register_profile(
 )
 settings.load_profile("seeded")
 
+BEGIN = time.monotonic()
 Arrays = tuple[NDArray[Any], NDArray[Any]]
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption(
+        "--seconds", type=float, help="skip the tests that would begin later than this"
+    )
     parser.addoption(
         "--without-posix",
         action="store_true",
@@ -48,6 +53,12 @@ def pytest_configure(config: pytest.Config) -> None:
         runpy.run_path(str(folder / "sitecustomize.py"))
         paths = [str(folder), *filter(None, [os.environ.get("PYTHONPATH")])]
         os.environ["PYTHONPATH"] = os.pathsep.join(paths)
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    seconds = item.config.getoption("--seconds")
+    if seconds is not None and time.monotonic() - BEGIN > seconds:
+        pytest.skip(f"the {seconds:g} seconds are over: see `make test`")
 
 
 @pytest.fixture(scope="session", autouse=True)
