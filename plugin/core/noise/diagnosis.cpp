@@ -61,7 +61,7 @@ constexpr double kWholeMesh = 0.7;
 /// Share of the height that is noise. It decreases above a correlation of residuals that may come
 /// from a scanner's noise, but also from a coarse shape with a little noise.
 double noiseShare(double correlation) {
-    constexpr double kMaxPureNoise = 0.1, kSlope = 14.0, kMinNoiseShare = 0.3;
+    constexpr double kSlope = 14.0, kMinNoiseShare = 0.3;
     return std::clamp(1.0 - kSlope * (correlation - kMaxPureNoise), kMinNoiseShare, 1.0);
 }
 
@@ -267,9 +267,9 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
         noise = estimateNoise(graph, diagnosis.X, N, isMeasured, correlation, second, edge);
     noise.correlation = correlation;
     noise.isUnderShape = noise.isUnderShape && !areNeedles;
-    if (isRising) return diagnosis;
+    if (isRising || noise.isShape) return diagnosis;
     if (noise.size > 1.0) {
-        if (!noise.isShape && measured >= kMinMeasuredFine &&
+        if (measured >= kMinMeasuredFine &&
             noiseShare(correlation) * noise.height >= kMinHeightCorrelated * edge)
             diagnosis.kind = NoiseKind::Correlated;
         return diagnosis;
@@ -298,7 +298,7 @@ NoiseField localNoise(const FaceGraph& graph, const std::vector<bool>& isMeasure
     if (!isWhite && !isCorrelated && whole.kind != NoiseKind::None &&
         whole.kind != NoiseKind::Shape)
         return {};
-    if (hasManySpikes(whole)) return {};
+    if (hasManySpikes(whole) || whole.noise.isShape) return {};
     const std::vector<bool> isMeasured = inLargeComponents(graph, isMeasuredInWhole);
     const LocalResiduals residuals = localResiduals(graph, whole.X, isMeasured);
     if ((isWhite || isCorrelated) && areAlike(graph, whole.X, residuals, isMeasured)) return {};

@@ -14,13 +14,14 @@ struct NoiseEstimate {
     double correlation = 1.0;   ///< Correlation of neighbouring residuals: residualCorrelation.
     double meanEdge = 0.0;      ///< Mean edge length, length units.
     bool isUnderShape = false;  ///< White noise under a shape that is as high, such as ribs.
-    bool isShape = false;       ///< Its octaves are those of a shape that is rough at all sizes.
+    bool isShape = false;       ///< Its octaves are those of natural ground or fine relief.
 };
 
 // What the estimates of a mesh and of its places have in common.
 constexpr double kMinHeight = 0.02;    ///< Least height of white noise, mean edges.
 constexpr double kRiseOfShape = 2.3;   ///< Least factor from an octave of a shape to the next.
 constexpr double kResidualClip = 2.0;  ///< Deviations at which residuals are clipped.
+constexpr double kMaxPureNoise = 0.1;  ///< Largest correlation of residuals without a shape.
 
 /// Unit vertex normals that vary less than the noise, n x 3.
 /// @param blurs  of the normals of the faces.

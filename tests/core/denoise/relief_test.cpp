@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -98,6 +99,36 @@ TEST(Denoise, LeavesCleanReliefAndNaturalGroundBitIdentical) {
         ground.V.col(2) = 0.01 * height;
         EXPECT_EQ(denoise(ground.V, ground.F, {}).V, ground.V) << exponent;
     }
+}
+
+TEST(Denoise, TellsReliefOfAFewEdgesFromNoise) {
+    const auto ribs = [](double pitch) {
+        return [pitch](double x, double) { return std::clamp(2.0 * wave(x, pitch), -1.0, 1.0); };
+    };
+    const auto layers = [](double pitch) {
+        return [pitch](double x, double) { return std::abs(wave(x, 2.0 * pitch)); };
+    };
+    const auto knurls = [](double x, double y) {
+        const double s = std::sqrt(0.5);
+        return wave(s * (x + y), 4.0) * wave(s * (x - y), 4.0);
+    };
+    for (const double scale : {0.25, 0.5})
+        for (const double pitch : {3.0, 4.0, 6.0, 7.0})
+            for (const auto& shape : {std::function<double(double, double)>(ribs(pitch)),
+                                      std::function<double(double, double)>(layers(pitch)),
+                                      std::function<double(double, double)>(knurls)}) {
+                const Mesh relief = sheet([&](double x, double y) { return scale * shape(x, y); });
+                EXPECT_EQ(denoise(relief.V, relief.F, {}).V, relief.V) << pitch << " " << scale;
+            }
+    const Mesh relief = sheet([&](double x, double y) { return 0.5 * knurls(x, y); });
+    Mesh noisy = relief;
+    std::mt19937 random(3);
+    std::normal_distribution<double> normal(0.0, 0.2);
+    for (Index i = 0; i < noisy.V.rows(); ++i) noisy.V(i, 2) += normal(random);
+    const DenoiseResult result = denoise(noisy.V, noisy.F, {});
+    EXPECT_NEAR(result.diagnosis.noise.height, 0.2, 0.05);
+    EXPECT_GT(kept(relief, result.V), 0.8);
+    EXPECT_LT(angle(relief, result.V), 0.8 * angle(relief, noisy.V));
 }
 
 TEST(Diagnosis, MeasuresNoiseUnderAShapeThatIsAsHigh) {
