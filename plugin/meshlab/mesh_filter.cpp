@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/mesh/measures.h"
+#include "meshlab/host_workarounds/filter_dialog.h"
 #include "meshlab/host_workarounds/given_output.h"
 #include "meshlab/vertex_colors.h"
 
@@ -192,8 +193,10 @@ FilterOutput outputOf(const MeshModel& mesh, const MeshFilter& filter, const Mes
         contract.choose(output, given);
         return output;
     }
-    const spectral::FilterInput read{input.V, input.F, selectedVertices(mesh.cm, input),
-                                     valuesOf(mesh, input, filter.values)};
+    spectral::FilterInput read{input.V, input.F, selectedVertices(mesh.cm, input),
+                               valuesOf(mesh, input, filter.values)};
+    using Names = spectral::Words::Names;
+    read.words = {hasWindows() ? Names::Labels : Names::Python, true};
     if (kept != nullptr && options.isPreview) {
         if (std::exchange(kept->previewed, &contract) != &contract) kept->bands.reset();
         FilterOutput output = spectral::preview(contract, read, given, kept->bands, progress);

@@ -51,7 +51,8 @@ using TiledTuple = std::tuple<double, double, double, bool, Flags>;
 nb::dict applyFilter(const std::string& name, const Positions& vertices, const Indices& faces,
                      const nb::dict& options, const std::optional<Flags>& selected,
                      const std::optional<Table>& values, const std::optional<Pairs>& gain,
-                     const std::optional<TiledTuple>& whole, nb::handle progress, int threads) {
+                     const std::optional<TiledTuple>& whole, nb::handle progress, int threads,
+                     bool isShell) {
     FilterInput input{mapOf(vertices, 3), mapOf(faces, 3)};
     if (selected) {
         requireRows(*selected, vertices);
@@ -68,6 +69,7 @@ nb::dict applyFilter(const std::string& name, const Positions& vertices, const I
         const std::vector<bool> flags(inner.data(), inner.data() + inner.shape(0));
         input.whole = {{diagonal, meanEdge, surfaceDiagonal}, hasThinParts, flags};
     }
+    if (isShell) input.words.names = Words::Names::Options;
     const Values given = valuesOf(options);
     FilterOutput output = [&] {
         const Running running;
@@ -211,7 +213,7 @@ NB_MODULE(_core, m) {
     m.def("filters", python::describedFilters);
     m.def("apply", python::applyFilter, "name"_a, "vertices"_a, "faces"_a, "options"_a,
           nb::kw_only(), "selected"_a = nb::none(), "values"_a = nb::none(), "gain"_a = nb::none(),
-          "whole"_a = nb::none(), "progress"_a = nb::none(), "threads"_a = 0);
+          "whole"_a = nb::none(), "progress"_a = nb::none(), "threads"_a = 0, "is_shell"_a = false);
     m.def("gains", python::gains, "options"_a, "feature_size"_a, "diagonal"_a, "mean_edge"_a,
           "frequencies"_a);
     m.def("laplacian", python::laplacian, "vertices"_a, "faces"_a, "kind"_a, nb::kw_only(),

@@ -96,6 +96,7 @@ FilterInput inputOf(const val& mesh) {
     if (const val values = mesh["values"]; !isMissing(values))
         input.values = rowsOf<double>(values, values["length"].as<Index>() / input.V.rows());
     if (const val gain = mesh["gain"]; !isMissing(gain)) input.gain = rowsOf<double>(gain, 2);
+    input.words.moreMemory = "filter it in tiles with the Python package";
     return input;
 }
 

@@ -8,10 +8,11 @@ namespace spectral {
 namespace {
 
 const char* const kRemesh =
-    "apply 'Remove Zero Area Faces' or 'Remeshing: Isotropic Explicit Remeshing' first";
+    "{apply 'Remove Zero Area Faces' or 'Remeshing: Isotropic Explicit Remeshing'|remesh it} first";
 
 const char* const kKeepLargeParts =
-    "parts are tiny compared with the mesh: apply 'Remove Isolated pieces (wrt Diameter)' first";
+    "parts are tiny compared with the mesh: {apply 'Remove Isolated pieces (wrt Diameter)'|remove "
+    "them} first";
 
 /// The values that a filter was called with; only its own parameters are recommended.
 class Given {
@@ -41,11 +42,17 @@ class Given {
 /// Whether the filter is the equalizer, whose strength depends on its gains alone.
 bool isEqualizer(const Given& given) { return given.has("smallest_size"); }
 
+/// Makes any filter change less; empty for those that only measure.
+std::string weakerInGeneral(const Given& given) {
+    if (isEqualizer(given)) return "choose gains closer to 1";
+    return given.has("feature_size") ? "choose a smaller |feature_size|" : "";
+}
+
 /// Alternatives to changing the basis size.
 std::string basisAlternatives(const Given& given) {
     std::string text;
-    if (given.isChoice("boundary", 1)) text += ", or boundary = free";
-    if (given.has("spectrum")) text += ", or spectrum = full";
+    if (given.isChoice("boundary", 1)) text += ", or |boundary = free|";
+    if (given.has("spectrum")) text += ", or |spectrum = full|";
     return text;
 }
 
@@ -54,20 +61,19 @@ std::string largerTriangles(const Given& given) {
     // The default Laplacian accepts them and fails only on parts tiny compared with the mesh.
     if (!given.isChoice("laplacian", 1)) return kKeepLargeParts;
     return std::string(
-               "choose laplacian = intrinsic delaunay, or apply 'Merge Close Vertices' and 'Remove "
-               "Duplicate Faces', or ") +
+               "choose |laplacian = intrinsic delaunay|, or {apply 'Merge Close Vertices' and "
+               "'Remove Duplicate Faces'|merge close vertices and remove duplicate faces}, or ") +
            kRemesh;
 }
 
 /// Remedy for a shape that has collapsed during the filter.
 std::string stablerFilter(const Given& given) {
-    if (given.isChoice("laplacian", 1)) return "choose laplacian = intrinsic delaunay";
+    if (given.isChoice("laplacian", 1)) return "choose |laplacian = intrinsic delaunay|";
     if (given.isChoice("basis_update", 0))
-        return "a strong filter with basis_update = full pinches thin parts off: choose "
-               "basis_update = conformal";
-    return (isEqualizer(given) ? "choose gains closer to 1, or "
-                               : "choose a smaller feature_size, or ") +
-           std::string(kRemesh);
+        return "a strong filter with |basis_update = full| pinches thin parts off: choose "
+               "|basis_update = conformal|";
+    const std::string weaker = weakerInGeneral(given);
+    return (weaker.empty() ? "" : weaker + ", or ") + kRemesh;
 }
 
 /// Remedy for a filter that leaves nothing.
@@ -77,62 +83,68 @@ std::string weakerFilter(const Given& given) {
     const bool isStopped = given.isChoice("filter_type", 1) || given.isChoice("filter_type", 2);
     const char* const name = isStopped ? "stop_gain" : "pass_gain";
     if (!given.has(name) || given.number(name) >= kSmall)
-        return "choose a smaller feature_size; if the triangles are not connected, apply "
-               "'Merge Close Vertices' first";
-    return std::string("choose ") + name + " = 1, which keeps the large details";
+        return weakerInGeneral(given) +
+               "; if the triangles are not connected, {apply 'Merge Close Vertices'|merge close "
+               "vertices} first";
+    return std::string("choose |") + name + " = 1|, which keeps the large details";
 }
 
 /// Remedy for a gain that is too steep.
 std::string gentlerFilter(const Given& given) {
-    if (isEqualizer(given)) return "choose gains closer to 1";
+    if (isEqualizer(given)) return weakerInGeneral(given);
     constexpr double kLarge = 100.0;
     for (const char* const name : {"pass_gain", "stop_gain"})
         if (given.has(name) && given.number(name) > kLarge)
-            return std::string("choose a smaller ") + name;
-    return std::string("choose a stop_gain of 0.05 instead of 0, a lower order or a wider band, ") +
-           (given.has("spectrum") ? "response = gaussian, fewer steps, or spectrum = truncated"
-                                  : "or response = gaussian");
+            return std::string("choose a smaller |") + name + "|";
+    return std::string(
+               "choose a |stop_gain| of 0.05 instead of 0, a lower |order| or a wider band, ") +
+           (given.has("spectrum") ? "|response = gaussian|, fewer steps, or |spectrum = truncated|"
+                                  : "or |response = gaussian|");
 }
 
 std::string remedy(const Error& error, const Given& given) {
     const std::string limit = std::to_string(error.limit());
     switch (error.code()) {
-        case ErrorCode::EmptyMesh: return "load or create a mesh first";
+        case ErrorCode::EmptyMesh: return "{load or create a mesh first|give a mesh with some}";
         case ErrorCode::NoFaces:
-            return "reconstruct one first, e.g. with 'Surface Reconstruction: Screened Poisson' or "
-                   "'Surface Reconstruction: Ball Pivoting'";
+            return "reconstruct one first{, e.g. with 'Surface Reconstruction: Screened Poisson' "
+                   "or 'Surface Reconstruction: Ball Pivoting'|, e.g. with MeshLab's Surface "
+                   "Reconstruction: Ball Pivoting}";
         case ErrorCode::NotFinite:
-            return "delete them, e.g. with 'Conditional Vertex Selection' (x != x) and 'Delete "
-                   "Selected Vertices'";
+            return "delete them{, e.g. with 'Conditional Vertex Selection' (x != x) and 'Delete "
+                   "Selected "
+                   "Vertices'|}";
         case ErrorCode::ValueNotFinite:
-            return "apply 'Per Vertex Quality Function' with abs(q) < 1e30 ? q : 0/0 first, which "
-                   "turns them into NaN, i.e. no data";
+            return "{apply 'Per Vertex Quality Function' with abs(q) < 1e30 ? q : 0/0 first, which "
+                   "turns "
+                   "them into NaN|give NaN instead}, i.e. no data";
         case ErrorCode::NoData:
-            return "apply a filter that computes qualities first, e.g. 'Per Vertex Quality "
-                   "Function'";
+            return "{apply a filter that computes qualities first, e.g. 'Per Vertex Quality "
+                   "Function'|"
+                   "give a number at some vertices}";
         case ErrorCode::DegenerateTriangles: return largerTriangles(given);
         case ErrorCode::SolverFailed:
         case ErrorCode::SingularMatrix: return kRemesh;
         case ErrorCode::ShapeCollapsed: return stablerFilter(given);
         case ErrorCode::ShrinksToNothing: return weakerFilter(given);
         case ErrorCode::TooManyVertices:
-            return "apply 'Simplification: Quadric Edge Collapse Decimation' first";
+            return "{apply 'Simplification: Quadric Edge Collapse Decimation'|simplify it} first";
         case ErrorCode::OutOfMemory:
             return "simplify it" +
                    (error.limit() > 0 ? " to " + limit + " vertices or fewer" : std::string()) +
-                   " ('Simplification: Quadric Edge Collapse Decimation'), or raise the memory "
-                   "limit";
+                   "{ ('Simplification: Quadric Edge Collapse Decimation')|}, or {memory}";
         case ErrorCode::BasisOutOfMemory:
         case ErrorCode::BasisTooLarge: return "choose at most " + limit + basisAlternatives(given);
         case ErrorCode::BasisTooSmall: return "choose at least " + limit + basisAlternatives(given);
         case ErrorCode::BasisIncomplete:
-            return "choose another basis_size" + basisAlternatives(given);
+            return "choose another |basis_size|" + basisAlternatives(given);
         case ErrorCode::TooManyHarmonics:
-            return given.has("spectrum")
-                       ? "choose a larger feature_size, response = butterworth with order = 8, or "
-                         "spectrum = truncated with reinject_residual"
-                       : "choose a larger feature_size, or response = butterworth with order = 8";
-        case ErrorCode::BoundaryFixesAll: return "choose boundary = free";
+            return given.has("spectrum") ? "choose a larger |feature_size|, |response = "
+                                           "butterworth| with |order = 8|, "
+                                           "or |spectrum = truncated| with |reinject_residual|"
+                                         : "choose a larger |feature_size|, or |response = "
+                                           "butterworth| with |order = 8|";
+        case ErrorCode::BoundaryFixesAll: return "choose |boundary = free|";
         case ErrorCode::TooSteep: return gentlerFilter(given);
         case ErrorCode::OptionOutOfRange:
         case ErrorCode::BadIndex:
@@ -152,7 +164,7 @@ std::string accuracyWarning(double accuracy, double errorEstimate) {
     std::ostringstream text;
     text << std::setprecision(2) << "the requested relative accuracy of " << accuracy
          << " was not reached, the estimated error is " << errorEstimate
-         << ". Choose a stop_gain of 0.05 instead of 0, a lower order or a wider band";
+         << ". Choose a |stop_gain| of 0.05 instead of 0, a lower |order| or a wider band";
     return text.str();
 }
 

@@ -5,6 +5,7 @@
 
 #include "core/contract/advice.h"
 #include "core/contract/filters.h"
+#include "core/contract/surface_report.h"
 #include "core/mesh/mesh_check.h"
 #include "core/support/steady_progress.h"
 #include "core/support/threads.h"
@@ -14,8 +15,9 @@ namespace spectral {
 namespace {
 
 /// Throws an error of the same class again, with advice.
-[[noreturn]] void throwAdvised(const Error& error, const Filter& filter, const Values& given) {
-    const std::string help = advice(error, filter, given);
+[[noreturn]] void throwAdvised(const Error& error, const Filter& filter, const Values& given,
+                               const Words& words) {
+    const std::string help = inWords(advice(error, filter, given), filter, words);
     const std::string text = help.empty() ? error.what() : error.what() + (": " + help);
     if (dynamic_cast<const Cancelled*>(&error) != nullptr) throw Cancelled();
     if (dynamic_cast<const InvalidMesh*>(&error) != nullptr)
@@ -27,18 +29,32 @@ namespace {
     throw Error(error.code(), text, error.limit());
 }
 
+/// Other filters of MeshLab leave selections behind unnoticed; other hosts pass on what was chosen.
+void warnOfSelection(const FilterInput& input, const Values& given, FilterOutput& output) {
+    const auto selected = given.find("selected");
+    if (!input.words.hasMeshLab || selected == given.end() || selected->second != Value(true))
+        return;
+    const std::string note = selectionText(input.selected);
+    if (!note.empty() && output.text.find(note) == std::string::npos)
+        output.warnings.insert(output.warnings.begin(), note);
+}
+
 /// Calls `work(lengths of the mesh, progress)` in a team of threads.
 template <class Work>
 FilterOutput advised(const Filter& filter, const FilterInput& input, const Values& given,
                      const Progress& progress, int threads, const Work& work) {
     try {
-        return withSteadyProgress(progress, [&](const Progress& steady) {
+        FilterOutput output = withSteadyProgress(progress, [&](const Progress& steady) {
             const ThreadTeam team(threads > 0 ? threads : threadCount(), steady);
             checkMesh(input.V, input.F);  // before it is measured
             return work(input.whole ? input.whole->lengths : lengthsOf(input.V, input.F), steady);
         });
+        warnOfSelection(input, given, output);
+        for (std::string& warning : output.warnings)
+            warning = inWords(warning, filter, input.words);
+        return output;
     } catch (const Error& error) {
-        throwAdvised(error, filter, given);
+        throwAdvised(error, filter, given, input.words);
     }
 }
 

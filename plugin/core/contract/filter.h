@@ -7,6 +7,7 @@
 
 #include "core/contract/parameter.h"
 #include "core/contract/value.h"
+#include "core/contract/words.h"
 #include "core/mesh/measures.h"
 #include "core/mesh/mesh.h"
 #include "core/support/errors.h"
@@ -31,6 +32,7 @@ struct FilterInput {
                                ///< to 255 (c = 3); no rows: the mesh has none.
     Eigen::MatrixXd gain{};    ///< p x 2, in place of a transfer function: frequencies
                                ///< w = feature size / wavelength > 0, and a gain >= 0 for each.
+    Words words{};             ///< Of the host.
     std::optional<TiledSurface> whole{};  ///< If the mesh is a tile; only for filters of shapes
                                           ///< with fixed sizes (fractional.cpp).
 };

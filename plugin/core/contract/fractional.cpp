@@ -24,8 +24,9 @@ struct FractionalCall : TransferCall {
 };
 
 const char* unlessTruncated(const FractionalCall& call) {
-    return call.options.evaluation.spectrum == Spectrum::Truncated ? nullptr
-                                                                   : "without spectrum = truncated";
+    return call.options.evaluation.spectrum == Spectrum::Truncated
+               ? nullptr
+               : "without |spectrum = truncated|";
 }
 
 /// In the order users decide: what, which size, how strong, how.
@@ -63,7 +64,7 @@ Fields<FractionalCall> fractionalFields() {
             .to(kMaxPasses)
             .advanced()
             .unusedIf([](const Call& call) -> const char* {
-                return call.options.steps == 0 ? nullptr : "without steps = 0";
+                return call.options.steps == 0 ? nullptr : "without |steps = 0|";
             }));
     fields.push_back(
         field<Call>(
@@ -87,7 +88,7 @@ Fields<FractionalCall> fractionalFields() {
             .unusedIf([](const Call& call) -> const char* {
                 return call.options.basisUpdate == BasisUpdate::Full
                            ? nullptr
-                           : "without basis_update = full";
+                           : "without |basis_update = full|";
             }));
     fields.push_back(
         field<Call>([](auto& call) -> auto& { return call.options.evaluation.spectrum; },
@@ -168,6 +169,11 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
     static const Fields<FractionalCall> fields = fractionalFields();
     FractionalCall call = callOf(fields, given, mesh);
     FilterOptions& options = call.options;
+    // Users do not mean the default by 0, as `FilterOptions` do.
+    if (options.steps == 0 && options.tolerance == 0.0)
+        throw InvalidOption(
+            "tolerance = 0: automatic steps need a length above zero, e.g. 0.05 % of the diagonal "
+            "of the bounding box");
     options.keepThinParts = isDefaultFeatureSize(call.featureSize, mesh);
     if (input.whole) options.whole = {mesh.meanEdge, input.whole->hasThinParts, input.whole->inner};
     resolveCustomGain(call, mesh, input.gain);

@@ -153,7 +153,7 @@ std::string cutoffWarning(const FilterResult& result, double last) {
          << " harmonics end at features of " << 2.0 * kPi / last << ", above the feature size of "
          << result.featureSize
          << ": details between these sizes are treated like all finer ones. Choose a larger "
-            "feature_size, a larger basis_size, or spectrum = full";
+            "|feature_size|, a larger |basis_size|, or |spectrum = full|";
     return text.str();
 }
 
@@ -162,15 +162,16 @@ std::string weakerFilter(const FilterOptions& options) {
     const TransferFunctionOptions& transfer = options.transferFunction;
     const bool stopsLargeDetails =
         transfer.type == FilterType::HighPass || transfer.type == FilterType::BandPass;
-    std::string text = options.basisUpdate == BasisUpdate::Full ? "basis_update = conformal, " : "";
+    std::string text =
+        options.basisUpdate == BasisUpdate::Full ? "|basis_update = conformal|, " : "";
     if (transfer.type == FilterType::Custom)
         text += "gains closer to 1";
     else if (std::max(transfer.passGain, transfer.stopGain) > 1.0)
         text += "smaller gains";
     else if (stopsLargeDetails && transfer.stopGain < 0.1)
-        text += "stop_gain = 1, which keeps the large details";
+        text += "|stop_gain = 1|, which keeps the large details";
     else
-        text += "a smaller feature_size";
+        text += "a smaller |feature_size|";
     return text;
 }
 
@@ -180,7 +181,7 @@ std::string convergingFilter(const FilterOptions& options) {
     const bool grows =
         transfer.type != FilterType::Custom && std::max(transfer.passGain, transfer.stopGain) > 1.0;
     return std::string("parts of it ") + (grows ? "grow too fast" : "shrink away") + ". Choose " +
-           weakerFilter(options) + ", or a larger tolerance";
+           weakerFilter(options) + ", or a larger |tolerance|";
 }
 
 std::string foldWarning(const FilterOptions& options, const FilterResult& result) {
@@ -217,7 +218,7 @@ std::string volumeWarning(const FilterResult& result) {
          << result.components << "; open, or not consistently oriented: " << result.volumes.open;
     if (result.volumes.lost > 0)
         text << "; shrunk too far, or not movable: " << result.volumes.lost;
-    return text.str() + ". Close holes and orient the faces first, or turn preserve_volume off";
+    return text.str() + ". Close holes and orient the faces first, or turn |preserve_volume| off";
 }
 
 /// Only a warning, as scripts use one feature size for many meshes.
@@ -226,7 +227,8 @@ std::string edgeWarning(const FilterResult& result) {
     text << std::setprecision(3) << "the mesh has no details of the feature size "
          << result.featureSize << ", which is below its mean edge length of " << result.meanEdge
          << ". Choose at least two edges, " << 2.0 * result.meanEdge
-         << "; if the model has few triangles, apply 'Subdivision Surfaces: Midpoint' first";
+         << "; if the model has few triangles, {apply 'Subdivision Surfaces: Midpoint'|subdivide "
+            "them} first";
     return text.str();
 }
 
@@ -239,7 +241,7 @@ std::string shrinkingWarning(const FilterResult& result, double diagonal) {
          << (result.toleranceReached
                  ? ""
                  : ", and on " + percentOf(result.singularPart) + " the tolerance was not reached")
-         << ". Try feature_size = " << half << " (" << 100.0 * half / diagonal
+         << ". Try |feature_size = " << half << "| (" << 100.0 * half / diagonal
          << " % of the diagonal), or filter a selection without these parts";
     return text.str();
 }
@@ -253,13 +255,11 @@ double lastFrequency(const FilterResult& result) {
 std::vector<std::string> fractionalWarnings(const FilterOptions& options,
                                             const FilterResult& result, double diagonal) {
     std::vector<std::string> warnings = surfaceWarnings(result);
-    if (const std::string note = selectionText(options.part.selected); !note.empty())
-        warnings.push_back(note);
     const bool isAtRest = isAllFixed(result, result.V.rows());
     if (isAtRest)
         warnings.push_back(options.creaseAngle > 0.0
                                ? "nothing can move: every vertex lies on a crease or a fixed "
-                                 "boundary. Choose a larger crease_angle"
+                                 "boundary. Choose a larger |crease_angle|"
                                : allFixedWarning("move"));
     const bool isDefault = options.keepThinParts;
     if (!isDefault && options.transferFunction.type != FilterType::Custom &&
@@ -276,8 +276,8 @@ std::vector<std::string> fractionalWarnings(const FilterOptions& options,
         warnings.push_back(volumeWarning(result));
     if (!result.accuracyReached)
         warnings.push_back(accuracyWarning(result.accuracy, result.errorEstimate) +
-                           ", or fewer steps; if triangles are needles, apply 'Remeshing: "
-                           "Isotropic Explicit Remeshing' first");
+                           ", or fewer steps; if triangles are needles, {apply 'Remeshing: "
+                           "Isotropic Explicit Remeshing'|remesh} first");
     if (!result.toleranceReached && !shrinks) warnings.push_back(toleranceWarning(options, result));
     if (!result.cutoffReached) warnings.push_back(cutoffWarning(result, lastFrequency(result)));
     append(residualWarnings(result.residuals), warnings);

@@ -78,10 +78,8 @@ Entries<Filtered> signalEntries() {
          surfaceEntries<R>()});
 }
 
-std::vector<std::string> warningsOf(const std::vector<bool>& selected,
-                                    const FilteredSignal& result) {
+std::vector<std::string> warningsOf(const FilteredSignal& result) {
     std::vector<std::string> warnings = surfaceWarnings(result);
-    if (const std::string note = selectionText(selected); !note.empty()) warnings.push_back(note);
     if (result.isConstant)
         warnings.emplace_back(
             "nothing to filter: the values are constant on every connected component. Apply a "
@@ -123,7 +121,7 @@ FilterOutput filterValues(const char* name, const char* signal, const FilterInpu
     FilterOutput output;
     output.report = reportOf(signalEntries(), result);
     output.text = text.str();
-    output.warnings = warningsOf(options.part.selected, result);
+    output.warnings = warningsOf(result);
     append(percentageWarnings(mesh), output.warnings);
     append(unusedWarnings(fields, call), output.warnings);
     output.values = std::move(result.Y);

@@ -51,8 +51,8 @@ bool isAllFixed(const SurfaceCounts& counts, Index n) {
 
 std::string allFixedWarning(const std::string& verb) {
     return "nothing can " + verb +
-           ": every vertex lies on the boundary, which is fixed. Choose boundary = free; if the "
-           "triangles are not connected, apply 'Merge Close Vertices' first";
+           ": every vertex lies on the boundary, which is fixed. Choose |boundary = free|; if the "
+           "triangles are not connected, {apply 'Merge Close Vertices'|merge close vertices} first";
 }
 
 void append(std::vector<std::string> more, std::vector<std::string>& warnings) {
@@ -65,7 +65,8 @@ std::vector<std::string> surfaceWarnings(const SurfaceCounts& counts) {
         warnings.push_back(
             std::to_string(counts.nearlyJoined) +
             " vertices on the boundary are within round-off of others, but not at the same point: "
-            "the surface may tear there. Apply 'Merge Close Vertices' first");
+            "the surface may tear there. {Apply 'Merge Close Vertices'|Merge close vertices} "
+            "first");
     if (counts.flatComponents > 0)
         warnings.push_back(std::to_string(counts.flatComponents) +
                            (counts.flatComponents == 1 ? " component" : " components") +
@@ -80,11 +81,12 @@ std::vector<std::string> periodicWarnings(const Vertices& before, const Faces& F
     const double mismatch = largestMismatch(pairs, before, after);
     if (!(mismatch > kRoundOff * boundingBoxDiagonal(before))) return {};
     std::ostringstream text;
-    text << std::setprecision(3) << pairs.size()
-         << " pairs of vertices on opposite sides matched by a translation, as those of a periodic "
-            "cell, and are now apart by up to "
-         << mismatch
-         << ": choose boundary = fixed, or filter 3 x 3 x 3 copies and keep the one in the middle";
+    text
+        << std::setprecision(3) << pairs.size()
+        << " pairs of vertices on opposite sides matched by a translation, as those of a periodic "
+           "cell, and are now apart by up to "
+        << mismatch
+        << ": choose |boundary = fixed|, or filter 3 x 3 x 3 copies and keep the one in the middle";
     return {text.str()};
 }
 
@@ -107,8 +109,8 @@ std::vector<std::string> percentageWarnings(const MeshLengths& mesh) {
                                    : " vertices without faces enlarge")
              << " the diagonal of the bounding box from " << mesh.surfaceDiagonal << " to "
              << mesh.diagonal
-             << ": percentages refer to the larger one, defaults to the smaller. Apply 'Remove "
-                "Unreferenced Vertices' first";
+             << ": percentages refer to the larger one, defaults to the smaller. {Apply 'Remove "
+                "Unreferenced Vertices'|Remove them} first";
         warnings.push_back(text.str());
         text.str({});
     }
@@ -117,8 +119,8 @@ std::vector<std::string> percentageWarnings(const MeshLengths& mesh) {
         text << std::setprecision(9) << filler.vertices << " vertices have " << axis << " = "
              << filler.value
              << ", far from all others, which defaults do not count: where that stands for "
-             << "missing data, select the rest (--where '" << axis
-             << (filler.isLowest ? " > " : " < ") << filler.value << "')";
+             << "missing data, select the rest (|where = " << axis
+             << (filler.isLowest ? " > " : " < ") << filler.value << "|)";
         warnings.push_back(text.str());
     }
     return warnings;

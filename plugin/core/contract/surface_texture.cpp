@@ -204,8 +204,6 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
     output.report = reportOf(textureEntries(), texture);
     output.text = textOf(texture);
     output.warnings = percentageWarnings(mesh);
-    if (const std::string note = selectionText(options.selected); !note.empty())
-        output.warnings.push_back(note);
     if (texture.tooThin > 0)
         output.warnings.push_back("parts thinner than the waviness cutoff are left out, in all " +
                                   countText(texture.tooThin) + ", the first is vertex " +
@@ -216,14 +214,15 @@ FilterOutput run(const FilterInput& input, const MeshLengths& mesh, const Values
             "only " + std::to_string(texture.evaluated) + " of " +
             countText(texture.leftOut + texture.evaluated + texture.tooThin) +
             " are measured: the others are within a cutoff of boundaries or creases, or not on "
-            "the fitted shape. A smaller waviness, or a larger crease_angle such as 180, measures "
+            "the fitted shape. A smaller |waviness|, or a larger |crease_angle| such as 180, "
+            "measures "
             "more");
     constexpr double kSteep = 0.7;  // Sq is .5 % off at .4, and 3 % at 1
     if (!isShape(options.form) && texture.Sdq > kSteep)
         output.warnings.push_back(
             "slopes of the texture are steep, Sdq " + shortText(texture.Sdq) +
             ": on a free shape they make heights 2 % too low, or more. Choose the plane, sphere or "
-            "cylinder that the surface is as form");
+            "cylinder that the surface is as |form|");
     if (const std::string note = leftOutText(texture); !note.empty())
         output.warnings.push_back(note);
     if (!texture.accuracyReached)

@@ -17,7 +17,7 @@ template <class Call>
 struct Field : Parameter {
     std::function<Value(const Call&)> get;
     std::function<void(Call&, const Value&)> set;  ///< Of a converted value.
-    /// Null if the parameter has an effect, else when it has none: "without steps = 0".
+    /// Null if the parameter has an effect, else when it has none: "without |steps = 0|".
     const char* (*unused)(const Call&) = nullptr;
 
     Field&& advanced() && {
@@ -123,7 +123,7 @@ std::vector<std::string> unusedWarnings(const Fields<Call>& fields, const Call& 
     for (const Field<Call>& one : fields) {
         if (one.unused == nullptr || one.get(call) == converted(one, one.usual, {})) continue;
         if (const char* const when = one.unused(call))
-            warnings.push_back(one.name + " has no effect " + when);
+            warnings.push_back("|" + one.name + "| has no effect " + when);
     }
     return warnings;
 }

@@ -48,7 +48,7 @@ inline bool isBand(FilterType type) {
 template <class Call>
 void addTransferFields(Fields<Call>& fields) {
     const auto ifCustom = [](const Call& call) -> const char* {
-        return call.transfer.type == FilterType::Custom ? "with filter_type = custom" : nullptr;
+        return call.transfer.type == FilterType::Custom ? "with |filter_type = custom|" : nullptr;
     };
     fields.push_back(
         field<Call>(
@@ -95,7 +95,7 @@ void addTransferFields(Fields<Call>& fields) {
             .advanced()
             .unusedIf([](const Call& call) -> const char* {
                 return call.transfer.type == FilterType::Custom ? nullptr
-                                                                : "without filter_type = custom";
+                                                                : "without |filter_type = custom|";
             }));
     fields.push_back(field<Call>([](auto& call) -> auto& { return call.transfer.bandWidth; },
                                  "band_width", "Band width (octaves)",
@@ -107,7 +107,7 @@ void addTransferFields(Fields<Call>& fields) {
                          .unusedIf([](const Call& call) -> const char* {
                              return isBand(call.transfer.type)
                                         ? nullptr
-                                        : "without filter_type = band-pass or band-stop";
+                                        : "without |filter_type = band-pass| or band-stop";
                          }));
     fields.push_back(
         field<Call>([](auto& call) -> auto& { return call.transfer.response; }, "response",
@@ -130,7 +130,7 @@ void addTransferFields(Fields<Call>& fields) {
                              return call.transfer.type != FilterType::Custom &&
                                             call.transfer.response == Response::Butterworth
                                         ? nullptr
-                                        : "without response = butterworth";
+                                        : "without |response = butterworth|";
                          }));
 }
 

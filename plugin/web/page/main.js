@@ -6,7 +6,6 @@ import {normalsOf, scaledValues, sizesOf} from './measures.js';
 import {sameRun} from './same_run.js';
 import {sampleMesh} from './sample.js';
 import {View} from './view.js';
-import {inOwnWords} from './words.js';
 
 const DENOISE = 'apply_coord_spectral_denoise';
 const kOffered = [DENOISE, 'apply_coord_spectral_filter_fractional', 'apply_coord_spectral_equalizer',
@@ -27,7 +26,7 @@ try {
 function say(text, kind = '') {
   const line = document.createElement('p');
   line.className = kind;
-  line.textContent = inOwnWords(text);
+  line.textContent = text;
   at('log').append(line);
 }
 

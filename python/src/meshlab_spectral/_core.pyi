@@ -22,6 +22,7 @@ def apply(
     whole: tuple[float, float, float, bool, NDArray[np.bool_]] | None = None,
     progress: Progress | None = None,
     threads: int = 0,
+    is_shell: bool = False,
 ) -> dict[str, Any]: ...
 def gains(
     options: Mapping[str, bool | int | float | str],

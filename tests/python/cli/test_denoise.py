@@ -93,6 +93,7 @@ def test_a_wrong_option_is_named_before_any_file_is_touched(
     assert_fails(done, 2, word)
 
 
+@pytest.mark.slow
 def test_a_recipe_denoises_a_folder(tmp_path: Path) -> None:
     source, out = tmp_path / "scans", tmp_path / "clean"
     scans = make_meshes(source, 2, rings=48)

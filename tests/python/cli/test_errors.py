@@ -119,7 +119,7 @@ def test_a_point_cloud_is_refused_with_a_way_to_a_surface(existing: Path, tmp_pa
 def test_a_basis_as_large_as_the_mesh_is_refused(cow: Path, existing: Path) -> None:
     arguments = ("--spectrum", "truncated", "--basis-size", 5000)
     assert_fails(
-        command("filter", cow, existing, "--overwrite", *arguments), 1, "2904", "spectrum = full"
+        command("filter", cow, existing, "--overwrite", *arguments), 1, "2904", "--spectrum full"
     )
 
 

@@ -131,6 +131,7 @@ def test_a_mask_file_has_a_number_for_each_vertex(ending: str, output: str, tmp_
     np.testing.assert_allclose(arrays_of(target)[0], expected, atol=1e-5)
 
 
+@pytest.mark.slow
 def test_a_region_that_does_not_fit_is_refused_with_the_remedy(tmp_path: Path) -> None:
     source, target = written(tmp_path, spheres(1.0), "obj"), tmp_path / "out.ply"
     (tmp_path / "mask.txt").write_text("1 0 1")

@@ -59,7 +59,7 @@ def test_what_progress_raises_is_passed_on(mesh: Any) -> None:
 @pytest.mark.parametrize(
     ("change", "options", "kind", "code", "words"),
     [
-        (lambda V, F: (V[:0], F[:0]), {}, MeshError, "empty_mesh", "load or create"),
+        (lambda V, F: (V[:0], F[:0]), {}, MeshError, "empty_mesh", "give a mesh with some"),
         (lambda V, F: (V, F[:0]), {}, MeshError, "no_faces", "no faces"),
         (lambda V, F: (V, F + 10**6), {}, MeshError, "bad_index", "refers to vertex"),
         (lambda V, F: (V * np.nan, F), {}, MeshError, "not_finite", "not finite"),

@@ -105,6 +105,7 @@ def test_pymeshlab_and_the_module_give_the_same_bits(call: Call, every_inputs: I
         assert_same(through_core(call, every_inputs), through_pymeshlab(call, mesh_set))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "call"),
     [("filter", CALLS[0]), ("filter", CALLS[3]), ("denoise", CALLS[5]), ("denoise", CALLS[6])],

@@ -11,6 +11,8 @@ import pytest
 from commands import command, messages_in
 from format_samples import SAMPLES, Sample
 
+pytestmark = pytest.mark.slow
+
 # Imported by every Python that starts, child processes of commands among them.
 WITHOUT = "import sys\nsys.modules['pymeshlab'] = None\n"
 

@@ -56,6 +56,7 @@ def meshes(decimated: Callable[..., Any], tmp_path: Path) -> list[Path]:
     return paths
 
 
+@pytest.mark.slow
 def test_every_figure_of_every_mesh_is_drawn(meshes: list[Path], tmp_path: Path) -> None:
     folder = tmp_path / "new" / "folder"
     done = script("paper.py", *meshes, "--output", folder, "--scale", 0.2)
@@ -72,6 +73,7 @@ def test_every_figure_of_every_mesh_is_drawn(meshes: list[Path], tmp_path: Path)
         assert all((edge > 0.98).all() for edge in edges), path.name
 
 
+@pytest.mark.slow
 def test_all_pictures_are_drawn_and_their_numbers_recorded(
     decimated: Callable[..., Any], tmp_path: Path
 ) -> None:

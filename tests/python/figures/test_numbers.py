@@ -27,6 +27,7 @@ def test_every_picture_is_made_by_a_script_and_has_numbers() -> None:
     assert all(recorded(SCREENSHOTS).values())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_a_picture_shows_what_the_program_computes(
     name: str, shared_mesh: Callable[[str], Path]

@@ -38,6 +38,7 @@ def saved(mesh: Arrays, path: Path) -> Path:
     return path
 
 
+@pytest.mark.slow
 def test_a_notebook_shows_the_comparison_that_the_command_draws(
     rough: Arrays, tmp_path: Path
 ) -> None:
@@ -51,6 +52,7 @@ def test_a_notebook_shows_the_comparison_that_the_command_draws(
     np.testing.assert_allclose(shown(figure), drawn, atol=0.01)
 
 
+@pytest.mark.slow
 def test_a_notebook_shows_the_texture_that_the_command_draws(rough: Arrays, tmp_path: Path) -> None:
     source, picture = saved(rough, tmp_path / "rough.ply"), tmp_path / "texture.png"
     done = command("texture", source, "--waviness", "1.5", "--picture", picture)

@@ -70,7 +70,7 @@ def test_what_is_given_is_what_is_returned() -> None:
     clean, found = assert_type(denoise_mesh(pair, strength=0.8), tuple[Pair, "DenoiseReport"])
     assert_type(found["summary"], str)
     assert clean[0].shape == V.shape
-    assert_type(denoise_mesh(V, F, weights=np.ones(len(V)))[0], Array)
+    assert_type(denoise_mesh(V, F, noise_height="0.2e", weights=np.ones(len(V)))[0], Array)
 
 
 def test_measures_have_types(tmp_path: Path) -> None:

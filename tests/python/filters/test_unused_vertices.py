@@ -27,7 +27,7 @@ Array = NDArray[Any]
 Shape = tuple[Array, Array]
 
 ENLARGING = "the diagonal of the bounding box from"
-REMEDY = "'Remove Unreferenced Vertices'"
+REMEDY = "Remove them first"
 WITHOUT_PERCENTAGES = "compute_scalar_manifold_harmonic_per_vertex"
 
 

@@ -24,6 +24,7 @@ from meshlab_spectral import (
 )
 from meshlab_spectral.files.script import apply_script
 from meshlab_spectral.filters.options import TransferKeywords
+from meshlab_spectral.filters.running import SHELL
 from meshlab_spectral.plugin.library import last_warnings
 from meshlab_spectral.plugin.mesh_sets import call_filter
 
@@ -100,6 +101,7 @@ def test_the_log_of_a_geometry_spectrum_is_a_chart(samples: Path) -> None:
     assert np.abs(np.maximum(1, cells) - [len(bar) for bar, _ in rows]).max() < 0.51
 
 
+@pytest.mark.slow
 def test_every_flag_of_a_shortfall_comes_with_a_warning(decimated: Decimated) -> None:
     """Flags and warnings come by two separate ways, which must agree."""
     V, F = decimated("cow.obj")
@@ -238,6 +240,7 @@ def test_json_has_the_warning_that_standard_error_shows(tmp_path: Path) -> None:
     source = write_ply(tmp_path / "flat.ply", "0 0 0\n1 0 0\n0 1 0", "3 0 1 2")
     done = command("filter", source, tmp_path / "out.ply", "--boundary", "fixed", "--json")
     (warning,) = json.loads(done.stdout)["report"]["warnings"]
+    assert "Choose --boundary free; if the triangles are not connected, merge close" in warning
     assert messages_in(done.stderr) == f"Warning: {warning}.\n"
 
 
@@ -309,7 +312,7 @@ def cells(side: int, height: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 @pytest.mark.parametrize("filler", [-9999.0, -32768.0])
 def test_missing_data_in_a_terrain_are_named_with_the_option_that_leaves_them_out(
-    filler: float,
+    filler: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     rng = np.random.default_rng(3)
     height = 50 * np.sin(np.arange(900) / 40) + rng.normal(size=900)
@@ -318,9 +321,12 @@ def test_missing_data_in_a_terrain_are_named_with_the_option_that_leaves_them_ou
     expected, plain = filter_mesh(V, F)
     V[lake, 2] = filler
     _, report = filter_mesh(V, F)
-    (warning,) = (text for text in report["warnings"] if "--where" in text)
+    (warning,) = (text for text in report["warnings"] if "missing data" in text)
     assert warning.startswith(f"5 vertices have z = {filler:g}, far from all others")
-    assert f"--where 'z > {filler:g}'" in warning
+    assert f"(where = z > {filler:g})" in warning
+    with monkeypatch.context() as in_shell:
+        in_shell.setenv(SHELL, "1")
+        assert any(f"--where 'z > {filler:g}'" in w for w in filter_mesh(V, F)[1]["warnings"])
     assert report["feature_size"] == pytest.approx(plain["feature_size"], rel=0.02)
     kept = V[:, 2] != filler
     selected, report = filter_mesh(V, F, selection=kept)

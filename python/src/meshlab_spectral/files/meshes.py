@@ -51,8 +51,6 @@ StageCallback = Callable[[str, float | None], object]
 _READ_BY_MESHLAB = (".ply", ".obj", ".off", ".stl")
 # MeshLab would invent it for a mesh made from arrays.
 _BARE = {".ply": {"save_vertex_quality": False}}
-# The core's warning for those who do not know of a selection that another filter has left.
-_SELECTION = "only the selection: "
 _NAMED = 50  # meshes to choose from
 
 
@@ -119,7 +117,7 @@ def filter_to_scratch(
         write(mesh_set, options.FILTER, **results, text=text)
         if verbose:
             print(*done.report["warnings"], sep="\n", file=sys.stderr)
-        return _as_chosen(done.plain_report)
+        return _with_choice(done.plain_report, part, options)
 
     if attribute := wanted_attribute(options, scratch):
         return _through_meshlab(source, scratch, apply, on_stage, verbose, {attribute: True})
@@ -343,7 +341,7 @@ def _filtered(
         raise type(error)(f"mesh {part.name}: {error}") from error
     if verbose:
         print(done.text, *done.report["warnings"], sep="\n", file=sys.stderr)
-    report = _as_chosen(done.plain_report)
+    report = _with_choice(done.plain_report, part, options)
     return part.vertices if done.vertices is None else done.vertices, report
 
 
@@ -359,15 +357,13 @@ def _run(part: Part, options: Options, on_stage: StageCallback) -> Run:
     )
 
 
-def _as_chosen(report: dict[str, Any]) -> dict[str, Any]:
-    """Make of the warning of a selection, which was asked for, the summary."""
-    for warning in report["warnings"]:
-        if warning.startswith(_SELECTION):
-            chosen = warning.removeprefix(_SELECTION)
-            summary = f"only {chosen} are chosen; around them, the effect fades out"
-            others = [other for other in report["warnings"] if other != warning]
-            return {**report, "summary": summary, "warnings": others}
-    return report
+def _with_choice(report: dict[str, Any], part: Part, options: Options) -> dict[str, Any]:
+    """Add a summary of what was chosen to be filtered, where the filter has none of its own."""
+    flags = part.selected if getattr(options, "selected", False) else None
+    if flags is None or flags.all() or "summary" in report:
+        return report
+    chosen = f"{np.count_nonzero(flags)} of {len(part.vertices)} vertices"
+    return {**report, "summary": f"only {chosen} are chosen; around them, the effect fades out"}
 
 
 def in_scene(parts: Sequence[Part]) -> list[Part]:

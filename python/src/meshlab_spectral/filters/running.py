@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
@@ -18,6 +19,9 @@ from meshlab_spectral.plugin import limits
 
 Array = NDArray[np.float64]
 Gain = Callable[[Array], ArrayLike]
+
+# Set by the command, for its child processes, too: advice then names options as a shell has them.
+SHELL = "MESHLAB_SPECTRAL_SHELL"
 
 # The core interpolates a gain's logarithm between samples, here to about 1e-5 of a smooth gain;
 # beyond them, where no mesh has details, the gain is constant.
@@ -127,6 +131,7 @@ def run(
             whole=whole,
             progress=on_progress,
             threads=thread_count(threads),
+            is_shell=SHELL in os.environ,
         )
     report = {**result.pop("report"), "warnings": result.pop("warnings")}
     if summary := result.pop("summary"):
