@@ -2,7 +2,7 @@
 //
 // usage: node try_page.mjs BROWSER PAGE MESHES TARGET
 //
-// BROWSER is chromium or firefox, of Debian; each mesh in the folder MESHES is opened, denoised and saved, twice,
+// BROWSER is chromium or firefox, of Debian; each mesh in the folder MESHES is opened, denoised and saved, then dropped and the same,
 // to TARGET, where the pictures are, too; broken.ply and huge.ply must be told.
 import assert from 'node:assert/strict';
 import {mkdir, readFile, readdir, writeFile} from 'node:fs/promises';
@@ -35,9 +35,24 @@ const both = async (what) => {
 };
 
 /** Opens a file as by the button. */
-async function open(file) {
-  const input = await page.$('#file');
-  await input.uploadFile(join(resolve(meshes), file));
+const open = (file) => given(file, '#file');
+
+/** Drops a file on the page, as from a window of the system: an input outside the page's own gets it for the drop. */
+async function drop(file) {
+  await page.evaluate(() => document.body.append(Object.assign(document.createElement('input'), {type: 'file', id: 'dropped', hidden: true})));
+  await given(file, '#dropped', () => page.evaluate(() => {
+    const input = document.getElementById('dropped'), dataTransfer = new DataTransfer();
+    dataTransfer.items.add(input.files[0]);
+    input.remove();
+    const tell = (type) => document.getElementById('view').dispatchEvent(new DragEvent(type, {bubbles: true, cancelable: true, dataTransfer}));
+    if (tell('dragover') || tell('drop')) throw new Error('the browser would show the file instead');
+  }));
+}
+
+async function given(file, input, then = () => {}) {
+  await page.$eval('#facts', (element) => { element.textContent = ''; });
+  await (await page.$(input)).uploadFile(join(resolve(meshes), file));
+  await then();
   await page.waitForFunction((text) => document.getElementById('facts').textContent.startsWith(text) || document.querySelector('#log .error'), {timeout: 400000}, `${file}:`);
 }
 
@@ -113,7 +128,7 @@ for (const file of (await readdir(meshes)).sort()) {
     continue;
   }
   for (const again of [false, true]) {
-    await open(file);
+    await (again ? drop : open)(file);
     await idle();
     assert.equal(await page.$('#log .error'), null, await log());
     const first = await saved();
