@@ -21,7 +21,8 @@ namespace {
 using spectral::Parameter;
 using Kind = Parameter::Kind;
 
-/// A parameter of this host alone: others write files.
+/// Parameters of this host alone: others write files, and compare them.
+const char* const kColorByDisplacement = "color_by_displacement";
 const char* const kKeepOriginal = "keep_original";
 const char* const kKeepOriginalLabel = "Keep the original";
 
@@ -148,16 +149,26 @@ RichParameterList parametersOf(const spectral::Filter& filter, const MeshModel& 
     // Not MeshLab's own bounding box, which stays that of a preview that was switched off.
     for (const Parameter& one : filter.parameters)
         add(filter, one, lengths, mesh.cm.vn, hasSelectedFaces(mesh.cm), list);
-    if (movesVertices)
-        list.addParam(
-            RichBool(kKeepOriginal, false, kKeepOriginalLabel,
-                     "Keep the mesh as it is now in a hidden layer of its own, as MeshLab "
-                     "cannot undo a filter."));
+    if (!movesVertices) return list;
+    list.addParam(
+        RichBool(kColorByDisplacement, false, "Colour by displacement",
+                 "Colour every vertex by how far it moves along its normal: <b>red</b> outwards, "
+                 "<b>blue</b> inwards, white not at all. The log has the scale and the largest "
+                 "values. Colours from before become the vertex attribute color_before."));
+    list.addParam(
+        RichBool(kKeepOriginal, false, kKeepOriginalLabel,
+                 "Keep the mesh as it is now in a hidden layer of its own, as MeshLab cannot undo "
+                 "a filter."));
     return list;
 }
 
 bool isOriginalKept(const RichParameterList& parameters) {
     return parameters.hasParameter(kKeepOriginal) && parameters.getBool(kKeepOriginal);
+}
+
+bool isColoredByDisplacement(const RichParameterList& parameters) {
+    return parameters.hasParameter(kColorByDisplacement) &&
+           parameters.getBool(kColorByDisplacement);
 }
 
 void recordOriginalKept(MeshDocument& document) {

@@ -17,12 +17,16 @@ QString helpOf(const spectral::Filter& filter);
 
 /// The parameters, with defaults for a mesh.
 /// @param lengths        of the mesh.
-/// @param movesVertices  whether the filter does: then the mesh can be kept as it was, in a layer.
+/// @param movesVertices  whether the filter does: then the mesh can be kept as it was, in a layer,
+///                       and show how far its vertices have moved.
 RichParameterList parametersOf(const spectral::Filter& filter, const MeshModel& mesh,
                                const spectral::MeshLengths& lengths, bool movesVertices);
 
 /// Whether the mesh shall be kept as it was.
 bool isOriginalKept(const RichParameterList& parameters);
+
+/// Whether the vertices shall be coloured by how far they move.
+bool isColoredByDisplacement(const RichParameterList& parameters);
 
 /// Corrects what MeshLab writes into its history after a call for which the box was switched off
 /// (apply_anew.h): that the mesh was kept as it was.

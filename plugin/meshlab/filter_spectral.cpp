@@ -5,12 +5,12 @@
 
 #include <QApplication>
 #include <QDockWidget>
+#include <QRegularExpression>
 #include <chrono>
+#include <cmath>
 #include <functional>
 #include <iomanip>
-#include <limits>
 #include <sstream>
-#include <type_traits>
 #include <utility>
 
 #include "core/support/errors.h"
@@ -48,21 +48,37 @@ void checkFields(const spectral::Filter& filter) {
     if (!field.isEmpty()) throw MLException(field + " is not a number that can be used here");
 }
 
-/// The number in an environment variable; 0 if unset.
-/// @throws spectral::InvalidOption  when it is not above zero, or infinite.
-template <class Number>
-Number environmentNumber(const char* variable, const char* unit) {
-    if (!qEnvironmentVariableIsSet(variable)) return 0;
-    bool isNumber = false;
-    Number number = 0;
-    if constexpr (std::is_integral_v<Number>)
-        number = qEnvironmentVariableIntValue(variable, &isNumber);
-    else
-        number = qgetenv(variable).toDouble(&isNumber);
-    if (isNumber && number > 0 && number <= std::numeric_limits<Number>::max()) return number;
+[[noreturn]] void refuseVariable(const char* variable, const char* wanted) {
     throw spectral::InvalidOption(std::string("the environment variable ") + variable + " = " +
-                                  qgetenv(variable).toStdString() + ": give a number of " + unit +
-                                  " above zero, or unset it");
+                                  qgetenv(variable).toStdString() + ": give a number of " + wanted +
+                                  ", or unset it");
+}
+
+/// The number of threads that the environment asks for; 0: none.
+/// @throws spectral::InvalidOption  when it is not above zero.
+int environmentThreads() {
+    constexpr const char* kVariable = "MESHLAB_SPECTRAL_THREADS";
+    if (!qEnvironmentVariableIsSet(kVariable)) return 0;
+    bool isNumber = false;
+    const int number = qEnvironmentVariableIntValue(kVariable, &isNumber);
+    if (!isNumber || number <= 0) refuseVariable(kVariable, "threads above zero");
+    return number;
+}
+
+/// The limit of memory in the environment, in bytes; 0: none. 4GB is 4 * 2^30, as in the shell.
+/// @throws spectral::InvalidOption  when it is not above zero, or infinite.
+double environmentMemory() {
+    constexpr const char* kVariable = "MESHLAB_SPECTRAL_MEMORY";
+    if (!qEnvironmentVariableIsSet(kVariable)) return 0.0;
+    static const QRegularExpression size("^(.*?)\\s*([KMGT]?)(i?B)?$",
+                                         QRegularExpression::CaseInsensitiveOption);
+    const QRegularExpressionMatch match = size.match(qEnvironmentVariable(kVariable).trimmed());
+    const QString unit = match.captured(2).toUpper();
+    const int power = unit.isEmpty() ? 0 : 1 + QString("KMGT").indexOf(unit);
+    const double number = std::ldexp(match.captured(1).toDouble(), 10 * power);
+    if (!(number > 0.0 && std::isfinite(number)))
+        refuseVariable(kVariable, "bytes above zero, such as 4e9 or 4GB");
+    return number;
 }
 
 /// The report as pymeshlab returns it. Only these types reach Python; strings do not.
@@ -255,11 +271,12 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
     // MLException and bad_alloc.
     try {
         const spectral::Progress progress = meshlabProgress(callback, isWanted, isOvertaken);
-        spectral::setThreadCount(environmentNumber<int>("MESHLAB_SPECTRAL_THREADS", "threads"));
-        spectral::setMemoryLimit(environmentNumber<double>("MESHLAB_SPECTRAL_MEMORY", "bytes"));
+        spectral::setThreadCount(environmentThreads());
+        spectral::setMemoryLimit(environmentMemory());
         RunOptions options;
         options.isPreview = isPreview;
         options.kept = runKeptFor(dialog);
+        options.isColored = isColoredByDisplacement(parameters);
         if (!isPreview && (isOriginalKept(parameters) || isLayerWanted()))
             options.layers = &document;
         if (isPreview && filter.contract.preview != nullptr) {
@@ -272,7 +289,7 @@ std::map<std::string, QVariant> FilterSpectralPlugin::applyFilter(
         const spectral::FilterOutput output =
             applyTo(*document.mm(), filter, given, options, progress);
         const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-        postConditionMask = static_cast<unsigned>(changedBy(filter, output));
+        postConditionMask = static_cast<unsigned>(changedBy(filter, output, options.isColored));
         logOutput(output, taken.count());
         keepLastMessages(output.summary, output.warnings);
         if (options.layers != nullptr && !isOriginalKept(parameters)) recordOriginalKept(document);

@@ -71,16 +71,28 @@ double usualExtent(const Eigen::VectorXd& values) {
 }
 
 /// Colours for values with a sign, and a line on what they mean.
+/// @param what  the values are.
 void showSigned(const MeshMatrices& input, const Eigen::VectorXd& values, double extent,
-                FilterOutput& output, MeshModel& mesh) {
+                FilterOutput& output, MeshModel& mesh,
+                const char* what = "the values are the vertex quality") {
     keepColors(input, output, mesh);
     setSignedColors(input.vertexIndex, values, extent > 0.0 ? extent : 1.0, mesh);
     std::ostringstream text;
     text.precision(3);
-    text << "\n  colours: blue " << -extent << ", white 0, red " << extent
-         << "; the values are the vertex quality, from " << values.minCoeff() << " to "
-         << values.maxCoeff();
+    text << "\n  colours: blue " << -extent << ", white 0, red " << extent << "; " << what
+         << ", from " << values.minCoeff() << " to " << values.maxCoeff();
     output.text += text.str();
+}
+
+/// How far each vertex has moved along its normal, as colours and in the report.
+void showDisplacement(const MeshMatrices& input, const Eigen::VectorXd& outward,
+                      FilterOutput& output, MeshModel& mesh) {
+    const double extent = usualExtent(outward);
+    showSigned(input, outward, extent, output, mesh,
+               "displacement along the normal, outwards positive");
+    output.report["color_extent"] = extent;
+    output.report["max_inward_displacement"] = std::max(0.0, -outward.minCoeff());
+    output.report["max_outward_displacement"] = std::max(0.0, outward.maxCoeff());
 }
 
 void writePositions(const MeshMatrices& input, const Values&, FilterOutput& output,
@@ -244,8 +256,8 @@ std::vector<MeshFilter> allMeshFilters() {
     const std::vector<spectral::Filter>& all = spectral::allFilters();
     return {
         {all[0], smoothing, kMovesVertices | kQuality | kColor, MeshValues::None, writePositions},
-        {all[1], smoothing, kMovesVertices, MeshValues::None, writePositions},
-        {all[2], smoothing, kMovesVertices, MeshValues::None, writePositions},
+        {all[1], smoothing, kMovesVertices | kColor, MeshValues::None, writePositions},
+        {all[2], smoothing, kMovesVertices | kColor, MeshValues::None, writePositions},
         {all[3], Class(smoothing | quality), kQuality, MeshValues::Quality, writeQuality},
         {all[4], Class(smoothing | FilterPlugin::VertexColoring), kColor, MeshValues::Colors,
          writeColors},
@@ -258,8 +270,9 @@ std::vector<MeshFilter> allMeshFilters() {
 
 QString nameOf(const MeshModel& mesh) { return QFileInfo(mesh.label()).completeBaseName(); }
 
-int changedBy(const MeshFilter& filter, const FilterOutput& output) {
-    return output.V.rows() > 0 ? kMovesVertices : filter.changes;
+int changedBy(const MeshFilter& filter, const FilterOutput& output, bool isColored) {
+    if (output.V.rows() == 0) return filter.changes;
+    return isColored ? kMovesVertices | MeshModel::MM_VERTCOLOR : kMovesVertices;
 }
 
 FilterOutput applyTo(MeshModel& mesh, const MeshFilter& filter, const Values& given,
@@ -277,7 +290,12 @@ FilterOutput applyTo(MeshModel& mesh, const MeshFilter& filter, const Values& gi
         if (options.layers != nullptr)
             output.text += "\n  the original is kept, hidden: layer " +
                            keepAsLayer(mesh, *options.layers).toStdString();
+        Eigen::VectorXd outward = Eigen::VectorXd::Zero(input.V.rows());
+        if (options.isColored && output.V.rows() > 0)  // while the mesh has its normals from before
+            outward = alongNormals(input, output.V - input.V, mesh.cm);
         filter.write(input, given, output, mesh);
+        if (options.isColored && output.details.rows() == 0)
+            showDisplacement(input, outward, output, mesh);
     }
     return output;
 }

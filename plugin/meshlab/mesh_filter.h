@@ -40,7 +40,7 @@ inline bool movesVertices(const MeshFilter& filter) {
 
 /// Mask of what MeshLab must draw anew after a run: what it has written, and where it leaves the
 /// vertices alone, these, too, since the preview before may have moved them.
-int changedBy(const MeshFilter& filter, const spectral::FilterOutput& output);
+int changedBy(const MeshFilter& filter, const spectral::FilterOutput& output, bool isColored);
 
 /// A run from whose output other values of the parameter `choice` choose.
 struct KeptRun {
@@ -58,6 +58,7 @@ struct RunOptions {
     bool isPreview = false;  ///< A draft will do.
     /// Of a preview: values that were chosen since it began; none: those given.
     std::function<std::optional<spectral::Values>()> newer;
+    bool isColored = false;  ///< Whether vertices that move are coloured by how far they do.
     MeshDocument* layers = nullptr;  ///< Where to keep the mesh as it was; null: nowhere.
     KeptRun* kept = nullptr;  ///< What a dialog keeps: the run before, whose output is used if only
                               ///< the choice differs; then this one. Null: nothing is kept.

@@ -95,7 +95,7 @@ def _filter(described: dict[str, Any]) -> Filter:
     name = described["python_name"]
     defaults = [_defaults(name, described, mesh_set) for mesh_set in _spheres()]
     parameters = []
-    # Without those that the plugin alone has, such as keep_original.
+    # Units: those that the plugin alone has, such as keep_original, have none.
     units = {one["name"]: one["unit"] for one in CONTRACT[name]["parameters"]}
     for parameter in described.pop("parameters"):
         coarse, fine = (of_mesh[parameter["name"]] for of_mesh in defaults)

@@ -16,8 +16,12 @@ if TYPE_CHECKING:
 
 MENU = ("Smoothing, Fairing and Deformation", "Spectral Filter (Fractional)")
 FILTER = "apply_coord_spectral_filter_fractional"
-# Of the dialog: keep_original is its own.
-PARAMETERS = [*(option.name for option in fields(FilterOptions)), "keep_original"]
+# Of the dialog, which has two of its own.
+PARAMETERS = [
+    *(option.name for option in fields(FilterOptions)),
+    "color_by_displacement",
+    "keep_original",
+]
 
 # The faces of the bunny's head, and qualities from 0 to 1, as MeshLab's expressions.
 HEAD = "y0 > 0.33"

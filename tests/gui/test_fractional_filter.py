@@ -56,6 +56,7 @@ OTHER_VALUES = {
     "max_displacement": "20",  # per cent
     "weight": "none",
     "result": "filtered shape",
+    "color_by_displacement": "true",
     "keep_original": "true",
 }
 
@@ -64,7 +65,8 @@ def test_the_dialog_shows_every_parameter_with_its_default(
     dialog: FilterDialog, bunny: Path
 ) -> None:
     rows = dialog.rows()
-    defaults = {**FilterOptions().as_dict(), "keep_original": False}
+    own = {"color_by_displacement": False, "keep_original": False}
+    defaults = {**FilterOptions().as_dict(), **own}
     assert len(rows) == len(PARAMETERS)
     assert len({row.label for row in rows}) == len(PARAMETERS)
     shown = [name for name, row in zip(PARAMETERS, rows, strict=True) if row.showing]
@@ -74,6 +76,7 @@ def test_the_dialog_shows_every_parameter_with_its_default(
         "power",
         "pass_gain",
         "stop_gain",
+        "color_by_displacement",
         "keep_original",
     ]
     dialog.show_advanced()

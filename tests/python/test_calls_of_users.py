@@ -335,7 +335,8 @@ def dry_run(scan: Path) -> None:
 def help_of_a_command(scan: Path) -> None:
     assert "--feature-size" in shown("help", "filter")
     assert "denoise" in shown("help")
-    assert shown("filter", "-h") == shown("filter", "--help") == shown("help", "filter")
+    assert shown("filter", "--help") == shown("help", "filter")
+    assert "--feature-size" in shown("filter", "-h")
 
 
 def info_for_a_program(scan: Path) -> None:

@@ -1,6 +1,9 @@
 # What the package exports, for type checkers and for __init__.py.
+from meshlab_spectral.batch.files import denoise_files as denoise_files
 from meshlab_spectral.batch.files import filter_files as filter_files
 from meshlab_spectral.batch.jobs import FileResult as FileResult
+from meshlab_spectral.batch.one_file import denoise_file as denoise_file
+from meshlab_spectral.batch.one_file import filter_file as filter_file
 from meshlab_spectral.errors import ArgumentError as ArgumentError
 from meshlab_spectral.errors import ArrayError as ArrayError
 from meshlab_spectral.errors import BatchError as BatchError
@@ -23,6 +26,8 @@ from meshlab_spectral.figures.texture import plot_texture as plot_texture
 from meshlab_spectral.files.comparison import Comparison as Comparison
 from meshlab_spectral.files.comparison import Deviation as Deviation
 from meshlab_spectral.files.comparison import compare as compare
+from meshlab_spectral.files.presets import denoise_preset as denoise_preset
+from meshlab_spectral.files.presets import filter_preset as filter_preset
 from meshlab_spectral.filters.artefacts import Artefacts as Artefacts
 from meshlab_spectral.filters.artefacts import measure_artefacts as measure_artefacts
 from meshlab_spectral.filters.denoise import denoise_mesh as denoise_mesh

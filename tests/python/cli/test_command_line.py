@@ -24,15 +24,26 @@ SECTION = re.compile(r"^(\S.*):$", re.MULTILINE)
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_help_has_a_short_option_and_lists_the_common_options(name: str) -> None:
-    done = command(name, "-h", COLUMNS="80")
+    done = command(name, "--help", COLUMNS="80")
     assert done.returncode == 0
-    assert done.stdout == command(name, "--help", COLUMNS="80").stdout
+    assert done.stdout == command(name, "-h", COLUMNS="80", LINES="1000").stdout
     for option in ("-q, --quiet", "-v, --verbose", "-h, --help"):
         assert option in done.stdout
     if "--output" in done.stdout:
         assert "-o, --output" in done.stdout
     assert "--debug" not in done.stdout
     assert max(map(len, done.stdout.splitlines())) <= 80
+
+
+def test_the_short_help_names_every_option_on_one_screen() -> None:
+    brief = command("filter", "-h", COLUMNS="80", LINES="40").stdout
+    whole = command("filter", "--help", COLUMNS="80", LINES="40").stdout
+    assert len(brief.splitlines()) < 40 < len(whole.splitlines())
+    assert "explained by meshlab-spectral filter --help" in brief
+    options = set(re.findall(r"^  (?:-\w, )?(--[a-z-]+)", whole, re.MULTILINE))
+    assert len(options) > 40
+    assert options <= set(brief.split())
+    assert max(map(len, brief.splitlines())) <= 80
 
 
 @pytest.mark.parametrize("name", ["filter", "denoise", "batch"])

@@ -15,8 +15,8 @@ import pymeshlab
 import pytest
 from commands import arrays_of, assert_fails, command
 from helpers import FILTER, percent
-from meshlab_spectral import FilterOptions
-from meshlab_spectral.filters.presets import PRESETS
+from meshlab_spectral import FilterOptions, denoise_preset, filter_preset
+from meshlab_spectral.files.presets import PRESETS
 
 
 def test_every_option_reaches_the_filter(cow: Path, tmp_path: Path) -> None:
@@ -129,12 +129,40 @@ def test_pip_installs_the_command_under_its_name() -> None:
 
 
 def test_a_preset_equals_its_options(cow: Path, tmp_path: Path) -> None:
-    for name, given in PRESETS.items():
-        spelled = [f"--{key.replace('_', '-')}={value}" for key, value in given.items()]
+    """In the shell and in Python."""
+    for name, preset in PRESETS.items():
+        given = {**preset.table().as_dict(), **preset.options}
+        spelled = [
+            f"--{key.replace('_', '-')}" + ("" if given[key] is True else f"={given[key]}")
+            for key in preset.options
+        ]
         one, other = tmp_path / f"{name}.ply", tmp_path / f"{name}_spelled.ply"
-        command("filter", cow, one, "--preset", name)
-        command("filter", cow, other, *spelled)
+        command(preset.table.TABLE, cow, one, "--preset", name)
+        command(preset.table.TABLE, cow, other, *spelled)
         assert one.read_bytes() == other.read_bytes(), name
+        function = filter_preset if preset.table is FilterOptions else denoise_preset
+        assert function(name) == preset.table(**preset.options)
+
+
+def test_presets_of_the_user_are_saved_and_used(
+    cow: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for variable in ("XDG_CONFIG_HOME", "HOME"):
+        monkeypatch.setenv(variable, str(tmp_path))
+    one, other = tmp_path / "one.ply", tmp_path / "other.ply"
+    done = command("denoise", cow, one, "--strength", "0.5", "--save-preset", "half")
+    assert done.returncode == 0, done.stderr
+    command("denoise", cow, other, "--preset", "half")
+    assert one.read_bytes() == other.read_bytes()
+    assert denoise_preset("half", keep_creases=False).strength == 0.5
+    done = command("filter", cow, one, "--preset", "half", "--overwrite")
+    assert_fails(done, 2, "the preset half is for denoise")
+    done = command("batch", cow, "-o", tmp_path / "out", "--preset", "half")
+    assert_fails(done, 2, "the preset half is for denoise: add --denoise")
+    done = command("batch", cow, "-o", tmp_path / "out", "--preset", "half", "--denoise")
+    assert done.returncode == 0, done.stderr
+    done = command("filter", cow, tmp_path / "x.ply", "--save-preset", "sharpen")
+    assert_fails(done, 2, "preset sharpen: is there already")
 
 
 def test_details_are_saved_with_the_shape_they_were_taken_from(cow: Path, tmp_path: Path) -> None:
@@ -218,6 +246,7 @@ def test_an_unknown_preset_is_refused_with_the_known_ones(cow: Path, tmp_path: P
         ("de", "denoise"),
         ("filter --filter-type band-s", "band-stop"),
         ("filter --crease-a", "--crease-angle"),
+        ("filter --weight ver", "vertex\\ quality"),  # one word of the shell
     ],
 )
 def test_the_shell_completes_commands_options_and_choices(line: str, completed: str) -> None:
@@ -226,7 +255,7 @@ def test_the_shell_completes_commands_options_and_choices(line: str, completed: 
         COMP_WORDS=f"meshlab-spectral {line}",
         COMP_CWORD=str(len(line.split())),
     )
-    assert done.stdout.split() == [completed], done.stderr
+    assert done.stdout.splitlines() == [completed], done.stderr
 
 
 def test_the_equalizer_agrees_with_that_of_meshlab(samples: Path, tmp_path: Path) -> None:

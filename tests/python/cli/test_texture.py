@@ -11,9 +11,9 @@ import numpy as np
 import plyfile
 import pymeshlab
 import pytest
-from commands import command
+from commands import PRECIOUS, command
 from helpers import mesh_set_of
-from meshlab_spectral import surface_texture
+from meshlab_spectral import compare, surface_texture
 
 
 @pytest.fixture
@@ -65,7 +65,7 @@ def test_the_table_has_the_parameters_of_the_standard(rough: Path) -> None:
 
 def test_a_cutoff_that_does_not_fit_is_refused(rough: Path) -> None:
     done = command("texture", rough, "--waviness", "0.3", "--noise", "0.4")
-    assert done.returncode == 1
+    assert done.returncode == 2
     assert "noise = 0.4" in done.stderr
     assert "Traceback" not in done.stderr
 
@@ -80,6 +80,38 @@ def test_filter_draws_before_after_and_deviation(rough: Path, tmp_path: Path) ->
         third = pixels.shape[1] // 3
         assert not saturated[:, : 2 * third].any()
         assert saturated[:, 2 * third :].mean() > 0.05
+
+
+def test_files_in_colours_are_replaced_only_with_overwrite(rough: Path, tmp_path: Path) -> None:
+    for option, ending in (("--picture", "png"), ("--color-displacement", "ply")):
+        output, path = tmp_path / f"out{ending}.ply", tmp_path / f"change.{ending}"
+        path.write_bytes(PRECIOUS)
+        done = command("denoise", rough, output, option, path)
+        assert done.returncode == 2
+        assert f"{path} exists" in done.stderr
+        assert not output.exists()
+        assert path.read_bytes() == PRECIOUS
+        done = command("denoise", rough, output, option, path, "--overwrite")
+        assert done.returncode == 0, done.stderr
+        assert path.read_bytes() != PRECIOUS
+
+
+def test_the_coloured_mesh_of_a_filter_is_that_of_the_comparison(
+    rough: Path, tmp_path: Path
+) -> None:
+    output, coloured, change = (tmp_path / f"{name}.ply" for name in ("out", "colours", "change"))
+    done = command("filter", rough, output, "--color-displacement", coloured)
+    assert done.returncode == 0, done.stderr
+    assert command("compare", rough, output, "--output", change).returncode == 0
+    assert coloured.read_bytes() == change.read_bytes()
+    compared = compare(rough, output)
+    vertices = plyfile.PlyData.read(coloured)["vertex"]
+    levels = np.column_stack([vertices[name] for name in ("red", "green", "blue")])
+    np.testing.assert_array_equal(levels, compared.colors)
+    assert f"red {compared.color_extent:.3g} outwards" in done.stdout
+    same = command("filter", rough, output, "--color-displacement", output, "--overwrite")
+    assert same.returncode == 2
+    assert "is OUTPUT" in same.stderr
 
 
 def test_a_picture_that_cannot_be_written_is_refused_before_the_work(

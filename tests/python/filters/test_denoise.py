@@ -394,7 +394,8 @@ def test_noise_above_half_an_edge_is_a_warning(decimated: Decimated) -> None:
 
 def test_names_order_and_defaults_are_those_of_the_plugin(decimated: Decimated) -> None:
     parameters = mesh_set_of(*decimated("cow.obj")).filter_parameter_values(DENOISE)
-    assert parameters.pop("keep_original") is False  # the plugin's own
+    for plugin_own in ("color_by_displacement", "keep_original"):
+        assert parameters.pop(plugin_own) is False
     expected = DenoiseOptions().as_dict()
     assert list(parameters) == list(expected)
     for name in ("noise_height", "noise_size", "max_displacement"):

@@ -48,6 +48,33 @@ def test_a_mesh_of_pyvista_keeps_its_type_and_data() -> None:
     assert mesh == given
 
 
+def test_a_surface_of_nibabel_keeps_its_type_and_its_normals_follow() -> None:
+    nibabel = pytest.importorskip("nibabel", reason="the extra formats is not installed")
+    array, image = nibabel.gifti.GiftiDataArray, nibabel.gifti.GiftiImage()
+
+    arrays = {
+        "POINTSET": V,
+        "TRIANGLE": F.astype(np.int32),
+        "VECTOR": V / np.linalg.norm(V, axis=1, keepdims=True),
+    }
+    for intent, data in (arrays | {"SHAPE": V[:, 2]}).items():
+        kept = data if intent == "TRIANGLE" else data.astype(np.float32)
+        image.add_gifti_data_array(
+            array(kept, intent=f"NIFTI_INTENT_{intent}", meta={"Name": intent.lower()})
+        )
+    W = V.astype(np.float32).astype(float)
+    expected, _ = filter_mesh(W, F, feature_size="30%")
+    moved, _ = filter_mesh(image, feature_size="30%")
+    assert type(moved) is type(image)
+    np.testing.assert_array_equal(moved.darrays[0].data, expected.astype(np.float32))
+    assert not np.array_equal(moved.darrays[2].data, image.darrays[2].data)
+    np.testing.assert_array_equal(image.darrays[0].data, V.astype(np.float32))
+    values, _ = filter_scalars(image, "shape", feature_size="30%")
+    np.testing.assert_allclose(
+        values, filter_scalars(W, F, V[:, 2].astype(np.float32), feature_size="30%")[0]
+    )
+
+
 def test_a_mesh_of_pyvista_with_quadrangles_is_refused_with_the_advice_to_triangulate() -> None:
     with pytest.raises(ValueError, match=r"not triangles: call its triangulate\(\) first"):
         filter_mesh(pyvista.Plane(i_resolution=2, j_resolution=2))

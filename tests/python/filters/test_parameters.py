@@ -36,7 +36,8 @@ def tetrahedron() -> pymeshlab.MeshSet:
 
 def test_names_order_and_defaults_are_those_of_the_plugin(tetrahedron: pymeshlab.MeshSet) -> None:
     parameters = tetrahedron.filter_parameter_values(FILTER)
-    assert parameters.pop("keep_original") is False  # the plugin's own
+    for plugin_own in ("color_by_displacement", "keep_original"):
+        assert parameters.pop(plugin_own) is False
     expected: dict[str, Any] = FilterOptions().as_dict()
     assert list(parameters) == list(expected)
     diagonal = tetrahedron.current_mesh().bounding_box().diagonal()

@@ -96,15 +96,16 @@ def test_every_function_keeps_to_the_limit(
     set_memory_limit(1)
     with pytest.raises(FilterError, match=r"memory, (of which )?0 MiB are free"):
         call(V, F)
-    for value in ("", "4GB", "0", "-1", "nan", "inf"):
+    for value in ("", "4XB", "GB", "0", "0GB", "-1", "nan", "inf"):
         monkeypatch.setenv(MEMORY, value)
         with pytest.raises(FilterError, match=f"{MEMORY} = {value}: give a number of bytes"):
             call(V, F)
         with pytest.raises(OptionError, match=f"{MEMORY} = {value}: give a number of bytes"):
             given_memory_limit()
-    monkeypatch.setenv(MEMORY, "4e9")
-    call(V, F)
-    assert given_memory_limit() == 4_000_000_000
+    for value, size in (("4e9", 4_000_000_000), ("4GB", 4 << 30), (" 3.5 gib ", 7 << 29)):
+        monkeypatch.setenv(MEMORY, value)
+        call(V, F)
+        assert given_memory_limit() == size
 
 
 @pytest.mark.parametrize("is_set", [True, False], ids=["set", "environment"])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Callable, Generator, Mapping, Sequence
 from contextlib import AbstractContextManager, closing
 from dataclasses import fields
 from datetime import datetime, timezone
@@ -15,10 +15,11 @@ from meshlab_spectral.batch.engine import Workers, run_jobs
 from meshlab_spectral.batch.jobs import FileResult, Job
 from meshlab_spectral.batch.plan import Batch, plan_batch
 from meshlab_spectral.batch.report import Report, Tally
-from meshlab_spectral.batch.settings import BatchKeywords, Settings
+from meshlab_spectral.batch.settings import BatchKeywords, DenoiseBatchKeywords, Settings
 from meshlab_spectral.extras import check_extras
 from meshlab_spectral.filters.keywords import takes_options
-from meshlab_spectral.filters.options import FilterOptions
+from meshlab_spectral.filters.option_types import AnyOptions
+from meshlab_spectral.filters.options import DenoiseOptions, FilterOptions
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 def filter_files(
     inputs: Sequence[str | Path] | str | Path,
     output: str | Path,
+    options: FilterOptions | None = None,
     **named: Unpack[BatchKeywords],
 ) -> Generator[FileResult, None, None]:
     """Filter many mesh files in worker processes, and iterate over the results.
@@ -41,6 +43,8 @@ def filter_files(
         Files, folders, patterns such as ``"scans/*.ply"``, and URLs supported by fsspec.
     output
         Output folder, a path or a URL; created if needed.
+    options
+        Those of the filter in one object, instead of by name.
     **named
 
     Yields
@@ -63,10 +67,51 @@ def filter_files(
     >>> for result in filter_files("scans", "smooth", feature_size="2%"):
     ...     print(result.name, result.outcome, result.reason or "")
     """
-    options: dict[str, Any] = dict(named)
-    own = {one.name: options.pop(one.name) for one in fields(Settings) if one.name in options}
+    return _planned(FilterOptions, inputs, output, options, named)
+
+
+@takes_options(Settings, DenoiseOptions)
+def denoise_files(
+    inputs: Sequence[str | Path] | str | Path,
+    output: str | Path,
+    options: DenoiseOptions | None = None,
+    **named: Unpack[DenoiseBatchKeywords],
+) -> Generator[FileResult, None, None]:
+    """Denoise many mesh files in worker processes, as `filter_files` filters them.
+
+    Parameters
+    ----------
+    inputs, output
+        As for `filter_files`, which also says what is raised.
+    options
+        Those of the filter in one object, instead of by name.
+    **named
+
+    Yields
+    ------
+    FileResult
+        The result of each file as soon as it is done; those of an earlier run come first.
+
+    Examples
+    --------
+    >>> for result in denoise_files("scans", "clean"):
+    ...     print(result.name, result.outcome, result.reason or "")
+    """
+    return _planned(DenoiseOptions, inputs, output, options, named)
+
+
+def _planned(
+    table: type[AnyOptions],
+    inputs: Sequence[str | Path] | str | Path,
+    output: str | Path,
+    options: AnyOptions | None,
+    named: Mapping[str, Any],
+) -> Generator[FileResult, None, None]:
+    of_filter = dict(named)
+    own = {one.name: of_filter.pop(one.name) for one in fields(Settings) if one.name in of_filter}
     settings = Settings(**own)
-    chosen = None if settings.script and not options else FilterOptions.from_dict(options)
+    is_script = settings.script and options is None and not of_filter
+    chosen = None if is_script else table.given(options, of_filter)
     places = [inputs] if isinstance(inputs, str | Path) else inputs
     return run_batch(plan_batch(places, output, settings, chosen), Tally())
 

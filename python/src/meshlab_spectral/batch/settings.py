@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypedDict
 
 from meshlab_spectral.batch.outputs import DEFAULT_PATTERN
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.filters.option_types import Limits, option
-from meshlab_spectral.filters.options import FilterKeywords
+from meshlab_spectral.filters.options import DenoiseKeywords, FilterKeywords
 from meshlab_spectral.plugin.limits import given_memory_limit, threads
 
 
@@ -104,8 +105,8 @@ class Settings:
                 given_memory_limit()
 
 
-class BatchKeywords(FilterKeywords, total=False):
-    """All fields of `Settings`, and those of `FilterOptions`."""
+class SettingsKeywords(TypedDict, total=False):
+    """All fields of `Settings`."""
 
     name: str
     ending: str | None
@@ -119,3 +120,11 @@ class BatchKeywords(FilterKeywords, total=False):
     memory_limit: int | None
     timeout: float | None
     scheduler: str | None
+
+
+class BatchKeywords(FilterKeywords, SettingsKeywords, total=False):
+    """Those of `filter_files`."""
+
+
+class DenoiseBatchKeywords(DenoiseKeywords, SettingsKeywords, total=False):
+    """Those of `denoise_files`."""

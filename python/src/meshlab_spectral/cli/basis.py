@@ -7,14 +7,12 @@ from typing import Annotated, Any
 
 import typer
 
-from meshlab_spectral.cli.colour_files import Overwrite, refuse_existing
+from meshlab_spectral.cli.colour_files import Overwrite, check_picture, refuse_existing
 from meshlab_spectral.cli.filter_options import OneMesh, Source, with_options
 from meshlab_spectral.cli.messages import errors_reported, print_result
 from meshlab_spectral.cli.progress import progress_shown
-from meshlab_spectral.extras import check_extras
 from meshlab_spectral.figures.harmonics import check_modes, draw_basis_file
 from meshlab_spectral.files.formats import check_ending
-from meshlab_spectral.files.whole_files import check_target
 from meshlab_spectral.filters.options import BasisOptions
 from meshlab_spectral.process.single_file import write_in_child
 
@@ -58,10 +56,7 @@ def basis_command(
         shown = None if modes is None else _modes(modes, options.basis_size)
         check_ending(output, "a basis is a NumPy archive", ".npz")
         refuse_existing(output, overwrite)
-        if pictures is not None:
-            check_extras("plots", "render")
-            check_ending(pictures, "the pictures are one PNG file", ".png")
-            check_target(pictures)
+        check_picture(pictures, overwrite)
         with progress_shown() as on_progress:
             write_in_child(source, output, options, on_progress, mesh)
             if pictures is not None:

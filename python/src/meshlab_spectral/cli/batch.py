@@ -15,6 +15,7 @@ from meshlab_spectral.batch.settings import Settings
 from meshlab_spectral.cli.filter_options import (
     AsJson,
     Recipe,
+    SavePreset,
     SaveRecipe,
     chosen_options,
     with_options,
@@ -26,6 +27,7 @@ from meshlab_spectral.cli.messages import (
     print_result,
     warn_of_points_only,
 )
+from meshlab_spectral.files.presets import preset_place
 from meshlab_spectral.files.recipe import load_recipe, saving_recipe
 from meshlab_spectral.filters.option_types import Options
 from meshlab_spectral.filters.options import DenoiseOptions, FilterOptions
@@ -50,6 +52,7 @@ def batch_command(
     ] = False,
     recipe: Recipe = None,
     save_recipe: SaveRecipe = None,
+    save_preset: SavePreset = None,
     as_json: AsJson = False,
 ) -> None:
     """Filter or denoise many meshes in parallel, with a report.
@@ -68,7 +71,7 @@ def batch_command(
     options, the filter's report and warnings, SHA-256 of input and output, seconds, memory,
     versions. A file that fails does not stop the others.
     """
-    if settings.script is not None and save_recipe is not None:
+    if settings.script is not None and (save_recipe or save_preset) is not None:
         raise typer.BadParameter(
             "a recipe holds options of the filter, which a script replaces: leave out one of them",
             param_hint="--save-recipe",
@@ -78,6 +81,8 @@ def batch_command(
         if settings.script is None or given or recipe is not None or denoise:
             table = FilterOptions if recipe is None else load_recipe(recipe)[0]
             options = chosen_options(DenoiseOptions if denoise else table, given, recipe)
+        if save_preset is not None:
+            save_recipe = preset_place(save_preset)
         begin = time.monotonic()
         with saving_recipe(save_recipe, options), planning_shown(settings.resume):
             batch = plan_batch(inputs, output, settings, options)

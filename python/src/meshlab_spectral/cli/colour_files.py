@@ -20,7 +20,7 @@ _PICTURE = typer.Option(
 Picture = Annotated[Path | None, _PICTURE]
 Overwrite = Annotated[
     bool,
-    typer.Option("--overwrite", "--force", "-f", help="Replace the file of --output if it exists."),
+    typer.Option("--overwrite", "--force", "-f", help="Replace files that exist."),
 ]
 
 
@@ -31,17 +31,18 @@ def coloured_mesh(what: str) -> typer.models.OptionInfo:
     return option
 
 
-def check_picture(picture: Path | None) -> None:
-    """Raise, before any work, what would prevent a picture: its ending, its folder, an extra."""
+def check_picture(picture: Path | None, overwrite: bool) -> None:
+    """Raise, before any work, what would prevent a picture: its name, its folder, an extra."""
     if picture is not None:
         check_extras("plots", "render")
         check_ending(picture, "the picture is a PNG file", ".png")
+        refuse_existing(picture, overwrite)
         check_target(picture)
 
 
-def refuse_existing(output: Path, overwrite: bool) -> None:
+def refuse_existing(output: Path | None, overwrite: bool) -> None:
     """Raise OptionError for an output that exists, unless the user wants it replaced."""
-    if output.is_file() and not overwrite:
+    if output is not None and output.is_file() and not overwrite:
         raise OptionError(f"{output} exists: choose another name, or replace it with --overwrite")
 
 
@@ -53,9 +54,8 @@ def writing_coloured(
     for source in inputs:
         if output is not None and output.exists() and source.exists() and output.samefile(source):
             raise OptionError(f"{output} is an input itself and would be lost: choose another name")
-    if output is not None:
-        refuse_existing(output, overwrite)
-    check_picture(picture)
+    refuse_existing(output, overwrite)
+    check_picture(picture, overwrite)
     if output is None:
         yield None
         return

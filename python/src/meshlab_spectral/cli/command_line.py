@@ -5,7 +5,9 @@ from __future__ import annotations
 import contextlib
 import inspect
 import re
+import shutil
 import sys
+import textwrap
 from collections.abc import Callable, Collection, Iterator, Sequence
 from typing import Annotated, Any
 
@@ -30,7 +32,8 @@ _GROUPS = {
         reinject_residual laplacian preserve_volume""",
     "Files": "recursive joined overwrite resume dry_run tiles memory",
     "Workers": "workers memory_limit timeout scheduler",
-    "Output": "output name ending result picture pictures modes scale save_recipe report as_json",
+    "Output": """output name ending result picture color_displacement pictures modes scale
+        save_recipe save_preset report as_json""",
 }
 GROUP_OF = {name: group for group, names in _GROUPS.items() for name in names.split()}
 
@@ -48,26 +51,45 @@ _VERBOSITY = (
 )
 
 
+# What a command knows of its help, in Click's `Context.meta`: -h was given; names will do.
+_SHORT, _NAMES = "meshlab_spectral.short", "meshlab_spectral.names"
+
+
 class OneCommand(TyperCommand):
-    """A command whose --help lists its options in groups.
+    """A command whose --help lists its options in groups; -h fits on the screen.
 
     Typer's own panels leave only a third of an 80-column terminal for the help texts.
     """
 
+    def get_help(self, ctx: Any) -> str:
+        """Return the help: of -h, with the names of the options alone where more does not fit."""
+        text = super().get_help(ctx)
+        lines = text.count("\n") + 2  # and the next prompt
+        if ctx.meta.get(_SHORT) and lines > shutil.get_terminal_size().lines:
+            ctx.meta[_NAMES] = True
+            text = super().get_help(ctx)
+        return text
+
     def format_options(self, ctx: Any, formatter: Any) -> None:
         """Write the arguments, then the groups."""
-        groups: dict[str, list[tuple[str, str]]] = {}
+        groups: dict[str, list[tuple[Any, tuple[str, str]]]] = {}
         for parameter in self.get_params(ctx):
             record = parameter.get_help_record(ctx)
             if record is not None:
                 other = "Arguments" if parameter.param_type_name == "argument" else "Options"
                 named = getattr(parameter, "rich_help_panel", None)
                 group = named or GROUP_OF.get(parameter.name, other)
-                groups.setdefault(group, []).append(record)
-        for group in ("Arguments", *_GROUPS, "Options"):
-            if group in groups:
-                with formatter.section(group):
-                    formatter.write_dl(groups[group])
+                groups.setdefault(group, []).append((parameter, record))
+        ordered = [group for group in ("Arguments", *_GROUPS, "Options") if group in groups]
+        if ctx.meta.get(_NAMES):
+            with formatter.section(f"Options, explained by {ctx.command_path} --help"):
+                for group in ordered[1:]:
+                    names = " ".join(max(one.opts, key=len) for one, _ in groups[group])
+                    formatter.write(_wrapped(f"{group}: {names}", formatter) + "\n")
+            return
+        for group in ordered:
+            with formatter.section(group):
+                formatter.write_dl([record for _, record in groups[group]])
 
     def collect_usage_pieces(self, ctx: Any) -> list[str]:
         """Return what the usage line shows; Typer has braces around what is required."""
@@ -75,6 +97,7 @@ class OneCommand(TyperCommand):
 
     def parse_args(self, ctx: Any, args: list[str]) -> Any:
         """Parse the command line; usage errors carry the command's context."""
+        ctx.meta[_SHORT] = "-h" in args and "--help" not in args
         with _known_to(ctx):
             return super().parse_args(ctx, args)
 
@@ -82,6 +105,18 @@ class OneCommand(TyperCommand):
         """Run the command; usage errors carry its context."""
         with _known_to(ctx):
             return super().invoke(ctx)
+
+
+def _wrapped(text: str, formatter: Any) -> str:
+    """Wrap at spaces alone: Click's own text breaks the names of options."""
+    first = " " * formatter.current_indent
+    return textwrap.fill(
+        text,
+        formatter.width,
+        initial_indent=first,
+        subsequent_indent=first + "    ",
+        break_on_hyphens=False,
+    )
 
 
 @contextlib.contextmanager

@@ -19,7 +19,6 @@ from meshlab_spectral.cli.messages import errors_reported, print_result, print_w
 from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.cli.report_table import change, table_of
 from meshlab_spectral.figures.comparison import (
-    colour_extent,
     draw_comparison,
     write_comparison,
 )
@@ -78,7 +77,7 @@ def compare_command(
     if as_json:
         record = {"a": str(a), "b": str(b), **result.report}
         if output is not None or picture is not None:
-            record["colour_extent"] = colour_extent(result)
+            record["colour_extent"] = result.color_extent
         typer.echo(json.dumps(record))
         return
     print_result(table_of(_rows(result), f"{a.name} -> {b.name}"))

@@ -10,14 +10,19 @@ from typing import Annotated, Any
 import typer
 
 from meshlab_spectral.batch.whole_or_tiles import filter_file, intent_of_file
-from meshlab_spectral.cli.colour_files import Picture, check_picture
+from meshlab_spectral.cli.colour_files import (
+    Overwrite,
+    Picture,
+    writing_coloured,
+)
 from meshlab_spectral.cli.command_line import Command
 from meshlab_spectral.cli.filter_options import (
     AsJson,
     Recipe,
+    SavePreset,
     SaveRecipe,
-    byte_count,
     chosen_options,
+    memory_size,
     with_options,
 )
 from meshlab_spectral.cli.intent import print_intent
@@ -33,6 +38,7 @@ from meshlab_spectral.cli.progress import progress_shown
 from meshlab_spectral.cli.report_table import report_table
 from meshlab_spectral.cli.streams import STREAM, as_files
 from meshlab_spectral.errors import OptionError
+from meshlab_spectral.files.presets import preset_place
 from meshlab_spectral.files.recipe import saving_recipe
 from meshlab_spectral.files.region import Region
 from meshlab_spectral.filters.option_types import Options
@@ -111,9 +117,7 @@ def _command_with(table: type[Options], help_text: str) -> Command:
                 "itself.",
             ),
         ] = None,
-        overwrite: Annotated[
-            bool, typer.Option("--overwrite", "--force", "-f", help="Replace OUTPUT if it exists.")
-        ] = False,
+        overwrite: Overwrite = False,
         ending: Annotated[
             str | None,
             typer.Option("--format", metavar="ENDING", help="The format of -, such as ply."),
@@ -131,7 +135,7 @@ def _command_with(table: type[Options], help_text: str) -> Command:
         memory: Annotated[
             int | None,
             typer.Option(
-                parser=byte_count,
+                parser=memory_size,
                 metavar="SIZE",
                 help="Memory limit, such as 4GB; by default what the machine has free.",
             ),
@@ -156,7 +160,16 @@ def _command_with(table: type[Options], help_text: str) -> Command:
         ] = False,
         recipe: Recipe = None,
         save_recipe: SaveRecipe = None,
+        save_preset: SavePreset = None,
         picture: Picture = None,
+        color_displacement: Annotated[
+            Path | None,
+            typer.Option(
+                metavar="FILE",
+                help="Also write OUTPUT as .ply with how far each vertex has moved along its "
+                "normal, as quality and in colours: red outwards, blue inwards.",
+            ),
+        ] = None,
         as_json: AsJson = False,
     ) -> None:
         """Filter one file, in a child process, and print the report."""
@@ -175,13 +188,22 @@ def _command_with(table: type[Options], help_text: str) -> Command:
                 f"{place} exists: choose another name, or replace it with --overwrite",
                 param_hint="OUTPUT",
             )
+        if color_displacement is not None and color_displacement.absolute() == place.absolute():
+            raise typer.BadParameter(
+                f"{place} is OUTPUT: choose another name", param_hint="--color-displacement"
+            )
         if as_json and place == STREAM and not dry_run:
             raise typer.BadParameter(
                 "standard output has the mesh already: name a file", param_hint="--json"
             )
         begin = time.monotonic()
-        with errors_reported(), as_files(source, place, ending) as (read, written):
-            check_picture(picture)
+        with (
+            errors_reported(),
+            writing_coloured(
+                None if dry_run else color_displacement, picture, overwrite, source
+            ) as coloured,
+            as_files(source, place, ending) as (read, written),
+        ):
             options = chosen_options(table, given, recipe)
             part = region if region.given() else None
             if memory is not None:
@@ -196,6 +218,8 @@ def _command_with(table: type[Options], help_text: str) -> Command:
                     )
                 print_intent(source, place, options, intent, as_json)
                 return
+            if save_preset is not None:
+                save_recipe = preset_place(save_preset)
             with saving_recipe(save_recipe, options), progress_shown() as on_progress:
                 report = filter_file(
                     read,
@@ -209,12 +233,17 @@ def _command_with(table: type[Options], help_text: str) -> Command:
                     part,
                     scheduler,
                 )
-            if picture is not None:
-                from meshlab_spectral.figures.comparison import draw_comparison  # a slow import
+            if picture is not None or coloured is not None:
+                # A slow import.
+                from meshlab_spectral.figures.comparison import draw_comparison, write_comparison
 
                 with progress_shown() as on_progress:
                     change = compare_in_child(read, written, on_progress, whole=True)
-                draw_comparison(change, picture, (source.name, place.name))
+                if coloured is not None:
+                    write_comparison(change, coloured)
+                    report["color_extent"] = change.color_extent
+                if picture is not None:
+                    draw_comparison(change, picture, (source.name, place.name))
         if save_recipe is not None and part is not None:
             names = ", ".join(f"--{name}" for name in part.given())
             print_warning(f"{save_recipe} does not hold {names}: a region is of one file")
@@ -228,6 +257,9 @@ def _command_with(table: type[Options], help_text: str) -> Command:
             typer.echo(json.dumps(_record(source, place, options, part, report, seconds)))
         else:
             _print_reports(report, source.name, place.name)
+            if color_displacement is not None:
+                extent = f"{report['color_extent']:.3g}"
+                print_result(f"{color_displacement}: red {extent} outwards, blue {extent} inwards")
 
     command.__doc__ = help_text
     return command

@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-import re
+import os
 from collections.abc import Callable, Collection
 from dataclasses import fields
 from pathlib import Path
-from typing import Annotated, Any, get_type_hints
+from typing import Annotated, Any, get_args, get_type_hints
 
 import typer
 
 from meshlab_spectral.batch.settings import Settings
 from meshlab_spectral.cli.command_line import DENOISE, GROUP_OF, SOLVER, Command, with_parameters
 from meshlab_spectral.errors import OptionError
+from meshlab_spectral.files.presets import (
+    PRESETS,
+    equalizer_points,
+    preset_names,
+    preset_of,
+)
 from meshlab_spectral.files.recipe import load_recipe
 from meshlab_spectral.files.region import Region
 from meshlab_spectral.filters.option_types import AnyOptions, Length
-from meshlab_spectral.filters.options import FilterOptions
-from meshlab_spectral.filters.presets import PRESETS, Preset, equalizer_points
-
-_SIZE = re.compile(r"(?P<number>\d+(\.\d+)?)\s*(?P<unit>[KMGT]?)(i?B)?", re.IGNORECASE)
-_UNITS = {"": 1, "K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
+from meshlab_spectral.filters.options import DenoiseOptions, FilterOptions
+from meshlab_spectral.plugin.limits import byte_count
 
 Source = Annotated[
     Path, typer.Argument(metavar="MESH", help="Mesh to read: .ply, .obj, .stl, .off, ...")
@@ -50,13 +53,37 @@ SaveRecipe = Annotated[
         help="Write all options but those of a region to a recipe, for the next scan or a batch.",
     ),
 ]
+SavePreset = Annotated[
+    str | None,
+    typer.Option(metavar="NAME", help="The same as a preset of yours, for --preset NAME."),
+]
 
 
-def _use_preset(context: typer.Context, name: Preset | None) -> Preset | None:
+def _use_preset(context: typer.Context, name: str | None) -> str | None:
     """Make the values of a preset the defaults of the command's other options."""
     if name is not None:
-        context.default_map = {**(context.default_map or {}), **PRESETS[name]}
+        try:
+            _, values = preset_of(name)
+        except OptionError as error:
+            raise typer.BadParameter(str(error)) from error
+        context.default_map = {**(context.default_map or {}), **values}
     return name
+
+
+def _preset_option(tables: Collection[type[Any]]) -> typer.models.OptionInfo:
+    """Return `--preset`, which explains what there is for the tables."""
+    known = "; ".join(f"{n}: {one.purpose}" for n, one in PRESETS.items() if one.table in tables)
+    option: typer.models.OptionInfo = typer.Option(
+        is_eager=True,
+        callback=_use_preset,
+        metavar="NAME",
+        autocompletion=lambda incomplete: [
+            name for name in preset_names(*tables) if name.startswith(incomplete)
+        ],
+        help="Start from the options for a purpose, or from a preset of yours; options given as "
+        f"well take precedence. {known}.",
+    )
+    return option
 
 
 def _use_equalizer(context: typer.Context, gains: str | None) -> str | None:
@@ -78,12 +105,6 @@ _EQUALIZER = typer.Option(
     help="Gains of details of 96, 48, 24, 12, 6 and 3 mean edges, such as 1,1,2,1,0.5,0: the "
     "sliders of MeshLab's Spectral Equalizer. Replaces --filter-type and --transfer-function.",
 )
-_PRESET = typer.Option(
-    is_eager=True,
-    callback=_use_preset,
-    help="Start from the options for a purpose; options given as well take precedence.",
-)
-
 
 # Tables that a command gets as objects, and the names of its arguments.
 _OBJECTS: dict[type[Any], str] = {Settings: "settings", Region: "region"}
@@ -101,14 +122,15 @@ def with_options(
     ----------
     *tables
         The tables; of fields with the same name the first is used. FilterOptions brings `--preset`
-        and `--equalizer`, too.
+        and `--equalizer`, too, DenoiseOptions the first.
     leave_out
         Fields that the command has no use for.
     """
     added: dict[str, tuple[str, Any, Any, Any]] = {}
     of_objects: dict[str, type[Any]] = {}
+    if {FilterOptions, DenoiseOptions} & set(tables):
+        added["preset"] = ("preset", str | None, _preset_option(tables), None)
     if FilterOptions in tables:
-        added["preset"] = ("preset", Preset | None, _PRESET, None)
         added["equalizer"] = ("equalizer", str | None, _EQUALIZER, None)
     for table in tables:
         types = get_type_hints(table)
@@ -155,9 +177,22 @@ def _parameter(one: Any, type_: Any, panel: str | None) -> tuple[str, Any, Any, 
     if type_ is Length:
         shown |= {"parser": _length, "metavar": "SIZE"}
     elif one.name == "memory_limit":
-        shown["parser"] = byte_count
+        shown["parser"] = memory_size
+    elif any(" " in choice for choice in get_args(type_) if isinstance(choice, str)):
+        shown["autocompletion"] = _completed(get_args(type_))
     default = str(one.default) if type_ is Length else one.default
     return one.name, type_, typer.Option(*one.metadata["flags"], **shown), default
+
+
+def _completed(choices: Collection[str]) -> Callable[[str], list[str]]:
+    """Return what completes choices with spaces, which need an escape in bash alone."""
+
+    def complete(incomplete: str) -> list[str]:
+        is_bash = os.environ.get("_MESHLAB_SPECTRAL_COMPLETE") == "complete_bash"
+        space = "\\ " if is_bash else " "
+        return [one.replace(" ", space) for one in choices if one.startswith(incomplete)]
+
+    return complete
 
 
 def chosen_options(
@@ -172,8 +207,12 @@ def chosen_options(
     found, options = (table, {}) if recipe is None else load_recipe(recipe)
     if found is not table:
         raise OptionError(f"the recipe {recipe} is for {found.TABLE}, not for {table.TABLE}")
+    if "preset" in given and (of := preset_of(given["preset"])[0]) is not table:
+        hint = ": add --denoise" if of is DenoiseOptions and recipe is None else ""
+        raise OptionError(f"the preset {given['preset']} is for {of.TABLE}{hint}")
     shortcuts = {"preset", "equalizer"}
-    known = {one.name for one in fields(table)} | (shortcuts if table is FilterOptions else set())
+    known = {one.name for one in fields(table)} | {"preset"}
+    known |= shortcuts if table is FilterOptions else set()
     for name in given:
         if name not in known:
             hint = ": add --denoise" if table is FilterOptions and recipe is None else ""
@@ -183,13 +222,12 @@ def chosen_options(
     return table.from_dict({**options, **values})
 
 
-def byte_count(text: str | int) -> int:
+def memory_size(text: str | int) -> int:
     """Parse a size of memory, such as 4GB."""
     if isinstance(text, int):
         return text
-    match = _SIZE.fullmatch(text.strip())
-    size = int(float(match["number"]) * _UNITS[match["unit"].upper()]) if match else 0
-    if not size:
+    size = byte_count(text)
+    if size is None:
         raise typer.BadParameter(f"{text!r}: give a size such as 4GB or 500MB")
     return size
 

@@ -33,7 +33,7 @@ def info_command(source: Source, mesh: OneMesh = None, as_json: AsJson = False) 
         typer.echo(json.dumps({"input": str(source), **report, "versions": versions()}))
         return
     Console(emoji=False).print(table_of(_rows(report), source.name))
-    typer.echo(f"Noise: {report['noise_summary'].removesuffix('; nothing changed')}")
+    typer.echo(f"Noise: {report['noise_summary']}")
 
 
 def _rows(report: dict[str, Any]) -> list[tuple[str, str]]:

@@ -22,7 +22,7 @@ _LONGEST = 5000  # characters of a message: two paths of Linux' 4,096 and more a
 
 EXIT_CODES = (
     "Exit codes: 0 all done; 1 a file could not be read, filtered or written; 2 invalid command "
-    "line; 130 interrupted."
+    "line, or an option that does not suit the mesh; 130 interrupted."
 )
 
 # Transfer functions and file names may contain ":x:", which is not an emoji.
@@ -63,9 +63,7 @@ def errors_reported(when_interrupted: str = "no output was written") -> Iterator
         if VERBOSITY.debug:
             MESSAGES.print_exception()
         print_error(str(error))
-        # An option that the core refuses, with a code, does not suit the mesh.
         usage = isinstance(error, OptionError | FormatError | InputError)
-        usage = usage and not getattr(error, "code", "")
         raise typer.Exit(EXIT_USAGE if usage else EXIT_FAILED) from error
 
 

@@ -31,7 +31,7 @@ from meshlab_spectral.documents.names import (
     TRIANGLES,
     shown,
 )
-from meshlab_spectral.documents.normals import following_normals
+from meshlab_spectral.documents.normals import are_normals, following_normals
 from meshlab_spectral.documents.side_files import beside, copy_side_files
 from meshlab_spectral.documents.text import numbers_from
 from meshlab_spectral.errors import MeshFileError, SpectralError
@@ -200,7 +200,7 @@ def _read_gifti(path: Path) -> Document:
         vertices = points[0].data.astype(np.float64).reshape(-1, 3)
     part = checked_part(path, vertices, triangles[0].data.astype(np.int64).reshape(-1, 3))
     others = [a for a in image.darrays if a is not points[0] and a is not triangles[0]]
-    vectors = [array for array in others if _are_normals(array.data, len(vertices))]
+    vectors = [array for array in others if are_normals(array.data, len(vertices))]
     contents = ["normals"] if vectors else []
     contents += ["values at vertices"] if len(others) > len(vectors) else []
     contents += ["metadata"] if image.meta or image.labeltable.labels else []
@@ -271,10 +271,3 @@ def _data(path: Path, array: Any, text: str, budget: Budget) -> Any:
         reason = f"an array of {count} numbers has {len(numbers)}"
         raise EndsEarlyError(reason) if len(numbers) < count else ValueError(reason)
     return numbers.reshape(array.dims, order=array_index_order_codes.npcode[array.ind_ord])
-
-
-def _are_normals(vectors: Any, count: int) -> bool:
-    """Whether an array holds vectors of unit length at the vertices."""
-    if vectors.shape != (count, 3) or vectors.dtype.kind != "f":
-        return False
-    return bool(np.allclose(np.linalg.norm(vectors, axis=1), 1, atol=1e-3))

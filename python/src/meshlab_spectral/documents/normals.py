@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+import numpy as np
+
 from meshlab_spectral import _core
 from meshlab_spectral.documents.document import Array, Indices
 
@@ -16,3 +20,10 @@ def following_normals(
     """
     which = faces if which is None else which
     return _core.following_normals(before, after, faces, normals, which)
+
+
+def are_normals(vectors: Any, count: int) -> bool:
+    """Whether an array holds vectors of unit length at the vertices."""
+    if vectors.shape != (count, 3) or vectors.dtype.kind != "f":
+        return False
+    return bool(np.allclose(np.linalg.norm(vectors, axis=1), 1, atol=1e-3))

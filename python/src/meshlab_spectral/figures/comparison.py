@@ -14,15 +14,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def colour_extent(comparison: Comparison) -> float:
-    """Return the deviation at full colour: all but a hundredth of the surface has less.
-
-    If that is 0 it is the largest one, and 1 between equal meshes.
-    """
-    deviation = comparison.deviations["normal" if comparison.same_faces else "b_to_a"]
-    return deviation.percentiles[99] or abs(deviation.largest) or 1.0
-
-
 def draw_comparison(comparison: Comparison, path: Path, names: tuple[str, str]) -> None:
     """Draw both meshes, with their names, and the deviation of b to a .png file, atomically.
 
@@ -64,10 +55,10 @@ def plot_comparison(comparison: Comparison, names: tuple[str, str] = ("a", "b"))
 
 def _sheet(comparison: Comparison, names: tuple[str, str]) -> Sheet:
     meshes = [(name, *mesh) for name, mesh in zip(names, (comparison.a, comparison.b), strict=True)]
-    extent = colour_extent(comparison)
+    extent = comparison.color_extent
     return signed_sheet(meshes, "deviation", comparison.signed, extent, "red: outside")
 
 
 def write_comparison(comparison: Comparison, scratch: Path) -> None:
     """Write mesh b as .ply with the deviation as quality and in colours, for MeshLab."""
-    write_signed(*comparison.b, comparison.signed, colour_extent(comparison), scratch)
+    write_signed(*comparison.b, comparison.signed, comparison.color_extent, scratch)

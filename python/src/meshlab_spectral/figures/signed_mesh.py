@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from meshlab_spectral.figures.pictures import SIGNED_COLOURS, Frame, Panel, View, render
 from meshlab_spectral.figures.sheet import Sheet
+from meshlab_spectral.files.comparison import signed_colours
 
 Array = NDArray[np.float64]
 
@@ -58,7 +59,7 @@ def write_signed(V: Array, F: NDArray[Any], values: Array, extent: float, scratc
     for name, coordinates in zip("xyz", V.T, strict=True):
         vertices[name] = coordinates
     vertices["quality"] = values
-    colours = _diverging(values / extent)
+    colours = signed_colours(values, extent)
     for name, levels in zip(("red", "green", "blue"), colours.T, strict=True):
         vertices[name] = levels
     faces = np.empty(len(F), [("vertex_indices", "i4", (3,))])
@@ -68,11 +69,3 @@ def write_signed(V: Array, F: NDArray[Any], values: Array, extent: float, scratc
         plyfile.PlyElement.describe(faces, "face"),
     ]
     plyfile.PlyData(elements).write(scratch)
-
-
-def _diverging(share: Array) -> NDArray[np.uint8]:
-    """Return red, green and blue of -1 (blue), 0 (white) and 1 (red)."""
-    fade = 1 - np.minimum(np.abs(share), 1)
-    rgb = np.column_stack([np.where(share > 0, 1, fade), fade, np.where(share < 0, 1, fade)])
-    levels: NDArray[np.uint8] = np.round(255 * rgb).astype(np.uint8)
-    return levels

@@ -148,9 +148,29 @@ class Comparison:
         return cls(*meshes, report["same_faces"], deviations, areas, volumes, *rest)
 
     @property
+    def _signed(self) -> Deviation:
+        return self.deviations["normal" if self.same_faces else "b_to_a"]
+
+    @property
     def signed(self) -> Array:
         """The signed deviation at the vertices of b, to colour b by."""
-        return self.deviations["normal" if self.same_faces else "b_to_a"].values
+        return self._signed.values
+
+    @property
+    def color_extent(self) -> float:
+        """The deviation at full colour, length units: all but a hundredth of the surface has less.
+
+        If that is 0 it is the largest one, and 1 between equal meshes.
+        """
+        return self._signed.percentiles[99] or abs(self._signed.largest) or 1.0
+
+    @property
+    def colors(self) -> NDArray[np.uint8]:
+        """Red, green and blue at the vertices of b, n x 3: red outside a, blue inside, white on it.
+
+        `color_extent` and more are full red or blue.
+        """
+        return signed_colours(self.signed, self.color_extent)
 
     def __repr__(self) -> str:
         return f"Comparison({', '.join(f'{name}={value}' for name, value in self._rows())})"
@@ -165,6 +185,15 @@ class Comparison:
             of_one = {key: getattr(one, key) for key in ("mean", "rms", "percentiles", "largest")}
             rows += [(f"{name}_{key}", brief(value)) for key, value in of_one.items()]
         return rows
+
+
+def signed_colours(values: Array, extent: float) -> NDArray[np.uint8]:
+    """Return red, green and blue, n x 3: -extent is blue, 0 white and extent red, as in MeshLab."""
+    share = values / extent
+    fade = 1 - np.minimum(np.abs(share), 1)
+    rgb = np.column_stack([np.where(share > 0, 1, fade), fade, np.where(share < 0, 1, fade)])
+    levels: NDArray[np.uint8] = np.round(255 * rgb).astype(np.uint8)
+    return levels
 
 
 def compare(a: Any, b: Any, *, max_distance: float | None = None) -> Comparison:

@@ -65,7 +65,7 @@ def mesh_info(source: Path, on_stage: StageCallback, mesh: str | None = None) ->
         **selected,
         "extent": np.ptp(V, axis=0),
         **{name: spectrum[name] for name in _LENGTHS},
-        "noise_summary": denoised["summary"],
+        "noise_summary": spectrum["summary"],  # what was found; denoise says what it did
         **{name: denoised[name] for name in _OF_NOISE},
         "warnings": [
             f"{part.name} is placed {1 + len(part.copies)} times: it is described once, in its "

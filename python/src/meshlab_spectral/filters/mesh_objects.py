@@ -15,6 +15,7 @@ from typing import Any, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from meshlab_spectral.documents.normals import are_normals, following_normals
 from meshlab_spectral.errors import ArgumentError, ArrayError
 from meshlab_spectral.filters.mesh_normals import followed
 from meshlab_spectral.other_words import instead_of
@@ -243,6 +244,37 @@ def _tensor_moved(mesh: Any, X: Array) -> Any:
     return moved
 
 
+_POINTS, _TRIANGLES = "NIFTI_INTENT_POINTSET", "NIFTI_INTENT_TRIANGLE"
+
+
+def _gifti_arrays(image: Any) -> tuple[Any, Any]:
+    surface = [image.get_arrays_from_intent(intent) for intent in (_POINTS, _TRIANGLES)]
+    if [len(arrays) for arrays in surface] != [1, 1]:
+        raise ArrayError("the image has no surface, or several: pass one with points and triangles")
+    points, triangles = (arrays[0].data for arrays in surface)
+    return points, triangles
+
+
+def _gifti_data(image: Any) -> dict[str, Any]:
+    V, _ = _gifti_arrays(image)
+    return {
+        array.meta.get("Name", str(number)): array.data
+        for number, array in enumerate(image.darrays)
+        if len(array.data) == len(V) and array.data is not V
+    }
+
+
+def _gifti_moved(image: Any, X: Array) -> Any:
+    V, F = _gifti_arrays(image)
+    moved = copy.deepcopy(image)
+    moved.get_arrays_from_intent(_POINTS)[0].data = _as_before(X, V)
+    for one in moved.darrays:
+        if are_normals(one.data, len(V)):
+            normals = following_normals(V.astype(float), X, F.astype(int), one.data.astype(float))
+            one.data = normals.astype(one.data.dtype)
+    return moved
+
+
 def _trimesh_arrays(mesh: Any) -> tuple[Any, Any]:
     return mesh.vertices, mesh.faces
 
@@ -324,6 +356,9 @@ _KINDS = (
         lambda mesh: (mesh.vertices, mesh.faces),
         _pyfm_moved,
         lambda mesh: {},
+    ),
+    MeshKind(
+        "nibabel.GiftiImage", "get_arrays_from_intent", _gifti_arrays, _gifti_moved, _gifti_data
     ),
     MeshKind(
         "trimesh.Trimesh",

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 import os
+import re
 from numbers import Integral, Real
 
 from meshlab_spectral.errors import OptionError
 
 # The plugin reads them whenever a filter starts.
 THREADS, MEMORY = "MESHLAB_SPECTRAL_THREADS", "MESHLAB_SPECTRAL_MEMORY"
+_SIZE = re.compile(r"(?P<number>\d*\.?\d+(e\+?\d+)?)\s*(?P<unit>[KMGT]?)(i?B)?", re.IGNORECASE)
+_UNITS = {"": 1, "K": 2**10, "M": 2**20, "G": 2**30, "T": 2**40}
 # What has set the limit of memory: texts name that, unless the environment has another since.
 _SETTER = {"value": "", "name": ""}
 
@@ -113,16 +116,20 @@ def given_memory_limit() -> int | None:
     text = os.environ.get(MEMORY)
     if text is None:
         return None
-    try:
-        number = float(text)
-    except ValueError:
-        number = math.nan
-    if not 0 < number < math.inf:
+    size = byte_count(text)
+    if size is None:
         raise OptionError(
             f"the environment variable {MEMORY} = {text}: give a number of bytes above zero, such "
-            "as 4e9, or unset it"
+            "as 4e9 or 4GB, or unset it"
         )
-    return max(1, int(number))
+    return size
+
+
+def byte_count(text: str) -> int | None:
+    """Return the number of bytes in a text such as 4GB or 4e9; None if it is none above zero."""
+    match = _SIZE.fullmatch(text.strip())
+    number = float(match["number"]) * _UNITS[match["unit"].upper()] if match else 0.0
+    return max(1, int(number)) if 0 < number < math.inf else None
 
 
 def threads_each(processes: int) -> int:

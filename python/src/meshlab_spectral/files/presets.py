@@ -1,0 +1,184 @@
+"""Presets: options for a purpose, by name; own ones are recipes in a folder of the user's."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from math import inf
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from meshlab_spectral.errors import OptionError
+from meshlab_spectral.files.recipe import load_recipe
+from meshlab_spectral.filters.option_types import AnyOptions, Options
+from meshlab_spectral.filters.options import DenoiseOptions, FilterOptions
+
+# Sizes of the equalizer's sliders in mean edges, from coarse to fine, as in MeshLab.
+EQUALIZER_EDGES = (96, 48, 24, 12, 6, 3)
+
+
+def equalizer_points(gains: Sequence[float]) -> str:
+    """Return the transfer function of an equalizer's sliders, as points for the filter.
+
+    `gains` has a gain >= 0 for each of `EQUALIZER_EDGES`; larger details keep their height. Raises
+    ValueError when their number differs, or one is negative or not finite.
+    """
+    if len(gains) != len(EQUALIZER_EDGES) or not all(0 <= gain < inf for gain in gains):
+        raise ValueError(f"give {len(EQUALIZER_EDGES)} gains from 0 on, such as 1,1,2,1,0.5,0")
+    points = zip((2 * EQUALIZER_EDGES[0], *EQUALIZER_EDGES), (1.0, *gains), strict=True)
+    return ", ".join(f"{edges}e:{gain:g}" for edges, gain in points)
+
+
+class Preset(NamedTuple):
+    """What a name stands for; of all other options the defaults hold."""
+
+    table: type[Options]
+    purpose: str
+    options: Mapping[str, Any]
+
+
+def _low_pass(purpose: str, **options: Any) -> Preset:
+    return Preset(FilterOptions, purpose, {"filter_type": "low-pass", **options})
+
+
+def _band(purpose: str, kind: str, size: str, gain: float, **options: Any) -> Preset:
+    passed = {"feature_size": size, "stop_gain": 1.0, "pass_gain": gain}
+    return Preset(FilterOptions, purpose, {"filter_type": kind, **passed, **options})
+
+
+def _equalizer(purpose: str, *gains: float) -> Preset:
+    points = equalizer_points(gains)
+    return Preset(FilterOptions, purpose, {"filter_type": "custom", "transfer_function": points})
+
+
+def _denoise(purpose: str, **options: Any) -> Preset:
+    return Preset(DenoiseOptions, purpose, options)
+
+
+PRESETS = {
+    # The default size: about the finest waves that the mesh can represent.
+    "smooth": _low_pass("the finest waves go", feature_size="auto"),
+    "remove-details": _low_pass("details below 5 % go", feature_size="5%"),
+    "extract-details": _low_pass(
+        "what remove-details takes away", feature_size="5%", result="details"
+    ),
+    "sharpen": _band("details below 3 % doubled", "high-pass", "3%", 2.0),
+    "enhance": _band("details of about 8 % raised", "band-pass", "8%", 2.5),
+    "caricature": _band(
+        "large features of about 25 % doubled", "band-pass", "25%", 2.0, band_width=1.5
+    ),
+    "print": _low_pass(
+        "smooth for a printer, the volume kept", feature_size="auto", preserve_volume=True
+    ),
+    "terrain": _low_pass(
+        "smooth ground, its border fixed: tiles still fit", feature_size="auto", boundary="fixed"
+    ),
+    "clear": _equalizer(
+        "an equalizer's curve: details of 6 to 24 edges raised", 1, 1, 1.4, 1.6, 1.4, 1
+    ),
+    "relief": _equalizer(
+        "an equalizer's curve: details of 24 to 96 edges raised", 1.4, 1.8, 1.6, 1.2, 1, 1
+    ),
+    "worn": _equalizer("an equalizer's curve: the finer, the flatter", 1, 1, 0.8, 0.5, 0.2, 0),
+    "scan": _denoise("noise as measured", strength=1.0),
+    "museum": _denoise(
+        "rather some noise left than a detail lost: 0.7 of it, at most an edge",
+        strength=0.7,
+        max_displacement="1e",
+    ),
+    "teeth": _denoise(
+        "borders fixed, as margins; at most half an edge", boundary="fixed", max_displacement="0.5e"
+    ),
+}
+_NAME = re.compile(r"[\w-]+")
+
+
+def preset_folder() -> Path:
+    """Return the folder of the user's own presets, which need not exist."""
+    import typer  # where programs keep their settings differs from system to system
+
+    return Path(typer.get_app_dir("meshlab-spectral")) / "presets"
+
+
+def preset_names(*tables: type[Options]) -> list[str]:
+    """Return the names of the presets of filters, and of all the user's own."""
+    own = sorted(path.stem for path in preset_folder().glob("*.toml"))
+    return [name for name, preset in PRESETS.items() if preset.table in tables] + own
+
+
+def preset_place(name: str) -> Path:
+    """Return the recipe that a preset of the user's is, and make its folder.
+
+    Raises OptionError when the name is that of another preset, or no word.
+    """
+    if name in PRESETS or not _NAME.fullmatch(name):
+        why = "is there already" if name in PRESETS else "letters, digits, - and _ make a name"
+        raise OptionError(f"preset {name}: {why}, choose another one")
+    preset_folder().mkdir(parents=True, exist_ok=True)
+    return preset_folder() / f"{name}.toml"
+
+
+def preset_of(name: str) -> tuple[type[Options], dict[str, Any]]:
+    """Return the class of a preset's options, and those that it sets.
+
+    Raises OptionError when there is no such preset, or the user's is no recipe.
+    """
+    if name in PRESETS:
+        return PRESETS[name].table, dict(PRESETS[name].options)
+    path = preset_folder() / f"{name}.toml"
+    if not _NAME.fullmatch(name) or not path.is_file():
+        known = ", ".join(preset_names(FilterOptions, DenoiseOptions))
+        raise OptionError(f"there is no preset {name}: choose {known}")
+    return load_recipe(path)
+
+
+def filter_preset(name: str, **options: object) -> FilterOptions:
+    """Return the options of a preset for `filter_mesh`, `filter_file` and `filter_files`.
+
+    Parameters
+    ----------
+    name
+        `smooth`, `remove-details`, `extract-details`, `sharpen`, `enhance`, `caricature`, `print`,
+        `terrain`, `clear`, `relief`, `worn`, or one that `--save-preset` has saved.
+    **options
+        Options of `FilterOptions` in place of those of the preset.
+
+    Raises
+    ------
+    OptionError
+        When there is no such preset, it is for `denoise_mesh`, or an option is invalid.
+
+    Examples
+    --------
+    >>> V, report = filter_mesh(vertices, faces, filter_preset("print"))
+    """
+    return _options(FilterOptions, name, options)
+
+
+def denoise_preset(name: str, **options: object) -> DenoiseOptions:
+    """Return the options of a preset for `denoise_mesh`, `denoise_file` and `denoise_files`.
+
+    Parameters
+    ----------
+    name
+        `scan`, `museum`, `teeth`, or one that `--save-preset` has saved.
+    **options
+        Options of `DenoiseOptions` in place of those of the preset.
+
+    Raises
+    ------
+    OptionError
+        When there is no such preset, it is for `filter_mesh`, or an option is invalid.
+
+    Examples
+    --------
+    >>> V, report = denoise_mesh(vertices, faces, denoise_preset("museum", strength=0.5))
+    """
+    return _options(DenoiseOptions, name, options)
+
+
+def _options(table: type[AnyOptions], name: str, options: Mapping[str, object]) -> AnyOptions:
+    found, values = preset_of(name)
+    if found is not table:
+        raise OptionError(f"the preset {name} is for {found.TABLE}, not for {table.TABLE}")
+    return table.from_dict({**values, **options})
