@@ -16,11 +16,13 @@ version = release = installed_version("meshlab-spectral")
 extensions = [
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
+    "sphinx.ext.viewcode",
     "sphinx_gallery.gen_gallery",
     "myst_parser",
     "filter_pages",
     "command_pages",
     "docstrings",
+    "guide_code",
     "math_pages",
     "readme_pages",
 ]
@@ -72,6 +74,6 @@ nitpicky = True
 nitpick_ignore_regex = [
     ("py:.*", r"(numpy|np|pymeshlab|pathlib|collections|typing|npt)\..*"),
     ("py:class", r"array|ArrayLike|NDArray|Any|Path|Sequence|Generator|LaplacianKind|Boundary"),
-    ("py:class", r"np\..*|scipy\..*|Outcome|Figure|Plotter|Gain|Progress"),
+    ("py:class", r"np\..*|scipy\..*|Outcome|Figure|Plotter|Gain|Progress|Mesh"),
     ("py:obj", r".*"),
 ]

@@ -17,7 +17,9 @@ PAGES = {
     "#install": "installing.md",
     "#limits": "limits.md",
     "#files": "formats.md",
-    "#meshes-that-do-not-fit-in-memory": "formats.md",
+    "guides/tiles.md": "guides/tiles.md",
+    "guides/texture.md": "guides/texture.md",
+    "guides/troubleshooting.md": "guides/troubleshooting.md",
 }
 
 

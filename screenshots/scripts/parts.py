@@ -13,8 +13,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from figure_numbers import Drawing, MeshFile, Numbers, diagonal, displacement, labelled
-from meshlab_spectral.figures.pictures import Frame, Panel, View, render
+from meshlab_spectral.figures.pictures import SIGNED_COLOURS, Frame, Panel, View, render
 from meshlab_spectral.figures.sheet import FONT_SIZE, INK, Sheet
+from meshlab_spectral.files.comparison import compare
 from meshlab_spectral.files.meshes import load_arrays
 from meshlab_spectral.filters.arrays import lumped_areas, mean_edge
 from meshlab_spectral.filters.fractional import filter_mesh
@@ -38,6 +39,7 @@ SCALE = 0.5  # of the pages, to keep files small
 
 SHADES = (0.02, 1.0)  # excludes 0, where a line would be drawn
 FULL_RED = 0.005  # length of artefacts, in diagonals
+BOUND = 0.3  # percent of the diagonal, of a low-pass that moves vertices by up to some times that
 
 
 @dataclass(frozen=True)
@@ -128,6 +130,36 @@ def selection(mesh: MeshFile) -> Drawing:
     numbers["vertices selected, %"] = 100 * float(np.mean(selected > 0))
     numbers["vertices moved, %"] = 100 * float(np.mean(distance > 0))
     return _drawing(numbers, Row(panels, View()))
+
+
+def color_by_displacement(mesh: MeshFile) -> Drawing:
+    """Show the bunny after a low-pass, in colours by the displacement, and with a bound on it."""
+    V, F = load_arrays(mesh("stanford-bunny.obj"))
+    panels = [Panel("original", V, F)]
+    numbers: Numbers = {}
+    extent = BOUND / 100 * diagonal(V)
+    for label, more in (("low-pass 10 %", {}), ("max_displacement", {"max_displacement": extent})):
+        Y, _ = filter_mesh(V, F, FilterOptions(feature_size="10%", **more))
+        if not more:
+            panels.append(Panel(label, Y, F))
+            label = "colour by displacement"
+        numbers |= labelled(label, displacement(V, F, Y))
+        largest = numbers[f"{label}: largest displacement, %"]
+        outward = np.clip(compare((V, F), (Y, F)).signed / extent, -1, 1)
+        label = f"{label}\nat most {largest:.2g} % of the diagonal"
+        panels.append(Panel(label, Y, F, outward, zero_line=False))
+    caption = f"red: outwards, blue: inwards; full colours from {BOUND:g} % of the diagonal on"
+    return Drawing(numbers, functools.partial(_draw_signed, Row(panels, View()), caption))
+
+
+def _draw_signed(row: Row, caption: str, path: Path) -> None:
+    frame = Frame.around([panel.V for panel in row.panels], row.view)
+    aspect = frame.width / frame.height
+    sheet = Sheet([aspect], len(row.panels), 2, SCALE, footer=0.56)
+    for j, panel in enumerate(row.panels):
+        sheet.picture(0, j, render(panel, frame, sheet.pixels), panel.label)
+    sheet.colour_bar(SIGNED_COLOURS, (f"\N{MINUS SIGN}{BOUND:g} %", "0", f"{BOUND:g} %"), caption)
+    sheet.save(path)
 
 
 def creases(mesh: MeshFile) -> Drawing:
@@ -237,6 +269,7 @@ def artefacts(mesh: MeshFile) -> Drawing:
 PICTURES: dict[str, Callable[[MeshFile], Drawing]] = {
     "equalizer": equalizer,
     "selection": selection,
+    "color_by_displacement": color_by_displacement,
     "creases": creases,
     "quality": quality,
     "colors": colors,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import subprocess
 import sys
 import time
@@ -33,6 +34,20 @@ def test_help_has_a_short_option_and_lists_the_common_options(name: str) -> None
         assert "-o, --output" in done.stdout
     assert "--debug" not in done.stdout
     assert max(map(len, done.stdout.splitlines())) <= 80
+
+
+def test_the_manual_page_has_the_help_of_every_command() -> None:
+    page = command("--man", COLUMNS="80").stdout
+    assert page.startswith(".TH MESHLAB-SPECTRAL 1 ")
+    assert re.findall(r"^\.SH (.*)$", page, re.MULTILINE)[2:] == [
+        name.upper() for name in get_command(app).commands
+    ]
+    for option in FilterOptions().as_dict():
+        assert "\\-\\-" + option.replace("_", "\\-") in page
+    if shutil.which("groff"):
+        shown = ["groff", "-man", "-ww", "-z"]
+        done = subprocess.run(shown, input=page, capture_output=True, text=True, check=True)
+        assert done.stderr == ""
 
 
 def test_the_short_help_names_every_option_on_one_screen() -> None:

@@ -81,7 +81,7 @@ def test_formulas_are_drawn_by_the_browser(site: Site) -> None:
 def test_pages_hold_the_sections_of_the_readmes(site: Site) -> None:
     for name, words in {
         "installing": ("make wheel", "glibc 2.35", "--uninstall"),
-        "formats": ("FreeSurfer", "--tiles 16"),
+        "formats": ("FreeSurfer", "glTF"),
         "limits": ("no undo", "set_memory_limit"),
     }.items():
         text = html.unescape(site.pages[f"{name}.html"].path.read_text(encoding="utf-8"))

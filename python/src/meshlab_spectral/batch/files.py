@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 def filter_files(
     inputs: Sequence[str | Path] | str | Path,
     output: str | Path,
+    *,
     options: FilterOptions | None = None,
     **named: Unpack[BatchKeywords],
 ) -> Generator[FileResult, None, None]:
@@ -74,6 +75,7 @@ def filter_files(
 def denoise_files(
     inputs: Sequence[str | Path] | str | Path,
     output: str | Path,
+    *,
     options: DenoiseOptions | None = None,
     **named: Unpack[DenoiseBatchKeywords],
 ) -> Generator[FileResult, None, None]:

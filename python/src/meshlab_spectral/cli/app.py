@@ -49,6 +49,14 @@ def _print_version(wanted: bool) -> None:
     raise typer.Exit
 
 
+def _print_manual(wanted: bool) -> None:
+    if wanted:
+        from meshlab_spectral.cli.man import manual
+
+        typer.echo(manual(app))
+        raise typer.Exit
+
+
 def _be_verbose(wanted: bool) -> None:
     VERBOSITY.verbose = wanted
 
@@ -59,6 +67,12 @@ def _common(
         bool,
         typer.Option(
             "--version", callback=_print_version, help="Print the version; with -v, all versions."
+        ),
+    ] = False,
+    man: Annotated[
+        bool,
+        typer.Option(
+            "--man", callback=_print_manual, help="Print the manual page, for `man -l -`."
         ),
     ] = False,
     # Read first, so that it has an effect on --version wherever it stands.
