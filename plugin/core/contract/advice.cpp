@@ -163,9 +163,15 @@ std::string advice(const Error& error, const Filter& filter, const Values& given
 std::string accuracyWarning(double accuracy, double errorEstimate) {
     std::ostringstream text;
     text << std::setprecision(2) << "the requested relative accuracy of " << accuracy
-         << " was not reached, the estimated error is " << errorEstimate
-         << ". Choose a |stop_gain| of 0.05 instead of 0, a lower |order| or a wider band";
+         << " was not reached, the estimated error is " << errorEstimate;
     return text.str();
+}
+
+std::string accuracyWarning(double accuracy, double errorEstimate, FilterType type) {
+    return accuracyWarning(accuracy, errorEstimate) +
+           (type == FilterType::Custom
+                ? ". Choose gains closer to 1"
+                : ". Choose a |stop_gain| of 0.05 instead of 0, a lower |order| or a wider band");
 }
 
 std::vector<std::string> residualWarnings(const Eigen::VectorXd& residuals) {

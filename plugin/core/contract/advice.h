@@ -6,6 +6,7 @@
 
 #include "core/contract/filter.h"
 #include "core/support/errors.h"
+#include "core/transfer/transfer_function.h"
 
 namespace spectral {
 
@@ -14,8 +15,12 @@ namespace spectral {
 /// @param given  as for apply.
 std::string advice(const Error& error, const Filter& filter, const Values& given);
 
-/// Warns that the requested relative accuracy was not reached, and says what to choose instead.
+/// Warns that the requested relative accuracy was not reached.
 std::string accuracyWarning(double accuracy, double errorEstimate);
+
+/// The same, and says which gains would be evaluated more accurately.
+/// @param type  that of the transfer function; an equalizer's is custom.
+std::string accuracyWarning(double accuracy, double errorEstimate, FilterType type);
 
 /// Warns about the least accurate harmonic if it has fewer than six digits.
 /// @param residuals  relative residuals of a basis of harmonics; may be empty.

@@ -275,7 +275,7 @@ std::vector<std::string> fractionalWarnings(const FilterOptions& options,
     if (options.preserveVolume && result.volumes.preserved < result.components)
         warnings.push_back(volumeWarning(result));
     if (!result.accuracyReached)
-        warnings.push_back(accuracyWarning(result.accuracy, result.errorEstimate) +
+        warnings.push_back(accuracyWarning(result.accuracy, result.errorEstimate, transfer.type) +
                            ", or fewer steps; if triangles are needles, {apply 'Remeshing: "
                            "Isotropic Explicit Remeshing'|remesh} first");
     if (!result.toleranceReached && !shrinks) warnings.push_back(toleranceWarning(options, result));

@@ -78,7 +78,7 @@ Entries<Filtered> signalEntries() {
          surfaceEntries<R>()});
 }
 
-std::vector<std::string> warningsOf(const FilteredSignal& result) {
+std::vector<std::string> warningsOf(const FilteredSignal& result, FilterType type) {
     std::vector<std::string> warnings = surfaceWarnings(result);
     if (result.isConstant)
         warnings.emplace_back(
@@ -87,7 +87,7 @@ std::vector<std::string> warningsOf(const FilteredSignal& result) {
     else if (isAllFixed(result, result.Y.rows() - result.verticesWithoutData))
         warnings.push_back(allFixedWarning("change"));
     if (!result.accuracyReached)
-        warnings.push_back(accuracyWarning(result.accuracy, result.errorEstimate));
+        warnings.push_back(accuracyWarning(result.accuracy, result.errorEstimate, type));
     append(residualWarnings(result.residuals), warnings);
     return warnings;
 }
@@ -121,7 +121,7 @@ FilterOutput filterValues(const char* name, const char* signal, const FilterInpu
     FilterOutput output;
     output.report = reportOf(signalEntries(), result);
     output.text = text.str();
-    output.warnings = warningsOf(result);
+    output.warnings = warningsOf(result, options.transferFunction.type);
     append(percentageWarnings(mesh), output.warnings);
     append(unusedWarnings(fields, call), output.warnings);
     output.values = std::move(result.Y);

@@ -94,5 +94,7 @@ def test_a_type_checker_knows_options(tmp_path: Path) -> None:
         check=False,
     )
     errors = [line for line in done.stdout.splitlines() if ": error:" in line]
-    assert [line.split(":")[1] for line in errors] == ["3", "4", "5"], done.stdout + done.stderr
+    # An overloaded function has two for an unknown keyword.
+    lines = sorted({line.split(":")[1] for line in errors})
+    assert lines == ["3", "4", "5"], done.stdout + done.stderr
     assert 'did you mean "feature_size"?' in errors[0]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, get_args
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 from meshlab_spectral.errors import OptionError
 from meshlab_spectral.filters.arrays import mesh_arrays
 from meshlab_spectral.filters.mesh_objects import takes_mesh_alone
-from meshlab_spectral.filters.option_types import Length
 from meshlab_spectral.filters.options import LaplacianKind
 from meshlab_spectral.filters.progress import Progress
 from meshlab_spectral.filters.representations import line
@@ -103,18 +102,9 @@ def measure_artefacts(
     >>> left.rms / before, left.maximum / before
     """
     V, F = mesh_arrays(vertices, faces)
-    try:
-        size = Length.parse(feature_size) if isinstance(feature_size, str) else Length(feature_size)
-        if size.automatic:
-            raise OptionError("auto: give the size that was filtered with")
-    except OptionError as error:
-        raise OptionError(f"feature_size = {error}") from None
-    if laplacian not in get_args(LaplacianKind):
-        raise OptionError(f"laplacian = {laplacian}: choose {', '.join(get_args(LaplacianKind))}")
-
-    length = float(size.value)
-    of_mesh = f"{length!r}{size.unit}" if size.unit else length
-    given = {"feature_size": of_mesh, "laplacian": laplacian}
+    if feature_size == "auto":
+        raise OptionError("feature_size = auto: give the size that was filtered with")
+    given = {"feature_size": feature_size, "laplacian": laplacian}
     done = run(_FILTER_NAME, V, F, given, progress=progress, threads=threads)
     assert done.values is not None
     return Artefacts(
