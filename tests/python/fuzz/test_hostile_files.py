@@ -46,7 +46,9 @@ OWN = ("in", "out", "tmp", "good.ply")
 HARMLESS = re.compile(  # the system's and the libraries' own files
     r"/(?:usr|lib\w*|etc|proc|sys|dev/(?:null|urandom|shm|tty)|opt|run|var/(?:lib|cache))\b|/$"
 )
-OPENED = re.compile(r'(?:openat|open|creat|unlink|rename)\((?:AT_FDCWD, )?"([^"]+)".* = \d+')
+CALLS = re.compile(
+    r'(\d+) +(?:(chdir)|openat|open|creat|unlink|rename)\((?:AT_FDCWD, )?"([^"]+)".* = \d+'
+)
 
 
 @dataclass(frozen=True)
@@ -61,7 +63,7 @@ class Done:
 
 def run(words: list[str], folder: Path, trace: Path | None = None) -> Done:
     """Run a command in a folder, watched."""
-    calls = "trace=openat,open,creat,unlink,rename"
+    calls = "trace=chdir,openat,open,creat,unlink,rename"
     tracing = ["-f", "-q", "--seccomp-bpf", "-e", calls, "-o", str(trace)]
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     process = subprocess.Popen(
@@ -89,12 +91,18 @@ def run(words: list[str], folder: Path, trace: Path | None = None) -> Done:
     return Done(process.returncode, errors, memory, seconds)
 
 
-def opened(trace: Path) -> Iterator[str]:
-    """Yield the files that a traced command has opened, made or removed; not those in vain."""
+def opened(trace: Path, folder: Path) -> Iterator[Path]:
+    """Yield the files that a command in a folder has opened, made or removed; not those in vain."""
+    folders: dict[str, Path] = {}  # of threads: MeshLab goes to that of a file
     for line in trace.read_text(errors="replace").splitlines():
-        match = OPENED.search(line)
+        match = CALLS.match(line)
         if match:
-            yield match[1]
+            thread, goes, name = match.groups()
+            path = folders.get(thread, folder) / name
+            if goes:
+                folders[thread] = path
+            else:
+                yield Path(os.path.normpath(path))
 
 
 def cases() -> list[tuple[str, int]]:
@@ -161,11 +169,10 @@ def test_a_hostile_file_is_read_or_refused_by_every_command(
         more = 1 << 30 if name.endswith(OF_MESHLAB) else MEMORY
         assert done.memory < usual[command] + more + TIMES * bytes_, what
         assert done.seconds < SECONDS + SECONDS_PER_MEGABYTE * bytes_ / 1e6, what
-        for path in opened(trace) if STRACE else ():
-            found = Path(os.path.normpath(folder / path))
+        for found in opened(trace, folder) if STRACE else ():
             places = [*(folder / own for own in OWN), Path(sys.prefix), Path(sys.base_prefix)]
             if found != folder and not any(map(found.is_relative_to, places)):
-                assert HARMLESS.match(str(found)), f"{what}: {path}"
+                assert HARMLESS.match(str(found)), f"{what}: {found}"
     for written in (folder / "out").rglob("*"):
         if written.is_file():
             assert SECRET.encode() not in written.read_bytes()
