@@ -1,4 +1,4 @@
-// Static files, as a web server gives them; with `isolated`, threads may share memory.
+// Static files, as a web server gives them.
 import {createServer} from 'node:http';
 import {readFile} from 'node:fs/promises';
 import {extname, join, normalize} from 'node:path';
@@ -6,12 +6,11 @@ import {extname, join, normalize} from 'node:path';
 const kTypes = {'.html': 'text/html', '.js': 'text/javascript', '.mjs': 'text/javascript', '.css': 'text/css', '.wasm': 'application/wasm'};
 
 /** Serves a folder at a free port, and returns its address. */
-export async function serve(folder, {isolated = false} = {}) {
+export async function serve(folder) {
   const server = createServer(async (request, response) => {
     const path = normalize(decodeURIComponent(new URL(request.url, 'http://here').pathname));
     const headers = {'content-type': kTypes[extname(path)] ?? 'application/octet-stream'};
     if (path.endsWith('/')) headers['content-type'] = 'text/html';
-    if (isolated) Object.assign(headers, {'cross-origin-opener-policy': 'same-origin', 'cross-origin-embedder-policy': 'require-corp'});
     if (path === '/favicon.ico') return response.writeHead(204).end();
     try {
       const bytes = await readFile(join(folder, path.endsWith('/') ? `${path}index.html` : path));
