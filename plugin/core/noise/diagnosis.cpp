@@ -262,7 +262,9 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
     const bool isWhite = second.isNoise(correlation, edge);
     NoiseEstimate& noise = diagnosis.noise;
     diagnosis.kind = NoiseKind::Shape;
-    const bool isRising = !isWhite && correlation >= kMaxCorrelationOfNoise;
+    const bool isCorrelated = !isWhite && correlation >= kMaxCorrelationOfNoise;
+    const bool isCoarser = isCorrelated && isCoarserNoise(graph, diagnosis.X, N, isMeasured);
+    const bool isRising = isCorrelated && !isCoarser;
     if (isKnown || !isRising)
         noise = estimateNoise(graph, diagnosis.X, N, isMeasured, correlation, second, edge);
     noise.correlation = correlation;
@@ -270,7 +272,8 @@ Diagnosis diagnoseWhole(const FaceGraph& graph, const Points& X,
     if (isRising || noise.isShape) return diagnosis;
     if (noise.size > 1.0) {
         if (measured >= kMinMeasuredFine &&
-            noiseShare(correlation) * noise.height >= kMinHeightCorrelated * edge)
+            (isCoarser ? 1.0 : noiseShare(correlation)) * noise.height >=
+                kMinHeightCorrelated * edge)
             diagnosis.kind = NoiseKind::Correlated;
         return diagnosis;
     }

@@ -112,19 +112,20 @@ struct OctaveDeviations {
     Octaves shape, white;
 };
 
+/// @param count  of the octaves, 4 or more; the others are 0.
 OctaveDeviations octaveDeviations(const FaceGraph& graph, const Points& X, const Points& N,
-                                  const std::vector<bool>& isMeasured) {
+                                  const std::vector<bool>& isMeasured, int count = kOctaves) {
     constexpr int kShapeOctave = 3, kQuietSteps = 16;
-    OctaveDeviations deviations;
+    OctaveDeviations deviations{{}, Octaves::Zero(), Octaves::Zero()};
     auto& along = deviations.along;
-    forEachOctave(graph.vertices, X, N, isMeasured, kOctaves,
+    forEachOctave(graph.vertices, X, N, isMeasured, count,
                   [&](int k, Eigen::VectorXd values, double white) {
                       along[k] = std::move(values);
                       deviations.white[k] = white;
                   });
     const std::vector<bool> isQuiet =
         quietest(graph.vertices, along[kShapeOctave], kQuietSteps, isMeasured);
-    parallelFor(kOctaves, [&](Index k) {
+    parallelFor(count, [&](Index k) {
         deviations.shape[k] = trimmedDeviation(moduliOf(along[k], isQuiet));
     });
     return deviations;
@@ -144,18 +145,13 @@ Octaves shapePart(const Octaves& height) {
     return shape;
 }
 
-/// Fourth moment over the squared second one, of the values in deviations of their places, where
-/// the shape is quiet: 3 for noise, less for crests of one height.
-double kurtosis(const VertexGraph& graph, const OctaveDeviations& octaves, int octave,
+/// Fourth moment over the squared second one of measured values, given by their squares and the
+/// averages of these over the places: 3 for noise, less for crests of one height.
+double kurtosis(const Eigen::VectorXd& squares, const Eigen::VectorXd& place,
                 const std::vector<bool>& isMeasured) {
-    constexpr int kPlace = 64, kShapeOctave = 5;
-    const std::vector<bool> isQuiet =
-        quietest(graph, octaves.along[kShapeOctave], kPlace, isMeasured);
-    const Eigen::VectorXd squares = octaves.along[octave].cwiseAbs2();
-    const Eigen::VectorXd place = LocalAverage(graph, isMeasured, kPlace).of(squares);
     double second = 0.0, fourth = 0.0, count = 0.0;
     for (Index i = 0; i < squares.size(); ++i) {
-        if (!isQuiet[i] || !(place[i] > 0.0)) continue;
+        if (!isMeasured[i] || !(place[i] > 0.0)) continue;
         const double square = squares[i] / place[i];
         second += square;
         fourth += square * square;
@@ -173,9 +169,15 @@ bool areCrestsAlike(const VertexGraph& graph, const OctaveDeviations& octaves, i
     // and
     // -.38 and more with noise over two edges (corr2_bunny of ../shared/denoise).
     constexpr double kMaxExcess = -0.5;
+    constexpr int kPlace = 64, kShapeOctave = 5;
     const double relief = 1.0 - std::pow(white / height, 2);
-    return relief > 0.0 &&
-           kurtosis(graph, octaves, octave, isMeasured) - 3.0 < kMaxExcess * relief * relief;
+    if (!(relief > 0.0)) return false;
+    const Eigen::VectorXd squares = octaves.along[octave].cwiseAbs2();
+    const Eigen::VectorXd place = LocalAverage(graph, isMeasured, kPlace).of(squares);
+    return kurtosis(squares, place,
+                    quietest(graph, octaves.along[kShapeOctave], kPlace, isMeasured)) -
+               3.0 <
+           kMaxExcess * relief * relief;
 }
 
 /// The octave of relief on a flat part: they rise to it and fall again, which noise on a shape does
@@ -293,6 +295,29 @@ SecondResiduals secondResiduals(const FaceGraph& graph, const Points& X, const P
     const Eigen::VectorXd residual = scaledSecondResiduals(graph, X, N, isMeasured);
     return {trimmedDeviation(moduliOf(residual, isMeasured)),
             correlationOfNeighbours(graph.vertices, residual, isMeasured)};
+}
+
+bool isCoarserNoise(const FaceGraph& graph, const Points& X, const Points& N,
+                    const std::vector<bool>& isMeasured) {
+    constexpr int kCount = 4, kOctave = 2, kPlace = 32;
+    // Of the rise: 1.04 and less with noise of .15 edges of the coarser mesh, 1.09 and more on
+    // fractal ground.
+    constexpr double kMaxRise = 2.03, kMaxGrowth = 1.05;
+    const OctaveDeviations octaves = octaveDeviations(graph, X, N, isMeasured, kCount);
+    const Octaves height = (octaves.white > 0.0).select(octaves.shape / octaves.white, 0.0);
+    if (!(height[1] < kMaxRise * height[0] && height[2] < kMaxRise * height[1] &&
+          height[3] * height[1] < kMaxGrowth * height[2] * height[2]))
+        return false;
+    // On meshes of noise subdivided once, in this order: .76 to .8, 1.4 and less, 2.6 and more. A
+    // shape that ends so has .62 and 2.4 (many_small_holes); knurls have a kurtosis of 2.3.
+    constexpr double kMinLow = 0.7, kMaxHigh = 1.8, kMinKurtosis = 2.45;
+    const Eigen::VectorXd squares = octaves.along[kOctave].cwiseAbs2();
+    const Eigen::VectorXd place = LocalAverage(graph.vertices, isMeasured, kPlace).of(squares);
+    const std::vector<double> places = moduliOf(place, isMeasured);
+    const double median = quantile(places, 0.5);
+    return quantile(places, 0.1) > kMinLow * kMinLow * median &&
+           quantile(places, 0.95) < kMaxHigh * kMaxHigh * median &&
+           kurtosis(squares, place, isMeasured) > kMinKurtosis;
 }
 
 NoiseEstimate estimateNoise(const FaceGraph& graph, const Points& X, const Points& N,

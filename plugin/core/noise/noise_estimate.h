@@ -73,6 +73,12 @@ struct SecondResiduals {
 SecondResiduals secondResiduals(const FaceGraph& graph, const Points& X, const Points& N,
                                 std::vector<bool> isMeasured);
 
+/// Whether the residuals rise as those of a shape, since they are noise of data coarser than the
+/// mesh, such as a subdivided one or a volume resampled: from octave to octave they rise by ever
+/// less, alike everywhere, and have the distribution of noise.
+bool isCoarserNoise(const FaceGraph& graph, const Points& X, const Points& N,
+                    const std::vector<bool>& isMeasured);
+
 /// Height and correlation length of the noise, from the energies along the normals in seven octaves
 /// of lazy diffusion, (I + P) / 2 to the powers 0, 1, 2, 4, ... 64.
 ///

@@ -82,6 +82,35 @@ TEST(Denoise, RemovesNoiseThatGrowsOverTheShape) {
     EXPECT_LT(meanAngle(result.V, clean.V, mesh.F), 0.15 * meanAngle(mesh.V, clean.V, mesh.F));
 }
 
+TEST(Denoise, RemovesNoiseOfDataCoarserThanTheMesh) {
+    // The vertices of a coarse sphere, and the midpoints of their edges.
+    const Mesh coarse = testing::icosphere(4);
+    const auto subdivided = [](const Mesh& from) {
+        Mesh mesh = testing::icosphere(5);
+        const Index n = from.V.rows();
+        const FaceGraph graph = faceGraph(mesh.F, mesh.V.rows());
+        const VertexGraph& vertices = graph.vertices;
+        mesh.V.topRows(n) = from.V;
+        for (Index i = n; i < mesh.V.rows(); ++i) {
+            mesh.V.row(i).setZero();
+            for (Index k = vertices.first[i]; k < vertices.first[i + 1]; ++k)
+                if (vertices.at[k] < n) mesh.V.row(i) += 0.5 * from.V.row(vertices.at[k]);
+        }
+        return mesh;
+    };
+    const Mesh clean = subdivided(coarse);
+    EXPECT_EQ(denoise(clean.V, clean.F, {}).V, clean.V);
+    for (const double height : {0.2, 0.3}) {
+        const Mesh noisy = subdivided(testing::withGaussianNoise(coarse, height, 5));
+        const DenoiseResult result = denoise(noisy.V, noisy.F, {});
+        EXPECT_EQ(result.diagnosis.kind, NoiseKind::Correlated) << height;
+        const auto error = [](const Vertices& V) {
+            return std::sqrt((V.rowwise().norm().array() - 1.0).square().mean());
+        };
+        EXPECT_LT(error(result.V), 0.4 * error(noisy.V)) << height;
+    }
+}
+
 TEST(Denoise, RemovesNoiseFromScanLines) {
     Mesh lines = testing::rectangle(60.0, 300.0, 60, 60);
     lines.V.col(2) = 3.0 * (lines.V.col(0) / 15.0).array().sin();
