@@ -70,7 +70,7 @@ class Presets(SphinxDirective):
         listed = nodes.bullet_list()
         for name, (table, purpose, options) in PRESETS.items():
             item = nodes.paragraph()
-            item += [nodes.literal(text=name), nodes.Text(f" of {table.TABLE}: {purpose} (")]
+            item += [nodes.literal(text=name), nodes.Text(f", {table.TABLE}: {purpose} (")]
             item += nodes.literal(
                 text=", ".join(f"{key}={value}" for key, value in options.items())
             )
