@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 from typing import Any
+from zipfile import ZipFile
 
 import numpy as np
 import pytest
@@ -108,6 +109,14 @@ def test_a_package_keeps_the_order_and_the_bytes_of_its_files(tmp_path: Path) ->
     document.save(tmp_path / "same.usdz", [document.parts[0].vertices])
     assert (tmp_path / "same.usdz").read_bytes() == (tmp_path / "a.usdz").read_bytes()
     assert len(document.parts[0].vertices) == len(CUT)
+    document.save(tmp_path / "moved.usdz", [document.parts[0].vertices + 1])
+    with ZipFile(tmp_path / "a.usdz") as old, ZipFile(tmp_path / "moved.usdz") as new:
+        assert new.namelist() == old.namelist()
+        for name in new.namelist()[1:]:
+            assert new.read(name) == old.read(name)
+        content = (tmp_path / "moved.usdz").read_bytes()
+        for name in new.namelist():  # where readers map it
+            assert content.find(new.read(name)) % 64 == 0
 
 
 @pytest.mark.parametrize("arc", ["references", "payload", "subLayers"])
