@@ -150,7 +150,8 @@ std::string removedText(const DenoiseOptions& options, const DenoiseResult& resu
     }
     if (diagnosis.hasVoxels()) return noiseText(diagnosis) + ": smoothed within half a voxel";
     const bool isInPlaces = diagnosis.kind == NoiseKind::Local && !diagnosis.field.isEverywhere();
-    return noiseText(diagnosis) + ": " + removed + (isInPlaces ? "; the rest is clean" : "");
+    return noiseText(diagnosis) + ": " + removed +
+           (isInPlaces ? "; no noise found in the rest" : "");
 }
 
 /// Why nothing was removed.
