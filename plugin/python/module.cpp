@@ -84,6 +84,14 @@ nb::dict applyFilter(const std::string& name, const Positions& vertices, const I
     result["text"] = output.text;
     result["summary"] = output.summary;
     result["warnings"] = output.warnings;
+    if (output.columns.empty()) return result;
+    nb::list columns;
+    for (FilterOutput& column : output.columns) {
+        nb::dict report = dictOf(std::move(column.report));
+        report["warnings"] = column.warnings;
+        columns.append(report);
+    }
+    result["columns"] = columns;
     return result;
 }
 

@@ -50,8 +50,12 @@ FilterOutput advised(const Filter& filter, const FilterInput& input, const Value
             return work(input.whole ? input.whole->lengths : lengthsOf(input.V, input.F), steady);
         });
         warnOfSelection(input, given, output);
-        for (std::string& warning : output.warnings)
-            warning = inWords(warning, filter, input.words);
+        const auto translate = [&](FilterOutput& part) {
+            for (std::string& warning : part.warnings)
+                warning = inWords(warning, filter, input.words);
+        };
+        translate(output);
+        for (FilterOutput& column : output.columns) translate(column);
         return output;
     } catch (const Error& error) {
         throwAdvised(error, filter, given, input.words);

@@ -28,8 +28,8 @@ struct FilterInput {
     Faces F;                       ///< m x 3 vertex indices.
     std::vector<bool> selected{};  ///< n, selected vertices and corners of selected faces, for the
                                    ///< parameter `selected`.
-    Eigen::MatrixXd values{};  ///< n x c: the vertex quality (c = 1), or red, green and blue from 0
-                               ///< to 255 (c = 3); no rows: the mesh has none.
+    Eigen::MatrixXd values{};  ///< n x c: the vertex quality (c >= 1), or red, green and blue from
+                               ///< 0 to 255 (c = 3); no rows: the mesh has none.
     Eigen::MatrixXd gain{};    ///< p x 2, in place of a transfer function: frequencies
                                ///< w = feature size / wavelength > 0, and a gain >= 0 for each.
     Words words{};             ///< Of the host.
@@ -47,6 +47,7 @@ struct FilterOutput {
     std::string text{};     ///< The report as lines for a log.
     std::string summary{};  ///< What was found and done, one line; empty if the numbers say it all.
     std::vector<std::string> warnings{};  ///< Shortcomings that are not errors.
+    std::vector<FilterOutput> columns{};  ///< Of several values: report and warnings of each.
 };
 
 /// One entry of a filter's report.

@@ -78,13 +78,14 @@ Entries<Filtered> signalEntries() {
          surfaceEntries<R>()});
 }
 
-std::vector<std::string> warningsOf(const FilteredSignal& result, FilterType type) {
+/// @param vertices  number of vertices of the mesh.
+std::vector<std::string> warningsOf(Index vertices, const FilteredSignal& result, FilterType type) {
     std::vector<std::string> warnings = surfaceWarnings(result);
     if (result.isConstant)
         warnings.emplace_back(
             "nothing to filter: the values are constant on every connected component. Apply a "
             "filter that computes qualities or colours first");
-    else if (isAllFixed(result, result.Y.rows() - result.verticesWithoutData))
+    else if (isAllFixed(result, vertices - result.verticesWithoutData))
         warnings.push_back(allFixedWarning("change"));
     if (!result.accuracyReached)
         warnings.push_back(accuracyWarning(result.accuracy, result.errorEstimate, type));
@@ -121,15 +122,26 @@ FilterOutput filterValues(const char* name, const char* signal, const FilterInpu
     FilterOutput output;
     output.report = reportOf(signalEntries(), result);
     output.text = text.str();
-    output.warnings = warningsOf(result, options.transferFunction.type);
-    append(percentageWarnings(mesh), output.warnings);
-    append(unusedWarnings(fields, call), output.warnings);
     output.values = std::move(result.Y);
+    const auto warnings = [&] {
+        std::vector<std::string> all =
+            warningsOf(input.V.rows(), result, options.transferFunction.type);
+        append(percentageWarnings(mesh), all);
+        append(unusedWarnings(fields, call), all);
+        return all;
+    };
+    output.warnings = warnings();
+    for (std::size_t c = 0; result.columns.size() > 1 && c < result.columns.size(); ++c) {
+        static_cast<SignalChange&>(result) = result.columns[c];
+        FilterOutput& column = output.columns.emplace_back();
+        column.report = reportOf(signalEntries(), result);
+        column.warnings = warnings();
+    }
     return output;
 }
 
 /// "minimum to maximum" of the values that are not NaN.
-std::string rangeOf(const Eigen::VectorXd& values) {
+std::string rangeOf(const Eigen::MatrixXd& values) {
     std::ostringstream text;
     text << std::setprecision(4) << values.minCoeff<Eigen::PropagateNumbers>() << " to "
          << values.maxCoeff<Eigen::PropagateNumbers>();

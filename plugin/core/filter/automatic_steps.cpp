@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 #include <utility>
+#include <vector>
 
 #include "core/filter/fractional_steps.h"
 #include "core/mesh/mesh.h"
@@ -66,15 +67,13 @@ class Limit {
   public:
     /// @param E1  the shape that Y_1 is compared with.
     Limit(Vertices E1, const LaplacianBuilder& laplacians)
-        : laplacians_(laplacians), E_(std::move(E1)) {}
+        : laplacians_(laplacians), Y_(std::move(E1)) {}
 
-    /// @param quarter  F^(1/4)(sqrt(A)) X.
-    void addFirst(Vertices Y, const Vertices& quarter) {
-        const SparseMatrix& W = laplacians_.current().W;
-        const Faces& F = laplacians_.faces();
-        const Eigen::ArrayXd growth = logAreasAround(W, F, Y) - logAreasAround(W, F, quarter);
-        Vertices E = Y;
-        replace(std::move(E), std::move(Y));
+    /// @param quarter  log areas around the vertices of F^(1/4)(sqrt(A)) X.
+    void addFirst(Vertices Y, const Eigen::ArrayXd& quarter) {
+        const Eigen::ArrayXd growth =
+            logAreasAround(laplacians_.current().W, laplacians_.faces(), Y) - quarter;
+        replace({}, std::move(Y));
         // The distance is an error of first order, whose ratio to that of second order grows as
         // areas change faster towards the end of the step. What has gone in the first quarter is
         // noise. The distance bounds the error.
@@ -86,7 +85,8 @@ class Limit {
     /// @param isComparable  whether Y has twice the steps of the previous shape.
     void add(Vertices Y, int steps, bool isComparable) {
         const bool hasLike = isComparable && steps > 2;  // the first shape is by another rule
-        Vertices E = hasLike ? Vertices(Y + (Y - Y_) / (kSecondOrder - 1.0)) : Y;
+        Vertices E;
+        if (hasLike) E = Y + (Y - Y_) / (kSecondOrder - 1.0);
         isExtrapolated_ = hasLike && steps >= kManySteps;
         // |E_K/2 - Y_K/4| = 4/3 |Y_K/2 - Y_K/4|.
         const double before = isExtrapolated_ && steps == kManySteps
@@ -116,9 +116,10 @@ class Limit {
     }
 
   private:
+    /// @param E  empty if it is Y.
     void replace(Vertices E, Vertices Y) {
         const Vertices& shape = isExtrapolated_ ? E : Y;
-        errors_ = distances(shape, E_);
+        errors_ = distances(shape, E_.rows() > 0 ? E_ : Y_);
         isKept_ = laplacians_.mass(shape).array() >= kCollapsed * laplacians_.inputMass().array();
         distance_ = largestOf(errors_);
         E_ = std::move(E);
@@ -130,7 +131,7 @@ class Limit {
     }
 
     const LaplacianBuilder& laplacians_;
-    Vertices Y_, E_;                                // E_ is extrapolated, from the third pass on
+    Vertices Y_, E_;                                // E_ is extrapolated; empty if it is Y_
     Eigen::VectorXd errors_;                        // n, estimated, where parts collapse, too
     Eigen::Array<bool, Eigen::Dynamic, 1> isKept_;  // n, false where parts collapse
     double distance_ = 0.0, error_ = 0.0, bound_ = 0.0, shrinking_ = kSecondOrder;
@@ -166,22 +167,32 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
     AutomaticSteps result;
     laplacians.reset();
     const auto predictFirst = [&](double from, double to) {
-        return evaluate.predict(laplacians.current(), X, {1.0, 0.5, 0.25}, progress.part(from, to))
-            .Y;
+        Evaluation evaluation =
+            evaluate.predict(laplacians.current(), X, {1.0, 0.5, 0.25}, progress.part(from, to));
+        std::vector<Vertices> shapes;
+        for (Eigen::MatrixXd& Y : evaluation.Y) {
+            shapes.emplace_back(Y);
+            Y.resize(0, 0);
+        }
+        return shapes;
     };
-    std::vector<Eigen::MatrixXd> first = predictFirst(0.0, 0.5 * kFirst);
+    std::vector<Vertices> first = predictFirst(0.0, 0.5 * kFirst);
     if (options.keepThinParts) {
         ThinParts parts = thinPartFactors(laplacians.current().W, laplacians.faces(), X, first[2],
                                           first[0], options.tile);
         result.thinPartFactor = parts.largest;
         if (parts.factors.size() > 0) {
+            first.clear();  // before another three shapes are computed
             laplacians.scaleMass(std::move(parts.factors));
             first = predictFirst(0.5 * kFirst, kFirst);
         }
     }
-    Limit limit(first[0], laplacians);
-    Vertices half = first[1], quarter = first[2];
-    first.clear();
+    Limit limit(std::move(first[0]), laplacians);
+    const Eigen::ArrayXd quarterAreas =
+        logAreasAround(laplacians.current().W, laplacians.faces(), first[2]);
+    // Of the second pass, by interpolation.
+    Vertices ahead = 0.375 * X + 0.75 * first[2] - 0.125 * first[1];
+    first.pop_back();
 
     double done = kFirst;
     bool wasEven = true;
@@ -190,22 +201,18 @@ AutomaticSteps automaticSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
         const Progress pass = progress.part(done, end);
         done = end;
         if (K == 1) {
-            result.last = midpointSteps(laplacians, evaluate, X, K, kFinest, pass, &half);
-            limit.addFirst(std::move(result.last.X), quarter);
+            result.last =
+                midpointSteps(laplacians, evaluate, X, K, kFinest, pass, std::move(first[1]));
+            limit.addFirst(std::move(result.last.X), quarterAreas);
         } else {
-            Vertices ahead;  // a quarter step; in the second pass by interpolation
-            if (K == 2) {
-                ahead = 0.375 * X + 0.75 * quarter - 0.125 * half;
-                half.resize(0, 3);
-                quarter.resize(0, 3);
-            } else {
+            if (K > 2) {  // a quarter step
                 laplacians.reset();
                 ahead = evaluate.predict(laplacians.current(), X, {0.25 / K}, pass.part(0.0, 0.0))
                             .Y.front();
             }
             const auto run = [&](const Vertices* firstQuarter) {
-                return midpointSteps(laplacians, evaluate, X, K, std::max(K, kFinest), pass,
-                                     nullptr, firstQuarter);
+                return midpointSteps(laplacians, evaluate, X, K, std::max(K, kFinest), pass, {},
+                                     firstQuarter);
             };
             try {
                 result.last = run(&ahead);

@@ -22,7 +22,7 @@ constexpr Index kMinHarmonics = 200;
 
 }  // namespace
 
-Evaluation BasisEvaluator::evaluate(const Laplacian& laplacian, const Eigen::MatrixXd& X,
+Evaluation BasisEvaluator::evaluate(const Laplacian& laplacian, const Signals& X,
                                     const std::vector<double>& alphas, double accuracy,
                                     const Progress& progress) {
     double done = 0.0;
@@ -58,8 +58,7 @@ Evaluation BasisEvaluator::evaluate(const Laplacian& laplacian, const Eigen::Mat
     return evaluation;
 }
 
-std::optional<Evaluation> BasisEvaluator::aroundTheCut(const Laplacian& laplacian,
-                                                       const Eigen::MatrixXd& X,
+std::optional<Evaluation> BasisEvaluator::aroundTheCut(const Laplacian& laplacian, const Signals& X,
                                                        const std::vector<double>& alphas,
                                                        double accuracy, const Progress& progress) {
     const Index k = truncation_->basisSize, margin = k / kNearTheCut, n = laplacian.D.size();

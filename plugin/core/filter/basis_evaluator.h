@@ -30,7 +30,7 @@ class BasisEvaluator : public Evaluator {
                    bool atEveryVertex)
         : F_(F), truncation_(truncation), atEveryVertex_(atEveryVertex) {}
 
-    Evaluation evaluate(const Laplacian& laplacian, const Eigen::MatrixXd& X,
+    Evaluation evaluate(const Laplacian& laplacian, const Signals& X,
                         const std::vector<double>& alphas, double accuracy,
                         const Progress& progress) override;
 
@@ -38,7 +38,7 @@ class BasisEvaluator : public Evaluator {
     /// Evaluates with the harmonics near the cut only. Empty if impossible: the accuracy is not
     /// reached (needle triangles, for example), the harmonics near the cut form one cluster or are
     /// almost all there are, or memory is short.
-    std::optional<Evaluation> aroundTheCut(const Laplacian& laplacian, const Eigen::MatrixXd& X,
+    std::optional<Evaluation> aroundTheCut(const Laplacian& laplacian, const Signals& X,
                                            const std::vector<double>& alphas, double accuracy,
                                            const Progress& progress);
     double residualGain(const Laplacian& laplacian, double lastEigenvalue) const;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/harmonics/harmonic_basis.h"
+#include "core/krylov/rows.h"
 #include "core/laplacian/laplacian.h"
 #include "core/ldlt/shifted_ldlt.h"
 #include "core/support/progress.h"
@@ -43,7 +44,7 @@ class Evaluator {
     /// @param alphas    powers, descending; the evaluation is tuned for the middle one.
     /// @param accuracy  requested accuracy, relative to the size of X.
     /// @throws InvalidOption, SolverFailure, Cancelled
-    virtual Evaluation evaluate(const Laplacian& laplacian, const Eigen::MatrixXd& X,
+    virtual Evaluation evaluate(const Laplacian& laplacian, const Signals& X,
                                 const std::vector<double>& alphas, double accuracy,
                                 const Progress& progress) = 0;
 

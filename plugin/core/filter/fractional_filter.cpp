@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "core/filter/automatic_steps.h"
 #include "core/filter/fractional_steps.h"
@@ -186,16 +187,17 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
     keepFixed(isFixed, surface);
     const Interior interior(connectedComponents(surface.F, surface.X.rows()), isFixed);
 
-    LaplacianBuilder laplacians(surface, interior.surfaceComponents(), options.laplacian,
-                                options.basisUpdate, options.conformalShare);
+    std::optional<LaplacianBuilder> laplacians(std::in_place, surface, interior.surfaceComponents(),
+                                               options.laplacian, options.basisUpdate,
+                                               options.conformalShare);
     const double edge = meanEdgeLength(surface.X, surface.F),
                  meanEdge = options.whole ? options.whole->meanEdge : edge;
     const EvaluationOptions evaluation = evaluationFor(options, surface, meanEdge);
     StepEvaluator evaluate(evaluation, interior, transfer);
     const std::optional<ThinPartsOfTile> tile = thinPartsOfTile(options, surface);
     // Kovnatsky et al. 2012, Eq. 11, or its limit.
-    const AutomaticSteps steps = filterInSteps(laplacians, evaluate, transfer, surface.X, meanEdge,
-                                               options, tile ? &*tile : nullptr, progress);
+    AutomaticSteps steps = filterInSteps(*laplacians, evaluate, transfer, surface.X, meanEdge,
+                                         options, tile ? &*tile : nullptr, progress);
     if (!steps.last.X.allFinite()) throw SolverFailure("the filtered coordinates are not finite");
     const double areaBefore = surfaceArea(surface.X, surface.F);
     // A tile may hold nothing but small debris.
@@ -203,13 +205,15 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
         options.transferFunction.type == FilterType::LowPass &&
         surfaceArea(steps.last.X, surface.F) < kMinArea * areaBefore)
         throw SolverFailure(ErrorCode::ShrinksToNothing, "the whole surface shrinks to nothing");
-    laplacians.reset();
+    laplacians->reset();
     const Eigen::VectorXd weight =
-        vertexWeight(options.part, surface, interior, laplacians.current(), options.featureSize);
-    Vertices displacement = weight.asDiagonal() * (steps.last.X - surface.X);
-    Vertices X = surface.X + displacement;
+        vertexWeight(options.part, surface, interior, laplacians->current(), options.featureSize);
+    laplacians = std::nullopt;  // a third of all memory
+    Vertices displacement = std::move(steps.last.X);
+    displacement = weight.asDiagonal() * (displacement - surface.X);
     PreservedVolumes volumes;
     if (options.preserveVolume) {
+        Vertices X = surface.X + displacement;
         volumes = preserveVolumes(surface.X, surface.F, interior.surfaceComponents(), weight,
                                   kMaxOffset, X);
         displacement = X - surface.X;
@@ -220,7 +224,6 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
                           ringsWithin(0.5 * options.featureSize / meanEdge), displacement);
     moveContactsAlike(surface, interior.surfaceComponents(), displacement);
     followEdges(surface, displacement);
-    X = surface.X + displacement;
 
     FilterResult result;
     static_cast<SurfaceCounts&>(result) =
@@ -247,6 +250,7 @@ FilterResult fractionalFilter(const Vertices& V, const Faces& F, const FilterOpt
         (steps.error <= options.tolerance && steps.singularPart <= kNegligibleArea);
     result.cutoffFrequency = transfer.cutoff();
     result.featureSize = options.featureSize;
+    const Vertices X = surface.X + displacement;
     result.shrunkenPart = shrunkenPart(before, lumpedMass(X, surface.F));
     result.areaBefore = areaBefore;
     result.areaAfter = surfaceArea(X, surface.F);

@@ -26,23 +26,22 @@ void append(Evaluation step, double h, FractionalSteps& steps) {
 constexpr double kMinArea = 1e-2;
 
 /// One step of the midpoint rule, or several smaller ones.
-/// @param half   shape at the half step if it is known, else null.
+/// @param half   shape at the half step if it is known, else empty.
 /// @param ahead  shape whose Laplacian predicts the half step; null: that of the step's start.
 void midpointStep(LaplacianBuilder& laplacians, StepEvaluator& evaluate, double h, double smallest,
-                  const Vertices* half, const Vertices* ahead, const Progress& progress,
+                  Vertices half, const Vertices* ahead, const Progress& progress,
                   FractionalSteps& steps) {
     try {
-        Vertices predicted;
         double area = laplacians.inputMass().sum();
-        if (half == nullptr) {
+        if (half.rows() == 0) {
             laplacians.update(ahead != nullptr ? *ahead : steps.X);
             area = laplacians.area();
-            predicted =
+            half =
                 evaluate.predict(laplacians.current(), steps.X, {0.5 * h}, progress.part(0.0, 0.5))
                     .Y.front();
-            half = &predicted;
         }
-        laplacians.update(*half);
+        laplacians.update(half);
+        half.resize(0, 3);
         if (laplacians.area() < kMinArea * area)
             throw SolverFailure(ErrorCode::ShrinksToNothing,
                                 "the whole surface shrinks to nothing in half a step");
@@ -50,7 +49,7 @@ void midpointStep(LaplacianBuilder& laplacians, StepEvaluator& evaluate, double 
     } catch (const SolverFailure&) {
         if (0.5 * h < smallest) throw;
         for (const double from : {0.0, 0.5})
-            midpointStep(laplacians, evaluate, 0.5 * h, smallest, nullptr, nullptr,
+            midpointStep(laplacians, evaluate, 0.5 * h, smallest, {}, nullptr,
                          progress.part(from, from + 0.5), steps);
     }
 }
@@ -89,7 +88,7 @@ FractionalSteps fixedSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate
 
 FractionalSteps midpointSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate,
                               const Vertices& X, int K, int finest, const Progress& progress,
-                              const Vertices* firstHalf, const Vertices* firstQuarter) {
+                              Vertices firstHalf, const Vertices* firstQuarter) {
     const double smallest = (1.0 - 1e-9) / finest;
     FractionalSteps steps{X, {}};
     Vertices before, quarter;
@@ -104,7 +103,7 @@ FractionalSteps midpointSteps(LaplacianBuilder& laplacians, StepEvaluator& evalu
         if (firstQuarter != nullptr) before = steps.X;
         const Progress stage = progress.part(from, (step + 1.0) / K, nameOf(step, K));
         try {
-            midpointStep(laplacians, evaluate, 1.0 / K, smallest, step == 0 ? firstHalf : nullptr,
+            midpointStep(laplacians, evaluate, 1.0 / K, smallest, std::exchange(firstHalf, {}),
                          ahead, stage, steps);
         } catch (const SolverFailure& failure) {
             throw failureDuring(failure, "at " + std::to_string(static_cast<int>(100.0 * from)) +

@@ -39,12 +39,11 @@ FractionalSteps fixedSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate
 /// thin parts collapse, since areas change much there during a step.
 ///
 /// @param finest        >= K.
-/// @param firstHalf     X_h/2 of the first step if it is known, else null.
+/// @param firstHalf     X_h/2 of the first step if it is known, else empty.
 /// @param firstQuarter  X_h/4 of the first step, about; or null.
 /// @throws SolverFailure  when a step of 1 / finest fails; it says how far the filter got.
 FractionalSteps midpointSteps(LaplacianBuilder& laplacians, StepEvaluator& evaluate,
                               const Vertices& X, int K, int finest, const Progress& progress,
-                              const Vertices* firstHalf = nullptr,
-                              const Vertices* firstQuarter = nullptr);
+                              Vertices firstHalf = {}, const Vertices* firstQuarter = nullptr);
 
 }  // namespace spectral

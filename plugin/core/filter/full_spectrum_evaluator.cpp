@@ -37,7 +37,7 @@ bool hasDebris(const ConstantModes& components) {
 }  // namespace
 
 Evaluation evaluateInKrylovSpaces(const Laplacian& laplacian, const ShiftedLdlt& ldlt,
-                                  const std::vector<Gain>& gains, const Eigen::MatrixXd& X,
+                                  const std::vector<Gain>& gains, const Signals& X,
                                   FullSpectrumOptions options, const Progress& progress) {
     const bool hasFixedBoundary = laplacian.constants.label().minCoeff() < 0;
     if (options.atEveryVertex || hasFixedBoundary)
@@ -57,7 +57,7 @@ double FullSpectrumEvaluator::poleFor(const Laplacian& laplacian, double alpha) 
     return place->second;
 }
 
-Evaluation FullSpectrumEvaluator::evaluate(const Laplacian& laplacian, const Eigen::MatrixXd& X,
+Evaluation FullSpectrumEvaluator::evaluate(const Laplacian& laplacian, const Signals& X,
                                            const std::vector<double>& alphas, double accuracy,
                                            const Progress& progress) {
     FullSpectrumOptions options;
@@ -89,7 +89,7 @@ Evaluation FullSpectrumEvaluator::evaluate(const Laplacian& laplacian, const Eig
 
 std::optional<Evaluation> FullSpectrumEvaluator::evaluateByProducts(const Laplacian& laplacian,
                                                                     const std::vector<Gain>& gains,
-                                                                    const Eigen::MatrixXd& X,
+                                                                    const Signals& X,
                                                                     FullSpectrumOptions options,
                                                                     const Progress& progress) {
     const bool isRequired = solver_ == Solver::Products || lacksMemory_;

@@ -24,7 +24,7 @@ enum class Solver {
 /// @param gains    continuous, at least where X has components.
 /// @param options  all but the round-off, which is set here.
 Evaluation evaluateInKrylovSpaces(const Laplacian& laplacian, const ShiftedLdlt& ldlt,
-                                  const std::vector<Gain>& gains, const Eigen::MatrixXd& X,
+                                  const std::vector<Gain>& gains, const Signals& X,
                                   FullSpectrumOptions options, const Progress& progress);
 
 /// Evaluates a continuous F over all n harmonics, by a Krylov method that computes none of them
@@ -42,15 +42,14 @@ class FullSpectrumEvaluator : public Evaluator {
                           Solver solver)
         : F_(F), accuracy_(accuracy), atEveryVertex_(atEveryVertex), solver_(solver) {}
 
-    Evaluation evaluate(const Laplacian& laplacian, const Eigen::MatrixXd& X,
+    Evaluation evaluate(const Laplacian& laplacian, const Signals& X,
                         const std::vector<double>& alphas, double accuracy,
                         const Progress& progress) override;
 
   private:
     /// Evaluates by products; empty if a factorization is chosen or expected to be cheaper.
     std::optional<Evaluation> evaluateByProducts(const Laplacian& laplacian,
-                                                 const std::vector<Gain>& gains,
-                                                 const Eigen::MatrixXd& X,
+                                                 const std::vector<Gain>& gains, const Signals& X,
                                                  FullSpectrumOptions options,
                                                  const Progress& progress);
     double poleFor(const Laplacian& laplacian, double alpha);

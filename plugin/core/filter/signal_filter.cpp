@@ -5,7 +5,6 @@
 #include <string>
 
 #include "core/filter/step_evaluator.h"
-#include "core/krylov/krylov_spaces.h"
 #include "core/mesh/mesh_check.h"
 #include "core/mesh/surface.h"
 #include "core/support/errors.h"
@@ -42,20 +41,43 @@ Faces trianglesWithData(const Faces& F, const Eigen::Array<bool, Eigen::Dynamic,
     return withData;
 }
 
-/// Whether X is constant on each component, to round-off: there is nothing to filter, and an error
-/// relative to the size of the signal would be meaningless.
-/// @param X  entries in [-1, 1].
-bool isConstant(Eigen::MatrixXd X, const ConstantModes& constants) {
+/// Whether a signal is constant on each component, to round-off: there is nothing to filter, and an
+/// error relative to the size of the signal would be meaningless.
+/// @param x  n entries in [-1, 1].
+bool isConstant(Eigen::MatrixXd x, const ConstantModes& constants) {
     constexpr double kRoundOff = 1e-13;
-    constants.remove(X);
-    return X.cwiseAbs().maxCoeff() <= kRoundOff;
+    constants.remove(x);
+    return x.cwiseAbs().maxCoeff() <= kRoundOff;
+}
+
+/// Centres each signal and scales it to 1: a large mean costs no digits, squares cannot overflow,
+/// and each is filtered as accurately as alone. A constant signal becomes 0.
+/// @return  the scale of each signal; 0 if it is constant.
+Eigen::RowVectorXd normalize(const ConstantModes& constants, Eigen::MatrixXd& X) {
+    X.rowwise() -= (0.5 * X.colwise().minCoeff() + 0.5 * X.colwise().maxCoeff()).eval();
+    Eigen::RowVectorXd scale = X.cwiseAbs().colwise().maxCoeff();
+    for (Index c = 0; c < X.cols(); ++c) {
+        if (scale[c] > 0.0) X.col(c) /= scale[c];
+        if (!isConstant(X.col(c), constants)) continue;
+        X.col(c).setZero();
+        scale[c] = 0.0;
+    }
+    return scale;
+}
+
+/// @param change  n x c, on the surface.
+SignalChange changeOf(const Eigen::Ref<const Eigen::MatrixXd>& change, const Eigen::VectorXd& D) {
+    return {false,
+            (D.cwiseSqrt().asDiagonal() * change).eval().stableNorm() /
+                std::sqrt(D.sum() * static_cast<double>(change.cols())),
+            change.cwiseAbs().maxCoeff()};
 }
 
 }  // namespace
 
 FilteredSignal filterSignal(const Vertices& V, const Faces& F, const Eigen::MatrixXd& Q,
                             const SignalFilterOptions& options, const Progress& progress) {
-    assert(Q.rows() == V.rows() && Q.cols() >= 1 && Q.cols() <= kMaxSignals);
+    assert(Q.rows() == V.rows() && Q.cols() >= 1);
     const ThreadTeam team(progress);
     checkMesh(V, F);
     checkSignal(Q);
@@ -73,29 +95,27 @@ FilteredSignal filterSignal(const Vertices& V, const Faces& F, const Eigen::Matr
     const EvaluationOptions evaluation;
     StepEvaluator evaluate(evaluation, interior, transfer);
 
-    // Centred and scaled to 1: a large mean costs no digits, and squares cannot overflow.
     Eigen::MatrixXd X = restricted(Q, surface);
-    X.rowwise() -= (0.5 * X.colwise().minCoeff() + 0.5 * X.colwise().maxCoeff()).eval();
-    const double scale = X.cwiseAbs().maxCoeff();
-    if (scale > 0.0) X /= scale;
+    const Eigen::RowVectorXd scale = normalize(laplacian.constants, X);
 
     FilteredSignal result;
     static_cast<SurfaceCounts&>(result) =
         countsOf(surface, V.rows(), interior.surfaceComponents().count, interior.fixedVertices());
     result.Y = Q;
     result.accuracy = evaluation.accuracy;
-    result.isConstant = isConstant(X, laplacian.constants);
+    result.isConstant = scale.isZero(0.0);
+    result.columns.assign(static_cast<std::size_t>(Q.cols()), {true, 0.0, 0.0});
     if (!result.isConstant) {
         // Kovnatsky et al. 2012, Eq. 6, with Q in place of the coordinates.
         const Evaluation filtered = evaluate(laplacian, X, 1.0, progress);
         const Eigen::MatrixXd change =
             vertexWeight(options.part, surface, interior, laplacian, options.featureSize)
                 .asDiagonal() *
-            (scale * (filtered.Y.front() - X));
+            (filtered.Y.front() - X) * scale.asDiagonal();
         result.Y = changed(Q, surface, change);
-        result.maxChange = change.cwiseAbs().maxCoeff();
-        result.rmsChange = (laplacian.D.cwiseSqrt().asDiagonal() * change).eval().stableNorm() /
-                           std::sqrt(laplacian.D.sum() * static_cast<double>(Q.cols()));
+        static_cast<SignalChange&>(result) = changeOf(change, laplacian.D);
+        for (Index c = 0; c < Q.cols(); ++c)
+            if (scale[c] > 0.0) result.columns[c] = changeOf(change.col(c), laplacian.D);
         result.errorEstimate = filtered.errorEstimate;
         result.accuracyReached = filtered.accuracyReached;
     }

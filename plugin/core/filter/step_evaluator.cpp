@@ -54,17 +54,17 @@ StepEvaluator::StepEvaluator(const EvaluationOptions& options, const Interior& i
       extension_(interior),
       evaluator_(evaluatorFor(options, F)) {}
 
-Evaluation StepEvaluator::operator()(const Laplacian& surface, const Eigen::MatrixXd& X,
-                                     double alpha, const Progress& progress) {
+Evaluation StepEvaluator::operator()(const Laplacian& surface, const Signals& X, double alpha,
+                                     const Progress& progress) {
     return evaluate(surface, X, {alpha}, accuracyOfStep(accuracy_, alpha), progress);
 }
 
-Evaluation StepEvaluator::predict(const Laplacian& surface, const Eigen::MatrixXd& X,
+Evaluation StepEvaluator::predict(const Laplacian& surface, const Signals& X,
                                   const std::vector<double>& alphas, const Progress& progress) {
     return evaluate(surface, X, alphas, std::min(accuracy_, kPredictionAccuracy), progress);
 }
 
-Evaluation StepEvaluator::evaluate(const Laplacian& surface, const Eigen::MatrixXd& X,
+Evaluation StepEvaluator::evaluate(const Laplacian& surface, const Signals& X,
                                    const std::vector<double>& alphas, double accuracy,
                                    const Progress& progress) {
     requireUsable(surface);

@@ -47,12 +47,12 @@ class StepEvaluator {
     /// @param surface  the Laplacian of the surface.
     /// @throws SolverFailure  when collapsed triangles leave no usable Laplacian, or the result
     ///                        would be useless.
-    Evaluation operator()(const Laplacian& surface, const Eigen::MatrixXd& X, double alpha,
+    Evaluation operator()(const Laplacian& surface, const Signals& X, double alpha,
                           const Progress& progress);
 
     /// The same for several powers, with at least three digits: for shapes that only provide
     /// Laplacians and do not enter the result themselves.
-    Evaluation predict(const Laplacian& surface, const Eigen::MatrixXd& X,
+    Evaluation predict(const Laplacian& surface, const Signals& X,
                        const std::vector<double>& alphas, const Progress& progress);
 
     const HarmonicBasis& basis() const { return evaluator_->basis(); }  ///< Empty if none was used.
@@ -66,7 +66,7 @@ class StepEvaluator {
     }
 
   private:
-    Evaluation evaluate(const Laplacian& surface, const Eigen::MatrixXd& X,
+    Evaluation evaluate(const Laplacian& surface, const Signals& X,
                         const std::vector<double>& alphas, double accuracy,
                         const Progress& progress);
 

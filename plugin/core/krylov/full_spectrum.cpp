@@ -166,11 +166,37 @@ class Approximation {
     double largest_ = 0.0;
 };
 
+/// applyFullSpectrum for more than kMaxSignals signals, in blocks.
+std::vector<FullSpectrumResult> applyInBlocks(const Laplacian& laplacian, const KrylovOperator& S,
+                                              const std::vector<Gain>& gains, const Signals& X,
+                                              const FullSpectrumOptions& options,
+                                              const Progress& progress) {
+    std::vector<FullSpectrumResult> results(gains.size(), {X, 0.0, 0, true});
+    const auto all = static_cast<double>(X.cols());
+    for (Index first = 0; first < X.cols(); first += kMaxSignals) {
+        const Index count = std::min<Index>(kMaxSignals, X.cols() - first), end = first + count;
+        const std::vector<FullSpectrumResult> block = applyFullSpectrum(
+            laplacian, S, gains, X.middleCols(first, count), options,
+            progress.part(static_cast<double>(first) / all, static_cast<double>(end) / all));
+        if (block.empty()) return {};
+        for (std::size_t g = 0; g < gains.size(); ++g) {
+            results[g].Y.middleCols(first, count) = block[g].Y;
+            results[g].errorEstimate = std::max(results[g].errorEstimate, block[g].errorEstimate);
+            results[g].dimension = std::max(results[g].dimension, block[g].dimension);
+            results[g].converged = results[g].converged && block[g].converged;
+        }
+    }
+    return results;
+}
+
 }  // namespace
 
-std::vector<FullSpectrumResult> applyFullSpectrum(
-    const Laplacian& laplacian, const KrylovOperator& S, const std::vector<Gain>& gains,
-    const Eigen::MatrixXd& X, const FullSpectrumOptions& options, const Progress& progress) {
+std::vector<FullSpectrumResult> applyFullSpectrum(const Laplacian& laplacian,
+                                                  const KrylovOperator& S,
+                                                  const std::vector<Gain>& gains, const Signals& X,
+                                                  const FullSpectrumOptions& options,
+                                                  const Progress& progress) {
+    if (X.cols() > kMaxSignals) return applyInBlocks(laplacian, S, gains, X, options, progress);
     const Eigen::VectorXd& D = laplacian.D;
     const ConstantModes& constants = laplacian.constants;
     const Eigen::VectorXd omega = sampleFrequencies(S, options.samples);

@@ -42,7 +42,8 @@ struct FullSpectrumResult {
     Eigen::MatrixXd Y;  ///< n x c, the filtered signals.
 
     /// Estimated error of Y, relative to X without its constants: the larger of |dY|_D / |X|_D and
-    /// max|dY| / max|X|, over all columns together.
+    /// max|dY| / max|X|, over all columns together, or over each block
+    /// of kMaxSignals if there are more.
     double errorEstimate = 0.0;
     int dimension = 0;  ///< Krylov dimension reached: applications of S per column.
 
@@ -62,13 +63,15 @@ struct FullSpectrumResult {
 /// approximations a few dimensions apart and their rate of decay.
 ///
 /// @param gains  continuous, finite and >= 0 on [0, infinity]; constant modes keep gain 1.
-/// @param X      n x c signals, e.g. the three coordinates.
+/// @param X      n x c signals, e.g. the three coordinates; any number.
 /// @return       one result per gain, all from the same Krylov spaces; empty if it gives up.
 /// @throws SolverFailure  when the tridiagonal eigenproblem does not converge, or the solves are
 ///                        lost in round-off (KrylovSpaces::roundOff).
-std::vector<FullSpectrumResult> applyFullSpectrum(
-    const Laplacian& laplacian, const KrylovOperator& S, const std::vector<Gain>& gains,
-    const Eigen::MatrixXd& X, const FullSpectrumOptions& options, const Progress& progress = {});
+std::vector<FullSpectrumResult> applyFullSpectrum(const Laplacian& laplacian,
+                                                  const KrylovOperator& S,
+                                                  const std::vector<Gain>& gains, const Signals& X,
+                                                  const FullSpectrumOptions& options,
+                                                  const Progress& progress = {});
 
 /// Largest round-off at any vertex in a solve whose solution is 1 everywhere: with a free boundary,
 /// the eigenvector of the largest eigenvalue of the inverse.

@@ -85,9 +85,8 @@ Moments<Columns> momentsOf(const Eigen::VectorXd& D, const Eigen::VectorXi& labe
 
 }  // namespace
 
-KrylovSpaces::KrylovSpaces(const KrylovOperator& S, const Laplacian& laplacian,
-                           const Eigen::MatrixXd& X, double orthogonal, bool isKept,
-                           SpareVectors* spare)
+KrylovSpaces::KrylovSpaces(const KrylovOperator& S, const Laplacian& laplacian, const Signals& X,
+                           double orthogonal, bool isKept, SpareVectors* spare)
     : S_(S),
       constants_(laplacian.constants),
       orthogonal_(orthogonal),
@@ -128,7 +127,7 @@ bool KrylovSpaces::extend() {
 }
 
 template <int Columns>
-void KrylovSpaces::start(const Eigen::MatrixXd& X) {
+void KrylovSpaces::start(const Signals& X) {
     const Index n = D_.size();
     double* q = newest_.data();
     const int* order = S_.order();

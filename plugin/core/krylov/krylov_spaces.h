@@ -49,7 +49,7 @@ class KrylovSpaces {
     /// orthogonal
     ///                basis or not (Golub and Meurant 1994).
     /// @param spare  pool that vectors are taken from and returned to at the end; may be null.
-    KrylovSpaces(const KrylovOperator& S, const Laplacian& laplacian, const Eigen::MatrixXd& X,
+    KrylovSpaces(const KrylovOperator& S, const Laplacian& laplacian, const Signals& X,
                  double orthogonal = kOrthogonal, bool isKept = true,
                  SpareVectors* spare = nullptr);
     ~KrylovSpaces();
@@ -113,7 +113,7 @@ class KrylovSpaces {
     const Ritz& ritz(int column) const;
 
     template <int Columns>
-    void start(const Eigen::MatrixXd& X);
+    void start(const Signals& X);
     template <int Columns>
     void extendColumns();
     template <int Columns, class MakeRow>

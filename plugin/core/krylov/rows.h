@@ -7,8 +7,11 @@
 
 namespace spectral {
 
-/// Maximum number of signals filtered together.
+/// Maximum number of signals in one Krylov space or series.
 inline constexpr int kMaxSignals = 4;
+
+/// Signals, one in each column: n x c.
+using Signals = Eigen::Ref<const Eigen::MatrixXd>;
 
 /// The values of all signals at a vertex, contiguous in a vector of rows.
 template <int Columns, class Scalar = double>

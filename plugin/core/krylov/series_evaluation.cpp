@@ -1,10 +1,11 @@
 #include "core/krylov/series_evaluation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 #include "core/krylov/chebyshev_series.h"
@@ -18,8 +19,8 @@ namespace {
 /// Number of nodes that a gain is first tried with, and the largest one.
 constexpr int kMinNodes = 32, kMaxNodes = 2048;
 
-/// Round-off of a term, relative to its size.
-constexpr double kSingleRoundOff = 6e-8, kDoubleRoundOff = 1e-15;
+/// Round-off of an operation, relative.
+constexpr double kRoundOff = 1e-15;
 
 /// Number of solves beyond which a Lanczos space, which adapts to the signal, is tried instead. A
 /// tenth of a Gaussian, as accurate as ten steps have it, takes 13 on a dragon (Lanczos: 20); a
@@ -33,8 +34,8 @@ constexpr std::size_t kMaxGains = 3;
 struct Details {
     double shape = 0.0, norm = 0.0;            ///< D-norms of the signals and of the details.
     double largestEntry = 0.0, largest = 0.0;  ///< Largest entries of both.
-    double roundOff =
-        0.0;  ///< Of S, relative: the constant part of the details, which should be 0.
+    /// Of S, relative: the constant part of the details, which should be 0.
+    double roundOff = 0.0;
 
     Details& operator+=(const Details& other) {
         shape += other.shape;
@@ -48,7 +49,7 @@ struct Details {
 /// Signals X (n x c) without the means of their components.
 class Centred {
   public:
-    Centred(const Eigen::MatrixXd& X, const ConstantModes& constants)
+    Centred(const Signals& X, const ConstantModes& constants)
         : X_(X), label_(constants.label()), means_(constants.means(X)) {}
     double operator()(Index i, Index c) const {
         return label_[i] < 0 ? X_(i, c) : X_(i, c) - means_(label_[i], c);
@@ -56,244 +57,9 @@ class Centred {
     const Eigen::MatrixXd& means() const { return means_; }
 
   private:
-    const Eigen::MatrixXd& X_;
+    const Signals& X_;
     const Eigen::VectorXi& label_;
     Eigen::MatrixXd means_;
-};
-
-/// The terms T_k(x) T_0 of a series, with x the operator S, shifted and scaled to eigenvalues from
-/// -1 to 1, and their sums for several gains.
-class Terms {
-  public:
-    virtual ~Terms() = default;
-
-    /// Computes T_0 and releases what only this needs.
-    virtual Details start() = 0;
-
-    /// Computes T_k, k >= 1, and adds it times factor[g] to each sum; starts the sums with T_0
-    /// times start[g] if k is 1. Returns the largest entry of T_k.
-    virtual double next(int k, const std::vector<double>& factor,
-                        const std::vector<double>& start) = 0;
-
-    virtual double sum(std::size_t g, Index vertex, Index column) const = 0;
-    virtual void release(std::size_t g) = 0;  ///< Frees the memory of a sum.
-};
-
-/// T_k = 2 x T_k-1 - T_k-2, T_1 = x T_0.
-struct Recurrence {
-    explicit Recurrence(int k) : factor(k == 1 ? 1.0 : 2.0), last(k == 1 ? 0.0 : 1.0) {}
-    double factor, last;
-};
-
-/// In single precision, for S = A / largest.
-class SingleTerms final : public Terms {
-  public:
-    SingleTerms(const Laplacian& laplacian, double largest, const Eigen::MatrixXd& X,
-                const Centred& centred, std::size_t gains)
-        : laplacian_(laplacian), largest_(largest), X_(X), centred_(centred), sums_(gains) {}
-
-    Details start() override {
-        const Eigen::VectorXd& D = laplacian_.D;
-        const Index n = D.size(), columns = X_.cols();
-        for (Rows* rows : {&newest_, &before_}) rows->resize(static_cast<std::size_t>(n));
-        for (Rows& sum : sums_) sum.resize(static_cast<std::size_t>(n));
-        scale_.resize(static_cast<std::size_t>(n));
-        if (laplacian_.constants.label().minCoeff() < 0) excess_.resize(scale_.size());
-        Details details = parallelSum(n, Details(), [&](Index begin, Index end) {
-            Details sums;
-            for (Index i = begin; i < end; ++i)
-                for (Index c = 0; c < columns; ++c) {
-                    const double x = centred_(i, c);
-                    sums.shape += D[i] * x * x;
-                    sums.largestEntry = std::max(sums.largestEntry, std::abs(x));
-                }
-            return sums;
-        });
-        unit_ = details.largestEntry > 0.0 ? details.largestEntry : 1.0;
-        details += parallelSum(n, Details(), [&](Index begin, Index end) {
-            Details sums;
-            for (Index i = begin; i < end; ++i) {
-                Values row = Values::Zero();
-                const double rowSum = rowSumOf(i), inverse = 1.0 / (D[i] * largest_);
-                for (Index c = 0; c < columns; ++c) {
-                    double b = rowSum * X_(i, c);
-                    for (SparseMatrix::InnerIterator entry(laplacian_.W, i); entry; ++entry)
-                        b += entry.value() * (X_(entry.row(), c) - X_(i, c));
-                    b *= inverse;
-                    sums.norm += D[i] * b * b;
-                    sums.largest = std::max(sums.largest, std::abs(b));
-                    row[c] = static_cast<float>(b / unit_);
-                }
-                newest_[i] = row;
-                scale_[i] = static_cast<float>(2.0 * inverse);
-                if (!excess_.empty()) excess_[i] = static_cast<float>(rowSum);
-            }
-            return sums;
-        });
-        details.shape = std::sqrt(details.shape);
-        details.norm = std::sqrt(details.norm);
-        return details;
-    }
-
-    double next(int k, const std::vector<double>& factor,
-                const std::vector<double>& start) override {
-        const double largest = parallelMax(laplacian_.D.size(), [&](Index begin, Index end) {
-            for (std::size_t g = 0; k == 1 && g < sums_.size(); ++g)
-                for (Index i = begin; i < end; ++i)
-                    sums_[g][i] = static_cast<float>(start[g]) * newest_[i];
-            switch (sums_.size()) {
-                case 1: return nextRows<1>(k, factor, begin, end);
-                case 2: return nextRows<2>(k, factor, begin, end);
-                default: return nextRows<3>(k, factor, begin, end);
-            }
-        });
-        newest_.swap(before_);
-        return unit_ * largest;
-    }
-
-    double sum(std::size_t g, Index vertex, Index column) const override {
-        return unit_ * sums_[g][vertex][column];
-    }
-    void release(std::size_t g) override { Rows().swap(sums_[g]); }
-
-  private:
-    using Values = Eigen::Array4f;
-    using Rows = std::vector<Values, Eigen::aligned_allocator<Values>>;
-    static_assert(kMaxSignals == Values::RowsAtCompileTime);
-
-    /// Sum of a row of W: 0, except beside a fixed boundary.
-    double rowSumOf(Index i) const {
-        double sum = 0.0;
-        if (excess_.empty()) return sum;
-        for (SparseMatrix::InnerIterator entry(laplacian_.W, i); entry; ++entry)
-            sum += entry.value();
-        return sum;
-    }
-
-    template <std::size_t Gains>
-    double nextRows(int k, const std::vector<double>& factor, Index begin, Index end) {
-        const Recurrence recurrence(k);
-        const auto a = static_cast<float>(recurrence.factor),
-                   last = static_cast<float>(recurrence.last);
-        float factors[Gains];
-        Values* sums[Gains];
-        for (std::size_t g = 0; g < Gains; ++g) {
-            factors[g] = static_cast<float>(factor[g]);
-            sums[g] = sums_[g].data();
-        }
-        const Values* newest = newest_.data();
-        Values* before = before_.data();
-        const auto* starts = laplacian_.W.outerIndexPtr();
-        const auto* neighbours = laplacian_.W.innerIndexPtr();
-        const double* weights = laplacian_.W.valuePtr();
-        Values most = Values::Zero();
-        for (Index i = begin; i < end; ++i) {
-            const Values here = newest[i];
-            Values sum = Values::Zero();  // of differences, so that constants stay exactly 0
-            for (auto e = starts[i]; e < starts[i + 1]; ++e)
-                sum += static_cast<float>(weights[e]) * (newest[neighbours[e]] - here);
-            if (!excess_.empty()) sum += excess_[i] * here;
-            Values row = a * (scale_[i] * sum - here);
-            if (k > 1) row -= last * before[i];
-            before[i] = row;
-            most = most.max(row.abs());
-            for (std::size_t g = 0; g < Gains; ++g) sums[g][i] += factors[g] * row;
-        }
-        return most.maxCoeff();
-    }
-
-    const Laplacian& laplacian_;
-    double largest_, unit_ = 1.0;
-    const Eigen::MatrixXd& X_;
-    const Centred& centred_;
-    Rows newest_, before_;
-    std::vector<Rows> sums_;
-    std::vector<float> scale_;   // 2 / (D_ii largest)
-    std::vector<float> excess_;  // row sums of W, if there is a fixed boundary
-};
-
-/// In double precision, for any S.
-class DoubleTerms final : public Terms {
-  public:
-    DoubleTerms(const Laplacian& laplacian, const KrylovOperator& S, const Eigen::MatrixXd& X,
-                const Centred& centred, std::size_t gains)
-        : constants_(laplacian.constants),
-          S_(S),
-          scale_(1.0 / std::max(S.theta(0.0), S.theta(S.lastFrequency() * S.lastFrequency()))),
-          columns_(static_cast<int>(X.cols())),
-          D_(laplacian.D.size()),
-          sums_(gains) {
-        for (Eigen::VectorXd* rows : {&newest_, &before_, &next_})
-            rows->setZero(S.rows() * columns_);
-        for (Eigen::VectorXd& sum : sums_) sum.resize(D_.size() * columns_);
-        parallelRows(D_.size(), [&](Index begin, Index end) {
-            for (Index i = begin; i < end; ++i) {
-                const Index row = S.order()[i];
-                D_[row] = laplacian.D[i];
-                for (int c = 0; c < columns_; ++c) before_[row * columns_ + c] = centred(i, c);
-            }
-        });
-    }
-
-    Details start() override {
-        S_.apply(D_, before_.data(), columns_, newest_.data());
-        const double atZero = scale_ * S_.theta(0.0);
-        Details details = parallelSum(D_.size(), Details(), [&](Index begin, Index end) {
-            Details sums;
-            for (Index k = begin * columns_; k < end * columns_; ++k) {
-                const double x = before_[k], b = scale_ * newest_[k] - atZero * x;
-                newest_[k] = b;
-                sums.shape += D_[k / columns_] * x * x;
-                sums.norm += D_[k / columns_] * b * b;
-                sums.largestEntry = std::max(sums.largestEntry, std::abs(x));
-                sums.largest = std::max(sums.largest, std::abs(b));
-            }
-            return sums;
-        });
-        details.shape = std::sqrt(details.shape);
-        details.norm = std::sqrt(details.norm);
-        Eigen::MatrixXd T0(D_.size(), columns_);
-        for (Index i = 0; i < D_.size(); ++i)
-            for (int c = 0; c < columns_; ++c) T0(i, c) = newest_[S_.order()[i] * columns_ + c];
-        const Eigen::MatrixXd means = constants_.means(T0);
-        details.roundOff = (constants_.masses().cwiseSqrt().asDiagonal() * means).norm() /
-                           std::max(details.shape, std::numeric_limits<double>::min());
-        return details;
-    }
-
-    double next(int k, const std::vector<double>& factor,
-                const std::vector<double>& start) override {
-        const Recurrence recurrence(k);
-        S_.apply(D_, newest_.data(), columns_, next_.data());
-        const double largest = parallelMax(D_.size(), [&](Index begin, Index end) {
-            double most = 0.0;
-            for (Index i = begin * columns_; i < end * columns_; ++i) {
-                const double here = newest_[i];
-                const double term = recurrence.factor * (2.0 * scale_ * next_[i] - here) -
-                                    recurrence.last * before_[i];
-                before_[i] = term;
-                most = std::max(most, std::abs(term));
-                for (std::size_t g = 0; g < sums_.size(); ++g)
-                    sums_[g][i] = (k == 1 ? start[g] * here : sums_[g][i]) + factor[g] * term;
-            }
-            return most;
-        });
-        newest_.swap(before_);
-        return largest;
-    }
-
-    double sum(std::size_t g, Index vertex, Index column) const override {
-        return sums_[g][S_.order()[vertex] * columns_ + column];
-    }
-    void release(std::size_t g) override { sums_[g].resize(0); }
-
-  private:
-    const ConstantModes& constants_;
-    const KrylovOperator& S_;
-    double scale_;  // 1 / theta_max
-    int columns_;
-    Eigen::VectorXd D_, newest_, before_, next_;  // in the order of S
-    std::vector<Eigen::VectorXd> sums_;
 };
 
 /// A gain as a series in t = theta / theta_max, from 0 to 1.
@@ -355,12 +121,13 @@ std::optional<GainSeries> seriesOf(const Gain& gain, const KrylovOperator& S,
 /// Errors of sums of terms, relative to the signals.
 class Errors {
   public:
-    Errors(const Details& details, const FullSpectrumOptions& options, bool isSingle)
-        : norm_(std::max(details.norm / details.shape, kDoubleRoundOff)),
+    /// @param ofTerm  round-off of a term, relative to its size.
+    Errors(const Details& details, const FullSpectrumOptions& options, double ofTerm)
+        : norm_(std::max(details.norm / details.shape, kRoundOff)),
           largestEntry_(details.largestEntry),
           atEveryVertex_(options.atEveryVertex),
-          ofTerm_(isSingle ? kSingleRoundOff : kDoubleRoundOff),
-          ofS_(std::max({options.roundOff, details.roundOff, kDoubleRoundOff})),
+          ofTerm_(ofTerm),
+          ofS_(std::max({options.roundOff, details.roundOff, kRoundOff})),
           ofSAtVertices_(std::max(ofS_, options.roundOffAtVertices.value_or(0.0))) {}
 
     /// Error caused by the terms from the k-th on.
@@ -386,78 +153,281 @@ class Errors {
     double ofTerm_, ofS_, ofSAtVertices_;
 };
 
-/// Sums the terms until all truncation errors are within the accuracy, or the coefficients end.
-/// @param largest  largest entry of any term: that of T_0 at first.
-/// @return         number of terms.
-int sumTerms(Terms& terms, const std::vector<GainSeries>& series, const Errors& errors,
-             double accuracy, double& largest, const Progress& progress) {
-    const auto coefficients = [&](int k) {
-        std::vector<double> c;
-        for (const GainSeries& gain : series) c.push_back(gain.coefficient(k));
-        return c;
-    };
-    const auto isLast = [&](const GainSeries& gain, int k) {
-        return gain.tail(k) == 0.0 || errors.truncation(gain, k, largest) <= accuracy;
-    };
-    int last = 1;  // as far as T_0 tells
-    for (const GainSeries& gain : series)
-        while (!isLast(gain, last)) ++last;
-    for (int k = 1;; ++k) {
-        progress.report(std::min(1.0, static_cast<double>(k) / last), "filtering");
-        largest = std::max(largest, terms.next(k, coefficients(k), coefficients(0)));
-        if (std::all_of(series.begin(), series.end(),
-                        [&](const GainSeries& gain) { return isLast(gain, k + 1); }))
-            return k + 1;
+/// S = A / largest in single precision. Of differences, so that constants stay exactly 0.
+class SingleProduct {
+  public:
+    using Values = Eigen::Array4f;
+    static_assert(kMaxSignals == Values::RowsAtCompileTime);
+    static constexpr double kRoundOffOfTerm = 6e-8;
+
+    SingleProduct(const Laplacian& laplacian, const KrylovOperator& S, const Signals& X,
+                  const Centred&)
+        : laplacian_(laplacian), X_(X), largest_(S.lastFrequency() * S.lastFrequency()) {
+        twiceInverse_ = (2.0 / (largest_ * laplacian.D.array())).cast<float>();
+        if (laplacian.constants.label().minCoeff() < 0)
+            excess_ = laplacian.W * Eigen::VectorXd::Ones(laplacian.D.size());
     }
-}
 
-}  // namespace
+    Index rowOf(Index vertex) const { return vertex; }
 
-std::vector<FullSpectrumResult> applySeries(const Laplacian& laplacian, const KrylovOperator& S,
-                                            const std::vector<Gain>& gains,
-                                            const Eigen::MatrixXd& X, const Eigen::VectorXd& omega,
-                                            const FullSpectrumOptions& options,
-                                            const Progress& progress) {
-    if (gains.size() > kMaxGains) return {};
+    /// Row i of S X, to double precision.
+    Eigen::Array4d detail(Index i) const {
+        Eigen::Array4d sum = Eigen::Array4d::Zero();
+        for (SparseMatrix::InnerIterator entry(laplacian_.W, i); entry; ++entry)
+            for (Index c = 0; c < X_.cols(); ++c)
+                sum[c] += entry.value() * (X_(entry.row(), c) - X_(i, c));
+        for (Index c = 0; excess_.size() > 0 && c < X_.cols(); ++c) sum[c] += excess_[i] * X_(i, c);
+        return sum / (laplacian_.D[i] * largest_);
+    }
+
+    /// Maps i to row i of 2 S T.
+    auto twice(const Values* T) const {
+        const SparseMatrix& W = laplacian_.W;  // symmetric: its columns are its rows
+        return [T, starts = W.outerIndexPtr(), neighbours = W.innerIndexPtr(),
+                weights = W.valuePtr(), scale = twiceInverse_.data(),
+                excess = excess_.size() > 0 ? excess_.data() : nullptr](Index i) -> Values {
+            const Values here = T[i];
+            Values sum = Values::Zero();
+            for (auto e = starts[i]; e < starts[i + 1]; ++e)
+                sum += static_cast<float>(weights[e]) * (T[neighbours[e]] - here);
+            if (excess != nullptr) sum += static_cast<float>(excess[i]) * here;
+            return scale[i] * sum;
+        };
+    }
+
+  private:
+    const Laplacian& laplacian_;
+    const Signals& X_;
+    double largest_;
+    Eigen::VectorXf twiceInverse_;  // 2 / (D_ii largest)
+    Eigen::VectorXd excess_;        // row sums of W, if there is a fixed boundary
+};
+
+/// S / theta_max for any S, in double precision; rows are in the order of S.
+template <int Columns>
+class DoubleOperator {
+  public:
+    using Values = Eigen::Array<double, Columns, 1, Eigen::DontAlign>;
+    static constexpr double kRoundOffOfTerm = kRoundOff;
+
+    DoubleOperator(const Laplacian& laplacian, const KrylovOperator& S, const Signals&,
+                   const Centred& centred)
+        : S_(S),
+          scale_(1.0 / std::max(S.theta(0.0), S.theta(S.lastFrequency() * S.lastFrequency()))),
+          centred_(centred),
+          D_(laplacian.D.size()),
+          result_(S.rows() * Columns) {
+        Eigen::VectorXd shape = Eigen::VectorXd::Zero(result_.size());
+        parallelRows(D_.size(), [&](Index begin, Index end) {
+            for (Index i = begin; i < end; ++i) {
+                D_[rowOf(i)] = laplacian.D[i];
+                for (int c = 0; c < Columns; ++c) shape[rowOf(i) * Columns + c] = centred(i, c);
+            }
+        });
+        S.apply(D_, shape.data(), Columns, result_.data());
+    }
+
+    Index rowOf(Index vertex) const { return S_.order()[vertex]; }
+
+    /// Row i of (S - theta_0) X / theta_max, before any term.
+    Values detail(Index i) const {
+        Values row = Eigen::Map<const Values>(result_.data() + rowOf(i) * Columns);
+        for (int c = 0; c < Columns; ++c) row[c] -= S_.theta(0.0) * centred_(i, c);
+        return scale_ * row;
+    }
+
+    auto twice(const Values* T) {
+        S_.apply(D_, T->data(), Columns, result_.data());
+        return [result = result_.data(), twice = 2.0 * scale_](Index i) -> Values {
+            return twice * Eigen::Map<const Values>(result + i * Columns);
+        };
+    }
+
+  private:
+    const KrylovOperator& S_;
+    double scale_;  // 1 / theta_max
+    const Centred& centred_;
+    Eigen::VectorXd D_, result_;
+};
+
+/// The terms T_k(x) T_0 of a series, with x the operator S, shifted and scaled to eigenvalues from
+/// -1 to 1, and their sums for several gains.
+template <class Operator>
+class Terms {
+  public:
+    Terms(const Laplacian& laplacian, const KrylovOperator& S, const Signals& X,
+          const Centred& centred)
+        : operator_(laplacian, S, X, centred),
+          count_(laplacian.D.size()),
+          newest_(static_cast<std::size_t>(S.rows()), Values::Zero()) {
+        start(laplacian, centred, X.cols());
+    }
+
+    const Details& details() const { return details_; }
+
+    /// Sums the terms until all truncation errors are within the accuracy, or the coefficients end.
+    /// @param largest  largest entry of any term: that of T_0 at first.
+    /// @return         number of terms.
+    int add(const std::vector<GainSeries>& series, const Errors& errors, double accuracy,
+            double& largest, const Progress& progress) {
+        const auto isLast = [&](const GainSeries& gain, int k) {
+            return gain.tail(k) == 0.0 || errors.truncation(gain, k, largest) <= accuracy;
+        };
+        int last = 1;  // as far as T_0 tells
+        for (const GainSeries& gain : series)
+            while (!isLast(gain, last)) ++last;
+        before_.assign(newest_.size(), Values::Zero());
+        sums_.assign(series.size(), Rows(newest_.size(), Values::Zero()));
+        for (int k = 1;; ++k) {
+            progress.report(std::min(1.0, static_cast<double>(k) / last), "filtering");
+            largest = std::max(largest, unit_ * next(k, series));
+            if (!std::all_of(series.begin(), series.end(),
+                             [&](const GainSeries& gain) { return isLast(gain, k + 1); }))
+                continue;
+            if (k % 2 == 0) addNewest(k, series);
+            for (Rows* rows : {&newest_, &before_}) Rows().swap(*rows);
+            return k + 1;
+        }
+    }
+
+    double sum(std::size_t g, Index vertex, Index column) const {
+        return unit_ * sums_[g][operator_.rowOf(vertex)][column];
+    }
+    void release(std::size_t g) { Rows().swap(sums_[g]); }  ///< Frees the memory of a sum.
+
+  private:
+    using Values = typename Operator::Values;
+    using Scalar = typename Values::Scalar;
+    using Detail = Eigen::Array<double, Values::RowsAtCompileTime, 1>;
+    using Rows = std::vector<Values, Eigen::aligned_allocator<Values>>;
+
+    /// T_0 and what is known from it.
+    void start(const Laplacian& laplacian, const Centred& centred, Index columns) {
+        const Eigen::VectorXd& D = laplacian.D;
+        details_ = parallelSum(count_, Details(), [&](Index begin, Index end) {
+            Details sums;
+            for (Index i = begin; i < end; ++i)
+                for (Index c = 0; c < columns; ++c) {
+                    const double x = centred(i, c);
+                    sums.shape += D[i] * x * x;
+                    sums.largestEntry = std::max(sums.largestEntry, std::abs(x));
+                }
+            return sums;
+        });
+        if (details_.largestEntry > 0.0) unit_ = details_.largestEntry;
+        details_ += parallelSum(count_, Details(), [&](Index begin, Index end) {
+            Details sums;
+            for (Index i = begin; i < end; ++i) {
+                const Detail row = operator_.detail(i);
+                sums.norm += D[i] * row.matrix().squaredNorm();
+                sums.largest = std::max(sums.largest, row.abs().maxCoeff());
+                newest_[operator_.rowOf(i)] = (row / unit_).template cast<Scalar>();
+            }
+            return sums;
+        });
+        details_.shape = std::sqrt(details_.shape);
+        details_.norm = std::sqrt(details_.norm);
+        if constexpr (std::is_same_v<Scalar, float>) return;  // of differences: no constant part
+        Eigen::MatrixXd T0(count_, columns);
+        for (Index i = 0; i < count_; ++i)
+            for (Index c = 0; c < columns; ++c) T0(i, c) = unit_ * newest_[operator_.rowOf(i)][c];
+        const Eigen::MatrixXd means = laplacian.constants.means(T0);
+        details_.roundOff = (laplacian.constants.masses().cwiseSqrt().asDiagonal() * means).norm() /
+                            std::max(details_.shape, std::numeric_limits<double>::min());
+    }
+
+    /// T_k = 2 x T_k-1 - T_k-2, T_1 = x T_0. Every second term is added to the sums together with
+    /// the one before: sums are a third of what a term reads and writes.
+    /// @return  the largest entry of T_k.
+    double next(int k, const std::vector<GainSeries>& series) {
+        switch (k % 2 == 1 ? series.size() : 0) {
+            case 0: return nextRows<0>(k, series);
+            case 1: return nextRows<1>(k, series);
+            case 2: return nextRows<2>(k, series);
+            default: return nextRows<kMaxGains>(k, series);
+        }
+    }
+
+    template <std::size_t Gains>
+    double nextRows(int k, const std::vector<GainSeries>& series) {
+        struct Sum {
+            Scalar ofHere, ofRow;
+            Values* rows;
+        };
+        std::array<Sum, Gains> all;
+        for (std::size_t g = 0; g < Gains; ++g)
+            all[g] = {static_cast<Scalar>(series[g].coefficient(k - 1)),
+                      static_cast<Scalar>(series[g].coefficient(k)), sums_[g].data()};
+        const auto applied = operator_.twice(newest_.data());
+        const double largest = parallelMax(count_, [&](Index begin, Index end) {
+            const auto twice = applied;  // copies: stores might change what others refer to
+            const auto sums = all;
+            const Scalar factor = k == 1 ? 1 : 2, ofBefore = k == 1 ? 0 : 1;
+            const Values* newest = newest_.data();
+            Values* before = before_.data();
+            Values most = Values::Zero();
+            for (Index i = begin; i < end; ++i) {
+                const Values here = newest[i],
+                             row = factor * (twice(i) - here) - ofBefore * before[i];
+                before[i] = row;
+                most = most.max(row.abs());
+                for (const Sum& sum : sums) sum.rows[i] += sum.ofHere * here + sum.ofRow * row;
+            }
+            return static_cast<double>(most.maxCoeff());
+        });
+        newest_.swap(before_);
+        return largest;
+    }
+
+    void addNewest(int k, const std::vector<GainSeries>& series) {
+        for (std::size_t g = 0; g < sums_.size(); ++g) {
+            const auto factor = static_cast<Scalar>(series[g].coefficient(k));
+            parallelRows(count_, [&](Index begin, Index end) {
+                for (Index i = begin; i < end; ++i) sums_[g][i] += factor * newest_[i];
+            });
+        }
+    }
+
+    Operator operator_;
+    Index count_;
+    double unit_ = 1.0;  // of the rows
+    Details details_;
+    Rows newest_, before_;
+    std::vector<Rows> sums_;
+};
+
+/// As applySeries; nothing if round-off takes too much of the accuracy and that is not allowed.
+template <class Operator>
+std::optional<std::vector<FullSpectrumResult>> evaluate(
+    const Laplacian& laplacian, const KrylovOperator& S, const std::vector<Gain>& gains,
+    const Signals& X, const Eigen::VectorXd& omega, const FullSpectrumOptions& options,
+    bool mayRoundOff, const Progress& progress) {
     const Centred centred(X, laplacian.constants);
-    bool isSingle = S.isProduct() && !options.atEveryVertex;
-    const std::optional<int> most = S.isProduct() ? options.affordable : kMaxSolves;
-    const auto newTerms = [&]() -> std::unique_ptr<Terms> {
-        if (!isSingle) return std::make_unique<DoubleTerms>(laplacian, S, X, centred, gains.size());
-        const double largest = S.lastFrequency() * S.lastFrequency();
-        return std::make_unique<SingleTerms>(laplacian, largest, X, centred, gains.size());
-    };
-    std::unique_ptr<Terms> terms = newTerms();
-    const Details details = terms->start();
-    if (!(details.largestEntry > 0.0)) return {gains.size(), {X, 0.0, 0, true}};
+    Terms<Operator> terms(laplacian, S, X, centred);
+    const Details& details = terms.details();
+    if (!(details.largestEntry > 0.0))
+        return std::vector<FullSpectrumResult>(gains.size(), {X, 0.0, 0, true});
 
     // How much larger errors are at the vertices than over the surface is known only at the end.
     constexpr double kAtVertices = 1e-2;
     const double share = options.atEveryVertex ? kAtVertices : 1.0;
+    const std::optional<int> most = S.isProduct() ? options.affordable : kMaxSolves;
     std::vector<GainSeries> series;
     for (const Gain& gain : gains) {
         auto found = seriesOf(gain, S, omega, details, share * options.accuracy, most);
-        if (!found) return {};
+        if (!found) return std::vector<FullSpectrumResult>();
         series.push_back(*std::move(found));
     }
-    // What round-off may take of the accuracy.
-    const auto isRoundedOff = [&](const Errors& errors) {
-        return std::any_of(series.begin(), series.end(), [&](const GainSeries& gain) {
-            return errors.others(gain, details.largest) - gain.mismatch > 0.25 * options.accuracy;
-        });
-    };
-    Errors errors(details, options, isSingle);
-    if (isRoundedOff(errors)) {
-        if (!isSingle && !S.isProduct()) return {};
-        if (isSingle) {
-            isSingle = false;
-            terms = newTerms();
-            terms->start();
-            errors = Errors(details, options, isSingle);
-        }
-    }
+    const Errors errors(details, options, Operator::kRoundOffOfTerm);
+    constexpr double kShareOfRoundOff = 0.25;  // of the accuracy
+    for (const GainSeries& gain : series)
+        if (!mayRoundOff && errors.others(gain, details.largest) - gain.mismatch >
+                                kShareOfRoundOff * options.accuracy)
+            return {};
     double largest = details.largest;
-    const int count = sumTerms(*terms, series, errors, options.accuracy, largest, progress);
+    // At the vertices the bound is often reached, and steps add up: one term more, of some 12.
+    const double truncated = options.atEveryVertex ? 0.25 * options.accuracy : options.accuracy;
+    const int count = terms.add(series, errors, truncated, largest, progress);
 
     std::vector<FullSpectrumResult> results(gains.size());
     for (std::size_t g = 0; g < gains.size(); ++g) {
@@ -466,9 +436,9 @@ std::vector<FullSpectrumResult> applySeries(const Laplacian& laplacian, const Kr
         parallelRows(X.rows(), [&](Index begin, Index end) {
             for (Index c = 0; c < X.cols(); ++c)
                 for (Index i = begin; i < end; ++i)
-                    result.Y(i, c) = series[g].atZero * centred(i, c) + terms->sum(g, i, c);
+                    result.Y(i, c) = series[g].atZero * centred(i, c) + terms.sum(g, i, c);
         });
-        terms->release(g);
+        terms.release(g);
         laplacian.constants.add(centred.means() - laplacian.constants.means(result.Y), result.Y);
         result.dimension = count;
         result.errorEstimate =
@@ -477,6 +447,25 @@ std::vector<FullSpectrumResult> applySeries(const Laplacian& laplacian, const Kr
         if (!result.converged) result.errorEstimate *= kNotConverged;
     }
     return results;
+}
+
+}  // namespace
+
+std::vector<FullSpectrumResult> applySeries(const Laplacian& laplacian, const KrylovOperator& S,
+                                            const std::vector<Gain>& gains, const Signals& X,
+                                            const Eigen::VectorXd& omega,
+                                            const FullSpectrumOptions& options,
+                                            const Progress& progress) {
+    if (gains.size() > kMaxGains) return {};
+    if (S.isProduct() && !options.atEveryVertex)
+        if (auto results =
+                evaluate<SingleProduct>(laplacian, S, gains, X, omega, options, false, progress))
+            return *std::move(results);
+    return withColumns(static_cast<int>(X.cols()), [&](auto columns) {
+        auto results = evaluate<DoubleOperator<columns>>(laplacian, S, gains, X, omega, options,
+                                                         S.isProduct(), progress);
+        return results ? *std::move(results) : std::vector<FullSpectrumResult>();
+    });
 }
 
 }  // namespace spectral

@@ -23,8 +23,8 @@ namespace spectral {
 /// @return       as applyFullSpectrum; empty if more than options.affordable terms are needed, or,
 ///               of a ShiftInvert, if the accuracy might be lost in round-off.
 std::vector<FullSpectrumResult> applySeries(const Laplacian& laplacian, const KrylovOperator& S,
-                                            const std::vector<Gain>& gains,
-                                            const Eigen::MatrixXd& X, const Eigen::VectorXd& omega,
+                                            const std::vector<Gain>& gains, const Signals& X,
+                                            const Eigen::VectorXd& omega,
                                             const FullSpectrumOptions& options,
                                             const Progress& progress);
 

@@ -143,7 +143,7 @@ IntrinsicDelaunay::IntrinsicDelaunay(const Vertices& V, const Faces& F) : vertex
     });
 }
 
-IntrinsicTriangulation IntrinsicDelaunay::triangulation(const Vertices& V) const {
+IntrinsicTriangulation IntrinsicDelaunay::triangulation(const Vertices& V) && {
     std::vector<double> length(tail_.size());
     parallelRows(static_cast<Index>(tail_.size()), [&](Index begin, Index end) {
         for (Index s = begin; s < end; ++s)
@@ -169,13 +169,13 @@ IntrinsicTriangulation IntrinsicDelaunay::triangulation(const Vertices& V) const
     if (epsilon > 0.0)
         for (double& l : length) l += epsilon;
 
-    IntrinsicTriangulation triangulation(tail_, twin_, std::move(length));
+    IntrinsicTriangulation triangulation(std::move(tail_), std::move(twin_), std::move(length));
     triangulation.makeDelaunay();
     return triangulation;
 }
 
-SparseMatrix IntrinsicDelaunay::stiffness(const Vertices& V) const {
-    return stiffnessOf(triangulation(V), copies_, vertexCount_);
+SparseMatrix IntrinsicDelaunay::stiffness(const Vertices& V) && {
+    return stiffnessOf(std::move(*this).triangulation(V), copies_, vertexCount_);
 }
 
 }  // namespace spectral

@@ -26,10 +26,16 @@ class IntrinsicDelaunay {
     /// Delaunay triangulation of the tufted cover, which has one copy of every triangle if the
     /// surface is closed and oriented, else a front and a back.
     /// @param V  n x 3, finite, not all at one point.
-    IntrinsicTriangulation triangulation(const Vertices& V) const;
+    IntrinsicTriangulation triangulation(const Vertices& V) const& {
+        return IntrinsicDelaunay(*this).triangulation(V);
+    }
+    IntrinsicTriangulation triangulation(const Vertices& V) &&;  ///< Without copies of the gluing.
 
     /// W of the embedding V: n x n, symmetric, rows sum to 0; same requirements.
-    SparseMatrix stiffness(const Vertices& V) const;
+    SparseMatrix stiffness(const Vertices& V) const& {
+        return IntrinsicDelaunay(*this).stiffness(V);
+    }
+    SparseMatrix stiffness(const Vertices& V) &&;
 
   private:
     Index vertexCount_;

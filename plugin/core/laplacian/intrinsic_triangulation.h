@@ -22,7 +22,7 @@ class IntrinsicTriangulation {
                            std::vector<double> length);
 
     /// Flips edges until the two cotangents opposite each sum to at least 0, up to round-off. Ends
-    /// for any lengths.
+    /// for any lengths and releases them: to be called once.
     void makeDelaunay();
 
     int sideCount() const { return static_cast<int>(tail_.size()); }

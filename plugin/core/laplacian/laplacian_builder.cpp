@@ -23,13 +23,14 @@ LaplacianBuilder::LaplacianBuilder(const Surface& surface, Components components
       update_(update),
       conformalShare_(conformalShare) {
     if (kind == LaplacianKind::IntrinsicDelaunay) intrinsic_.emplace(surface.X, surface.F);
-    current_.W = stiffness(surface.X);
+    // Unless W is updated, its topology ends with it.
+    current_.W = intrinsic_ && update != BasisUpdate::Full
+                     ? std::move(*intrinsic_).stiffness(surface.X)
+                     : stiffness(surface.X);
+    if (update != BasisUpdate::Full) intrinsic_.reset();
     inputMass_ = mass(surface.X);
     setMass(inputMass_, inputMass_.sum());
-    if (update == BasisUpdate::Full)
-        inputStiffness_ = current_.W;
-    else
-        intrinsic_.reset();  // W stays
+    if (update == BasisUpdate::Full) inputStiffness_ = current_.W;
 }
 
 void LaplacianBuilder::setMass(Eigen::VectorXd D, double area) {

@@ -52,6 +52,8 @@ class Run:
         n x c new values at the vertices.
     basis
         n x k harmonics.
+    columns
+        For several columns of `values`, a report of each.
     report
         Numbers, flags and arrays; "warnings", a list of problems that were not errors; "summary",
         what a filter that chooses by itself found and did.
@@ -65,6 +67,7 @@ class Run:
     details: Array | None = None
     values: Array | None = None
     basis: Array | None = None
+    columns: list[dict[str, Any]] | None = None
 
     @property
     def plain_report(self) -> dict[str, Any]:
@@ -98,7 +101,7 @@ def run(
     selected
         n booleans, for the option `selected`.
     values
-        n x 1 numbers, or n x 3 levels of 0 to 255, to filter or as weights.
+        n x k numbers, or n x 3 levels of 0 to 255, to filter or as weights.
     gain
         In place of a transfer function.
     whole

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import isfinite, log, pi, sqrt
 from typing import TYPE_CHECKING, Any, cast
 
@@ -16,7 +17,7 @@ from meshlab_spectral.filters.options import FilterOptions, TransferKeywords
 from meshlab_spectral.filters.progress import Progress, shown
 from meshlab_spectral.filters.reports import ColorsReport, ScalarsReport
 from meshlab_spectral.filters.representations import Report
-from meshlab_spectral.filters.running import Gain, Run, require_no_type, run
+from meshlab_spectral.filters.running import Gain, Run, plain, require_no_type, run
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -24,6 +25,8 @@ if TYPE_CHECKING:
 _SCALARS = "apply_scalar_spectral_filter_per_vertex"
 # More than any atlas of brain regions has.
 _MOST_LABELS = 1000
+# Columns in one run: their share of reading the mesh is small, and so are their copies.
+_TOGETHER = 64
 _COLORS = "apply_color_spectral_filter_per_vertex"
 
 # A Gaussian of standard deviation s is half as high at s sqrt(2 ln 2): fwhm = 2 sqrt(2 ln 2) s. It
@@ -64,9 +67,10 @@ def filter_scalars(
         With coordinates: m x 3 vertex indices of triangles, from 0 to n - 1; any topology.
     values
         n numbers, or n x k for k fields, each filtered on its own, or the name of such an array in
-        the mesh. NaN means no data: it stays, and the surface ends there for the others. Values at
-        unreferenced vertices are kept exactly. Labels would be averaged: filter where each of them
-        is, and take the label with most weight (see the example).
+        the mesh; many together take a fifth of the time that they take one by one. NaN means no
+        data: it stays, and the surface ends there for the others. Values at unreferenced vertices
+        are kept exactly. Labels would be averaged: filter where each of them is, and take the label
+        with most weight (see the example).
     options
         All options below in one object, instead of by name; others must have their defaults.
     fwhm
@@ -123,20 +127,22 @@ def filter_scalars(
 
     labels = _warning_of_labels(given_values)
 
+    fields = Q.reshape(len(V), -1)
+    filtered = np.empty_like(fields)
+    reports: list[dict[str, Any]] = [{}] * fields.shape[1]
     with shown(progress) as on_progress:
-        runs = [
-            _run(_SCALARS, V, F, parameters, column[:, None], gain, on_progress, threads)
-            for column in Q.reshape(len(V), -1).T
-        ]
+        for block in _filtered_together(fields):
+            done = _run(_SCALARS, V, F, parameters, fields[:, block], gain, on_progress, threads)
+            filtered[:, block] = _values(done)
+            for j, column in zip(block, done.columns or [done.report], strict=True):
+                reports[j] = Report(plain(column))
     if Q.ndim == 2:
-        reports = [one.plain_report for one in runs]
         warnings = [f"column {j}: {w}" for j, r in enumerate(reports) for w in r["warnings"]]
         warnings += labels
-        values = np.hstack([_values(one) for one in runs])
-        return values, cast(ScalarsReport, Report(columns=reports, warnings=warnings))
-    report = runs[0].plain_report
+        return filtered, cast(ScalarsReport, Report(columns=reports, warnings=warnings))
+    report = reports[0]
     report["warnings"] += labels
-    return _values(runs[0])[:, 0], cast(ScalarsReport, report)
+    return filtered[:, 0], cast(ScalarsReport, report)
 
 
 @takes_options(FilterOptions, names=TransferKeywords.__annotations__)
@@ -188,6 +194,16 @@ def filter_colors(
     filtered = C.astype(np.float64 if most == 1 else np.uint8)
     filtered[:, :3] = _values(done) / (255 / most)
     return filtered, cast(ColorsReport, done.plain_report)
+
+
+def _filtered_together(fields: NDArray[np.float64]) -> Iterator[list[int]]:
+    """Yield blocks of columns that lack data at the same vertices: one surface, one run."""
+    blocks: dict[bytes, list[int]] = {}
+    for j, field in enumerate(fields.T):
+        blocks.setdefault(np.packbits(np.isnan(field)).tobytes(), []).append(j)
+    for columns in blocks.values():
+        for first in range(0, len(columns), _TOGETHER):
+            yield columns[first : first + _TOGETHER]
 
 
 def _warning_of_labels(values: NDArray[Any]) -> list[str]:
